@@ -1,0 +1,11 @@
+// The text of the shipped schemas; CMake writes the definitions from the schema files (embed_schemas.cmake).
+#pragma once
+
+#include <string_view>
+
+namespace rouleau::host {
+
+extern const std::string_view scene_schema_text;
+extern const std::string_view manifest_schema_text;
+
+}  // namespace rouleau::host

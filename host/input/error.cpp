@@ -1,0 +1,15 @@
+#include "error.hpp"
+
+namespace rouleau::host {
+
+std::string to_string(const Place& place) {
+  std::string text = place.file;
+  if (place.line > 0) {
+    text += ':' + std::to_string(place.line);
+    if (place.column > 0) text += ':' + std::to_string(place.column);
+  }
+  if (!place.pointer.empty()) text += (text.empty() ? "" : " ") + place.pointer;
+  return text;
+}
+
+}  // namespace rouleau::host

@@ -1,0 +1,134 @@
+// Cell types and where cells are placed.
+#include "json_pointer.hpp"
+#include "scene_fields.hpp"
+#include "wording.hpp"
+
+namespace rouleau::host {
+namespace {
+
+constexpr std::size_t most_cells = 1'000'000;
+constexpr std::size_t most_types = 1000;
+
+/// Names stand in columns of CSV files and in paths of HDF5 files.
+bool is_plain_name(const std::string& name) {
+  const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+  if (name.empty() || name.size() > 100 || !letter(name.front())) return false;
+  for (const char c : name) {
+    if (!letter(c) && !(c >= '0' && c <= '9') && c != '_' && c != '-' && c != '.') return false;
+  }
+  return true;
+}
+
+Shape read_shape(const SceneFields& fields, const std::string& pointer) {
+  if (fields.has(pointer + "/biconcave"))
+    return Biconcave{fields.quantity(pointer + "/biconcave/radius", "m", range::length)};
+  if (fields.has(pointer + "/circle")) {
+    return Circle{fields.quantity(pointer + "/circle/radius", "m", range::length),
+                  fields.value_or(pointer + "/circle/prestretch", 1.0)};
+  }
+  return Ellipse{fields.quantities(pointer + "/ellipse/semi_axes", "m", range::length)};
+}
+
+class Placements {
+ public:
+  Placements(const SceneFields& fields, const std::vector<CellType>& types) : fields_(fields), types_(types) {}
+
+  std::vector<CellPlacement> read() {
+    const auto count = fields_.has("/cells") ? fields_.at("/cells").size() : 0;
+    for (std::size_t i = 0; i < count; ++i) read_entry(child_pointer("/cells", i));
+    return std::move(cells_);
+  }
+
+ private:
+  void read_entry(const std::string& pointer) {
+    const int type = fields_.cell_type(pointer + "/type", types_);
+    if (fields_.has(pointer + "/row")) {
+      read_row(type, pointer);
+    } else if (fields_.has(pointer + "/list")) {
+      const auto count = fields_.at(pointer + "/list").size();
+      make_room(count, pointer + "/list");
+      for (std::size_t i = 0; i < count; ++i) place_one(type, child_pointer(pointer + "/list", i));
+    } else {
+      make_room(1, pointer);
+      place_one(type, pointer);
+    }
+  }
+
+  void place_one(int type, const std::string& pointer) {
+    cells_.push_back({type, fields_.quantities(pointer + "/at", "m", range::place), angle(pointer), pointer});
+  }
+
+  void read_row(int type, const std::string& entry) {
+    const auto pointer = entry + "/row";
+    const auto count = fields_.at(pointer + "/count").get<std::size_t>();
+    make_room(count, pointer + "/count");
+    const double spacing = fields_.quantity(pointer + "/spacing", "m", range::length);
+    const auto center = fields_.quantities(pointer + "/center", "m", range::place);
+    const double turn = angle(pointer);
+    const Eigen::Vector2d direction = fields_.value_or(pointer + "/axis", std::string("x")) == "y"
+                                          ? Eigen::Vector2d::UnitY()
+                                          : Eigen::Vector2d::UnitX();
+    const double middle = 0.5 * static_cast<double>(count - 1);
+    for (std::size_t i = 0; i < count; ++i) {
+      cells_.push_back({type, center + (static_cast<double>(i) - middle) * spacing * direction, turn, entry});
+    }
+  }
+
+  [[nodiscard]] double angle(const std::string& pointer) const {
+    return fields_.quantity_or(pointer + "/angle", "rad", range::angle, 0.0);
+  }
+
+  void make_room(std::size_t count, const std::string& pointer) const {
+    if (count <= most_cells - cells_.size()) return;
+    fields_.refuse(pointer, "with these there would be " + std::to_string(cells_.size() + count) + " cells; at most " +
+                                std::to_string(most_cells) + " can be computed");
+  }
+
+  const SceneFields& fields_;
+  const std::vector<CellType>& types_;
+  std::vector<CellPlacement> cells_;
+};
+
+}  // namespace
+
+void refuse_random_packing(const Document& document) {
+  const auto& root = document.root();
+  if (!root.is_object() || !root.contains("cells") || !root["cells"].is_array()) return;
+  for (std::size_t i = 0; i < root["cells"].size(); ++i) {
+    if (!root["cells"][i].is_object() || !root["cells"][i].contains("random")) continue;
+    throw Error(ExitCode::bad_input, document.key_place(child_pointer(child_pointer("/cells", i), "random")),
+                "random packing is not offered yet; place the cells with at, row or list");
+  }
+}
+
+std::vector<CellType> read_cell_types(const SceneFields& fields, double fluid_viscosity) {
+  std::vector<CellType> types;
+  if (!fields.has("/cell_types")) return types;
+  for (const auto& [name, value] : fields.at("/cell_types").items()) {
+    const auto pointer = child_pointer("/cell_types", name);
+    if (!is_plain_name(name)) {
+      fields.refuse_key(
+          pointer,
+          in_quotes(name) + " is no name for a cell type; use letters, digits, '_', '-' and '.', a letter first");
+    }
+    if (types.size() == most_types) {
+      fields.refuse_key(pointer, "there are more than " + std::to_string(most_types) + " cell types");
+    }
+    CellType type{name,
+                  read_shape(fields, pointer + "/shape"),
+                  fields.at(pointer + "/segments").get<int>(),
+                  fields.quantity_or(pointer + "/interior_viscosity", "Pa s", range::viscosity, fluid_viscosity),
+                  {}};
+    for (std::size_t i = 0; i < value.at("membrane").size(); ++i) {
+      type.membrane.push_back(fields.model(child_pointer(pointer + "/membrane", i)));
+    }
+    types.push_back(std::move(type));
+  }
+  return types;
+}
+
+std::vector<CellPlacement> read_cells(const SceneFields& fields, const std::vector<CellType>& types) {
+  return Placements(fields, types).read();
+}
+
+}  // namespace rouleau::host

@@ -1,0 +1,82 @@
+#include "scene_fields.hpp"
+
+#include <cmath>
+
+#include "json_pointer.hpp"
+#include "wording.hpp"
+
+namespace rouleau::host {
+namespace {
+
+std::string with_unit(double value, std::string_view unit) {
+  return number(value) + (unit == "1" ? "" : ' ' + std::string(unit));
+}
+
+}  // namespace
+
+const nlohmann::json& SceneFields::at(const std::string& pointer) const {
+  return document_.root().at(nlohmann::json::json_pointer(pointer));
+}
+
+bool SceneFields::has(const std::string& pointer) const {
+  return document_.root().contains(nlohmann::json::json_pointer(pointer));
+}
+
+double SceneFields::quantity(const std::string& pointer, std::string_view unit, Range range) const {
+  const auto& value = at(pointer);
+  const auto name = subject(pointer);
+  double si = 0.0;
+  if (value.is_number()) {
+    si = value.get<double>();
+  } else {
+    try {
+      si = units_.to_si(value.get_ref<const std::string&>(), unit, name);
+    } catch (const UnitError& error) {
+      refuse(pointer, error.what());
+    }
+  }
+  if (si >= range.least && si <= range.most) return si;
+  // A plain number that ought to have had a unit is the likeliest reason for a value out of range.
+  const auto as_si = value.is_number() ? " (a plain number is taken in " + std::string(unit) + ')' : "";
+  if (!(si > 0.0) && range.least > 0.0)
+    refuse(pointer, shown(value) + " is not positive; " + name + " must be above zero");
+  if (!(si >= 0.0) && range.least == 0.0)
+    refuse(pointer, shown(value) + " is negative; " + name + " must be zero or above");
+  refuse(pointer, shown(value) + " is out of range" + as_si + "; " + name + " must lie between " +
+                      with_unit(range.least, unit) + " and " + with_unit(range.most, unit));
+}
+
+double SceneFields::quantity_or(const std::string& pointer, std::string_view unit, Range range,
+                                double otherwise) const {
+  return has(pointer) ? quantity(pointer, unit, range) : otherwise;
+}
+
+Eigen::Vector2d SceneFields::quantities(const std::string& pointer, std::string_view unit, Range range) const {
+  return {quantity(child_pointer(pointer, 0U), unit, range), quantity(child_pointer(pointer, 1U), unit, range)};
+}
+
+ModelChoice SceneFields::model(const std::string& pointer) const {
+  return {at(pointer + "/model").get<std::string>(), value_or(pointer + "/parameters", nlohmann::json::object()),
+          pointer};
+}
+
+int SceneFields::cell_type(const std::string& pointer, const std::vector<CellType>& types) const {
+  const auto& name = at(pointer).get_ref<const std::string&>();
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < types.size(); ++i) {
+    if (types[i].name == name) return static_cast<int>(i);
+    names.push_back(types[i].name);
+  }
+  refuse(pointer, "no cell type is called " + in_quotes(name) + did_you_mean(name, names) +
+                      "\ncell_types has: " + listed(names));
+}
+
+void SceneFields::refuse(const std::string& pointer, const std::string& problem) const {
+  throw Error(ExitCode::bad_input, document_.place(pointer), indented(problem));
+}
+
+void SceneFields::refuse_key(const std::string& pointer, const std::string& problem) const {
+  throw Error(ExitCode::bad_input, document_.key_place(pointer), indented(problem));
+}
+
+}  // namespace rouleau::host

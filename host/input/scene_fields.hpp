@@ -1,0 +1,76 @@
+// Reads single values of a document that fits the scene's schema: quantities in SI within their range, names, faults.
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "document.hpp"
+#include "scene.hpp"
+#include "units.hpp"
+
+namespace rouleau::host {
+
+/// Where a quantity may lie, in SI: from `least` to `most`, both included. The ranges are far wider than any sensible
+/// scene; they are there so that no later product overflows and no quotient divides by nothing.
+struct Range {
+  double least;
+  double most;
+};
+
+namespace range {
+inline constexpr Range length{1e-12, 1.0};          ///< m
+inline constexpr Range place{-1.0, 1.0};            ///< m
+inline constexpr Range time{1e-12, 1e9};            ///< s
+inline constexpr Range density{1e-3, 1e6};          ///< kg/m3
+inline constexpr Range viscosity{1e-9, 1e6};        ///< Pa s
+inline constexpr Range shear_rate{0.0, 1e9};        ///< 1/s
+inline constexpr Range force_density{-1e15, 1e15};  ///< N/m3
+inline constexpr Range angle{-1e3, 1e3};            ///< rad
+}  // namespace range
+
+class SceneFields {
+ public:
+  explicit SceneFields(const Document& document) : document_(document) {}
+
+  [[nodiscard]] const nlohmann::json& at(const std::string& pointer) const;
+  [[nodiscard]] bool has(const std::string& pointer) const;
+
+  /// SI value of a quantity, or of a plain number; `unit` is what is wanted. Throws when it is outside the range.
+  [[nodiscard]] double quantity(const std::string& pointer, std::string_view unit, Range range) const;
+  [[nodiscard]] double quantity_or(const std::string& pointer, std::string_view unit, Range range,
+                                   double otherwise) const;
+  [[nodiscard]] Eigen::Vector2d quantities(const std::string& pointer, std::string_view unit, Range range) const;
+
+  template <class T>
+  [[nodiscard]] T value_or(const std::string& pointer, const T& otherwise) const {
+    return has(pointer) ? at(pointer).get<T>() : otherwise;
+  }
+
+  /// A model's id and parameters; the object at `pointer` has "model".
+  [[nodiscard]] ModelChoice model(const std::string& pointer) const;
+
+  /// Index of the cell type that the text at `pointer` names.
+  [[nodiscard]] int cell_type(const std::string& pointer, const std::vector<CellType>& types) const;
+
+  /// Ends with Error(bad_input) at a value, or at a key. Lines of the problem after the first are indented here.
+  [[noreturn]] void refuse(const std::string& pointer, const std::string& problem) const;
+  [[noreturn]] void refuse_key(const std::string& pointer, const std::string& problem) const;
+
+ private:
+  const Document& document_;
+  Units units_;
+};
+
+/// Packing at random is part of the format but not written yet, and deserves better than "unknown key".
+void refuse_random_packing(const Document& document);
+
+/// The parts of a scene, each in a file of its own.
+std::vector<CellType> read_cell_types(const SceneFields& fields, double fluid_viscosity);
+std::vector<CellPlacement> read_cells(const SceneFields& fields, const std::vector<CellType>& types);
+std::vector<Stage> read_stages(const SceneFields& fields, const Scene& scene);
+Output read_output(const SceneFields& fields, const std::vector<Stage>& stages);
+
+}  // namespace rouleau::host

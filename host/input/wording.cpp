@@ -1,0 +1,106 @@
+#include "wording.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+
+#include "schema.hpp"
+
+namespace rouleau::host {
+namespace {
+
+constexpr std::size_t longest_shown = 80;
+
+std::string shortened(std::string text, std::string_view end) {
+  if (text.size() <= longest_shown) return text;
+  std::size_t length = longest_shown - 3;
+  // A character of several bytes is not cut: bytes 10xxxxxx continue one.
+  while (length > 0 && (static_cast<unsigned char>(text[length]) & 0xC0U) == 0x80U) --length;
+  return text.substr(0, length) + "..." + std::string(end);
+}
+
+std::string dumped(const nlohmann::json& value) {
+  return value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+/// Distance in insertions, deletions, replacements and swaps of neighbours; upper and lower case count as the same.
+std::size_t spelling_distance(std::string_view a, std::string_view b) {
+  const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; };
+  std::vector<std::size_t> before(b.size() + 1);
+  std::vector<std::size_t> last(b.size() + 1);
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) last[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const bool same = lower(a[i - 1]) == lower(b[j - 1]);
+      row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + (same ? 0 : 1)});
+      if (i > 1 && j > 1 && lower(a[i - 1]) == lower(b[j - 2]) && lower(a[i - 2]) == lower(b[j - 1])) {
+        row[j] = std::min(row[j], before[j - 2] + 1);
+      }
+    }
+    before.swap(last);
+    last.swap(row);
+  }
+  return last[b.size()];
+}
+
+}  // namespace
+
+std::string in_quotes(std::string_view text) { return shortened(dumped(std::string(text)), "\""); }
+
+std::string shown(const nlohmann::json& value) {
+  return value.is_string() ? in_quotes(value.get_ref<const std::string&>()) : shortened(dumped(value), "");
+}
+
+std::string listed(const std::vector<std::string>& words) {
+  if (words.empty()) return "none";
+  std::string text;
+  for (const auto& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+std::string nearest(std::string_view word, const std::vector<std::string>& candidates) {
+  constexpr std::size_t longest_word = 64;
+  std::string best;
+  if (word.empty() || word.size() > longest_word) return best;
+  std::size_t best_distance = word.size() <= 2 ? 2 : std::max<std::size_t>(2, word.size() / 3 + 1);
+  for (const auto& candidate : candidates) {
+    if (candidate.size() > longest_word) continue;
+    auto distance = spelling_distance(word, candidate);
+    // A word cut short or drawn out ("params", "nodes_xy") is near although many letters differ.
+    const auto shorter = std::min(word.size(), candidate.size());
+    const auto same = static_cast<std::size_t>(
+        std::mismatch(word.begin(), word.begin() + static_cast<std::ptrdiff_t>(shorter), candidate.begin()).first -
+        word.begin());
+    const bool begins_alike = same >= 3 && same + 1 >= shorter && word.size() != candidate.size();
+    if (begins_alike) distance = std::min<std::size_t>(distance, 1);
+    if (distance >= std::max(word.size(), candidate.size())) continue;  // nothing in common
+    const bool same_first = word.front() == candidate.front() && (best.empty() || word.front() != best.front());
+    if (distance < best_distance || (distance == best_distance && !best.empty() && same_first)) {
+      best_distance = distance;
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates) {
+  const auto near = nearest(word, candidates);
+  return near.empty() || near == word ? "" : "; did you mean " + in_quotes(near) + "?";
+}
+
+std::string number(double value, int digits) {
+  std::array<char, 48> text{};
+  std::snprintf(text.data(), text.size(), "%.*g", digits, value);
+  return text.data();
+}
+
+std::string indented(std::string problem) {
+  for (auto at = problem.find('\n'); at != std::string::npos; at = problem.find('\n', at + 1)) {
+    problem.insert(at + 1, "  ");
+  }
+  return problem;
+}
+
+}  // namespace rouleau::host

@@ -1,0 +1,29 @@
+// How values, lists and suggestions are written in messages.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace rouleau::host {
+
+/// Text in double quotes, control characters escaped, shortened when long.
+std::string in_quotes(std::string_view text);
+
+/// A JSON value as one would write it, shortened when long.
+std::string shown(const nlohmann::json& value);
+
+/// "a, b, c"; "none" when empty.
+std::string listed(const std::vector<std::string>& words);
+
+/// `; did you mean "tau"?`, or nothing when no candidate is near.
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates);
+
+/// A number as short as it can be read back with six digits, or with `digits`.
+std::string number(double value, int digits = 6);
+
+/// Lines after the first get the indent that Error gives the first.
+std::string indented(std::string problem);
+
+}  // namespace rouleau::host

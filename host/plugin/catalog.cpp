@@ -1,0 +1,172 @@
+#include "catalog.hpp"
+
+#include <stdlib.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "input/document.hpp"
+#include "input/wording.hpp"
+#include "manifest_search.hpp"
+
+namespace rouleau::host {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_folder(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_directory(path, ignored);
+}
+
+void require_folder(const fs::path& folder, const char* origin) {
+  if (is_folder(folder)) return;
+  std::error_code ignored;
+  throw Error(ExitCode::bad_input, std::string(origin) + ": " + folder.string() +
+                                       (fs::exists(folder, ignored) ? " is not a folder" : " does not exist"));
+}
+
+/// Folders of ROULEAU_PLUGIN_PATH. secure_getenv: a program with raised privileges does not trust its environment.
+std::vector<fs::path> environment_folders() {
+  std::vector<fs::path> folders;
+  const char* variable = secure_getenv("ROULEAU_PLUGIN_PATH");
+  std::string rest = variable == nullptr ? "" : variable;
+  while (!rest.empty()) {
+    const auto end = std::min(rest.find(':'), rest.size());
+    const fs::path folder = rest.substr(0, end);
+    rest.erase(0, std::min(end + 1, rest.size()));
+    if (folder.empty()) continue;  // not the working directory, which an empty entry means in PATH
+    if (folder.is_relative()) {
+      throw Error(ExitCode::bad_input, "ROULEAU_PLUGIN_PATH holds the relative folder " + in_quotes(folder.string()) +
+                                           "; its folders must be absolute, separated by ':'");
+    }
+    folders.push_back(folder);
+  }
+  return folders;
+}
+
+/// The plugins installed with the running program, or built beside it.
+std::vector<fs::path> installed_folders() {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  if (error) return {};
+  const fs::path prefix = program.parent_path().parent_path();
+  std::vector<fs::path> folders;
+  for (const char* library_folder : {ROULEAU_LIBRARY_FOLDER, "lib", "lib64"}) {
+    const fs::path folder = prefix / library_folder / "rouleau" / "plugins";
+    if (std::find(folders.begin(), folders.end(), folder) == folders.end()) folders.push_back(folder);
+  }
+  return folders;
+}
+
+std::string names_of(const std::vector<fs::path>& files) {
+  std::string text;
+  for (const auto& file : files) text += "\n    " + file.string();
+  return text.empty() ? "\n    none" : text;
+}
+
+}  // namespace
+
+std::vector<fs::path> plugin_search_path(const std::vector<fs::path>& command_line,
+                                         const std::vector<fs::path>& scene) {
+  std::vector<fs::path> path;
+  for (const auto& folder : command_line) {
+    require_folder(folder, "--plugin-dir");
+    path.push_back(folder);
+  }
+  for (const auto& folder : scene) {
+    require_folder(folder, "plugin_dirs of the scene");
+    path.push_back(folder);
+  }
+  for (const auto& folder : environment_folders()) {
+    if (is_folder(folder)) path.push_back(folder);
+  }
+  for (const auto& folder : installed_folders()) {
+    if (is_folder(folder)) path.push_back(folder);
+  }
+  return path;
+}
+
+Catalog::Catalog(const std::vector<fs::path>& folders) : folders_(folders) {
+  const FoundFiles found = find_json_files(folders);
+  for (const auto& [place, reason] : found.unreadable) refused_.push_back({place, {}, reason});
+  const Units units;
+  for (const auto& file : found.files) {
+    std::string id;
+    try {
+      const Document document = read_manifest_document(file);
+      const auto& root = document.root();
+      if (!root.is_object() || !root.contains("manifest")) continue;  // some other JSON file
+      if (root.contains("id") && root["id"].is_string()) id = root["id"];
+      manifests_.push_back(read_manifest(document, file, units));
+    } catch (const Error& error) {
+      refused_.push_back({file, id, error.what()});
+    }
+  }
+  refuse_duplicates();
+}
+
+/// A refused manifest counts too: if it is meant to replace the other one, that one must not be used in its stead.
+void Catalog::refuse_duplicates() {
+  std::map<std::string, std::vector<fs::path>> files;
+  for (const auto& manifest : manifests_) files[manifest.id].push_back(manifest.file);
+  for (const auto& refused : refused_) {
+    if (!refused.id.empty()) files[refused.id].push_back(refused.file);
+  }
+  std::vector<Manifest> unique;
+  for (auto& manifest : manifests_) {
+    const auto& claimants = files[manifest.id];
+    if (claimants.size() == 1) {
+      unique.push_back(std::move(manifest));
+    } else {
+      refused_.push_back({manifest.file, manifest.id,
+                          "  " + std::to_string(claimants.size()) + " manifests have the id " + in_quotes(manifest.id) +
+                              ':' + names_of(claimants)});
+    }
+  }
+  manifests_ = std::move(unique);
+}
+
+const Manifest& Catalog::find(ModelKind kind, const std::string& id, const Place& place) const {
+  for (const auto& manifest : manifests_) {
+    if (manifest.id != id) continue;
+    if (manifest.kind == kind) return manifest;
+    throw Error(ExitCode::bad_input, place,
+                in_quotes(id) + " is a plugin of the kind " + to_string(manifest.kind) + "; here one of the kind " +
+                    to_string(kind) + " is wanted: " + listed(ids(kind)));
+  }
+  std::string reasons;
+  for (const auto& refused : refused_) {
+    // Each of two manifests with one id was refused for the other's sake: naming both once is enough.
+    if (refused.id == id && reasons.find(refused.reason) == std::string::npos) reasons += "\n" + refused.reason;
+  }
+  if (!reasons.empty()) {
+    throw Error(ExitCode::plugin_refused, place, "the plugin " + in_quotes(id) + " was refused:" + reasons);
+  }
+  throw_unknown(kind, id, place);
+}
+
+void Catalog::throw_unknown(ModelKind kind, const std::string& id, const Place& place) const {
+  std::string problem = "no plugin has the id " + in_quotes(id) + did_you_mean(id, ids(kind)) + "\n  of the kind " +
+                        to_string(kind) + " there are: " + listed(ids(kind)) +
+                        "\n  folders searched:" + names_of(folders_);
+  std::vector<fs::path> nameless;
+  for (const auto& refused : refused_) {
+    if (refused.id.empty()) nameless.push_back(refused.file);
+  }
+  if (!nameless.empty()) problem += "\n  could not be read:" + names_of(nameless);
+  throw Error(ExitCode::bad_input, place, problem);
+}
+
+std::vector<std::string> Catalog::ids(ModelKind kind) const {
+  std::vector<std::string> names;
+  for (const auto& manifest : manifests_) {
+    if (manifest.kind == kind) names.push_back(manifest.id);
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+}  // namespace rouleau::host

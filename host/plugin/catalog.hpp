@@ -1,0 +1,51 @@
+// All manifests that the search path offers. Reads JSON only: no library is opened here.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "error.hpp"
+#include "manifest.hpp"
+
+namespace rouleau::host {
+
+/// Folders to search, first to last: --plugin-dir, the scene's plugin_dirs, ROULEAU_PLUGIN_PATH (secure_getenv, ':'
+/// separated), the installation beside the program. Never the working directory. Entries that do not exist are left
+/// out, except those of the command line and the scene: they must exist (Error bad_input).
+std::vector<std::filesystem::path> plugin_search_path(const std::vector<std::filesystem::path>& command_line,
+                                                      const std::vector<std::filesystem::path>& scene);
+
+class Catalog {
+ public:
+  /// A manifest that cannot be used, and why. Listed by `rouleau plugins`; an error only when a scene names its id.
+  struct Refused {
+    std::filesystem::path file;
+    std::string id;  ///< empty when not even that could be read
+    std::string reason;
+  };
+
+  /// Searches each folder and its sub-folders for *.json files with a "manifest" key.
+  explicit Catalog(const std::vector<std::filesystem::path>& folders);
+
+  [[nodiscard]] const std::vector<Manifest>& manifests() const { return manifests_; }
+  [[nodiscard]] const std::vector<Refused>& refused() const { return refused_; }
+  [[nodiscard]] const std::vector<std::filesystem::path>& folders() const { return folders_; }
+
+  /// Manifest of a model. Throws Error(bad_input) at `place` for an id that nobody offers (nearest name, folders
+  /// searched) or that is of another kind; Error(plugin_refused) for a refused manifest or two manifests with this id.
+  [[nodiscard]] const Manifest& find(ModelKind kind, const std::string& id, const Place& place) const;
+
+  /// Ids of the usable models of a kind, sorted.
+  [[nodiscard]] std::vector<std::string> ids(ModelKind kind) const;
+
+ private:
+  void refuse_duplicates();
+  [[noreturn]] void throw_unknown(ModelKind kind, const std::string& id, const Place& place) const;
+
+  std::vector<std::filesystem::path> folders_;
+  std::vector<Manifest> manifests_;
+  std::vector<Refused> refused_;
+};
+
+}  // namespace rouleau::host

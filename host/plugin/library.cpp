@@ -1,0 +1,91 @@
+#include "library.hpp"
+
+// With the standard's file paths Boost.DLL is header-only and needs no other Boost library.
+#define BOOST_DLL_USE_STD_FS
+#include <dlfcn.h>
+#include <sha2.h>
+
+#include <boost/dll/shared_library.hpp>
+#include <cerrno>
+#include <cstring>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "error.hpp"
+#include "exported_symbols.hpp"
+#include "input/wording.hpp"
+#include "table_checks.hpp"
+
+namespace rouleau::host {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void refuse(const Manifest& manifest, const std::string& problem) {
+  throw Error(ExitCode::plugin_refused, Place{manifest.file.string(), {}, 0, 0},
+              "the library " + manifest.library.string() + ' ' + problem);
+}
+
+/// The library's file with all links followed, which must lie in the manifest's own folder.
+fs::path library_file(const Manifest& manifest) {
+  std::error_code error;
+  const fs::path folder = fs::canonical(manifest.file.parent_path().empty() ? "." : manifest.file.parent_path(), error);
+  if (error) refuse(manifest, "cannot be looked for: " + error.message());
+  const fs::path library = fs::canonical(manifest.library, error);
+  if (error == std::errc::no_such_file_or_directory) {
+    refuse(manifest, fs::is_symlink(fs::symlink_status(manifest.library))
+                         ? "is a link to a file that does not exist"
+                         : "does not exist; it must lie in the folder of its manifest");
+  }
+  if (error) refuse(manifest, "cannot be opened: " + error.message());
+  if (library.parent_path() != folder) {
+    refuse(manifest, "leads out of the folder of its manifest, to " + library.string());
+  }
+  if (!fs::is_regular_file(library, error)) refuse(manifest, "is not a regular file");
+  return library;
+}
+
+/// Loads for good: code of a plugin may be anywhere on a stack, and its tables live in it.
+boost::dll::shared_library& load(const Manifest& manifest, const fs::path& file) {
+  static auto& loaded = *new std::vector<std::unique_ptr<boost::dll::shared_library>>;  // never destroyed
+  auto library = std::make_unique<boost::dll::shared_library>();
+  std::error_code error;
+  library->load(file, boost::dll::load_mode::rtld_now | boost::dll::load_mode::rtld_local, error);
+  if (error) {
+    const char* words = dlerror();  // Boost's own error says only "bad file descriptor"
+    refuse(manifest, "could not be loaded: " + std::string(words != nullptr ? words : error.message().c_str()));
+  }
+  return *loaded.emplace_back(std::move(library));
+}
+
+}  // namespace
+
+const rouleau_model& open_model(const Manifest& manifest) {
+  const fs::path file = library_file(manifest);
+  if (const std::string reason = reason_not_loadable(file, ROULEAU_OPEN_SYMBOL); !reason.empty()) {
+    refuse(manifest, reason);
+  }
+  const auto open = load(manifest, file).get<const rouleau_plugin*(std::uint32_t)>(ROULEAU_OPEN_SYMBOL);
+  const rouleau_plugin* plugin = open(ROULEAU_ABI_MINOR);
+  if (plugin == nullptr) {
+    refuse(manifest, "says that it cannot work with this host (interface " + std::to_string(ROULEAU_ABI_MAJOR) + '.' +
+                         std::to_string(ROULEAU_ABI_MINOR) + ')');
+  }
+  const auto [model, fault] = find_model(*plugin, manifest);
+  if (model == nullptr) refuse(manifest, fault);
+  return *model;
+}
+
+std::string sha256(const fs::path& file) {
+  char digest[SHA256_DIGEST_STRING_LENGTH] = {};
+  errno = 0;
+  if (SHA256File(file.c_str(), digest) == nullptr) {
+    throw Error(ExitCode::input_output, Place{file.string(), {}, 0, 0},
+                std::string("cannot be read: ") + std::strerror(errno));
+  }
+  return digest;
+}
+
+}  // namespace rouleau::host

@@ -1,0 +1,18 @@
+// Opens a plugin's shared library (the only user of Boost.DLL and of the dynamic loader).
+#pragma once
+
+#include <rouleau/plugin.h>
+
+#include "manifest.hpp"
+
+namespace rouleau::host {
+
+/// The model that a manifest describes. Opens its library (RTLD_NOW | RTLD_LOCAL) after checking that it lies beside
+/// the manifest (no path, no link out) and exports rouleau_open_v1; never unloads it, so the result is valid for ever.
+/// Throws Error(plugin_refused) with manifest, library path and the loader's own words.
+const rouleau_model& open_model(const Manifest& manifest);
+
+/// SHA-256 of a file, lower-case hexadecimal. Throws Error(input_output).
+std::string sha256(const std::filesystem::path& file);
+
+}  // namespace rouleau::host

@@ -1,0 +1,108 @@
+#include "manifest.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <sstream>
+
+#include "input/document.hpp"
+#include "input/schema.hpp"
+#include "manifest_checks.hpp"
+
+namespace rouleau::host {
+
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+std::string text_of(const json& object, const char* key) { return object.value(key, std::string()); }
+
+std::vector<std::string> words_of(const json& root, const char* key) {
+  return root.value(key, std::vector<std::string>());
+}
+
+/// The author's own keys never reach the rest of the host.
+json without_own_keys(const json& value) {
+  if (!value.is_object()) return value;
+  json kept = json::object();
+  for (const auto& [key, member] : value.items()) {
+    if (!key.starts_with("x-")) kept[key] = member;
+  }
+  return kept;
+}
+
+ModelKind kind_of(const std::string& word) {
+  if (word == "collision") return ModelKind::collision;
+  if (word == "membrane") return ModelKind::membrane;
+  return ModelKind::interaction;
+}
+
+}  // namespace
+
+bool Manifest::needs_input(const std::string& name) const {
+  return std::find(needs.begin(), needs.end(), name) != needs.end();
+}
+
+bool Manifest::gives_output(const std::string& name) const {
+  return std::find(gives.begin(), gives.end(), name) != gives.end();
+}
+
+Document read_manifest_document(const fs::path& file) {
+  const Place place{file.string(), {}, 0, 0};
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) {
+    throw Error(ExitCode::plugin_refused, place,
+                "cannot be read: " + (error ? error.message() : std::string("not a regular file")));
+  }
+  // Folders of plugins may hold data as well; reading all of it to find out that it is no manifest would take for ever.
+  constexpr std::uintmax_t largest = 1 << 20;
+  if (fs::file_size(file, error) > largest || error) {
+    throw Error(ExitCode::plugin_refused, place,
+                error ? "cannot be read: " + error.message() : "is larger than 1 MiB, which no manifest is");
+  }
+  errno = 0;
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  if (stream) text << stream.rdbuf();
+  if (!stream || stream.bad()) {
+    throw Error(ExitCode::plugin_refused, place, std::string("cannot be read: ") + std::strerror(errno));
+  }
+  return Document::parse(text.str(), file.string(), ExitCode::plugin_refused);
+}
+
+Manifest read_manifest(const Document& document, const fs::path& file, const Units& units) {
+  validate(document, manifest_schema(), ExitCode::plugin_refused);
+  const json& root = document.root();
+
+  Manifest manifest;
+  manifest.file = file;
+  manifest.library = fs::absolute(file).parent_path() / text_of(root, "library");
+  manifest.kind = kind_of(text_of(root, "kind"));
+  manifest.id = text_of(root, "id");
+  manifest.version = text_of(root, "version");
+  manifest.title = text_of(root, "title");
+  manifest.reference = text_of(root, "reference");
+  manifest.author = text_of(root, "author");
+  manifest.license = text_of(root, "license");
+  manifest.parameters = read_parameters(document, units);
+  manifest.needs = words_of(root, "needs");
+  manifest.gives = words_of(root, "gives");
+  manifest.state = read_state(document, units);
+  manifest.inactive_when = without_own_keys(root.value("inactive_when", json()));
+  manifest.claims = without_own_keys(root.value("claims", json::object()));
+  manifest.checks = root.value("checks", json::array());
+  check_quantities(document, manifest);
+  check_inactive_when(document, manifest, units);
+  check_reference_numbers(document, manifest);
+  return manifest;
+}
+
+Manifest read_manifest(const fs::path& file, const Units& units) {
+  return read_manifest(read_manifest_document(file), file, units);
+}
+
+}  // namespace rouleau::host

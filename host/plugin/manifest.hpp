@@ -1,0 +1,56 @@
+// A plugin's manifest: what a model is, takes and gives, known before its library is opened.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "input/units.hpp"
+
+namespace rouleau::host {
+
+class Document;
+
+enum class ModelKind { collision = 1, membrane = 2, interaction = 3 };
+const char* to_string(ModelKind kind);
+
+/// One parameter of a model. Numbers are in coherent SI units here; `unit` is what the manifest and messages use.
+struct Parameter {
+  std::string name;
+  std::string unit;  ///< "1" for a number; empty for a choice
+  Dimension dimension;
+  std::vector<std::string> choices;     ///< not empty: a word of this list; its index is what the model gets
+  std::optional<double> default_value;  ///< absent: the scene must give it
+  std::optional<double> minimum, exclusive_minimum, maximum, exclusive_maximum;  ///< outside: refused
+  std::optional<std::array<double, 2>> usual;                                    ///< outside: a warning
+  std::string doc;
+};
+
+struct Manifest {
+  std::filesystem::path file;     ///< the manifest itself
+  std::filesystem::path library;  ///< absolute; checked to lie in the manifest's folder when the library is opened
+  ModelKind kind;
+  std::string id;
+  std::string version;
+  std::string title, reference, author, license;
+  std::vector<Parameter> parameters;
+  std::vector<std::string> needs, gives, state;
+  nlohmann::json
+      inactive_when;  ///< object: parameter -> value (in its unit) at which the model does nothing; null: never
+  nlohmann::json claims, checks;
+
+  [[nodiscard]] bool needs_input(const std::string& name) const;
+  [[nodiscard]] bool gives_output(const std::string& name) const;
+};
+
+/// Text of a manifest as JSON with places. Throws Error(plugin_refused) when it cannot be read or is no JSON.
+Document read_manifest_document(const std::filesystem::path& file);
+/// Validates a manifest. Throws Error(plugin_refused) with place, problem and remedy.
+Manifest read_manifest(const Document& document, const std::filesystem::path& file, const Units& units);
+/// Reads and validates a manifest. Throws Error(plugin_refused) with place, problem and remedy.
+Manifest read_manifest(const std::filesystem::path& file, const Units& units);
+
+}  // namespace rouleau::host

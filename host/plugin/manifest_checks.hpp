@@ -1,0 +1,30 @@
+// What a JSON Schema cannot say about a manifest: units, limits, and names that must fit each other.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "input/document.hpp"
+#include "manifest.hpp"
+
+namespace rouleau::host {
+
+// All of these expect a document that fits the schema, and throw Error(plugin_refused) with the place of the fault.
+
+/// The parameters, with numbers in SI. Units must parse; names be unique; limits, usual range and default fit together.
+std::vector<Parameter> read_parameters(const Document& document, const Units& units);
+
+/// Names of the state variables, each with a unit that parses.
+std::vector<std::string> read_state(const Document& document, const Units& units);
+
+/// "needs" and "gives" hold names of the manifest's kind only, and what every model of this kind must have; a membrane
+/// law keeps to one element.
+void check_quantities(const Document& document, const Manifest& manifest);
+
+/// "inactive_when" names parameters and gives values that these can have.
+void check_inactive_when(const Document& document, const Manifest& manifest, const Units& units);
+
+/// "checks" name parameters, inputs of "needs" and outputs of "gives".
+void check_reference_numbers(const Document& document, const Manifest& manifest);
+
+}  // namespace rouleau::host

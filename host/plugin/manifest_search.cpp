@@ -1,0 +1,69 @@
+#include "manifest_search.hpp"
+
+#include <algorithm>
+#include <set>
+
+namespace rouleau::host {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+class Search {
+ public:
+  FoundFiles found;
+
+  void folder(const fs::path& path) {
+    if (!is_new(path)) return;
+    std::vector<fs::path> files, folders;
+    std::error_code error;
+    for (fs::directory_iterator entry(path, error), end; !error && entry != end; entry.increment(error)) {
+      std::error_code status_error;
+      const fs::file_status status = entry->status(status_error);
+      if (fs::is_directory(status)) {
+        folders.push_back(entry->path());
+      } else if (entry->path().extension() == ".json") {
+        if (fs::is_regular_file(status))
+          files.push_back(entry->path());
+        else
+          refuse(entry->path(), status_error ? status_error.message() : "not a regular file");
+      } else if (entry->is_symlink() && status_error && status_error != std::errc::no_such_file_or_directory) {
+        refuse(entry->path(), status_error.message());  // a link to a folder that cannot be followed
+      }
+    }
+    if (error) refuse(path, error.message());
+    std::sort(files.begin(), files.end());
+    std::sort(folders.begin(), folders.end());
+    for (const auto& file : files) {
+      if (is_new(file)) found.files.push_back(file);
+    }
+    for (const auto& child : folders) folder(child);
+  }
+
+ private:
+  bool is_new(const fs::path& path) {
+    std::error_code error;
+    const fs::path canonical = fs::canonical(path, error);
+    if (error) {
+      refuse(path, error.message());
+      return false;
+    }
+    return seen_.insert(canonical).second;
+  }
+
+  void refuse(const fs::path& path, const std::string& reason) {
+    found.unreadable.emplace_back(path, path.string() + "\n  cannot be read: " + reason);
+  }
+
+  std::set<fs::path> seen_;
+};
+
+}  // namespace
+
+FoundFiles find_json_files(const std::vector<fs::path>& folders) {
+  Search search;
+  for (const auto& folder : folders) search.folder(folder);
+  return std::move(search.found);
+}
+
+}  // namespace rouleau::host

@@ -1,0 +1,20 @@
+// Finds the JSON files below a list of folders, in the same order on every machine.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace rouleau::host {
+
+struct FoundFiles {
+  std::vector<std::filesystem::path> files;  ///< folder by folder; within one by name, before its sub-folders
+  std::vector<std::pair<std::filesystem::path, std::string>> unreadable;  ///< place and reason
+};
+
+/// All regular files *.json in the folders and their sub-folders. Links are followed; a file or folder that several
+/// ways lead to is found once, by the first, so loops end. What cannot be read is reported and skipped.
+FoundFiles find_json_files(const std::vector<std::filesystem::path>& folders);
+
+}  // namespace rouleau::host

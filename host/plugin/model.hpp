@@ -1,0 +1,40 @@
+// Instances of models: a C table with its `self`, made for one stage and destroyed with it.
+#pragma once
+
+#include <rouleau/plugin.h>
+
+#include <memory>
+#include <vector>
+
+#include "input/lattice_units.hpp"
+#include "manifest.hpp"
+
+namespace rouleau::host {
+
+/// What all models of a stage are told about the lattice.
+struct ModelSetting {
+  LatticeUnits units;
+  double relaxation_rate;  ///< 1/tau of the suspending fluid
+  bool inertia;
+};
+
+/// One instance, usable from many threads at once. Creating it opens the model's library.
+class ModelInstance {
+ public:
+  /// `values`: parameters in SI in the manifest's order; they are converted to lattice units here.
+  /// Throws Error(plugin_refused) when the library is refused or create reports an error.
+  ModelInstance(const Manifest& manifest, const std::vector<double>& values, const ModelSetting& setting);
+
+  [[nodiscard]] const Manifest& manifest() const { return *manifest_; }
+  [[nodiscard]] const void* self() const { return self_.get(); }
+  [[nodiscard]] const rouleau_collision& collision() const { return *model_->collision; }
+  [[nodiscard]] const rouleau_membrane& membrane() const { return *model_->membrane; }
+  [[nodiscard]] const rouleau_interaction& interaction() const { return *model_->interaction; }
+
+ private:
+  const Manifest* manifest_;
+  const rouleau_model* model_;
+  std::unique_ptr<void, void (*)(void*)> self_;
+};
+
+}  // namespace rouleau::host

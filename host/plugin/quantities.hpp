@@ -1,0 +1,22 @@
+// The names of what models of each kind read and write: the vocabulary of a manifest's "needs" and "gives".
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "manifest.hpp"
+
+namespace rouleau::host {
+
+/// Element of a membrane that a law describes (plugin.h, rouleau_membrane_block).
+enum class MembraneElement { segment, node, cell };
+const char* to_string(MembraneElement element);
+
+/// Names that "needs" and "gives" of a kind may hold, in the order of plugin.h.
+const std::vector<std::string>& inputs_of(ModelKind kind);
+const std::vector<std::string>& outputs_of(ModelKind kind);
+
+/// The element that a membrane law's input or output belongs to; none for "energy", which belongs to all.
+std::optional<MembraneElement> element_of(const std::string& name);
+
+}  // namespace rouleau::host

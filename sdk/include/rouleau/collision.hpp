@@ -1,0 +1,231 @@
+// Collision operators: a functor over the nine populations of one node becomes a plugin.
+//
+// Moments and equilibrium follow He and Luo (J. Stat. Phys. 88, 1997) with reference density 1, forcing follows Guo,
+// Zheng and Shi (Phys. Rev. E 65, 2002); without inertia the quadratic terms of both are left out (Stokes flow).
+#pragma once
+
+#include "d2q9.hpp"
+#include "dispatch.hpp"
+#include "model.hpp"
+
+namespace rouleau {
+
+/// One lattice node before collision. Populations are deviations from rest, f_q - w_q.
+/// Forced and Inertia are compile-time facts, so that a formula pays only for what its node has.
+template <class S, bool Forced, bool Inertia>
+struct Node {
+  static constexpr bool forced = Forced;
+  static constexpr bool inertia = Inertia;
+
+  S f[9];
+  S force[2];         ///< force density; not to be read unless forced
+  S relaxation_rate;  ///< 1/tau of the shear stress
+
+  S density;      ///< deviation from 1
+  S velocity[2];  ///< sum f c + force / 2
+
+  /// Sets density and velocity from populations and force.
+  ROULEAU_ALWAYS_INLINE void compute_moments() {
+    const S east = f[5] + f[8], west = f[6] + f[7], north = f[5] + f[6], south = f[7] + f[8];
+    density = f[0] + ((f[1] + f[3]) + (f[2] + f[4])) + (east + west);
+    velocity[0] = (f[1] - f[3]) + (east - west);
+    velocity[1] = (f[2] - f[4]) + (north - south);
+    if constexpr (Forced) {
+      velocity[0] += 0.5 * force[0];
+      velocity[1] += 0.5 * force[1];
+    }
+  }
+
+  /// c_q . a for a vector a.
+  ROULEAU_ALWAYS_INLINE static S project(int q, const S (&a)[2]) {
+    switch (q) {
+      case 1:
+        return a[0];
+      case 2:
+        return a[1];
+      case 3:
+        return -a[0];
+      case 4:
+        return -a[1];
+      case 5:
+        return a[0] + a[1];
+      case 6:
+        return a[1] - a[0];
+      case 7:
+        return -(a[0] + a[1]);
+      case 8:
+        return a[0] - a[1];
+      default:
+        return S(0);
+    }
+  }
+
+  /// Part of the equilibrium that is even under reversal of the velocity: the same for q and its opposite.
+  ROULEAU_ALWAYS_INLINE S even_equilibrium(int q) const {
+    S sum = density;
+    if constexpr (Inertia) {
+      const S along = project(q, velocity);
+      sum += 4.5 * along * along - 1.5 * (velocity[0] * velocity[0] + velocity[1] * velocity[1]);
+    }
+    return d2q9::weight[q] * sum;
+  }
+  /// Part of the equilibrium that changes its sign with the velocity.
+  ROULEAU_ALWAYS_INLINE S odd_equilibrium(int q) const { return 3.0 * d2q9::weight[q] * project(q, velocity); }
+
+  /// Guo's source before its factor 1 - rate/2, even part: zero without inertia.
+  ROULEAU_ALWAYS_INLINE S even_source(int q) const {
+    return d2q9::weight[q] *
+           (9.0 * project(q, velocity) * project(q, force) - 3.0 * (velocity[0] * force[0] + velocity[1] * force[1]));
+  }
+  /// Guo's source before its factor 1 - rate/2, odd part.
+  ROULEAU_ALWAYS_INLINE S odd_source(int q) const { return 3.0 * d2q9::weight[q] * project(q, force); }
+};
+
+namespace detail {
+
+/// C block of either precision.
+template <class T>
+using CollisionBlock = std::conditional_t<sizeof(T) == 8, rouleau_collision_block_f64, rouleau_collision_block_f32>;
+
+/// What a collision instance holds: the author's operator and what the loop needs of the setup.
+template <class Model>
+struct CollisionInstance {
+  explicit CollisionInstance(const Parameters& parameters)
+      : model(parameters),
+        relaxation_rate(parameters.setup().relaxation_rate),
+        inertia(parameters.setup().inertia != 0) {
+    if (parameters.setup().dimension != 2 || parameters.setup().velocity_count != 9) {
+      throw std::invalid_argument("this operator is written for D2Q9");
+    }
+  }
+  Model model;
+  double relaxation_rate;
+  bool inertia;
+};
+
+template <class Model, class T>
+struct CollisionLoop {
+  using Block = CollisionBlock<T>;
+
+  template <int register_bytes>
+  ROULEAU_ALWAYS_INLINE static void run(const void* self, const Block* block) {
+    const auto& instance = *static_cast<const CollisionInstance<Model>*>(self);
+    if (block->force != nullptr) {
+      if (instance.inertia)
+        sweep<register_bytes, true, true>(instance, *block);
+      else
+        sweep<register_bytes, true, false>(instance, *block);
+    } else {
+      if (instance.inertia)
+        sweep<register_bytes, false, true>(instance, *block);
+      else
+        sweep<register_bytes, false, false>(instance, *block);
+    }
+  }
+
+ private:
+  /// Pointers to one span of nodes; a last partial pack is a span of its own in a padded buffer.
+  struct Span {
+    const T* in[9];
+    T* out[9];
+    const T* force[2];
+    const T* rate;
+    T* velocity[2];
+  };
+
+  template <int register_bytes, bool Forced, bool Inertia>
+  ROULEAU_ALWAYS_INLINE static void sweep(const CollisionInstance<Model>& instance, const Block& block) {
+    constexpr std::uint32_t width = register_bytes / sizeof(T);
+    using S = Pack<T, width>;
+    const Model model = instance.model;
+    const std::uint32_t whole = block.count / width * width;
+    const std::uint32_t rest = block.count - whole;
+
+    Span span;
+    for (int q = 0; q < 9; ++q) {
+      span.in[q] = block.in[q];
+      span.out[q] = block.out[q];
+    }
+    for (int k = 0; k < 2; ++k) {
+      span.force[k] = Forced ? block.force[k] : nullptr;
+      span.velocity[k] = block.velocity != nullptr ? block.velocity[k] : nullptr;
+    }
+    span.rate = block.relaxation_rate;
+
+    T padded[14][width];
+    std::uint32_t count = whole;
+    // The same loop runs the whole packs and then the padded rest, so both give the same bits for the same node.
+    for (int part = 0; part < 2; ++part) {
+      if (part == 1) {
+        if (rest == 0) break;
+        pad(span, padded, whole, rest);
+        count = width;
+      }
+      for (std::uint32_t x = 0; x < count; x += width) {
+        Node<S, Forced, Inertia> node;
+        d2q9::for_each_velocity([&](auto q) { node.f[q] = S::load(span.in[q] + x); });
+        if constexpr (Forced) {
+          node.force[0] = S::load(span.force[0] + x);
+          node.force[1] = S::load(span.force[1] + x);
+        }
+        node.relaxation_rate = span.rate != nullptr ? S::load(span.rate + x) : S(instance.relaxation_rate);
+        node.compute_moments();
+        S after[9];
+        model(node, after);
+        d2q9::for_each_velocity([&](auto q) { after[q].store(span.out[q] + x); });
+        if (span.velocity[0] != nullptr) {
+          node.velocity[0].store(span.velocity[0] + x);
+          node.velocity[1].store(span.velocity[1] + x);
+        }
+      }
+    }
+    if (rest != 0) unpad(block, padded, whole, rest);
+  }
+
+  template <std::uint32_t width>
+  ROULEAU_ALWAYS_INLINE static void pad(Span& span, T (&padded)[14][width], std::uint32_t first, std::uint32_t rest) {
+    const auto copy = [&](const T*& from, int slot) {
+      if (from == nullptr) return;
+      for (std::uint32_t i = 0; i < width; ++i) padded[slot][i] = from[first + (i < rest ? i : 0)];
+      from = padded[slot];
+    };
+    for (int q = 0; q < 9; ++q) {
+      copy(span.in[q], q);
+      span.out[q] = padded[q];
+    }
+    copy(span.force[0], 9);
+    copy(span.force[1], 10);
+    copy(span.rate, 11);
+    for (int k = 0; k < 2; ++k) {
+      if (span.velocity[k] != nullptr) span.velocity[k] = padded[12 + k];
+    }
+  }
+
+  template <std::uint32_t width>
+  ROULEAU_ALWAYS_INLINE static void unpad(const Block& block, const T (&padded)[14][width], std::uint32_t first,
+                                          std::uint32_t rest) {
+    for (std::uint32_t i = 0; i < rest; ++i) {
+      for (int q = 0; q < 9; ++q) block.out[q][first + i] = padded[q][i];
+      for (int k = 0; k < 2 && block.velocity != nullptr; ++k) block.velocity[k][first + i] = padded[12 + k][i];
+    }
+  }
+};
+
+}  // namespace detail
+
+/// Model made of a type with a constructor from Parameters and
+/// `template <class Node, class S> void operator()(const Node& before, S (&after)[9]) const`.
+template <class Model>
+rouleau_model collision(const char* id, const char* version) {
+  static const rouleau_collision table = {
+      sizeof(rouleau_collision),
+      Dispatch<detail::CollisionLoop<Model, double>, const void*, const rouleau_collision_block_f64*>::pick(),
+      Dispatch<detail::CollisionLoop<Model, float>, const void*, const rouleau_collision_block_f32*>::pick()};
+  rouleau_model model = detail::base_model<detail::CollisionInstance<Model>>(ROULEAU_COLLISION_KIND, id, version);
+  model.collision = &table;
+  return model;
+}
+
+}  // namespace rouleau
+
+#define ROULEAU_COLLISION(Type, id, version) ROULEAU_MODELS(rouleau::collision<Type>(id, version))

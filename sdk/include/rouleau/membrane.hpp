@@ -1,0 +1,114 @@
+// Membrane laws: a functor of one segment, one vertex or one whole cell becomes a plugin.
+#pragma once
+
+#include <type_traits>
+
+#include "block.hpp"
+#include "dispatch.hpp"
+#include "model.hpp"
+
+namespace rouleau {
+
+/// One segment between two neighbouring nodes.
+template <class S>
+struct Segment {
+  S stretch;       ///< length / rest length
+  S stretch_rate;  ///< d stretch / dt
+};
+/// What a law of segments returns.
+template <class S>
+struct Tension {
+  S energy;                     ///< per rest length
+  S tension;                    ///< force along the segment, positive when it pulls its ends together
+  S tension_by_stretch = S(0);  ///< for steps that are implicit
+  S tension_by_rate = S(0);
+};
+
+/// One node with the half segments on both sides.
+template <class S>
+struct Vertex {
+  S curvature;       ///< turning angle over rest length
+  S rest_curvature;  ///< of the shape the cell was created with
+};
+/// What a law of vertices returns.
+template <class S>
+struct Moment {
+  S energy;                      ///< per rest length
+  S moment;                      ///< d energy / d curvature
+  S moment_by_curvature = S(0);  ///< for steps that are implicit
+};
+
+/// One whole cell.
+template <class S>
+struct Cell {
+  S area, rest_area;
+  S perimeter, rest_perimeter;
+};
+/// What a law of cells returns.
+template <class S>
+struct CellForces {
+  S energy;             ///< per cell
+  S pressure;           ///< - d energy / d area: positive pushes outward
+  S perimeter_tension;  ///< d energy / d perimeter
+};
+
+namespace detail {
+
+template <class Model>
+struct MembraneLoop {
+  template <int register_bytes>
+  ROULEAU_ALWAYS_INLINE static void run(const void* self, const rouleau_membrane_block* block) {
+    using S = Pack<double, register_bytes / 8>;
+    const Model model = *static_cast<const Model*>(self);
+    for (std::uint32_t first = 0; first < block->count; first += S::size) {
+      const std::uint32_t valid = block->count - first < S::size ? block->count - first : S::size;
+      element<S>(model, *block, first, valid);
+    }
+  }
+
+ private:
+  template <class S>
+  ROULEAU_ALWAYS_INLINE static void element(const Model& model, const rouleau_membrane_block& block,
+                                            std::uint32_t first, std::uint32_t valid) {
+    if constexpr (std::is_invocable_v<const Model&, Segment<S>>) {
+      const Tension<S> result =
+          model(Segment<S>{take<S>(block.stretch, first, valid), take<S>(block.stretch_rate, first, valid)});
+      give(result.energy, block.energy, first, valid);
+      give(result.tension, block.tension, first, valid);
+      give(result.tension_by_stretch, block.tension_by_stretch, first, valid);
+      give(result.tension_by_rate, block.tension_by_rate, first, valid);
+    } else if constexpr (std::is_invocable_v<const Model&, Vertex<S>>) {
+      const Moment<S> result =
+          model(Vertex<S>{take<S>(block.curvature, first, valid), take<S>(block.rest_curvature, first, valid)});
+      give(result.energy, block.energy, first, valid);
+      give(result.moment, block.moment, first, valid);
+      give(result.moment_by_curvature, block.moment_by_curvature, first, valid);
+    } else {
+      static_assert(std::is_invocable_v<const Model&, Cell<S>>,
+                    "a membrane law takes a rouleau::Segment<S>, a rouleau::Vertex<S> or a rouleau::Cell<S>");
+      const CellForces<S> result =
+          model(Cell<S>{take<S>(block.area, first, valid), take<S>(block.rest_area, first, valid),
+                        take<S>(block.perimeter, first, valid), take<S>(block.rest_perimeter, first, valid)});
+      give(result.energy, block.energy, first, valid);
+      give(result.pressure, block.pressure, first, valid);
+      give(result.perimeter_tension, block.perimeter_tension, first, valid);
+    }
+  }
+};
+
+}  // namespace detail
+
+/// Model made of a type with a constructor from Parameters and a template operator() over the element it describes.
+template <class Model>
+rouleau_model membrane(const char* id, const char* version) {
+  static const rouleau_membrane table = {
+      sizeof(rouleau_membrane),
+      Dispatch<detail::MembraneLoop<Model>, const void*, const rouleau_membrane_block*>::pick()};
+  rouleau_model model = detail::base_model<Model>(ROULEAU_MEMBRANE_KIND, id, version);
+  model.membrane = &table;
+  return model;
+}
+
+}  // namespace rouleau
+
+#define ROULEAU_MEMBRANE(Type, id, version) ROULEAU_MODELS(rouleau::membrane<Type>(id, version))
