@@ -1,0 +1,258 @@
+#include "coupling.hpp"
+
+#include <algorithm>
+#include <rouleau/dispatch.hpp>
+
+#include "kernel.hpp"
+
+namespace rouleau::host {
+
+namespace {
+
+constexpr int outside = -1000000;  // row of a node whose stencil is not on the lattice
+constexpr int block = 64;          // nodes that one worker takes at a time
+
+/// Base nodes and what is kept of the weights: written by Locate, read by the others.
+template <class Integer, class Number>
+struct Stencils {
+  Integer *column, *row;
+  Number *fraction_x, *root_x, *fraction_y, *root_y;
+};
+template <class T>
+using KnownStencils = Stencils<const int, const T>;
+
+template <class T>
+struct LocateTask {
+  Stencils<int, T> to;
+  const double *x, *y;
+  int begin, end;
+  int nx, ny;
+  bool periodic_y;
+};
+
+/// Base nodes and fractions; the fraction is taken in double precision before it is rounded to T.
+template <class T>
+struct Locate {
+  template <int register_bytes>
+  ROULEAU_ALWAYS_INLINE static void run(const LocateTask<T>* task) {
+    using S = Pack<double, register_bytes / 8>;
+    const LocateTask<T> t = *task;
+    for (int first = t.begin; first < t.end; first += S::size) {
+      const int valid = std::min(S::size, t.end - first);
+      if (valid == S::size) {
+        group<S>(t, S::load(t.x + first), S::load(t.y + first), first, valid);
+      } else {
+        double x[S::size] = {}, y[S::size] = {};
+        std::copy_n(t.x + first, valid, x);
+        std::copy_n(t.y + first, valid, y);
+        group<S>(t, S::load(x), S::load(y), first, valid);
+      }
+    }
+  }
+
+ private:
+  /// Largest integer not above x, for |x| < 2^51.
+  template <class S>
+  ROULEAU_ALWAYS_INLINE static S floor(const S& x) {
+    const S shift = 6755399441055744.0, rounded = (x + shift) - shift;
+    return select(rounded > x, rounded - 1.0, rounded);
+  }
+  template <class S>
+  ROULEAU_ALWAYS_INLINE static S wrap(const S& base, double period) {
+    const S inside = base - period * floor(base * (1.0 / period));
+    const S raised = select(inside < S(0.0), inside + period, inside);  // the quotient may be rounded across an integer
+    return select(raised >= S(period), raised - period, raised);
+  }
+  template <class S>
+  ROULEAU_ALWAYS_INLINE static void group(const LocateTask<T>& t, const S& x, const S& y, int first, int valid) {
+    S base_x = floor(x), base_y = floor(y);
+    double columns[S::size], rows[S::size], fractions_x[S::size], fractions_y[S::size], roots_x[S::size], roots_y[S::size];
+    const S fraction_x = x - base_x, fraction_y = y - base_y;
+    base_x = wrap(base_x, t.nx);
+    const double last = 1e9;  // beyond, and for NaN, the conversion to int below would be undefined
+    if (t.periodic_y) {
+      base_y = select((x > S(-last)) & (x < S(last)) & (y > S(-last)) & (y < S(last)), wrap(base_y, t.ny), S(outside));
+    } else {
+      base_y = select((x > S(-last)) & (x < S(last)) & (base_y >= S(-1.0)) & (base_y < S(t.ny)), base_y, S(outside));
+    }
+    base_x = select(base_y > S(outside + 1.0), base_x, S(0.0));
+    base_x.store(columns);
+    base_y.store(rows);
+    fraction_x.store(fractions_x);
+    fraction_y.store(fractions_y);
+    kernel_root(fraction_x).store(roots_x);
+    kernel_root(fraction_y).store(roots_y);
+    if (valid == S::size) {
+      put<S::size>(t.to, columns, rows, fractions_x, fractions_y, roots_x, roots_y, first);
+    } else {
+      for (int k = 0; k < valid; ++k) {
+        put<1>(t.to, columns + k, rows + k, fractions_x + k, fractions_y + k, roots_x + k, roots_y + k, first + k);
+      }
+    }
+  }
+  template <int count>
+  ROULEAU_ALWAYS_INLINE static void put(const Stencils<int, T>& to, const double* columns, const double* rows,
+                                        const double* fractions_x, const double* fractions_y, const double* roots_x,
+                                        const double* roots_y, int first) {
+    for (int k = 0; k < count; ++k) to.column[first + k] = static_cast<int>(columns[k]);
+    for (int k = 0; k < count; ++k) to.row[first + k] = static_cast<int>(rows[k]);
+    for (int k = 0; k < count; ++k) to.fraction_x[first + k] = static_cast<T>(fractions_x[k]);
+    for (int k = 0; k < count; ++k) to.fraction_y[first + k] = static_cast<T>(fractions_y[k]);
+    for (int k = 0; k < count; ++k) to.root_x[first + k] = static_cast<T>(roots_x[k]);
+    for (int k = 0; k < count; ++k) to.root_y[first + k] = static_cast<T>(roots_y[k]);
+  }
+};
+
+template <class T>
+struct SpreadTask {
+  KnownStencils<T> at;
+  const double *force_x, *force_y;
+  int nodes;
+  int row_begin, row_end;   // rows of this worker
+  T *origin_x, *origin_y;   // of the fields' row 0
+  std::ptrdiff_t stride;    // from one row to the next, the same in both
+};
+
+template <class T>
+struct Spread {
+  template <int register_bytes>
+  ROULEAU_ALWAYS_INLINE static void run(const SpreadTask<T>* task) {
+    using Four = Pack<T, 4>;
+    const SpreadTask<T> t = *task;
+    for (int i = 0; i < t.nodes; ++i) {
+      const int first = t.at.row[i] - 1;
+      if (first + 4 <= t.row_begin || first >= t.row_end) continue;
+      const Four wx = KernelWeights<T>(t.at.fraction_x[i], t.at.root_x[i]).weight;
+      const Four wy = KernelWeights<T>(t.at.fraction_y[i], t.at.root_y[i]).weight;
+      const Four fx = wx * static_cast<T>(t.force_x[i]), fy = wx * static_cast<T>(t.force_y[i]);
+      const std::ptrdiff_t column = t.at.column[i] - 1;
+      if (first >= t.row_begin && first + 4 <= t.row_end) {
+        for (int k = 0; k < 4; ++k) add(t, fx, fy, wy, first, k, column);
+      } else {
+        for (int k = 0; k < 4; ++k) {
+          if (first + k >= t.row_begin && first + k < t.row_end) add(t, fx, fy, wy, first, k, column);
+        }
+      }
+    }
+  }
+
+ private:
+  ROULEAU_ALWAYS_INLINE static void add(const SpreadTask<T>& t, const Pack<T, 4>& fx, const Pack<T, 4>& fy,
+                                        const Pack<T, 4>& wy, int first, int k, std::ptrdiff_t column) {
+    using Four = Pack<T, 4>;
+    const std::ptrdiff_t at = (first + k) * t.stride + column;
+    const T weight = wy.vector[k];
+    (Four::load(t.origin_x + at) + fx * weight).store(t.origin_x + at);
+    (Four::load(t.origin_y + at) + fy * weight).store(t.origin_y + at);
+  }
+};
+
+template <class T>
+struct InterpolateTask {
+  KnownStencils<T> at;
+  double *velocity_x, *velocity_y;
+  int begin, end;
+  const T *origin_x, *origin_y;
+  std::ptrdiff_t stride;
+};
+
+template <class T>
+struct Interpolate {
+  template <int register_bytes>
+  ROULEAU_ALWAYS_INLINE static void run(const InterpolateTask<T>* task) {
+    using Four = Pack<T, 4>;
+    const InterpolateTask<T> t = *task;
+    for (int i = t.begin; i < t.end; ++i) {
+      if (t.at.row[i] == outside) {
+        t.velocity_x[i] = t.velocity_y[i] = 0;
+        continue;
+      }
+      const Four wx = KernelWeights<T>(t.at.fraction_x[i], t.at.root_x[i]).weight;
+      const Four wy = KernelWeights<T>(t.at.fraction_y[i], t.at.root_y[i]).weight;
+      const std::ptrdiff_t at = (t.at.row[i] - 1) * t.stride + t.at.column[i] - 1;
+      Four ux = T(0), uy = T(0);
+      for (int k = 0; k < 4; ++k) {
+        const T weight = wy.vector[k];
+        ux += Four::load(t.origin_x + at + k * t.stride) * weight;
+        uy += Four::load(t.origin_y + at + k * t.stride) * weight;
+      }
+      t.velocity_x[i] = sum(ux * wx);
+      t.velocity_y[i] = sum(uy * wx);
+    }
+  }
+
+ private:
+  ROULEAU_ALWAYS_INLINE static T sum(const Pack<T, 4>& p) {
+    return (p.vector[0] + p.vector[2]) + (p.vector[1] + p.vector[3]);
+  }
+};
+
+template <class Loop, class Task>
+void run_loop(const Task& task) {
+  static const auto function = Dispatch<Loop, const Task*>::pick();
+  function(&task);
+}
+
+template <class T>
+std::ptrdiff_t row_stride(const Field<T>& field) {
+  return field.row(1) - field.row(0);
+}
+
+}  // namespace
+
+template <class T>
+Coupling<T>::Coupling(int nx, int ny, bool periodic_y) : nx_(nx), ny_(ny), periodic_y_(periodic_y) {}
+
+template <class T>
+void Coupling<T>::reserve(const Membranes& membranes) {
+  const auto nodes = static_cast<std::size_t>(membranes.node_count());
+  column_.assign(nodes, 0);
+  row_.assign(nodes, outside);
+  for (auto* values : {&fraction_x_, &root_x_, &fraction_y_, &root_y_}) values->assign(nodes, T(0));
+  escaped_.assign((nodes + block - 1) / block, -1);
+}
+
+template <class T>
+void Coupling<T>::locate(Worker worker, const Membranes& membranes) {
+  const Range nodes = worker.share(membranes.node_count(), block);
+  run_loop<Locate<T>>(LocateTask<T>{
+      {column_.data(), row_.data(), fraction_x_.data(), root_x_.data(), fraction_y_.data(), root_y_.data()},
+      membranes.x.data(), membranes.y.data(), nodes.begin, nodes.end, nx_, ny_, periodic_y_});
+  for (int first = nodes.begin; first < nodes.end; first += block) {
+    const int* begin = row_.data() + first;
+    const int* end = row_.data() + std::min(first + block, nodes.end);
+    const int* found = std::find(begin, end, outside);
+    escaped_[static_cast<std::size_t>(first / block)] = found == end ? -1 : static_cast<int>(found - row_.data());
+  }
+}
+
+template <class T>
+void Coupling<T>::spread(Worker worker, const Membranes& membranes, VectorField<T>& force) const {
+  const Range rows = worker.share(ny_);
+  const int halo = Field<T>::halo;
+  run_loop<Spread<T>>(SpreadTask<T>{
+      {column_.data(), row_.data(), fraction_x_.data(), root_x_.data(), fraction_y_.data(), root_y_.data()},
+      membranes.force_x.data(), membranes.force_y.data(), membranes.node_count(),
+      worker.first() ? -halo : rows.begin, worker.last() ? ny_ + halo : rows.end,
+      force.x.row(0), force.y.row(0), row_stride(force.x)});
+}
+
+template <class T>
+void Coupling<T>::interpolate(Worker worker, Membranes& membranes, const VectorField<T>& velocity) const {
+  const Range nodes = worker.share(membranes.node_count(), block);
+  run_loop<Interpolate<T>>(InterpolateTask<T>{
+      {column_.data(), row_.data(), fraction_x_.data(), root_x_.data(), fraction_y_.data(), root_y_.data()},
+      membranes.velocity_x.data(), membranes.velocity_y.data(), nodes.begin, nodes.end,
+      velocity.x.row(0), velocity.y.row(0), row_stride(velocity.x)});
+}
+
+template <class T>
+int Coupling<T>::escaped() const {
+  const auto found = std::find_if(escaped_.begin(), escaped_.end(), [](int node) { return node >= 0; });
+  return found == escaped_.end() ? -1 : *found;
+}
+
+template class Coupling<float>;
+template class Coupling<double>;
+
+}  // namespace rouleau::host

@@ -1,0 +1,197 @@
+#include "interaction_forces.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <string>
+
+namespace rouleau::host {
+
+namespace {
+
+std::vector<double> cutoffs_of(const std::vector<Potential>& potentials) {
+  std::vector<double> cutoffs;
+  for (const Potential& potential : potentials) {
+    const Manifest& manifest = potential.model->manifest();
+    for (const std::string& need : manifest.needs) {
+      if (need == "distance") continue;
+      throw Error(ExitCode::plugin_refused, Place{manifest.file.string(), "/needs"},
+                  "interaction \"" + manifest.id + "\" needs \"" + need + "\", which this program does not give yet.");
+    }
+    if (!manifest.state.empty()) {
+      throw Error(ExitCode::plugin_refused, Place{manifest.file.string(), "/state"},
+                  "interaction \"" + manifest.id + "\" has state, which this program does not keep yet.");
+    }
+    cutoffs.push_back(potential.model->interaction().cutoff(potential.model->self()));
+  }
+  return cutoffs;
+}
+
+Cutoffs pair_cutoffs(const Membranes& membranes, const std::vector<Potential>& potentials,
+                     const std::vector<double>& cutoffs) {
+  int types = 1;
+  for (const CellRange& cell : membranes.cells) types = std::max(types, cell.type + 1);
+  for (const Potential& potential : potentials) types = std::max({types, potential.between[0] + 1, potential.between[1] + 1});
+  Cutoffs result(types);
+  for (std::size_t p = 0; p < potentials.size(); ++p) {
+    result.raise(potentials[p].between[0], potentials[p].between[1], cutoffs[p]);
+  }
+  return result;
+}
+
+bool acts_between(const Potential& potential, int a, int b) {
+  return (potential.between[0] == a && potential.between[1] == b) || (potential.between[0] == b && potential.between[1] == a);
+}
+
+}  // namespace
+
+InteractionForces::InteractionForces(const Membranes& membranes, std::vector<Potential> potentials, PeriodicBox box)
+    : potentials_(std::move(potentials)),
+      cutoffs_(cutoffs_of(potentials_)),
+      contacts_(membranes, pair_cutoffs(membranes, potentials_, cutoffs_), box),
+      scratch_(membranes.cells.size()) {}
+
+void InteractionForces::run(Worker worker, int phase, Membranes& membranes) {
+  const Range cells = worker.share(static_cast<int>(membranes.cells.size()));
+  switch (phase) {
+    case 0: contacts_.run(worker, 0, membranes); break;
+    case 1:
+      contacts_.run(worker, 1, membranes);
+      for (int cell = cells.begin; cell < cells.end; ++cell) {
+        compute_forces(cell, membranes);
+        act(cell, membranes);
+      }
+      break;
+    default:
+      contacts_.neighbours().link(worker, membranes);
+      for (int cell = cells.begin; cell < cells.end; ++cell) react(cell, membranes);
+      break;
+  }
+}
+
+// Pairs are listed by type of the other cell, so that a potential gets its distances in one piece.
+InteractionForces::TypeRange InteractionForces::next_range(int cell, const Membranes& membranes, std::size_t& pair) const {
+  const std::vector<Neighbours::Pair>& pairs = contacts_.neighbours().list(cell).pairs;
+  const std::vector<Range>& ranges = contacts_.list(cell).ranges;
+  const auto type_of = [&](std::size_t p) { return membranes.cells[static_cast<std::size_t>(pairs[p].other)].type; };
+  TypeRange result{type_of(pair), ranges[pair]};
+  for (++pair; pair < pairs.size() && type_of(pair) == result.type; ++pair) result.contacts.end = ranges[pair].end;
+  return result;
+}
+
+/// Adds (or, if it is the first, sets) one potential's force or energy at the contacts to `result`.
+void InteractionForces::apply(std::size_t potential, const ContactList& list, Range contacts, double* result, bool energy,
+                              bool first, Scratch& scratch) const {
+  const ModelInstance& model = *potentials_[potential].model;
+  const double cutoff = cutoffs_[potential];
+  const int own_type = potentials_[potential].between[0], other_type = potentials_[potential].between[1];
+  const bool all = !(cutoff < contacts_.neighbours().cutoffs()(own_type, other_type));
+  int count = contacts.end - contacts.begin;
+  const double* distance = list.distance.data() + contacts.begin;
+  if (!all) {
+    count = 0;
+    for (int i = contacts.begin; i < contacts.end; ++i) {
+      scratch.distance[static_cast<std::size_t>(count)] = list.distance[static_cast<std::size_t>(i)];
+      scratch.contact[static_cast<std::size_t>(count)] = i;
+      count += list.distance[static_cast<std::size_t>(i)] <= cutoff ? 1 : 0;
+    }
+    distance = scratch.distance.data();
+  }
+  if (first && !(all && count > 0)) std::fill(result + contacts.begin, result + contacts.end, 0.0);
+  if (count == 0) return;
+
+  const bool direct = first && all;
+  rouleau_interaction_block block{};
+  block.struct_size = sizeof block;
+  block.count = static_cast<std::uint32_t>(count);
+  block.time_step = 1;
+  block.distance = distance;
+  (energy ? block.energy : block.force) = direct ? result + contacts.begin : scratch.law.data();
+  model.interaction().compute(model.self(), &block);
+  if (direct) return;
+  for (int i = 0; i < count; ++i) {
+    result[all ? contacts.begin + i : scratch.contact[static_cast<std::size_t>(i)]] += scratch.law[static_cast<std::size_t>(i)];
+  }
+}
+
+void InteractionForces::compute_forces(int cell, const Membranes& membranes) {
+  const ContactList& list = contacts_.list(cell);
+  Scratch& scratch = scratch_[static_cast<std::size_t>(cell)];
+  if (scratch.force.size() < list.node.size()) {  // only after the candidates were listed anew
+    for (auto* values : {&scratch.force, &scratch.law, &scratch.distance}) values->resize(list.node.size());
+    scratch.contact.resize(list.node.size());
+  }
+  const int type = membranes.cells[static_cast<std::size_t>(cell)].type;
+  for (std::size_t pair = 0; pair < list.ranges.size();) {
+    const TypeRange range = next_range(cell, membranes, pair);
+    bool first = true;
+    for (std::size_t p = 0; p < potentials_.size(); ++p) {
+      if (!acts_between(potentials_[p], type, range.type)) continue;
+      apply(p, list, range.contacts, scratch.force.data(), false, first, scratch);
+      first = false;
+    }
+  }
+}
+
+void InteractionForces::act(int cell, Membranes& membranes) {
+  const ContactList& list = contacts_.list(cell);
+  double* force = scratch_[static_cast<std::size_t>(cell)].force.data();
+  const double* weight = membranes.rest_weight.data();
+  double *force_x = membranes.force_x.data(), *force_y = membranes.force_y.data();
+  const int* node = list.node.data();
+  const double *direction_x = list.direction_x.data(), *direction_y = list.direction_y.data();
+  for (int i = 0; i < list.count; ++i) {
+    force[i] *= 0.5 * weight[node[i]];
+    force_x[node[i]] += force[i] * direction_x[i];
+    force_y[node[i]] += force[i] * direction_y[i];
+  }
+}
+
+void InteractionForces::react(int cell, Membranes& membranes) const {
+  double *force_x = membranes.force_x.data(), *force_y = membranes.force_y.data();
+  for (const Neighbours::Pair& pair : contacts_.neighbours().list(cell).pairs) {
+    const ContactList& list = contacts_.list(pair.other);
+    const double* force = scratch_[static_cast<std::size_t>(pair.other)].force.data();
+    const Range range = list.ranges[static_cast<std::size_t>(pair.reverse)];
+    const int *segment = list.segment.data(), *segment_end = list.segment_end.data();
+    const double *along = list.along.data(), *direction_x = list.direction_x.data(), *direction_y = list.direction_y.data();
+    for (int i = range.begin; i < range.end; ++i) {
+      const double fx = force[i] * direction_x[i], fy = force[i] * direction_y[i];
+      force_x[segment[i]] -= (1 - along[i]) * fx;
+      force_y[segment[i]] -= (1 - along[i]) * fy;
+      force_x[segment_end[i]] -= along[i] * fx;
+      force_y[segment_end[i]] -= along[i] * fy;
+    }
+  }
+}
+
+double InteractionForces::energy(const Membranes& membranes) const {
+  double sum = 0;
+  for (int cell = 0; cell < static_cast<int>(membranes.cells.size()); ++cell) {
+    const ContactList& list = contacts_.list(cell);
+    const std::size_t room = list.node.size();
+    Scratch scratch{{}, std::vector<double>(room), std::vector<double>(room), std::vector<int>(room)};
+    std::vector<double> energy(room, 0.0);
+    const int type = membranes.cells[static_cast<std::size_t>(cell)].type;
+    for (std::size_t pair = 0; pair < list.ranges.size();) {
+      const TypeRange range = next_range(cell, membranes, pair);
+      for (std::size_t p = 0; p < potentials_.size(); ++p) {
+        if (!acts_between(potentials_[p], type, range.type)) continue;
+        apply(p, list, range.contacts, energy.data(), true, false, scratch);
+      }
+    }
+    for (int i = 0; i < list.count; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      sum += 0.5 * membranes.rest_weight[static_cast<std::size_t>(list.node[at])] * energy[at];
+    }
+  }
+  return sum;
+}
+
+double InteractionForces::closest_contact(int cell) const {
+  const ContactList& list = contacts_.list(cell);
+  double closest = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < list.count; ++i) closest = std::min(closest, list.distance[static_cast<std::size_t>(i)]);
+  return closest;
+}
+
+}  // namespace rouleau::host

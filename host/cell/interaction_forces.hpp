@@ -1,0 +1,67 @@
+// Forces between cells: potentials integrated over facing membranes, with the reaction on the other cell.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "contact.hpp"
+#include "membranes.hpp"
+#include "periodic_box.hpp"
+#include "plugin/model.hpp"
+#include "worker.hpp"
+
+namespace rouleau::host {
+
+/// A potential between cells of two types (unordered; equal: between different cells of one type and own images).
+struct Potential {
+  std::array<int, 2> between;
+  std::shared_ptr<const ModelInstance> model;
+};
+
+/// Node i with rest weight Lb at distance r of its closest point on another cell: energy Lb/2 phi(r), force Lb/2 f(r) along
+/// the connecting line, the reaction shared by the ends of the other segment. With rest weights this is the exact gradient
+/// of the energy, with neither net force nor net torque (Derjaguin; docs: physics, interaction).
+class InteractionForces {
+ public:
+  /// Throws Error(plugin_refused) if a potential needs what this host does not give.
+  InteractionForces(const Membranes& membranes, std::vector<Potential> potentials, PeriodicBox box);
+
+  static constexpr int phases = 3;
+  /// Pass over cells: phases 0, 1, 2 with a barrier after each. Adds to force_x and force_y.
+  void run(Worker worker, int phase, Membranes& membranes);
+  /// True if there is nothing to do: run() may be left out.
+  [[nodiscard]] bool empty() const { return potentials_.empty(); }
+
+  /// Energy of the contacts found by the last run(). Not a pass.
+  [[nodiscard]] double energy(const Membranes& membranes) const;
+  /// Smallest distance of a node of this cell to another cell in the last run(); infinity if beyond every cutoff.
+  [[nodiscard]] double closest_contact(int cell) const;
+  [[nodiscard]] const Contacts& contacts() const { return contacts_; }
+
+ private:
+  struct Scratch {                  // of one cell's contacts
+    std::vector<double> force;      // sum of f over the potentials, then Lb/2 f
+    std::vector<double> law;        // of one potential
+    std::vector<double> distance;   // those within a cutoff shorter than that of the pair
+    std::vector<int> contact;       // to which these belong
+  };
+  /// Consecutive contacts of a cell with all cells of one type.
+  struct TypeRange {
+    int type;
+    Range contacts;
+  };
+  [[nodiscard]] TypeRange next_range(int cell, const Membranes& membranes, std::size_t& pair) const;
+  void compute_forces(int cell, const Membranes& membranes);
+  void apply(std::size_t potential, const ContactList& list, Range contacts, double* result, bool energy, bool first,
+             Scratch& scratch) const;
+  void act(int cell, Membranes& membranes);
+  void react(int cell, Membranes& membranes) const;
+
+  std::vector<Potential> potentials_;
+  std::vector<double> cutoffs_;  // of the potentials
+  Contacts contacts_;
+  std::vector<Scratch> scratch_;
+};
+
+}  // namespace rouleau::host

@@ -1,0 +1,320 @@
+#include "membrane_forces.hpp"
+
+#include <algorithm>
+#include <array>
+#include <rouleau/dispatch.hpp>
+#include <string>
+
+#include "geometry.hpp"
+#include "turning_angle.hpp"
+
+namespace rouleau::host {
+
+namespace {
+
+constexpr int margin = 8;  // doubles in the widest pack
+
+/// One cell's arrays, each pointing at its node 0.
+struct Arrays {
+  int count;
+  double *x, *y, *u, *v;
+  double *tangent_x, *tangent_y, *inverse_length, *stretch, *rate;
+  const double *inverse_rest_length, *inverse_rest_weight;
+  double *curvature, *tension, *moment, *segment_force_x, *segment_force_y;
+  double *force_x, *force_y;
+  bool with_rate, with_moment, with_pressure;
+  double pressure, perimeter_tension;
+};
+
+void close(double* values, int count) {
+  values[-1] = values[count - 1];
+  values[count] = values[0];
+}
+
+/// Segments: tangent, stretch and its rate; then nodes: curvature.
+struct Measure {
+  template <int register_bytes>
+  ROULEAU_ALWAYS_INLINE static void run(const Arrays* arrays) {
+    using S = Pack<double, register_bytes / 8>;
+    const Arrays a = *arrays;
+    for (int i = 0; i < a.count; i += S::size) {
+      const S dx = S::load(a.x + i + 1) - S::load(a.x + i), dy = S::load(a.y + i + 1) - S::load(a.y + i);
+      const S length = sqrt(dx * dx + dy * dy);
+      const S inverse = select(length > S(0.0), 1.0 / length, S(0.0));  // a segment without length has no direction
+      const S tx = dx * inverse, ty = dy * inverse, inverse_rest = S::load(a.inverse_rest_length + i);
+      tx.store(a.tangent_x + i);
+      ty.store(a.tangent_y + i);
+      inverse.store(a.inverse_length + i);
+      (length * inverse_rest).store(a.stretch + i);
+      if (a.with_rate) {
+        const S du = S::load(a.u + i + 1) - S::load(a.u + i), dv = S::load(a.v + i + 1) - S::load(a.v + i);
+        ((tx * du + ty * dv) * inverse_rest).store(a.rate + i);
+      }
+    }
+    if (!a.with_moment) return;
+    a.tangent_x[-1] = a.tangent_x[a.count - 1];
+    a.tangent_y[-1] = a.tangent_y[a.count - 1];
+    for (int i = 0; i < a.count; i += S::size) {
+      const S sx = S::load(a.tangent_x + i - 1), sy = S::load(a.tangent_y + i - 1);
+      const S tx = S::load(a.tangent_x + i), ty = S::load(a.tangent_y + i);
+      const S angle = turning_angle(sx * ty - sy * tx, sx * tx + sy * ty);
+      (angle * S::load(a.inverse_rest_weight + i)).store(a.curvature + i);
+    }
+  }
+};
+
+/// Forces: every segment pulls its first node by S_i = T_i t_i - q_i n_i and its second one by -S_i.
+struct Act {
+  template <int register_bytes>
+  ROULEAU_ALWAYS_INLINE static void run(const Arrays* arrays) {
+    using S = Pack<double, register_bytes / 8>;
+    const Arrays a = *arrays;
+    if (a.with_moment) a.moment[a.count] = a.moment[0];
+    for (int i = 0; i < a.count; i += S::size) {
+      const S tx = S::load(a.tangent_x + i), ty = S::load(a.tangent_y + i);
+      const S tension = S::load(a.tension + i) + a.perimeter_tension;
+      S fx = tension * tx, fy = tension * ty;
+      if (a.with_moment) {
+        const S shear = (S::load(a.moment + i + 1) - S::load(a.moment + i)) * S::load(a.inverse_length + i);
+        fx += shear * ty;
+        fy -= shear * tx;
+      }
+      fx.store(a.segment_force_x + i);
+      fy.store(a.segment_force_y + i);
+    }
+    a.segment_force_x[-1] = a.segment_force_x[a.count - 1];
+    a.segment_force_y[-1] = a.segment_force_y[a.count - 1];
+    for (int i = 0; i < a.count; i += S::size) {
+      S fx = S::load(a.segment_force_x + i) - S::load(a.segment_force_x + i - 1);
+      S fy = S::load(a.segment_force_y + i) - S::load(a.segment_force_y + i - 1);
+      if (a.with_pressure) {
+        const S half = 0.5 * a.pressure;
+        fx += half * (S::load(a.y + i + 1) - S::load(a.y + i - 1));
+        fy -= half * (S::load(a.x + i + 1) - S::load(a.x + i - 1));
+      }
+      if (a.count - i >= S::size) {
+        fx.store(a.force_x + i);
+        fy.store(a.force_y + i);
+      } else {  // the next cell's forces belong to another worker
+        for (int k = 0; k < a.count - i; ++k) {
+          a.force_x[i + k] = fx.vector[k];
+          a.force_y[i + k] = fy.vector[k];
+        }
+      }
+    }
+  }
+};
+
+template <class Loop>
+void run_loop(const Arrays& arrays) {
+  static const auto function = Dispatch<Loop, const Arrays*>::pick();
+  function(&arrays);
+}
+
+double weighted_sum(const double* values, const double* weights, int count) {
+  double sum = 0;
+  for (int i = 0; i < count; ++i) sum += values[i] * weights[i];
+  return sum;
+}
+
+}  // namespace
+
+MembraneForces::Law MembraneForces::describe(std::shared_ptr<const ModelInstance> model) {
+  const Manifest& manifest = model->manifest();
+  static constexpr std::array known = {"stretch", "stretch_rate", "curvature", "rest_curvature",
+                                       "area",    "rest_area",    "perimeter", "rest_perimeter"};
+  for (const std::string& need : manifest.needs) {
+    if (std::find(known.begin(), known.end(), need) == known.end()) {
+      throw Error(ExitCode::plugin_refused, Place{manifest.file.string(), "/needs"},
+                  "membrane law \"" + manifest.id + "\" needs \"" + need + "\", which this program does not give.");
+    }
+  }
+  if (!manifest.state.empty()) {
+    throw Error(ExitCode::plugin_refused, Place{manifest.file.string(), "/state"},
+                "membrane law \"" + manifest.id + "\" has state, which this program does not keep yet.");
+  }
+  const auto needs = [&](const char* input) { return manifest.needs_input(input); };
+  const auto gives = [&](const char* output) { return manifest.gives_output(output); };
+  return {std::move(model), needs("stretch"), needs("stretch_rate"), needs("curvature"), needs("rest_curvature"),
+          needs("area"), needs("rest_area"), needs("perimeter"), needs("rest_perimeter"),
+          gives("tension"), gives("moment"), gives("pressure"), gives("perimeter_tension")};
+}
+
+MembraneForces::MembraneForces(const Membranes& membranes, std::vector<MembraneLaws> laws) {
+  for (MembraneLaws& list : laws) {
+    Type& type = types_.emplace_back();
+    for (auto& model : list) {
+      const Law& law = type.laws.emplace_back(describe(std::move(model)));
+      type.rate |= law.stretch_rate;
+      type.tension |= law.tension;
+      type.moment |= law.moment || law.curvature;
+      type.cell |= law.pressure || law.perimeter_tension;
+    }
+  }
+  std::size_t size = margin;
+  for (const CellRange& cell : membranes.cells) {
+    offset_.push_back(size);
+    size += static_cast<std::size_t>(cell.count + margin) / margin * margin + 2 * margin;
+  }
+  Scratch& s = scratch_;
+  for (auto* values : {&s.x, &s.y, &s.u, &s.v, &s.tangent_x, &s.tangent_y, &s.inverse_length, &s.stretch, &s.rate,
+                       &s.inverse_rest_length, &s.inverse_rest_weight, &s.rest_curvature, &s.curvature, &s.tension,
+                       &s.moment, &s.law, &s.energy, &s.segment_force_x, &s.segment_force_y}) {
+    values->assign(size, 0.0);
+  }
+  for (std::size_t c = 0; c < membranes.cells.size(); ++c) {
+    const CellRange& cell = membranes.cells[c];
+    for (int k = 0; k < cell.count; ++k) {
+      const auto i = static_cast<std::size_t>(cell.first + k), at = offset_[c] + static_cast<std::size_t>(k);
+      s.inverse_rest_length[at] = 1 / membranes.rest_length[i];
+      s.inverse_rest_weight[at] = 1 / membranes.rest_weight[i];
+      s.rest_curvature[at] = membranes.rest_curvature[i];
+    }
+  }
+}
+
+void MembraneForces::run(Worker worker, Membranes& membranes) {
+  const Range cells = worker.share(static_cast<int>(membranes.cells.size()));
+  for (int cell = cells.begin; cell < cells.end; ++cell) {
+    measure(membranes, cell);
+    act(membranes, cell, apply_laws(membranes, cell, nullptr));
+  }
+}
+
+MembraneEnergy MembraneForces::energies(const Membranes& membranes) {
+  MembraneEnergy energy;
+  for (int cell = 0; cell < static_cast<int>(membranes.cells.size()); ++cell) {
+    measure(membranes, cell);
+    apply_laws(membranes, cell, &energy);
+  }
+  return energy;
+}
+
+void MembraneForces::tensions(const Membranes& membranes, std::vector<double>& tension) {
+  tension.resize(membranes.x.size());
+  for (int cell = 0; cell < static_cast<int>(membranes.cells.size()); ++cell) {
+    const CellRange& range = membranes.cells[static_cast<std::size_t>(cell)];
+    measure(membranes, cell);
+    const double uniform = apply_laws(membranes, cell, nullptr).perimeter_tension;
+    for (int k = 0; k < range.count; ++k) {
+      tension[static_cast<std::size_t>(range.first + k)] = scratch_.tension[offset(cell) + static_cast<std::size_t>(k)] + uniform;
+    }
+  }
+}
+
+void MembraneForces::measure(const Membranes& membranes, int cell) {
+  const CellRange& range = membranes.cells[static_cast<std::size_t>(cell)];
+  const Type& type = types_[static_cast<std::size_t>(range.type)];
+  const std::size_t at = offset(cell);
+  Scratch& s = scratch_;
+  const auto copy_closed = [&](const std::vector<double>& from, std::vector<double>& to) {
+    std::copy_n(from.data() + range.first, range.count, to.data() + at);
+    close(to.data() + at, range.count);
+  };
+  copy_closed(membranes.x, s.x);
+  copy_closed(membranes.y, s.y);
+  if (type.rate) {
+    copy_closed(membranes.velocity_x, s.u);
+    copy_closed(membranes.velocity_y, s.v);
+  }
+  Arrays arrays{};
+  arrays.count = range.count;
+  arrays.x = &s.x[at], arrays.y = &s.y[at], arrays.u = &s.u[at], arrays.v = &s.v[at];
+  arrays.tangent_x = &s.tangent_x[at], arrays.tangent_y = &s.tangent_y[at];
+  arrays.inverse_length = &s.inverse_length[at], arrays.stretch = &s.stretch[at], arrays.rate = &s.rate[at];
+  arrays.inverse_rest_length = &s.inverse_rest_length[at], arrays.inverse_rest_weight = &s.inverse_rest_weight[at];
+  arrays.curvature = &s.curvature[at];
+  arrays.with_rate = type.rate, arrays.with_moment = type.moment;
+  run_loop<Measure>(arrays);
+}
+
+void MembraneForces::apply_law(const Law& law, const CellRange& range, std::size_t at, CellState& state,
+                               bool first_tension, bool first_moment, double* energy) {
+  Scratch& s = scratch_;
+  const bool whole_cell = law.pressure || law.perimeter_tension;
+  double pressure = 0, perimeter_tension = 0;
+  rouleau_membrane_block block{};
+  block.struct_size = sizeof block;
+  block.count = whole_cell ? 1 : static_cast<std::uint32_t>(range.count);
+  block.time_step = 1;
+  if (law.stretch) block.stretch = &s.stretch[at];
+  if (law.stretch_rate) block.stretch_rate = &s.rate[at];
+  if (law.curvature) block.curvature = &s.curvature[at];
+  if (law.rest_curvature) block.rest_curvature = &s.rest_curvature[at];
+  if (law.area) block.area = &state.area;
+  if (law.rest_area) block.rest_area = &range.rest_area;
+  if (law.perimeter) block.perimeter = &state.perimeter;
+  if (law.rest_perimeter) block.rest_perimeter = &range.rest_perimeter;
+  if (law.tension) block.tension = first_tension ? &s.tension[at] : &s.law[at];
+  if (law.moment) block.moment = first_moment ? &s.moment[at] : &s.law[at];
+  if (law.pressure) block.pressure = &pressure;
+  if (law.perimeter_tension) block.perimeter_tension = &perimeter_tension;
+  block.energy = energy;
+  law.model->membrane().compute(law.model->self(), &block);
+
+  const auto add = [&](std::vector<double>& sum) {
+    for (std::size_t i = at; i < at + static_cast<std::size_t>(range.count); ++i) sum[i] += s.law[i];
+  };
+  if (law.tension && !first_tension) add(s.tension);
+  if (law.moment && !first_moment) add(s.moment);
+  state.pressure += pressure;
+  state.perimeter_tension += perimeter_tension;
+}
+
+MembraneForces::CellState MembraneForces::apply_laws(const Membranes& membranes, int cell, MembraneEnergy* energy) {
+  const CellRange& range = membranes.cells[static_cast<std::size_t>(cell)];
+  const Type& type = types_[static_cast<std::size_t>(range.type)];
+  const std::size_t at = offset(cell);
+  CellState state;
+  if (type.cell) {
+    state.area = enclosed_area(membranes, range);
+    state.perimeter = perimeter(membranes, range);
+  }
+  bool tension = false, moment = false;
+  for (const Law& law : type.laws) {
+    apply_law(law, range, at, state, !tension, !moment, energy != nullptr ? &scratch_.energy[at] : nullptr);
+    tension |= law.tension;
+    moment |= law.moment;
+    if (energy == nullptr) continue;
+    if (law.tension) {
+      energy->tension += weighted_sum(&scratch_.energy[at], &membranes.rest_length[static_cast<std::size_t>(range.first)],
+                                      range.count);
+    } else if (law.moment) {
+      energy->bending += weighted_sum(&scratch_.energy[at], &membranes.rest_weight[static_cast<std::size_t>(range.first)],
+                                      range.count);
+    } else {
+      energy->cell += scratch_.energy[at];
+    }
+  }
+  return state;
+}
+
+void MembraneForces::act(Membranes& membranes, int cell, const CellState& state) {
+  const CellRange& range = membranes.cells[static_cast<std::size_t>(cell)];
+  const Type& type = types_[static_cast<std::size_t>(range.type)];
+  const std::size_t at = offset(cell);
+  Scratch& s = scratch_;
+  Arrays arrays{};
+  arrays.count = range.count;
+  arrays.x = &s.x[at], arrays.y = &s.y[at];
+  arrays.tangent_x = &s.tangent_x[at], arrays.tangent_y = &s.tangent_y[at];
+  arrays.inverse_length = &s.inverse_length[at];
+  arrays.tension = &s.tension[at], arrays.moment = &s.moment[at];  // stay zero if no law gives them
+  arrays.segment_force_x = &s.segment_force_x[at], arrays.segment_force_y = &s.segment_force_y[at];
+  arrays.force_x = &membranes.force_x[static_cast<std::size_t>(range.first)];
+  arrays.force_y = &membranes.force_y[static_cast<std::size_t>(range.first)];
+  arrays.with_moment = type.moment, arrays.with_pressure = type.cell;
+  arrays.pressure = state.pressure, arrays.perimeter_tension = state.perimeter_tension;
+  run_loop<Act>(arrays);
+}
+
+void MembraneForces::tensions(const Membranes& membranes, std::vector<double>& tension) const {
+  tension.resize(membranes.x.size());
+  for (std::size_t cell = 0; cell < membranes.cells.size(); ++cell) {
+    const CellRange& range = membranes.cells[cell];
+    const double* from = &scratch_.tension[offset_[cell]];
+    std::copy(from, from + range.count, tension.begin() + range.first);
+  }
+}
+
+}  // namespace rouleau::host

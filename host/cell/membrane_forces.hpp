@@ -1,0 +1,79 @@
+// Forces of the membrane laws on the nodes: minus the gradient of the laws' energies.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "membranes.hpp"
+#include "plugin/model.hpp"
+#include "worker.hpp"
+
+namespace rouleau::host {
+
+/// Laws of one cell type; they add up.
+using MembraneLaws = std::vector<std::shared_ptr<const ModelInstance>>;
+
+/// Energies stored in the membranes, in lattice units.
+struct MembraneEnergy {
+  double tension = 0;  ///< laws of segments
+  double bending = 0;  ///< laws of nodes
+  double cell = 0;     ///< laws of whole cells
+  [[nodiscard]] double total() const { return tension + bending + cell; }
+};
+
+/// Turns tensions, moments, pressures and perimeter tensions into nodal forces whose sum and torque vanish
+/// (docs: physics, membranes). Only the inputs that some law of a type needs are computed.
+class MembraneForces {
+ public:
+  /// `laws[t]` are the laws of cell type t. Throws Error(plugin_refused) if a law needs what this host does not give.
+  MembraneForces(const Membranes& membranes, std::vector<MembraneLaws> laws);
+
+  /// Pass over cells: sets force_x and force_y. The stretch rate is that of velocity_x, velocity_y.
+  void run(Worker worker, Membranes& membranes);
+
+  /// Energies at the present positions. Not a pass: one thread, no other in run().
+  [[nodiscard]] MembraneEnergy energies(const Membranes& membranes);
+  /// Tension of every segment at the last run(), the sum of the laws of segments.
+  void tensions(const Membranes& membranes, std::vector<double>& tension) const;
+  [[nodiscard]] double energy(const Membranes& membranes) { return energies(membranes).total(); }
+
+  /// Sets the tension of every segment, all laws together, at the present positions. Not a pass either.
+  void tensions(const Membranes& membranes, std::vector<double>& tension);
+
+ private:
+  /// What the table of one law is asked for in every step; looked up in its manifest once.
+  struct Law {
+    std::shared_ptr<const ModelInstance> model;
+    bool stretch, stretch_rate, curvature, rest_curvature, area, rest_area, perimeter, rest_perimeter;  // its inputs
+    bool tension, moment, pressure, perimeter_tension;                                                  // its outputs
+  };
+  struct Type {
+    std::vector<Law> laws;
+    bool rate = false, tension = false, moment = false, cell = false;  // what the laws need or give, all together
+  };
+  /// Arrays over all cells; each cell has room on both sides for ghost nodes and for packs that run over its end.
+  struct Scratch {
+    std::vector<double> x, y, u, v;
+    std::vector<double> tangent_x, tangent_y, inverse_length, stretch, rate;
+    std::vector<double> inverse_rest_length, inverse_rest_weight, rest_curvature, curvature;
+    std::vector<double> tension, moment, law, energy;  // sums; one law's contribution and its energy
+    std::vector<double> segment_force_x, segment_force_y;
+  };
+  struct CellState {
+    double area = 0, perimeter = 0, pressure = 0, perimeter_tension = 0;
+  };
+
+  static Law describe(std::shared_ptr<const ModelInstance> model);
+  [[nodiscard]] std::size_t offset(int cell) const { return offset_[static_cast<std::size_t>(cell)]; }
+  void measure(const Membranes& membranes, int cell);
+  CellState apply_laws(const Membranes& membranes, int cell, MembraneEnergy* energy);
+  void apply_law(const Law& law, const CellRange& range, std::size_t at, CellState& state, bool first_tension,
+                 bool first_moment, double* energy);
+  void act(Membranes& membranes, int cell, const CellState& state);
+
+  std::vector<Type> types_;
+  std::vector<std::size_t> offset_;  // of each cell's node 0 in the scratch arrays
+  Scratch scratch_;
+};
+
+}  // namespace rouleau::host

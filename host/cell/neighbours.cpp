@@ -1,0 +1,177 @@
+#include "neighbours.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <rouleau/dispatch.hpp>
+
+namespace rouleau::host {
+
+namespace {
+
+/// One group of nodes against all segments of the other cell.
+struct CandidateTask {
+  const double *x, *y, *along_x, *along_y, *inverse_square;  // of the other cell's segments
+  int segments;
+  const double *node_x, *node_y;  // of the group, moved into the other cell's image
+  int nodes;
+  double skin, cutoff;
+  double *square;  // [nodes][segments rounded up]
+  double *excess;  // [segments rounded up]: negative for candidates
+};
+
+struct Candidates {
+  template <int register_bytes>
+  ROULEAU_ALWAYS_INLINE static void run(const CandidateTask* task) {
+    using S = Pack<double, register_bytes / 8>;
+    const CandidateTask t = *task;
+    const int stride = (t.segments + SegmentTable::margin - 1) / SegmentTable::margin * SegmentTable::margin;
+    for (int k = 0; k < stride; k += S::size) S(std::numeric_limits<double>::infinity()).store(t.excess + k);
+    for (int i = 0; i < t.nodes; ++i) {
+      double* square = t.square + i * stride;
+      for (int k = 0; k < t.segments; k += S::size) {
+        const S dx = t.node_x[i] - S::load(t.x + k), dy = t.node_y[i] - S::load(t.y + k);
+        Approach<S>(dx, dy, S::load(t.along_x + k), S::load(t.along_y + k), S::load(t.inverse_square + k))
+            .square.store(square + k);
+      }
+      // The lanes beyond the last segment hold those of the next cell.
+      double closest = square[0];
+      for (int k = 1; k < t.segments; ++k) closest = min(square[k], closest);
+      const double limit = min(std::sqrt(closest) + 4 * t.skin, t.cutoff + 2 * t.skin);
+      const S limit_square = limit * limit * (1 + 1e-12);  // room for rounding
+      for (int k = 0; k < t.segments; k += S::size) {
+        min(S::load(square + k) - limit_square, S::load(t.excess + k)).store(t.excess + k);
+      }
+    }
+  }
+};
+
+/// Distance between two boxes, the second moved.
+double distance(const Bounds& a, const Bounds& b, double move_x, double move_y) {
+  const double dx = std::max({0.0, b.x_min + move_x - a.x_max, a.x_min - b.x_max - move_x});
+  const double dy = std::max({0.0, b.y_min + move_y - a.y_max, a.y_min - b.y_max - move_y});
+  return std::hypot(dx, dy);
+}
+
+}  // namespace
+
+void Cutoffs::raise(int a, int b, double cutoff) {
+  const double value = std::max((*this)(a, b), cutoff);
+  cutoff_[static_cast<std::size_t>(a) * types_ + b] = value;
+  cutoff_[static_cast<std::size_t>(b) * types_ + a] = value;
+}
+
+Neighbours::Neighbours(const Membranes& membranes, Cutoffs cutoffs, PeriodicBox box, double skin)
+    : cutoffs_(std::move(cutoffs)),
+      box_(box),
+      skin_(skin),
+      watch_(membranes, skin),
+      order_(membranes.cells.size()),
+      lists_(membranes.cells.size()) {
+  std::iota(order_.begin(), order_.end(), 0);
+  std::stable_sort(order_.begin(), order_.end(), [&](int a, int b) {
+    return membranes.cells[static_cast<std::size_t>(a)].type < membranes.cells[static_cast<std::size_t>(b)].type;
+  });
+  int most = 0;
+  for (const CellRange& cell : membranes.cells) most = std::max(most, cell.count);
+  const auto stride = static_cast<std::size_t>(most + SegmentTable::margin);
+  for (CellList& list : lists_) {
+    list.square.resize(stride * group);
+    list.excess.resize(stride);
+  }
+}
+
+void Neighbours::refresh(Worker worker, const Membranes& membranes, const SegmentTable& segments) {
+  if (!renewed()) return;
+  const Range cells = worker.share(static_cast<int>(membranes.cells.size()));
+  for (int cell = cells.begin; cell < cells.end; ++cell) {
+    CellList& list = lists_[static_cast<std::size_t>(cell)];
+    list.pairs.clear();
+    list.groups.clear();
+    list.runs.clear();
+    list_pairs(membranes, cell, segments);
+    for (Pair& pair : list.pairs) list_candidates(membranes, cell, pair, segments);
+  }
+  watch_.remember(worker, membranes);
+  if (worker.first()) ++renewals_;
+}
+
+// Every cell against every other: with many cells only this function has to learn about bins.
+void Neighbours::list_pairs(const Membranes& membranes, int cell, const SegmentTable& segments) {
+  std::vector<Pair>& pairs = lists_[static_cast<std::size_t>(cell)].pairs;
+  const int type = membranes.cells[static_cast<std::size_t>(cell)].type;
+  const Bounds& own = segments.bounds[static_cast<std::size_t>(cell)];
+  for (const int other : order_) {
+    const double cutoff = cutoffs_(type, membranes.cells[static_cast<std::size_t>(other)].type);
+    if (!(cutoff > 0)) continue;
+    for_each_image(own, segments.bounds[static_cast<std::size_t>(other)], cutoff + 2 * skin_, box_, [&](ImageShift shift) {
+      if (other != cell || !(shift == ImageShift{})) pairs.push_back({{other, shift}, 0, 0, -1});
+    });
+  }
+}
+
+void Neighbours::list_candidates(const Membranes& membranes, int cell, Pair& pair, const SegmentTable& segments) {
+  static const auto candidates = Dispatch<Candidates, const CandidateTask*>::pick();
+  CellList& list = lists_[static_cast<std::size_t>(cell)];
+  const CellRange& own = membranes.cells[static_cast<std::size_t>(cell)];
+  const CellRange& other = membranes.cells[static_cast<std::size_t>(pair.other)];
+  const double move_x = pair.shift.x * box_.nx, move_y = pair.shift.y * box_.ny;
+  const double cutoff = cutoffs_(own.type, other.type);
+  double x[group], y[group];
+  const CandidateTask task{segments.x.data() + other.first,
+                           segments.y.data() + other.first,
+                           segments.along_x.data() + other.first,
+                           segments.along_y.data() + other.first,
+                           segments.inverse_square.data() + other.first,
+                           other.count,
+                           x,
+                           y,
+                           group,
+                           skin_,
+                           cutoff,
+                           list.square.data(),
+                           list.excess.data()};
+  pair.group_begin = static_cast<int>(list.groups.size());
+  for (int first = own.first; first < own.end(); first += group) {
+    Bounds bounds{segments.x[first], segments.x[first], segments.y[first], segments.y[first]};
+    for (int k = 0; k < group; ++k) {
+      const int i = std::min(first + k, own.end() - 1);
+      x[k] = segments.x[i] - move_x;
+      y[k] = segments.y[i] - move_y;
+      bounds.x_min = std::min(bounds.x_min, segments.x[i]), bounds.x_max = std::max(bounds.x_max, segments.x[i]);
+      bounds.y_min = std::min(bounds.y_min, segments.y[i]), bounds.y_max = std::max(bounds.y_max, segments.y[i]);
+    }
+    const double reach = cutoff + 2 * skin_ + 1e-9;
+    if (distance(bounds, segments.bounds[static_cast<std::size_t>(pair.other)], move_x, move_y) > reach) continue;
+    candidates(&task);
+    const auto run_begin = static_cast<int>(list.runs.size());
+    for (int k = 0; k < other.count; ++k) {
+      if (!(list.excess[static_cast<std::size_t>(k)] <= 0)) continue;
+      if (static_cast<int>(list.runs.size()) > run_begin && list.runs.back().end == k) {
+        list.runs.back().end = k + 1;
+      } else {
+        list.runs.push_back({k, k + 1});
+      }
+    }
+    const auto run_end = static_cast<int>(list.runs.size());
+    if (run_end > run_begin) list.groups.push_back({first, run_begin, run_end});
+  }
+  pair.group_end = static_cast<int>(list.groups.size());
+}
+
+void Neighbours::link(Worker worker, const Membranes& membranes) {
+  if (!renewed()) return;
+  const Range cells = worker.share(static_cast<int>(membranes.cells.size()));
+  for (int cell = cells.begin; cell < cells.end; ++cell) {
+    for (Pair& pair : lists_[static_cast<std::size_t>(cell)].pairs) {
+      const std::vector<Pair>& others = lists_[static_cast<std::size_t>(pair.other)].pairs;
+      const auto opposite = std::find_if(others.begin(), others.end(), [&](const Pair& candidate) {
+        return candidate.other == cell && candidate.shift == -pair.shift;
+      });
+      pair.reverse = static_cast<int>(opposite - others.begin());
+    }
+  }
+}
+
+}  // namespace rouleau::host

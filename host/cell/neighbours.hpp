@@ -1,0 +1,96 @@
+// Which segments can be the closest ones to a group of nodes, for all pairs of cells and images within reach.
+#pragma once
+
+#include <vector>
+
+#include "displacement.hpp"
+#include "membranes.hpp"
+#include "periodic_box.hpp"
+#include "segments.hpp"
+#include "worker.hpp"
+
+namespace rouleau::host {
+
+/// Largest distance at which cells of two types interact, symmetric; 0: they do not.
+class Cutoffs {
+ public:
+  explicit Cutoffs(int types) : types_(types), cutoff_(static_cast<std::size_t>(types) * types, 0.0) {}
+  void raise(int a, int b, double cutoff);
+  [[nodiscard]] double operator()(int a, int b) const { return cutoff_[static_cast<std::size_t>(a) * types_ + b]; }
+
+ private:
+  int types_;
+  std::vector<double> cutoff_;
+};
+
+/// Ordered pair: nodes of a cell against the outline of `other` moved by `shift` periods.
+struct CellPair {
+  int other;
+  ImageShift shift;
+};
+
+/// Lists of candidate segments that stay complete while no node has moved further than `skin`.
+///
+/// Why that is exact. Let d_k be the distance of a node to segment k when the list is made and d'_k later. A point of a
+/// segment is a convex combination of its ends, so it has moved by at most the skin, like the node: |d'_k - d_k| <= 2 skin
+/// for every k. If k is the closest segment later and m was when the list was made, then
+///     d_k <= d'_k + 2 skin <= d'_m + 2 skin <= d_m + 4 skin,  and  d_k <= cutoff + 2 skin if d'_k <= cutoff.
+/// A segment with d_k above min(d_m + 4 skin, cutoff + 2 skin) can therefore be left out.
+class Neighbours {
+ public:
+  static constexpr int group = 8;  ///< consecutive nodes that share one list
+
+  /// Segments [begin, end), counted from the first of the other cell.
+  struct SegmentRun {
+    int begin, end;
+  };
+  /// Candidates for nodes [first, first + group) of a cell: runs [run_begin, run_end) of its list.
+  struct Group {
+    int first;
+    int run_begin, run_end;
+  };
+  /// One ordered pair and its groups that have candidates.
+  struct Pair : CellPair {
+    int group_begin, group_end;
+    int reverse;  ///< index of the opposite pair in the list of `other`
+  };
+  /// All that belongs to the nodes of one cell.
+  struct CellList {
+    std::vector<Pair> pairs;  ///< ordered by type of the other cell, then by the other cell, then by shift
+    std::vector<Group> groups;
+    std::vector<SegmentRun> runs;
+    std::vector<double> square;  ///< while the list is made: [group][segment] square distances
+    std::vector<double> excess;  ///< while the list is made: how far each segment is from being a candidate
+  };
+
+  Neighbours(const Membranes& membranes, Cutoffs cutoffs, PeriodicBox box, double skin = 0.5);
+
+  /// Pass 1: has a node moved too far?
+  void measure(Worker worker, const Membranes& membranes) { watch_.measure(worker, membranes); }
+  /// Pass 2: if one has, makes the lists of this worker's cells anew. `segments` are those of the present positions.
+  void refresh(Worker worker, const Membranes& membranes, const SegmentTable& segments);
+  /// Pass 3: if the lists are new, finds the opposite pairs of this worker's cells.
+  void link(Worker worker, const Membranes& membranes);
+  /// Whether the lists are new in this step; the same for all workers from pass 2 on.
+  [[nodiscard]] bool renewed() const { return watch_.exceeded(); }
+
+  [[nodiscard]] const CellList& list(int cell) const { return lists_[static_cast<std::size_t>(cell)]; }
+  [[nodiscard]] const Cutoffs& cutoffs() const { return cutoffs_; }
+  [[nodiscard]] const PeriodicBox& box() const { return box_; }
+  /// How often the lists were made.
+  [[nodiscard]] long renewals() const { return renewals_; }
+
+ private:
+  void list_pairs(const Membranes& membranes, int cell, const SegmentTable& segments);
+  void list_candidates(const Membranes& membranes, int cell, Pair& pair, const SegmentTable& segments);
+
+  Cutoffs cutoffs_;
+  PeriodicBox box_;
+  double skin_;
+  DisplacementWatch watch_;
+  std::vector<int> order_;  // cells by type
+  std::vector<CellList> lists_;
+  long renewals_ = 0;
+};
+
+}  // namespace rouleau::host

@@ -1,0 +1,108 @@
+#include "outline.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <utility>
+
+namespace rouleau::host {
+
+namespace {
+
+constexpr double turn = 2 * std::numbers::pi;
+
+/// A closed curve by an angle in [0, 2 pi), counter-clockwise from the positive x axis, and its derivative.
+struct Curve {
+  struct Point {
+    Eigen::Vector2d place, derivative;
+  };
+  Point (*at)(const Shape&, double angle);
+  const Shape& shape;
+  Point operator()(double angle) const { return at(shape, angle); }
+};
+
+/// x = R cos(a), y = R/2 sin(a) (0.207 + 2.002 (x/R)^2 - 1.122 (x/R)^4): smooth at the rim, where y(x) is not.
+Curve::Point biconcave(const Shape& shape, double angle) {
+  const double radius = std::get<Biconcave>(shape).radius;
+  const double c = std::cos(angle), s = std::sin(angle), c2 = c * c;
+  const double thickness = 0.207 + c2 * (2.002 - 1.122 * c2);
+  const double change = c * (2 * 2.002 - 4 * 1.122 * c2);  // d thickness / d c
+  return {{radius * c, 0.5 * radius * s * thickness}, {-radius * s, 0.5 * radius * (c * thickness - s * s * change)}};
+}
+
+Curve::Point circle(const Shape& shape, double angle) {
+  const double radius = std::get<Circle>(shape).radius;
+  const double c = std::cos(angle), s = std::sin(angle);
+  return {{radius * c, radius * s}, {-radius * s, radius * c}};
+}
+
+Curve::Point ellipse(const Shape& shape, double angle) {
+  const Eigen::Vector2d axes = std::get<Ellipse>(shape).semi_axes;
+  const double c = std::cos(angle), s = std::sin(angle);
+  return {{axes.x() * c, axes.y() * s}, {-axes.x() * s, axes.y() * c}};
+}
+
+Curve curve_of(const Shape& shape) {
+  constexpr decltype(Curve::at) curves[] = {biconcave, circle, ellipse};  // in the order of the variant
+  return {curves[shape.index()], shape};
+}
+
+double smallest_size(const Shape& shape) {
+  if (const auto* cell = std::get_if<Biconcave>(&shape)) return cell->radius;
+  if (const auto* cell = std::get_if<Circle>(&shape)) return cell->radius;
+  return std::get<Ellipse>(shape).semi_axes.minCoeff();
+}
+
+/// Angle of the next node: at distance `chord` from the node at `angle`.
+double step(const Curve& curve, double angle, double chord) {
+  const Curve::Point start = curve(angle);
+  double next = angle + chord / start.derivative.norm();
+  for (int iteration = 0; iteration < 60; ++iteration) {
+    const Curve::Point point = curve(next);
+    const Eigen::Vector2d span = point.place - start.place;
+    const double length = span.norm();
+    const double slope = span.dot(point.derivative) / length;
+    const double change = (length - chord) / slope;
+    next -= change;
+    if (std::abs(change) < 1e-15) break;
+  }
+  return next;
+}
+
+/// Angles of nodes 0 ... segments when every segment has length `chord`; the last one ought to be a full turn.
+void march(const Curve& curve, double chord, std::vector<double>& angles) {
+  angles[0] = 0;
+  for (std::size_t i = 1; i < angles.size(); ++i) angles[i] = step(curve, angles[i - 1], chord);
+}
+
+}  // namespace
+
+Outline make_outline(const Shape& shape, int segments) {
+  if (segments < 3) throw std::invalid_argument("an outline needs at least 3 segments");
+  if (!(smallest_size(shape) > 0)) throw std::invalid_argument("the size of a cell must be positive");
+  const Curve curve = curve_of(shape);
+
+  double chord = 0;
+  for (int i = 0; i < segments; ++i) {
+    chord += (curve(turn * (i + 1) / segments).place - curve(turn * i / segments).place).norm() / segments;
+  }
+  // Secant steps on the chord until the nodes close after exactly one turn.
+  std::vector<double> angles(static_cast<std::size_t>(segments) + 1);
+  double old_chord = 0, old_excess = -turn;
+  for (int iteration = 0; iteration < 40; ++iteration) {
+    march(curve, chord, angles);
+    const double excess = angles.back() - turn;
+    if (std::abs(excess) < 1e-14 * segments) break;
+    const double next = chord - excess * (chord - old_chord) / (excess - old_excess);
+    if (next == chord) break;
+    old_chord = std::exchange(chord, next);
+    old_excess = excess;
+  }
+
+  Outline outline;
+  outline.nodes.reserve(static_cast<std::size_t>(segments));
+  for (int i = 0; i < segments; ++i) outline.nodes.push_back(curve(angles[static_cast<std::size_t>(i)]).place);
+  return outline;
+}
+
+}  // namespace rouleau::host

@@ -1,0 +1,21 @@
+// Outlines of cells as they are placed: closed polygons with equal segments on the shapes a scene can name.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "input/scene.hpp"
+
+namespace rouleau::host {
+
+/// Nodes of a closed polygon, counter-clockwise, in metres, centred at the origin at angle 0; node 0 lies on the positive
+/// x axis.
+struct Outline {
+  std::vector<Eigen::Vector2d> nodes;
+};
+
+/// Polygon with its `segments` nodes on the shape and all segments equally long (to about 1e-12 of their length).
+/// Throws std::invalid_argument for fewer than 3 segments or a size that is not positive.
+Outline make_outline(const Shape& shape, int segments);
+
+}  // namespace rouleau::host

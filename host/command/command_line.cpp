@@ -1,0 +1,42 @@
+#include "command_line.hpp"
+
+#include <iostream>
+
+#include "error.hpp"
+#include "input/schema.hpp"
+
+namespace rouleau::host {
+
+namespace options = boost::program_options;
+
+bool parse_command_line(const std::string& command, const std::string& help, const std::vector<std::string>& arguments,
+                        options::options_description& description,
+                        const options::positional_options_description& positional) {
+  description.add_options()("help", "this text");
+  const std::string hint = "\n  rouleau " + command + " --help lists the options";
+  try {
+    options::variables_map values;
+    options::store(options::command_line_parser(arguments)
+                       .options(description)
+                       .positional(positional)
+                       .style(options::command_line_style::default_style & ~options::command_line_style::allow_guessing)
+                       .run(),
+                   values);
+    if (values.count("help") != 0) {
+      std::cout << help << "\n" << description;
+      return false;
+    }
+    options::notify(values);
+    return true;
+  } catch (const options::unknown_option& unknown) {
+    std::vector<std::string> names;
+    for (const auto& option : description.options()) names.push_back("--" + option->long_name());
+    const std::string near = nearest(unknown.get_option_name(), names);
+    throw Error(ExitCode::bad_input, "unknown option " + unknown.get_option_name() +
+                                         (near.empty() ? "" : "; did you mean " + near + "?") + hint);
+  } catch (const options::error& error) {
+    throw Error(ExitCode::bad_input, std::string(error.what()) + hint);
+  }
+}
+
+}  // namespace rouleau::host

@@ -1,0 +1,16 @@
+// Parses a command's options, with --help and errors that name the nearest option.
+#pragma once
+
+#include <boost/program_options.hpp>
+#include <string>
+#include <vector>
+
+namespace rouleau::host {
+
+/// Stores the options' values. Returns false after printing `help` and the options when --help is among the arguments.
+/// Throws Error(bad_input) for an unknown option (nearest name), a missing or malformed value, a missing argument.
+bool parse_command_line(const std::string& command, const std::string& help, const std::vector<std::string>& arguments,
+                        boost::program_options::options_description& description,
+                        const boost::program_options::positional_options_description& positional);
+
+}  // namespace rouleau::host

@@ -1,0 +1,17 @@
+// The commands of the program; each is one file of this folder.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace rouleau::host {
+
+// Each takes the arguments after the command's name, prints its own help for --help, returns the exit code, and throws
+// Error for what the user should know.
+
+int run_command(const std::vector<std::string>& arguments);
+int plan_command(const std::vector<std::string>& arguments);
+int plugins_command(const std::vector<std::string>& arguments);
+int report_command(const std::vector<std::string>& arguments);
+
+}  // namespace rouleau::host

@@ -1,0 +1,49 @@
+// rouleau plan SCENE: everything a run would decide, without a step.
+#include <iostream>
+
+#include "cell/membranes.hpp"
+#include "command_line.hpp"
+#include "commands.hpp"
+#include "run/plan.hpp"
+#include "scene_options.hpp"
+
+namespace rouleau::host {
+
+namespace {
+
+constexpr const char* help = R"(usage: rouleau plan SCENE [options]
+
+Prints, without a step: every conversion, dimensionless number and limit (value, limit, margin), what will be
+computed, what is left out and why, and the estimated time, memory and output size.
+
+Example:
+  rouleau plan scenes/four-cells-shear.json
+  rouleau plan scenes/four-cells-shear.json --set /numerics/density_factor=30000 --json
+)";
+
+}  // namespace
+
+int plan_command(const std::vector<std::string>& arguments) {
+  namespace options = boost::program_options;
+  SceneOptions scene_options;
+  bool json = false;
+  options::options_description description("options");
+  options::positional_options_description positional;
+  scene_options.add_to(description, positional);
+  description.add_options()("json", options::bool_switch(&json), "print JSON for programs");
+  if (!parse_command_line("plan", help, arguments, description, positional)) return 0;
+
+  const Scene scene = scene_options.read();
+  const Catalog catalog = scene_options.catalog(scene);
+  const Plan plan = make_plan(scene, catalog);
+  // Placing the cells finds overlaps before a run does.
+  if (plan.has_cells) make_membranes(scene, lattice_spacing(scene));
+  if (json) {
+    std::cout << to_json(plan).dump(2) << "\n";
+  } else {
+    std::cout << to_text(plan);
+  }
+  return 0;
+}
+
+}  // namespace rouleau::host

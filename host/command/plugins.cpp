@@ -1,0 +1,211 @@
+// rouleau plugins [ID]: what models were found, and everything their manifests say.
+#include <algorithm>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "command/command_line.hpp"
+#include "command/commands.hpp"
+#include "input/wording.hpp"
+#include "plugin/catalog.hpp"
+#include "plugin/limits.hpp"
+
+namespace rouleau::host {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* help = R"(usage: rouleau plugins [ID] [options]
+
+Lists every model that was found, its manifest, and why others were refused.
+With the ID of a model: its parameters, units, defaults and limits. No library is opened.
+
+Example:
+  rouleau plugins morse
+)";
+
+/// A value as the manifest writes it: in the parameter's unit, or the word of a choice.
+json written(double si, const Parameter& parameter, const Units& units) {
+  if (!parameter.choices.empty()) return parameter.choices.at(static_cast<std::size_t>(si));
+  // Six digits hide the rounding of the way to SI and back.
+  return json::parse(number(si / units.scale(parameter.unit)));
+}
+
+json describe(const Parameter& parameter, const Units& units) {
+  json entry = {{"name", parameter.name}, {"doc", parameter.doc}};
+  if (parameter.choices.empty()) {
+    entry["unit"] = parameter.unit;
+  } else {
+    entry["choices"] = parameter.choices;
+  }
+  const auto add = [&](const char* key, const std::optional<double>& value) {
+    if (value) entry[key] = written(*value, parameter, units);
+  };
+  add("default", parameter.default_value);
+  add("minimum", parameter.minimum);
+  add("exclusiveMinimum", parameter.exclusive_minimum);
+  add("maximum", parameter.maximum);
+  add("exclusiveMaximum", parameter.exclusive_maximum);
+  if (parameter.usual) {
+    const auto [low, high] = *parameter.usual;
+    entry["usual"] = json::array({written(low, parameter, units), written(high, parameter, units)});
+  }
+  return entry;
+}
+
+json describe(const Manifest& manifest, const Units& units) {
+  json parameters = json::array();
+  for (const Parameter& parameter : manifest.parameters) parameters.push_back(describe(parameter, units));
+  return {{"id", manifest.id},
+          {"kind", to_string(manifest.kind)},
+          {"version", manifest.version},
+          {"title", manifest.title},
+          {"reference", manifest.reference},
+          {"author", manifest.author},
+          {"license", manifest.license},
+          {"manifest", manifest.file.string()},
+          {"library", manifest.library.string()},
+          {"parameters", parameters},
+          {"needs", manifest.needs},
+          {"gives", manifest.gives},
+          {"state", manifest.state},
+          {"inactive_when", manifest.inactive_when},
+          {"claims", manifest.claims}};
+}
+
+std::string limits_text(const json& parameter) {
+  std::string text;
+  const auto add = [&](const char* key, const char* sign) {
+    if (parameter.contains(key)) text += (text.empty() ? "" : ", ") + std::string(sign) + parameter[key].dump();
+  };
+  add("minimum", ">= ");
+  add("exclusiveMinimum", "> ");
+  add("maximum", "<= ");
+  add("exclusiveMaximum", "< ");
+  if (parameter.contains("usual")) {
+    const json& usual = parameter["usual"];
+    text += (text.empty() ? "usually " : "; usually ") + usual[0].dump() + " to " + usual[1].dump();
+  }
+  return text;
+}
+
+void print(const Parameter& parameter, const Units& units) {
+  const json entry = describe(parameter, units);
+  std::cout << "    " << parameter.name;
+  if (!parameter.choices.empty()) {
+    std::cout << ", one of " << listed(parameter.choices);
+  } else {
+    std::cout << (parameter.unit == "1" ? ", a number" : " in " + parameter.unit);
+  }
+  std::cout << (entry.contains("default") ? ", default " + entry["default"].dump() : ", must be given") << '\n';
+  if (const std::string limits = limits_text(entry); !limits.empty()) std::cout << "        " << limits << '\n';
+  if (!parameter.doc.empty()) std::cout << "        " << parameter.doc << '\n';
+}
+
+void print(const Manifest& manifest, const Units& units) {
+  const auto line = [](const char* name, const std::string& text) {
+    if (text.empty()) return;
+    std::string label = name;
+    label.resize(15, ' ');
+    std::cout << "  " << label << text << '\n';
+  };
+  std::cout << manifest.id << ' ' << manifest.version << ": " << manifest.title << '\n';
+  line("kind", to_string(manifest.kind));
+  line("reference", manifest.reference);
+  line("author", manifest.author);
+  line("license", manifest.license);
+  line("manifest", manifest.file.string());
+  line("library", manifest.library.filename().string());
+  line("needs", listed(manifest.needs));
+  line("gives", listed(manifest.gives));
+  if (!manifest.state.empty()) line("state", listed(manifest.state));
+  if (manifest.inactive_when.is_object()) line("inactive when", manifest.inactive_when.dump());
+  if (!manifest.claims.empty()) line("claims", manifest.claims.dump());
+  std::cout << "  parameters" << (manifest.parameters.empty() ? "     none\n" : "\n");
+  for (const Parameter& parameter : manifest.parameters) print(parameter, units);
+}
+
+json list(const Catalog& catalog, const Units& units) {
+  json plugins = json::array(), refused = json::array(), folders = json::array();
+  for (const auto& manifest : catalog.manifests()) plugins.push_back(describe(manifest, units));
+  for (const auto& entry : catalog.refused()) {
+    refused.push_back({{"manifest", entry.file.string()}, {"id", entry.id}, {"reason", entry.reason}});
+  }
+  for (const auto& folder : catalog.folders()) folders.push_back(folder.string());
+  return {{"plugins", plugins}, {"refused", refused}, {"folders", folders}};
+}
+
+void print(const Catalog& catalog) {
+  for (const ModelKind kind : {ModelKind::collision, ModelKind::membrane, ModelKind::interaction}) {
+    const auto ids = catalog.ids(kind);
+    std::cout << to_string(kind) << (ids.empty() ? ": none\n" : "\n");
+    for (const std::string& id : ids) {
+      const Manifest& manifest = catalog.find(kind, id, {});
+      std::cout << "  " << id << ' ' << manifest.version << "  " << manifest.title << "\n      "
+                << manifest.file.string() << '\n';
+    }
+  }
+  if (!catalog.refused().empty()) std::cout << "refused\n";
+  for (const auto& entry : catalog.refused()) {
+    std::cout << "  " << entry.file.string() << (entry.id.empty() ? "" : " (" + entry.id + ')') << '\n';
+    std::string reason = "    " + entry.reason;
+    for (auto end = reason.find('\n'); end != std::string::npos; end = reason.find('\n', end + 1)) {
+      reason.insert(end + 1, "    ");
+    }
+    std::cout << reason << '\n';
+  }
+  std::cout << "folders searched" << (catalog.folders().empty() ? ": none\n" : "\n");
+  for (const auto& folder : catalog.folders()) std::cout << "  " << folder.string() << '\n';
+}
+
+/// The manifest with an id, of any kind.
+const Manifest& find(const Catalog& catalog, const std::string& id) {
+  std::vector<std::string> ids;
+  for (const auto& manifest : catalog.manifests()) {
+    if (manifest.id == id) return manifest;
+    ids.push_back(manifest.id);
+  }
+  const auto& refused = catalog.refused();
+  if (std::any_of(refused.begin(), refused.end(), [&](const auto& entry) { return entry.id == id; })) {
+    return catalog.find(ModelKind::collision, id, {"rouleau plugins", {}, 0, 0});
+  }
+  throw Error(ExitCode::bad_input, "rouleau plugins: no plugin has the id " + in_quotes(id) + did_you_mean(id, ids) +
+                                       "\n  there are: " + listed(ids));
+}
+
+}  // namespace
+
+int plugins_command(const std::vector<std::string>& arguments) {
+  namespace options = boost::program_options;
+  std::string id;
+  std::vector<std::string> plugin_dirs;
+  bool as_json = false;
+  options::options_description description("options");
+  options::positional_options_description positional;
+  description.add_options()("id", options::value(&id), "a model; without it all are listed");
+  description.add_options()("plugin-dir", options::value(&plugin_dirs)->composing()->value_name("DIR"),
+                            "search this folder for plugins first (repeatable)");
+  description.add_options()("json", options::bool_switch(&as_json), "print JSON for programs");
+  positional.add("id", 1);
+  if (!parse_command_line("plugins", help, arguments, description, positional)) return 0;
+
+  const Catalog catalog(plugin_search_path({plugin_dirs.begin(), plugin_dirs.end()}, {}));
+  const Units units;
+  if (id.empty()) {
+    if (as_json) {
+      std::cout << list(catalog, units).dump(2) << '\n';
+    } else {
+      print(catalog);
+    }
+    return static_cast<int>(ExitCode::done);
+  }
+  const Manifest& manifest = find(catalog, id);
+  if (as_json) {
+    std::cout << describe(manifest, units).dump(2) << '\n';
+  } else {
+    print(manifest, units);
+  }
+  return static_cast<int>(ExitCode::done);
+}
+
+}  // namespace rouleau::host

@@ -1,0 +1,24 @@
+#include "scene_options.hpp"
+
+namespace rouleau::host {
+
+namespace options = boost::program_options;
+
+void SceneOptions::add_to(options::options_description& description,
+                          options::positional_options_description& positional) {
+  description.add_options()("scene", options::value(&scene)->required(), "scene file (JSON)")(
+      "set", options::value(&overrides)->composing()->value_name("POINTER=VALUE"),
+      "replace a value of the scene, e.g. --set /numerics/tau=0.8 (repeatable; any JSON value)")(
+      "plugin-dir", options::value(&plugin_dirs)->composing()->value_name("DIR"),
+      "search this folder for plugins first (repeatable)");
+  positional.add("scene", 1);
+}
+
+Scene SceneOptions::read() const { return read_scene(scene, overrides); }
+
+Catalog SceneOptions::catalog(const Scene& read) const {
+  const std::vector<std::filesystem::path> given(plugin_dirs.begin(), plugin_dirs.end());
+  return Catalog(plugin_search_path(given, read.plugin_dirs));
+}
+
+}  // namespace rouleau::host

@@ -1,0 +1,27 @@
+// What the commands that take a scene have in common: options, search path, reading.
+#pragma once
+
+#include <boost/program_options.hpp>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "input/scene.hpp"
+#include "plugin/catalog.hpp"
+
+namespace rouleau::host {
+
+/// Options of `rouleau run` and `rouleau plan` that decide which scene is meant.
+struct SceneOptions {
+  std::string scene;
+  std::vector<std::string> overrides;
+  std::vector<std::string> plugin_dirs;
+
+  /// --set, --plugin-dir; the scene itself is positional.
+  void add_to(boost::program_options::options_description& options,
+              boost::program_options::positional_options_description& positional);
+  [[nodiscard]] Scene read() const;
+  [[nodiscard]] Catalog catalog(const Scene& scene) const;
+};
+
+}  // namespace rouleau::host

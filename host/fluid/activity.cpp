@@ -1,0 +1,74 @@
+#include "activity.hpp"
+
+#include <algorithm>
+
+namespace rouleau::host {
+
+namespace {
+constexpr int bits_per_word = 64;
+}
+
+Activity::Activity(int nx, int ny)
+    : nx_(nx),
+      ny_(ny),
+      words_((nx + nodes_per_bit * bits_per_word - 1) / (nodes_per_bit * bits_per_word)),
+      bits_(static_cast<std::size_t>(words_) * ny, 0),
+      runs_(static_cast<std::size_t>(ny)) {
+  rebuild_runs();
+}
+
+void Activity::clear() { std::fill(bits_.begin(), bits_.end(), 0); }
+
+void Activity::mark(int y, int begin, int end) {
+  if (y < 0 || y >= ny_ || begin >= end) return;
+  if (end - begin >= nx_) {
+    begin = 0;
+    end = nx_;
+  }
+  const int shift = (begin % nx_ + nx_) % nx_ - begin;
+  begin += shift;
+  end += shift;
+  if (end > nx_) {
+    mark(y, 0, end - nx_);
+    end = nx_;
+  }
+  std::uint64_t* row = bits_.data() + static_cast<std::size_t>(words_) * y;
+  for (int bit = begin / nodes_per_bit; bit <= (end - 1) / nodes_per_bit; ++bit) {
+    row[bit / bits_per_word] |= std::uint64_t{1} << (bit % bits_per_word);
+  }
+}
+
+void Activity::mark_all() {
+  for (int y = 0; y < ny_; ++y) mark(y, 0, nx_);
+}
+
+bool Activity::active(int x, int y) const {
+  const int bit = x / nodes_per_bit;
+  return (bits_[static_cast<std::size_t>(words_) * y + bit / bits_per_word] >> (bit % bits_per_word) & 1) != 0;
+}
+
+void Activity::rebuild_runs() {
+  for (int y = 0; y < ny_; ++y) {
+    std::vector<Run>& runs = runs_[static_cast<std::size_t>(y)];
+    runs.clear();
+    for (int x = 0; x < nx_; x += nodes_per_bit) {
+      const bool on = active(x, y);
+      const int end = std::min(nx_, x + nodes_per_bit);
+      if (!runs.empty() && runs.back().active == on) {
+        runs.back().end = end;
+      } else {
+        runs.push_back({x, end, on});
+      }
+    }
+  }
+}
+
+double Activity::active_fraction() const {
+  long count = 0;
+  for (const auto& row : runs_) {
+    for (const Run& run : row) count += run.active ? run.end - run.begin : 0;
+  }
+  return static_cast<double>(count) / (static_cast<double>(nx_) * ny_);
+}
+
+}  // namespace rouleau::host

@@ -1,0 +1,252 @@
+#include "fluid.hpp"
+
+#include <type_traits>
+
+namespace rouleau::host {
+
+namespace d2q9 = rouleau::d2q9;
+
+template <class T>
+Fluid<T>::Fluid(const FluidSetting& setting, std::shared_ptr<const ModelInstance> collision)
+    : setting_(setting),
+      collision_(std::move(collision)),
+      lattice_(setting.nx, setting.ny, setting.periodic_y),
+      activity_(setting.nx, setting.ny) {
+  if (setting.membranes) force_ = {Field<T>(setting.nx, setting.ny), Field<T>(setting.nx, setting.ny)};
+  if (setting.viscosity_contrast) relaxation_rate_ = Field<T>(setting.nx, setting.ny);
+  if (setting.body_force_x != 0 || setting.body_force_y != 0) {
+    body_force_row_[0].assign(static_cast<std::size_t>(setting.nx), static_cast<T>(setting.body_force_x));
+    body_force_row_[1].assign(static_cast<std::size_t>(setting.nx), static_cast<T>(setting.body_force_y));
+  }
+}
+
+template <class T>
+std::size_t Fluid<T>::bytes() const {
+  return lattice_.bytes() + force_.x.bytes() + force_.y.bytes() + relaxation_rate_.bytes();
+}
+
+template <class T>
+void Fluid<T>::clear_force(Worker worker) {
+  constexpr int halo = Field<T>::halo;
+  const auto clear = [&](Field<T>& field, double body_force) {
+    const auto fill = [&](int y, int begin, int end, T value) {
+      std::fill(field.row(y) + begin, field.row(y) + end, value);
+    };
+    const auto fill_halo_row = [&](int y) { fill(y, -halo, setting_.nx + halo, T(0)); };
+    const Range rows = worker.share(setting_.ny);
+    for (int y = rows.begin; y < rows.end; ++y) {
+      fill(y, -halo, 0, T(0));
+      fill(y, setting_.nx, setting_.nx + halo, T(0));
+      for (const Run& run : activity_.runs(y)) {
+        if (run.active) fill(y, run.begin, run.end, static_cast<T>(body_force));
+      }
+    }
+    for (int k = 1; k <= halo && worker.first(); ++k) fill_halo_row(-k);
+    for (int k = 0; k < halo && worker.last(); ++k) fill_halo_row(setting_.ny + k);
+  };
+  clear(force_.x, setting_.body_force_x);
+  clear(force_.y, setting_.body_force_y);
+}
+
+template <class T>
+void Fluid<T>::fold_force(Worker worker) {
+  const Range rows = worker.share(setting_.ny);
+  for (int y = rows.begin; y < rows.end; ++y) fold_force_row(force_, y, setting_.periodic_y);
+}
+
+template <class T>
+void Fluid<T>::collide(const T* const* in, T* const* out, int y, const Run& run) {
+  using Block = std::conditional_t<std::is_same_v<T, double>, rouleau_collision_block_f64, rouleau_collision_block_f32>;
+  const T* run_in[9];
+  T* run_out[9];
+  for (int q = 0; q < 9; ++q) {
+    run_in[q] = in[q] + run.begin;
+    run_out[q] = out[q] + run.begin;
+  }
+  const T* force[2];
+  T* velocity[2];
+  Block block{};
+  block.struct_size = sizeof(Block);
+  block.count = static_cast<std::uint32_t>(run.end - run.begin);
+  block.in = run_in;
+  block.out = run_out;
+  if (run.active && setting_.membranes) {
+    velocity[0] = force_.x.row(y) + run.begin;
+    velocity[1] = force_.y.row(y) + run.begin;
+    force[0] = velocity[0];
+    force[1] = velocity[1];
+    block.force = force;
+    block.velocity = velocity;
+    if (setting_.viscosity_contrast) block.relaxation_rate = relaxation_rate_.row(y) + run.begin;
+  } else if (!body_force_row_[0].empty()) {
+    force[0] = body_force_row_[0].data();
+    force[1] = body_force_row_[1].data();
+    block.force = force;
+  }
+  if constexpr (std::is_same_v<T, double>) {
+    collision_->collision().collide_f64(collision_->self(), &block);
+  } else {
+    collision_->collision().collide_f32(collision_->self(), &block);
+  }
+}
+
+template <class T>
+void Fluid<T>::step(Worker worker) {
+  const Range rows = worker.share(setting_.ny);
+  for (int y = rows.begin; y < rows.end; ++y) {
+    if (parity_ == Parity::even) receive_row(lattice_, y);
+    const T* in[9];
+    T* out[9];
+    lattice_.row_pointers(parity_, y, in, out);
+    for (const Run& run : activity_.runs(y)) collide(in, out, y, run);
+    add_wall_momentum(lattice_, y, setting_.walls);
+    if (parity_ == Parity::even) send_row(lattice_, y);
+    if (setting_.membranes) fill_velocity_halo(force_, y, setting_.periodic_y, setting_.walls);
+  }
+}
+
+template <class T>
+void Fluid<T>::settle() {
+  if (parity_ != Parity::even) return;
+  for (int y = 0; y < setting_.ny; ++y) receive_row(lattice_, y);
+}
+
+template <class T>
+double Fluid<T>::population(int q, int x, int y) const {
+  const T* in[9];
+  lattice_.row_pointers(parity_, y, in);
+  return static_cast<double>(in[q][x]);
+}
+
+template <class T>
+void Fluid<T>::moments(int y, std::vector<Moments>& row) const {
+  const T* in[9];
+  lattice_.row_pointers(parity_, y, in);
+  row.assign(static_cast<std::size_t>(setting_.nx), Moments{});
+  for (const Run& run : activity_.runs(y)) {
+    for (int x = run.begin; x < run.end; ++x) {
+      Moments& m = row[static_cast<std::size_t>(x)];
+      for (int q = 0; q < 9; ++q) {
+        const double f = static_cast<double>(in[q][x]);
+        m.density += f;
+        m.ux += d2q9::velocity[q][0] * f;
+        m.uy += d2q9::velocity[q][1] * f;
+      }
+      const bool own_force = run.active && setting_.membranes;
+      m.ux += 0.5 * (own_force ? static_cast<double>(force_.x.row(y)[x]) : setting_.body_force_x);
+      m.uy += 0.5 * (own_force ? static_cast<double>(force_.y.row(y)[x]) : setting_.body_force_y);
+    }
+  }
+}
+
+template <class T>
+double Fluid<T>::mass() const {
+  double mass = 0;
+  for (int y = 0; y < setting_.ny; ++y) {
+    const T* in[9];
+    lattice_.row_pointers(parity_, y, in);
+    for (int q = 0; q < 9; ++q) {
+      for (int x = 0; x < setting_.nx; ++x) mass += static_cast<double>(in[q][x]);
+    }
+  }
+  return mass;
+}
+
+template <class T>
+typename Fluid<T>::WallStress Fluid<T>::wall_stress() const {
+  // A population that leaves towards the wall and returns gives the wall c_q f_q - c_-q f_-q = c_q (f_q + f_-q); the
+  // one that left is the one that came back plus the wall's own momentum: f_q = f_-q + 6 w_q c_q . u_wall.
+  const auto stress = [&](int y, int outward, double speed) {
+    const T* in[9];
+    lattice_.row_pointers(parity_, y, in);
+    double sum = 0;
+    for (int q = 1; q < 9; ++q) {
+      const int cx = d2q9::velocity[q][0];
+      if (d2q9::velocity[q][1] != outward || cx == 0) continue;
+      const T* returned = in[d2q9::opposite[q]];
+      const double moved = 6 * d2q9::weight[q] * cx * speed;
+      for (int x = 0; x < setting_.nx; ++x) sum += cx * (2 * static_cast<double>(returned[x]) + moved);
+    }
+    return sum / setting_.nx;
+  };
+  return {stress(0, -1, setting_.walls.lower), stress(setting_.ny - 1, +1, setting_.walls.upper)};
+}
+
+template <class T>
+double Fluid<T>::equilibrium(int q, double density, double ux, double uy) const {
+  const double along = d2q9::velocity[q][0] * ux + d2q9::velocity[q][1] * uy;
+  const double quadratic = setting_.inertia ? 4.5 * along * along - 1.5 * (ux * ux + uy * uy) : 0.0;
+  return d2q9::weight[q] * (density + 3 * along + quadratic);
+}
+
+template <class T>
+void Fluid<T>::complete_halo() {
+  // What an odd step would have streamed across the border, so that the first even step receives it.
+  const int nx = setting_.nx, ny = setting_.ny;
+  for (int q = 1; q < 9; ++q) {
+    for (int y = 0; y < ny; ++y) {
+      lattice_.slot(q, y)[nx] = lattice_.slot(q, y)[0];
+      lattice_.slot(q, y)[-1] = lattice_.slot(q, y)[nx - 1];
+    }
+    for (int x = -1; x <= nx; ++x) {
+      lattice_.slot(q, ny)[x] = lattice_.slot(q, 0)[x];
+      lattice_.slot(q, -1)[x] = lattice_.slot(q, ny - 1)[x];
+    }
+  }
+}
+
+template <class T>
+void Fluid<T>::set_state(const std::function<State(int, int)>& state) {
+  parity_ = Parity::even;
+  const double tau = 1 / setting_.relaxation_rate;
+  for (int y = 0; y < setting_.ny; ++y) {
+    for (int x = 0; x < setting_.nx; ++x) {
+      const State s = state(x, y);
+      // Populations hold the momentum without the half force that the velocity includes.
+      const double jx = s.ux - 0.5 * setting_.body_force_x, jy = s.uy - 0.5 * setting_.body_force_y;
+      for (int q = 0; q < 9; ++q) {
+        const double cx = d2q9::velocity[q][0], cy = d2q9::velocity[q][1];
+        const double strain = cx * cx * s.gradient[0] + cx * cy * (s.gradient[1] + s.gradient[2]) +
+                              cy * cy * s.gradient[3] - (s.gradient[0] + s.gradient[3]) / 3;
+        lattice_.slot(q, y)[x] = static_cast<T>(equilibrium(q, s.density, jx, jy) - 3 * tau * d2q9::weight[q] * strain);
+      }
+    }
+  }
+  complete_halo();
+}
+
+template <class T>
+void Fluid<T>::set_profile(const std::function<double(double)>& velocity,
+                           const std::function<double(double)>& shear_rate) {
+  set_state([&](int, int y) { return State{0, velocity(y), 0, {0, shear_rate(y), 0, 0}}; });
+}
+
+template <class T>
+void Fluid<T>::take_over(Fluid& other, double factor) {
+  other.settle();
+  parity_ = Parity::even;
+  for (int y = 0; y < setting_.ny; ++y) {
+    const T* in[9];
+    other.lattice_.row_pointers(other.parity_, y, in);
+    for (int x = 0; x < setting_.nx; ++x) {
+      double density = 0, jx = 0, jy = 0;
+      for (int q = 0; q < 9; ++q) {
+        const double f = static_cast<double>(in[q][x]);
+        density += f;
+        jx += d2q9::velocity[q][0] * f;
+        jy += d2q9::velocity[q][1] * f;
+      }
+      for (int q = 0; q < 9; ++q) {
+        const double rest = static_cast<double>(in[q][x]) - equilibrium(q, density, jx, jy);
+        lattice_.slot(q, y)[x] =
+            static_cast<T>(equilibrium(q, factor * density, factor * jx, factor * jy) + factor * rest);
+      }
+    }
+  }
+  complete_halo();
+}
+
+template class Fluid<float>;
+template class Fluid<double>;
+
+}  // namespace rouleau::host

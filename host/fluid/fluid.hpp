@@ -1,0 +1,101 @@
+// The fluid of one stage: its lattice, what acts on it, and one step of collision and streaming.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "activity.hpp"
+#include "exchange.hpp"
+#include "field.hpp"
+#include "lattice.hpp"
+#include "plugin/model.hpp"
+#include "worker.hpp"
+
+namespace rouleau::host {
+
+/// What a fluid is made of. Lattice units.
+struct FluidSetting {
+  int nx, ny;
+  bool periodic_y;
+  double relaxation_rate;  ///< 1/tau of the suspending fluid
+  bool inertia = false;    ///< initial states include the quadratic terms of the equilibrium
+  WallVelocity walls;
+  double body_force_x = 0, body_force_y = 0;  ///< force density everywhere
+  bool membranes = false;                     ///< keep force and velocity where nodes are active
+  bool viscosity_contrast = false;            ///< keep a relaxation rate where nodes are active
+};
+
+/// Moments of one node before collision.
+struct Moments {
+  double density;  ///< deviation from 1
+  double ux, uy;   ///< with half the force
+};
+
+template <class T>
+class Fluid {
+ public:
+  Fluid(const FluidSetting& setting, std::shared_ptr<const ModelInstance> collision);
+
+  [[nodiscard]] const FluidSetting& setting() const { return setting_; }
+  [[nodiscard]] Activity& activity() { return activity_; }
+  [[nodiscard]] VectorField<T>& force() { return force_; }  ///< before step(); velocity after it
+  [[nodiscard]] Field<T>& relaxation_rate() { return relaxation_rate_; }
+  [[nodiscard]] std::size_t bytes() const;
+
+  /// Sets velocity u(y) with shear rate du/dy along x everywhere, density 1 (equilibrium and first-order part).
+  void set_profile(const std::function<double(double y)>& velocity, const std::function<double(double y)>& shear_rate);
+  /// General initial state: deviation of density, velocity and its gradient {du/dx, du/dy, dv/dx, dv/dy} at a node.
+  struct State {
+    double density, ux, uy, gradient[4];
+  };
+  void set_state(const std::function<State(int x, int y)>& state);
+  /// Takes over another fluid's state with velocities and density deviation times `factor`: what a stage with another
+  /// time step does. Without inertia this scales every population; with it, equilibrium and the rest scale each by its
+  /// rule.
+  void take_over(Fluid& other, double factor);
+
+  // Passes, in the order of a step. A worker handles its share of rows; a barrier must follow each.
+  /// Sets the force in active nodes to the body force, and in all halo nodes to zero.
+  void clear_force(Worker worker);
+  /// Brings home what was spread onto halo nodes.
+  void fold_force(Worker worker);
+  /// Collision and streaming; leaves the velocity of active nodes in force(), halo included.
+  void step(Worker worker);
+  /// Ends the step; one worker only.
+  void end_step() { parity_ = next(parity_); }
+
+  // Observers; between steps, one thread.
+  /// Completes the exchange so that moments() may be called.
+  void settle();
+  /// Moments of row y, x = 0..nx-1, of the state before the next step. The force of that step must have been folded.
+  void moments(int y, std::vector<Moments>& row) const;
+  /// Sum of density deviations over all nodes.
+  [[nodiscard]] double mass() const;
+  /// Mean shear stress that the fluid exerts on the lower and the upper wall, along +x, by momentum exchange.
+  struct WallStress {
+    double lower, upper;
+  };
+  [[nodiscard]] WallStress wall_stress() const;
+  /// Populations before the next collision, for checkpoints and tests.
+  [[nodiscard]] double population(int q, int x, int y) const;
+
+ private:
+  [[nodiscard]] double equilibrium(int q, double density, double ux, double uy) const;
+  void complete_halo();
+  void collide(const T* const* in, T* const* out, int y, const Run& run);
+
+  FluidSetting setting_;
+  std::shared_ptr<const ModelInstance> collision_;
+  Lattice<T> lattice_;
+  Parity parity_ = Parity::even;
+  Activity activity_;
+  VectorField<T> force_;
+  Field<T> relaxation_rate_;
+  std::vector<T> body_force_row_[2];  ///< constant; empty without a body force
+};
+
+extern template class Fluid<float>;
+extern template class Fluid<double>;
+
+}  // namespace rouleau::host

@@ -1,0 +1,58 @@
+// Populations of a D2Q9 block, streamed in place (AA pattern: Bailey et al., ICPP 2009).
+//
+// Even steps read f_q(x) from slot q and write f'_q(x) to the opposite slot of the same node; odd steps read what
+// streams in from the neighbours' opposite slots and write to the neighbours' slots. One array serves both, and a
+// collision operator sees nine input and nine output pointers either way. Populations are deviations from rest, f_q -
+// w_q.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <new>
+#include <rouleau/d2q9.hpp>
+
+namespace rouleau::host {
+
+/// Which half of the in-place pair comes next.
+enum class Parity { even, odd };
+constexpr Parity next(Parity parity) { return parity == Parity::even ? Parity::odd : Parity::even; }
+
+template <class T>
+class Lattice {
+ public:
+  /// Fluid at rest.
+  Lattice(int nx, int ny, bool periodic_y);
+
+  [[nodiscard]] int nx() const { return nx_; }
+  [[nodiscard]] int ny() const { return ny_; }
+  [[nodiscard]] bool periodic_y() const { return periodic_y_; }
+  [[nodiscard]] std::size_t bytes() const { return sizeof(T) * count_; }
+
+  /// Row y of slot q; x in [-1, nx], y in [-1, ny].
+  [[nodiscard]] T* slot(int q, int y) { return origin_[q] + static_cast<std::ptrdiff_t>(stride_) * y; }
+  [[nodiscard]] const T* slot(int q, int y) const { return origin_[q] + static_cast<std::ptrdiff_t>(stride_) * y; }
+
+  /// Pointers to the populations of row y before and after a collision at this parity, from x = 0 on. Rows beside a
+  /// wall get half-way bounce-back: what would leave the fluid stays in its node and comes back reversed in the next
+  /// step.
+  void row_pointers(Parity parity, int y, const T* (&in)[9], T* (&out)[9]);
+  /// The populations alone, for observers; exchange must be complete (Exchange::settle).
+  void row_pointers(Parity parity, int y, const T* (&in)[9]) const;
+
+ private:
+  [[nodiscard]] bool outside(int y) const { return !periodic_y_ && (y < 0 || y >= ny_); }
+
+  int nx_, ny_, stride_;
+  bool periodic_y_;
+  std::size_t count_;
+  struct Free {
+    void operator()(T* p) const { ::operator delete[](p, std::align_val_t{4096}); }
+  };
+  std::unique_ptr<T[], Free> storage_;
+  T* origin_[9];
+};
+
+extern template class Lattice<float>;
+extern template class Lattice<double>;
+
+}  // namespace rouleau::host

@@ -1,0 +1,90 @@
+// frames.xmf: tells ParaView what the datasets of frames.h5 mean.
+#include <sstream>
+
+#include "run/frames.hpp"
+#include "run/output_tables.hpp"
+
+namespace rouleau::host {
+
+namespace {
+
+struct Item {
+  const char* type;  ///< Int or Float
+  int precision;     ///< bytes
+};
+
+std::string data_item(const std::string& dimensions, Item item, const std::string& dataset) {
+  return "<DataItem Dimensions=\"" + dimensions + "\" NumberType=\"" + item.type + "\" Precision=\"" +
+         std::to_string(item.precision) + "\" Format=\"HDF\">" + dataset + "</DataItem>";
+}
+
+std::string attribute(const std::string& name, const std::string& kind, const std::string& item) {
+  return "        <Attribute Name=\"" + name + "\" AttributeType=\"" + kind + "\" Center=\"Node\">" + item +
+         "</Attribute>\n";
+}
+
+std::string begin_grid(const std::string& name, double time) {
+  return "      <Grid Name=\"" + name + "\" GridType=\"Uniform\">\n        <Time Value=\"" + to_text(time) + "\"/>\n";
+}
+
+std::string membranes(const FrameRecord& frame, const std::string& group) {
+  const std::string n = std::to_string(frame.nodes), cells = std::to_string(frame.cells);
+  std::string text = begin_grid("membranes", frame.time);
+  if (frame.uniform) {
+    const std::string per_cell = std::to_string(frame.connectivity / frame.cells);
+    text += "        <Topology TopologyType=\"Polyline\" NumberOfElements=\"" + cells + "\" NodesPerElement=\"" + per_cell +
+            "\">" + data_item(cells + " " + per_cell, {"Int", 4}, group + "/connectivity") + "</Topology>\n";
+  } else {
+    text += "        <Topology TopologyType=\"Mixed\" NumberOfElements=\"" + cells + "\">" +
+            data_item(std::to_string(frame.connectivity), {"Int", 4}, group + "/connectivity") + "</Topology>\n";
+  }
+  text += "        <Geometry GeometryType=\"XY\">" + data_item(n + " 2", {"Float", 8}, group + "/points") + "</Geometry>\n";
+  text += attribute("tension", "Scalar", data_item(n, {"Float", 8}, group + "/tension"));
+  text += attribute("cell", "Scalar", data_item(n, {"Int", 4}, group + "/cell"));
+  text += attribute("aggregate", "Scalar", data_item(n, {"Int", 4}, group + "/aggregate"));
+  return text + "      </Grid>\n";
+}
+
+std::string fields(const FrameRecord& frame, const std::string& group, const std::array<double, 2>& size,
+                   const std::array<int, 2>& nodes) {
+  // One layer of a 3-D mesh: ParaView lays a 2DCoRectMesh into the y-z plane, across the membranes. Slowest index first.
+  const std::string shape = "1 " + std::to_string(nodes[1]) + " " + std::to_string(nodes[0]);
+  const double dx = size[0] / nodes[0], dy = size[1] / nodes[1];
+  const auto triple = [](double z, double y, double x) {
+    return "<DataItem Dimensions=\"3\" NumberType=\"Float\" Precision=\"8\" Format=\"XML\">" + to_text(z) + " " +
+           to_text(y) + " " + to_text(x) + "</DataItem>";
+  };
+  std::string text = begin_grid("fields", frame.time);
+  text += "        <Topology TopologyType=\"3DCoRectMesh\" Dimensions=\"" + shape + "\"/>\n";
+  text += "        <Geometry GeometryType=\"ORIGIN_DXDYDZ\">" + triple(0, 0.5 * dy, 0.5 * dx) +
+          triple(dx, dy, dx) + "</Geometry>\n";
+  for (const auto& name : frame.fields) {
+    const bool vector = name == "velocity";
+    text += attribute(name, vector ? "Vector" : "Scalar",
+                      data_item(shape + (vector ? " 3" : ""), {"Float", 4}, group + "/" + name));
+  }
+  return text + "      </Grid>\n";
+}
+
+}  // namespace
+
+std::string xdmf_text(const std::vector<FrameRecord>& frames, const std::string& h5, const std::array<double, 2>& size,
+                      const std::array<int, 2>& nodes) {
+  std::ostringstream membrane_grids, field_grids;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const std::string path = h5 + ":" + frame_path(i);
+    if (frames[i].cells > 0) membrane_grids << membranes(frames[i], path + "/membranes");
+    if (!frames[i].fields.empty()) field_grids << fields(frames[i], path + "/fields", size, nodes);
+  }
+  std::string text = "<?xml version=\"1.0\"?>\n<Xdmf Version=\"2.0\">\n  <Domain>\n";
+  const auto collection = [&](const char* name, const std::string& grids) {
+    if (grids.empty()) return;
+    text += std::string("    <Grid Name=\"") + name + "\" GridType=\"Collection\" CollectionType=\"Temporal\">\n" + grids +
+            "    </Grid>\n";
+  };
+  collection("membranes", membrane_grids.str());
+  collection("fields", field_grids.str());
+  return text + "  </Domain>\n</Xdmf>\n";
+}
+
+}  // namespace rouleau::host

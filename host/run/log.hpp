@@ -1,0 +1,29 @@
+// log.jsonl: what happened when, one JSON object a line, on the disk's doorstep as soon as it is written.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "run/output_file.hpp"
+
+namespace rouleau::host {
+
+/// The log holds the directory's lock: as long as it lives no second run can write there.
+class Log {
+ public:
+  /// Throws Error(bad_input) when another run has it open, Error(input_output) when it cannot be made.
+  explicit Log(const std::filesystem::path& file);
+  /// Drops a former run's lines.
+  void clear() { file_.clear(); }
+  /// {"wall_s": seconds since the log was opened, "event": event, ...details}; details that are no object become "details".
+  void write(const std::string& event, nlohmann::json details);
+  void close() { file_.close(); }
+
+ private:
+  AppendFile file_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace rouleau::host

@@ -1,0 +1,311 @@
+#include "observer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "cell/crossing.hpp"
+#include "cell/geometry.hpp"
+
+namespace rouleau::host {
+
+namespace {
+
+/// The value nearest to `previous` that differs from `angle` by a multiple of `period`.
+double continued(double angle, double previous, double period) {
+  return angle + period * std::round((previous - angle) / period);
+}
+
+Failure failure(std::string reason, std::array<double, 2> place, int cell, double value, double limit,
+                std::string message, std::string remedy) {
+  Failure f;
+  f.reason = std::move(reason);
+  f.place = place;
+  f.cell = cell;
+  f.value = value;
+  f.limit = limit;
+  f.message = std::move(message);
+  f.remedy = std::move(remedy);
+  return f;
+}
+
+/// Smallest gap of a cell to any other or to an image, looked for in growing neighbourhoods up to the size of the box.
+double gap_to_others(const Membranes& membranes, int cell, const PeriodicBox& box) {
+  const double most = 2 * std::max(box.nx, box.ny);
+  for (double limit = box.nx / 16; limit < most; limit *= 2) {
+    const double gap = smallest_gap(membranes, cell, box, limit);
+    if (std::isfinite(gap)) return gap;
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+Observer::Observer(const Scene& scene, const Membranes& membranes)
+    : scene_(scene),
+      box_{static_cast<double>(scene.domain.nodes[0]),
+           scene.domain.periodic_y ? static_cast<double>(scene.domain.nodes[1]) : 0.0} {
+  for (const CellRange& cell : membranes.cells) initial_area_.push_back(enclosed_area(membranes, cell));
+  for (const CellPlacement& cell : scene.cells) angle_.push_back(cell.angle);
+  tank_treading_angle_.assign(membranes.cells.size(), 0.0);
+}
+
+double Observer::area_drift(const Membranes& membranes, int* whose) const {
+  double most = 0;
+  for (std::size_t k = 0; k < membranes.cells.size(); ++k) {
+    const double drift = std::abs(enclosed_area(membranes, membranes.cells[k]) / initial_area_[k] - 1);
+    if (drift > most || !std::isfinite(drift)) {
+      most = drift;
+      if (whose != nullptr) *whose = static_cast<int>(k);
+    }
+  }
+  return most;
+}
+
+double Observer::momentum_residual(const Membranes& m) {
+  double net_x = 0, net_y = 0, magnitudes = 0;
+  for (std::size_t i = 0; i < m.x.size(); ++i) {
+    net_x += m.force_x[i];
+    net_y += m.force_y[i];
+    magnitudes += std::hypot(m.force_x[i], m.force_y[i]);
+  }
+  return magnitudes > 0 ? std::hypot(net_x, net_y) / magnitudes : 0;
+}
+
+template <class T>
+FluidScan Observer::scan(Solver<T>& solver) {
+  Fluid<T>& fluid = solver.fluid();
+  fluid.settle();
+  FluidScan result;
+  double fastest = -1;
+  std::vector<Moments> row;
+  for (int y = 0; y < fluid.setting().ny; ++y) {
+    fluid.moments(y, row);
+    for (int x = 0; x < fluid.setting().nx; ++x) {
+      const Moments& m = row[static_cast<std::size_t>(x)];
+      const double speed2 = m.ux * m.ux + m.uy * m.uy;
+      result.mass += m.density;
+      if (!std::isfinite(speed2) || !std::isfinite(m.density)) {
+        if (result.finite) result.mach_x = x, result.mach_y = y;
+        result.finite = false;
+      } else if (result.finite && speed2 > fastest) {
+        fastest = speed2;
+        result.mach_x = x;
+        result.mach_y = y;
+      }
+    }
+  }
+  result.mach = std::sqrt(3 * std::max(fastest, 0.0));
+  if (!initial_mass_) initial_mass_ = result.mass;
+  const double nodes = static_cast<double>(fluid.setting().nx) * fluid.setting().ny;
+  mass_drift_ = std::max(mass_drift_, std::abs(result.mass - *initial_mass_) / nodes);
+  mach_max_ = std::max(mach_max_, result.mach);
+  return result;
+}
+
+template <class T>
+std::optional<Failure> Observer::check(Solver<T>& solver, const Membranes& membranes) {
+  const LatticeUnits& units = solver.setting().units;
+  const auto place = [&](double x, double y) {
+    return std::array<double, 2>{(x + 0.5) * units.length, (y + 0.5) * units.length};
+  };
+  const FluidScan fluid = scan(solver);
+  if (!fluid.finite) {
+    return failure(
+        "non_finite", place(fluid.mach_x, fluid.mach_y), -1, std::nan(""), 0,
+        "the fluid holds a value that is no number",
+        "lower numerics.density_factor (it divides every lattice stiffness and speed), or see the margins that "
+        "rouleau plan prints");
+  }
+  if (fluid.mach > scene_.checks.mach) {
+    return failure("mach", place(fluid.mach_x, fluid.mach_y), -1, fluid.mach, scene_.checks.mach,
+                   "the flow is too fast for the lattice: Mach number above its limit",
+                   "lower numerics.density_factor, the shear rate or the driving force, or raise the resolution");
+  }
+  if (membranes.cells.empty()) return std::nullopt;
+  int cell = -1;
+  const double drift = area_drift(membranes, &cell);
+  area_drift_max_ = std::max(area_drift_max_, drift);
+  if (!(drift <= scene_.checks.area_drift)) {
+    const Eigen::Vector2d c = centroid(membranes, membranes.cells[static_cast<std::size_t>(cell)]);
+    return failure(
+        "area_drift", place(c.x(), c.y()), cell, drift, scene_.checks.area_drift,
+        "a cell has changed its area by more than the limit: fluid leaks through its membrane or is compressed",
+        "lower numerics.density_factor, raise the resolution, or raise checks.area_drift if this error is acceptable");
+  }
+  if (const auto crossing = find_crossing(membranes, box_)) {
+    return failure("crossing", place(crossing->place.x(), crossing->place.y()), crossing->cell, 0, 0,
+                   crossing->cell == crossing->other ? "the membrane of a cell crosses itself"
+                                                     : "the membranes of cells " + std::to_string(crossing->cell) +
+                                                           " and " + std::to_string(crossing->other) +
+                                                           (crossing->inside ? " lie one inside the other" : " cross"),
+                   "lower numerics.density_factor or the attraction, raise the resolution, or stiffen bending");
+  }
+  return std::nullopt;
+}
+
+void Observer::observe_cells(const Membranes& membranes, const LatticeUnits& units, Snapshot& snapshot) {
+  const double length = units.length;
+  const auto contacts = find_contacts(membranes, box_, scene_.output.aggregate_gap / length);
+  const Aggregates aggregates = find_aggregates(static_cast<int>(membranes.cells.size()), contacts);
+  snapshot.aggregate_count = aggregates.count;
+  for (const CellContact& c : contacts) {
+    snapshot.contacts.push_back(
+        {c.cell_a, c.cell_b, {c.image.x, c.image.y}, c.gap * length, c.contact_length * length});
+  }
+  for (std::size_t k = 0; k < membranes.cells.size(); ++k) {
+    const CellRange& cell = membranes.cells[k];
+    const Eigen::Vector2d c = centroid(membranes, cell);
+    const InertiaEllipse ellipse = inertia_ellipse(membranes, cell);
+    const double marker = marker_angle(membranes, cell);
+    angle_[k] = continued(ellipse.angle, angle_[k], std::numbers::pi);
+    tank_treading_angle_[k] = started_ ? continued(marker, tank_treading_angle_[k], 2 * std::numbers::pi) : marker;
+    CellSnapshot s;
+    s.cell = static_cast<int>(k);
+    s.type = scene_.cell_types[static_cast<std::size_t>(cell.type)].name;
+    s.x = (c.x() + 0.5) * length;
+    s.y = (c.y() + 0.5) * length;
+    s.angle = angle_[k];
+    s.deformation = ellipse.deformation;
+    s.area = enclosed_area(membranes, cell) * length * length;
+    s.perimeter = perimeter(membranes, cell) * length;
+    s.tank_treading_angle = tank_treading_angle_[k];
+    s.min_gap = gap_to_others(membranes, static_cast<int>(k), box_) * length;
+    s.aggregate = aggregates.label[k];
+    s.through_image = aggregates.through_image[k];
+    snapshot.cells.push_back(std::move(s));
+  }
+  if (snapshot.cells.size() > 1) {
+    const CellSnapshot &a = snapshot.cells.front(), &b = snapshot.cells.back();
+    const double line = std::atan2(b.y - a.y, b.x - a.x);
+    rotation_ = started_ ? continued(line, rotation_, 2 * std::numbers::pi) : line;
+    snapshot.rotation = rotation_;
+  }
+  started_ = true;
+}
+
+namespace {
+
+/// Stress that the cells add to the suspension, xy component per area of the domain, lattice units: membrane forces and
+/// viscosity contrast (Batchelor, J. Fluid Mech. 41, 1970; surface integral of u n + n u over the outline).
+double particle_stress(const Membranes& m, const Scene& scene, double viscosity) {
+  double stress = 0;
+  for (const CellRange& cell : m.cells) {
+    const Eigen::Vector2d c = centroid(m, cell);
+    const double ratio =
+        scene.cell_types[static_cast<std::size_t>(cell.type)].interior_viscosity / scene.fluid.viscosity;
+    for (int i = cell.first; i < cell.end(); ++i) {
+      const auto k = static_cast<std::size_t>(i), n = static_cast<std::size_t>(cell.next(i));
+      stress -= m.force_x[k] * (m.y[k] - c.y());
+      // Outward normal times length of segment i, nodes counter-clockwise.
+      const double nx = m.y[n] - m.y[k], ny = m.x[k] - m.x[n];
+      const double ux = (m.velocity_x[k] + m.velocity_x[n]) / 2, uy = (m.velocity_y[k] + m.velocity_y[n]) / 2;
+      stress += viscosity * (ratio - 1) * (ux * ny + uy * nx);
+    }
+  }
+  return stress / (static_cast<double>(scene.domain.nodes[0]) * scene.domain.nodes[1]);
+}
+
+template <class T>
+FieldSnapshot observe_fields(Fluid<T>& fluid, const Scene& scene, const LatticeUnits& units) {
+  const auto wanted = [&](const char* name) {
+    const auto& q = scene.output.quantities;
+    return std::find(q.begin(), q.end(), name) != q.end();
+  };
+  FieldSnapshot f;
+  f.nx = fluid.setting().nx;
+  f.ny = fluid.setting().ny;
+  const bool velocity = wanted("velocity"), density = wanted("density"), viscosity = wanted("viscosity");
+  const bool vorticity = wanted("vorticity");
+  const double speed = units.to_si(1, dimension::velocity), rate = units.to_si(1, dimension::rate);
+  const double viscosity_unit = units.to_si(1, dimension::viscosity);
+  const auto nodes = static_cast<std::size_t>(f.nx) * static_cast<std::size_t>(f.ny);
+  std::vector<std::vector<Moments>> rows(static_cast<std::size_t>(f.ny));
+  for (int y = 0; y < f.ny; ++y) fluid.moments(y, rows[static_cast<std::size_t>(y)]);
+  for (auto [want, values] :
+       {std::pair{velocity, &f.velocity_x}, std::pair{velocity, &f.velocity_y}, std::pair{density, &f.density},
+        std::pair{viscosity, &f.viscosity}, std::pair{vorticity, &f.vorticity}}) {
+    if (want) values->reserve(nodes);
+  }
+  const WallVelocity& walls = fluid.setting().walls;
+  for (int y = 0; y < f.ny; ++y) {
+    for (int x = 0; x < f.nx; ++x) {
+      const Moments& m = rows[static_cast<std::size_t>(y)][static_cast<std::size_t>(x)];
+      if (velocity) {
+        f.velocity_x.push_back(static_cast<float>(m.ux * speed));
+        f.velocity_y.push_back(static_cast<float>(m.uy * speed));
+      }
+      if (density) f.density.push_back(static_cast<float>(m.density));
+      if (viscosity) {
+        double relaxation = fluid.setting().relaxation_rate;
+        if (fluid.setting().viscosity_contrast && fluid.activity().active(x, y)) {
+          relaxation = static_cast<double>(fluid.relaxation_rate().row(y)[x]);
+        }
+        f.viscosity.push_back(static_cast<float>((1 / relaxation - 0.5) / 3 * viscosity_unit));
+      }
+      if (vorticity) {
+        const auto at = [&](int i, int j) -> const Moments& {
+          return rows[static_cast<std::size_t>(j)][static_cast<std::size_t>((i + f.nx) % f.nx)];
+        };
+        const auto ux = [&](int j) {
+          if (fluid.setting().periodic_y) return at(x, (j + f.ny) % f.ny).ux;
+          if (j < 0) return 2 * walls.lower - m.ux;
+          if (j >= f.ny) return 2 * walls.upper - m.ux;
+          return at(x, j).ux;
+        };
+        const double curl = (at(x + 1, y).uy - at(x - 1, y).uy) / 2 - (ux(y + 1) - ux(y - 1)) / 2;
+        f.vorticity.push_back(static_cast<float>(curl * rate));
+      }
+    }
+  }
+  return f;
+}
+
+}  // namespace
+
+template <class T>
+Snapshot Observer::observe(Solver<T>& solver, const Membranes& membranes, bool with_fields) {
+  const StageSetting& setting = solver.setting();
+  const LatticeUnits& units = setting.units;
+  Snapshot snapshot;
+  snapshot.stage = setting.index;
+  snapshot.stage_name = setting.stage->name;
+  const FluidScan fluid = scan(solver);
+  snapshot.mach_max = fluid.mach;
+  snapshot.mass_drift = mass_drift_;
+  const double viscosity = (setting.tau - 0.5) / 3;
+  snapshot.relative_viscosity = std::nan("");
+  if (setting.shear_rate != 0) {
+    const auto stress = solver.fluid().wall_stress();
+    snapshot.relative_viscosity = (stress.lower - stress.upper) / 2 / (viscosity * setting.shear_rate);
+  }
+  if (!membranes.cells.empty()) {
+    snapshot.particle_stress = units.to_si(particle_stress(membranes, scene_, viscosity), dimension::pressure);
+    observe_cells(membranes, units, snapshot);
+    snapshot.area_drift_max = area_drift(membranes);
+    area_drift_max_ = std::max(area_drift_max_, snapshot.area_drift_max);
+    std::vector<double> tension;
+    solver.tensions(tension);
+    const double tension_unit = units.to_si(1, dimension::tension);
+    OutlineSnapshot& outlines = snapshot.outlines;
+    for (const CellRange& cell : membranes.cells) outlines.first.push_back(cell.first);
+    outlines.first.push_back(membranes.node_count());
+    for (std::size_t i = 0; i < membranes.x.size(); ++i) {
+      outlines.x.push_back((membranes.x[i] + 0.5) * units.length);
+      outlines.y.push_back((membranes.y[i] + 0.5) * units.length);
+      outlines.tension.push_back(tension[i] * tension_unit);
+    }
+  }
+  if (with_fields) snapshot.fields = observe_fields(solver.fluid(), scene_, units);
+  return snapshot;
+}
+
+void Observer::start_stage() { initial_mass_.reset(); }
+
+template Snapshot Observer::observe(Solver<float>&, const Membranes&, bool);
+template Snapshot Observer::observe(Solver<double>&, const Membranes&, bool);
+template std::optional<Failure> Observer::check(Solver<float>&, const Membranes&);
+template std::optional<Failure> Observer::check(Solver<double>&, const Membranes&);
+
+}  // namespace rouleau::host

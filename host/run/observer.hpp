@@ -1,0 +1,62 @@
+// Turns the state between two steps into a Snapshot in SI units, and checks that the state is sound.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "aggregates.hpp"
+#include "snapshot.hpp"
+#include "solver.hpp"
+#include "summary.hpp"
+
+namespace rouleau::host {
+
+/// What a scan of the whole lattice found.
+struct FluidScan {
+  double mach = 0;                ///< largest
+  double mach_x = 0, mach_y = 0;  ///< its node
+  bool finite = true;
+  double mass = 0;  ///< sum of density deviations
+};
+
+/// Follows angles over turns, and remembers what drifts are measured against; lives for the whole run.
+class Observer {
+ public:
+  Observer(const Scene& scene, const Membranes& membranes);
+
+  /// Mass is compared within a stage: a new density factor rescales the populations.
+  void start_stage();
+
+  /// State before the next step of `solver`, whose forces must have been computed. `with_fields`: fields are due.
+  template <class T>
+  Snapshot observe(Solver<T>& solver, const Membranes& membranes, bool with_fields);
+
+  /// Checks everything that costs a scan: finite fields, Mach number, area, crossings.
+  template <class T>
+  std::optional<Failure> check(Solver<T>& solver, const Membranes& membranes);
+
+  /// Largest relative change of a cell's area so far, at the present positions; `cell`: whose.
+  double area_drift(const Membranes& membranes, int* cell = nullptr) const;
+  /// Sum of nodal forces over the sum of their magnitudes: rounding only, or an internal force is unbalanced.
+  static double momentum_residual(const Membranes& membranes);
+
+  [[nodiscard]] double mach_max() const { return mach_max_; }
+  [[nodiscard]] double area_drift_max() const { return area_drift_max_; }
+  [[nodiscard]] double mass_drift() const { return mass_drift_; }
+
+ private:
+  template <class T>
+  FluidScan scan(Solver<T>& solver);
+  void observe_cells(const Membranes& membranes, const LatticeUnits& units, Snapshot& snapshot);
+
+  const Scene& scene_;
+  PeriodicBox box_;
+  std::vector<double> initial_area_;
+  std::vector<double> angle_, tank_treading_angle_;  ///< last values, continuous
+  double rotation_ = 0;
+  bool started_ = false;
+  double mach_max_ = 0, area_drift_max_ = 0, mass_drift_ = 0;
+  std::optional<double> initial_mass_;
+};
+
+}  // namespace rouleau::host

@@ -1,0 +1,102 @@
+#include "run/output.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <system_error>
+
+#include "input/document.hpp"
+#include "run/frames.hpp"
+#include "run/log.hpp"
+#include "run/output_file.hpp"
+#include "run/output_tables.hpp"
+
+namespace rouleau::host {
+
+namespace {
+
+constexpr std::array<std::string_view, 10> run_files{"cells.csv",    "aggregates.csv", "series.csv",  "frames.h5",
+                                                     "frames.xmf",   "summary.json",   "report.html", "scene.json",
+                                                     "checkpoint.h5", "log.jsonl"};
+
+bool written_by_a_run(const std::string& name) {
+  const bool partial = name.starts_with('.') && name.ends_with(".partial");  // left by a run that was killed
+  return partial || std::find(run_files.begin(), run_files.end(), name) != run_files.end();
+}
+
+/// Makes the directory, and sees to it that nothing of the user's gets mixed up with the run's files.
+std::filesystem::path prepared(std::filesystem::path directory) {
+  std::error_code error;
+  std::filesystem::create_directories(directory, error);
+  if (error) fail_file(directory, "cannot be made", error.value());
+  if (!std::filesystem::is_directory(directory)) fail_file(directory, "is no directory", ENOTDIR);
+  std::filesystem::directory_iterator entries(directory, error);
+  if (error) fail_file(directory, "cannot be listed", error.value());
+  for (const auto& entry : entries)
+    if (!written_by_a_run(entry.path().filename().string()))
+      throw Error(ExitCode::bad_input, Place{directory.string(), "", 0, 0},
+                  "holds \"" + entry.path().filename().string() +
+                      "\", which no run wrote; choose another directory with --out, or move that file away");
+  return directory;
+}
+
+void remove_former_run(const std::filesystem::path& directory) {
+  for (const auto& entry : std::filesystem::directory_iterator(directory)) {
+    if (entry.path().filename() == "log.jsonl") continue;  // it holds the lock
+    std::error_code error;
+    std::filesystem::remove(entry.path(), error);
+    if (error) fail_file(entry.path(), "of a former run cannot be removed", error.value());
+  }
+}
+
+/// The scene as used: the user's own text unless --set changed it.
+std::string scene_text(const Document& document) {
+  const auto text = nlohmann::json::parse(document.text(), nullptr, false);
+  return text == document.root() ? document.text() : document.root().dump(2) + "\n";
+}
+
+}  // namespace
+
+struct RunDirectory::Files {
+  Files(const std::filesystem::path& directory, Log opened, const Scene& scene)
+      : log(std::move(opened)), tables(directory), frames(directory / "frames.h5", scene) {}
+  Log log;
+  Tables tables;
+  FrameWriter frames;
+};
+
+RunDirectory::RunDirectory(std::filesystem::path directory, const Scene& scene)
+    : directory_(prepared(std::move(directory))) {
+  Log log(directory_ / "log.jsonl");  // before anything is removed: another run may be writing here
+  remove_former_run(directory_);
+  log.clear();
+  files_ = std::make_unique<Files>(directory_, std::move(log), scene);
+  if (scene.document) write_file(directory_ / "scene.json", scene_text(*scene.document));
+}
+
+RunDirectory::~RunDirectory() = default;
+
+void RunDirectory::write(const Snapshot& snapshot) {
+  if (!files_) throw std::logic_error("RunDirectory::write after finish");
+  files_->tables.write(snapshot);
+  files_->frames.write(snapshot);
+}
+
+void RunDirectory::log(const std::string& event, nlohmann::json details) {
+  if (!files_) throw std::logic_error("RunDirectory::log after finish");
+  files_->log.write(event, std::move(details));
+}
+
+void RunDirectory::finish(const Summary& summary) {
+  if (!files_) throw std::logic_error("RunDirectory::finish called twice");
+  const auto files = std::move(files_);
+  files->tables.close();
+  files->frames.close();
+  write_file(directory_ / "frames.xmf", files->frames.xdmf());
+  // Last: who finds a summary finds everything else complete.
+  write_file(directory_ / "summary.json",
+             to_json(summary).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  files->log.close();
+}
+
+}  // namespace rouleau::host

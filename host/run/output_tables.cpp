@@ -1,0 +1,147 @@
+#include "run/output_tables.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace rouleau::host {
+
+namespace {
+
+/// One line of a table.
+class Row {
+ public:
+  Row& add(double value) { return raw(to_text(value)); }
+  Row& add(int value) { return raw(std::to_string(value)); }
+  Row& add(long value) { return raw(std::to_string(value)); }
+  Row& add(bool value) { return raw(value ? "1" : "0"); }
+  Row& add(const std::string& text) {
+    if (text.find_first_of(",\"\r\n") == std::string::npos) return raw(text);
+    std::string quoted = "\"";
+    for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return raw(quoted + "\"");
+  }
+  Row& skip(int columns) {
+    for (int i = 0; i < columns; ++i) raw("");
+    return *this;
+  }
+  [[nodiscard]] std::string line() const { return text_ + "\n"; }
+
+ private:
+  Row& raw(std::string_view text) {
+    if (!first_) text_ += ',';
+    first_ = false;
+    text_ += text;
+    return *this;
+  }
+  std::string text_;
+  bool first_ = true;
+};
+
+Row begin_row(const Snapshot& snapshot) {
+  Row row;
+  row.add(snapshot.step).add(snapshot.time).add(snapshot.strain);
+  return row;
+}
+
+std::string joined(const std::vector<int>& members) {
+  std::string text;
+  for (const int member : members) text += (text.empty() ? "" : "+") + std::to_string(member);
+  return text;
+}
+
+}  // namespace
+
+std::string to_text(double value) {
+  if (std::isnan(value)) return "nan";
+  if (std::isinf(value)) return value < 0 ? "-inf" : "inf";
+  std::array<char, 32> digits{};
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
+  return {digits.data(), end};
+}
+
+Tables::Tables(const std::filesystem::path& directory)
+    : cells_(directory / "cells.csv"), aggregates_(directory / "aggregates.csv"), series_(directory / "series.csv") {
+  cells_.write(
+      "step,time_s,strain,cell,type,x_m,y_m,angle_rad,deformation,area_m2,perimeter_m,min_gap_m,aggregate,"
+      "tank_treading_angle_rad,through_image\n");
+  aggregates_.write(
+      "step,time_s,strain,aggregate_count,aggregate,members,through_image,rotation_rad,cell_a,cell_b,image_x,image_y,"
+      "gap_m,contact_length_m\n");
+  series_.write(
+      "step,time_s,strain,stage,stage_name,aggregate_count,rotation_rad,relative_viscosity,particle_stress_Pa,mach_max,"
+      "area_drift_max,mass_drift\n");
+}
+
+void Tables::write(const Snapshot& snapshot) {
+  write_cells(snapshot);
+  write_aggregates(snapshot);
+  write_series(snapshot);
+  cells_.flush();
+  aggregates_.flush();
+  series_.flush();
+}
+
+void Tables::close() {
+  cells_.close();
+  aggregates_.close();
+  series_.close();
+}
+
+void Tables::write_cells(const Snapshot& snapshot) {
+  for (const auto& cell : snapshot.cells) {
+    Row row = begin_row(snapshot);
+    row.add(cell.cell).add(cell.type).add(cell.x).add(cell.y).add(cell.angle).add(cell.deformation);
+    row.add(cell.area).add(cell.perimeter).add(cell.min_gap).add(cell.aggregate);
+    row.add(cell.tank_treading_angle).add(cell.through_image);
+    cells_.write(row.line());
+  }
+}
+
+void Tables::write_aggregates(const Snapshot& snapshot) {
+  struct Aggregate {
+    std::vector<int> members;
+    std::vector<const ContactSnapshot*> contacts;
+    bool through_image = false;
+  };
+  std::map<int, Aggregate> aggregates;
+  std::map<int, int> label_of;
+  for (const auto& cell : snapshot.cells) {
+    auto& aggregate = aggregates[cell.aggregate];
+    aggregate.members.push_back(cell.cell);
+    aggregate.through_image = aggregate.through_image || cell.through_image;
+    label_of[cell.cell] = cell.aggregate;
+  }
+  for (const auto& contact : snapshot.contacts) aggregates[label_of[contact.cell_a]].contacts.push_back(&contact);
+
+  bool first = true;
+  for (const auto& [label, aggregate] : aggregates) {
+    Row start = begin_row(snapshot);
+    start.add(snapshot.aggregate_count).add(label).add(joined(aggregate.members)).add(aggregate.through_image);
+    if (first)
+      start.add(snapshot.rotation);
+    else
+      start.skip(1);
+    first = false;
+    if (aggregate.contacts.empty()) aggregates_.write(Row(start).skip(6).line());
+    for (const auto* contact : aggregate.contacts) {
+      Row row(start);
+      row.add(contact->cell_a).add(contact->cell_b).add(contact->image[0]).add(contact->image[1]);
+      row.add(contact->gap).add(contact->contact_length);
+      aggregates_.write(row.line());
+    }
+  }
+}
+
+void Tables::write_series(const Snapshot& snapshot) {
+  Row row = begin_row(snapshot);
+  row.add(snapshot.stage).add(snapshot.stage_name).add(snapshot.aggregate_count).add(snapshot.rotation);
+  row.add(snapshot.relative_viscosity).add(snapshot.particle_stress).add(snapshot.mach_max);
+  row.add(snapshot.area_drift_max).add(snapshot.mass_drift);
+  series_.write(row.line());
+}
+
+}  // namespace rouleau::host

@@ -1,0 +1,40 @@
+// The tables of a run: cells.csv, aggregates.csv and series.csv, one block of rows per output time.
+//
+// cells.csv       one row per output time and cell
+// aggregates.csv  one row per output time and contact, with the aggregate both cells belong to; an aggregate without any
+//                 contact (a lone cell) has one row whose contact columns are empty. So
+//                 drop_duplicates(["step", "aggregate"]) lists the aggregates and dropna(subset=["gap_m"]) the contacts.
+//                 image_x, image_y: periodic shift of cell_b in boxes. members: cells joined by "+".
+//                 rotation_rad: turned by the line through the aggregate's outermost cells; given for the first aggregate.
+// series.csv      one row per output time: what belongs to the whole suspension
+//
+// Units stand in the column names. Numbers have the fewest digits that read back as the same double, whatever the
+// locale; infinite and undefined ones are inf and nan. Text is quoted as in RFC 4180 where it must be.
+#pragma once
+
+#include <filesystem>
+
+#include "run/output_file.hpp"
+#include "run/snapshot.hpp"
+
+namespace rouleau::host {
+
+/// Shortest text that reads back as the same number; "inf", "-inf", "nan".
+std::string to_text(double value);
+
+class Tables {
+ public:
+  /// Creates the three files in `directory` with their header lines. Throws Error(input_output), as all members do.
+  explicit Tables(const std::filesystem::path& directory);
+  void write(const Snapshot& snapshot);
+  void close();
+
+ private:
+  void write_cells(const Snapshot& snapshot);
+  void write_aggregates(const Snapshot& snapshot);
+  void write_series(const Snapshot& snapshot);
+
+  AppendFile cells_, aggregates_, series_;
+};
+
+}  // namespace rouleau::host

@@ -1,0 +1,248 @@
+#include "plan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "input/document.hpp"
+
+namespace rouleau::host {
+
+namespace {
+
+PlannedModel plan_model(ModelKind kind, const ModelChoice& choice, const Scene& scene, const Catalog& catalog,
+                        const Units& units, std::vector<std::string>& warnings) {
+  const Manifest& manifest = catalog.find(kind, choice.model, scene.place(choice.pointer + "/model"));
+  PlannedModel model{&manifest, resolve_parameters(choice, manifest, scene, units)};
+  warnings.insert(warnings.end(), model.parameters.warnings.begin(), model.parameters.warnings.end());
+  return model;
+}
+
+/// Largest length scale of a shape: what Reynolds, capillary and adhesion numbers are made with.
+double shape_radius(const Shape& shape) {
+  if (const auto* biconcave = std::get_if<Biconcave>(&shape)) return biconcave->radius;
+  if (const auto* circle = std::get_if<Circle>(&shape)) return circle->radius;
+  return std::get<Ellipse>(shape).semi_axes.maxCoeff();
+}
+
+/// SI value of the parameter with this name in the first model that has it; NaN when none does.
+double parameter_named(const std::vector<const PlannedModel*>& models, const std::string& name) {
+  for (const PlannedModel* model : models) {
+    for (std::size_t i = 0; i < model->manifest->parameters.size(); ++i) {
+      if (model->manifest->parameters[i].name == name) return model->parameters.values[i];
+    }
+  }
+  return std::nan("");
+}
+
+nlohmann::json number_or_null(double value) { return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(); }
+
+nlohmann::json dimensionless_numbers(const Plan& plan) {
+  const Scene& scene = *plan.scene;
+  double shear_rate = 0, factor = scene.numerics.density_factor, wall_mach = 0;
+  for (const StageSetting& stage : plan.stages) {
+    wall_mach = std::max(wall_mach, std::abs(stage.wall_speed) * std::sqrt(3.0));
+    if (std::abs(stage.stage->shear_rate) > std::abs(shear_rate)) {
+      shear_rate = stage.stage->shear_rate;
+      factor = stage.stage->density_factor;
+    }
+  }
+  const double radius = scene.cell_types.empty() || scene.cells.empty()
+                            ? scene.domain.size.y() / 2
+                            : shape_radius(scene.cell_types[static_cast<std::size_t>(scene.cells[0].type)].shape);
+  const double stress = scene.fluid.viscosity * std::abs(shear_rate);
+  const double reynolds = scene.fluid.density * std::abs(shear_rate) * radius * radius / scene.fluid.viscosity;
+  const double unsteady = reynolds * factor;
+  std::vector<const PlannedModel*> laws, potentials;
+  for (const auto& type : plan.membranes) {
+    for (const PlannedModel& law : type) laws.push_back(&law);
+  }
+  for (const PlannedModel& potential : plan.interactions) potentials.push_back(&potential);
+  double ratio = 1;
+  for (const CellType& type : scene.cell_types)
+    ratio = std::max(ratio, type.interior_viscosity / scene.fluid.viscosity);
+
+  nlohmann::json numbers;
+  numbers["reynolds_physical"] = number_or_null(reynolds);
+  numbers["reynolds_simulated"] = number_or_null(unsteady);
+  numbers["capillary"] = number_or_null(stress * radius / parameter_named(laws, "shear_modulus"));
+  numbers["adhesion_number"] =
+      stress > 0 ? number_or_null(parameter_named(potentials, "depth") / (stress * radius)) : nlohmann::json();
+  numbers["viscosity_ratio"] = plan.has_cells ? number_or_null(ratio) : nlohmann::json();
+  numbers["mach_wall"] = wall_mach;
+  return numbers;
+}
+
+nlohmann::json conversion_table(const Plan& plan) {
+  const Scene& scene = *plan.scene;
+  nlohmann::json table = nlohmann::json::array();
+  for (const StageSetting& stage : plan.stages) {
+    const auto row = [&](const std::string& quantity, double si, const std::string& unit, double lattice) {
+      table.push_back({{"stage", stage.stage->name},
+                       {"quantity", quantity},
+                       {"si", number_or_null(si)},
+                       {"unit", unit},
+                       {"lattice", number_or_null(lattice)}});
+    };
+    const LatticeUnits& u = stage.units;
+    row("spacing", u.length, "m", 1);
+    row("time step", u.time, "s", 1);
+    row("density (times density_factor)", scene.fluid.density * stage.stage->density_factor, "kg/m3", 1);
+    row("viscosity", scene.fluid.viscosity, "Pa s", u.to_lattice(scene.fluid.viscosity, dimension::viscosity));
+    if (stage.stage->shear_rate != 0) {
+      row("shear rate", stage.stage->shear_rate, "1/s", stage.shear_rate);
+      row("wall speed", u.to_si(stage.wall_speed, dimension::velocity), "m/s", stage.wall_speed);
+    }
+    if (stage.body_force_x != 0 || stage.body_force_y != 0) {
+      row("driving force density", u.to_si(stage.body_force_x, dimension::force_density), "N/m3", stage.body_force_x);
+    }
+    for (const PlannedModel* model : plan.active_models()) {
+      for (std::size_t i = 0; i < model->manifest->parameters.size(); ++i) {
+        const Parameter& parameter = model->manifest->parameters[i];
+        if (!parameter.choices.empty()) continue;
+        const auto& e = parameter.dimension.exponent;
+        const bool stays_si = e[3] != 0 || e[4] != 0 || e[5] != 0;
+        const double si = model->parameters.values[i];
+        row(model->manifest->id + ": " + parameter.name, si, parameter.unit + " (coherent SI value)",
+            stays_si ? si : u.to_lattice(si, parameter.dimension));
+      }
+    }
+  }
+  return table;
+}
+
+void plan_passes(Plan& plan) {
+  const Scene& scene = *plan.scene;
+  const auto pass = [&](const std::string& name, const std::string& why) { plan.passes.push_back({name, why}); };
+  const auto omit = [&](const std::string& what, const std::string& why) { plan.left_out.push_back({what, why}); };
+
+  if (plan.has_cells) {
+    pass("membrane", std::to_string(scene.cells.size()) + " cells resist deformation");
+    if (plan.has_interactions) pass("interaction", "an active potential acts between cells");
+    pass("spread", "membrane forces act on the fluid");
+    if (plan.viscosity_contrast)
+      pass("indicator", "inside and outside of a cell have different viscosities");
+    else
+      pass("activity", "marks the nodes near membranes, which alone carry force and velocity");
+  }
+  pass("fluid", "collision and streaming");
+  if (plan.has_cells) {
+    pass("interpolate", "membranes move with the fluid");
+    pass("move", "new positions of membrane nodes");
+  } else {
+    omit("membranes, force and velocity fields, interpolation", "the scene has no cells");
+    for (std::size_t type = 0; type < scene.cell_types.size(); ++type) {
+      omit("cell type " + scene.cell_types[type].name, "no cell of this type is placed");
+    }
+  }
+  if (plan.has_cells && !plan.viscosity_contrast) {
+    omit("indicator and relaxation rate field", "interior and suspending fluid have the same viscosity");
+  }
+  if (plan.has_cells && !plan.has_interactions) {
+    omit("neighbour search", scene.interactions.empty() ? "the scene has no interaction" : "no interaction is active");
+  }
+  for (const PlannedModel& model : plan.interactions) {
+    if (model.active()) continue;
+    omit("interaction " + model.manifest->id,
+         plan.has_cells ? "inactive at these parameters (" + model.manifest->inactive_when.dump() + " in its manifest)"
+                        : "the scene has no cells");
+  }
+  for (const auto& type : plan.membranes) {
+    for (const PlannedModel& model : type) {
+      if (!model.active() && plan.has_cells) {
+        omit("membrane law " + model.manifest->id,
+             "inactive at these parameters (" + model.manifest->inactive_when.dump() + " in its manifest)");
+      }
+    }
+  }
+  if (!scene.fluid.inertia) omit("convective inertia", "fluid.inertia is false: linear (Stokes) equilibrium");
+  if (scene.output.fields.never()) omit("fields in frames.h5", "output.fields is not set");
+  if (scene.output.cells.never())
+    omit("periodic rows in cells.csv", "output.cells is not set; start and end are written");
+}
+
+void plan_estimate(Plan& plan) {
+  const Scene& scene = *plan.scene;
+  const double nodes = static_cast<double>(scene.domain.nodes[0]) * scene.domain.nodes[1];
+  double membrane_nodes = 0;
+  for (const CellPlacement& cell : scene.cells)
+    membrane_nodes += scene.cell_types[static_cast<std::size_t>(cell.type)].segments;
+  const bool f64 = scene.numerics.precision == Precision::f64;
+  // Measured on one core with AVX-512 (docs/performance.md); other machines differ by their memory and vector width.
+  const double step = nodes * (f64 ? 2.2e-9 : 1.3e-9) + membrane_nodes * 70e-9;
+  double outputs = 2, fields = 0;
+  for (const StageSetting& stage : plan.stages) {
+    const double steps = static_cast<double>(stage.max_steps);
+    plan.estimate.steps += steps;
+    const auto count = [&](const Cadence& cadence) {
+      double n = 0;
+      if (cadence.strain && stage.shear_rate != 0) n += steps * std::abs(stage.shear_rate) / *cadence.strain;
+      if (cadence.seconds) n += steps * stage.units.time / *cadence.seconds;
+      return n;
+    };
+    outputs += count(scene.output.cells);
+    fields += count(scene.output.fields);
+  }
+  plan.estimate.wall_s = plan.estimate.steps * step;
+  const double word = f64 ? 8 : 4;
+  plan.estimate.memory_bytes =
+      nodes * word * (9 + (plan.has_cells ? 2 : 0) + (plan.viscosity_contrast ? 1 : 0)) + membrane_nodes * 400;
+  plan.estimate.output_bytes = outputs * (membrane_nodes * 32 + 400 * static_cast<double>(scene.cells.size())) +
+                               fields * nodes * 4 * (2 + static_cast<double>(scene.output.quantities.size()));
+}
+
+}  // namespace
+
+std::vector<const PlannedModel*> Plan::active_models() const {
+  std::vector<const PlannedModel*> models{&collision};
+  if (!has_cells) return models;
+  for (std::size_t type = 0; type < membranes.size(); ++type) {
+    const bool used = std::any_of(scene->cells.begin(), scene->cells.end(),
+                                  [&](const CellPlacement& cell) { return cell.type == static_cast<int>(type); });
+    if (!used) continue;
+    for (const PlannedModel& law : membranes[type]) {
+      if (law.active()) models.push_back(&law);
+    }
+  }
+  for (const PlannedModel& potential : interactions) {
+    if (potential.active()) models.push_back(&potential);
+  }
+  return models;
+}
+
+Plan make_plan(const Scene& scene, const Catalog& catalog) {
+  const Units units;
+  Plan plan{};
+  plan.scene = &scene;
+  plan.collision = plan_model(ModelKind::collision, scene.fluid.collision, scene, catalog, units, plan.warnings);
+  for (const CellType& type : scene.cell_types) {
+    auto& laws = plan.membranes.emplace_back();
+    for (const ModelChoice& choice : type.membrane) {
+      laws.push_back(plan_model(ModelKind::membrane, choice, scene, catalog, units, plan.warnings));
+    }
+  }
+  plan.has_cells = !scene.cells.empty();
+  for (const Interaction& interaction : scene.interactions) {
+    PlannedModel model =
+        plan_model(ModelKind::interaction, interaction.potential, scene, catalog, units, plan.warnings);
+    if (!plan.has_cells) model.parameters.inactive = true;
+    plan.has_interactions = plan.has_interactions || model.active();
+    plan.interactions.push_back(std::move(model));
+  }
+  for (const CellPlacement& cell : scene.cells) {
+    const CellType& type = scene.cell_types[static_cast<std::size_t>(cell.type)];
+    if (type.interior_viscosity != scene.fluid.viscosity) plan.viscosity_contrast = true;
+  }
+  for (int i = 0; i < static_cast<int>(scene.stages.size()); ++i) plan.stages.push_back(make_stage_setting(scene, i));
+  plan_passes(plan);
+  plan.dimensionless = dimensionless_numbers(plan);
+  plan.conversions = conversion_table(plan);
+  plan_estimate(plan);
+  plan.limits = find_limits(plan);
+  for (const Limit& limit : plan.limits) {
+    if (limit.margin < 1) plan.warnings.push_back(limit.name + " is beyond its limit: " + limit.remedy);
+  }
+  return plan;
+}
+
+}  // namespace rouleau::host

@@ -1,0 +1,64 @@
+// What a scene will compute and why, decided before the first step: models, passes, what is left out, limits, costs.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "plugin/catalog.hpp"
+#include "plugin/parameters.hpp"
+#include "stage_setting.hpp"
+#include "summary.hpp"
+
+namespace rouleau::host {
+
+/// A model the scene names, with its parameters. An inactive one is left out: its library is not opened.
+struct PlannedModel {
+  const Manifest* manifest;
+  ParameterValues parameters;
+  [[nodiscard]] bool active() const { return !parameters.inactive; }
+};
+
+struct PlannedPass {
+  std::string name, why;
+};
+
+struct Estimate {
+  double steps = 0;  ///< at most
+  double wall_s = 0;
+  double memory_bytes = 0, output_bytes = 0;
+};
+
+struct Plan {
+  const Scene* scene;
+  PlannedModel collision;
+  std::vector<std::vector<PlannedModel>> membranes;  ///< for each cell type
+  std::vector<PlannedModel> interactions;            ///< in the order of Scene::interactions
+  std::vector<StageSetting> stages;
+  bool has_cells = false;
+  bool viscosity_contrast = false;
+  bool has_interactions = false;
+
+  std::vector<PlannedPass> passes;
+  std::vector<Omission> left_out;
+  std::vector<Limit> limits;
+  std::vector<std::string> warnings;
+  nlohmann::json dimensionless;
+  nlohmann::json conversions;
+  Estimate estimate;
+
+  /// Models whose libraries the run opens.
+  [[nodiscard]] std::vector<const PlannedModel*> active_models() const;
+};
+
+/// Throws Error(bad_input or plugin_refused). The scene and the catalog must outlive the plan.
+Plan make_plan(const Scene& scene, const Catalog& catalog);
+
+/// Limits of the method for this scene (stability, accuracy), sharpest first. Opens the libraries of active models,
+/// whose own derivatives give the stiffness that explicit coupling must bear.
+std::vector<Limit> find_limits(const Plan& plan);
+
+std::string to_text(const Plan& plan);
+nlohmann::json to_json(const Plan& plan);
+
+}  // namespace rouleau::host

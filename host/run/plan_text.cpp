@@ -1,0 +1,117 @@
+// A plan for people and for programs.
+#include <cmath>
+#include <cstdio>
+#include <sstream>
+
+#include "plan.hpp"
+
+namespace rouleau::host {
+
+namespace {
+
+std::string number(double value, const char* format = "%.4g") {
+  if (std::isnan(value)) return "-";
+  char text[64];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+std::string number(const nlohmann::json& value) { return value.is_number() ? number(value.get<double>()) : "-"; }
+
+std::string size(double bytes) {
+  if (bytes < 1e6) return number(bytes / 1e3, "%.0f") + " kB";
+  if (bytes < 1e9) return number(bytes / 1e6, "%.1f") + " MB";
+  return number(bytes / 1e9, "%.1f") + " GB";
+}
+
+std::string duration(double seconds) {
+  if (seconds < 120) return number(seconds, "%.1f") + " s";
+  if (seconds < 7200) return number(seconds / 60, "%.1f") + " min";
+  return number(seconds / 3600, "%.1f") + " h";
+}
+
+std::string padded(std::string text, std::size_t width) {
+  if (text.size() < width) text.resize(width, ' ');
+  return text + " ";
+}
+
+}  // namespace
+
+std::string to_text(const Plan& plan) {
+  std::ostringstream out;
+  const Scene& scene = *plan.scene;
+  out << (scene.title.empty() ? "untitled scene" : scene.title) << "\n";
+  for (const std::string& warning : plan.warnings) out << "  warning: " << warning << "\n";
+
+  out << "\nConversions\n  " << padded("stage", 12) << padded("quantity", 36) << padded("SI", 14)
+      << padded("lattice", 14) << "SI unit\n";
+  for (const auto& row : plan.conversions) {
+    out << "  " << padded(row["stage"].get<std::string>(), 12) << padded(row["quantity"].get<std::string>(), 36)
+        << padded(number(row["si"]), 14) << padded(number(row["lattice"]), 14) << row["unit"].get<std::string>()
+        << "\n";
+  }
+
+  out << "\nDimensionless numbers\n";
+  for (const auto& [name, value] : plan.dimensionless.items()) out << "  " << padded(name, 24) << number(value) << "\n";
+  if (!scene.fluid.inertia) {
+    out << "  Convective inertia is left out (fluid.inertia false), so the simulated Reynolds number only scales the\n"
+           "  unsteady term; the flow is Stokes flow.\n";
+  }
+
+  out << "\nLimits, sharpest first (margin below 1: beyond the limit)\n  " << padded("limit", 62) << padded("value", 12)
+      << padded("limit", 12) << "margin\n";
+  for (const Limit& limit : plan.limits) {
+    out << "  " << padded(limit.name, 62) << padded(number(limit.value), 12) << padded(number(limit.limit), 12)
+        << number(limit.margin, "%.3g") << (limit.margin < 1 ? "   " + limit.remedy : "") << "\n";
+  }
+
+  out << "\nModels\n";
+  for (const PlannedModel* model : plan.active_models()) {
+    out << "  " << padded(std::string(to_string(model->manifest->kind)) + " " + model->manifest->id, 30)
+        << model->manifest->library.string() << "\n";
+  }
+  out << "\nPasses of a step\n";
+  for (const PlannedPass& pass : plan.passes) out << "  " << padded(pass.name, 14) << pass.why << "\n";
+  out << "\nLeft out\n";
+  for (const Omission& omission : plan.left_out) out << "  " << omission.what << ": " << omission.why << "\n";
+
+  out << "\nAt most " << number(plan.estimate.steps, "%.0f") << " steps, about " << duration(plan.estimate.wall_s)
+      << " on one core, " << size(plan.estimate.memory_bytes) << " of memory for fields, "
+      << size(plan.estimate.output_bytes) << " of output\n";
+  return out.str();
+}
+
+nlohmann::json to_json(const Plan& plan) {
+  const auto finite = [](double value) { return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(); };
+  nlohmann::json json;
+  json["title"] = plan.scene->title;
+  json["warnings"] = plan.warnings;
+  json["conversions"] = plan.conversions;
+  json["dimensionless"] = plan.dimensionless;
+  json["limits"] = nlohmann::json::array();
+  for (const Limit& limit : plan.limits) {
+    json["limits"].push_back({{"name", limit.name},
+                              {"value", finite(limit.value)},
+                              {"limit", finite(limit.limit)},
+                              {"margin", finite(limit.margin)},
+                              {"remedy", limit.remedy}});
+  }
+  json["models"] = nlohmann::json::array();
+  for (const PlannedModel* model : plan.active_models()) {
+    json["models"].push_back({{"id", model->manifest->id},
+                              {"kind", to_string(model->manifest->kind)},
+                              {"version", model->manifest->version},
+                              {"library", model->manifest->library.string()}});
+  }
+  json["passes"] = nlohmann::json::array();
+  for (const PlannedPass& pass : plan.passes) json["passes"].push_back({{"name", pass.name}, {"why", pass.why}});
+  json["left_out"] = nlohmann::json::array();
+  for (const Omission& o : plan.left_out) json["left_out"].push_back({{"what", o.what}, {"why", o.why}});
+  json["estimate"] = {{"steps_at_most", plan.estimate.steps},
+                      {"wall_s", plan.estimate.wall_s},
+                      {"memory_bytes", plan.estimate.memory_bytes},
+                      {"output_bytes", plan.estimate.output_bytes}};
+  return json;
+}
+
+}  // namespace rouleau::host

@@ -1,0 +1,34 @@
+// What a user sees while a run goes on: a bar on a terminal, a line now and then in a pipe.
+#pragma once
+
+#include <chrono>
+#include <string>
+
+namespace rouleau::host {
+
+/// State of a run for display.
+struct ProgressState {
+  long step;
+  double fraction;  ///< of the whole run that is done, estimated, 0..1
+  std::string stage;
+  double strain;
+  double mach_max, area_drift;
+  int aggregates;
+};
+
+/// Prints to stderr; cheap to call often: draws at most ten times a second (terminal) or every ten seconds (pipe).
+class Progress {
+ public:
+  explicit Progress(bool quiet);
+  void update(const ProgressState& state);
+  /// Clears the bar's line: what is printed next starts on a clean one.
+  void finish();
+
+ private:
+  bool quiet_, terminal_, drawn_ = false;
+  std::chrono::steady_clock::time_point start_, last_;
+  long first_step_ = -1, last_step_ = 0;
+  double first_fraction_ = 0, rate_ = 0;  ///< at the first update; steps per second, smoothed
+};
+
+}  // namespace rouleau::host

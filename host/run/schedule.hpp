@@ -1,0 +1,33 @@
+// When outputs are due within a stage.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "stage_setting.hpp"
+
+namespace rouleau::host {
+
+/// Says at which steps of a stage an output is due: the steps nearest to multiples of an interval, and the first.
+class Schedule {
+ public:
+  Schedule(const Cadence& cadence, const StageSetting& setting, bool always_some) {
+    if (cadence.strain && setting.shear_rate != 0) intervals_.push_back(*cadence.strain / std::abs(setting.shear_rate));
+    if (cadence.seconds) intervals_.push_back(setting.steps_of(*cadence.seconds));
+    // A stage at rest has no strain to count by; forty rows show how it went.
+    if (intervals_.empty() && !cadence.never() && always_some)
+      intervals_.push_back(static_cast<double>(setting.max_steps) / 40);
+    for (double& interval : intervals_) interval = std::max(interval, 1.0);
+  }
+  [[nodiscard]] bool due(long step) const {
+    return std::any_of(intervals_.begin(), intervals_.end(), [step](double interval) {
+      return step == std::lround(std::round(static_cast<double>(step) / interval) * interval);
+    });
+  }
+
+ private:
+  std::vector<double> intervals_;  ///< steps
+};
+
+}  // namespace rouleau::host

@@ -1,0 +1,375 @@
+#include "simulation.hpp"
+
+#include <omp.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <exception>
+#include <optional>
+
+#include "input/document.hpp"
+#include "observer.hpp"
+#include "plugin/library.hpp"
+#include "progress.hpp"
+#include "provenance.hpp"
+#include "schedule.hpp"
+#include "solver.hpp"
+
+namespace rouleau::host {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+/// The state of a run that all its stages share.
+class Simulation {
+ public:
+  Simulation(const Plan& plan, const RunOptions& options, RunDirectory& directory)
+      : plan_(plan),
+        scene_(*plan.scene),
+        options_(options),
+        directory_(directory),
+        membranes_(plan.has_cells ? make_membranes(scene_, lattice_spacing(scene_)) : Membranes{}),
+        observer_(scene_, membranes_),
+        progress_(options.quiet) {}
+
+  Summary run() {
+    directory_.log("started", {{"title", scene_.title}, {"threads", options_.threads}});
+    for (const std::string& warning : plan_.warnings) directory_.log("warning", {{"message", warning}});
+    if (scene_.numerics.precision == Precision::f64) {
+      run_stages<double>();
+    } else {
+      run_stages<float>();
+    }
+    progress_.finish();
+    Summary summary = summarise();
+    directory_.log("finished", {{"status", summary.status}, {"steps", summary.steps}});
+    directory_.finish(summary);
+    return summary;
+  }
+
+ private:
+  enum class Ending { none, duration, strain, at_rest, max_steps, interrupted, failed };
+  static const char* name(Ending ending) {
+    constexpr const char* names[] = {"", "duration", "strain", "at_rest", "max_steps", "interrupted", "failed"};
+    return names[static_cast<int>(ending)];
+  }
+
+  template <class T>
+  void run_stages() {
+    std::unique_ptr<Solver<T>> solver;
+    for (int stage = 0; stage < static_cast<int>(plan_.stages.size()) && !stopped_; ++stage) {
+      auto next = std::make_unique<Solver<T>>(plan_, stage, membranes_);
+      start_fluid(*next, solver.get());
+      solver = std::move(next);
+      run_stage(*solver);
+    }
+  }
+
+  /// Fluid of a stage: developed shear flow if the stage asks for it, else what the former stage left, rescaled with
+  /// the time step: velocities and density deviations of the same flow scale like the density factor.
+  template <class T>
+  void start_fluid(Solver<T>& solver, Solver<T>* former) {
+    const StageSetting& setting = solver.setting();
+    if (setting.shear_rate != 0 && setting.stage->start == WallStart::developed) {
+      const double middle = (scene_.domain.nodes[1] - 1) / 2.0;
+      solver.fluid().set_profile([&](double y) { return setting.shear_rate * (y - middle); },
+                                 [&](double) { return setting.shear_rate; });
+    } else if (former != nullptr) {
+      solver.fluid().take_over(former->fluid(),
+                               setting.stage->density_factor / former->setting().stage->density_factor);
+    }
+    std::fill(membranes_.velocity_x.begin(), membranes_.velocity_x.end(), 0.0);
+    std::fill(membranes_.velocity_y.begin(), membranes_.velocity_y.end(), 0.0);
+  }
+
+  template <class T>
+  void run_stage(Solver<T>& solver) {
+    const StageSetting& setting = solver.setting();
+    directory_.log(
+        "stage",
+        {{"name", setting.stage->name}, {"time_step_s", setting.units.time}, {"most_steps", setting.max_steps}});
+    observer_.start_stage();
+    stage_step_ = 0;
+    stage_ending_ = Ending::none;
+    const Schedule cells(scene_.output.cells, setting, true), fields(scene_.output.fields, setting, false);
+    rest_watch_ = membranes_;
+    rest_watch_step_ = 0;
+    std::exception_ptr trouble;
+    const auto start = Clock::now();
+
+#pragma omp parallel num_threads(options_.threads)
+    {
+      const Worker worker{omp_get_thread_num(), omp_get_num_threads()};
+      while (stage_ending_ == Ending::none) {
+        run_passes(solver.forces(), worker);
+#pragma omp single
+        {
+          try {
+            between_steps(solver, cells, fields);
+          } catch (...) {
+            trouble = std::current_exception();
+            stage_ending_ = Ending::failed;
+          }
+        }
+        if (stage_ending_ != Ending::none) break;
+        run_passes(solver.advance(), worker);
+      }
+    }
+    if (trouble) std::rethrow_exception(trouble);
+
+    wall_ += seconds_since(start);
+    time_ += static_cast<double>(stage_step_) * setting.units.time;
+    strain_ += std::abs(setting.shear_rate) * static_cast<double>(stage_step_);
+    stages_.push_back({{"name", setting.stage->name},
+                       {"steps", stage_step_},
+                       {"ended_by", name(stage_ending_)},
+                       {"wall_s", seconds_since(start)}});
+    directory_.log("stage_ended", stages_.back());
+    stopped_ =
+        stage_ending_ == Ending::max_steps || stage_ending_ == Ending::interrupted || stage_ending_ == Ending::failed;
+  }
+
+  void run_passes(const std::vector<Pass>& passes, Worker worker) {
+    for (std::size_t i = 0; i < passes.size(); ++i) {
+      const auto start = worker.first() ? Clock::now() : Clock::time_point{};
+      passes[i].run(worker);
+#pragma omp barrier
+      if (worker.first()) {
+        PassCost& cost = cost_of(passes[i].name);
+        cost.wall_s += seconds_since(start);
+        // Phases of one pass follow each other; together they are one call.
+        if (i == 0 || passes[i - 1].name != passes[i].name) ++cost.calls;
+      }
+    }
+  }
+
+  PassCost& cost_of(const std::string& pass) {
+    const auto found = std::find_if(costs_.begin(), costs_.end(), [&](const PassCost& c) { return c.name == pass; });
+    return found != costs_.end() ? *found : costs_.emplace_back(PassCost{pass, 0, 0});
+  }
+
+  /// One thread, forces computed: outputs, checks, and whether the stage ends here.
+  template <class T>
+  void between_steps(Solver<T>& solver, const Schedule& cells, const Schedule& fields) {
+    const auto start = Clock::now();
+    if (check_step(solver)) return;
+    const bool cells_due = stage_step_ == 0 ? steps_ == 0 || cells.due(0) : cells.due(stage_step_);
+    const bool fields_due = !scene_.output.fields.never() && fields.due(stage_step_);
+    const bool check_due = stage_step_ % scene_.checks.every_steps == 0;
+    Ending ending = next_ending(solver.setting());
+    if (cells_due || fields_due || check_due || ending != Ending::none) {
+      if (auto failure = observer_.check(solver, membranes_)) {
+        fail(std::move(*failure), solver.setting());
+        return;
+      }
+      const bool last = ending != Ending::none;
+      if (cells_due || fields_due || last) write(solver, fields_due || (last && !scene_.output.fields.never()));
+      momentum_residual_ = std::max(momentum_residual_, Observer::momentum_residual(membranes_));
+      progress_.update(progress(solver.setting()));
+      observe_wall_ += seconds_since(start);
+      ++observe_calls_;
+    }
+    stage_ending_ = ending;
+    if (ending == Ending::none) {
+      ++stage_step_;
+      ++steps_;
+    }
+  }
+
+  Ending next_ending(const StageSetting& setting) {
+    const Stage& stage = *setting.stage;
+    if (options_.interrupted != nullptr && options_.interrupted->load()) return Ending::interrupted;
+    if (stage.until_at_rest && at_rest(setting)) return Ending::at_rest;
+    if (stage_step_ >= setting.max_steps) {
+      const bool by_strain =
+          stage.strain && (!stage.duration || *stage.strain / std::abs(stage.shear_rate) <= *stage.duration);
+      return by_strain ? Ending::strain : Ending::duration;
+    }
+    if (options_.max_steps >= 0 && steps_ >= options_.max_steps) return Ending::max_steps;
+    return Ending::none;
+  }
+
+  bool at_rest(const StageSetting& setting) {
+    const long window = std::max(1L, std::lround(setting.steps_of(scene_.at_rest.window)));
+    if (stage_step_ - rest_watch_step_ < window) return false;
+    const double limit = scene_.at_rest.displacement / setting.units.length;
+    const double moved = largest_displacement(membranes_.x, membranes_.y, rest_watch_.x, rest_watch_.y);
+    rest_watch_.x = membranes_.x;
+    rest_watch_.y = membranes_.y;
+    rest_watch_step_ = stage_step_;
+    return moved < limit;
+  }
+
+  /// Checks that every step passes: true if the run has failed.
+  template <class T>
+  bool check_step(Solver<T>& solver) {
+    if (membranes_.cells.empty()) return false;
+    const StepResult step = solver.last_step();
+    Failure f;
+    if (!(step.largest_step <= scene_.checks.node_step)) {
+      f.reason = std::isfinite(step.largest_step) ? "node_step" : "non_finite";
+      f.value = step.largest_step;
+      f.limit = scene_.checks.node_step;
+      f.message = std::isfinite(step.largest_step)
+                      ? "a membrane node moved further in one step than its limit (in lattice spacings)"
+                      : "the velocity of a membrane node is no number";
+      set_node(f, step.node, solver.setting());
+    } else if (const int node = solver.escaped_node(); node >= 0) {
+      f.reason = "escaped";
+      f.message = "a membrane node has left the domain through a wall";
+      set_node(f, node, solver.setting());
+    } else {
+      return false;
+    }
+    f.remedy =
+        "lower numerics.density_factor (it divides every lattice stiffness and speed), or see the margins that "
+        "rouleau plan prints";
+    fail(std::move(f), solver.setting());
+    return true;
+  }
+
+  void set_node(Failure& f, int node, const StageSetting& setting) {
+    const auto k = static_cast<std::size_t>(node);
+    f.place = {(membranes_.x[k] - membranes_.velocity_x[k] + 0.5) * setting.units.length,
+               (membranes_.y[k] - membranes_.velocity_y[k] + 0.5) * setting.units.length};
+    for (std::size_t c = 0; c < membranes_.cells.size(); ++c) {
+      if (node >= membranes_.cells[c].first && node < membranes_.cells[c].end()) f.cell = static_cast<int>(c);
+    }
+  }
+
+  void fail(Failure failure, const StageSetting& setting) {
+    failure.step = steps_;
+    failure.time = time_at(setting);
+    failure.strain = strain_at(setting);
+    directory_.log("diverged", {{"reason", failure.reason}, {"step", failure.step}, {"message", failure.message}});
+    failure_ = std::move(failure);
+    stage_ending_ = Ending::failed;
+  }
+
+  template <class T>
+  void write(Solver<T>& solver, bool with_fields) {
+    Snapshot snapshot = observer_.observe(solver, membranes_, with_fields);
+    snapshot.step = steps_;
+    snapshot.time = time_at(solver.setting());
+    snapshot.strain = strain_at(solver.setting());
+    follow_aggregates(snapshot);
+    directory_.write(snapshot);
+  }
+
+  void follow_aggregates(const Snapshot& snapshot) {
+    if (snapshot.cells.empty()) return;
+    AggregateEvent event{snapshot.strain, snapshot.time, snapshot.aggregate_count, {}, false};
+    std::vector<int> slot(snapshot.cells.size(), -1);
+    for (const CellSnapshot& cell : snapshot.cells) {
+      int& s = slot[static_cast<std::size_t>(cell.aggregate)];
+      if (s < 0) {
+        s = static_cast<int>(event.members.size());
+        event.members.emplace_back();
+      }
+      event.members[static_cast<std::size_t>(s)].push_back(cell.cell);
+      event.through_image = event.through_image || cell.through_image;
+    }
+    if (history_.empty() || history_.back().members != event.members ||
+        history_.back().through_image != event.through_image) {
+      history_.push_back(std::move(event));
+    }
+  }
+
+  [[nodiscard]] double time_at(const StageSetting& s) const {
+    return time_ + static_cast<double>(stage_step_) * s.units.time;
+  }
+  [[nodiscard]] double strain_at(const StageSetting& s) const {
+    return strain_ + std::abs(s.shear_rate) * static_cast<double>(stage_step_);
+  }
+
+  ProgressState progress(const StageSetting& setting) {
+    double before = 0, all = 0;
+    for (const StageSetting& s : plan_.stages) {
+      if (s.index < setting.index) before += static_cast<double>(s.max_steps);
+      all += static_cast<double>(s.max_steps);
+    }
+    return {steps_,
+            all > 0 ? (before + static_cast<double>(stage_step_)) / all : 1.0,
+            setting.stage->name,
+            strain_at(setting),
+            observer_.mach_max(),
+            observer_.area_drift_max(),
+            history_.empty() ? 0 : history_.back().count};
+  }
+
+  Summary summarise() {
+    Summary s;
+    s.status = failure_ ? "diverged" : (stage_ending_ == Ending::interrupted ? "interrupted" : "completed");
+    s.failure = failure_;
+    s.title = scene_.title;
+    s.git = program_version();
+    s.started = started_;
+    s.scene_file = scene_.document->file();
+    s.scene_sha256 = sha256(directory_.path() / "scene.json");
+    s.machine = machine_description();
+    s.steps = steps_;
+    s.strain = strain_;
+    s.simulated_time_s = time_;
+    s.wall_s = wall_;
+    s.steps_per_s = wall_ > 0 ? static_cast<double>(steps_) / wall_ : 0;
+    s.mlups = s.steps_per_s * scene_.domain.nodes[0] * scene_.domain.nodes[1] / 1e6;
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    s.peak_rss_bytes = usage.ru_maxrss * 1024L;
+    s.threads = options_.threads;
+    s.precision = scene_.numerics.precision == Precision::f64 ? "f64" : "f32";
+    for (const PlannedModel* model : plan_.active_models()) {
+      const Manifest& m = *model->manifest;
+      s.plugins.push_back({m.id, m.version, to_string(m.kind), m.library.string(), sha256(m.library)});
+    }
+    s.passes = costs_;
+    s.passes.push_back({"observe and check", observe_wall_, observe_calls_});
+    s.left_out = plan_.left_out;
+    s.dimensionless = plan_.dimensionless;
+    s.dimensionless["mach_max"] = observer_.mach_max();
+    s.limits = plan_.limits;
+    s.mass_drift = observer_.mass_drift();
+    s.area_drift_max = observer_.area_drift_max();
+    s.momentum_residual = momentum_residual_;
+    s.aggregates_final = history_.empty() ? 0 : history_.back().count;
+    s.aggregate_history = history_;
+    s.warnings = plan_.warnings;
+    s.conversions = plan_.conversions;
+    s.stages = stages_;
+    return s;
+  }
+
+  const Plan& plan_;
+  const Scene& scene_;
+  const RunOptions& options_;
+  RunDirectory& directory_;
+  Membranes membranes_;
+  Observer observer_;
+  Progress progress_;
+
+  long steps_ = 0, stage_step_ = 0;
+  double time_ = 0, strain_ = 0, wall_ = 0;  ///< at the start of the present stage
+  Ending stage_ending_ = Ending::none;
+  bool stopped_ = false;
+  Membranes rest_watch_;  ///< positions at the start of the window in which nothing may move
+  long rest_watch_step_ = 0;
+  std::optional<Failure> failure_;
+  std::vector<AggregateEvent> history_;
+  std::vector<PassCost> costs_;
+  double observe_wall_ = 0, momentum_residual_ = 0;
+  long observe_calls_ = 0;
+  nlohmann::json stages_ = nlohmann::json::array();
+  std::string started_ = present_time();
+};
+
+}  // namespace
+
+Summary simulate(const Plan& plan, const RunOptions& options, RunDirectory& directory) {
+  return Simulation(plan, options, directory).run();
+}
+
+}  // namespace rouleau::host

@@ -1,0 +1,22 @@
+// A whole run: stages one after another, each a loop of steps with outputs and checks when they are due.
+#pragma once
+
+#include <atomic>
+
+#include "output.hpp"
+#include "plan.hpp"
+#include "summary.hpp"
+
+namespace rouleau::host {
+
+struct RunOptions {
+  int threads = 1;
+  long max_steps = -1;  ///< over all stages; negative: no limit
+  bool quiet = false;
+  const std::atomic<bool>* interrupted = nullptr;  ///< set by a signal handler: stop at the next step
+};
+
+/// Runs a plan and writes into `directory`; the summary has been written when it returns. Throws Error(input_output).
+Summary simulate(const Plan& plan, const RunOptions& options, RunDirectory& directory);
+
+}  // namespace rouleau::host

@@ -1,0 +1,68 @@
+// What one output time looks like: cells, aggregates, stresses and, when due, fields. Everything in SI units.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace rouleau::host {
+
+struct CellSnapshot {
+  int cell;  ///< 0-based, in the order of the scene
+  std::string type;
+  double x, y;         ///< centroid, m; x is not wrapped into the box
+  double angle;        ///< of the long axis of the inertia ellipse, rad, followed over turns (continuous in time)
+  double deformation;  ///< (L - B) / (L + B) of the inertia ellipse
+  double area;         ///< m2
+  double perimeter;    ///< m
+  double tank_treading_angle;  ///< of the first node about the centroid, rad, continuous in time
+  double min_gap;      ///< m, to the nearest membrane of another cell or of an image; infinite when there is none
+  int aggregate;       ///< label: smallest index of a cell of the aggregate it belongs to
+  bool through_image;  ///< its aggregate is held together by a contact across the periodic boundary
+};
+
+/// Two cells (or a cell and an image) whose gap is below Output::aggregate_gap.
+struct ContactSnapshot {
+  int cell_a, cell_b;
+  std::array<int, 2> image;  ///< periodic shift of cell_b, in boxes
+  double gap;                ///< m, smallest
+  double contact_length;     ///< m, length of a's membrane nearer than the aggregate gap
+};
+
+/// Outlines of all cells, one after another.
+struct OutlineSnapshot {
+  std::vector<int> first;       ///< first node of each cell, and the total at the end
+  std::vector<double> x, y;     ///< m, not wrapped
+  std::vector<double> tension;  ///< N/m of segment i (elastic and viscous laws together)
+};
+
+/// Fluid fields on the lattice, row by row from below, x fastest. Empty: not due or not wanted.
+struct FieldSnapshot {
+  int nx = 0, ny = 0;
+  std::vector<float> velocity_x, velocity_y;  ///< m/s
+  std::vector<float> density;                 ///< relative deviation from the mean
+  std::vector<float> viscosity;               ///< Pa s
+  std::vector<float> vorticity;               ///< 1/s
+  [[nodiscard]] bool empty() const { return nx == 0; }
+};
+
+struct Snapshot {
+  long step = 0;
+  double time = 0;    ///< s since the first stage began
+  double strain = 0;  ///< accumulated over the stages
+  int stage = 0;
+  std::string stage_name;
+  std::vector<CellSnapshot> cells;
+  std::vector<ContactSnapshot> contacts;
+  int aggregate_count = 0;        ///< single cells count too
+  double rotation = 0;            ///< rad turned by the line through the first aggregate's outermost cells, continuous
+  double relative_viscosity = 0;  ///< wall shear stress / (viscosity x shear rate); NaN without shear
+  double particle_stress = 0;     ///< xy, Pa: membranes and viscosity contrast, per area of the domain
+  double mach_max = 0;
+  double area_drift_max = 0;  ///< relative
+  double mass_drift = 0;      ///< relative
+  OutlineSnapshot outlines;
+  FieldSnapshot fields;
+};
+
+}  // namespace rouleau::host

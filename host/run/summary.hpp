@@ -1,0 +1,72 @@
+// What summary.json says: how a run ended, what it cost, what was computed and what was left out.
+#pragma once
+
+#include <array>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace rouleau::host {
+
+/// Why a run stopped early.
+struct Failure {
+  std::string reason;  ///< code: non_finite, mach, node_step, crossing, area_drift, escaped
+  long step = 0;
+  double time = 0, strain = 0;
+  std::array<double, 2> place{};  ///< m
+  int cell = -1;                  ///< -1: none
+  double value = 0, limit = 0;    ///< what was measured and the limit it passed
+  std::string message;            ///< one sentence
+  std::string remedy;             ///< what to change
+};
+
+struct Omission {
+  std::string what, why;
+};
+struct PluginUse {
+  std::string id, version, kind, library, sha256;
+};
+struct PassCost {
+  std::string name;
+  double wall_s = 0;
+  long calls = 0;
+};
+/// A limit of the method: the scene's value, where it ends, and limit / value.
+struct Limit {
+  std::string name;
+  double value, limit, margin;
+  std::string remedy;
+};
+struct AggregateEvent {
+  double strain, time;
+  int count;
+  std::vector<std::vector<int>> members;
+  bool through_image;
+};
+
+struct Summary {
+  std::string status;  ///< completed, diverged, interrupted
+  std::optional<Failure> failure;
+  std::string title, scene_file, scene_sha256, git, machine, started;
+  long steps = 0;
+  double strain = 0, simulated_time_s = 0, wall_s = 0, steps_per_s = 0, mlups = 0;
+  long peak_rss_bytes = 0;
+  int threads = 1;
+  std::string precision;
+  std::vector<PluginUse> plugins;
+  std::vector<PassCost> passes;
+  std::vector<Omission> left_out;
+  nlohmann::json dimensionless;  ///< object: name -> number (null: undefined)
+  std::vector<Limit> limits;
+  double mass_drift = 0, area_drift_max = 0, momentum_residual = 0;
+  int aggregates_final = 0;
+  std::vector<AggregateEvent> aggregate_history;  ///< one entry at each change
+  std::vector<std::string> warnings;
+  nlohmann::json conversions;  ///< array: {quantity, si, unit, lattice} for each stage
+  nlohmann::json stages;       ///< array: how each stage ended
+};
+
+nlohmann::json to_json(const Summary& summary);
+
+}  // namespace rouleau::host
