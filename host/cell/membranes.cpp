@@ -66,7 +66,7 @@ class Checker {
   }
   [[nodiscard]] std::string micrometres(double spacings) const {
     char text[32];
-    std::snprintf(text, sizeof text, "%.4g um", spacings * spacing_ * 1e6);
+    std::snprintf(text, sizeof text, "%.3g um", spacings * spacing_ * 1e6);
     return text;
   }
   [[nodiscard]] std::string name(int cell) const {

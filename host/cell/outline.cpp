@@ -53,26 +53,30 @@ double smallest_size(const Shape& shape) {
   return std::get<Ellipse>(shape).semi_axes.minCoeff();
 }
 
-/// Angle of the next node: at distance `chord` from the node at `angle`.
-double step(const Curve& curve, double angle, double chord) {
-  const Curve::Point start = curve(angle);
-  double next = angle + chord / start.derivative.norm();
+/// Angle of the next node: the first one after `angle` where the curve is `chord` away. `stride` is a small part of a turn.
+double step(const Curve& curve, double angle, double chord, double stride) {
+  const Eigen::Vector2d start = curve(angle).place;
+  const auto distance = [&](const Curve::Point& point) { return (point.place - start).norm(); };
+  double low = angle, high = angle + stride;
+  while (distance(curve(high)) < chord && high < angle + turn) low = std::exchange(high, high + stride);
+  double next = 0.5 * (low + high);
   for (int iteration = 0; iteration < 60; ++iteration) {
     const Curve::Point point = curve(next);
-    const Eigen::Vector2d span = point.place - start.place;
-    const double length = span.norm();
-    const double slope = span.dot(point.derivative) / length;
-    const double change = (length - chord) / slope;
-    next -= change;
-    if (std::abs(change) < 1e-15) break;
+    const double length = distance(point), slope = (point.place - start).dot(point.derivative) / length;
+    (length < chord ? low : high) = next;
+    double newton = next - (length - chord) / slope;
+    if (!(newton > low && newton < high)) newton = 0.5 * (low + high);
+    const double change = std::abs(newton - std::exchange(next, newton));
+    if (change < 1e-16 * turn) break;
   }
   return next;
 }
 
 /// Angles of nodes 0 ... segments when every segment has length `chord`; the last one ought to be a full turn.
 void march(const Curve& curve, double chord, std::vector<double>& angles) {
+  const double stride = turn / 4 / static_cast<double>(angles.size());
   angles[0] = 0;
-  for (std::size_t i = 1; i < angles.size(); ++i) angles[i] = step(curve, angles[i - 1], chord);
+  for (std::size_t i = 1; i < angles.size(); ++i) angles[i] = step(curve, angles[i - 1], chord, stride);
 }
 
 }  // namespace
@@ -92,12 +96,16 @@ Outline make_outline(const Shape& shape, int segments) {
   for (int iteration = 0; iteration < 40; ++iteration) {
     march(curve, chord, angles);
     const double excess = angles.back() - turn;
-    if (std::abs(excess) < 1e-14 * segments) break;
+    if (std::abs(excess) < 1e-15 * segments) break;
     const double next = chord - excess * (chord - old_chord) / (excess - old_excess);
     if (next == chord) break;
     old_chord = std::exchange(chord, next);
     old_excess = excess;
   }
+
+  // What is left of the gap would all fall on the last segment: share it.
+  const double gap = angles.back() - turn;
+  for (int i = 0; i < segments; ++i) angles[static_cast<std::size_t>(i)] -= gap * i / segments;
 
   Outline outline;
   outline.nodes.reserve(static_cast<std::size_t>(segments));

@@ -20,7 +20,7 @@ struct FluidSetting {
   bool periodic_y;
   double relaxation_rate;  ///< 1/tau of the suspending fluid
   bool inertia = false;    ///< initial states include the quadratic terms of the equilibrium
-  WallVelocity walls;
+  WallVelocity walls = {};
   double body_force_x = 0, body_force_y = 0;  ///< force density everywhere
   bool membranes = false;                     ///< keep force and velocity where nodes are active
   bool viscosity_contrast = false;            ///< keep a relaxation rate where nodes are active

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <string_view>
+#include <system_error>
 
 #include "error.hpp"
 #include "run/output_file.hpp"
@@ -30,6 +31,9 @@ herr_t visit(unsigned, const H5E_error2_t* entry, void* client) {
 }  // namespace
 
 Hdf5File::Hdf5File(std::filesystem::path file, Mode mode) : file_(std::move(file)), mode_(mode) {
+  // HDF5's own clean-up at exit crashes on a file that could not be closed because the disk is full. It has nothing to do:
+  // every identifier here is owned. Only the first call counts, and it must come before any other of HDF5.
+  H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are thrown, not printed
   const auto access = owned(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "");
   // Smaller object headers than the default; readable by every HDF5 since 1.8, and after a crash too.
@@ -53,7 +57,10 @@ void Hdf5File::fail(const std::string& path) const {
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, visit, &innermost);
   const std::string what = std::string(path.empty() ? "" : path + " ") +
                            (mode_ == Mode::create ? "cannot be written" : "cannot be read");
-  if (innermost.error != 0) fail_file(file_, what, innermost.error);
+  if (innermost.error != 0 && mode_ == Mode::create) fail_file(file_, what, innermost.error);
+  if (innermost.error != 0)
+    throw Error(ExitCode::input_output, Place{file_.string(), "", 0, 0},
+                what + ": " + std::generic_category().message(innermost.error));
   throw Error(ExitCode::input_output, Place{file_.string(), "", 0, 0},
               what + ": HDF5 says \"" + (innermost.words.empty() ? "unknown error" : innermost.words) + "\"");
 }

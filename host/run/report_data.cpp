@@ -237,6 +237,8 @@ json report_data(const std::filesystem::path& directory) {
     data["series"][name] = picked(series.numbers(name), selection);
   data["cells"] = count > 0 && outputs > 0 ? cell_data(cells, count, selection) : json(nullptr);
   data["outlines"] = reader && !selection.empty() ? outline_data(*reader, selection, stride) : json(nullptr);
+  if (note.empty() && count > 0 && outputs > 0 && data["outlines"].is_null())
+    note = "No animation: the number of membrane nodes changes during the run.";
   data["shown"]["note"] = note;
   return data;
 }

@@ -73,7 +73,7 @@ typedef struct rouleau_collision_block_f64 {
   double* const* out;            /* [velocity_count][count], after collision */
   const double* const* force;    /* [dimension][count] force density, or NULL: none */
   const double* relaxation_rate; /* [count] 1/tau, or NULL: that of the setup everywhere */
-  double* const* velocity;       /* [dimension][count] (sum f c + force/2) / rho, or NULL: not wanted */
+  double* const* velocity;       /* [dimension][count] sum f c + force/2 (reference density 1), or NULL */
 } rouleau_collision_block_f64;
 
 typedef struct rouleau_collision_block_f32 {

@@ -1,0 +1,44 @@
+// A fluid with a real collision plugin, stepped by one worker.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "fluid/fluid.hpp"
+#include "plugin/catalog.hpp"
+
+namespace rouleau::host {
+
+inline const Catalog& plugins() {
+  static const Catalog catalog({ROULEAU_PLUGINS});
+  return catalog;
+}
+
+/// Collision model in lattice units; `values` in the manifest's order.
+inline std::shared_ptr<const ModelInstance> make_collision(const std::string& id, std::vector<double> values,
+                                                           double tau, bool inertia) {
+  return std::make_shared<const ModelInstance>(plugins().find(ModelKind::collision, id, {}), values,
+                                               ModelSetting{{1, 1, 1}, 1 / tau, inertia});
+}
+
+template <class T>
+void advance(Fluid<T>& fluid, long steps) {
+  for (long i = 0; i < steps; ++i) {
+    fluid.step(Worker{});
+    fluid.end_step();
+  }
+}
+
+template <class T>
+std::vector<Moments> column(Fluid<T>& fluid, int x) {
+  fluid.settle();
+  std::vector<Moments> result, row;
+  for (int y = 0; y < fluid.setting().ny; ++y) {
+    fluid.moments(y, row);
+    result.push_back(row[static_cast<std::size_t>(x)]);
+  }
+  return result;
+}
+
+}  // namespace rouleau::host

@@ -1,0 +1,77 @@
+// The paper's four cells at 20/s: what must become of the rouleau at three strengths of attraction, and conservation.
+#include <catch2/catch.hpp>
+#include <iostream>
+#include <numbers>
+
+#include "scene_run.hpp"
+
+using namespace rouleau::host;
+
+namespace {
+
+const std::string four_cells = std::string(ROULEAU_SCENES) + "/four-cells-shear.json";
+
+void report(const std::string& what, const SceneRun& run) {
+  std::cout << what << ": " << run.summary["steps"] << " steps, "
+            << 1e6 * run.summary["wall_s"].get<double>() / run.summary["steps"].get<double>() << " us a step\n";
+  for (const auto& event : run.summary["aggregate_history"]) {
+    std::cout << "  strain " << event["strain"] << ": " << event["count"] << " " << event["members"].dump() << "\n";
+  }
+}
+
+/// Number of aggregates just before cells can meet periodic images of each other (strain 15; PHYSICS section 4).
+int aggregates_at(const SceneRun& run, double strain) {
+  int count = 0;
+  for (const auto& event : run.summary["aggregate_history"]) {
+    if (event["strain"].get<double>() <= strain) count = event["count"];
+  }
+  return count;
+}
+
+}  // namespace
+
+TEST_CASE("without attraction four cells in shear end as four single cells", "[rouleau]") {
+  const SceneRun run = run_scene(four_cells, {R"(/interactions/0/parameters/depth="0 J/m2")"});
+  report("De 0", run);
+  REQUIRE(run.summary["status"] == "completed");
+  CHECK(aggregates_at(run, 15) == 4);
+}
+
+TEST_CASE("at 5.2e-8 J/m2 a rouleau forms at rest and comes apart into single cells", "[rouleau]") {
+  const SceneRun run = run_scene(four_cells);
+  report("De 5.2e-8", run);
+  REQUIRE(run.summary["status"] == "completed");
+  CHECK(aggregates_at(run, 0) == 1);
+  CHECK(aggregates_at(run, 15) == 4);
+}
+
+TEST_CASE("at 1.3e-6 J/m2 the rouleau turns and stays together", "[rouleau]") {
+  const SceneRun run =
+      run_scene(four_cells, {R"(/interactions/0/parameters/depth="1.3e-6 J/m2")", "/stages/1/density_factor=1500"});
+  report("De 1.3e-6", run);
+  REQUIRE(run.summary["status"] == "completed");
+  CHECK(run.summary["aggregates_final"] == 1);
+  for (const auto& event : run.summary["aggregate_history"]) {
+    if (event["strain"].get<double>() > 0) CHECK(event["count"] == 1);
+  }
+  const auto x0 = run.column("x_m", 0), y0 = run.column("y_m", 0), x3 = run.column("x_m", 3), y3 = run.column("y_m", 3);
+  const double turn =
+      std::atan2(y3.back() - y0.back(), x3.back() - x0.back()) - std::atan2(y3[0] - y0[0], x3[0] - x0[0]);
+  std::cout << "  line through the outer cells has turned to " << turn * 180 / std::numbers::pi << " deg (mod 360)\n";
+}
+
+TEST_CASE("mass is conserved to rounding and forces between and in cells are balanced", "[conservation]") {
+  const SceneRun run = run_scene(four_cells, {"/stages/0/duration=0.3", "/stages/1/strain=1"});
+  CHECK(run.summary["conservation"]["mass_drift"].get<double>() < 1e-13);
+  CHECK(run.summary["conservation"]["momentum_residual"].get<double>() < 1e-12);
+}
+
+TEST_CASE("one and two threads give the same bits", "[conservation]") {
+  const std::string precision = GENERATE(std::string("f64"), std::string("f32"));
+  const std::vector<std::string> part{"/stages/0/duration=0.1", "/stages/1/strain=0.5",
+                                      "/numerics/precision=" + precision};
+  const SceneRun one = run_scene(four_cells, part, 1), two = run_scene(four_cells, part, 2);
+  CHECK(one.cells == two.cells);
+  CHECK(one.series == two.series);
+  CHECK(one.summary["conservation"] == two.summary["conservation"]);
+}

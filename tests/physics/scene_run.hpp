@@ -1,0 +1,110 @@
+// Runs a scene end to end, as `rouleau run` does, and reads back what a user reads: cells.csv and summary.json.
+#pragma once
+
+#include <unistd.h>
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "run/simulation.hpp"
+
+namespace rouleau::host {
+
+/// A folder that ends with the test.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "rouleau-XXXXXX").string();
+    path_ = ::mkdtemp(pattern.data());
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+struct SceneRun {
+  nlohmann::json summary;
+  std::map<std::string, std::vector<std::string>> cells;   ///< columns of cells.csv
+  std::map<std::string, std::vector<std::string>> series;  ///< columns of series.csv
+
+  /// A column as numbers, rows of one cell only.
+  [[nodiscard]] std::vector<double> column(const std::string& name, int cell = 0) const {
+    std::vector<double> values;
+    for (std::size_t i = 0; i < cells.at(name).size(); ++i) {
+      if (cells.at("cell")[i] == std::to_string(cell)) values.push_back(std::stod(cells.at(name)[i]));
+    }
+    return values;
+  }
+  [[nodiscard]] std::vector<double> series_column(const std::string& name) const {
+    std::vector<double> values;
+    for (const std::string& text : series.at(name)) values.push_back(std::stod(text));
+    return values;
+  }
+};
+
+inline std::map<std::string, std::vector<std::string>> read_table(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  std::map<std::string, std::vector<std::string>> table;
+  std::vector<std::string> names;
+  for (std::string line; std::getline(stream, line);) {
+    std::istringstream cells(line);
+    std::vector<std::string> fields;
+    for (std::string field; std::getline(cells, field, ',');) fields.push_back(field);
+    if (names.empty()) {
+      names = fields;
+    } else {
+      for (std::size_t i = 0; i < names.size() && i < fields.size(); ++i) table[names[i]].push_back(fields[i]);
+    }
+  }
+  return table;
+}
+
+inline SceneRun run_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {},
+                          int threads = 1) {
+  const Scene scene = read_scene(file, overrides);
+  const Catalog catalog({ROULEAU_PLUGINS});
+  const Plan plan = make_plan(scene, catalog);
+  const TemporaryFolder folder;
+  RunOptions options;
+  options.threads = threads;
+  options.quiet = true;
+  {
+    RunDirectory directory(folder.path() / "run", scene);
+    simulate(plan, options, directory);
+  }
+  SceneRun run;
+  std::ifstream(folder.path() / "run" / "summary.json") >> run.summary;
+  run.cells = read_table(folder.path() / "run" / "cells.csv");
+  run.series = read_table(folder.path() / "run" / "series.csv");
+  return run;
+}
+
+/// Value of y where x passes `at`, linear between rows.
+inline double value_at(const std::vector<double>& x, const std::vector<double>& y, double at) {
+  for (std::size_t i = 1; i < x.size(); ++i) {
+    if ((x[i - 1] - at) * (x[i] - at) <= 0 && x[i] != x[i - 1]) {
+      return y[i - 1] + (y[i] - y[i - 1]) * (at - x[i - 1]) / (x[i] - x[i - 1]);
+    }
+  }
+  return std::nan("");
+}
+
+inline nlohmann::json read_reference(const std::string& name) {
+  nlohmann::json data;
+  std::ifstream(std::filesystem::path(ROULEAU_REFERENCE) / name) >> data;
+  return data;
+}
+
+}  // namespace rouleau::host

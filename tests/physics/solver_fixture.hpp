@@ -1,0 +1,33 @@
+// The solver of a scene's first stage, to be stepped by a test that changes the membranes first.
+#pragma once
+
+#include "flow_fixture.hpp"
+#include "run/solver.hpp"
+
+namespace rouleau::host {
+
+struct SolverBench {
+  explicit SolverBench(const std::string& file, const std::vector<std::string>& overrides = {})
+      : scene(read_scene(file, overrides)),
+        plan(make_plan(scene, plugins())),
+        membranes(make_membranes(scene, lattice_spacing(scene))) {}
+
+  /// To be called once the membranes are as they should start.
+  void start() { solver = std::make_unique<Solver<double>>(plan, 0, membranes); }
+  void step(long steps) {
+    for (long i = 0; i < steps; ++i) {
+      forces();
+      for (const Pass& pass : solver->advance()) pass.run(Worker{});
+    }
+  }
+  void forces() {
+    for (const Pass& pass : solver->forces()) pass.run(Worker{});
+  }
+
+  Scene scene;
+  Plan plan;
+  Membranes membranes;
+  std::unique_ptr<Solver<double>> solver;
+};
+
+}  // namespace rouleau::host

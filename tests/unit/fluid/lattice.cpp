@@ -1,0 +1,196 @@
+// In-place streaming, exchange across borders, activity: against plain two-array streaming and by conservation.
+#define CATCH_CONFIG_MAIN
+#include <array>
+#include <catch2/catch.hpp>
+#include <random>
+#include <rouleau/d2q9.hpp>
+
+#include "flow_fixture.hpp"
+
+using namespace rouleau::host;
+namespace d2q9 = rouleau::d2q9;
+
+namespace {
+
+/// The textbook: collide into a copy, then move every population to its neighbour or bounce it back.
+struct TwoArrayFluid {
+  int nx, ny;
+  bool periodic_y;
+  WallVelocity walls;
+  std::shared_ptr<const ModelInstance> collision;
+  std::vector<double> f;  // [y][x][q]
+
+  double& at(std::vector<double>& a, int q, int x, int y) const {
+    return a[(static_cast<std::size_t>(y) * nx + static_cast<std::size_t>(x)) * 9 + static_cast<std::size_t>(q)];
+  }
+  void step() {
+    std::vector<double> after = f, streamed = f;
+    for (int y = 0; y < ny; ++y) {
+      for (int x = 0; x < nx; ++x) {
+        const double* in[9];
+        double* out[9];
+        for (int q = 0; q < 9; ++q) in[q] = &at(f, q, x, y), out[q] = &at(after, q, x, y);
+        rouleau_collision_block_f64 block{};
+        block.struct_size = sizeof block;
+        block.count = 1;
+        block.in = in;
+        block.out = out;
+        collision->collision().collide_f64(collision->self(), &block);
+      }
+    }
+    for (int y = 0; y < ny; ++y) {
+      for (int x = 0; x < nx; ++x) {
+        for (int q = 0; q < 9; ++q) {
+          const int to_x = (x + d2q9::velocity[q][0] + nx) % nx;
+          int to_y = y + d2q9::velocity[q][1];
+          if (!periodic_y && (to_y < 0 || to_y >= ny)) {
+            const double speed = to_y < 0 ? walls.lower : walls.upper;
+            at(streamed, d2q9::opposite[q], x, y) =
+                at(after, q, x, y) - 6 * d2q9::weight[q] * d2q9::velocity[q][0] * speed;
+          } else {
+            to_y = (to_y + ny) % ny;
+            at(streamed, q, to_x, to_y) = at(after, q, x, y);
+          }
+        }
+      }
+    }
+    f = streamed;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("in-place streaming gives the same populations as two arrays, with walls and without") {
+  const bool periodic_y = GENERATE(false, true);
+  const bool inertia = GENERATE(false, true);
+  const int workers = GENERATE(1, 2, 3);
+  const int nx = GENERATE(16, 37), ny = 11;
+  const double tau = 0.8;
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> uniform(-0.01, 0.01);
+  const auto collision = make_collision("trt", {0.1875}, tau, inertia);
+  FluidSetting setting{.nx = nx,
+                       .ny = ny,
+                       .periodic_y = periodic_y,
+                       .relaxation_rate = 1 / tau,
+                       .inertia = inertia,
+                       .walls = {-0.01, 0.02}};
+  if (periodic_y) setting.walls = {};
+  Fluid<double> fluid(setting, collision);
+  fluid.set_state([&](int, int) {
+    return Fluid<double>::State{uniform(random), uniform(random), uniform(random), {}};
+  });
+  TwoArrayFluid plain{
+      nx, ny, periodic_y, setting.walls, collision, std::vector<double>(static_cast<std::size_t>(nx * ny * 9))};
+  fluid.settle();
+  const auto each = [&](auto function) {
+    for (int y = 0; y < ny; ++y) {
+      for (int x = 0; x < nx; ++x) {
+        for (int q = 0; q < 9; ++q) function(q, x, y);
+      }
+    }
+  };
+  each([&](int q, int x, int y) { plain.at(plain.f, q, x, y) = fluid.population(q, x, y); });
+  for (int step = 0; step < 9; ++step) {
+    for (int w = workers - 1; w >= 0; --w) fluid.step(Worker{w, workers});
+    fluid.end_step();
+    plain.step();
+    fluid.settle();
+    double difference = 0;
+    each([&](int q, int x, int y) {
+      difference = std::max(difference, std::abs(fluid.population(q, x, y) - plain.at(plain.f, q, x, y)));
+    });
+    CAPTURE(periodic_y, inertia, workers, nx, step);
+    REQUIRE(difference < 1e-16);
+  }
+}
+
+TEST_CASE("the number of workers does not change a bit") {
+  const auto run = [](int workers) {
+    FluidSetting setting{.nx = 40, .ny = 23, .periodic_y = false, .relaxation_rate = 1.1, .walls = {-0.02, 0.02}};
+    Fluid<float> fluid(setting, make_collision("trt", {0.1875}, 1 / 1.1, true));
+    fluid.set_state([](int x, int y) {
+      return Fluid<float>::State{0, 1e-3 * ((x * 7 + y * 3) % 11), 1e-3 * ((x * 5 + y) % 7), {}};
+    });
+    for (int step = 0; step < 51; ++step) {
+      for (int w = 0; w < workers; ++w) fluid.step(Worker{w, workers});
+      fluid.end_step();
+    }
+    fluid.settle();
+    std::vector<double> f;
+    for (int y = 0; y < 23; ++y) {
+      for (int x = 0; x < 40; ++x) {
+        for (int q = 0; q < 9; ++q) f.push_back(fluid.population(q, x, y));
+      }
+    }
+    return f;
+  };
+  const auto one = run(1);
+  CHECK(run(2) == one);
+  CHECK(run(5) == one);
+}
+
+TEST_CASE("mass does not drift between walls or in a periodic box") {
+  const bool periodic_y = GENERATE(false, true);
+  FluidSetting setting{
+      .nx = 32, .ny = 16, .periodic_y = periodic_y, .relaxation_rate = 0.9, .inertia = true, .walls = {-0.05, 0.05}};
+  if (periodic_y) setting.walls = {};
+  Fluid<double> fluid(setting, make_collision("bgk", {}, 1 / 0.9, true));
+  fluid.set_state([](int x, int y) {
+    return Fluid<double>::State{1e-3 * (x % 3), 1e-2 * (y % 2), 1e-2 * (x % 5), {}};
+  });
+  fluid.settle();
+  const double before = fluid.mass();
+  advance(fluid, 2001);
+  fluid.settle();
+  CHECK(fluid.mass() == Approx(before).margin(1e-13 * 32 * 16));
+}
+
+TEST_CASE("folding the force is the adjoint of filling the velocity halo, with walls at rest and periodic") {
+  const bool periodic_y = GENERATE(false, true);
+  constexpr int nx = 12, ny = 9, halo = Field<double>::halo;
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  VectorField<double> force{Field<double>(nx, ny), Field<double>(nx, ny)},
+      velocity{Field<double>(nx, ny), Field<double>(nx, ny)};
+  VectorField<double> original{Field<double>(nx, ny), Field<double>(nx, ny)};
+  for (int y = -halo; y < ny + halo; ++y) {
+    for (int x = -halo; x < nx + halo; ++x) {
+      force.x.row(y)[x] = original.x.row(y)[x] = uniform(random);
+      velocity.x.row(y)[x] = uniform(random);
+    }
+  }
+  for (int y = 0; y < ny; ++y) fill_velocity_halo(velocity, y, periodic_y, {});
+  for (int y = 0; y < ny; ++y) fold_force_row(force, y, periodic_y);
+  double with_halo = 0, folded = 0;
+  for (int y = -halo; y < ny + halo; ++y) {
+    for (int x = -halo; x < nx + halo; ++x) {
+      with_halo += original.x.row(y)[x] * velocity.x.row(y)[x];
+      if (x >= 0 && x < nx && y >= 0 && y < ny) folded += force.x.row(y)[x] * velocity.x.row(y)[x];
+    }
+  }
+  CHECK(folded == Approx(with_halo).epsilon(1e-13));
+}
+
+TEST_CASE("runs cover every row once and follow the marks, periodic along x") {
+  Activity activity(100, 4);
+  activity.mark(1, 90, 105);
+  activity.mark(2, -3, 2);
+  activity.mark(7, 0, 5);
+  activity.rebuild_runs();
+  CHECK(activity.runs(0).size() == 1);
+  for (int y = 0; y < 4; ++y) {
+    int x = 0;
+    for (const Run& run : activity.runs(y)) {
+      CHECK(run.begin == x);
+      x = run.end;
+      for (int i = run.begin; i < run.end; ++i) CHECK(activity.active(i, y) == run.active);
+    }
+    CHECK(x == 100);
+  }
+  for (int x : {0, 4, 90, 99}) CHECK(activity.active(x, 1));
+  CHECK(activity.active(97, 2));
+  CHECK(activity.active(1, 2));
+  CHECK_FALSE(activity.active(50, 2));
+  CHECK_FALSE(activity.active(0, 3));
+}

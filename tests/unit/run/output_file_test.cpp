@@ -1,0 +1,184 @@
+#include <sys/resource.h>
+#include <sys/wait.h>
+
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <functional>
+
+#include "input/document.hpp"
+#include "output_fixture.hpp"
+#include "run/output_file.hpp"
+
+using namespace rouleau::host;
+using Catch::Contains;
+
+namespace {
+
+int files_in(const std::filesystem::path& folder) {
+  return static_cast<int>(std::distance(std::filesystem::directory_iterator(folder), {}));
+}
+
+/// Error's message, and a check of its code.
+std::string input_output_error(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    CHECK(error.code() == ExitCode::input_output);
+    return error.what();
+  }
+  return "";
+}
+
+/// Runs `action` in a child that may write files of `bytes` at most: stands for a full disk, which root has none of.
+/// Returns the child's exit code: 0 when action threw Error(input_output) naming the trouble, and nothing crashed after.
+int with_file_limit(rlim_t bytes, const std::function<void()>& action) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{bytes, bytes};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    int code = 1;
+    try {
+      action();
+    } catch (const Error& error) {
+      code = error.code() == ExitCode::input_output && std::string(error.what()).find("File too large") != std::string::npos
+                 ? 0
+                 : 2;
+    } catch (...) {
+      code = 3;
+    }
+    std::exit(code);  // with its handlers: HDF5's must not crash on a file that could not be closed
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+}  // namespace
+
+TEST_CASE("write_file replaces a file whole and leaves nothing else behind") {
+  const ScratchFolder folder;
+  const auto file = folder.path() / "summary.json";
+  write_file(file, "old");
+  write_file(file, std::string(100000, 'n'));
+  CHECK(read_text(file) == std::string(100000, 'n'));
+  CHECK(files_in(folder.path()) == 1);
+}
+
+TEST_CASE("a write that fails leaves the old file as it was") {
+  const ScratchFolder folder;
+  const auto file = folder.path() / "summary.json";
+  write_file(file, "old");
+  CHECK(with_file_limit(1000, [&] { write_file(file, std::string(5000, 'n')); }) == 0);
+  CHECK(read_text(file) == "old");
+  CHECK(files_in(folder.path()) == 1);
+}
+
+TEST_CASE("a path through a file is refused with the path, the system's words and a remedy") {
+  const ScratchFolder folder;
+  write_file(folder.path() / "file", "");
+  const auto message = input_output_error([&] { write_file(folder.path() / "file/summary.json", "{}"); });
+  CHECK_THAT(message, Contains("file/summary.json") && Contains("Not a directory") && Contains("every part of the path"));
+  const Scene scene = small_scene();
+  CHECK_THAT(input_output_error([&] { const RunDirectory run(folder.path() / "file/run", scene); }),
+             Contains("file/run") && Contains("Not a directory"));
+}
+
+TEST_CASE("a device is never replaced by a file") {
+  const auto message = input_output_error([] { write_file("/dev/full", "x"); });
+  CHECK_THAT(message, Contains("/dev/full") && Contains("no regular file"));
+  CHECK(std::filesystem::is_character_file("/dev/full"));
+}
+
+TEST_CASE("a full disk is an error that says so, at the latest when the file is closed") {
+  const auto message = input_output_error([] {
+    AppendFile file("/dev/full");
+    file.write("step\n");
+    file.close();
+  });
+  CHECK_THAT(message, Contains("/dev/full") && Contains("No space left on device") && Contains("--out"));
+}
+
+TEST_CASE("a disk that fills up during a run ends it with an error and no crash") {
+  const ScratchFolder folder;
+  const Scene scene = small_scene();
+  for (const rlim_t bytes : {10, 3000, 40000}) {
+    INFO("limit " << bytes);
+    const auto directory = folder.path() / std::to_string(bytes);
+    CHECK(with_file_limit(bytes, [&] {
+            RunDirectory run(directory, scene);
+            for (long step = 0; step < 1000; ++step) run.write(small_snapshot(step, true));
+            run.finish(small_summary());
+          }) == 0);
+  }
+}
+
+TEST_CASE("a run's outputs replace a former run's, a checkpoint too") {
+  const ScratchFolder folder;
+  const auto directory = folder.path() / "a/run";
+  const Scene scene = small_scene();
+  for (int i = 0; i < 2; ++i) {
+    RunDirectory run(directory, scene);
+    run.log("started");
+    run.write(small_snapshot(0));
+    run.finish(small_summary());
+    if (i == 0) write_file(directory / "checkpoint.h5", "of the former run");
+  }
+  CHECK_FALSE(std::filesystem::exists(directory / "checkpoint.h5"));
+  const std::string log = read_text(directory / "log.jsonl");
+  CHECK(std::count(log.begin(), log.end(), '\n') == 1);
+}
+
+TEST_CASE("a directory with a file that no run wrote is refused and left alone") {
+  const ScratchFolder folder;
+  write_file(folder.path() / "thesis.tex", "years of work");
+  write_file(folder.path() / "cells.csv", "mine");
+  const Scene scene = small_scene();
+  CHECK_THROWS_WITH(RunDirectory(folder.path(), scene), Contains("thesis.tex") && Contains("--out"));
+  CHECK(read_text(folder.path() / "cells.csv") == "mine");
+}
+
+TEST_CASE("a second run in the same directory is refused while the first one writes") {
+  const ScratchFolder folder;
+  const Scene scene = small_scene();
+  RunDirectory first(folder.path(), scene);
+  first.write(small_snapshot(0));
+  CHECK_THROWS_WITH(RunDirectory(folder.path(), scene), Contains("another run"));
+  first.finish(small_summary());
+  CHECK(std::filesystem::exists(folder.path() / "frames.xmf"));
+  CHECK_NOTHROW(RunDirectory(folder.path(), scene));
+}
+
+TEST_CASE("the log has one JSON object a line, there as soon as it is written, whatever bytes it is given") {
+  const ScratchFolder folder;
+  const Scene scene = small_scene();
+  RunDirectory run(folder.path(), scene);
+  run.log("started", {{"threads", 2}});
+  run.log("odd", {{"loader", "bad byte \xff"}});
+  run.log("plain", "text");
+  std::ifstream lines(folder.path() / "log.jsonl");
+  std::string line;
+  std::vector<nlohmann::json> events;
+  while (std::getline(lines, line)) events.push_back(nlohmann::json::parse(line));
+  REQUIRE(events.size() == 3);
+  CHECK(events[0]["event"] == "started");
+  CHECK(events[0]["threads"] == 2);
+  CHECK(events[0]["wall_s"].get<double>() >= 0);
+  CHECK(events[2]["details"] == "text");
+}
+
+TEST_CASE("the run keeps the scene as used: the user's text, or with --set the values that held") {
+  const ScratchFolder folder;
+  const std::string text = "{ \"rouleau\": 1,\n   \"title\": \"as I wrote it\" }\n";
+  Scene scene = small_scene();
+  auto document = Document::parse(text, "scene.json");
+  scene.document = std::make_shared<const Document>(document);
+  { const RunDirectory run(folder.path(), scene); }
+  CHECK(read_text(folder.path() / "scene.json") == text);
+  document.set("/title=\"changed\"");
+  scene.document = std::make_shared<const Document>(document);
+  { const RunDirectory run(folder.path(), scene); }
+  CHECK(nlohmann::json::parse(read_text(folder.path() / "scene.json"))["title"] == "changed");
+}
