@@ -26,20 +26,24 @@ struct Search {
     using S = Pack<double, register_bytes / 8>;
     const SearchTask t = *task;
     int count = t.count;
-    for (const Neighbours::Group* group = t.groups; group != t.groups_end; ++group) count = closest<S>(t, *group, count);
-    for (int i = t.count; i < count; i += S::size) refine<S>(t, i, count - i);
+    const S move_x = t.move_x, move_y = t.move_y;
+    for (const Neighbours::Group* group = t.groups; group != t.groups_end; ++group) {
+      count = closest<S>(t, *group, move_x, move_y, count);
+    }
+    for (int i = t.count; i < count; i += S::size) refine<S>(t, i, move_x, move_y, count - i);
     task->count = count;
   }
 
  private:
   /// Closest segment of each node of a group; appends those within the cutoff.
   template <class S>
-  ROULEAU_ALWAYS_INLINE static int closest(const SearchTask& t, const Neighbours::Group& group, int count) {
+  ROULEAU_ALWAYS_INLINE static int closest(const SearchTask& t, const Neighbours::Group& group, const S& move_x,
+                                           const S& move_y, int count) {
     constexpr int packs = Neighbours::group / S::size;
     S x[packs], y[packs], square[packs], index[packs];
     for (int p = 0; p < packs; ++p) {
-      x[p] = S::load(t.x + group.first + p * S::size) - t.move_x;
-      y[p] = S::load(t.y + group.first + p * S::size) - t.move_y;
+      x[p] = S::load(t.x + group.first + p * S::size) - move_x;
+      y[p] = S::load(t.y + group.first + p * S::size) - move_y;
       square[p] = 1e300;
       index[p] = 0.0;
     }
@@ -75,18 +79,20 @@ struct Search {
 
   /// Place, distance and direction of contacts [i, i + valid); the arrays have room for a whole pack.
   template <class S>
-  ROULEAU_ALWAYS_INLINE static void refine(const SearchTask& t, int i, int valid) {
-    S dx, dy, along_x, along_y, inverse_square;
+  ROULEAU_ALWAYS_INLINE static void refine(const SearchTask& t, int i, const S& move_x, const S& move_y, int valid) {
+    S x, y, from_x, from_y, along_x, along_y, inverse_square;
     for (int k = 0; k < S::size; ++k) {
       const int at = k < valid ? i + k : i;
       const int node = t.node[at], segment = t.segment[at];
-      dx.vector[k] = t.x[node] - t.move_x - t.x[segment];
-      dy.vector[k] = t.y[node] - t.move_y - t.y[segment];
+      x.vector[k] = t.x[node];
+      y.vector[k] = t.y[node];
+      from_x.vector[k] = t.x[segment];
+      from_y.vector[k] = t.y[segment];
       along_x.vector[k] = t.along_x[segment];
       along_y.vector[k] = t.along_y[segment];
       inverse_square.vector[k] = t.inverse_square[segment];
     }
-    const Approach<S> approach(dx, dy, along_x, along_y, inverse_square);
+    const Approach<S> approach(x - move_x - from_x, y - move_y - from_y, along_x, along_y, inverse_square);
     const S distance = sqrt(approach.square);
     const auto apart = distance > S(0.0);
     // A node on the other outline has no direction of its own: it is sent out along the segment's outward normal.

@@ -66,15 +66,20 @@ struct Locate {
   template <class S>
   ROULEAU_ALWAYS_INLINE static void group(const LocateTask<T>& t, const S& x, const S& y, int first, int valid) {
     S base_x = floor(x), base_y = floor(y);
-    double columns[S::size], rows[S::size], fractions_x[S::size], fractions_y[S::size], roots_x[S::size], roots_y[S::size];
+    double columns[S::size], rows[S::size], fractions_x[S::size], fractions_y[S::size], roots_x[S::size],
+        roots_y[S::size];
     const S fraction_x = x - base_x, fraction_y = y - base_y;
     base_x = wrap(base_x, t.nx);
-    const double last = 1e9;  // beyond, and for NaN, the conversion to int below would be undefined
+    // Beyond 1e9, and for NaN, the conversion to int below would be undefined. One comparison a line: g++ 12 takes
+    // combined masks apart element by element.
+    const S last = 1e9, none = outside;
     if (t.periodic_y) {
-      base_y = select((x > S(-last)) & (x < S(last)) & (y > S(-last)) & (y < S(last)), wrap(base_y, t.ny), S(outside));
+      base_y = select(abs(y) < last, wrap(base_y, t.ny), none);
     } else {
-      base_y = select((x > S(-last)) & (x < S(last)) & (base_y >= S(-1.0)) & (base_y < S(t.ny)), base_y, S(outside));
+      base_y = select(base_y >= S(-1.0), base_y, none);
+      base_y = select(base_y < S(t.ny), base_y, none);
     }
+    base_y = select(abs(x) < last, base_y, none);
     base_x = select(base_y > S(outside + 1.0), base_x, S(0.0));
     base_x.store(columns);
     base_y.store(rows);
@@ -108,9 +113,9 @@ struct SpreadTask {
   KnownStencils<T> at;
   const double *force_x, *force_y;
   int nodes;
-  int row_begin, row_end;   // rows of this worker
-  T *origin_x, *origin_y;   // of the fields' row 0
-  std::ptrdiff_t stride;    // from one row to the next, the same in both
+  int row_begin, row_end;  // rows of this worker
+  T *origin_x, *origin_y;  // of the fields' row 0
+  std::ptrdiff_t stride;   // from one row to the next, the same in both
 };
 
 template <class T>
@@ -217,7 +222,13 @@ void Coupling<T>::locate(Worker worker, const Membranes& membranes) {
   const Range nodes = worker.share(membranes.node_count(), block);
   run_loop<Locate<T>>(LocateTask<T>{
       {column_.data(), row_.data(), fraction_x_.data(), root_x_.data(), fraction_y_.data(), root_y_.data()},
-      membranes.x.data(), membranes.y.data(), nodes.begin, nodes.end, nx_, ny_, periodic_y_});
+      membranes.x.data(),
+      membranes.y.data(),
+      nodes.begin,
+      nodes.end,
+      nx_,
+      ny_,
+      periodic_y_});
   for (int first = nodes.begin; first < nodes.end; first += block) {
     const int* begin = row_.data() + first;
     const int* end = row_.data() + std::min(first + block, nodes.end);
@@ -232,9 +243,14 @@ void Coupling<T>::spread(Worker worker, const Membranes& membranes, VectorField<
   const int halo = Field<T>::halo;
   run_loop<Spread<T>>(SpreadTask<T>{
       {column_.data(), row_.data(), fraction_x_.data(), root_x_.data(), fraction_y_.data(), root_y_.data()},
-      membranes.force_x.data(), membranes.force_y.data(), membranes.node_count(),
-      worker.first() ? -halo : rows.begin, worker.last() ? ny_ + halo : rows.end,
-      force.x.row(0), force.y.row(0), row_stride(force.x)});
+      membranes.force_x.data(),
+      membranes.force_y.data(),
+      membranes.node_count(),
+      worker.first() ? -halo : rows.begin,
+      worker.last() ? ny_ + halo : rows.end,
+      force.x.row(0),
+      force.y.row(0),
+      row_stride(force.x)});
 }
 
 template <class T>
@@ -242,8 +258,13 @@ void Coupling<T>::interpolate(Worker worker, Membranes& membranes, const VectorF
   const Range nodes = worker.share(membranes.node_count(), block);
   run_loop<Interpolate<T>>(InterpolateTask<T>{
       {column_.data(), row_.data(), fraction_x_.data(), root_x_.data(), fraction_y_.data(), root_y_.data()},
-      membranes.velocity_x.data(), membranes.velocity_y.data(), nodes.begin, nodes.end,
-      velocity.x.row(0), velocity.y.row(0), row_stride(velocity.x)});
+      membranes.velocity_x.data(),
+      membranes.velocity_y.data(),
+      nodes.begin,
+      nodes.end,
+      velocity.x.row(0),
+      velocity.y.row(0),
+      row_stride(velocity.x)});
 }
 
 template <class T>

@@ -9,8 +9,8 @@
 
 namespace rouleau::host {
 
-/// Immersed-boundary coupling by Peskin's 4-point kernel. Columns are taken periodically: a node's stencil may reach two
-/// columns into the halo, which others fold or fill (fluid/exchange.hpp); so may rows.
+/// Immersed-boundary coupling by Peskin's 4-point kernel. Columns are taken periodically: a node's stencil may reach
+/// two columns into the halo, which others fold or fill (fluid/exchange.hpp); so may rows.
 template <class T>
 class Coupling {
  public:
@@ -21,8 +21,8 @@ class Coupling {
 
   /// Pass over nodes: weights for the present positions.
   void locate(Worker worker, const Membranes& membranes);
-  /// Pass over rows: adds the forces of all nodes to this worker's rows worker.share(ny) of the force density; the first
-  /// worker owns the lower halo rows too, the last one the upper. The sums do not depend on the workers.
+  /// Pass over rows: adds the forces of all nodes to this worker's rows worker.share(ny) of the force density; the
+  /// first worker owns the lower halo rows too, the last one the upper. The sums do not depend on the workers.
   void spread(Worker worker, const Membranes& membranes, VectorField<T>& force) const;
   /// Pass over nodes: sets velocity_x and velocity_y.
   void interpolate(Worker worker, Membranes& membranes, const VectorField<T>& velocity) const;
@@ -34,9 +34,9 @@ class Coupling {
  private:
   int nx_, ny_;
   bool periodic_y_;
-  std::vector<int> column_, row_;                          // base node, wrapped; row outside_ for an escaped node
+  std::vector<int> column_, row_;  // base node, wrapped; row outside_ for an escaped node
   std::vector<T> fraction_x_, root_x_, fraction_y_, root_y_;
-  std::vector<int> escaped_;                               // first escaped node of each block of nodes, or -1
+  std::vector<int> escaped_;  // first escaped node of each block of nodes, or -1
 };
 
 extern template class Coupling<float>;

@@ -109,7 +109,8 @@ void smooth(Coverage& coverage, std::vector<double>& scratch) {
     for (int c = 1; c < width - 1; ++c) to[c] = 0.25 * (from[c - 1] + from[c + 1]) + 0.5 * from[c];
   }
   for (int r = 1; r < height - 1; ++r) {
-    const double *below = scratch.data() + static_cast<std::size_t>(r - 1) * width, *here = below + width, *above = here + width;
+    const double *below = scratch.data() + static_cast<std::size_t>(r - 1) * width, *here = below + width,
+                 *above = here + width;
     double* to = coverage.row(r);
     for (int c = 0; c < width; ++c) to[c] = 0.25 * (below[c] + above[c]) + 0.5 * here[c];
   }

@@ -9,9 +9,10 @@ namespace rouleau::host {
 
 /// Values on the box around one cell, not wrapped into the lattice. Two nodes on every side are zero before smoothing.
 struct Coverage {
-  int x0 = 0, y0 = 0, width = 0, height = 0;  ///< element (i, j) is lattice node (x0 + i, y0 + j); no size: nothing covered
-  std::vector<double> value;                  ///< [height][width]
-  std::vector<int> begin, end;                ///< [height]: elements of the row outside which all values are exactly zero
+  int x0 = 0, y0 = 0, width = 0,
+      height = 0;               ///< element (i, j) is lattice node (x0 + i, y0 + j); no size: nothing covered
+  std::vector<double> value;    ///< [height][width]
+  std::vector<int> begin, end;  ///< [height]: elements of the row outside which all values are exactly zero
 
   [[nodiscard]] const double* row(int j) const { return value.data() + static_cast<std::size_t>(j) * width; }
   [[nodiscard]] double* row(int j) { return value.data() + static_cast<std::size_t>(j) * width; }

@@ -29,7 +29,8 @@ void collect(const Membranes& membranes, const CellRange& cell, const Eigen::Vec
     const int next = cell.next(i);
     const Segment segment{i, next, node(i), node(next)};
     if (segment.x_min() > box.x_max || segment.x_max() < box.x_min) continue;
-    if (std::min(segment.from.y(), segment.to.y()) > box.y_max || std::max(segment.from.y(), segment.to.y()) < box.y_min) {
+    if (std::min(segment.from.y(), segment.to.y()) > box.y_max ||
+        std::max(segment.from.y(), segment.to.y()) < box.y_min) {
       continue;
     }
     segments.push_back(segment);
@@ -70,7 +71,8 @@ std::optional<Found> sweep(const std::vector<Segment>& as, const std::vector<Seg
 }
 
 bool contains(const Bounds& outer, const Bounds& inner) {
-  return outer.x_min <= inner.x_min && inner.x_max <= outer.x_max && outer.y_min <= inner.y_min && inner.y_max <= outer.y_max;
+  return outer.x_min <= inner.x_min && inner.x_max <= outer.x_max && outer.y_min <= inner.y_min &&
+         inner.y_max <= outer.y_max;
 }
 
 /// Looks at one pair of cells and one image of the second.

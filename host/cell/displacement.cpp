@@ -5,8 +5,8 @@
 
 namespace rouleau::host {
 
-double largest_displacement(const std::vector<double>& x, const std::vector<double>& y, const std::vector<double>& old_x,
-                            const std::vector<double>& old_y) {
+double largest_displacement(const std::vector<double>& x, const std::vector<double>& y,
+                            const std::vector<double>& old_x, const std::vector<double>& old_y) {
   double square = 0;
   for (std::size_t i = 0; i < x.size(); ++i) {
     const double dx = x[i] - old_x[i], dy = y[i] - old_y[i];

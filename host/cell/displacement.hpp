@@ -10,8 +10,8 @@
 namespace rouleau::host {
 
 /// Largest distance between corresponding nodes of two sets of positions.
-double largest_displacement(const std::vector<double>& x, const std::vector<double>& y, const std::vector<double>& old_x,
-                            const std::vector<double>& old_y);
+double largest_displacement(const std::vector<double>& x, const std::vector<double>& y,
+                            const std::vector<double>& old_x, const std::vector<double>& old_y);
 
 /// Remembers positions and compares. After construction every cell counts as moved.
 class DisplacementWatch {

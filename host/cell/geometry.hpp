@@ -29,8 +29,8 @@ InertiaEllipse inertia_ellipse(const Membranes& membranes, const CellRange& cell
 /// Angle of marker node 0 about the centroid, in (-pi, pi].
 double marker_angle(const Membranes& membranes, const CellRange& cell);
 
-/// Smallest distance between the outlines of cell a and of cell b moved by `shift` periods, exact for two polygons that do
-/// not cross. Returns infinity when it is above `limit`.
+/// Smallest distance between the outlines of cell a and of cell b moved by `shift` periods, exact for two polygons that
+/// do not cross. Returns infinity when it is above `limit`.
 double outline_distance(const Membranes& membranes, const CellRange& a, const CellRange& b, ImageShift shift,
                         const PeriodicBox& box, double limit = std::numeric_limits<double>::infinity());
 

@@ -27,9 +27,9 @@ class Indicator {
   void measure(Worker worker, const Membranes& membranes) { watch_.measure(worker, membranes); }
   [[nodiscard]] bool due() const { return watch_.exceeded(); }
 
-  /// Pass (the first worker does it all): sets the relaxation rate in and around the cells, restores it where they were,
-  /// and marks the nodes that the membranes touch until they have moved by 1. The field is allocated and filled with the
-  /// plain rate at the first update if varies().
+  /// Pass (the first worker does it all): sets the relaxation rate in and around the cells, restores it where they
+  /// were, and marks the nodes that the membranes touch until they have moved by 1. The field is allocated and filled
+  /// with the plain rate at the first update if varies().
   void update(Worker worker, const Membranes& membranes, Field<T>& relaxation_rate, Activity& activity);
 
  private:
@@ -53,7 +53,7 @@ class Indicator {
   std::vector<Coverage> coverage_;              // of each cell
   std::vector<std::vector<Interval>> touched_;  // of each lattice row: disjoint, where the last update wrote
   std::vector<double> scratch_;
-  std::vector<Interval> columns_, reach_;       // of the rows around one cell
+  std::vector<Interval> columns_, reach_;  // of the rows around one cell
 };
 
 extern template class Indicator<float>;

@@ -30,7 +30,8 @@ Cutoffs pair_cutoffs(const Membranes& membranes, const std::vector<Potential>& p
                      const std::vector<double>& cutoffs) {
   int types = 1;
   for (const CellRange& cell : membranes.cells) types = std::max(types, cell.type + 1);
-  for (const Potential& potential : potentials) types = std::max({types, potential.between[0] + 1, potential.between[1] + 1});
+  for (const Potential& potential : potentials)
+    types = std::max({types, potential.between[0] + 1, potential.between[1] + 1});
   Cutoffs result(types);
   for (std::size_t p = 0; p < potentials.size(); ++p) {
     result.raise(potentials[p].between[0], potentials[p].between[1], cutoffs[p]);
@@ -39,7 +40,8 @@ Cutoffs pair_cutoffs(const Membranes& membranes, const std::vector<Potential>& p
 }
 
 bool acts_between(const Potential& potential, int a, int b) {
-  return (potential.between[0] == a && potential.between[1] == b) || (potential.between[0] == b && potential.between[1] == a);
+  return (potential.between[0] == a && potential.between[1] == b) ||
+         (potential.between[0] == b && potential.between[1] == a);
 }
 
 }  // namespace
@@ -53,7 +55,9 @@ InteractionForces::InteractionForces(const Membranes& membranes, std::vector<Pot
 void InteractionForces::run(Worker worker, int phase, Membranes& membranes) {
   const Range cells = worker.share(static_cast<int>(membranes.cells.size()));
   switch (phase) {
-    case 0: contacts_.run(worker, 0, membranes); break;
+    case 0:
+      contacts_.run(worker, 0, membranes);
+      break;
     case 1:
       contacts_.run(worker, 1, membranes);
       for (int cell = cells.begin; cell < cells.end; ++cell) {
@@ -69,7 +73,8 @@ void InteractionForces::run(Worker worker, int phase, Membranes& membranes) {
 }
 
 // Pairs are listed by type of the other cell, so that a potential gets its distances in one piece.
-InteractionForces::TypeRange InteractionForces::next_range(int cell, const Membranes& membranes, std::size_t& pair) const {
+InteractionForces::TypeRange InteractionForces::next_range(int cell, const Membranes& membranes,
+                                                           std::size_t& pair) const {
   const std::vector<Neighbours::Pair>& pairs = contacts_.neighbours().list(cell).pairs;
   const std::vector<Range>& ranges = contacts_.list(cell).ranges;
   const auto type_of = [&](std::size_t p) { return membranes.cells[static_cast<std::size_t>(pairs[p].other)].type; };
@@ -79,8 +84,8 @@ InteractionForces::TypeRange InteractionForces::next_range(int cell, const Membr
 }
 
 /// Adds (or, if it is the first, sets) one potential's force or energy at the contacts to `result`.
-void InteractionForces::apply(std::size_t potential, const ContactList& list, Range contacts, double* result, bool energy,
-                              bool first, Scratch& scratch) const {
+void InteractionForces::apply(std::size_t potential, const ContactList& list, Range contacts, double* result,
+                              bool energy, bool first, Scratch& scratch) const {
   const ModelInstance& model = *potentials_[potential].model;
   const double cutoff = cutoffs_[potential];
   const int own_type = potentials_[potential].between[0], other_type = potentials_[potential].between[1];
@@ -109,7 +114,8 @@ void InteractionForces::apply(std::size_t potential, const ContactList& list, Ra
   model.interaction().compute(model.self(), &block);
   if (direct) return;
   for (int i = 0; i < count; ++i) {
-    result[all ? contacts.begin + i : scratch.contact[static_cast<std::size_t>(i)]] += scratch.law[static_cast<std::size_t>(i)];
+    result[all ? contacts.begin + i : scratch.contact[static_cast<std::size_t>(i)]] +=
+        scratch.law[static_cast<std::size_t>(i)];
   }
 }
 
@@ -153,7 +159,8 @@ void InteractionForces::react(int cell, Membranes& membranes) const {
     const double* force = scratch_[static_cast<std::size_t>(pair.other)].force.data();
     const Range range = list.ranges[static_cast<std::size_t>(pair.reverse)];
     const int *segment = list.segment.data(), *segment_end = list.segment_end.data();
-    const double *along = list.along.data(), *direction_x = list.direction_x.data(), *direction_y = list.direction_y.data();
+    const double *along = list.along.data(), *direction_x = list.direction_x.data(),
+                 *direction_y = list.direction_y.data();
     for (int i = range.begin; i < range.end; ++i) {
       const double fx = force[i] * direction_x[i], fy = force[i] * direction_y[i];
       force_x[segment[i]] -= (1 - along[i]) * fx;

@@ -19,9 +19,9 @@ struct Potential {
   std::shared_ptr<const ModelInstance> model;
 };
 
-/// Node i with rest weight Lb at distance r of its closest point on another cell: energy Lb/2 phi(r), force Lb/2 f(r) along
-/// the connecting line, the reaction shared by the ends of the other segment. With rest weights this is the exact gradient
-/// of the energy, with neither net force nor net torque (Derjaguin; docs: physics, interaction).
+/// Node i with rest weight Lb at distance r of its closest point on another cell: energy Lb/2 phi(r), force Lb/2 f(r)
+/// along the connecting line, the reaction shared by the ends of the other segment. With rest weights this is the exact
+/// gradient of the energy, with neither net force nor net torque (Derjaguin; docs: physics, interaction).
 class InteractionForces {
  public:
   /// Throws Error(plugin_refused) if a potential needs what this host does not give.
@@ -40,11 +40,11 @@ class InteractionForces {
   [[nodiscard]] const Contacts& contacts() const { return contacts_; }
 
  private:
-  struct Scratch {                  // of one cell's contacts
-    std::vector<double> force;      // sum of f over the potentials, then Lb/2 f
-    std::vector<double> law;        // of one potential
-    std::vector<double> distance;   // those within a cutoff shorter than that of the pair
-    std::vector<int> contact;       // to which these belong
+  struct Scratch {                 // of one cell's contacts
+    std::vector<double> force;     // sum of f over the potentials, then Lb/2 f
+    std::vector<double> law;       // of one potential
+    std::vector<double> distance;  // those within a cutoff shorter than that of the pair
+    std::vector<int> contact;      // to which these belong
   };
   /// Consecutive contacts of a cell with all cells of one type.
   struct TypeRange {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "geometry.hpp"
-#include "turning_angle.hpp"
+#include "membrane_kernels.hpp"
 
 namespace rouleau::host {
 
@@ -14,100 +14,14 @@ namespace {
 
 constexpr int margin = 8;  // doubles in the widest pack
 
-/// One cell's arrays, each pointing at its node 0.
-struct Arrays {
-  int count;
-  double *x, *y, *u, *v;
-  double *tangent_x, *tangent_y, *inverse_length, *stretch, *rate;
-  const double *inverse_rest_length, *inverse_rest_weight;
-  double *curvature, *tension, *moment, *segment_force_x, *segment_force_y;
-  double *force_x, *force_y;
-  bool with_rate, with_moment, with_pressure;
-  double pressure, perimeter_tension;
-};
-
 void close(double* values, int count) {
   values[-1] = values[count - 1];
   values[count] = values[0];
 }
 
-/// Segments: tangent, stretch and its rate; then nodes: curvature.
-struct Measure {
-  template <int register_bytes>
-  ROULEAU_ALWAYS_INLINE static void run(const Arrays* arrays) {
-    using S = Pack<double, register_bytes / 8>;
-    const Arrays a = *arrays;
-    for (int i = 0; i < a.count; i += S::size) {
-      const S dx = S::load(a.x + i + 1) - S::load(a.x + i), dy = S::load(a.y + i + 1) - S::load(a.y + i);
-      const S length = sqrt(dx * dx + dy * dy);
-      const S inverse = select(length > S(0.0), 1.0 / length, S(0.0));  // a segment without length has no direction
-      const S tx = dx * inverse, ty = dy * inverse, inverse_rest = S::load(a.inverse_rest_length + i);
-      tx.store(a.tangent_x + i);
-      ty.store(a.tangent_y + i);
-      inverse.store(a.inverse_length + i);
-      (length * inverse_rest).store(a.stretch + i);
-      if (a.with_rate) {
-        const S du = S::load(a.u + i + 1) - S::load(a.u + i), dv = S::load(a.v + i + 1) - S::load(a.v + i);
-        ((tx * du + ty * dv) * inverse_rest).store(a.rate + i);
-      }
-    }
-    if (!a.with_moment) return;
-    a.tangent_x[-1] = a.tangent_x[a.count - 1];
-    a.tangent_y[-1] = a.tangent_y[a.count - 1];
-    for (int i = 0; i < a.count; i += S::size) {
-      const S sx = S::load(a.tangent_x + i - 1), sy = S::load(a.tangent_y + i - 1);
-      const S tx = S::load(a.tangent_x + i), ty = S::load(a.tangent_y + i);
-      const S angle = turning_angle(sx * ty - sy * tx, sx * tx + sy * ty);
-      (angle * S::load(a.inverse_rest_weight + i)).store(a.curvature + i);
-    }
-  }
-};
-
-/// Forces: every segment pulls its first node by S_i = T_i t_i - q_i n_i and its second one by -S_i.
-struct Act {
-  template <int register_bytes>
-  ROULEAU_ALWAYS_INLINE static void run(const Arrays* arrays) {
-    using S = Pack<double, register_bytes / 8>;
-    const Arrays a = *arrays;
-    if (a.with_moment) a.moment[a.count] = a.moment[0];
-    for (int i = 0; i < a.count; i += S::size) {
-      const S tx = S::load(a.tangent_x + i), ty = S::load(a.tangent_y + i);
-      const S tension = S::load(a.tension + i) + a.perimeter_tension;
-      S fx = tension * tx, fy = tension * ty;
-      if (a.with_moment) {
-        const S shear = (S::load(a.moment + i + 1) - S::load(a.moment + i)) * S::load(a.inverse_length + i);
-        fx += shear * ty;
-        fy -= shear * tx;
-      }
-      fx.store(a.segment_force_x + i);
-      fy.store(a.segment_force_y + i);
-    }
-    a.segment_force_x[-1] = a.segment_force_x[a.count - 1];
-    a.segment_force_y[-1] = a.segment_force_y[a.count - 1];
-    for (int i = 0; i < a.count; i += S::size) {
-      S fx = S::load(a.segment_force_x + i) - S::load(a.segment_force_x + i - 1);
-      S fy = S::load(a.segment_force_y + i) - S::load(a.segment_force_y + i - 1);
-      if (a.with_pressure) {
-        const S half = 0.5 * a.pressure;
-        fx += half * (S::load(a.y + i + 1) - S::load(a.y + i - 1));
-        fy -= half * (S::load(a.x + i + 1) - S::load(a.x + i - 1));
-      }
-      if (a.count - i >= S::size) {
-        fx.store(a.force_x + i);
-        fy.store(a.force_y + i);
-      } else {  // the next cell's forces belong to another worker
-        for (int k = 0; k < a.count - i; ++k) {
-          a.force_x[i + k] = fx.vector[k];
-          a.force_y[i + k] = fy.vector[k];
-        }
-      }
-    }
-  }
-};
-
 template <class Loop>
-void run_loop(const Arrays& arrays) {
-  static const auto function = Dispatch<Loop, const Arrays*>::pick();
+void run_loop(const CellArrays& arrays) {
+  static const auto function = Dispatch<Loop, const CellArrays*>::pick();
   function(&arrays);
 }
 
@@ -135,9 +49,10 @@ MembraneForces::Law MembraneForces::describe(std::shared_ptr<const ModelInstance
   }
   const auto needs = [&](const char* input) { return manifest.needs_input(input); };
   const auto gives = [&](const char* output) { return manifest.gives_output(output); };
-  return {std::move(model), needs("stretch"), needs("stretch_rate"), needs("curvature"), needs("rest_curvature"),
-          needs("area"), needs("rest_area"), needs("perimeter"), needs("rest_perimeter"),
-          gives("tension"), gives("moment"), gives("pressure"), gives("perimeter_tension")};
+  return {std::move(model),          needs("stretch"), needs("stretch_rate"), needs("curvature"),
+          needs("rest_curvature"),   needs("area"),    needs("rest_area"),    needs("perimeter"),
+          needs("rest_perimeter"),   gives("tension"), gives("moment"),       gives("pressure"),
+          gives("perimeter_tension")};
 }
 
 MembraneForces::MembraneForces(const Membranes& membranes, std::vector<MembraneLaws> laws) {
@@ -197,7 +112,8 @@ void MembraneForces::tensions(const Membranes& membranes, std::vector<double>& t
     measure(membranes, cell);
     const double uniform = apply_laws(membranes, cell, nullptr).perimeter_tension;
     for (int k = 0; k < range.count; ++k) {
-      tension[static_cast<std::size_t>(range.first + k)] = scratch_.tension[offset(cell) + static_cast<std::size_t>(k)] + uniform;
+      tension[static_cast<std::size_t>(range.first + k)] =
+          scratch_.tension[offset(cell) + static_cast<std::size_t>(k)] + uniform;
     }
   }
 }
@@ -217,7 +133,7 @@ void MembraneForces::measure(const Membranes& membranes, int cell) {
     copy_closed(membranes.velocity_x, s.u);
     copy_closed(membranes.velocity_y, s.v);
   }
-  Arrays arrays{};
+  CellArrays arrays{};
   arrays.count = range.count;
   arrays.x = &s.x[at], arrays.y = &s.y[at], arrays.u = &s.u[at], arrays.v = &s.v[at];
   arrays.tangent_x = &s.tangent_x[at], arrays.tangent_y = &s.tangent_y[at];
@@ -225,7 +141,7 @@ void MembraneForces::measure(const Membranes& membranes, int cell) {
   arrays.inverse_rest_length = &s.inverse_rest_length[at], arrays.inverse_rest_weight = &s.inverse_rest_weight[at];
   arrays.curvature = &s.curvature[at];
   arrays.with_rate = type.rate, arrays.with_moment = type.moment;
-  run_loop<Measure>(arrays);
+  run_loop<MeasureCell>(arrays);
 }
 
 void MembraneForces::apply_law(const Law& law, const CellRange& range, std::size_t at, CellState& state,
@@ -277,11 +193,11 @@ MembraneForces::CellState MembraneForces::apply_laws(const Membranes& membranes,
     moment |= law.moment;
     if (energy == nullptr) continue;
     if (law.tension) {
-      energy->tension += weighted_sum(&scratch_.energy[at], &membranes.rest_length[static_cast<std::size_t>(range.first)],
-                                      range.count);
+      energy->tension += weighted_sum(&scratch_.energy[at],
+                                      &membranes.rest_length[static_cast<std::size_t>(range.first)], range.count);
     } else if (law.moment) {
-      energy->bending += weighted_sum(&scratch_.energy[at], &membranes.rest_weight[static_cast<std::size_t>(range.first)],
-                                      range.count);
+      energy->bending += weighted_sum(&scratch_.energy[at],
+                                      &membranes.rest_weight[static_cast<std::size_t>(range.first)], range.count);
     } else {
       energy->cell += scratch_.energy[at];
     }
@@ -294,7 +210,7 @@ void MembraneForces::act(Membranes& membranes, int cell, const CellState& state)
   const Type& type = types_[static_cast<std::size_t>(range.type)];
   const std::size_t at = offset(cell);
   Scratch& s = scratch_;
-  Arrays arrays{};
+  CellArrays arrays{};
   arrays.count = range.count;
   arrays.x = &s.x[at], arrays.y = &s.y[at];
   arrays.tangent_x = &s.tangent_x[at], arrays.tangent_y = &s.tangent_y[at];
@@ -305,7 +221,7 @@ void MembraneForces::act(Membranes& membranes, int cell, const CellState& state)
   arrays.force_y = &membranes.force_y[static_cast<std::size_t>(range.first)];
   arrays.with_moment = type.moment, arrays.with_pressure = type.cell;
   arrays.pressure = state.pressure, arrays.perimeter_tension = state.perimeter_tension;
-  run_loop<Act>(arrays);
+  run_loop<ActOnCell>(arrays);
 }
 
 void MembraneForces::tensions(const Membranes& membranes, std::vector<double>& tension) const {

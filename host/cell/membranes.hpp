@@ -9,9 +9,9 @@ namespace rouleau::host {
 
 /// One cell's place in the arrays of Membranes.
 struct CellRange {
-  int type;   ///< index into Scene::cell_types
-  int first;  ///< its first node
-  int count;  ///< nodes and segments
+  int type;               ///< index into Scene::cell_types
+  int first;              ///< its first node
+  int count;              ///< nodes and segments
   double rest_area;       ///< enclosed area as created: the fluid inside cannot leave
   double rest_perimeter;  ///< sum of the rest lengths
   [[nodiscard]] int end() const { return first + count; }
@@ -20,22 +20,23 @@ struct CellRange {
   [[nodiscard]] int previous(int i) const { return i == first ? end() - 1 : i - 1; }
 };
 
-/// Closed polygons, nodes counter-clockwise; segment i joins node i and the next node. Positions are not wrapped into the
-/// periodic box, so that outlines stay whole. Lattice node (0, 0) lies at (0, 0), walls at y = -1/2 and ny - 1/2.
+/// Closed polygons, nodes counter-clockwise; segment i joins node i and the next node. Positions are not wrapped into
+/// the periodic box, so that outlines stay whole. Lattice node (0, 0) lies at (0, 0), walls at y = -1/2 and ny - 1/2.
 struct Membranes {
   std::vector<CellRange> cells;
-  std::vector<double> x, y;                   ///< positions
-  std::vector<double> force_x, force_y;       ///< on the nodes, set anew each step
+  std::vector<double> x, y;                    ///< positions
+  std::vector<double> force_x, force_y;        ///< on the nodes, set anew each step
   std::vector<double> velocity_x, velocity_y;  ///< displacement of the last step
-  std::vector<double> rest_length;            ///< of segment i
-  std::vector<double> rest_weight;            ///< (rest_length[i - 1] + rest_length[i]) / 2: rest measure of node i
-  std::vector<double> rest_curvature;         ///< turning angle over rest_weight in the shape it was created with
+  std::vector<double> rest_length;             ///< of segment i
+  std::vector<double> rest_weight;             ///< (rest_length[i - 1] + rest_length[i]) / 2: rest measure of node i
+  std::vector<double> rest_curvature;          ///< turning angle over rest_weight in the shape it was created with
 
   [[nodiscard]] int node_count() const { return static_cast<int>(x.size()); }
 };
 
-/// Membranes of a scene's cells on a lattice of the given spacing (m). Throws Error(bad_input) with the place of the entry
-/// in the scene when a cell crosses itself, sticks through a wall or overlaps another cell (over periodic images).
+/// Membranes of a scene's cells on a lattice of the given spacing (m). Throws Error(bad_input) with the place of the
+/// entry in the scene when a cell crosses itself, sticks through a wall or overlaps another cell (over periodic
+/// images).
 Membranes make_membranes(const Scene& scene, double spacing);
 
 }  // namespace rouleau::host

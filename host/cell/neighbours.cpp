@@ -10,6 +10,8 @@ namespace rouleau::host {
 
 namespace {
 
+constexpr int bridged = 4;  // segments between two runs that are searched rather than stepped over
+
 /// One group of nodes against all segments of the other cell.
 struct CandidateTask {
   const double *x, *y, *along_x, *along_y, *inverse_square;  // of the other cell's segments
@@ -17,8 +19,8 @@ struct CandidateTask {
   const double *node_x, *node_y;  // of the group, moved into the other cell's image
   int nodes;
   double skin, cutoff;
-  double *square;  // [nodes][segments rounded up]
-  double *excess;  // [segments rounded up]: negative for candidates
+  double* square;  // [nodes][segments rounded up]
+  double* excess;  // [segments rounded up]: negative for candidates
 };
 
 struct Candidates {
@@ -28,16 +30,24 @@ struct Candidates {
     const CandidateTask t = *task;
     const int stride = (t.segments + SegmentTable::margin - 1) / SegmentTable::margin * SegmentTable::margin;
     for (int k = 0; k < stride; k += S::size) S(std::numeric_limits<double>::infinity()).store(t.excess + k);
+    double numbers[S::size];
+    for (int k = 0; k < S::size; ++k) numbers[k] = k;
+    const S lane = S::load(numbers);
     for (int i = 0; i < t.nodes; ++i) {
       double* square = t.square + i * stride;
+      const S x = t.node_x[i], y = t.node_y[i];
+      S least = std::numeric_limits<double>::infinity(), left = t.segments;
       for (int k = 0; k < t.segments; k += S::size) {
-        const S dx = t.node_x[i] - S::load(t.x + k), dy = t.node_y[i] - S::load(t.y + k);
-        Approach<S>(dx, dy, S::load(t.along_x + k), S::load(t.along_y + k), S::load(t.inverse_square + k))
-            .square.store(square + k);
+        const Approach<S> approach(x - S::load(t.x + k), y - S::load(t.y + k), S::load(t.along_x + k),
+                                   S::load(t.along_y + k), S::load(t.inverse_square + k));
+        approach.square.store(square + k);
+        // The lanes beyond the last segment hold those of the next cell.
+        const S own = select(lane < left, approach.square, S(std::numeric_limits<double>::infinity()));
+        least = select(own < least, own, least);
+        left -= S(S::size);
       }
-      // The lanes beyond the last segment hold those of the next cell.
-      double closest = square[0];
-      for (int k = 1; k < t.segments; ++k) closest = min(square[k], closest);
+      double closest = least.vector[0];
+      for (int k = 1; k < S::size; ++k) closest = min(least.vector[k], closest);
       const double limit = min(std::sqrt(closest) + 4 * t.skin, t.cutoff + 2 * t.skin);
       const S limit_square = limit * limit * (1 + 1e-12);  // room for rounding
       for (int k = 0; k < t.segments; k += S::size) {
@@ -105,9 +115,10 @@ void Neighbours::list_pairs(const Membranes& membranes, int cell, const SegmentT
   for (const int other : order_) {
     const double cutoff = cutoffs_(type, membranes.cells[static_cast<std::size_t>(other)].type);
     if (!(cutoff > 0)) continue;
-    for_each_image(own, segments.bounds[static_cast<std::size_t>(other)], cutoff + 2 * skin_, box_, [&](ImageShift shift) {
-      if (other != cell || !(shift == ImageShift{})) pairs.push_back({{other, shift}, 0, 0, -1});
-    });
+    for_each_image(own, segments.bounds[static_cast<std::size_t>(other)], cutoff + 2 * skin_, box_,
+                   [&](ImageShift shift) {
+                     if (other != cell || !(shift == ImageShift{})) pairs.push_back({{other, shift}, 0, 0, -1});
+                   });
   }
 }
 
@@ -148,7 +159,8 @@ void Neighbours::list_candidates(const Membranes& membranes, int cell, Pair& pai
     const auto run_begin = static_cast<int>(list.runs.size());
     for (int k = 0; k < other.count; ++k) {
       if (!(list.excess[static_cast<std::size_t>(k)] <= 0)) continue;
-      if (static_cast<int>(list.runs.size()) > run_begin && list.runs.back().end == k) {
+      // Few long runs cost less than many short ones.
+      if (static_cast<int>(list.runs.size()) > run_begin && k - list.runs.back().end < bridged) {
         list.runs.back().end = k + 1;
       } else {
         list.runs.push_back({k, k + 1});

@@ -32,8 +32,8 @@ struct CellPair {
 /// Lists of candidate segments that stay complete while no node has moved further than `skin`.
 ///
 /// Why that is exact. Let d_k be the distance of a node to segment k when the list is made and d'_k later. A point of a
-/// segment is a convex combination of its ends, so it has moved by at most the skin, like the node: |d'_k - d_k| <= 2 skin
-/// for every k. If k is the closest segment later and m was when the list was made, then
+/// segment is a convex combination of its ends, so it has moved by at most the skin, like the node: |d'_k - d_k| <= 2
+/// skin for every k. If k is the closest segment later and m was when the list was made, then
 ///     d_k <= d'_k + 2 skin <= d'_m + 2 skin <= d_m + 4 skin,  and  d_k <= cutoff + 2 skin if d'_k <= cutoff.
 /// A segment with d_k above min(d_m + 4 skin, cutoff + 2 skin) can therefore be left out.
 class Neighbours {

@@ -53,7 +53,8 @@ double smallest_size(const Shape& shape) {
   return std::get<Ellipse>(shape).semi_axes.minCoeff();
 }
 
-/// Angle of the next node: the first one after `angle` where the curve is `chord` away. `stride` is a small part of a turn.
+/// Angle of the next node: the first one after `angle` where the curve is `chord` away. `stride` is a small part of a
+/// turn.
 double step(const Curve& curve, double angle, double chord, double stride) {
   const Eigen::Vector2d start = curve(angle).place;
   const auto distance = [&](const Curve::Point& point) { return (point.place - start).norm(); };

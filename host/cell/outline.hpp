@@ -8,8 +8,8 @@
 
 namespace rouleau::host {
 
-/// Nodes of a closed polygon, counter-clockwise, in metres, centred at the origin at angle 0; node 0 lies on the positive
-/// x axis.
+/// Nodes of a closed polygon, counter-clockwise, in metres, centred at the origin at angle 0; node 0 lies on the
+/// positive x axis.
 struct Outline {
   std::vector<Eigen::Vector2d> nodes;
 };

@@ -16,8 +16,8 @@ struct PeriodicBox {
 struct Bounds {
   double x_min, x_max, y_min, y_max;
 
-  /// False for the positions of a simulation that has just blown up (not finite, or absurdly large). The checks of the run
-  /// will report them; until then nothing may crash or hang on them.
+  /// False for the positions of a simulation that has just blown up (not finite, or absurdly large). The checks of the
+  /// run will report them; until then nothing may crash or hang on them.
   [[nodiscard]] bool usable() const {
     const double far = 1e9, large = 1e5;
     return x_min > -far && x_max < far && y_min > -far && y_max < far && x_max - x_min < large && y_max - y_min < large;
@@ -31,9 +31,9 @@ struct ImageShift {
   [[nodiscard]] ImageShift operator-() const { return {-x, -y}; }
 };
 
-/// Calls `visit(ImageShift)` for every image of `b` whose bounds come within `reach` of the bounds of `a`, in a fixed order.
-/// Bounds that are not usable() have no images. If it visits a shift for (a, b), it visits the opposite one for (b, a), whatever the rounding: IEEE subtraction and
-/// division are symmetric under change of sign.
+/// Calls `visit(ImageShift)` for every image of `b` whose bounds come within `reach` of the bounds of `a`, in a fixed
+/// order. Bounds that are not usable() have no images. If it visits a shift for (a, b), it visits the opposite one for
+/// (b, a), whatever the rounding: IEEE subtraction and division are symmetric under change of sign.
 template <class Visit>
 void for_each_image(const Bounds& a, const Bounds& b, double reach, const PeriodicBox& box, Visit visit) {
   if (!a.usable() || !b.usable()) return;

@@ -65,8 +65,8 @@ void SegmentTable::update(Worker worker, const Membranes& membranes) {
   const Range cells = worker.share(static_cast<int>(membranes.cells.size()));
   for (int c = cells.begin; c < cells.end; ++c) {
     const CellRange& cell = membranes.cells[static_cast<std::size_t>(c)];
-    UpdateTask task{membranes.x.data(), membranes.y.data(), x.data(),   y.data(), along_x.data(), along_y.data(),
-                    inverse_square.data(), cell.first, cell.end(), Bounds{}};
+    UpdateTask task{membranes.x.data(), membranes.y.data(),    x.data(),   y.data(),   along_x.data(),
+                    along_y.data(),     inverse_square.data(), cell.first, cell.end(), Bounds{}};
     function(&task);
     bounds[static_cast<std::size_t>(c)] = task.bounds;
   }

@@ -30,8 +30,9 @@ template <class S>
 struct Approach {
   S x, y, along, square;
   /// (dx, dy): from the segment's first node to the node.
-  ROULEAU_ALWAYS_INLINE Approach(const S& dx, const S& dy, const S& along_x, const S& along_y, const S& inverse_square) {
-    along = min(max((dx * along_x + dy * along_y) * inverse_square, S(0.0)), S(1.0));
+  ROULEAU_ALWAYS_INLINE Approach(const S& dx, const S& dy, const S& along_x, const S& along_y,
+                                 const S& inverse_square) {
+    along = max(min((dx * along_x + dy * along_y) * inverse_square, S(1.0)), S(0.0));
     x = dx - along * along_x;
     y = dy - along * along_y;
     square = x * x + y * y;

@@ -6,9 +6,9 @@
 namespace rouleau::host {
 
 /// atan2(cross, dot) to about 4 units in the last place; 0 if both are 0; +-pi is reached from either side.
-/// Method: tan(a/2) = cross / (length + |dot|) lies in [-1, 1] and belongs to the angle folded into the right half plane;
-/// one more halving brings it to |t| <= tan(pi/8), where atan(t)/t is a polynomial in t^2 (Chebyshev fit made with 50
-/// digits, error 1.3e-18).
+/// Method: tan(a/2) = cross / (length + |dot|) lies in [-1, 1] and belongs to the angle folded into the right half
+/// plane; one more halving brings it to |t| <= tan(pi/8), where atan(t)/t is a polynomial in t^2 (Chebyshev fit made
+/// with 50 digits, error 1.3e-18).
 template <class S>
 ROULEAU_ALWAYS_INLINE S turning_angle(const S& cross, const S& dot) {
   constexpr double pi = 3.14159265358979323846;

@@ -73,10 +73,12 @@ json describe(const Manifest& manifest, const Units& units) {
           {"claims", manifest.claims}};
 }
 
+std::string value_text(const json& value) { return value.is_number() ? number(value.get<double>()) : value.dump(); }
+
 std::string limits_text(const json& parameter) {
   std::string text;
   const auto add = [&](const char* key, const char* sign) {
-    if (parameter.contains(key)) text += (text.empty() ? "" : ", ") + std::string(sign) + parameter[key].dump();
+    if (parameter.contains(key)) text += (text.empty() ? "" : ", ") + std::string(sign) + value_text(parameter[key]);
   };
   add("minimum", ">= ");
   add("exclusiveMinimum", "> ");
@@ -84,7 +86,7 @@ std::string limits_text(const json& parameter) {
   add("exclusiveMaximum", "< ");
   if (parameter.contains("usual")) {
     const json& usual = parameter["usual"];
-    text += (text.empty() ? "usually " : "; usually ") + usual[0].dump() + " to " + usual[1].dump();
+    text += (text.empty() ? "usually " : "; usually ") + value_text(usual[0]) + " to " + value_text(usual[1]);
   }
   return text;
 }
@@ -97,7 +99,7 @@ void print(const Parameter& parameter, const Units& units) {
   } else {
     std::cout << (parameter.unit == "1" ? ", a number" : " in " + parameter.unit);
   }
-  std::cout << (entry.contains("default") ? ", default " + entry["default"].dump() : ", must be given") << '\n';
+  std::cout << (entry.contains("default") ? ", default " + value_text(entry["default"]) : ", must be given") << '\n';
   if (const std::string limits = limits_text(entry); !limits.empty()) std::cout << "        " << limits << '\n';
   if (!parameter.doc.empty()) std::cout << "        " << parameter.doc << '\n';
 }

@@ -1,5 +1,6 @@
 #include "document.hpp"
 
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -20,11 +21,13 @@ std::string read_text(const std::filesystem::path& path) {
   errno = 0;
   std::ifstream file(path, std::ios::binary);
   if (!file) throw refuse(errno != 0 ? std::strerror(errno) : "it cannot be opened");
-  // One byte more than the limit tells the parser that the file is too large, however much follows.
-  std::string text(largest_text + 1, '\0');
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  // Reading ends one piece after the limit at the latest, however much a device has to give; the parser then refuses.
+  std::string text;
+  std::array<char, 1U << 16U> piece{};
+  while (text.size() <= largest_text && (file.read(piece.data(), piece.size()) || file.gcount() > 0)) {
+    text.append(piece.data(), static_cast<std::size_t>(file.gcount()));
+  }
   if (file.bad()) throw refuse(std::strerror(errno));
-  text.resize(static_cast<std::size_t>(file.gcount()));
   return text;
 }
 

@@ -20,6 +20,9 @@ namespace {
 using nlohmann::json;
 using Result = std::optional<SchemaFault>;
 
+/// Matching recurses several times for every character of a text, so that a long one would exhaust the stack.
+constexpr std::size_t longest_matched = 1000;  // bytes
+
 /// Keys that belong to the other branches of a choice: known, but not beside the keys that are there.
 using OtherKeys = std::vector<std::string>;
 
@@ -130,6 +133,10 @@ class Explainer {
     if (rule.contains("maxLength") && length > rule["maxLength"].get<std::size_t>()) {
       return fault(at, in_quotes(text) + " has " + std::to_string(length) + " characters; " + name + " may have " +
                            std::to_string(rule["maxLength"].get<std::size_t>()));
+    }
+    if (rule.contains("pattern") && text.size() > longest_matched) {
+      return fault(at, in_quotes(text) + " is too long for " + name + ": at most " + std::to_string(longest_matched) +
+                           " bytes" + description(at, rule));
     }
     if (rule.contains("pattern") && !std::regex_search(text, std::regex(rule["pattern"].get<std::string>()))) {
       return fault(at, in_quotes(text) + " cannot be used for " + name + description(at, rule));
@@ -255,7 +262,8 @@ class Explainer {
     if (choice.meant.size() == 1) return explain(at, *choice.meant.front(), choice.other_keys);
     // Nothing in the object tells the branches apart: a key is misspelt, two of them decide, or none does.
     std::string first;
-    for (const auto& [key, node] : members(at)) {
+    for (const auto& member : members(at)) {
+      const auto& key = member.first;
       const auto in = [&key](const std::vector<std::string>& keys) {
         return std::find(keys.begin(), keys.end(), key) != keys.end();
       };

@@ -13,7 +13,7 @@ namespace rouleau::host {
 /// Limits that keep a hostile or broken file from exhausting stack or memory.
 inline constexpr std::size_t largest_text = 16U << 20U;  ///< bytes
 inline constexpr std::size_t deepest_nesting = 200;      ///< objects and arrays within each other
-inline constexpr std::size_t longest_string = 8192;      ///< bytes; patterns of schemas recurse once a character
+inline constexpr std::size_t longest_string = 8192;      ///< bytes
 
 /// A fault in JSON text: what() is one sentence, with the offset it speaks of.
 struct TextFault : std::runtime_error {

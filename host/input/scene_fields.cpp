@@ -62,11 +62,11 @@ ModelChoice SceneFields::model(const std::string& pointer) const {
 
 int SceneFields::cell_type(const std::string& pointer, const std::vector<CellType>& types) const {
   const auto& name = at(pointer).get_ref<const std::string&>();
-  std::vector<std::string> names;
   for (std::size_t i = 0; i < types.size(); ++i) {
     if (types[i].name == name) return static_cast<int>(i);
-    names.push_back(types[i].name);
   }
+  std::vector<std::string> names;
+  for (const auto& type : types) names.push_back(type.name);
   refuse(pointer, "no cell type is called " + in_quotes(name) + did_you_mean(name, names) +
                       "\ncell_types has: " + listed(names));
 }

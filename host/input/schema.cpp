@@ -37,15 +37,17 @@ std::string pointer_of(const std::vector<std::string>& context) {
 }  // namespace
 
 void validate(const Document& document, const nlohmann::json& schema, ExitCode code) {
+  // First our own words, which also keep texts away from valijson that its patterns could not stand; then its
+  // judgement.
+  if (const auto fault = explain_first_fault(document, schema)) {
+    throw Error(code, fault->at_key ? document.key_place(fault->pointer) : document.place(fault->pointer),
+                indented(fault->problem));
+  }
   valijson::Schema rules;
   valijson::SchemaParser().populateSchema(Adapter(schema), rules);
   const Adapter target(document.root());
   if (valijson::Validator().validate(rules, target, nullptr)) return;
 
-  if (const auto fault = explain_first_fault(document, schema)) {
-    throw Error(code, fault->at_key ? document.key_place(fault->pointer) : document.place(fault->pointer),
-                indented(fault->problem));
-  }
   // A keyword that the explanation does not know: valijson's own words are better than none.
   valijson::ValidationResults results;
   valijson::Validator().validate(rules, target, &results);

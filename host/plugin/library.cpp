@@ -28,6 +28,13 @@ namespace fs = std::filesystem;
               "the library " + manifest.library.string() + ' ' + problem);
 }
 
+/// What the dynamic loader says of a file that is not there.
+std::string loader_words(const fs::path& file) {
+  dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+  const char* words = dlerror();
+  return words != nullptr ? words : "";
+}
+
 /// The library's file with all links followed, which must lie in the manifest's own folder.
 fs::path library_file(const Manifest& manifest) {
   std::error_code error;
@@ -37,7 +44,7 @@ fs::path library_file(const Manifest& manifest) {
   if (error == std::errc::no_such_file_or_directory) {
     refuse(manifest, fs::is_symlink(fs::symlink_status(manifest.library))
                          ? "is a link to a file that does not exist"
-                         : "does not exist; it must lie in the folder of its manifest");
+                         : "does not exist; it must lie in the folder of its manifest\n  " + loader_words(manifest.library));
   }
   if (error) refuse(manifest, "cannot be opened: " + error.message());
   if (library.parent_path() != folder) {
@@ -86,6 +93,11 @@ std::string sha256(const fs::path& file) {
                 std::string("cannot be read: ") + std::strerror(errno));
   }
   return digest;
+}
+
+std::string sha256_of(std::string_view text) {
+  char digest[SHA256_DIGEST_STRING_LENGTH] = {};
+  return SHA256Data(reinterpret_cast<const std::uint8_t*>(text.data()), text.size(), digest);
 }
 
 }  // namespace rouleau::host

@@ -3,6 +3,8 @@
 
 #include <rouleau/plugin.h>
 
+#include <string_view>
+
 #include "manifest.hpp"
 
 namespace rouleau::host {
@@ -14,5 +16,7 @@ const rouleau_model& open_model(const Manifest& manifest);
 
 /// SHA-256 of a file, lower-case hexadecimal. Throws Error(input_output).
 std::string sha256(const std::filesystem::path& file);
+/// SHA-256 of a text, in the same form.
+std::string sha256_of(std::string_view text);
 
 }  // namespace rouleau::host

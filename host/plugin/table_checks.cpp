@@ -11,6 +11,7 @@ namespace {
 // Sizes of the structs in interface 1.0: what every plugin must have, however many fields are appended later.
 constexpr std::size_t smallest_plugin = offsetof(rouleau_plugin, models) + sizeof(rouleau_plugin::models);
 constexpr std::size_t smallest_model = offsetof(rouleau_model, interaction) + sizeof(rouleau_model::interaction);
+constexpr std::size_t smallest_named_model = offsetof(rouleau_model, id) + sizeof(rouleau_model::id);
 constexpr std::size_t smallest_collision =
     offsetof(rouleau_collision, collide_f32) + sizeof(rouleau_collision::collide_f32);
 constexpr std::size_t smallest_membrane = offsetof(rouleau_membrane, compute) + sizeof(rouleau_membrane::compute);
@@ -53,9 +54,10 @@ std::string table_fault(const rouleau_model& model) {
 }
 
 std::string model_fault(const rouleau_model& model, const Manifest& manifest) {
+  if (model.struct_size < smallest_model) return size_fault("rouleau_model", model.struct_size, smallest_model);
   if (model.kind != static_cast<std::uint32_t>(manifest.kind)) {
-    return "calls its model " + in_quotes(manifest.id) + " a " + kind_name(model.kind) + ", its manifest a " +
-           to_string(manifest.kind);
+    return "has a model " + in_quotes(manifest.id) + " of the kind " + kind_name(model.kind) +
+           ", its manifest is for the kind " + to_string(manifest.kind);
   }
   if (model.version == nullptr || model.version != manifest.version) {
     return "has version " + (model.version == nullptr ? "(none)" : std::string(model.version)) + " of " +
@@ -77,7 +79,8 @@ FoundModel find_model(const rouleau_plugin& plugin, const Manifest& manifest) {
   std::vector<std::string> ids;
   for (const rouleau_model* const* entry = plugin.models; *entry != nullptr; ++entry) {
     const rouleau_model& model = **entry;
-    if (model.struct_size < smallest_model) {
+    // A broken model beside the wanted one is no reason to refuse that, as long as its name can be read.
+    if (model.struct_size < smallest_named_model) {
       return {nullptr, size_fault("rouleau_model", model.struct_size, smallest_model)};
     }
     if (model.id == nullptr) return {nullptr, "holds a model without an id"};

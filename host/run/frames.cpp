@@ -89,7 +89,8 @@ void FrameWriter::write_topology(const std::vector<int>& first) {
 
   std::vector<int> owner, connectivity;
   for (std::size_t cell = 0; cell < cells; ++cell) {
-    if (!topology_record_.uniform) connectivity.insert(connectivity.end(), {polyline, first[cell + 1] - first[cell] + 1});
+    if (!topology_record_.uniform)
+      connectivity.insert(connectivity.end(), {polyline, first[cell + 1] - first[cell] + 1});
     for (int node = first[cell]; node < first[cell + 1]; ++node) {
       owner.push_back(static_cast<int>(cell));
       connectivity.push_back(node);

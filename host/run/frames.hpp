@@ -11,7 +11,8 @@
 //     fields/density, viscosity, vorticity [ny, nx] f32
 //
 // Every dataset has its unit as attribute "unit". Node (i, j) of the lattice lies at ((i + 1/2) dx, (j + 1/2) dx).
-// first, cell and connectivity are links to one dataset as long as they do not change, so that they cost nothing per frame.
+// first, cell and connectivity are links to one dataset as long as they do not change, so that they cost nothing per
+// frame.
 #pragma once
 
 #include <filesystem>
@@ -26,11 +27,11 @@ namespace rouleau::host {
 
 /// What frames.xmf has to know about a frame.
 struct FrameRecord {
-  double time = 0;                  ///< s
+  double time = 0;                   ///< s
   std::size_t nodes = 0, cells = 0;  ///< of membranes; 0: none
-  std::size_t connectivity = 0;     ///< entries
-  bool uniform = false;             ///< all cells have the same number of nodes
-  std::vector<std::string> fields;  ///< datasets under fields/
+  std::size_t connectivity = 0;      ///< entries
+  bool uniform = false;              ///< all cells have the same number of nodes
+  std::vector<std::string> fields;   ///< datasets under fields/
 };
 
 class FrameWriter {
@@ -53,9 +54,9 @@ class FrameWriter {
   std::array<double, 2> size_;
   std::array<int, 2> nodes_;
   std::vector<FrameRecord> frames_;
-  std::vector<int> first_;             ///< as in the topology written last
-  FrameRecord topology_record_;        ///< of the topology written last
-  std::string topology_;               ///< its group
+  std::vector<int> first_;       ///< as in the topology written last
+  FrameRecord topology_record_;  ///< of the topology written last
+  std::string topology_;         ///< its group
   int topologies_ = 0;
 };
 

@@ -12,7 +12,8 @@ namespace rouleau::host {
 
 namespace {
 
-/// HDF5 keeps the system's errno only in the text of its innermost error: "..., errno = 28, error message = '...', ...".
+/// HDF5 keeps the system's errno only in the text of its innermost error: "..., errno = 28, error message = '...',
+/// ...".
 struct Innermost {
   int error = 0;
   std::string words;
@@ -31,8 +32,8 @@ herr_t visit(unsigned, const H5E_error2_t* entry, void* client) {
 }  // namespace
 
 Hdf5File::Hdf5File(std::filesystem::path file, Mode mode) : file_(std::move(file)), mode_(mode) {
-  // HDF5's own clean-up at exit crashes on a file that could not be closed because the disk is full. It has nothing to do:
-  // every identifier here is owned. Only the first call counts, and it must come before any other of HDF5.
+  // HDF5's own clean-up at exit crashes on a file that could not be closed because the disk is full. It has nothing to
+  // do: every identifier here is owned. Only the first call counts, and it must come before any other of HDF5.
   H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are thrown, not printed
   const auto access = owned(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "");
@@ -55,8 +56,8 @@ void Hdf5File::check(herr_t status, const std::string& path) const {
 void Hdf5File::fail(const std::string& path) const {
   Innermost innermost;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, visit, &innermost);
-  const std::string what = std::string(path.empty() ? "" : path + " ") +
-                           (mode_ == Mode::create ? "cannot be written" : "cannot be read");
+  const std::string what =
+      std::string(path.empty() ? "" : path + " ") + (mode_ == Mode::create ? "cannot be written" : "cannot be read");
   if (innermost.error != 0 && mode_ == Mode::create) fail_file(file_, what, innermost.error);
   if (innermost.error != 0)
     throw Error(ExitCode::input_output, Place{file_.string(), "", 0, 0},
@@ -96,8 +97,9 @@ void Hdf5File::write(const std::string& path, const std::vector<hsize_t>& shape,
     check(H5Pset_shuffle(layout.id()), path);
     check(H5Pset_deflate(layout.id(), 4), path);
   }
-  auto dataset = owned(H5Dcreate2(handle_.id(), path.c_str(), stored, space.id(), H5P_DEFAULT, layout.id(), H5P_DEFAULT),
-                       H5Dclose, path);
+  auto dataset =
+      owned(H5Dcreate2(handle_.id(), path.c_str(), stored, space.id(), H5P_DEFAULT, layout.id(), H5P_DEFAULT), H5Dclose,
+            path);
   if (any) check(H5Dwrite(dataset.id(), given, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), path);
   if (!dataset.close()) fail(path);
   attribute(path, "unit", unit);

@@ -47,8 +47,8 @@ class Hdf5File {
   /// Number of members of a group.
   [[nodiscard]] int members(const std::string& path) const;
 
-  /// Writes a dataset of this shape (slowest index first), with its unit as an attribute. `stored` is the type in the file,
-  /// `given` that of `data`. A compressed one is chunked by rows of about 1 MiB, shuffled and deflated.
+  /// Writes a dataset of this shape (slowest index first), with its unit as an attribute. `stored` is the type in the
+  /// file, `given` that of `data`. A compressed one is chunked by rows of about 1 MiB, shuffled and deflated.
   void write(const std::string& path, const std::vector<hsize_t>& shape, hid_t stored, hid_t given, const void* data,
              const std::string& unit, bool compressed = false);
   void write(const std::string& path, const std::vector<double>& values, const std::string& unit);

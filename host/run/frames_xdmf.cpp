@@ -32,13 +32,14 @@ std::string membranes(const FrameRecord& frame, const std::string& group) {
   std::string text = begin_grid("membranes", frame.time);
   if (frame.uniform) {
     const std::string per_cell = std::to_string(frame.connectivity / frame.cells);
-    text += "        <Topology TopologyType=\"Polyline\" NumberOfElements=\"" + cells + "\" NodesPerElement=\"" + per_cell +
-            "\">" + data_item(cells + " " + per_cell, {"Int", 4}, group + "/connectivity") + "</Topology>\n";
+    text += "        <Topology TopologyType=\"Polyline\" NumberOfElements=\"" + cells + "\" NodesPerElement=\"" +
+            per_cell + "\">" + data_item(cells + " " + per_cell, {"Int", 4}, group + "/connectivity") + "</Topology>\n";
   } else {
     text += "        <Topology TopologyType=\"Mixed\" NumberOfElements=\"" + cells + "\">" +
             data_item(std::to_string(frame.connectivity), {"Int", 4}, group + "/connectivity") + "</Topology>\n";
   }
-  text += "        <Geometry GeometryType=\"XY\">" + data_item(n + " 2", {"Float", 8}, group + "/points") + "</Geometry>\n";
+  text +=
+      "        <Geometry GeometryType=\"XY\">" + data_item(n + " 2", {"Float", 8}, group + "/points") + "</Geometry>\n";
   text += attribute("tension", "Scalar", data_item(n, {"Float", 8}, group + "/tension"));
   text += attribute("cell", "Scalar", data_item(n, {"Int", 4}, group + "/cell"));
   text += attribute("aggregate", "Scalar", data_item(n, {"Int", 4}, group + "/aggregate"));
@@ -47,7 +48,8 @@ std::string membranes(const FrameRecord& frame, const std::string& group) {
 
 std::string fields(const FrameRecord& frame, const std::string& group, const std::array<double, 2>& size,
                    const std::array<int, 2>& nodes) {
-  // One layer of a 3-D mesh: ParaView lays a 2DCoRectMesh into the y-z plane, across the membranes. Slowest index first.
+  // One layer of a 3-D mesh: ParaView lays a 2DCoRectMesh into the y-z plane, across the membranes. Slowest index
+  // first.
   const std::string shape = "1 " + std::to_string(nodes[1]) + " " + std::to_string(nodes[0]);
   const double dx = size[0] / nodes[0], dy = size[1] / nodes[1];
   const auto triple = [](double z, double y, double x) {
@@ -56,8 +58,8 @@ std::string fields(const FrameRecord& frame, const std::string& group, const std
   };
   std::string text = begin_grid("fields", frame.time);
   text += "        <Topology TopologyType=\"3DCoRectMesh\" Dimensions=\"" + shape + "\"/>\n";
-  text += "        <Geometry GeometryType=\"ORIGIN_DXDYDZ\">" + triple(0, 0.5 * dy, 0.5 * dx) +
-          triple(dx, dy, dx) + "</Geometry>\n";
+  text += "        <Geometry GeometryType=\"ORIGIN_DXDYDZ\">" + triple(0, 0.5 * dy, 0.5 * dx) + triple(dx, dy, dx) +
+          "</Geometry>\n";
   for (const auto& name : frame.fields) {
     const bool vector = name == "velocity";
     text += attribute(name, vector ? "Vector" : "Scalar",
@@ -79,8 +81,8 @@ std::string xdmf_text(const std::vector<FrameRecord>& frames, const std::string&
   std::string text = "<?xml version=\"1.0\"?>\n<Xdmf Version=\"2.0\">\n  <Domain>\n";
   const auto collection = [&](const char* name, const std::string& grids) {
     if (grids.empty()) return;
-    text += std::string("    <Grid Name=\"") + name + "\" GridType=\"Collection\" CollectionType=\"Temporal\">\n" + grids +
-            "    </Grid>\n";
+    text += std::string("    <Grid Name=\"") + name + "\" GridType=\"Collection\" CollectionType=\"Temporal\">\n" +
+            grids + "    </Grid>\n";
   };
   collection("membranes", membrane_grids.str());
   collection("fields", field_grids.str());

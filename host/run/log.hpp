@@ -17,7 +17,8 @@ class Log {
   explicit Log(const std::filesystem::path& file);
   /// Drops a former run's lines.
   void clear() { file_.clear(); }
-  /// {"wall_s": seconds since the log was opened, "event": event, ...details}; details that are no object become "details".
+  /// {"wall_s": seconds since the log was opened, "event": event, ...details}; details that are no object become
+  /// "details".
   void write(const std::string& event, nlohmann::json details);
   void close() { file_.close(); }
 

@@ -15,8 +15,8 @@ namespace rouleau::host {
 
 namespace {
 
-constexpr std::array<std::string_view, 10> run_files{"cells.csv",    "aggregates.csv", "series.csv",  "frames.h5",
-                                                     "frames.xmf",   "summary.json",   "report.html", "scene.json",
+constexpr std::array<std::string_view, 10> run_files{"cells.csv",     "aggregates.csv", "series.csv",  "frames.h5",
+                                                     "frames.xmf",    "summary.json",   "report.html", "scene.json",
                                                      "checkpoint.h5", "log.jsonl"};
 
 bool written_by_a_run(const std::string& name) {

@@ -19,16 +19,22 @@ namespace {
 std::string remedy(int error) {
   switch (error) {
     case ENOSPC:
-    case EDQUOT: return "free some space there, or write to another disk with --out";
-    case EFBIG: return "raise the file size limit (ulimit -f), or write fewer outputs";
+    case EDQUOT:
+      return "free some space there, or write to another disk with --out";
+    case EFBIG:
+      return "raise the file size limit (ulimit -f), or write fewer outputs";
     case EACCES:
     case EPERM:
-    case EROFS: return "choose a directory you may write to with --out";
+    case EROFS:
+      return "choose a directory you may write to with --out";
     case ENOENT:
-    case ENOTDIR: return "check that every part of the path before the last is a directory";
+    case ENOTDIR:
+      return "check that every part of the path before the last is a directory";
     case EMFILE:
-    case ENFILE: return "close other files, or raise the limit (ulimit -n)";
-    default: return "check the disk, or write to another one with --out";
+    case ENFILE:
+      return "close other files, or raise the limit (ulimit -n)";
+    default:
+      return "check the disk, or write to another one with --out";
   }
 }
 
@@ -96,7 +102,8 @@ void write_file(const std::filesystem::path& file, const std::string& content) {
     ::unlink(partial.c_str());
     fail_file(file, "cannot be written", error);
   }
-  // The new name itself lives in the folder. Some file systems cannot sync a folder (EINVAL); the file is whole all the same.
+  // The new name itself lives in the folder. Some file systems cannot sync a folder (EINVAL); the file is whole all the
+  // same.
   const Descriptor directory(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (directory.number() >= 0 && ::fsync(directory.number()) != 0 && errno != EINVAL && errno != EROFS)
     fail_file(folder, "cannot be synchronised with the disk", errno);

@@ -9,8 +9,8 @@
 
 namespace rouleau::host {
 
-/// Throws Error(input_output): the path, what was tried ("cannot be written"), the system's words for `error` (an errno)
-/// and what the user can do about it.
+/// Throws Error(input_output): the path, what was tried ("cannot be written"), the system's words for `error` (an
+/// errno) and what the user can do about it.
 [[noreturn]] void fail_file(const std::filesystem::path& file, const std::string& what, int error);
 
 /// Whole content of a file; throws Error(input_output).

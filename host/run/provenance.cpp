@@ -1,11 +1,15 @@
 #include "provenance.hpp"
 
+#include <sys/resource.h>
 #include <sys/utsname.h>
 
 #include <chrono>
 #include <ctime>
 #include <fstream>
 #include <thread>
+
+#include "input/document.hpp"
+#include "plugin/library.hpp"
 
 namespace rouleau::host {
 
@@ -33,6 +37,35 @@ std::string present_time() {
   char text[32];
   std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
   return text;
+}
+
+long peak_memory_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return usage.ru_maxrss * 1024L;
+}
+
+Summary describe(const Plan& plan, int threads) {
+  const Scene& scene = *plan.scene;
+  Summary s;
+  s.title = scene.title;
+  s.scene_file = scene.document->file();
+  s.scene_sha256 = sha256_of(scene.document->root().dump());
+  s.git = program_version();
+  s.machine = machine_description();
+  s.started = present_time();
+  s.threads = threads;
+  s.precision = scene.numerics.precision == Precision::f64 ? "f64" : "f32";
+  for (const PlannedModel* model : plan.active_models()) {
+    const Manifest& m = *model->manifest;
+    s.plugins.push_back({m.id, m.version, to_string(m.kind), m.library.string(), sha256(m.library)});
+  }
+  s.left_out = plan.left_out;
+  s.dimensionless = plan.dimensionless;
+  s.limits = plan.limits;
+  s.warnings = plan.warnings;
+  s.conversions = plan.conversions;
+  return s;
 }
 
 }  // namespace rouleau::host

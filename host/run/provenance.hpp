@@ -1,7 +1,10 @@
-// Where a result comes from: version of the program and machine.
+// Where a result comes from: scene, models, version of the program, machine.
 #pragma once
 
 #include <string>
+
+#include "plan.hpp"
+#include "summary.hpp"
 
 namespace rouleau::host {
 
@@ -11,5 +14,10 @@ std::string program_version();
 std::string machine_description();
 /// Present time, ISO 8601 in UTC.
 std::string present_time();
+/// Largest resident memory of this process so far.
+long peak_memory_bytes();
+
+/// The part of a summary that is known before the first step: scene, models with their hashes, plan, machine.
+Summary describe(const Plan& plan, int threads);
 
 }  // namespace rouleau::host

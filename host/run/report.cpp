@@ -11,8 +11,8 @@ namespace rouleau::host {
 extern const std::string_view report_template;  ///< report.template.html, embedded by report_template.cmake
 
 std::filesystem::path write_report(const std::filesystem::path& directory) {
-  // "</script>" or "<!--" inside a string of the data would end the data early: "<" is written as its escape. Everything
-  // the page shows is set as text, never as markup.
+  // "</script>" or "<!--" inside a string of the data would end the data early: "<" is written as its escape.
+  // Everything the page shows is set as text, never as markup.
   std::string data;
   for (const char c : report_data(directory).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace))
     data += c == '<' ? std::string("\\u003c") : std::string(1, c);

@@ -33,7 +33,8 @@ constexpr double micro = 1e6;
 json shown(double value) {
   if (!std::isfinite(value)) return nullptr;
   std::array<char, 32> digits{};
-  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::general, 5).ptr;
+  const auto end =
+      std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::general, 5).ptr;
   double rounded = 0;
   std::from_chars(digits.data(), end, rounded);
   return rounded;
@@ -109,10 +110,12 @@ void add_outlines(json& result, const OutlineSnapshot& outlines, std::size_t str
     bytes.push_back(static_cast<unsigned char>(bits >> 8));
   };
   for (std::size_t cell = 0; cell + 1 < outlines.first.size(); ++cell) {
-    const auto begin = static_cast<std::size_t>(outlines.first[cell]), end = static_cast<std::size_t>(outlines.first[cell + 1]);
+    const auto begin = static_cast<std::size_t>(outlines.first[cell]),
+               end = static_cast<std::size_t>(outlines.first[cell + 1]);
     // The middle of the bounding box keeps every node within half its extent.
     const auto middle = [&](const std::vector<double>& v) {
-      const auto [low, high] = std::minmax_element(v.begin() + static_cast<long>(begin), v.begin() + static_cast<long>(end));
+      const auto [low, high] =
+          std::minmax_element(v.begin() + static_cast<long>(begin), v.begin() + static_cast<long>(end));
       return std::round((*low + *high) / 2 / quantum) * quantum;
     };
     const double x = middle(outlines.x), y = middle(outlines.y);
@@ -218,7 +221,8 @@ json report_data(const std::filesystem::path& directory) {
   if (reader && outputs > 0) {
     const auto outlines = reader->outlines(0);
     const std::size_t nodes = outlines.x.size(), cell_count = std::max<std::size_t>(1, count);
-    while (selection.size() * nodes / stride > most_points && nodes / cell_count / (stride + 1) >= fewest_nodes) ++stride;
+    while (selection.size() * nodes / stride > most_points && nodes / cell_count / (stride + 1) >= fewest_nodes)
+      ++stride;
     const std::size_t per_output = std::max<std::size_t>(1, nodes / stride);
     if (selection.size() * per_output > most_points)
       selection = shown_outputs(aggregate_count, std::max<std::size_t>(50, most_points / per_output));
@@ -232,8 +236,8 @@ json report_data(const std::filesystem::path& directory) {
   const auto stages = series.texts("stage_name");
   data["stage"] = json::array();
   for (const std::size_t i : selection) data["stage"].push_back(stages[i]);
-  for (const char* name : {"aggregate_count", "relative_viscosity", "particle_stress_Pa", "mach_max", "area_drift_max",
-                           "mass_drift"})
+  for (const char* name :
+       {"aggregate_count", "relative_viscosity", "particle_stress_Pa", "mach_max", "area_drift_max", "mass_drift"})
     data["series"][name] = picked(series.numbers(name), selection);
   data["cells"] = count > 0 && outputs > 0 ? cell_data(cells, count, selection) : json(nullptr);
   data["outlines"] = reader && !selection.empty() ? outline_data(*reader, selection, stride) : json(nullptr);

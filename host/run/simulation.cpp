@@ -1,7 +1,6 @@
 #include "simulation.hpp"
 
 #include <omp.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <chrono>
@@ -9,9 +8,9 @@
 #include <exception>
 #include <optional>
 
-#include "input/document.hpp"
+#include "aggregate_history.hpp"
 #include "observer.hpp"
-#include "plugin/library.hpp"
+#include "pass_costs.hpp"
 #include "progress.hpp"
 #include "provenance.hpp"
 #include "schedule.hpp"
@@ -37,6 +36,7 @@ class Simulation {
         progress_(options.quiet) {}
 
   Summary run() {
+    described_ = describe(plan_, options_.threads);
     directory_.log("started", {{"title", scene_.title}, {"threads", options_.threads}});
     for (const std::string& warning : plan_.warnings) directory_.log("warning", {{"message", warning}});
     if (scene_.numerics.precision == Precision::f64) {
@@ -139,17 +139,10 @@ class Simulation {
       passes[i].run(worker);
 #pragma omp barrier
       if (worker.first()) {
-        PassCost& cost = cost_of(passes[i].name);
-        cost.wall_s += seconds_since(start);
         // Phases of one pass follow each other; together they are one call.
-        if (i == 0 || passes[i - 1].name != passes[i].name) ++cost.calls;
+        costs_.add(passes[i].name, seconds_since(start), i == 0 || passes[i - 1].name != passes[i].name);
       }
     }
-  }
-
-  PassCost& cost_of(const std::string& pass) {
-    const auto found = std::find_if(costs_.begin(), costs_.end(), [&](const PassCost& c) { return c.name == pass; });
-    return found != costs_.end() ? *found : costs_.emplace_back(PassCost{pass, 0, 0});
   }
 
   /// One thread, forces computed: outputs, checks, and whether the stage ends here.
@@ -170,8 +163,7 @@ class Simulation {
       if (cells_due || fields_due || last) write(solver, fields_due || (last && !scene_.output.fields.never()));
       momentum_residual_ = std::max(momentum_residual_, Observer::momentum_residual(membranes_));
       progress_.update(progress(solver.setting()));
-      observe_wall_ += seconds_since(start);
-      ++observe_calls_;
+      costs_.add("observe and check", seconds_since(start), true);
     }
     stage_ending_ = ending;
     if (ending == Ending::none) {
@@ -256,27 +248,8 @@ class Simulation {
     snapshot.step = steps_;
     snapshot.time = time_at(solver.setting());
     snapshot.strain = strain_at(solver.setting());
-    follow_aggregates(snapshot);
+    history_.follow(snapshot);
     directory_.write(snapshot);
-  }
-
-  void follow_aggregates(const Snapshot& snapshot) {
-    if (snapshot.cells.empty()) return;
-    AggregateEvent event{snapshot.strain, snapshot.time, snapshot.aggregate_count, {}, false};
-    std::vector<int> slot(snapshot.cells.size(), -1);
-    for (const CellSnapshot& cell : snapshot.cells) {
-      int& s = slot[static_cast<std::size_t>(cell.aggregate)];
-      if (s < 0) {
-        s = static_cast<int>(event.members.size());
-        event.members.emplace_back();
-      }
-      event.members[static_cast<std::size_t>(s)].push_back(cell.cell);
-      event.through_image = event.through_image || cell.through_image;
-    }
-    if (history_.empty() || history_.back().members != event.members ||
-        history_.back().through_image != event.through_image) {
-      history_.push_back(std::move(event));
-    }
   }
 
   [[nodiscard]] double time_at(const StageSetting& s) const {
@@ -298,47 +271,27 @@ class Simulation {
             strain_at(setting),
             observer_.mach_max(),
             observer_.area_drift_max(),
-            history_.empty() ? 0 : history_.back().count};
+            history_.count()};
   }
 
   Summary summarise() {
-    Summary s;
+    Summary s = described_;
     s.status = failure_ ? "diverged" : (stage_ending_ == Ending::interrupted ? "interrupted" : "completed");
     s.failure = failure_;
-    s.title = scene_.title;
-    s.git = program_version();
-    s.started = started_;
-    s.scene_file = scene_.document->file();
-    s.scene_sha256 = sha256(directory_.path() / "scene.json");
-    s.machine = machine_description();
     s.steps = steps_;
     s.strain = strain_;
     s.simulated_time_s = time_;
     s.wall_s = wall_;
     s.steps_per_s = wall_ > 0 ? static_cast<double>(steps_) / wall_ : 0;
     s.mlups = s.steps_per_s * scene_.domain.nodes[0] * scene_.domain.nodes[1] / 1e6;
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    s.peak_rss_bytes = usage.ru_maxrss * 1024L;
-    s.threads = options_.threads;
-    s.precision = scene_.numerics.precision == Precision::f64 ? "f64" : "f32";
-    for (const PlannedModel* model : plan_.active_models()) {
-      const Manifest& m = *model->manifest;
-      s.plugins.push_back({m.id, m.version, to_string(m.kind), m.library.string(), sha256(m.library)});
-    }
-    s.passes = costs_;
-    s.passes.push_back({"observe and check", observe_wall_, observe_calls_});
-    s.left_out = plan_.left_out;
-    s.dimensionless = plan_.dimensionless;
+    s.peak_rss_bytes = peak_memory_bytes();
+    s.passes = costs_.passes();
     s.dimensionless["mach_max"] = observer_.mach_max();
-    s.limits = plan_.limits;
     s.mass_drift = observer_.mass_drift();
     s.area_drift_max = observer_.area_drift_max();
     s.momentum_residual = momentum_residual_;
-    s.aggregates_final = history_.empty() ? 0 : history_.back().count;
-    s.aggregate_history = history_;
-    s.warnings = plan_.warnings;
-    s.conversions = plan_.conversions;
+    s.aggregates_final = history_.count();
+    s.aggregate_history = history_.events();
     s.stages = stages_;
     return s;
   }
@@ -358,12 +311,11 @@ class Simulation {
   Membranes rest_watch_;  ///< positions at the start of the window in which nothing may move
   long rest_watch_step_ = 0;
   std::optional<Failure> failure_;
-  std::vector<AggregateEvent> history_;
-  std::vector<PassCost> costs_;
-  double observe_wall_ = 0, momentum_residual_ = 0;
-  long observe_calls_ = 0;
+  AggregateHistory history_;
+  PassCosts costs_;
+  double momentum_residual_ = 0;
   nlohmann::json stages_ = nlohmann::json::array();
-  std::string started_ = present_time();
+  Summary described_;  ///< what is known before the first step
 };
 
 }  // namespace

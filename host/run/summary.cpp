@@ -35,8 +35,8 @@ json to_json(const AggregateEvent& event) {
 /// Every name a script may rely on is there, as null where the run did not define it.
 json dimensionless(const json& given) {
   json all = given.is_object() ? given : json::object();
-  for (const char* name : {"reynolds_physical", "reynolds_simulated", "capillary", "adhesion_number", "viscosity_ratio",
-                           "mach_max"})
+  for (const char* name :
+       {"reynolds_physical", "reynolds_simulated", "capillary", "adhesion_number", "viscosity_ratio", "mach_max"})
     if (!all.contains(name)) all[name] = nullptr;
   for (auto& value : all)
     if (value.is_number_float()) value = number(value.get<double>());

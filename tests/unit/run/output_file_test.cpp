@@ -32,7 +32,8 @@ std::string input_output_error(const std::function<void()>& action) {
 }
 
 /// Runs `action` in a child that may write files of `bytes` at most: stands for a full disk, which root has none of.
-/// Returns the child's exit code: 0 when action threw Error(input_output) naming the trouble, and nothing crashed after.
+/// Returns the child's exit code: 0 when action threw Error(input_output) naming the trouble, and nothing crashed
+/// after.
 int with_file_limit(rlim_t bytes, const std::function<void()>& action) {
   const pid_t child = ::fork();
   if (child == 0) {
@@ -43,7 +44,8 @@ int with_file_limit(rlim_t bytes, const std::function<void()>& action) {
     try {
       action();
     } catch (const Error& error) {
-      code = error.code() == ExitCode::input_output && std::string(error.what()).find("File too large") != std::string::npos
+      code = error.code() == ExitCode::input_output &&
+                     std::string(error.what()).find("File too large") != std::string::npos
                  ? 0
                  : 2;
     } catch (...) {
@@ -80,7 +82,8 @@ TEST_CASE("a path through a file is refused with the path, the system's words an
   const ScratchFolder folder;
   write_file(folder.path() / "file", "");
   const auto message = input_output_error([&] { write_file(folder.path() / "file/summary.json", "{}"); });
-  CHECK_THAT(message, Contains("file/summary.json") && Contains("Not a directory") && Contains("every part of the path"));
+  CHECK_THAT(message,
+             Contains("file/summary.json") && Contains("Not a directory") && Contains("every part of the path"));
   const Scene scene = small_scene();
   CHECK_THAT(input_output_error([&] { const RunDirectory run(folder.path() / "file/run", scene); }),
              Contains("file/run") && Contains("Not a directory"));

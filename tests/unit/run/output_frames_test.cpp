@@ -78,8 +78,10 @@ TEST_CASE("frames.h5 holds the outlines as given, with units") {
     CHECK(stored.tension == given.tension);
   }
   const Hdf5Handle file(H5Fopen((folder.path() / "frames.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-  const std::map<std::string, std::string> units{{"membranes/points", "m"},      {"membranes/tension", "N/m"},
-                                                 {"membranes/first", "1"},       {"fields/velocity", "m/s"},
+  const std::map<std::string, std::string> units{{"membranes/points", "m"},
+                                                 {"membranes/tension", "N/m"},
+                                                 {"membranes/first", "1"},
+                                                 {"fields/velocity", "m/s"},
                                                  {"fields/viscosity", "Pa s"}};
   for (const auto& [dataset, unit] : units)
     CHECK(text_attribute(file.id(), ("/frames/000001/" + dataset).c_str(), "unit") == unit);
@@ -118,7 +120,8 @@ TEST_CASE("frames.xmf is well-formed and every dataset it names exists with the 
   const Hdf5Handle file(H5Fopen((folder.path() / "frames.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   const std::regex item(R"re(<DataItem Dimensions="([0-9 ]+)"[^>]*Format="HDF">frames\.h5:([^<]+)</DataItem>)re");
   int items = 0;
-  for (auto match = std::sregex_iterator(xml.begin(), xml.end(), item); match != std::sregex_iterator(); ++match, ++items) {
+  for (auto match = std::sregex_iterator(xml.begin(), xml.end(), item); match != std::sregex_iterator();
+       ++match, ++items) {
     INFO(match->str());
     const auto stored = shape(file.id(), (*match)[2]);
     REQUIRE_FALSE(stored.empty());
@@ -129,8 +132,8 @@ TEST_CASE("frames.xmf is well-formed and every dataset it names exists with the 
     CHECK(said == there);
   }
   CHECK(items == 5 + 5 + 2);
-  CHECK(xml.find("TopologyType=\"Polyline\"") != std::string::npos);  // equal cells
-  CHECK(xml.find("TopologyType=\"Mixed\"") != std::string::npos);     // unequal ones
+  CHECK(xml.find("TopologyType=\"Polyline\"") != std::string::npos);        // equal cells
+  CHECK(xml.find("TopologyType=\"Mixed\"") != std::string::npos);           // unequal ones
   CHECK(xml.find(">0 1.25e-06 1.25e-06</DataItem>") != std::string::npos);  // the first node lies half a spacing inside
 }
 
@@ -152,7 +155,8 @@ TEST_CASE("every outline of the topology is closed") {
 
 TEST_CASE("HDF5's trouble with a file is told with the path and the system's words") {
   const ScratchFolder folder;
-  CHECK_THROWS_WITH(FrameReader(folder.path() / "none.h5"), Catch::Contains("none.h5") && Catch::Contains("No such file"));
+  CHECK_THROWS_WITH(FrameReader(folder.path() / "none.h5"),
+                    Catch::Contains("none.h5") && Catch::Contains("No such file"));
   write_file(folder.path() / "text.h5", "this is no HDF5 file");
   CHECK_THROWS_WITH(FrameReader(folder.path() / "text.h5"), Catch::Contains("text.h5") && Catch::Contains("HDF5 says"));
 }

@@ -46,8 +46,8 @@ TEST_CASE("the tables hold what the snapshots say") {
 
   const StoredTable cells(folder.path() / "cells.csv");
   REQUIRE(cells.rows() == 4);
-  for (const char* column : {"step", "time_s", "strain", "cell", "type", "x_m", "y_m", "angle_rad", "deformation", "area_m2",
-                             "perimeter_m", "min_gap_m", "aggregate"})
+  for (const char* column : {"step", "time_s", "strain", "cell", "type", "x_m", "y_m", "angle_rad", "deformation",
+                             "area_m2", "perimeter_m", "min_gap_m", "aggregate"})
     CHECK_NOTHROW(cells.texts(column));
   CHECK(cells.numbers("strain")[3] == 7.0 / 3);
   CHECK(cells.numbers("angle_rad")[0] == std::numbers::pi / 3);

@@ -1,0 +1,23 @@
+// How aggregates form and come apart: one event for each change.
+#pragma once
+
+#include <vector>
+
+#include "snapshot.hpp"
+#include "summary.hpp"
+
+namespace rouleau::host {
+
+class AggregateHistory {
+ public:
+  /// Adds an event if members or contacts across the periodic border differ from those before.
+  void follow(const Snapshot& snapshot);
+  [[nodiscard]] const std::vector<AggregateEvent>& events() const { return events_; }
+  /// Aggregates at the last snapshot.
+  [[nodiscard]] int count() const { return events_.empty() ? 0 : events_.back().count; }
+
+ private:
+  std::vector<AggregateEvent> events_;
+};
+
+}  // namespace rouleau::host

@@ -1,0 +1,28 @@
+// Where the time of a run goes, pass by pass.
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "summary.hpp"
+
+namespace rouleau::host {
+
+class PassCosts {
+ public:
+  /// Adds wall-clock time to a pass; `call`: it also begins a call.
+  void add(const std::string& pass, double wall_s, bool call) {
+    auto found = std::find_if(passes_.begin(), passes_.end(), [&](const PassCost& cost) { return cost.name == pass; });
+    if (found == passes_.end()) found = passes_.insert(found, PassCost{pass, 0, 0});
+    found->wall_s += wall_s;
+    found->calls += call ? 1 : 0;
+  }
+  /// In the order in which they first ran.
+  [[nodiscard]] const std::vector<PassCost>& passes() const { return passes_; }
+
+ private:
+  std::vector<PassCost> passes_;
+};
+
+}  // namespace rouleau::host

@@ -1,0 +1,292 @@
+"""The program as a user meets it: commands, exit codes, messages and files. Python's standard library only.
+
+usage: check_commands.py ROULEAU PLUGIN_FOLDER SOURCE_FOLDER
+"""
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+PROGRAM, PLUGINS, SOURCE = (Path(a).resolve() for a in sys.argv[1:4])
+SCENE = SOURCE / "scenes" / "four-cells-shear.json"
+SHORT = ["--max-steps", "20", "--quiet"]
+
+
+class Installation:
+    """A copy of the program and its plugins that a test may damage."""
+
+    def __init__(self, folder):
+        self.root = Path(folder) / "installation"
+        (self.root / "bin").mkdir(parents=True)
+        shutil.copy(PROGRAM, self.root / "bin" / "rouleau")
+        self.plugins = self.root / "lib" / "rouleau" / "plugins"
+        shutil.copytree(PLUGINS, self.plugins)
+        self.program = self.root / "bin" / "rouleau"
+
+    def run(self, *arguments, **options):
+        environment = dict(os.environ)
+        environment.pop("ROULEAU_PLUGIN_PATH", None)
+        return subprocess.run([self.program, *map(str, arguments)], capture_output=True, text=True, timeout=300,
+                              env=environment, **options)
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.path = Path(self.folder.name)
+        self.rouleau = Installation(self.path)
+
+    def scene(self, **changes):
+        """The four-cell scene with top-level keys replaced, as a file."""
+        scene = json.loads(SCENE.read_text())
+        scene.update(changes)
+        file = self.path / "scene.json"
+        file.write_text(json.dumps(scene))
+        return file
+
+    def assert_stops(self, result, code, *words):
+        self.assertEqual(result.returncode, code, result.stderr)
+        for word in words:
+            self.assertIn(word, result.stderr)
+
+
+class Physics_comes_from_plugins(Case):
+    """The host holds no collision, membrane or interaction formula."""
+
+    LIBRARIES = {
+        "collision/trt": "trt",
+        "membrane/neo-hookean": "neo-hookean",
+        "membrane/bending": "bending",
+        "interaction/morse": "morse",
+    }
+
+    def test_without_its_library_a_scene_that_names_a_model_stops_with_the_loaders_own_words(self):
+        for folder, name in self.LIBRARIES.items():
+            with self.subTest(name):
+                library = self.rouleau.plugins / folder / f"lib{name}.so"
+                kept = library.rename(self.path / "kept.so")
+                result = self.rouleau.run("run", SCENE, "--out", self.path / "run", *SHORT)
+                self.assert_stops(result, 3, f"{name}.json", str(library), "No such file")
+                self.assertFalse((self.path / "run" / "summary.json").exists())
+                kept.rename(library)
+
+    def test_a_library_that_is_no_library_is_refused_with_the_loaders_own_words(self):
+        library = self.rouleau.plugins / "interaction/morse/libmorse.so"
+        library.write_text("this is text\n")
+        self.assert_stops(self.rouleau.run("plan", SCENE), 3, "morse.json", str(library))
+
+    def test_scenes_that_do_not_name_it_run_on(self):
+        for folder, name in self.LIBRARIES.items():
+            (self.rouleau.plugins / folder / f"lib{name}.so").unlink()
+        scene = self.scene(fluid={"density": "1 g/cm3", "viscosity": "1.2 cP", "collision": {"model": "bgk"}},
+                           cell_types={}, cells=[], interactions=[],
+                           stages=[{"name": "shear", "shear_rate": "20 1/s", "strain": 1}])
+        result = self.rouleau.run("run", scene, "--out", self.path / "run", *SHORT)
+        self.assertEqual(result.returncode, 0, result.stderr)
+
+    def test_an_inactive_interaction_is_left_out_and_its_library_not_opened(self):
+        (self.rouleau.plugins / "interaction/morse/libmorse.so").unlink()
+        result = self.rouleau.run("run", SCENE, "--set", '/interactions/0/parameters/depth="0 J/m2"', "--out",
+                                  self.path / "run", *SHORT)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        summary = json.loads((self.path / "run" / "summary.json").read_text())
+        self.assertIn("interaction morse", [o["what"] for o in summary["left_out"]])
+        self.assertNotIn("morse", [p["id"] for p in summary["plugins"]])
+
+    def test_no_membrane_or_interaction_library_is_mapped_without_cells(self):
+        scene = self.scene(cell_types={}, cells=[], interactions=[],
+                           stages=[{"name": "shear", "shear_rate": "20 1/s", "strain": 1000}])
+        process = subprocess.Popen([self.rouleau.program, "run", scene, "--out", self.path / "run", "--quiet"],
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        try:
+            maps = ""
+            for _ in range(200):
+                maps = Path(f"/proc/{process.pid}/maps").read_text()
+                if "libtrt.so" in maps:
+                    break
+                time.sleep(0.05)
+            time.sleep(0.3)
+            maps = Path(f"/proc/{process.pid}/maps").read_text()
+            self.assertIn("libtrt.so", maps)
+            for name in ("neo-hookean", "bending", "morse", "bgk"):
+                self.assertNotIn(f"lib{name}.so", maps)
+        finally:
+            process.send_signal(signal.SIGINT)
+            process.wait(timeout=60)
+        self.assertEqual(process.returncode, 130)
+
+
+class Errors_name_what_is_wrong(Case):
+    def test_an_id_nobody_offers_is_bad_input_with_the_nearest_name(self):
+        result = self.rouleau.run("plan", SCENE, "--set", "/interactions/0/model=morze")
+        self.assert_stops(result, 2, "morze", "morse", str(self.rouleau.plugins))
+
+    def test_a_model_of_another_kind_is_bad_input(self):
+        result = self.rouleau.run("plan", SCENE, "--set", "/interactions/0/model=bending")
+        self.assert_stops(result, 2, "bending", "membrane")
+
+    def test_an_unknown_parameter_is_explained_with_the_models_list(self):
+        result = self.rouleau.run("plan", SCENE, "--set", "/interactions/0/parameters/detph=1")
+        self.assert_stops(result, 2, "detph", "depth", "zero_force_distance")
+
+    def test_a_parameter_with_the_wrong_unit_names_place_value_and_remedy(self):
+        file = self.scene()
+        text = json.dumps(json.loads(file.read_text()), indent=2).replace("6e-3 dyn/cm", "6 Pa")
+        file.write_text(text)
+        line = next(i for i, l in enumerate(text.splitlines(), 1) if "6 Pa" in l)
+        result = self.rouleau.run("plan", file)
+        self.assert_stops(result, 2, f":{line}:", "/cell_types/rbc/membrane/0/parameters/shear_modulus", '"6 Pa"',
+                          "pressure", "N/m")
+
+    def test_a_parameter_outside_its_limits_is_bad_input(self):
+        result = self.rouleau.run("plan", SCENE, "--set", '/interactions/0/parameters/depth="-1 J/m2"')
+        self.assert_stops(result, 2, "depth", "-1", "0")
+
+    def test_two_manifests_with_one_id_are_refused_naming_both(self):
+        shutil.copytree(self.rouleau.plugins / "interaction/morse", self.rouleau.plugins / "interaction/twin")
+        result = self.rouleau.run("plan", SCENE)
+        self.assert_stops(result, 3, "interaction/morse/morse.json", "interaction/twin/morse.json")
+
+    def test_overlapping_cells_name_both_entries(self):
+        result = self.rouleau.run("plan", SCENE, "--set", '/cells/0/row/spacing="1 um"')
+        self.assert_stops(result, 2, "/cells/0", "overlap")
+
+    def test_a_cell_through_a_wall_is_bad_input(self):
+        result = self.rouleau.run("plan", SCENE, "--set", '/cells/0/row/center=["25 um","2 um"]')
+        self.assert_stops(result, 2, "/cells/0", "wall")
+
+    def test_an_output_folder_that_cannot_be_made_is_an_input_output_error(self):
+        (self.path / "file").write_text("")
+        result = self.rouleau.run("run", SCENE, "--out", self.path / "file" / "run", *SHORT)
+        self.assert_stops(result, 4, str(self.path / "file"))
+
+    def test_a_scene_that_does_not_exist_is_an_input_output_error(self):
+        self.assert_stops(self.rouleau.run("plan", self.path / "nowhere.json"), 4, "nowhere.json")
+
+    def test_bad_usage_exits_with_2_and_the_nearest_name(self):
+        self.assert_stops(self.rouleau.run("rum", SCENE), 2, "run")
+        self.assert_stops(self.rouleau.run("run", SCENE, "--thread", "2"), 2, "--threads")
+        self.assert_stops(self.rouleau.run("run"), 2, "scene")
+        self.assert_stops(self.rouleau.run("run", SCENE, "--threads", "0"), 2, "--threads")
+        self.assert_stops(self.rouleau.run("plan", SCENE, "--set", "/fluid/densty=1"), 2, "densty", "density")
+
+
+class A_run_that_goes_bad_stops_before_garbage_is_written(Case):
+    def stop(self, reason, *settings):
+        arguments = [a for s in settings for a in ("--set", s)]
+        result = self.rouleau.run("run", SCENE, "--out", self.path / reason, "--quiet", *arguments)
+        self.assertEqual(result.returncode, 1, result.stdout + result.stderr)
+        self.assertIn(reason, result.stderr)
+        summary = json.loads((self.path / reason / "summary.json").read_text())
+        self.assertEqual(summary["status"], "diverged")
+        failure = summary["failure"]
+        self.assertEqual(failure["reason"], reason)
+        for key in ("step", "place_m", "cell", "value", "limit", "message", "remedy"):
+            self.assertIn(key, failure)
+        self.assertTrue((self.path / reason / "report.html").exists())
+        rows = (self.path / reason / "cells.csv").read_text().lower()
+        self.assertNotIn("nan", rows)
+        return failure
+
+    def test_a_node_that_moves_too_far(self):
+        failure = self.stop("node_step", "/stages/0/density_factor=2e5")
+        self.assertGreaterEqual(failure["cell"], 0)
+        self.assertGreater(failure["value"], 0.5)
+
+    def test_a_flow_too_fast_for_the_lattice(self):
+        self.stop("mach", '/stages/1/shear_rate="600 1/s"', '/stages/0/duration="1 ms"')
+
+    def test_area_that_drifts(self):
+        failure = self.stop("area_drift", "/checks/area_drift=2e-5")
+        self.assertGreater(failure["value"], failure["limit"])
+
+    def test_membranes_that_cross(self):
+        # Bending and stretching all but removed: attraction folds the membranes through each other.
+        self.stop("crossing", '/cell_types/rbc/membrane/0/parameters/shear_modulus="1e-8 N/m"',
+                  '/cell_types/rbc/membrane/1/parameters/modulus="1e-22 J"', "/checks/area_drift=0.5",
+                  '/interactions/0/parameters/depth="2e-6 J/m2"', "/stages/0/density_factor=3000")
+
+
+class Commands_do_what_they_say(Case):
+    def test_help_is_everywhere_and_has_an_example(self):
+        for command in ("run", "plan", "plugins", "report"):
+            result = self.rouleau.run(command, "--help")
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertIn("xample", result.stdout)
+        self.assertEqual(self.rouleau.run("--help").returncode, 0)
+
+    def test_plan_prints_json_with_what_is_left_out_and_why(self):
+        result = self.rouleau.run("plan", SCENE, "--json")
+        plan = json.loads(result.stdout)
+        for key in ("conversions", "dimensionless", "limits", "passes", "left_out", "estimate", "models"):
+            self.assertIn(key, plan)
+        self.assertAlmostEqual(plan["dimensionless"]["reynolds_physical"], 2.548e-4, delta=1e-6)
+
+    def test_plugins_lists_manifests_and_refused_ones_with_reason(self):
+        (self.rouleau.plugins / "interaction/morse/morse.json").write_text('{"manifest": 1, "id": "morse"}')
+        result = self.rouleau.run("plugins")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("neo-hookean", result.stdout)
+        self.assertIn("morse.json", result.stdout)
+        detail = self.rouleau.run("plugins", "neo-hookean")
+        self.assertIn("shear_modulus", detail.stdout)
+        self.assertIn("N/m", detail.stdout)
+
+    def test_a_run_leaves_every_file_of_the_contract(self):
+        out = self.path / "run"
+        result = self.rouleau.run("run", SCENE, "--out", out, "--quiet", "--set", "/stages/0/duration=0.02", "--set",
+                                  "/stages/1/strain=0.3")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        for name in ("summary.json", "cells.csv", "aggregates.csv", "frames.h5", "frames.xmf", "log.jsonl", "report.html"):
+            self.assertTrue((out / name).stat().st_size > 0, name)
+        summary = json.loads((out / "summary.json").read_text())
+        for key in ("status", "steps", "strain", "simulated_time_s", "wall_s", "steps_per_s", "mlups", "peak_rss_bytes",
+                    "threads", "precision", "git", "scene_sha256", "plugins", "passes", "left_out", "dimensionless",
+                    "limits", "conservation", "aggregates_final", "aggregate_history"):
+            self.assertIn(key, summary)
+        header = (out / "cells.csv").read_text().splitlines()[0].split(",")
+        for name in ("step", "time_s", "strain", "cell", "type", "x_m", "y_m", "angle_rad", "deformation", "area_m2",
+                     "perimeter_m", "min_gap_m", "aggregate"):
+            self.assertIn(name, header)
+        for line in (out / "log.jsonl").read_text().splitlines():
+            json.loads(line)
+        self.assertEqual(self.rouleau.run("report", out).returncode, 0)
+
+    def test_bits_do_not_depend_on_threads(self):
+        tables = []
+        for threads in (1, 2):
+            out = self.path / str(threads)
+            result = self.rouleau.run("run", SCENE, "--out", out, "--quiet", "--threads", threads, "--set",
+                                      "/stages/0/duration=0.02", "--set", "/stages/1/strain=0.1")
+            self.assertEqual(result.returncode, 0, result.stderr)
+            tables.append((out / "cells.csv").read_bytes() + (out / "series.csv").read_bytes())
+        self.assertEqual(tables[0], tables[1])
+
+    def test_an_interrupted_run_says_so_and_keeps_what_it_has(self):
+        out = self.path / "run"
+        process = subprocess.Popen([self.rouleau.program, "run", SCENE, "--out", out, "--quiet"],
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+        for _ in range(200):
+            if (out / "cells.csv").exists():
+                break
+            time.sleep(0.05)
+        time.sleep(0.5)
+        process.send_signal(signal.SIGTERM)
+        _, errors = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 130, errors)
+        self.assertEqual(json.loads((out / "summary.json").read_text())["status"], "interrupted")
+
+
+if __name__ == "__main__":
+    program = unittest.main(argv=sys.argv[:1], verbosity=2, exit=False)
+    failed = len(program.result.failures) + len(program.result.errors)
+    print(f"{program.result.testsRun - failed} passed, {failed} failed")
+    sys.exit(1 if failed else 0)

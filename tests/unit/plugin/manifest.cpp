@@ -1,0 +1,170 @@
+// The reading of manifests: what a manifest says, and how a wrong one is refused.
+#include "plugin/manifest.hpp"
+
+#include "input/document.hpp"
+#include "plugin_folder.hpp"
+
+using namespace rouleau::host;
+using namespace rouleau::host::test;
+using Catch::Matchers::Contains;
+using nlohmann::json;
+
+namespace {
+
+/// One way to break the good manifest: a JSON Patch, where the fault is, and words that the message must hold.
+struct Fault {
+  const char* patch;
+  const char* pointer;
+  std::vector<std::string> words;
+};
+
+Error refusal(const json& manifest) {
+  const PluginFolder folder;
+  const auto file = folder.write("broken.json", manifest);
+  return thrown_by([&] { read_manifest(file, Units()); });
+}
+
+const std::vector<Fault> faults = {
+    {R"([{"op": "remove", "path": "/id"}])", "", {"id"}},
+    {R"([{"op": "replace", "path": "/manifest", "value": 2}])", "/manifest", {"1"}},
+    {R"([{"op": "replace", "path": "/abi", "value": 7}])", "/abi", {"1"}},
+    {R"([{"op": "replace", "path": "/kind", "value": "membran"}])", "/kind", {"membrane"}},
+    {R"([{"op": "replace", "path": "/id", "value": "Good One"}])", "/id", {"Good One"}},
+    {R"([{"op": "replace", "path": "/version", "value": "1.0"}])", "/version", {"1.0"}},
+    {R"([{"op": "replace", "path": "/library", "value": "../libgood.so"}])", "/library", {"../libgood.so"}},
+    {R"([{"op": "replace", "path": "/library", "value": ".."}])", "/library", {".."}},
+    {R"([{"op": "add", "path": "/nedes", "value": []}])", "/nedes", {"nedes", "needs"}},
+    {R"([{"op": "add", "path": "/parameters/0/minimun", "value": 1}])", "/parameters/0/minimun", {"minimum"}},
+    {R"([{"op": "replace", "path": "/parameters/0/unit", "value": "furlongs^"}])", "/parameters/0/unit", {"furlongs^"}},
+    {R"([{"op": "remove", "path": "/parameters/0/unit"}])", "/parameters/0", {"unit", "choices"}},
+    {R"([{"op": "replace", "path": "/parameters/1/name", "value": "depth"}])", "/parameters/1/name", {"depth", "two"}},
+    {R"([{"op": "add", "path": "/parameters/0/default", "value": 101}])",
+     "/parameters/0/default",
+     {"101", "at most 100 uJ/m2"}},
+    {R"([{"op": "replace", "path": "/parameters/1/default", "value": 0}])",
+     "/parameters/1/default",
+     {"0", "above 0 1/um"}},
+    {R"([{"op": "replace", "path": "/parameters/1/default", "value": "3 1/um"}])",
+     "/parameters/1/default",
+     {"plain number", "1/um"}},
+    {R"([{"op": "replace", "path": "/parameters/0/maximum", "value": -1}])",
+     "/parameters/0/maximum",
+     {"minimum", "maximum"}},
+    {R"([{"op": "replace", "path": "/parameters/0/usual", "value": [1, 1000]}])", "/parameters/0/usual", {"limits"}},
+    {R"([{"op": "replace", "path": "/parameters/0/usual", "value": [2, 1]}])", "/parameters/0/usual", {"smaller"}},
+    {R"([{"op": "replace", "path": "/parameters/3/default", "value": "smoth"}])",
+     "/parameters/3/default",
+     {"smoth", "sharp, smooth"}},
+    {R"([{"op": "add", "path": "/parameters/3/minimum", "value": 0}])", "/parameters/3/minimum", {"choices"}},
+    {R"([{"op": "replace", "path": "/needs/0", "value": "distanse"}])",
+     "/needs/0",
+     {"distanse", "did you mean \"distance\"?", "normal_velocity"}},
+    {R"([{"op": "replace", "path": "/gives", "value": ["tension"]}])", "/gives/0", {"tension", "interaction"}},
+    {R"([{"op": "replace", "path": "/gives", "value": ["energy"]}])", "/gives", {"force"}},
+    {R"([{"op": "replace", "path": "/inactive_when", "value": {"dept": 0}}])",
+     "/inactive_when/dept",
+     {"dept", "did you mean \"depth\"?", "depth, decay, temperature, form"}},
+    {R"([{"op": "replace", "path": "/inactive_when/depth", "value": -1}])", "/inactive_when/depth", {"at least 0"}},
+    {R"([{"op": "replace", "path": "/inactive_when/depth", "value": "none"}])", "/inactive_when/depth", {"number"}},
+    {R"([{"op": "replace", "path": "/inactive_when", "value": {"form": "round"}}])",
+     "/inactive_when/form",
+     {"round", "sharp, smooth"}},
+    {R"([{"op": "add", "path": "/state", "value": [{"name": "age", "unit": "sek"}]}])", "/state/0/unit", {"sek"}},
+    {R"([{"op": "add", "path": "/state", "value": [{"name": "age", "unit": "s"}, {"name": "age", "unit": "s"}]}])",
+     "/state/1/name",
+     {"age", "two"}},
+    {R"([{"op": "add", "path": "/checks", "value": [{"inputs": {"distance": 1}, "outputs": {"forces": 1}}]}])",
+     "/checks/0/outputs/forces",
+     {"forces", "did you mean \"force\"?"}},
+    {R"([{"op": "add", "path": "/claims", "value": {"conservativ": true}}])", "/claims/conservativ", {"conservative"}},
+};
+
+}  // namespace
+
+TEST_CASE("every broken manifest is refused at the place of its fault with words that help") {
+  for (const Fault& fault : faults) {
+    INFO(fault.patch);
+    const Error error = refusal(good_manifest().patch(json::parse(fault.patch)));
+    INFO(error.what());
+    CHECK(error.code() == ExitCode::plugin_refused);
+    CHECK(error.place().pointer == fault.pointer);
+    CHECK(error.place().line > 0);
+    for (const auto& word : fault.words) CHECK_THAT(error.what(), Contains(word));
+  }
+}
+
+TEST_CASE("a manifest's numbers become SI and its order of parameters is kept") {
+  const PluginFolder folder;
+  const Manifest manifest = read_manifest(folder.write("good.json", good_manifest()), Units());
+  REQUIRE(manifest.parameters.size() == 4);
+  CHECK(manifest.kind == ModelKind::interaction);
+  CHECK(manifest.library == folder.path() / "libgood.so");
+  CHECK(manifest.parameters[0].maximum.value() == Approx(1e-4).epsilon(1e-14));
+  CHECK_FALSE(manifest.parameters[0].default_value);
+  CHECK(manifest.parameters[1].default_value.value() == Approx(3.84e6).epsilon(1e-14));
+  CHECK(manifest.parameters[1].dimension == Dimension{{0, -1, 0, 0, 0, 0}});
+  CHECK(manifest.parameters[2].dimension == Dimension{{0, 0, 0, 1, 0, 0}});
+  CHECK(manifest.parameters[3].default_value.value() == 1);
+  CHECK(manifest.needs_input("distance"));
+  CHECK_FALSE(manifest.needs_input("normal_velocity"));
+  CHECK(manifest.gives_output("energy"));
+}
+
+TEST_CASE("keys that begin with x- are the author's own and may stand in every object") {
+  json own = good_manifest();
+  own["x-note"] = {{"a", 1}};
+  own["parameters"][0]["x-symbol"] = "D_e";
+  own["inactive_when"]["x-why"] = "no well";
+  own["claims"]["x-tested"] = true;
+  own["checks"] = json::parse(R"([{"inputs": {"distance": 1e-6, "x-n": "note"}, "outputs": {"force": 0}, "x-n": 1}])");
+  const PluginFolder folder;
+  const Manifest manifest = read_manifest(folder.write("own.json", own), Units());
+  CHECK(manifest.inactive_when == json{{"depth", 0}});
+  CHECK(manifest.claims == json::object());
+}
+
+TEST_CASE("a membrane law belongs to one element") {
+  json law = good_manifest();
+  law["kind"] = "membrane";
+  law["needs"] = {"stretch"};
+  law["gives"] = {"tension", "energy", "tension_by_stretch"};
+  const PluginFolder folder;
+  CHECK_NOTHROW(read_manifest(folder.write("law.json", law), Units()));
+
+  law["gives"] = {"tension", "moment"};
+  CHECK_THAT(refusal(law).what(), Contains("split it into two models"));
+  law["gives"] = {"moment"};
+  CHECK(refusal(law).place().pointer == "/needs/0");
+  law["gives"] = {"energy"};
+  CHECK_THAT(refusal(law).what(), Contains("must give"));
+  law["needs"] = {"area", "rest_area", "perimeter", "rest_perimeter"};
+  law["gives"] = {"pressure", "perimeter_tension", "energy"};
+  CHECK_NOTHROW(read_manifest(folder.write("cell.json", law), Units()));
+}
+
+TEST_CASE("the manifests of the shipped plugins are accepted and name existing libraries' sources") {
+  int count = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(SHIPPED_PLUGINS)) {
+    if (entry.path().extension() != ".json") continue;
+    INFO(entry.path());
+    const Manifest manifest = read_manifest(entry.path(), Units());
+    CHECK(manifest.library.filename().string() == "lib" + entry.path().stem().string() + ".so");
+    CHECK(entry.path().parent_path().parent_path().filename() == to_string(manifest.kind));
+    ++count;
+  }
+  CHECK(count >= 5);
+}
+
+TEST_CASE("malformed text, folders and oversized files are refused without being taken for manifests") {
+  const PluginFolder folder;
+  const Error malformed =
+      thrown_by([&] { read_manifest(folder.write("a.json", std::string("{\"manifest\": 1,\n x}")), Units()); });
+  CHECK(malformed.code() == ExitCode::plugin_refused);
+  CHECK(malformed.place().line == 2);
+  const Error absent = thrown_by([&] { read_manifest(folder.path() / "absent.json", Units()); });
+  CHECK(absent.code() == ExitCode::plugin_refused);
+  CHECK_THAT(absent.what(), Contains("cannot be read"));
+  CHECK_THAT(thrown_by([&] { read_manifest(folder.path(), Units()); }).what(), Contains("not a regular file"));
+  const auto large = folder.write("large.json", std::string((1 << 20) + 1, ' '));
+  CHECK_THAT(thrown_by([&] { read_manifest(large, Units()); }).what(), Contains("1 MiB"));
+}
