@@ -72,7 +72,7 @@ struct Search {
       t.node[count] = group.first + k;
       t.segment[count] = segment;
       t.segment_end[count] = segment + 1 == t.other_end ? t.other_first : segment + 1;
-      count += (k < valid) & (squares[k] <= cutoff_square) ? 1 : 0;
+      count += ((k < valid) & (squares[k] <= cutoff_square)) ? 1 : 0;
     }
     return count;
   }

@@ -145,8 +145,8 @@ double Fluid<T>::mass() const {
   for (int y = 0; y < setting_.ny; ++y) {
     const T* in[9];
     lattice_.row_pointers(parity_, y, in);
-    for (int q = 0; q < 9; ++q) {
-      for (int x = 0; x < setting_.nx; ++x) mass += static_cast<double>(in[q][x]);
+    for (const T* population : in) {
+      for (int x = 0; x < setting_.nx; ++x) mass += static_cast<double>(population[x]);
     }
   }
   return mass;

@@ -74,7 +74,7 @@ std::string wanted_unit(std::string_view unit, const Dimension& dimension) {
   for (const auto& entry : named) {
     if (entry.dimension == dimension && (best == nullptr || entry.unit == unit)) best = &entry;
   }
-  const std::string wanted = unit == "1" ? "a plain number" : std::string(unit);
+  std::string wanted = unit == "1" ? "a plain number" : std::string(unit);
   if (best == nullptr || best->example.empty()) return wanted;
   const auto other = best->other_example.empty() ? "" : " or \"" + std::string(best->other_example) + '"';
   return wanted + " (for example \"" + std::string(best->example) + '"' + other + ')';

@@ -66,6 +66,7 @@ int SceneFields::cell_type(const std::string& pointer, const std::vector<CellTyp
     if (types[i].name == name) return static_cast<int>(i);
   }
   std::vector<std::string> names;
+  names.reserve(types.size());
   for (const auto& type : types) names.push_back(type.name);
   refuse(pointer, "no cell type is called " + in_quotes(name) + did_you_mean(name, names) +
                       "\ncell_types has: " + listed(names));

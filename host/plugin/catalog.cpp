@@ -1,8 +1,7 @@
 #include "catalog.hpp"
 
-#include <stdlib.h>
-
 #include <algorithm>
+#include <cstdlib>
 #include <map>
 #include <set>
 

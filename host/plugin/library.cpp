@@ -40,11 +40,12 @@ fs::path library_file(const Manifest& manifest) {
   std::error_code error;
   const fs::path folder = fs::canonical(manifest.file.parent_path().empty() ? "." : manifest.file.parent_path(), error);
   if (error) refuse(manifest, "cannot be looked for: " + error.message());
-  const fs::path library = fs::canonical(manifest.library, error);
+  fs::path library = fs::canonical(manifest.library, error);
   if (error == std::errc::no_such_file_or_directory) {
-    refuse(manifest, fs::is_symlink(fs::symlink_status(manifest.library))
-                         ? "is a link to a file that does not exist"
-                         : "does not exist; it must lie in the folder of its manifest\n  " + loader_words(manifest.library));
+    refuse(manifest,
+           fs::is_symlink(fs::symlink_status(manifest.library))
+               ? "is a link to a file that does not exist"
+               : "does not exist; it must lie in the folder of its manifest\n  " + loader_words(manifest.library));
   }
   if (error) refuse(manifest, "cannot be opened: " + error.message());
   if (library.parent_path() != folder) {

@@ -33,6 +33,7 @@ class Resolver {
       if (is_unusual(value, parameter)) result.warnings.push_back(warning(parameter, value));
     }
     result.inactive = is_inactive(result.values);
+    if (result.inactive) result.warnings.clear();  // a model that is switched off need not look usual
     return result;
   }
 

@@ -6,13 +6,13 @@ namespace rouleau::host {
 
 Log::Log(const std::filesystem::path& file) : file_(file, AppendFile::Access::exclusive) {}
 
-void Log::write(const std::string& event, nlohmann::json details) {
+void Log::write(const std::string& event, const nlohmann::json& details) {
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
   nlohmann::ordered_json line{{"wall_s", std::round(elapsed.count() * 1e6) * 1e-6}, {"event", event}};
   if (details.is_object())
     for (const auto& [key, value] : details.items()) line[key] = value;
   else if (!details.is_null())
-    line["details"] = std::move(details);
+    line["details"] = details;
   // A path or a loader's message may hold bytes that are no UTF-8; that must not end a run.
   file_.write(line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
   file_.flush();

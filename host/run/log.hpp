@@ -19,7 +19,7 @@ class Log {
   void clear() { file_.clear(); }
   /// {"wall_s": seconds since the log was opened, "event": event, ...details}; details that are no object become
   /// "details".
-  void write(const std::string& event, nlohmann::json details);
+  void write(const std::string& event, const nlohmann::json& details);
   void close() { file_.close(); }
 
  private:

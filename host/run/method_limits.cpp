@@ -129,9 +129,9 @@ std::vector<Limit> find_limits(const Plan& plan) {
     }
     if (!plan.has_cells) continue;
     double stretching = 0, bending = 0, radius = 1e300, segment = 1e300;
-    for (std::size_t type = 0; type < plan.membranes.size(); ++type) {
+    for (const std::vector<PlannedModel>& laws : plan.membranes) {
       double type_stretching = 0, type_bending = 0;
-      for (const PlannedModel& law : plan.membranes[type]) {
+      for (const PlannedModel& law : laws) {
         if (!law.active()) continue;
         const ModelInstance instance(*law.manifest, law.parameters.values, setting);
         if (law.manifest->gives_output("tension_by_stretch")) type_stretching += stretch_stiffness(instance);
@@ -144,8 +144,7 @@ std::vector<Limit> find_limits(const Plan& plan) {
         "lower density_factor: the lattice stiffness falls with it");
     add("bending stiffness, lattice units" + where, bending, interpolate(bending_limit, tau), true,
         "lower density_factor: the lattice stiffness falls with it");
-    for (std::size_t i = 0; i < plan.interactions.size(); ++i) {
-      const PlannedModel& model = plan.interactions[i];
+    for (const PlannedModel& model : plan.interactions) {
       if (!model.active()) continue;
       const ModelInstance instance(*model.manifest, model.parameters.values, setting);
       double zero_force = 0;

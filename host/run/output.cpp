@@ -82,9 +82,9 @@ void RunDirectory::write(const Snapshot& snapshot) {
   files_->frames.write(snapshot);
 }
 
-void RunDirectory::log(const std::string& event, nlohmann::json details) {
+void RunDirectory::log(const std::string& event, const nlohmann::json& details) {
   if (!files_) throw std::logic_error("RunDirectory::log after finish");
-  files_->log.write(event, std::move(details));
+  files_->log.write(event, details);
 }
 
 void RunDirectory::finish(const Summary& summary) {

@@ -30,7 +30,7 @@ class RunDirectory {
   /// Rows of cells.csv and aggregates.csv, outlines (and fields when not empty) into frames.h5.
   void write(const Snapshot& snapshot);
   /// One line of log.jsonl: {"wall_s":..., "event":..., ...details}.
-  void log(const std::string& event, nlohmann::json details = nlohmann::json::object());
+  void log(const std::string& event, const nlohmann::json& details = nlohmann::json::object());
   /// Closes the data files, writes frames.xmf and summary.json. Nothing may be written after it.
   void finish(const Summary& summary);
 

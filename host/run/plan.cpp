@@ -131,9 +131,7 @@ void plan_passes(Plan& plan) {
     pass("move", "new positions of membrane nodes");
   } else {
     omit("membranes, force and velocity fields, interpolation", "the scene has no cells");
-    for (std::size_t type = 0; type < scene.cell_types.size(); ++type) {
-      omit("cell type " + scene.cell_types[type].name, "no cell of this type is placed");
-    }
+    for (const CellType& type : scene.cell_types) omit("cell type " + type.name, "no cell of this type is placed");
   }
   if (plan.has_cells && !plan.viscosity_contrast) {
     omit("indicator and relaxation rate field", "interior and suspending fluid have the same viscosity");

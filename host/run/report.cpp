@@ -20,7 +20,7 @@ std::filesystem::path write_report(const std::filesystem::path& directory) {
   constexpr std::string_view mark = "@ROULEAU_DATA@";
   std::string page(report_template);
   page.replace(page.find(mark), mark.size(), data);
-  const auto file = directory / "report.html";
+  auto file = directory / "report.html";
   write_file(file, page);
   return file;
 }

@@ -23,8 +23,8 @@ template <class T, int N>
 struct Pack {
   using Number = T;
   using Integer = std::conditional_t<sizeof(T) == 8, std::int64_t, std::int32_t>;
-  typedef T Vector __attribute__((vector_size(N * sizeof(T))));
-  typedef Integer Bits __attribute__((vector_size(N * sizeof(T))));
+  using Vector __attribute__((vector_size(N * sizeof(T)))) = T;
+  using Bits __attribute__((vector_size(N * sizeof(T)))) = Integer;
   static constexpr int size = N;
 
   /// One truth value for each number, as the comparisons give it and select() takes it.
