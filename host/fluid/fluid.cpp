@@ -1,5 +1,6 @@
 #include "fluid.hpp"
 
+#include <cmath>
 #include <type_traits>
 
 namespace rouleau::host {
@@ -154,6 +155,7 @@ double Fluid<T>::mass() const {
 
 template <class T>
 typename Fluid<T>::WallStress Fluid<T>::wall_stress() const {
+  if (!walls_have_acted_) return {std::nan(""), std::nan("")};
   // A population that leaves towards the wall and returns gives the wall c_q f_q - c_-q f_-q = c_q (f_q + f_-q); the
   // one that left is the one that came back plus the wall's own momentum: f_q = f_-q + 6 w_q c_q . u_wall.
   const auto stress = [&](int y, int outward, double speed) {
@@ -198,6 +200,7 @@ void Fluid<T>::complete_halo() {
 template <class T>
 void Fluid<T>::set_state(const std::function<State(int, int)>& state) {
   parity_ = Parity::even;
+  walls_have_acted_ = true;  // a state that is given is one that goes with these walls
   const double tau = 1 / setting_.relaxation_rate;
   for (int y = 0; y < setting_.ny; ++y) {
     for (int x = 0; x < setting_.nx; ++x) {

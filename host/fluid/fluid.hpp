@@ -63,7 +63,10 @@ class Fluid {
   /// Collision and streaming; leaves the velocity of active nodes in force(), halo included.
   void step(Worker worker);
   /// Ends the step; one worker only.
-  void end_step() { parity_ = next(parity_); }
+  void end_step() {
+    parity_ = next(parity_);
+    walls_have_acted_ = true;
+  }
 
   // Observers; between steps, one thread.
   /// Completes the exchange so that moments() may be called.
@@ -72,7 +75,9 @@ class Fluid {
   void moments(int y, std::vector<Moments>& row) const;
   /// Sum of density deviations over all nodes.
   [[nodiscard]] double mass() const;
-  /// Mean shear stress that the fluid exerts on the lower and the upper wall, along +x, by momentum exchange.
+  /// Mean shear stress that the fluid exerts on the lower and the upper wall, along +x, by momentum exchange. NaN between
+  /// the start of a fluid at rest (or taken over) and its first step: walls that have just begun to move have exchanged
+  /// nothing yet.
   struct WallStress {
     double lower, upper;
   };
@@ -89,6 +94,7 @@ class Fluid {
   std::shared_ptr<const ModelInstance> collision_;
   Lattice<T> lattice_;
   Parity parity_ = Parity::even;
+  bool walls_have_acted_ = false;
   Activity activity_;
   VectorField<T> force_;
   Field<T> relaxation_rate_;

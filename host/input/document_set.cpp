@@ -41,7 +41,7 @@ class Assignment {
         at = &(*at)[token];  // made when absent; the schema then says whether it may be there
         pointer = child_pointer(pointer, token);
       } else {
-        refuse(pointer + " is " + shown(*at) + ", which has nothing inside; set " + pointer + " itself");
+        refuse_inside(pointer, *at);
       }
     }
     *at = value_;
@@ -51,6 +51,11 @@ class Assignment {
  private:
   [[noreturn]] void refuse(const std::string& problem) const {
     throw Error(ExitCode::bad_input, Place{option_, "", 0, 0}, problem);
+  }
+
+  [[noreturn]] void refuse_inside(const std::string& pointer, const nlohmann::json& value) const {
+    const auto whole = pointer.empty() ? "the document" : pointer;
+    refuse(whole + " is " + shown(value) + ", which has nothing inside; set " + whole + " itself");
   }
 
   /// Any JSON value; a bare word is a string. What begins like an object, array or string must be one.

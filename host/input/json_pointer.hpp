@@ -61,12 +61,17 @@ inline std::optional<std::size_t> array_index(std::string_view token) {
 inline std::string subject(std::string_view pointer) {
   const auto tokens = split_pointer(pointer);
   if (!tokens || tokens->empty()) return "the document";
-  std::string indices;
-  for (auto token = tokens->rbegin(); token != tokens->rend(); ++token) {
-    if (!array_index(*token)) return *token + indices;
-    indices = '[' + *token + ']' + indices;
+  std::string name = "entry ";
+  for (const auto& token : *tokens) {
+    if (array_index(token)) {
+      name += '[';
+      name += token;
+      name += ']';
+    } else {
+      name = token;
+    }
   }
-  return "entry " + indices;
+  return name;
 }
 
 }  // namespace rouleau::host

@@ -150,8 +150,10 @@ class Simulation {
   void between_steps(Solver<T>& solver, const Schedule& cells, const Schedule& fields) {
     const auto start = Clock::now();
     if (check_step(solver)) return;
-    const bool cells_due = stage_step_ == 0 ? steps_ == 0 || cells.due(0) : cells.due(stage_step_);
-    const bool fields_due = !scene_.output.fields.never() && fields.due(stage_step_);
+    // The end of a stage has been written; the beginning of the next is the same instant.
+    const bool written = stage_step_ == 0 && steps_ > 0;
+    const bool cells_due = !written && (steps_ == 0 || cells.due(stage_step_));
+    const bool fields_due = !written && !scene_.output.fields.never() && fields.due(stage_step_);
     const bool check_due = stage_step_ % scene_.checks.every_steps == 0;
     Ending ending = next_ending(solver.setting());
     if (cells_due || fields_due || check_due || ending != Ending::none) {

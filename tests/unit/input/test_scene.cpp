@@ -111,14 +111,13 @@ TEST_CASE("what a scene leaves out has the documented default") {
 }
 
 TEST_CASE("everything that a scene may say is read") {
+  const std::string drop =
+      R"({"shape": {"circle": {"radius": "2 um", "prestretch": 1.05}}, "segments": 64, "membrane": []})";
+  const std::string egg = R"({"shape": {"ellipse": {"semi_axes": ["2 um", "1 um"]}}, "segments": 64, "membrane": []})";
   const auto scene = read_scene(
       contract_scene,
-      {"/fluid/body_force=[\"10 N/m3\", 0]", "/numerics/precision=f32", "/numerics/tau=0.8",
-       "/cell_types/drop={\"shape\": {\"circle\": {\"radius\": \"2 um\", \"prestretch\": 1.05}}, \"segments\": 64, "
-       "\"membrane\": []}",
-       "/cell_types/egg={\"shape\": {\"ellipse\": {\"semi_axes\": [\"2 um\", \"1 um\"]}}, \"segments\": 64, "
-       "\"membrane\": []}",
-       "/cells/-={\"type\": \"drop\", \"at\": [\"1 um\", \"2 um\"], \"angle\": \"45 deg\"}",
+      {"/fluid/body_force=[\"10 N/m3\", 0]", "/numerics/precision=f32", "/numerics/tau=0.8", "/cell_types/drop=" + drop,
+       "/cell_types/egg=" + egg, "/cells/-={\"type\": \"drop\", \"at\": [\"1 um\", \"2 um\"], \"angle\": \"45 deg\"}",
        "/cells/-={\"type\": \"egg\", \"list\": [{\"at\": [1e-6, 2e-6]}, {\"at\": [3e-6, 4e-6], \"angle\": 1}]}",
        "/cells/0/row/axis=y", "/interactions/0/between/1=egg", "/stages/1/start=developed",
        "/stages/1/pressure_gradient=1 kPa/m", "/stages/1/duration=0.5 s", "/output/cells/seconds=10 ms",
