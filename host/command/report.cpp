@@ -1,7 +1,9 @@
+// rouleau report DIR: the page about a run, made again from the run's files.
 #include "run/report.hpp"
 
 #include <iostream>
 
+#include "command/command_line.hpp"
 #include "command/commands.hpp"
 #include "error.hpp"
 
@@ -9,32 +11,26 @@ namespace rouleau::host {
 
 namespace {
 
-constexpr const char* usage =
-    "Usage: rouleau report DIR\n"
-    "\n"
-    "(Re)makes DIR/report.html from the files a run has left in DIR, and prints its path.\n"
-    "The page is self-contained: one file, no network. A run that was killed has a report too.\n"
-    "\n"
-    "  --help    this text\n"
-    "\n"
-    "Example: rouleau report runs/demo\n";
+constexpr const char* help = R"(usage: rouleau report DIR
+
+(Re)makes DIR/report.html from the files a run has left in DIR, and prints its path. The page is one file that needs
+no network. A run that was killed has a report too.
+
+Example:
+  rouleau report runs/demo
+)";
 
 }  // namespace
 
 int report_command(const std::vector<std::string>& arguments) {
+  namespace options = boost::program_options;
   std::string directory;
-  for (const auto& argument : arguments) {
-    if (argument == "--help" || argument == "-h") {
-      std::cout << usage;
-      return static_cast<int>(ExitCode::done);
-    }
-    if (argument.starts_with('-'))
-      throw Error(ExitCode::bad_input, "rouleau report has no option \"" + argument + "\"\n\n" + usage);
-    if (!directory.empty())
-      throw Error(ExitCode::bad_input, "rouleau report takes one directory, not also \"" + argument + "\"\n\n" + usage);
-    directory = argument;
-  }
-  if (directory.empty()) throw Error(ExitCode::bad_input, std::string("rouleau report wants a directory\n\n") + usage);
+  options::options_description description("options");
+  options::positional_options_description positional;
+  description.add_options()("directory", options::value(&directory)->required(), "a run's directory");
+  positional.add("directory", 1);
+  if (!parse_command_line("report", help, arguments, description, positional)) return 0;
+
   std::cout << write_report(directory).string() << "\n";
   return static_cast<int>(ExitCode::done);
 }
