@@ -233,6 +233,13 @@ Plan make_plan(const Scene& scene, const Catalog& catalog) {
     if (type.interior_viscosity != scene.fluid.viscosity) plan.viscosity_contrast = true;
   }
   for (int i = 0; i < static_cast<int>(scene.stages.size()); ++i) plan.stages.push_back(make_stage_setting(scene, i));
+  for (const StageSetting& stage : plan.stages) {
+    if (stage.stage->start == WallStart::developed && scene.domain.periodic_y && stage.body_force_x != 0) {
+      throw Error(
+          ExitCode::bad_input, scene.place(stage.stage->pointer + "/start"),
+          "\"developed\" wants walls: a driven flow that is periodic along y never becomes steady; leave start out");
+    }
+  }
   plan_passes(plan);
   plan.dimensionless = dimensionless_numbers(plan);
   plan.conversions = conversion_table(plan);

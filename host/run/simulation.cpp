@@ -69,15 +69,21 @@ class Simulation {
     }
   }
 
-  /// Fluid of a stage: developed shear flow if the stage asks for it, else what the former stage left, rescaled with
-  /// the time step: velocities and density deviations of the same flow scale like the density factor.
+  /// Fluid of a stage: the developed flow between its walls if the stage asks for it, else what the former stage left,
+  /// rescaled with the time step: velocities and density deviations of the same flow scale like the density factor.
   template <class T>
   void start_fluid(Solver<T>& solver, Solver<T>* former) {
     const StageSetting& setting = solver.setting();
-    if (setting.shear_rate != 0 && setting.stage->start == WallStart::developed) {
-      const double middle = (scene_.domain.nodes[1] - 1) / 2.0;
-      solver.fluid().set_profile([&](double y) { return setting.shear_rate * (y - middle); },
-                                 [&](double) { return setting.shear_rate; });
+    if (setting.stage->start == WallStart::developed) {
+      // Couette and Poiseuille flow, y from the middle of the channel.
+      const double middle = (scene_.domain.nodes[1] - 1) / 2.0, half_height = scene_.domain.nodes[1] / 2.0;
+      const double curvature = setting.body_force_x / ((setting.tau - 0.5) / 3);
+      solver.fluid().set_profile(
+          [&](double y) {
+            const double s = y - middle;
+            return setting.shear_rate * s + curvature * (half_height * half_height - s * s) / 2;
+          },
+          [&](double y) { return setting.shear_rate - curvature * (y - middle); });
     } else if (former != nullptr) {
       solver.fluid().take_over(former->fluid(),
                                setting.stage->density_factor / former->setting().stage->density_factor);
