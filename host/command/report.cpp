@@ -1,5 +1,5 @@
 // rouleau report DIR: the page about a run, made again from the run's files.
-#include "run/report.hpp"
+#include "output/report.hpp"
 
 #include <iostream>
 

@@ -7,7 +7,7 @@
 
 #include "command_line.hpp"
 #include "commands.hpp"
-#include "run/report.hpp"
+#include "output/report.hpp"
 #include "run/simulation.hpp"
 #include "scene_options.hpp"
 

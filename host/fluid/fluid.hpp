@@ -75,9 +75,9 @@ class Fluid {
   void moments(int y, std::vector<Moments>& row) const;
   /// Sum of density deviations over all nodes.
   [[nodiscard]] double mass() const;
-  /// Mean shear stress that the fluid exerts on the lower and the upper wall, along +x, by momentum exchange. NaN between
-  /// the start of a fluid at rest (or taken over) and its first step: walls that have just begun to move have exchanged
-  /// nothing yet.
+  /// Mean shear stress that the fluid exerts on the lower and the upper wall, along +x, by momentum exchange. NaN
+  /// between the start of a fluid at rest (or taken over) and its first step: walls that have just begun to move have
+  /// exchanged nothing yet.
   struct WallStress {
     double lower, upper;
   };

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "snapshot.hpp"
-#include "summary.hpp"
+#include "output/snapshot.hpp"
+#include "output/summary.hpp"
 
 namespace rouleau::host {
 

@@ -4,7 +4,7 @@
 #include "fluid/fluid.hpp"
 #include "input/lattice_units.hpp"
 #include "input/scene.hpp"
-#include "snapshot.hpp"
+#include "output/snapshot.hpp"
 
 namespace rouleau::host {
 

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "aggregates.hpp"
-#include "snapshot.hpp"
+#include "output/snapshot.hpp"
+#include "output/summary.hpp"
 #include "solver.hpp"
-#include "summary.hpp"
 
 namespace rouleau::host {
 

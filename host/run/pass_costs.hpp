@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "summary.hpp"
+#include "output/summary.hpp"
 
 namespace rouleau::host {
 

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "output/summary.hpp"
 #include "plugin/catalog.hpp"
 #include "plugin/parameters.hpp"
 #include "stage_setting.hpp"
-#include "summary.hpp"
 
 namespace rouleau::host {
 

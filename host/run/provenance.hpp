@@ -3,8 +3,8 @@
 
 #include <string>
 
+#include "output/summary.hpp"
 #include "plan.hpp"
-#include "summary.hpp"
 
 namespace rouleau::host {
 

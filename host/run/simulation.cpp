@@ -10,8 +10,8 @@
 
 #include "aggregate_history.hpp"
 #include "observer.hpp"
+#include "output/progress.hpp"
 #include "pass_costs.hpp"
-#include "progress.hpp"
 #include "provenance.hpp"
 #include "schedule.hpp"
 #include "solver.hpp"

@@ -3,9 +3,9 @@
 
 #include <atomic>
 
-#include "output.hpp"
+#include "output/run_directory.hpp"
+#include "output/summary.hpp"
 #include "plan.hpp"
-#include "summary.hpp"
 
 namespace rouleau::host {
 

@@ -2,9 +2,9 @@
 #include <map>
 #include <regex>
 
-#include "output_fixture.hpp"
-#include "run/frames.hpp"
-#include "run/output_file.hpp"
+#include "fixture.hpp"
+#include "output/file.hpp"
+#include "output/frames.hpp"
 
 using namespace rouleau::host;
 

@@ -9,8 +9,8 @@
 
 #include "error.hpp"
 #include "input/scene.hpp"
-#include "snapshot.hpp"
-#include "summary.hpp"
+#include "output/snapshot.hpp"
+#include "output/summary.hpp"
 
 namespace rouleau::host {
 

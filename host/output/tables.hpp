@@ -16,8 +16,8 @@
 
 #include <filesystem>
 
-#include "run/output_file.hpp"
-#include "run/snapshot.hpp"
+#include "output/file.hpp"
+#include "output/snapshot.hpp"
 
 namespace rouleau::host {
 

@@ -1,4 +1,4 @@
-#include "run/summary.hpp"
+#include "output/summary.hpp"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "run/frames.hpp"
+#include "output/frames.hpp"
 
 #include <algorithm>
 #include <cstdio>

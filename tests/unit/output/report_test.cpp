@@ -1,9 +1,9 @@
 #include <catch2/catch.hpp>
 
-#include "output_fixture.hpp"
-#include "run/output_file.hpp"
-#include "run/report.hpp"
-#include "run/report_data.hpp"
+#include "fixture.hpp"
+#include "output/file.hpp"
+#include "output/report.hpp"
+#include "output/report_data.hpp"
 
 using namespace rouleau::host;
 using Catch::Contains;

@@ -3,10 +3,10 @@
 #include <clocale>
 #include <random>
 
-#include "output_fixture.hpp"
-#include "run/output_file.hpp"
-#include "run/output_tables.hpp"
-#include "run/report_table.hpp"
+#include "fixture.hpp"
+#include "output/file.hpp"
+#include "output/report_table.hpp"
+#include "output/tables.hpp"
 
 using namespace rouleau::host;
 

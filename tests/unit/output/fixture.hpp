@@ -10,8 +10,8 @@
 #include <string>
 
 #include "input/scene.hpp"
-#include "run/output.hpp"
-#include "run/snapshot.hpp"
+#include "output/run_directory.hpp"
+#include "output/snapshot.hpp"
 
 namespace rouleau::host {
 

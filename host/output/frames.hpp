@@ -20,8 +20,8 @@
 #include <vector>
 
 #include "input/scene.hpp"
-#include "run/frames_handle.hpp"
-#include "run/snapshot.hpp"
+#include "output/frames_handle.hpp"
+#include "output/snapshot.hpp"
 
 namespace rouleau::host {
 

@@ -1,11 +1,11 @@
-#include "run/report_table.hpp"
+#include "output/report_table.hpp"
 
 #include <algorithm>
 #include <charconv>
 #include <limits>
 
 #include "error.hpp"
-#include "run/output_file.hpp"
+#include "output/file.hpp"
 
 namespace rouleau::host {
 

@@ -1,4 +1,4 @@
-#include "run/log.hpp"
+#include "output/log.hpp"
 
 #include <cmath>
 

@@ -1,10 +1,10 @@
-#include "run/report.hpp"
+#include "output/report.hpp"
 
 #include <string>
 #include <string_view>
 
-#include "run/output.hpp"
-#include "run/report_data.hpp"
+#include "output/report_data.hpp"
+#include "output/run_directory.hpp"
 
 namespace rouleau::host {
 

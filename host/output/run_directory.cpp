@@ -1,4 +1,4 @@
-#include "run/output.hpp"
+#include "output/run_directory.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,10 +6,10 @@
 #include <system_error>
 
 #include "input/document.hpp"
-#include "run/frames.hpp"
-#include "run/log.hpp"
-#include "run/output_file.hpp"
-#include "run/output_tables.hpp"
+#include "output/file.hpp"
+#include "output/frames.hpp"
+#include "output/log.hpp"
+#include "output/tables.hpp"
 
 namespace rouleau::host {
 

@@ -1,4 +1,4 @@
-#include "run/output_file.hpp"
+#include "output/file.hpp"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -10,7 +10,7 @@
 #include <iterator>
 #include <system_error>
 
-#include "run/output.hpp"
+#include "output/run_directory.hpp"
 
 namespace rouleau::host {
 

@@ -1,4 +1,4 @@
-#include "run/frames_handle.hpp"
+#include "output/frames_handle.hpp"
 
 #include <algorithm>
 #include <cerrno>
@@ -6,7 +6,7 @@
 #include <system_error>
 
 #include "error.hpp"
-#include "run/output_file.hpp"
+#include "output/file.hpp"
 
 namespace rouleau::host {
 

@@ -7,9 +7,9 @@
 #include <fstream>
 #include <functional>
 
+#include "fixture.hpp"
 #include "input/document.hpp"
-#include "output_fixture.hpp"
-#include "run/output_file.hpp"
+#include "output/file.hpp"
 
 using namespace rouleau::host;
 using Catch::Contains;

@@ -1,8 +1,8 @@
 // frames.xmf: tells ParaView what the datasets of frames.h5 mean.
 #include <sstream>
 
-#include "run/frames.hpp"
-#include "run/output_tables.hpp"
+#include "output/frames.hpp"
+#include "output/tables.hpp"
 
 namespace rouleau::host {
 

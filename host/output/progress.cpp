@@ -1,4 +1,4 @@
-#include "run/progress.hpp"
+#include "output/progress.hpp"
 
 #include <sys/ioctl.h>
 #include <unistd.h>

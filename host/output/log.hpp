@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "run/output_file.hpp"
+#include "output/file.hpp"
 
 namespace rouleau::host {
 

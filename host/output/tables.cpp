@@ -1,4 +1,4 @@
-#include "run/output_tables.hpp"
+#include "output/tables.hpp"
 
 #include <charconv>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "run/report_data.hpp"
+#include "output/report_data.hpp"
 
 #include <algorithm>
 #include <array>
@@ -12,9 +12,9 @@
 #include <string_view>
 
 #include "input/document.hpp"
-#include "run/frames.hpp"
-#include "run/output_file.hpp"
-#include "run/report_table.hpp"
+#include "output/file.hpp"
+#include "output/frames.hpp"
+#include "output/report_table.hpp"
 
 namespace rouleau::host {
 
