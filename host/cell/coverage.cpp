@@ -3,18 +3,13 @@
 #include <algorithm>
 
 #include "geometry.hpp"
+#include "rounding.hpp"
 
 namespace rouleau::host {
 
 namespace {
 
 constexpr int margin = 2;
-
-/// Without SSE 4.1 std::floor is a call.
-int floor_int(double value) {
-  const int truncated = static_cast<int>(value);
-  return truncated - (value < truncated ? 1 : 0);
-}
 
 /// Adds what one edge contributes to the columns right of it in one row. `a` and `b` are where it enters and leaves the
 /// row, `rise` its signed height there. After a sum along the row, an element holds the area right of the edge.

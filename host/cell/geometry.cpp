@@ -97,19 +97,23 @@ double marker_angle(const Membranes& membranes, const CellRange& cell) {
 
 namespace {
 
-/// Smallest square distance below `best` from the nodes of `a` moved by `move` to the outline of `b`; `best` if none.
+/// Smallest square distance from a point to an outline with these bounds; `best` if it is not below that.
+double nearest(const Membranes& membranes, const CellRange& cell, const Bounds& box, const Eigen::Vector2d& point,
+               double best) {
+  const double dx = std::max({0.0, box.x_min - point.x(), point.x() - box.x_max});
+  const double dy = std::max({0.0, box.y_min - point.y(), point.y() - box.y_max});
+  if (!(dx * dx + dy * dy <= best)) return best;
+  for (int j = cell.first; j < cell.end(); ++j) {
+    best = std::min(best, square_distance(point, node(membranes, j), node(membranes, cell.next(j))));
+  }
+  return best;
+}
+
+/// The same from the nodes of `a` moved by `move` to the outline of `b`.
 double nearest_node(const Membranes& membranes, const CellRange& a, const CellRange& b, const Eigen::Vector2d& move,
                     double best) {
   const Bounds box = bounds(membranes, b);
-  for (int i = a.first; i < a.end(); ++i) {
-    const Eigen::Vector2d point = node(membranes, i) + move;
-    const double dx = std::max({0.0, box.x_min - point.x(), point.x() - box.x_max});
-    const double dy = std::max({0.0, box.y_min - point.y(), point.y() - box.y_max});
-    if (!(dx * dx + dy * dy <= best)) continue;
-    for (int j = b.first; j < b.end(); ++j) {
-      best = std::min(best, square_distance(point, node(membranes, j), node(membranes, b.next(j))));
-    }
-  }
+  for (int i = a.first; i < a.end(); ++i) best = nearest(membranes, b, box, node(membranes, i) + move, best);
   return best;
 }
 
@@ -123,6 +127,18 @@ double outline_distance(const Membranes& membranes, const CellRange& a, const Ce
   best = nearest_node(membranes, a, b, -move, best);
   best = nearest_node(membranes, b, a, move, best);
   return best <= outside && std::isfinite(best) ? std::sqrt(best) : std::numeric_limits<double>::infinity();
+}
+
+double facing_length(const Membranes& membranes, const CellRange& a, const CellRange& b, ImageShift shift,
+                     const PeriodicBox& box, double reach) {
+  const Eigen::Vector2d move(shift.x * box.nx, shift.y * box.ny);
+  const Bounds bounds_b = bounds(membranes, b);
+  double length = 0;
+  for (int i = a.first; i < a.end(); ++i) {
+    const bool near = nearest(membranes, b, bounds_b, node(membranes, i) - move, reach * reach) < reach * reach;
+    if (near) length += membranes.rest_weight[static_cast<std::size_t>(i)];
+  }
+  return length;
 }
 
 double smallest_gap(const Membranes& membranes, int a, int b, const PeriodicBox& box, double limit) {

@@ -34,6 +34,10 @@ double marker_angle(const Membranes& membranes, const CellRange& cell);
 double outline_distance(const Membranes& membranes, const CellRange& a, const CellRange& b, ImageShift shift,
                         const PeriodicBox& box, double limit = std::numeric_limits<double>::infinity());
 
+/// Rest length of cell a's membrane that lies nearer than `reach` to the outline of cell b moved by `shift` periods.
+double facing_length(const Membranes& membranes, const CellRange& a, const CellRange& b, ImageShift shift,
+                     const PeriodicBox& box, double reach);
+
 /// Smallest gap of two cells over all periodic images (of cell a to its own images if a == b); infinity above `limit`.
 /// `limit` must be finite: it bounds the images that are looked at.
 double smallest_gap(const Membranes& membranes, int a, int b, const PeriodicBox& box, double limit);

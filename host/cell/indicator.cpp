@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "geometry.hpp"
+#include "rounding.hpp"
 
 namespace rouleau::host {
 
@@ -10,17 +11,6 @@ namespace {
 
 /// Nodes may move this far before the next update; the marks allow for a whole spacing.
 constexpr double displacement_limit = 0.1;
-
-/// Without SSE 4.1 std::floor is a call.
-int floor_int(double value) {
-  const int truncated = static_cast<int>(value);
-  return truncated - (value < truncated ? 1 : 0);
-}
-
-int wrapped(int i, int period) {
-  const int rest = i % period;
-  return rest < 0 ? rest + period : rest;
-}
 
 }  // namespace
 

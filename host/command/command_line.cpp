@@ -9,6 +9,21 @@ namespace rouleau::host {
 
 namespace options = boost::program_options;
 
+namespace {
+
+/// The options that are given by name: `help` has shown the positional ones in its first line.
+options::options_description named(const options::options_description& all,
+                                   const options::positional_options_description& positional) {
+  options::options_description result("options");
+  for (const auto& option : all.options()) {
+    const bool by_place = positional.max_total_count() > 0 && positional.name_for_position(0) == option->long_name();
+    if (!by_place) result.add(option);
+  }
+  return result;
+}
+
+}  // namespace
+
 bool parse_command_line(const std::string& command, const std::string& help, const std::vector<std::string>& arguments,
                         options::options_description& description,
                         const options::positional_options_description& positional) {
@@ -23,7 +38,7 @@ bool parse_command_line(const std::string& command, const std::string& help, con
                        .run(),
                    values);
     if (values.count("help") != 0) {
-      std::cout << help << "\n" << description;
+      std::cout << help << "\n" << named(description, positional);
       return false;
     }
     options::notify(values);

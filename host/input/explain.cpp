@@ -1,10 +1,5 @@
 #include "explain.hpp"
 
-// g++ 12 warns inside std::regex when sanitizers are on (GCC bug 105562).
-#if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
-#endif
-
 #include <algorithm>
 #include <regex>
 #include <set>

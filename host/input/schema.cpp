@@ -1,10 +1,5 @@
 #include "schema.hpp"
 
-// g++ 12 warns inside std::regex when sanitizers are on (GCC bug 105562).
-#if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
-#endif
-
 // valijson ends the program instead of throwing unless told otherwise.
 #define VALIJSON_USE_EXCEPTIONS 1
 #include <valijson/adapters/nlohmann_json_adapter.hpp>
