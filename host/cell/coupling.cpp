@@ -10,7 +10,6 @@ namespace rouleau::host {
 namespace {
 
 constexpr int outside = -1000000;  // row of a node whose stencil is not on the lattice
-constexpr int block = 64;          // nodes that one worker takes at a time
 
 /// Base nodes and what is kept of the weights: written by Locate, read by the others.
 template <class Integer, class Number>
@@ -28,26 +27,31 @@ struct LocateTask {
   int begin, end;
   int nx, ny;
   bool periodic_y;
+  bool escaped;  // set when a node's stencil is not on the lattice
 };
 
 /// Base nodes and fractions; the fraction is taken in double precision before it is rounded to T.
 template <class T>
 struct Locate {
   template <int register_bytes>
-  ROULEAU_ALWAYS_INLINE static void run(const LocateTask<T>* task) {
+  ROULEAU_ALWAYS_INLINE static void run(LocateTask<T>* task) {
     using S = Pack<double, register_bytes / 8>;
     const LocateTask<T> t = *task;
+    S lowest = 0.0;
     for (int first = t.begin; first < t.end; first += S::size) {
       const int valid = std::min(S::size, t.end - first);
       if (valid == S::size) {
-        group<S>(t, S::load(t.x + first), S::load(t.y + first), first, valid);
+        lowest = min(group<S>(t, S::load(t.x + first), S::load(t.y + first), first, valid), lowest);
       } else {
         double x[S::size] = {}, y[S::size] = {};
         std::copy_n(t.x + first, valid, x);
         std::copy_n(t.y + first, valid, y);
-        group<S>(t, S::load(x), S::load(y), first, valid);
+        lowest = min(group<S>(t, S::load(x), S::load(y), first, valid), lowest);
       }
     }
+    double row = 0;
+    for (int k = 0; k < S::size; ++k) row = min(lowest.vector[k], row);
+    task->escaped = row == outside;
   }
 
  private:
@@ -63,8 +67,9 @@ struct Locate {
     const S raised = select(inside < S(0.0), inside + period, inside);  // the quotient may be rounded across an integer
     return select(raised >= S(period), raised - period, raised);
   }
+  /// Returns the base rows.
   template <class S>
-  ROULEAU_ALWAYS_INLINE static void group(const LocateTask<T>& t, const S& x, const S& y, int first, int valid) {
+  ROULEAU_ALWAYS_INLINE static S group(const LocateTask<T>& t, const S& x, const S& y, int first, int valid) {
     S base_x = floor(x), base_y = floor(y);
     double columns[S::size], rows[S::size], fractions_x[S::size], fractions_y[S::size], roots_x[S::size],
         roots_y[S::size];
@@ -94,6 +99,7 @@ struct Locate {
         put<1>(t.to, columns + k, rows + k, fractions_x + k, fractions_y + k, roots_x + k, roots_y + k, first + k);
       }
     }
+    return base_y;
   }
   template <int count>
   ROULEAU_ALWAYS_INLINE static void put(const Stencils<int, T>& to, const double* columns, const double* rows,
@@ -193,8 +199,8 @@ struct Interpolate {
 };
 
 template <class Loop, class Task>
-void run_loop(const Task& task) {
-  static const auto function = Dispatch<Loop, const Task*>::pick();
+void run_loop(Task& task) {
+  static const auto function = Dispatch<Loop, Task*>::pick();
   function(&task);
 }
 
@@ -214,26 +220,26 @@ void Coupling<T>::reserve(const Membranes& membranes) {
   column_.assign(nodes, 0);
   row_.assign(nodes, outside);
   for (auto* values : {&fraction_x_, &root_x_, &fraction_y_, &root_y_}) values->assign(nodes, T(0));
-  escaped_.assign((nodes + block - 1) / block, -1);
+  escaped_.assign(membranes.cells.size(), 0);
 }
 
 template <class T>
 void Coupling<T>::locate(Worker worker, const Membranes& membranes) {
-  const Range nodes = worker.share(membranes.node_count(), block);
-  run_loop<Locate<T>>(LocateTask<T>{
-      {column_.data(), row_.data(), fraction_x_.data(), root_x_.data(), fraction_y_.data(), root_y_.data()},
-      membranes.x.data(),
-      membranes.y.data(),
-      nodes.begin,
-      nodes.end,
-      nx_,
-      ny_,
-      periodic_y_});
-  for (int first = nodes.begin; first < nodes.end; first += block) {
-    const int* begin = row_.data() + first;
-    const int* end = row_.data() + std::min(first + block, nodes.end);
-    const int* found = std::find(begin, end, outside);
-    escaped_[static_cast<std::size_t>(first / block)] = found == end ? -1 : static_cast<int>(found - row_.data());
+  const Range cells = worker.share(membranes.cell_count());
+  for (int c = cells.begin; c < cells.end; ++c) {
+    const CellRange& cell = membranes.cells[static_cast<std::size_t>(c)];
+    LocateTask<T> task{
+        {column_.data(), row_.data(), fraction_x_.data(), root_x_.data(), fraction_y_.data(), root_y_.data()},
+        membranes.x.data(),
+        membranes.y.data(),
+        cell.first,
+        cell.end(),
+        nx_,
+        ny_,
+        periodic_y_,
+        false};
+    run_loop<Locate<T>>(task);
+    escaped_[static_cast<std::size_t>(c)] = task.escaped ? 1 : 0;
   }
 }
 
@@ -241,7 +247,7 @@ template <class T>
 void Coupling<T>::spread(Worker worker, const Membranes& membranes, VectorField<T>& force) const {
   const Range rows = worker.share(ny_);
   const int halo = Field<T>::halo;
-  run_loop<Spread<T>>(SpreadTask<T>{
+  const SpreadTask<T> task{
       {column_.data(), row_.data(), fraction_x_.data(), root_x_.data(), fraction_y_.data(), root_y_.data()},
       membranes.force_x.data(),
       membranes.force_y.data(),
@@ -250,13 +256,14 @@ void Coupling<T>::spread(Worker worker, const Membranes& membranes, VectorField<
       worker.last() ? ny_ + halo : rows.end,
       force.x.row(0),
       force.y.row(0),
-      row_stride(force.x)});
+      row_stride(force.x)};
+  run_loop<Spread<T>>(task);
 }
 
 template <class T>
 void Coupling<T>::interpolate(Worker worker, Membranes& membranes, const VectorField<T>& velocity) const {
-  const Range nodes = worker.share(membranes.node_count(), block);
-  run_loop<Interpolate<T>>(InterpolateTask<T>{
+  const Range nodes = membranes.node_share(worker);
+  const InterpolateTask<T> task{
       {column_.data(), row_.data(), fraction_x_.data(), root_x_.data(), fraction_y_.data(), root_y_.data()},
       membranes.velocity_x.data(),
       membranes.velocity_y.data(),
@@ -264,13 +271,18 @@ void Coupling<T>::interpolate(Worker worker, Membranes& membranes, const VectorF
       nodes.end,
       velocity.x.row(0),
       velocity.y.row(0),
-      row_stride(velocity.x)});
+      row_stride(velocity.x)};
+  run_loop<Interpolate<T>>(task);
+}
+
+template <class T>
+bool Coupling<T>::any_escaped() const {
+  return std::any_of(escaped_.begin(), escaped_.end(), [](std::uint8_t escaped) { return escaped != 0; });
 }
 
 template <class T>
 int Coupling<T>::escaped() const {
-  const auto found = std::find_if(escaped_.begin(), escaped_.end(), [](int node) { return node >= 0; });
-  return found == escaped_.end() ? -1 : *found;
+  return any_escaped() ? static_cast<int>(std::find(row_.begin(), row_.end(), outside) - row_.begin()) : -1;
 }
 
 template class Coupling<float>;

@@ -1,6 +1,7 @@
 // Carries membrane forces to the lattice and the lattice's velocity to the membranes, with the same weights.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "fluid/field.hpp"
@@ -19,24 +20,25 @@ class Coupling {
   /// Makes room for these nodes; to be called once, before the first locate().
   void reserve(const Membranes& membranes);
 
-  /// Pass over nodes: weights for the present positions.
+  /// Pass over cells: weights for the present positions.
   void locate(Worker worker, const Membranes& membranes);
   /// Pass over rows: adds the forces of all nodes to this worker's rows worker.share(ny) of the force density; the
   /// first worker owns the lower halo rows too, the last one the upper. The sums do not depend on the workers.
   void spread(Worker worker, const Membranes& membranes, VectorField<T>& force) const;
-  /// Pass over nodes: sets velocity_x and velocity_y.
+  /// Pass over cells: sets velocity_x and velocity_y.
   void interpolate(Worker worker, Membranes& membranes, const VectorField<T>& velocity) const;
 
   /// First node whose stencil left the lattice or whose position is not a number at the last locate(); -1: none.
   /// Such a node neither spreads nor is moved.
   [[nodiscard]] int escaped() const;
+  [[nodiscard]] bool any_escaped() const;
 
  private:
   int nx_, ny_;
   bool periodic_y_;
   std::vector<int> column_, row_;  // base node, wrapped; row outside_ for an escaped node
   std::vector<T> fraction_x_, root_x_, fraction_y_, root_y_;
-  std::vector<int> escaped_;  // first escaped node of each block of nodes, or -1
+  std::vector<std::uint8_t> escaped_;  // of each cell: whether it has an escaped node
 };
 
 extern template class Coupling<float>;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace rouleau::host {
 
@@ -16,36 +17,46 @@ double largest_displacement(const std::vector<double>& x, const std::vector<doub
 }
 
 DisplacementWatch::DisplacementWatch(const Membranes& membranes, double limit)
-    : limit_(limit), x_(membranes.x), y_(membranes.y), moved_(membranes.cells.size(), 1) {
+    : limit_(limit),
+      x_(membranes.x),
+      y_(membranes.y),
+      bound_(membranes.cells.size(), std::numeric_limits<double>::infinity()),
+      moved_(membranes.cells.size(), 1) {
   std::fill(x_.begin(), x_.end(), std::nan(""));  // nothing remembered yet: no position is near
 }
 
 void DisplacementWatch::measure(Worker worker, const Membranes& membranes) {
-  const Range cells = worker.share(static_cast<int>(membranes.cells.size()));
-  const double square = limit_ * limit_;
+  const Range cells = worker.share(membranes.cell_count());
+  const bool unknown = membranes.largest_step.empty();
   for (int c = cells.begin; c < cells.end; ++c) {
-    const CellRange& cell = membranes.cells[static_cast<std::size_t>(c)];
-    const double *x = membranes.x.data(), *y = membranes.y.data(), *old_x = x_.data(), *old_y = y_.data();
-    int near = 0;
-    for (int i = cell.first; i < cell.end(); ++i) {
-      const double dx = x[i] - old_x[i], dy = y[i] - old_y[i];
-      near += dx * dx + dy * dy <= square ? 1 : 0;
-    }
-    moved_[static_cast<std::size_t>(c)] = near != cell.count;
+    const auto at = static_cast<std::size_t>(c);
+    double& bound = bound_[at];
+    bound = unknown ? std::numeric_limits<double>::infinity() : bound + membranes.largest_step[at];
+    if (!(bound <= limit_)) bound = largest_displacement(membranes.cells[at], membranes);
+    moved_[at] = !(bound <= limit_);
   }
+}
+
+double DisplacementWatch::largest_displacement(const CellRange& cell, const Membranes& membranes) const {
+  const double *x = membranes.x.data(), *y = membranes.y.data(), *old_x = x_.data(), *old_y = y_.data();
+  double square = 0, zero = 0;  // zero becomes NaN with the first position that is not finite
+  for (int i = cell.first; i < cell.end(); ++i) {
+    const double dx = x[i] - old_x[i], dy = y[i] - old_y[i], s = dx * dx + dy * dy;
+    square = s > square ? s : square;
+    zero += s - s;
+  }
+  return std::sqrt(square) + zero;
 }
 
 bool DisplacementWatch::exceeded() const {
   return std::any_of(moved_.begin(), moved_.end(), [](std::uint8_t moved) { return moved != 0; });
 }
 
-void DisplacementWatch::remember(Worker worker, const Membranes& membranes) {
-  const Range cells = worker.share(static_cast<int>(membranes.cells.size()));
-  for (int c = cells.begin; c < cells.end; ++c) {
-    const CellRange& cell = membranes.cells[static_cast<std::size_t>(c)];
-    std::copy(membranes.x.begin() + cell.first, membranes.x.begin() + cell.end(), x_.begin() + cell.first);
-    std::copy(membranes.y.begin() + cell.first, membranes.y.begin() + cell.end(), y_.begin() + cell.first);
-  }
+void DisplacementWatch::remember(int cell, const Membranes& membranes) {
+  const CellRange& range = membranes.cells[static_cast<std::size_t>(cell)];
+  std::copy(membranes.x.begin() + range.first, membranes.x.begin() + range.end(), x_.begin() + range.first);
+  std::copy(membranes.y.begin() + range.first, membranes.y.begin() + range.end(), y_.begin() + range.first);
+  bound_[static_cast<std::size_t>(cell)] = 0;
 }
 
 }  // namespace rouleau::host

@@ -14,21 +14,29 @@ double largest_displacement(const std::vector<double>& x, const std::vector<doub
                             const std::vector<double>& old_x, const std::vector<double>& old_y);
 
 /// Remembers positions and compares. After construction every cell counts as moved.
+///
+/// No node has moved further than the sum of its cell's largest steps, so positions are compared only once that sum has
+/// passed the limit; the displacement found then takes the sum's place.
 class DisplacementWatch {
  public:
   DisplacementWatch() = default;
   DisplacementWatch(const Membranes& membranes, double limit);
 
-  /// Pass: compares this worker's cells. A barrier must lie between it and exceeded().
+  /// Pass over cells, once a step. A barrier must lie between it and the next two.
   void measure(Worker worker, const Membranes& membranes);
-  /// True if a node had moved further than the limit (or is not a number) at the last measure().
+  /// True if a node of the cell had moved further than the limit (or is not a number) at the last measure().
+  [[nodiscard]] bool moved(int cell) const { return moved_[static_cast<std::size_t>(cell)] != 0; }
+  /// True if any cell has moved.
   [[nodiscard]] bool exceeded() const;
-  /// Pass: remembers the present positions of this worker's cells. Does not change exceeded().
-  void remember(Worker worker, const Membranes& membranes);
+  /// Remembers the present positions of a cell. Does not change moved().
+  void remember(int cell, const Membranes& membranes);
 
  private:
+  [[nodiscard]] double largest_displacement(const CellRange& cell, const Membranes& membranes) const;
+
   double limit_ = 0;
   std::vector<double> x_, y_;
+  std::vector<double> bound_;        // of each cell: upper bound of its nodes' displacements
   std::vector<std::uint8_t> moved_;  // one per cell, so that the answer does not depend on the workers
 };
 

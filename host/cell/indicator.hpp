@@ -13,6 +13,7 @@
 namespace rouleau::host {
 
 /// tau = 1/2 + (tau_outside - 1/2) (1 + sum over cells (ratio - 1) I), kept as 1/tau (arithmetic mean of viscosities).
+/// Only what cells cover that have moved, or covered before they did, is computed again.
 template <class T>
 class Indicator {
  public:
@@ -20,40 +21,55 @@ class Indicator {
   Indicator(const Membranes& membranes, std::vector<double> viscosity_ratio, double relaxation_rate, int nx, int ny,
             bool periodic_y);
 
-  /// Whether a relaxation rate that varies in space is needed; if not, update() only marks.
+  /// Whether a relaxation rate that varies in space is needed; if not, the passes only mark.
   [[nodiscard]] bool varies() const { return varies_; }
 
-  /// Pass: compares positions with those of the last update. After a barrier, due() is the same for all workers.
+  /// Pass over cells: compares positions with those of the last update. After a barrier, due() is the same for all
+  /// workers.
   void measure(Worker worker, const Membranes& membranes) { watch_.measure(worker, membranes); }
   [[nodiscard]] bool due() const { return watch_.exceeded(); }
 
-  /// Pass (the first worker does it all): sets the relaxation rate in and around the cells, restores it where they
-  /// were, and marks the nodes that the membranes touch until they have moved by 1. The field is allocated and filled
-  /// with the plain rate at the first update if varies().
+  /// Pass over cells, when due: what the cells that have moved cover and reach.
+  void cover(Worker worker, const Membranes& membranes);
+  /// Pass over rows, when due, a barrier after cover(): sets the relaxation rate in and around the cells that have
+  /// moved, restores it where they were, and marks the nodes that the membranes touch until they have moved by 1.
+  /// The field must hold the plain rate before the first call; it is not touched unless varies().
   void update(Worker worker, const Membranes& membranes, Field<T>& relaxation_rate, Activity& activity);
 
  private:
   struct Interval {
     int begin, end;
   };
+  /// Intervals of consecutive rows of the plane, not wrapped into the lattice.
+  struct Rows {
+    int first = 0;
+    std::vector<Interval> columns;
+  };
+  struct Reach {
+    Coverage coverage;             // empty if the cell's viscosity does not differ
+    Rows covered, covered_before;  // where the coverage is not zero, and was at the update before
+    Rows reached;                  // where its nodes may spread or interpolate, and what it covers
+  };
+
   /// Lattice row that a row of the plane falls on; -1: beyond a wall.
   [[nodiscard]] int lattice_row(int y) const;
-  void touch(const Coverage& coverage);
-  void add(const Coverage& coverage, double excess, Field<T>& sum) const;
-  void mark(const Membranes& membranes, std::size_t cell, Activity& activity);
-  void set_rates(const Membranes& membranes, Field<T>& rate);
+  /// Calls function(y, columns) for the rows that fall on this worker's rows.
   template <class Function>
-  void for_touched(Field<T>& field, Function function) const;
+  void for_rows(const Rows& rows, Range own, Function function) const;
+  /// Calls function(x, begin, end) for pieces [begin, end) of the plane that begin at lattice column x and do not wrap.
+  template <class Function>
+  void for_pieces(Interval columns, Function function) const;
+  void find_reach(const Membranes& membranes, const CellRange& cell, Reach& reach) const;
+  void collect_changes(Range own);
+  void set_rates(const Membranes& membranes, Range own, Field<T>& rate);
 
   std::vector<double> ratio_;
   double plain_rate_;
   int nx_, ny_;
-  bool periodic_y_, varies_ = false, filled_ = false;
+  bool periodic_y_, varies_ = false;
   DisplacementWatch watch_;
-  std::vector<Coverage> coverage_;              // of each cell
-  std::vector<std::vector<Interval>> touched_;  // of each lattice row: disjoint, where the last update wrote
-  std::vector<double> scratch_;
-  std::vector<Interval> columns_, reach_;  // of the rows around one cell
+  std::vector<Reach> cells_;
+  std::vector<std::vector<Interval>> changed_;  // of each lattice row: disjoint, where rates are computed again
 };
 
 extern template class Indicator<float>;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "input/scene.hpp"
+#include "worker.hpp"
 
 namespace rouleau::host {
 
@@ -27,11 +28,21 @@ struct Membranes {
   std::vector<double> x, y;                    ///< positions
   std::vector<double> force_x, force_y;        ///< on the nodes, set anew each step
   std::vector<double> velocity_x, velocity_y;  ///< displacement of the last step
+  std::vector<double> largest_step;            ///< of each cell: no node moved further in the last step; empty: unknown
   std::vector<double> rest_length;             ///< of segment i
   std::vector<double> rest_weight;             ///< (rest_length[i - 1] + rest_length[i]) / 2: rest measure of node i
   std::vector<double> rest_curvature;          ///< turning angle over rest_weight in the shape it was created with
 
   [[nodiscard]] int node_count() const { return static_cast<int>(x.size()); }
+  [[nodiscard]] int cell_count() const { return static_cast<int>(cells.size()); }
+  /// The nodes of a worker's cells, worker.share(cell_count()).
+  [[nodiscard]] Range node_share(Worker worker) const {
+    const Range share = worker.share(cell_count());
+    const auto first = [this](int cell) {
+      return cell < cell_count() ? cells[static_cast<std::size_t>(cell)].first : node_count();
+    };
+    return {first(share.begin), first(share.end)};
+  }
 };
 
 /// Membranes of a scene's cells on a lattice of the given spacing (m). Throws Error(bad_input) with the place of the

@@ -102,8 +102,8 @@ void Neighbours::refresh(Worker worker, const Membranes& membranes, const Segmen
     list.runs.clear();
     list_pairs(membranes, cell, segments);
     for (Pair& pair : list.pairs) list_candidates(membranes, cell, pair, segments);
+    watch_.remember(cell, membranes);
   }
-  watch_.remember(worker, membranes);
   if (worker.first()) ++renewals_;
 }
 

@@ -17,7 +17,10 @@ Activity::Activity(int nx, int ny)
   rebuild_runs();
 }
 
-void Activity::clear() { std::fill(bits_.begin(), bits_.end(), 0); }
+void Activity::clear(int first_row, int end_row) {
+  std::fill(bits_.begin() + static_cast<std::ptrdiff_t>(words_) * first_row,
+            bits_.begin() + static_cast<std::ptrdiff_t>(words_) * end_row, 0);
+}
 
 void Activity::mark(int y, int begin, int end) {
   if (y < 0 || y >= ny_ || begin >= end) return;
@@ -47,8 +50,8 @@ bool Activity::active(int x, int y) const {
   return (bits_[static_cast<std::size_t>(words_) * y + bit / bits_per_word] >> (bit % bits_per_word) & 1) != 0;
 }
 
-void Activity::rebuild_runs() {
-  for (int y = 0; y < ny_; ++y) {
+void Activity::rebuild_runs(int first_row, int end_row) {
+  for (int y = first_row; y < end_row; ++y) {
     std::vector<Run>& runs = runs_[static_cast<std::size_t>(y)];
     runs.clear();
     for (int x = 0; x < nx_; x += nodes_per_bit) {

@@ -1,5 +1,7 @@
 #include "exchange.hpp"
 
+#include <algorithm>
+
 namespace rouleau::host {
 
 namespace d2q9 = rouleau::d2q9;
@@ -79,6 +81,24 @@ void receive_row(Lattice<T>& lattice, int y) {
 
 namespace {
 
+/// Calls function(image) for every halo row that belongs to row y: its periodic images, or its mirror image in a wall.
+template <class Function>
+void for_halo_rows(int y, int ny, bool periodic_y, Function function) {
+  if (y < halo) function(periodic_y ? ny + y : -1 - y);
+  if (y >= ny - halo) function(periodic_y ? y - ny : 2 * ny - 1 - y);
+}
+
+template <class T>
+void clear_component(Field<T>& field, int y, bool periodic_y) {
+  const auto clear = [&](int row, int begin, int end) {
+    std::fill(field.row(row) + begin, field.row(row) + end, T(0));
+  };
+  const int nx = field.nx();
+  clear(y, -halo, 0);
+  clear(y, nx, nx + halo);
+  for_halo_rows(y, field.ny(), periodic_y, [&](int image) { clear(image, -halo, nx + halo); });
+}
+
 /// Adds the side halo of a row (a halo row too) to its periodic images.
 template <class T>
 void fold_sides(Field<T>& field, int y) {
@@ -92,21 +112,14 @@ void fold_sides(Field<T>& field, int y) {
 
 template <class T>
 void fold_component(Field<T>& field, int y, bool periodic_y) {
-  const int nx = field.nx(), ny = field.ny();
   fold_sides(field, y);
-  const auto add = [&](int from, T sign) {
-    fold_sides(field, from);
+  for_halo_rows(y, field.ny(), periodic_y, [&](int image) {
+    fold_sides(field, image);
     T* target = field.row(y);
-    const T* source = field.row(from);
-    for (int x = 0; x < nx; ++x) target[x] += sign * source[x];
-  };
-  if (periodic_y) {
-    if (y < halo) add(ny + y, T(1));
-    if (y >= ny - halo) add(y - ny, T(1));
-  } else {
-    if (y < halo) add(-1 - y, T(-1));
-    if (y >= ny - halo) add(2 * ny - 1 - y, T(-1));
-  }
+    const T* source = field.row(image);
+    const T sign = periodic_y ? T(1) : T(-1);
+    for (int x = 0; x < field.nx(); ++x) target[x] += sign * source[x];
+  });
 }
 
 template <class T>
@@ -117,20 +130,21 @@ void fill_component(Field<T>& field, int y, bool periodic_y, double lower, doubl
     row[nx + k] = row[k];
     row[-1 - k] = row[nx - 1 - k];
   }
-  const auto set = [&](int to, T offset, T sign) {
-    T* target = field.row(to);
+  for_halo_rows(y, ny, periodic_y, [&](int image) {
+    const T offset = periodic_y ? T(0) : static_cast<T>(2 * (image < 0 ? lower : upper));
+    const T sign = periodic_y ? T(1) : T(-1);
+    T* target = field.row(image);
     for (int x = -halo; x < nx + halo; ++x) target[x] = offset + sign * row[x];
-  };
-  if (periodic_y) {
-    if (y < halo) set(ny + y, T(0), T(1));
-    if (y >= ny - halo) set(y - ny, T(0), T(1));
-  } else {
-    if (y < halo) set(-1 - y, static_cast<T>(2 * lower), T(-1));
-    if (y >= ny - halo) set(2 * ny - 1 - y, static_cast<T>(2 * upper), T(-1));
-  }
+  });
 }
 
 }  // namespace
+
+template <class T>
+void clear_force_halo(VectorField<T>& force, int y, bool periodic_y) {
+  clear_component(force.x, y, periodic_y);
+  clear_component(force.y, y, periodic_y);
+}
 
 template <class T>
 void fold_force_row(VectorField<T>& force, int y, bool periodic_y) {
@@ -148,6 +162,7 @@ void fill_velocity_halo(VectorField<T>& velocity, int y, bool periodic_y, const 
   template void add_wall_momentum<T>(Lattice<T>&, int, const WallVelocity&); \
   template void send_row<T>(Lattice<T>&, int);                               \
   template void receive_row<T>(Lattice<T>&, int);                            \
+  template void clear_force_halo<T>(VectorField<T>&, int, bool);             \
   template void fold_force_row<T>(VectorField<T>&, int, bool);               \
   template void fill_velocity_halo<T>(VectorField<T>&, int, bool, const WallVelocity&);
 ROULEAU_INSTANTIATE(float)

@@ -29,6 +29,10 @@ void send_row(Lattice<T>& lattice, int y);
 template <class T>
 void receive_row(Lattice<T>& lattice, int y);
 
+/// Sets the halo nodes that belong to row y to zero: its ends, and the rows beyond the border whose image it is.
+template <class T>
+void clear_force_halo(VectorField<T>& force, int y, bool periodic_y);
+
 /// Adds to row y the force that was spread onto its halo nodes. Beyond a wall the halo is the mirror image with
 /// reversed sign: the adjoint of fill_velocity_halo, so that spreading and interpolation stay adjoint near walls too.
 template <class T>

@@ -1,9 +1,10 @@
 // A scalar on the lattice with a halo, in aligned rows.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
-#include <memory>
-#include <new>
+
+#include "storage.hpp"
 
 namespace rouleau::host {
 
@@ -15,17 +16,19 @@ class Field {
 
   Field() = default;
   /// All values zero.
-  Field(int nx, int ny) : nx_(nx), ny_(ny), stride_((nx + halo + line - 1) / line * line + line) {
-    const std::size_t count = static_cast<std::size_t>(stride_) * (ny + 2 * halo);
-    storage_.reset(new (std::align_val_t{64}) T[count]{});
-    origin_ = storage_.get() + static_cast<std::size_t>(stride_) * halo + line;
+  Field(int nx, int ny) : nx_(nx), ny_(ny), stride_((nx + 2 * halo + line - 1) / line * line) {
+    storage_ = Storage<T>(static_cast<std::size_t>(stride_) * (ny + 2 * halo) + line);
+    origin_ = storage_.data() + static_cast<std::size_t>(stride_) * halo + line;
   }
 
   [[nodiscard]] int nx() const { return nx_; }
   [[nodiscard]] int ny() const { return ny_; }
-  [[nodiscard]] bool allocated() const { return storage_ != nullptr; }
-  [[nodiscard]] std::size_t bytes() const {
-    return allocated() ? sizeof(T) * static_cast<std::size_t>(stride_) * (ny_ + 2 * halo) : 0;
+  [[nodiscard]] bool allocated() const { return storage_.bytes() != 0; }
+  [[nodiscard]] std::size_t bytes() const { return storage_.bytes(); }
+
+  /// Sets all values, halo included.
+  void fill(T value) {
+    for (int y = -halo; y < ny_ + halo; ++y) std::fill(row(y) - halo, row(y) + nx_ + halo, value);
   }
 
   /// Row y in [-halo, ny + halo); x in [-halo, nx + halo) may be read and written.
@@ -34,11 +37,8 @@ class Field {
 
  private:
   static constexpr int line = 64 / sizeof(T);
-  struct Free {
-    void operator()(T* p) const { ::operator delete[](p, std::align_val_t{64}); }
-  };
   int nx_ = 0, ny_ = 0, stride_ = 0;
-  std::unique_ptr<T[], Free> storage_;
+  Storage<T> storage_;
   T* origin_ = nullptr;
 };
 

@@ -14,7 +14,10 @@ Fluid<T>::Fluid(const FluidSetting& setting, std::shared_ptr<const ModelInstance
       lattice_(setting.nx, setting.ny, setting.periodic_y),
       activity_(setting.nx, setting.ny) {
   if (setting.membranes) force_ = {Field<T>(setting.nx, setting.ny), Field<T>(setting.nx, setting.ny)};
-  if (setting.viscosity_contrast) relaxation_rate_ = Field<T>(setting.nx, setting.ny);
+  if (setting.viscosity_contrast) {
+    relaxation_rate_ = Field<T>(setting.nx, setting.ny);
+    relaxation_rate_.fill(static_cast<T>(setting.relaxation_rate));
+  }
   if (setting.body_force_x != 0 || setting.body_force_y != 0) {
     body_force_row_[0].assign(static_cast<std::size_t>(setting.nx), static_cast<T>(setting.body_force_x));
     body_force_row_[1].assign(static_cast<std::size_t>(setting.nx), static_cast<T>(setting.body_force_y));
@@ -27,82 +30,87 @@ std::size_t Fluid<T>::bytes() const {
 }
 
 template <class T>
-void Fluid<T>::clear_force(Worker worker) {
+bool Fluid<T>::reaches_border(int y) const {
   constexpr int halo = Field<T>::halo;
-  const auto clear = [&](Field<T>& field, double body_force) {
-    const auto fill = [&](int y, int begin, int end, T value) {
-      std::fill(field.row(y) + begin, field.row(y) + end, value);
-    };
-    const auto fill_halo_row = [&](int y) { fill(y, -halo, setting_.nx + halo, T(0)); };
-    const Range rows = worker.share(setting_.ny);
-    for (int y = rows.begin; y < rows.end; ++y) {
-      fill(y, -halo, 0, T(0));
-      fill(y, setting_.nx, setting_.nx + halo, T(0));
-      for (const Run& run : activity_.runs(y)) {
-        if (run.active) fill(y, run.begin, run.end, static_cast<T>(body_force));
-      }
+  if (!activity_.any(y)) return false;
+  return y < halo || y >= setting_.ny - halo || activity_.at_side(y);
+}
+
+template <class T>
+void Fluid<T>::clear_force(Worker worker) {
+  const Range rows = worker.share(setting_.ny);
+  const T body_force_x = static_cast<T>(setting_.body_force_x), body_force_y = static_cast<T>(setting_.body_force_y);
+  for (int y = rows.begin; y < rows.end; ++y) {
+    T *force_x = force_.x.row(y), *force_y = force_.y.row(y);
+    for (const Run& run : activity_.runs(y)) {
+      if (!run.active) continue;
+      std::fill(force_x + run.begin, force_x + run.end, body_force_x);
+      std::fill(force_y + run.begin, force_y + run.end, body_force_y);
     }
-    for (int k = 1; k <= halo && worker.first(); ++k) fill_halo_row(-k);
-    for (int k = 0; k < halo && worker.last(); ++k) fill_halo_row(setting_.ny + k);
-  };
-  clear(force_.x, setting_.body_force_x);
-  clear(force_.y, setting_.body_force_y);
+    if (reaches_border(y)) clear_force_halo(force_, y, setting_.periodic_y);
+  }
 }
 
 template <class T>
 void Fluid<T>::fold_force(Worker worker) {
   const Range rows = worker.share(setting_.ny);
-  for (int y = rows.begin; y < rows.end; ++y) fold_force_row(force_, y, setting_.periodic_y);
+  for (int y = rows.begin; y < rows.end; ++y) {
+    if (reaches_border(y)) fold_force_row(force_, y, setting_.periodic_y);
+  }
 }
 
 template <class T>
-void Fluid<T>::collide(const T* const* in, T* const* out, int y, const Run& run) {
+void Fluid<T>::collide_row(int y) {
   using Block = std::conditional_t<std::is_same_v<T, double>, rouleau_collision_block_f64, rouleau_collision_block_f32>;
-  const T* run_in[9];
-  T* run_out[9];
-  for (int q = 0; q < 9; ++q) {
-    run_in[q] = in[q] + run.begin;
-    run_out[q] = out[q] + run.begin;
-  }
+  const T* in[9];
+  T* out[9];
+  lattice_.row_pointers(parity_, y, in, out);
+  const T* body_force[2] = {body_force_row_[0].data(), body_force_row_[1].data()};
+  const T* const* const background = body_force_row_[0].empty() ? nullptr : body_force;
   const T* force[2];
   T* velocity[2];
   Block block{};
   block.struct_size = sizeof(Block);
-  block.count = static_cast<std::uint32_t>(run.end - run.begin);
-  block.in = run_in;
-  block.out = run_out;
-  if (run.active && setting_.membranes) {
-    velocity[0] = force_.x.row(y) + run.begin;
-    velocity[1] = force_.y.row(y) + run.begin;
-    force[0] = velocity[0];
-    force[1] = velocity[1];
-    block.force = force;
-    block.velocity = velocity;
-    if (setting_.viscosity_contrast) block.relaxation_rate = relaxation_rate_.row(y) + run.begin;
-  } else if (!body_force_row_[0].empty()) {
-    force[0] = body_force_row_[0].data();
-    force[1] = body_force_row_[1].data();
-    block.force = force;
-  }
-  if constexpr (std::is_same_v<T, double>) {
-    collision_->collision().collide_f64(collision_->self(), &block);
-  } else {
-    collision_->collision().collide_f32(collision_->self(), &block);
+  block.in = in;
+  block.out = out;
+  int at = 0;  // where the pointers stand
+  for (const Run& run : activity_.runs(y)) {
+    if (run.begin != at) {
+      d2q9::for_each_velocity([&](auto q) { in[q] += run.begin - at, out[q] += run.begin - at; });
+      at = run.begin;
+    }
+    block.count = static_cast<std::uint32_t>(run.end - run.begin);
+    if (run.active && setting_.membranes) {
+      force[0] = velocity[0] = force_.x.row(y) + run.begin;
+      force[1] = velocity[1] = force_.y.row(y) + run.begin;
+      block.force = force;
+      block.velocity = velocity;
+      block.relaxation_rate = setting_.viscosity_contrast ? relaxation_rate_.row(y) + run.begin : nullptr;
+    } else {
+      block.force = background;
+      block.velocity = nullptr;
+      block.relaxation_rate = nullptr;
+    }
+    if constexpr (std::is_same_v<T, double>) {
+      collision_->collision().collide_f64(collision_->self(), &block);
+    } else {
+      collision_->collision().collide_f32(collision_->self(), &block);
+    }
   }
 }
 
 template <class T>
 void Fluid<T>::step(Worker worker) {
   const Range rows = worker.share(setting_.ny);
+  const bool even = parity_ == Parity::even;
   for (int y = rows.begin; y < rows.end; ++y) {
-    if (parity_ == Parity::even) receive_row(lattice_, y);
-    const T* in[9];
-    T* out[9];
-    lattice_.row_pointers(parity_, y, in, out);
-    for (const Run& run : activity_.runs(y)) collide(in, out, y, run);
+    if (even) receive_row(lattice_, y);
+    collide_row(y);
     add_wall_momentum(lattice_, y, setting_.walls);
-    if (parity_ == Parity::even) send_row(lattice_, y);
-    if (setting_.membranes) fill_velocity_halo(force_, y, setting_.periodic_y, setting_.walls);
+    if (even) send_row(lattice_, y);
+    if (setting_.membranes && reaches_border(y)) {
+      fill_velocity_halo(force_, y, setting_.periodic_y, setting_.walls);
+    }
   }
 }
 

@@ -56,7 +56,7 @@ class Fluid {
   void take_over(Fluid& other, double factor);
 
   // Passes, in the order of a step. A worker handles its share of rows; a barrier must follow each.
-  /// Sets the force in active nodes to the body force, and in all halo nodes to zero.
+  /// Sets the force in active nodes to the body force, and in the halo nodes that belong to their rows to zero.
   void clear_force(Worker worker);
   /// Brings home what was spread onto halo nodes.
   void fold_force(Worker worker);
@@ -88,7 +88,9 @@ class Fluid {
  private:
   [[nodiscard]] double equilibrium(int q, double density, double ux, double uy) const;
   void complete_halo();
-  void collide(const T* const* in, T* const* out, int y, const Run& run);
+  /// Whether membranes may reach the halo that belongs to row y.
+  [[nodiscard]] bool reaches_border(int y) const;
+  void collide_row(int y);
 
   FluidSetting setting_;
   std::shared_ptr<const ModelInstance> collision_;

@@ -7,41 +7,39 @@ namespace d2q9 = rouleau::d2q9;
 template <class T>
 Lattice<T>::Lattice(int nx, int ny, bool periodic_y) : nx_(nx), ny_(ny), periodic_y_(periodic_y) {
   constexpr int line = 64 / sizeof(T);
-  stride_ = (nx + 1 + line - 1) / line * line + line;
+  // Rows begin on a cache line; the halo of a row's right end and of the next row's left end share what lies between.
+  stride_ = (nx + 2 + line - 1) / line * line;
   // Planes start a few cache lines apart modulo 4096 bytes, so that nine streams do not fall into one cache set.
-  const std::size_t plane = static_cast<std::size_t>(stride_) * (ny + 2);
+  const std::size_t plane = static_cast<std::size_t>(stride_) * (ny + 2) + line;
   constexpr std::size_t page = 4096 / sizeof(T), stagger = 7 * line;
   const std::size_t spacing = (plane + page - 1) / page * page + stagger;
-  count_ = spacing * 9;
-  storage_.reset(new (std::align_val_t{4096}) T[count_]{});
-  for (int q = 0; q < 9; ++q) origin_[q] = storage_.get() + spacing * q + stride_ + line;
+  storage_ = Storage<T>(spacing * 9);
+  for (int q = 0; q < 9; ++q) origin_[q] = storage_.data() + spacing * q + stride_ + line;
 }
 
 template <class T>
 void Lattice<T>::row_pointers(Parity parity, int y, const T* (&in)[9]) const {
-  for (int q = 0; q < 9; ++q) {
-    const int opposite = d2q9::opposite[q];
-    const int cx = d2q9::velocity[q][0], cy = d2q9::velocity[q][1];
-    if (parity == Parity::even || outside(y - cy)) {
-      in[q] = slot(q, y);
-    } else {
-      in[q] = slot(opposite, y - cy) - cx;
-    }
-  }
+  const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(stride_) * y;
+  const bool streamed = parity == Parity::odd, below = !outside(y - 1), above = !outside(y + 1);
+  d2q9::for_each_velocity([&](auto q) {
+    constexpr int opposite = d2q9::opposite[q], cx = d2q9::velocity[q][0], cy = d2q9::velocity[q][1];
+    const bool inside = cy == 0 || (cy > 0 ? below : above);
+    in[q] = streamed && inside ? origin_[opposite] + row - (cy * static_cast<std::ptrdiff_t>(stride_) + cx)
+                               : origin_[q] + row;
+  });
 }
 
 template <class T>
 void Lattice<T>::row_pointers(Parity parity, int y, const T* (&in)[9], T* (&out)[9]) {
   row_pointers(parity, y, in);
-  for (int q = 0; q < 9; ++q) {
-    const int opposite = d2q9::opposite[q];
-    const int cx = d2q9::velocity[q][0], cy = d2q9::velocity[q][1];
-    if (parity == Parity::even || outside(y + cy)) {
-      out[q] = slot(opposite, y);
-    } else {
-      out[q] = slot(q, y + cy) + cx;
-    }
-  }
+  const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(stride_) * y;
+  const bool streamed = parity == Parity::odd, below = !outside(y - 1), above = !outside(y + 1);
+  d2q9::for_each_velocity([&](auto q) {
+    constexpr int opposite = d2q9::opposite[q], cx = d2q9::velocity[q][0], cy = d2q9::velocity[q][1];
+    const bool inside = cy == 0 || (cy > 0 ? above : below);
+    out[q] = streamed && inside ? origin_[q] + row + (cy * static_cast<std::ptrdiff_t>(stride_) + cx)
+                                : origin_[opposite] + row;
+  });
 }
 
 template class Lattice<float>;

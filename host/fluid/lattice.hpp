@@ -7,9 +7,9 @@
 #pragma once
 
 #include <cstddef>
-#include <memory>
-#include <new>
 #include <rouleau/d2q9.hpp>
+
+#include "storage.hpp"
 
 namespace rouleau::host {
 
@@ -26,7 +26,7 @@ class Lattice {
   [[nodiscard]] int nx() const { return nx_; }
   [[nodiscard]] int ny() const { return ny_; }
   [[nodiscard]] bool periodic_y() const { return periodic_y_; }
-  [[nodiscard]] std::size_t bytes() const { return sizeof(T) * count_; }
+  [[nodiscard]] std::size_t bytes() const { return storage_.bytes(); }
 
   /// Row y of slot q; x in [-1, nx], y in [-1, ny].
   [[nodiscard]] T* slot(int q, int y) { return origin_[q] + static_cast<std::ptrdiff_t>(stride_) * y; }
@@ -44,11 +44,7 @@ class Lattice {
 
   int nx_, ny_, stride_;
   bool periodic_y_;
-  std::size_t count_;
-  struct Free {
-    void operator()(T* p) const { ::operator delete[](p, std::align_val_t{4096}); }
-  };
-  std::unique_ptr<T[], Free> storage_;
+  Storage<T> storage_;
   T* origin_[9];
 };
 

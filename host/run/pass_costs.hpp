@@ -11,14 +11,14 @@ namespace rouleau::host {
 
 class PassCosts {
  public:
-  /// Adds wall-clock time to a pass; `call`: it also begins a call.
-  void add(const std::string& pass, double wall_s, bool call) {
+  /// Adds wall-clock time and calls to a pass.
+  void add(const std::string& pass, double wall_s, long calls) {
     auto found = std::find_if(passes_.begin(), passes_.end(), [&](const PassCost& cost) { return cost.name == pass; });
     if (found == passes_.end()) found = passes_.insert(found, PassCost{pass, 0, 0});
     found->wall_s += wall_s;
-    found->calls += call ? 1 : 0;
+    found->calls += calls;
   }
-  /// In the order in which they first ran.
+  /// In the order in which they were first added.
   [[nodiscard]] const std::vector<PassCost>& passes() const { return passes_; }
 
  private:

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "stage_setting.hpp"
@@ -24,6 +25,22 @@ class Schedule {
     return std::any_of(intervals_.begin(), intervals_.end(), [step](double interval) {
       return step == std::lround(std::round(static_cast<double>(step) / interval) * interval);
     });
+  }
+  /// First step after this one at which an output is due; the largest number if there is none.
+  [[nodiscard]] long next(long step) const {
+    long first = std::numeric_limits<long>::max();
+    for (const double interval : intervals_) {
+      // An interval is at least one step, so that one of the next two multiples rounds to a later step.
+      const double multiple = std::floor(static_cast<double>(step) / interval);
+      for (int k = 0; k <= 2; ++k) {
+        const long candidate = std::lround((multiple + k) * interval);
+        if (candidate > step) {
+          first = std::min(first, candidate);
+          break;
+        }
+      }
+    }
+    return first;
   }
 
  private:

@@ -3,12 +3,15 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <exception>
+#include <limits>
 #include <optional>
 
 #include "aggregate_history.hpp"
+#include "cell/motion.hpp"
 #include "observer.hpp"
 #include "output/progress.hpp"
 #include "pass_costs.hpp"
@@ -90,6 +93,7 @@ class Simulation {
     }
     std::fill(membranes_.velocity_x.begin(), membranes_.velocity_x.end(), 0.0);
     std::fill(membranes_.velocity_y.begin(), membranes_.velocity_y.end(), 0.0);
+    membranes_.largest_step.assign(membranes_.cells.size(), 0.0);
   }
 
   template <class T>
@@ -104,29 +108,10 @@ class Simulation {
     const Schedule cells(scene_.output.cells, setting, true), fields(scene_.output.fields, setting, false);
     rest_watch_ = membranes_;
     rest_watch_step_ = 0;
-    std::exception_ptr trouble;
+    steps_before_ = steps_;
+    next_attention_ = 0;
     const auto start = Clock::now();
-
-#pragma omp parallel num_threads(options_.threads)
-    {
-      const Worker worker{omp_get_thread_num(), omp_get_num_threads()};
-      while (stage_ending_ == Ending::none) {
-        run_passes(solver.forces(), worker);
-#pragma omp single
-        {
-          try {
-            between_steps(solver, cells, fields);
-          } catch (...) {
-            trouble = std::current_exception();
-            stage_ending_ = Ending::failed;
-          }
-        }
-        if (stage_ending_ != Ending::none) break;
-        run_passes(solver.advance(), worker);
-      }
-    }
-    if (trouble) std::rethrow_exception(trouble);
-
+    step_loop(solver, cells, fields);
     wall_ += seconds_since(start);
     time_ += static_cast<double>(stage_step_) * setting.units.time;
     strain_ += std::abs(setting.shear_rate) * static_cast<double>(stage_step_);
@@ -139,29 +124,86 @@ class Simulation {
         stage_ending_ == Ending::max_steps || stage_ending_ == Ending::interrupted || stage_ending_ == Ending::failed;
   }
 
-  void run_passes(const std::vector<Pass>& passes, Worker worker) {
-    for (std::size_t i = 0; i < passes.size(); ++i) {
-      const auto start = worker.first() ? Clock::now() : Clock::time_point{};
-      passes[i].run(worker);
+  /// The steps of a stage. All workers run the same passes; what needs one of them alone happens between two steps, and
+  /// only when something is due.
+  template <class T>
+  void step_loop(Solver<T>& solver, const Schedule& cells, const Schedule& fields) {
+    std::exception_ptr trouble;
+    std::atomic<long> stop_at{std::numeric_limits<long>::max()};
+#pragma omp parallel num_threads(options_.threads)
+    {
+      const Worker worker{omp_get_thread_num(), omp_get_num_threads()};
+      const std::vector<Pass>&forces = solver.forces(), &advance = solver.advance();
+      PassClock clock(forces.size() + advance.size());
+      for (long step = 0;; ++step) {
+        run_passes(forces, worker, clock, 0);
+        if (step >= next_attention_ || step >= stop_at.load(std::memory_order_relaxed) || went_wrong(solver)) {
 #pragma omp barrier
-      if (worker.first()) {
-        // Phases of one pass follow each other; together they are one call.
-        costs_.add(passes[i].name, seconds_since(start), i == 0 || passes[i - 1].name != passes[i].name);
+#pragma omp single
+          {
+            try {
+              between_steps(solver, step, cells, fields);
+            } catch (...) {
+              trouble = std::current_exception();
+              stage_ending_ = Ending::failed;
+            }
+          }
+          if (stage_ending_ != Ending::none) break;
+          clock.resume();
+        }
+        run_passes(advance, worker, clock, forces.size());
+        // A request to stop counts two steps later, when every worker has passed a barrier since.
+        if (worker.first() && interrupted()) stop_at.store(step + 2, std::memory_order_relaxed);
+      }
+      if (worker.first()) add_costs(solver, clock);
+    }
+    if (trouble) std::rethrow_exception(trouble);
+  }
+
+  static void run_passes(const std::vector<Pass>& passes, Worker worker, PassClock& clock, std::size_t first) {
+    for (std::size_t i = 0; i < passes.size(); ++i) {
+      passes[i].run(worker);
+      if (passes[i].barrier) {
+#pragma omp barrier
+      }
+      if (worker.first()) clock.lap(first + i);
+    }
+  }
+
+  template <class T>
+  void add_costs(const Solver<T>& solver, const PassClock& clock) {
+    std::size_t at = 0;
+    for (const std::vector<Pass>* passes : {&solver.forces(), &solver.advance()}) {
+      const std::string* before = nullptr;
+      for (const Pass& pass : *passes) {
+        const bool phase = before != nullptr && *before == pass.name;
+        costs_.add(pass.name, clock.wall_s(at++), phase ? 0 : stage_step_);
+        before = &pass.name;
       }
     }
   }
 
+  [[nodiscard]] bool interrupted() const { return options_.interrupted != nullptr && options_.interrupted->load(); }
+
+  /// Whether the last step must not be followed by another; all workers come to the same answer.
+  template <class T>
+  [[nodiscard]] bool went_wrong(const Solver<T>& solver) const {
+    return !(largest_step(membranes_) <= scene_.checks.node_step) || solver.escaped();
+  }
+
   /// One thread, forces computed: outputs, checks, and whether the stage ends here.
   template <class T>
-  void between_steps(Solver<T>& solver, const Schedule& cells, const Schedule& fields) {
+  void between_steps(Solver<T>& solver, long step, const Schedule& cells, const Schedule& fields) {
     const auto start = Clock::now();
+    stage_step_ = step;
+    steps_ = steps_before_ + step;
     if (check_step(solver)) return;
     // The end of a stage has been written; the beginning of the next is the same instant.
     const bool written = stage_step_ == 0 && steps_ > 0;
     const bool cells_due = !written && (steps_ == 0 || cells.due(stage_step_));
     const bool fields_due = !written && !scene_.output.fields.never() && fields.due(stage_step_);
     const bool check_due = stage_step_ % scene_.checks.every_steps == 0;
-    Ending ending = next_ending(solver.setting());
+    const Ending ending = next_ending(solver.setting());
     if (cells_due || fields_due || check_due || ending != Ending::none) {
       if (auto failure = observer_.check(solver, membranes_)) {
         fail(std::move(*failure), solver.setting());
@@ -171,18 +213,25 @@ class Simulation {
       if (cells_due || fields_due || last) write(solver, fields_due || (last && !scene_.output.fields.never()));
       momentum_residual_ = std::max(momentum_residual_, Observer::momentum_residual(membranes_));
       progress_.update(progress(solver.setting()));
-      costs_.add("observe and check", seconds_since(start), true);
+      costs_.add("observe and check", seconds_since(start), 1);
     }
     stage_ending_ = ending;
-    if (ending == Ending::none) {
-      ++stage_step_;
-      ++steps_;
+    const long check = (step / scene_.checks.every_steps + 1) * scene_.checks.every_steps;
+    next_attention_ = std::min({cells.next(step), fields.next(step), check, last_step(solver.setting())});
+    if (solver.setting().stage->until_at_rest) {
+      next_attention_ = std::min(next_attention_, rest_watch_step_ + rest_window(solver.setting()));
     }
+  }
+
+  /// Step at which the stage ends unless something ends it before.
+  [[nodiscard]] long last_step(const StageSetting& setting) const {
+    const long most = options_.max_steps >= 0 ? options_.max_steps - steps_before_ : setting.max_steps;
+    return std::min(setting.max_steps, most);
   }
 
   Ending next_ending(const StageSetting& setting) {
     const Stage& stage = *setting.stage;
-    if (options_.interrupted != nullptr && options_.interrupted->load()) return Ending::interrupted;
+    if (interrupted()) return Ending::interrupted;
     if (stage.until_at_rest && at_rest(setting)) return Ending::at_rest;
     if (stage_step_ >= setting.max_steps) {
       const bool by_strain =
@@ -193,9 +242,12 @@ class Simulation {
     return Ending::none;
   }
 
+  [[nodiscard]] long rest_window(const StageSetting& setting) const {
+    return std::max(1L, std::lround(setting.steps_of(scene_.at_rest.window)));
+  }
+
   bool at_rest(const StageSetting& setting) {
-    const long window = std::max(1L, std::lround(setting.steps_of(scene_.at_rest.window)));
-    if (stage_step_ - rest_watch_step_ < window) return false;
+    if (stage_step_ - rest_watch_step_ < rest_window(setting)) return false;
     const double limit = scene_.at_rest.displacement / setting.units.length;
     const double moved = largest_displacement(membranes_.x, membranes_.y, rest_watch_.x, rest_watch_.y);
     rest_watch_.x = membranes_.x;
@@ -208,16 +260,16 @@ class Simulation {
   template <class T>
   bool check_step(Solver<T>& solver) {
     if (membranes_.cells.empty()) return false;
-    const StepResult step = solver.last_step();
     Failure f;
-    if (!(step.largest_step <= scene_.checks.node_step)) {
-      f.reason = std::isfinite(step.largest_step) ? "node_step" : "non_finite";
-      f.value = step.largest_step;
+    if (!(largest_step(membranes_) <= scene_.checks.node_step)) {
+      const FarthestNode farthest = farthest_node(membranes_);
+      f.reason = std::isfinite(farthest.step) ? "node_step" : "non_finite";
+      f.value = farthest.step;
       f.limit = scene_.checks.node_step;
-      f.message = std::isfinite(step.largest_step)
+      f.message = std::isfinite(farthest.step)
                       ? "a membrane node moved further in one step than its limit (in lattice spacings)"
                       : "the velocity of a membrane node is no number";
-      set_node(f, step.node, solver.setting());
+      set_node(f, farthest.node, solver.setting());
     } else if (const int node = solver.escaped_node(); node >= 0) {
       f.reason = "escaped";
       f.message = "a membrane node has left the domain through a wall";
@@ -312,7 +364,9 @@ class Simulation {
   Observer observer_;
   Progress progress_;
 
-  long steps_ = 0, stage_step_ = 0;
+  long steps_ = 0, stage_step_ = 0;          ///< taken so far: by the run, by the stage
+  long steps_before_ = 0;                    ///< by the run when the stage began
+  long next_attention_ = 0;                  ///< step of the stage before which nothing is due
   double time_ = 0, strain_ = 0, wall_ = 0;  ///< at the start of the present stage
   Ending stage_ending_ = Ending::none;
   bool stopped_ = false;

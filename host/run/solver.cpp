@@ -1,7 +1,6 @@
 #include "solver.hpp"
 
-#include <algorithm>
-#include <cmath>
+#include "cell/motion.hpp"
 
 namespace rouleau::host {
 
@@ -19,19 +18,19 @@ Solver<T>::Solver(const Plan& plan, int stage, Membranes& membranes)
       membranes_(membranes),
       fluid_(setting_->fluid_setting(*plan.scene, plan.has_cells, plan.viscosity_contrast),
              make_model(plan.collision, setting_->model_setting(plan.scene->fluid.inertia))) {
-  if (plan.has_cells) plan_forces(plan);
+  if (plan.has_cells) {
+    plan_cell_passes(plan);
+    plan_spreading();
+  }
   plan_advance();
 }
 
+/// Passes over cells: each worker has its own cells, and what it reads of others lies behind a barrier.
 template <class T>
-void Solver<T>::plan_forces(const Plan& plan) {
+void Solver<T>::plan_cell_passes(const Plan& plan) {
   const Scene& scene = *plan.scene;
   const int nx = scene.domain.nodes[0], ny = scene.domain.nodes[1];
   const ModelSetting setting = setting_->model_setting(scene.fluid.inertia);
-  cell_step_.resize(membranes_.cells.size());
-  const auto pass = [this](const char* name, std::function<void(Worker)> run) {
-    forces_.push_back({name, std::move(run)});
-  };
 
   std::vector<MembraneLaws> laws(plan.membranes.size());
   for (std::size_t type = 0; type < laws.size(); ++type) {
@@ -40,21 +39,7 @@ void Solver<T>::plan_forces(const Plan& plan) {
     }
   }
   membrane_forces_ = std::make_unique<MembraneForces>(membranes_, std::move(laws));
-  pass("membrane", [this](Worker worker) { membrane_forces_->run(worker, membranes_); });
-
-  if (plan.has_interactions) {
-    std::vector<Potential> potentials;
-    for (std::size_t i = 0; i < plan.interactions.size(); ++i) {
-      if (plan.interactions[i].active()) {
-        potentials.push_back({scene.interactions[i].between, make_model(plan.interactions[i], setting)});
-      }
-    }
-    const PeriodicBox box{static_cast<double>(nx), scene.domain.periodic_y ? static_cast<double>(ny) : 0.0};
-    interaction_forces_ = std::make_unique<InteractionForces>(membranes_, std::move(potentials), box);
-    for (int phase = 0; phase < InteractionForces::phases; ++phase) {
-      pass("interaction", [this, phase](Worker worker) { interaction_forces_->run(worker, phase, membranes_); });
-    }
-  }
+  forces_.push_back({"membrane", [this](Worker worker) { membrane_forces_->run(worker, membranes_); }, false});
 
   std::vector<double> viscosity_ratio;
   for (const CellType& type : scene.cell_types) {
@@ -62,64 +47,71 @@ void Solver<T>::plan_forces(const Plan& plan) {
   }
   indicator_ = std::make_unique<Indicator<T>>(membranes_, std::move(viscosity_ratio), 1 / setting_->tau, nx, ny,
                                               scene.domain.periodic_y);
-  pass(plan.viscosity_contrast ? "indicator" : "activity", [this](Worker worker) {
-    if (indicator_->due()) indicator_->update(worker, membranes_, fluid_.relaxation_rate(), fluid_.activity());
-  });
+  indicator_name_ = plan.viscosity_contrast ? "indicator" : "activity";
+  forces_.push_back({indicator_name_, [this](Worker worker) {
+                       indicator_->measure(worker, membranes_);
+                       indicator_->cover(worker, membranes_);
+                     }});
+  if (!plan.has_interactions) return;
 
-  coupling_ = std::make_unique<Coupling<T>>(nx, ny, scene.domain.periodic_y);
+  forces_.back().barrier = false;
+  std::vector<Potential> potentials;
+  for (std::size_t i = 0; i < plan.interactions.size(); ++i) {
+    if (plan.interactions[i].active()) {
+      potentials.push_back({scene.interactions[i].between, make_model(plan.interactions[i], setting)});
+    }
+  }
+  const PeriodicBox box{static_cast<double>(nx), scene.domain.periodic_y ? static_cast<double>(ny) : 0.0};
+  interaction_forces_ = std::make_unique<InteractionForces>(membranes_, std::move(potentials), box);
+  for (int phase = 0; phase < InteractionForces::phases; ++phase) {
+    forces_.push_back(
+        {"interaction", [this, phase](Worker worker) { interaction_forces_->run(worker, phase, membranes_); }});
+  }
+}
+
+/// Passes over rows: each worker has its own rows and collides them afterwards. Only where y is periodic do the rows of
+/// one worker have images in the halo of another.
+template <class T>
+void Solver<T>::plan_spreading() {
+  const FluidSetting& fluid = fluid_.setting();
+  coupling_ = std::make_unique<Coupling<T>>(fluid.nx, fluid.ny, fluid.periodic_y);
   coupling_->reserve(membranes_);
-  pass("spread", [this](Worker worker) {
-    fluid_.clear_force(worker);
-    coupling_->locate(worker, membranes_);
-  });
-  pass("spread", [this](Worker worker) { coupling_->spread(worker, membranes_, fluid_.force()); });
-  pass("spread", [this](Worker worker) { fluid_.fold_force(worker); });
+  coupling_->locate(Worker{}, membranes_);
+  forces_.push_back({indicator_name_,
+                     [this](Worker worker) {
+                       if (!indicator_->due()) return;
+                       indicator_->update(worker, membranes_, fluid_.relaxation_rate(), fluid_.activity());
+                     },
+                     false});
+  forces_.push_back({"spread", [this](Worker worker) { fluid_.clear_force(worker); }, fluid.periodic_y});
+  forces_.push_back(
+      {"spread", [this](Worker worker) { coupling_->spread(worker, membranes_, fluid_.force()); }, fluid.periodic_y});
+  forces_.push_back({"spread", [this](Worker worker) { fluid_.fold_force(worker); }, false});
 }
 
 template <class T>
 void Solver<T>::plan_advance() {
   advance_.push_back({"fluid", [this](Worker worker) { fluid_.step(worker); }});
-  if (coupling_) {
-    advance_.push_back({"interpolate", [this](Worker worker) {
-                          if (worker.first()) fluid_.end_step();
-                          coupling_->interpolate(worker, membranes_, fluid_.force());
-                        }});
-    advance_.push_back({"move", [this](Worker worker) { move(worker); }});
-  } else {
-    advance_.push_back({"fluid", [this](Worker worker) {
-                          if (worker.first()) fluid_.end_step();
-                        }});
+  const auto end_step = [this](Worker worker) {
+    if (worker.first()) fluid_.end_step();
+  };
+  if (!coupling_) {
+    advance_.push_back({"fluid", end_step});
+    return;
   }
-}
-
-template <class T>
-void Solver<T>::move(Worker worker) {
-  const Range cells = worker.share(static_cast<int>(membranes_.cells.size()));
-  for (int c = cells.begin; c < cells.end; ++c) {
-    const CellRange& cell = membranes_.cells[static_cast<std::size_t>(c)];
-    StepResult& result = cell_step_[static_cast<std::size_t>(c)];
-    result = {};
-    for (int i = cell.first; i < cell.end(); ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      membranes_.x[k] += membranes_.velocity_x[k];
-      membranes_.y[k] += membranes_.velocity_y[k];
-      const double step2 =
-          membranes_.velocity_x[k] * membranes_.velocity_x[k] + membranes_.velocity_y[k] * membranes_.velocity_y[k];
-      // Written so that a step that is no number counts as the largest.
-      if (!(step2 <= result.largest_step)) result = {step2, i};
-    }
-  }
-  indicator_->measure(worker, membranes_);
-}
-
-template <class T>
-StepResult Solver<T>::last_step() const {
-  StepResult most;
-  for (const StepResult& step : cell_step_) {
-    if (!(step.largest_step <= most.largest_step)) most = step;
-    if (std::isnan(most.largest_step)) break;
-  }
-  return {std::sqrt(most.largest_step), most.node};
+  // The forces of the next step begin with the same cells; their first barrier serves these passes too.
+  advance_.push_back({"interpolate",
+                      [this, end_step](Worker worker) {
+                        end_step(worker);
+                        coupling_->interpolate(worker, membranes_, fluid_.force());
+                      },
+                      false});
+  advance_.push_back({"move",
+                      [this](Worker worker) {
+                        move_nodes(worker, membranes_);
+                        coupling_->locate(worker, membranes_);
+                      },
+                      false});
 }
 
 template <class T>

@@ -10,7 +10,7 @@
 struct Relaxation {
   explicit Relaxation(const rouleau::Parameters&) {}
   template <class Node, class S>
-  void operator()(const Node& node, S (&after)[9]) const {
+  void operator()(const Node& node, const S& /*relaxation_rate*/, S (&after)[9]) const {
     rouleau::d2q9::for_each_velocity([&](auto q) { after[q] = node.f[q]; });
   }
 };

@@ -6,12 +6,12 @@ struct Bgk {
   explicit Bgk(const rouleau::Parameters&) {}
 
   template <class Node, class S>
-  void operator()(const Node& node, S (&after)[9]) const {
-    const S omega = node.relaxation_rate, source_factor = 1.0 - 0.5 * omega;
+  void operator()(const Node& node, const S& omega, S (&after)[9]) const {
+    const S keep = 1.0 - omega, source = 1.0 - 0.5 * omega;
     rouleau::d2q9::for_each_velocity([&](auto q) {
-      after[q] = node.f[q] - omega * (node.f[q] - node.even_equilibrium(q) - node.odd_equilibrium(q));
-      if constexpr (Node::forced) after[q] += source_factor * node.odd_source(q);
-      if constexpr (Node::forced && Node::inertia) after[q] += source_factor * node.even_source(q);
+      after[q] = keep * node.f[q] + node.even_equilibrium(q, omega) + node.odd_equilibrium(q, omega);
+      if constexpr (Node::forced) after[q] += node.odd_source(q, source);
+      if constexpr (Node::forced && Node::inertia) after[q] += node.even_source(q, source);
     });
   }
 };

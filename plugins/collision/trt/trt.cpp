@@ -6,20 +6,28 @@ struct Trt {
   double magic;
   explicit Trt(const rouleau::Parameters& p) : magic{p["magic"]} {}
 
+  template <class S>
+  struct Rates {
+    S even, odd;
+  };
+  template <class S>
+  Rates<S> rates(const S& omega) const {
+    return {omega, 2.0 * (2.0 - omega) / (4.0 * magic * omega + (2.0 - omega))};
+  }
+
   template <class Node, class S>
-  void operator()(const Node& node, S (&after)[9]) const {
-    const S omega = node.relaxation_rate;
-    const S omega_odd = 2.0 * (2.0 - omega) / (4.0 * magic * omega + (2.0 - omega));
-    after[0] = node.f[0] - omega * (node.f[0] - node.even_equilibrium(0));
-    if constexpr (Node::forced && Node::inertia) after[0] += (1.0 - 0.5 * omega) * node.even_source(0);
+  void operator()(const Node& node, const Rates<S>& rate, S (&after)[9]) const {
+    const S keep_even = 0.5 - 0.5 * rate.even, keep_odd = 0.5 - 0.5 * rate.odd;
+    after[0] = 2.0 * keep_even * node.f[0] + node.even_equilibrium(0, rate.even);
+    if constexpr (Node::forced && Node::inertia) after[0] += node.even_source(0, 1.0 - 0.5 * rate.even);
     rouleau::d2q9::for_each_pair([&](auto q) {
       constexpr int opposite = rouleau::d2q9::opposite[q];
-      S even = omega * (0.5 * (node.f[q] + node.f[opposite]) - node.even_equilibrium(q));
-      S odd = omega_odd * (0.5 * (node.f[q] - node.f[opposite]) - node.odd_equilibrium(q));
-      if constexpr (Node::forced) odd -= (1.0 - 0.5 * omega_odd) * node.odd_source(q);
-      if constexpr (Node::forced && Node::inertia) even -= (1.0 - 0.5 * omega) * node.even_source(q);
-      after[q] = node.f[q] - even - odd;
-      after[opposite] = node.f[opposite] - even + odd;
+      S even = keep_even * (node.f[q] + node.f[opposite]) + node.even_equilibrium(q, rate.even);
+      S odd = keep_odd * (node.f[q] - node.f[opposite]) + node.odd_equilibrium(q, rate.odd);
+      if constexpr (Node::forced) odd += node.odd_source(q, 1.0 - 0.5 * rate.odd);
+      if constexpr (Node::forced && Node::inertia) even += node.even_source(q, 1.0 - 0.5 * rate.even);
+      after[q] = even + odd;
+      after[opposite] = even - odd;
     });
   }
 };

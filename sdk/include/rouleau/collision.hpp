@@ -18,18 +18,18 @@ struct Node {
   static constexpr bool inertia = Inertia;
 
   S f[9];
-  S force[2];         ///< force density; not to be read unless forced
-  S relaxation_rate;  ///< 1/tau of the shear stress
+  S force[2];  ///< force density; not to be read unless forced
 
   S density;      ///< deviation from 1
   S velocity[2];  ///< sum f c + force / 2
 
   /// Sets density and velocity from populations and force.
   ROULEAU_ALWAYS_INLINE void compute_moments() {
-    const S east = f[5] + f[8], west = f[6] + f[7], north = f[5] + f[6], south = f[7] + f[8];
-    density = f[0] + ((f[1] + f[3]) + (f[2] + f[4])) + (east + west);
-    velocity[0] = (f[1] - f[3]) + (east - west);
-    velocity[1] = (f[2] - f[4]) + (north - south);
+    // Sums and differences of opposite pairs: what operators that relax even and odd parts compute as well.
+    const S rising = f[5] - f[7], falling = f[6] - f[8];
+    density = f[0] + ((f[1] + f[3]) + (f[2] + f[4])) + ((f[5] + f[7]) + (f[6] + f[8]));
+    velocity[0] = (f[1] - f[3]) + (rising - falling);
+    velocity[1] = (f[2] - f[4]) + (rising + falling);
     if constexpr (Forced) {
       velocity[0] += 0.5 * force[0];
       velocity[1] += 0.5 * force[1];
@@ -60,28 +60,46 @@ struct Node {
     }
   }
 
+  // Each of these takes a factor: multiplied into the weight first, it costs nothing where it is the same for all
+  // nodes.
+
   /// Part of the equilibrium that is even under reversal of the velocity: the same for q and its opposite.
-  ROULEAU_ALWAYS_INLINE S even_equilibrium(int q) const {
+  ROULEAU_ALWAYS_INLINE S even_equilibrium(int q, const S& factor = 1) const {
     S sum = density;
     if constexpr (Inertia) {
       const S along = project(q, velocity);
       sum += 4.5 * along * along - 1.5 * (velocity[0] * velocity[0] + velocity[1] * velocity[1]);
     }
-    return d2q9::weight[q] * sum;
+    return factor * d2q9::weight[q] * sum;
   }
   /// Part of the equilibrium that changes its sign with the velocity.
-  ROULEAU_ALWAYS_INLINE S odd_equilibrium(int q) const { return 3.0 * d2q9::weight[q] * project(q, velocity); }
+  ROULEAU_ALWAYS_INLINE S odd_equilibrium(int q, const S& factor = 1) const {
+    return factor * (3.0 * d2q9::weight[q]) * project(q, velocity);
+  }
 
   /// Guo's source before its factor 1 - rate/2, even part: zero without inertia.
-  ROULEAU_ALWAYS_INLINE S even_source(int q) const {
-    return d2q9::weight[q] *
+  ROULEAU_ALWAYS_INLINE S even_source(int q, const S& factor = 1) const {
+    return factor * d2q9::weight[q] *
            (9.0 * project(q, velocity) * project(q, force) - 3.0 * (velocity[0] * force[0] + velocity[1] * force[1]));
   }
   /// Guo's source before its factor 1 - rate/2, odd part.
-  ROULEAU_ALWAYS_INLINE S odd_source(int q) const { return 3.0 * d2q9::weight[q] * project(q, force); }
+  ROULEAU_ALWAYS_INLINE S odd_source(int q, const S& factor = 1) const {
+    return factor * (3.0 * d2q9::weight[q]) * project(q, force);
+  }
 };
 
 namespace detail {
+
+/// What an operator makes of the relaxation rate before it sees a node: its rates(), or the rate itself.
+template <class Model, class S>
+ROULEAU_ALWAYS_INLINE auto derived_rates(const Model& model, const S& relaxation_rate, int)
+    -> decltype(model.rates(relaxation_rate)) {
+  return model.rates(relaxation_rate);
+}
+template <class Model, class S>
+ROULEAU_ALWAYS_INLINE S derived_rates(const Model&, const S& relaxation_rate, long) {
+  return relaxation_rate;
+}
 
 /// C block of either precision.
 template <class T>
@@ -110,20 +128,26 @@ struct CollisionLoop {
   template <int register_bytes>
   ROULEAU_ALWAYS_INLINE static void run(const void* self, const Block* block) {
     const auto& instance = *static_cast<const CollisionInstance<Model>*>(self);
-    if (block->force != nullptr) {
-      if (instance.inertia)
-        sweep<register_bytes, true, true>(instance, *block);
-      else
-        sweep<register_bytes, true, false>(instance, *block);
-    } else {
-      if (instance.inertia)
-        sweep<register_bytes, false, true>(instance, *block);
-      else
-        sweep<register_bytes, false, false>(instance, *block);
-    }
+    if (instance.inertia)
+      choose<register_bytes, true>(instance, *block);
+    else
+      choose<register_bytes, false>(instance, *block);
   }
 
  private:
+  template <int register_bytes, bool Inertia>
+  ROULEAU_ALWAYS_INLINE static void choose(const CollisionInstance<Model>& instance, const Block& block) {
+    const bool forced = block.force != nullptr, varying = block.relaxation_rate != nullptr;
+    if (forced && varying)
+      sweep<register_bytes, true, true, Inertia>(instance, block);
+    else if (forced)
+      sweep<register_bytes, true, false, Inertia>(instance, block);
+    else if (varying)
+      sweep<register_bytes, false, true, Inertia>(instance, block);
+    else
+      sweep<register_bytes, false, false, Inertia>(instance, block);
+  }
+
   /// Pointers to one span of nodes; a last partial pack is a span of its own in a padded buffer.
   struct Span {
     const T* in[9];
@@ -133,7 +157,7 @@ struct CollisionLoop {
     T* velocity[2];
   };
 
-  template <int register_bytes, bool Forced, bool Inertia>
+  template <int register_bytes, bool Forced, bool Varying, bool Inertia>
   ROULEAU_ALWAYS_INLINE static void sweep(const CollisionInstance<Model>& instance, const Block& block) {
     constexpr std::uint32_t width = register_bytes / sizeof(T);
     using S = Pack<T, width>;
@@ -150,7 +174,8 @@ struct CollisionLoop {
       span.force[k] = Forced ? block.force[k] : nullptr;
       span.velocity[k] = block.velocity != nullptr ? block.velocity[k] : nullptr;
     }
-    span.rate = block.relaxation_rate;
+    span.rate = Varying ? block.relaxation_rate : nullptr;
+    const auto uniform = derived_rates(model, S(instance.relaxation_rate), 0);
 
     T padded[14][width];
     std::uint32_t count = whole;
@@ -168,10 +193,13 @@ struct CollisionLoop {
           node.force[0] = S::load(span.force[0] + x);
           node.force[1] = S::load(span.force[1] + x);
         }
-        node.relaxation_rate = span.rate != nullptr ? S::load(span.rate + x) : S(instance.relaxation_rate);
         node.compute_moments();
         S after[9];
-        model(node, after);
+        if constexpr (Varying) {
+          model(node, derived_rates(model, S::load(span.rate + x), 0), after);
+        } else {
+          model(node, uniform, after);
+        }
         d2q9::for_each_velocity([&](auto q) { after[q].store(span.out[q] + x); });
         if (span.velocity[0] != nullptr) {
           node.velocity[0].store(span.velocity[0] + x);
@@ -214,7 +242,10 @@ struct CollisionLoop {
 }  // namespace detail
 
 /// Model made of a type with a constructor from Parameters and
-/// `template <class Node, class S> void operator()(const Node& before, S (&after)[9]) const`.
+/// `template <class Node, class Rates, class S> void operator()(const Node& before, const Rates& rates, S (&after)[9])
+/// const`. The rates are what `template <class S> Rates<S> rates(const S& relaxation_rate) const` returns, which is
+/// called once where the viscosity is the same everywhere; without such a member they are the relaxation rate, 1/tau of
+/// the shear stress.
 template <class Model>
 rouleau_model collision(const char* id, const char* version) {
   static const rouleau_collision table = {

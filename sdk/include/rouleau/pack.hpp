@@ -40,12 +40,7 @@ struct Pack {
   Pack() = default;
   /// All values equal. Any arithmetic type converts, so that double parameters mix with packs of float.
   template <class A, class = std::enable_if_t<std::is_arithmetic_v<A>>>
-  ROULEAU_ALWAYS_INLINE Pack(A value) {
-    // An array filled and copied becomes one broadcast; arithmetic with a vector of zeros does not (g++ 12).
-    T all[N];
-    for (int i = 0; i < N; ++i) all[i] = static_cast<T>(value);
-    std::memcpy(&vector, all, sizeof(Vector));
-  }
+  ROULEAU_ALWAYS_INLINE Pack(A value) : vector(static_cast<T>(value) - Vector{}) {}  // one broadcast: x - 0 is x
   ROULEAU_ALWAYS_INLINE explicit Pack(const Vector& values) : vector(values) {}
 
   /// Reads N values from any address.

@@ -1,0 +1,40 @@
+// One pass of a time step, and the clock that tells what each pass costs.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "worker.hpp"
+
+namespace rouleau::host {
+
+/// Every worker runs its share.
+struct Pass {
+  std::string name;  ///< passes that follow each other under one name are phases of one
+  std::function<void(Worker)> run;
+  bool barrier = true;  ///< all workers must have ended it before any begins the next pass
+};
+
+/// Wall-clock time of the passes of a step as one worker sees it, waiting for others included.
+class PassClock {
+ public:
+  explicit PassClock(std::size_t passes) : wall_s_(passes, 0.0) {}
+  /// Time goes to no pass until now.
+  void resume() { last_ = Clock::now(); }
+  /// Time since the last call goes to this pass.
+  void lap(std::size_t pass) {
+    const Clock::time_point now = Clock::now();
+    wall_s_[pass] += std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+  }
+  [[nodiscard]] double wall_s(std::size_t pass) const { return wall_s_[pass]; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::vector<double> wall_s_;
+  Clock::time_point last_ = Clock::now();
+};
+
+}  // namespace rouleau::host
