@@ -128,31 +128,36 @@ template <class T>
 struct Spread {
   template <int register_bytes>
   ROULEAU_ALWAYS_INLINE static void run(const SpreadTask<T>* task) {
-    using Four = Pack<T, 4>;
     const SpreadTask<T> t = *task;
-    for (int i = 0; i < t.nodes; ++i) {
-      const int first = t.at.row[i] - 1;
-      if (first + 4 <= t.row_begin || first >= t.row_end) continue;
-      const Four wx = KernelWeights<T>(t.at.fraction_x[i], t.at.root_x[i]).weight;
-      const Four wy = KernelWeights<T>(t.at.fraction_y[i], t.at.root_y[i]).weight;
-      const Four fx = wx * static_cast<T>(t.force_x[i]), fy = wx * static_cast<T>(t.force_y[i]);
-      const std::ptrdiff_t column = t.at.column[i] - 1;
-      if (first >= t.row_begin && first + 4 <= t.row_end) {
-        for (int k = 0; k < 4; ++k) add(t, fx, fy, wy, first, k, column);
-      } else {
-        for (int k = 0; k < 4; ++k) {
-          if (first + k >= t.row_begin && first + k < t.row_end) add(t, fx, fy, wy, first, k, column);
-        }
-      }
+    // Neighbouring nodes add to the same places, and a sum that is still on its way to memory stalls the next one:
+    // nodes from four parts of the list take turns.
+    constexpr int parts = 4;
+    const int length = t.nodes / parts;
+    for (int i = 0; i < length; ++i) {
+      for (int part = 0; part < parts; ++part) spread(t, part * length + i);
     }
+    for (int i = parts * length; i < t.nodes; ++i) spread(t, i);
   }
 
  private:
-  ROULEAU_ALWAYS_INLINE static void add(const SpreadTask<T>& t, const Pack<T, 4>& fx, const Pack<T, 4>& fy,
-                                        const Pack<T, 4>& wy, int first, int k, std::ptrdiff_t column) {
-    using Four = Pack<T, 4>;
-    const std::ptrdiff_t at = (first + k) * t.stride + column;
-    const T weight = wy.vector[k];
+  using Four = Pack<T, 4>;
+  ROULEAU_ALWAYS_INLINE static void spread(const SpreadTask<T>& t, int i) {
+    const int first = t.at.row[i] - 1;
+    if (first + 4 <= t.row_begin || first >= t.row_end) return;
+    const Four wx = KernelWeights<T>(t.at.fraction_x[i], t.at.root_x[i]).weight;
+    const SpreadWeights<T> wy(t.at.fraction_y[i], t.at.root_y[i]);
+    const Four fx = wx * Four(t.force_x[i]), fy = wx * Four(t.force_y[i]);
+    const std::ptrdiff_t at = first * t.stride + t.at.column[i] - 1;
+    if (first >= t.row_begin && first + 4 <= t.row_end) {
+      for (int k = 0; k < 4; ++k) add(t, fx, fy, wy.weight[k], at + k * t.stride);
+    } else {
+      for (int k = 0; k < 4; ++k) {
+        if (first + k >= t.row_begin && first + k < t.row_end) add(t, fx, fy, wy.weight[k], at + k * t.stride);
+      }
+    }
+  }
+  ROULEAU_ALWAYS_INLINE static void add(const SpreadTask<T>& t, const Four& fx, const Four& fy, const Four& weight,
+                                        std::ptrdiff_t at) {
     (Four::load(t.origin_x + at) + fx * weight).store(t.origin_x + at);
     (Four::load(t.origin_y + at) + fy * weight).store(t.origin_y + at);
   }
@@ -171,30 +176,60 @@ template <class T>
 struct Interpolate {
   template <int register_bytes>
   ROULEAU_ALWAYS_INLINE static void run(const InterpolateTask<T>* task) {
-    using Four = Pack<T, 4>;
     const InterpolateTask<T> t = *task;
-    for (int i = t.begin; i < t.end; ++i) {
-      if (t.at.row[i] == outside) {
-        t.velocity_x[i] = t.velocity_y[i] = 0;
-        continue;
+    int i = t.begin;
+    for (; i + 2 <= t.end; i += 2) {
+      Four u[2], v[2];
+      for (int k = 0; k < 2; ++k) weigh(t, i + k, u[k], v[k]);
+      const Four sums = sum(u[0], u[1], v[0], v[1]);
+      for (int k = 0; k < 2; ++k) {
+        t.velocity_x[i + k] = sums.vector[k];
+        t.velocity_y[i + k] = sums.vector[2 + k];
       }
-      const Four wx = KernelWeights<T>(t.at.fraction_x[i], t.at.root_x[i]).weight;
-      const Four wy = KernelWeights<T>(t.at.fraction_y[i], t.at.root_y[i]).weight;
-      const std::ptrdiff_t at = (t.at.row[i] - 1) * t.stride + t.at.column[i] - 1;
-      Four ux = T(0), uy = T(0);
-      for (int k = 0; k < 4; ++k) {
-        const T weight = wy.vector[k];
-        ux += Four::load(t.origin_x + at + k * t.stride) * weight;
-        uy += Four::load(t.origin_y + at + k * t.stride) * weight;
-      }
-      t.velocity_x[i] = sum(ux * wx);
-      t.velocity_y[i] = sum(uy * wx);
+    }
+    if (i < t.end) {
+      Four u, v;
+      weigh(t, i, u, v);
+      const Four sums = sum(u, u, v, v);
+      t.velocity_x[i] = sums.vector[0];
+      t.velocity_y[i] = sums.vector[2];
     }
   }
 
  private:
-  ROULEAU_ALWAYS_INLINE static T sum(const Pack<T, 4>& p) {
-    return (p.vector[0] + p.vector[2]) + (p.vector[1] + p.vector[3]);
+  using Four = Pack<T, 4>;
+  /// Columns of the stencil, weighted along y and x: their sums are the node's velocity.
+  ROULEAU_ALWAYS_INLINE static void weigh(const InterpolateTask<T>& t, int i, Four& u, Four& v) {
+    u = v = T(0);
+    if (t.at.row[i] == outside) return;
+    const Four wx = KernelWeights<T>(t.at.fraction_x[i], t.at.root_x[i]).weight;
+    const SpreadWeights<T> wy(t.at.fraction_y[i], t.at.root_y[i]);
+    const std::ptrdiff_t at = (t.at.row[i] - 1) * t.stride + t.at.column[i] - 1;
+    for (int k = 0; k < 4; ++k) {
+      u += Four::load(t.origin_x + at + k * t.stride) * wy.weight[k];
+      v += Four::load(t.origin_y + at + k * t.stride) * wy.weight[k];
+    }
+    u *= wx;
+    v *= wx;
+  }
+  /// Sums of four packs, side by side.
+  ROULEAU_ALWAYS_INLINE static Four sum(const Four& a, const Four& b, const Four& c, const Four& d) {
+    const Four low = Four(interleave_even(a.vector, b.vector)) + Four(interleave_odd(a.vector, b.vector));
+    const Four high = Four(interleave_even(c.vector, d.vector)) + Four(interleave_odd(c.vector, d.vector));
+    return Four(first_halves(low.vector, high.vector)) + Four(second_halves(low.vector, high.vector));
+  }
+  using Vector = typename Four::Vector;
+  ROULEAU_ALWAYS_INLINE static Vector interleave_even(const Vector& a, const Vector& b) {
+    return __builtin_shufflevector(a, b, 0, 4, 2, 6);
+  }
+  ROULEAU_ALWAYS_INLINE static Vector interleave_odd(const Vector& a, const Vector& b) {
+    return __builtin_shufflevector(a, b, 1, 5, 3, 7);
+  }
+  ROULEAU_ALWAYS_INLINE static Vector first_halves(const Vector& a, const Vector& b) {
+    return __builtin_shufflevector(a, b, 0, 1, 4, 5);
+  }
+  ROULEAU_ALWAYS_INLINE static Vector second_halves(const Vector& a, const Vector& b) {
+    return __builtin_shufflevector(a, b, 2, 3, 6, 7);
   }
 };
 

@@ -27,4 +27,18 @@ struct KernelWeights {
   }
 };
 
+/// The four weights one by one, each in all four places: the first and the third sum to 1/2, and so do the others.
+template <class T>
+struct SpreadWeights {
+  rouleau::Pack<T, 4> weight[4];
+  ROULEAU_ALWAYS_INLINE SpreadWeights(T fraction, T root) {
+    using Four = rouleau::Pack<T, 4>;
+    const Four line = Four(T(0.375)) - Four(T(0.25)) * Four(fraction), half_root = Four(T(0.125)) * Four(root);
+    weight[0] = line - half_root;
+    weight[1] = line + half_root;
+    weight[2] = Four(T(0.5)) - weight[0];
+    weight[3] = Four(T(0.5)) - weight[1];
+  }
+};
+
 }  // namespace rouleau::host

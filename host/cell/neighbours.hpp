@@ -63,7 +63,7 @@ class Neighbours {
     std::vector<double> excess;  ///< while the list is made: how far each segment is from being a candidate
   };
 
-  Neighbours(const Membranes& membranes, Cutoffs cutoffs, PeriodicBox box, double skin = 0.5);
+  Neighbours(const Membranes& membranes, Cutoffs cutoffs, PeriodicBox box, double skin = 0.2);
 
   /// Pass 1: has a node moved too far?
   void measure(Worker worker, const Membranes& membranes) { watch_.measure(worker, membranes); }

@@ -27,7 +27,8 @@ class Activity {
   void mark(int y, int begin, int end);
   /// Marks whole rows (a body force that varies in space, tests).
   void mark_all();
-  /// Merges equal neighbours in rows [first_row, end_row) into runs; to be called after the last mark and before runs().
+  /// Merges equal neighbours in rows [first_row, end_row) into runs; to be called after the last mark and before
+  /// runs().
   void rebuild_runs(int first_row, int end_row);
   void rebuild_runs() { rebuild_runs(0, ny_); }
 

@@ -1,11 +1,67 @@
 #include "fluid.hpp"
 
 #include <cmath>
+#include <cstring>
+#include <rouleau/collision.hpp>
 #include <type_traits>
 
 namespace rouleau::host {
 
 namespace d2q9 = rouleau::d2q9;
+
+namespace {
+
+/// Nodes of one run of a row.
+template <class T>
+struct ExtremesTask {
+  const T* in[9];
+  const T* force[2];  // per node, or null
+  T body_force[2];
+  int count;
+  double mass, speed_square, zero;
+};
+
+struct FindExtremes {
+  template <int register_bytes>
+  ROULEAU_ALWAYS_INLINE static void run(ExtremesTask<float>* task) {
+    sweep<register_bytes>(*task);
+  }
+  template <int register_bytes>
+  ROULEAU_ALWAYS_INLINE static void run(ExtremesTask<double>* task) {
+    sweep<register_bytes>(*task);
+  }
+
+ private:
+  template <int register_bytes, class T>
+  ROULEAU_ALWAYS_INLINE static void sweep(ExtremesTask<T>& task) {
+    constexpr int width = register_bytes / sizeof(T);
+    const ExtremesTask<T> t = task;
+    const int whole = t.count / width * width;
+    sweep<Pack<T, width>>(t, 0, whole, task);
+    sweep<Pack<T, 1>>(t, whole, t.count, task);
+  }
+  template <class S, class T>
+  ROULEAU_ALWAYS_INLINE static void sweep(const ExtremesTask<T>& t, int begin, int end, ExtremesTask<T>& result) {
+    S mass = 0, fastest = 0, zero = 0;  // zero becomes NaN with the first value that is not finite
+    for (int x = begin; x < end; x += S::size) {
+      Node<S, true, false> node;
+      d2q9::for_each_velocity([&](auto q) { node.f[q] = S::load(t.in[q] + x); });
+      for (int k = 0; k < 2; ++k) node.force[k] = t.force[k] != nullptr ? S::load(t.force[k] + x) : S(t.body_force[k]);
+      node.compute_moments();
+      const S square = node.velocity[0] * node.velocity[0] + node.velocity[1] * node.velocity[1];
+      mass += node.density;
+      fastest = max(square, fastest);
+      zero += (square - square) + (node.density - node.density);
+    }
+    for (int k = 0; k < S::size; ++k) {
+      result.mass += static_cast<double>(mass.vector[k]);
+      result.speed_square = std::max(result.speed_square, static_cast<double>(fastest.vector[k]));
+      result.zero += static_cast<double>(zero.vector[k]);
+    }
+  }
+};
+
+}  // namespace
 
 template <class T>
 Fluid<T>::Fluid(const FluidSetting& setting, std::shared_ptr<const ModelInstance> collision)
@@ -39,13 +95,19 @@ bool Fluid<T>::reaches_border(int y) const {
 template <class T>
 void Fluid<T>::clear_force(Worker worker) {
   const Range rows = worker.share(setting_.ny);
+  const auto set = [](T* row, const Run& run, T value) {
+    if (value == T(0)) {
+      std::memset(row + run.begin, 0, sizeof(T) * static_cast<std::size_t>(run.end - run.begin));
+    } else {
+      std::fill(row + run.begin, row + run.end, value);
+    }
+  };
   const T body_force_x = static_cast<T>(setting_.body_force_x), body_force_y = static_cast<T>(setting_.body_force_y);
   for (int y = rows.begin; y < rows.end; ++y) {
-    T *force_x = force_.x.row(y), *force_y = force_.y.row(y);
     for (const Run& run : activity_.runs(y)) {
       if (!run.active) continue;
-      std::fill(force_x + run.begin, force_x + run.end, body_force_x);
-      std::fill(force_y + run.begin, force_y + run.end, body_force_y);
+      set(force_.x.row(y), run, body_force_x);
+      set(force_.y.row(y), run, body_force_y);
     }
     if (reaches_border(y)) clear_force_halo(force_, y, setting_.periodic_y);
   }
@@ -159,6 +221,37 @@ double Fluid<T>::mass() const {
     }
   }
   return mass;
+}
+
+template <class T>
+typename Fluid<T>::Extremes Fluid<T>::extremes() const {
+  static const auto function = Dispatch<FindExtremes, ExtremesTask<T>*>::pick();
+  Extremes result{0, 0};
+  double speed_square = 0, zero = 0;
+  for (int y = 0; y < setting_.ny; ++y) {
+    const T* in[9];
+    lattice_.row_pointers(parity_, y, in);
+    double row_mass = 0;
+    for (const Run& run : activity_.runs(y)) {
+      ExtremesTask<T> task{};
+      d2q9::for_each_velocity([&](auto q) { task.in[q] = in[q] + run.begin; });
+      if (run.active && setting_.membranes) {
+        task.force[0] = force_.x.row(y) + run.begin;
+        task.force[1] = force_.y.row(y) + run.begin;
+      }
+      task.body_force[0] = static_cast<T>(setting_.body_force_x);
+      task.body_force[1] = static_cast<T>(setting_.body_force_y);
+      task.count = run.end - run.begin;
+      function(&task);
+      row_mass += task.mass;
+      speed_square = std::max(speed_square, task.speed_square);
+      zero += task.zero;
+    }
+    result.mass += row_mass;
+  }
+  result.mass += zero;
+  result.speed = std::sqrt(speed_square) + zero;
+  return result;
 }
 
 template <class T>

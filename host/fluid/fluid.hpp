@@ -75,6 +75,11 @@ class Fluid {
   void moments(int y, std::vector<Moments>& row) const;
   /// Sum of density deviations over all nodes.
   [[nodiscard]] double mass() const;
+  /// Mass and largest speed, as moments() would give them, in one sweep.
+  struct Extremes {
+    double mass, speed;  ///< not a number if any density or velocity is none
+  };
+  [[nodiscard]] Extremes extremes() const;
   /// Mean shear stress that the fluid exerts on the lower and the upper wall, along +x, by momentum exchange. NaN
   /// between the start of a fluid at rest (or taken over) and its first step: walls that have just begun to move have
   /// exchanged nothing yet.

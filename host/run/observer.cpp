@@ -76,35 +76,40 @@ double Observer::momentum_residual(const Membranes& m) {
 }
 
 template <class T>
-FluidScan Observer::scan(Solver<T>& solver) {
-  Fluid<T>& fluid = solver.fluid();
+double Observer::follow_fluid(Fluid<T>& fluid) {
   fluid.settle();
-  FluidScan result;
+  const auto [mass, speed] = fluid.extremes();
+  if (!initial_mass_) initial_mass_ = mass;
+  const double nodes = static_cast<double>(fluid.setting().nx) * fluid.setting().ny;
+  mass_drift_ = std::max(mass_drift_, std::abs(mass - *initial_mass_) / nodes);
+  const double mach = std::sqrt(3.0) * speed;
+  mach_max_ = std::max(mach_max_, mach);
+  return mach;
+}
+
+namespace {
+
+/// Node with the first value that is no number, else the one with the largest speed.
+template <class T>
+std::array<double, 2> extreme_node(const Fluid<T>& fluid) {
+  std::array<double, 2> place{0, 0};
   double fastest = -1;
   std::vector<Moments> row;
   for (int y = 0; y < fluid.setting().ny; ++y) {
     fluid.moments(y, row);
     for (int x = 0; x < fluid.setting().nx; ++x) {
       const Moments& m = row[static_cast<std::size_t>(x)];
-      const double speed2 = m.ux * m.ux + m.uy * m.uy;
-      result.mass += m.density;
-      if (!std::isfinite(speed2) || !std::isfinite(m.density)) {
-        if (result.finite) result.mach_x = x, result.mach_y = y;
-        result.finite = false;
-      } else if (result.finite && speed2 > fastest) {
-        fastest = speed2;
-        result.mach_x = x;
-        result.mach_y = y;
-      }
+      const double square = m.ux * m.ux + m.uy * m.uy;
+      const bool finite = std::isfinite(square) && std::isfinite(m.density);
+      if (!finite || square > fastest) place = {static_cast<double>(x), static_cast<double>(y)};
+      if (!finite) return place;
+      fastest = std::max(fastest, square);
     }
   }
-  result.mach = std::sqrt(3 * std::max(fastest, 0.0));
-  if (!initial_mass_) initial_mass_ = result.mass;
-  const double nodes = static_cast<double>(fluid.setting().nx) * fluid.setting().ny;
-  mass_drift_ = std::max(mass_drift_, std::abs(result.mass - *initial_mass_) / nodes);
-  mach_max_ = std::max(mach_max_, result.mach);
-  return result;
+  return place;
 }
+
+}  // namespace
 
 template <class T>
 std::optional<Failure> Observer::check(Solver<T>& solver, const Membranes& membranes) {
@@ -112,16 +117,16 @@ std::optional<Failure> Observer::check(Solver<T>& solver, const Membranes& membr
   const auto place = [&](double x, double y) {
     return std::array<double, 2>{(x + 0.5) * units.length, (y + 0.5) * units.length};
   };
-  const FluidScan fluid = scan(solver);
-  if (!fluid.finite) {
-    return failure(
-        "non_finite", place(fluid.mach_x, fluid.mach_y), -1, std::nan(""), 0,
-        "the fluid holds a value that is no number",
-        "lower numerics.density_factor (it divides every lattice stiffness and speed), or see the margins that "
-        "rouleau plan prints");
-  }
-  if (fluid.mach > scene_.checks.mach) {
-    return failure("mach", place(fluid.mach_x, fluid.mach_y), -1, fluid.mach, scene_.checks.mach,
+  const double mach = follow_fluid(solver.fluid());
+  if (!(mach <= scene_.checks.mach)) {
+    const auto [x, y] = extreme_node(solver.fluid());
+    if (!std::isfinite(mach)) {
+      return failure(
+          "non_finite", place(x, y), -1, std::nan(""), 0, "the fluid holds a value that is no number",
+          "lower numerics.density_factor (it divides every lattice stiffness and speed), or see the margins that "
+          "rouleau plan prints");
+    }
+    return failure("mach", place(x, y), -1, mach, scene_.checks.mach,
                    "the flow is too fast for the lattice: Mach number above its limit",
                    "lower numerics.density_factor, the shear rate or the driving force, or raise the resolution");
   }
@@ -194,8 +199,7 @@ Snapshot Observer::observe(Solver<T>& solver, const Membranes& membranes, bool w
   Snapshot snapshot;
   snapshot.stage = setting.index;
   snapshot.stage_name = setting.stage->name;
-  const FluidScan fluid = scan(solver);
-  snapshot.mach_max = fluid.mach;
+  snapshot.mach_max = follow_fluid(solver.fluid());
   snapshot.mass_drift = mass_drift_;
   const double viscosity = (setting.tau - 0.5) / 3;
   snapshot.relative_viscosity = std::nan("");

@@ -11,14 +11,6 @@
 
 namespace rouleau::host {
 
-/// What a scan of the whole lattice found.
-struct FluidScan {
-  double mach = 0;                ///< largest
-  double mach_x = 0, mach_y = 0;  ///< its node
-  bool finite = true;
-  double mass = 0;  ///< sum of density deviations
-};
-
 /// Follows angles over turns, and remembers what drifts are measured against; lives for the whole run.
 class Observer {
  public:
@@ -45,8 +37,9 @@ class Observer {
   [[nodiscard]] double mass_drift() const { return mass_drift_; }
 
  private:
+  /// Follows mass and Mach number; returns the latter, which is NaN if the fluid holds a value that is no number.
   template <class T>
-  FluidScan scan(Solver<T>& solver);
+  double follow_fluid(Fluid<T>& fluid);
   void observe_cells(const Membranes& membranes, const LatticeUnits& units, Snapshot& snapshot);
 
   const Scene& scene_;

@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "aggregate_history.hpp"
+#include "barrier.hpp"
 #include "cell/motion.hpp"
 #include "observer.hpp"
 #include "output/progress.hpp"
@@ -130,17 +131,20 @@ class Simulation {
   void step_loop(Solver<T>& solver, const Schedule& cells, const Schedule& fields) {
     std::exception_ptr trouble;
     std::atomic<long> stop_at{std::numeric_limits<long>::max()};
+    std::optional<Barrier> barrier;
 #pragma omp parallel num_threads(options_.threads)
     {
+      // The system may grant fewer threads than were asked for.
+#pragma omp single
+      barrier.emplace(omp_get_num_threads());
       const Worker worker{omp_get_thread_num(), omp_get_num_threads()};
       const std::vector<Pass>&forces = solver.forces(), &advance = solver.advance();
       PassClock clock(forces.size() + advance.size());
       for (long step = 0;; ++step) {
-        run_passes(forces, worker, clock, 0);
+        run_passes(forces, worker, *barrier, clock, 0);
         if (step >= next_attention_ || step >= stop_at.load(std::memory_order_relaxed) || went_wrong(solver)) {
-#pragma omp barrier
-#pragma omp single
-          {
+          barrier->wait();
+          if (worker.first()) {
             try {
               between_steps(solver, step, cells, fields);
             } catch (...) {
@@ -148,10 +152,11 @@ class Simulation {
               stage_ending_ = Ending::failed;
             }
           }
+          barrier->wait();
           if (stage_ending_ != Ending::none) break;
           clock.resume();
         }
-        run_passes(advance, worker, clock, forces.size());
+        run_passes(advance, worker, *barrier, clock, forces.size());
         // A request to stop counts two steps later, when every worker has passed a barrier since.
         if (worker.first() && interrupted()) stop_at.store(step + 2, std::memory_order_relaxed);
       }
@@ -160,12 +165,11 @@ class Simulation {
     if (trouble) std::rethrow_exception(trouble);
   }
 
-  static void run_passes(const std::vector<Pass>& passes, Worker worker, PassClock& clock, std::size_t first) {
+  static void run_passes(const std::vector<Pass>& passes, Worker worker, Barrier& barrier, PassClock& clock,
+                         std::size_t first) {
     for (std::size_t i = 0; i < passes.size(); ++i) {
       passes[i].run(worker);
-      if (passes[i].barrier) {
-#pragma omp barrier
-      }
+      if (passes[i].barrier) barrier.wait();
       if (worker.first()) clock.lap(first + i);
     }
   }
