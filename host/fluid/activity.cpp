@@ -41,10 +41,6 @@ void Activity::mark(int y, int begin, int end) {
   }
 }
 
-void Activity::mark_all() {
-  for (int y = 0; y < ny_; ++y) mark(y, 0, nx_);
-}
-
 bool Activity::active(int x, int y) const {
   const int bit = x / nodes_per_bit;
   return (bits_[static_cast<std::size_t>(words_) * y + bit / bits_per_word] >> (bit % bits_per_word) & 1) != 0;

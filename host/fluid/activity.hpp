@@ -25,8 +25,6 @@ class Activity {
   void clear(int first_row, int end_row);
   /// Marks the nodes [begin, end) of a row; the columns are taken periodically, rows outside [0, ny) are left out.
   void mark(int y, int begin, int end);
-  /// Marks whole rows (a body force that varies in space, tests).
-  void mark_all();
   /// Merges equal neighbours in rows [first_row, end_row) into runs; to be called after the last mark and before
   /// runs().
   void rebuild_runs(int first_row, int end_row);

@@ -242,3 +242,33 @@ TEST_CASE("where no cell is any more, the plain rate is back to the last bit") {
   }
   CHECK_FALSE(activity.active(16, 20));
 }
+
+TEST_CASE("an update after some cells have moved gives what all cells anew would give, to the last bit") {
+  auto random = generator(85);
+  const int nx = 80, ny = 64;
+  const bool periodic_y = GENERATE(false, true);
+  Membranes m = biconcave_cells({{-170.4, 20.1, 0.3}, {30.2, 40, 1.2}, {32.1, 25.0, -0.2}, {60.0, 33.0, 0.9}});
+  deform(m, random, 2, 0.1);
+  Indicator<double> kept(m, {5.0}, 1.25, nx, ny, periodic_y);
+  auto rate = plain_rate<double>(nx, ny, 1.25);
+  Activity activity(nx, ny);
+  update(kept, m, rate, activity);
+  for (int round = 0; round < 6; ++round) {
+    const CellRange& cell = m.cells[static_cast<std::size_t>(round % 4)];
+    for (int i = cell.first; i < cell.end(); ++i) {
+      m.x[static_cast<std::size_t>(i)] += 3.3 * round;
+      m.y[static_cast<std::size_t>(i)] -= 0.4;
+    }
+    update(kept, m, rate, activity);
+    Indicator<double> fresh(m, {5.0}, 1.25, nx, ny, periodic_y);
+    auto fresh_rate = plain_rate<double>(nx, ny, 1.25);
+    Activity fresh_activity(nx, ny);
+    update(fresh, m, fresh_rate, fresh_activity);
+    for (int y = 0; y < ny; ++y) {
+      for (int x = 0; x < nx; ++x) {
+        REQUIRE(rate.row(y)[x] == fresh_rate.row(y)[x]);
+        REQUIRE(activity.active(x, y) == fresh_activity.active(x, y));
+      }
+    }
+  }
+}

@@ -146,6 +146,37 @@ TEST_CASE("mass does not drift between walls or in a periodic box") {
   CHECK(fluid.mass() == Approx(before).margin(1e-13 * 32 * 16));
 }
 
+TEMPLATE_TEST_CASE("mass and largest speed are those of the moments, and a value that is no number shows", "", float,
+                   double) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> uniform(-0.01, 0.01);
+  const int nx = 37, ny = 11;
+  const FluidSetting setting{
+      .nx = nx, .ny = ny, .periodic_y = false, .relaxation_rate = 1.0, .body_force_x = 1e-3, .body_force_y = -2e-3};
+  Fluid<TestType> fluid(setting, make_collision("trt", {0.1875}, 1, false));
+  const int bad = GENERATE(-1, 0, 20, 36);
+  fluid.set_state([&](int x, int y) {
+    const double density = x == bad && y == 5 ? std::nan("") : uniform(random);
+    return typename Fluid<TestType>::State{density, uniform(random), uniform(random), {}};
+  });
+  fluid.settle();
+  double mass = 0, square = 0;
+  std::vector<Moments> row;
+  for (int y = 0; y < ny; ++y) {
+    fluid.moments(y, row);
+    for (const Moments& m : row) mass += m.density, square = std::max(square, m.ux * m.ux + m.uy * m.uy);
+  }
+  const auto found = fluid.extremes();
+  if (bad >= 0) {
+    CHECK(std::isnan(found.mass));
+    CHECK(std::isnan(found.speed));
+  } else {
+    const double rounding = std::numeric_limits<TestType>::epsilon();
+    CHECK(found.mass == Approx(mass).margin(nx * ny * 0.01 * rounding));
+    CHECK(found.speed == Approx(std::sqrt(square)).epsilon(10 * rounding));
+  }
+}
+
 TEST_CASE("folding the force is the adjoint of filling the velocity halo, with walls at rest and periodic") {
   const bool periodic_y = GENERATE(false, true);
   constexpr int nx = 12, ny = 9, halo = Field<double>::halo;

@@ -1,0 +1,54 @@
+// When something is due between two steps, and how workers wait for each other.
+#include <catch2/catch.hpp>
+#include <thread>
+#include <vector>
+
+#include "run/barrier.hpp"
+#include "run/schedule.hpp"
+
+using namespace rouleau::host;
+
+TEST_CASE("the next step of a schedule is the first one that is due") {
+  StageSetting setting{};
+  setting.units.time = 1;
+  setting.shear_rate = 1;
+  setting.max_steps = 1000;
+  Cadence cadence;
+  const double interval = GENERATE(1.0, 1.4, 1.5, 2.5, 7.3, 100.0);
+  cadence.seconds = interval;
+  if (interval == 7.3) cadence.strain = 4.9;
+  const Schedule schedule(cadence, setting, true);
+  long next = schedule.next(0);
+  for (long step = 1; step < 1000; ++step) {
+    CAPTURE(interval, step);
+    REQUIRE(schedule.due(step) == (step == next));
+    if (step == next) next = schedule.next(step);
+  }
+}
+
+TEST_CASE("a schedule without an interval is never due again") {
+  StageSetting setting{};
+  setting.max_steps = 1000;
+  CHECK(Schedule(Cadence{}, setting, true).next(0) == std::numeric_limits<long>::max());
+}
+
+TEST_CASE("nobody leaves a barrier before all have come") {
+  const int workers = GENERATE(1, 2, 5);
+  constexpr int rounds = 2000;
+  Barrier barrier(workers);
+  std::vector<int> rounds_done(static_cast<std::size_t>(workers), 0);
+  std::atomic<int> wrong{0};
+  std::vector<std::thread> threads;
+  for (int w = 0; w < workers; ++w) {
+    threads.emplace_back([&, w] {
+      for (int round = 1; round <= rounds; ++round) {
+        rounds_done[static_cast<std::size_t>(w)] = round;
+        barrier.wait();
+        for (const int done : rounds_done) wrong += done == round ? 0 : 1;
+        barrier.wait();
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  CHECK(wrong == 0);
+}
