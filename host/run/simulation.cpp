@@ -94,7 +94,6 @@ class Simulation {
     }
     std::fill(membranes_.velocity_x.begin(), membranes_.velocity_x.end(), 0.0);
     std::fill(membranes_.velocity_y.begin(), membranes_.velocity_y.end(), 0.0);
-    membranes_.largest_step.assign(membranes_.cells.size(), 0.0);
   }
 
   template <class T>

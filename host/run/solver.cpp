@@ -28,6 +28,7 @@ Solver<T>::Solver(const Plan& plan, int stage, Membranes& membranes)
 /// Passes over cells: each worker has its own cells, and what it reads of others lies behind a barrier.
 template <class T>
 void Solver<T>::plan_cell_passes(const Plan& plan) {
+  membranes_.largest_step.assign(membranes_.cells.size(), 0.0);
   const Scene& scene = *plan.scene;
   const int nx = scene.domain.nodes[0], ny = scene.domain.nodes[1];
   const ModelSetting setting = setting_->model_setting(scene.fluid.inertia);
