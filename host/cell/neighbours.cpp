@@ -72,17 +72,21 @@ void Cutoffs::raise(int a, int b, double cutoff) {
   cutoff_[static_cast<std::size_t>(b) * types_ + a] = value;
 }
 
+double Cutoffs::largest() const { return *std::max_element(cutoff_.begin(), cutoff_.end()); }
+
 Neighbours::Neighbours(const Membranes& membranes, Cutoffs cutoffs, PeriodicBox box, double skin)
     : cutoffs_(std::move(cutoffs)),
       box_(box),
       skin_(skin),
       watch_(membranes, skin),
-      order_(membranes.cells.size()),
+      rank_(membranes.cells.size()),
       lists_(membranes.cells.size()) {
-  std::iota(order_.begin(), order_.end(), 0);
-  std::stable_sort(order_.begin(), order_.end(), [&](int a, int b) {
+  std::vector<int> order(membranes.cells.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
     return membranes.cells[static_cast<std::size_t>(a)].type < membranes.cells[static_cast<std::size_t>(b)].type;
   });
+  for (std::size_t k = 0; k < order.size(); ++k) rank_[static_cast<std::size_t>(order[k])] = static_cast<int>(k);
   int most = 0;
   for (const CellRange& cell : membranes.cells) most = std::max(most, cell.count);
   const auto stride = static_cast<std::size_t>(most + SegmentTable::margin);
@@ -94,30 +98,34 @@ Neighbours::Neighbours(const Membranes& membranes, Cutoffs cutoffs, PeriodicBox 
 
 void Neighbours::refresh(Worker worker, const Membranes& membranes, const SegmentTable& segments) {
   if (!renewed()) return;
-  const Range cells = worker.share(static_cast<int>(membranes.cells.size()));
+  const Range cells = worker.share(membranes.cell_count());
+  // Every worker sorts all cells: that is quicker than to wait for one who does.
+  const Bins bins(segments.bounds, cutoffs_.largest() + 2 * skin_, box_);
   for (int cell = cells.begin; cell < cells.end; ++cell) {
     CellList& list = lists_[static_cast<std::size_t>(cell)];
     list.pairs.clear();
     list.groups.clear();
     list.runs.clear();
-    list_pairs(membranes, cell, segments);
+    list_pairs(membranes, cell, bins, segments);
     for (Pair& pair : list.pairs) list_candidates(membranes, cell, pair, segments);
     watch_.remember(cell, membranes);
   }
   if (worker.first()) ++renewals_;
 }
 
-// Every cell against every other: with many cells only this function has to learn about bins.
-void Neighbours::list_pairs(const Membranes& membranes, int cell, const SegmentTable& segments) {
-  std::vector<Pair>& pairs = lists_[static_cast<std::size_t>(cell)].pairs;
+void Neighbours::list_pairs(const Membranes& membranes, int cell, const Bins& bins, const SegmentTable& segments) {
+  CellList& list = lists_[static_cast<std::size_t>(cell)];
   const int type = membranes.cells[static_cast<std::size_t>(cell)].type;
   const Bounds& own = segments.bounds[static_cast<std::size_t>(cell)];
-  for (const int other : order_) {
+  bins.find(cell, list.near);
+  std::sort(list.near.begin(), list.near.end(),
+            [&](int a, int b) { return rank_[static_cast<std::size_t>(a)] < rank_[static_cast<std::size_t>(b)]; });
+  for (const int other : list.near) {
     const double cutoff = cutoffs_(type, membranes.cells[static_cast<std::size_t>(other)].type);
     if (!(cutoff > 0)) continue;
     for_each_image(own, segments.bounds[static_cast<std::size_t>(other)], cutoff + 2 * skin_, box_,
                    [&](ImageShift shift) {
-                     if (other != cell || !(shift == ImageShift{})) pairs.push_back({{other, shift}, 0, 0, -1});
+                     if (other != cell || !(shift == ImageShift{})) list.pairs.push_back({{other, shift}, 0, 0, -1});
                    });
   }
 }

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "bins.hpp"
 #include "displacement.hpp"
 #include "membranes.hpp"
 #include "periodic_box.hpp"
@@ -16,6 +17,7 @@ class Cutoffs {
  public:
   explicit Cutoffs(int types) : types_(types), cutoff_(static_cast<std::size_t>(types) * types, 0.0) {}
   void raise(int a, int b, double cutoff);
+  [[nodiscard]] double largest() const;
   [[nodiscard]] double operator()(int a, int b) const { return cutoff_[static_cast<std::size_t>(a) * types_ + b]; }
 
  private:
@@ -59,6 +61,7 @@ class Neighbours {
     std::vector<Pair> pairs;  ///< ordered by type of the other cell, then by the other cell, then by shift
     std::vector<Group> groups;
     std::vector<SegmentRun> runs;
+    std::vector<int> near;       ///< while the list is made: cells that may be near
     std::vector<double> square;  ///< while the list is made: [group][segment] square distances
     std::vector<double> excess;  ///< while the list is made: how far each segment is from being a candidate
   };
@@ -81,14 +84,14 @@ class Neighbours {
   [[nodiscard]] long renewals() const { return renewals_; }
 
  private:
-  void list_pairs(const Membranes& membranes, int cell, const SegmentTable& segments);
+  void list_pairs(const Membranes& membranes, int cell, const Bins& bins, const SegmentTable& segments);
   void list_candidates(const Membranes& membranes, int cell, Pair& pair, const SegmentTable& segments);
 
   Cutoffs cutoffs_;
   PeriodicBox box_;
   double skin_;
   DisplacementWatch watch_;
-  std::vector<int> order_;  // cells by type
+  std::vector<int> rank_;  // of each cell: its place when they are ordered by type, then by number
   std::vector<CellList> lists_;
   long renewals_ = 0;
 };

@@ -118,6 +118,39 @@ TEST_CASE("closest points are those of brute force on moving, turning, deforming
   CHECK(renewals < 60);
 }
 
+TEST_CASE("bins find every cell and image within reach, in boxes of any size, over periodic borders") {
+  auto random = generator(64);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  long found = 0, pairs = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    const PeriodicBox box{30 + 400 * uniform(random), trial % 2 == 0 ? 0.0 : 30 + 300 * uniform(random)};
+    const double reach = 1 + 20 * uniform(random), largest = 5 + 50 * uniform(random);
+    std::vector<Bounds> bounds;
+    for (int c = 0; c < 60; ++c) {
+      const double x = (3 * uniform(random) - 1) * box.nx, y = (3 * uniform(random) - 1) * 200;
+      bounds.push_back({x, x + largest * uniform(random), y, y + largest * uniform(random)});
+    }
+    bounds[17].x_min = std::nan("");
+    const Bins bins(bounds, reach, box);
+    std::vector<int> near;
+    for (int a = 0; a < 60; ++a) {
+      bins.find(a, near);
+      std::sort(near.begin(), near.end());
+      REQUIRE(std::adjacent_find(near.begin(), near.end()) == near.end());
+      found += static_cast<long>(near.size());
+      for (int b = 0; b < 60; ++b) {
+        bool images = false;
+        for_each_image(bounds[static_cast<std::size_t>(a)], bounds[static_cast<std::size_t>(b)], reach, box,
+                       [&](ImageShift) { images = true; });
+        if (images) REQUIRE(std::binary_search(near.begin(), near.end(), b));
+        pairs += images ? 1 : 0;
+      }
+    }
+  }
+  CHECK(pairs > 20000);
+  CHECK(found < 200 * 60 * 60 / 2);
+}
+
 TEST_CASE("a remembered direction and place belong to the distance") {
   auto random = generator(62);
   Membranes m = biconcave_cells({{0, 0, 0.1}, {3, 17, 0}});
