@@ -60,6 +60,21 @@ void send_row(Lattice<T>& lattice, int y) {
 }
 
 template <class T>
+void begin_exchange(Lattice<T>& lattice) {
+  const int nx = lattice.nx(), ny = lattice.ny();
+  for (int q = 1; q < 9; ++q) {
+    for (int y = 0; y < ny; ++y) {
+      lattice.slot(q, y)[nx] = lattice.slot(q, y)[0];
+      lattice.slot(q, y)[-1] = lattice.slot(q, y)[nx - 1];
+    }
+    for (int x = -1; x <= nx; ++x) {
+      lattice.slot(q, ny)[x] = lattice.slot(q, 0)[x];
+      lattice.slot(q, -1)[x] = lattice.slot(q, ny - 1)[x];
+    }
+  }
+}
+
+template <class T>
 void receive_row(Lattice<T>& lattice, int y) {
   const int nx = lattice.nx(), ny = lattice.ny();
   if (lattice.periodic_y()) {
@@ -160,6 +175,7 @@ void fill_velocity_halo(VectorField<T>& velocity, int y, bool periodic_y, const 
 
 #define ROULEAU_INSTANTIATE(T)                                               \
   template void add_wall_momentum<T>(Lattice<T>&, int, const WallVelocity&); \
+  template void begin_exchange<T>(Lattice<T>&);                              \
   template void send_row<T>(Lattice<T>&, int);                               \
   template void receive_row<T>(Lattice<T>&, int);                            \
   template void clear_force_halo<T>(VectorField<T>&, int, bool);             \

@@ -25,6 +25,11 @@ void add_wall_momentum(Lattice<T>& lattice, int y, const WallVelocity& walls);
 template <class T>
 void send_row(Lattice<T>& lattice, int y);
 
+/// After the populations of all nodes have been set for an even step: what odd steps would have streamed across the
+/// border, so that the first receive_row() finds it.
+template <class T>
+void begin_exchange(Lattice<T>& lattice);
+
 /// Before an even step of row y: takes what odd steps have streamed across the border. May be repeated.
 template <class T>
 void receive_row(Lattice<T>& lattice, int y);

@@ -69,6 +69,11 @@ Fluid<T>::Fluid(const FluidSetting& setting, std::shared_ptr<const ModelInstance
       collision_(std::move(collision)),
       lattice_(setting.nx, setting.ny, setting.periodic_y),
       activity_(setting.nx, setting.ny) {
+  if constexpr (std::is_same_v<T, double>) {
+    collide_ = collision_->collision().collide_f64;
+  } else {
+    collide_ = collision_->collision().collide_f32;
+  }
   if (setting.membranes) force_ = {Field<T>(setting.nx, setting.ny), Field<T>(setting.nx, setting.ny)};
   if (setting.viscosity_contrast) {
     relaxation_rate_ = Field<T>(setting.nx, setting.ny);
@@ -123,7 +128,7 @@ void Fluid<T>::fold_force(Worker worker) {
 
 template <class T>
 void Fluid<T>::collide_row(int y) {
-  using Block = std::conditional_t<std::is_same_v<T, double>, rouleau_collision_block_f64, rouleau_collision_block_f32>;
+  const void* const self = collision_->self();
   const T* in[9];
   T* out[9];
   lattice_.row_pointers(parity_, y, in, out);
@@ -153,11 +158,7 @@ void Fluid<T>::collide_row(int y) {
       block.velocity = nullptr;
       block.relaxation_rate = nullptr;
     }
-    if constexpr (std::is_same_v<T, double>) {
-      collision_->collision().collide_f64(collision_->self(), &block);
-    } else {
-      collision_->collision().collide_f32(collision_->self(), &block);
-    }
+    collide_(self, &block);
   }
 }
 
@@ -283,22 +284,6 @@ double Fluid<T>::equilibrium(int q, double density, double ux, double uy) const 
 }
 
 template <class T>
-void Fluid<T>::complete_halo() {
-  // What an odd step would have streamed across the border, so that the first even step receives it.
-  const int nx = setting_.nx, ny = setting_.ny;
-  for (int q = 1; q < 9; ++q) {
-    for (int y = 0; y < ny; ++y) {
-      lattice_.slot(q, y)[nx] = lattice_.slot(q, y)[0];
-      lattice_.slot(q, y)[-1] = lattice_.slot(q, y)[nx - 1];
-    }
-    for (int x = -1; x <= nx; ++x) {
-      lattice_.slot(q, ny)[x] = lattice_.slot(q, 0)[x];
-      lattice_.slot(q, -1)[x] = lattice_.slot(q, ny - 1)[x];
-    }
-  }
-}
-
-template <class T>
 void Fluid<T>::set_state(const std::function<State(int, int)>& state) {
   parity_ = Parity::even;
   walls_have_acted_ = true;  // a state that is given is one that goes with these walls
@@ -316,7 +301,7 @@ void Fluid<T>::set_state(const std::function<State(int, int)>& state) {
       }
     }
   }
-  complete_halo();
+  begin_exchange(lattice_);
 }
 
 template <class T>
@@ -347,7 +332,7 @@ void Fluid<T>::take_over(Fluid& other, double factor) {
       }
     }
   }
-  complete_halo();
+  begin_exchange(lattice_);
 }
 
 template class Fluid<float>;

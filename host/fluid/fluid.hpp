@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <type_traits>
 #include <vector>
 
 #include "activity.hpp"
@@ -92,13 +93,14 @@ class Fluid {
 
  private:
   [[nodiscard]] double equilibrium(int q, double density, double ux, double uy) const;
-  void complete_halo();
   /// Whether membranes may reach the halo that belongs to row y.
   [[nodiscard]] bool reaches_border(int y) const;
   void collide_row(int y);
 
+  using Block = std::conditional_t<std::is_same_v<T, double>, rouleau_collision_block_f64, rouleau_collision_block_f32>;
   FluidSetting setting_;
   std::shared_ptr<const ModelInstance> collision_;
+  void (*collide_)(const void* self, const Block* block);  ///< of the collision model
   Lattice<T> lattice_;
   Parity parity_ = Parity::even;
   bool walls_have_acted_ = false;

@@ -2,8 +2,6 @@
 
 namespace rouleau::host {
 
-namespace d2q9 = rouleau::d2q9;
-
 template <class T>
 Lattice<T>::Lattice(int nx, int ny, bool periodic_y) : nx_(nx), ny_(ny), periodic_y_(periodic_y) {
   constexpr int line = 64 / sizeof(T);
@@ -15,31 +13,6 @@ Lattice<T>::Lattice(int nx, int ny, bool periodic_y) : nx_(nx), ny_(ny), periodi
   const std::size_t spacing = (plane + page - 1) / page * page + stagger;
   storage_ = Storage<T>(spacing * 9);
   for (int q = 0; q < 9; ++q) origin_[q] = storage_.data() + spacing * q + stride_ + line;
-}
-
-template <class T>
-void Lattice<T>::row_pointers(Parity parity, int y, const T* (&in)[9]) const {
-  const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(stride_) * y;
-  const bool streamed = parity == Parity::odd, below = !outside(y - 1), above = !outside(y + 1);
-  d2q9::for_each_velocity([&](auto q) {
-    constexpr int opposite = d2q9::opposite[q], cx = d2q9::velocity[q][0], cy = d2q9::velocity[q][1];
-    const bool inside = cy == 0 || (cy > 0 ? below : above);
-    in[q] = streamed && inside ? origin_[opposite] + row - (cy * static_cast<std::ptrdiff_t>(stride_) + cx)
-                               : origin_[q] + row;
-  });
-}
-
-template <class T>
-void Lattice<T>::row_pointers(Parity parity, int y, const T* (&in)[9], T* (&out)[9]) {
-  row_pointers(parity, y, in);
-  const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(stride_) * y;
-  const bool streamed = parity == Parity::odd, below = !outside(y - 1), above = !outside(y + 1);
-  d2q9::for_each_velocity([&](auto q) {
-    constexpr int opposite = d2q9::opposite[q], cx = d2q9::velocity[q][0], cy = d2q9::velocity[q][1];
-    const bool inside = cy == 0 || (cy > 0 ? above : below);
-    out[q] = streamed && inside ? origin_[q] + row + (cy * static_cast<std::ptrdiff_t>(stride_) + cx)
-                                : origin_[opposite] + row;
-  });
 }
 
 template class Lattice<float>;

@@ -13,6 +13,8 @@
 
 namespace rouleau::host {
 
+namespace d2q9 = rouleau::d2q9;
+
 /// Which half of the in-place pair comes next.
 enum class Parity { even, odd };
 constexpr Parity next(Parity parity) { return parity == Parity::even ? Parity::odd : Parity::even; }
@@ -41,12 +43,43 @@ class Lattice {
 
  private:
   [[nodiscard]] bool outside(int y) const { return !periodic_y_ && (y < 0 || y >= ny_); }
+  /// Calls function(q, in, out) with the pointers of every population.
+  template <class Function>
+  void for_slots(Parity parity, int y, Function function) const;
 
   int nx_, ny_, stride_;
   bool periodic_y_;
   Storage<T> storage_;
   T* origin_[9];
 };
+
+template <class T>
+template <class Function>
+inline void Lattice<T>::for_slots(Parity parity, int y, Function function) const {
+  const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(stride_) * y, stride = stride_;
+  const bool streamed = parity == Parity::odd, below = streamed && !outside(y - 1), above = streamed && !outside(y + 1);
+  d2q9::for_each_velocity([&](auto q) {
+    constexpr int opposite = d2q9::opposite[q], cx = d2q9::velocity[q][0], cy = d2q9::velocity[q][1];
+    const bool comes = cy == 0 ? streamed : (cy > 0 ? below : above);
+    const bool goes = cy == 0 ? streamed : (cy > 0 ? above : below);
+    T* const own = origin_[q] + row;
+    T* const other = origin_[opposite] + row;
+    function(q, comes ? other - (cy * stride + cx) : own, goes ? own + (cy * stride + cx) : other);
+  });
+}
+
+template <class T>
+inline void Lattice<T>::row_pointers(Parity parity, int y, const T* (&in)[9]) const {
+  for_slots(parity, y, [&](int q, const T* from, const T*) { in[q] = from; });
+}
+
+template <class T>
+inline void Lattice<T>::row_pointers(Parity parity, int y, const T* (&in)[9], T* (&out)[9]) {
+  for_slots(parity, y, [&](int q, const T* from, T* to) {
+    in[q] = from;
+    out[q] = to;
+  });
+}
 
 extern template class Lattice<float>;
 extern template class Lattice<double>;

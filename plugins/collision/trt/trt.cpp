@@ -18,14 +18,11 @@ struct Trt {
   template <class Node, class S>
   void operator()(const Node& node, const Rates<S>& rate, S (&after)[9]) const {
     const S keep_even = 0.5 - 0.5 * rate.even, keep_odd = 0.5 - 0.5 * rate.odd;
-    after[0] = 2.0 * keep_even * node.f[0] + node.even_equilibrium(0, rate.even);
-    if constexpr (Node::forced && Node::inertia) after[0] += node.even_source(0, 1.0 - 0.5 * rate.even);
+    after[0] = 2.0 * keep_even * node.f[0] + node.even_gain(0, rate.even);
     rouleau::d2q9::for_each_pair([&](auto q) {
       constexpr int opposite = rouleau::d2q9::opposite[q];
-      S even = keep_even * (node.f[q] + node.f[opposite]) + node.even_equilibrium(q, rate.even);
-      S odd = keep_odd * (node.f[q] - node.f[opposite]) + node.odd_equilibrium(q, rate.odd);
-      if constexpr (Node::forced) odd += node.odd_source(q, 1.0 - 0.5 * rate.odd);
-      if constexpr (Node::forced && Node::inertia) even += node.even_source(q, 1.0 - 0.5 * rate.even);
+      const S even = keep_even * (node.f[q] + node.f[opposite]) + node.even_gain(q, rate.even);
+      const S odd = keep_odd * (node.f[q] - node.f[opposite]) + node.odd_gain(q, rate.odd);
       after[q] = even + odd;
       after[opposite] = even - odd;
     });

@@ -60,31 +60,30 @@ struct Node {
     }
   }
 
-  // Each of these takes a factor: multiplied into the weight first, it costs nothing where it is the same for all
-  // nodes.
-
-  /// Part of the equilibrium that is even under reversal of the velocity: the same for q and its opposite.
-  ROULEAU_ALWAYS_INLINE S even_equilibrium(int q, const S& factor = 1) const {
-    S sum = density;
+  /// What relaxation at a rate adds to the part of f_q that is even under reversal of the velocity (the same for q and
+  /// its opposite): rate f_eq + (1 - rate/2) S, with the even parts of equilibrium and of Guo's source.
+  ROULEAU_ALWAYS_INLINE S even_gain(int q, const S& rate) const {
+    S gain = rate * d2q9::weight[q] * density;
     if constexpr (Inertia) {
       const S along = project(q, velocity);
-      sum += 4.5 * along * along - 1.5 * (velocity[0] * velocity[0] + velocity[1] * velocity[1]);
+      gain += rate * d2q9::weight[q] *
+              (4.5 * along * along - 1.5 * (velocity[0] * velocity[0] + velocity[1] * velocity[1]));
+      if constexpr (Forced) {
+        gain += (1.0 - 0.5 * rate) * d2q9::weight[q] *
+                (9.0 * along * project(q, force) - 3.0 * (velocity[0] * force[0] + velocity[1] * force[1]));
+      }
     }
-    return factor * d2q9::weight[q] * sum;
+    return gain;
   }
-  /// Part of the equilibrium that changes its sign with the velocity.
-  ROULEAU_ALWAYS_INLINE S odd_equilibrium(int q, const S& factor = 1) const {
-    return factor * (3.0 * d2q9::weight[q]) * project(q, velocity);
-  }
-
-  /// Guo's source before its factor 1 - rate/2, even part: zero without inertia.
-  ROULEAU_ALWAYS_INLINE S even_source(int q, const S& factor = 1) const {
-    return factor * d2q9::weight[q] *
-           (9.0 * project(q, velocity) * project(q, force) - 3.0 * (velocity[0] * force[0] + velocity[1] * force[1]));
-  }
-  /// Guo's source before its factor 1 - rate/2, odd part.
-  ROULEAU_ALWAYS_INLINE S odd_source(int q, const S& factor = 1) const {
-    return factor * (3.0 * d2q9::weight[q]) * project(q, force);
+  /// The same for the part that changes its sign with the velocity: 3 w_q c_q . (rate u + (1 - rate/2) F).
+  ROULEAU_ALWAYS_INLINE S odd_gain(int q, const S& rate) const {
+    if constexpr (Forced) {
+      const S half = 1.0 - 0.5 * rate;
+      const S momentum[2] = {rate * velocity[0] + half * force[0], rate * velocity[1] + half * force[1]};
+      return 3.0 * d2q9::weight[q] * project(q, momentum);
+    } else {
+      return rate * (3.0 * d2q9::weight[q]) * project(q, velocity);
+    }
   }
 };
 

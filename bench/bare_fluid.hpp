@@ -1,0 +1,47 @@
+// The fluid as somebody would write it who needs one operator only: two-relaxation-time collision compiled into the
+// loop over the same in-place lattice. What a plugin costs is the difference.
+#pragma once
+
+#include <functional>
+
+#include "fluid/exchange.hpp"
+#include "fluid/field.hpp"
+#include "fluid/lattice.hpp"
+#include "worker.hpp"
+
+namespace rouleau::bench {
+
+/// What is done to the populations of a node.
+enum class Kernel {
+  move,    ///< nothing: they only travel, which is what memory allows
+  plain,   ///< collision, Stokes flow
+  forced,  ///< collision with a force density, over which the velocity is written
+};
+
+template <class T>
+class BareFluid {
+ public:
+  BareFluid(Kernel kernel, int nx, int ny, double relaxation_rate, double magic, host::WallVelocity walls);
+
+  /// Sets populations, deviations from rest, before the first step.
+  void set(const std::function<double(int q, int x, int y)>& population);
+  /// The same state as other's, which must be between an even number of steps.
+  [[nodiscard]] double population(int q, int x, int y) const;
+  [[nodiscard]] host::VectorField<T>& force() { return force_; }
+
+  void step(host::Worker worker);
+  void end_step() { parity_ = host::next(parity_); }
+
+ private:
+  Kernel kernel_;
+  T relaxation_rate_, magic_;
+  host::WallVelocity walls_;
+  host::Lattice<T> lattice_;
+  host::VectorField<T> force_;
+  host::Parity parity_ = host::Parity::even;
+};
+
+extern template class BareFluid<float>;
+extern template class BareFluid<double>;
+
+}  // namespace rouleau::bench

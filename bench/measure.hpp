@@ -1,0 +1,26 @@
+// Times several candidates side by side: they take turns, so that what else the machine does hits all of them.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "worker.hpp"
+
+namespace rouleau::bench {
+
+/// One step of something, timed; what `between` does is not.
+struct Candidate {
+  std::string name;
+  std::function<void(host::Worker)> step;     ///< all threads
+  std::function<void(host::Worker)> between;  ///< all threads, after a barrier; may be empty
+};
+
+struct Timing {
+  double best_s, median_s;  ///< of a step, over the rounds
+};
+
+/// Runs every candidate for about `seconds`, split into rounds that alternate. One timing for each candidate.
+std::vector<Timing> measure(const std::vector<Candidate>& candidates, int threads, double seconds);
+
+}  // namespace rouleau::bench

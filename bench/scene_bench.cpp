@@ -1,0 +1,132 @@
+#include "scene_bench.hpp"
+
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "output/run_directory.hpp"
+#include "run/simulation.hpp"
+
+namespace rouleau::bench {
+
+namespace {
+
+/// A folder that is gone when it is no longer needed.
+class Scratch {
+ public:
+  Scratch() : path_(std::filesystem::temp_directory_path() / ("rouleau-bench-" + std::to_string(getpid()))) {}
+  ~Scratch() { std::filesystem::remove_all(path_); }
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+host::Summary run(const std::vector<std::string>& overrides, int threads, long max_steps) {
+  const host::Scene scene = host::read_scene(ROULEAU_SCENES "/four-cells-shear.json", overrides);
+  const host::Catalog catalog({ROULEAU_PLUGINS});
+  const host::Plan plan = make_plan(scene, catalog);
+  const Scratch scratch;
+  host::RunDirectory directory(scratch.path(), scene);
+  host::RunOptions options;
+  options.threads = threads;
+  options.max_steps = max_steps;
+  options.quiet = true;
+  host::Summary summary = simulate(plan, options, directory);
+  if (summary.status != "completed") throw std::runtime_error("the scene did not complete: " + summary.status);
+  return summary;
+}
+
+double microseconds(const host::Summary& s) { return s.wall_s / static_cast<double>(s.steps) * 1e6; }
+double microseconds(const host::Summary& s, const std::string& pass) {
+  for (const host::PassCost& cost : s.passes) {
+    if (cost.name == pass) return cost.wall_s / static_cast<double>(s.steps) * 1e6;
+  }
+  return 0;
+}
+
+}  // namespace
+
+void scene_table(bool whole) {
+  std::printf("\nFour cells in shear, viscosity ratio 5, Morse potential (%s), microseconds a step\n",
+              whole ? "the whole scene: contact, tumbling, separation" : "its first 20 000 steps");
+  struct Column {
+    const char* precision;
+    int threads;
+  };
+  const std::vector<Column> columns{{"f64", 1}, {"f32", 1}, {"f64", 2}, {"f32", 2}};
+  std::vector<host::Summary> runs;
+  for (const Column& column : columns) {
+    runs.push_back(run({std::string("/numerics/precision=") + column.precision}, column.threads, whole ? -1 : 20000));
+    // The answer, too: how many aggregates the scene ends with is known when it has run to its end.
+    if (whole && runs.back().aggregates_final != 4) throw std::runtime_error("the rouleau did not break up");
+  }
+  std::printf("  %-20s", "pass");
+  for (const Column& column : columns)
+    std::printf("  %s, %d thread%s", column.precision, column.threads, column.threads > 1 ? "s" : " ");
+  std::printf("\n");
+  for (const host::PassCost& pass : runs[0].passes) {
+    std::printf("  %-20s", pass.name.c_str());
+    for (const host::Summary& s : runs) std::printf("  %14.2f", microseconds(s, pass.name));
+    std::printf("\n");
+  }
+  std::printf("  %-20s", "whole step");
+  for (const host::Summary& s : runs) std::printf("  %14.2f", microseconds(s));
+  std::printf("\n  %-20s", "run, s");
+  for (const host::Summary& s : runs) std::printf("  %14.2f", s.wall_s);
+  std::printf("\n  %-20s", "ns/node, not fluid");
+  for (const host::Summary& s : runs) std::printf("  %14.1f", (microseconds(s) - microseconds(s, "fluid")) / 400 * 1e3);
+  std::printf("\n  speed-up by the second thread: f64 %.2f, f32 %.2f; peak memory of the process %.1f MB\n",
+              runs[0].wall_s / runs[2].wall_s, runs[1].wall_s / runs[3].wall_s,
+              static_cast<double>(runs.back().peak_rss_bytes) / 1e6);
+  std::fflush(stdout);
+}
+
+void cells_table() {
+  std::printf(
+      "\nMore cells at the same volume fraction (tiles of 256x128 nodes with four cells; one cell: a single one), one "
+      "thread\n  %-6s %-12s %-4s %12s %18s %14s %20s\n",
+      "cells", "nodes", "", "us a step", "us per four cells", "fluid MLUPS", "ns/node, not fluid");
+  struct Tiles {
+    int cells, across, up;
+    long steps;
+  };
+  for (const Tiles& tiles : {Tiles{1, 1, 1, 4000}, Tiles{4, 1, 1, 4000}, Tiles{64, 4, 4, 800}, Tiles{256, 8, 8, 240},
+                             Tiles{1024, 16, 16, 80}}) {
+    const int nx = 256 * tiles.across, ny = 128 * tiles.up;
+    const double spacing = 0.196;  // um
+    std::string list;
+    for (int k = 0; k < tiles.cells; ++k) {
+      const int tile = k / 4;
+      const double x = (tile % tiles.across) * 256 * spacing + 25.088 + 3.52 * (k % 4 - 1.5);
+      const double y = (tile / tiles.across) * 128 * spacing + 12.544;
+      list += (k > 0 ? "," : "") + std::string("{\"at\":[\"") + std::to_string(x) + " um\",\"" + std::to_string(y) +
+              " um\"],\"angle\":\"90 deg\"}";
+    }
+    const auto micrometres = [&](int nodes) { return "\"" + std::to_string(nodes * spacing) + " um\""; };
+    // The walls move as fast as in the scene: with many tiles the shear is weaker.
+    const double shear = 20.0 / tiles.up;
+    for (const char* precision : {"f64", "f32"}) {
+      const host::Summary s =
+          run({std::string("/numerics/precision=") + precision,
+               "/domain/nodes=[" + std::to_string(nx) + "," + std::to_string(ny) + "]",
+               "/domain/size=[" + micrometres(nx) + "," + micrometres(ny) + "]",
+               "/cells=[{\"type\":\"rbc\",\"list\":[" + list + "]}]",
+               "/stages=[{\"name\":\"shear\",\"shear_rate\":\"" + std::to_string(shear) + " 1/s\",\"strain\":50}]",
+               "/output={}"},
+              1, tiles.steps);
+      const double nodes = static_cast<double>(nx) * ny, us = microseconds(s) - microseconds(s, "observe and check");
+      const double fluid = microseconds(s, "fluid");
+      std::printf("  %-6d %5dx%-6d %-4s %12.1f %18.1f %14.0f %20.1f\n", tiles.cells, nx, ny, precision, us,
+                  us * 4 / tiles.cells, nodes / fluid, (us - fluid) / (100.0 * tiles.cells) * 1e3);
+      std::fflush(stdout);
+    }
+  }
+}
+
+}  // namespace rouleau::bench
