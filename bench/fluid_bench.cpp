@@ -40,7 +40,6 @@ std::unique_ptr<host::Fluid<T>> plugin_fluid(int nx, int ny, bool forced, host::
   auto fluid = std::make_unique<host::Fluid<T>>(setting, trt());
   if (forced) {
     for (int y = 0; y < ny; ++y) fluid->activity().mark(y, 0, nx);
-    fluid->activity().rebuild_runs();
   }
   return fluid;
 }

@@ -129,7 +129,6 @@ void Indicator<T>::update(Worker worker, const Membranes& membranes, Field<T>& r
   for (const Reach& reach : cells_) {
     for_rows(reach.reached, own, [&](int y, Interval columns) { activity.mark(y, columns.begin, columns.end); });
   }
-  activity.rebuild_runs(own.begin, own.end);
 }
 
 template <class T>

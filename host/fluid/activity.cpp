@@ -1,21 +1,12 @@
 #include "activity.hpp"
 
-#include <algorithm>
-
 namespace rouleau::host {
-
-namespace {
-constexpr int bits_per_word = 64;
-}
 
 Activity::Activity(int nx, int ny)
     : nx_(nx),
       ny_(ny),
       words_((nx + nodes_per_bit * bits_per_word - 1) / (nodes_per_bit * bits_per_word)),
-      bits_(static_cast<std::size_t>(words_) * ny, 0),
-      runs_(static_cast<std::size_t>(ny)) {
-  rebuild_runs();
-}
+      bits_(static_cast<std::size_t>(words_) * ny, 0) {}
 
 void Activity::clear(int first_row, int end_row) {
   std::fill(bits_.begin() + static_cast<std::ptrdiff_t>(words_) * first_row,
@@ -41,31 +32,10 @@ void Activity::mark(int y, int begin, int end) {
   }
 }
 
-bool Activity::active(int x, int y) const {
-  const int bit = x / nodes_per_bit;
-  return (bits_[static_cast<std::size_t>(words_) * y + bit / bits_per_word] >> (bit % bits_per_word) & 1) != 0;
-}
-
-void Activity::rebuild_runs(int first_row, int end_row) {
-  for (int y = first_row; y < end_row; ++y) {
-    std::vector<Run>& runs = runs_[static_cast<std::size_t>(y)];
-    runs.clear();
-    for (int x = 0; x < nx_; x += nodes_per_bit) {
-      const bool on = active(x, y);
-      const int end = std::min(nx_, x + nodes_per_bit);
-      if (!runs.empty() && runs.back().active == on) {
-        runs.back().end = end;
-      } else {
-        runs.push_back({x, end, on});
-      }
-    }
-  }
-}
-
 double Activity::active_fraction() const {
   long count = 0;
-  for (const auto& row : runs_) {
-    for (const Run& run : row) count += run.active ? run.end - run.begin : 0;
+  for (int y = 0; y < ny_; ++y) {
+    for_runs(y, [&](const Run& run) { count += run.active ? run.end - run.begin : 0; });
   }
   return static_cast<double>(count) / (static_cast<double>(nx_) * ny_);
 }

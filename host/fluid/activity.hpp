@@ -1,6 +1,8 @@
-// Which nodes of the lattice feel a membrane: one bit for 16 nodes, merged into runs.
+// Which nodes of the lattice feel a membrane: one bit for 16 nodes, read as runs.
 #pragma once
 
+#include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <vector>
 
@@ -25,23 +27,46 @@ class Activity {
   void clear(int first_row, int end_row);
   /// Marks the nodes [begin, end) of a row; the columns are taken periodically, rows outside [0, ny) are left out.
   void mark(int y, int begin, int end);
-  /// Merges equal neighbours in rows [first_row, end_row) into runs; to be called after the last mark and before
-  /// runs().
-  void rebuild_runs(int first_row, int end_row);
-  void rebuild_runs() { rebuild_runs(0, ny_); }
 
-  /// Runs of row y, left to right, covering [0, nx) exactly.
-  [[nodiscard]] const std::vector<Run>& runs(int y) const { return runs_[static_cast<std::size_t>(y)]; }
-  [[nodiscard]] bool active(int x, int y) const;
-  /// Whether row y has an active run; whether its first or last run is one.
-  [[nodiscard]] bool any(int y) const { return runs(y).size() > 1 || runs(y).front().active; }
-  [[nodiscard]] bool at_side(int y) const { return runs(y).front().active || runs(y).back().active; }
+  /// Calls function(Run) for the runs of row y, left to right, covering [0, nx) exactly.
+  template <class Function>
+  void for_runs(int y, Function function) const {
+    const std::uint64_t* row = bits_.data() + static_cast<std::size_t>(words_) * y;
+    for (int x = 0; x < nx_;) {
+      const int bit = x / nodes_per_bit;
+      const bool on = (row[bit / bits_per_word] >> (bit % bits_per_word) & 1) != 0;
+      const int end = std::min(nx_, next_change(row, bit, on) * nodes_per_bit);
+      function(Run{x, end, on});
+      x = end;
+    }
+  }
+  [[nodiscard]] bool active(int x, int y) const {
+    const int bit = x / nodes_per_bit;
+    return (bits_[static_cast<std::size_t>(words_) * y + bit / bits_per_word] >> (bit % bits_per_word) & 1) != 0;
+  }
+  /// Whether any node of row y is active; whether the first or the last one is.
+  [[nodiscard]] bool any(int y) const {
+    const auto row = bits_.begin() + static_cast<std::ptrdiff_t>(words_) * y;
+    return std::any_of(row, row + words_, [](std::uint64_t word) { return word != 0; });
+  }
+  [[nodiscard]] bool at_side(int y) const { return active(0, y) || active(nx_ - 1, y); }
   [[nodiscard]] double active_fraction() const;
 
  private:
+  static constexpr int bits_per_word = 64;
+  /// First bit from `bit` on that is not `on`; beyond the row's last bit if there is none.
+  [[nodiscard]] int next_change(const std::uint64_t* row, int bit, bool on) const {
+    int word = bit / bits_per_word;
+    std::uint64_t changed = (on ? ~row[word] : row[word]) >> (bit % bits_per_word) << (bit % bits_per_word);
+    while (changed == 0) {
+      if (++word == words_) return words_ * bits_per_word;
+      changed = on ? ~row[word] : row[word];
+    }
+    return word * bits_per_word + std::countr_zero(changed);
+  }
+
   int nx_ = 0, ny_ = 0, words_ = 0;
   std::vector<std::uint64_t> bits_;
-  std::vector<std::vector<Run>> runs_;
 };
 
 }  // namespace rouleau::host

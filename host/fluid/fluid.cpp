@@ -109,11 +109,11 @@ void Fluid<T>::clear_force(Worker worker) {
   };
   const T body_force_x = static_cast<T>(setting_.body_force_x), body_force_y = static_cast<T>(setting_.body_force_y);
   for (int y = rows.begin; y < rows.end; ++y) {
-    for (const Run& run : activity_.runs(y)) {
-      if (!run.active) continue;
+    activity_.for_runs(y, [&](const Run& run) {
+      if (!run.active) return;
       set(force_.x.row(y), run, body_force_x);
       set(force_.y.row(y), run, body_force_y);
-    }
+    });
     if (reaches_border(y)) clear_force_halo(force_, y, setting_.periodic_y);
   }
 }
@@ -141,7 +141,7 @@ void Fluid<T>::collide_row(int y) {
   block.in = in;
   block.out = out;
   int at = 0;  // where the pointers stand
-  for (const Run& run : activity_.runs(y)) {
+  activity_.for_runs(y, [&](const Run& run) {
     if (run.begin != at) {
       d2q9::for_each_velocity([&](auto q) { in[q] += run.begin - at, out[q] += run.begin - at; });
       at = run.begin;
@@ -159,7 +159,7 @@ void Fluid<T>::collide_row(int y) {
       block.relaxation_rate = nullptr;
     }
     collide_(self, &block);
-  }
+  });
 }
 
 template <class T>
@@ -195,7 +195,7 @@ void Fluid<T>::moments(int y, std::vector<Moments>& row) const {
   const T* in[9];
   lattice_.row_pointers(parity_, y, in);
   row.assign(static_cast<std::size_t>(setting_.nx), Moments{});
-  for (const Run& run : activity_.runs(y)) {
+  activity_.for_runs(y, [&](const Run& run) {
     for (int x = run.begin; x < run.end; ++x) {
       Moments& m = row[static_cast<std::size_t>(x)];
       for (int q = 0; q < 9; ++q) {
@@ -208,7 +208,7 @@ void Fluid<T>::moments(int y, std::vector<Moments>& row) const {
       m.ux += 0.5 * (own_force ? static_cast<double>(force_.x.row(y)[x]) : setting_.body_force_x);
       m.uy += 0.5 * (own_force ? static_cast<double>(force_.y.row(y)[x]) : setting_.body_force_y);
     }
-  }
+  });
 }
 
 template <class T>
@@ -233,7 +233,7 @@ typename Fluid<T>::Extremes Fluid<T>::extremes() const {
     const T* in[9];
     lattice_.row_pointers(parity_, y, in);
     double row_mass = 0;
-    for (const Run& run : activity_.runs(y)) {
+    activity_.for_runs(y, [&](const Run& run) {
       ExtremesTask<T> task{};
       d2q9::for_each_velocity([&](auto q) { task.in[q] = in[q] + run.begin; });
       if (run.active && setting_.membranes) {
@@ -247,7 +247,7 @@ typename Fluid<T>::Extremes Fluid<T>::extremes() const {
       row_mass += task.mass;
       speed_square = std::max(speed_square, task.speed_square);
       zero += task.zero;
-    }
+    });
     result.mass += row_mass;
   }
   result.mass += zero;

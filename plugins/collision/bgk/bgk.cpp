@@ -7,8 +7,9 @@ struct Bgk {
 
   template <class Node, class S>
   void operator()(const Node& node, const S& omega, S (&after)[9]) const {
+    const S keep = 1.0 - omega;
     rouleau::d2q9::for_each_velocity(
-        [&](auto q) { after[q] = (1.0 - omega) * node.f[q] + node.even_gain(q, omega) + node.odd_gain(q, omega); });
+        [&](auto q) { after[q] = keep * node.f[q] + node.even_gain(q, omega) + node.odd_gain(q, omega); });
   }
 };
 ROULEAU_COLLISION(Bgk, "bgk", "1.0.0")

@@ -134,17 +134,38 @@ struct CollisionLoop {
   }
 
  private:
+  /// What a sweep does besides colliding: each is compiled, so that a node pays only for what its block has.
+  enum class Force { none, acts, acts_and_velocity };
+
   template <int register_bytes, bool Inertia>
   ROULEAU_ALWAYS_INLINE static void choose(const CollisionInstance<Model>& instance, const Block& block) {
-    const bool forced = block.force != nullptr, varying = block.relaxation_rate != nullptr;
-    if (forced && varying)
-      sweep<register_bytes, true, true, Inertia>(instance, block);
-    else if (forced)
-      sweep<register_bytes, true, false, Inertia>(instance, block);
-    else if (varying)
-      sweep<register_bytes, false, true, Inertia>(instance, block);
-    else
-      sweep<register_bytes, false, false, Inertia>(instance, block);
+    if (block.force == nullptr) {
+      if (block.velocity != nullptr) write_velocity<register_bytes>(block);
+      choose<register_bytes, Inertia, Force::none>(instance, block);
+    } else if (block.velocity == nullptr) {
+      choose<register_bytes, Inertia, Force::acts>(instance, block);
+    } else {
+      choose<register_bytes, Inertia, Force::acts_and_velocity>(instance, block);
+    }
+  }
+  template <int register_bytes, bool Inertia, Force force>
+  ROULEAU_ALWAYS_INLINE static void choose(const CollisionInstance<Model>& instance, const Block& block) {
+    if (block.relaxation_rate != nullptr) {
+      sweep<register_bytes, force, true, Inertia>(instance, block);
+    } else {
+      sweep<register_bytes, force, false, Inertia>(instance, block);
+    }
+  }
+
+  /// Velocity of nodes without a force, before their populations are overwritten: a host seldom asks for it.
+  template <int register_bytes>
+  ROULEAU_ALWAYS_INLINE static void write_velocity(const Block& block) {
+    for (std::uint32_t x = 0; x < block.count; ++x) {
+      Node<Pack<T, 1>, false, false> node;
+      d2q9::for_each_velocity([&](auto q) { node.f[q] = Pack<T, 1>::load(block.in[q] + x); });
+      node.compute_moments();
+      for (int k = 0; k < 2; ++k) node.velocity[k].store(block.velocity[k] + x);
+    }
   }
 
   /// Pointers to one span of nodes; a last partial pack is a span of its own in a padded buffer.
@@ -156,8 +177,9 @@ struct CollisionLoop {
     T* velocity[2];
   };
 
-  template <int register_bytes, bool Forced, bool Varying, bool Inertia>
+  template <int register_bytes, Force force, bool Varying, bool Inertia>
   ROULEAU_ALWAYS_INLINE static void sweep(const CollisionInstance<Model>& instance, const Block& block) {
+    constexpr bool Forced = force != Force::none, Velocity = force == Force::acts_and_velocity;
     constexpr std::uint32_t width = register_bytes / sizeof(T);
     using S = Pack<T, width>;
     const Model model = instance.model;
@@ -171,7 +193,7 @@ struct CollisionLoop {
     }
     for (int k = 0; k < 2; ++k) {
       span.force[k] = Forced ? block.force[k] : nullptr;
-      span.velocity[k] = block.velocity != nullptr ? block.velocity[k] : nullptr;
+      span.velocity[k] = Velocity ? block.velocity[k] : nullptr;
     }
     span.rate = Varying ? block.relaxation_rate : nullptr;
     const auto uniform = derived_rates(model, S(instance.relaxation_rate), 0);
@@ -193,6 +215,10 @@ struct CollisionLoop {
           node.force[1] = S::load(span.force[1] + x);
         }
         node.compute_moments();
+        if constexpr (Velocity) {
+          node.velocity[0].store(span.velocity[0] + x);
+          node.velocity[1].store(span.velocity[1] + x);
+        }
         S after[9];
         if constexpr (Varying) {
           model(node, derived_rates(model, S::load(span.rate + x), 0), after);
@@ -200,17 +226,15 @@ struct CollisionLoop {
           model(node, uniform, after);
         }
         d2q9::for_each_velocity([&](auto q) { after[q].store(span.out[q] + x); });
-        if (span.velocity[0] != nullptr) {
-          node.velocity[0].store(span.velocity[0] + x);
-          node.velocity[1].store(span.velocity[1] + x);
-        }
       }
     }
-    if (rest != 0) unpad(block, padded, whole, rest);
+    if (rest != 0) unpad(block, padded, whole, rest, Velocity);
   }
 
+  // Not inlined: they run once for a block, in every variant.
   template <std::uint32_t width>
-  ROULEAU_ALWAYS_INLINE static void pad(Span& span, T (&padded)[14][width], std::uint32_t first, std::uint32_t rest) {
+  __attribute__((noinline)) static void pad(Span& span, T (&padded)[14][width], std::uint32_t first,
+                                            std::uint32_t rest) {
     const auto copy = [&](const T*& from, int slot) {
       if (from == nullptr) return;
       for (std::uint32_t i = 0; i < width; ++i) padded[slot][i] = from[first + (i < rest ? i : 0)];
@@ -229,11 +253,11 @@ struct CollisionLoop {
   }
 
   template <std::uint32_t width>
-  ROULEAU_ALWAYS_INLINE static void unpad(const Block& block, const T (&padded)[14][width], std::uint32_t first,
-                                          std::uint32_t rest) {
+  __attribute__((noinline)) static void unpad(const Block& block, const T (&padded)[14][width], std::uint32_t first,
+                                              std::uint32_t rest, bool velocity) {
     for (std::uint32_t i = 0; i < rest; ++i) {
       for (int q = 0; q < 9; ++q) block.out[q][first + i] = padded[q][i];
-      for (int k = 0; k < 2 && block.velocity != nullptr; ++k) block.velocity[k][first + i] = padded[12 + k][i];
+      for (int k = 0; k < 2 && velocity; ++k) block.velocity[k][first + i] = padded[12 + k][i];
     }
   }
 };
@@ -241,10 +265,10 @@ struct CollisionLoop {
 }  // namespace detail
 
 /// Model made of a type with a constructor from Parameters and
-/// `template <class Node, class Rates, class S> void operator()(const Node& before, const Rates& rates, S (&after)[9])
-/// const`. The rates are what `template <class S> Rates<S> rates(const S& relaxation_rate) const` returns, which is
-/// called once where the viscosity is the same everywhere; without such a member they are the relaxation rate, 1/tau of
-/// the shear stress.
+/// `template <class Node, class S, class Rates> void operator()(const Node& before, const Rates& rates, S (&after)[9])
+/// const`. The rates are what the member `template <class S> Rates<S> rates(const S& relaxation_rate) const` makes of
+/// 1/tau of the shear stress, or 1/tau itself if there is no such member: once for a block where the viscosity is the
+/// same everywhere.
 template <class Model>
 rouleau_model collision(const char* id, const char* version) {
   static const rouleau_collision table = {

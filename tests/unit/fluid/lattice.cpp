@@ -208,16 +208,21 @@ TEST_CASE("runs cover every row once and follow the marks, periodic along x") {
   activity.mark(1, 90, 105);
   activity.mark(2, -3, 2);
   activity.mark(7, 0, 5);
-  activity.rebuild_runs();
-  CHECK(activity.runs(0).size() == 1);
+  int runs_of_first = 0;
+  activity.for_runs(0, [&](const Run&) { ++runs_of_first; });
+  CHECK(runs_of_first == 1);
   for (int y = 0; y < 4; ++y) {
     int x = 0;
-    for (const Run& run : activity.runs(y)) {
+    bool any = false;
+    activity.for_runs(y, [&](const Run& run) {
       CHECK(run.begin == x);
+      if (x > 0) CHECK(run.active != activity.active(x - 1, y));
       x = run.end;
+      any = any || run.active;
       for (int i = run.begin; i < run.end; ++i) CHECK(activity.active(i, y) == run.active);
-    }
+    });
     CHECK(x == 100);
+    CHECK(activity.any(y) == any);
   }
   for (int x : {0, 4, 90, 99}) CHECK(activity.active(x, 1));
   CHECK(activity.active(97, 2));
