@@ -156,9 +156,11 @@ void Observer::observe_cells(const Membranes& membranes, const LatticeUnits& uni
     snapshot.contacts.push_back(
         {c.cell_a, c.cell_b, {c.image.x, c.image.y}, c.gap * length, c.contact_length * length});
   }
+  std::vector<Eigen::Vector2d> centers;
   for (std::size_t k = 0; k < membranes.cells.size(); ++k) {
     const CellRange& cell = membranes.cells[k];
     const Eigen::Vector2d c = centroid(membranes, cell);
+    centers.push_back(c);
     const InertiaEllipse ellipse = inertia_ellipse(membranes, cell);
     const double marker = marker_angle(membranes, cell);
     angle_[k] = continued(ellipse.angle, angle_[k], std::numbers::pi);
@@ -178,12 +180,7 @@ void Observer::observe_cells(const Membranes& membranes, const LatticeUnits& uni
     s.through_image = aggregates.through_image[k];
     snapshot.cells.push_back(std::move(s));
   }
-  if (snapshot.cells.size() > 1) {
-    const CellSnapshot &a = snapshot.cells.front(), &b = snapshot.cells.back();
-    const double line = std::atan2(b.y - a.y, b.x - a.x);
-    rotation_ = started_ ? continued(line, rotation_, 2 * std::numbers::pi) : line;
-    snapshot.rotation = rotation_;
-  }
+  snapshot.rotation = rotation_.follow(contacts, aggregates, centers, box_);
   started_ = true;
 }
 
