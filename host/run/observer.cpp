@@ -1,13 +1,16 @@
 #include "observer.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <numbers>
 
 #include "cell/crossing.hpp"
 #include "cell/geometry.hpp"
 #include "fields.hpp"
+#include "method_limits.hpp"
 #include "particle_stress.hpp"
 
 namespace rouleau::host {
@@ -30,6 +33,18 @@ Failure failure(std::string reason, std::array<double, 2> place, int cell, doubl
   f.message = std::move(message);
   f.remedy = std::move(remedy);
   return f;
+}
+
+/// What to do first about a cell that leaks, if its segments (mean length in spacings) are the reason.
+std::string leak_remedy(double segment) {
+  if (!(segment > longest_segment)) return "";
+  std::array<char, 200> text{};
+  std::snprintf(
+      text.data(), text.size(),
+      "take more segments (this cell's are %.2g lattice spacings long, and fluid leaks between nodes that lie "
+      "more than %g apart; about one for each spacing is best), ",
+      segment, longest_segment);
+  return text.data();
 }
 
 /// Smallest gap of a cell to any other or to an image, looked for in growing neighbourhoods up to the size of the box.
@@ -130,11 +145,14 @@ std::optional<Failure> Observer::check(Solver<T>& solver, const Membranes& membr
   const double drift = area_drift(membranes, &cell);
   area_drift_max_ = std::max(area_drift_max_, drift);
   if (!(drift <= scene_.checks.area_drift)) {
-    const Eigen::Vector2d c = centroid(membranes, membranes.cells[static_cast<std::size_t>(cell)]);
+    const CellRange& drifting = membranes.cells[static_cast<std::size_t>(cell)];
+    const Eigen::Vector2d c = centroid(membranes, drifting);
     return failure(
         "area_drift", place(c.x(), c.y()), cell, drift, scene_.checks.area_drift,
         "a cell has changed its area by more than the limit: fluid leaks through its membrane or is compressed",
-        "lower numerics.density_factor, raise the resolution, or raise checks.area_drift if this error is acceptable");
+        leak_remedy(perimeter(membranes, drifting) / drifting.count) +
+            "lower numerics.density_factor, raise the resolution, or raise checks.area_drift if this error is "
+            "acceptable");
   }
   if (const auto crossing = find_crossing(membranes, box_)) {
     return failure("crossing", place(crossing->place.x(), crossing->place.y()), crossing->cell, 0, 0,

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "input/document.hpp"
+#include "input/wording.hpp"
 
 namespace rouleau::host {
 
@@ -190,6 +191,11 @@ void plan_estimate(Plan& plan) {
                                fields * nodes * 4 * (2 + static_cast<double>(scene.output.quantities.size()));
 }
 
+std::string warning_of(const Limit& limit) {
+  return limit.name + " is " + number(limit.value, 4) + (limit.value > limit.limit ? ", above" : ", below") +
+         " its limit of " + number(limit.limit, 4) + "; " + limit.remedy;
+}
+
 }  // namespace
 
 std::vector<const PlannedModel*> Plan::active_models() const {
@@ -246,7 +252,7 @@ Plan make_plan(const Scene& scene, const Catalog& catalog) {
   plan_estimate(plan);
   plan.limits = find_limits(plan);
   for (const Limit& limit : plan.limits) {
-    if (limit.margin < 1) plan.warnings.push_back(limit.name + " is beyond its limit: " + limit.remedy);
+    if (limit.margin < 1) plan.warnings.push_back(warning_of(limit));
   }
   return plan;
 }

@@ -207,6 +207,14 @@ class A_run_that_goes_bad_stops_before_garbage_is_written(Case):
     def test_area_that_drifts(self):
         failure = self.stop("area_drift", "/checks/area_drift=2e-5")
         self.assertGreater(failure["value"], failure["limit"])
+        self.assertNotIn("segments", failure["remedy"])
+
+    def test_area_that_drifts_because_segments_are_too_long(self):
+        plan = self.rouleau.run("plan", SCENE, "--set", "/cell_types/rbc/segments=32")
+        self.assertEqual(plan.returncode, 0, plan.stderr)
+        self.assertIn("warning: longest segment in lattice spacings is 3.072, above its limit of 2; take more ", plan.stdout)
+        failure = self.stop("area_drift", "/cell_types/rbc/segments=32", "/checks/area_drift=2e-5")
+        self.assertTrue(failure["remedy"].startswith("take more segments (this cell's are 3."), failure["remedy"])
 
     def test_membranes_that_cross(self):
         # Bending and stretching all but removed: attraction folds the membranes through each other.
@@ -229,6 +237,11 @@ class Commands_do_what_they_say(Case):
         for key in ("conversions", "dimensionless", "limits", "passes", "left_out", "estimate", "models"):
             self.assertIn(key, plan)
         self.assertAlmostEqual(plan["dimensionless"]["reynolds_physical"], 2.548e-4, delta=1e-6)
+
+    def test_a_limit_that_is_passed_is_warned_of_with_name_value_limit_and_remedy(self):
+        plan = json.loads(self.rouleau.run("plan", SCENE, "--json", "--set", "/numerics/tau=0.502").stdout)
+        self.assertEqual(plan["warnings"], ["tau - 1/2 is 0.002, below its limit of 0.005; raise numerics.tau above 0.505"])
+        self.assertIn("tau - 1/2", [limit["name"] for limit in plan["limits"]])
 
     def test_plugins_lists_manifests_and_refused_ones_with_reason(self):
         (self.rouleau.plugins / "interaction/morse/morse.json").write_text('{"manifest": 1, "id": "morse"}')
