@@ -243,6 +243,29 @@ class Commands_do_what_they_say(Case):
         self.assertEqual(plan["warnings"], ["tau - 1/2 is 0.002, below its limit of 0.005; raise numerics.tau above 0.505"])
         self.assertIn("tau - 1/2", [limit["name"] for limit in plan["limits"]])
 
+    def test_plan_gives_the_numbers_of_a_driven_flow_by_its_mean_shear_rate(self):
+        # One stage driven by G between walls H apart has the numbers of walls that shear at G H / (4 mu).
+        plan = lambda stage: json.loads(
+            self.rouleau.run("plan", self.scene(stages=[stage], output={}), "--json").stdout)
+        height, viscosity, gradient = 25.088e-6, 1.2e-3, 3000
+        driven = plan({"name": "flow", "duration": 1, "pressure_gradient": gradient})["dimensionless"]
+        sheared = plan({"name": "flow", "duration": 1, "shear_rate": gradient * height / (4 * viscosity)})["dimensionless"]
+        for name in ("reynolds_physical", "reynolds_simulated", "capillary", "adhesion_number"):
+            self.assertGreater(driven[name], 0)
+            self.assertAlmostEqual(driven[name] / sheared[name], 1, delta=1e-12)
+
+    def test_a_force_that_nothing_holds_is_warned_of_and_has_no_numbers(self):
+        scene = self.scene(domain={"size": ["50.176 um", "25.088 um"], "nodes": [256, 128], "y": "periodic"},
+                           stages=[{"name": "fall", "duration": "10 us", "pressure_gradient": "3 kPa/m"}],
+                           output={})
+        words = ("stage fall", "periodic along x and y", "0.001 m/s every second", "domain.y")
+        plan = json.loads(self.rouleau.run("plan", scene, "--json").stdout)
+        self.assertTrue(all(word in plan["warnings"][0] for word in words), plan["warnings"])
+        self.assertIsNone(plan["dimensionless"]["reynolds_physical"])
+        result = self.rouleau.run("run", scene, "--out", self.path / "run", *SHORT)
+        self.assert_stops(result, 0, *words)
+        self.assertIn("stage fall", json.loads((self.path / "run" / "summary.json").read_text())["warnings"][0])
+
     def test_plugins_lists_manifests_and_refused_ones_with_reason(self):
         (self.rouleau.plugins / "interaction/morse/morse.json").write_text('{"manifest": 1, "id": "morse"}')
         result = self.rouleau.run("plugins")
