@@ -3,6 +3,7 @@
 usage: check_commands.py ROULEAU PLUGIN_FOLDER SOURCE_FOLDER
 """
 
+import hashlib
 import json
 import os
 import shutil
@@ -174,8 +175,10 @@ class Errors_name_what_is_wrong(Case):
     def test_bad_usage_exits_with_2_and_the_nearest_name(self):
         self.assert_stops(self.rouleau.run("rum", SCENE), 2, "run")
         self.assert_stops(self.rouleau.run("run", SCENE, "--thread", "2"), 2, "--threads")
-        self.assert_stops(self.rouleau.run("run"), 2, "scene")
+        self.assert_stops(self.rouleau.run("run"), 2, "a SCENE file (JSON) is missing", "rouleau run --help")
+        self.assert_stops(self.rouleau.run("report"), 2, "a run's directory DIR is missing")
         self.assert_stops(self.rouleau.run("run", SCENE, "--threads", "0"), 2, "--threads")
+        self.assert_stops(self.rouleau.run("run", SCENE, "--max-steps", "-5"), 2, "--max-steps -5", "zero or more")
         self.assert_stops(self.rouleau.run("plan", SCENE, "--set", "/fluid/densty=1"), 2, "densty", "density")
 
 
@@ -295,6 +298,47 @@ class Commands_do_what_they_say(Case):
         for line in (out / "log.jsonl").read_text().splitlines():
             json.loads(line)
         self.assertEqual(self.rouleau.run("report", out).returncode, 0)
+
+    def test_the_hash_of_the_scene_is_that_of_the_file_in_the_run_directory(self):
+        for name, settings in (("as_written", []), ("changed", ["--set", "/title=changed"])):
+            out = self.path / name
+            self.assertEqual(self.rouleau.run("run", SCENE, "--out", out, *settings, *SHORT).returncode, 0)
+            written = (out / "scene.json").read_bytes()
+            self.assertEqual(json.loads((out / "summary.json").read_text())["scene_sha256"],
+                             hashlib.sha256(written).hexdigest())
+            if not settings:
+                self.assertEqual(written, SCENE.read_bytes())
+
+    def test_a_run_that_max_steps_cuts_short_says_so(self):
+        out = self.path / "run"
+        result = self.rouleau.run("run", SCENE, "--out", out, *SHORT)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        summary = json.loads((out / "summary.json").read_text())
+        self.assertEqual(summary["status"], "completed")
+        words = f"cut short by --max-steps at step 20 of at most {summary['steps_at_most']}"
+        self.assertGreater(summary["steps_at_most"], 10000)
+        self.assertEqual(summary["outcome"], words)
+        self.assertTrue(result.stdout.splitlines()[-1].startswith(words), result.stdout)
+
+    def test_no_run_is_lost_to_a_later_one(self):
+        scene = self.scene()
+        for expected in ("scene", "scene-2", "scene-3"):
+            result = self.rouleau.run("run", scene, *SHORT, cwd=self.path)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertEqual(result.stdout.splitlines()[0], f"runs/{expected}/report.html")
+        before = (self.path / "runs/scene/summary.json").read_bytes()
+        again = ("run", scene, "--out", self.path / "runs/scene", *SHORT)
+        self.assert_stops(self.rouleau.run(*again), 2, str(self.path / "runs/scene"), "--overwrite", "--out")
+        self.assertEqual((self.path / "runs/scene/summary.json").read_bytes(), before)
+        self.assertEqual(self.rouleau.run(*again, "--overwrite").returncode, 0)
+        self.assertNotEqual((self.path / "runs/scene/summary.json").read_bytes(), before)
+        self.assertEqual(self.rouleau.run("run", scene, "--overwrite", *SHORT, cwd=self.path).returncode, 0)
+        self.assertFalse((self.path / "runs/scene-4").exists())
+
+    def test_a_scene_that_cannot_start_leaves_no_directory(self):
+        result = self.rouleau.run("run", self.scene(), "--set", '/cells/0/row/spacing="1 um"', cwd=self.path)
+        self.assert_stops(result, 2, "overlap")
+        self.assertFalse((self.path / "runs").exists())
 
     def test_bits_do_not_depend_on_threads(self):
         tables = []
