@@ -204,15 +204,19 @@ TEST_CASE("the log has one JSON object a line, there as soon as it is written, w
   run.log("started", {{"threads", 2}});
   run.log("odd", {{"loader", "bad byte \xff"}});
   run.log("plain", "text");
+  run.log("stage_ended", {{"wall_s", 1e9}, {"steps", 5}});
   std::ifstream lines(folder.path() / "log.jsonl");
   std::string line;
   std::vector<nlohmann::json> events;
   while (std::getline(lines, line)) events.push_back(nlohmann::json::parse(line));
-  REQUIRE(events.size() == 3);
+  REQUIRE(events.size() == 4);
   CHECK(events[0]["event"] == "started");
   CHECK(events[0]["threads"] == 2);
   CHECK(events[0]["wall_s"].get<double>() >= 0);
   CHECK(events[2]["details"] == "text");
+  CHECK(events[3]["wall_s"].get<double>() < 1e6);  // when, on the log's clock
+  CHECK(events[3]["stage_ended_wall_s"] == 1e9);
+  CHECK(events[3]["steps"] == 5);
 }
 
 TEST_CASE("the run keeps the scene as used: the user's text, or with --set the values that held") {
