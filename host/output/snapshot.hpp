@@ -11,11 +11,11 @@ namespace rouleau::host {
 struct CellSnapshot {
   int cell;  ///< 0-based, in the order of the scene
   std::string type;
-  double x, y;         ///< centroid, m; x is not wrapped into the box
-  double angle;        ///< of the long axis of the inertia ellipse, rad, followed over turns (continuous in time)
-  double deformation;  ///< (L - B) / (L + B) of the inertia ellipse
-  double area;         ///< m2
-  double perimeter;    ///< m
+  double x, y;                 ///< centroid, m; x is not wrapped into the box
+  double angle;                ///< of the long axis of the inertia ellipse, rad, continuous in time; NaN for a circle
+  double deformation;          ///< (L - B) / (L + B) of the inertia ellipse
+  double area;                 ///< m2
+  double perimeter;            ///< m
   double tank_treading_angle;  ///< of the first node about the centroid, rad, continuous in time
   double min_gap;      ///< m, to the nearest membrane of another cell or of an image; infinite when there is none
   int aggregate;       ///< label: smallest index of a cell of the aggregate it belongs to

@@ -17,6 +17,9 @@ namespace rouleau::host {
 
 namespace {
 
+/// A circle has no long axis: below this deformation its direction would be that of rounding errors.
+constexpr double roundest = 1e-6;
+
 /// The value nearest to `previous` that differs from `angle` by a multiple of `period`.
 double continued(double angle, double previous, double period) {
   return angle + period * std::round((previous - angle) / period);
@@ -181,14 +184,15 @@ void Observer::observe_cells(const Membranes& membranes, const LatticeUnits& uni
     centers.push_back(c);
     const InertiaEllipse ellipse = inertia_ellipse(membranes, cell);
     const double marker = marker_angle(membranes, cell);
-    angle_[k] = continued(ellipse.angle, angle_[k], std::numbers::pi);
+    const bool round = !(ellipse.deformation > roundest);
+    if (!round) angle_[k] = continued(ellipse.angle, angle_[k], std::numbers::pi);
     tank_treading_angle_[k] = started_ ? continued(marker, tank_treading_angle_[k], 2 * std::numbers::pi) : marker;
     CellSnapshot s;
     s.cell = static_cast<int>(k);
     s.type = scene_.cell_types[static_cast<std::size_t>(cell.type)].name;
     s.x = (c.x() + 0.5) * length;
     s.y = (c.y() + 0.5) * length;
-    s.angle = angle_[k];
+    s.angle = round ? std::nan("") : angle_[k];
     s.deformation = ellipse.deformation;
     s.area = enclosed_area(membranes, cell) * length * length;
     s.perimeter = perimeter(membranes, cell) * length;

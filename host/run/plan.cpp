@@ -182,7 +182,9 @@ void plan_passes(Plan& plan) {
   if (scene.output.checkpoint_seconds) omit("checkpoints", "this version does not write them yet");
   if (scene.output.fields.never()) omit("fields in frames.h5", "output.fields is not set");
   if (scene.output.cells.never())
-    omit("periodic rows in cells.csv", "output.cells is not set; start and end are written");
+    omit(plan.has_cells ? "rows of the tables and outlines between the ends of stages"
+                        : "rows of series.csv between the ends of stages",
+         "output.cells is not set; the start and the end of each stage are written");
 }
 
 void plan_estimate(Plan& plan) {

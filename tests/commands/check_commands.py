@@ -6,6 +6,7 @@ usage: check_commands.py ROULEAU PLUGIN_FOLDER SOURCE_FOLDER
 import hashlib
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -269,6 +270,14 @@ class Commands_do_what_they_say(Case):
         self.assert_stops(result, 0, *words)
         self.assertIn("stage fall", json.loads((self.path / "run" / "summary.json").read_text())["warnings"][0])
 
+    def test_plan_says_which_rows_are_left_out_without_output_cells(self):
+        left_out = lambda **changes: {o["what"]: o["why"] for o in json.loads(
+            self.rouleau.run("plan", self.scene(output={}, **changes), "--json").stdout)["left_out"]}
+        self.assertEqual(left_out()["rows of the tables and outlines between the ends of stages"],
+                         "output.cells is not set; the start and the end of each stage are written")
+        alone = left_out(cells=[], stages=[{"name": "shear", "shear_rate": "20 1/s", "strain": 1}])
+        self.assertIn("rows of series.csv between the ends of stages", alone)
+
     def test_plugins_lists_manifests_and_refused_ones_with_reason(self):
         (self.rouleau.plugins / "interaction/morse/morse.json").write_text('{"manifest": 1, "id": "morse"}')
         result = self.rouleau.run("plugins")
@@ -363,6 +372,33 @@ class Commands_do_what_they_say(Case):
         _, errors = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 130, errors)
         self.assertEqual(json.loads((out / "summary.json").read_text())["status"], "interrupted")
+
+
+@unittest.skipUnless(shutil.which("chromium"), "there is no chromium to draw the page")
+class The_report_as_a_browser_shows_it(Case):
+    def page(self, scene, *options):
+        """The page's elements after its script has run."""
+        out = self.path / "run"
+        result = self.rouleau.run("run", scene, "--out", out, "--quiet", *options)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        browser = subprocess.run(["chromium", "--headless", "--no-sandbox", "--disable-gpu", "--dump-dom",
+                                  f"--user-data-dir={self.path / 'browser'}", (out / "report.html").as_uri()],
+                                 capture_output=True, text=True, timeout=120)
+        return browser.stdout.split("<main", 1)[1].split("</main>")[0]
+
+    def test_a_run_without_cells_has_no_heading_for_them_and_no_axis_for_what_is_zero(self):
+        page = self.page(self.scene(cell_types={}, cells=[], interactions=[], output={"cells": {"seconds": "10 us"}},
+                                    stages=[{"name": "flow", "duration": "30 us", "pressure_gradient": "1 kPa/m"}]))
+        self.assertTrue("<h2>Flow</h2>" in page)
+        self.assertFalse("<h2>Cells</h2>" in page)
+        self.assertFalse('class="stage"' in page)
+        drift = page.split("Relative mass drift", 1)[1].split("</svg>")[0]
+        self.assertEqual(re.findall(r'text-anchor="end">([^<]*)<', drift), ["0"])
+
+    def test_a_run_cut_short_says_so_in_its_headline_and_legends_name_their_instant(self):
+        page = self.page(SCENE, "--max-steps", "20")
+        self.assertIn("Cut short by --max-steps at step 20 of at most", page.split("</strong>")[0])
+        self.assertTrue('<span class="quiet">at 0 s</span>' in page)
 
 
 if __name__ == "__main__":

@@ -42,6 +42,11 @@ TEST_CASE("segments up to the limit of plan keep the area", "[capsule]") {
                                  {"/cell_types/capsule/segments=" + std::to_string(segments), "/stages/0/strain=5"});
   REQUIRE(run.summary["status"] == "completed");
   CHECK(run.summary["warnings"].empty());
+  // The circle it begins as has no long axis; the capsule it becomes is inclined to the flow, and by no half turns
+  // more.
+  const auto angle = run.column("angle_rad");
+  CHECK(std::isnan(angle.front()));
+  for (std::size_t i = 1; i < angle.size(); ++i) CHECK((angle[i] > 0 && angle[i] < std::numbers::pi / 3));
   const auto area = run.column("area_m2");
   const double drift = (area.back() / area.front() - 1) / 5;
   std::cout << "capsule with " << segments << " segments: area drift per strain " << drift << "\n";
