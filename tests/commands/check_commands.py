@@ -374,6 +374,65 @@ class Commands_do_what_they_say(Case):
         self.assertEqual(json.loads((out / "summary.json").read_text())["status"], "interrupted")
 
 
+class Documents_tell_what_is_so(Case):
+    def test_the_example_of_a_scene_runs_without_a_warning(self):
+        text = (SOURCE / "docs/scene.md").read_text()
+        example = re.search(r"^    \{\n(?:    .*\n)+?    \}\n", text, re.MULTILINE).group(0)
+        scene = self.path / "one-cell.json"
+        scene.write_text(example)
+        plan = self.rouleau.run("plan", scene, "--json")
+        self.assertEqual(plan.returncode, 0, plan.stderr)
+        self.assertEqual(json.loads(plan.stdout)["warnings"], [])
+        out = self.path / "run"
+        self.assertEqual(self.rouleau.run("run", scene, "--out", out, "--quiet").returncode, 0)
+        self.assertEqual(json.loads((out / "summary.json").read_text())["aggregates_final"], 1)
+
+    def test_every_form_of_cells_in_it_is_accepted(self):
+        entries = re.findall(r'^    (\{"type": "rbc".*\})$', (SOURCE / "docs/scene.md").read_text(), re.MULTILINE)
+        self.assertEqual(len(entries), 3)
+        for entry in entries:
+            scene = self.scene(cells=[json.loads(entry)])
+            self.assertEqual(self.rouleau.run("plan", scene).returncode, 0, entry)
+
+    def test_every_key_of_a_scene_is_in_its_document(self):
+        text = (SOURCE / "docs/scene.md").read_text()
+
+        def keys(rule):
+            if isinstance(rule, dict):
+                for key in rule.get("properties", {}):
+                    yield key
+                for value in rule.values():
+                    yield from keys(value)
+            elif isinstance(rule, list):
+                for value in rule:
+                    yield from keys(value)
+
+        for key in set(keys(json.loads((SOURCE / "host/input/scene.schema.json").read_text()))):
+            self.assertRegex(text, rf"[`\".]{re.escape(key)}[`\"]")
+
+    def test_every_column_key_and_log_event_of_a_run_is_in_its_document(self):
+        text = (SOURCE / "docs/output.md").read_text()
+        out = self.path / "run"
+        self.assertEqual(self.rouleau.run("run", SCENE, "--out", out, *SHORT).returncode, 0)
+        names = set()
+        for table in ("cells", "aggregates", "series"):
+            names |= set((out / f"{table}.csv").read_text().splitlines()[0].split(","))
+
+        def add(value):
+            if isinstance(value, dict):
+                for key, part in value.items():
+                    names.add(key)
+                    add(part)
+            elif isinstance(value, list) and value:
+                add(value[0])
+
+        add(json.loads((out / "summary.json").read_text()))
+        for line in (out / "log.jsonl").read_text().splitlines():
+            names |= set(json.loads(line)) | {json.loads(line)["event"]}
+        for name in names:
+            self.assertRegex(text, rf"`{re.escape(name)}`")
+
+
 @unittest.skipUnless(shutil.which("chromium"), "there is no chromium to draw the page")
 class The_report_as_a_browser_shows_it(Case):
     def page(self, scene, *options):
