@@ -33,7 +33,7 @@ Exit codes: 0 done, 1 the simulation failed, 2 bad input, 3 a plugin was refused
 )";
 
 std::string last_words(const Summary& summary) {
-  const std::string text = outcome(summary);
+  std::string text = outcome(summary);
   if (summary.aggregate_history.empty()) return text;
   return text + ", " + std::to_string(summary.aggregates_final) +
          (summary.aggregates_final == 1 ? " aggregate" : " aggregates");

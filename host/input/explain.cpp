@@ -231,6 +231,7 @@ class Explainer {
   [[nodiscard]] std::string known_elsewhere(const std::string& key) const {
     const auto places = places_of_keys(schema_);
     std::vector<std::string> keys;
+    keys.reserve(places.size());
     for (const auto& [known, where] : places) keys.push_back(known);
     const auto near = misspelt(key, keys);
     constexpr std::size_t most = 2;  // "angle" and "strain" stand in so many places that none is likely

@@ -76,7 +76,8 @@ std::map<int, double> Rotation::follow(const std::vector<CellContact>& contacts,
     std::vector<Eigen::Vector2d> points;
     for (const int cell : cells) {
       const auto k = static_cast<std::size_t>(cell);
-      points.push_back(centers[k] + Eigen::Vector2d(unwrapped.shift[k].x * box.nx, unwrapped.shift[k].y * box.ny));
+      const Eigen::Vector2d shift(unwrapped.shift[k].x * box.nx, unwrapped.shift[k].y * box.ny);
+      points.emplace_back(centers[k] + shift);
     }
     double angle = angle_of_longest(points);
     const auto before = last_.find(cells);
