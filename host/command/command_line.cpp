@@ -49,6 +49,10 @@ bool parse_command_line(const std::string& command, const std::string& help, con
     const std::string near = nearest(unknown.get_option_name(), names);
     throw Error(ExitCode::bad_input, "unknown option " + unknown.get_option_name() +
                                          (near.empty() ? "" : "; did you mean " + near + "?") + hint);
+  } catch (const options::required_option& missing) {
+    // Only what is given by place is required, and its users do not know it as an option.
+    const auto& option = description.find(missing.get_option_name().substr(2), false);
+    throw Error(ExitCode::bad_input, "a " + option.description() + " is missing" + hint);
   } catch (const options::error& error) {
     throw Error(ExitCode::bad_input, std::string(error.what()) + hint);
   }

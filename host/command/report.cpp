@@ -27,7 +27,7 @@ int report_command(const std::vector<std::string>& arguments) {
   std::string directory;
   options::options_description description("options");
   options::positional_options_description positional;
-  description.add_options()("directory", options::value(&directory)->required(), "a run's directory");
+  description.add_options()("directory", options::value(&directory)->required(), "run's directory DIR");
   positional.add("directory", 1);
   if (!parse_command_line("report", help, arguments, description, positional)) return 0;
 

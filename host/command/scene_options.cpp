@@ -6,7 +6,7 @@ namespace options = boost::program_options;
 
 void SceneOptions::add_to(options::options_description& description,
                           options::positional_options_description& positional) {
-  description.add_options()("scene", options::value(&scene)->required(), "scene file (JSON)")(
+  description.add_options()("scene", options::value(&scene)->required(), "SCENE file (JSON)")(
       "set", options::value(&overrides)->composing()->value_name("POINTER=VALUE"),
       "replace a value of the scene, e.g. --set /numerics/tau=0.8 (repeatable; any JSON value)")(
       "plugin-dir", options::value(&plugin_dirs)->composing()->value_name("DIR"),

@@ -54,6 +54,11 @@ constexpr std::array<std::string_view, 64> symbols{
     "pJ", "fJ",  "aJ",  "erg", "eV", "P",   "cP",  "mP", "K",   "mol", "mmol", "umol", "A",  "V",    "mV",   "C",
     "Hz", "kHz", "deg", "rad", "Da", "kDa", "MDa", "L",  "dL",  "mL",  "uL",   "fL",   "W",  "degC", "mmHg", "nmol"};
 
+constexpr std::array<std::string_view, 32> compounds{
+    "Pa s", "mPa s", "N/m",   "mN/m", "uN/m",   "dyn/cm", "J/m2",  "uJ/m2",  "1/s",  "1/ms",      "1/m",
+    "1/um", "kg/m3", "g/cm3", "Pa/m", "kPa/m",  "N/m3",   "N s/m", "dyn cm", "m/s",  "mm/s",      "um/s",
+    "m2/s", "m2",    "um2",   "um3",  "mol/m3", "mol/L",  "g/mol", "kg/mol", "C/m2", "cm3 mol/g2"};
+
 }  // namespace
 
 std::string kind_of(const Dimension& dimension) {
@@ -81,5 +86,7 @@ std::string wanted_unit(std::string_view unit, const Dimension& dimension) {
 }
 
 std::span<const std::string_view> usual_units() { return symbols; }
+
+std::span<const std::string_view> usual_compounds() { return compounds; }
 
 }  // namespace rouleau::host

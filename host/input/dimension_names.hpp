@@ -18,4 +18,7 @@ std::string wanted_unit(std::string_view unit, const Dimension& dimension);
 /// Symbols of units that are usual in this field, to suggest from.
 std::span<const std::string_view> usual_units();
 
+/// Units made of several symbols that are usual in this field, to suggest from.
+std::span<const std::string_view> usual_compounds();
+
 }  // namespace rouleau::host

@@ -227,16 +227,29 @@ class Explainer {
     return {};
   }
 
-  [[nodiscard]] static Result unknown_key(const std::string& pointer, const std::string& key,
-                                          const std::vector<std::string>& allowed, const OtherKeys& others) {
+  /// Says where else a key stands that has nothing like it here.
+  [[nodiscard]] std::string known_elsewhere(const std::string& key) const {
+    const auto places = places_of_keys(schema_);
+    std::vector<std::string> keys;
+    keys.reserve(places.size());
+    for (const auto& [known, where] : places) keys.push_back(known);
+    const auto near = misspelt(key, keys);
+    constexpr std::size_t most = 2;  // "angle" and "strain" stand in so many places that none is likely
+    if (near.empty() || places.at(near).size() > most) return "";
+    return "; did you mean " + listed(places.at(near)) + "?";
+  }
+
+  [[nodiscard]] Result unknown_key(const std::string& pointer, const std::string& key,
+                                   const std::vector<std::string>& allowed, const OtherKeys& others) const {
     if (std::find(others.begin(), others.end(), key) != others.end()) {
       return SchemaFault{
           pointer, true,
           in_quotes(key) + " cannot stand here together with the other keys\nallowed beside them: " + listed(allowed)};
     }
-    return SchemaFault{
-        pointer, true,
-        "unknown key " + in_quotes(key) + did_you_mean(key, allowed) + "\nallowed here: " + listed(allowed)};
+    const auto here = did_you_mean(key, allowed);
+    return SchemaFault{pointer, true,
+                       "unknown key " + in_quotes(key) + (here.empty() ? known_elsewhere(key) : here) +
+                           "\nallowed here: " + listed(allowed)};
   }
 
   [[nodiscard]] Result wrong_choice(const At& at, const json& rule, const json& branches) const {

@@ -44,6 +44,28 @@ std::string type_words(const json& rule, const std::string& type) {
   return type;
 }
 
+void add_places(std::map<std::string, std::vector<std::string>>& places, const json& schema, const json& unresolved,
+                const std::string& pointer, int depth) {
+  constexpr int deepest = 16;  // a rule may hold itself
+  const json& rule = resolve(schema, unresolved);
+  if (!rule.is_object() || depth > deepest) return;
+  if (rule.contains("properties")) {
+    for (const auto& [key, member] : rule["properties"].items()) {
+      auto& known = places[key];
+      const std::string place = pointer + "/" + key;
+      if (std::find(known.begin(), known.end(), place) == known.end()) known.push_back(place);
+      add_places(places, schema, member, place, depth + 1);
+    }
+  }
+  if (rule.contains("items")) add_places(places, schema, rule["items"], pointer + "/N", depth + 1);
+  if (rule.contains("additionalProperties"))
+    add_places(places, schema, rule["additionalProperties"], pointer + "/NAME", depth + 1);
+  for (const char* choice : {"oneOf", "anyOf", "allOf"}) {
+    if (!rule.contains(choice)) continue;
+    for (const auto& branch : rule[choice]) add_places(places, schema, branch, pointer, depth + 1);
+  }
+}
+
 }  // namespace
 
 const json& resolve(const json& schema, const json& rule) {
@@ -114,6 +136,12 @@ std::vector<std::string> keys_of(const json& object) {
   std::vector<std::string> keys;
   for (const auto& [key, value] : object.items()) keys.push_back(key);
   return keys;
+}
+
+std::map<std::string, std::vector<std::string>> places_of_keys(const json& schema) {
+  std::map<std::string, std::vector<std::string>> places;
+  add_places(places, schema, schema, "", 0);
+  return places;
 }
 
 std::size_t character_count(const std::string& text) {

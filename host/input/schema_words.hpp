@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -27,6 +28,10 @@ std::string range_words(const nlohmann::json& rule);
 std::string not_among(const nlohmann::json& value, const std::string& name, const nlohmann::json& allowed);
 
 std::vector<std::string> keys_of(const nlohmann::json& object);
+
+/// Where in a document of this schema the keys stand: key -> pointers such as /cell_types/NAME/segments and
+/// /stages/N/strain, in the schema's order.
+std::map<std::string, std::vector<std::string>> places_of_keys(const nlohmann::json& schema);
 
 /// Characters (code points) of UTF-8 text.
 std::size_t character_count(const std::string& text);

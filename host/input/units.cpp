@@ -132,7 +132,36 @@ struct Units::System {
     return "";
   }
 
-  [[nodiscard]] Parts take_apart(std::string_view unit) const {
+  /// Usual units of a dimension.
+  [[nodiscard]] std::vector<std::string> units_of(const Dimension& dimension) const {
+    std::vector<std::string> found;
+    for (const auto& list : {usual_units(), usual_compounds()}) {
+      for (const auto unit : list) {
+        const auto parsed = parse(std::string(unit));
+        Parts parts;
+        if (parsed && ut_accept_visitor(parsed.get(), &visitor, &parts) == UT_SUCCESS && parts.refused.empty() &&
+            parts.dimension == dimension) {
+          found.emplace_back(unit);
+        }
+      }
+    }
+    return found;
+  }
+
+  /// Words for a unit that holds an unknown symbol: what is nearest among the units of the wanted dimension, if that is
+  /// known, before what the symbol alone looks like.
+  [[nodiscard]] std::string unknown_unit(std::string_view unit, const std::string& symbol,
+                                         const Dimension* wanted) const {
+    const auto suggested = [](std::string_view found, const std::string& near) {
+      return "unknown unit " + in_quotes(found) + (near.empty() ? "" : " (did you mean " + in_quotes(near) + "?)");
+    };
+    const auto of_dimension = wanted != nullptr ? nearest(unit, units_of(*wanted)) : "";
+    if (!of_dimension.empty()) return suggested(unit, of_dimension);
+    return suggested(symbol, nearest(symbol, {usual_units().begin(), usual_units().end()}));
+  }
+
+  /// `wanted`: the dimension that the unit should have, where that is known.
+  [[nodiscard]] Parts take_apart(std::string_view unit, const Dimension* wanted = nullptr) const {
     constexpr std::size_t longest_unit = 100;
     unit = trimmed(unit);
     if (unit.empty()) throw UnitError("a unit is missing");
@@ -148,10 +177,7 @@ struct Units::System {
     if (!parsed) {
       const auto symbol = unknown_symbol(unit);
       if (symbol.empty()) throw UnitError(in_quotes(unit) + " is no unit; write units like N/m, 1/um or dyn cm");
-      const std::vector<std::string> candidates(usual_units().begin(), usual_units().end());
-      const auto near = nearest(symbol, candidates);
-      const auto suggestion = near.empty() ? "" : " (did you mean " + in_quotes(near) + "?)";
-      throw UnitError("unknown unit " + in_quotes(symbol) + suggestion);
+      throw UnitError(unknown_unit(unit, symbol, wanted));
     }
     Parts parts;
     if (ut_accept_visitor(parsed.get(), &visitor, &parts) != UT_SUCCESS)
@@ -211,7 +237,7 @@ double Units::to_si(std::string_view quantity, std::string_view wanted, std::str
   if (unit.front() == ',') throw UnitError(in_quotes(quantity) + " has a comma; write the number with a point" + wants);
   Parts parts;
   try {
-    parts = system_->take_apart(unit);
+    parts = system_->take_apart(unit, &dimension);
   } catch (const UnitError& error) {
     throw UnitError("in " + in_quotes(quantity) + ": " + error.what() + wants);
   }

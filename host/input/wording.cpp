@@ -90,6 +90,11 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string>& 
   return near.empty() || near == word ? "" : "; did you mean " + in_quotes(near) + "?";
 }
 
+std::string misspelt(std::string_view word, const std::vector<std::string>& candidates) {
+  const auto near = nearest(word, candidates);
+  return !near.empty() && spelling_distance(word, near) <= word.size() / 6 ? near : "";
+}
+
 std::string number(double value, int digits) {
   std::array<char, 48> text{};
   std::snprintf(text.data(), text.size(), "%.*g", digits, value);

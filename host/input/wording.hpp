@@ -20,6 +20,9 @@ std::string listed(const std::vector<std::string>& words);
 /// `; did you mean "tau"?`, or nothing when no candidate is near.
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates);
 
+/// The candidate that the word is, or is but for one letter in six; empty when there is none.
+std::string misspelt(std::string_view word, const std::vector<std::string>& candidates);
+
 /// A number as short as it can be read back with six digits, or with `digits`.
 std::string number(double value, int digits = 6);
 

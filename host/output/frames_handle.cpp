@@ -39,9 +39,18 @@ Hdf5File::Hdf5File(std::filesystem::path file, Mode mode) : file_(std::move(file
   const auto access = owned(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "");
   // Smaller object headers than the default; readable by every HDF5 since 1.8, and after a crash too.
   check(H5Pset_libver_bounds(access.id(), H5F_LIBVER_V18, H5F_LIBVER_V18), "");
-  handle_ = mode == Mode::create
-                ? owned(H5Fcreate(file_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), H5Fclose, "")
-                : owned(H5Fopen(file_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "");
+  if (mode == Mode::read) {
+    handle_ = owned(H5Fopen(file_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "");
+    return;
+  }
+  const auto creation = untimed(H5P_FILE_CREATE, "");
+  handle_ = owned(H5Fcreate(file_.c_str(), H5F_ACC_TRUNC, creation.id(), access.id()), H5Fclose, "");
+}
+
+Hdf5Handle Hdf5File::untimed(hid_t kind, const std::string& path) const {
+  auto properties = owned(H5Pcreate(kind), H5Pclose, path);
+  check(H5Pset_obj_track_times(properties.id(), false), path);
+  return properties;
 }
 
 Hdf5Handle Hdf5File::owned(hid_t id, Hdf5Handle::Close closer, const std::string& path) const {
@@ -67,7 +76,8 @@ void Hdf5File::fail(const std::string& path) const {
 }
 
 Hdf5Handle Hdf5File::make_group(const std::string& path) {
-  return owned(H5Gcreate2(handle_.id(), path.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose, path);
+  const auto creation = untimed(H5P_GROUP_CREATE, path);
+  return owned(H5Gcreate2(handle_.id(), path.c_str(), H5P_DEFAULT, creation.id(), H5P_DEFAULT), H5Gclose, path);
 }
 
 bool Hdf5File::has(const std::string& path) const {
@@ -86,7 +96,7 @@ int Hdf5File::members(const std::string& path) const {
 void Hdf5File::write(const std::string& path, const std::vector<hsize_t>& shape, hid_t stored, hid_t given,
                      const void* data, const std::string& unit, bool compressed) {
   const auto space = owned(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose, path);
-  const auto layout = owned(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, path);
+  const auto layout = untimed(H5P_DATASET_CREATE, path);
   const bool any = std::all_of(shape.begin(), shape.end(), [](hsize_t n) { return n > 0; });
   if (compressed && any) {
     auto chunk = shape;

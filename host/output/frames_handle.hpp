@@ -75,6 +75,8 @@ class Hdf5File {
   void attribute(const std::string& path, const std::string& name, hid_t stored, hid_t given, hsize_t count,
                  const void* value);
   Hdf5Handle owned(hid_t id, Hdf5Handle::Close closer, const std::string& path) const;
+  /// Creation properties without time stamps, which would make the same run give other bytes at another time.
+  [[nodiscard]] Hdf5Handle untimed(hid_t kind, const std::string& path) const;
   void check(herr_t status, const std::string& path) const;
   [[noreturn]] void fail(const std::string& path) const;
 

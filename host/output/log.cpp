@@ -10,7 +10,8 @@ void Log::write(const std::string& event, const nlohmann::json& details) {
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
   nlohmann::ordered_json line{{"wall_s", std::round(elapsed.count() * 1e6) * 1e-6}, {"event", event}};
   if (details.is_object())
-    for (const auto& [key, value] : details.items()) line[key] = value;
+    // A detail named like a part of every line must not stand in its place: when something happened is never lost.
+    for (const auto& [key, value] : details.items()) line[line.contains(key) ? event + "_" + key : key] = value;
   else if (!details.is_null())
     line["details"] = details;
   // A path or a loader's message may hold bytes that are no UTF-8; that must not end a run.

@@ -18,7 +18,7 @@ class Log {
   /// Drops a former run's lines.
   void clear() { file_.clear(); }
   /// {"wall_s": seconds since the log was opened, "event": event, ...details}; details that are no object become
-  /// "details".
+  /// "details", and a detail called wall_s or event is written as EVENT_wall_s.
   void write(const std::string& event, const nlohmann::json& details);
   void close() { file_.close(); }
 

@@ -28,8 +28,11 @@ bool written_by_a_run(const std::string& name) {
 std::filesystem::path prepared(std::filesystem::path directory) {
   std::error_code error;
   std::filesystem::create_directories(directory, error);
+  std::error_code ignored;
+  if (std::filesystem::exists(directory, ignored) && !std::filesystem::is_directory(directory, ignored))
+    throw Error(ExitCode::input_output, Place{directory.string(), "", 0, 0},
+                "is a file and not a directory; choose another place with --out");
   if (error) fail_file(directory, "cannot be made", error.value());
-  if (!std::filesystem::is_directory(directory)) fail_file(directory, "is no directory", ENOTDIR);
   std::filesystem::directory_iterator entries(directory, error);
   if (error) fail_file(directory, "cannot be listed", error.value());
   for (const auto& entry : entries)
@@ -38,6 +41,15 @@ std::filesystem::path prepared(std::filesystem::path directory) {
                   "holds \"" + entry.path().filename().string() +
                       "\", which no run wrote; choose another directory with --out, or move that file away");
   return directory;
+}
+
+/// A run writes its first line into the log before anything else, so that this also finds runs that were killed; one
+/// that never began has nothing to lose.
+bool holds_run(const std::filesystem::path& directory) {
+  std::error_code missing;
+  const auto log_size = std::filesystem::file_size(directory / "log.jsonl", missing);
+  return (!missing && log_size > 0) || std::filesystem::exists(directory / "summary.json") ||
+         std::filesystem::exists(directory / "checkpoint.h5");
 }
 
 void remove_former_run(const std::filesystem::path& directory) {
@@ -49,13 +61,29 @@ void remove_former_run(const std::filesystem::path& directory) {
   }
 }
 
-/// The scene as used: the user's own text unless --set changed it.
+}  // namespace
+
 std::string scene_text(const Document& document) {
   const auto text = nlohmann::json::parse(document.text(), nullptr, false);
   return text == document.root() ? document.text() : document.root().dump(2) + "\n";
 }
 
-}  // namespace
+std::filesystem::path unused_directory(const std::filesystem::path& wanted) {
+  std::error_code error;
+  if (wanted.has_parent_path()) std::filesystem::create_directories(wanted.parent_path(), error);
+  if (error) fail_file(wanted.parent_path(), "cannot be made", error.value());
+  for (long number = 1;; ++number) {
+    auto directory = wanted;
+    if (number > 1) directory += "-" + std::to_string(number);
+    if (std::filesystem::create_directory(directory, error)) return directory;
+    const bool taken = std::filesystem::exists(std::filesystem::symlink_status(directory));
+    if (!taken) fail_file(directory, "cannot be made", error ? error.value() : EIO);
+    std::error_code ignored;
+    if (std::filesystem::is_directory(directory, ignored) && std::filesystem::is_empty(directory, ignored)) {
+      return directory;
+    }
+  }
+}
 
 struct RunDirectory::Files {
   Files(const std::filesystem::path& directory, Log opened, const Scene& scene)
@@ -65,9 +93,14 @@ struct RunDirectory::Files {
   FrameWriter frames;
 };
 
-RunDirectory::RunDirectory(std::filesystem::path directory, const Scene& scene)
+RunDirectory::RunDirectory(std::filesystem::path directory, const Scene& scene, FormerRun former)
     : directory_(prepared(std::move(directory))) {
   Log log(directory_ / "log.jsonl");  // before anything is removed: another run may be writing here
+  if (former == FormerRun::keep && holds_run(directory_)) {
+    throw Error(ExitCode::bad_input, Place{directory_.string(), "", 0, 0},
+                "holds a run already, which would be lost; choose another directory with --out, or replace that run "
+                "with --overwrite");
+  }
   remove_former_run(directory_);
   log.clear();
   files_ = std::make_unique<Files>(directory_, std::move(log), scene);

@@ -17,12 +17,22 @@ namespace rouleau::host {
 /// Writes a file whole or not at all: temporary file in the same folder, fsync, rename. Throws Error(input_output).
 void write_file(const std::filesystem::path& file, const std::string& content);
 
+/// The scene as used, as it stands in a run's scene.json: the user's own text unless --set changed it.
+std::string scene_text(const Document& document);
+
+/// `wanted` if there is nothing yet (or an empty directory), else the first of wanted-2, wanted-3, ... where that is
+/// so. The directory has been made, so that of two runs started together each gets its own. Throws Error(input_output).
+std::filesystem::path unused_directory(const std::filesystem::path& wanted);
+
+/// What becomes of a run that is found in the directory of a new one.
+enum class FormerRun { keep, replace };
+
 /// Writes the run directory of PRODUCT.md section 4. Every member throws Error(input_output) with path and reason.
 class RunDirectory {
  public:
-  /// Makes the directory (and parents). Refuses one that holds another run's files unless they are only a former run's
-  /// outputs, which are replaced.
-  RunDirectory(std::filesystem::path directory, const Scene& scene);
+  /// Makes the directory (and parents). Refuses one that holds files which no run wrote, one that another run is
+  /// writing into, and unless told to replace it one that holds a former run, finished or not.
+  RunDirectory(std::filesystem::path directory, const Scene& scene, FormerRun former = FormerRun::keep);
   ~RunDirectory();
   RunDirectory(const RunDirectory&) = delete;
   RunDirectory& operator=(const RunDirectory&) = delete;

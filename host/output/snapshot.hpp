@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -10,11 +11,11 @@ namespace rouleau::host {
 struct CellSnapshot {
   int cell;  ///< 0-based, in the order of the scene
   std::string type;
-  double x, y;         ///< centroid, m; x is not wrapped into the box
-  double angle;        ///< of the long axis of the inertia ellipse, rad, followed over turns (continuous in time)
-  double deformation;  ///< (L - B) / (L + B) of the inertia ellipse
-  double area;         ///< m2
-  double perimeter;    ///< m
+  double x, y;                 ///< centroid, m; x is not wrapped into the box
+  double angle;                ///< of the long axis of the inertia ellipse, rad, continuous in time; NaN for a circle
+  double deformation;          ///< (L - B) / (L + B) of the inertia ellipse
+  double area;                 ///< m2
+  double perimeter;            ///< m
   double tank_treading_angle;  ///< of the first node about the centroid, rad, continuous in time
   double min_gap;      ///< m, to the nearest membrane of another cell or of an image; infinite when there is none
   int aggregate;       ///< label: smallest index of a cell of the aggregate it belongs to
@@ -54,8 +55,10 @@ struct Snapshot {
   std::string stage_name;
   std::vector<CellSnapshot> cells;
   std::vector<ContactSnapshot> contacts;
-  int aggregate_count = 0;        ///< single cells count too
-  double rotation = 0;            ///< rad turned by the line through the first aggregate's outermost cells, continuous
+  int aggregate_count = 0;  ///< single cells count too
+  /// Angle of the line through an aggregate's outermost cells against x, rad, by its label, followed over turns while
+  /// its members stay the same. Not there for lone cells, nor where an aggregate closed through images has no ends.
+  std::map<int, double> rotation;
   double relative_viscosity = 0;  ///< wall shear stress / (viscosity x shear rate); NaN without shear
   double particle_stress = 0;     ///< xy, Pa: membranes and viscosity contrast, per area of the domain
   double mach_max = 0;

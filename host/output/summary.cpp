@@ -43,7 +43,19 @@ json dimensionless(const json& given) {
   return all;
 }
 
+bool cut_short(const json& stages) {
+  return stages.is_array() && !stages.empty() && stages.back().value("ended_by", "") == "max_steps";
+}
+
 }  // namespace
+
+std::string outcome(const Summary& summary) {
+  const std::string steps = std::to_string(summary.steps);
+  if (summary.status == "completed" && cut_short(summary.stages)) {
+    return "cut short by --max-steps at step " + steps + " of at most " + std::to_string(summary.steps_at_most);
+  }
+  return summary.status + " after " + steps + (summary.steps == 1 ? " step" : " steps");
+}
 
 json to_json(const Summary& summary) {
   json result;
@@ -56,7 +68,9 @@ json to_json(const Summary& summary) {
   result["machine"] = summary.machine;
   result["started"] = summary.started;
 
+  result["outcome"] = outcome(summary);
   result["steps"] = summary.steps;
+  result["steps_at_most"] = summary.steps_at_most;
   result["strain"] = number(summary.strain);
   result["simulated_time_s"] = number(summary.simulated_time_s);
   result["wall_s"] = number(summary.wall_s);

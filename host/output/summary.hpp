@@ -50,6 +50,7 @@ struct Summary {
   std::optional<Failure> failure;
   std::string title, scene_file, scene_sha256, git, machine, started;
   long steps = 0;
+  long steps_at_most = 0;  ///< of all stages; one that ends at rest needs fewer
   double strain = 0, simulated_time_s = 0, wall_s = 0, steps_per_s = 0, mlups = 0;
   long peak_rss_bytes = 0;
   int threads = 1;
@@ -68,5 +69,9 @@ struct Summary {
 };
 
 nlohmann::json to_json(const Summary& summary);
+
+/// How the run ended, in a few words: "completed after 120 steps"; also where --max-steps cut it short, which the
+/// status does not tell.
+std::string outcome(const Summary& summary);
 
 }  // namespace rouleau::host

@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <string>
 #include <string_view>
@@ -51,6 +52,21 @@ std::string joined(const std::vector<int>& members) {
   std::string text;
   for (const int member : members) text += (text.empty() ? "" : "+") + std::to_string(member);
   return text;
+}
+
+/// Rotation of the aggregate with the most cells (of equal ones the first); NaN when it has none.
+double largest_rotation(const Snapshot& snapshot) {
+  std::map<int, int> sizes;
+  for (const auto& cell : snapshot.cells) ++sizes[cell.aggregate];
+  int most = 0;
+  double rotation = std::numeric_limits<double>::quiet_NaN();
+  for (const auto& [label, size] : sizes) {
+    if (size <= most) continue;
+    most = size;
+    const auto found = snapshot.rotation.find(label);
+    rotation = found != snapshot.rotation.end() ? found->second : std::numeric_limits<double>::quiet_NaN();
+  }
+  return rotation;
 }
 
 }  // namespace
@@ -117,15 +133,14 @@ void Tables::write_aggregates(const Snapshot& snapshot) {
   }
   for (const auto& contact : snapshot.contacts) aggregates[label_of[contact.cell_a]].contacts.push_back(&contact);
 
-  bool first = true;
   for (const auto& [label, aggregate] : aggregates) {
     Row start = begin_row(snapshot);
     start.add(snapshot.aggregate_count).add(label).add(joined(aggregate.members)).add(aggregate.through_image);
-    if (first)
-      start.add(snapshot.rotation);
+    const auto rotation = snapshot.rotation.find(label);
+    if (rotation != snapshot.rotation.end())
+      start.add(rotation->second);
     else
       start.skip(1);
-    first = false;
     if (aggregate.contacts.empty()) aggregates_.write(Row(start).skip(6).line());
     for (const auto* contact : aggregate.contacts) {
       Row row(start);
@@ -138,7 +153,7 @@ void Tables::write_aggregates(const Snapshot& snapshot) {
 
 void Tables::write_series(const Snapshot& snapshot) {
   Row row = begin_row(snapshot);
-  row.add(snapshot.stage).add(snapshot.stage_name).add(snapshot.aggregate_count).add(snapshot.rotation);
+  row.add(snapshot.stage).add(snapshot.stage_name).add(snapshot.aggregate_count).add(largest_rotation(snapshot));
   row.add(snapshot.relative_viscosity).add(snapshot.particle_stress).add(snapshot.mach_max);
   row.add(snapshot.area_drift_max).add(snapshot.mass_drift);
   series_.write(row.line());

@@ -2,13 +2,13 @@
 //
 // cells.csv       one row per output time and cell
 // aggregates.csv  one row per output time and contact, with the aggregate both cells belong to; an aggregate without
-// any
-//                 contact (a lone cell) has one row whose contact columns are empty. So
+//                 any contact (a lone cell) has one row whose contact columns are empty. So
 //                 drop_duplicates(["step", "aggregate"]) lists the aggregates and dropna(subset=["gap_m"]) the
 //                 contacts. image_x, image_y: periodic shift of cell_b in boxes. members: cells joined by "+".
-//                 rotation_rad: turned by the line through the aggregate's outermost cells; given for the first
-//                 aggregate.
-// series.csv      one row per output time: what belongs to the whole suspension
+//                 rotation_rad: angle against x of the line through the aggregate's two outermost cells (Snapshot);
+//                 empty for lone cells.
+// series.csv      one row per output time: what belongs to the whole suspension; rotation_rad is that of the largest
+//                 aggregate
 //
 // Units stand in the column names. Numbers have the fewest digits that read back as the same double, whatever the
 // locale; infinite and undefined ones are inf and nan. Text is quoted as in RFC 4180 where it must be.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "method_limits.hpp"
 #include "plan.hpp"
 
 namespace rouleau::host {
@@ -110,7 +111,7 @@ std::vector<Limit> find_limits(const Plan& plan) {
     limits.push_back({name, value, limit, margin, remedy});
   };
   const double tau = scene.numerics.tau;
-  add("tau", tau - 0.5, 0.005, false, "raise numerics.tau above 0.505");
+  add("tau - 1/2", tau - 0.5, 0.005, false, "raise numerics.tau above 0.505");
 
   for (const StageSetting& stage : plan.stages) {
     const std::string where = " (stage " + stage.stage->name + ")";
@@ -128,7 +129,7 @@ std::vector<Limit> find_limits(const Plan& plan) {
           "lower density_factor or the driving force, or raise the resolution");
     }
     if (!plan.has_cells) continue;
-    double stretching = 0, bending = 0, radius = 1e300, segment = 1e300;
+    double stretching = 0, bending = 0, radius = 1e300, shortest = 1e300, longest = 0;
     for (const std::vector<PlannedModel>& laws : plan.membranes) {
       double type_stretching = 0, type_bending = 0;
       for (const PlannedModel& law : laws) {
@@ -140,20 +141,20 @@ std::vector<Limit> find_limits(const Plan& plan) {
       stretching = std::max(stretching, type_stretching);
       bending = std::max(bending, type_bending);
     }
-    add("stretching stiffness, lattice units" + where, stretching, interpolate(stretch_limit, tau), true,
-        "lower density_factor: the lattice stiffness falls with it");
-    add("bending stiffness, lattice units" + where, bending, interpolate(bending_limit, tau), true,
-        "lower density_factor: the lattice stiffness falls with it");
+    add("stretching stiffness in lattice units" + where, stretching, interpolate(stretch_limit, tau), true,
+        "lower density_factor, with which the lattice stiffness falls");
+    add("bending stiffness in lattice units" + where, bending, interpolate(bending_limit, tau), true,
+        "lower density_factor, with which the lattice stiffness falls");
     for (const PlannedModel& model : plan.interactions) {
       if (!model.active()) continue;
       const ModelInstance instance(*model.manifest, model.parameters.values, setting);
       double zero_force = 0;
       const double stiffness = contact_stiffness(instance, zero_force);
-      add("contact stiffness of " + model.manifest->id + ", lattice units" + where, stiffness,
-          interpolate(contact_limit, tau), true, "lower density_factor: the lattice stiffness falls with it");
+      add("contact stiffness of " + model.manifest->id + " in lattice units" + where, stiffness,
+          interpolate(contact_limit, tau), true, "lower density_factor, with which the lattice stiffness falls");
       if (stage.index == 0) {
-        add("equilibrium gap of " + model.manifest->id + ", lattice spacings", zero_force, 2.0, false,
-            "raise the resolution: membranes whose gap the lattice does not resolve stick for ever");
+        add("equilibrium gap of " + model.manifest->id + " in lattice spacings", zero_force, 2.0, false,
+            "raise the resolution, for membranes whose gap it does not resolve stick for ever");
       }
     }
     if (stage.index != 0) continue;
@@ -173,12 +174,16 @@ std::vector<Limit> find_limits(const Plan& plan) {
                                                                           (e.semi_axes.x() + 3 * e.semi_axes.y())));
       }
       radius = std::min(radius, r / stage.units.length);
-      segment = std::min(segment, perimeter / type.segments / stage.units.length);
+      const double segment = perimeter / type.segments / stage.units.length;
+      shortest = std::min(shortest, segment);
+      longest = std::max(longest, segment);
     }
-    add("cell radius, lattice spacings", radius, 10, false,
+    add("cell radius in lattice spacings", radius, 10, false,
         "raise the resolution; results are converged from about 20");
-    add("segment length, lattice spacings", segment, 0.4, false,
+    add("shortest segment in lattice spacings", shortest, 0.4, false,
         "take fewer segments; about one for each spacing is best");
+    add("longest segment in lattice spacings", longest, longest_segment, true,
+        "take more segments, for fluid leaks between nodes that lie far apart; about one for each spacing is best");
   }
   std::stable_sort(limits.begin(), limits.end(), [](const Limit& a, const Limit& b) { return a.margin < b.margin; });
   return limits;

@@ -1,18 +1,24 @@
 #include "observer.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <numbers>
 
 #include "cell/crossing.hpp"
 #include "cell/geometry.hpp"
 #include "fields.hpp"
+#include "method_limits.hpp"
 #include "particle_stress.hpp"
 
 namespace rouleau::host {
 
 namespace {
+
+/// A circle has no long axis: below this deformation its direction would be that of rounding errors.
+constexpr double roundest = 1e-6;
 
 /// The value nearest to `previous` that differs from `angle` by a multiple of `period`.
 double continued(double angle, double previous, double period) {
@@ -30,6 +36,18 @@ Failure failure(std::string reason, std::array<double, 2> place, int cell, doubl
   f.message = std::move(message);
   f.remedy = std::move(remedy);
   return f;
+}
+
+/// What to do first about a cell that leaks, if its segments (mean length in spacings) are the reason.
+std::string leak_remedy(double segment) {
+  if (!(segment > longest_segment)) return "";
+  std::array<char, 200> text{};
+  std::snprintf(
+      text.data(), text.size(),
+      "take more segments (this cell's are %.2g lattice spacings long, and fluid leaks between nodes that lie "
+      "more than %g apart; about one for each spacing is best), ",
+      segment, longest_segment);
+  return text.data();
 }
 
 /// Smallest gap of a cell to any other or to an image, looked for in growing neighbourhoods up to the size of the box.
@@ -135,11 +153,14 @@ std::optional<Failure> Observer::check(Solver<T>& solver, const Membranes& membr
   const double drift = area_drift(membranes, &cell);
   area_drift_max_ = std::max(area_drift_max_, drift);
   if (!(drift <= scene_.checks.area_drift)) {
-    const Eigen::Vector2d c = centroid(membranes, membranes.cells[static_cast<std::size_t>(cell)]);
+    const CellRange& drifting = membranes.cells[static_cast<std::size_t>(cell)];
+    const Eigen::Vector2d c = centroid(membranes, drifting);
     return failure(
         "area_drift", place(c.x(), c.y()), cell, drift, scene_.checks.area_drift,
         "a cell has changed its area by more than the limit: fluid leaks through its membrane or is compressed",
-        "lower numerics.density_factor, raise the resolution, or raise checks.area_drift if this error is acceptable");
+        leak_remedy(perimeter(membranes, drifting) / drifting.count) +
+            "lower numerics.density_factor, raise the resolution, or raise checks.area_drift if this error is "
+            "acceptable");
   }
   if (const auto crossing = find_crossing(membranes, box_)) {
     return failure("crossing", place(crossing->place.x(), crossing->place.y()), crossing->cell, 0, 0,
@@ -161,19 +182,22 @@ void Observer::observe_cells(const Membranes& membranes, const LatticeUnits& uni
     snapshot.contacts.push_back(
         {c.cell_a, c.cell_b, {c.image.x, c.image.y}, c.gap * length, c.contact_length * length});
   }
+  std::vector<Eigen::Vector2d> centers;
   for (std::size_t k = 0; k < membranes.cells.size(); ++k) {
     const CellRange& cell = membranes.cells[k];
     const Eigen::Vector2d c = centroid(membranes, cell);
+    centers.push_back(c);
     const InertiaEllipse ellipse = inertia_ellipse(membranes, cell);
     const double marker = marker_angle(membranes, cell);
-    angle_[k] = continued(ellipse.angle, angle_[k], std::numbers::pi);
+    const bool round = !(ellipse.deformation > roundest);
+    if (!round) angle_[k] = continued(ellipse.angle, angle_[k], std::numbers::pi);
     tank_treading_angle_[k] = started_ ? continued(marker, tank_treading_angle_[k], 2 * std::numbers::pi) : marker;
     CellSnapshot s;
     s.cell = static_cast<int>(k);
     s.type = scene_.cell_types[static_cast<std::size_t>(cell.type)].name;
     s.x = (c.x() + 0.5) * length;
     s.y = (c.y() + 0.5) * length;
-    s.angle = angle_[k];
+    s.angle = round ? std::nan("") : angle_[k];
     s.deformation = ellipse.deformation;
     s.area = enclosed_area(membranes, cell) * length * length;
     s.perimeter = perimeter(membranes, cell) * length;
@@ -183,12 +207,7 @@ void Observer::observe_cells(const Membranes& membranes, const LatticeUnits& uni
     s.through_image = aggregates.through_image[k];
     snapshot.cells.push_back(std::move(s));
   }
-  if (snapshot.cells.size() > 1) {
-    const CellSnapshot &a = snapshot.cells.front(), &b = snapshot.cells.back();
-    const double line = std::atan2(b.y - a.y, b.x - a.x);
-    rotation_ = started_ ? continued(line, rotation_, 2 * std::numbers::pi) : line;
-    snapshot.rotation = rotation_;
-  }
+  snapshot.rotation = rotation_.follow(contacts, aggregates, centers, box_);
   started_ = true;
 }
 

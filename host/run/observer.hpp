@@ -7,6 +7,7 @@
 #include "aggregates.hpp"
 #include "output/snapshot.hpp"
 #include "output/summary.hpp"
+#include "rotation.hpp"
 #include "solver.hpp"
 
 namespace rouleau::host {
@@ -46,7 +47,7 @@ class Observer {
   PeriodicBox box_;
   std::vector<double> initial_area_;
   std::vector<double> angle_, tank_treading_angle_;  ///< last values, continuous
-  double rotation_ = 0;
+  Rotation rotation_;
   bool started_ = false;
   double mach_max_ = 0, area_drift_max_ = 0, mass_drift_ = 0;
   std::optional<double> initial_mass_;

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "input/document.hpp"
+#include "input/wording.hpp"
 
 namespace rouleau::host {
 
@@ -37,21 +38,45 @@ double parameter_named(const std::vector<const PlannedModel*>& models, const std
 
 nlohmann::json number_or_null(double value) { return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(); }
 
+/// Force per volume that drives the fluid in a stage, N/m3.
+Eigen::Vector2d driving_force(const StageSetting& stage, const Scene& scene) {
+  return scene.fluid.body_force + stage.stage->pressure_gradient;
+}
+
+/// A force on a fluid that is periodic along both axes meets no wall that could balance it.
+bool accelerates_for_ever(const StageSetting& stage, const Scene& scene) {
+  return scene.domain.periodic_y && driving_force(stage, scene) != Eigen::Vector2d::Zero();
+}
+
+/// Shear rate that a stage's numbers are made with, 1/s: that of the walls where they move; else that of the developed
+/// flow between them, |du/dy| averaged over the height, G H / (4 mu), which is its largest velocity over half the
+/// height.
+double mean_shear_rate(const StageSetting& stage, const Scene& scene) {
+  if (stage.stage->shear_rate != 0) return std::abs(stage.stage->shear_rate);
+  if (scene.domain.periodic_y) return 0;
+  return std::abs(driving_force(stage, scene).x()) * scene.domain.size.y() / (4 * scene.fluid.viscosity);
+}
+
 nlohmann::json dimensionless_numbers(const Plan& plan) {
   const Scene& scene = *plan.scene;
   double shear_rate = 0, factor = scene.numerics.density_factor, wall_mach = 0;
+  bool unbounded = false;
   for (const StageSetting& stage : plan.stages) {
     wall_mach = std::max(wall_mach, std::abs(stage.wall_speed) * std::sqrt(3.0));
-    if (std::abs(stage.stage->shear_rate) > std::abs(shear_rate)) {
-      shear_rate = stage.stage->shear_rate;
+    unbounded = unbounded || accelerates_for_ever(stage, scene);
+    const double rate = mean_shear_rate(stage, scene);
+    if (rate > shear_rate) {
+      shear_rate = rate;
       factor = stage.stage->density_factor;
     }
   }
+  // A flow that nothing holds has no rate of its own; a number made with zero would look like a fluid at rest.
+  if (unbounded && shear_rate == 0) shear_rate = std::nan("");
   const double radius = scene.cell_types.empty() || scene.cells.empty()
                             ? scene.domain.size.y() / 2
                             : shape_radius(scene.cell_types[static_cast<std::size_t>(scene.cells[0].type)].shape);
-  const double stress = scene.fluid.viscosity * std::abs(shear_rate);
-  const double reynolds = scene.fluid.density * std::abs(shear_rate) * radius * radius / scene.fluid.viscosity;
+  const double stress = scene.fluid.viscosity * shear_rate;
+  const double reynolds = scene.fluid.density * shear_rate * radius * radius / scene.fluid.viscosity;
   const double unsteady = reynolds * factor;
   std::vector<const PlannedModel*> laws, potentials;
   for (const auto& type : plan.membranes) {
@@ -157,7 +182,9 @@ void plan_passes(Plan& plan) {
   if (scene.output.checkpoint_seconds) omit("checkpoints", "this version does not write them yet");
   if (scene.output.fields.never()) omit("fields in frames.h5", "output.fields is not set");
   if (scene.output.cells.never())
-    omit("periodic rows in cells.csv", "output.cells is not set; start and end are written");
+    omit(plan.has_cells ? "rows of the tables and outlines between the ends of stages"
+                        : "rows of series.csv between the ends of stages",
+         "output.cells is not set; the start and the end of each stage are written");
 }
 
 void plan_estimate(Plan& plan) {
@@ -188,6 +215,11 @@ void plan_estimate(Plan& plan) {
       nodes * word * (9 + (plan.has_cells ? 2 : 0) + (plan.viscosity_contrast ? 1 : 0)) + membrane_nodes * 400;
   plan.estimate.output_bytes = outputs * (membrane_nodes * 32 + 400 * static_cast<double>(scene.cells.size())) +
                                fields * nodes * 4 * (2 + static_cast<double>(scene.output.quantities.size()));
+}
+
+std::string warning_of(const Limit& limit) {
+  return limit.name + " is " + number(limit.value, 4) + (limit.value > limit.limit ? ", above" : ", below") +
+         " its limit of " + number(limit.limit, 4) + "; " + limit.remedy;
 }
 
 }  // namespace
@@ -240,13 +272,23 @@ Plan make_plan(const Scene& scene, const Catalog& catalog) {
           "\"developed\" wants walls: a driven flow that is periodic along y never becomes steady; leave start out");
     }
   }
+  for (const StageSetting& stage : plan.stages) {
+    if (!accelerates_for_ever(stage, scene)) continue;
+    const double acceleration =
+        driving_force(stage, scene).norm() / (scene.fluid.density * stage.stage->density_factor);
+    plan.warnings.push_back("stage " + stage.stage->name +
+                            " drives a fluid that is periodic along x and y, so no wall holds it and it gains " +
+                            number(acceleration, 3) +
+                            " m/s every second for as long as the stage lasts; give domain.y walls, or leave out "
+                            "fluid.body_force and pressure_gradient");
+  }
   plan_passes(plan);
   plan.dimensionless = dimensionless_numbers(plan);
   plan.conversions = conversion_table(plan);
   plan_estimate(plan);
   plan.limits = find_limits(plan);
   for (const Limit& limit : plan.limits) {
-    if (limit.margin < 1) plan.warnings.push_back(limit.name + " is beyond its limit: " + limit.remedy);
+    if (limit.margin < 1) plan.warnings.push_back(warning_of(limit));
   }
   return plan;
 }

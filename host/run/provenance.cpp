@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "input/document.hpp"
+#include "output/run_directory.hpp"
 #include "plugin/library.hpp"
 
 namespace rouleau::host {
@@ -50,11 +51,12 @@ Summary describe(const Plan& plan, int threads) {
   Summary s;
   s.title = scene.title;
   s.scene_file = scene.document->file();
-  s.scene_sha256 = sha256_of(scene.document->root().dump());
+  s.scene_sha256 = sha256_of(scene_text(*scene.document));
   s.git = program_version();
   s.machine = machine_description();
   s.started = present_time();
   s.threads = threads;
+  for (const StageSetting& stage : plan.stages) s.steps_at_most += stage.max_steps;
   s.precision = scene.numerics.precision == Precision::f64 ? "f64" : "f32";
   for (const PlannedModel* model : plan.active_models()) {
     const Manifest& m = *model->manifest;

@@ -3,8 +3,10 @@
 usage: check_commands.py ROULEAU PLUGIN_FOLDER SOURCE_FOLDER
 """
 
+import hashlib
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -174,8 +176,10 @@ class Errors_name_what_is_wrong(Case):
     def test_bad_usage_exits_with_2_and_the_nearest_name(self):
         self.assert_stops(self.rouleau.run("rum", SCENE), 2, "run")
         self.assert_stops(self.rouleau.run("run", SCENE, "--thread", "2"), 2, "--threads")
-        self.assert_stops(self.rouleau.run("run"), 2, "scene")
+        self.assert_stops(self.rouleau.run("run"), 2, "a SCENE file (JSON) is missing", "rouleau run --help")
+        self.assert_stops(self.rouleau.run("report"), 2, "a run's directory DIR is missing")
         self.assert_stops(self.rouleau.run("run", SCENE, "--threads", "0"), 2, "--threads")
+        self.assert_stops(self.rouleau.run("run", SCENE, "--max-steps", "-5"), 2, "--max-steps -5", "zero or more")
         self.assert_stops(self.rouleau.run("plan", SCENE, "--set", "/fluid/densty=1"), 2, "densty", "density")
 
 
@@ -207,6 +211,14 @@ class A_run_that_goes_bad_stops_before_garbage_is_written(Case):
     def test_area_that_drifts(self):
         failure = self.stop("area_drift", "/checks/area_drift=2e-5")
         self.assertGreater(failure["value"], failure["limit"])
+        self.assertNotIn("segments", failure["remedy"])
+
+    def test_area_that_drifts_because_segments_are_too_long(self):
+        plan = self.rouleau.run("plan", SCENE, "--set", "/cell_types/rbc/segments=32")
+        self.assertEqual(plan.returncode, 0, plan.stderr)
+        self.assertIn("warning: longest segment in lattice spacings is 3.072, above its limit of 2; take more ", plan.stdout)
+        failure = self.stop("area_drift", "/cell_types/rbc/segments=32", "/checks/area_drift=2e-5")
+        self.assertTrue(failure["remedy"].startswith("take more segments (this cell's are 3."), failure["remedy"])
 
     def test_membranes_that_cross(self):
         # Bending and stretching all but removed: attraction folds the membranes through each other.
@@ -229,6 +241,42 @@ class Commands_do_what_they_say(Case):
         for key in ("conversions", "dimensionless", "limits", "passes", "left_out", "estimate", "models"):
             self.assertIn(key, plan)
         self.assertAlmostEqual(plan["dimensionless"]["reynolds_physical"], 2.548e-4, delta=1e-6)
+
+    def test_a_limit_that_is_passed_is_warned_of_with_name_value_limit_and_remedy(self):
+        plan = json.loads(self.rouleau.run("plan", SCENE, "--json", "--set", "/numerics/tau=0.502").stdout)
+        self.assertEqual(plan["warnings"], ["tau - 1/2 is 0.002, below its limit of 0.005; raise numerics.tau above 0.505"])
+        self.assertIn("tau - 1/2", [limit["name"] for limit in plan["limits"]])
+
+    def test_plan_gives_the_numbers_of_a_driven_flow_by_its_mean_shear_rate(self):
+        # One stage driven by G between walls H apart has the numbers of walls that shear at G H / (4 mu).
+        plan = lambda stage: json.loads(
+            self.rouleau.run("plan", self.scene(stages=[stage], output={}), "--json").stdout)
+        height, viscosity, gradient = 25.088e-6, 1.2e-3, 3000
+        driven = plan({"name": "flow", "duration": 1, "pressure_gradient": gradient})["dimensionless"]
+        sheared = plan({"name": "flow", "duration": 1, "shear_rate": gradient * height / (4 * viscosity)})["dimensionless"]
+        for name in ("reynolds_physical", "reynolds_simulated", "capillary", "adhesion_number"):
+            self.assertGreater(driven[name], 0)
+            self.assertAlmostEqual(driven[name] / sheared[name], 1, delta=1e-12)
+
+    def test_a_force_that_nothing_holds_is_warned_of_and_has_no_numbers(self):
+        scene = self.scene(domain={"size": ["50.176 um", "25.088 um"], "nodes": [256, 128], "y": "periodic"},
+                           stages=[{"name": "fall", "duration": "10 us", "pressure_gradient": "3 kPa/m"}],
+                           output={})
+        words = ("stage fall", "periodic along x and y", "0.001 m/s every second", "domain.y")
+        plan = json.loads(self.rouleau.run("plan", scene, "--json").stdout)
+        self.assertTrue(all(word in plan["warnings"][0] for word in words), plan["warnings"])
+        self.assertIsNone(plan["dimensionless"]["reynolds_physical"])
+        result = self.rouleau.run("run", scene, "--out", self.path / "run", *SHORT)
+        self.assert_stops(result, 0, *words)
+        self.assertIn("stage fall", json.loads((self.path / "run" / "summary.json").read_text())["warnings"][0])
+
+    def test_plan_says_which_rows_are_left_out_without_output_cells(self):
+        left_out = lambda **changes: {o["what"]: o["why"] for o in json.loads(
+            self.rouleau.run("plan", self.scene(output={}, **changes), "--json").stdout)["left_out"]}
+        self.assertEqual(left_out()["rows of the tables and outlines between the ends of stages"],
+                         "output.cells is not set; the start and the end of each stage are written")
+        alone = left_out(cells=[], stages=[{"name": "shear", "shear_rate": "20 1/s", "strain": 1}])
+        self.assertIn("rows of series.csv between the ends of stages", alone)
 
     def test_plugins_lists_manifests_and_refused_ones_with_reason(self):
         (self.rouleau.plugins / "interaction/morse/morse.json").write_text('{"manifest": 1, "id": "morse"}')
@@ -260,6 +308,47 @@ class Commands_do_what_they_say(Case):
             json.loads(line)
         self.assertEqual(self.rouleau.run("report", out).returncode, 0)
 
+    def test_the_hash_of_the_scene_is_that_of_the_file_in_the_run_directory(self):
+        for name, settings in (("as_written", []), ("changed", ["--set", "/title=changed"])):
+            out = self.path / name
+            self.assertEqual(self.rouleau.run("run", SCENE, "--out", out, *settings, *SHORT).returncode, 0)
+            written = (out / "scene.json").read_bytes()
+            self.assertEqual(json.loads((out / "summary.json").read_text())["scene_sha256"],
+                             hashlib.sha256(written).hexdigest())
+            if not settings:
+                self.assertEqual(written, SCENE.read_bytes())
+
+    def test_a_run_that_max_steps_cuts_short_says_so(self):
+        out = self.path / "run"
+        result = self.rouleau.run("run", SCENE, "--out", out, *SHORT)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        summary = json.loads((out / "summary.json").read_text())
+        self.assertEqual(summary["status"], "completed")
+        words = f"cut short by --max-steps at step 20 of at most {summary['steps_at_most']}"
+        self.assertGreater(summary["steps_at_most"], 10000)
+        self.assertEqual(summary["outcome"], words)
+        self.assertTrue(result.stdout.splitlines()[-1].startswith(words), result.stdout)
+
+    def test_no_run_is_lost_to_a_later_one(self):
+        scene = self.scene()
+        for expected in ("scene", "scene-2", "scene-3"):
+            result = self.rouleau.run("run", scene, *SHORT, cwd=self.path)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertEqual(result.stdout.splitlines()[0], f"runs/{expected}/report.html")
+        before = (self.path / "runs/scene/summary.json").read_bytes()
+        again = ("run", scene, "--out", self.path / "runs/scene", *SHORT)
+        self.assert_stops(self.rouleau.run(*again), 2, str(self.path / "runs/scene"), "--overwrite", "--out")
+        self.assertEqual((self.path / "runs/scene/summary.json").read_bytes(), before)
+        self.assertEqual(self.rouleau.run(*again, "--overwrite").returncode, 0)
+        self.assertNotEqual((self.path / "runs/scene/summary.json").read_bytes(), before)
+        self.assertEqual(self.rouleau.run("run", scene, "--overwrite", *SHORT, cwd=self.path).returncode, 0)
+        self.assertFalse((self.path / "runs/scene-4").exists())
+
+    def test_a_scene_that_cannot_start_leaves_no_directory(self):
+        result = self.rouleau.run("run", self.scene(), "--set", '/cells/0/row/spacing="1 um"', cwd=self.path)
+        self.assert_stops(result, 2, "overlap")
+        self.assertFalse((self.path / "runs").exists())
+
     def test_bits_do_not_depend_on_threads(self):
         tables = []
         for threads in (1, 2):
@@ -283,6 +372,92 @@ class Commands_do_what_they_say(Case):
         _, errors = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 130, errors)
         self.assertEqual(json.loads((out / "summary.json").read_text())["status"], "interrupted")
+
+
+class Documents_tell_what_is_so(Case):
+    def test_the_example_of_a_scene_runs_without_a_warning(self):
+        text = (SOURCE / "docs/scene.md").read_text()
+        example = re.search(r"^    \{\n(?:    .*\n)+?    \}\n", text, re.MULTILINE).group(0)
+        scene = self.path / "one-cell.json"
+        scene.write_text(example)
+        plan = self.rouleau.run("plan", scene, "--json")
+        self.assertEqual(plan.returncode, 0, plan.stderr)
+        self.assertEqual(json.loads(plan.stdout)["warnings"], [])
+        out = self.path / "run"
+        self.assertEqual(self.rouleau.run("run", scene, "--out", out, "--quiet").returncode, 0)
+        self.assertEqual(json.loads((out / "summary.json").read_text())["aggregates_final"], 1)
+
+    def test_every_form_of_cells_in_it_is_accepted(self):
+        entries = re.findall(r'^    (\{"type": "rbc".*\})$', (SOURCE / "docs/scene.md").read_text(), re.MULTILINE)
+        self.assertEqual(len(entries), 3)
+        for entry in entries:
+            scene = self.scene(cells=[json.loads(entry)])
+            self.assertEqual(self.rouleau.run("plan", scene).returncode, 0, entry)
+
+    def test_every_key_of_a_scene_is_in_its_document(self):
+        text = (SOURCE / "docs/scene.md").read_text()
+
+        def keys(rule):
+            if isinstance(rule, dict):
+                for key in rule.get("properties", {}):
+                    yield key
+                for value in rule.values():
+                    yield from keys(value)
+            elif isinstance(rule, list):
+                for value in rule:
+                    yield from keys(value)
+
+        for key in set(keys(json.loads((SOURCE / "host/input/scene.schema.json").read_text()))):
+            self.assertRegex(text, rf"[`\".]{re.escape(key)}[`\"]")
+
+    def test_every_column_key_and_log_event_of_a_run_is_in_its_document(self):
+        text = (SOURCE / "docs/output.md").read_text()
+        out = self.path / "run"
+        self.assertEqual(self.rouleau.run("run", SCENE, "--out", out, *SHORT).returncode, 0)
+        names = set()
+        for table in ("cells", "aggregates", "series"):
+            names |= set((out / f"{table}.csv").read_text().splitlines()[0].split(","))
+
+        def add(value):
+            if isinstance(value, dict):
+                for key, part in value.items():
+                    names.add(key)
+                    add(part)
+            elif isinstance(value, list) and value:
+                add(value[0])
+
+        add(json.loads((out / "summary.json").read_text()))
+        for line in (out / "log.jsonl").read_text().splitlines():
+            names |= set(json.loads(line)) | {json.loads(line)["event"]}
+        for name in names:
+            self.assertRegex(text, rf"`{re.escape(name)}`")
+
+
+@unittest.skipUnless(shutil.which("chromium"), "there is no chromium to draw the page")
+class The_report_as_a_browser_shows_it(Case):
+    def page(self, scene, *options):
+        """The page's elements after its script has run."""
+        out = self.path / "run"
+        result = self.rouleau.run("run", scene, "--out", out, "--quiet", *options)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        browser = subprocess.run(["chromium", "--headless", "--no-sandbox", "--disable-gpu", "--dump-dom",
+                                  f"--user-data-dir={self.path / 'browser'}", (out / "report.html").as_uri()],
+                                 capture_output=True, text=True, timeout=120)
+        return browser.stdout.split("<main", 1)[1].split("</main>")[0]
+
+    def test_a_run_without_cells_has_no_heading_for_them_and_no_axis_for_what_is_zero(self):
+        page = self.page(self.scene(cell_types={}, cells=[], interactions=[], output={"cells": {"seconds": "10 us"}},
+                                    stages=[{"name": "flow", "duration": "30 us", "pressure_gradient": "1 kPa/m"}]))
+        self.assertTrue("<h2>Flow</h2>" in page)
+        self.assertFalse("<h2>Cells</h2>" in page)
+        self.assertFalse('class="stage"' in page)
+        drift = page.split("Relative mass drift", 1)[1].split("</svg>")[0]
+        self.assertEqual(re.findall(r'text-anchor="end">([^<]*)<', drift), ["0"])
+
+    def test_a_run_cut_short_says_so_in_its_headline_and_legends_name_their_instant(self):
+        page = self.page(SCENE, "--max-steps", "20")
+        self.assertIn("Cut short by --max-steps at step 20 of at most", page.split("</strong>")[0])
+        self.assertTrue('<span class="quiet">at 0 s</span>' in page)
 
 
 if __name__ == "__main__":

@@ -82,6 +82,23 @@ TEST_CASE("a hostile text meets the pattern of a schema without harm") {
   CHECK_FALSE(message_of("{\"a\": \"" + std::string(900, 'a') + "!\"}", schema).empty());
 }
 
+TEST_CASE("a key that stands elsewhere is told where") {
+  const auto schema = json::parse(R"({
+    "type": "object", "additionalProperties": false,
+    "properties": {
+      "fluid": {"type": "object", "additionalProperties": false, "properties": {"density": {}}},
+      "stages": {"items": {"$ref": "#/definitions/stage"}},
+      "types": {"additionalProperties": {"oneOf": [{"properties": {"pressure_gradient_of_type": {}}}]}}
+    },
+    "definitions": {"stage": {"properties": {"pressure_gradient": {}, "again": {"$ref": "#/definitions/stage"}}}}
+  })");
+  CHECK_THAT(message_of(R"({"fluid": {"presure_gradient_of_type": 1}})", schema),
+             Contains("did you mean /types/NAME/pressure_gradient_of_type?"));
+  CHECK_THAT(message_of(R"({"fluid": {"stages": 1}})", schema), Contains("did you mean /stages?"));
+  CHECK_THAT(message_of(R"({"fluid": {"densty": 1}})", schema), Contains("did you mean \"density\"?"));
+  CHECK_THAT(message_of(R"({"fluid": {"rate": 1}})", schema), !Contains("did you mean"));
+}
+
 TEST_CASE("the nearest word is the one a user meant") {
   using rouleau::host::nearest;
   CHECK(nearest("tao", {"coupling", "tau", "kernel"}) == "tau");

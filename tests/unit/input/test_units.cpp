@@ -81,6 +81,14 @@ TEST_CASE("a quantity of the wrong kind says what it is and what is wanted") {
   CHECK_THROWS_WITH(units.to_si("2 kg3", "m", "radius"), Contains("is of the dimension kg3"));
 }
 
+TEST_CASE("the unit that is suggested has the wanted dimension where one is near") {
+  const Units units;
+  CHECK_THROWS_WITH(units.to_si("1.2 mPas", "Pa s", "viscosity"), Contains("\"mPas\" (did you mean \"mPa s\"?)"));
+  CHECK_THROWS_WITH(units.to_si("1.2 mPas", "Pa", "pressure"), Contains("\"mPas\" (did you mean \"mPa\"?)"));
+  CHECK_THROWS_WITH(units.to_si("1 gcm3", "kg/m3", "density"), Contains("\"gcm3\" (did you mean \"g/cm3\"?)"));
+  CHECK_THROWS_WITH(units.to_si("70 kDA", "N/m", "modulus"), Contains("\"kDA\" (did you mean \"kDa\"?)"));
+}
+
 TEST_CASE("an unknown symbol is named, with the nearest that is known") {
   const Units units;
   CHECK_THROWS_WITH(units.scale("dyne/cmm"), Contains("unknown unit \"cmm\" (did you mean \"cm\"?)"));

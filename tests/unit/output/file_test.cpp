@@ -118,12 +118,12 @@ TEST_CASE("a disk that fills up during a run ends it with an error and no crash"
   }
 }
 
-TEST_CASE("a run's outputs replace a former run's, a checkpoint too") {
+TEST_CASE("a run's outputs replace a former run's when they are told to, a checkpoint too") {
   const ScratchFolder folder;
   const auto directory = folder.path() / "a/run";
   const Scene scene = small_scene();
   for (int i = 0; i < 2; ++i) {
-    RunDirectory run(directory, scene);
+    RunDirectory run(directory, scene, FormerRun::replace);
     run.log("started");
     run.write(small_snapshot(0));
     run.finish(small_summary());
@@ -151,7 +151,50 @@ TEST_CASE("a second run in the same directory is refused while the first one wri
   CHECK_THROWS_WITH(RunDirectory(folder.path(), scene), Contains("another run"));
   first.finish(small_summary());
   CHECK(std::filesystem::exists(folder.path() / "frames.xmf"));
-  CHECK_NOTHROW(RunDirectory(folder.path(), scene));
+  CHECK_NOTHROW(RunDirectory(folder.path(), scene, FormerRun::replace));
+}
+
+TEST_CASE("a former run is kept unless it is to be replaced, one that was killed too") {
+  const ScratchFolder folder;
+  const Scene scene = small_scene();
+  const bool killed = GENERATE(false, true);
+  {
+    RunDirectory run(folder.path(), scene);
+    run.log("started");
+    run.write(small_snapshot(0));
+    if (!killed) run.finish(small_summary());
+  }
+  const std::string rows = read_text(folder.path() / "cells.csv"), log = read_text(folder.path() / "log.jsonl");
+  try {
+    const RunDirectory run(folder.path(), scene);
+    FAIL("no error");
+  } catch (const Error& error) {
+    CHECK(error.code() == ExitCode::bad_input);
+    CHECK_THAT(error.what(), Contains(folder.path().string()) && Contains("--out") && Contains("--overwrite"));
+  }
+  CHECK(read_text(folder.path() / "cells.csv") == rows);
+  CHECK(read_text(folder.path() / "log.jsonl") == log);
+}
+
+TEST_CASE("a run that named no directory gets the first that is free") {
+  const ScratchFolder folder;
+  const auto wanted = folder.path() / "runs/a.b";
+  CHECK(unused_directory(wanted) == wanted);
+  CHECK(unused_directory(wanted) == wanted);  // empty still
+  write_file(wanted / "summary.json", "{}");
+  CHECK(unused_directory(wanted) == folder.path() / "runs/a.b-2");
+  write_file(folder.path() / "runs/a.b-2/notes.txt", "");
+  write_file(folder.path() / "runs/a.b-3", "");
+  CHECK(unused_directory(wanted) == folder.path() / "runs/a.b-4");
+  CHECK_THAT(input_output_error([&] { unused_directory(wanted / "summary.json" / "run"); }), Contains("summary.json"));
+}
+
+TEST_CASE("an output path that is a file is called one") {
+  const ScratchFolder folder;
+  write_file(folder.path() / "file", "");
+  const Scene scene = small_scene();
+  CHECK_THAT(input_output_error([&] { const RunDirectory run(folder.path() / "file", scene); }),
+             Contains("file\n  is a file and not a directory; choose another place with --out"));
 }
 
 TEST_CASE("the log has one JSON object a line, there as soon as it is written, whatever bytes it is given") {
@@ -161,15 +204,19 @@ TEST_CASE("the log has one JSON object a line, there as soon as it is written, w
   run.log("started", {{"threads", 2}});
   run.log("odd", {{"loader", "bad byte \xff"}});
   run.log("plain", "text");
+  run.log("stage_ended", {{"wall_s", 1e9}, {"steps", 5}});
   std::ifstream lines(folder.path() / "log.jsonl");
   std::string line;
   std::vector<nlohmann::json> events;
   while (std::getline(lines, line)) events.push_back(nlohmann::json::parse(line));
-  REQUIRE(events.size() == 3);
+  REQUIRE(events.size() == 4);
   CHECK(events[0]["event"] == "started");
   CHECK(events[0]["threads"] == 2);
   CHECK(events[0]["wall_s"].get<double>() >= 0);
   CHECK(events[2]["details"] == "text");
+  CHECK(events[3]["wall_s"].get<double>() < 1e6);  // when, on the log's clock
+  CHECK(events[3]["stage_ended_wall_s"] == 1e9);
+  CHECK(events[3]["steps"] == 5);
 }
 
 TEST_CASE("the run keeps the scene as used: the user's text, or with --set the values that held") {

@@ -76,6 +76,18 @@ TEST_CASE("what is undefined is null in summary.json") {
   CHECK(written["limits"][0]["margin"].is_null());
 }
 
+TEST_CASE("a run that --max-steps cut short is completed, and says where it was cut") {
+  Summary summary = small_summary();
+  summary.steps = 120;
+  summary.steps_at_most = 5000;
+  summary.stages = {{{"name", "rest"}, {"ended_by", "at_rest"}}, {{"name", "shear"}, {"ended_by", "strain"}}};
+  CHECK(to_json(summary)["outcome"] == "completed after 120 steps");
+  CHECK(to_json(summary)["steps_at_most"] == 5000);
+  summary.stages[1]["ended_by"] = "max_steps";
+  CHECK(to_json(summary)["status"] == "completed");
+  CHECK(to_json(summary)["outcome"] == "cut short by --max-steps at step 120 of at most 5000");
+}
+
 TEST_CASE("a diverged run's summary says why, where and what to change") {
   Summary summary = small_summary();
   summary.status = "diverged";

@@ -81,6 +81,27 @@ TEST_CASE("an aggregate without contact has a row of its own with empty contact 
   CHECK(aggregates.texts("gap_m") == std::vector<std::string>{"", ""});
 }
 
+TEST_CASE("every aggregate has its own rotation, lone cells have none, and the series follows the largest") {
+  const ScratchFolder folder;
+  Tables tables(folder.path());
+  Snapshot snapshot;
+  snapshot.aggregate_count = 3;
+  for (const int label : {0, 1, 1, 3, 3, 3}) {
+    CellSnapshot cell{};
+    cell.cell = static_cast<int>(snapshot.cells.size());
+    cell.aggregate = label;
+    snapshot.cells.push_back(cell);
+  }
+  snapshot.rotation = {{1, 0.25}, {3, -7.5}};
+  tables.write(snapshot);
+  snapshot.rotation = {{1, 0.25}};
+  tables.write(snapshot);
+  tables.close();
+  const StoredTable aggregates(folder.path() / "aggregates.csv"), series(folder.path() / "series.csv");
+  CHECK(aggregates.texts("rotation_rad") == std::vector<std::string>{"", "0.25", "-7.5", "", "0.25", ""});
+  CHECK(series.texts("rotation_rad") == std::vector<std::string>{"-7.5", "nan"});
+}
+
 TEST_CASE("a last line that a killed run left unfinished is dropped") {
   const ScratchFolder folder;
   write_file(folder.path() / "t.csv", "a,b\n1,2\n3,");
