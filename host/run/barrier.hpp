@@ -36,7 +36,7 @@ class Barrier {
   }
 
  private:
-  static constexpr int patience = 4000;
+  static constexpr int patience = 1000;
   static void pause() {
 #if defined(__x86_64__)
     _mm_pause();

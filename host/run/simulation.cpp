@@ -119,7 +119,10 @@ class Simulation {
                        {"steps", stage_step_},
                        {"ended_by", name(stage_ending_)},
                        {"wall_s", seconds_since(start)}});
-    directory_.log("stage_ended", stages_.back());
+    nlohmann::json ended = stages_.back();
+    ended["stage_wall_s"] = ended["wall_s"];
+    ended.erase("wall_s");
+    directory_.log("stage_ended", ended);
     stopped_ =
         stage_ending_ == Ending::max_steps || stage_ending_ == Ending::interrupted || stage_ending_ == Ending::failed;
   }

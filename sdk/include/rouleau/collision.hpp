@@ -179,7 +179,7 @@ struct CollisionLoop {
 
   template <int register_bytes, Force force, bool Varying, bool Inertia>
   ROULEAU_ALWAYS_INLINE static void sweep(const CollisionInstance<Model>& instance, const Block& block) {
-    constexpr bool Forced = force != Force::none, Velocity = force == Force::acts_and_velocity;
+    constexpr bool forced = force != Force::none, velocity = force == Force::acts_and_velocity;
     constexpr std::uint32_t width = register_bytes / sizeof(T);
     using S = Pack<T, width>;
     const Model model = instance.model;
@@ -192,8 +192,8 @@ struct CollisionLoop {
       span.out[q] = block.out[q];
     }
     for (int k = 0; k < 2; ++k) {
-      span.force[k] = Forced ? block.force[k] : nullptr;
-      span.velocity[k] = Velocity ? block.velocity[k] : nullptr;
+      span.force[k] = forced ? block.force[k] : nullptr;
+      span.velocity[k] = velocity ? block.velocity[k] : nullptr;
     }
     span.rate = Varying ? block.relaxation_rate : nullptr;
     const auto uniform = derived_rates(model, S(instance.relaxation_rate), 0);
@@ -208,14 +208,14 @@ struct CollisionLoop {
         count = width;
       }
       for (std::uint32_t x = 0; x < count; x += width) {
-        Node<S, Forced, Inertia> node;
+        Node<S, forced, Inertia> node;
         d2q9::for_each_velocity([&](auto q) { node.f[q] = S::load(span.in[q] + x); });
-        if constexpr (Forced) {
+        if constexpr (forced) {
           node.force[0] = S::load(span.force[0] + x);
           node.force[1] = S::load(span.force[1] + x);
         }
         node.compute_moments();
-        if constexpr (Velocity) {
+        if constexpr (velocity) {
           node.velocity[0].store(span.velocity[0] + x);
           node.velocity[1].store(span.velocity[1] + x);
         }
@@ -228,7 +228,7 @@ struct CollisionLoop {
         d2q9::for_each_velocity([&](auto q) { after[q].store(span.out[q] + x); });
       }
     }
-    if (rest != 0) unpad(block, padded, whole, rest, Velocity);
+    if (rest != 0) unpad(block, padded, whole, rest, velocity);
   }
 
   // Not inlined: they run once for a block, in every variant.
