@@ -1,6 +1,9 @@
 #include "contact.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <rouleau/dispatch.hpp>
+#include <utility>
 
 namespace rouleau::host {
 
@@ -77,31 +80,46 @@ struct Search {
     return count;
   }
 
+  /// Values at the given places.
+  template <class S, int... k>
+  ROULEAU_ALWAYS_INLINE static S gather(const double* values, const int (&at)[S::size],
+                                        std::integer_sequence<int, k...>) {
+    return S(typename S::Vector{values[at[k]]...});
+  }
+
   /// Place, distance and direction of contacts [i, i + valid); the arrays have room for a whole pack.
   template <class S>
   ROULEAU_ALWAYS_INLINE static void refine(const SearchTask& t, int i, const S& move_x, const S& move_y, int valid) {
-    S x, y, from_x, from_y, along_x, along_y, inverse_square;
+    constexpr std::make_integer_sequence<int, S::size> lanes;
+    int node[S::size], segment[S::size];
     for (int k = 0; k < S::size; ++k) {
       const int at = k < valid ? i + k : i;
-      const int node = t.node[at], segment = t.segment[at];
-      x.vector[k] = t.x[node];
-      y.vector[k] = t.y[node];
-      from_x.vector[k] = t.x[segment];
-      from_y.vector[k] = t.y[segment];
-      along_x.vector[k] = t.along_x[segment];
-      along_y.vector[k] = t.along_y[segment];
-      inverse_square.vector[k] = t.inverse_square[segment];
+      node[k] = t.node[at];
+      segment[k] = t.segment[at];
     }
-    const Approach<S> approach(x - move_x - from_x, y - move_y - from_y, along_x, along_y, inverse_square);
-    const S distance = sqrt(approach.square);
-    const auto apart = distance > S(0.0);
-    // A node on the other outline has no direction of its own: it is sent out along the segment's outward normal.
-    const S inverse = 1.0 / distance, inverse_length = sqrt(inverse_square);
+    const S x = gather<S>(t.x, node, lanes) - move_x, y = gather<S>(t.y, node, lanes) - move_y;
+    const Approach<S> approach(x - gather<S>(t.x, segment, lanes), y - gather<S>(t.y, segment, lanes),
+                               gather<S>(t.along_x, segment, lanes), gather<S>(t.along_y, segment, lanes),
+                               gather<S>(t.inverse_square, segment, lanes));
+    const S distance = sqrt(approach.square), inverse = 1.0 / distance;
     approach.along.store(t.along + i);
     // Rounding may differ from that of the search by a unit in the last place: the potential is promised the cutoff.
     min(max(distance, S(ContactList::least_distance)), S(t.cutoff)).store(t.distance + i);
-    select(apart, approach.x * inverse, along_y * inverse_length).store(t.direction_x + i);
-    select(apart, approach.y * inverse, -(along_x * inverse_length)).store(t.direction_y + i);
+    (approach.x * inverse).store(t.direction_x + i);
+    (approach.y * inverse).store(t.direction_y + i);
+    double closest = approach.square.vector[0];
+    for (int k = 1; k < S::size; ++k) closest = min(approach.square.vector[k], closest);
+    if (!(closest > 0)) send_out(t, i, std::min(valid, S::size));
+  }
+  /// A node on the other outline has no direction of its own: it is sent out along the segment's outward normal.
+  static void send_out(const SearchTask& t, int i, int valid) {
+    for (int k = i; k < i + valid; ++k) {
+      if (t.distance[k] > ContactList::least_distance) continue;
+      const int segment = t.segment[k];
+      const double inverse_length = std::sqrt(t.inverse_square[segment]);
+      t.direction_x[k] = t.along_y[segment] * inverse_length;
+      t.direction_y[k] = -t.along_x[segment] * inverse_length;
+    }
   }
 };
 

@@ -16,10 +16,10 @@ double largest_displacement(const std::vector<double>& x, const std::vector<doub
   return std::sqrt(square);
 }
 
-DisplacementWatch::DisplacementWatch(const Membranes& membranes, double limit)
-    : limit_(limit),
-      x_(membranes.x),
+DisplacementWatch::DisplacementWatch(const Membranes& membranes)
+    : x_(membranes.x),
       y_(membranes.y),
+      limit_(membranes.cells.size(), 0.0),
       bound_(membranes.cells.size(), std::numeric_limits<double>::infinity()),
       moved_(membranes.cells.size(), 1) {
   std::fill(x_.begin(), x_.end(), std::nan(""));  // nothing remembered yet: no position is near
@@ -32,8 +32,8 @@ void DisplacementWatch::measure(Worker worker, const Membranes& membranes) {
     const auto at = static_cast<std::size_t>(c);
     double& bound = bound_[at];
     bound = unknown ? std::numeric_limits<double>::infinity() : bound + membranes.largest_step[at];
-    if (!(bound <= limit_)) bound = largest_displacement(membranes.cells[at], membranes);
-    moved_[at] = !(bound <= limit_);
+    if (!(bound <= limit_[at])) bound = largest_displacement(membranes.cells[at], membranes);
+    moved_[at] = !(bound <= limit_[at]);
   }
 }
 
@@ -52,10 +52,11 @@ bool DisplacementWatch::exceeded() const {
   return std::any_of(moved_.begin(), moved_.end(), [](std::uint8_t moved) { return moved != 0; });
 }
 
-void DisplacementWatch::remember(int cell, const Membranes& membranes) {
+void DisplacementWatch::remember(int cell, const Membranes& membranes, double limit) {
   const CellRange& range = membranes.cells[static_cast<std::size_t>(cell)];
   std::copy(membranes.x.begin() + range.first, membranes.x.begin() + range.end(), x_.begin() + range.first);
   std::copy(membranes.y.begin() + range.first, membranes.y.begin() + range.end(), y_.begin() + range.first);
+  limit_[static_cast<std::size_t>(cell)] = limit;
   bound_[static_cast<std::size_t>(cell)] = 0;
 }
 

@@ -20,22 +20,22 @@ double largest_displacement(const std::vector<double>& x, const std::vector<doub
 class DisplacementWatch {
  public:
   DisplacementWatch() = default;
-  DisplacementWatch(const Membranes& membranes, double limit);
+  explicit DisplacementWatch(const Membranes& membranes);
 
   /// Pass over cells, once a step. A barrier must lie between it and the next two.
   void measure(Worker worker, const Membranes& membranes);
-  /// True if a node of the cell had moved further than the limit (or is not a number) at the last measure().
+  /// True if a node of the cell had moved further than its limit (or is not a number) at the last measure().
   [[nodiscard]] bool moved(int cell) const { return moved_[static_cast<std::size_t>(cell)] != 0; }
   /// True if any cell has moved.
   [[nodiscard]] bool exceeded() const;
-  /// Remembers the present positions of a cell. Does not change moved().
-  void remember(int cell, const Membranes& membranes);
+  /// Remembers the present positions of a cell and how far its nodes may move from there. Does not change moved().
+  void remember(int cell, const Membranes& membranes, double limit);
 
  private:
   [[nodiscard]] double largest_displacement(const CellRange& cell, const Membranes& membranes) const;
 
-  double limit_ = 0;
   std::vector<double> x_, y_;
+  std::vector<double> limit_;        // of each cell
   std::vector<double> bound_;        // of each cell: upper bound of its nodes' displacements
   std::vector<std::uint8_t> moved_;  // one per cell, so that the answer does not depend on the workers
 };

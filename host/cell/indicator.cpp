@@ -22,7 +22,7 @@ Indicator<T>::Indicator(const Membranes& membranes, std::vector<double> viscosit
       nx_(nx),
       ny_(ny),
       periodic_y_(periodic_y),
-      watch_(membranes, displacement_limit),
+      watch_(membranes),
       cells_(membranes.cells.size()),
       changed_(static_cast<std::size_t>(ny)) {
   for (const CellRange& cell : membranes.cells) varies_ |= ratio_[static_cast<std::size_t>(cell.type)] != 1;
@@ -75,7 +75,7 @@ void Indicator<T>::cover(Worker worker, const Membranes& membranes) {
       }
     }
     find_reach(membranes, cell, reach);
-    watch_.remember(c, membranes);
+    watch_.remember(c, membranes, displacement_limit);
   }
 }
 

@@ -10,7 +10,9 @@ namespace rouleau::host {
 
 namespace {
 
-constexpr int bridged = 4;  // segments between two runs that are searched rather than stepped over
+constexpr double thinnest_skin = 0.01, thickest_skin = 0.5, usual_skin = 0.2;
+constexpr double lifetime = 60;  // steps that lists should last
+constexpr int bridged = 2;       // segments between two runs that are searched rather than stepped over
 
 /// One group of nodes against all segments of the other cell.
 struct CandidateTask {
@@ -57,6 +59,13 @@ struct Candidates {
   }
 };
 
+/// Skin for lists that are made now.
+double suitable_skin(const Membranes& membranes) {
+  if (membranes.largest_step.empty()) return usual_skin;  // the nodes have not been moved yet
+  const double step = *std::max_element(membranes.largest_step.begin(), membranes.largest_step.end());
+  return std::clamp(lifetime * step, thinnest_skin, thickest_skin);
+}
+
 /// Distance between two boxes, the second moved.
 double distance(const Bounds& a, const Bounds& b, double move_x, double move_y) {
   const double dx = std::max({0.0, b.x_min + move_x - a.x_max, a.x_min - b.x_max - move_x});
@@ -74,11 +83,10 @@ void Cutoffs::raise(int a, int b, double cutoff) {
 
 double Cutoffs::largest() const { return *std::max_element(cutoff_.begin(), cutoff_.end()); }
 
-Neighbours::Neighbours(const Membranes& membranes, Cutoffs cutoffs, PeriodicBox box, double skin)
+Neighbours::Neighbours(const Membranes& membranes, Cutoffs cutoffs, PeriodicBox box)
     : cutoffs_(std::move(cutoffs)),
       box_(box),
-      skin_(skin),
-      watch_(membranes, skin),
+      watch_(membranes),
       rank_(membranes.cells.size()),
       lists_(membranes.cells.size()) {
   std::vector<int> order(membranes.cells.size());
@@ -99,21 +107,23 @@ Neighbours::Neighbours(const Membranes& membranes, Cutoffs cutoffs, PeriodicBox 
 void Neighbours::refresh(Worker worker, const Membranes& membranes, const SegmentTable& segments) {
   if (!renewed()) return;
   const Range cells = worker.share(membranes.cell_count());
+  const double skin = suitable_skin(membranes);
   // Every worker sorts all cells: that is quicker than to wait for one who does.
-  const Bins bins(segments.bounds, cutoffs_.largest() + 2 * skin_, box_);
+  const Bins bins(segments.bounds, cutoffs_.largest() + 2 * skin, box_);
   for (int cell = cells.begin; cell < cells.end; ++cell) {
     CellList& list = lists_[static_cast<std::size_t>(cell)];
     list.pairs.clear();
     list.groups.clear();
     list.runs.clear();
-    list_pairs(membranes, cell, bins, segments);
-    for (Pair& pair : list.pairs) list_candidates(membranes, cell, pair, segments);
-    watch_.remember(cell, membranes);
+    list_pairs(membranes, cell, bins, segments, skin);
+    for (Pair& pair : list.pairs) list_candidates(membranes, cell, pair, segments, skin);
+    watch_.remember(cell, membranes, skin);
   }
   if (worker.first()) ++renewals_;
 }
 
-void Neighbours::list_pairs(const Membranes& membranes, int cell, const Bins& bins, const SegmentTable& segments) {
+void Neighbours::list_pairs(const Membranes& membranes, int cell, const Bins& bins, const SegmentTable& segments,
+                            double skin) {
   CellList& list = lists_[static_cast<std::size_t>(cell)];
   const int type = membranes.cells[static_cast<std::size_t>(cell)].type;
   const Bounds& own = segments.bounds[static_cast<std::size_t>(cell)];
@@ -123,14 +133,15 @@ void Neighbours::list_pairs(const Membranes& membranes, int cell, const Bins& bi
   for (const int other : list.near) {
     const double cutoff = cutoffs_(type, membranes.cells[static_cast<std::size_t>(other)].type);
     if (!(cutoff > 0)) continue;
-    for_each_image(own, segments.bounds[static_cast<std::size_t>(other)], cutoff + 2 * skin_, box_,
+    for_each_image(own, segments.bounds[static_cast<std::size_t>(other)], cutoff + 2 * skin, box_,
                    [&](ImageShift shift) {
                      if (other != cell || !(shift == ImageShift{})) list.pairs.push_back({{other, shift}, 0, 0, -1});
                    });
   }
 }
 
-void Neighbours::list_candidates(const Membranes& membranes, int cell, Pair& pair, const SegmentTable& segments) {
+void Neighbours::list_candidates(const Membranes& membranes, int cell, Pair& pair, const SegmentTable& segments,
+                                 double skin) {
   static const auto candidates = Dispatch<Candidates, const CandidateTask*>::pick();
   CellList& list = lists_[static_cast<std::size_t>(cell)];
   const CellRange& own = membranes.cells[static_cast<std::size_t>(cell)];
@@ -147,7 +158,7 @@ void Neighbours::list_candidates(const Membranes& membranes, int cell, Pair& pai
                            x,
                            y,
                            group,
-                           skin_,
+                           skin,
                            cutoff,
                            list.square.data(),
                            list.excess.data()};
@@ -161,7 +172,7 @@ void Neighbours::list_candidates(const Membranes& membranes, int cell, Pair& pai
       bounds.x_min = std::min(bounds.x_min, segments.x[i]), bounds.x_max = std::max(bounds.x_max, segments.x[i]);
       bounds.y_min = std::min(bounds.y_min, segments.y[i]), bounds.y_max = std::max(bounds.y_max, segments.y[i]);
     }
-    const double reach = cutoff + 2 * skin_ + 1e-9;
+    const double reach = cutoff + 2 * skin + 1e-9;
     if (distance(bounds, segments.bounds[static_cast<std::size_t>(pair.other)], move_x, move_y) > reach) continue;
     candidates(&task);
     const auto run_begin = static_cast<int>(list.runs.size());

@@ -38,6 +38,8 @@ struct CellPair {
 /// skin for every k. If k is the closest segment later and m was when the list was made, then
 ///     d_k <= d'_k + 2 skin <= d'_m + 2 skin <= d_m + 4 skin,  and  d_k <= cutoff + 2 skin if d'_k <= cutoff.
 /// A segment with d_k above min(d_m + 4 skin, cutoff + 2 skin) can therefore be left out.
+///
+/// A thin skin makes short lists that are soon out of date: each is chosen for the speed at which the nodes move.
 class Neighbours {
  public:
   static constexpr int group = 8;  ///< consecutive nodes that share one list
@@ -66,7 +68,7 @@ class Neighbours {
     std::vector<double> excess;  ///< while the list is made: how far each segment is from being a candidate
   };
 
-  Neighbours(const Membranes& membranes, Cutoffs cutoffs, PeriodicBox box, double skin = 0.2);
+  Neighbours(const Membranes& membranes, Cutoffs cutoffs, PeriodicBox box);
 
   /// Pass 1: has a node moved too far?
   void measure(Worker worker, const Membranes& membranes) { watch_.measure(worker, membranes); }
@@ -84,12 +86,11 @@ class Neighbours {
   [[nodiscard]] long renewals() const { return renewals_; }
 
  private:
-  void list_pairs(const Membranes& membranes, int cell, const Bins& bins, const SegmentTable& segments);
-  void list_candidates(const Membranes& membranes, int cell, Pair& pair, const SegmentTable& segments);
+  void list_pairs(const Membranes& membranes, int cell, const Bins& bins, const SegmentTable& segments, double skin);
+  void list_candidates(const Membranes& membranes, int cell, Pair& pair, const SegmentTable& segments, double skin);
 
   Cutoffs cutoffs_;
   PeriodicBox box_;
-  double skin_;
   DisplacementWatch watch_;
   std::vector<int> rank_;  // of each cell: its place when they are ordered by type, then by number
   std::vector<CellList> lists_;

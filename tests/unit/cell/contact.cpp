@@ -81,6 +81,9 @@ void compare(const Contacts& contacts, const Membranes& m, const PeriodicBox& bo
 
 TEST_CASE("closest points are those of brute force on moving, turning, deforming and overlapping cells") {
   const PeriodicBox box = GENERATE(PeriodicBox{90.0}, PeriodicBox{90.0, 70.0}, PeriodicBox{45.0});
+  // Lists are made for the speed of the nodes where that is known, and for any speed where it is not.
+  const bool known = GENERATE(false, true);
+  const double speed = known ? GENERATE(0.02, 0.2) : 1.0;
   auto random = generator(61);
   std::uniform_real_distribution<double> uniform(-1, 1);
   Tally tally;
@@ -92,21 +95,25 @@ TEST_CASE("closest points are those of brute force on moving, turning, deforming
     deform(m, random, 4, 0.2);
     Cutoffs cutoffs(1);
     cutoffs.raise(0, 0, cutoff);
+    if (known) m.largest_step.assign(m.cells.size(), 0.001 * speed);
     Contacts contacts(m, cutoffs, box);
     for (int step = 0; step < 12; ++step) {
       run(contacts, m, 1 + step % 3);
       compare(contacts, m, box, tally);
       // Move by up to the skin since the lists were made, by rigid motion and by single nodes.
+      const std::vector<double> old_x = m.x, old_y = m.y;
       for (const CellRange& cell : m.cells) {
-        const double vx = 0.06 * uniform(random), vy = 0.06 * uniform(random), turn = 0.003 * uniform(random);
+        const double vx = speed * 0.06 * uniform(random), vy = speed * 0.06 * uniform(random),
+                     turn = speed * 0.003 * uniform(random);
         const Eigen::Vector2d center = centroid(m, cell);
         for (int i = cell.first; i < cell.end(); ++i) {
           const auto k = static_cast<std::size_t>(i);
           const double rx = m.x[k] - center.x(), ry = m.y[k] - center.y();
-          m.x[k] += vx - turn * ry + 0.02 * uniform(random);
-          m.y[k] += vy + turn * rx + 0.02 * uniform(random);
+          m.x[k] += vx - turn * ry + speed * 0.02 * uniform(random);
+          m.y[k] += vy + turn * rx + speed * 0.02 * uniform(random);
         }
       }
+      if (known) m.largest_step.assign(m.cells.size(), largest_displacement(m.x, m.y, old_x, old_y));
     }
     renewals += contacts.neighbours().renewals();
   }

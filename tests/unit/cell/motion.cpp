@@ -54,7 +54,7 @@ TEST_CASE("a watch never overlooks a displacement beyond its limit, though it se
   auto random = generator(93);
   Membranes m = biconcave_cells({{30, 20, 0}, {60, 40, 0}});
   m.largest_step.assign(2, 0.0);
-  DisplacementWatch watch(m, 0.2);
+  DisplacementWatch watch(m);
   std::vector<double> x = m.x, y = m.y;
   int exceeded = 0;
   for (int step = 0; step < 400; ++step) {
@@ -68,7 +68,7 @@ TEST_CASE("a watch never overlooks a displacement beyond its limit, though it se
       REQUIRE(watch.moved(c) == most > 0.2);
       if (!watch.moved(c)) continue;
       ++exceeded;
-      watch.remember(c, m);
+      watch.remember(c, m, 0.2);
       for (auto i = static_cast<std::size_t>(cell.first); i < static_cast<std::size_t>(cell.end()); ++i) {
         x[i] = m.x[i], y[i] = m.y[i];
       }
