@@ -1,6 +1,7 @@
 #include "coupling.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <rouleau/dispatch.hpp>
 
 #include "kernel.hpp"
@@ -71,8 +72,6 @@ struct Locate {
   template <class S>
   ROULEAU_ALWAYS_INLINE static S group(const LocateTask<T>& t, const S& x, const S& y, int first, int valid) {
     S base_x = floor(x), base_y = floor(y);
-    double columns[S::size], rows[S::size], fractions_x[S::size], fractions_y[S::size], roots_x[S::size],
-        roots_y[S::size];
     const S fraction_x = x - base_x, fraction_y = y - base_y;
     base_x = wrap(base_x, t.nx);
     // Beyond 1e9, and for NaN, the conversion to int below would be undefined. One comparison a line: g++ 12 takes
@@ -86,31 +85,24 @@ struct Locate {
     }
     base_y = select(abs(x) < last, base_y, none);
     base_x = select(base_y > S(outside + 1.0), base_x, S(0.0));
-    base_x.store(columns);
-    base_y.store(rows);
-    fraction_x.store(fractions_x);
-    fraction_y.store(fractions_y);
-    kernel_root(fraction_x).store(roots_x);
-    kernel_root(fraction_y).store(roots_y);
-    if (valid == S::size) {
-      put<S::size>(t.to, columns, rows, fractions_x, fractions_y, roots_x, roots_y, first);
-    } else {
-      for (int k = 0; k < valid; ++k) {
-        put<1>(t.to, columns + k, rows + k, fractions_x + k, fractions_y + k, roots_x + k, roots_y + k, first + k);
-      }
-    }
+    put(base_x, t.to.column + first, valid);
+    put(base_y, t.to.row + first, valid);
+    put(fraction_x, t.to.fraction_x + first, valid);
+    put(fraction_y, t.to.fraction_y + first, valid);
+    put(kernel_root(fraction_x), t.to.root_x + first, valid);
+    put(kernel_root(fraction_y), t.to.root_y + first, valid);
     return base_y;
   }
-  template <int count>
-  ROULEAU_ALWAYS_INLINE static void put(const Stencils<int, T>& to, const double* columns, const double* rows,
-                                        const double* fractions_x, const double* fractions_y, const double* roots_x,
-                                        const double* roots_y, int first) {
-    for (int k = 0; k < count; ++k) to.column[first + k] = static_cast<int>(columns[k]);
-    for (int k = 0; k < count; ++k) to.row[first + k] = static_cast<int>(rows[k]);
-    for (int k = 0; k < count; ++k) to.fraction_x[first + k] = static_cast<T>(fractions_x[k]);
-    for (int k = 0; k < count; ++k) to.fraction_y[first + k] = static_cast<T>(fractions_y[k]);
-    for (int k = 0; k < count; ++k) to.root_x[first + k] = static_cast<T>(roots_x[k]);
-    for (int k = 0; k < count; ++k) to.root_y[first + k] = static_cast<T>(roots_y[k]);
+  /// Writes the first `valid` of the values, converted.
+  template <class S, class To>
+  ROULEAU_ALWAYS_INLINE static void put(const S& values, To* to, int valid) {
+    using Converted __attribute__((vector_size(S::size * sizeof(To)))) = To;
+    const Converted converted = __builtin_convertvector(values.vector, Converted);
+    if (valid == S::size) {
+      std::memcpy(to, &converted, sizeof converted);
+    } else {
+      for (int k = 0; k < valid; ++k) to[k] = converted[k];
+    }
   }
 };
 

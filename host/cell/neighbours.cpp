@@ -11,7 +11,7 @@ namespace rouleau::host {
 namespace {
 
 constexpr double thinnest_skin = 0.01, thickest_skin = 0.5, usual_skin = 0.2;
-constexpr double lifetime = 60;  // steps that lists should last
+constexpr double lifetime = 120;  // steps that lists should last
 constexpr int bridged = 2;       // segments between two runs that are searched rather than stepped over
 
 /// One group of nodes against all segments of the other cell.

@@ -12,10 +12,10 @@ constexpr int halo = Field<double>::halo;
 
 /// Slots whose velocity component k has the given sign.
 template <class Function>
-void for_slots(int k, int sign, Function function) {
-  for (int q = 1; q < 9; ++q) {
+inline void for_slots(int k, int sign, Function function) {
+  d2q9::for_each_velocity([&](auto q) {
     if (d2q9::velocity[q][k] == sign) function(q);
-  }
+  });
 }
 
 /// True if slot q of row y is touched from across the left or right border: its row neighbour y - c_y must exist.

@@ -91,10 +91,9 @@ std::size_t Fluid<T>::bytes() const {
 }
 
 template <class T>
-bool Fluid<T>::reaches_border(int y) const {
+inline bool Fluid<T>::reaches_border(int y) const {
   constexpr int halo = Field<T>::halo;
-  if (!activity_.any(y)) return false;
-  return y < halo || y >= setting_.ny - halo || activity_.at_side(y);
+  return activity_.at_side(y) || ((y < halo || y >= setting_.ny - halo) && activity_.any(y));
 }
 
 template <class T>
