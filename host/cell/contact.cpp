@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <rouleau/dispatch.hpp>
-#include <utility>
 
 namespace rouleau::host {
 
@@ -31,24 +30,67 @@ struct Search {
     int count = t.count;
     const S move_x = t.move_x, move_y = t.move_y;
     for (const Neighbours::Group* group = t.groups; group != t.groups_end; ++group) {
-      count = closest<S>(t, *group, move_x, move_y, count);
+      count = append<S>(t, *group, move_x, move_y, count);
     }
-    for (int i = t.count; i < count; i += S::size) refine<S>(t, i, move_x, move_y, count - i);
     task->count = count;
   }
 
  private:
-  /// Closest segment of each node of a group; appends those within the cutoff.
+  static constexpr int size = Neighbours::group;
+  /// The closest segment of each node.
   template <class S>
-  ROULEAU_ALWAYS_INLINE static int closest(const SearchTask& t, const Neighbours::Group& group, const S& move_x,
-                                           const S& move_y, int count) {
-    constexpr int packs = Neighbours::group / S::size;
-    S x[packs], y[packs], square[packs], index[packs];
+  struct Closest {
+    S square, segment, along, x, y;
+  };
+  /// The same of a group.
+  struct Found {
+    double along[size], distance[size], direction_x[size], direction_y[size];
+    int segment[size];
+  };
+
+  /// Appends the contacts of a group of nodes; the arrays have room for the whole group.
+  template <class S>
+  ROULEAU_ALWAYS_INLINE static int append(const SearchTask& t, const Neighbours::Group& group, const S& move_x,
+                                          const S& move_y, int count) {
+    constexpr int packs = size / S::size;
+    Closest<S> closest[packs];
+    find<S>(t, group, move_x, move_y, closest);
+    Found found;
+    S nearest = 1e300, farthest = 0.0;
+    for (int p = 0; p < packs; ++p) {
+      const Closest<S>& c = closest[p];
+      const int at = p * S::size;
+      const S distance = sqrt(c.square), inverse = 1.0 / distance;
+      nearest = min(distance, nearest);
+      farthest = max(distance, farthest);
+      c.along.store(found.along + at);
+      distance.store(found.distance + at);
+      (c.x * inverse).store(found.direction_x + at);
+      (c.y * inverse).store(found.direction_y + at);
+      for (int k = 0; k < S::size; ++k) found.segment[at + k] = static_cast<int>(c.segment.vector[k]);
+    }
+    if (!(least(nearest) >= ContactList::least_distance)) send_out(t, found);
+    const int valid = std::min(size, t.nodes_end - group.first);
+    if (valid == size && largest(farthest) <= t.cutoff) {
+      put<size>(t, found, group.first, 0, count);
+      return count + size;
+    }
+    for (int k = 0; k < valid; ++k) {
+      put<1>(t, found, group.first, k, count);
+      count += found.distance[k] <= t.cutoff ? 1 : 0;
+    }
+    return count;
+  }
+
+  template <class S>
+  ROULEAU_ALWAYS_INLINE static void find(const SearchTask& t, const Neighbours::Group& group, const S& move_x,
+                                         const S& move_y, Closest<S>* closest) {
+    constexpr int packs = size / S::size;
+    S x[packs], y[packs];
     for (int p = 0; p < packs; ++p) {
       x[p] = S::load(t.x + group.first + p * S::size) - move_x;
       y[p] = S::load(t.y + group.first + p * S::size) - move_y;
-      square[p] = 1e300;
-      index[p] = 0.0;
+      closest[p] = {1e300, 0.0, 0.0, 0.0, 0.0};
     }
     for (int r = group.run_begin; r < group.run_end; ++r) {
       for (int k = t.other_first + t.runs[r].begin; k < t.other_first + t.runs[r].end; ++k) {
@@ -57,68 +99,43 @@ struct Search {
         const S number = static_cast<double>(k);
         for (int p = 0; p < packs; ++p) {
           const Approach<S> approach(x[p] - from_x, y[p] - from_y, along_x, along_y, inverse_square);
-          const auto nearer = approach.square < square[p];
-          square[p] = select(nearer, approach.square, square[p]);
-          index[p] = select(nearer, number, index[p]);
+          Closest<S>& c = closest[p];
+          const auto nearer = approach.square < c.square;
+          c.square = select(nearer, approach.square, c.square);
+          c.segment = select(nearer, number, c.segment);
+          c.along = select(nearer, approach.along, c.along);
+          c.x = select(nearer, approach.x, c.x);
+          c.y = select(nearer, approach.y, c.y);
         }
       }
     }
-    double squares[Neighbours::group], indices[Neighbours::group];
-    for (int p = 0; p < packs; ++p) {
-      square[p].store(squares + p * S::size);
-      index[p].store(indices + p * S::size);
-    }
-    const int valid = t.nodes_end - group.first;
-    const double cutoff_square = t.cutoff * t.cutoff;
-    for (int k = 0; k < Neighbours::group; ++k) {
-      const int segment = static_cast<int>(indices[k]);
-      t.node[count] = group.first + k;
-      t.segment[count] = segment;
-      t.segment_end[count] = segment + 1 == t.other_end ? t.other_first : segment + 1;
-      count += ((k < valid) & (squares[k] <= cutoff_square)) ? 1 : 0;
-    }
-    return count;
   }
 
-  /// Values at the given places.
-  template <class S, int... k>
-  ROULEAU_ALWAYS_INLINE static S gather(const double* values, const int (&at)[S::size],
-                                        std::integer_sequence<int, k...>) {
-    return S(typename S::Vector{values[at[k]]...});
+  /// Writes `count` nodes of a group from the k-th on to the list.
+  template <int count>
+  ROULEAU_ALWAYS_INLINE static void put(const SearchTask& t, const Found& found, int first, int k, int to) {
+    for (int i = 0; i < count; ++i) {
+      const int segment = found.segment[k + i];
+      t.node[to + i] = first + k + i;
+      t.segment[to + i] = segment;
+      t.segment_end[to + i] = segment + 1 == t.other_end ? t.other_first : segment + 1;
+    }
+    for (int i = 0; i < count; ++i) t.along[to + i] = found.along[k + i];
+    for (int i = 0; i < count; ++i) t.distance[to + i] = found.distance[k + i];
+    for (int i = 0; i < count; ++i) t.direction_x[to + i] = found.direction_x[k + i];
+    for (int i = 0; i < count; ++i) t.direction_y[to + i] = found.direction_y[k + i];
   }
 
-  /// Place, distance and direction of contacts [i, i + valid); the arrays have room for a whole pack.
-  template <class S>
-  ROULEAU_ALWAYS_INLINE static void refine(const SearchTask& t, int i, const S& move_x, const S& move_y, int valid) {
-    constexpr std::make_integer_sequence<int, S::size> lanes;
-    int node[S::size], segment[S::size];
-    for (int k = 0; k < S::size; ++k) {
-      const int at = k < valid ? i + k : i;
-      node[k] = t.node[at];
-      segment[k] = t.segment[at];
-    }
-    const S x = gather<S>(t.x, node, lanes) - move_x, y = gather<S>(t.y, node, lanes) - move_y;
-    const Approach<S> approach(x - gather<S>(t.x, segment, lanes), y - gather<S>(t.y, segment, lanes),
-                               gather<S>(t.along_x, segment, lanes), gather<S>(t.along_y, segment, lanes),
-                               gather<S>(t.inverse_square, segment, lanes));
-    const S distance = sqrt(approach.square), inverse = 1.0 / distance;
-    approach.along.store(t.along + i);
-    // Rounding may differ from that of the search by a unit in the last place: the potential is promised the cutoff.
-    min(max(distance, S(ContactList::least_distance)), S(t.cutoff)).store(t.distance + i);
-    (approach.x * inverse).store(t.direction_x + i);
-    (approach.y * inverse).store(t.direction_y + i);
-    double closest = approach.square.vector[0];
-    for (int k = 1; k < S::size; ++k) closest = min(approach.square.vector[k], closest);
-    if (!(closest > 0)) send_out(t, i, std::min(valid, S::size));
-  }
   /// A node on the other outline has no direction of its own: it is sent out along the segment's outward normal.
-  static void send_out(const SearchTask& t, int i, int valid) {
-    for (int k = i; k < i + valid; ++k) {
-      if (t.distance[k] > ContactList::least_distance) continue;
-      const int segment = t.segment[k];
-      const double inverse_length = std::sqrt(t.inverse_square[segment]);
-      t.direction_x[k] = t.along_y[segment] * inverse_length;
-      t.direction_y[k] = -t.along_x[segment] * inverse_length;
+  [[gnu::noinline, gnu::cold]] static void send_out(const SearchTask& t, Found& found) {
+    for (int k = 0; k < size; ++k) {
+      if (!(found.distance[k] > 0)) {
+        const int segment = found.segment[k];
+        const double inverse_length = std::sqrt(t.inverse_square[segment]);
+        found.direction_x[k] = t.along_y[segment] * inverse_length;
+        found.direction_y[k] = -t.along_x[segment] * inverse_length;
+      }
+      found.distance[k] = std::max(found.distance[k], ContactList::least_distance);
     }
   }
 };

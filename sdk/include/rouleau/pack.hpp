@@ -73,8 +73,16 @@ struct Pack {
   ROULEAU_ALWAYS_INLINE friend Pack min(const Pack& a, const Pack& b) { return select(a < b, a, b); }
   ROULEAU_ALWAYS_INLINE friend Pack max(const Pack& a, const Pack& b) { return select(a > b, a, b); }
   ROULEAU_ALWAYS_INLINE friend Pack abs(const Pack& a) { return select(a < Pack(0), -a, a); }
+  /// Smallest and largest of the values.
+  ROULEAU_ALWAYS_INLINE friend T least(const Pack& a) {
+    return fold(a, [](const Pack& l, const Pack& r) { return min(l, r); });
+  }
+  ROULEAU_ALWAYS_INLINE friend T largest(const Pack& a) {
+    return fold(a, [](const Pack& l, const Pack& r) { return max(l, r); });
+  }
   ROULEAU_ALWAYS_INLINE friend Pack sqrt(const Pack& a) {
     Pack root;
+#pragma GCC unroll 64  // without it, g++ 12 sometimes makes several narrow instructions of the loop
     for (int i = 0; i < N; ++i) root.vector[i] = std::sqrt(a.vector[i]);
     return root;
   }
@@ -108,6 +116,18 @@ struct Pack {
     const Pack tame = select(argument < Pack(-708.0), Pack(0.0), scaled);
     const Pack bounded = select(argument > Pack(709.0), Pack(__builtin_huge_val()), tame);
     return select(argument <= argument, bounded, argument);  // NaN stays NaN
+  }
+
+ private:
+  template <int step = N / 2, class Operation>
+  ROULEAU_ALWAYS_INLINE static T fold(const Pack& a, Operation operation) {
+    if constexpr (step == 0) {
+      return a.vector[0];
+    } else {
+      Bits partner;
+      for (int i = 0; i < N; ++i) partner[i] = i ^ step;
+      return fold<step / 2>(operation(a, Pack(Vector(__builtin_shuffle(a.vector, partner)))), operation);
+    }
   }
 };
 
