@@ -126,11 +126,8 @@ void Fluid<T>::fold_force(Worker worker) {
 }
 
 template <class T>
-void Fluid<T>::collide_row(int y) {
+void Fluid<T>::collide_row(int y, const T* (&in)[9], T* (&out)[9]) {
   const void* const self = collision_->self();
-  const T* in[9];
-  T* out[9];
-  lattice_.row_pointers(parity_, y, in, out);
   const T* body_force[2] = {body_force_row_[0].data(), body_force_row_[1].data()};
   const T* const* const background = body_force_row_[0].empty() ? nullptr : body_force;
   const T* force[2];
@@ -140,11 +137,13 @@ void Fluid<T>::collide_row(int y) {
   block.in = in;
   block.out = out;
   int at = 0;  // where the pointers stand
+  const auto move_to = [&](int x) {
+    if (x == at) return;
+    d2q9::for_each_velocity([&](auto q) { in[q] += x - at, out[q] += x - at; });
+    at = x;
+  };
   activity_.for_runs(y, [&](const Run& run) {
-    if (run.begin != at) {
-      d2q9::for_each_velocity([&](auto q) { in[q] += run.begin - at, out[q] += run.begin - at; });
-      at = run.begin;
-    }
+    move_to(run.begin);
     block.count = static_cast<std::uint32_t>(run.end - run.begin);
     if (run.active && setting_.membranes) {
       force[0] = velocity[0] = force_.x.row(y) + run.begin;
@@ -159,15 +158,23 @@ void Fluid<T>::collide_row(int y) {
     }
     collide_(self, &block);
   });
+  move_to(0);
 }
 
 template <class T>
 void Fluid<T>::step(Worker worker) {
   const Range rows = worker.share(setting_.ny);
   const bool even = parity_ == Parity::even;
+  const T* in[9];
+  T* out[9];
   for (int y = rows.begin; y < rows.end; ++y) {
+    if (y == rows.begin) {
+      lattice_.row_pointers(parity_, y, in, out);
+    } else {
+      lattice_.next_row_pointers(parity_, y - 1, in, out);
+    }
     if (even) receive_row(lattice_, y);
-    collide_row(y);
+    collide_row(y, in, out);
     add_wall_momentum(lattice_, y, setting_.walls);
     if (even) send_row(lattice_, y);
     if (setting_.membranes && reaches_border(y)) {

@@ -95,7 +95,8 @@ class Fluid {
   [[nodiscard]] double equilibrium(int q, double density, double ux, double uy) const;
   /// Whether membranes may reach the halo that belongs to row y.
   [[nodiscard]] bool reaches_border(int y) const;
-  void collide_row(int y);
+  /// Pointers to the populations of row y, as Lattice::row_pointers gives them; they come back unchanged.
+  void collide_row(int y, const T* (&in)[9], T* (&out)[9]);
 
   using Block = std::conditional_t<std::is_same_v<T, double>, rouleau_collision_block_f64, rouleau_collision_block_f32>;
   FluidSetting setting_;

@@ -131,6 +131,8 @@ struct CollisionLoop {
       choose<register_bytes, true>(instance, *block);
     else
       choose<register_bytes, false>(instance, *block);
+    constexpr std::uint32_t width = register_bytes / sizeof(T);
+    if (block->count % width != 0) collide_rest<register_bytes>(self, *block, block->count % width);
   }
 
  private:
@@ -168,96 +170,75 @@ struct CollisionLoop {
     }
   }
 
-  /// Pointers to one span of nodes; a last partial pack is a span of its own in a padded buffer.
-  struct Span {
-    const T* in[9];
-    T* out[9];
-    const T* force[2];
-    const T* rate;
-    T* velocity[2];
-  };
-
+  /// The whole packs of a block.
   template <int register_bytes, Force force, bool Varying, bool Inertia>
   ROULEAU_ALWAYS_INLINE static void sweep(const CollisionInstance<Model>& instance, const Block& block) {
     constexpr bool forced = force != Force::none, velocity = force == Force::acts_and_velocity;
     constexpr std::uint32_t width = register_bytes / sizeof(T);
     using S = Pack<T, width>;
     const Model model = instance.model;
-    const std::uint32_t whole = block.count / width * width;
-    const std::uint32_t rest = block.count - whole;
-
-    Span span;
-    for (int q = 0; q < 9; ++q) {
-      span.in[q] = block.in[q];
-      span.out[q] = block.out[q];
-    }
+    const std::uint32_t count = block.count / width * width;
+    // Copies: what is stored below could be these pointers, for all the compiler knows.
+    const T *in[9], *from[2];
+    T *out[9], *to[2];
+    d2q9::for_each_velocity([&](auto q) { in[q] = block.in[q], out[q] = block.out[q]; });
     for (int k = 0; k < 2; ++k) {
-      span.force[k] = forced ? block.force[k] : nullptr;
-      span.velocity[k] = velocity ? block.velocity[k] : nullptr;
+      from[k] = forced ? block.force[k] : nullptr;
+      to[k] = velocity ? block.velocity[k] : nullptr;
     }
-    span.rate = Varying ? block.relaxation_rate : nullptr;
+    const T* const rate = Varying ? block.relaxation_rate : nullptr;
     const auto uniform = derived_rates(model, S(instance.relaxation_rate), 0);
-
-    T padded[14][width];
-    std::uint32_t count = whole;
-    // The same loop runs the whole packs and then the padded rest, so both give the same bits for the same node.
-    for (int part = 0; part < 2; ++part) {
-      if (part == 1) {
-        if (rest == 0) break;
-        pad(span, padded, whole, rest);
-        count = width;
+    for (std::uint32_t x = 0; x < count; x += width) {
+      Node<S, forced, Inertia> node;
+      d2q9::for_each_velocity([&](auto q) { node.f[q] = S::load(in[q] + x); });
+      if constexpr (forced) {
+        node.force[0] = S::load(from[0] + x);
+        node.force[1] = S::load(from[1] + x);
       }
-      for (std::uint32_t x = 0; x < count; x += width) {
-        Node<S, forced, Inertia> node;
-        d2q9::for_each_velocity([&](auto q) { node.f[q] = S::load(span.in[q] + x); });
-        if constexpr (forced) {
-          node.force[0] = S::load(span.force[0] + x);
-          node.force[1] = S::load(span.force[1] + x);
-        }
-        node.compute_moments();
-        if constexpr (velocity) {
-          node.velocity[0].store(span.velocity[0] + x);
-          node.velocity[1].store(span.velocity[1] + x);
-        }
-        S after[9];
-        if constexpr (Varying) {
-          model(node, derived_rates(model, S::load(span.rate + x), 0), after);
-        } else {
-          model(node, uniform, after);
-        }
-        d2q9::for_each_velocity([&](auto q) { after[q].store(span.out[q] + x); });
+      node.compute_moments();
+      if constexpr (velocity) {
+        node.velocity[0].store(to[0] + x);
+        node.velocity[1].store(to[1] + x);
       }
+      S after[9];
+      if constexpr (Varying) {
+        model(node, derived_rates(model, S::load(rate + x), 0), after);
+      } else {
+        model(node, uniform, after);
+      }
+      d2q9::for_each_velocity([&](auto q) { after[q].store(out[q] + x); });
     }
-    if (rest != 0) unpad(block, padded, whole, rest, velocity);
   }
 
-  // Not inlined: they run once for a block, in every variant.
-  template <std::uint32_t width>
-  __attribute__((noinline)) static void pad(Span& span, T (&padded)[14][width], std::uint32_t first,
-                                            std::uint32_t rest) {
-    const auto copy = [&](const T*& from, int slot) {
-      if (from == nullptr) return;
-      for (std::uint32_t i = 0; i < width; ++i) padded[slot][i] = from[first + (i < rest ? i : 0)];
-      from = padded[slot];
+  /// The last nodes of a block that do not fill a pack: padded to one, they run through the same code, so that a node's
+  /// bits do not depend on its place.
+  template <int register_bytes>
+  __attribute__((noinline)) static void collide_rest(const void* self, const Block& block, std::uint32_t rest) {
+    constexpr std::uint32_t width = register_bytes / sizeof(T);
+    const std::uint32_t first = block.count - rest;
+    T values[14][width];
+    const T *in[9], *force[2];
+    T *out[9], *velocity[2];
+    const auto copy = [&](const T* from, T(&to)[width]) {
+      for (std::uint32_t i = 0; i < width; ++i) to[i] = from[first + (i < rest ? i : 0)];
+      return to;
     };
-    for (int q = 0; q < 9; ++q) {
-      copy(span.in[q], q);
-      span.out[q] = padded[q];
-    }
-    copy(span.force[0], 9);
-    copy(span.force[1], 10);
-    copy(span.rate, 11);
+    Block padded = block;
+    padded.count = width;
+    for (int q = 0; q < 9; ++q) in[q] = out[q] = copy(block.in[q], values[q]);
+    padded.in = in;
+    padded.out = out;
     for (int k = 0; k < 2; ++k) {
-      if (span.velocity[k] != nullptr) span.velocity[k] = padded[12 + k];
+      if (block.force != nullptr) force[k] = copy(block.force[k], values[9 + k]);
+      velocity[k] = values[11 + k];
     }
-  }
-
-  template <std::uint32_t width>
-  __attribute__((noinline)) static void unpad(const Block& block, const T (&padded)[14][width], std::uint32_t first,
-                                              std::uint32_t rest, bool velocity) {
+    if (block.force != nullptr) padded.force = force;
+    if (block.relaxation_rate != nullptr) padded.relaxation_rate = copy(block.relaxation_rate, values[13]);
+    if (block.velocity != nullptr) padded.velocity = velocity;
+    Dispatch<CollisionLoop, const void*, const Block*>::template variant<register_bytes>()(self, &padded);
     for (std::uint32_t i = 0; i < rest; ++i) {
-      for (int q = 0; q < 9; ++q) block.out[q][first + i] = padded[q][i];
-      for (int k = 0; k < 2 && velocity; ++k) block.velocity[k][first + i] = padded[12 + k][i];
+      for (int q = 0; q < 9; ++q) block.out[q][first + i] = values[q][i];
+      for (int k = 0; k < 2 && block.velocity != nullptr; ++k) block.velocity[k][first + i] = velocity[k][i];
     }
   }
 };

@@ -38,9 +38,10 @@ struct Pack {
   Vector vector;
 
   Pack() = default;
-  /// All values equal. Any arithmetic type converts, so that double parameters mix with packs of float.
+  /// All values equal. Any arithmetic type converts, so that double parameters mix with packs of float. Adding zero
+  /// keeps g++ 12 from building the pack element by element, as it does of what it can simplify early; -0 becomes 0.
   template <class A, class = std::enable_if_t<std::is_arithmetic_v<A>>>
-  ROULEAU_ALWAYS_INLINE Pack(A value) : vector(static_cast<T>(value) - Vector{}) {}  // one broadcast: x - 0 is x
+  ROULEAU_ALWAYS_INLINE Pack(A value) : vector(Vector{} + static_cast<T>(value)) {}
   ROULEAU_ALWAYS_INLINE explicit Pack(const Vector& values) : vector(values) {}
 
   /// Reads N values from any address.
