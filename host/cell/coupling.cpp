@@ -10,6 +10,7 @@ namespace rouleau::host {
 
 namespace {
 
+constexpr std::size_t large_field = 1 << 20;  // bytes; a field that does not stay in the cache
 constexpr int outside = -1000000;  // row of a node whose stencil is not on the lattice
 
 /// Base nodes and what is kept of the weights: written by Locate, read by the others.
@@ -162,6 +163,7 @@ struct InterpolateTask {
   int begin, end;
   const T *origin_x, *origin_y;
   std::ptrdiff_t stride;
+  bool fetch_ahead;  // most of the fields has left the cache since the fluid's step
 };
 
 template <class T>
@@ -171,6 +173,10 @@ struct Interpolate {
     const InterpolateTask<T> t = *task;
     int i = t.begin;
     for (; i + 2 <= t.end; i += 2) {
+      if (t.fetch_ahead && i + lead + 2 <= t.end) {
+        fetch(t, i + lead);
+        fetch(t, i + lead + 1);
+      }
       Four u[2], v[2];
       for (int k = 0; k < 2; ++k) weigh(t, i + k, u[k], v[k]);
       const Four sums = sum(u[0], u[1], v[0], v[1]);
@@ -190,6 +196,15 @@ struct Interpolate {
 
  private:
   using Four = Pack<T, 4>;
+  static constexpr int lead = 16;  // nodes from the fetched one to the present one
+  ROULEAU_ALWAYS_INLINE static void fetch(const InterpolateTask<T>& t, int i) {
+    if (t.at.row[i] == outside) return;
+    const std::ptrdiff_t at = (t.at.row[i] - 1) * t.stride + t.at.column[i];
+    for (int k = 0; k < 4; ++k) {
+      __builtin_prefetch(t.origin_x + at + k * t.stride);
+      __builtin_prefetch(t.origin_y + at + k * t.stride);
+    }
+  }
   /// Columns of the stencil, weighted along y and x: their sums are the node's velocity.
   ROULEAU_ALWAYS_INLINE static void weigh(const InterpolateTask<T>& t, int i, Four& u, Four& v) {
     u = v = T(0);
@@ -298,7 +313,8 @@ void Coupling<T>::interpolate(Worker worker, Membranes& membranes, const VectorF
       nodes.end,
       velocity.x.row(0),
       velocity.y.row(0),
-      row_stride(velocity.x)};
+      row_stride(velocity.x),
+      velocity.x.bytes() > large_field};
   run_loop<Interpolate<T>>(task);
 }
 

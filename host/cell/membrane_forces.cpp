@@ -72,8 +72,8 @@ MembraneForces::MembraneForces(const Membranes& membranes, std::vector<MembraneL
     size += static_cast<std::size_t>(cell.count + margin) / margin * margin + 2 * margin;
   }
   Scratch& s = scratch_;
-  for (auto* values : {&s.x, &s.y, &s.u, &s.v, &s.tangent_x, &s.tangent_y, &s.inverse_length, &s.stretch, &s.rate,
-                       &s.inverse_rest_length, &s.inverse_rest_weight, &s.rest_curvature, &s.curvature, &s.tension,
+  for (auto* values : {&rest_.inverse_length, &rest_.inverse_weight, &rest_.curvature, &s.x, &s.y, &s.u, &s.v,
+                       &s.tangent_x, &s.tangent_y, &s.inverse_length, &s.stretch, &s.rate, &s.curvature, &s.tension,
                        &s.moment, &s.law, &s.energy, &s.segment_force_x, &s.segment_force_y}) {
     values->assign(size, 0.0);
   }
@@ -81,47 +81,47 @@ MembraneForces::MembraneForces(const Membranes& membranes, std::vector<MembraneL
     const CellRange& cell = membranes.cells[c];
     for (int k = 0; k < cell.count; ++k) {
       const auto i = static_cast<std::size_t>(cell.first + k), at = offset_[c] + static_cast<std::size_t>(k);
-      s.inverse_rest_length[at] = 1 / membranes.rest_length[i];
-      s.inverse_rest_weight[at] = 1 / membranes.rest_weight[i];
-      s.rest_curvature[at] = membranes.rest_curvature[i];
+      rest_.inverse_length[at] = 1 / membranes.rest_length[i];
+      rest_.inverse_weight[at] = 1 / membranes.rest_weight[i];
+      rest_.curvature[at] = membranes.rest_curvature[i];
     }
   }
 }
 
 void MembraneForces::run(Worker worker, Membranes& membranes) {
-  const Range cells = worker.share(static_cast<int>(membranes.cells.size()));
+  const Range cells = worker.share(membranes.cell_count());
   for (int cell = cells.begin; cell < cells.end; ++cell) {
-    measure(membranes, cell);
-    act(membranes, cell, apply_laws(membranes, cell, nullptr));
+    const std::size_t at = offset(cells.begin);
+    measure(membranes, cell, at);
+    act(membranes, cell, at, apply_laws(membranes, cell, at, nullptr));
   }
 }
 
 MembraneEnergy MembraneForces::energies(const Membranes& membranes) {
   MembraneEnergy energy;
-  for (int cell = 0; cell < static_cast<int>(membranes.cells.size()); ++cell) {
-    measure(membranes, cell);
-    apply_laws(membranes, cell, &energy);
+  for (int cell = 0; cell < membranes.cell_count(); ++cell) {
+    measure(membranes, cell, offset(0));
+    apply_laws(membranes, cell, offset(0), &energy);
   }
   return energy;
 }
 
 void MembraneForces::tensions(const Membranes& membranes, std::vector<double>& tension) {
   tension.resize(membranes.x.size());
-  for (int cell = 0; cell < static_cast<int>(membranes.cells.size()); ++cell) {
+  for (int cell = 0; cell < membranes.cell_count(); ++cell) {
     const CellRange& range = membranes.cells[static_cast<std::size_t>(cell)];
-    measure(membranes, cell);
-    const double uniform = apply_laws(membranes, cell, nullptr).perimeter_tension;
+    measure(membranes, cell, offset(0));
+    const double uniform = apply_laws(membranes, cell, offset(0), nullptr).perimeter_tension;
     for (int k = 0; k < range.count; ++k) {
       tension[static_cast<std::size_t>(range.first + k)] =
-          scratch_.tension[offset(cell) + static_cast<std::size_t>(k)] + uniform;
+          scratch_.tension[offset(0) + static_cast<std::size_t>(k)] + uniform;
     }
   }
 }
 
-void MembraneForces::measure(const Membranes& membranes, int cell) {
+void MembraneForces::measure(const Membranes& membranes, int cell, std::size_t at) {
   const CellRange& range = membranes.cells[static_cast<std::size_t>(cell)];
   const Type& type = types_[static_cast<std::size_t>(range.type)];
-  const std::size_t at = offset(cell);
   Scratch& s = scratch_;
   const auto copy_closed = [&](const std::vector<double>& from, std::vector<double>& to) {
     std::copy_n(from.data() + range.first, range.count, to.data() + at);
@@ -138,14 +138,15 @@ void MembraneForces::measure(const Membranes& membranes, int cell) {
   arrays.x = &s.x[at], arrays.y = &s.y[at], arrays.u = &s.u[at], arrays.v = &s.v[at];
   arrays.tangent_x = &s.tangent_x[at], arrays.tangent_y = &s.tangent_y[at];
   arrays.inverse_length = &s.inverse_length[at], arrays.stretch = &s.stretch[at], arrays.rate = &s.rate[at];
-  arrays.inverse_rest_length = &s.inverse_rest_length[at], arrays.inverse_rest_weight = &s.inverse_rest_weight[at];
+  arrays.inverse_rest_length = &rest_.inverse_length[offset(cell)];
+  arrays.inverse_rest_weight = &rest_.inverse_weight[offset(cell)];
   arrays.curvature = &s.curvature[at];
   arrays.with_rate = type.rate, arrays.with_moment = type.moment;
   run_loop<MeasureCell>(arrays);
 }
 
-void MembraneForces::apply_law(const Law& law, const CellRange& range, std::size_t at, CellState& state,
-                               bool first_tension, bool first_moment, double* energy) {
+void MembraneForces::apply_law(const Law& law, const CellRange& range, const double* rest_curvature, std::size_t at,
+                               CellState& state, bool first_tension, bool first_moment, double* energy) {
   Scratch& s = scratch_;
   const bool whole_cell = law.pressure || law.perimeter_tension;
   double pressure = 0, perimeter_tension = 0;
@@ -156,7 +157,7 @@ void MembraneForces::apply_law(const Law& law, const CellRange& range, std::size
   if (law.stretch) block.stretch = &s.stretch[at];
   if (law.stretch_rate) block.stretch_rate = &s.rate[at];
   if (law.curvature) block.curvature = &s.curvature[at];
-  if (law.rest_curvature) block.rest_curvature = &s.rest_curvature[at];
+  if (law.rest_curvature) block.rest_curvature = rest_curvature;
   if (law.area) block.area = &state.area;
   if (law.rest_area) block.rest_area = &range.rest_area;
   if (law.perimeter) block.perimeter = &state.perimeter;
@@ -177,10 +178,10 @@ void MembraneForces::apply_law(const Law& law, const CellRange& range, std::size
   state.perimeter_tension += perimeter_tension;
 }
 
-MembraneForces::CellState MembraneForces::apply_laws(const Membranes& membranes, int cell, MembraneEnergy* energy) {
+MembraneForces::CellState MembraneForces::apply_laws(const Membranes& membranes, int cell, std::size_t at,
+                                                     MembraneEnergy* energy) {
   const CellRange& range = membranes.cells[static_cast<std::size_t>(cell)];
   const Type& type = types_[static_cast<std::size_t>(range.type)];
-  const std::size_t at = offset(cell);
   CellState state;
   if (type.cell) {
     state.area = enclosed_area(membranes, range);
@@ -188,7 +189,8 @@ MembraneForces::CellState MembraneForces::apply_laws(const Membranes& membranes,
   }
   bool tension = false, moment = false;
   for (const Law& law : type.laws) {
-    apply_law(law, range, at, state, !tension, !moment, energy != nullptr ? &scratch_.energy[at] : nullptr);
+    apply_law(law, range, &rest_.curvature[offset(cell)], at, state, !tension, !moment,
+              energy != nullptr ? &scratch_.energy[at] : nullptr);
     tension |= law.tension;
     moment |= law.moment;
     if (energy == nullptr) continue;
@@ -202,35 +204,28 @@ MembraneForces::CellState MembraneForces::apply_laws(const Membranes& membranes,
       energy->cell += scratch_.energy[at];
     }
   }
+  // Where no law gives them, the arrays may hold those of another type's cell.
+  if (!tension) std::fill_n(&scratch_.tension[at], range.count, 0.0);
+  if (!moment) std::fill_n(&scratch_.moment[at], range.count, 0.0);
   return state;
 }
 
-void MembraneForces::act(Membranes& membranes, int cell, const CellState& state) {
+void MembraneForces::act(Membranes& membranes, int cell, std::size_t at, const CellState& state) {
   const CellRange& range = membranes.cells[static_cast<std::size_t>(cell)];
   const Type& type = types_[static_cast<std::size_t>(range.type)];
-  const std::size_t at = offset(cell);
   Scratch& s = scratch_;
   CellArrays arrays{};
   arrays.count = range.count;
   arrays.x = &s.x[at], arrays.y = &s.y[at];
   arrays.tangent_x = &s.tangent_x[at], arrays.tangent_y = &s.tangent_y[at];
   arrays.inverse_length = &s.inverse_length[at];
-  arrays.tension = &s.tension[at], arrays.moment = &s.moment[at];  // stay zero if no law gives them
+  arrays.tension = &s.tension[at], arrays.moment = &s.moment[at];
   arrays.segment_force_x = &s.segment_force_x[at], arrays.segment_force_y = &s.segment_force_y[at];
   arrays.force_x = &membranes.force_x[static_cast<std::size_t>(range.first)];
   arrays.force_y = &membranes.force_y[static_cast<std::size_t>(range.first)];
   arrays.with_moment = type.moment, arrays.with_pressure = type.cell;
   arrays.pressure = state.pressure, arrays.perimeter_tension = state.perimeter_tension;
   run_loop<ActOnCell>(arrays);
-}
-
-void MembraneForces::tensions(const Membranes& membranes, std::vector<double>& tension) const {
-  tension.resize(membranes.x.size());
-  for (std::size_t cell = 0; cell < membranes.cells.size(); ++cell) {
-    const CellRange& range = membranes.cells[cell];
-    const double* from = &scratch_.tension[offset_[cell]];
-    std::copy(from, from + range.count, tension.begin() + range.first);
-  }
 }
 
 }  // namespace rouleau::host

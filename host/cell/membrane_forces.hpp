@@ -33,8 +33,6 @@ class MembraneForces {
 
   /// Energies at the present positions. Not a pass: one thread, no other in run().
   [[nodiscard]] MembraneEnergy energies(const Membranes& membranes);
-  /// Tension of every segment at the last run(), the sum of the laws of segments.
-  void tensions(const Membranes& membranes, std::vector<double>& tension) const;
   [[nodiscard]] double energy(const Membranes& membranes) { return energies(membranes).total(); }
 
   /// Sets the tension of every segment, all laws together, at the present positions. Not a pass either.
@@ -51,11 +49,15 @@ class MembraneForces {
     std::vector<Law> laws;
     bool rate = false, tension = false, moment = false, cell = false;  // what the laws need or give, all together
   };
-  /// Arrays over all cells; each cell has room on both sides for ghost nodes and for packs that run over its end.
+  /// Constants of every cell: cell c from offset(c) on, with room on both sides for packs that run over its end.
+  struct Rest {
+    std::vector<double> inverse_length, inverse_weight, curvature;
+  };
+  /// One cell's working arrays, with room for ghost nodes too. A worker uses those of its first cell for all its cells,
+  /// one after the other, so that they stay in its cache: the room of all its cells is as large as any of them.
   struct Scratch {
     std::vector<double> x, y, u, v;
-    std::vector<double> tangent_x, tangent_y, inverse_length, stretch, rate;
-    std::vector<double> inverse_rest_length, inverse_rest_weight, rest_curvature, curvature;
+    std::vector<double> tangent_x, tangent_y, inverse_length, stretch, rate, curvature;
     std::vector<double> tension, moment, law, energy;  // sums; one law's contribution and its energy
     std::vector<double> segment_force_x, segment_force_y;
   };
@@ -65,14 +67,16 @@ class MembraneForces {
 
   static Law describe(std::shared_ptr<const ModelInstance> model);
   [[nodiscard]] std::size_t offset(int cell) const { return offset_[static_cast<std::size_t>(cell)]; }
-  void measure(const Membranes& membranes, int cell);
-  CellState apply_laws(const Membranes& membranes, int cell, MembraneEnergy* energy);
-  void apply_law(const Law& law, const CellRange& range, std::size_t at, CellState& state, bool first_tension,
-                 bool first_moment, double* energy);
-  void act(Membranes& membranes, int cell, const CellState& state);
+  // `at`: where the working arrays begin.
+  void measure(const Membranes& membranes, int cell, std::size_t at);
+  CellState apply_laws(const Membranes& membranes, int cell, std::size_t at, MembraneEnergy* energy);
+  void apply_law(const Law& law, const CellRange& range, const double* rest_curvature, std::size_t at, CellState& state,
+                 bool first_tension, bool first_moment, double* energy);
+  void act(Membranes& membranes, int cell, std::size_t at, const CellState& state);
 
   std::vector<Type> types_;
-  std::vector<std::size_t> offset_;  // of each cell's node 0 in the scratch arrays
+  std::vector<std::size_t> offset_;  // of each cell's node 0
+  Rest rest_;
   Scratch scratch_;
 };
 

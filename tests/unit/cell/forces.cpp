@@ -91,6 +91,28 @@ TEST_CASE("laws of one cell type add up") {
   CHECK(tension[0] == Approx(0.1 * (std::pow(e, 1.5) - std::pow(e, -1.5))));
 }
 
+TEST_CASE("cells feel the laws of their own type alone, in any order") {
+  auto random = generator(13);
+  Membranes m = biconcave_cells({{100, 60, 0.4}, {160, 70, 2}, {220, 60, 1}, {280, 60, 0}});
+  deform(m, random, 4, 0.1);
+  const std::vector<MembraneLaws> laws = {{neo_hookean(0.1), bending(0.4)}, {bending(0.3)}, {neo_hookean(0.2)}, {}};
+  std::vector<Membranes> alone;
+  for (const MembraneLaws& list : laws) {
+    alone.push_back(m);
+    membrane_forces(m, list).run({}, alone.back());
+  }
+  const std::vector<int> order = GENERATE(std::vector<int>{0, 1, 2, 3}, std::vector<int>{0, 3, 2, 1});
+  for (std::size_t c = 0; c < order.size(); ++c) m.cells[c].type = order[c];
+  MembraneForces(m, laws).run({}, m);
+  for (const CellRange& cell : m.cells) {
+    const Membranes& expected = alone[static_cast<std::size_t>(cell.type)];
+    for (auto i = static_cast<std::size_t>(cell.first); i < static_cast<std::size_t>(cell.end()); ++i) {
+      REQUIRE(m.force_x[i] == expected.force_x[i]);
+      REQUIRE(m.force_y[i] == expected.force_y[i]);
+    }
+  }
+}
+
 TEST_CASE("a cell at rest feels no force, and a law that does nothing leaves none behind") {
   Membranes m = biconcave_cells({{100, 60, 0.4}});
   std::fill(m.force_x.begin(), m.force_x.end(), 7.0);
