@@ -105,7 +105,7 @@ void Hdf5File::write(const std::string& path, const std::vector<hsize_t>& shape,
     chunk[0] = std::clamp<hsize_t>((hsize_t{1} << 20) / row, 1, shape[0]);
     check(H5Pset_chunk(layout.id(), static_cast<int>(chunk.size()), chunk.data()), path);
     check(H5Pset_shuffle(layout.id()), path);
-    check(H5Pset_deflate(layout.id(), 4), path);
+    check(H5Pset_deflate(layout.id(), 1), path);  // level 4 takes twice as long for files 2 % smaller
   }
   auto dataset =
       owned(H5Dcreate2(handle_.id(), path.c_str(), stored, space.id(), H5P_DEFAULT, layout.id(), H5P_DEFAULT), H5Dclose,
