@@ -6,6 +6,7 @@ between is what one step costs, whatever start and end cost. valgrind 3.19 knows
 """
 
 import argparse
+import concurrent.futures
 import copy
 import json
 import os
@@ -16,7 +17,7 @@ import tempfile
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-FEW, MORE = 20, 420  # steps; two checks fall between them (every 200 steps), no output does
+FEW, MORE = 50, 450  # steps; two checks fall between them (every 200 steps), no output does
 LIMIT = 0.01
 
 
@@ -40,9 +41,9 @@ class Counter:
     def scene(self, name: str, scene: dict, apart: tuple = ()) -> float:
         file = self.folder / f"{name}.json"
         file.write_text(json.dumps(scene))
-        counts = [instructions([self.build / "bin/rouleau", "run", file, "--out", self.folder / f"{name}-{steps}",
-                                "--quiet", "--max-steps", steps], apart) for steps in (FEW, MORE)]
-        return (counts[1] - counts[0]) / (MORE - FEW)
+        return self.per_step(lambda steps: instructions(
+            [self.build / "bin/rouleau", "run", file, "--out", self.folder / f"{name}-{steps}", "--quiet",
+             "--max-steps", steps], apart))
 
     def outputs(self, name: str) -> int:
         """How often the longer run of a scene wrote its cells."""
@@ -51,9 +52,14 @@ class Counter:
         return len({row[header.index("step")] for row in data})
 
     def kernel(self, name: str) -> float:
-        counts = [instructions([self.build / "bin/rouleau-bench", "--kernel", name, "--steps", steps])
-                  for steps in (FEW, MORE)]
-        return (counts[1] - counts[0]) / (MORE - FEW)
+        return self.per_step(lambda steps: instructions(
+            [self.build / "bin/rouleau-bench", "--kernel", name, "--steps", steps]))
+
+    @staticmethod
+    def per_step(count) -> float:
+        with concurrent.futures.ThreadPoolExecutor(2) as both:  # counts do not mind company
+            few, more = both.map(count, (FEW, MORE))
+        return (more - few) / (MORE - FEW)
 
 
 def without(scene: dict, *keys: str) -> dict:

@@ -195,7 +195,7 @@ void plan_estimate(Plan& plan) {
     membrane_nodes += scene.cell_types[static_cast<std::size_t>(cell.type)].segments;
   const bool f64 = scene.numerics.precision == Precision::f64;
   // Measured on one core with AVX-512 (docs/performance.md); other machines differ by their memory and vector width.
-  const double step = nodes * (f64 ? 2.0e-9 : 1.1e-9) + membrane_nodes * 80e-9;
+  const double step = nodes * (f64 ? 1.5e-9 : 0.85e-9) + membrane_nodes * 50e-9;
   double outputs = 2, fields = 0;
   for (const StageSetting& stage : plan.stages) {
     const double steps = static_cast<double>(stage.max_steps);
