@@ -13,11 +13,11 @@ struct SearchTask {
   const double *x, *y, *along_x, *along_y, *inverse_square;
   const Neighbours::Group *groups, *groups_end;
   const Neighbours::SegmentRun* runs;
-  double move_x, move_y;       // of the image
-  int nodes_end;               // of the cell
-  int other_first, other_end;  // of the other cell
+  double move_x, move_y;  // of the image
+  int nodes_end;          // of the cell
+  int other_first;        // of the other cell
   double cutoff;
-  int *node, *segment, *segment_end;
+  int *node, *segment;
   double *along, *distance, *direction_x, *direction_y;
   int count;  // contacts before and, when done, after
 };
@@ -115,10 +115,8 @@ struct Search {
   template <int count>
   ROULEAU_ALWAYS_INLINE static void put(const SearchTask& t, const Found& found, int first, int k, int to) {
     for (int i = 0; i < count; ++i) {
-      const int segment = found.segment[k + i];
       t.node[to + i] = first + k + i;
-      t.segment[to + i] = segment;
-      t.segment_end[to + i] = segment + 1 == t.other_end ? t.other_first : segment + 1;
+      t.segment[to + i] = found.segment[k + i];
     }
     for (int i = 0; i < count; ++i) t.along[to + i] = found.along[k + i];
     for (int i = 0; i < count; ++i) t.distance[to + i] = found.distance[k + i];
@@ -165,7 +163,7 @@ void Contacts::reserve(int cell) {
   list.ranges.resize(candidates.pairs.size());
   const std::size_t room = candidates.groups.size() * Neighbours::group + SegmentTable::margin;
   if (room <= list.node.size()) return;
-  for (auto* values : {&list.node, &list.segment, &list.segment_end}) values->resize(room);
+  for (auto* values : {&list.node, &list.segment}) values->resize(room);
   for (auto* values : {&list.along, &list.distance, &list.direction_x, &list.direction_y}) values->resize(room);
 }
 
@@ -180,7 +178,7 @@ void Contacts::search(const Membranes& membranes, int cell) {
   task.inverse_square = segments_.inverse_square.data();
   task.runs = candidates.runs.data();
   task.nodes_end = own.end();
-  task.node = list.node.data(), task.segment = list.segment.data(), task.segment_end = list.segment_end.data();
+  task.node = list.node.data(), task.segment = list.segment.data();
   task.along = list.along.data(), task.distance = list.distance.data();
   task.direction_x = list.direction_x.data(), task.direction_y = list.direction_y.data();
   for (std::size_t p = 0; p < candidates.pairs.size(); ++p) {
@@ -192,7 +190,7 @@ void Contacts::search(const Membranes& membranes, int cell) {
       task.groups = candidates.groups.data() + pair.group_begin;
       task.groups_end = candidates.groups.data() + pair.group_end;
       task.move_x = pair.shift.x * neighbours_.box().nx, task.move_y = pair.shift.y * neighbours_.box().ny;
-      task.other_first = other.first, task.other_end = other.end();
+      task.other_first = other.first;
       task.cutoff = cutoff;
       function(&task);
     }

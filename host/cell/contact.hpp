@@ -13,9 +13,8 @@ namespace rouleau::host {
 /// Contacts of the nodes of one cell in structure of arrays; entries [begin, end) of `ranges[p]` belong to its pair p.
 /// Node X of the cell, closest point P = (1 - along) X_j + along X_j+1 on segment j of the other cell's image.
 struct ContactList {
-  std::vector<int> node;         ///< index in Membranes
-  std::vector<int> segment;      ///< index in Membranes of the other cell's segment j, its first node
-  std::vector<int> segment_end;  ///< index of node j + 1
+  std::vector<int> node;     ///< index in Membranes
+  std::vector<int> segment;  ///< index in Membranes of the other cell's segment j, its first node
   std::vector<double> along;
   std::vector<double> distance;                  ///< |X - P|, at least `least_distance`
   std::vector<double> direction_x, direction_y;  ///< (X - P) / |X - P|; outward normal of the segment where X = P

@@ -11,7 +11,7 @@ namespace rouleau::host {
 namespace {
 
 constexpr std::size_t large_field = 1 << 20;  // bytes; a field that does not stay in the cache
-constexpr int outside = -1000000;  // row of a node whose stencil is not on the lattice
+constexpr int outside = -1000000;             // row of a node whose stencil is not on the lattice
 
 /// Base nodes and what is kept of the weights: written by Locate, read by the others.
 template <class Integer, class Number>

@@ -67,7 +67,7 @@ void InteractionForces::run(Worker worker, int phase, Membranes& membranes) {
       break;
     default:
       contacts_.neighbours().link(worker, membranes);
-      for (int cell = cells.begin; cell < cells.end; ++cell) react(cell, membranes);
+      for (int cell = cells.begin; cell < cells.end; ++cell) take_reactions(cell, membranes);
       break;
   }
 }
@@ -126,6 +126,9 @@ void InteractionForces::compute_forces(int cell, const Membranes& membranes) {
     for (auto* values : {&scratch.force, &scratch.law, &scratch.distance}) values->resize(list.node.size());
     scratch.contact.resize(list.node.size());
   }
+  const auto touched = static_cast<std::size_t>(contacts_.neighbours().list(cell).touched);
+  scratch.reaction_x.assign(touched, 0.0);
+  scratch.reaction_y.assign(touched, 0.0);
   const int type = membranes.cells[static_cast<std::size_t>(cell)].type;
   for (std::size_t pair = 0; pair < list.ranges.size();) {
     const TypeRange range = next_range(cell, membranes, pair);
@@ -140,41 +143,56 @@ void InteractionForces::compute_forces(int cell, const Membranes& membranes) {
 
 void InteractionForces::act(int cell, Membranes& membranes) {
   const ContactList& list = contacts_.list(cell);
-  double* force = scratch_[static_cast<std::size_t>(cell)].force.data();
-  const double* weight = membranes.rest_weight.data();
+  const std::vector<Neighbours::Pair>& pairs = contacts_.neighbours().list(cell).pairs;
+  Scratch& scratch = scratch_[static_cast<std::size_t>(cell)];
+  const double *force = scratch.force.data(), *weight = membranes.rest_weight.data(), *along = list.along.data();
   double *force_x = membranes.force_x.data(), *force_y = membranes.force_y.data();
-  const int* node = list.node.data();
+  const int *node = list.node.data(), *segment = list.segment.data();
   const double *direction_x = list.direction_x.data(), *direction_y = list.direction_y.data();
-  for (int i = 0; i < list.count; ++i) {
-    force[i] *= 0.5 * weight[node[i]];
-    force_x[node[i]] += force[i] * direction_x[i];
-    force_y[node[i]] += force[i] * direction_y[i];
+  for (std::size_t p = 0; p < pairs.size(); ++p) {
+    const Neighbours::Pair& pair = pairs[p];
+    const int to_touched =
+        pair.reaction - pair.touched.begin - membranes.cells[static_cast<std::size_t>(pair.other)].first;
+    double *reaction_x = scratch.reaction_x.data(), *reaction_y = scratch.reaction_y.data();
+    const auto act_at = [&](int i) {
+      const double f = 0.5 * weight[node[i]] * force[i], fx = f * direction_x[i], fy = f * direction_y[i];
+      const int begin = segment[i] + to_touched;
+      force_x[node[i]] += fx;
+      force_y[node[i]] += fy;
+      reaction_x[begin] -= (1 - along[i]) * fx;
+      reaction_y[begin] -= (1 - along[i]) * fy;
+      reaction_x[begin + 1] -= along[i] * fx;
+      reaction_y[begin + 1] -= along[i] * fy;
+    };
+    // Consecutive contacts often share a segment, and each sum waits for the one before: two halves take turns.
+    const Range range = list.ranges[p];
+    const int half = (range.end - range.begin) / 2, middle = range.begin + half;
+    for (int i = range.begin; i < middle; ++i) {
+      act_at(i);
+      act_at(i + half);
+    }
+    for (int i = middle + half; i < range.end; ++i) act_at(i);
   }
 }
 
-void InteractionForces::react(int cell, Membranes& membranes) const {
-  double *force_x = membranes.force_x.data(), *force_y = membranes.force_y.data();
+void InteractionForces::take_reactions(int cell, Membranes& membranes) const {
+  const CellRange& own = membranes.cells[static_cast<std::size_t>(cell)];
   for (const Neighbours::Pair& pair : contacts_.neighbours().list(cell).pairs) {
-    const ContactList& list = contacts_.list(pair.other);
-    const double* force = scratch_[static_cast<std::size_t>(pair.other)].force.data();
-    const Range range = list.ranges[static_cast<std::size_t>(pair.reverse)];
-    const int *segment = list.segment.data(), *segment_end = list.segment_end.data();
-    const double *along = list.along.data(), *direction_x = list.direction_x.data(),
-                 *direction_y = list.direction_y.data();
-    const auto give = [&](int i) {
-      const double fx = force[i] * direction_x[i], fy = force[i] * direction_y[i];
-      force_x[segment[i]] -= (1 - along[i]) * fx;
-      force_y[segment[i]] -= (1 - along[i]) * fy;
-      force_x[segment_end[i]] -= along[i] * fx;
-      force_y[segment_end[i]] -= along[i] * fy;
-    };
-    // Consecutive contacts often share a segment, and each sum waits for the one before: two halves take turns.
-    const int half = (range.end - range.begin) / 2, middle = range.begin + half;
-    for (int i = range.begin; i < middle; ++i) {
-      give(i);
-      give(i + half);
+    const Neighbours::Pair& opposite =
+        contacts_.neighbours().list(pair.other).pairs[static_cast<std::size_t>(pair.reverse)];
+    const Scratch& scratch = scratch_[static_cast<std::size_t>(pair.other)];
+    const double* reaction_x = scratch.reaction_x.data() + opposite.reaction - opposite.touched.begin;
+    const double* reaction_y = scratch.reaction_y.data() + opposite.reaction - opposite.touched.begin;
+    double *force_x = membranes.force_x.data() + own.first, *force_y = membranes.force_y.data() + own.first;
+    const int last = std::min(opposite.touched.end, own.count);
+    for (int k = opposite.touched.begin; k < last; ++k) {
+      force_x[k] += reaction_x[k];
+      force_y[k] += reaction_y[k];
     }
-    for (int i = middle + half; i < range.end; ++i) give(i);
+    if (opposite.touched.end > own.count) {
+      force_x[0] += reaction_x[own.count];
+      force_y[0] += reaction_y[own.count];
+    }
   }
 }
 
@@ -183,7 +201,10 @@ double InteractionForces::energy(const Membranes& membranes) const {
   for (int cell = 0; cell < static_cast<int>(membranes.cells.size()); ++cell) {
     const ContactList& list = contacts_.list(cell);
     const std::size_t room = list.node.size();
-    Scratch scratch{{}, std::vector<double>(room), std::vector<double>(room), std::vector<int>(room)};
+    Scratch scratch;
+    scratch.law.resize(room);
+    scratch.distance.resize(room);
+    scratch.contact.resize(room);
     std::vector<double> energy(room, 0.0);
     const int type = membranes.cells[static_cast<std::size_t>(cell)].type;
     for (std::size_t pair = 0; pair < list.ranges.size();) {

@@ -40,11 +40,12 @@ class InteractionForces {
   [[nodiscard]] const Contacts& contacts() const { return contacts_; }
 
  private:
-  struct Scratch {                 // of one cell's contacts
-    std::vector<double> force;     // sum of f over the potentials, then Lb/2 f
-    std::vector<double> law;       // of one potential
-    std::vector<double> distance;  // those within a cutoff shorter than that of the pair
-    std::vector<int> contact;      // to which these belong
+  struct Scratch {                               // of one cell's contacts
+    std::vector<double> force;                   // sum of f over the potentials
+    std::vector<double> law;                     // of one potential
+    std::vector<double> distance;                // those within a cutoff shorter than that of the pair
+    std::vector<int> contact;                    // to which these belong
+    std::vector<double> reaction_x, reaction_y;  // on the nodes of other cells that its pairs touch
   };
   /// Consecutive contacts of a cell with all cells of one type.
   struct TypeRange {
@@ -55,8 +56,9 @@ class InteractionForces {
   void compute_forces(int cell, const Membranes& membranes);
   void apply(std::size_t potential, const ContactList& list, Range contacts, double* result, bool energy, bool first,
              Scratch& scratch) const;
+  /// Forces on the cell's own nodes; those on others are left for their workers.
   void act(int cell, Membranes& membranes);
-  void react(int cell, Membranes& membranes) const;
+  void take_reactions(int cell, Membranes& membranes) const;
 
   std::vector<Potential> potentials_;
   std::vector<double> cutoffs_;  // of the potentials

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double thinnest_skin = 0.01, thickest_skin = 0.5, usual_skin = 0.2;
 constexpr double lifetime = 120;  // steps that lists should last
-constexpr int bridged = 2;       // segments between two runs that are searched rather than stepped over
+constexpr int bridged = 2;        // segments between two runs that are searched rather than stepped over
 
 /// One group of nodes against all segments of the other cell.
 struct CandidateTask {
@@ -115,6 +115,7 @@ void Neighbours::refresh(Worker worker, const Membranes& membranes, const Segmen
     list.pairs.clear();
     list.groups.clear();
     list.runs.clear();
+    list.touched = 0;
     list_pairs(membranes, cell, bins, segments, skin);
     for (Pair& pair : list.pairs) list_candidates(membranes, cell, pair, segments, skin);
     watch_.remember(cell, membranes, skin);
@@ -135,7 +136,8 @@ void Neighbours::list_pairs(const Membranes& membranes, int cell, const Bins& bi
     if (!(cutoff > 0)) continue;
     for_each_image(own, segments.bounds[static_cast<std::size_t>(other)], cutoff + 2 * skin, box_,
                    [&](ImageShift shift) {
-                     if (other != cell || !(shift == ImageShift{})) list.pairs.push_back({{other, shift}, 0, 0, -1});
+                     if (other != cell || !(shift == ImageShift{}))
+                       list.pairs.push_back({{other, shift}, 0, 0, {0, 0}, 0, -1});
                    });
   }
 }
@@ -163,6 +165,7 @@ void Neighbours::list_candidates(const Membranes& membranes, int cell, Pair& pai
                            list.square.data(),
                            list.excess.data()};
   pair.group_begin = static_cast<int>(list.groups.size());
+  const std::size_t first_run = list.runs.size();
   for (int first = own.first; first < own.end(); first += group) {
     Bounds bounds{segments.x[first], segments.x[first], segments.y[first], segments.y[first]};
     for (int k = 0; k < group; ++k) {
@@ -189,6 +192,13 @@ void Neighbours::list_candidates(const Membranes& membranes, int cell, Pair& pai
     if (run_end > run_begin) list.groups.push_back({first, run_begin, run_end});
   }
   pair.group_end = static_cast<int>(list.groups.size());
+  for (std::size_t r = first_run; r < list.runs.size(); ++r) {
+    const Range ends{list.runs[r].begin, list.runs[r].end + 1};
+    pair.touched =
+        r == first_run ? ends : Range{std::min(pair.touched.begin, ends.begin), std::max(pair.touched.end, ends.end)};
+  }
+  pair.reaction = list.touched;
+  list.touched += pair.touched.end - pair.touched.begin;
 }
 
 void Neighbours::link(Worker worker, const Membranes& membranes) {

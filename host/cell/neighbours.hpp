@@ -56,13 +56,16 @@ class Neighbours {
   /// One ordered pair and its groups that have candidates.
   struct Pair : CellPair {
     int group_begin, group_end;
-    int reverse;  ///< index of the opposite pair in the list of `other`
+    Range touched;  ///< ends of the candidates: nodes of `other` from its first on; its count stands for node 0 again
+    int reaction;   ///< where those nodes begin among all that the cell touches
+    int reverse;    ///< index of the opposite pair in the list of `other`
   };
   /// All that belongs to the nodes of one cell.
   struct CellList {
     std::vector<Pair> pairs;  ///< ordered by type of the other cell, then by the other cell, then by shift
     std::vector<Group> groups;
     std::vector<SegmentRun> runs;
+    int touched;                 ///< number of nodes of other cells that the pairs touch
     std::vector<int> near;       ///< while the list is made: cells that may be near
     std::vector<double> square;  ///< while the list is made: [group][segment] square distances
     std::vector<double> excess;  ///< while the list is made: how far each segment is from being a candidate

@@ -171,7 +171,8 @@ TEST_CASE("a remembered direction and place belong to the distance") {
     REQUIRE(list.count > 50);
     for (int i = 0; i < list.count; ++i) {
       const auto k = static_cast<std::size_t>(i);
-      const auto a = static_cast<std::size_t>(list.segment[k]), b = static_cast<std::size_t>(list.segment_end[k]);
+      const auto a = static_cast<std::size_t>(list.segment[k]),
+                 b = static_cast<std::size_t>(m.cells[static_cast<std::size_t>(1 - c)].next(list.segment[k]));
       const double px = (1 - list.along[k]) * m.x[a] + list.along[k] * m.x[b];
       const double py = (1 - list.along[k]) * m.y[a] + list.along[k] * m.y[b];
       const auto n = static_cast<std::size_t>(list.node[k]);
