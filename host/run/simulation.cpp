@@ -13,6 +13,7 @@
 #include "aggregate_history.hpp"
 #include "barrier.hpp"
 #include "cell/motion.hpp"
+#include "node_checks.hpp"
 #include "observer.hpp"
 #include "output/progress.hpp"
 #include "pass_costs.hpp"
@@ -203,7 +204,11 @@ class Simulation {
     const auto start = Clock::now();
     stage_step_ = step;
     steps_ = steps_before_ + step;
-    if (check_step(solver)) return;
+    if (auto failure =
+            check_nodes(membranes_, scene_.checks.node_step, solver.escaped_node(), solver.setting().units.length)) {
+      fail(std::move(*failure), solver.setting());
+      return;
+    }
     // The end of a stage has been written; the beginning of the next is the same instant.
     const bool written = stage_step_ == 0 && steps_ > 0;
     const bool cells_due = !written && (steps_ == 0 || cells.due(stage_step_));
@@ -260,43 +265,6 @@ class Simulation {
     rest_watch_.y = membranes_.y;
     rest_watch_step_ = stage_step_;
     return moved < limit;
-  }
-
-  /// Checks that every step passes: true if the run has failed.
-  template <class T>
-  bool check_step(Solver<T>& solver) {
-    if (membranes_.cells.empty()) return false;
-    Failure f;
-    if (!(largest_step(membranes_) <= scene_.checks.node_step)) {
-      const FarthestNode farthest = farthest_node(membranes_);
-      f.reason = std::isfinite(farthest.step) ? "node_step" : "non_finite";
-      f.value = farthest.step;
-      f.limit = scene_.checks.node_step;
-      f.message = std::isfinite(farthest.step)
-                      ? "a membrane node moved further in one step than its limit (in lattice spacings)"
-                      : "the velocity of a membrane node is no number";
-      set_node(f, farthest.node, solver.setting());
-    } else if (const int node = solver.escaped_node(); node >= 0) {
-      f.reason = "escaped";
-      f.message = "a membrane node has left the domain through a wall";
-      set_node(f, node, solver.setting());
-    } else {
-      return false;
-    }
-    f.remedy =
-        "lower numerics.density_factor (it divides every lattice stiffness and speed), or see the margins that "
-        "rouleau plan prints";
-    fail(std::move(f), solver.setting());
-    return true;
-  }
-
-  void set_node(Failure& f, int node, const StageSetting& setting) {
-    const auto k = static_cast<std::size_t>(node);
-    f.place = {(membranes_.x[k] - membranes_.velocity_x[k] + 0.5) * setting.units.length,
-               (membranes_.y[k] - membranes_.velocity_y[k] + 0.5) * setting.units.length};
-    for (std::size_t c = 0; c < membranes_.cells.size(); ++c) {
-      if (node >= membranes_.cells[c].first && node < membranes_.cells[c].end()) f.cell = static_cast<int>(c);
-    }
   }
 
   void fail(Failure failure, const StageSetting& setting) {

@@ -1,0 +1,48 @@
+#include "node_checks.hpp"
+
+#include <cmath>
+
+#include "cell/motion.hpp"
+
+namespace rouleau::host {
+
+namespace {
+
+/// Cell and place of a node before its last step.
+void set_node(Failure& f, const Membranes& membranes, int node, double spacing) {
+  const auto k = static_cast<std::size_t>(node);
+  f.place = {(membranes.x[k] - membranes.velocity_x[k] + 0.5) * spacing,
+             (membranes.y[k] - membranes.velocity_y[k] + 0.5) * spacing};
+  for (std::size_t c = 0; c < membranes.cells.size(); ++c) {
+    if (node >= membranes.cells[c].first && node < membranes.cells[c].end()) f.cell = static_cast<int>(c);
+  }
+}
+
+}  // namespace
+
+std::optional<Failure> check_nodes(const Membranes& membranes, double limit, int escaped, double spacing) {
+  if (membranes.cells.empty()) return std::nullopt;
+  Failure f;
+  if (!(largest_step(membranes) <= limit)) {
+    const FarthestNode farthest = farthest_node(membranes);
+    const bool finite = std::isfinite(farthest.step);
+    f.reason = finite ? "node_step" : "non_finite";
+    f.value = farthest.step;
+    f.limit = limit;
+    f.message = finite ? "a membrane node moved further in one step than its limit (in lattice spacings)"
+                       : "the velocity of a membrane node is no number";
+    set_node(f, membranes, farthest.node, spacing);
+  } else if (escaped >= 0) {
+    f.reason = "escaped";
+    f.message = "a membrane node has left the domain through a wall";
+    set_node(f, membranes, escaped, spacing);
+  } else {
+    return std::nullopt;
+  }
+  f.remedy =
+      "lower numerics.density_factor (it divides every lattice stiffness and speed), or see the margins that "
+      "rouleau plan prints";
+  return f;
+}
+
+}  // namespace rouleau::host

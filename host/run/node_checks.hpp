@@ -1,0 +1,15 @@
+// What every step asks of the membrane nodes.
+#pragma once
+
+#include <optional>
+
+#include "cell/membranes.hpp"
+#include "output/summary.hpp"
+
+namespace rouleau::host {
+
+/// The first check that the last step failed, without its time: a node that moved further than `limit` lattice
+/// spacings, is nowhere, or (`escaped`, -1: none) has left the domain. `spacing` in m.
+std::optional<Failure> check_nodes(const Membranes& membranes, double limit, int escaped, double spacing);
+
+}  // namespace rouleau::host
