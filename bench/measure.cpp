@@ -28,10 +28,10 @@ double time_steps(const Candidate& candidate, int threads, long steps) {
     for (long i = 0; i < steps; ++i) {
       const auto start = Clock::now();
       candidate.step(worker);
-      barrier->wait();
+      barrier->arrive_and_wait();
       if (worker.first()) total += std::chrono::duration<double>(Clock::now() - start).count();
       if (candidate.between) candidate.between(worker);
-      barrier->wait();
+      barrier->arrive_and_wait();
     }
   }
   return total / static_cast<double>(steps);

@@ -18,14 +18,22 @@ class Barrier {
   explicit Barrier(int workers) : workers_(workers) {}
 
   /// Returns when all workers have called it; what they wrote before is visible to all.
-  void wait() {
-    if (workers_ == 1) return;
+  void arrive_and_wait() { wait(arrive()); }
+
+  /// The same in two halves, so that work which needs no other worker can stand between them: tells the others, and
+  /// returns what wait() takes.
+  [[nodiscard]] unsigned arrive() {
+    if (workers_ == 1) return 0;
     const unsigned round = round_.load(std::memory_order_relaxed);
     if (arrived_.fetch_add(1, std::memory_order_acq_rel) + 1 == workers_) {
       arrived_.store(0, std::memory_order_relaxed);
       round_.store(round + 1, std::memory_order_release);
-      return;
     }
+    return round;
+  }
+  /// Returns when all workers have called arrive().
+  void wait(unsigned round) {
+    if (workers_ == 1) return;
     for (int spins = 0; round_.load(std::memory_order_acquire) == round; ++spins) {
       if (spins < patience) {
         pause();

@@ -10,11 +10,19 @@
 
 namespace rouleau::host {
 
+/// What happens between the workers when one of them has ended a pass.
+enum class Meeting {
+  none,      ///< it goes on
+  all,       ///< it waits until all have ended the pass
+  announce,  ///< it goes on, but tells the others: a later pass has `await`
+  await      ///< it waits until all have announced the end of that earlier pass
+};
+
 /// Every worker runs its share.
 struct Pass {
-  std::string name;  ///< passes that follow each other under one name are phases of one
+  std::string name;  ///< passes under one name are phases of one
   std::function<void(Worker)> run;
-  bool barrier = true;  ///< all workers must have ended it before any begins the next pass
+  Meeting meeting = Meeting::all;
 };
 
 /// Wall-clock time of the passes of a step as one worker sees it, waiting for others included.

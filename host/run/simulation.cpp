@@ -9,6 +9,8 @@
 #include <exception>
 #include <limits>
 #include <optional>
+#include <set>
+#include <string>
 
 #include "aggregate_history.hpp"
 #include "barrier.hpp"
@@ -146,7 +148,7 @@ class Simulation {
       for (long step = 0;; ++step) {
         run_passes(forces, worker, *barrier, clock, 0);
         if (step >= next_attention_ || step >= stop_at.load(std::memory_order_relaxed) || went_wrong(solver)) {
-          barrier->wait();
+          barrier->arrive_and_wait();
           if (worker.first()) {
             try {
               between_steps(solver, step, cells, fields);
@@ -155,7 +157,7 @@ class Simulation {
               stage_ending_ = Ending::failed;
             }
           }
-          barrier->wait();
+          barrier->arrive_and_wait();
           if (stage_ending_ != Ending::none) break;
           clock.resume();
         }
@@ -170,9 +172,22 @@ class Simulation {
 
   static void run_passes(const std::vector<Pass>& passes, Worker worker, Barrier& barrier, PassClock& clock,
                          std::size_t first) {
+    unsigned announced = 0;
     for (std::size_t i = 0; i < passes.size(); ++i) {
       passes[i].run(worker);
-      if (passes[i].barrier) barrier.wait();
+      switch (passes[i].meeting) {
+        case Meeting::all:
+          barrier.arrive_and_wait();
+          break;
+        case Meeting::announce:
+          announced = barrier.arrive();
+          break;
+        case Meeting::await:
+          barrier.wait(announced);
+          break;
+        case Meeting::none:
+          break;
+      }
       if (worker.first()) clock.lap(first + i);
     }
   }
@@ -180,12 +195,10 @@ class Simulation {
   template <class T>
   void add_costs(const Solver<T>& solver, const PassClock& clock) {
     std::size_t at = 0;
+    std::set<std::string> counted;
     for (const std::vector<Pass>* passes : {&solver.forces(), &solver.advance()}) {
-      const std::string* before = nullptr;
       for (const Pass& pass : *passes) {
-        const bool phase = before != nullptr && *before == pass.name;
-        costs_.add(pass.name, clock.wall_s(at++), phase ? 0 : stage_step_);
-        before = &pass.name;
+        costs_.add(pass.name, clock.wall_s(at++), counted.insert(pass.name).second ? stage_step_ : 0);
       }
     }
   }

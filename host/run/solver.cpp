@@ -40,7 +40,7 @@ void Solver<T>::plan_cell_passes(const Plan& plan) {
     }
   }
   membrane_forces_ = std::make_unique<MembraneForces>(membranes_, std::move(laws));
-  forces_.push_back({"membrane", [this](Worker worker) { membrane_forces_->run(worker, membranes_); }, false});
+  const auto membrane = [this](Worker worker) { membrane_forces_->run(worker, membranes_); };
 
   std::vector<double> viscosity_ratio;
   for (const CellType& type : scene.cell_types) {
@@ -49,13 +49,16 @@ void Solver<T>::plan_cell_passes(const Plan& plan) {
   indicator_ = std::make_unique<Indicator<T>>(membranes_, std::move(viscosity_ratio), 1 / setting_->tau, nx, ny,
                                               scene.domain.periodic_y);
   indicator_name_ = plan.viscosity_contrast ? "indicator" : "activity";
-  forces_.push_back({indicator_name_, [this](Worker worker) {
-                       indicator_->measure(worker, membranes_);
-                       indicator_->cover(worker, membranes_);
-                     }});
-  if (!plan.has_interactions) return;
+  const auto cover = [this](Worker worker) {
+    indicator_->measure(worker, membranes_);
+    indicator_->cover(worker, membranes_);
+  };
+  if (!plan.has_interactions) {
+    forces_.push_back({"membrane", membrane, Meeting::none});
+    forces_.push_back({indicator_name_, cover});
+    return;
+  }
 
-  forces_.back().barrier = false;
   std::vector<Potential> potentials;
   for (std::size_t i = 0; i < plan.interactions.size(); ++i) {
     if (plan.interactions[i].active()) {
@@ -64,10 +67,16 @@ void Solver<T>::plan_cell_passes(const Plan& plan) {
   }
   const PeriodicBox box{static_cast<double>(nx), scene.domain.periodic_y ? static_cast<double>(ny) : 0.0};
   interaction_forces_ = std::make_unique<InteractionForces>(membranes_, std::move(potentials), box);
-  for (int phase = 0; phase < InteractionForces::phases; ++phase) {
-    forces_.push_back(
-        {"interaction", [this, phase](Worker worker) { interaction_forces_->run(worker, phase, membranes_); }});
-  }
+  const auto interaction = [this](int phase) {
+    return [this, phase](Worker worker) { interaction_forces_->run(worker, phase, membranes_); };
+  };
+  // What a worker does for its own cells stands where it would otherwise wait for the others.
+  static_assert(InteractionForces::phases == 3);
+  forces_.push_back({"interaction", interaction(0), Meeting::announce});
+  forces_.push_back({"membrane", membrane, Meeting::await});
+  forces_.push_back({"interaction", interaction(1), Meeting::announce});
+  forces_.push_back({indicator_name_, cover, Meeting::await});
+  forces_.push_back({"interaction", interaction(2)});
 }
 
 /// Passes over rows: each worker has its own rows and collides them afterwards. Only where y is periodic do the rows of
@@ -83,11 +92,12 @@ void Solver<T>::plan_spreading() {
                        if (!indicator_->due()) return;
                        indicator_->update(worker, membranes_, fluid_.relaxation_rate(), fluid_.activity());
                      },
-                     false});
-  forces_.push_back({"spread", [this](Worker worker) { fluid_.clear_force(worker); }, fluid.periodic_y});
+                     Meeting::none});
+  const Meeting images = fluid.periodic_y ? Meeting::all : Meeting::none;
+  forces_.push_back({"spread", [this](Worker worker) { fluid_.clear_force(worker); }, images});
   forces_.push_back(
-      {"spread", [this](Worker worker) { coupling_->spread(worker, membranes_, fluid_.force()); }, fluid.periodic_y});
-  forces_.push_back({"spread", [this](Worker worker) { fluid_.fold_force(worker); }, false});
+      {"spread", [this](Worker worker) { coupling_->spread(worker, membranes_, fluid_.force()); }, images});
+  forces_.push_back({"spread", [this](Worker worker) { fluid_.fold_force(worker); }, Meeting::none});
 }
 
 template <class T>
@@ -106,13 +116,13 @@ void Solver<T>::plan_advance() {
                         end_step(worker);
                         coupling_->interpolate(worker, membranes_, fluid_.force());
                       },
-                      false});
+                      Meeting::none});
   advance_.push_back({"move",
                       [this](Worker worker) {
                         move_nodes(worker, membranes_);
                         coupling_->locate(worker, membranes_);
                       },
-                      false});
+                      Meeting::none});
 }
 
 template <class T>
