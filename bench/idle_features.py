@@ -102,7 +102,7 @@ def main() -> int:
         often = copy.deepcopy(full)
         often["output"]["fields"]["strain"] = often["output"]["cells"]["strain"] = 0.005
         # Every run writes its first and its last state; how well they compress depends on the state.
-        due = ("rouleau::host::Observer::observe*", "rouleau::host::RunDirectory::write*")
+        due = ("*Observer::observe<*", "*RunDirectory::write(*")
         idle = count.scene("output", full, due)
         if count.outputs("output") != 2:
             raise SystemExit("idle_features: outputs came due while the idle scene was counted")

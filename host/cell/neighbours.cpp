@@ -61,9 +61,10 @@ struct Candidates {
 
 /// Skin for lists that are made now.
 double suitable_skin(const Membranes& membranes) {
-  if (membranes.largest_step.empty()) return usual_skin;  // the nodes have not been moved yet
-  const double step = *std::max_element(membranes.largest_step.begin(), membranes.largest_step.end());
-  return std::clamp(lifetime * step, thinnest_skin, thickest_skin);
+  if (membranes.largest_step.empty()) return usual_skin;  // nobody keeps account of the steps
+  double skin = thinnest_skin;  // also where a step is no number: the run's own checks will tell
+  for (const double step : membranes.largest_step) skin = std::max(skin, lifetime * step);
+  return std::min(skin, thickest_skin);
 }
 
 /// Distance between two boxes, the second moved.

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <cstring>
 #include <type_traits>
+#include <utility>
 
 #define ROULEAU_ALWAYS_INLINE inline __attribute__((always_inline))
 
@@ -125,10 +126,13 @@ struct Pack {
     if constexpr (step == 0) {
       return a.vector[0];
     } else {
-      Bits partner;
-      for (int i = 0; i < N; ++i) partner[i] = i ^ step;
-      return fold<step / 2>(operation(a, Pack(Vector(__builtin_shuffle(a.vector, partner)))), operation);
+      return fold<step / 2>(operation(a, partners<step>(a, std::make_integer_sequence<int, N>())), operation);
     }
+  }
+  /// Every value changes places with the one `step` from it.
+  template <int step, int... i>
+  ROULEAU_ALWAYS_INLINE static Pack partners(const Pack& a, std::integer_sequence<int, i...>) {
+    return Pack(Vector(__builtin_shufflevector(a.vector, a.vector, (i ^ step)...)));
   }
 };
 

@@ -125,6 +125,28 @@ TEST_CASE("closest points are those of brute force on moving, turning, deforming
   CHECK(renewals < 60);
 }
 
+TEST_CASE("a node that is nowhere makes no contact and spoils no other, over periodic borders too") {
+  for (const std::size_t broken : {0u, 1u, 2u}) {
+    Membranes m = biconcave_cells({{10, 10, 0}, {14, 28, 0}, {60, 40, 1}});
+    const auto node = static_cast<std::size_t>(m.cells[broken].first + 3);
+    m.x[node] = std::nan("");
+    m.largest_step.assign(3, 0.001);
+    m.largest_step[broken] = std::nan("");
+    Cutoffs cutoffs(1);
+    cutoffs.raise(0, 0, cutoff);
+    Contacts contacts(m, cutoffs, {90.0, 70.0});
+    run(contacts, m);
+    for (int c = 0; c < 3; ++c) {
+      const ContactList& list = contacts.list(c);
+      for (std::size_t k = 0; k < static_cast<std::size_t>(list.count); ++k) {
+        REQUIRE(list.distance[k] <= cutoff);
+        for (const int i : {list.node[k], list.segment[k]}) REQUIRE(static_cast<std::size_t>(i) != node);
+      }
+    }
+    CHECK(contacts.list(0).count > 0);
+  }
+}
+
 TEST_CASE("bins find every cell and image within reach, in boxes of any size, over periodic borders") {
   auto random = generator(64);
   std::uniform_real_distribution<double> uniform(0, 1);
