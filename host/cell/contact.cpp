@@ -150,9 +150,10 @@ void Contacts::run(Worker worker, int phase, const Membranes& membranes) {
     return;
   }
   neighbours_.refresh(worker, membranes, segments_);
-  const Range cells = worker.share(static_cast<int>(membranes.cells.size()));
+  const bool renewed = neighbours_.renewed();
+  const Range cells = worker.share(membranes.cell_count());
   for (int cell = cells.begin; cell < cells.end; ++cell) {
-    if (neighbours_.renewed()) reserve(cell);
+    if (renewed) reserve(cell);
     search(membranes, cell);
   }
 }

@@ -51,9 +51,7 @@ struct Locate {
         lowest = min(group<S>(t, S::load(x), S::load(y), first, valid), lowest);
       }
     }
-    double row = 0;
-    for (int k = 0; k < S::size; ++k) row = min(lowest.vector[k], row);
-    task->escaped = row == outside;
+    task->escaped = least(lowest) == outside;
   }
 
  private:

@@ -7,13 +7,14 @@
 namespace rouleau::host {
 
 double largest_displacement(const std::vector<double>& x, const std::vector<double>& y,
-                            const std::vector<double>& old_x, const std::vector<double>& old_y) {
-  double square = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const double dx = x[i] - old_x[i], dy = y[i] - old_y[i];
-    square = std::max(square, dx * dx + dy * dy);
+                            const std::vector<double>& old_x, const std::vector<double>& old_y, Range nodes) {
+  double square = 0, zero = 0;  // zero becomes NaN with the first position that is not finite
+  for (auto i = static_cast<std::size_t>(nodes.begin); i < static_cast<std::size_t>(nodes.end); ++i) {
+    const double dx = x[i] - old_x[i], dy = y[i] - old_y[i], s = dx * dx + dy * dy;
+    square = s > square ? s : square;
+    zero += s - s;
   }
-  return std::sqrt(square);
+  return std::sqrt(square) + zero;
 }
 
 DisplacementWatch::DisplacementWatch(const Membranes& membranes)
@@ -32,20 +33,12 @@ void DisplacementWatch::measure(Worker worker, const Membranes& membranes) {
     const auto at = static_cast<std::size_t>(c);
     double& bound = bound_[at];
     bound = unknown ? std::numeric_limits<double>::infinity() : bound + membranes.largest_step[at];
-    if (!(bound <= limit_[at])) bound = largest_displacement(membranes.cells[at], membranes);
+    if (!(bound <= limit_[at])) {
+      const CellRange& cell = membranes.cells[at];
+      bound = largest_displacement(membranes.x, membranes.y, x_, y_, {cell.first, cell.end()});
+    }
     moved_[at] = !(bound <= limit_[at]);
   }
-}
-
-double DisplacementWatch::largest_displacement(const CellRange& cell, const Membranes& membranes) const {
-  const double *x = membranes.x.data(), *y = membranes.y.data(), *old_x = x_.data(), *old_y = y_.data();
-  double square = 0, zero = 0;  // zero becomes NaN with the first position that is not finite
-  for (int i = cell.first; i < cell.end(); ++i) {
-    const double dx = x[i] - old_x[i], dy = y[i] - old_y[i], s = dx * dx + dy * dy;
-    square = s > square ? s : square;
-    zero += s - s;
-  }
-  return std::sqrt(square) + zero;
 }
 
 bool DisplacementWatch::exceeded() const {

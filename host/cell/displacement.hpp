@@ -9,9 +9,10 @@
 
 namespace rouleau::host {
 
-/// Largest distance between corresponding nodes of two sets of positions.
+/// Largest distance between corresponding nodes [nodes.begin, nodes.end) of two sets of positions; NaN if a position is
+/// no number.
 double largest_displacement(const std::vector<double>& x, const std::vector<double>& y,
-                            const std::vector<double>& old_x, const std::vector<double>& old_y);
+                            const std::vector<double>& old_x, const std::vector<double>& old_y, Range nodes);
 
 /// Remembers positions and compares. After construction every cell counts as moved.
 ///
@@ -32,8 +33,6 @@ class DisplacementWatch {
   void remember(int cell, const Membranes& membranes, double limit);
 
  private:
-  [[nodiscard]] double largest_displacement(const CellRange& cell, const Membranes& membranes) const;
-
   std::vector<double> x_, y_;
   std::vector<double> limit_;        // of each cell
   std::vector<double> bound_;        // of each cell: upper bound of its nodes' displacements

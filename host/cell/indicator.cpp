@@ -39,7 +39,7 @@ template <class Function>
 void Indicator<T>::for_rows(const Rows& rows, Range own, Function function) const {
   for (std::size_t k = 0; k < rows.columns.size(); ++k) {
     const int y = lattice_row(rows.first + static_cast<int>(k));
-    if (y >= own.begin && y < own.end) function(y, rows.columns[k]);
+    if (y >= own.begin && y < own.end) function(y, rows.columns[k], static_cast<int>(k));
   }
 }
 
@@ -127,14 +127,14 @@ void Indicator<T>::update(Worker worker, const Membranes& membranes, Field<T>& r
   }
   activity.clear(own.begin, own.end);
   for (const Reach& reach : cells_) {
-    for_rows(reach.reached, own, [&](int y, Interval columns) { activity.mark(y, columns.begin, columns.end); });
+    for_rows(reach.reached, own, [&](int y, Interval columns, int) { activity.mark(y, columns.begin, columns.end); });
   }
 }
 
 template <class T>
 void Indicator<T>::collect_changes(Range own) {
   for (int y = own.begin; y < own.end; ++y) changed_[static_cast<std::size_t>(y)].clear();
-  const auto include = [&](int y, Interval columns) {
+  const auto include = [&](int y, Interval columns, int) {
     columns.end = std::min(columns.end, columns.begin + nx_);
     for_pieces(columns, [&](int x, int begin, int end) {
       // Intervals of a row stay disjoint, since what is done to them is not to be done twice.
@@ -175,10 +175,9 @@ void Indicator<T>::set_rates(const Membranes& membranes, Range own, Field<T>& ra
     const double excess = ratio_[static_cast<std::size_t>(membranes.cells[c].type)] - 1;
     if (excess == 0) continue;
     const Coverage& coverage = cells_[c].coverage;
-    std::size_t j = 0;
-    for_rows(cells_[c].covered, Range{-1, ny_}, [&](int y, Interval columns) {
-      const double* from = coverage.row(static_cast<int>(j++));
-      if (y < own.begin || y >= own.end || changed_[static_cast<std::size_t>(y)].empty()) return;
+    for_rows(cells_[c].covered, own, [&](int y, Interval columns, int place) {
+      if (changed_[static_cast<std::size_t>(y)].empty()) return;
+      const double* from = coverage.row(place);
       T* row = rate.row(y);
       for_pieces(columns, [&](int x, int begin, int end) {
         for (const Interval& interval : changed_[static_cast<std::size_t>(y)]) {

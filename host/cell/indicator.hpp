@@ -53,7 +53,7 @@ class Indicator {
 
   /// Lattice row that a row of the plane falls on; -1: beyond a wall.
   [[nodiscard]] int lattice_row(int y) const;
-  /// Calls function(y, columns) for the rows that fall on this worker's rows.
+  /// Calls function(y, columns, place) for those of the rows, counted by `place`, that fall on this worker's rows.
   template <class Function>
   void for_rows(const Rows& rows, Range own, Function function) const;
   /// Calls function(x, begin, end) for pieces [begin, end) of the plane that begin at lattice column x and do not wrap.

@@ -38,19 +38,17 @@ struct Candidates {
     for (int i = 0; i < t.nodes; ++i) {
       double* square = t.square + i * stride;
       const S x = t.node_x[i], y = t.node_y[i];
-      S least = std::numeric_limits<double>::infinity(), left = t.segments;
+      S nearest = std::numeric_limits<double>::infinity(), left = t.segments;
       for (int k = 0; k < t.segments; k += S::size) {
         const Approach<S> approach(x - S::load(t.x + k), y - S::load(t.y + k), S::load(t.along_x + k),
                                    S::load(t.along_y + k), S::load(t.inverse_square + k));
         approach.square.store(square + k);
         // The lanes beyond the last segment hold those of the next cell.
         const S own = select(lane < left, approach.square, S(std::numeric_limits<double>::infinity()));
-        least = select(own < least, own, least);
+        nearest = min(own, nearest);
         left -= S(S::size);
       }
-      double closest = least.vector[0];
-      for (int k = 1; k < S::size; ++k) closest = min(least.vector[k], closest);
-      const double limit = min(std::sqrt(closest) + 4 * t.skin, t.cutoff + 2 * t.skin);
+      const double limit = min(std::sqrt(least(nearest)) + 4 * t.skin, t.cutoff + 2 * t.skin);
       const S limit_square = limit * limit * (1 + 1e-12);  // room for rounding
       for (int k = 0; k < t.segments; k += S::size) {
         min(S::load(square + k) - limit_square, S::load(t.excess + k)).store(t.excess + k);

@@ -31,11 +31,10 @@ struct Update {
       dy.store(t.along_y + i);
       select(square > S(0.0), 1.0 / square, S(0.0)).store(t.inverse_square + i);
     }
-    Bounds b{x_min.vector[0], x_max.vector[0], y_min.vector[0], y_max.vector[0]};
-    for (int k = 1; k < S::size; ++k) include(b, x_min.vector[k], x_max.vector[k], y_min.vector[k], y_max.vector[k]);
+    Bounds b{least(x_min), largest(x_max), least(y_min), largest(y_max)};
     for (; i < t.end; ++i) {
       const double x = t.from_x[i], y = t.from_y[i];
-      include(b, x, x, y, y);
+      b = {min(b.x_min, x), max(b.x_max, x), min(b.y_min, y), max(b.y_max, y)};
       const int next = i + 1 == t.end ? t.first : i + 1;
       const double dx = t.from_x[next] - x, dy = t.from_y[next] - y, square = dx * dx + dy * dy;
       t.x[i] = x;
@@ -45,11 +44,6 @@ struct Update {
       t.inverse_square[i] = square > 0 ? 1 / square : 0.0;
     }
     task->bounds = b;
-  }
-
- private:
-  ROULEAU_ALWAYS_INLINE static void include(Bounds& b, double x_min, double x_max, double y_min, double y_max) {
-    b = {min(b.x_min, x_min), max(b.x_max, x_max), min(b.y_min, y_min), max(b.y_max, y_max)};
   }
 };
 

@@ -25,6 +25,14 @@ bool crosses_side(const Lattice<T>& lattice, int q, int y) {
   return lattice.periodic_y() || (from >= 0 && from < lattice.ny());
 }
 
+/// Copies a row, halo included, of the slots whose velocity has this sign along y.
+template <class T>
+void copy_row(Lattice<T>& lattice, int sign, int from, int to) {
+  for_slots(1, sign, [&](int q) {
+    for (int x = -1; x <= lattice.nx(); ++x) lattice.slot(q, to)[x] = lattice.slot(q, from)[x];
+  });
+}
+
 }  // namespace
 
 template <class T>
@@ -50,13 +58,8 @@ void send_row(Lattice<T>& lattice, int y) {
   for_slots(0, +1, [&](int q) { lattice.slot(q, y)[nx] = lattice.slot(q, y)[0]; });
   for_slots(0, -1, [&](int q) { lattice.slot(q, y)[-1] = lattice.slot(q, y)[nx - 1]; });
   if (!lattice.periodic_y()) return;
-  const auto copy = [&](int sign, int from, int to) {
-    for_slots(1, sign, [&](int q) {
-      for (int x = -1; x <= nx; ++x) lattice.slot(q, to)[x] = lattice.slot(q, from)[x];
-    });
-  };
-  if (y == 0) copy(+1, 0, ny);
-  if (y == ny - 1) copy(-1, ny - 1, -1);
+  if (y == 0) copy_row(lattice, +1, 0, ny);
+  if (y == ny - 1) copy_row(lattice, -1, ny - 1, -1);
 }
 
 template <class T>
@@ -78,13 +81,8 @@ template <class T>
 void receive_row(Lattice<T>& lattice, int y) {
   const int nx = lattice.nx(), ny = lattice.ny();
   if (lattice.periodic_y()) {
-    const auto copy = [&](int sign, int from, int to) {
-      for_slots(1, sign, [&](int q) {
-        for (int x = -1; x <= nx; ++x) lattice.slot(q, to)[x] = lattice.slot(q, from)[x];
-      });
-    };
-    if (y == 0) copy(+1, ny, 0);
-    if (y == ny - 1) copy(-1, -1, ny - 1);
+    if (y == 0) copy_row(lattice, +1, ny, 0);
+    if (y == ny - 1) copy_row(lattice, -1, -1, ny - 1);
   }
   for_slots(0, +1, [&](int q) {
     if (crosses_side(lattice, q, y)) lattice.slot(q, y)[0] = lattice.slot(q, y)[nx];

@@ -40,7 +40,7 @@ class Lattice {
   void row_pointers(Parity parity, int y, const T* (&in)[9], T* (&out)[9]);
   /// The same for row y + 1, given those of row y: quicker, row after row.
   void next_row_pointers(Parity parity, int y, const T* (&in)[9], T* (&out)[9]);
-  /// The populations alone, for observers; exchange must be complete (Exchange::settle).
+  /// The populations alone, for observers; exchange must be complete (Fluid::settle).
   void row_pointers(Parity parity, int y, const T* (&in)[9]) const;
 
  private:

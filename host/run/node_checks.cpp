@@ -39,9 +39,7 @@ std::optional<Failure> check_nodes(const Membranes& membranes, double limit, int
   } else {
     return std::nullopt;
   }
-  f.remedy =
-      "lower numerics.density_factor (it divides every lattice stiffness and speed), or see the margins that "
-      "rouleau plan prints";
+  f.remedy = blown_up_remedy;
   return f;
 }
 

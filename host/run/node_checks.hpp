@@ -8,6 +8,11 @@
 
 namespace rouleau::host {
 
+/// What to do when a run has blown up for no narrower reason.
+inline constexpr const char* blown_up_remedy =
+    "lower numerics.density_factor (it divides every lattice stiffness and speed), or see the margins that "
+    "rouleau plan prints";
+
 /// The first check that the last step failed, without its time: a node that moved further than `limit` lattice
 /// spacings, is nowhere, or (`escaped`, -1: none) has left the domain. `spacing` in m.
 std::optional<Failure> check_nodes(const Membranes& membranes, double limit, int escaped, double spacing);

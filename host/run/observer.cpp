@@ -11,6 +11,7 @@
 #include "cell/geometry.hpp"
 #include "fields.hpp"
 #include "method_limits.hpp"
+#include "node_checks.hpp"
 #include "particle_stress.hpp"
 
 namespace rouleau::host {
@@ -139,10 +140,8 @@ std::optional<Failure> Observer::check(Solver<T>& solver, const Membranes& membr
   if (!(mach <= scene_.checks.mach)) {
     const auto [x, y] = extreme_node(solver.fluid());
     if (!std::isfinite(mach)) {
-      return failure(
-          "non_finite", place(x, y), -1, std::nan(""), 0, "the fluid holds a value that is no number",
-          "lower numerics.density_factor (it divides every lattice stiffness and speed), or see the margins that "
-          "rouleau plan prints");
+      return failure("non_finite", place(x, y), -1, std::nan(""), 0, "the fluid holds a value that is no number",
+                     blown_up_remedy);
     }
     return failure("mach", place(x, y), -1, mach, scene_.checks.mach,
                    "the flow is too fast for the lattice: Mach number above its limit",

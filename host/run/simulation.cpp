@@ -273,7 +273,8 @@ class Simulation {
   bool at_rest(const StageSetting& setting) {
     if (stage_step_ - rest_watch_step_ < rest_window(setting)) return false;
     const double limit = scene_.at_rest.displacement / setting.units.length;
-    const double moved = largest_displacement(membranes_.x, membranes_.y, rest_watch_.x, rest_watch_.y);
+    const double moved =
+        largest_displacement(membranes_.x, membranes_.y, rest_watch_.x, rest_watch_.y, {0, membranes_.node_count()});
     rest_watch_.x = membranes_.x;
     rest_watch_.y = membranes_.y;
     rest_watch_step_ = stage_step_;

@@ -113,7 +113,8 @@ TEST_CASE("closest points are those of brute force on moving, turning, deforming
           m.y[k] += vy + turn * rx + speed * 0.02 * uniform(random);
         }
       }
-      if (known) m.largest_step.assign(m.cells.size(), largest_displacement(m.x, m.y, old_x, old_y));
+      if (known)
+        m.largest_step.assign(m.cells.size(), largest_displacement(m.x, m.y, old_x, old_y, {0, m.node_count()}));
     }
     renewals += contacts.neighbours().renewals();
   }
