@@ -158,7 +158,10 @@ TEST_CASE("Taylor-Green vortices decay with second order, with inertia and witho
   const bool inertia = GENERATE(false, true);
   // Far from magic 1/6, where the leading error of diffusion vanishes and an order could not be measured.
   const auto [collision, parameters] =
-      GENERATE(std::pair{std::string("bgk"), std::vector<double>{}}, std::pair{std::string("trt"), std::vector{0.5}});
+      GENERATE(std::pair{std::string("bgk"), std::vector<double>{}}, std::pair{std::string("trt"), std::vector{0.5}},
+               std::pair{std::string("mrt"), std::vector{1.64, 1.54, 0.0, 0.5}},
+               std::pair{std::string("regularised"), std::vector<double>{}},
+               std::pair{std::string("central-moment"), std::vector{1.0, 0.0, 1.0, 0.5}});
   std::vector<double> errors;
   for (int n : {32, 64, 128}) errors.push_back(taylor_green_error(collision, parameters, inertia, n));
   report("Taylor-Green, " + collision + (inertia ? ", inertia" : ", Stokes"), errors);

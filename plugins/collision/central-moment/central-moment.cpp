@@ -45,7 +45,7 @@ struct CentralMoment {
   };
 
   template <class Node, class S>
-  void operator()(const Node& node, const Kept<S>& keep, S (&after)[9]) const {
+  ROULEAU_ALWAYS_INLINE void operator()(const Node& node, const Kept<S>& keep, S (&after)[9]) const {
     const auto& f = node.f;
     const S u = node.velocity[0], v = node.velocity[1], none = 0.0;
     S g = none, h = none;

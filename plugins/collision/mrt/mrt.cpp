@@ -24,7 +24,7 @@ struct Mrt {
   }
 
   template <class Node, class S>
-  void operator()(const Node& node, const Rates<S>& rate, S (&after)[9]) const {
+  ROULEAU_ALWAYS_INLINE void operator()(const Node& node, const Rates<S>& rate, S (&after)[9]) const {
     const auto& f = node.f;
     // e - e_eq + S_e/2, the same of epsilon, and what they give beyond relaxation at the shear rate.
     const S axes = (f[1] + f[3]) + (f[2] + f[4]), diagonals = (f[5] + f[7]) + (f[6] + f[8]);

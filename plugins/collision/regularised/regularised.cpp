@@ -8,7 +8,7 @@ struct Regularised {
   explicit Regularised(const rouleau::Parameters&) {}
 
   template <class Node, class S>
-  void operator()(const Node& node, const S& omega, S (&after)[9]) const {
+  ROULEAU_ALWAYS_INLINE void operator()(const Node& node, const S& omega, S (&after)[9]) const {
     const auto& f = node.f;
     const S keep = 1.0 - omega, pressure = node.density * (1.0 / 3.0);
     const S rising = f[5] + f[7], falling = f[6] + f[8];
