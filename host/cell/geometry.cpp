@@ -60,6 +60,17 @@ double perimeter(const Membranes& membranes, const CellRange& cell) {
   return sum;
 }
 
+StretchRange stretch_range(const Membranes& membranes, const CellRange& cell) {
+  StretchRange range;
+  for (int i = cell.first; i < cell.end(); ++i) {
+    const double length = (node(membranes, cell.next(i)) - node(membranes, i)).norm();
+    const double stretch = length / membranes.rest_length[static_cast<std::size_t>(i)];
+    range.least = std::min(range.least, stretch);
+    range.most = std::max(range.most, stretch);
+  }
+  return range;
+}
+
 Eigen::Vector2d centroid(const Membranes& membranes, const CellRange& cell) {
   const Eigen::Vector2d origin = node(membranes, cell.first);
   const Moments sum = moments(membranes, cell, origin);

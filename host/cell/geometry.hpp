@@ -12,6 +12,11 @@ namespace rouleau::host {
 /// Signed area, positive for a counter-clockwise outline.
 double enclosed_area(const Membranes& membranes, const CellRange& cell);
 double perimeter(const Membranes& membranes, const CellRange& cell);
+/// Smallest and largest stretch of a segment: length over rest length.
+struct StretchRange {
+  double least = std::numeric_limits<double>::infinity(), most = 0;
+};
+StretchRange stretch_range(const Membranes& membranes, const CellRange& cell);
 /// Centroid of the enclosed area.
 Eigen::Vector2d centroid(const Membranes& membranes, const CellRange& cell);
 /// Not a number if a position is not finite.

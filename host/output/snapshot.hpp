@@ -20,6 +20,7 @@ struct CellSnapshot {
   double min_gap;      ///< m, to the nearest membrane of another cell or of an image; infinite when there is none
   int aggregate;       ///< label: smallest index of a cell of the aggregate it belongs to
   bool through_image;  ///< its aggregate is held together by a contact across the periodic boundary
+  double stretch_min, stretch_max;  ///< of its segments: length over rest length
 };
 
 /// Two cells (or a cell and an image) whose gap is below Output::aggregate_gap.

@@ -35,8 +35,8 @@ json to_json(const AggregateEvent& event) {
 /// Every name a script may rely on is there, as null where the run did not define it.
 json dimensionless(const json& given) {
   json all = given.is_object() ? given : json::object();
-  for (const char* name :
-       {"reynolds_physical", "reynolds_simulated", "capillary", "adhesion_number", "viscosity_ratio", "mach_max"})
+  for (const char* name : {"reynolds_physical", "reynolds_simulated", "capillary", "membrane_strain", "adhesion_number",
+                           "viscosity_ratio", "mach_max"})
     if (!all.contains(name)) all[name] = nullptr;
   for (auto& value : all)
     if (value.is_number_float()) value = number(value.get<double>());
@@ -102,9 +102,12 @@ json to_json(const Summary& summary) {
                                 {"limit", number(limit.limit)},
                                 {"margin", number(limit.margin)},
                                 {"remedy", limit.remedy}});
+  result["wells"] = summary.wells.is_null() ? json::array() : summary.wells;
   result["conservation"] = {{"mass_drift", number(summary.mass_drift)},
                             {"area_drift_max", number(summary.area_drift_max)},
                             {"momentum_residual", number(summary.momentum_residual)}};
+  const bool cells = summary.stretch[1] > 0;
+  result["stretch"] = cells ? json{{"min", number(summary.stretch[0])}, {"max", number(summary.stretch[1])}} : json();
   result["aggregates_final"] = summary.aggregates_final;
   result["aggregate_history"] = json::array();
   for (const auto& event : summary.aggregate_history) result["aggregate_history"].push_back(to_json(event));

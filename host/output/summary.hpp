@@ -60,7 +60,9 @@ struct Summary {
   std::vector<Omission> left_out;
   nlohmann::json dimensionless;  ///< object: name -> number (null: undefined)
   std::vector<Limit> limits;
+  nlohmann::json wells;  ///< array: the wells of the interactions, in SI
   double mass_drift = 0, area_drift_max = 0, momentum_residual = 0;
+  std::array<double, 2> stretch{};  ///< smallest and largest of any segment at any output
   int aggregates_final = 0;
   std::vector<AggregateEvent> aggregate_history;  ///< one entry at each change
   std::vector<std::string> warnings;

@@ -83,7 +83,7 @@ Tables::Tables(const std::filesystem::path& directory)
     : cells_(directory / "cells.csv"), aggregates_(directory / "aggregates.csv"), series_(directory / "series.csv") {
   cells_.write(
       "step,time_s,strain,cell,type,x_m,y_m,angle_rad,deformation,area_m2,perimeter_m,min_gap_m,aggregate,"
-      "tank_treading_angle_rad,through_image\n");
+      "tank_treading_angle_rad,through_image,stretch_min,stretch_max\n");
   aggregates_.write(
       "step,time_s,strain,aggregate_count,aggregate,members,through_image,rotation_rad,cell_a,cell_b,image_x,image_y,"
       "gap_m,contact_length_m\n");
@@ -113,6 +113,7 @@ void Tables::write_cells(const Snapshot& snapshot) {
     row.add(cell.cell).add(cell.type).add(cell.x).add(cell.y).add(cell.angle).add(cell.deformation);
     row.add(cell.area).add(cell.perimeter).add(cell.min_gap).add(cell.aggregate);
     row.add(cell.tank_treading_angle).add(cell.through_image);
+    row.add(cell.stretch_min).add(cell.stretch_max);
     cells_.write(row.line());
   }
 }

@@ -93,10 +93,12 @@ Manifest read_manifest(const Document& document, const fs::path& file, const Uni
   manifest.gives = words_of(root, "gives");
   manifest.state = read_state(document, units);
   manifest.inactive_when = without_own_keys(root.value("inactive_when", json()));
+  manifest.stands_for = without_own_keys(root.value("stands_for", json()));
   manifest.claims = without_own_keys(root.value("claims", json::object()));
   manifest.checks = root.value("checks", json::array());
   check_quantities(document, manifest);
-  check_inactive_when(document, manifest, units);
+  check_parameter_values(document, manifest, "inactive_when", manifest.inactive_when, units);
+  check_parameter_values(document, manifest, "stands_for", manifest.stands_for, units);
   check_reference_numbers(document, manifest);
   return manifest;
 }

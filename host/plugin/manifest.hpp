@@ -40,6 +40,8 @@ struct Manifest {
   std::vector<std::string> needs, gives, state;
   nlohmann::json
       inactive_when;  ///< object: parameter -> value (in its unit) at which the model does nothing; null: never
+  nlohmann::json
+      stands_for;  ///< object: parameter -> value at which an interaction is the one it stands for; null: it is itself
   nlohmann::json claims, checks;
 
   [[nodiscard]] bool needs_input(const std::string& name) const;

@@ -199,12 +199,13 @@ void check_quantities(const Document& document, const Manifest& manifest) {
   }
 }
 
-void check_inactive_when(const Document& document, const Manifest& manifest, const Units& units) {
-  if (!manifest.inactive_when.is_object()) return;
+void check_parameter_values(const Document& document, const Manifest& manifest, const char* key, const json& values,
+                            const Units& units) {
+  if (!values.is_object()) return;
   std::vector<std::string> names;
   for (const Parameter& parameter : manifest.parameters) names.push_back(parameter.name);
-  for (const auto& [name, value] : manifest.inactive_when.items()) {
-    const std::string at = child_pointer("/inactive_when", name);
+  for (const auto& [name, value] : values.items()) {
+    const std::string at = child_pointer(std::string("/") + key, name);
     const auto found = std::find(names.begin(), names.end(), name);
     if (found == names.end()) {
       throw Error(ExitCode::plugin_refused, document.key_place(at),

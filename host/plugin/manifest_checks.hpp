@@ -21,8 +21,9 @@ std::vector<std::string> read_state(const Document& document, const Units& units
 /// law keeps to one element.
 void check_quantities(const Document& document, const Manifest& manifest);
 
-/// "inactive_when" names parameters and gives values that these can have.
-void check_inactive_when(const Document& document, const Manifest& manifest, const Units& units);
+/// An object of the manifest ("inactive_when", "stands_for") names parameters and gives values that these can have.
+void check_parameter_values(const Document& document, const Manifest& manifest, const char* key,
+                            const nlohmann::json& values, const Units& units);
 
 /// "checks" name parameters, inputs of "needs" and outputs of "gives".
 void check_reference_numbers(const Document& document, const Manifest& manifest);

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "method_limits.hpp"
+#include "model_probe.hpp"
 #include "plan.hpp"
 
 namespace rouleau::host {
@@ -35,67 +36,13 @@ constexpr std::array<TableEntry, 6> stretch_limit{
 constexpr std::array<TableEntry, 5> bending_limit{{{0.55, 0.36}, {0.6, 0.86}, {1.0, 6.8}, {2.0, 3.8}, {5.0, 1.7}}};
 constexpr std::array<TableEntry, 3> contact_limit{{{0.6, 0.65}, {1.0, 1.46}, {2.0, 0.97}}};
 
-/// Largest value of a derivative over the given inputs.
-double largest(const std::vector<double>& values) {
-  double most = 0;
-  for (double v : values) most = std::max(most, std::abs(v));
-  return most;
-}
+// Depth over strongest attraction.
+constexpr double narrowest_well = 1.0;
 
+/// Stiffness of a membrane law about its rest state, where it is largest.
 double stretch_stiffness(const ModelInstance& law) {
-  const std::vector<double> stretch{0.95, 1.0, 1.1};
-  std::vector<double> stiffness(stretch.size(), 0.0);
-  rouleau_membrane_block block{};
-  block.struct_size = sizeof block;
-  block.count = static_cast<std::uint32_t>(stretch.size());
-  block.time_step = 1;
-  const std::vector<double> zero(stretch.size(), 0.0);
-  block.stretch = stretch.data();
-  if (law.manifest().needs_input("stretch_rate")) block.stretch_rate = zero.data();
-  block.tension_by_stretch = stiffness.data();
-  law.membrane().compute(law.self(), &block);
-  return largest(stiffness);
-}
-
-double bending_stiffness(const ModelInstance& law) {
-  const double curvature = 0, rest = 0;
-  double stiffness = 0;
-  rouleau_membrane_block block{};
-  block.struct_size = sizeof block;
-  block.count = 1;
-  block.time_step = 1;
-  block.curvature = &curvature;
-  if (law.manifest().needs_input("rest_curvature")) block.rest_curvature = &rest;
-  block.moment_by_curvature = &stiffness;
-  law.membrane().compute(law.self(), &block);
-  return stiffness;
-}
-
-/// Largest stiffness of a potential in its attractive part, where membranes settle: at and beyond its zero of force.
-double contact_stiffness(const ModelInstance& potential, double& zero_force_distance) {
-  const double cutoff = potential.interaction().cutoff(potential.self());
-  constexpr int samples = 400;
-  std::vector<double> distance, force(samples), stiffness(samples);
-  for (int i = 1; i <= samples; ++i) distance.push_back(cutoff * i / samples);
-  rouleau_interaction_block block{};
-  block.struct_size = sizeof block;
-  block.count = samples;
-  block.time_step = 1;
-  block.distance = distance.data();
-  block.force = force.data();
-  block.force_by_distance = stiffness.data();
-  potential.interaction().compute(potential.self(), &block);
-  zero_force_distance = std::nan("");
   double most = 0;
-  for (int i = samples - 1; i >= 0; --i) {
-    const auto k = static_cast<std::size_t>(i);
-    if (force[k] > 0) {
-      zero_force_distance = k + 1 < distance.size() ? distance[k + 1] : distance[k];
-      most = std::max(most, std::abs(stiffness[k]));
-      break;
-    }
-    most = std::max(most, std::abs(stiffness[k]));
-  }
+  for (const double stretch : {0.95, 1.0, 1.1}) most = std::max(most, std::abs(stretch_stiffness(law, stretch)));
   return most;
 }
 
@@ -148,13 +95,20 @@ std::vector<Limit> find_limits(const Plan& plan) {
     for (const PlannedModel& model : plan.interactions) {
       if (!model.active()) continue;
       const ModelInstance instance(*model.manifest, model.parameters.values, setting);
-      double zero_force = 0;
-      const double stiffness = contact_stiffness(instance, zero_force);
-      add("contact stiffness of " + model.manifest->id + " in lattice units" + where, stiffness,
+      const PotentialShape shape = find_shape(instance);
+      add("contact stiffness of " + model.manifest->id + " in lattice units" + where, shape.stiffness,
           interpolate(contact_limit, tau), true, "lower density_factor, with which the lattice stiffness falls");
-      if (stage.index == 0) {
-        add("equilibrium gap of " + model.manifest->id + " in lattice spacings", zero_force, 2.0, false,
-            "raise the resolution, for membranes whose gap it does not resolve stick for ever");
+      if (stage.index != 0) continue;
+      if (shape.well) {
+        add("equilibrium gap of " + model.manifest->id + " in lattice spacings", shape.well->distance, 2.0, false,
+            "raise the resolution or place the well farther out, for membranes whose gap it does not resolve stick "
+            "for ever");
+        add("width of the well of " + model.manifest->id + " in lattice spacings", shape.well->width(), narrowest_well,
+            false, "raise the resolution or take a wider well");
+      } else {
+        add("range of the repulsion of " + model.manifest->id + " in lattice spacings", shape.range, 2.0, false,
+            "raise the resolution or the range, for nearer than that the lattice moves two membranes together whatever "
+            "acts between them");
       }
     }
     if (stage.index != 0) continue;

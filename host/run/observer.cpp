@@ -204,6 +204,11 @@ void Observer::observe_cells(const Membranes& membranes, const LatticeUnits& uni
     s.min_gap = gap_to_others(membranes, static_cast<int>(k), box_) * length;
     s.aggregate = aggregates.label[k];
     s.through_image = aggregates.through_image[k];
+    const StretchRange stretch = stretch_range(membranes, cell);
+    s.stretch_min = stretch.least;
+    s.stretch_max = stretch.most;
+    stretch_.least = std::min(stretch_.least, stretch.least);
+    stretch_.most = std::max(stretch_.most, stretch.most);
     snapshot.cells.push_back(std::move(s));
   }
   snapshot.rotation = rotation_.follow(contacts, aggregates, centers, box_);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "aggregates.hpp"
+#include "cell/geometry.hpp"
 #include "output/snapshot.hpp"
 #include "output/summary.hpp"
 #include "rotation.hpp"
@@ -36,6 +37,8 @@ class Observer {
   [[nodiscard]] double mach_max() const { return mach_max_; }
   [[nodiscard]] double area_drift_max() const { return area_drift_max_; }
   [[nodiscard]] double mass_drift() const { return mass_drift_; }
+  /// Of any segment at any output so far.
+  [[nodiscard]] const StretchRange& stretch() const { return stretch_; }
 
  private:
   /// Follows mass and Mach number; returns the latter, which is NaN if the fluid holds a value that is no number.
@@ -51,6 +54,7 @@ class Observer {
   bool started_ = false;
   double mach_max_ = 0, area_drift_max_ = 0, mass_drift_ = 0;
   std::optional<double> initial_mass_;
+  StretchRange stretch_;
 };
 
 }  // namespace rouleau::host

@@ -6,6 +6,7 @@
 
 #include "input/document.hpp"
 #include "input/wording.hpp"
+#include "plan_models.hpp"
 
 namespace rouleau::host {
 
@@ -91,14 +92,19 @@ nlohmann::json dimensionless_numbers(const Plan& plan) {
   numbers["reynolds_physical"] = number_or_null(reynolds);
   numbers["reynolds_simulated"] = number_or_null(unsteady);
   numbers["capillary"] = number_or_null(stress * radius / parameter_named(laws, "shear_modulus"));
-  numbers["adhesion_number"] =
-      stress > 0 ? number_or_null(parameter_named(potentials, "depth") / (stress * radius)) : nlohmann::json();
+  numbers["membrane_strain"] =
+      number_or_null(plan.has_cells ? stress * radius / stretching_modulus(plan) : std::nan(""));
+  double depth = parameter_named(potentials, "depth");
+  for (const auto& well : plan.wells) {
+    if (std::isnan(depth) && well["depth_J_m2"].is_number()) depth = well["depth_J_m2"];
+  }
+  numbers["adhesion_number"] = stress > 0 ? number_or_null(depth / (stress * radius)) : nlohmann::json();
   numbers["viscosity_ratio"] = plan.has_cells ? number_or_null(ratio) : nlohmann::json();
   numbers["mach_wall"] = wall_mach;
   return numbers;
 }
 
-nlohmann::json conversion_table(const Plan& plan) {
+nlohmann::json conversion_table(const Plan& plan, const Units& units) {
   const Scene& scene = *plan.scene;
   nlohmann::json table = nlohmann::json::array();
   for (const StageSetting& stage : plan.stages) {
@@ -128,7 +134,8 @@ nlohmann::json conversion_table(const Plan& plan) {
         const auto& e = parameter.dimension.exponent;
         const bool stays_si = e[3] != 0 || e[4] != 0 || e[5] != 0;
         const double si = model->parameters.values[i];
-        row(model->manifest->id + ": " + parameter.name, si, parameter.unit + " (coherent SI value)",
+        const bool in_si = units.scale(parameter.unit) == 1;
+        row(model->manifest->id + ": " + parameter.name, si, in_si ? parameter.unit : "SI for " + parameter.unit,
             stays_si ? si : u.to_lattice(si, parameter.dimension));
       }
     }
@@ -283,8 +290,9 @@ Plan make_plan(const Scene& scene, const Catalog& catalog) {
                             "fluid.body_force and pressure_gradient");
   }
   plan_passes(plan);
+  plan.wells = describe_wells(plan);
   plan.dimensionless = dimensionless_numbers(plan);
-  plan.conversions = conversion_table(plan);
+  plan.conversions = conversion_table(plan, units);
   plan_estimate(plan);
   plan.limits = find_limits(plan);
   for (const Limit& limit : plan.limits) {

@@ -35,6 +35,25 @@ std::string padded(std::string text, std::size_t width) {
   return text + " ";
 }
 
+std::string well_text(const nlohmann::json& well) {
+  if (well["depth_J_m2"].is_null()) return "no attraction";
+  return number(well["depth_J_m2"]) + " J/m2 at " + number(well["zero_force_distance_m"]) + " m, width " +
+         number(well["width_m"]) + " m";
+}
+
+void write_wells(std::ostringstream& out, const nlohmann::json& wells) {
+  if (wells.empty()) return;
+  out << "\nWells of the interactions (width: depth over strongest attraction)\n";
+  for (const auto& well : wells) {
+    const std::string between = well["between"][0].get<std::string>() + " - " + well["between"][1].get<std::string>();
+    out << "  " << padded(well["model"].get<std::string>() + ", " + between, 30) << well_text(well) << "\n";
+    if (!well.contains("stands_for")) continue;
+    out << "  " << padded("  which stands for", 30) << well_text(well["stands_for"]);
+    if (well.contains("widened")) out << "; widened " << number(well["widened"]) << " times";
+    out << "\n";
+  }
+}
+
 }  // namespace
 
 std::string to_text(const Plan& plan) {
@@ -58,6 +77,7 @@ std::string to_text(const Plan& plan) {
            "  unsteady term; the flow is Stokes flow.\n";
   }
 
+  write_wells(out, plan.wells);
   out << "\nLimits, sharpest first (margin below 1: beyond the limit)\n  " << padded("limit", 62) << padded("value", 12)
       << padded("limit", 12) << "margin\n";
   for (const Limit& limit : plan.limits) {
@@ -88,6 +108,7 @@ nlohmann::json to_json(const Plan& plan) {
   json["warnings"] = plan.warnings;
   json["conversions"] = plan.conversions;
   json["dimensionless"] = plan.dimensionless;
+  json["wells"] = plan.wells;
   json["limits"] = nlohmann::json::array();
   for (const Limit& limit : plan.limits) {
     json["limits"].push_back({{"name", limit.name},

@@ -65,6 +65,7 @@ Summary describe(const Plan& plan, int threads) {
   s.left_out = plan.left_out;
   s.dimensionless = plan.dimensionless;
   s.limits = plan.limits;
+  s.wells = plan.wells;
   s.warnings = plan.warnings;
   s.conversions = plan.conversions;
   return s;

@@ -337,6 +337,7 @@ class Simulation {
     s.dimensionless["mach_max"] = observer_.mach_max();
     s.mass_drift = observer_.mass_drift();
     s.area_drift_max = observer_.area_drift_max();
+    s.stretch = {observer_.stretch().least, observer_.stretch().most};
     s.momentum_residual = momentum_residual_;
     s.aggregates_final = history_.count();
     s.aggregate_history = history_.events();

@@ -1,15 +1,24 @@
-// Neo-Hookean membrane, free to contract across the plane: energy w = Es (2/5 e^(5/2) + 2 e^(-1/2) - 12/5) per rest
-// length, tension T = dw/de = Es (e^(3/2) - e^(-3/2)). Zhang, Johnson and Popel (J. Biomech. 41, 2008), eq. 1.
+// Neo-Hookean membrane, tension T = dw/de of the energy w per rest length at the stretch e.
+// Free to contract across the plane: w = Es (2/5 e^(5/2) + 2 e^(-1/2) - 12/5), T = Es (e^(3/2) - e^(-3/2)).
+// Clamped, the stretch across the plane held at 1: w = Es (e^2 + e^-2 - 2)/2, T = Es (e - e^-3).
+// Zhang, Johnson and Popel (J. Biomech. 41, 2008), eq. 1; Barthes-Biesel, Diaz and Dhenin (J. Fluid Mech. 460, 2002).
 #include <rouleau/membrane.hpp>
 
 struct NeoHookean {
   double Es;
-  explicit NeoHookean(const rouleau::Parameters& p) : Es{p["shear_modulus"]} {}
+  bool clamped;
+  explicit NeoHookean(const rouleau::Parameters& p) : Es{p["shear_modulus"]}, clamped{p["transverse"] != 0} {}
 
   template <class S>
   rouleau::Tension<S> operator()(const rouleau::Segment<S>& segment) const {
-    const S e = segment.stretch, root = sqrt(e), inverse = 1.0 / (e * root);
+    const S e = segment.stretch;
+    if (clamped) {
+      const S inverse = 1.0 / e, squared = inverse * inverse;
+      return {0.5 * Es * (e - inverse) * (e - inverse), Es * (e - inverse * squared),
+              Es * (1.0 + 3.0 * squared * squared)};
+    }
+    const S root = sqrt(e), inverse = 1.0 / (e * root);
     return {Es * (0.4 * e * e * root + 2.0 / root - 2.4), Es * (e * root - inverse), 1.5 * Es * (root + inverse / e)};
   }
 };
-ROULEAU_MEMBRANE(NeoHookean, "neo-hookean", "1.0.0")
+ROULEAU_MEMBRANE(NeoHookean, "neo-hookean", "1.1.0")

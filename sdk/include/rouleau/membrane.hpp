@@ -15,7 +15,8 @@ struct Segment {
   S stretch;       ///< length / rest length
   S stretch_rate;  ///< d stretch / dt
 };
-/// What a law of segments returns.
+/// What a law of segments returns. One whose energy costs more than its force may leave it zero here and have a member
+/// `energy(segment)` beside operator(), which is asked only when the host wants energies.
 template <class S>
 struct Tension {
   S energy;                     ///< per rest length
@@ -54,6 +55,12 @@ struct CellForces {
 
 namespace detail {
 
+template <class Model, class S, class = void>
+struct HasOwnEnergy : std::false_type {};
+template <class Model, class S>
+struct HasOwnEnergy<Model, S, std::void_t<decltype(std::declval<const Model&>().energy(std::declval<Segment<S>>()))>>
+    : std::true_type {};
+
 template <class Model>
 struct MembraneLoop {
   template <int register_bytes>
@@ -71,9 +78,13 @@ struct MembraneLoop {
   ROULEAU_ALWAYS_INLINE static void element(const Model& model, const rouleau_membrane_block& block,
                                             std::uint32_t first, std::uint32_t valid) {
     if constexpr (std::is_invocable_v<const Model&, Segment<S>>) {
-      const Tension<S> result =
-          model(Segment<S>{take<S>(block.stretch, first, valid), take<S>(block.stretch_rate, first, valid)});
-      give(result.energy, block.energy, first, valid);
+      const Segment<S> segment{take<S>(block.stretch, first, valid), take<S>(block.stretch_rate, first, valid)};
+      const Tension<S> result = model(segment);
+      if constexpr (HasOwnEnergy<Model, S>::value) {
+        if (block.energy != nullptr) give(model.energy(segment), block.energy, first, valid);
+      } else {
+        give(result.energy, block.energy, first, valid);
+      }
       give(result.tension, block.tension, first, valid);
       give(result.tension_by_stretch, block.tension_by_stretch, first, valid);
       give(result.tension_by_rate, block.tension_by_rate, first, valid);

@@ -26,10 +26,10 @@ inline std::shared_ptr<const ModelInstance> model(ModelKind kind, const char* id
   return std::make_shared<ModelInstance>(catalog.find(kind, id, {}), values, ModelSetting{{1, 1, 1}, 1.0, false});
 }
 inline std::shared_ptr<const ModelInstance> neo_hookean(double modulus) {
-  return model(ModelKind::membrane, "neo-hookean", {modulus});
+  return model(ModelKind::membrane, "neo-hookean", {modulus, 0});
 }
 inline std::shared_ptr<const ModelInstance> bending(double modulus) {
-  return model(ModelKind::membrane, "bending", {modulus});
+  return model(ModelKind::membrane, "bending", {modulus, 0, 0});
 }
 inline std::shared_ptr<const ModelInstance> morse(double depth, double decay, double distance, double cutoff) {
   return model(ModelKind::interaction, "morse", {depth, decay, distance, cutoff});

@@ -17,6 +17,7 @@ struct Setup {
   double relaxation_rate = 1;
   bool inertia = false;
   std::uint32_t dimension = 2;
+  double length_unit = 1, time_unit = 1, mass_unit = 1;
 };
 
 /// Calls create; returns its code, with the error's text.
@@ -32,7 +33,9 @@ inline std::pair<int, std::string> create(const rouleau_model& model, const Setu
   setup.parameter_count = static_cast<std::uint32_t>(names.size());
   setup.parameter_names = names.data();
   setup.parameter_values = values.data();
-  setup.length_unit = setup.time_unit = setup.mass_unit = 1;
+  setup.length_unit = from.length_unit;
+  setup.time_unit = from.time_unit;
+  setup.mass_unit = from.mass_unit;
   setup.dimension = from.dimension;
   setup.velocity_count = d2q9::velocity_count;
   setup.weights = d2q9::weight;
