@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <rouleau/dispatch.hpp>
+#include <stdexcept>
 #include <string>
 
 #include "geometry.hpp"
@@ -12,7 +13,8 @@ namespace rouleau::host {
 
 namespace {
 
-constexpr int margin = 8;  // doubles in the widest pack
+constexpr int margin = 8;                // doubles in the widest pack
+constexpr std::size_t most_states = 16;  // of one law: the manifest's limit
 
 void close(double* values, int count) {
   values[-1] = values[count - 1];
@@ -43,16 +45,12 @@ MembraneForces::Law MembraneForces::describe(std::shared_ptr<const ModelInstance
                   "membrane law \"" + manifest.id + "\" needs \"" + need + "\", which this program does not give.");
     }
   }
-  if (!manifest.state.empty()) {
-    throw Error(ExitCode::plugin_refused, Place{manifest.file.string(), "/state"},
-                "membrane law \"" + manifest.id + "\" has state, which this program does not keep yet.");
-  }
   const auto needs = [&](const char* input) { return manifest.needs_input(input); };
   const auto gives = [&](const char* output) { return manifest.gives_output(output); };
-  return {std::move(model),          needs("stretch"), needs("stretch_rate"), needs("curvature"),
-          needs("rest_curvature"),   needs("area"),    needs("rest_area"),    needs("perimeter"),
-          needs("rest_perimeter"),   gives("tension"), gives("moment"),       gives("pressure"),
-          gives("perimeter_tension")};
+  return {std::move(model),           needs("stretch"), needs("stretch_rate"),    needs("curvature"),
+          needs("rest_curvature"),    needs("area"),    needs("rest_area"),       needs("perimeter"),
+          needs("rest_perimeter"),    gives("tension"), gives("moment"),          gives("pressure"),
+          gives("perimeter_tension"), gives("energy"),  gives("tension_by_rate"), {}};
 }
 
 MembraneForces::MembraneForces(const Membranes& membranes, std::vector<MembraneLaws> laws) {
@@ -60,12 +58,18 @@ MembraneForces::MembraneForces(const Membranes& membranes, std::vector<MembraneL
     Type& type = types_.emplace_back();
     for (auto& model : list) {
       const Law& law = type.laws.emplace_back(describe(std::move(model)));
-      type.rate |= law.stretch_rate;
+      type.rate |= law.stretch_rate || law.tension_by_rate;
+      type.tension_by_rate |= law.tension_by_rate;
+      has_state_ = has_state_ || law.tension_by_rate || !law.model->manifest().state.empty();
       type.tension |= law.tension;
       type.moment |= law.moment || law.curvature;
       type.cell |= law.pressure || law.perimeter_tension;
     }
   }
+  allocate(membranes);
+}
+
+void MembraneForces::allocate(const Membranes& membranes) {
   std::size_t size = margin;
   for (const CellRange& cell : membranes.cells) {
     offset_.push_back(size);
@@ -76,6 +80,9 @@ MembraneForces::MembraneForces(const Membranes& membranes, std::vector<MembraneL
                        &s.tangent_x, &s.tangent_y, &s.inverse_length, &s.stretch, &s.rate, &s.curvature, &s.tension,
                        &s.moment, &s.law, &s.energy, &s.segment_force_x, &s.segment_force_y}) {
     values->assign(size, 0.0);
+  }
+  if (std::any_of(types_.begin(), types_.end(), [](const Type& type) { return type.tension_by_rate; })) {
+    for (auto* values : {&s.by_rate, &s.law_by_rate}) values->assign(size, 0.0);
   }
   for (std::size_t c = 0; c < membranes.cells.size(); ++c) {
     const CellRange& cell = membranes.cells[c];
@@ -88,12 +95,34 @@ MembraneForces::MembraneForces(const Membranes& membranes, std::vector<MembraneL
   }
 }
 
+void MembraneForces::keep_state(Membranes& membranes) {
+  for (std::size_t t = 0; t < types_.size(); ++t) {
+    Type& type = types_[t];
+    const auto keep = [&](int law, const std::string& model, const StateVariable& variable, double initial) {
+      return host::keep_state(membranes.state,
+                              {static_cast<int>(t), law, model, variable.name, variable.unit, variable.dimension, {}},
+                              initial, membranes.x.size());
+    };
+    for (std::size_t l = 0; l < type.laws.size(); ++l) {
+      Law& law = type.laws[l];
+      const Manifest& manifest = law.model->manifest();
+      law.state.clear();
+      for (std::size_t k = 0; k < manifest.state.size(); ++k) {
+        law.state.push_back(keep(static_cast<int>(l), manifest.id, manifest.state[k], law.model->initial_state()[k]));
+      }
+    }
+    if (type.tension_by_rate) type.rate_tension = keep(-1, "", {"rate_tension", "N/m", dimension::tension, 0}, 0);
+  }
+  state_kept_ = true;
+}
+
 void MembraneForces::run(Worker worker, Membranes& membranes) {
+  if (has_state_ && !state_kept_) throw std::logic_error("laws with state: keep_state() comes before run()");
   const Range cells = worker.share(membranes.cell_count());
   for (int cell = cells.begin; cell < cells.end; ++cell) {
     const std::size_t at = offset(cells.begin);
     measure(membranes, cell, at);
-    act(membranes, cell, at, apply_laws(membranes, cell, at, nullptr));
+    act(membranes, cell, at, apply_laws(membranes, cell, at, &membranes.state, nullptr));
   }
 }
 
@@ -101,7 +130,7 @@ MembraneEnergy MembraneForces::energies(const Membranes& membranes) {
   MembraneEnergy energy;
   for (int cell = 0; cell < membranes.cell_count(); ++cell) {
     measure(membranes, cell, offset(0));
-    apply_laws(membranes, cell, offset(0), &energy);
+    apply_laws(membranes, cell, offset(0), nullptr, &energy);
   }
   return energy;
 }
@@ -111,7 +140,7 @@ void MembraneForces::tensions(const Membranes& membranes, std::vector<double>& t
   for (int cell = 0; cell < membranes.cell_count(); ++cell) {
     const CellRange& range = membranes.cells[static_cast<std::size_t>(cell)];
     measure(membranes, cell, offset(0));
-    const double uniform = apply_laws(membranes, cell, offset(0), nullptr).perimeter_tension;
+    const double uniform = apply_laws(membranes, cell, offset(0), nullptr, nullptr).perimeter_tension;
     for (int k = 0; k < range.count; ++k) {
       tension[static_cast<std::size_t>(range.first + k)] =
           scratch_.tension[offset(0) + static_cast<std::size_t>(k)] + uniform;
@@ -145,55 +174,71 @@ void MembraneForces::measure(const Membranes& membranes, int cell, std::size_t a
   run_loop<MeasureCell>(arrays);
 }
 
-void MembraneForces::apply_law(const Law& law, const CellRange& range, const double* rest_curvature, std::size_t at,
-                               CellState& state, bool first_tension, bool first_moment, double* energy) {
+void MembraneForces::apply_law(const Law& law, const Membranes& membranes, int cell, std::size_t at,
+                               std::vector<ElementState>* next, CellState& sums, bool first_tension, bool first_moment,
+                               double* energy) {
   Scratch& s = scratch_;
+  const CellRange& range = membranes.cells[static_cast<std::size_t>(cell)];
   const bool whole_cell = law.pressure || law.perimeter_tension;
   double pressure = 0, perimeter_tension = 0;
   rouleau_membrane_block block{};
   block.struct_size = sizeof block;
   block.count = whole_cell ? 1 : static_cast<std::uint32_t>(range.count);
-  block.time_step = 1;
+  block.time_step = next != nullptr ? 1 : 0;
   if (law.stretch) block.stretch = &s.stretch[at];
   if (law.stretch_rate) block.stretch_rate = &s.rate[at];
   if (law.curvature) block.curvature = &s.curvature[at];
-  if (law.rest_curvature) block.rest_curvature = rest_curvature;
-  if (law.area) block.area = &state.area;
+  if (law.rest_curvature) block.rest_curvature = &rest_.curvature[offset(cell)];
+  if (law.area) block.area = &sums.area;
   if (law.rest_area) block.rest_area = &range.rest_area;
-  if (law.perimeter) block.perimeter = &state.perimeter;
+  if (law.perimeter) block.perimeter = &sums.perimeter;
   if (law.rest_perimeter) block.rest_perimeter = &range.rest_perimeter;
   if (law.tension) block.tension = first_tension ? &s.tension[at] : &s.law[at];
   if (law.moment) block.moment = first_moment ? &s.moment[at] : &s.law[at];
   if (law.pressure) block.pressure = &pressure;
   if (law.perimeter_tension) block.perimeter_tension = &perimeter_tension;
+  if (law.tension_by_rate) block.tension_by_rate = &s.law_by_rate[at];
   block.energy = energy;
+  std::array<const double*, most_states> state;
+  std::array<double*, most_states> new_state;
+  if (!law.state.empty()) {
+    for (std::size_t k = 0; k < law.state.size(); ++k) {
+      const auto first = static_cast<std::size_t>(range.first);
+      state[k] = &membranes.state[law.state[k]].value[first];
+      if (next != nullptr) new_state[k] = &(*next)[law.state[k]].value[first];
+    }
+    block.state = state.data();
+    if (next != nullptr) block.new_state = new_state.data();
+  }
   law.model->membrane().compute(law.model->self(), &block);
 
-  const auto add = [&](std::vector<double>& sum) {
-    for (std::size_t i = at; i < at + static_cast<std::size_t>(range.count); ++i) sum[i] += s.law[i];
+  const auto add = [&](const std::vector<double>& from, std::vector<double>& sum) {
+    for (std::size_t i = at; i < at + static_cast<std::size_t>(range.count); ++i) sum[i] += from[i];
   };
-  if (law.tension && !first_tension) add(s.tension);
-  if (law.moment && !first_moment) add(s.moment);
-  state.pressure += pressure;
-  state.perimeter_tension += perimeter_tension;
+  if (law.tension && !first_tension) add(s.law, s.tension);
+  if (law.moment && !first_moment) add(s.law, s.moment);
+  if (law.tension_by_rate) add(s.law_by_rate, s.by_rate);
+  sums.pressure += pressure;
+  sums.perimeter_tension += perimeter_tension;
 }
 
 MembraneForces::CellState MembraneForces::apply_laws(const Membranes& membranes, int cell, std::size_t at,
-                                                     MembraneEnergy* energy) {
+                                                     std::vector<ElementState>* next, MembraneEnergy* energy) {
   const CellRange& range = membranes.cells[static_cast<std::size_t>(cell)];
   const Type& type = types_[static_cast<std::size_t>(range.type)];
-  CellState state;
+  CellState sums;
   if (type.cell) {
-    state.area = enclosed_area(membranes, range);
-    state.perimeter = perimeter(membranes, range);
+    sums.area = enclosed_area(membranes, range);
+    sums.perimeter = perimeter(membranes, range);
   }
+  if (type.tension_by_rate) std::fill_n(&scratch_.by_rate[at], range.count, 0.0);
   bool tension = false, moment = false;
   for (const Law& law : type.laws) {
-    apply_law(law, range, &rest_.curvature[offset(cell)], at, state, !tension, !moment,
-              energy != nullptr ? &scratch_.energy[at] : nullptr);
+    apply_law(law, membranes, cell, at, next, sums, !tension, !moment,
+              energy != nullptr && law.energy ? &scratch_.energy[at] : nullptr);
     tension |= law.tension;
     moment |= law.moment;
-    if (energy == nullptr) continue;
+    if (energy == nullptr || !law.energy) continue;
     if (law.tension) {
       energy->tension += weighted_sum(&scratch_.energy[at],
                                       &membranes.rest_length[static_cast<std::size_t>(range.first)], range.count);
@@ -207,7 +252,33 @@ MembraneForces::CellState MembraneForces::apply_laws(const Membranes& membranes,
   // Where no law gives them, the arrays may hold those of another type's cell.
   if (!tension) std::fill_n(&scratch_.tension[at], range.count, 0.0);
   if (!moment) std::fill_n(&scratch_.moment[at], range.count, 0.0);
-  return state;
+  if (type.tension_by_rate) add_rate_tension(membranes, cell, at, next);
+  return sums;
+}
+
+/// T(stretch, rate) is taken apart into eta rate, for which the tension of the implicit step comes in, and the rest.
+void MembraneForces::add_rate_tension(const Membranes& membranes, int cell, std::size_t at,
+                                      std::vector<ElementState>* next) {
+  const CellRange& range = membranes.cells[static_cast<std::size_t>(cell)];
+  const std::size_t variable = types_[static_cast<std::size_t>(range.type)].rate_tension;
+  const auto first = static_cast<std::size_t>(range.first);
+  Scratch& s = scratch_;
+  if (next != nullptr) {
+    solve({range.count,
+           &s.tangent_x[at],
+           &s.tangent_y[at],
+           &rest_.inverse_length[offset(cell)],
+           &s.rate[at],
+           &s.by_rate[at],
+           rate_mobility(range.rest_perimeter / range.count),
+           &(*next)[variable].value[first],
+           {&s.law[at], &s.law_by_rate[at], &s.segment_force_x[at], &s.segment_force_y[at]}});
+  }
+  const double* implicit = &membranes.state[variable].value[first];
+  for (int k = 0; k < range.count; ++k) {
+    const std::size_t i = at + static_cast<std::size_t>(k);
+    s.tension[i] += implicit[k] - s.by_rate[i] * s.rate[i];
+  }
 }
 
 void MembraneForces::act(Membranes& membranes, int cell, std::size_t at, const CellState& state) {

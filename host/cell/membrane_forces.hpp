@@ -6,6 +6,7 @@
 
 #include "membranes.hpp"
 #include "plugin/model.hpp"
+#include "tension_rate.hpp"
 #include "worker.hpp"
 
 namespace rouleau::host {
@@ -28,14 +29,19 @@ class MembraneForces {
   /// `laws[t]` are the laws of cell type t. Throws Error(plugin_refused) if a law needs what this host does not give.
   MembraneForces(const Membranes& membranes, std::vector<MembraneLaws> laws);
 
-  /// Pass over cells: sets force_x and force_y. The stretch rate is that of velocity_x, velocity_y.
+  /// To be called before run() and by one thread: adds what the laws remember to `membranes.state`, as far as it is not
+  /// there from an earlier stage. Nothing to do for laws without state.
+  void keep_state(Membranes& membranes);
+
+  /// Pass over cells: sets force_x and force_y and advances the state of the laws by one step. The stretch rate is that
+  /// of velocity_x, velocity_y.
   void run(Worker worker, Membranes& membranes);
 
-  /// Energies at the present positions. Not a pass: one thread, no other in run().
+  /// Energies at the present positions and state. Not a pass: one thread, no other in run().
   [[nodiscard]] MembraneEnergy energies(const Membranes& membranes);
   [[nodiscard]] double energy(const Membranes& membranes) { return energies(membranes).total(); }
 
-  /// Sets the tension of every segment, all laws together, at the present positions. Not a pass either.
+  /// Sets the tension of every segment, all laws together, at the present positions and state. Not a pass either.
   void tensions(const Membranes& membranes, std::vector<double>& tension);
 
  private:
@@ -43,11 +49,14 @@ class MembraneForces {
   struct Law {
     std::shared_ptr<const ModelInstance> model;
     bool stretch, stretch_rate, curvature, rest_curvature, area, rest_area, perimeter, rest_perimeter;  // its inputs
-    bool tension, moment, pressure, perimeter_tension;                                                  // its outputs
+    bool tension, moment, pressure, perimeter_tension, energy, tension_by_rate;                         // its outputs
+    std::vector<std::size_t> state;  // in Membranes::state, once kept
   };
   struct Type {
     std::vector<Law> laws;
     bool rate = false, tension = false, moment = false, cell = false;  // what the laws need or give, all together
+    bool tension_by_rate = false;
+    std::size_t rate_tension = 0;  // in Membranes::state, if there is a tension by rate
   };
   /// Constants of every cell: cell c from offset(c) on, with room on both sides for packs that run over its end.
   struct Rest {
@@ -60,21 +69,27 @@ class MembraneForces {
     std::vector<double> tangent_x, tangent_y, inverse_length, stretch, rate, curvature;
     std::vector<double> tension, moment, law, energy;  // sums; one law's contribution and its energy
     std::vector<double> segment_force_x, segment_force_y;
+    std::vector<double> by_rate, law_by_rate;  // d tension / d rate: sum, one law's; only if a law gives it
   };
   struct CellState {
     double area = 0, perimeter = 0, pressure = 0, perimeter_tension = 0;
   };
 
   static Law describe(std::shared_ptr<const ModelInstance> model);
+  void allocate(const Membranes& membranes);
   [[nodiscard]] std::size_t offset(int cell) const { return offset_[static_cast<std::size_t>(cell)]; }
   // `at`: where the working arrays begin.
   void measure(const Membranes& membranes, int cell, std::size_t at);
-  CellState apply_laws(const Membranes& membranes, int cell, std::size_t at, MembraneEnergy* energy);
-  void apply_law(const Law& law, const CellRange& range, const double* rest_curvature, std::size_t at, CellState& state,
-                 bool first_tension, bool first_moment, double* energy);
+  // `next`: where the state after the step goes; null: someone looks, and there is no step.
+  CellState apply_laws(const Membranes& membranes, int cell, std::size_t at, std::vector<ElementState>* next,
+                       MembraneEnergy* energy);
+  void apply_law(const Law& law, const Membranes& membranes, int cell, std::size_t at, std::vector<ElementState>* next,
+                 CellState& sums, bool first_tension, bool first_moment, double* energy);
+  void add_rate_tension(const Membranes& membranes, int cell, std::size_t at, std::vector<ElementState>* next);
   void act(Membranes& membranes, int cell, std::size_t at, const CellState& state);
 
   std::vector<Type> types_;
+  bool has_state_ = false, state_kept_ = false;
   std::vector<std::size_t> offset_;  // of each cell's node 0
   Rest rest_;
   Scratch scratch_;

@@ -53,6 +53,12 @@ json describe(const Parameter& parameter, const Units& units) {
   return entry;
 }
 
+std::vector<std::string> state_names(const Manifest& manifest) {
+  std::vector<std::string> names;
+  for (const StateVariable& variable : manifest.state) names.push_back(variable.name);
+  return names;
+}
+
 json describe(const Manifest& manifest, const Units& units) {
   json parameters = json::array();
   for (const Parameter& parameter : manifest.parameters) parameters.push_back(describe(parameter, units));
@@ -68,7 +74,7 @@ json describe(const Manifest& manifest, const Units& units) {
           {"parameters", parameters},
           {"needs", manifest.needs},
           {"gives", manifest.gives},
-          {"state", manifest.state},
+          {"state", state_names(manifest)},
           {"inactive_when", manifest.inactive_when},
           {"claims", manifest.claims}};
 }
@@ -120,7 +126,7 @@ void print(const Manifest& manifest, const Units& units) {
   line("library", manifest.library.filename().string());
   line("needs", listed(manifest.needs));
   line("gives", listed(manifest.gives));
-  if (!manifest.state.empty()) line("state", listed(manifest.state));
+  if (!manifest.state.empty()) line("state", listed(state_names(manifest)));
   if (manifest.inactive_when.is_object()) line("inactive when", manifest.inactive_when.dump());
   if (!manifest.claims.empty()) line("claims", manifest.claims.dump());
   std::cout << "  parameters" << (manifest.parameters.empty() ? "     none\n" : "\n");

@@ -29,6 +29,14 @@ struct Parameter {
   std::string doc;
 };
 
+/// A variable of each element that evolves with time; the host keeps it.
+struct StateVariable {
+  std::string name;
+  std::string unit;
+  Dimension dimension;
+  double initial = 0;  ///< in coherent SI units
+};
+
 struct Manifest {
   std::filesystem::path file;     ///< the manifest itself
   std::filesystem::path library;  ///< absolute; checked to lie in the manifest's folder when the library is opened
@@ -37,7 +45,8 @@ struct Manifest {
   std::string version;
   std::string title, reference, author, license;
   std::vector<Parameter> parameters;
-  std::vector<std::string> needs, gives, state;
+  std::vector<std::string> needs, gives;
+  std::vector<StateVariable> state;
   nlohmann::json
       inactive_when;  ///< object: parameter -> value (in its unit) at which the model does nothing; null: never
   nlohmann::json

@@ -165,21 +165,33 @@ std::vector<Parameter> read_parameters(const Document& document, const Units& un
   return parameters;
 }
 
-std::vector<std::string> read_state(const Document& document, const Units& units) {
-  std::vector<std::string> names;
+std::vector<StateVariable> read_state(const Document& document, const Units& units) {
+  std::vector<StateVariable> variables;
+  std::set<std::string> seen;
   const json list = document.root().value("state", json::array());
   for (std::size_t i = 0; i < list.size(); ++i) {
     const std::string at = "/state/" + std::to_string(i);
-    const std::string name = list[i]["name"];
-    if (holds(names, name)) refuse(document, at + "/name", "two state variables are called \"" + name + '"');
+    StateVariable variable;
+    variable.name = list[i]["name"];
+    variable.unit = list[i]["unit"];
+    if (!seen.insert(variable.name).second) {
+      refuse(document, at + "/name", "two state variables are called \"" + variable.name + '"');
+    }
     try {
-      (void)units.dimension(list[i]["unit"].get<std::string>());
+      variable.dimension = units.dimension(variable.unit);
+      variable.initial = list[i].value("initial", 0.0) * units.scale(variable.unit);
     } catch (const UnitError& error) {
       refuse(document, at + "/unit", error.what());
     }
-    names.push_back(name);
+    const auto& exponent = variable.dimension.exponent;
+    if (exponent[3] != 0 || exponent[4] != 0 || exponent[5] != 0) {
+      refuse(document, at + "/unit",
+             "a state variable is kept in lattice units, which " + in_quotes(variable.unit) +
+                 " has none of: kelvin, mole and ampere cannot stand in it");
+    }
+    variables.push_back(std::move(variable));
   }
-  return names;
+  return variables;
 }
 
 void check_quantities(const Document& document, const Manifest& manifest) {

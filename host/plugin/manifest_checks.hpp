@@ -14,8 +14,8 @@ namespace rouleau::host {
 /// The parameters, with numbers in SI. Units must parse; names be unique; limits, usual range and default fit together.
 std::vector<Parameter> read_parameters(const Document& document, const Units& units);
 
-/// Names of the state variables, each with a unit that parses.
-std::vector<std::string> read_state(const Document& document, const Units& units);
+/// The state variables, with initial values in SI. Units must parse and have a size on the lattice; names be unique.
+std::vector<StateVariable> read_state(const Document& document, const Units& units);
 
 /// "needs" and "gives" hold names of the manifest's kind only, and what every model of this kind must have; a membrane
 /// law keeps to one element.

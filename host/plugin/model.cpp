@@ -38,6 +38,9 @@ ModelInstance::ModelInstance(const Manifest& manifest, const std::vector<double>
   if (values.size() != manifest.parameters.size()) {
     throw std::logic_error("a model needs one value for each parameter of its manifest");
   }
+  for (const StateVariable& variable : manifest.state) {
+    initial_state_.push_back(setting.units.to_lattice(variable.initial, variable.dimension));
+  }
   std::vector<const char*> names;
   for (const Parameter& parameter : manifest.parameters) names.push_back(parameter.name.c_str());
   const std::vector<double> lattice = lattice_values(manifest, values, setting.units);

@@ -26,6 +26,8 @@ class ModelInstance {
   ModelInstance(const Manifest& manifest, const std::vector<double>& values, const ModelSetting& setting);
 
   [[nodiscard]] const Manifest& manifest() const { return *manifest_; }
+  /// Initial value of each of the manifest's state variables, in lattice units.
+  [[nodiscard]] const std::vector<double>& initial_state() const { return initial_state_; }
   [[nodiscard]] const void* self() const { return self_.get(); }
   [[nodiscard]] const rouleau_collision& collision() const { return *model_->collision; }
   [[nodiscard]] const rouleau_membrane& membrane() const { return *model_->membrane; }
@@ -34,6 +36,7 @@ class ModelInstance {
  private:
   const Manifest* manifest_;
   const rouleau_model* model_;
+  std::vector<double> initial_state_;
   std::unique_ptr<void, void (*)(void*)> self_;
 };
 

@@ -69,6 +69,9 @@ class Simulation {
   void run_stages() {
     std::unique_ptr<Solver<T>> solver;
     for (int stage = 0; stage < static_cast<int>(plan_.stages.size()) && !stopped_; ++stage) {
+      if (solver) {
+        change_units(membranes_.state, solver->setting().units, plan_.stages[static_cast<std::size_t>(stage)].units);
+      }
       auto next = std::make_unique<Solver<T>>(plan_, stage, membranes_);
       start_fluid(*next, solver.get());
       solver = std::move(next);
@@ -81,6 +84,7 @@ class Simulation {
   template <class T>
   void start_fluid(Solver<T>& solver, Solver<T>* former) {
     const StageSetting& setting = solver.setting();
+    double faster = 0;  // what the membranes' last displacement is worth in the new time step
     if (setting.stage->start == WallStart::developed) {
       // Couette and Poiseuille flow, y from the middle of the channel.
       const double middle = (scene_.domain.nodes[1] - 1) / 2.0, half_height = scene_.domain.nodes[1] / 2.0;
@@ -92,11 +96,12 @@ class Simulation {
           },
           [&](double y) { return setting.shear_rate - curvature * (y - middle); });
     } else if (former != nullptr) {
-      solver.fluid().take_over(former->fluid(),
-                               setting.stage->density_factor / former->setting().stage->density_factor);
+      faster = setting.stage->density_factor / former->setting().stage->density_factor;
+      solver.fluid().take_over(former->fluid(), faster);
     }
-    std::fill(membranes_.velocity_x.begin(), membranes_.velocity_x.end(), 0.0);
-    std::fill(membranes_.velocity_y.begin(), membranes_.velocity_y.end(), 0.0);
+    for (auto* velocity : {&membranes_.velocity_x, &membranes_.velocity_y}) {
+      for (double& v : *velocity) v *= faster;
+    }
   }
 
   template <class T>

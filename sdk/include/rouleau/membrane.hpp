@@ -1,11 +1,10 @@
 // Membrane laws: a functor of one segment, one vertex or one whole cell becomes a plugin.
 #pragma once
 
-#include <type_traits>
-
 #include "block.hpp"
 #include "dispatch.hpp"
 #include "model.hpp"
+#include "state.hpp"
 
 namespace rouleau {
 
@@ -22,6 +21,8 @@ struct Tension {
   S energy;                     ///< per rest length
   S tension;                    ///< force along the segment, positive when it pulls its ends together
   S tension_by_stretch = S(0);  ///< for steps that are implicit
+  /// Never negative. If the manifest's "gives" names it, the host takes this part of the tension implicitly: the law is
+  /// stable at any viscosity and writes nothing but T(stretch, rate) and this derivative.
   S tension_by_rate = S(0);
 };
 
@@ -77,9 +78,9 @@ struct MembraneLoop {
   template <class S>
   ROULEAU_ALWAYS_INLINE static void element(const Model& model, const rouleau_membrane_block& block,
                                             std::uint32_t first, std::uint32_t valid) {
-    if constexpr (std::is_invocable_v<const Model&, Segment<S>>) {
+    if constexpr (takes<Model, S, Segment<S>>()) {
       const Segment<S> segment{take<S>(block.stretch, first, valid), take<S>(block.stretch_rate, first, valid)};
-      const Tension<S> result = model(segment);
+      const Tension<S> result = evaluate<S>(model, block, first, valid, segment);
       if constexpr (HasOwnEnergy<Model, S>::value) {
         if (block.energy != nullptr) give(model.energy(segment), block.energy, first, valid);
       } else {
@@ -88,18 +89,21 @@ struct MembraneLoop {
       give(result.tension, block.tension, first, valid);
       give(result.tension_by_stretch, block.tension_by_stretch, first, valid);
       give(result.tension_by_rate, block.tension_by_rate, first, valid);
-    } else if constexpr (std::is_invocable_v<const Model&, Vertex<S>>) {
+    } else if constexpr (takes<Model, S, Vertex<S>>()) {
       const Moment<S> result =
-          model(Vertex<S>{take<S>(block.curvature, first, valid), take<S>(block.rest_curvature, first, valid)});
+          evaluate<S>(model, block, first, valid,
+                      Vertex<S>{take<S>(block.curvature, first, valid), take<S>(block.rest_curvature, first, valid)});
       give(result.energy, block.energy, first, valid);
       give(result.moment, block.moment, first, valid);
       give(result.moment_by_curvature, block.moment_by_curvature, first, valid);
     } else {
-      static_assert(std::is_invocable_v<const Model&, Cell<S>>,
-                    "a membrane law takes a rouleau::Segment<S>, a rouleau::Vertex<S> or a rouleau::Cell<S>");
+      static_assert(takes<Model, S, Cell<S>>(),
+                    "a membrane law takes a rouleau::Segment<S>, a rouleau::Vertex<S> or a rouleau::Cell<S>, and if it "
+                    "has state a rouleau::State<S, state_count>& and the time step");
       const CellForces<S> result =
-          model(Cell<S>{take<S>(block.area, first, valid), take<S>(block.rest_area, first, valid),
-                        take<S>(block.perimeter, first, valid), take<S>(block.rest_perimeter, first, valid)});
+          evaluate<S>(model, block, first, valid,
+                      Cell<S>{take<S>(block.area, first, valid), take<S>(block.rest_area, first, valid),
+                              take<S>(block.perimeter, first, valid), take<S>(block.rest_perimeter, first, valid)});
       give(result.energy, block.energy, first, valid);
       give(result.pressure, block.pressure, first, valid);
       give(result.perimeter_tension, block.perimeter_tension, first, valid);
@@ -109,7 +113,8 @@ struct MembraneLoop {
 
 }  // namespace detail
 
-/// Model made of a type with a constructor from Parameters and a template operator() over the element it describes.
+/// Model made of a type with a constructor from Parameters and a template operator() over the element it describes;
+/// laws that remember: see state.hpp.
 template <class Model>
 rouleau_model membrane(const char* id, const char* version) {
   static const rouleau_membrane table = {

@@ -1,0 +1,34 @@
+// What models remember of the membranes' elements from step to step, under names that last as long as the run.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "input/lattice_units.hpp"
+#include "plugin/manifest.hpp"
+
+namespace rouleau::host {
+
+/// One state variable of one law of a cell type; without a law: of the method itself. Values are in lattice units, one
+/// for each node of all membranes (segment i belongs to node i, a whole cell to its first node); those of cells of
+/// other types are never used.
+struct ElementState {
+  int cell_type;
+  int law;            ///< place among the active laws of the type; -1: kept by the method
+  std::string model;  ///< id of the law; empty: the method
+  std::string name;
+  std::string unit;
+  Dimension dimension;
+  std::vector<double> value;
+};
+
+/// Index of the variable with this owner and name; adds it, all at `initial`, where there is none yet.
+std::size_t keep_state(std::vector<ElementState>& states, ElementState variable, double initial, std::size_t count);
+
+/// The variable of this name and type; null: none. For tests and outputs.
+const ElementState* find_state(const std::vector<ElementState>& states, int cell_type, const std::string& name);
+
+/// Expresses all values in other units: a stage with another time step goes on with the same state.
+void change_units(std::vector<ElementState>& states, const LatticeUnits& from, const LatticeUnits& to);
+
+}  // namespace rouleau::host
