@@ -13,11 +13,11 @@ namespace {
 constexpr std::size_t large_field = 1 << 20;  // bytes; a field that does not stay in the cache
 constexpr int outside = -1000000;             // row of a node whose stencil is not on the lattice
 
-/// Base nodes and what is kept of the weights: written by Locate, read by the others.
+/// Base nodes and what is kept of the weights (kernel.hpp): written by Locate, read by the others.
 template <class Integer, class Number>
 struct Stencils {
   Integer *column, *row;
-  Number *fraction_x, *root_x, *fraction_y, *root_y;
+  Number *p_x, *q_x, *p_y, *q_y;
 };
 template <class T>
 using KnownStencils = Stencils<const int, const T>;
@@ -32,8 +32,8 @@ struct LocateTask {
   bool escaped;  // set when a node's stencil is not on the lattice
 };
 
-/// Base nodes and fractions; the fraction is taken in double precision before it is rounded to T.
-template <class T>
+/// Base nodes and what is kept of the weights, which is computed in double precision before it is rounded to T.
+template <class T, class Kernel>
 struct Locate {
   template <int register_bytes>
   ROULEAU_ALWAYS_INLINE static void run(LocateTask<T>* task) {
@@ -70,8 +70,11 @@ struct Locate {
   /// Returns the base rows.
   template <class S>
   ROULEAU_ALWAYS_INLINE static S group(const LocateTask<T>& t, const S& x, const S& y, int first, int valid) {
-    S base_x = floor(x), base_y = floor(y);
-    const S fraction_x = x - base_x, fraction_y = y - base_y;
+    const S shifted_x = x + Kernel::shift, shifted_y = y + Kernel::shift;
+    S base_x = floor(shifted_x), base_y = floor(shifted_y);
+    S p_x, q_x, p_y, q_y;
+    Kernel::keep(shifted_x - base_x, p_x, q_x);
+    Kernel::keep(shifted_y - base_y, p_y, q_y);
     base_x = wrap(base_x, t.nx);
     // Beyond 1e9, and for NaN, the conversion to int below would be undefined. One comparison a line: g++ 12 takes
     // combined masks apart element by element.
@@ -86,10 +89,10 @@ struct Locate {
     base_x = select(base_y > S(outside + 1.0), base_x, S(0.0));
     put(base_x, t.to.column + first, valid);
     put(base_y, t.to.row + first, valid);
-    put(fraction_x, t.to.fraction_x + first, valid);
-    put(fraction_y, t.to.fraction_y + first, valid);
-    put(kernel_root(fraction_x), t.to.root_x + first, valid);
-    put(kernel_root(fraction_y), t.to.root_y + first, valid);
+    put(p_x, t.to.p_x + first, valid);
+    put(q_x, t.to.q_x + first, valid);
+    put(p_y, t.to.p_y + first, valid);
+    put(q_y, t.to.q_y + first, valid);
     return base_y;
   }
   /// Writes the first `valid` of the values, converted.
@@ -115,7 +118,7 @@ struct SpreadTask {
   std::ptrdiff_t stride;   // from one row to the next, the same in both
 };
 
-template <class T>
+template <class T, class Kernel>
 struct Spread {
   template <int register_bytes>
   ROULEAU_ALWAYS_INLINE static void run(const SpreadTask<T>* task) {
@@ -135,8 +138,8 @@ struct Spread {
   ROULEAU_ALWAYS_INLINE static void spread(const SpreadTask<T>& t, int i) {
     const int first = t.at.row[i] - 1;
     if (first + 4 <= t.row_begin || first >= t.row_end) return;
-    const Four wx = KernelWeights<T>(t.at.fraction_x[i], t.at.root_x[i]).weight;
-    const SpreadWeights<T> wy(t.at.fraction_y[i], t.at.root_y[i]);
+    const Four wx = KernelWeights<Kernel, T>(t.at.p_x[i], t.at.q_x[i]).weight;
+    const SpreadWeights<Kernel, T> wy(t.at.p_y[i], t.at.q_y[i]);
     const Four fx = wx * Four(t.force_x[i]), fy = wx * Four(t.force_y[i]);
     const std::ptrdiff_t at = first * t.stride + t.at.column[i] - 1;
     if (first >= t.row_begin && first + 4 <= t.row_end) {
@@ -164,7 +167,7 @@ struct InterpolateTask {
   bool fetch_ahead;  // most of the fields has left the cache since the fluid's step
 };
 
-template <class T>
+template <class T, class Kernel>
 struct Interpolate {
   template <int register_bytes>
   ROULEAU_ALWAYS_INLINE static void run(const InterpolateTask<T>* task) {
@@ -207,8 +210,8 @@ struct Interpolate {
   ROULEAU_ALWAYS_INLINE static void weigh(const InterpolateTask<T>& t, int i, Four& u, Four& v) {
     u = v = T(0);
     if (t.at.row[i] == outside) return;
-    const Four wx = KernelWeights<T>(t.at.fraction_x[i], t.at.root_x[i]).weight;
-    const SpreadWeights<T> wy(t.at.fraction_y[i], t.at.root_y[i]);
+    const Four wx = KernelWeights<Kernel, T>(t.at.p_x[i], t.at.q_x[i]).weight;
+    const SpreadWeights<Kernel, T> wy(t.at.p_y[i], t.at.q_y[i]);
     const std::ptrdiff_t at = (t.at.row[i] - 1) * t.stride + t.at.column[i] - 1;
     for (int k = 0; k < 4; ++k) {
       u += Four::load(t.origin_x + at + k * t.stride) * wy.weight[k];
@@ -238,12 +241,6 @@ struct Interpolate {
   }
 };
 
-template <class Loop, class Task>
-void run_loop(Task& task) {
-  static const auto function = Dispatch<Loop, Task*>::pick();
-  function(&task);
-}
-
 template <class T>
 std::ptrdiff_t row_stride(const Field<T>& field) {
   return field.row(1) - field.row(0);
@@ -251,69 +248,96 @@ std::ptrdiff_t row_stride(const Field<T>& field) {
 
 }  // namespace
 
+/// The loops for one kernel.
 template <class T>
-Coupling<T>::Coupling(int nx, int ny, bool periodic_y) : nx_(nx), ny_(ny), periodic_y_(periodic_y) {}
+struct Coupling<T>::Loops {
+  void (*locate)(LocateTask<T>*);
+  void (*spread)(const SpreadTask<T>*);
+  void (*interpolate)(const InterpolateTask<T>*);
+
+  template <class Kernel>
+  static const Loops* of() {
+    static const Loops loops{Dispatch<Locate<T, Kernel>, LocateTask<T>*>::pick(),
+                             Dispatch<Spread<T, Kernel>, const SpreadTask<T>*>::pick(),
+                             Dispatch<Interpolate<T, Kernel>, const InterpolateTask<T>*>::pick()};
+    return &loops;
+  }
+  static const Loops* of(KernelKind kernel) {
+    switch (kernel) {
+      case KernelKind::cosine4:
+        return of<Cosine4>();
+      case KernelKind::roma3:
+        return of<Roma3>();
+      case KernelKind::linear2:
+        return of<Linear2>();
+      case KernelKind::peskin4:
+        break;
+    }
+    return of<Peskin4>();
+  }
+};
+
+template <class T>
+Coupling<T>::Coupling(KernelKind kernel, int nx, int ny, bool periodic_y)
+    : loops_(Loops::of(kernel)), nx_(nx), ny_(ny), periodic_y_(periodic_y) {}
 
 template <class T>
 void Coupling<T>::reserve(const Membranes& membranes) {
   const auto nodes = static_cast<std::size_t>(membranes.node_count());
   column_.assign(nodes, 0);
   row_.assign(nodes, outside);
-  for (auto* values : {&fraction_x_, &root_x_, &fraction_y_, &root_y_}) values->assign(nodes, T(0));
+  for (auto* values : {&p_x_, &q_x_, &p_y_, &q_y_}) values->assign(nodes, T(0));
   escaped_.assign(membranes.cells.size(), 0);
 }
 
 template <class T>
-void Coupling<T>::locate(Worker worker, const Membranes& membranes) {
+void Coupling<T>::locate(Worker worker, const Membranes& membranes, NodeVectors position) {
   const Range cells = worker.share(membranes.cell_count());
   for (int c = cells.begin; c < cells.end; ++c) {
     const CellRange& cell = membranes.cells[static_cast<std::size_t>(c)];
-    LocateTask<T> task{
-        {column_.data(), row_.data(), fraction_x_.data(), root_x_.data(), fraction_y_.data(), root_y_.data()},
-        membranes.x.data(),
-        membranes.y.data(),
-        cell.first,
-        cell.end(),
-        nx_,
-        ny_,
-        periodic_y_,
-        false};
-    run_loop<Locate<T>>(task);
+    LocateTask<T> task{{column_.data(), row_.data(), p_x_.data(), q_x_.data(), p_y_.data(), q_y_.data()},
+                       position.x,
+                       position.y,
+                       cell.first,
+                       cell.end(),
+                       nx_,
+                       ny_,
+                       periodic_y_,
+                       false};
+    loops_->locate(&task);
     escaped_[static_cast<std::size_t>(c)] = task.escaped ? 1 : 0;
   }
 }
 
 template <class T>
-void Coupling<T>::spread(Worker worker, const Membranes& membranes, VectorField<T>& force) const {
+void Coupling<T>::spread(Worker worker, NodeVectors node_force, VectorField<T>& force) const {
   const Range rows = worker.share(ny_);
   const int halo = Field<T>::halo;
-  const SpreadTask<T> task{
-      {column_.data(), row_.data(), fraction_x_.data(), root_x_.data(), fraction_y_.data(), root_y_.data()},
-      membranes.force_x.data(),
-      membranes.force_y.data(),
-      membranes.node_count(),
-      worker.first() ? -halo : rows.begin,
-      worker.last() ? ny_ + halo : rows.end,
-      force.x.row(0),
-      force.y.row(0),
-      row_stride(force.x)};
-  run_loop<Spread<T>>(task);
+  const SpreadTask<T> task{{column_.data(), row_.data(), p_x_.data(), q_x_.data(), p_y_.data(), q_y_.data()},
+                           node_force.x,
+                           node_force.y,
+                           static_cast<int>(column_.size()),
+                           worker.first() ? -halo : rows.begin,
+                           worker.last() ? ny_ + halo : rows.end,
+                           force.x.row(0),
+                           force.y.row(0),
+                           row_stride(force.x)};
+  loops_->spread(&task);
 }
 
 template <class T>
 void Coupling<T>::interpolate(Worker worker, Membranes& membranes, const VectorField<T>& velocity) const {
   const Range nodes = membranes.node_share(worker);
-  const InterpolateTask<T> task{
-      {column_.data(), row_.data(), fraction_x_.data(), root_x_.data(), fraction_y_.data(), root_y_.data()},
-      membranes.velocity_x.data(),
-      membranes.velocity_y.data(),
-      nodes.begin,
-      nodes.end,
-      velocity.x.row(0),
-      velocity.y.row(0),
-      row_stride(velocity.x),
-      velocity.x.bytes() > large_field};
-  run_loop<Interpolate<T>>(task);
+  const InterpolateTask<T> task{{column_.data(), row_.data(), p_x_.data(), q_x_.data(), p_y_.data(), q_y_.data()},
+                                membranes.velocity_x.data(),
+                                membranes.velocity_y.data(),
+                                nodes.begin,
+                                nodes.end,
+                                velocity.x.row(0),
+                                velocity.y.row(0),
+                                row_stride(velocity.x),
+                                velocity.x.bytes() > large_field};
+  loops_->interpolate(&task);
 }
 
 template <class T>

@@ -5,26 +5,27 @@
 #include <vector>
 
 #include "fluid/field.hpp"
+#include "kernel_kind.hpp"
 #include "membranes.hpp"
 #include "worker.hpp"
 
 namespace rouleau::host {
 
-/// Immersed-boundary coupling by Peskin's 4-point kernel. Columns are taken periodically: a node's stencil may reach
+/// Immersed-boundary coupling. Columns are taken periodically: a node's stencil may reach
 /// two columns into the halo, which others fold or fill (fluid/exchange.hpp); so may rows.
 template <class T>
 class Coupling {
  public:
-  Coupling(int nx, int ny, bool periodic_y);
+  Coupling(KernelKind kernel, int nx, int ny, bool periodic_y);
 
   /// Makes room for these nodes; to be called once, before the first locate().
   void reserve(const Membranes& membranes);
 
-  /// Pass over cells: weights for the present positions.
-  void locate(Worker worker, const Membranes& membranes);
+  /// Pass over cells: weights for these positions, the membranes' own or where a correction puts their forces.
+  void locate(Worker worker, const Membranes& membranes, NodeVectors position);
   /// Pass over rows: adds the forces of all nodes to this worker's rows worker.share(ny) of the force density; the
   /// first worker owns the lower halo rows too, the last one the upper. The sums do not depend on the workers.
-  void spread(Worker worker, const Membranes& membranes, VectorField<T>& force) const;
+  void spread(Worker worker, NodeVectors node_force, VectorField<T>& force) const;
   /// Pass over cells: sets velocity_x and velocity_y.
   void interpolate(Worker worker, Membranes& membranes, const VectorField<T>& velocity) const;
 
@@ -34,11 +35,13 @@ class Coupling {
   [[nodiscard]] bool any_escaped() const;
 
  private:
+  struct Loops;
+  const Loops* loops_;
   int nx_, ny_;
   bool periodic_y_;
-  std::vector<int> column_, row_;  // base node, wrapped; row outside_ for an escaped node
-  std::vector<T> fraction_x_, root_x_, fraction_y_, root_y_;
-  std::vector<std::uint8_t> escaped_;  // of each cell: whether it has an escaped node
+  std::vector<int> column_, row_;         // base node, wrapped; row outside_ for an escaped node
+  std::vector<T> p_x_, q_x_, p_y_, q_y_;  // what is kept of the weights (kernel.hpp)
+  std::vector<std::uint8_t> escaped_;     // of each cell: whether it has an escaped node
 };
 
 extern template class Coupling<float>;

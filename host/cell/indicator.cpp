@@ -1,6 +1,7 @@
 #include "indicator.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "geometry.hpp"
 #include "rounding.hpp"
@@ -15,9 +16,11 @@ constexpr double displacement_limit = 0.1;
 }  // namespace
 
 template <class T>
-Indicator<T>::Indicator(const Membranes& membranes, std::vector<double> viscosity_ratio, double relaxation_rate, int nx,
-                        int ny, bool periodic_y)
+Indicator<T>::Indicator(const Membranes& membranes, std::vector<double> viscosity_ratio, ViscosityMean mean,
+                        double reach_beyond, double relaxation_rate, int nx, int ny, bool periodic_y)
     : ratio_(std::move(viscosity_ratio)),
+      mean_(mean),
+      margin_(static_cast<int>(std::ceil(reach_beyond))),
       plain_rate_(relaxation_rate),
       nx_(nx),
       ny_(ny),
@@ -79,7 +82,8 @@ void Indicator<T>::cover(Worker worker, const Membranes& membranes) {
   }
 }
 
-// A node at (X, Y) reaches columns floor(X) - 1 ... floor(X) + 2 and the same rows; one more each for its motion.
+// A node at (X, Y) reaches columns floor(X) - 1 ... floor(X) + 2 and the same rows; one more each for its motion, and
+// the margin.
 template <class T>
 void Indicator<T>::find_reach(const Membranes& membranes, const CellRange& cell, Reach& reach) const {
   Rows& reached = reach.reached;
@@ -87,7 +91,7 @@ void Indicator<T>::find_reach(const Membranes& membranes, const CellRange& cell,
   const Bounds box = bounds(membranes, cell);
   if (!box.usable()) return;
   const Rows& covered = reach.covered;
-  int first = floor_int(box.y_min) - 2, last = floor_int(box.y_max) + 3;
+  int first = floor_int(box.y_min) - 2 - margin_, last = floor_int(box.y_max) + 3 + margin_;
   if (!covered.columns.empty()) {
     first = std::min(first, covered.first);
     last = std::max(last, covered.first + static_cast<int>(covered.columns.size()) - 1);
@@ -101,13 +105,13 @@ void Indicator<T>::find_reach(const Membranes& membranes, const CellRange& cell,
   for (int i = cell.first; i < cell.end(); ++i) {
     const int x = floor_int(membranes.x[static_cast<std::size_t>(i)]);
     const int y = floor_int(membranes.y[static_cast<std::size_t>(i)]);
-    include(columns[static_cast<std::size_t>(y - first)], x - 2, x + 4);
+    include(columns[static_cast<std::size_t>(y - first)], x - 2 - margin_, x + 4 + margin_);
   }
   reached.first = first;
   reached.columns.assign(rows, none);
   for (int r = 0; r < static_cast<int>(rows); ++r) {
     Interval& to = reached.columns[static_cast<std::size_t>(r)];
-    for (int k = std::max(0, r - 3); k <= std::min(static_cast<int>(rows) - 1, r + 2); ++k) {
+    for (int k = std::max(0, r - 3 - margin_); k <= std::min(static_cast<int>(rows) - 1, r + 2 + margin_); ++k) {
       include(to, columns[static_cast<std::size_t>(k)].begin, columns[static_cast<std::size_t>(k)].end);
     }
   }
@@ -169,10 +173,12 @@ void Indicator<T>::set_rates(const Membranes& membranes, Range own, Field<T>& ra
       }
     }
   };
-  // The field holds sum (ratio - 1) I until every cell has been added.
+  const bool harmonic = mean_ == ViscosityMean::harmonic;
+  // The field holds the sum over cells of (ratio - 1) I, or (1/ratio - 1) I, until every cell has been added.
   for_changed([](T& value) { value = 0; });
   for (std::size_t c = 0; c < cells_.size(); ++c) {
-    const double excess = ratio_[static_cast<std::size_t>(membranes.cells[c].type)] - 1;
+    const double ratio = ratio_[static_cast<std::size_t>(membranes.cells[c].type)];
+    const double excess = (harmonic ? 1 / ratio : ratio) - 1;
     if (excess == 0) continue;
     const Coverage& coverage = cells_[c].coverage;
     for_rows(cells_[c].covered, own, [&](int y, Interval columns, int place) {
@@ -189,7 +195,11 @@ void Indicator<T>::set_rates(const Membranes& membranes, Range own, Field<T>& ra
     });
   }
   const T plain = static_cast<T>(plain_rate_), outside = static_cast<T>(1 / plain_rate_ - 0.5);
-  for_changed([=](T& value) { value = value == T(0) ? plain : T(1) / (T(0.5) + outside * (T(1) + value)); });
+  if (harmonic) {
+    for_changed([=](T& value) { value = value == T(0) ? plain : T(1) / (T(0.5) + outside / (T(1) + value)); });
+  } else {
+    for_changed([=](T& value) { value = value == T(0) ? plain : T(1) / (T(0.5) + outside * (T(1) + value)); });
+  }
 }
 
 template class Indicator<float>;

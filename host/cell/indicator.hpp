@@ -12,14 +12,19 @@
 
 namespace rouleau::host {
 
-/// tau = 1/2 + (tau_outside - 1/2) (1 + sum over cells (ratio - 1) I), kept as 1/tau (arithmetic mean of viscosities).
+/// How viscosities inside and outside are averaged where a membrane cuts a node's square, I of which lies inside:
+/// arithmetic: mu_outside (1 + sum over cells (ratio - 1) I); harmonic: mu_outside / (1 + sum (1/ratio - 1) I).
+enum class ViscosityMean { arithmetic, harmonic };
+
+/// tau = 1/2 + (tau_outside - 1/2) mu / mu_outside, kept as 1/tau.
 /// Only what cells cover that have moved, or covered before they did, is computed again.
 template <class T>
 class Indicator {
  public:
-  /// `viscosity_ratio[t]`: interior over suspending viscosity of cell type t. `ny` also if not periodic.
-  Indicator(const Membranes& membranes, std::vector<double> viscosity_ratio, double relaxation_rate, int nx, int ny,
-            bool periodic_y);
+  /// `viscosity_ratio[t]`: interior over suspending viscosity of cell type t. `reach_beyond`: how far from a node its
+  /// force may act besides the kernel's own reach, spacings. `ny` also if not periodic.
+  Indicator(const Membranes& membranes, std::vector<double> viscosity_ratio, ViscosityMean mean, double reach_beyond,
+            double relaxation_rate, int nx, int ny, bool periodic_y);
 
   /// Whether a relaxation rate that varies in space is needed; if not, the passes only mark.
   [[nodiscard]] bool varies() const { return varies_; }
@@ -64,6 +69,8 @@ class Indicator {
   void set_rates(const Membranes& membranes, Range own, Field<T>& rate);
 
   std::vector<double> ratio_;
+  ViscosityMean mean_;
+  int margin_;  // nodes, for what reaches beyond the kernel
   double plain_rate_;
   int nx_, ny_;
   bool periodic_y_, varies_ = false;

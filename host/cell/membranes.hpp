@@ -22,6 +22,11 @@ struct CellRange {
   [[nodiscard]] int previous(int i) const { return i == first ? end() - 1 : i - 1; }
 };
 
+/// Two components for each node, of somebody else's.
+struct NodeVectors {
+  const double *x, *y;
+};
+
 /// Closed polygons, nodes counter-clockwise; segment i joins node i and the next node. Positions are not wrapped into
 /// the periodic box, so that outlines stay whole. Lattice node (0, 0) lies at (0, 0), walls at y = -1/2 and ny - 1/2.
 struct Membranes {
@@ -30,11 +35,15 @@ struct Membranes {
   std::vector<double> force_x, force_y;        ///< on the nodes, set anew each step
   std::vector<double> velocity_x, velocity_y;  ///< displacement of the last step
   std::vector<double> largest_step;            ///< of each cell: no node moved further in the last step; empty: unknown
+  std::vector<double> area_leakage;            ///< of each cell, over its rest area: area that the area correction has
+                                               ///< kept from leaving it so far; empty: no correction
   std::vector<double> rest_length;             ///< of segment i
   std::vector<double> rest_weight;             ///< (rest_length[i - 1] + rest_length[i]) / 2: rest measure of node i
   std::vector<double> rest_curvature;          ///< turning angle over rest_weight in the shape it was created with
   std::vector<ElementState> state;             ///< what laws remember; empty where none does
 
+  [[nodiscard]] NodeVectors positions() const { return {x.data(), y.data()}; }
+  [[nodiscard]] NodeVectors forces() const { return {force_x.data(), force_y.data()}; }
   [[nodiscard]] int node_count() const { return static_cast<int>(x.size()); }
   [[nodiscard]] int cell_count() const { return static_cast<int>(cells.size()); }
   /// The nodes of a worker's cells, worker.share(cell_count()).

@@ -72,6 +72,8 @@ Numerics read_numerics(const SceneFields& fields) {
   numerics.precision =
       fields.value_or("/numerics/precision", std::string("f64")) == "f32" ? Precision::f32 : Precision::f64;
   numerics.coupling = fields.value_or("/numerics/coupling", numerics.coupling);
+  numerics.slip_correction = fields.value_or("/numerics/slip_correction", numerics.slip_correction);
+  numerics.area_correction = fields.value_or("/numerics/area_correction", numerics.area_correction);
   return numerics;
 }
 

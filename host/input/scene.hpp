@@ -46,6 +46,8 @@ struct Numerics {
   std::string kernel = "peskin4";
   Precision precision = Precision::f64;
   std::string coupling = "explicit";
+  bool slip_correction = false;  ///< take the tangential slip of the immersed boundary out
+  bool area_correction = false;  ///< keep the cells' areas, and report what would have leaked
 };
 
 struct Biconcave {

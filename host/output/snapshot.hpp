@@ -64,7 +64,9 @@ struct Snapshot {
   double particle_stress = 0;     ///< xy, Pa: membranes and viscosity contrast, per area of the domain
   double mach_max = 0;
   double area_drift_max = 0;  ///< relative
-  double mass_drift = 0;      ///< relative
+  double area_leakage_max =
+      0;                  ///< relative: what the area correction kept from leaking, of the worst cell; NaN without
+  double mass_drift = 0;  ///< relative
   OutlineSnapshot outlines;
   FieldSnapshot fields;
 };

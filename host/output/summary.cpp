@@ -105,6 +105,7 @@ json to_json(const Summary& summary) {
   result["wells"] = summary.wells.is_null() ? json::array() : summary.wells;
   result["conservation"] = {{"mass_drift", number(summary.mass_drift)},
                             {"area_drift_max", number(summary.area_drift_max)},
+                            {"area_leakage_max", number(summary.area_leakage_max)},
                             {"momentum_residual", number(summary.momentum_residual)}};
   const bool cells = summary.stretch[1] > 0;
   result["stretch"] = cells ? json{{"min", number(summary.stretch[0])}, {"max", number(summary.stretch[1])}} : json();

@@ -89,7 +89,7 @@ Tables::Tables(const std::filesystem::path& directory)
       "gap_m,contact_length_m\n");
   series_.write(
       "step,time_s,strain,stage,stage_name,aggregate_count,rotation_rad,relative_viscosity,particle_stress_Pa,mach_max,"
-      "area_drift_max,mass_drift\n");
+      "area_drift_max,mass_drift,area_leakage_max\n");
 }
 
 void Tables::write(const Snapshot& snapshot) {
@@ -156,7 +156,7 @@ void Tables::write_series(const Snapshot& snapshot) {
   Row row = begin_row(snapshot);
   row.add(snapshot.stage).add(snapshot.stage_name).add(snapshot.aggregate_count).add(largest_rotation(snapshot));
   row.add(snapshot.relative_viscosity).add(snapshot.particle_stress).add(snapshot.mach_max);
-  row.add(snapshot.area_drift_max).add(snapshot.mass_drift);
+  row.add(snapshot.area_drift_max).add(snapshot.mass_drift).add(snapshot.area_leakage_max);
   series_.write(row.line());
 }
 

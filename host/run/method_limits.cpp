@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "cell/kernel_kind.hpp"
 #include "method_limits.hpp"
 #include "model_probe.hpp"
 #include "plan.hpp"
@@ -58,6 +59,7 @@ std::vector<Limit> find_limits(const Plan& plan) {
     limits.push_back({name, value, limit, margin, remedy});
   };
   const double tau = scene.numerics.tau;
+  const KernelFacts& kernel = kernel_named(scene.numerics.kernel);
   add("tau - 1/2", tau - 0.5, 0.005, false, "raise numerics.tau above 0.505");
 
   for (const StageSetting& stage : plan.stages) {
@@ -88,10 +90,11 @@ std::vector<Limit> find_limits(const Plan& plan) {
       stretching = std::max(stretching, type_stretching);
       bending = std::max(bending, type_bending);
     }
-    add("stretching stiffness in lattice units" + where, stretching, interpolate(stretch_limit, tau), true,
+    add("stretching stiffness in lattice units" + where, stretching,
+        kernel.stretch_limit * interpolate(stretch_limit, tau), true,
         "lower density_factor, with which the lattice stiffness falls");
-    add("bending stiffness in lattice units" + where, bending, interpolate(bending_limit, tau), true,
-        "lower density_factor, with which the lattice stiffness falls");
+    add("bending stiffness in lattice units" + where, bending, kernel.bending_limit * interpolate(bending_limit, tau),
+        true, "lower density_factor, with which the lattice stiffness falls");
     for (const PlannedModel& model : plan.interactions) {
       if (!model.active()) continue;
       const ModelInstance instance(*model.manifest, model.parameters.values, setting);

@@ -31,6 +31,9 @@ class Observer {
 
   /// Largest relative change of a cell's area so far, at the present positions; `cell`: whose.
   double area_drift(const Membranes& membranes, int* cell = nullptr) const;
+  /// Largest area that the area correction has kept from leaking out of (or into) a cell so far, over its rest area;
+  /// `cell`: whose. NaN without that correction.
+  static double area_leakage(const Membranes& membranes, int* cell = nullptr);
   /// Sum of nodal forces over the sum of their magnitudes: rounding only, or an internal force is unbalanced.
   static double momentum_residual(const Membranes& membranes);
 

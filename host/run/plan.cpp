@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "cell/kernel_kind.hpp"
 #include "input/document.hpp"
 #include "input/wording.hpp"
 #include "plan_models.hpp"
@@ -151,6 +152,12 @@ void plan_passes(Plan& plan) {
   if (plan.has_cells) {
     pass("membrane", std::to_string(scene.cells.size()) + " cells resist deformation");
     if (plan.has_interactions) pass("interaction", "an active potential acts between cells");
+    if (scene.numerics.slip_correction || scene.numerics.area_correction) {
+      pass("corrections",
+           scene.numerics.slip_correction
+               ? (scene.numerics.area_correction ? "membranes neither slip nor leak" : "membranes do not slip")
+               : "cells keep their areas");
+    }
     pass("spread", "membrane forces act on the fluid");
     if (plan.viscosity_contrast)
       pass("indicator", "inside and outside of a cell have different viscosities");
@@ -167,6 +174,12 @@ void plan_passes(Plan& plan) {
   }
   if (plan.has_cells && !plan.viscosity_contrast) {
     omit("indicator and relaxation rate field", "interior and suspending fluid have the same viscosity");
+  }
+  if (plan.has_cells && !scene.numerics.slip_correction) {
+    omit("slip correction", "numerics.slip_correction is false: membranes slip to first order in the lattice spacing");
+  }
+  if (plan.has_cells && !scene.numerics.area_correction) {
+    omit("area correction", "numerics.area_correction is false: leaks show as area drift");
   }
   if (plan.has_cells && !plan.has_interactions) {
     omit("neighbour search", scene.interactions.empty() ? "the scene has no interaction" : "no interaction is active");
@@ -288,6 +301,9 @@ Plan make_plan(const Scene& scene, const Catalog& catalog) {
                             number(acceleration, 3) +
                             " m/s every second for as long as the stage lasts; give domain.y walls, or leave out "
                             "fluid.body_force and pressure_gradient");
+  }
+  if (const KernelFacts& kernel = kernel_named(scene.numerics.kernel); plan.has_cells && *kernel.defect != 0) {
+    plan.warnings.push_back(std::string("kernel ") + kernel.name + ": " + kernel.defect);
   }
   plan_passes(plan);
   plan.wells = describe_wells(plan);

@@ -343,6 +343,7 @@ class Simulation {
     s.mass_drift = observer_.mass_drift();
     s.area_drift_max = observer_.area_drift_max();
     s.stretch = {observer_.stretch().least, observer_.stretch().most};
+    s.area_leakage_max = Observer::area_leakage(membranes_);
     s.momentum_residual = momentum_residual_;
     s.aggregates_final = history_.count();
     s.aggregate_history = history_.events();

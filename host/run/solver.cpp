@@ -1,6 +1,8 @@
 #include "solver.hpp"
 
+#include "cell/area_correction.hpp"
 #include "cell/motion.hpp"
+#include "cell/stiffness.hpp"
 
 namespace rouleau::host {
 
@@ -20,9 +22,28 @@ Solver<T>::Solver(const Plan& plan, int stage, Membranes& membranes)
              make_model(plan.collision, setting_->model_setting(plan.scene->fluid.inertia))) {
   if (plan.has_cells) {
     plan_cell_passes(plan);
-    plan_spreading();
+    plan_spreading(plan);
   }
   plan_advance();
+}
+
+/// What the immersed boundary does wrong, and the scene wants put right.
+template <class T>
+void Solver<T>::plan_corrections(const Plan& plan, const std::vector<MembraneLaws>& laws) {
+  const Scene& scene = *plan.scene;
+  if (scene.numerics.slip_correction) {
+    const KernelKind kernel = kernel_named(scene.numerics.kernel).kind;
+    std::vector<SlipCorrection::Type> types;
+    for (std::size_t t = 0; t < scene.cell_types.size(); ++t) {
+      const double ratio = scene.cell_types[t].interior_viscosity / scene.fluid.viscosity;
+      double stiffness = 0;
+      for (const auto& law : laws[t]) stiffness += stretching_stiffness(*law);
+      types.push_back({slip_constants(kernel, ratio), stiffness});
+    }
+    slip_correction_ = std::make_unique<SlipCorrection>(membranes_, std::move(types), (setting_->tau - 0.5) / 3);
+  }
+  keeps_areas_ = scene.numerics.area_correction;
+  if (keeps_areas_) membranes_.area_leakage.resize(membranes_.cells.size(), 0.0);  // earlier stages' leakage stays
 }
 
 /// Passes over cells: each worker has its own cells, and what it reads of others lies behind a barrier.
@@ -39,6 +60,7 @@ void Solver<T>::plan_cell_passes(const Plan& plan) {
       if (law.active()) laws[type].push_back(make_model(law, setting));
     }
   }
+  plan_corrections(plan, laws);
   membrane_forces_ = std::make_unique<MembraneForces>(membranes_, std::move(laws));
   membrane_forces_->keep_state(membranes_);
   const auto membrane = [this](Worker worker) { membrane_forces_->run(worker, membranes_); };
@@ -47,15 +69,21 @@ void Solver<T>::plan_cell_passes(const Plan& plan) {
   for (const CellType& type : scene.cell_types) {
     viscosity_ratio.push_back(type.interior_viscosity / scene.fluid.viscosity);
   }
-  indicator_ = std::make_unique<Indicator<T>>(membranes_, std::move(viscosity_ratio), 1 / setting_->tau, nx, ny,
-                                              scene.domain.periodic_y);
+  const bool corrected = slip_correction_ != nullptr;
+  indicator_ = std::make_unique<Indicator<T>>(
+      membranes_, std::move(viscosity_ratio), corrected ? ViscosityMean::harmonic : ViscosityMean::arithmetic,
+      corrected ? slip_correction_->largest_shift() : 0.0, 1 / setting_->tau, nx, ny, scene.domain.periodic_y);
   indicator_name_ = plan.viscosity_contrast ? "indicator" : "activity";
   const auto cover = [this](Worker worker) {
     indicator_->measure(worker, membranes_);
     indicator_->cover(worker, membranes_);
   };
+  const auto distribute = [this](Worker worker) {
+    if (slip_correction_) slip_correction_->distribute(worker, membranes_);
+  };
   if (!plan.has_interactions) {
     forces_.push_back({"membrane", membrane, Meeting::none});
+    if (corrected) forces_.push_back({"corrections", distribute, Meeting::none});
     forces_.push_back({indicator_name_, cover});
     return;
   }
@@ -77,17 +105,19 @@ void Solver<T>::plan_cell_passes(const Plan& plan) {
   forces_.push_back({"membrane", membrane, Meeting::await});
   forces_.push_back({"interaction", interaction(1), Meeting::announce});
   forces_.push_back({indicator_name_, cover, Meeting::await});
-  forces_.push_back({"interaction", interaction(2)});
+  forces_.push_back({"interaction", interaction(2), corrected ? Meeting::none : Meeting::all});
+  if (corrected) forces_.push_back({"corrections", distribute});
 }
 
 /// Passes over rows: each worker has its own rows and collides them afterwards. Only where y is periodic do the rows of
 /// one worker have images in the halo of another.
 template <class T>
-void Solver<T>::plan_spreading() {
+void Solver<T>::plan_spreading(const Plan& plan) {
   const FluidSetting& fluid = fluid_.setting();
-  coupling_ = std::make_unique<Coupling<T>>(fluid.nx, fluid.ny, fluid.periodic_y);
+  coupling_ = std::make_unique<Coupling<T>>(kernel_named(plan.scene->numerics.kernel).kind, fluid.nx, fluid.ny,
+                                            fluid.periodic_y);
   coupling_->reserve(membranes_);
-  coupling_->locate(Worker{}, membranes_);
+  locate(Worker{});
   forces_.push_back({indicator_name_,
                      [this](Worker worker) {
                        if (!indicator_->due()) return;
@@ -96,8 +126,9 @@ void Solver<T>::plan_spreading() {
                      Meeting::none});
   const Meeting images = fluid.periodic_y ? Meeting::all : Meeting::none;
   forces_.push_back({"spread", [this](Worker worker) { fluid_.clear_force(worker); }, images});
+  const NodeVectors node_force = slip_correction_ ? slip_correction_->forces() : membranes_.forces();
   forces_.push_back(
-      {"spread", [this](Worker worker) { coupling_->spread(worker, membranes_, fluid_.force()); }, images});
+      {"spread", [this, node_force](Worker worker) { coupling_->spread(worker, node_force, fluid_.force()); }, images});
   forces_.push_back({"spread", [this](Worker worker) { fluid_.fold_force(worker); }, Meeting::none});
 }
 
@@ -118,12 +149,27 @@ void Solver<T>::plan_advance() {
                         coupling_->interpolate(worker, membranes_, fluid_.force());
                       },
                       Meeting::none});
+  if (slip_correction_ || keeps_areas_) {
+    advance_.push_back({"corrections",
+                        [this](Worker worker) {
+                          if (slip_correction_) slip_correction_->correct(worker, membranes_);
+                          if (keeps_areas_) keep_areas(worker, membranes_);
+                        },
+                        Meeting::none});
+  }
   advance_.push_back({"move",
                       [this](Worker worker) {
                         move_nodes(worker, membranes_);
-                        coupling_->locate(worker, membranes_);
+                        locate(worker);
                       },
                       Meeting::none});
+}
+
+/// Pass over cells: where the nodes touch the lattice.
+template <class T>
+void Solver<T>::locate(Worker worker) {
+  if (slip_correction_) slip_correction_->measure(worker, membranes_);
+  coupling_->locate(worker, membranes_, slip_correction_ ? slip_correction_->positions() : membranes_.positions());
 }
 
 template <class T>

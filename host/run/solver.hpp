@@ -9,6 +9,7 @@
 #include "cell/interaction_forces.hpp"
 #include "cell/membrane_forces.hpp"
 #include "cell/membranes.hpp"
+#include "cell/slip_correction.hpp"
 #include "fluid/fluid.hpp"
 #include "pass.hpp"
 #include "plan.hpp"
@@ -35,8 +36,10 @@ class Solver {
 
  private:
   void plan_cell_passes(const Plan& plan);
-  void plan_spreading();
+  void plan_corrections(const Plan& plan, const std::vector<MembraneLaws>& laws);
+  void plan_spreading(const Plan& plan);
   void plan_advance();
+  void locate(Worker worker);
 
   const StageSetting* setting_;
   Membranes& membranes_;
@@ -44,7 +47,9 @@ class Solver {
   std::unique_ptr<MembraneForces> membrane_forces_;
   std::unique_ptr<InteractionForces> interaction_forces_;
   std::unique_ptr<Coupling<T>> coupling_;
+  std::unique_ptr<SlipCorrection> slip_correction_;
   std::unique_ptr<Indicator<T>> indicator_;
+  bool keeps_areas_ = false;
   std::string indicator_name_;
   std::vector<Pass> forces_, advance_;
 };

@@ -1,0 +1,52 @@
+// Takes the tangential slip out of the immersed boundary, which the smearing of forces over the kernel leaves behind.
+#pragma once
+
+#include <vector>
+
+#include "membranes.hpp"
+#include "slip_constants.hpp"
+#include "worker.hpp"
+
+namespace rouleau::host {
+
+/// Forces act and velocities are read at X - d n (n outward); the couple that this takes away is given back by forces
+/// on both neighbours, and the velocities are turned by the adjoint of that. A node then gains the slip
+/// `slip / viscosity x` tangential force per length, smoothed along the membrane (docs: physics, slip correction).
+class SlipCorrection {
+ public:
+  /// What the correction has to know of a cell type, lattice units.
+  struct Type {
+    SlipConstants constants;
+    double stretching_stiffness;  ///< d tension / d stretch: stiff membranes need their slip smoothed more often
+  };
+  /// `viscosity`: of the suspending fluid, lattice units.
+  SlipCorrection(const Membranes& membranes, std::vector<Type> types, double viscosity);
+
+  /// Pass over cells: directions at the present positions, and where the nodes touch the lattice.
+  void measure(Worker worker, const Membranes& membranes);
+  /// Pass over cells, once the forces on them are complete: what is spread, and the slip that goes with it.
+  void distribute(Worker worker, const Membranes& membranes);
+  /// Pass over cells: turns velocities interpolated at the touching points into those of the membrane.
+  void correct(Worker worker, Membranes& membranes);
+
+  /// Largest |d| of the types, spacings.
+  [[nodiscard]] double largest_shift() const;
+  [[nodiscard]] NodeVectors positions() const { return {touch_x_.data(), touch_y_.data()}; }
+  [[nodiscard]] NodeVectors forces() const { return {force_x_.data(), force_y_.data()}; }
+
+ private:
+  template <class Loop>
+  void run(Worker worker, const Membranes& membranes, double* velocity_x, double* velocity_y);
+
+  std::vector<Type> types_;
+  double viscosity_;
+  std::vector<int> smoothings_;                // of each cell's slip
+  std::vector<double> tangent_x_, tangent_y_;  // along the chord from the node before to the node after
+  std::vector<double> inverse_chord_;          // 1 / its length
+  std::vector<double> touch_x_, touch_y_;
+  std::vector<double> force_x_, force_y_;  // what is spread
+  std::vector<double> slip_;               // velocity along the tangent
+  std::vector<double> scratch_x_, scratch_y_;
+};
+
+}  // namespace rouleau::host
