@@ -1,9 +1,11 @@
-// Limits of the method for a scene, measured with explicit coupling and the 4-point kernel (docs/stability.md).
+// Limits of the method for a scene, measured with the 4-point kernel (docs/accuracy.md).
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
+#include "cell/stiffness.hpp"
 #include "method_limits.hpp"
 #include "plan.hpp"
 
@@ -35,41 +37,9 @@ constexpr std::array<TableEntry, 6> stretch_limit{
 constexpr std::array<TableEntry, 5> bending_limit{{{0.55, 0.36}, {0.6, 0.86}, {1.0, 6.8}, {2.0, 3.8}, {5.0, 1.7}}};
 constexpr std::array<TableEntry, 3> contact_limit{{{0.6, 0.65}, {1.0, 1.46}, {2.0, 0.97}}};
 
-/// Largest value of a derivative over the given inputs.
-double largest(const std::vector<double>& values) {
-  double most = 0;
-  for (double v : values) most = std::max(most, std::abs(v));
-  return most;
-}
-
-double stretch_stiffness(const ModelInstance& law) {
-  const std::vector<double> stretch{0.95, 1.0, 1.1};
-  std::vector<double> stiffness(stretch.size(), 0.0);
-  rouleau_membrane_block block{};
-  block.struct_size = sizeof block;
-  block.count = static_cast<std::uint32_t>(stretch.size());
-  block.time_step = 1;
-  const std::vector<double> zero(stretch.size(), 0.0);
-  block.stretch = stretch.data();
-  if (law.manifest().needs_input("stretch_rate")) block.stretch_rate = zero.data();
-  block.tension_by_stretch = stiffness.data();
-  law.membrane().compute(law.self(), &block);
-  return largest(stiffness);
-}
-
-double bending_stiffness(const ModelInstance& law) {
-  const double curvature = 0, rest = 0;
-  double stiffness = 0;
-  rouleau_membrane_block block{};
-  block.struct_size = sizeof block;
-  block.count = 1;
-  block.time_step = 1;
-  block.curvature = &curvature;
-  if (law.manifest().needs_input("rest_curvature")) block.rest_curvature = &rest;
-  block.moment_by_curvature = &stiffness;
-  law.membrane().compute(law.self(), &block);
-  return stiffness;
-}
+// How many times stiffer membranes may be with the semi-implicit step: the least that was measured for segments of half
+// a spacing to two and tau from 0.6 to 10 (docs/accuracy.md). Below that it gains nothing.
+constexpr double stretching_gain = 40, bending_gain = 10, least_semi_implicit_tau = 0.6;
 
 /// Largest stiffness of a potential in its attractive part, where membranes settle: at and beyond its zero of force.
 double contact_stiffness(const ModelInstance& potential, double& zero_force_distance) {
@@ -99,7 +69,61 @@ double contact_stiffness(const ModelInstance& potential, double& zero_force_dist
   return most;
 }
 
+struct Stiffness {
+  double stretching = 0, bending = 0;
+};
+
+/// The stiffest cell type of a stage.
+Stiffness membrane_stiffness(const Plan& plan, const ModelSetting& setting) {
+  Stiffness most;
+  for (const std::vector<PlannedModel>& laws : plan.membranes) {
+    Stiffness type;
+    for (const PlannedModel& law : laws) {
+      if (!law.active()) continue;
+      const ModelInstance instance(*law.manifest, law.parameters.values, setting);
+      type.stretching += stretching_stiffness(instance);
+      type.bending += bending_stiffness(instance);
+    }
+    most.stretching = std::max(most.stretching, type.stretching);
+    most.bending = std::max(most.bending, type.bending);
+  }
+  return most;
+}
+
+/// Relative change of the area of a cell whose membrane is stretched from the start: the tension T over the radius a is
+/// a pressure, and density deviates by three times the pressure. 0 without prestretch.
+double prestress_compression(const Plan& plan, const StageSetting& stage) {
+  double most = 0;
+  for (std::size_t type = 0; type < plan.membranes.size(); ++type) {
+    const auto* circle = std::get_if<Circle>(&plan.scene->cell_types[type].shape);
+    if (circle == nullptr) continue;
+    double tension = 0;
+    for (const PlannedModel& law : plan.membranes[type]) {
+      if (!law.active()) continue;
+      const ModelInstance instance(*law.manifest, law.parameters.values,
+                                   stage.model_setting(plan.scene->fluid.inertia));
+      tension += tension_at(instance, circle->prestretch);
+    }
+    most = std::max(most, 3 * std::abs(tension) * stage.units.length / circle->radius);
+  }
+  return most;
+}
+
 }  // namespace
+
+bool semi_implicit_gains(const Plan& plan) { return plan.scene->numerics.tau >= least_semi_implicit_tau; }
+
+double explicit_margin(const Plan& plan) {
+  double margin = std::numeric_limits<double>::infinity();
+  if (!plan.has_cells) return margin;
+  const double tau = plan.scene->numerics.tau;
+  for (const StageSetting& stage : plan.stages) {
+    const Stiffness stiffness = membrane_stiffness(plan, stage.model_setting(plan.scene->fluid.inertia));
+    margin = std::min({margin, interpolate(stretch_limit, tau) / stiffness.stretching,
+                       interpolate(bending_limit, tau) / stiffness.bending});
+  }
+  return margin;
+}
 
 std::vector<Limit> find_limits(const Plan& plan) {
   const Scene& scene = *plan.scene;
@@ -112,6 +136,10 @@ std::vector<Limit> find_limits(const Plan& plan) {
   };
   const double tau = scene.numerics.tau;
   add("tau - 1/2", tau - 0.5, 0.005, false, "raise numerics.tau above 0.505");
+  if (plan.semi_implicit) {
+    add("tau of the semi-implicit step", tau, least_semi_implicit_tau, false,
+        "raise numerics.tau, for the semi-implicit step gains nothing at low viscosity");
+  }
 
   for (const StageSetting& stage : plan.stages) {
     const std::string where = " (stage " + stage.stage->name + ")";
@@ -129,22 +157,20 @@ std::vector<Limit> find_limits(const Plan& plan) {
           "lower density_factor or the driving force, or raise the resolution");
     }
     if (!plan.has_cells) continue;
-    double stretching = 0, bending = 0, radius = 1e300, shortest = 1e300, longest = 0;
-    for (const std::vector<PlannedModel>& laws : plan.membranes) {
-      double type_stretching = 0, type_bending = 0;
-      for (const PlannedModel& law : laws) {
-        if (!law.active()) continue;
-        const ModelInstance instance(*law.manifest, law.parameters.values, setting);
-        if (law.manifest->gives_output("tension_by_stretch")) type_stretching += stretch_stiffness(instance);
-        if (law.manifest->gives_output("moment_by_curvature")) type_bending += bending_stiffness(instance);
-      }
-      stretching = std::max(stretching, type_stretching);
-      bending = std::max(bending, type_bending);
-    }
-    add("stretching stiffness in lattice units" + where, stretching, interpolate(stretch_limit, tau), true,
-        "lower density_factor, with which the lattice stiffness falls");
-    add("bending stiffness in lattice units" + where, bending, interpolate(bending_limit, tau), true,
-        "lower density_factor, with which the lattice stiffness falls");
+    const Stiffness membrane = membrane_stiffness(plan, setting);
+    const bool gains = plan.semi_implicit && tau >= least_semi_implicit_tau;
+    const std::string coupled = plan.semi_implicit ? ", semi-implicit" : "";
+    const std::string softer = plan.semi_implicit
+                                   ? "lower density_factor, with which the lattice stiffness falls"
+                                   : "lower density_factor, with which the lattice stiffness falls, or set "
+                                     "numerics.coupling to \"semi-implicit\"";
+    add("stretching stiffness in lattice units" + coupled + where, membrane.stretching,
+        (gains ? stretching_gain : 1) * interpolate(stretch_limit, tau), true, softer);
+    add("bending stiffness in lattice units" + coupled + where, membrane.bending,
+        (gains ? bending_gain : 1) * interpolate(bending_limit, tau), true, softer);
+    add("compression of cells by their prestress, 3 T/a" + where, prestress_compression(plan, stage), 1e-3, true,
+        "lower density_factor: pressure compresses the lattice's fluid the more, the longer the time step");
+    double radius = 1e300, shortest = 1e300, longest = 0;
     for (const PlannedModel& model : plan.interactions) {
       if (!model.active()) continue;
       const ModelInstance instance(*model.manifest, model.parameters.values, setting);
