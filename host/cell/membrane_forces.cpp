@@ -8,6 +8,7 @@
 
 #include "geometry.hpp"
 #include "membrane_kernels.hpp"
+#include "stiffness.hpp"
 
 namespace rouleau::host {
 
@@ -95,6 +96,19 @@ void MembraneForces::allocate(const Membranes& membranes) {
   }
 }
 
+void MembraneForces::make_semi_implicit(const Membranes& membranes) {
+  for (const CellRange& cell : membranes.cells) {
+    Type& type = types_[static_cast<std::size_t>(cell.type)];
+    if (type.filter) continue;
+    double stretching = 0, bending = 0;
+    for (const Law& law : type.laws) {
+      stretching += stretching_stiffness(*law.model);
+      bending += bending_stiffness(*law.model);
+    }
+    type.filter.emplace(cell.count, cell.rest_perimeter / cell.count, stretching, bending);
+  }
+}
+
 void MembraneForces::keep_state(Membranes& membranes) {
   for (std::size_t t = 0; t < types_.size(); ++t) {
     Type& type = types_[t];
@@ -121,15 +135,19 @@ void MembraneForces::run(Worker worker, Membranes& membranes) {
   const Range cells = worker.share(membranes.cell_count());
   for (int cell = cells.begin; cell < cells.end; ++cell) {
     const std::size_t at = offset(cells.begin);
-    measure(membranes, cell, at);
+    const CellRange& range = membranes.cells[static_cast<std::size_t>(cell)];
+    const std::optional<ForceFilter>& filter = types_[static_cast<std::size_t>(range.type)].filter;
+    measure(membranes, cell, at, filter.has_value());
     act(membranes, cell, at, apply_laws(membranes, cell, at, &membranes.state, nullptr));
+    const auto first = static_cast<std::size_t>(range.first);
+    if (filter) filter->apply(&membranes.force_x[first], &membranes.force_y[first]);
   }
 }
 
 MembraneEnergy MembraneForces::energies(const Membranes& membranes) {
   MembraneEnergy energy;
   for (int cell = 0; cell < membranes.cell_count(); ++cell) {
-    measure(membranes, cell, offset(0));
+    measure(membranes, cell, offset(0), false);
     apply_laws(membranes, cell, offset(0), nullptr, &energy);
   }
   return energy;
@@ -139,7 +157,7 @@ void MembraneForces::tensions(const Membranes& membranes, std::vector<double>& t
   tension.resize(membranes.x.size());
   for (int cell = 0; cell < membranes.cell_count(); ++cell) {
     const CellRange& range = membranes.cells[static_cast<std::size_t>(cell)];
-    measure(membranes, cell, offset(0));
+    measure(membranes, cell, offset(0), false);
     const double uniform = apply_laws(membranes, cell, offset(0), nullptr, nullptr).perimeter_tension;
     for (int k = 0; k < range.count; ++k) {
       tension[static_cast<std::size_t>(range.first + k)] =
@@ -148,7 +166,7 @@ void MembraneForces::tensions(const Membranes& membranes, std::vector<double>& t
   }
 }
 
-void MembraneForces::measure(const Membranes& membranes, int cell, std::size_t at) {
+void MembraneForces::measure(const Membranes& membranes, int cell, std::size_t at, bool ahead) {
   const CellRange& range = membranes.cells[static_cast<std::size_t>(cell)];
   const Type& type = types_[static_cast<std::size_t>(range.type)];
   Scratch& s = scratch_;
@@ -158,6 +176,14 @@ void MembraneForces::measure(const Membranes& membranes, int cell, std::size_t a
   };
   copy_closed(membranes.x, s.x);
   copy_closed(membranes.y, s.y);
+  if (ahead) {
+    for (int k = -1; k <= range.count; ++k) {
+      const int node = range.first + (k < 0 ? range.count - 1 : k % range.count);
+      const std::size_t to = at + static_cast<std::size_t>(k);
+      s.x[to] += membranes.velocity_x[static_cast<std::size_t>(node)];
+      s.y[to] += membranes.velocity_y[static_cast<std::size_t>(node)];
+    }
+  }
   if (type.rate) {
     copy_closed(membranes.velocity_x, s.u);
     copy_closed(membranes.velocity_y, s.v);

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "force_filter.hpp"
 #include "membranes.hpp"
 #include "plugin/model.hpp"
 #include "tension_rate.hpp"
@@ -28,6 +30,9 @@ class MembraneForces {
  public:
   /// `laws[t]` are the laws of cell type t. Throws Error(plugin_refused) if a law needs what this host does not give.
   MembraneForces(const Membranes& membranes, std::vector<MembraneLaws> laws);
+
+  /// From now on run() takes the semi-implicit step of stiff membranes (ForceFilter) with the laws' own stiffness.
+  void make_semi_implicit(const Membranes& membranes);
 
   /// To be called before run() and by one thread: adds what the laws remember to `membranes.state`, as far as it is not
   /// there from an earlier stage. Nothing to do for laws without state.
@@ -56,7 +61,8 @@ class MembraneForces {
     std::vector<Law> laws;
     bool rate = false, tension = false, moment = false, cell = false;  // what the laws need or give, all together
     bool tension_by_rate = false;
-    std::size_t rate_tension = 0;  // in Membranes::state, if there is a tension by rate
+    std::size_t rate_tension = 0;       // in Membranes::state, if there is a tension by rate
+    std::optional<ForceFilter> filter;  // of a semi-implicit step
   };
   /// Constants of every cell: cell c from offset(c) on, with room on both sides for packs that run over its end.
   struct Rest {
@@ -79,7 +85,8 @@ class MembraneForces {
   void allocate(const Membranes& membranes);
   [[nodiscard]] std::size_t offset(int cell) const { return offset_[static_cast<std::size_t>(cell)]; }
   // `at`: where the working arrays begin.
-  void measure(const Membranes& membranes, int cell, std::size_t at);
+  // `ahead`: where the nodes will be after another step like the last one.
+  void measure(const Membranes& membranes, int cell, std::size_t at, bool ahead);
   // `next`: where the state after the step goes; null: someone looks, and there is no step.
   CellState apply_laws(const Membranes& membranes, int cell, std::size_t at, std::vector<ElementState>* next,
                        MembraneEnergy* energy);

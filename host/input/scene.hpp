@@ -45,7 +45,7 @@ struct Numerics {
   double density_factor = 1.0;  ///< the fluid is simulated this many times denser than it is
   std::string kernel = "peskin4";
   Precision precision = Precision::f64;
-  std::string coupling = "explicit";
+  std::string coupling = "explicit";  ///< or "semi-implicit", or "auto": the limits of the plan decide
   bool slip_correction = false;  ///< take the tangential slip of the immersed boundary out
   bool area_correction = false;  ///< keep the cells' areas, and report what would have leaked
 };

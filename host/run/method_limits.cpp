@@ -1,13 +1,15 @@
-// Limits of the method for a scene, measured with explicit coupling and the 4-point kernel (docs/stability.md).
+// Limits of the method for a scene, measured with the 4-point kernel (docs/accuracy.md).
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "cell/kernel_kind.hpp"
+#include "cell/stiffness.hpp"
 #include "method_limits.hpp"
-#include "model_probe.hpp"
 #include "plan.hpp"
+#include "potential_shape.hpp"
 
 namespace rouleau::host {
 
@@ -40,14 +42,66 @@ constexpr std::array<TableEntry, 3> contact_limit{{{0.6, 0.65}, {1.0, 1.46}, {2.
 // Depth over strongest attraction.
 constexpr double narrowest_well = 1.0;
 
-/// Stiffness of a membrane law about its rest state, where it is largest.
-double stretch_stiffness(const ModelInstance& law) {
+// How many times stiffer membranes may be with the semi-implicit step: the least that was measured for segments of half
+// a spacing to two and tau from 0.6 to 10 (docs/accuracy.md). Below that it gains nothing.
+constexpr double stretching_gain = 40, bending_gain = 10, least_semi_implicit_tau = 0.6;
+
+struct Stiffness {
+  double stretching = 0, bending = 0;
+};
+
+/// The stiffest cell type of a stage.
+Stiffness membrane_stiffness(const Plan& plan, const ModelSetting& setting) {
+  Stiffness most;
+  for (const std::vector<PlannedModel>& laws : plan.membranes) {
+    Stiffness type;
+    for (const PlannedModel& law : laws) {
+      if (!law.active()) continue;
+      const ModelInstance instance(*law.manifest, law.parameters.values, setting);
+      type.stretching += stretching_stiffness(instance);
+      type.bending += bending_stiffness(instance);
+    }
+    most.stretching = std::max(most.stretching, type.stretching);
+    most.bending = std::max(most.bending, type.bending);
+  }
+  return most;
+}
+
+/// Relative change of the area of a cell whose membrane is stretched from the start: the tension T over the radius a is
+/// a pressure, and density deviates by three times the pressure. 0 without prestretch.
+double prestress_compression(const Plan& plan, const StageSetting& stage) {
   double most = 0;
-  for (const double stretch : {0.95, 1.0, 1.1}) most = std::max(most, std::abs(stretch_stiffness(law, stretch)));
+  for (std::size_t type = 0; type < plan.membranes.size(); ++type) {
+    const auto* circle = std::get_if<Circle>(&plan.scene->cell_types[type].shape);
+    if (circle == nullptr) continue;
+    double tension = 0;
+    for (const PlannedModel& law : plan.membranes[type]) {
+      if (!law.active()) continue;
+      const ModelInstance instance(*law.manifest, law.parameters.values,
+                                   stage.model_setting(plan.scene->fluid.inertia));
+      tension += tension_at(instance, circle->prestretch);
+    }
+    most = std::max(most, 3 * std::abs(tension) * stage.units.length / circle->radius);
+  }
   return most;
 }
 
 }  // namespace
+
+bool semi_implicit_gains(const Plan& plan) { return plan.scene->numerics.tau >= least_semi_implicit_tau; }
+
+double explicit_margin(const Plan& plan) {
+  double margin = std::numeric_limits<double>::infinity();
+  if (!plan.has_cells) return margin;
+  const double tau = plan.scene->numerics.tau;
+  const KernelFacts& kernel = kernel_named(plan.scene->numerics.kernel);
+  for (const StageSetting& stage : plan.stages) {
+    const Stiffness stiffness = membrane_stiffness(plan, stage.model_setting(plan.scene->fluid.inertia));
+    margin = std::min({margin, kernel.stretch_limit * interpolate(stretch_limit, tau) / stiffness.stretching,
+                       kernel.bending_limit * interpolate(bending_limit, tau) / stiffness.bending});
+  }
+  return margin;
+}
 
 std::vector<Limit> find_limits(const Plan& plan) {
   const Scene& scene = *plan.scene;
@@ -61,6 +115,10 @@ std::vector<Limit> find_limits(const Plan& plan) {
   const double tau = scene.numerics.tau;
   const KernelFacts& kernel = kernel_named(scene.numerics.kernel);
   add("tau - 1/2", tau - 0.5, 0.005, false, "raise numerics.tau above 0.505");
+  if (plan.semi_implicit) {
+    add("tau of the semi-implicit step", tau, least_semi_implicit_tau, false,
+        "raise numerics.tau, for the semi-implicit step gains nothing at low viscosity");
+  }
 
   for (const StageSetting& stage : plan.stages) {
     const std::string where = " (stage " + stage.stage->name + ")";
@@ -78,23 +136,20 @@ std::vector<Limit> find_limits(const Plan& plan) {
           "lower density_factor or the driving force, or raise the resolution");
     }
     if (!plan.has_cells) continue;
-    double stretching = 0, bending = 0, radius = 1e300, shortest = 1e300, longest = 0;
-    for (const std::vector<PlannedModel>& laws : plan.membranes) {
-      double type_stretching = 0, type_bending = 0;
-      for (const PlannedModel& law : laws) {
-        if (!law.active()) continue;
-        const ModelInstance instance(*law.manifest, law.parameters.values, setting);
-        if (law.manifest->gives_output("tension_by_stretch")) type_stretching += stretch_stiffness(instance);
-        if (law.manifest->gives_output("moment_by_curvature")) type_bending += bending_stiffness(instance);
-      }
-      stretching = std::max(stretching, type_stretching);
-      bending = std::max(bending, type_bending);
-    }
-    add("stretching stiffness in lattice units" + where, stretching,
-        kernel.stretch_limit * interpolate(stretch_limit, tau), true,
-        "lower density_factor, with which the lattice stiffness falls");
-    add("bending stiffness in lattice units" + where, bending, kernel.bending_limit * interpolate(bending_limit, tau),
-        true, "lower density_factor, with which the lattice stiffness falls");
+    const Stiffness membrane = membrane_stiffness(plan, setting);
+    const bool gains = plan.semi_implicit && tau >= least_semi_implicit_tau;
+    const std::string coupled = plan.semi_implicit ? ", semi-implicit" : "";
+    const std::string softer = plan.semi_implicit
+                                   ? "lower density_factor, with which the lattice stiffness falls"
+                                   : "lower density_factor, with which the lattice stiffness falls, or set "
+                                     "numerics.coupling to \"semi-implicit\"";
+    add("stretching stiffness in lattice units" + coupled + where, membrane.stretching,
+        (gains ? stretching_gain : 1) * kernel.stretch_limit * interpolate(stretch_limit, tau), true, softer);
+    add("bending stiffness in lattice units" + coupled + where, membrane.bending,
+        (gains ? bending_gain : 1) * kernel.bending_limit * interpolate(bending_limit, tau), true, softer);
+    add("compression of cells by their prestress, 3 T/a" + where, prestress_compression(plan, stage), 1e-3, true,
+        "lower density_factor: pressure compresses the lattice's fluid the more, the longer the time step");
+    double radius = 1e300, shortest = 1e300, longest = 0;
     for (const PlannedModel& model : plan.interactions) {
       if (!model.active()) continue;
       const ModelInstance instance(*model.manifest, model.parameters.values, setting);

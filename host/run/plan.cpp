@@ -7,6 +7,7 @@
 #include "cell/kernel_kind.hpp"
 #include "input/document.hpp"
 #include "input/wording.hpp"
+#include "method_limits.hpp"
 #include "plan_models.hpp"
 
 namespace rouleau::host {
@@ -150,7 +151,8 @@ void plan_passes(Plan& plan) {
   const auto omit = [&](const std::string& what, const std::string& why) { plan.left_out.push_back({what, why}); };
 
   if (plan.has_cells) {
-    pass("membrane", std::to_string(scene.cells.size()) + " cells resist deformation");
+    pass("membrane", std::to_string(scene.cells.size()) + " cells resist deformation" +
+                         (plan.semi_implicit ? "; semi-implicit step" : ""));
     if (plan.has_interactions) pass("interaction", "an active potential acts between cells");
     if (scene.numerics.slip_correction || scene.numerics.area_correction) {
       pass("corrections",
@@ -237,6 +239,26 @@ void plan_estimate(Plan& plan) {
                                fields * nodes * 4 * (2 + static_cast<double>(scene.output.quantities.size()));
 }
 
+void choose_coupling(Plan& plan) {
+  const std::string& wanted = plan.scene->numerics.coupling;
+  if (!plan.has_cells) {
+    plan.coupling = "none, for the scene has no cells";
+    return;
+  }
+  if (wanted != "auto") {
+    plan.semi_implicit = wanted == "semi-implicit";
+    plan.coupling = wanted + ", as numerics.coupling says";
+    return;
+  }
+  const double margin = explicit_margin(plan);
+  const bool stiff = margin < comfortable_margin;
+  plan.semi_implicit = stiff && semi_implicit_gains(plan);
+  plan.coupling = std::string(plan.semi_implicit ? "semi-implicit" : "explicit") +
+                  ", chosen by \"auto\": the explicit limit of the membranes' stiffness is " + number(margin, 3) +
+                  " times what they have, " + (stiff ? "below " : "at least ") + number(comfortable_margin, 2) +
+                  (stiff && !plan.semi_implicit ? "; at this numerics.tau the semi-implicit step would not help" : "");
+}
+
 std::string warning_of(const Limit& limit) {
   return limit.name + " is " + number(limit.value, 4) + (limit.value > limit.limit ? ", above" : ", below") +
          " its limit of " + number(limit.limit, 4) + "; " + limit.remedy;
@@ -305,6 +327,7 @@ Plan make_plan(const Scene& scene, const Catalog& catalog) {
   if (const KernelFacts& kernel = kernel_named(scene.numerics.kernel); plan.has_cells && *kernel.defect != 0) {
     plan.warnings.push_back(std::string("kernel ") + kernel.name + ": " + kernel.defect);
   }
+  choose_coupling(plan);
   plan_passes(plan);
   plan.wells = describe_wells(plan);
   plan.dimensionless = dimensionless_numbers(plan);

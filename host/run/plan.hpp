@@ -38,6 +38,8 @@ struct Plan {
   bool has_cells = false;
   bool viscosity_contrast = false;
   bool has_interactions = false;
+  bool semi_implicit = false;  ///< membranes: the step that numerics.coupling names or, if "auto", the limits ask for
+  std::string coupling;        ///< which step that is and why, for people
 
   std::vector<PlannedPass> passes;
   std::vector<Omission> left_out;

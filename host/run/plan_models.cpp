@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model_probe.hpp"
+#include "cell/stiffness.hpp"
+#include "potential_shape.hpp"
 
 namespace rouleau::host {
 
@@ -74,8 +75,8 @@ double stretching_modulus(const Plan& plan) {
     double sum = 0;
     for (const PlannedModel& law : laws) {
       if (!law.active() || !law.manifest->gives_output("tension_by_stretch")) continue;
-      sum += stretch_stiffness(
-          ModelInstance(*law.manifest, law.parameters.values, stage.model_setting(plan.scene->fluid.inertia)), 1.0);
+      sum += stretching_stiffness(
+          ModelInstance(*law.manifest, law.parameters.values, stage.model_setting(plan.scene->fluid.inertia)), {1.0});
     }
     if (sum > 0 && !(sum >= least)) least = stage.units.to_si(sum, dimension::tension);
   }

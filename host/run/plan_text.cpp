@@ -90,6 +90,7 @@ std::string to_text(const Plan& plan) {
     out << "  " << padded(std::string(to_string(model->manifest->kind)) + " " + model->manifest->id, 30)
         << model->manifest->library.string() << "\n";
   }
+  out << "\nCoupling of membranes and fluid\n  " << plan.coupling << "\n";
   out << "\nPasses of a step\n";
   for (const PlannedPass& pass : plan.passes) out << "  " << padded(pass.name, 14) << pass.why << "\n";
   out << "\nLeft out\n";
@@ -124,6 +125,7 @@ nlohmann::json to_json(const Plan& plan) {
                               {"version", model->manifest->version},
                               {"library", model->manifest->library.string()}});
   }
+  json["coupling"] = {{"semi_implicit", plan.semi_implicit}, {"why", plan.coupling}};
   json["passes"] = nlohmann::json::array();
   for (const PlannedPass& pass : plan.passes) json["passes"].push_back({{"name", pass.name}, {"why", pass.why}});
   json["left_out"] = nlohmann::json::array();

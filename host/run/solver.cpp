@@ -63,6 +63,7 @@ void Solver<T>::plan_cell_passes(const Plan& plan) {
   plan_corrections(plan, laws);
   membrane_forces_ = std::make_unique<MembraneForces>(membranes_, std::move(laws));
   membrane_forces_->keep_state(membranes_);
+  if (plan.semi_implicit) membrane_forces_->make_semi_implicit(membranes_);
   const auto membrane = [this](Worker worker) { membrane_forces_->run(worker, membranes_); };
 
   std::vector<double> viscosity_ratio;

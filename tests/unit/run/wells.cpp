@@ -3,7 +3,7 @@
 
 #include "input/scene.hpp"
 #include "plugin/catalog.hpp"
-#include "run/model_probe.hpp"
+#include "run/potential_shape.hpp"
 #include "run/plan.hpp"
 
 using namespace rouleau::host;

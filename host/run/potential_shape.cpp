@@ -1,4 +1,4 @@
-#include "model_probe.hpp"
+#include "potential_shape.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -83,37 +83,7 @@ double largest(const std::vector<double>& values) {
   return most;
 }
 
-rouleau_membrane_block one_element() {
-  rouleau_membrane_block block{};
-  block.struct_size = sizeof block;
-  block.count = 1;
-  block.time_step = 1;
-  return block;
-}
-
 }  // namespace
-
-double stretch_stiffness(const ModelInstance& law, double stretch) {
-  const double rate = 0;
-  double stiffness = 0;
-  rouleau_membrane_block block = one_element();
-  block.stretch = &stretch;
-  if (law.manifest().needs_input("stretch_rate")) block.stretch_rate = &rate;
-  block.tension_by_stretch = &stiffness;
-  law.membrane().compute(law.self(), &block);
-  return stiffness;
-}
-
-double bending_stiffness(const ModelInstance& law) {
-  const double curvature = 0, rest = 0;
-  double stiffness = 0;
-  rouleau_membrane_block block = one_element();
-  block.curvature = &curvature;
-  if (law.manifest().needs_input("rest_curvature")) block.rest_curvature = &rest;
-  block.moment_by_curvature = &stiffness;
-  law.membrane().compute(law.self(), &block);
-  return stiffness;
-}
 
 PotentialShape find_shape(const ModelInstance& potential) {
   constexpr int samples = 2000;

@@ -1,4 +1,4 @@
-// What a model's own functions tell of it before a run: stiffnesses, and the well of a potential. In lattice units.
+// What a potential's own functions tell of it before a run: its well, its range, its stiffness. In lattice units.
 #pragma once
 
 #include <optional>
@@ -6,12 +6,6 @@
 #include "plugin/model.hpp"
 
 namespace rouleau::host {
-
-/// d tension / d stretch at a stretch. The law must give tension_by_stretch.
-double stretch_stiffness(const ModelInstance& law, double stretch);
-
-/// d moment / d curvature where curvature and rest curvature are zero. The law must give moment_by_curvature.
-double bending_stiffness(const ModelInstance& law);
 
 /// The deepest well of a potential.
 struct Well {

@@ -1,0 +1,148 @@
+// Stiff membranes: where the explicit step ends the semi-implicit one goes on, and changes nothing where both serve.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <iostream>
+#include <random>
+
+#include "cell/geometry.hpp"
+#include "cell/motion.hpp"
+#include "scene_run.hpp"
+#include "solver_fixture.hpp"
+
+using namespace rouleau::host;
+
+namespace {
+
+const std::string scenes = ROULEAU_PHYSICS_SCENES;
+
+/// Largest node step, after 2500 steps or as soon as it is no small one, of a cell at rest whose nodes were moved by up
+/// to 0.001 spacings; moduli in lattice units.
+double disturbance(double shear_modulus, double bending_modulus, const std::string& coupling, double tau) {
+  const std::string numerics = "/numerics/tau=" + std::to_string(tau);
+  const LatticeUnits units = SolverBench(scenes + "/stiff.json", {numerics}).plan.stages[0].units;
+  const auto text = [](double value) {
+    std::ostringstream out;
+    out.precision(15);
+    out << value;
+    return out.str();
+  };
+  const std::string laws = "/cell_types/rbc/membrane/";
+  SolverBench bench(
+      scenes + "/stiff.json",
+      {numerics, "/numerics/coupling=" + coupling,
+
+       laws + "0/parameters/shear_modulus=" + text(units.to_si(shear_modulus, dimension::tension)),
+       laws + "1/parameters/modulus=" + text(units.to_si(bending_modulus, Dimension{{1, 2, -2, 0, 0, 0}}))});
+  Membranes& m = bench.membranes;
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> uniform(-1e-3, 1e-3);
+  for (auto* position : {&m.x, &m.y}) {
+    for (double& p : *position) p += uniform(random);
+  }
+  bench.start();
+  double step = 0;
+  for (int i = 0; i < 2500; ++i) {
+    bench.step(1);
+    step = largest_step(m);
+    if (!(step < 0.1)) break;
+  }
+  return step;
+}
+
+}  // namespace
+
+TEST_CASE("the semi-implicit step bears ten times the stiffness at which the explicit one ends", "[stiff]") {
+  // Explicit limits of the shear modulus and of the bending modulus in lattice units, as plan prints them.
+  struct Limits {
+    double tau, shear, bending;
+  };
+  const auto [tau, shear, bending] =
+      GENERATE(Limits{0.6, 0.77, 0.86}, Limits{1, 2.1, 6.8}, Limits{2, 1.7, 3.8}, Limits{5, 0.95, 1.7});
+  const bool bends = GENERATE(false, true);
+  const double at_limit = bends ? bending : shear;
+  const auto left = [&, t = tau](double factor, const char* coupling) {
+    return bends ? disturbance(0.02, factor * at_limit, coupling, t)
+                 : disturbance(factor * at_limit, 0.02, coupling, t);
+  };
+  const double before = left(0.7, "explicit"), beyond = left(10, "explicit"), bearing = left(10, "semi-implicit");
+  std::cout << "tau " << tau << (bends ? ", bending: " : ", stretching: ")
+            << "node step after a disturbance of 1e-3: " << before
+            << " explicit at 0.7 of the limit; at ten times the limit " << beyond << " explicit, " << bearing
+            << " semi-implicit\n";
+  CHECK(before < 1e-5);
+  CHECK(!(beyond < 0.1));
+  CHECK(bearing < 1e-5);
+}
+
+TEST_CASE("the semi-implicit step leaves a capsule's shape, angle and viscosity as they are", "[stiff]") {
+  const auto run = [](const std::string& coupling) {
+    return run_scene(scenes + "/capsule.json", {"/stages/0/strain=6", "/numerics/coupling=" + coupling});
+  };
+  const SceneRun one = run("explicit"), other = run("semi-implicit");
+  REQUIRE(other.summary["status"] == "completed");
+  const auto change = [](const std::vector<double>& a, const std::vector<double>& b) {
+    return b.back() / a.back() - 1;
+  };
+  const double shape = change(one.column("deformation"), other.column("deformation"));
+  const double angle = change(one.column("angle_rad"), other.column("angle_rad"));
+  const double viscosity = change(one.series_column("relative_viscosity"), other.series_column("relative_viscosity"));
+  std::cout << "semi-implicit against explicit, Ca 0.05, strain 6: D " << shape << ", angle " << angle
+            << ", relative viscosity " << viscosity << " (relative)\n";
+  CHECK(shape != 0);  // it is another step, after all
+  CHECK(std::abs(shape) < 1e-4);
+  CHECK(std::abs(angle) < 1e-4);
+  CHECK(std::abs(viscosity) < 1e-4);
+}
+
+TEST_CASE("semi-implicit forces sum to zero in a flow, and nearly so do their torques", "[stiff]") {
+  SolverBench bench(scenes + "/capsule.json", {"/numerics/coupling=semi-implicit"});
+  bench.start();
+  bench.step(2000);
+  bench.forces();
+  const Membranes& m = bench.membranes;
+  const Eigen::Vector2d c = centroid(m, m.cells[0]);
+  double x = 0, torque = 0, size = 0, lever = 0;
+  for (std::size_t i = 0; i < m.x.size(); ++i) {
+    const double rx = m.x[i] - c.x(), ry = m.y[i] - c.y(), f = std::hypot(m.force_x[i], m.force_y[i]);
+    x += m.force_x[i];
+    torque += rx * m.force_y[i] - ry * m.force_x[i];
+    size += f;
+    lever += f * std::hypot(rx, ry);
+  }
+  std::cout << "semi-implicit, capsule in shear: net force " << x / size << ", net torque " << torque / lever
+            << " of the sums of sizes\n";
+  CHECK(std::abs(x) < 1e-12 * size);
+  CHECK(std::abs(torque) < 1e-3 * lever);
+}
+
+TEST_CASE("auto takes the semi-implicit step where the plan's limits ask for it", "[stiff]") {
+  const auto plan = [](const std::string& modulus, const std::string& tau) {
+    const SolverBench bench(scenes + "/stiff.json",
+                            {"/numerics/coupling=auto", "/numerics/tau=" + tau,
+                             "/cell_types/rbc/membrane/0/parameters/shear_modulus=\"" + modulus + "\""});
+    return std::pair{bench.plan.semi_implicit, bench.plan.coupling};
+  };
+  CHECK_FALSE(plan("6e-6 N/m", "1").first);
+  CHECK(plan("1e-3 N/m", "1").first);
+  const auto thin = plan("1 N/m", "0.55");
+  CHECK_FALSE(thin.first);
+  CHECK(thin.second.find("would not help") != std::string::npos);
+}
+
+TEST_CASE("a stiff and viscous membrane goes through a shear flow", "[stiff]") {
+  SolverBench bench(scenes + "/tumbling.json",
+                    {"/numerics/coupling=auto", "/cell_types/rbc/membrane/0/parameters/shear_modulus=\"4e-4 N/m\"",
+                     "/cell_types/rbc/membrane/2/parameters/viscosity=\"1e-6 N s/m\""});
+  REQUIRE(bench.plan.semi_implicit);
+  bench.start();
+  const double area = enclosed_area(bench.membranes, bench.membranes.cells[0]);
+  const long steps = std::lround(2 / bench.plan.stages[0].shear_rate);
+  double fastest = 0;
+  for (long step = 0; step < steps; ++step) {
+    bench.step(1);
+    fastest = std::max(fastest, largest_step(bench.membranes));
+  }
+  std::cout << "stiff and viscous, strain 2: fastest step over wall speed " << fastest / bench.plan.stages[0].wall_speed
+            << ", area changed by " << enclosed_area(bench.membranes, bench.membranes.cells[0]) / area - 1 << "\n";
+  CHECK(fastest < bench.plan.stages[0].wall_speed);  // no node outruns the walls
+}
