@@ -110,7 +110,7 @@ struct Correct {
 int smoothings_of(double length, double mobility, double stiffness) {
   const double number = mobility * stiffness / (length * length);
   int passes = std::max(1, static_cast<int>(std::lround(1 / (length * length))));
-  constexpr int most = 32;
+  constexpr int most = 256;  // enough for thirty times the stiffness that explicit coupling bears
   // The largest 4 sin^2(q/2) cos^2p(q/2) over q is 4/(p + 1) (p/(p + 1))^p.
   while (passes < most && number * 4 / (passes + 1) * std::pow(passes / (passes + 1.0), passes) > 1) ++passes;
   return std::min(passes, most);

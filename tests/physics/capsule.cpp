@@ -1,8 +1,10 @@
 // A capsule in the channel against the boundary-integral solution in tests/reference/capsule_channel.json.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <iomanip>
 #include <iostream>
 #include <numbers>
+#include <sstream>
 
 #include "scene_run.hpp"
 
@@ -39,7 +41,8 @@ nlohmann::json reference(double ca, double lambda) {
 TEST_CASE("segments up to the limit of plan keep the area", "[capsule]") {
   const auto [segments, most] = GENERATE(table<int, double>({{126, 1e-4}, {63, 2e-4}}));
   const SceneRun run = run_scene(std::string(ROULEAU_PHYSICS_SCENES) + "/capsule.json",
-                                 {"/cell_types/capsule/segments=" + std::to_string(segments), "/stages/0/strain=5"});
+                                 {"/cell_types/capsule/segments=" + std::to_string(segments), "/stages/0/strain=5",
+                                  "/numerics/slip_correction=false", "/numerics/area_correction=false"});
   REQUIRE(run.summary["status"] == "completed");
   CHECK(run.summary["warnings"].empty());
   // The circle it begins as has no long axis; the capsule it becomes is inclined to the flow, and by no half turns
@@ -53,30 +56,85 @@ TEST_CASE("segments up to the limit of plan keep the area", "[capsule]") {
   CHECK(std::abs(drift) < most);
 }
 
-TEST_CASE("the capsule at Ca 0.05 deforms, inclines and tank-treads as the boundary-integral solution", "[capsule]") {
-  struct Case {
-    double lambda, deformation, angle_deg, period;  // tolerances: relative, degrees, relative
-    const char *viscosity, *strain;
+namespace {
+
+/// One row of the reference and how it is run. Radius 4 um, shear rate 20 1/s, mu gamma a = 9.6e-8 N/m.
+struct Capsule {
+  double ca, lambda;
+  int radius = 20;  ///< lattice spacings
+  bool corrected = true;
+};
+
+Steady run_capsule(const Capsule& c) {
+  const double modulus = 9.6e-8 / c.ca, bending = 0.01 * modulus * 16e-12;
+  // Half a turn more than the start needs, and one whole turn of the membrane.
+  const double strain = c.lambda > 1 ? 28 : (c.ca > 0.05 ? 30 : 22);
+
+  const auto exact = [](const std::string& pointer, double value) {
+    std::ostringstream text;
+    text << pointer << "=" << std::scientific << std::setprecision(16) << value;
+    return text.str();
   };
-  // First order in the tangential slip of the plain scheme (docs/accuracy.md); tolerances are those of the issue.
-  const auto c = GENERATE(Case{1, 0.015, 0.7, 0.025, "1.2 cP", "22"}, Case{5, 0.03, 1.2, 0.025, "6 cP", "28"});
-  const SceneRun run = run_scene(std::string(ROULEAU_PHYSICS_SCENES) + "/capsule.json",
-                                 {std::string("/cell_types/capsule/interior_viscosity=") + c.viscosity,
-                                  std::string("/stages/0/strain=") + c.strain});
+  const SceneRun run =
+      run_scene(std::string(ROULEAU_PHYSICS_SCENES) + "/capsule.json",
+                {"/domain/nodes=[" + std::to_string(64 * c.radius / 5) + "," + std::to_string(32 * c.radius / 5) + "]",
+                 "/cell_types/capsule/segments=" + std::to_string(std::lround(2 * std::numbers::pi * c.radius)),
+                 "/cell_types/capsule/interior_viscosity=\"" + std::to_string(1.2 * c.lambda) + " cP\"",
+                 exact("/cell_types/capsule/membrane/0/parameters/shear_modulus", modulus),
+                 exact("/cell_types/capsule/membrane/1/parameters/modulus", bending),
+                 "/stages/0/strain=" + std::to_string(strain),
+                 std::string("/numerics/slip_correction=") + (c.corrected ? "true" : "false"),
+                 std::string("/numerics/area_correction=") + (c.corrected ? "true" : "false")});
   REQUIRE(run.summary["status"] == "completed");
-  const Steady s = steady_state(run);
-  const nlohmann::json r = reference(0.05, c.lambda);
-  std::cout << "capsule, Ca 0.05, lambda " << c.lambda << ": D " << s.deformation << " ("
-            << 100 * (s.deformation / r["D_inertia"].get<double>() - 1) << " %), angle " << s.angle_deg << " deg ("
-            << s.angle_deg - r["theta_deg"].get<double>() << " deg), period " << s.period << " ("
-            << 100 * (s.period / r["tank_treading_period_gamma"].get<double>() - 1) << " %), intrinsic viscosity "
-            << s.intrinsic_viscosity << " ("
-            << 100 * (s.intrinsic_viscosity / r["intrinsic_viscosity"].get<double>() - 1)
-            << " %), area drift per strain " << s.area_drift_per_strain << ", steps " << run.summary["steps"]
-            << ", wall " << run.summary["wall_s"] << " s\n";
-  CHECK(s.deformation == Approx(r["D_inertia"].get<double>()).epsilon(c.deformation));
-  CHECK(s.angle_deg == Approx(r["theta_deg"].get<double>()).margin(c.angle_deg));
-  CHECK(s.period == Approx(r["tank_treading_period_gamma"].get<double>()).epsilon(c.period));
-  if (c.lambda == 1) CHECK(s.area_drift_per_strain < 1e-4);
   CHECK(run.summary["conservation"]["mass_drift"].get<double>() < 1e-12);
+  return steady_state(run);
+}
+
+/// Deviations from the reference: relative, angle in degrees.
+struct Errors {
+  double deformation, angle_deg, period, viscosity;
+};
+
+Errors compare(const Capsule& c, const Steady& s) {
+  const nlohmann::json r = reference(c.ca, c.lambda);
+  const Errors e{s.deformation / r["D_inertia"].get<double>() - 1, s.angle_deg - r["theta_deg"].get<double>(),
+                 s.period / r["tank_treading_period_gamma"].get<double>() - 1,
+                 s.intrinsic_viscosity / r["intrinsic_viscosity"].get<double>() - 1};
+  std::cout << "capsule, Ca " << c.ca << ", lambda " << c.lambda << ", a = " << c.radius
+            << (c.corrected ? "" : ", plain scheme") << ": D " << s.deformation << " (" << 100 * e.deformation
+            << " %), angle " << s.angle_deg << " deg (" << e.angle_deg << " deg), period " << s.period << " ("
+            << 100 * e.period << " %), intrinsic viscosity " << s.intrinsic_viscosity << " (" << 100 * e.viscosity
+            << " %), area drift per strain " << s.area_drift_per_strain << "\n";
+  return e;
+}
+
+}  // namespace
+
+TEST_CASE("the capsule deforms, inclines, tank-treads and thickens the fluid as the boundary-integral solution",
+          "[capsule]") {
+  const Capsule c = GENERATE(Capsule{0.0125, 1}, Capsule{0.05, 1}, Capsule{0.1, 1}, Capsule{0.2, 1}, Capsule{0.05, 5});
+  const Steady s = run_capsule(c);
+  const Errors e = compare(c, s);
+  // What the issue asks for; the reference is known to 1e-4.
+  CHECK(std::abs(e.deformation) < 0.005);
+  CHECK(std::abs(e.angle_deg) < 0.15);
+  CHECK(std::abs(e.period) < 0.004);
+  CHECK(std::abs(e.viscosity) < 0.007);
+  CHECK(s.area_drift_per_strain < 1e-6);
+}
+
+TEST_CASE("with the slip correction the capsule's deformation converges to second order", "[capsule]") {
+  const Capsule coarse{0.05, 5, 10}, fine{0.05, 5, 20};
+  const double at_10 = compare(coarse, run_capsule(coarse)).deformation;
+  const double at_20 = compare(fine, run_capsule(fine)).deformation;
+  CHECK(std::log2(at_10 / at_20) > 1.8);
+}
+
+TEST_CASE("the plain scheme slips: to first order in the spacing the capsule thickens the fluid too much",
+          "[capsule]") {
+  const Capsule coarse{0.05, 1, 10, false}, fine{0.05, 1, 20, false};
+  const double at_10 = compare(coarse, run_capsule(coarse)).viscosity;
+  const double at_20 = compare(fine, run_capsule(fine)).viscosity;
+  CHECK(at_20 > 0.05);
+  CHECK(std::log2(at_10 / at_20) == Approx(1.2).margin(0.3));
 }
