@@ -70,6 +70,7 @@ json describe(const Manifest& manifest, const Units& units) {
           {"gives", manifest.gives},
           {"state", manifest.state},
           {"inactive_when", manifest.inactive_when},
+          {"stands_for", manifest.stands_for},
           {"claims", manifest.claims}};
 }
 
@@ -122,6 +123,7 @@ void print(const Manifest& manifest, const Units& units) {
   line("gives", listed(manifest.gives));
   if (!manifest.state.empty()) line("state", listed(manifest.state));
   if (manifest.inactive_when.is_object()) line("inactive when", manifest.inactive_when.dump());
+  if (manifest.stands_for.is_object()) line("stands for", manifest.stands_for.dump());
   if (!manifest.claims.empty()) line("claims", manifest.claims.dump());
   std::cout << "  parameters" << (manifest.parameters.empty() ? "     none\n" : "\n");
   for (const Parameter& parameter : manifest.parameters) print(parameter, units);
