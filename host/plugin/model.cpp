@@ -72,7 +72,7 @@ ModelInstance::ModelInstance(const Manifest& manifest, const std::vector<double>
   void* self = nullptr;
   if (model_->create(&setup, &self, message.data(), message.size()) != 0) {
     message.back() = '\0';  // whatever the plugin wrote
-    throw ModelRefused(manifest, message.front() == '\0' ? "it gives no reason" : message.data());
+    throw ModelRefused(manifest, message.front() == '\0' ? "it gave no reason" : message.data());
   }
   self_.reset(self);
   if (manifest.kind == ModelKind::interaction) {

@@ -47,7 +47,9 @@ Curve evaluate(const ModelInstance& potential, std::vector<double> distance) {
 std::vector<double> spread(double from, double first, double to, int count) {
   std::vector<double> values(static_cast<std::size_t>(count));
   const double ratio = (to - from) / first;
-  for (std::size_t i = 0; i < values.size(); ++i) values[i] = from + first * std::pow(ratio, i / (count - 1.0));
+  for (int i = 0; i < count; ++i) {
+    values[static_cast<std::size_t>(i)] = from + first * std::pow(ratio, i / (count - 1.0));
+  }
   values.back() = to;
   return values;
 }
