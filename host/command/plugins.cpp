@@ -76,6 +76,7 @@ json describe(const Manifest& manifest, const Units& units) {
           {"gives", manifest.gives},
           {"state", state_names(manifest)},
           {"inactive_when", manifest.inactive_when},
+          {"stands_for", manifest.stands_for},
           {"claims", manifest.claims}};
 }
 
@@ -128,6 +129,7 @@ void print(const Manifest& manifest, const Units& units) {
   line("gives", listed(manifest.gives));
   if (!manifest.state.empty()) line("state", listed(state_names(manifest)));
   if (manifest.inactive_when.is_object()) line("inactive when", manifest.inactive_when.dump());
+  if (manifest.stands_for.is_object()) line("stands for", manifest.stands_for.dump());
   if (!manifest.claims.empty()) line("claims", manifest.claims.dump());
   std::cout << "  parameters" << (manifest.parameters.empty() ? "     none\n" : "\n");
   for (const Parameter& parameter : manifest.parameters) print(parameter, units);

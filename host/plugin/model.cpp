@@ -26,12 +26,17 @@ std::vector<double> lattice_values(const Manifest& manifest, const std::vector<d
   return lattice;
 }
 
-[[noreturn]] void refuse(const Manifest& manifest, const std::string& problem) {
-  throw Error(ExitCode::plugin_refused, Place{manifest.file.string(), {}, 0, 0},
-              "the model \"" + manifest.id + "\" of " + manifest.library.string() + ' ' + problem);
+Place place_of(const Manifest& manifest) { return {manifest.file.string(), {}, 0, 0}; }
+
+std::string name_of(const Manifest& manifest) {
+  return "the model \"" + manifest.id + "\" of " + manifest.library.string();
 }
 
 }  // namespace
+
+ModelRefused::ModelRefused(const Manifest& manifest, const std::string& problem)
+    : Error(ExitCode::plugin_refused, place_of(manifest), name_of(manifest) + " could not be made: " + problem),
+      problem_(problem) {}
 
 ModelInstance::ModelInstance(const Manifest& manifest, const std::vector<double>& values, const ModelSetting& setting)
     : manifest_(&manifest), model_(&open_model(manifest)), self_(nullptr, model_->destroy) {
@@ -70,14 +75,15 @@ ModelInstance::ModelInstance(const Manifest& manifest, const std::vector<double>
   void* self = nullptr;
   if (model_->create(&setup, &self, message.data(), message.size()) != 0) {
     message.back() = '\0';  // whatever the plugin wrote
-    refuse(manifest, message.front() == '\0' ? "could not be made and gave no reason"
-                                             : std::string("could not be made: ") + message.data());
+    throw ModelRefused(manifest, message.front() == '\0' ? "it gave no reason" : message.data());
   }
   self_.reset(self);
   if (manifest.kind == ModelKind::interaction) {
     const double cutoff = interaction().cutoff(self);
     if (!std::isfinite(cutoff) || cutoff < 0) {
-      refuse(manifest, "has the cutoff " + std::to_string(cutoff) + "; it must be finite and not negative");
+      throw Error(
+          ExitCode::plugin_refused, place_of(manifest),
+          name_of(manifest) + " has the cutoff " + std::to_string(cutoff) + "; it must be finite and not negative");
     }
   }
 }

@@ -4,8 +4,10 @@
 #include <rouleau/plugin.h>
 
 #include <memory>
+#include <string>
 #include <vector>
 
+#include "error.hpp"
 #include "input/lattice_units.hpp"
 #include "manifest.hpp"
 
@@ -18,11 +20,22 @@ struct ModelSetting {
   bool inertia;
 };
 
+/// A model's create function has reported an error: as a rule these parameters do not go together.
+class ModelRefused : public Error {
+ public:
+  ModelRefused(const Manifest& manifest, const std::string& problem);
+  /// What is wrong, as the model says.
+  [[nodiscard]] const std::string& problem() const { return problem_; }
+
+ private:
+  std::string problem_;
+};
+
 /// One instance, usable from many threads at once. Creating it opens the model's library.
 class ModelInstance {
  public:
   /// `values`: parameters in SI in the manifest's order; they are converted to lattice units here.
-  /// Throws Error(plugin_refused) when the library is refused or create reports an error.
+  /// Throws Error(plugin_refused) when the library is refused, and its kind ModelRefused when create reports an error.
   ModelInstance(const Manifest& manifest, const std::vector<double>& values, const ModelSetting& setting);
 
   [[nodiscard]] const Manifest& manifest() const { return *manifest_; }

@@ -39,8 +39,10 @@ constexpr std::array<TableEntry, 6> stretch_limit{
 constexpr std::array<TableEntry, 5> bending_limit{{{0.55, 0.36}, {0.6, 0.86}, {1.0, 6.8}, {2.0, 3.8}, {5.0, 1.7}}};
 constexpr std::array<TableEntry, 3> contact_limit{{{0.6, 0.65}, {1.0, 1.46}, {2.0, 0.97}}};
 
-// Depth over strongest attraction.
-constexpr double narrowest_well = 1.0;
+// Narrowest well, in spacings. Cells at rest settle even in wells of a twelfth of a spacing; but where segments are one
+// spacing long, their corners catch on each other in a narrower one: sliding along a rim of 5 spacings radius meets 2 %
+// of the strongest attraction at a width of 0.66, 5 % at 0.33, 11 % at 0.16 (docs/models.md).
+constexpr double narrowest_well = 0.5;
 
 // How many times stiffer membranes may be with the semi-implicit step: the least that was measured for segments of half
 // a spacing to two and tau from 0.6 to 10 (docs/accuracy.md). Below that it gains nothing.
@@ -123,8 +125,6 @@ std::vector<Limit> find_limits(const Plan& plan) {
   for (const StageSetting& stage : plan.stages) {
     const std::string where = " (stage " + stage.stage->name + ")";
     const ModelSetting setting = stage.model_setting(scene.fluid.inertia);
-    // Also opens the library, so that a plan never promises a run that cannot start.
-    const ModelInstance collision(*plan.collision.manifest, plan.collision.parameters.values, setting);
     if (stage.wall_speed != 0) {
       add("Mach number of the walls" + where, std::abs(stage.wall_speed) * std::sqrt(3.0), 0.1, true,
           "lower density_factor or shear_rate, or raise the resolution");
@@ -162,7 +162,9 @@ std::vector<Limit> find_limits(const Plan& plan) {
             "raise the resolution or place the well farther out, for membranes whose gap it does not resolve stick "
             "for ever");
         add("width of the well of " + model.manifest->id + " in lattice spacings", shape.well->width(), narrowest_well,
-            false, "raise the resolution or take a wider well");
+            false,
+            "raise the resolution or take a wider well, for the corners of membranes catch on each other in a narrow "
+            "one");
       } else {
         add("range of the repulsion of " + model.manifest->id + " in lattice spacings", shape.range, 2.0, false,
             "raise the resolution or the range, for nearer than that the lattice moves two membranes together whatever "

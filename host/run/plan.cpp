@@ -17,7 +17,7 @@ namespace {
 PlannedModel plan_model(ModelKind kind, const ModelChoice& choice, const Scene& scene, const Catalog& catalog,
                         const Units& units, std::vector<std::string>& warnings) {
   const Manifest& manifest = catalog.find(kind, choice.model, scene.place(choice.pointer + "/model"));
-  PlannedModel model{&manifest, resolve_parameters(choice, manifest, scene, units)};
+  PlannedModel model{&manifest, resolve_parameters(choice, manifest, scene, units), choice.pointer};
   warnings.insert(warnings.end(), model.parameters.warnings.begin(), model.parameters.warnings.end());
   return model;
 }
@@ -329,6 +329,7 @@ Plan make_plan(const Scene& scene, const Catalog& catalog) {
   }
   choose_coupling(plan);
   plan_passes(plan);
+  try_models(plan);
   plan.wells = describe_wells(plan);
   plan.dimensionless = dimensionless_numbers(plan);
   plan.conversions = conversion_table(plan, units);

@@ -16,6 +16,7 @@ namespace rouleau::host {
 struct PlannedModel {
   const Manifest* manifest;
   ParameterValues parameters;
+  std::string pointer;  ///< its place in the scene
   [[nodiscard]] bool active() const { return !parameters.inactive; }
 };
 

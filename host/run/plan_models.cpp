@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "cell/stiffness.hpp"
+#include "input/wording.hpp"
 #include "potential_shape.hpp"
 
 namespace rouleau::host {
@@ -39,6 +40,18 @@ std::vector<double> what_it_stands_for(const PlannedModel& model) {
 }
 
 }  // namespace
+
+void try_models(const Plan& plan) {
+  const ModelSetting setting = plan.stages.front().model_setting(plan.scene->fluid.inertia);
+  for (const PlannedModel* model : plan.active_models()) {
+    try {
+      const ModelInstance instance(*model->manifest, model->parameters.values, setting);
+    } catch (const ModelRefused& refused) {
+      throw Error(ExitCode::bad_input, plan.scene->place(model->pointer),
+                  in_quotes(model->manifest->id) + " cannot be made with these parameters: " + refused.problem());
+    }
+  }
+}
 
 json describe_wells(const Plan& plan) {
   json wells = json::array();

@@ -45,9 +45,11 @@ Curve evaluate(const ModelInstance& potential, std::vector<double> distance) {
 
 /// `from` + `first`, ..., `to`, with equal ratios of the distances from `from`.
 std::vector<double> spread(double from, double first, double to, int count) {
-  std::vector<double> values;
+  std::vector<double> values(static_cast<std::size_t>(count));
   const double ratio = (to - from) / first;
-  for (int i = 0; i < count; ++i) values.push_back(from + first * std::pow(ratio, i / (count - 1.0)));
+  for (int i = 0; i < count; ++i) {
+    values[static_cast<std::size_t>(i)] = from + first * std::pow(ratio, i / (count - 1.0));
+  }
   values.back() = to;
   return values;
 }

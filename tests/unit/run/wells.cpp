@@ -109,3 +109,16 @@ TEST_CASE("plan warns of a repulsion whose range the lattice does not resolve") 
   REQUIRE(warnings.size() == 1);
   CHECK(warnings[0].find("range of the repulsion of repulsion in lattice spacings is 1, below") != std::string::npos);
 }
+
+TEST_CASE("parameters that a model refuses are an error at its place in the scene, with the model's reason") {
+  const Scene scene =
+      read_scene(scenes + "/depletion-regularised.json", {R"(/interactions/0/parameters/concentration="8 g/dL")"});
+  try {
+    make_plan(scene, plugins());
+    FAIL("a well that is not there was regularised");
+  } catch (const Error& error) {
+    CHECK(error.code() == ExitCode::bad_input);
+    CHECK(error.place().pointer == "/interactions/0");
+    CHECK(std::string(error.what()).find("no well to regularise; take the model \"repulsion\"") != std::string::npos);
+  }
+}
