@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <stdexcept>
 #include <string>
 
 namespace rouleau::host {
@@ -16,10 +17,6 @@ std::vector<double> cutoffs_of(const std::vector<Potential>& potentials) {
       if (need == "distance") continue;
       throw Error(ExitCode::plugin_refused, Place{manifest.file.string(), "/needs"},
                   "interaction \"" + manifest.id + "\" needs \"" + need + "\", which this program does not give yet.");
-    }
-    if (!manifest.state.empty()) {
-      throw Error(ExitCode::plugin_refused, Place{manifest.file.string(), "/state"},
-                  "interaction \"" + manifest.id + "\" has state, which this program does not keep yet.");
     }
     cutoffs.push_back(potential.model->interaction().cutoff(potential.model->self()));
   }
@@ -50,9 +47,37 @@ InteractionForces::InteractionForces(const Membranes& membranes, std::vector<Pot
     : potentials_(std::move(potentials)),
       cutoffs_(cutoffs_of(potentials_)),
       contacts_(membranes, pair_cutoffs(membranes, potentials_, cutoffs_), box),
-      scratch_(membranes.cells.size()) {}
+      scratch_(membranes.cells.size()),
+      variables_(potentials_.size()) {
+  for (const Potential& potential : potentials_) {
+    has_state_ = has_state_ || !potential.model->manifest().state.empty();
+  }
+}
+
+void InteractionForces::keep_state(Membranes& membranes) {
+  if (!has_state_) return;
+  ContactMemory& memory = membranes.contacts;
+  memory.of_cell.resize(membranes.cells.size());
+  for (std::size_t p = 0; p < potentials_.size(); ++p) {
+    const ModelInstance& model = *potentials_[p].model;
+    variables_[p].clear();
+    for (std::size_t k = 0; k < model.manifest().state.size(); ++k) {
+      const StateVariable& declared = model.manifest().state[k];
+      const auto found = std::find_if(memory.variables.begin(), memory.variables.end(), [&](const ContactVariable& v) {
+        return v.potential == static_cast<int>(p) && v.name == declared.name;
+      });
+      variables_[p].push_back(static_cast<std::size_t>(found - memory.variables.begin()));
+      if (found != memory.variables.end()) continue;
+      memory.variables.push_back({static_cast<int>(p), model.manifest().id, declared.name, declared.unit,
+                                  declared.dimension, model.initial_state()[k]});
+    }
+  }
+}
 
 void InteractionForces::run(Worker worker, int phase, Membranes& membranes) {
+  if (has_state_ && membranes.contacts.of_cell.empty()) {
+    throw std::logic_error("potentials with state: keep_state() comes before run()");
+  }
   const Range cells = worker.share(static_cast<int>(membranes.cells.size()));
   switch (phase) {
     case 0:
@@ -119,7 +144,68 @@ void InteractionForces::apply(std::size_t potential, const ContactList& list, Ra
   }
 }
 
-void InteractionForces::compute_forces(int cell, const Membranes& membranes) {
+// A node's value is found by the other cell and its image, for the closest place moves along that cell as it likes.
+void InteractionForces::apply_with_state(std::size_t potential, int cell, std::size_t pair, const Membranes& membranes,
+                                         double* result, bool energy, NextState* next, Scratch& scratch) const {
+  const ContactList& list = contacts_.list(cell);
+  const Neighbours::Pair& other = contacts_.neighbours().list(cell).pairs[pair];
+  const CellRange& own = membranes.cells[static_cast<std::size_t>(cell)];
+  const ContactMemory& memory = membranes.contacts;
+  std::size_t count = 0;
+  for (int i = list.ranges[pair].begin; i < list.ranges[pair].end; ++i) {
+    const double distance = list.distance[static_cast<std::size_t>(i)];
+    if (distance > cutoffs_[potential]) continue;
+    scratch.distance[count] = distance;
+    scratch.contact[count++] = i;
+  }
+  if (count == 0) return;
+  const auto node = [&](std::size_t k) {
+    return static_cast<std::size_t>(list.node[static_cast<std::size_t>(scratch.contact[k])] - own.first);
+  };
+  const std::vector<std::size_t>& variables = variables_[potential];
+  const std::vector<ContactState>& known = memory.of_cell[static_cast<std::size_t>(cell)];
+  const auto find = [&](std::size_t variable, std::size_t from) {
+    const auto found = std::find_if(known.begin() + static_cast<std::ptrdiff_t>(from), known.end(), [&](const auto& s) {
+      return s.variable == variable && s.other == other.other && s.shift == other.shift;
+    });
+    return static_cast<std::size_t>(found - known.begin());
+  };
+  scratch.state.resize(count * variables.size());
+  std::vector<const double*> state;
+  std::vector<double*> new_state;
+  for (std::size_t v = 0; v < variables.size(); ++v) {
+    double* values = scratch.state.data() + v * count;
+    const std::size_t at = find(variables[v], 0);
+    for (std::size_t k = 0; k < count; ++k) {
+      values[k] = at < known.size() ? known[at].value[node(k)] : memory.variables[variables[v]].initial;
+    }
+    state.push_back(values);
+    new_state.push_back(values);
+  }
+  rouleau_interaction_block block{};
+  block.struct_size = sizeof block;
+  block.count = static_cast<std::uint32_t>(count);
+  block.time_step = next != nullptr ? 1 : 0;
+  block.distance = scratch.distance.data();
+  (energy ? block.energy : block.force) = scratch.law.data();
+  block.state = state.data();
+  if (next != nullptr) block.new_state = new_state.data();
+  const ModelInstance& model = *potentials_[potential].model;
+  model.interaction().compute(model.self(), &block);
+  for (std::size_t k = 0; k < count; ++k) result[scratch.contact[k]] += scratch.law[k];
+  if (next == nullptr) return;
+
+  for (std::size_t v = 0; v < variables.size(); ++v) {
+    scratch.fresh.assign(static_cast<std::size_t>(own.count), memory.variables[variables[v]].initial);
+    for (std::size_t k = 0; k < count; ++k) scratch.fresh[node(k)] = new_state[v][k];
+    const std::size_t at = find(variables[v], next->kept);
+    if (at == next->states.size()) next->states.push_back({variables[v], other.other, other.shift, {}});
+    next->states[at].value.swap(scratch.fresh);
+    std::swap(next->states[at], next->states[next->kept++]);
+  }
+}
+
+void InteractionForces::compute_forces(int cell, Membranes& membranes) {
   const ContactList& list = contacts_.list(cell);
   Scratch& scratch = scratch_[static_cast<std::size_t>(cell)];
   if (scratch.force.size() < list.node.size()) {  // only after the candidates were listed anew
@@ -130,15 +216,28 @@ void InteractionForces::compute_forces(int cell, const Membranes& membranes) {
   scratch.reaction_x.assign(touched, 0.0);
   scratch.reaction_y.assign(touched, 0.0);
   const int type = membranes.cells[static_cast<std::size_t>(cell)].type;
+  std::vector<ContactState> none;
+  NextState next{has_state_ ? membranes.contacts.of_cell[static_cast<std::size_t>(cell)] : none};
   for (std::size_t pair = 0; pair < list.ranges.size();) {
+    const std::size_t first_pair = pair;
     const TypeRange range = next_range(cell, membranes, pair);
     bool first = true;
     for (std::size_t p = 0; p < potentials_.size(); ++p) {
       if (!acts_between(potentials_[p], type, range.type)) continue;
-      apply(p, list, range.contacts, scratch.force.data(), false, first, scratch);
+      if (variables_[p].empty()) {
+        apply(p, list, range.contacts, scratch.force.data(), false, first, scratch);
+      } else {
+        if (first) {
+          std::fill(scratch.force.data() + range.contacts.begin, scratch.force.data() + range.contacts.end, 0.0);
+        }
+        for (std::size_t q = first_pair; q < pair; ++q) {
+          apply_with_state(p, cell, q, membranes, scratch.force.data(), false, &next, scratch);
+        }
+      }
       first = false;
     }
   }
+  next.states.resize(next.kept);  // pairs that do not touch any more
 }
 
 void InteractionForces::act(int cell, Membranes& membranes) {
@@ -208,10 +307,14 @@ double InteractionForces::energy(const Membranes& membranes) const {
     std::vector<double> energy(room, 0.0);
     const int type = membranes.cells[static_cast<std::size_t>(cell)].type;
     for (std::size_t pair = 0; pair < list.ranges.size();) {
+      const std::size_t first_pair = pair;
       const TypeRange range = next_range(cell, membranes, pair);
       for (std::size_t p = 0; p < potentials_.size(); ++p) {
         if (!acts_between(potentials_[p], type, range.type)) continue;
-        apply(p, list, range.contacts, energy.data(), true, false, scratch);
+        if (variables_[p].empty()) apply(p, list, range.contacts, energy.data(), true, false, scratch);
+        for (std::size_t q = first_pair; q < pair && !variables_[p].empty(); ++q) {
+          apply_with_state(p, cell, q, membranes, energy.data(), true, nullptr, scratch);
+        }
       }
     }
     for (int i = 0; i < list.count; ++i) {

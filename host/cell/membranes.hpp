@@ -34,6 +34,7 @@ struct Membranes {
   std::vector<double> rest_weight;             ///< (rest_length[i - 1] + rest_length[i]) / 2: rest measure of node i
   std::vector<double> rest_curvature;          ///< turning angle over rest_weight in the shape it was created with
   std::vector<ElementState> state;             ///< what laws remember; empty where none does
+  ContactMemory contacts;                      ///< what interactions remember
 
   [[nodiscard]] int node_count() const { return static_cast<int>(x.size()); }
   [[nodiscard]] int cell_count() const { return static_cast<int>(cells.size()); }

@@ -174,6 +174,7 @@ std::vector<Limit> find_limits(const Plan& plan) {
     for (const PlannedModel& model : plan.interactions) {
       if (!model.active()) continue;
       const ModelInstance instance(*model.manifest, model.parameters.values, setting);
+      if (!model.manifest->state.empty()) continue;  // its stiffness is a matter of what it remembers
       double zero_force = 0;
       const double stiffness = contact_stiffness(instance, zero_force);
       add("contact stiffness of " + model.manifest->id + " in lattice units" + where, stiffness,
