@@ -5,7 +5,7 @@
 
 struct Bridging {
   static constexpr int state_count = 1;  // n
-  double n0, k, r0, on, off, c, kT, rc;
+  double n0, k, r0, on, off, c, thermal, rc;
   explicit Bridging(const rouleau::Parameters& p)
       : n0{p["site_density"]},
         k{p["bond_stiffness"]},
@@ -13,17 +13,16 @@ struct Bridging {
         on{p["on_rate"]},
         off{p["off_rate"]},
         c{p["transition_share"]},
-        kT{p["thermal_energy"]},
+        thermal{p["thermal_energy"]},
         rc{p["cutoff"]} {}
   double cutoff() const { return rc; }
 
   template <class S>
   rouleau::Pair<S> operator()(const S& r, rouleau::State<S, 1>& bonds, double time_step) const {
-    const S u = 0.5 * k * (r - r0) * (r - r0), strain = min(u / kT, S(300.0));  // far beyond, bonds break at once
+    const S u = 0.5 * k * (r - r0) * (r - r0), strain = min(u / thermal, S(300.0));  // far beyond, bonds break at once
     const S forming = on * exp(-c * strain), rate = forming + off * exp((1 - c) * strain),
             balance = n0 * forming / rate;
-    const S n = balance + (bonds[0] - balance) * exp(-time_step * rate);
-    bonds[0] = n;
+    const S n = bonds[0] = balance + (bonds[0] - balance) * exp(-time_step * rate);
     return {n * u, -k * (r - r0) * n, -k * n};
   }
 };
