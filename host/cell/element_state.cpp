@@ -29,4 +29,16 @@ void change_units(std::vector<ElementState>& states, const LatticeUnits& from, c
   }
 }
 
+void change_units(ContactMemory& memory, const LatticeUnits& from, const LatticeUnits& to) {
+  const auto ratio = [&](const ContactVariable& variable) {
+    return from.unit(variable.dimension) / to.unit(variable.dimension);
+  };
+  for (std::vector<ContactState>& states : memory.of_cell) {
+    for (ContactState& state : states) {
+      for (double& value : state.value) value *= ratio(memory.variables[state.variable]);
+    }
+  }
+  for (ContactVariable& variable : memory.variables) variable.initial *= ratio(variable);
+}
+
 }  // namespace rouleau::host

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "input/lattice_units.hpp"
+#include "periodic_box.hpp"
 #include "plugin/manifest.hpp"
 
 namespace rouleau::host {
@@ -22,6 +23,31 @@ struct ElementState {
   std::vector<double> value;
 };
 
+/// One state variable of one interaction.
+struct ContactVariable {
+  int potential;      ///< place among the active interactions
+  std::string model;  ///< id of the interaction
+  std::string name;
+  std::string unit;
+  Dimension dimension;
+  double initial;  ///< lattice units: of a node that has just come within the cutoff
+};
+
+/// Values of one variable for the nodes of one cell against another cell moved by `shift` periods, in lattice units;
+/// initial where a node is not within the cutoff.
+struct ContactState {
+  std::size_t variable;  ///< in ContactMemory::variables
+  int other;
+  ImageShift shift;
+  std::vector<double> value;  ///< of the cell's nodes, from its first on
+};
+
+/// What interactions remember. Pairs of cells come and go with their contacts.
+struct ContactMemory {
+  std::vector<ContactVariable> variables;
+  std::vector<std::vector<ContactState>> of_cell;  ///< empty where no interaction remembers anything
+};
+
 /// Index of the variable with this owner and name; adds it, all at `initial`, where there is none yet.
 std::size_t keep_state(std::vector<ElementState>& states, ElementState variable, double initial, std::size_t count);
 
@@ -30,5 +56,6 @@ const ElementState* find_state(const std::vector<ElementState>& states, int cell
 
 /// Expresses all values in other units: a stage with another time step goes on with the same state.
 void change_units(std::vector<ElementState>& states, const LatticeUnits& from, const LatticeUnits& to);
+void change_units(ContactMemory& memory, const LatticeUnits& from, const LatticeUnits& to);
 
 }  // namespace rouleau::host

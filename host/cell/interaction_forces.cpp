@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <stdexcept>
 #include <string>
 
 namespace rouleau::host {
@@ -16,10 +17,6 @@ std::vector<double> cutoffs_of(const std::vector<Potential>& potentials) {
       if (need == "distance") continue;
       throw Error(ExitCode::plugin_refused, Place{manifest.file.string(), "/needs"},
                   "interaction \"" + manifest.id + "\" needs \"" + need + "\", which this program does not give yet.");
-    }
-    if (!manifest.state.empty()) {
-      throw Error(ExitCode::plugin_refused, Place{manifest.file.string(), "/state"},
-                  "interaction \"" + manifest.id + "\" has state, which this program does not keep yet.");
     }
     cutoffs.push_back(potential.model->interaction().cutoff(potential.model->self()));
   }
@@ -50,9 +47,17 @@ InteractionForces::InteractionForces(const Membranes& membranes, std::vector<Pot
     : potentials_(std::move(potentials)),
       cutoffs_(cutoffs_of(potentials_)),
       contacts_(membranes, pair_cutoffs(membranes, potentials_, cutoffs_), box),
-      scratch_(membranes.cells.size()) {}
+      scratch_(membranes.cells.size()),
+      variables_(potentials_.size()) {
+  for (const Potential& potential : potentials_) {
+    has_state_ = has_state_ || !potential.model->manifest().state.empty();
+  }
+}
 
 void InteractionForces::run(Worker worker, int phase, Membranes& membranes) {
+  if (has_state_ && membranes.contacts.of_cell.empty()) {
+    throw std::logic_error("potentials with state: keep_state() comes before run()");
+  }
   const Range cells = worker.share(static_cast<int>(membranes.cells.size()));
   switch (phase) {
     case 0:
@@ -119,7 +124,7 @@ void InteractionForces::apply(std::size_t potential, const ContactList& list, Ra
   }
 }
 
-void InteractionForces::compute_forces(int cell, const Membranes& membranes) {
+void InteractionForces::compute_forces(int cell, Membranes& membranes) {
   const ContactList& list = contacts_.list(cell);
   Scratch& scratch = scratch_[static_cast<std::size_t>(cell)];
   if (scratch.force.size() < list.node.size()) {  // only after the candidates were listed anew
@@ -130,15 +135,28 @@ void InteractionForces::compute_forces(int cell, const Membranes& membranes) {
   scratch.reaction_x.assign(touched, 0.0);
   scratch.reaction_y.assign(touched, 0.0);
   const int type = membranes.cells[static_cast<std::size_t>(cell)].type;
+  std::vector<ContactState> none;
+  NextState next{has_state_ ? membranes.contacts.of_cell[static_cast<std::size_t>(cell)] : none};
   for (std::size_t pair = 0; pair < list.ranges.size();) {
+    const std::size_t first_pair = pair;
     const TypeRange range = next_range(cell, membranes, pair);
     bool first = true;
     for (std::size_t p = 0; p < potentials_.size(); ++p) {
       if (!acts_between(potentials_[p], type, range.type)) continue;
-      apply(p, list, range.contacts, scratch.force.data(), false, first, scratch);
+      if (variables_[p].empty()) {
+        apply(p, list, range.contacts, scratch.force.data(), false, first, scratch);
+      } else {
+        if (first) {
+          std::fill(scratch.force.data() + range.contacts.begin, scratch.force.data() + range.contacts.end, 0.0);
+        }
+        for (std::size_t q = first_pair; q < pair; ++q) {
+          apply_with_state(p, cell, q, membranes, scratch.force.data(), false, &next, scratch);
+        }
+      }
       first = false;
     }
   }
+  next.states.resize(next.kept);  // pairs that do not touch any more
 }
 
 void InteractionForces::act(int cell, Membranes& membranes) {
@@ -208,10 +226,14 @@ double InteractionForces::energy(const Membranes& membranes) const {
     std::vector<double> energy(room, 0.0);
     const int type = membranes.cells[static_cast<std::size_t>(cell)].type;
     for (std::size_t pair = 0; pair < list.ranges.size();) {
+      const std::size_t first_pair = pair;
       const TypeRange range = next_range(cell, membranes, pair);
       for (std::size_t p = 0; p < potentials_.size(); ++p) {
         if (!acts_between(potentials_[p], type, range.type)) continue;
-        apply(p, list, range.contacts, energy.data(), true, false, scratch);
+        if (variables_[p].empty()) apply(p, list, range.contacts, energy.data(), true, false, scratch);
+        for (std::size_t q = first_pair; q < pair && !variables_[p].empty(); ++q) {
+          apply_with_state(p, cell, q, membranes, energy.data(), true, nullptr, scratch);
+        }
       }
     }
     for (int i = 0; i < list.count; ++i) {

@@ -27,13 +27,18 @@ class InteractionForces {
   /// Throws Error(plugin_refused) if a potential needs what this host does not give.
   InteractionForces(const Membranes& membranes, std::vector<Potential> potentials, PeriodicBox box);
 
+  /// To be called before run() and by one thread: makes room for what potentials remember in `membranes.contacts`, as
+  /// far as it is not there from an earlier stage. Nothing to do for potentials without state.
+  void keep_state(Membranes& membranes);
+
   static constexpr int phases = 3;
-  /// Pass over cells: phases 0, 1, 2 with a barrier after each. Adds to force_x and force_y.
+  /// Pass over cells: phases 0, 1, 2 with a barrier after each. Adds to force_x and force_y and advances the state of
+  /// the contacts by one step.
   void run(Worker worker, int phase, Membranes& membranes);
   /// True if there is nothing to do: run() may be left out.
   [[nodiscard]] bool empty() const { return potentials_.empty(); }
 
-  /// Energy of the contacts found by the last run(). Not a pass.
+  /// Energy of the contacts found by the last run() in their present state. Not a pass.
   [[nodiscard]] double energy(const Membranes& membranes) const;
   /// Smallest distance of a node of this cell to another cell in the last run(); infinity if beyond every cutoff.
   [[nodiscard]] double closest_contact(int cell) const;
@@ -46,6 +51,7 @@ class InteractionForces {
     std::vector<double> distance;                // those within a cutoff shorter than that of the pair
     std::vector<int> contact;                    // to which these belong
     std::vector<double> reaction_x, reaction_y;  // on the nodes of other cells that its pairs touch
+    std::vector<double> state, fresh;            // of one pair's contacts, all variables; of the cell's nodes
   };
   /// Consecutive contacts of a cell with all cells of one type.
   struct TypeRange {
@@ -53,9 +59,17 @@ class InteractionForces {
     Range contacts;
   };
   [[nodiscard]] TypeRange next_range(int cell, const Membranes& membranes, std::size_t& pair) const;
-  void compute_forces(int cell, const Membranes& membranes);
+  void compute_forces(int cell, Membranes& membranes);
   void apply(std::size_t potential, const ContactList& list, Range contacts, double* result, bool energy, bool first,
              Scratch& scratch) const;
+  /// The same for a potential that remembers, at the contacts of one pair. `next`: takes the state after the step, and
+  /// keeps the arrays of the pairs that still touch at its front; null: someone looks, and there is no step.
+  struct NextState {
+    std::vector<ContactState>& states;
+    std::size_t kept = 0;
+  };
+  void apply_with_state(std::size_t potential, int cell, std::size_t pair, const Membranes& membranes, double* result,
+                        bool energy, NextState* next, Scratch& scratch) const;
   /// Forces on the cell's own nodes; those on others are left for their workers.
   void act(int cell, Membranes& membranes);
   void take_reactions(int cell, Membranes& membranes) const;
@@ -64,6 +78,8 @@ class InteractionForces {
   std::vector<double> cutoffs_;  // of the potentials
   Contacts contacts_;
   std::vector<Scratch> scratch_;
+  std::vector<std::vector<std::size_t>> variables_;  // of the potentials, in ContactMemory::variables once kept
+  bool has_state_ = false;
 };
 
 }  // namespace rouleau::host

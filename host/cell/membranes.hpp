@@ -41,6 +41,7 @@ struct Membranes {
   std::vector<double> rest_weight;             ///< (rest_length[i - 1] + rest_length[i]) / 2: rest measure of node i
   std::vector<double> rest_curvature;          ///< turning angle over rest_weight in the shape it was created with
   std::vector<ElementState> state;             ///< what laws remember; empty where none does
+  ContactMemory contacts;                      ///< what interactions remember
 
   [[nodiscard]] NodeVectors positions() const { return {x.data(), y.data()}; }
   [[nodiscard]] NodeVectors forces() const { return {force_x.data(), force_y.data()}; }

@@ -153,6 +153,7 @@ std::vector<Limit> find_limits(const Plan& plan) {
     for (const PlannedModel& model : plan.interactions) {
       if (!model.active()) continue;
       const ModelInstance instance(*model.manifest, model.parameters.values, setting);
+      if (!model.manifest->state.empty()) continue;  // its stiffness is a matter of what it remembers
       const PotentialShape shape = find_shape(instance);
       add("contact stiffness of " + model.manifest->id + " in lattice units" + where, shape.stiffness,
           interpolate(contact_limit, tau), true, "lower density_factor, with which the lattice stiffness falls");

@@ -59,7 +59,7 @@ json describe_wells(const Plan& plan) {
   const ModelSetting setting = stage.model_setting(plan.scene->fluid.inertia);
   for (std::size_t i = 0; i < plan.interactions.size(); ++i) {
     const PlannedModel& model = plan.interactions[i];
-    if (!model.active()) continue;
+    if (!model.active() || !model.manifest->state.empty()) continue;  // what remembers has no one well
     const auto shape_at = [&](const std::vector<double>& values) {
       return find_shape(ModelInstance(*model.manifest, values, setting));
     };

@@ -70,7 +70,9 @@ class Simulation {
     std::unique_ptr<Solver<T>> solver;
     for (int stage = 0; stage < static_cast<int>(plan_.stages.size()) && !stopped_; ++stage) {
       if (solver) {
-        change_units(membranes_.state, solver->setting().units, plan_.stages[static_cast<std::size_t>(stage)].units);
+        const LatticeUnits &from = solver->setting().units, &to = plan_.stages[static_cast<std::size_t>(stage)].units;
+        change_units(membranes_.state, from, to);
+        change_units(membranes_.contacts, from, to);
       }
       auto next = std::make_unique<Solver<T>>(plan_, stage, membranes_);
       start_fluid(*next, solver.get());

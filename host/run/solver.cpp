@@ -97,6 +97,7 @@ void Solver<T>::plan_cell_passes(const Plan& plan) {
   }
   const PeriodicBox box{static_cast<double>(nx), scene.domain.periodic_y ? static_cast<double>(ny) : 0.0};
   interaction_forces_ = std::make_unique<InteractionForces>(membranes_, std::move(potentials), box);
+  interaction_forces_->keep_state(membranes_);
   const auto interaction = [this](int phase) {
     return [this, phase](Worker worker) { interaction_forces_->run(worker, phase, membranes_); };
   };

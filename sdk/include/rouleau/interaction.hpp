@@ -4,6 +4,7 @@
 #include "block.hpp"
 #include "dispatch.hpp"
 #include "model.hpp"
+#include "state.hpp"
 
 namespace rouleau {
 
@@ -26,7 +27,10 @@ struct InteractionLoop {
     const std::uint32_t count = block->count;
     for (std::uint32_t first = 0; first < count; first += S::size) {
       const std::uint32_t valid = count - first < S::size ? count - first : S::size;
-      const Pair<S> pair = model(take<S>(block->distance, first, valid));
+      static_assert(takes<Model, S, S>(),
+                    "a potential takes a distance, and if it has state a rouleau::State<S, state_count>& and the time "
+                    "step");
+      const Pair<S> pair = evaluate<S>(model, *block, first, valid, take<S>(block->distance, first, valid));
       give(pair.energy, block->energy, first, valid);
       give(pair.force, block->force, first, valid);
       give(pair.force_by_distance, block->force_by_distance, first, valid);
@@ -37,7 +41,7 @@ struct InteractionLoop {
 }  // namespace detail
 
 /// Model made of a type with a constructor from Parameters, `double cutoff() const`, and
-/// `template <class S> Pair<S> operator()(S distance) const`.
+/// `template <class S> Pair<S> operator()(S distance) const`; potentials that remember, such as bonds: see state.hpp.
 template <class Model>
 rouleau_model interaction(const char* id, const char* version) {
   static const rouleau_interaction table = {

@@ -103,7 +103,7 @@ typedef struct rouleau_collision {
 typedef struct rouleau_membrane_block {
   uint32_t struct_size;
   uint32_t count;
-  double time_step; /* 1 in lattice units */
+  double time_step; /* 1 in lattice units; 0: someone looks at the present state, which must stay as it is */
 
   const double* stretch;        /* segments: length / rest length */
   const double* stretch_rate;   /* segments: d stretch / dt */
@@ -121,11 +121,11 @@ typedef struct rouleau_membrane_block {
   double* energy;
 
   double* tension_by_stretch; /* derivatives, for steps that are implicit */
-  double* tension_by_rate;
+  double* tension_by_rate;    /* not negative; if "gives" names it, the host takes tension_by_rate x rate implicitly */
   double* moment_by_curvature;
 
   const double* const* state; /* [states of the manifest][count], before the step, or NULL */
-  double* const* new_state;   /* after time_step; may be the same memory element by element */
+  double* const* new_state;   /* after time_step; may be the same memory element by element; NULL: not wanted */
 } rouleau_membrane_block;
 
 typedef struct rouleau_membrane {
@@ -135,8 +135,14 @@ typedef struct rouleau_membrane {
 
 /* ---- interaction ----------------------------------------------------------------------------------------------- */
 
-/* Pairs of facing surface elements of two cells. The host integrates over the surfaces (Derjaguin), gives the force its
- * direction and applies the reaction. Distances are positive and at most cutoff. */
+/* Pairs of facing surface elements of two cells: an element of one cell (a node, with the half segments on both sides)
+ * and the closest place on the surface of another cell or of one of its periodic images. The host integrates over the
+ * surfaces (Derjaguin), gives the force its direction and applies the reaction. Distances are positive and at most
+ * cutoff.
+ *
+ * State belongs to the element and the other cell's image. It has its initial value when they come within the cutoff,
+ * is kept while they stay there, wherever on the other surface the closest place moves, and is lost when they part.
+ * Each of two facing surfaces has its own state: both count half, as their energies do. */
 typedef struct rouleau_interaction_block {
   uint32_t struct_size;
   uint32_t count;
@@ -150,8 +156,8 @@ typedef struct rouleau_interaction_block {
   double* force;             /* - d phi / d distance, per area: positive repels */
   double* force_by_distance; /* d force / d distance */
 
-  const double* const* state;
-  double* const* new_state;
+  const double* const* state; /* [states of the manifest][count], before the step, or NULL */
+  double* const* new_state;   /* after time_step; may be the same memory element by element; NULL: not wanted */
 } rouleau_interaction_block;
 
 typedef struct rouleau_interaction {

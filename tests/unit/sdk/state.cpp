@@ -6,6 +6,9 @@
 #define rouleau_open_v1 open_standard_linear_solid
 #include "membrane/standard-linear-solid/standard-linear-solid.cpp"
 #undef rouleau_open_v1
+#define rouleau_open_v1 open_bridging
+#include "interaction/bridging/bridging.cpp"
+#undef rouleau_open_v1
 
 #include "instruction_sets.hpp"
 #include "model_setup.hpp"
@@ -111,6 +114,39 @@ TEST_CASE("a step of length zero gives the tension of the present state and leav
     for (std::size_t i = 0; i < e.stretch.size(); ++i) {
       REQUIRE(e.dashpot[i] == Approx(after.dashpot[i]).epsilon(1e-15));
       REQUIRE(e.tension[i] == Approx(after.tension[i]).margin(1e-15));
+    }
+  }
+}
+
+TEST_CASE("the force of bonds is minus the derivative of their energy at a given density, and its derivative its own") {
+  const Self self = make(*open_bridging(0)->models[0], {{{"site_density", 1},
+                                                         {"bond_stiffness", 0.3},
+                                                         {"zero_force_distance", 2.5},
+                                                         {"on_rate", 0.1},
+                                                         {"off_rate", 0.2},
+                                                         {"transition_share", 0.5},
+                                                         {"thermal_energy", 0.8},
+                                                         {"cutoff", 30}}});
+  for (const auto& set : instruction_sets()) {
+    const auto function =
+        pick_for<rouleau::detail::InteractionLoop<Bridging>, const void*, const rouleau_interaction_block*>(set);
+    constexpr double h = 1e-5;
+    for (const double r : {0.4, 1.0, 2.5, 3.7, 12.0, 29.0}) {  // at 29 the breaking rate is far beyond its bound
+      const double distance[3] = {r - h, r, r + h};
+      double bonds[3] = {0.6, 0.6, 0.6}, energy[3], force[3], slope[3];
+      const double* state[] = {bonds};
+      double* new_state[] = {bonds};
+      rouleau_interaction_block block{};
+      block.struct_size = sizeof block;
+      block.count = 3;
+      block.distance = distance;
+      block.energy = energy, block.force = force, block.force_by_distance = slope;
+      block.state = state, block.new_state = new_state;
+      function(self.get(), &block);
+      CAPTURE(set, r);
+      for (const double n : bonds) CHECK(n == Approx(0.6).epsilon(1e-15));
+      CHECK(force[1] == Approx((energy[0] - energy[2]) / (2 * h)).epsilon(1e-8).margin(1e-8));
+      CHECK(slope[1] == Approx((force[2] - force[0]) / (2 * h)).epsilon(1e-8));
     }
   }
 }
