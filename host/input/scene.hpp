@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -76,6 +77,18 @@ struct CellPlacement {
   std::string pointer;     ///< entry of /cells that asked for it
 };
 
+/// Cells that were placed at random.
+struct RandomPacking {
+  int type;                          ///< index into Scene::cell_types
+  int first, count;                  ///< its cells are Scene::cells[first] ... [first + count - 1]
+  std::optional<double> hematocrit;  ///< asked for, a share of the region; empty: a number of cells was
+  double reached;                    ///< share of the region that the cells fill at rest
+  std::uint32_t seed;
+  double gap;                    ///< m, kept from other cells, their images and walls
+  Eigen::Vector2d lower, upper;  ///< m, corners of the region that holds the cells
+  std::string pointer;           ///< entry of /cells
+};
+
 struct Interaction {
   std::array<int, 2> between;  ///< indices into Scene::cell_types; unordered
   ModelChoice potential;
@@ -132,6 +145,7 @@ struct Scene {
   Numerics numerics;
   std::vector<CellType> cell_types;
   std::vector<CellPlacement> cells;
+  std::vector<RandomPacking> packings;
   std::vector<Interaction> interactions;
   std::vector<Stage> stages;
   Output output;

@@ -65,6 +65,7 @@ struct Summary {
   std::vector<AggregateEvent> aggregate_history;  ///< one entry at each change
   std::vector<std::string> warnings;
   nlohmann::json conversions;  ///< array: {quantity, si, unit, lattice} for each stage
+  nlohmann::json packings;     ///< array: cells that were placed at random
   nlohmann::json stages;       ///< array: how each stage ended
 };
 

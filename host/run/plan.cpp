@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "cell_report.hpp"
 #include "input/document.hpp"
 #include "input/wording.hpp"
 
@@ -94,6 +95,7 @@ nlohmann::json dimensionless_numbers(const Plan& plan) {
   numbers["adhesion_number"] =
       stress > 0 ? number_or_null(parameter_named(potentials, "depth") / (stress * radius)) : nlohmann::json();
   numbers["viscosity_ratio"] = plan.has_cells ? number_or_null(ratio) : nlohmann::json();
+  numbers["hematocrit"] = hematocrit(scene);
   numbers["mach_wall"] = wall_mach;
   return numbers;
 }
@@ -285,6 +287,7 @@ Plan make_plan(const Scene& scene, const Catalog& catalog) {
   plan_passes(plan);
   plan.dimensionless = dimensionless_numbers(plan);
   plan.conversions = conversion_table(plan);
+  plan.packings = packing_table(scene);
   plan_estimate(plan);
   plan.limits = find_limits(plan);
   for (const Limit& limit : plan.limits) {

@@ -45,6 +45,7 @@ struct Plan {
   std::vector<std::string> warnings;
   nlohmann::json dimensionless;
   nlohmann::json conversions;
+  nlohmann::json packings;  ///< packing_table()
   Estimate estimate;
 
   /// Models whose libraries the run opens.

@@ -67,6 +67,7 @@ Summary describe(const Plan& plan, int threads) {
   s.limits = plan.limits;
   s.warnings = plan.warnings;
   s.conversions = plan.conversions;
+  s.packings = plan.packings;
   return s;
 }
 
