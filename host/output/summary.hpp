@@ -66,6 +66,7 @@ struct Summary {
   std::vector<std::string> warnings;
   nlohmann::json conversions;  ///< array: {quantity, si, unit, lattice} for each stage
   nlohmann::json packings;     ///< array: cells that were placed at random
+  nlohmann::json rheology;     ///< array: means, break-up and rotation in each stage
   nlohmann::json stages;       ///< array: how each stage ended
 };
 

@@ -5,6 +5,8 @@
 #include <numbers>
 
 #include "method_limits.hpp"
+
+#include "cell_report.hpp"
 #include "plan.hpp"
 
 namespace rouleau::host {
@@ -129,6 +131,19 @@ std::vector<Limit> find_limits(const Plan& plan) {
           "lower density_factor or the driving force, or raise the resolution");
     }
     if (!plan.has_cells) continue;
+    if (stage.body_force_x != 0 && !scene.domain.periodic_y && !scene.fluid.inertia) {
+      // Without u.grad u the unsteady term is not the same for a fluid that moves as a whole: a cell that travels with
+      // it leaves a wake and migrates wrongly, in proportion to this number (docs/rheology.md).
+      const double height = scene.domain.nodes[1], viscosity = (tau - 0.5) / 3;
+      const double speed = std::abs(stage.body_force_x) * height * height / (12 * viscosity);
+      double radius = 0;
+      for (const CellPlacement& cell : scene.cells) {
+        radius = std::max(radius, shape_radius(scene.cell_types[static_cast<std::size_t>(cell.type)].shape));
+      }
+      add("Reynolds number of cells that travel, without convective inertia" + where,
+          speed * radius / stage.units.length / viscosity, 0.05, true,
+          "set fluid.inertia to true, or lower density_factor: cells would migrate across the channel wrongly");
+    }
     double stretching = 0, bending = 0, radius = 1e300, shortest = 1e300, longest = 0;
     for (const std::vector<PlannedModel>& laws : plan.membranes) {
       double type_stretching = 0, type_bending = 0;

@@ -20,13 +20,6 @@ PlannedModel plan_model(ModelKind kind, const ModelChoice& choice, const Scene& 
   return model;
 }
 
-/// Largest length scale of a shape: what Reynolds, capillary and adhesion numbers are made with.
-double shape_radius(const Shape& shape) {
-  if (const auto* biconcave = std::get_if<Biconcave>(&shape)) return biconcave->radius;
-  if (const auto* circle = std::get_if<Circle>(&shape)) return circle->radius;
-  return std::get<Ellipse>(shape).semi_axes.maxCoeff();
-}
-
 /// SI value of the parameter with this name in the first model that has it; NaN when none does.
 double parameter_named(const std::vector<const PlannedModel*>& models, const std::string& name) {
   for (const PlannedModel* model : models) {
