@@ -104,6 +104,7 @@ class Packer {
 
   static RandomNumbers make_numbers(const std::vector<RandomPacking>& packings) {
     std::vector<std::uint32_t> seeds;
+    seeds.reserve(packings.size());
     for (const RandomPacking& packing : packings) seeds.push_back(packing.seed);
     std::seed_seq sequence(seeds.begin(), seeds.end());
     return RandomNumbers(sequence);
