@@ -6,7 +6,7 @@
 
 #include "crossing.hpp"
 #include "geometry.hpp"
-#include "outline.hpp"
+#include "input/outline.hpp"
 
 namespace rouleau::host {
 

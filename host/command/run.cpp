@@ -21,7 +21,7 @@ void interrupt(int) { interrupted = true; }
 
 constexpr const char* help = R"(usage: rouleau run SCENE [options]
 
-Simulates a scene and writes a run directory: summary.json, cells.csv, aggregates.csv, series.csv,
+Simulates a scene and writes a run directory: summary.json, cells.csv, aggregates.csv, aggregate_sizes.csv, series.csv,
 frames.h5 with frames.xmf (ParaView), log.jsonl and report.html.
 
 Example:

@@ -133,7 +133,6 @@ Place Scene::place(const std::string& pointer) const {
 Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   auto document = std::make_shared<Document>(Document::read(file));
   for (const auto& assignment : overrides) document->set(assignment);
-  refuse_random_packing(*document);
   validate(*document, scene_schema());
 
   Scene scene;
@@ -143,7 +142,7 @@ Scene read_scene(const std::filesystem::path& file, const std::vector<std::strin
   scene.fluid = read_fluid(fields);
   scene.numerics = read_numerics(fields);
   scene.cell_types = read_cell_types(fields, scene.fluid.viscosity);
-  scene.cells = read_cells(fields, scene.cell_types);
+  scene.cells = read_cells(fields, scene.cell_types, scene.domain, scene.packings);
   scene.interactions = read_interactions(fields, scene.cell_types);
   scene.stages = read_stages(fields, scene);
   scene.output = read_output(fields, scene.stages);
@@ -151,6 +150,7 @@ Scene read_scene(const std::filesystem::path& file, const std::vector<std::strin
   scene.checks = read_checks(fields);
   scene.plugin_dirs = read_plugin_dirs(fields);
   check_membrane_nodes(fields, scene);
+  pack_cells(fields, scene);  // may take a while: after everything else has been found right
   scene.document = std::move(document);
   return scene;
 }

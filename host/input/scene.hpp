@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -46,8 +47,8 @@ struct Numerics {
   std::string kernel = "peskin4";
   Precision precision = Precision::f64;
   std::string coupling = "explicit";  ///< or "semi-implicit", or "auto": the limits of the plan decide
-  bool slip_correction = true;  ///< take the tangential slip of the immersed boundary out
-  bool area_correction = true;  ///< keep the cells' areas, and report what would have leaked
+  bool slip_correction = true;        ///< take the tangential slip of the immersed boundary out
+  bool area_correction = true;        ///< keep the cells' areas, and report what would have leaked
 };
 
 struct Biconcave {
@@ -76,6 +77,18 @@ struct CellPlacement {
   Eigen::Vector2d center;  ///< m
   double angle;            ///< rad, counter-clockwise
   std::string pointer;     ///< entry of /cells that asked for it
+};
+
+/// Cells that were placed at random.
+struct RandomPacking {
+  int type;                          ///< index into Scene::cell_types
+  int first, count;                  ///< its cells are Scene::cells[first] ... [first + count - 1]
+  std::optional<double> hematocrit;  ///< asked for, a share of the region; empty: a number of cells was
+  double reached;                    ///< share of the region that the cells fill at rest
+  std::uint32_t seed;
+  double gap;                    ///< m, kept from other cells, their images and walls
+  Eigen::Vector2d lower, upper;  ///< m, corners of the region that holds the cells
+  std::string pointer;           ///< entry of /cells
 };
 
 struct Interaction {
@@ -134,6 +147,7 @@ struct Scene {
   Numerics numerics;
   std::vector<CellType> cell_types;
   std::vector<CellPlacement> cells;
+  std::vector<RandomPacking> packings;
   std::vector<Interaction> interactions;
   std::vector<Stage> stages;
   Output output;

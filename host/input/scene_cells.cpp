@@ -31,7 +31,9 @@ Shape read_shape(const SceneFields& fields, const std::string& pointer) {
 
 class Placements {
  public:
-  Placements(const SceneFields& fields, const std::vector<CellType>& types) : fields_(fields), types_(types) {}
+  Placements(const SceneFields& fields, const std::vector<CellType>& types, const Domain& domain,
+             std::vector<RandomPacking>& packings)
+      : fields_(fields), types_(types), domain_(domain), packings_(packings) {}
 
   std::vector<CellPlacement> read() {
     const auto count = fields_.has("/cells") ? fields_.at("/cells").size() : 0;
@@ -44,6 +46,8 @@ class Placements {
     const int type = fields_.cell_type(pointer + "/type", types_);
     if (fields_.has(pointer + "/row")) {
       read_row(type, pointer);
+    } else if (fields_.has(pointer + "/random")) {
+      read_random(type, pointer);
     } else if (fields_.has(pointer + "/list")) {
       const auto count = fields_.at(pointer + "/list").size();
       make_room(count, pointer + "/list");
@@ -74,6 +78,14 @@ class Placements {
     }
   }
 
+  void read_random(int type, const std::string& entry) {
+    RandomPacking packing = read_packing(fields_, entry, type, types_, domain_);
+    make_room(static_cast<std::size_t>(packing.count), entry + "/random");
+    packing.first = static_cast<int>(cells_.size());
+    for (int i = 0; i < packing.count; ++i) cells_.push_back({type, Eigen::Vector2d::Zero(), 0, entry});
+    packings_.push_back(std::move(packing));
+  }
+
   [[nodiscard]] double angle(const std::string& pointer) const {
     return fields_.quantity_or(pointer + "/angle", "rad", range::angle, 0.0);
   }
@@ -86,20 +98,12 @@ class Placements {
 
   const SceneFields& fields_;
   const std::vector<CellType>& types_;
+  const Domain& domain_;
+  std::vector<RandomPacking>& packings_;
   std::vector<CellPlacement> cells_;
 };
 
 }  // namespace
-
-void refuse_random_packing(const Document& document) {
-  const auto& root = document.root();
-  if (!root.is_object() || !root.contains("cells") || !root["cells"].is_array()) return;
-  for (std::size_t i = 0; i < root["cells"].size(); ++i) {
-    if (!root["cells"][i].is_object() || !root["cells"][i].contains("random")) continue;
-    throw Error(ExitCode::bad_input, document.key_place(child_pointer(child_pointer("/cells", i), "random")),
-                "random packing is not offered yet; place the cells with at, row or list");
-  }
-}
 
 std::vector<CellType> read_cell_types(const SceneFields& fields, double fluid_viscosity) {
   std::vector<CellType> types;
@@ -127,8 +131,9 @@ std::vector<CellType> read_cell_types(const SceneFields& fields, double fluid_vi
   return types;
 }
 
-std::vector<CellPlacement> read_cells(const SceneFields& fields, const std::vector<CellType>& types) {
-  return Placements(fields, types).read();
+std::vector<CellPlacement> read_cells(const SceneFields& fields, const std::vector<CellType>& types,
+                                      const Domain& domain, std::vector<RandomPacking>& packings) {
+  return Placements(fields, types, domain, packings).read();
 }
 
 }  // namespace rouleau::host

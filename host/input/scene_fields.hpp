@@ -64,12 +64,15 @@ class SceneFields {
   Units units_;
 };
 
-/// Packing at random is part of the format but not written yet, and deserves better than "unknown key".
-void refuse_random_packing(const Document& document);
-
 /// The parts of a scene, each in a file of its own.
 std::vector<CellType> read_cell_types(const SceneFields& fields, double fluid_viscosity);
-std::vector<CellPlacement> read_cells(const SceneFields& fields, const std::vector<CellType>& types);
+/// Cells as placed by hand; those placed at random have a type but no place yet. Packings go into `packings`.
+std::vector<CellPlacement> read_cells(const SceneFields& fields, const std::vector<CellType>& types,
+                                      const Domain& domain, std::vector<RandomPacking>& packings);
+RandomPacking read_packing(const SceneFields& fields, const std::string& entry, int type,
+                           const std::vector<CellType>& types, const Domain& domain);
+/// Gives the cells of the packings their places; throws Error(bad_input) where they do not fit.
+void pack_cells(const SceneFields& fields, Scene& scene);
 std::vector<Stage> read_stages(const SceneFields& fields, const Scene& scene);
 Output read_output(const SceneFields& fields, const std::vector<Stage>& stages);
 

@@ -236,9 +236,13 @@ json report_data(const std::filesystem::path& directory) {
   const auto stages = series.texts("stage_name");
   data["stage"] = json::array();
   for (const std::size_t i : selection) data["stage"].push_back(stages[i]);
-  for (const char* name :
-       {"aggregate_count", "relative_viscosity", "particle_stress_Pa", "mach_max", "area_drift_max", "mass_drift"})
+  for (const char* name : {"aggregate_count", "aggregate_size_weight_mean", "relative_viscosity", "particle_stress_Pa",
+                           "mach_max", "area_drift_max", "mass_drift"})
     data["series"][name] = picked(series.numbers(name), selection);
+  for (const auto& [name, column] : {std::pair{"cell_free_layer_lower_um", "cell_free_layer_lower_m"},
+                                     std::pair{"cell_free_layer_upper_um", "cell_free_layer_upper_m"}}) {
+    data["series"][name] = picked(series.numbers(column), selection, micro);
+  }
   data["cells"] = count > 0 && outputs > 0 ? cell_data(cells, count, selection) : json(nullptr);
   data["outlines"] = reader && !selection.empty() ? outline_data(*reader, selection, stride) : json(nullptr);
   if (note.empty() && count > 0 && outputs > 0 && data["outlines"].is_null())

@@ -15,9 +15,9 @@ namespace rouleau::host {
 
 namespace {
 
-constexpr std::array<std::string_view, 10> run_files{"cells.csv",     "aggregates.csv", "series.csv",  "frames.h5",
-                                                     "frames.xmf",    "summary.json",   "report.html", "scene.json",
-                                                     "checkpoint.h5", "log.jsonl"};
+constexpr std::array<std::string_view, 11> run_files{
+    "aggregate_sizes.csv", "cells.csv",   "aggregates.csv", "series.csv",    "frames.h5", "frames.xmf",
+    "summary.json",        "report.html", "scene.json",     "checkpoint.h5", "log.jsonl"};
 
 bool written_by_a_run(const std::string& name) {
   const bool partial = name.starts_with('.') && name.ends_with(".partial");  // left by a run that was killed

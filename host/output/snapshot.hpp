@@ -60,8 +60,13 @@ struct Snapshot {
   /// Angle of the line through an aggregate's outermost cells against x, rad, by its label, followed over turns while
   /// its members stay the same. Not there for lone cells, nor where an aggregate closed through images has no ends.
   std::map<int, double> rotation;
-  double relative_viscosity = 0;  ///< wall shear stress / (viscosity x shear rate); NaN without shear
-  double particle_stress = 0;     ///< xy, Pa: membranes and viscosity contrast, per area of the domain
+  std::map<int, int> aggregate_sizes;     ///< number of aggregates by their number of cells
+  double aggregate_size_number_mean = 0;  ///< cells per aggregate; NaN without cells
+  double aggregate_size_weight_mean = 0;  ///< cells in the aggregate of a cell, averaged over cells; NaN without cells
+  double relative_viscosity = 0;  ///< wall shear stress / (viscosity x shear rate), or of the flow rate; NaN: neither
+  double flow_rate = 0;           ///< m2/s, per depth, of a driven channel; NaN elsewhere
+  double cell_free_layer_lower = 0, cell_free_layer_upper = 0;  ///< m; NaN without walls or cells
+  double particle_stress = 0;  ///< xy, Pa: membranes and viscosity contrast, per area of the domain
   double mach_max = 0;
   double area_drift_max = 0;  ///< relative
   double area_leakage_max =

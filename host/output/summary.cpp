@@ -115,6 +115,8 @@ json to_json(const Summary& summary) {
 
   result["warnings"] = summary.warnings;
   result["conversions"] = summary.conversions.is_null() ? json::array() : summary.conversions;
+  result["packings"] = summary.packings.is_null() ? json::array() : summary.packings;
+  result["rheology"] = summary.rheology.is_null() ? json::array() : summary.rheology;
   result["stages"] = summary.stages.is_null() ? json::array() : summary.stages;
   return result;
 }

@@ -63,11 +63,13 @@ struct Summary {
   nlohmann::json wells;  ///< array: the wells of the interactions, in SI
   double mass_drift = 0, area_drift_max = 0, momentum_residual = 0;
   std::array<double, 2> stretch{};  ///< smallest and largest of any segment at any output
-  double area_leakage_max = 0;  ///< NaN without area correction
+  double area_leakage_max = 0;      ///< NaN without area correction
   int aggregates_final = 0;
   std::vector<AggregateEvent> aggregate_history;  ///< one entry at each change
   std::vector<std::string> warnings;
   nlohmann::json conversions;  ///< array: {quantity, si, unit, lattice} for each stage
+  nlohmann::json packings;     ///< array: cells that were placed at random
+  nlohmann::json rheology;     ///< array: means, break-up and rotation in each stage
   nlohmann::json stages;       ///< array: how each stage ended
 };
 

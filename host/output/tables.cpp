@@ -80,7 +80,10 @@ std::string to_text(double value) {
 }
 
 Tables::Tables(const std::filesystem::path& directory)
-    : cells_(directory / "cells.csv"), aggregates_(directory / "aggregates.csv"), series_(directory / "series.csv") {
+    : cells_(directory / "cells.csv"),
+      aggregates_(directory / "aggregates.csv"),
+      series_(directory / "series.csv"),
+      sizes_(directory / "aggregate_sizes.csv") {
   cells_.write(
       "step,time_s,strain,cell,type,x_m,y_m,angle_rad,deformation,area_m2,perimeter_m,min_gap_m,aggregate,"
       "tank_treading_angle_rad,through_image,stretch_min,stretch_max\n");
@@ -89,7 +92,9 @@ Tables::Tables(const std::filesystem::path& directory)
       "gap_m,contact_length_m\n");
   series_.write(
       "step,time_s,strain,stage,stage_name,aggregate_count,rotation_rad,relative_viscosity,particle_stress_Pa,mach_max,"
-      "area_drift_max,mass_drift,area_leakage_max\n");
+      "area_drift_max,mass_drift,area_leakage_max,flow_rate_m2_per_s,cell_free_layer_lower_m,cell_free_layer_upper_m,"
+      "aggregate_size_number_mean,aggregate_size_weight_mean\n");
+  sizes_.write("step,time_s,strain,cells,aggregates\n");
 }
 
 void Tables::write(const Snapshot& snapshot) {
@@ -99,12 +104,14 @@ void Tables::write(const Snapshot& snapshot) {
   cells_.flush();
   aggregates_.flush();
   series_.flush();
+  sizes_.flush();
 }
 
 void Tables::close() {
   cells_.close();
   aggregates_.close();
   series_.close();
+  sizes_.close();
 }
 
 void Tables::write_cells(const Snapshot& snapshot) {
@@ -157,7 +164,12 @@ void Tables::write_series(const Snapshot& snapshot) {
   row.add(snapshot.stage).add(snapshot.stage_name).add(snapshot.aggregate_count).add(largest_rotation(snapshot));
   row.add(snapshot.relative_viscosity).add(snapshot.particle_stress).add(snapshot.mach_max);
   row.add(snapshot.area_drift_max).add(snapshot.mass_drift).add(snapshot.area_leakage_max);
+  row.add(snapshot.flow_rate).add(snapshot.cell_free_layer_lower).add(snapshot.cell_free_layer_upper);
+  row.add(snapshot.aggregate_size_number_mean).add(snapshot.aggregate_size_weight_mean);
   series_.write(row.line());
+  for (const auto& [cells, aggregates] : snapshot.aggregate_sizes) {
+    sizes_.write(begin_row(snapshot).add(cells).add(aggregates).line());
+  }
 }
 
 }  // namespace rouleau::host

@@ -1,4 +1,5 @@
-// The tables of a run: cells.csv, aggregates.csv and series.csv, one block of rows per output time.
+// The tables of a run: cells.csv, aggregates.csv, aggregate_sizes.csv and series.csv, a block of rows per output time.
+// time.
 //
 // cells.csv       one row per output time and cell
 // aggregates.csv  one row per output time and contact, with the aggregate both cells belong to; an aggregate without
@@ -9,6 +10,7 @@
 //                 empty for lone cells.
 // series.csv      one row per output time: what belongs to the whole suspension; rotation_rad is that of the largest
 //                 aggregate
+// aggregate_sizes.csv  one row per output time and size that occurs: how many aggregates have so many cells
 //
 // Units stand in the column names. Numbers have the fewest digits that read back as the same double, whatever the
 // locale; infinite and undefined ones are inf and nan. Text is quoted as in RFC 4180 where it must be.
@@ -26,7 +28,7 @@ std::string to_text(double value);
 
 class Tables {
  public:
-  /// Creates the three files in `directory` with their header lines. Throws Error(input_output), as all members do.
+  /// Creates the four files in `directory` with their header lines. Throws Error(input_output), as all members do.
   explicit Tables(const std::filesystem::path& directory);
   void write(const Snapshot& snapshot);
   void close();
@@ -36,7 +38,7 @@ class Tables {
   void write_aggregates(const Snapshot& snapshot);
   void write_series(const Snapshot& snapshot);
 
-  AppendFile cells_, aggregates_, series_;
+  AppendFile cells_, aggregates_, series_, sizes_;
 };
 
 }  // namespace rouleau::host

@@ -7,6 +7,7 @@
 
 #include "cell/kernel_kind.hpp"
 #include "cell/stiffness.hpp"
+#include "cell_report.hpp"
 #include "method_limits.hpp"
 #include "plan.hpp"
 #include "potential_shape.hpp"
@@ -136,6 +137,19 @@ std::vector<Limit> find_limits(const Plan& plan) {
           "lower density_factor or the driving force, or raise the resolution");
     }
     if (!plan.has_cells) continue;
+    if (stage.body_force_x != 0 && !scene.domain.periodic_y && !scene.fluid.inertia) {
+      // Without u.grad u the unsteady term is not the same for a fluid that moves as a whole: a cell that travels with
+      // it leaves a wake and migrates wrongly, in proportion to this number (docs/rheology.md).
+      const double height = scene.domain.nodes[1], viscosity = (tau - 0.5) / 3;
+      const double speed = std::abs(stage.body_force_x) * height * height / (12 * viscosity);
+      double radius = 0;
+      for (const CellPlacement& cell : scene.cells) {
+        radius = std::max(radius, shape_radius(scene.cell_types[static_cast<std::size_t>(cell.type)].shape));
+      }
+      add("Reynolds number of cells that travel, without convective inertia" + where,
+          speed * radius / stage.units.length / viscosity, 0.05, true,
+          "set fluid.inertia to true, or lower density_factor: cells would migrate across the channel wrongly");
+    }
     const Stiffness membrane = membrane_stiffness(plan, setting);
     const bool gains = plan.semi_implicit && tau >= least_semi_implicit_tau;
     const std::string coupled = plan.semi_implicit ? ", semi-implicit" : "";

@@ -13,6 +13,7 @@
 #include "method_limits.hpp"
 #include "node_checks.hpp"
 #include "particle_stress.hpp"
+#include "rheology.hpp"
 
 namespace rouleau::host {
 
@@ -196,6 +197,9 @@ void Observer::observe_cells(const Membranes& membranes, const LatticeUnits& uni
   const auto contacts = find_contacts(membranes, box_, scene_.output.aggregate_gap / length);
   const Aggregates aggregates = find_aggregates(static_cast<int>(membranes.cells.size()), contacts);
   snapshot.aggregate_count = aggregates.count;
+  snapshot.aggregate_sizes = aggregate_sizes(aggregates.label);
+  snapshot.aggregate_size_number_mean = number_mean(snapshot.aggregate_sizes);
+  snapshot.aggregate_size_weight_mean = weight_mean(snapshot.aggregate_sizes);
   for (const CellContact& c : contacts) {
     snapshot.contacts.push_back(
         {c.cell_a, c.cell_b, {c.image.x, c.image.y}, c.gap * length, c.contact_length * length});
@@ -244,12 +248,23 @@ Snapshot Observer::observe(Solver<T>& solver, const Membranes& membranes, bool w
   snapshot.mach_max = follow_fluid(solver.fluid());
   snapshot.mass_drift = mass_drift_;
   const double viscosity = (setting.tau - 0.5) / 3;
-  snapshot.relative_viscosity = snapshot.area_leakage_max = std::nan("");
+  snapshot.relative_viscosity = snapshot.flow_rate = snapshot.area_leakage_max = std::nan("");
+  snapshot.cell_free_layer_lower = snapshot.cell_free_layer_upper = std::nan("");
+  snapshot.aggregate_size_number_mean = snapshot.aggregate_size_weight_mean = std::nan("");
   if (setting.shear_rate != 0) {
     const auto stress = solver.fluid().wall_stress();
     snapshot.relative_viscosity = (stress.lower - stress.upper) / 2 / (viscosity * setting.shear_rate);
+  } else if (is_driven_channel(setting, scene_)) {
+    const double rate = flow_rate(solver.fluid());
+    snapshot.relative_viscosity = apparent_viscosity(rate, setting, scene_.domain.nodes[1]);
+    snapshot.flow_rate = units.to_si(rate, dimension::velocity) * units.length;
   }
   if (!membranes.cells.empty()) {
+    if (!scene_.domain.periodic_y) {
+      const auto layer = cell_free_layer(membranes, scene_.domain.nodes[0], scene_.domain.nodes[1]);
+      snapshot.cell_free_layer_lower = layer.lower * units.length;
+      snapshot.cell_free_layer_upper = layer.upper * units.length;
+    }
     snapshot.particle_stress = units.to_si(particle_stress(membranes, scene_, viscosity), dimension::pressure);
     observe_cells(membranes, units, snapshot);
     snapshot.area_drift_max = area_drift(membranes);

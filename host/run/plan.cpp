@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "cell/kernel_kind.hpp"
+#include "cell_report.hpp"
 #include "input/document.hpp"
 #include "input/wording.hpp"
 #include "method_limits.hpp"
@@ -20,13 +21,6 @@ PlannedModel plan_model(ModelKind kind, const ModelChoice& choice, const Scene& 
   PlannedModel model{&manifest, resolve_parameters(choice, manifest, scene, units), choice.pointer};
   warnings.insert(warnings.end(), model.parameters.warnings.begin(), model.parameters.warnings.end());
   return model;
-}
-
-/// Largest length scale of a shape: what Reynolds, capillary and adhesion numbers are made with.
-double shape_radius(const Shape& shape) {
-  if (const auto* biconcave = std::get_if<Biconcave>(&shape)) return biconcave->radius;
-  if (const auto* circle = std::get_if<Circle>(&shape)) return circle->radius;
-  return std::get<Ellipse>(shape).semi_axes.maxCoeff();
 }
 
 /// SI value of the parameter with this name in the first model that has it; NaN when none does.
@@ -102,6 +96,7 @@ nlohmann::json dimensionless_numbers(const Plan& plan) {
   }
   numbers["adhesion_number"] = stress > 0 ? number_or_null(depth / (stress * radius)) : nlohmann::json();
   numbers["viscosity_ratio"] = plan.has_cells ? number_or_null(ratio) : nlohmann::json();
+  numbers["hematocrit"] = hematocrit(scene);
   numbers["mach_wall"] = wall_mach;
   return numbers;
 }
@@ -333,6 +328,7 @@ Plan make_plan(const Scene& scene, const Catalog& catalog) {
   plan.wells = describe_wells(plan);
   plan.dimensionless = dimensionless_numbers(plan);
   plan.conversions = conversion_table(plan, units);
+  plan.packings = packing_table(scene);
   plan_estimate(plan);
   plan.limits = find_limits(plan);
   for (const Limit& limit : plan.limits) {

@@ -48,7 +48,8 @@ struct Plan {
   std::vector<std::string> warnings;
   nlohmann::json dimensionless;
   nlohmann::json conversions;
-  nlohmann::json wells;  ///< of the active interactions, in SI
+  nlohmann::json wells;     ///< of the active interactions, in SI
+  nlohmann::json packings;  ///< packing_table()
   Estimate estimate;
 
   /// Models whose libraries the run opens.

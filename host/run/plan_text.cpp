@@ -70,6 +70,15 @@ std::string to_text(const Plan& plan) {
         << "\n";
   }
 
+  if (!plan.packings.empty()) out << "\nCells packed at random\n";
+  for (const auto& packing : plan.packings) {
+    out << "  " << packing["count"] << " of type " << packing["type"].get<std::string>() << ", hematocrit "
+        << number(packing["hematocrit"]);
+    if (packing["hematocrit_asked"].is_number()) out << " of " << number(packing["hematocrit_asked"]) << " asked";
+    out << ", gap " << number(packing["gap_m"].get<double>() * 1e6, "%.3g") << " um, seed " << packing["seed"] << " ("
+        << packing["pointer"].get<std::string>() << ")\n";
+  }
+
   out << "\nDimensionless numbers\n";
   for (const auto& [name, value] : plan.dimensionless.items()) out << "  " << padded(name, 24) << number(value) << "\n";
   if (!scene.fluid.inertia) {
@@ -108,6 +117,7 @@ nlohmann::json to_json(const Plan& plan) {
   json["title"] = plan.scene->title;
   json["warnings"] = plan.warnings;
   json["conversions"] = plan.conversions;
+  json["packings"] = plan.packings;
   json["dimensionless"] = plan.dimensionless;
   json["wells"] = plan.wells;
   json["limits"] = nlohmann::json::array();

@@ -68,6 +68,7 @@ Summary describe(const Plan& plan, int threads) {
   s.wells = plan.wells;
   s.warnings = plan.warnings;
   s.conversions = plan.conversions;
+  s.packings = plan.packings;
   return s;
 }
 

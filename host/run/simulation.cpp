@@ -20,6 +20,7 @@
 #include "output/progress.hpp"
 #include "pass_costs.hpp"
 #include "provenance.hpp"
+#include "rheology_history.hpp"
 #include "schedule.hpp"
 #include "solver.hpp"
 
@@ -304,6 +305,7 @@ class Simulation {
     snapshot.time = time_at(solver.setting());
     snapshot.strain = strain_at(solver.setting());
     history_.follow(snapshot);
+    rheology_.follow(snapshot);
     directory_.write(snapshot);
   }
 
@@ -349,6 +351,7 @@ class Simulation {
     s.momentum_residual = momentum_residual_;
     s.aggregates_final = history_.count();
     s.aggregate_history = history_.events();
+    s.rheology = rheology_.stages();
     s.stages = stages_;
     return s;
   }
@@ -371,6 +374,7 @@ class Simulation {
   long rest_watch_step_ = 0;
   std::optional<Failure> failure_;
   AggregateHistory history_;
+  RheologyHistory rheology_;
   PassCosts costs_;
   double momentum_residual_ = 0;
   nlohmann::json stages_ = nlohmann::json::array();

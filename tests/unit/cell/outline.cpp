@@ -1,5 +1,5 @@
 // Outlines of the shapes and the geometry read off them.
-#include "cell/outline.hpp"
+#include "input/outline.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "input/scene.hpp"
+#include "scene.hpp"
 
 namespace rouleau::host {
 
@@ -17,5 +17,8 @@ struct Outline {
 /// Polygon with its `segments` nodes on the shape and all segments equally long (to about 1e-12 of their length).
 /// Throws std::invalid_argument for fewer than 3 segments or a size that is not positive.
 Outline make_outline(const Shape& shape, int segments);
+
+/// Area that an outline encloses, m2.
+double area_of(const Outline& outline);
 
 }  // namespace rouleau::host

@@ -114,4 +114,13 @@ Outline make_outline(const Shape& shape, int segments) {
   return outline;
 }
 
+double area_of(const Outline& outline) {
+  double twice = 0;
+  for (std::size_t i = 0; i < outline.nodes.size(); ++i) {
+    const Eigen::Vector2d &p = outline.nodes[i], &q = outline.nodes[(i + 1) % outline.nodes.size()];
+    twice += p.x() * q.y() - p.y() * q.x();
+  }
+  return twice / 2;
+}
+
 }  // namespace rouleau::host

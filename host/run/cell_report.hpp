@@ -1,0 +1,20 @@
+// What a plan and a summary say about the cells of a scene: their hematocrit, and which were packed at random.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "input/scene.hpp"
+
+namespace rouleau::host {
+
+/// Largest length scale of a shape, m: what Reynolds, capillary and adhesion numbers are made with.
+double shape_radius(const Shape& shape);
+
+/// Share of the domain's area that all cells enclose at rest.
+double hematocrit(const Scene& scene);
+
+/// [{cells, type, pointer, count, hematocrit_asked (null: a count was), hematocrit, seed, gap_m}], one for each entry
+/// with "random"; cells: numbers of the first and the last.
+nlohmann::json packing_table(const Scene& scene);
+
+}  // namespace rouleau::host
