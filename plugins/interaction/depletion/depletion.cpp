@@ -8,8 +8,8 @@
 //     d <  2 delta: 2 k delta - k d - e^(-k delta) sinh(k delta - k d) - sinh(k delta) e^(-k d)
 // The second line holds down to d = delta, where a cell's surface would reach the other's glycocalyx, and turns into
 // attraction below. There the force goes on growing instead, by itself with every Debye length: F(delta)(1 + k (delta -
-// d)). The physical form is that; its well is ten nanometres wide. The regularised form is a Morse potential of the
-// same depth with a place and width that a lattice can resolve.
+// d)). The physical form is that; its well is a few to some tens of nanometres wide. The regularised form is a Morse
+// potential of the same depth with a place and width that a lattice can resolve.
 #include <algorithm>
 #include <rouleau/interaction.hpp>
 
