@@ -152,17 +152,19 @@ std::vector<Limit> find_limits(const Plan& plan) {
     }
     const Stiffness membrane = membrane_stiffness(plan, setting);
     const bool gains = plan.semi_implicit && tau >= least_semi_implicit_tau;
-    const std::string coupled = plan.semi_implicit ? ", semi-implicit" : "";
+    const std::string coupled = plan.semi_implicit ? ", semi-implicit step" : " in lattice units";
     const std::string softer = plan.semi_implicit
                                    ? "lower density_factor, with which the lattice stiffness falls"
                                    : "lower density_factor, with which the lattice stiffness falls, or set "
                                      "numerics.coupling to \"semi-implicit\"";
-    add("stretching stiffness in lattice units" + coupled + where, membrane.stretching,
+    add("stretching stiffness" + coupled + where, membrane.stretching,
         (gains ? stretching_gain : 1) * kernel.stretch_limit * interpolate(stretch_limit, tau), true, softer);
-    add("bending stiffness in lattice units" + coupled + where, membrane.bending,
+    add("bending stiffness" + coupled + where, membrane.bending,
         (gains ? bending_gain : 1) * kernel.bending_limit * interpolate(bending_limit, tau), true, softer);
-    add("compression of cells by their prestress, 3 T/a" + where, prestress_compression(plan, stage), 1e-3, true,
-        "lower density_factor: pressure compresses the lattice's fluid the more, the longer the time step");
+    if (const double compression = prestress_compression(plan, stage); compression > 0) {
+      add("compression of cells by their prestress, 3 T/a" + where, compression, 1e-3, true,
+          "lower density_factor: pressure compresses the lattice's fluid the more, the longer the time step");
+    }
     double radius = 1e300, shortest = 1e300, longest = 0;
     for (const PlannedModel& model : plan.interactions) {
       if (!model.active()) continue;

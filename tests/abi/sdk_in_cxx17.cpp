@@ -35,5 +35,16 @@ struct Tether {
   }
 };
 
+struct Fatigue {
+  static constexpr int state_count = 2;
+  explicit Fatigue(const rouleau::Parameters&) {}
+  template <class S>
+  rouleau::Tension<S> operator()(const rouleau::Segment<S>& segment, rouleau::State<S, 2>& state, double dt) const {
+    state[0] = state[0] + dt * segment.stretch;
+    return {S(0), state[0] - state[1]};
+  }
+};
+
 ROULEAU_MODELS(rouleau::collision<Relaxation>("relaxation", "1.0.0"),
-               rouleau::interaction<Repulsion>("repulsion", "1.0.0"), rouleau::membrane<Tether>("tether", "1.0.0"))
+               rouleau::interaction<Repulsion>("repulsion", "1.0.0"), rouleau::membrane<Tether>("tether", "1.0.0"),
+               rouleau::membrane<Fatigue>("fatigue", "1.0.0"))

@@ -17,7 +17,8 @@ const std::string scenes = ROULEAU_PHYSICS_SCENES;
 
 /// Largest node step, after 2500 steps or as soon as it is no small one, of a cell at rest whose nodes were moved by up
 /// to 0.001 spacings; moduli in lattice units.
-double disturbance(double shear_modulus, double bending_modulus, const std::string& coupling, double tau) {
+double disturbance(double shear_modulus, double bending_modulus, const std::string& coupling, double tau,
+                   int segments = 100) {
   const std::string numerics = "/numerics/tau=" + std::to_string(tau);
   const LatticeUnits units = SolverBench(scenes + "/stiff.json", {numerics}).plan.stages[0].units;
   const auto text = [](double value) {
@@ -29,7 +30,7 @@ double disturbance(double shear_modulus, double bending_modulus, const std::stri
   const std::string laws = "/cell_types/rbc/membrane/";
   SolverBench bench(
       scenes + "/stiff.json",
-      {numerics, "/numerics/coupling=" + coupling,
+      {numerics, "/numerics/coupling=" + coupling, "/cell_types/rbc/segments=" + std::to_string(segments),
 
        laws + "0/parameters/shear_modulus=" + text(units.to_si(shear_modulus, dimension::tension)),
        laws + "1/parameters/modulus=" + text(units.to_si(bending_modulus, Dimension{{1, 2, -2, 0, 0, 0}}))});
@@ -145,4 +146,27 @@ TEST_CASE("a stiff and viscous membrane goes through a shear flow", "[stiff]") {
   std::cout << "stiff and viscous, strain 2: fastest step over wall speed " << fastest / bench.plan.stages[0].wall_speed
             << ", area changed by " << enclosed_area(bench.membranes, bench.membranes.cells[0]) / area - 1 << "\n";
   CHECK(fastest < bench.plan.stages[0].wall_speed);  // no node outruns the walls
+}
+
+// Not run by ctest, for it takes long: the table of docs/accuracy.md, by `physics "[scan]"`.
+TEST_CASE("the plan's semi-implicit limits hold for segments of half a spacing to two", "[.][scan]") {
+  const double tau = GENERATE(0.51, 0.55, 0.6, 0.8, 1.0, 2.0, 5.0, 10.0);
+  const int segments = GENERATE(50, 100, 200);
+  const auto largest = [&](bool bends, const char* coupling) {
+    double bearable = 0;
+    for (double modulus = 0.1; modulus < 400; modulus *= 1.3) {
+      const double left = bends ? disturbance(0.02, modulus, coupling, tau, segments)
+                                : disturbance(modulus, 0.02, coupling, tau, segments);
+      if (!(left < 1e-3)) break;
+      bearable = modulus;
+    }
+    return bearable;
+  };
+  const double shear = largest(false, "explicit"), semi_shear = largest(false, "semi-implicit");
+  const double bending = largest(true, "explicit"), semi_bending = largest(true, "semi-implicit");
+  std::cout << "tau " << tau << ", " << segments << " segments: shear modulus " << shear << " explicit, " << semi_shear
+            << " semi-implicit; bending modulus " << bending << " explicit, " << semi_bending << " semi-implicit\n";
+  if (tau < 0.6) return;
+  CHECK(semi_shear > 40 * shear);
+  CHECK(semi_bending > 10 * bending);
 }

@@ -122,6 +122,20 @@ TEST_CASE("a manifest's numbers become SI and its order of parameters is kept") 
   CHECK(manifest.gives_output("energy"));
 }
 
+TEST_CASE("state variables begin with their initial value in SI, or with zero") {
+  json remembering = good_manifest();
+  remembering["state"] = json::parse(
+      R"([{"name": "age", "unit": "ms", "initial": 5}, {"name": "bonds", "unit": "1/um2", "doc": "Per area."}])");
+  const PluginFolder folder;
+  const Manifest manifest = read_manifest(folder.write("good.json", remembering), Units());
+  REQUIRE(manifest.state.size() == 2);
+  CHECK(manifest.state[0].name == "age");
+  CHECK(manifest.state[0].initial == Approx(5e-3));
+  CHECK(manifest.state[1].unit == "1/um2");
+  CHECK(manifest.state[1].dimension == Dimension{{0, -2, 0, 0, 0, 0}});
+  CHECK(manifest.state[1].initial == 0);
+}
+
 TEST_CASE("keys that begin with x- are the author's own and may stand in every object") {
   json own = good_manifest();
   own["x-note"] = {{"a", 1}};
