@@ -4,9 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "method_limits.hpp"
-
 #include "cell_report.hpp"
+#include "method_limits.hpp"
 #include "plan.hpp"
 
 namespace rouleau::host {
