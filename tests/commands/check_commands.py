@@ -389,7 +389,7 @@ class Documents_tell_what_is_so(Case):
 
     def test_every_form_of_cells_in_it_is_accepted(self):
         entries = re.findall(r'^    (\{"type": "rbc".*\})$', (SOURCE / "docs/scene.md").read_text(), re.MULTILINE)
-        self.assertEqual(len(entries), 3)
+        self.assertEqual(len(entries), 4)
         for entry in entries:
             scene = self.scene(cells=[json.loads(entry)])
             self.assertEqual(self.rouleau.run("plan", scene).returncode, 0, entry)
