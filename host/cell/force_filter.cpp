@@ -2,9 +2,9 @@
 
 namespace rouleau::host {
 
-ForceFilter::ForceFilter(int count, double length, double stretching, double bending)
+ForceFilter::ForceFilter(int count, double length, double gain, double stretching, double bending)
     : band_(static_cast<std::size_t>(count) - 2) {
-  const double mobility = 0.5 / length;
+  const double mobility = 0.5 * gain / length;
   const double second = mobility * stretching / length, fourth = mobility * bending / (length * length * length);
   const double diagonal = 1 + 2 * second + 6 * fourth;
   near_ = -second - 4 * fourth;

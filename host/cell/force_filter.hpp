@@ -18,8 +18,8 @@ namespace rouleau::host {
 class ForceFilter {
  public:
   /// `stretching`: k_s = d tension / d stretch; `bending`: k_b = d moment / d curvature; `length`: l, the mean rest
-  /// length of `count` >= 6 segments. Lattice units.
-  ForceFilter(int count, double length, double stretching, double bending);
+  /// length of `count` >= 6 segments; `gain`: how many times further a force moves its node than m says. Lattice units.
+  ForceFilter(int count, double length, double gain, double stretching, double bending);
 
   /// Replaces both components of a cell's forces by their filtered values.
   void apply(double* force_x, double* force_y) const;

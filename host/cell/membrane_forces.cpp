@@ -33,6 +33,10 @@ double weighted_sum(const double* values, const double* weights, int count) {
 
 }  // namespace
 
+void MembraneForces::set_slip(const std::vector<SlipConstants>& of_type) {
+  for (std::size_t t = 0; t < types_.size(); ++t) types_[t].slip = of_type[t];
+}
+
 void MembraneForces::run(Worker worker, Membranes& membranes) {
   if (has_state_ && !state_kept_) throw std::logic_error("laws with state: keep_state() comes before run()");
   const Range cells = worker.share(membranes.cell_count());
@@ -189,7 +193,9 @@ MembraneForces::CellState MembraneForces::apply_laws(const Membranes& membranes,
 void MembraneForces::add_rate_tension(const Membranes& membranes, int cell, std::size_t at,
                                       std::vector<ElementState>* next) {
   const CellRange& range = membranes.cells[static_cast<std::size_t>(cell)];
-  const std::size_t variable = types_[static_cast<std::size_t>(range.type)].rate_tension;
+  const Type& type = types_[static_cast<std::size_t>(range.type)];
+  const std::size_t variable = type.rate_tension;
+  const double length = range.rest_perimeter / range.count;
   const auto first = static_cast<std::size_t>(range.first);
   Scratch& s = scratch_;
   if (next != nullptr) {
@@ -199,7 +205,7 @@ void MembraneForces::add_rate_tension(const Membranes& membranes, int cell, std:
            &rest_.inverse_length[offset(cell)],
            &s.rate[at],
            &s.by_rate[at],
-           rate_mobility(range.rest_perimeter / range.count),
+           rate_mobility(length) + type.slip.slip / length,
            &(*next)[variable].value[first],
            {&s.law[at], &s.law_by_rate[at], &s.segment_force_x[at], &s.segment_force_y[at]}});
   }

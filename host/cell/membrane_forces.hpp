@@ -8,6 +8,7 @@
 #include "force_filter.hpp"
 #include "membranes.hpp"
 #include "plugin/model.hpp"
+#include "slip_constants.hpp"
 #include "tension_rate.hpp"
 #include "worker.hpp"
 
@@ -33,6 +34,9 @@ class MembraneForces {
 
   /// From now on run() takes the semi-implicit step of stiff membranes (ForceFilter) with the laws' own stiffness.
   void make_semi_implicit(const Membranes& membranes);
+  /// Tells how the slip correction makes the nodes of each cell type give way to forces, which implicit steps must know
+  /// (`slip` here is velocity per force per length, lattice units). To be called before make_semi_implicit().
+  void set_slip(const std::vector<SlipConstants>& of_type);
 
   /// To be called before run() and by one thread: adds what the laws remember to `membranes.state`, as far as it is not
   /// there from an earlier stage. Nothing to do for laws without state.
@@ -62,6 +66,7 @@ class MembraneForces {
     bool rate = false, tension = false, moment = false, cell = false;  // what the laws need or give, all together
     bool tension_by_rate = false;
     std::size_t rate_tension = 0;       // in Membranes::state, if there is a tension by rate
+    SlipConstants slip{0, 0};           // what the slip correction adds; slip: velocity per force per length
     std::optional<ForceFilter> filter;  // of a semi-implicit step
   };
   /// Constants of every cell: cell c from offset(c) on, with room on both sides for packs that run over its end.

@@ -83,7 +83,8 @@ void MembraneForces::make_semi_implicit(const Membranes& membranes) {
       stretching += stretching_stiffness(*law.model);
       bending += bending_stiffness(*law.model);
     }
-    type.filter.emplace(cell.count, cell.rest_perimeter / cell.count, stretching, bending);
+    const double length = cell.rest_perimeter / cell.count;
+    type.filter.emplace(cell.count, length, stiffening(type.slip.shift, length), stretching, bending);
   }
 }
 

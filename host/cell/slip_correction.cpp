@@ -104,15 +104,15 @@ struct Correct {
 
 /// How often the slip is smoothed by (1/4, 1/2, 1/4) along the membrane. A tangential displacement of wave number q per
 /// segment meets tension, and gains in a step the slip -C 4 sin^2(q/2) cos^2p(q/2) times itself after p smoothings,
-/// with C = mobility x stiffness / length^2. That must stay below 2 for all q; 1 is kept, half of it. Smoothing over
-/// about a lattice spacing is needed anyway where nodes stand closer: the fluid does not damp what the kernel cannot
-/// see.
+/// with C = mobility x stiffness / length^2. That must stay below 2 for all q in an explicit step, and below 2/3 in a
+/// semi-implicit one, whose forces belong to the end of the step; 0.3 is kept. Smoothing over about a lattice spacing
+/// is needed anyway where nodes stand closer: the fluid does not damp what the kernel cannot see.
 int smoothings_of(double length, double mobility, double stiffness) {
   const double number = mobility * stiffness / (length * length);
   int passes = std::max(1, static_cast<int>(std::lround(1 / (length * length))));
   constexpr int most = 256;  // enough for thirty times the stiffness that explicit coupling bears
   // The largest 4 sin^2(q/2) cos^2p(q/2) over q is 4/(p + 1) (p/(p + 1))^p.
-  while (passes < most && number * 4 / (passes + 1) * std::pow(passes / (passes + 1.0), passes) > 1) ++passes;
+  while (passes < most && number * 4 / (passes + 1) * std::pow(passes / (passes + 1.0), passes) > 0.3) ++passes;
   return std::min(passes, most);
 }
 
@@ -122,8 +122,13 @@ SlipCorrection::SlipCorrection(const Membranes& membranes, std::vector<Type> typ
     : types_(std::move(types)), viscosity_(viscosity) {
   for (const CellRange& cell : membranes.cells) {
     const Type& type = types_[static_cast<std::size_t>(cell.type)];
-    smoothings_.push_back(
-        smoothings_of(cell.rest_perimeter / cell.count, type.constants.slip / viscosity, type.stretching_stiffness));
+    // Sliding along a curved membrane changes its curvature too, by curvature x d slide / d length.
+    double curvature = 0;
+    for (int k = cell.first; k < cell.end(); ++k) {
+      curvature = std::max(curvature, std::abs(membranes.rest_curvature[static_cast<std::size_t>(k)]));
+    }
+    const double stiffness = type.stretching_stiffness + type.bending_stiffness * curvature * curvature;
+    smoothings_.push_back(smoothings_of(cell.rest_perimeter / cell.count, type.constants.slip / viscosity, stiffness));
   }
   for (auto* values : {&tangent_x_, &tangent_y_, &inverse_chord_, &touch_x_, &touch_y_, &force_x_, &force_y_, &slip_,
                        &scratch_x_, &scratch_y_}) {
@@ -161,6 +166,12 @@ void SlipCorrection::run(Worker worker, const Membranes& membranes, double* velo
                         velocity_y};
     function(&task);
   }
+}
+
+std::vector<SlipConstants> SlipCorrection::constants() const {
+  std::vector<SlipConstants> constants;
+  for (const Type& type : types_) constants.push_back({type.constants.shift, type.constants.slip / viscosity_});
+  return constants;
 }
 
 double SlipCorrection::largest_shift() const {

@@ -18,6 +18,7 @@ class SlipCorrection {
   struct Type {
     SlipConstants constants;
     double stretching_stiffness;  ///< d tension / d stretch: stiff membranes need their slip smoothed more often
+    double bending_stiffness;     ///< d moment / d curvature
   };
   /// `viscosity`: of the suspending fluid, lattice units.
   SlipCorrection(const Membranes& membranes, std::vector<Type> types, double viscosity);
@@ -29,6 +30,8 @@ class SlipCorrection {
   /// Pass over cells: turns velocities interpolated at the touching points into those of the membrane.
   void correct(Worker worker, Membranes& membranes);
 
+  /// Of each cell type, with the slip as velocity per tangential force per length, lattice units.
+  [[nodiscard]] std::vector<SlipConstants> constants() const;
   /// Largest |d| of the types, spacings.
   [[nodiscard]] double largest_shift() const;
   [[nodiscard]] NodeVectors positions() const { return {touch_x_.data(), touch_y_.data()}; }

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "cell/kernel_kind.hpp"
+#include "cell/slip_constants.hpp"
 #include "cell/stiffness.hpp"
 #include "cell_report.hpp"
 #include "method_limits.hpp"
@@ -49,23 +50,58 @@ constexpr double narrowest_well = 0.5;
 // a spacing to two and tau from 0.6 to 10 (docs/accuracy.md). Below that it gains nothing.
 constexpr double stretching_gain = 40, bending_gain = 10, least_semi_implicit_tau = 0.6;
 
+/// Limit of a membrane between two fluids: the geometric mean of those at either side's relaxation time. Measured at
+/// tau 1 and ratio 5: 0.83 and 0.63 of the limits at ratio 1, by this rule 0.83 and 0.63.
+template <std::size_t n>
+double limit_between(const std::array<TableEntry, n>& table, double tau, double viscosity_ratio) {
+  return std::sqrt(interpolate(table, tau) * interpolate(table, 0.5 + viscosity_ratio * (tau - 0.5)));
+}
+
+/// Stiffness of a cell type as the fluid feels it, over its limit with explicit coupling.
 struct Stiffness {
-  double stretching = 0, bending = 0;
+  double stretching = 0, bending = 0, stretching_limit = 0, bending_limit = 0;
+  [[nodiscard]] double margin() const { return std::min(stretching_limit / stretching, bending_limit / bending); }
 };
 
-/// The stiffest cell type of a stage.
+/// Mean length of a cell type's segments, m. Perimeters of ellipses by Ramanujan's formula.
+double segment_length(const CellType& type) {
+  double perimeter;
+  if (const auto* b = std::get_if<Biconcave>(&type.shape)) {
+    perimeter = 4.9285 * b->radius;
+  } else if (const auto* c = std::get_if<Circle>(&type.shape)) {
+    perimeter = 2 * std::numbers::pi * c->radius;
+  } else {
+    const Eigen::Vector2d& a = std::get<Ellipse>(type.shape).semi_axes;
+    perimeter = std::numbers::pi * (3 * a.sum() - std::sqrt((3 * a.x() + a.y()) * (a.x() + 3 * a.y())));
+  }
+  return perimeter / type.segments;
+}
+
+/// The cell type of a stage that is nearest to its limits.
 Stiffness membrane_stiffness(const Plan& plan, const ModelSetting& setting) {
+  const Scene& scene = *plan.scene;
+  const KernelFacts& kernel = kernel_named(scene.numerics.kernel);
+  const double tau = scene.numerics.tau;
   Stiffness most;
-  for (const std::vector<PlannedModel>& laws : plan.membranes) {
+  for (std::size_t t = 0; t < plan.membranes.size(); ++t) {
     Stiffness type;
-    for (const PlannedModel& law : laws) {
+    for (const PlannedModel& law : plan.membranes[t]) {
       if (!law.active()) continue;
       const ModelInstance instance(*law.manifest, law.parameters.values, setting);
       type.stretching += stretching_stiffness(instance);
       type.bending += bending_stiffness(instance);
     }
-    most.stretching = std::max(most.stretching, type.stretching);
-    most.bending = std::max(most.bending, type.bending);
+    const CellType& cell = scene.cell_types[t];
+    const double ratio = cell.interior_viscosity / scene.fluid.viscosity;
+    type.stretching_limit = kernel.stretch_limit * limit_between(stretch_limit, tau, ratio);
+    type.bending_limit = kernel.bending_limit * limit_between(bending_limit, tau, ratio);
+    if (scene.numerics.slip_correction) {
+      const double shift = slip_constants(kernel.kind, ratio).shift;
+      const double factor = stiffening(shift, segment_length(cell) / setting.units.length);
+      type.stretching *= factor;
+      type.bending *= factor;
+    }
+    if (t == 0 || type.margin() < most.margin()) most = type;
   }
   return most;
 }
@@ -96,12 +132,8 @@ bool semi_implicit_gains(const Plan& plan) { return plan.scene->numerics.tau >= 
 double explicit_margin(const Plan& plan) {
   double margin = std::numeric_limits<double>::infinity();
   if (!plan.has_cells) return margin;
-  const double tau = plan.scene->numerics.tau;
-  const KernelFacts& kernel = kernel_named(plan.scene->numerics.kernel);
   for (const StageSetting& stage : plan.stages) {
-    const Stiffness stiffness = membrane_stiffness(plan, stage.model_setting(plan.scene->fluid.inertia));
-    margin = std::min({margin, kernel.stretch_limit * interpolate(stretch_limit, tau) / stiffness.stretching,
-                       kernel.bending_limit * interpolate(bending_limit, tau) / stiffness.bending});
+    margin = std::min(margin, membrane_stiffness(plan, stage.model_setting(plan.scene->fluid.inertia)).margin());
   }
   return margin;
 }
@@ -116,7 +148,6 @@ std::vector<Limit> find_limits(const Plan& plan) {
     limits.push_back({name, value, limit, margin, remedy});
   };
   const double tau = scene.numerics.tau;
-  const KernelFacts& kernel = kernel_named(scene.numerics.kernel);
   add("tau - 1/2", tau - 0.5, 0.005, false, "raise numerics.tau above 0.505");
   if (plan.semi_implicit) {
     add("tau of the semi-implicit step", tau, least_semi_implicit_tau, false,
@@ -158,9 +189,9 @@ std::vector<Limit> find_limits(const Plan& plan) {
                                    : "lower density_factor, with which the lattice stiffness falls, or set "
                                      "numerics.coupling to \"semi-implicit\"";
     add("stretching stiffness" + coupled + where, membrane.stretching,
-        (gains ? stretching_gain : 1) * kernel.stretch_limit * interpolate(stretch_limit, tau), true, softer);
-    add("bending stiffness" + coupled + where, membrane.bending,
-        (gains ? bending_gain : 1) * kernel.bending_limit * interpolate(bending_limit, tau), true, softer);
+        (gains ? stretching_gain : 1) * membrane.stretching_limit, true, softer);
+    add("bending stiffness" + coupled + where, membrane.bending, (gains ? bending_gain : 1) * membrane.bending_limit,
+        true, softer);
     if (const double compression = prestress_compression(plan, stage); compression > 0) {
       add("compression of cells by their prestress, 3 T/a" + where, compression, 1e-3, true,
           "lower density_factor: pressure compresses the lattice's fluid the more, the longer the time step");
@@ -191,21 +222,8 @@ std::vector<Limit> find_limits(const Plan& plan) {
     if (stage.index != 0) continue;
     for (const CellPlacement& cell : scene.cells) {
       const CellType& type = scene.cell_types[static_cast<std::size_t>(cell.type)];
-      double r, perimeter;
-      if (const auto* b = std::get_if<Biconcave>(&type.shape)) {
-        r = b->radius;
-        perimeter = 4.9285 * b->radius;
-      } else if (const auto* c = std::get_if<Circle>(&type.shape)) {
-        r = c->radius;
-        perimeter = 2 * std::numbers::pi * r;
-      } else {
-        const auto& e = std::get<Ellipse>(type.shape);
-        r = e.semi_axes.maxCoeff();
-        perimeter = std::numbers::pi * (3 * e.semi_axes.sum() - std::sqrt((3 * e.semi_axes.x() + e.semi_axes.y()) *
-                                                                          (e.semi_axes.x() + 3 * e.semi_axes.y())));
-      }
-      radius = std::min(radius, r / stage.units.length);
-      const double segment = perimeter / type.segments / stage.units.length;
+      radius = std::min(radius, shape_radius(type.shape) / stage.units.length);
+      const double segment = segment_length(type) / stage.units.length;
       shortest = std::min(shortest, segment);
       longest = std::max(longest, segment);
     }

@@ -36,9 +36,12 @@ void Solver<T>::plan_corrections(const Plan& plan, const std::vector<MembraneLaw
     std::vector<SlipCorrection::Type> types;
     for (std::size_t t = 0; t < scene.cell_types.size(); ++t) {
       const double ratio = scene.cell_types[t].interior_viscosity / scene.fluid.viscosity;
-      double stiffness = 0;
-      for (const auto& law : laws[t]) stiffness += stretching_stiffness(*law);
-      types.push_back({slip_constants(kernel, ratio), stiffness});
+      SlipCorrection::Type type{slip_constants(kernel, ratio), 0, 0};
+      for (const auto& law : laws[t]) {
+        type.stretching_stiffness += stretching_stiffness(*law);
+        type.bending_stiffness += bending_stiffness(*law);
+      }
+      types.push_back(type);
     }
     slip_correction_ = std::make_unique<SlipCorrection>(membranes_, std::move(types), (setting_->tau - 0.5) / 3);
   }
@@ -63,6 +66,7 @@ void Solver<T>::plan_cell_passes(const Plan& plan) {
   plan_corrections(plan, laws);
   membrane_forces_ = std::make_unique<MembraneForces>(membranes_, std::move(laws));
   membrane_forces_->keep_state(membranes_);
+  if (slip_correction_) membrane_forces_->set_slip(slip_correction_->constants());
   if (plan.semi_implicit) membrane_forces_->make_semi_implicit(membranes_);
   const auto membrane = [this](Worker worker) { membrane_forces_->run(worker, membranes_); };
 

@@ -101,12 +101,15 @@ TEST_CASE("an elliptic disturbance of a pre-stretched ring decays as the boundar
   const nlohmann::json tables = read_reference("analytic.json")["relaxation_tables"];
   // A Stokes flow is asked for: tension waves must be slow against diffusion over the cell, Es a / (nu^2) small.
   const double amplitude = 0.1;
-  nlohmann::json table;
+  nlohmann::json reference;
   for (const auto& t : tables) {
-    if (t["parameters"]["walls"] != "none" && t["parameters"]["A"] == amplitude) table = t;
+    if (t["parameters"]["walls"] != "none" && t["parameters"]["A"] == amplitude) reference = t;
   }
-  REQUIRE(table.is_object());
-  SolverBench bench(ring);
+  REQUIRE(reference.is_object());
+  // At 20 spacings a kernel holds back the second mode's normal motion by (2/a)^2 x 1.05 spacings^2, 1 %; what the
+  // plain scheme slips happens to hide part of that.
+  const auto [corrected, tolerance] = GENERATE(table<const char*, double>({{"true", 0.02}, {"false", 0.01}}));
+  SolverBench bench(ring, {"/numerics/density_factor=75", std::string("/numerics/slip_correction=") + corrected});
   Membranes& m = bench.membranes;
   const Eigen::Vector2d c = centroid(m, m.cells[0]);
   const double radius = 4e-6 / bench.plan.stages[0].units.length;
@@ -115,12 +118,13 @@ TEST_CASE("an elliptic disturbance of a pre-stretched ring decays as the boundar
     m.x[i] = c.x() + radius * (1 + amplitude * std::cos(2 * angle)) * std::cos(angle);
     m.y[i] = c.y() + radius * (1 + amplitude * std::cos(2 * angle)) * std::sin(angle);
   }
+  m.cells[0].rest_area = enclosed_area(m, m.cells[0]);  // what the area correction holds on to
   bench.start();
   const LatticeUnits& units = bench.plan.stages[0].units;
   const double steps_per_unit = 1.2e-3 * 4e-6 / 1e-6 / units.time;  // mu a / Es
   double worst = 0;
   long step = 0;
-  for (const auto& row : table["values"]) {
+  for (const auto& row : reference["values"]) {
     const double t = row[0], d = row[2];
     if (t > 14) break;
     const long target = std::lround(t * steps_per_unit);
@@ -131,6 +135,7 @@ TEST_CASE("an elliptic disturbance of a pre-stretched ring decays as the boundar
       std::cout << "ring, t " << t << ": D " << found << " (" << 100 * (found / d - 1) << " %)\n";
     worst = std::max(worst, std::abs(found / d - 1));
   }
-  std::cout << "ring in the channel, A 0.1, to t = 14: largest error of D " << 100 * worst << " %\n";
-  CHECK(worst < 0.03);
+  std::cout << "ring in the channel, A 0.1, to t = 14, slip correction " << corrected << ": largest error of D "
+            << 100 * worst << " %\n";
+  CHECK(worst < tolerance);
 }

@@ -91,7 +91,7 @@ TEST_CASE("the constants fulfil their two conditions when distances are drawn at
 TEST_CASE("the slip correction adds no force to the fluid") {
   auto random = generator(82);
   Membranes m = cell_with_forces(random, 0.5);
-  SlipCorrection correction(m, {{slip_constants(KernelKind::peskin4, 5), 0}}, 1.0 / 6);
+  SlipCorrection correction(m, {{slip_constants(KernelKind::peskin4, 5), 0, 0}}, 1.0 / 6);
   correction.measure({}, m);
   correction.distribute({}, m);
   double x = 0, y = 0;
@@ -112,7 +112,7 @@ TEST_CASE("the slip correction keeps the torque to second order in shift over ra
       const double angle = 6.283185307179586 * static_cast<double>(i) / 400;
       m.force_x[i] = -std::sin(angle) + std::cos(2 * angle), m.force_y[i] = std::cos(angle) + 0.3 * std::sin(3 * angle);
     }
-    SlipCorrection correction(m, {{slip_constants(KernelKind::peskin4, 5), 0}}, 1.0 / 6);
+    SlipCorrection correction(m, {{slip_constants(KernelKind::peskin4, 5), 0, 0}}, 1.0 / 6);
     correction.measure({}, m);
     correction.distribute({}, m);
     const NodeVectors at = correction.positions(), force = correction.forces();
@@ -133,7 +133,7 @@ TEST_CASE("what the fluid does on the membrane is what the membrane does on the 
   Membranes m = cell_with_forces(random, 0.5);
   SlipConstants constants = slip_constants(KernelKind::peskin4, 5);
   constants.slip = 0;
-  SlipCorrection correction(m, {{constants, 0}}, 1.0 / 6);
+  SlipCorrection correction(m, {{constants, 0, 0}}, 1.0 / 6);
   correction.measure({}, m);
   correction.distribute({}, m);
   double fluid = 0, membrane = 0, size = 0;
@@ -157,7 +157,7 @@ TEST_CASE("the slip follows the tangential force along the membrane and costs en
     m.x[i] = radius * std::cos(angle), m.y[i] = radius * std::sin(angle);
     m.force_x[i] = -force * std::sin(angle), m.force_y[i] = force * std::cos(angle);
   }
-  SlipCorrection correction(m, {{slip_constants(KernelKind::peskin4, 1), GENERATE(0.0, 5.0)}}, viscosity);
+  SlipCorrection correction(m, {{slip_constants(KernelKind::peskin4, 1), GENERATE(0.0, 5.0), 0}}, viscosity);
   correction.measure({}, m);
   correction.distribute({}, m);
   correction.correct({}, m);
@@ -198,5 +198,6 @@ TEST_CASE("the area correction brings a wrong area back") {
     for (std::size_t i = 0; i < m.x.size(); ++i) m.x[i] += m.velocity_x[i], m.y[i] += m.velocity_y[i];
   }
   // A fiftieth of the difference goes in each step.
-  CHECK(enclosed_area(m, m.cells[0]) / m.cells[0].rest_area - 1 == Approx(-0.01 / 1.01 * std::pow(0.98, 500)).epsilon(0.01));
+  CHECK(enclosed_area(m, m.cells[0]) / m.cells[0].rest_area - 1 ==
+        Approx(-0.01 / 1.01 * std::pow(0.98, 500)).epsilon(0.01));
 }

@@ -28,7 +28,7 @@ TEST_CASE("the filter is the inverse of the cyclic matrix of stretching and bend
   for (int i = 0; i < n; ++i) x(i) = normal(random), y(i) = normal(random);
   const Eigen::VectorXd exact_x = matrix.partialPivLu().solve(x), exact_y = matrix.partialPivLu().solve(y);
   const double sum = x.sum();
-  ForceFilter(n, length, stretching, bending).apply(x.data(), y.data());
+  ForceFilter(n, length, 1, stretching, bending).apply(x.data(), y.data());
   // Rounding, times the condition number of at most 1 + 16 m k.
   const double tolerance = 1e-15 * matrix.norm() + 1e-14;
   CHECK((x - exact_x).norm() < tolerance * exact_x.norm() + tolerance);
