@@ -322,6 +322,11 @@ Plan make_plan(const Scene& scene, const Catalog& catalog) {
   if (const KernelFacts& kernel = kernel_named(scene.numerics.kernel); plan.has_cells && *kernel.defect != 0) {
     plan.warnings.push_back(std::string("kernel ") + kernel.name + ": " + kernel.defect);
   }
+  if (scene.numerics.slip_correction && plan.has_interactions) {
+    plan.warnings.push_back(
+        "numerics.slip_correction with attracting cells: where the attraction is strong, cells leak more with it than "
+        "without (docs/accuracy.md); watch area_leakage_max, or set it to false");
+  }
   choose_coupling(plan);
   plan_passes(plan);
   try_models(plan);

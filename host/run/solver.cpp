@@ -68,7 +68,10 @@ void Solver<T>::plan_cell_passes(const Plan& plan) {
   membrane_forces_->keep_state(membranes_);
   if (slip_correction_) membrane_forces_->set_slip(slip_correction_->constants());
   if (plan.semi_implicit) membrane_forces_->make_semi_implicit(membranes_);
-  const auto membrane = [this](Worker worker) { membrane_forces_->run(worker, membranes_); };
+  const auto membrane = [this](Worker worker) {
+    membrane_forces_->run(worker, membranes_);
+    if (slip_correction_) slip_correction_->take_membrane_forces(worker, membranes_);
+  };
 
   std::vector<double> viscosity_ratio;
   for (const CellType& type : scene.cell_types) {

@@ -7,14 +7,22 @@
 
 using namespace rouleau::host;
 
-TEST_CASE("the biconcave cell at 20/s first passes -90 degrees within 3 % of the reference strain", "[biconcave]") {
-  const SceneRun run = run_scene(std::string(ROULEAU_PHYSICS_SCENES) + "/biconcave.json");
-  REQUIRE(run.summary["status"] == "completed");
-  const double passage = value_at(run.column("angle_rad"), run.column("strain"), -std::numbers::pi / 2);
+TEST_CASE("the biconcave cell at 20/s first passes -90 degrees at the reference's strain, whatever the number of nodes",
+          "[biconcave]") {
   const double reference = read_reference("biconcave_channel.json")[0]["crossing_times"]["-90"][0];
-  std::cout << "biconcave, 20/s, lambda 1: passes -90 deg at strain " << passage << " (reference " << reference << ", "
-            << 100 * (passage / reference - 1) << " %)\n";
-  CHECK(passage == Approx(reference).epsilon(0.03));
+  double passages[2];
+  for (const int fine : {0, 1}) {
+    const SceneRun run = run_scene(std::string(ROULEAU_PHYSICS_SCENES) + "/biconcave.json",
+                                   {std::string("/cell_types/rbc/segments=") + (fine == 1 ? "148" : "99")});
+    REQUIRE(run.summary["status"] == "completed");
+    passages[fine] = value_at(run.column("angle_rad"), run.column("strain"), -std::numbers::pi / 2);
+    std::cout << "biconcave, 20/s, lambda 1, " << (fine == 1 ? 148 : 99) << " nodes: passes -90 deg at strain "
+              << passages[fine] << " (reference " << reference << ", " << 100 * (passages[fine] / reference - 1)
+              << " %)\n";
+    // Half of the difference is the unsteady term of the fluid at the Reynolds number 0.25.
+    CHECK(passages[fine] == Approx(reference).epsilon(0.015));
+  }
+  CHECK(passages[1] == Approx(passages[0]).epsilon(0.002));
 }
 
 TEST_CASE("the number of nodes does not change how the biconcave cell turns", "[biconcave]") {

@@ -41,8 +41,7 @@ nlohmann::json reference(double ca, double lambda) {
 TEST_CASE("segments up to the limit of plan keep the area", "[capsule]") {
   const auto [segments, most] = GENERATE(table<int, double>({{126, 1e-4}, {63, 2e-4}}));
   const SceneRun run = run_scene(std::string(ROULEAU_PHYSICS_SCENES) + "/capsule.json",
-                                 {"/cell_types/capsule/segments=" + std::to_string(segments), "/stages/0/strain=5",
-                                  "/numerics/slip_correction=false", "/numerics/area_correction=false"});
+                                 {"/cell_types/capsule/segments=" + std::to_string(segments), "/stages/0/strain=5"});
   REQUIRE(run.summary["status"] == "completed");
   CHECK(run.summary["warnings"].empty());
   // The circle it begins as has no long axis; the capsule it becomes is inclined to the flow, and by no half turns

@@ -19,13 +19,13 @@ Stiff stiff_capsule(int radius, const char* interior_viscosity) {
   const std::string nodes = "[" + std::to_string(64 * radius / 5) + ", " + std::to_string(32 * radius / 5) + "]";
   const int segments = static_cast<int>(std::lround(2 * std::numbers::pi * radius));
   const std::string membrane = "/cell_types/capsule/membrane/";
-  const SceneRun run =
-      run_scene(std::string(ROULEAU_PHYSICS_SCENES) + "/capsule.json",
-                {"/domain/nodes=" + nodes, "/cell_types/capsule/segments=" + std::to_string(segments),
-                 membrane + "0/parameters/shear_modulus=7.68e-6", membrane + "1/parameters/modulus=2.4576e-17",
-                 std::string("/cell_types/capsule/interior_viscosity=") + interior_viscosity, "/stages/0/strain=5",
-                 // Bending is as stiff as a viscosity ratio of 5 bears at half the Reynolds number of the other tests.
-                 "/numerics/density_factor=781.25"});
+  const SceneRun run = run_scene(
+      std::string(ROULEAU_PHYSICS_SCENES) + "/capsule.json",
+      {"/domain/nodes=" + nodes, "/cell_types/capsule/segments=" + std::to_string(segments),
+       membrane + "0/parameters/shear_modulus=7.68e-6", membrane + "1/parameters/modulus=2.4576e-17",
+       std::string("/cell_types/capsule/interior_viscosity=") + interior_viscosity, "/stages/0/strain=5",
+       // Bending is as stiff as a viscosity ratio of 5 bears at half the Reynolds number of the other tests.
+       "/numerics/density_factor=781.25", "/numerics/slip_correction=true", "/numerics/area_correction=true"});
   CHECK(run.summary["status"] == "completed");
   const double share = run.column("area_m2").front() / (51.2e-6 * 25.6e-6);
   return {(run.series_column("relative_viscosity").back() - 1) / share, run.column("deformation").back()};

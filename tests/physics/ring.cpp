@@ -109,7 +109,8 @@ TEST_CASE("an elliptic disturbance of a pre-stretched ring decays as the boundar
   // At 20 spacings a kernel holds back the second mode's normal motion by (2/a)^2 x 1.05 spacings^2, 1 %; what the
   // plain scheme slips happens to hide part of that.
   const auto [corrected, tolerance] = GENERATE(table<const char*, double>({{"true", 0.02}, {"false", 0.01}}));
-  SolverBench bench(ring, {"/numerics/density_factor=75", std::string("/numerics/slip_correction=") + corrected});
+  SolverBench bench(ring, {"/numerics/density_factor=75", std::string("/numerics/slip_correction=") + corrected,
+                           std::string("/numerics/area_correction=") + corrected});
   Membranes& m = bench.membranes;
   const Eigen::Vector2d c = centroid(m, m.cells[0]);
   const double radius = 4e-6 / bench.plan.stages[0].units.length;
