@@ -3,8 +3,8 @@
 
 #include "input/scene.hpp"
 #include "plugin/catalog.hpp"
-#include "run/potential_shape.hpp"
 #include "run/plan.hpp"
+#include "run/potential_shape.hpp"
 
 using namespace rouleau::host;
 
