@@ -237,7 +237,7 @@ json report_data(const std::filesystem::path& directory) {
   data["stage"] = json::array();
   for (const std::size_t i : selection) data["stage"].push_back(stages[i]);
   for (const char* name : {"aggregate_count", "aggregate_size_weight_mean", "relative_viscosity", "particle_stress_Pa",
-                           "mach_max", "area_drift_max", "mass_drift"})
+                           "mach_max", "area_drift_max", "area_leakage_max", "mass_drift"})
     data["series"][name] = picked(series.numbers(name), selection);
   for (const auto& [name, column] : {std::pair{"cell_free_layer_lower_um", "cell_free_layer_lower_m"},
                                      std::pair{"cell_free_layer_upper_um", "cell_free_layer_upper_m"}}) {
