@@ -323,7 +323,7 @@ Plan make_plan(const Scene& scene, const Catalog& catalog) {
     plan.warnings.push_back(std::string("kernel ") + kernel.name + ": " + kernel.defect);
   }
   if (scene.numerics.slip_correction && plan.has_interactions) {
-    plan.warnings.push_back(
+    plan.warnings.emplace_back(
         "numerics.slip_correction with attracting cells: where the attraction is strong, cells leak more with it than "
         "without (docs/accuracy.md); watch area_leakage_max, or set it to false");
   }
