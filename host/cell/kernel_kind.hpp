@@ -16,7 +16,7 @@ struct KernelFacts {
   const char* defect;    ///< what a user has to expect, for `plan`; empty: nothing
 };
 
-/// Facts of a kernel. The limits were measured with one cell at rest (docs/stability.md).
+/// Facts of a kernel. The limits were measured with one cell at rest, 20 spacings a radius, tau 1.
 const KernelFacts& kernel_facts(KernelKind kind);
 /// The kernel of this name, which the schema has checked.
 const KernelFacts& kernel_named(const std::string& name);
