@@ -57,10 +57,17 @@ double limit_between(const std::array<TableEntry, n>& table, double tau, double 
   return std::sqrt(interpolate(table, tau) * interpolate(table, 0.5 + viscosity_ratio * (tau - 0.5)));
 }
 
-/// Stiffness of a cell type as the fluid feels it, over its limit with explicit coupling.
+/// A stiffness as the fluid feels it, and its limit with explicit coupling.
+struct Bounded {
+  double value = 0, limit = 1;
+  [[nodiscard]] double margin() const { return limit / value; }
+  /// Becomes the other, unless that is further from its limit.
+  void narrow(const Bounded& other) {
+    if (!(margin() < other.margin())) *this = other;
+  }
+};
 struct Stiffness {
-  double stretching = 0, bending = 0, stretching_limit = 0, bending_limit = 0;
-  [[nodiscard]] double margin() const { return std::min(stretching_limit / stretching, bending_limit / bending); }
+  Bounded stretching, bending;
 };
 
 /// Mean length of a cell type's segments, m. Perimeters of ellipses by Ramanujan's formula.
@@ -77,33 +84,30 @@ double segment_length(const CellType& type) {
   return perimeter / type.segments;
 }
 
-/// The cell type of a stage that is nearest to its limits.
+/// Of all cell types in a stage, the stretching and the bending stiffness that are nearest to their limits.
 Stiffness membrane_stiffness(const Plan& plan, const ModelSetting& setting) {
   const Scene& scene = *plan.scene;
   const KernelFacts& kernel = kernel_named(scene.numerics.kernel);
   const double tau = scene.numerics.tau;
-  Stiffness most;
+  Stiffness nearest;
   for (std::size_t t = 0; t < plan.membranes.size(); ++t) {
-    Stiffness type;
+    const CellType& cell = scene.cell_types[t];
+    const double ratio = cell.interior_viscosity / scene.fluid.viscosity;
+    double factor = 1;
+    if (scene.numerics.slip_correction) {
+      factor = stiffening(slip_constants(kernel.kind, ratio).shift, segment_length(cell) / setting.units.length);
+    }
+    double stretching = 0, bending = 0;
     for (const PlannedModel& law : plan.membranes[t]) {
       if (!law.active()) continue;
       const ModelInstance instance(*law.manifest, law.parameters.values, setting);
-      type.stretching += stretching_stiffness(instance);
-      type.bending += bending_stiffness(instance);
+      stretching += stretching_stiffness(instance);
+      bending += bending_stiffness(instance);
     }
-    const CellType& cell = scene.cell_types[t];
-    const double ratio = cell.interior_viscosity / scene.fluid.viscosity;
-    type.stretching_limit = kernel.stretch_limit * limit_between(stretch_limit, tau, ratio);
-    type.bending_limit = kernel.bending_limit * limit_between(bending_limit, tau, ratio);
-    if (scene.numerics.slip_correction) {
-      const double shift = slip_constants(kernel.kind, ratio).shift;
-      const double factor = stiffening(shift, segment_length(cell) / setting.units.length);
-      type.stretching *= factor;
-      type.bending *= factor;
-    }
-    if (t == 0 || type.margin() < most.margin()) most = type;
+    nearest.stretching.narrow({factor * stretching, kernel.stretch_limit * limit_between(stretch_limit, tau, ratio)});
+    nearest.bending.narrow({factor * bending, kernel.bending_limit * limit_between(bending_limit, tau, ratio)});
   }
-  return most;
+  return nearest;
 }
 
 /// Relative change of the area of a cell whose membrane is stretched from the start: the tension T over the radius a is
@@ -133,7 +137,8 @@ double explicit_margin(const Plan& plan) {
   double margin = std::numeric_limits<double>::infinity();
   if (!plan.has_cells) return margin;
   for (const StageSetting& stage : plan.stages) {
-    margin = std::min(margin, membrane_stiffness(plan, stage.model_setting(plan.scene->fluid.inertia)).margin());
+    const Stiffness nearest = membrane_stiffness(plan, stage.model_setting(plan.scene->fluid.inertia));
+    margin = std::min({margin, nearest.stretching.margin(), nearest.bending.margin()});
   }
   return margin;
 }
@@ -182,16 +187,16 @@ std::vector<Limit> find_limits(const Plan& plan) {
           "set fluid.inertia to true, or lower density_factor: cells would migrate across the channel wrongly");
     }
     const Stiffness membrane = membrane_stiffness(plan, setting);
-    const bool gains = plan.semi_implicit && tau >= least_semi_implicit_tau;
+    const bool gains = plan.semi_implicit && semi_implicit_gains(plan);
     const std::string coupled = plan.semi_implicit ? ", semi-implicit step" : " in lattice units";
     const std::string softer = plan.semi_implicit
                                    ? "lower density_factor, with which the lattice stiffness falls"
                                    : "lower density_factor, with which the lattice stiffness falls, or set "
                                      "numerics.coupling to \"semi-implicit\"";
-    add("stretching stiffness" + coupled + where, membrane.stretching,
-        (gains ? stretching_gain : 1) * membrane.stretching_limit, true, softer);
-    add("bending stiffness" + coupled + where, membrane.bending, (gains ? bending_gain : 1) * membrane.bending_limit,
-        true, softer);
+    add("stretching stiffness" + coupled + where, membrane.stretching.value,
+        (gains ? stretching_gain : 1) * membrane.stretching.limit, true, softer);
+    add("bending stiffness" + coupled + where, membrane.bending.value,
+        (gains ? bending_gain : 1) * membrane.bending.limit, true, softer);
     if (const double compression = prestress_compression(plan, stage); compression > 0) {
       add("compression of cells by their prestress, 3 T/a" + where, compression, 1e-3, true,
           "lower density_factor: pressure compresses the lattice's fluid the more, the longer the time step");
@@ -199,9 +204,8 @@ std::vector<Limit> find_limits(const Plan& plan) {
     double radius = 1e300, shortest = 1e300, longest = 0;
     for (const PlannedModel& model : plan.interactions) {
       if (!model.active()) continue;
-      const ModelInstance instance(*model.manifest, model.parameters.values, setting);
       if (!model.manifest->state.empty()) continue;  // its stiffness is a matter of what it remembers
-      const PotentialShape shape = find_shape(instance);
+      const PotentialShape shape = find_shape(ModelInstance(*model.manifest, model.parameters.values, setting));
       add("contact stiffness of " + model.manifest->id + " in lattice units" + where, shape.stiffness,
           interpolate(contact_limit, tau), true, "lower density_factor, with which the lattice stiffness falls");
       if (stage.index != 0) continue;
