@@ -3,6 +3,7 @@
 #include <elf.h>
 #include <link.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -58,22 +59,19 @@ bool is_exported(const Symbol& symbol) {
          (visibility == STV_DEFAULT || visibility == STV_PROTECTED);
 }
 
-bool exports(ElfFile& file, const std::vector<Section>& sections, const std::string& name) {
+std::vector<std::string> exported(ElfFile& file, const std::vector<Section>& sections) {
+  std::vector<std::string> symbols;
   for (const Section& section : sections) {
     if (section.sh_type != SHT_DYNSYM) continue;
     if (section.sh_link >= sections.size()) throw Damaged("has a damaged table of symbols");
     const Section& names = sections[section.sh_link];
-    const std::vector<char> text = file.read<char>(names.sh_offset, names.sh_size);
+    std::vector<char> text = file.read<char>(names.sh_offset, names.sh_size);
+    text.push_back('\0');
     for (const Symbol& symbol : file.read<Symbol>(section.sh_offset, section.sh_size / sizeof(Symbol))) {
-      if (!is_exported(symbol)) continue;
-      const std::size_t first = symbol.st_name;
-      if (first < text.size() && name.size() < text.size() - first &&
-          std::memcmp(text.data() + first, name.c_str(), name.size() + 1) == 0) {
-        return true;
-      }
+      if (is_exported(symbol) && symbol.st_name < text.size()) symbols.emplace_back(&text[symbol.st_name]);
     }
   }
-  return false;
+  return symbols;
 }
 
 /// What of the file's header this process cannot load.
@@ -107,13 +105,20 @@ std::string reason_not_loadable(const std::filesystem::path& path, const std::st
     for (const Segment& segment : file.read<Segment>(header.e_phoff, header.e_phnum)) {
       if (segment.p_type == PT_LOAD && !file.holds(segment.p_offset, segment.p_filesz)) return "is cut short";
     }
-    if (!exports(file, file.read<Section>(header.e_shoff, header.e_shnum), symbol)) {
+    const auto symbols = exported(file, file.read<Section>(header.e_shoff, header.e_shnum));
+    if (std::find(symbols.begin(), symbols.end(), symbol) == symbols.end()) {
       return "does not export the function " + symbol;
     }
   } catch (const Damaged& damage) {
     return damage.what();
   }
   return {};
+}
+
+std::vector<std::string> exported_symbols(const std::filesystem::path& path) {
+  ElfFile file(path);
+  const Header header = file.read<Header>(0, 1)[0];
+  return exported(file, file.read<Section>(header.e_shoff, header.e_shnum));
 }
 
 }  // namespace rouleau::host

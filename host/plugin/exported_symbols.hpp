@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace rouleau::host {
 
@@ -13,5 +14,8 @@ namespace rouleau::host {
 /// stripped library does not have, and reads past its buffer when the file is damaged. Loading a file that is cut short
 /// ends the program with SIGBUS, so its length is checked here, too.
 std::string reason_not_loadable(const std::filesystem::path& file, const std::string& symbol);
+
+/// Names of all symbols that other modules can see. Throws std::runtime_error for a file that is no library or damaged.
+std::vector<std::string> exported_symbols(const std::filesystem::path& file);
 
 }  // namespace rouleau::host

@@ -70,12 +70,19 @@ boost::dll::shared_library& load(const Manifest& manifest, const fs::path& file)
 
 }  // namespace
 
-const rouleau_model& open_model(const Manifest& manifest) {
-  const fs::path file = library_file(manifest);
+fs::path checked_library(const Manifest& manifest) {
+  fs::path file = library_file(manifest);
   if (const std::string reason = reason_not_loadable(file, ROULEAU_OPEN_SYMBOL); !reason.empty()) {
     refuse(manifest, reason);
   }
-  const auto open = load(manifest, file).get<const rouleau_plugin*(std::uint32_t)>(ROULEAU_OPEN_SYMBOL);
+  return file;
+}
+
+rouleau_open_function load_library(const Manifest& manifest) {
+  return load(manifest, checked_library(manifest)).get<const rouleau_plugin*(std::uint32_t)>(ROULEAU_OPEN_SYMBOL);
+}
+
+const rouleau_model& model_of(rouleau_open_function open, const Manifest& manifest) {
   const rouleau_plugin* plugin = open(ROULEAU_ABI_MINOR);
   if (plugin == nullptr) {
     refuse(manifest, "says that it cannot work with this host (interface " + std::to_string(ROULEAU_ABI_MAJOR) + '.' +
@@ -85,6 +92,8 @@ const rouleau_model& open_model(const Manifest& manifest) {
   if (model == nullptr) refuse(manifest, fault);
   return *model;
 }
+
+const rouleau_model& open_model(const Manifest& manifest) { return model_of(load_library(manifest), manifest); }
 
 std::string sha256(const fs::path& file) {
   char digest[SHA256_DIGEST_STRING_LENGTH] = {};

@@ -3,6 +3,8 @@
 
 #include <rouleau/plugin.h>
 
+#include <filesystem>
+#include <string>
 #include <string_view>
 
 #include "manifest.hpp"
@@ -13,6 +15,15 @@ namespace rouleau::host {
 /// the manifest (no path, no link out) and exports rouleau_open_v1; never unloads it, so the result is valid for ever.
 /// Throws Error(plugin_refused) with manifest, library path and the loader's own words.
 const rouleau_model& open_model(const Manifest& manifest);
+
+// The steps that open_model takes, for the conformance tests; each throws as it does.
+
+/// The library's file with all links followed: beside the manifest, made for this machine, with the symbol exported.
+std::filesystem::path checked_library(const Manifest& manifest);
+/// Loads that file for good and returns its rouleau_open_v1.
+rouleau_open_function load_library(const Manifest& manifest);
+/// The manifest's model in the table that a library's open function gives this host.
+const rouleau_model& model_of(rouleau_open_function open, const Manifest& manifest);
 
 /// SHA-256 of a file, lower-case hexadecimal. Throws Error(input_output).
 std::string sha256(const std::filesystem::path& file);

@@ -8,17 +8,10 @@
 #include <vector>
 
 #include "error.hpp"
-#include "input/lattice_units.hpp"
 #include "manifest.hpp"
+#include "model_setup.hpp"
 
 namespace rouleau::host {
-
-/// What all models of a stage are told about the lattice.
-struct ModelSetting {
-  LatticeUnits units;
-  double relaxation_rate;  ///< 1/tau of the suspending fluid
-  bool inertia;
-};
 
 /// A model's create function has reported an error: as a rule these parameters do not go together.
 class ModelRefused : public Error {

@@ -1,0 +1,182 @@
+// rouleau conform MANIFEST...: whether plugins do what the interface and their manifests say.
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "command/command_line.hpp"
+#include "command/commands.hpp"
+#include "conform/conformance.hpp"
+#include "conform/report_line.hpp"
+#include "error.hpp"
+#include "input/wording.hpp"
+
+namespace rouleau::host {
+
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+std::string help() {
+  std::string text = R"(usage: rouleau conform MANIFEST... [options]
+
+Tests plugins against the interface and against what their manifests say. Each check runs in a process of its own, which
+is killed with all it started when its time is up: a plugin can crash, hang or write where it likes.
+Verdicts: pass, warn, fail, crash, timeout; skip for what builds on a check that did not pass, or does not apply.
+Exit code 0 when every plugin conforms (warnings allowed), 3 otherwise.
+
+Example:
+  rouleau conform lib/rouleau/plugins/interaction/morse/morse.json --level physics
+
+Checks:
+)";
+  for (const Level level : {Level::interface, Level::physics, Level::robustness, Level::speed}) {
+    text += std::string("  ") + to_string(level) + '\n';
+    for (const Check& check : all_checks()) {
+      if (check.level != level) continue;
+      std::string name = check.name;
+      name.resize(20, ' ');
+      text += "    " + name + check.says + (check.kind ? std::string(" (") + to_string(*check.kind) + ')' : "") + '\n';
+    }
+  }
+  return text;
+}
+
+std::string repeat(const Conformance& plugin, const CheckResult& result, std::uint64_t seed) {
+  return "rouleau conform " + plugin.file.string() + " --only " + result.check->name + " --seed " +
+         std::to_string(seed);
+}
+
+/// "3.2e-12, limit 1e-09".
+std::string numbers(const Finding& finding) {
+  if (!finding.measured) return {};
+  return ": " + number(*finding.measured, 3) + (finding.limit ? ", limit " + number(*finding.limit, 3) : "");
+}
+
+/// Prints results as they come.
+class Printer {
+ public:
+  explicit Printer(std::uint64_t seed) : seed_(seed) {}
+
+  void operator()(const Conformance& plugin, const CheckResult& result) {
+    if (plugin.results.size() == 1) {
+      std::cout << (plugin.id.empty() ? "" : plugin.kind + ' ' + plugin.id + ' ' + plugin.version + ", ")
+                << plugin.file.string() << '\n';
+    }
+    std::string verdict = to_string(result.finding.verdict), name = result.check->name;
+    verdict.resize(9, ' ');
+    name.resize(20, ' ');
+    std::cout << "  " << verdict << name << indented(result.finding.what) << numbers(result.finding) << '\n';
+    const Verdict v = result.finding.verdict;
+    if (v == Verdict::fail || v == Verdict::crash || v == Verdict::timeout) {
+      std::cout << "           says that it " << result.check->says
+                << "\n           repeat: " << repeat(plugin, result, seed_) << '\n';
+      if (!result.output.empty()) std::cout << "           it printed: " << in_quotes(result.output) << '\n';
+    }
+    std::cout.flush();
+  }
+
+ private:
+  std::uint64_t seed_;
+};
+
+json to_json(const Conformance& plugin, std::uint64_t seed) {
+  json checks = json::array();
+  for (const CheckResult& result : plugin.results) {
+    json entry = to_json(result.finding);
+    entry["name"] = result.check->name;
+    entry["level"] = to_string(result.check->level);
+    entry["says"] = result.check->says;
+    entry["wall_s"] = result.wall_s;
+    entry["repeat"] = repeat(plugin, result, seed);
+    if (!result.blocked_by.empty()) entry["blocked_by"] = result.blocked_by;
+    if (!result.output.empty()) entry["output"] = result.output;
+    checks.push_back(std::move(entry));
+  }
+  return {{"manifest", plugin.file.string()}, {"id", plugin.id}, {"version", plugin.version}, {"kind", plugin.kind},
+          {"conforms", plugin.conforms()},    {"checks", checks}};
+}
+
+Level level_named(const std::string& name) {
+  std::vector<std::string> names;
+  for (const Level level : {Level::interface, Level::physics, Level::robustness, Level::speed}) {
+    if (name == to_string(level)) return level;
+    names.emplace_back(to_string(level));
+  }
+  throw Error(ExitCode::bad_input, "rouleau conform --level: there is no level " + in_quotes(name) +
+                                       did_you_mean(name, names) + "\n  levels: " + listed(names));
+}
+
+std::string check_named(const std::string& name) {
+  if (find_check(name) != nullptr) return name;
+  std::vector<std::string> names;
+  for (const Check& check : all_checks()) names.emplace_back(check.name);
+  throw Error(ExitCode::bad_input, "rouleau conform --only: there is no check " + in_quotes(name) +
+                                       did_you_mean(name, names) + "\n  checks: " + listed(names));
+}
+
+void require_file(const fs::path& file) {
+  std::error_code error;
+  if (fs::is_regular_file(file, error)) return;
+  throw Error(ExitCode::bad_input,
+              "rouleau conform: " + file.string() +
+                  (fs::is_directory(file, error) ? " is a folder; give the manifests in it" : " does not exist") +
+                  "\n  rouleau plugins lists the manifests that are installed");
+}
+
+}  // namespace
+
+int conform_command(const std::vector<std::string>& arguments) {
+  namespace options = boost::program_options;
+  std::vector<std::string> manifests, only, levels;
+  ConformanceOptions chosen;
+  chosen.seed = std::random_device{}();
+  bool as_json = false;
+  options::options_description description("options");
+  options::positional_options_description positional;
+  description.add_options()("manifest", options::value(&manifests)->required(), "manifest");
+  description.add_options()("only", options::value(&only)->composing()->value_name("CHECK"),
+                            "this check alone, whatever it builds on (repeatable)");
+  description.add_options()("level", options::value(&levels)->composing()->value_name("LEVEL"),
+                            "interface, physics, robustness or speed, with the checks that it builds on (repeatable)");
+  description.add_options()("seed", options::value(&chosen.seed)->value_name("N"),
+                            "of the random inputs; without it another one each time");
+  description.add_options()("timeout", options::value(&chosen.time_limit_s)->value_name("SECONDS"),
+                            "longest time of one check (20)");
+  description.add_options()("json", options::bool_switch(&as_json), "print JSON for programs");
+  positional.add("manifest", -1);
+  if (!parse_command_line("conform", help(), arguments, description, positional)) return 0;
+
+  for (const std::string& name : only) chosen.only.insert(check_named(name));
+  for (const std::string& name : levels) chosen.levels.insert(level_named(name));
+  if (!(chosen.time_limit_s > 0)) {
+    throw Error(ExitCode::bad_input, "rouleau conform --timeout: must be more than 0 seconds");
+  }
+  std::vector<fs::path> files;
+  for (const std::string& file : manifests) require_file(files.emplace_back(file));
+
+  Printer print(chosen.seed);
+  const auto all = check_conformance(files, chosen, [&](const Conformance& plugin, const CheckResult& result) {
+    if (!as_json) print(plugin, result);
+  });
+  bool conforms = true;
+  json list = json::array();
+  for (const Conformance& plugin : all) {
+    conforms = conforms && plugin.conforms();
+    list.push_back(to_json(plugin, chosen.seed));
+    if (as_json) continue;
+    std::cout << (plugin.id.empty() ? plugin.file.string() : plugin.id)
+              << (plugin.conforms() ? " conforms: " : " does not conform: ") << plugin.count(Verdict::pass)
+              << " passed, " << plugin.count(Verdict::warn) << " warned, "
+              << plugin.count(Verdict::fail) + plugin.count(Verdict::crash) + plugin.count(Verdict::timeout)
+              << " failed, " << plugin.count(Verdict::skip) << " skipped (seed " << chosen.seed << ")\n";
+  }
+  if (as_json) {
+    std::cout << json{{"rouleau", 1}, {"seed", chosen.seed}, {"conforms", conforms}, {"plugins", list}}.dump(
+                     2, ' ', false, json::error_handler_t::replace)
+              << '\n';
+  }
+  return static_cast<int>(conforms ? ExitCode::done : ExitCode::plugin_refused);
+}
+
+}  // namespace rouleau::host

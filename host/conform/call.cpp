@@ -1,0 +1,316 @@
+#include "call.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cfenv>
+#include <cmath>
+#include <cstring>
+#include <memory>
+
+#include "guarded_memory.hpp"
+#include "input/wording.hpp"
+#include "plugin/quantities.hpp"
+
+namespace rouleau::host {
+
+namespace {
+
+constexpr std::uint64_t unwritten_bits = 0x7ff8'0bad'0bad'0badU;
+constexpr std::uint32_t unwritten_bits_single = 0x7fc0'0badU;
+constexpr std::uint64_t signalling_bits = 0x7ff0'0000'0000'0001U;
+constexpr std::uint32_t signalling_bits_single = 0x7f80'0001U;
+
+template <class T>
+T from_bits(std::uint64_t wide, std::uint32_t narrow) {
+  if constexpr (sizeof(T) == 8)
+    return std::bit_cast<T>(wide);
+  else
+    return std::bit_cast<T>(narrow);
+}
+
+/// The memory of one compute call.
+class Memory {
+ public:
+  explicit Memory(Guard guard) : guard_(guard) {}
+
+  /// Memory for an array at `offset` bytes from a cache line or, when guarded, flush with an inaccessible page.
+  std::byte* place(const std::string& name, std::size_t bytes, std::size_t offset) {
+    if (guard_ != Guard::none) return guarded(name, bytes).data();
+    // A margin on both sides: what a faulty model writes there is for the check of bounds to find.
+    constexpr std::size_t margin = 256;
+    auto& block = plain_.emplace_back(new std::byte[bytes + offset + 2 * margin + 64]);
+    const auto address = reinterpret_cast<std::uintptr_t>(block.get()) + margin;
+    return block.get() + margin + (64 - address % 64) % 64 + offset;
+  }
+  std::byte* unreadable(const std::string& name, std::size_t bytes) {
+    GuardedArray& array = guarded(name, bytes);
+    array.make_unreadable();
+    return array.data();
+  }
+  /// Forbids writing to the array placed last.
+  void protect_last() {
+    if (guard_ != Guard::none) guarded_.back()->make_read_only();
+  }
+
+ private:
+  GuardedArray& guarded(const std::string& name, std::size_t bytes) {
+    const auto flush = guard_ == Guard::before ? GuardedArray::Flush::before : GuardedArray::Flush::behind;
+    return *guarded_.emplace_back(std::make_unique<GuardedArray>(name, bytes, flush));
+  }
+
+  Guard guard_;
+  std::vector<std::unique_ptr<std::byte[]>> plain_;
+  std::vector<std::unique_ptr<GuardedArray>> guarded_;
+};
+
+/// Where the arrays of a call lie, by name; what is missing is NULL.
+template <class T>
+struct Arrays {
+  std::map<std::string, T*> in, out;
+
+  const T* input(const std::string& name, std::size_t first) const {
+    const auto found = in.find(name);
+    return found == in.end() ? nullptr : found->second + first;
+  }
+  T* output(const std::string& name, std::size_t first) const {
+    const auto found = out.find(name);
+    return found == out.end() ? nullptr : found->second + first;
+  }
+};
+
+template <class T>
+Arrays<T> place(Memory& memory, const Subject& subject, const Values& inputs, const Call& call, std::size_t count) {
+  Arrays<T> arrays;
+  const std::size_t bytes = count * sizeof(T), offset = call.offset * sizeof(T);
+  const auto fill = [&](T* to, T value) { std::fill_n(to, count, value); };
+  for (const std::string& name : subject.input_arrays()) {
+    auto* array = reinterpret_cast<T*>(memory.place("the input " + name, bytes, offset));
+    const auto& values = inputs.at(name);
+    for (std::size_t i = 0; i < count; ++i) array[i] = static_cast<T>(values[i]);
+    if (!call.in_place) memory.protect_last();
+    arrays.in[name] = array;
+  }
+  const auto kind = subject.manifest().kind;
+  for (const std::string& quantity : inputs_of(kind)) {
+    if (subject.manifest().needs_input(quantity) || call.undeclared == Undeclared::null) continue;
+    for (const std::string& name : arrays_of(kind, quantity)) {
+      const std::string words = "the input " + name + ", which its manifest does not declare";
+      auto* array =
+          reinterpret_cast<T*>(call.undeclared == Undeclared::unreadable ? memory.unreadable(words, bytes)
+                                                                         : memory.place(words, bytes, offset));
+      if (call.undeclared == Undeclared::signalling_nan) {
+        fill(array, from_bits<T>(signalling_bits, signalling_bits_single));
+      }
+      arrays.in[name] = array;
+    }
+  }
+  for (const std::string& name : subject.output_arrays()) {
+    if (call.outputs && !call.outputs->contains(name)) continue;
+    const std::string over = name.starts_with("velocity.") ? "force." + name.substr(9) : name;
+    if (call.in_place && arrays.in.contains(over)) {
+      arrays.out[name] = arrays.in[over];
+      continue;
+    }
+    auto* array = reinterpret_cast<T*>(memory.place("the output " + name, bytes, offset));
+    fill(array, from_bits<T>(unwritten_bits, unwritten_bits_single));
+    arrays.out[name] = array;
+  }
+  return arrays;
+}
+
+/// A C array of pointers; null when the first of them is.
+template <class T>
+T** table(Memory& memory, const std::string& name, const std::vector<T*>& pointers) {
+  if (pointers.empty() || pointers.front() == nullptr) return nullptr;
+  const std::size_t bytes = pointers.size() * sizeof(T*);
+  auto** array = reinterpret_cast<T**>(memory.place("the list of pointers " + name, bytes, 0));
+  std::copy(pointers.begin(), pointers.end(), array);
+  memory.protect_last();
+  return array;
+}
+
+template <class T>
+struct Tables {
+  Memory& memory;
+  const Arrays<T>& arrays;
+  std::size_t first;
+
+  const T** in(const std::string& name, std::size_t count) const {
+    std::vector<const T*> pointers;
+    for (std::size_t k = 0; k < count; ++k) pointers.push_back(arrays.input(name + '.' + std::to_string(k), first));
+    return table(memory, name, pointers);
+  }
+  T** out(const std::string& name, std::size_t count) const {
+    std::vector<T*> pointers;
+    for (std::size_t k = 0; k < count; ++k) pointers.push_back(arrays.output(name + '.' + std::to_string(k), first));
+    return table(memory, "new " + name, pointers);
+  }
+};
+
+template <class Block, class T>
+Block collision_block(const Tables<T>& tables) {
+  Block block{};
+  block.in = tables.in("populations", 9);
+  block.out = tables.out("populations", 9);
+  block.force = tables.in("force", 2);
+  block.relaxation_rate = tables.arrays.input("relaxation_rate", tables.first);
+  block.velocity = tables.out("velocity", 2);
+  return block;
+}
+
+template <class Block>
+struct Member {
+  const char* name;
+  const double* Block::*in;
+  double* Block::*out;
+};
+using M = rouleau_membrane_block;
+constexpr std::array membrane_members = {Member<M>{"stretch", &M::stretch, nullptr},
+                                         Member<M>{"stretch_rate", &M::stretch_rate, nullptr},
+                                         Member<M>{"curvature", &M::curvature, nullptr},
+                                         Member<M>{"rest_curvature", &M::rest_curvature, nullptr},
+                                         Member<M>{"area", &M::area, nullptr},
+                                         Member<M>{"rest_area", &M::rest_area, nullptr},
+                                         Member<M>{"perimeter", &M::perimeter, nullptr},
+                                         Member<M>{"rest_perimeter", &M::rest_perimeter, nullptr},
+                                         Member<M>{"tension", nullptr, &M::tension},
+                                         Member<M>{"moment", nullptr, &M::moment},
+                                         Member<M>{"pressure", nullptr, &M::pressure},
+                                         Member<M>{"perimeter_tension", nullptr, &M::perimeter_tension},
+                                         Member<M>{"energy", nullptr, &M::energy},
+                                         Member<M>{"tension_by_stretch", nullptr, &M::tension_by_stretch},
+                                         Member<M>{"tension_by_rate", nullptr, &M::tension_by_rate},
+                                         Member<M>{"moment_by_curvature", nullptr, &M::moment_by_curvature}};
+using I = rouleau_interaction_block;
+constexpr std::array interaction_members = {Member<I>{"distance", &I::distance, nullptr},
+                                            Member<I>{"normal_velocity", &I::normal_velocity, nullptr},
+                                            Member<I>{"tangential_velocity", &I::tangential_velocity, nullptr},
+                                            Member<I>{"energy", nullptr, &I::energy},
+                                            Member<I>{"force", nullptr, &I::force},
+                                            Member<I>{"force_by_distance", nullptr, &I::force_by_distance}};
+
+template <class Block, std::size_t n>
+Block element_block(const Tables<double>& tables, const std::array<Member<Block>, n>& members, std::size_t states,
+                    double time_step) {
+  Block block{};
+  block.time_step = time_step;
+  for (const auto& member : members) {
+    if (member.in != nullptr)
+      block.*member.in = tables.arrays.input(member.name, tables.first);
+    else
+      block.*member.out = tables.arrays.output(member.name, tables.first);
+  }
+  block.state = tables.in("state", states);
+  block.new_state = tables.out("state", states);
+  return block;
+}
+
+/// Calls with the floating-point environment and exceptions kept from spreading. The block lies where arrays lie, so
+/// that reading past the fields of interface 1.0 hits a guard.
+template <class Block>
+void call_with(Memory& memory, Block block, std::uint32_t count, std::uint32_t appended, bool* mode_changed,
+               void (*function)(const void*, const Block*), const void* self) {
+  block.struct_size = static_cast<std::uint32_t>(sizeof block) + appended;
+  block.count = count;
+  std::byte* placed = memory.place("the block's struct", sizeof block + appended, 0);
+  std::memset(placed, 0xab, sizeof block + appended);
+  std::memcpy(placed, &block, sizeof block);
+  memory.protect_last();
+  std::fenv_t environment;
+  std::fegetenv(&environment);
+  const FloatingPointMode before = floating_point_mode();
+  try {
+    function(self, reinterpret_cast<const Block*>(placed));
+  } catch (const std::exception& exception) {
+    std::fesetenv(&environment);
+    throw Fault(std::string("compute threw an exception: ") + exception.what());
+  } catch (...) {
+    std::fesetenv(&environment);
+    throw Fault("compute threw an exception");
+  }
+  if (mode_changed != nullptr && floating_point_mode() != before) *mode_changed = true;
+  std::fesetenv(&environment);
+}
+
+template <class T>
+void call_block(Memory& memory, const Subject& subject, const ModelInstance& instance, const Arrays<T>& arrays,
+                std::size_t first, std::uint32_t count, const Call& call) {
+  const Tables<T> tables{memory, arrays, first};
+  const void* self = instance.self();
+  if constexpr (sizeof(T) == 4) {
+    call_with(memory, collision_block<rouleau_collision_block_f32>(tables), count, call.appended_bytes,
+              call.mode_changed, instance.collision().collide_f32, self);
+  } else if (subject.manifest().kind == ModelKind::collision) {
+    call_with(memory, collision_block<rouleau_collision_block_f64>(tables), count, call.appended_bytes,
+              call.mode_changed, instance.collision().collide_f64, self);
+  } else if (subject.manifest().kind == ModelKind::membrane) {
+    call_with(memory, element_block(tables, membrane_members, subject.manifest().state.size(), call.time_step), count,
+              call.appended_bytes, call.mode_changed, instance.membrane().compute, self);
+  } else {
+    call_with(memory, element_block(tables, interaction_members, subject.manifest().state.size(), call.time_step),
+              count, call.appended_bytes, call.mode_changed, instance.interaction().compute, self);
+  }
+}
+
+template <class T>
+Values compute_as(const Subject& subject, const ModelInstance& instance, const Values& inputs, const Call& call) {
+  const std::size_t count = inputs.begin()->second.size();
+  Memory memory(call.guard);
+  const Arrays<T> arrays = place<T>(memory, subject, inputs, call, count);
+  const std::size_t size = std::min(call.block, count), blocks = (count + size - 1) / size;
+  for (std::size_t i = 0; i < blocks; ++i) {
+    const std::size_t first = (call.backwards ? blocks - 1 - i : i) * size;
+    call_block(memory, subject, instance, arrays, first, static_cast<std::uint32_t>(std::min(size, count - first)),
+               call);
+  }
+  Values outputs;
+  for (const auto& [name, array] : arrays.out) {
+    auto& values = outputs[name];
+    for (std::size_t i = 0; i < count; ++i) {
+      const bool untouched =
+          std::memcmp(&array[i], std::array{from_bits<T>(unwritten_bits, unwritten_bits_single)}.data(), sizeof(T)) ==
+          0;
+      values.push_back(untouched ? std::bit_cast<double>(unwritten_bits) : static_cast<double>(array[i]));
+    }
+  }
+  return outputs;
+}
+
+}  // namespace
+
+Values compute(const Subject& subject, const ModelInstance& instance, const Values& inputs, const Call& call) {
+  return call.single ? compute_as<float>(subject, instance, inputs, call)
+                     : compute_as<double>(subject, instance, inputs, call);
+}
+
+FloatingPointMode floating_point_mode() {
+  std::uint64_t control = 0;
+#if defined(__x86_64__)
+  std::fenv_t environment;
+  std::fegetenv(&environment);
+  constexpr unsigned past_exceptions = 0x3f;
+  control = (std::uint64_t{environment.__control_word} << 32) | (environment.__mxcsr & ~past_exceptions);
+#elif defined(__aarch64__)
+  asm("mrs %0, fpcr" : "=r"(control));
+#endif
+  return {std::fegetround(), control};
+}
+
+bool is_unwritten(double value) { return std::bit_cast<std::uint64_t>(value) == unwritten_bits; }
+
+std::string first_difference(const Values& a, const Values& b) {
+  for (const auto& [name, values] : a) {
+    const auto other = b.find(name);
+    if (other == b.end()) continue;
+    for (std::size_t i = 0; i < std::min(values.size(), other->second.size()); ++i) {
+      const double x = values[i], y = other->second[i];
+      if (std::isnan(x) && std::isnan(y)) continue;
+      if (std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y)) continue;
+      return name + '[' + std::to_string(i) + "]: " + number(x, 17) + " and " + number(y, 17);
+    }
+  }
+  return {};
+}
+
+}  // namespace rouleau::host

@@ -1,0 +1,57 @@
+// Calls a model's compute function in every way that the interface allows, with its arrays wherever a check wants them.
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "subject.hpp"
+
+namespace rouleau::host {
+
+/// What stands in place of inputs that the manifest does not declare.
+enum class Undeclared { null, unreadable, signalling_nan };
+
+/// Pages that end the process on any access, right behind or right before every array; inputs are then read-only, too.
+enum class Guard { none, behind, before };
+
+/// How to call; every choice must give the same bits.
+struct Call {
+  bool single = false;                                          ///< collision: f32; values are rounded on the way in
+  std::size_t block = std::numeric_limits<std::size_t>::max();  ///< elements in one call, at most
+  std::size_t offset = 0;  ///< elements between a cache line's start and the arrays
+  bool backwards = false;  ///< the last block first
+  bool in_place = false;   ///< outputs over inputs where the interface allows it
+  Undeclared undeclared = Undeclared::null;
+  Guard guard = Guard::none;
+  std::optional<std::set<std::string>> outputs;  ///< arrays that are wanted, of output_arrays(); others are NULL
+  double time_step = 1;
+  bool* mode_changed = nullptr;      ///< set to true when a call changes the floating-point mode, else left alone
+  std::uint32_t appended_bytes = 0;  ///< a later host's blocks: longer by fields that this plugin does not know
+};
+
+/// Outputs of all wanted arrays. What the model did not write is a NaN of its own kind (`unwritten`). The
+/// floating-point environment is put back after each call. Throws Fault when an exception leaves the model.
+Values compute(const Subject& subject, const ModelInstance& instance, const Values& inputs, const Call& call = {});
+
+/// What decides how this thread computes: rounding, treatment of denormals, exceptions that trap.
+struct FloatingPointMode {
+  int rounding;
+  std::uint64_t control;  ///< the processor's control registers, without the flags of past exceptions
+  friend bool operator==(const FloatingPointMode&, const FloatingPointMode&) = default;
+};
+FloatingPointMode floating_point_mode();
+
+/// What compute's outputs hold where the model wrote nothing.
+bool is_unwritten(double value);
+
+/// A fault of the plugin that no check asked about.
+struct Fault : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// The first difference in bits of two results, "energy[3]: 1.5 and 1.25"; empty when there is none. NaNs are alike.
+std::string first_difference(const Values& a, const Values& b);
+
+}  // namespace rouleau::host

@@ -1,0 +1,62 @@
+#include "check.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+namespace rouleau::host {
+
+const char* to_string(Level level) {
+  switch (level) {
+    case Level::interface:
+      return "interface";
+    case Level::physics:
+      return "physics";
+    case Level::robustness:
+      return "robustness";
+    case Level::speed:
+      return "speed";
+  }
+  return "unknown";
+}
+
+const char* to_string(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::pass:
+      return "pass";
+    case Verdict::warn:
+      return "warn";
+    case Verdict::fail:
+      return "fail";
+    case Verdict::crash:
+      return "crash";
+    case Verdict::timeout:
+      return "timeout";
+    case Verdict::skip:
+      return "skip";
+  }
+  return "unknown";
+}
+
+Finding Finding::at_most(double measured, double limit, std::string what) {
+  return {measured <= limit ? Verdict::pass : Verdict::fail, std::move(what), measured, limit};
+}
+
+const std::vector<Check>& all_checks() {
+  static const std::vector<Check> checks = [] {
+    std::vector<Check> all;
+    for (auto& part : {interface_checks(), physics_checks(), collision_checks(), membrane_checks(),
+                       interaction_checks(), input_checks(), block_checks(), process_checks(), speed_checks()}) {
+      all.insert(all.end(), part.begin(), part.end());
+    }
+    return all;
+  }();
+  return checks;
+}
+
+const Check* find_check(const std::string& name) {
+  const auto& checks = all_checks();
+  const auto found = std::find_if(checks.begin(), checks.end(), [&](const Check& check) { return check.name == name; });
+  return found == checks.end() ? nullptr : &*found;
+}
+
+}  // namespace rouleau::host

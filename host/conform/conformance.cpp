@@ -1,0 +1,140 @@
+#include "conformance.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "error.hpp"
+#include "input/document.hpp"
+#include "input/wording.hpp"
+#include "process.hpp"
+#include "report_line.hpp"
+
+namespace rouleau::host {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The program that runs one check lies in the same installation, or beside this one's build.
+fs::path check_program() {
+  const fs::path program = fs::read_symlink("/proc/self/exe");
+  return program.parent_path().parent_path() / ROULEAU_LIBEXEC_FOLDER / "rouleau" / "conform-check";
+}
+
+CheckResult run(const Check& check, const fs::path& manifest, const ConformanceOptions& options) {
+  const ProcessEnd end =
+      run_process(check_program(), {manifest.string(), check.name, std::to_string(options.seed)}, options.time_limit_s);
+  CheckResult result{&check, {}, {}, end.output, end.wall_s};
+  // The last line: a plugin that ends its process while the finding is made has the last word.
+  const auto last = end.finding.find_last_not_of('\n');
+  const auto line = last == std::string::npos ? "" : end.finding.substr(end.finding.find_last_of('\n', last) + 1);
+  if (end.timed_out) {
+    result.finding = {Verdict::timeout, "did not end", end.wall_s, options.time_limit_s};
+  } else if (const auto finding = nlohmann::json::parse(line, nullptr, false); finding.is_object()) {
+    result.finding = finding_from(finding);
+  } else {
+    result.finding = {Verdict::crash,
+                      end.signal != 0 ? "ended by signal " + std::to_string(end.signal)
+                                      : "ended the process with exit code " + std::to_string(end.exit_code),
+                      {},
+                      {}};
+  }
+  return result;
+}
+
+bool stands(Verdict verdict) { return verdict == Verdict::pass || verdict == Verdict::warn; }
+
+/// Runs the checks of one plugin in order.
+class Session {
+ public:
+  /// `rivals`: all manifests with this one's id.
+  Session(const ConformanceOptions& options, const Conformance& conformance, const std::vector<fs::path>& rivals)
+      : options_(options), plugin_(conformance), rivals_(rivals) {}
+
+  CheckResult next(const Check& check) {
+    const std::string blocker = blocked_by(check);
+    CheckResult result{&check, Finding::skipped("blocked by " + blocker), blocker, {}, 0};
+    if (blocker.empty()) result = run(check, plugin_.file, options_);
+    // What one manifest does not know, so that its check's process cannot tell.
+    if (std::string(check.name) == "manifest" && stands(result.finding.verdict) && rivals_.size() > 1) {
+      std::vector<std::string> files;
+      for (const fs::path& file : rivals_) files.push_back(file.string());
+      result.finding = Finding::failed("the id " + in_quotes(plugin_.id) + " is used by " + listed(files));
+    }
+    verdicts_[check.name] = result.finding.verdict;
+    return result;
+  }
+
+ private:
+  [[nodiscard]] std::string blocked_by(const Check& check) const {
+    if (!options_.only.empty()) return {};
+    for (const char* name : check.after) {
+      const auto found = verdicts_.find(name);
+      if (found != verdicts_.end() && !stands(found->second)) return name;
+    }
+    return {};
+  }
+
+  const ConformanceOptions& options_;
+  const Conformance& plugin_;
+  const std::vector<fs::path>& rivals_;
+  std::map<std::string, Verdict> verdicts_;
+};
+
+/// The checks that the options ask for, of a kind (or of any, if the kind is not known).
+std::vector<const Check*> chosen(const ConformanceOptions& options, const std::string& kind) {
+  std::set<std::string> wanted;
+  const auto& all = all_checks();
+  for (auto check = all.rbegin(); check != all.rend(); ++check) {
+    const bool of_level = options.levels.empty() || options.levels.contains(check->level);
+    if (options.only.empty() ? of_level || wanted.contains(check->name) : options.only.contains(check->name)) {
+      wanted.insert(check->name);
+      if (options.only.empty()) wanted.insert(check->after.begin(), check->after.end());
+    }
+  }
+  std::vector<const Check*> checks;
+  for (const Check& check : all) {
+    if (wanted.contains(check.name) && (!check.kind || to_string(*check.kind) == kind)) checks.push_back(&check);
+  }
+  return checks;
+}
+
+}  // namespace
+
+int Conformance::count(Verdict verdict) const {
+  return static_cast<int>(std::count_if(results.begin(), results.end(),
+                                        [&](const CheckResult& r) { return r.finding.verdict == verdict; }));
+}
+
+bool Conformance::conforms() const {
+  return count(Verdict::fail) + count(Verdict::crash) + count(Verdict::timeout) == 0;
+}
+
+std::vector<Conformance> check_conformance(const std::vector<fs::path>& manifests, const ConformanceOptions& options,
+                                           const std::function<void(const Conformance&, const CheckResult&)>& watch) {
+  std::vector<Conformance> all;
+  std::map<std::string, std::vector<fs::path>> claimants;
+  const Units units;
+  for (const fs::path& file : manifests) {
+    Conformance& conformance = all.emplace_back();
+    conformance.file = file;
+    try {
+      const Manifest manifest = read_manifest(file, units);
+      conformance.id = manifest.id;
+      conformance.version = manifest.version;
+      conformance.kind = to_string(manifest.kind);
+      claimants[manifest.id].push_back(file);
+    } catch (const Error&) {  // the check of the manifest says what is wrong
+    }
+  }
+  for (Conformance& conformance : all) {
+    Session session(options, conformance, claimants[conformance.id]);
+    for (const Check* check : chosen(options, conformance.kind)) {
+      conformance.results.push_back(session.next(*check));
+      watch(conformance, conformance.results.back());
+    }
+  }
+  return all;
+}
+
+}  // namespace rouleau::host

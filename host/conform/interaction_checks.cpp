@@ -1,0 +1,7 @@
+#include "check.hpp"
+
+namespace rouleau::host {
+
+std::vector<Check> interaction_checks() { return {}; }
+
+}  // namespace rouleau::host

@@ -1,0 +1,21 @@
+// How a check's process tells its parent what it found: one JSON line on a file descriptor of its own.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "check.hpp"
+
+namespace rouleau::host {
+
+/// The descriptor that the child writes its finding to; standard output belongs to whatever the plugin prints.
+inline constexpr int finding_descriptor = 3;
+
+nlohmann::json to_json(const Finding& finding);
+Finding finding_from(const nlohmann::json& json);
+
+/// Writes the finding; for the end of a check.
+void send(const Finding& finding);
+/// The same from a signal handler: no allocation. `text` must hold no quotes, backslashes or control characters.
+void send_from_signal(const char* verdict, const char* text);
+
+}  // namespace rouleau::host

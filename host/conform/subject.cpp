@@ -1,0 +1,169 @@
+#include "subject.hpp"
+
+#include <cmath>
+#include <functional>
+
+#include "call.hpp"
+
+namespace rouleau::host {
+
+namespace {
+
+/// A value inside an interval: in the middle, of positive numbers in the middle of their logarithms.
+double between(double low, double high, double share) {
+  if (low > 0) return low * std::pow(high / low, share);
+  return low + (high - low) * share;
+}
+
+/// A value that the limits allow, for parameters without default and usual range.
+double allowed(const Parameter& parameter) {
+  const auto low = parameter.minimum ? parameter.minimum : parameter.exclusive_minimum;
+  const auto high = parameter.maximum ? parameter.maximum : parameter.exclusive_maximum;
+  if (low && high) return between(*low, *high, 0.5);
+  if (low) return *low > 0 ? 2 * *low : *low < 0 ? *low / 2 : 1;
+  if (high) return *high > 0 ? *high / 2 : *high < 0 ? 2 * *high : -1;
+  return 1;
+}
+
+double usual_or_allowed(const Parameter& parameter) {
+  if (!parameter.choices.empty()) return 0;
+  if (parameter.usual) return between((*parameter.usual)[0], (*parameter.usual)[1], 0.5);
+  return allowed(parameter);
+}
+
+void set(Values& values, const std::string& name, std::size_t count, const std::function<double()>& draw) {
+  auto& array = values[name];
+  array.resize(count);
+  for (double& value : array) value = draw();
+}
+
+}  // namespace
+
+double uniform(Random& random, double low, double high) {
+  return std::uniform_real_distribution<double>(low, high)(random);
+}
+
+std::vector<std::string> arrays_of(ModelKind kind, const std::string& quantity) {
+  const auto components = [&](int count) {
+    std::vector<std::string> names;
+    for (int k = 0; k < count; ++k) names.push_back(quantity + '.' + std::to_string(k));
+    return names;
+  };
+  if (kind == ModelKind::collision && quantity == "populations") return components(9);
+  if (kind == ModelKind::collision && (quantity == "force" || quantity == "velocity")) return components(2);
+  return {quantity};
+}
+
+std::vector<double> Subject::typical_parameters() const {
+  std::vector<double> values;
+  for (const Parameter& parameter : manifest_.parameters) {
+    const bool idle = manifest_.inactive_when.is_object() && manifest_.inactive_when.contains(parameter.name);
+    values.push_back(parameter.default_value && !idle ? *parameter.default_value : usual_or_allowed(parameter));
+  }
+  return values;
+}
+
+std::vector<double> Subject::random_parameters(Random& random) const {
+  std::vector<double> values = typical_parameters();
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const Parameter& parameter = manifest_.parameters[i];
+    if (!parameter.choices.empty()) {
+      values[i] = static_cast<double>(random() % parameter.choices.size());
+    } else if (parameter.usual) {
+      // Not its very ends, which may touch a limit that is not allowed itself.
+      values[i] = between((*parameter.usual)[0], (*parameter.usual)[1], uniform(random, 0.01, 0.99));
+    } else if (const double near = values[i] * uniform(random, 0.8, 1.25);
+               (!parameter.minimum || near >= *parameter.minimum) &&
+               (!parameter.exclusive_minimum || near > *parameter.exclusive_minimum) &&
+               (!parameter.maximum || near <= *parameter.maximum) &&
+               (!parameter.exclusive_maximum || near < *parameter.exclusive_maximum)) {
+      values[i] = near;
+    }
+  }
+  return values;
+}
+
+ModelSetting Subject::typical_setting() {
+  const double length = 0.1955e-6, density = 1000, viscosity = 1.2e-6, relaxation = 3000;  // m, kg/m3, m2/s, 1
+  const double simulated_density = density * relaxation;
+  const double time = length * length / (6 * viscosity / relaxation);
+  return {{length, time, simulated_density * length * length * length}, 1, false};
+}
+
+std::vector<ModelInstance> Subject::make_each_choice(const ModelSetting& setting) const {
+  std::vector<ModelInstance> instances;
+  const auto typical = typical_parameters();
+  instances.push_back(make(typical, setting));
+  for (std::size_t i = 0; i < typical.size(); ++i) {
+    for (std::size_t word = 0; word < manifest_.parameters[i].choices.size(); ++word) {
+      auto values = typical;
+      values[i] = static_cast<double>(word);
+      if (values == typical) continue;
+      try {
+        instances.push_back(make(values, setting));
+      } catch (const ModelRefused&) {  // a word that goes only with other values of other parameters
+      }
+    }
+  }
+  return instances;
+}
+
+std::vector<std::string> Subject::input_arrays() const {
+  std::vector<std::string> names;
+  for (const auto& need : manifest_.needs) {
+    for (auto& name : arrays_of(manifest_.kind, need)) names.push_back(std::move(name));
+  }
+  for (std::size_t k = 0; k < manifest_.state.size(); ++k) names.push_back("state." + std::to_string(k));
+  return names;
+}
+
+std::vector<std::string> Subject::output_arrays() const {
+  std::vector<std::string> names;
+  for (const auto& given : manifest_.gives) {
+    for (auto& name : arrays_of(manifest_.kind, given)) names.push_back(std::move(name));
+  }
+  for (std::size_t k = 0; k < manifest_.state.size(); ++k) names.push_back("state." + std::to_string(k));
+  return names;
+}
+
+Values Subject::random_inputs(const ModelInstance& instance, std::size_t count, Random& random) const {
+  const double cutoff = manifest_.kind == ModelKind::interaction ? instance.interaction().cutoff(instance.self()) : 0;
+  // The ranges of what simulations meet, in lattice units: Mach numbers below 0.1, stretches by a half to two, cells of
+  // about twenty spacings.
+  const std::map<std::string, std::pair<double, double>> ranges = {
+      {"populations", {-0.01, 0.01}},     {"force", {-1e-3, 1e-3}},
+      {"relaxation_rate", {0.3, 1.9}},    {"stretch", {0.5, 2}},
+      {"stretch_rate", {-1e-3, 1e-3}},    {"curvature", {-0.5, 0.5}},
+      {"rest_curvature", {-0.5, 0.5}},    {"area", {250, 350}},
+      {"rest_area", {280, 320}},          {"perimeter", {80, 120}},
+      {"rest_perimeter", {90, 110}},      {"distance", {0.02 * cutoff, cutoff}},
+      {"normal_velocity", {-1e-3, 1e-3}}, {"tangential_velocity", {-1e-3, 1e-3}}};
+  Values inputs;
+  const auto draw_all = [&] {
+    for (const auto& need : manifest_.needs) {
+      const auto [low, high] = ranges.at(need);
+      for (const auto& name : arrays_of(manifest_.kind, need)) {
+        set(inputs, name, count, [&, low = low, high = high] { return uniform(random, low, high); });
+      }
+    }
+  };
+  for (std::size_t k = 0; k < manifest_.state.size(); ++k) {
+    inputs["state." + std::to_string(k)].assign(count, instance.initial_state()[k]);
+  }
+  for (int step = 0; step < 5 && !manifest_.state.empty(); ++step) {
+    draw_all();
+    Call call;
+    call.time_step = std::pow(10.0, uniform(random, 0, 5));
+    for (auto& [name, values] : inputs) {  // nothing moves during such long steps
+      if (name.ends_with("_rate") || name.ends_with("_velocity")) values.assign(count, 0);
+    }
+    const Values after = compute(*this, instance, inputs, call);
+    for (auto& [name, values] : inputs) {
+      if (name.starts_with("state.")) values = after.at(name);
+    }
+  }
+  draw_all();
+  return inputs;
+}
+
+}  // namespace rouleau::host

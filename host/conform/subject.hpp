@@ -1,0 +1,66 @@
+// The plugin under test, as checks see it in their own process: its manifest, instances of it, random inputs for it.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "plugin/manifest.hpp"
+#include "plugin/model.hpp"
+
+namespace rouleau::host {
+
+/// Values of the elements of a call by name, all of one length: the names of "needs" and "gives". Quantities with
+/// components have one entry for each, "populations.0" to ".8", "force.0", "velocity.1"; state variables are
+/// "state.0"...
+using Values = std::map<std::string, std::vector<double>>;
+
+using Random = std::mt19937_64;
+/// Evenly distributed between two values.
+double uniform(Random& random, double low, double high);
+
+class Subject {
+ public:
+  Subject(Manifest manifest, std::uint64_t seed) : manifest_(std::move(manifest)), seed_(seed) {}
+
+  [[nodiscard]] const Manifest& manifest() const { return manifest_; }
+  /// A generator that starts anew at each call: a check's inputs depend on the seed alone.
+  [[nodiscard]] Random random() const { return Random(seed_); }
+
+  /// Parameters in SI in the manifest's order: the default, or a value inside the usual range, or inside the limits.
+  /// Defaults at which the model does nothing ("inactive_when") are not typical.
+  [[nodiscard]] std::vector<double> typical_parameters() const;
+  /// Each parameter anywhere in its usual range or, without one, near its typical value; choices at random.
+  [[nodiscard]] std::vector<double> random_parameters(Random& random) const;
+
+  /// A lattice as the shipped scenes have it: 20 spacings to a cell's radius, tau 1, no inertia.
+  [[nodiscard]] static ModelSetting typical_setting();
+
+  [[nodiscard]] ModelInstance make() const { return make(typical_parameters()); }
+  [[nodiscard]] ModelInstance make(const std::vector<double>& parameters,
+                                   const ModelSetting& setting = typical_setting()) const {
+    return {manifest_, parameters, setting};
+  }
+  /// Instances with typical parameters and, in turn, with each other word of each choice; those that the model refuses
+  /// are left out.
+  [[nodiscard]] std::vector<ModelInstance> make_each_choice(const ModelSetting& setting = typical_setting()) const;
+
+  /// Names of the arrays that the model is given (its needs, and its state) and gives (with its new state).
+  [[nodiscard]] std::vector<std::string> input_arrays() const;
+  [[nodiscard]] std::vector<std::string> output_arrays() const;
+
+  /// Inputs as flowing cells and fluids have them, in lattice units. State is what a number of steps with other random
+  /// inputs make of its initial value.
+  [[nodiscard]] Values random_inputs(const ModelInstance& instance, std::size_t count, Random& random) const;
+
+ private:
+  Manifest manifest_;
+  std::uint64_t seed_;
+};
+
+/// Arrays that stand for a quantity of the manifest: "force" of a collision operator is "force.0" and "force.1".
+std::vector<std::string> arrays_of(ModelKind kind, const std::string& quantity);
+
+}  // namespace rouleau::host

@@ -1,0 +1,97 @@
+// The program that runs one conformance check of one plugin; `rouleau conform` starts it, once for every check.
+//
+// usage: conform-check MANIFEST CHECK SEED
+// The finding goes to file descriptor 3 (conform/report_line.hpp). Whatever the plugin does ends with this process.
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <ucontext.h>
+#include <unistd.h>
+
+#include <array>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <iostream>
+#include <string>
+
+#include "conform/call.hpp"
+#include "conform/check.hpp"
+#include "conform/guarded_memory.hpp"
+#include "conform/report_line.hpp"
+#include "conform/subject.hpp"
+#include "error.hpp"
+
+namespace {
+
+using namespace rouleau::host;
+
+bool was_write([[maybe_unused]] const void* context) {
+#if defined(__x86_64__)
+  constexpr greg_t write_bit = 2;  // of the page fault's error code
+  return (static_cast<const ucontext_t*>(context)->uc_mcontext.gregs[REG_ERR] & write_bit) != 0;
+#else
+  return false;
+#endif
+}
+
+/// Says what the signal was and ends the process. An access to a guarded array is a broken rule, not just a crash.
+void on_signal(int signal, siginfo_t* info, void* context) {
+  char where[256], text[400];
+  if ((signal == SIGSEGV || signal == SIGBUS) &&
+      GuardedArray::describe(info->si_addr, was_write(context), where, sizeof where)) {
+    std::snprintf(text, sizeof text, "the model %s", where);
+    send_from_signal(to_string(Verdict::fail), text);
+  } else {
+    std::snprintf(text, sizeof text, "ended by the signal SIG%s", sigabbrev_np(signal));
+    send_from_signal(to_string(Verdict::crash), text);
+  }
+  _exit(1);
+}
+
+void watch_signals() {
+  static std::array<char, 1 << 16> stack;
+  stack_t alternative{};
+  alternative.ss_sp = stack.data();
+  alternative.ss_size = stack.size();
+  sigaltstack(&alternative, nullptr);
+  struct sigaction action {};
+  action.sa_sigaction = on_signal;
+  action.sa_flags = SA_SIGINFO | SA_ONSTACK;
+  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) sigaction(signal, &action, nullptr);
+}
+
+Finding run(const Check& check, const std::string& file, std::uint64_t seed) {
+  try {
+    const Units units;
+    return check.run(Subject(read_manifest(file, units), seed));
+  } catch (const Error& error) {
+    return Finding::failed(error.what());
+  } catch (const Fault& fault) {
+    return {Verdict::crash, fault.what(), {}, {}};
+  } catch (const std::exception& exception) {
+    return {Verdict::crash, std::string("an exception: ") + exception.what(), {}, {}};
+  } catch (...) {
+    return {Verdict::crash, "an exception that is no std::exception", {}, {}};
+  }
+}
+
+}  // namespace
+
+int main(int count, char** words) {
+  if (count != 4) {
+    std::cerr << "usage: conform-check MANIFEST CHECK SEED\nrouleau conform starts this program; see its --help\n";
+    return 2;
+  }
+  const Check* check = find_check(words[2]);
+  if (check == nullptr) {
+    std::cerr << "conform-check: no check is called \"" << words[2] << "\"\n";
+    return 2;
+  }
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  const rlimit no_core{0, 0};
+  setrlimit(RLIMIT_CORE, &no_core);
+  watch_signals();
+  send(run(*check, words[1], std::strtoull(words[3], nullptr, 10)));
+  // Not through static destructors: they are the plugin's, too, and the finding has been sent.
+  _exit(0);
+}

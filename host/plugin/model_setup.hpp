@@ -1,0 +1,40 @@
+// The rouleau_setup of one instance with everything it points to.
+#pragma once
+
+#include <rouleau/plugin.h>
+
+#include <array>
+#include <vector>
+
+#include "input/lattice_units.hpp"
+#include "manifest.hpp"
+
+namespace rouleau::host {
+
+/// What all models of a stage are told about the lattice.
+struct ModelSetting {
+  LatticeUnits units;
+  double relaxation_rate;  ///< 1/tau of the suspending fluid
+  bool inertia;
+};
+
+class ModelSetup {
+ public:
+  /// `values`: parameters in SI in the manifest's order; they are converted to lattice units here, but for those whose
+  /// unit holds K, mol or A. Names point into the manifest.
+  ModelSetup(const Manifest& manifest, const std::vector<double>& values, const ModelSetting& setting);
+  ModelSetup(const ModelSetup&) = delete;
+  ModelSetup& operator=(const ModelSetup&) = delete;
+
+  [[nodiscard]] const rouleau_setup& get() const { return setup_; }
+  /// For the conformance tests, which give models what no host would.
+  [[nodiscard]] rouleau_setup& get() { return setup_; }
+
+ private:
+  std::vector<const char*> names_;
+  std::vector<double> values_;
+  std::array<double, 18> velocities_{};
+  rouleau_setup setup_{};
+};
+
+}  // namespace rouleau::host
