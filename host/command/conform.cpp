@@ -72,8 +72,8 @@ class Printer {
     std::cout << "    " << verdict << name << indented(result.finding.what) << numbers(result.finding) << '\n';
     const Verdict v = result.finding.verdict;
     if (v == Verdict::fail || v == Verdict::crash || v == Verdict::timeout) {
-      std::cout << "             says that it " << result.check->says
-                << "\n           repeat: " << repeat(plugin, result, seed_) << '\n';
+      std::cout << "             must be true: it " << result.check->says
+                << "\n             repeat: " << repeat(plugin, result, seed_) << '\n';
       if (!result.output.empty()) std::cout << "             it printed: " << in_quotes(result.output) << '\n';
     }
     std::cout.flush();

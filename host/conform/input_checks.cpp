@@ -175,7 +175,7 @@ Finding needs_matter(const Subject& subject) {
     }
     if (!matters) idle.push_back(need);
   }
-  if (idle.empty()) return Finding::passed("each of " + listed(subject.manifest().needs) + " changes the result");
+  if (idle.empty()) return Finding::passed(listed(subject.manifest().needs) + ": each changes the result");
   return Finding::warned("declares " + listed(idle) + ", which changed nothing; hosts compute it in vain");
 }
 
