@@ -79,7 +79,7 @@ void collide(const ModelInstance& model, double (&f)[9], const double (&force)[2
 TEST_CASE("the frozen plugins are found and none is refused") {
   const std::string release = GENERATE("first", "later");
   CHECK(catalog(release).refused().empty());
-  CHECK(catalog(release).manifests().size() == 5);
+  CHECK(catalog(release).manifests().size() == 6);
 }
 
 TEST_CASE("the frozen collision operator conserves, relaxes the shear stress by 1 - 1/tau and takes the force") {
@@ -198,18 +198,17 @@ TEST_CASE("the frozen laws of nodes and of whole cells are derivatives of their 
 TEST_CASE("the frozen interaction gets SI for a temperature and an index for a choice, and its state is kept") {
   const std::string release = GENERATE("first", "later");
   const int form = GENERATE(0, 1);
-  const double chains = 3e15, temperature = 310, thickness = 4e-8, friction = 50;
+  const double chains = 3e15, temperature = 310, thickness = 4e-8;
   const ModelInstance model = make(release, ModelKind::interaction, "frozen.brush",
-                                   {chains, temperature, thickness, friction, static_cast<double>(form)});
+                                   {chains, temperature, thickness, static_cast<double>(form)});
   CHECK(model.interaction().cutoff(model.self()) * 1e-7 == Approx(form == 0 ? thickness : 20 * thickness));
   CHECK(model.initial_state() == std::vector<double>{0});
-  const double r = 1.5e-8, approach = -2e-4;  // m, m/s
-  double distance = r / 1e-7, speed = approach / (1e-7 / 1e-6), energy, force, slope, age = 0;
+  const double r = 1.5e-8;
+  double distance = r / 1e-7, energy, force, slope, age = 0;
   double* state[1] = {&age};
   auto block = block_of<rouleau_interaction_block>(1);
   block.time_step = 1;
   block.distance = &distance;
-  block.normal_velocity = &speed;
   block.energy = &energy;
   block.force = &force;
   block.force_by_distance = &slope;
@@ -222,8 +221,22 @@ TEST_CASE("the frozen interaction gets SI for a temperature and an index for a c
   const double first = form == 0 ? 2 * (1 - x) : std::exp(-x), second = form == 0 ? -2 : -std::exp(-x);
   const double surface = 1e-15 / 1e-12, pressure = surface / 1e-7;
   CHECK(energy * surface == Approx(nkt * phi).epsilon(round_off));
-  CHECK(force * pressure == Approx(nkt / thickness * first - friction * approach).epsilon(round_off));
+  CHECK(force * pressure == Approx(nkt / thickness * first).epsilon(round_off));
   CHECK(slope * pressure / 1e-7 == Approx(nkt / (thickness * thickness) * second).epsilon(round_off));
+}
+
+TEST_CASE("the frozen damper gets the velocity at which the distance grows and resists it") {
+  const std::string release = GENERATE("first", "later");
+  const ModelInstance model = make(release, ModelKind::interaction, "frozen.damper", {50, 4e-8});
+  const double distance[2] = {0.1, 0.6}, speed[2] = {-2e-4 / 0.1, 1};  // 0.1 m/s is one spacing per step
+  double force[2];
+  auto block = block_of<rouleau_interaction_block>(2);
+  block.distance = distance;
+  block.normal_velocity = speed;
+  block.force = force;
+  model.interaction().compute(model.self(), &block);
+  CHECK(force[0] * (1e-15 / (1e-7 * 1e-12)) == Approx(50 * 2e-4).epsilon(round_off));  // approach is pushed back
+  CHECK(force[1] == 0);
 }
 
 TEST_CASE("a plugin of the first release that misses a parameter says so in the caller's buffer") {
@@ -231,7 +244,7 @@ TEST_CASE("a plugin of the first release that misses a parameter says so in the 
   Manifest other = manifest;
   other.parameters[0].name = "chains_of_another_name";
   try {
-    const ModelInstance model(other, {3e15, 310, 4e-8, 50, 0}, setting());
+    const ModelInstance model(other, {3e15, 310, 4e-8, 0}, setting());
     FAIL("it was made");
   } catch (const ModelRefused& refused) {
     CHECK(refused.problem() == "a parameter is missing");

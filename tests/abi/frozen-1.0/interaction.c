@@ -1,10 +1,11 @@
-/* Interface 1.0, kept as it was released: an interaction in plain C. Never to be changed (README.md).
+/* Interface 1.0, kept as it was released: two interactions in one library. Never to be changed (README.md).
  *
- * A brush of n chains per area and thickness L, in units of kT, with x = r/L:
+ * frozen.brush: a brush of n chains per area and thickness L, in units of kT, with x = r/L:
  *   form "parabolic"    phi = n kT (1 - x)^2 for x < 1, beyond it nothing
  *   form "exponential"  phi = n kT exp(-x), cut off at 20 L
- * and a friction c against the surfaces' approach: the force per area is -dphi/dr - c dr/dt. The state is the time
- * since the surfaces came within the cutoff; nothing depends on it. */
+ * The state is the time since the surfaces came within the cutoff; nothing depends on it.
+ *
+ * frozen.damper: a force per area of -c dr/dt where r < R. */
 #include <math.h>
 #include <rouleau/plugin.h>
 #include <stdio.h>
@@ -12,9 +13,13 @@
 #include <string.h>
 
 typedef struct brush {
-  double strength, thickness, friction;
+  double strength, thickness;
   int exponential;
 } brush;
+
+typedef struct damper {
+  double friction, range;
+} damper;
 
 static double named(const rouleau_setup* setup, const char* name) {
   for (uint32_t i = 0; i < setup->parameter_count; ++i) {
@@ -23,7 +28,7 @@ static double named(const rouleau_setup* setup, const char* name) {
   return NAN;
 }
 
-static int create(const rouleau_setup* setup, void** self, char* error, size_t error_size) {
+static int create_brush(const rouleau_setup* setup, void** self, char* error, size_t error_size) {
   const double boltzmann = 1.380649e-23; /* J/K */
   /* The temperature arrives in SI, so kT is made in J and taken into lattice units here. */
   const double energy_unit =
@@ -36,16 +41,41 @@ static int create(const rouleau_setup* setup, void** self, char* error, size_t e
   }
   made->strength = named(setup, "chains") * boltzmann * temperature / energy_unit;
   made->thickness = named(setup, "thickness");
-  made->friction = named(setup, "friction");
   made->exponential = form == 1;
-  const int complete = isfinite(made->strength) && isfinite(made->thickness) && isfinite(made->friction);
-  if (!complete || (form != 0 && form != 1)) {
+  if (!(isfinite(made->strength) && isfinite(made->thickness) && (form == 0 || form == 1))) {
     snprintf(error, error_size, "a parameter is missing");
     free(made);
     return 2;
   }
   *self = made;
   return 0;
+}
+
+static int create_damper(const rouleau_setup* setup, void** self, char* error, size_t error_size) {
+  damper* made = calloc(1, sizeof *made);
+  if (made == NULL) {
+    snprintf(error, error_size, "no memory");
+    return 1;
+  }
+  made->friction = named(setup, "friction");
+  made->range = named(setup, "range");
+  if (!(isfinite(made->friction) && isfinite(made->range))) {
+    snprintf(error, error_size, "a parameter is missing");
+    free(made);
+    return 2;
+  }
+  *self = made;
+  return 0;
+}
+
+static double range(const void* self) { return ((const damper*)self)->range; }
+
+static void damp(const void* self, const rouleau_interaction_block* block) {
+  const damper* d = self;
+  for (uint32_t i = 0; i < block->count; ++i) {
+    if (block->force == NULL) continue;
+    block->force[i] = block->distance[i] < d->range ? -d->friction * block->normal_velocity[i] : 0;
+  }
 }
 
 static double cutoff(const void* self) {
@@ -67,9 +97,7 @@ static void compute(const void* self, const rouleau_interaction_block* block) {
       stiffness = -2;
     }
     if (block->energy != NULL) block->energy[i] = b->strength * energy;
-    if (block->force != NULL) {
-      block->force[i] = b->strength / b->thickness * force - b->friction * block->normal_velocity[i];
-    }
+    if (block->force != NULL) block->force[i] = b->strength / b->thickness * force;
     if (block->force_by_distance != NULL) {
       block->force_by_distance[i] = b->strength / (b->thickness * b->thickness) * stiffness;
     }
@@ -77,10 +105,14 @@ static void compute(const void* self, const rouleau_interaction_block* block) {
   }
 }
 
-static const rouleau_interaction table = {sizeof table, cutoff, compute};
-static const rouleau_model model = {
-    sizeof model, ROULEAU_INTERACTION_KIND, "frozen.brush", "1.0.0", create, free, NULL, NULL, &table};
-static const rouleau_model* const models[] = {&model, NULL};
+static const rouleau_interaction brush_table = {sizeof brush_table, cutoff, compute};
+static const rouleau_interaction damper_table = {sizeof damper_table, range, damp};
+static const rouleau_model brush_model = {
+    sizeof brush_model, ROULEAU_INTERACTION_KIND, "frozen.brush", "1.0.0", create_brush, free, NULL, NULL, &brush_table};
+static const rouleau_model damper_model = {
+    sizeof damper_model, ROULEAU_INTERACTION_KIND, "frozen.damper", "1.0.0", create_damper, free, NULL, NULL,
+    &damper_table};
+static const rouleau_model* const models[] = {&brush_model, &damper_model, NULL};
 static const rouleau_plugin plugin = {sizeof plugin, ROULEAU_ABI_MINOR, models};
 
 const rouleau_plugin* rouleau_open_v1(uint32_t host_minor) {
