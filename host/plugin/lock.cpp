@@ -69,7 +69,8 @@ void require_locked(const Lock& lock, const Manifest& manifest, const Place& pla
     std::vector<std::string> ids;
     for (const LockedPlugin& plugin : lock.plugins) ids.push_back(plugin.id);
     refuse(name + " is not in the lock " + file + ", which holds: " + listed(ids) +
-           (place.file == "--set" ? "\n  a lock binds --set, too" : ""));
+           (place.file == "--set" ? "\n  a lock binds --set, too: write the model into the scene before you lock it"
+                                  : ""));
     return;
   }
   const auto differs = [&](const char* what, const std::string& expected, const std::string& found) {
