@@ -7,5 +7,6 @@ namespace rouleau::host {
 
 extern const std::string_view scene_schema_text;
 extern const std::string_view manifest_schema_text;
+extern const std::string_view lock_schema_text;
 
 }  // namespace rouleau::host

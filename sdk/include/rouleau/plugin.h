@@ -11,7 +11,9 @@
  *   blocks     n >= 1 elements, any alignment; inputs are NULL unless the manifest's "needs" names them, outputs are
  *              NULL when the host does not want them; inputs are read-only
  *   growth     fields are only ever appended; struct_size is the size the writer of the struct was compiled with, and
- *              a reader touches a field only if it lies within */
+ *              a reader touches a field only if it lies within. No struct has padding at its end, where an older writer
+ *              would seem to have written a field that it does not know
+ *   text       UTF-8, ends with NUL */
 #ifndef ROULEAU_PLUGIN_H
 #define ROULEAU_PLUGIN_H
 
@@ -58,7 +60,8 @@ typedef struct rouleau_setup {
   double sound_speed_squared;
 
   double relaxation_rate; /* 1/tau of the suspending fluid's shear stress */
-  uint32_t inertia;       /* 0: equilibrium and forcing without their quadratic terms (Stokes flow) */
+  uint32_t inertia;       /* 0: equilibrium and forcing without their quadratic terms (Stokes flow); else 1 */
+  uint32_t reserved;      /* 0 */
 } rouleau_setup;
 
 /* ---- collision ------------------------------------------------------------------------------------------------- */
@@ -174,8 +177,9 @@ typedef struct rouleau_model {
   const char* id;      /* the manifest's id */
   const char* version; /* the manifest's version */
 
-  /* Makes an instance. Returns 0 and sets *self, or returns non-zero and writes one NUL-terminated sentence for the
-   * user into error (error_size bytes). The setup and all it points to end with the call. */
+  /* Makes an instance, of which several may live at once. Returns 0 and sets *self, or returns non-zero and writes one
+   * NUL-terminated sentence for the user into error (error_size bytes, at least 256): also for a dimension or a
+   * velocity set that the model was not made for. The setup and all it points to end with the call. */
   int (*create)(const rouleau_setup* setup, void** self, char* error, size_t error_size);
   void (*destroy)(void* self);
 
@@ -193,7 +197,8 @@ typedef struct rouleau_plugin {
 
 typedef const rouleau_plugin* (*rouleau_open_function)(uint32_t host_minor);
 
-/* The one exported function. Returns a static table, or NULL when the plugin cannot work with this host. */
+/* The one exported function. Returns a static table, the same at each call, or NULL when the plugin cannot work with
+ * this host. */
 ROULEAU_EXPORT const rouleau_plugin* rouleau_open_v1(uint32_t host_minor);
 
 #ifdef __cplusplus
