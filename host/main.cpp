@@ -27,11 +27,12 @@ constexpr std::array commands{
     Command{"run", "SCENE", "simulate a scene", run_command},
     Command{"plan", "SCENE", "what a run would compute, leave out and cost, without stepping", plan_command},
     Command{"plugins", "[ID]", "models that were found, and why some were refused", plugins_command},
+    Command{"new", "KIND NAME", "source, manifest and build file of a new model", new_command},
     Command{"report", "DIR", "make the report of a run's directory again", report_command},
 };
 
 /// Commands that users may have read about and that come with a later version.
-constexpr std::array later_commands{"conform", "new", "study", "limits"};
+constexpr std::array later_commands{"conform", "study", "limits"};
 
 std::string overview() {
   std::string text =
@@ -39,7 +40,7 @@ std::string overview() {
       "Usage: rouleau COMMAND ...\n\n";
   for (const Command& command : commands) {
     std::string call = std::string(command.name) + ' ' + command.arguments;
-    call.resize(std::max<std::size_t>(call.size() + 2, 16), ' ');
+    call.resize(std::max<std::size_t>(call.size() + 2, 17), ' ');
     text += "  " + call + command.summary + '\n';
   }
   return text +
