@@ -1,14 +1,15 @@
-"""The examples of the SDK, built against an installed SDK, give what the shipped plugins of the same formula give.
+"""The examples and templates of the SDK, built against an installed SDK, run in scenes: an example gives what the shipped
+plugin of the same formula gives.
 
 usage: check_examples.py SOURCE BUILD CMAKE
 """
 
+import shlex
 import shutil
 import unittest
 
-from staged import Case, main
+from staged import COMPONENTS, Case, main
 
-# What the same formula, rounded otherwise, may differ by after the steps of STEPS: see check().
 STEPS = ["--max-steps", "200", "--set", '/output={"cells": {"seconds": "1 ms"}}']
 
 
@@ -36,10 +37,11 @@ class Examples(Case):
 
         print(f"{name}: largest relative difference {difference(ours, theirs):.1e}; "
               f"without the potential {difference(ours, without):.1e}")
-        # Each force differs by some 1e-16 of itself; 200 steps in which nothing grows leave less than 1e-12. The cells
-        # would differ by far more if the potential did not act at all.
+        # Each force differs by some 1e-16 of itself and moves a node by far less than a spacing, so that nodes differ by
+        # their own rounding at most, 1e-14 a step: 1e-12 in 200 steps. All that the potential does is above 1e-3 (last
+        # line), so that a force wrong by 1e-9 of itself would show.
         self.assertLess(difference(ours, theirs), 1e-12)
-        self.assertGreater(difference(ours, without), 1e-6)
+        self.assertGreater(difference(ours, without), 1e-3)
         self.check_conformance(build, program)
 
     def test_morse_in_plain_c_gives_the_cells_of_the_shipped_morse(self):
@@ -49,6 +51,21 @@ class Examples(Case):
     def test_lennard_jones_in_rust_gives_the_cells_of_the_shipped_lennard_jones(self):
         self.check("lennard-jones-in-rust", "lennard-jones",
                    ["--set", '/interactions/0/parameters={"depth": "5.2e-8 J/m2"}'])
+
+
+class Templates(Case):
+    def test_each_works_by_the_commands_that_rouleau_new_prints(self):
+        prefix = self.install(self.path / "rouleau", *COMPONENTS)
+        self.environment["PATH"] = f"{prefix / 'bin'}:{self.environment['PATH']}"
+        for kind in ("collision", "membrane", "interaction"):
+            with self.subTest(kind):
+                words = self.call(prefix / "bin/rouleau", "new", kind, f"org.example.my-{kind}")
+                configure, build, test, run = (line for line in words.splitlines() if line.startswith("  "))
+                self.call("sh", "-ec", f"{configure} && {build}")
+                self.assertEqual(shlex.split(test)[:3], ["ctest", "--test-dir", f"my-{kind}/build"])
+                self.check_conformance(self.path / f"my-{kind}/build", prefix / "bin/rouleau")
+                self.call("sh", "-ec", f"{run} --max-steps 20 --out {kind}")
+                self.assertIn(f"org.example.my-{kind}", self.plugin_of(self.path / kind))
 
 
 if __name__ == "__main__":
