@@ -1,4 +1,4 @@
-// The text of the shipped schemas; CMake writes the definitions from the schema files (embed_schemas.cmake).
+// The text of the shipped schemas; CMake writes the definitions from the schema files (embed_texts.cmake).
 #pragma once
 
 #include <string_view>
