@@ -35,7 +35,7 @@ RELEASED = {
     "membrane-cell.json": "56a7d71be90185b23e27995abffadd8726ab597bf9a84c2029274d65b4188f1e",
     "membrane-solid.json": "0783fbc0f99105c77fe7cdb6510e9a376b246d6f5805b282dec622675bd3cffd",
     "membrane.c": "2d0a5fa0a097768d75ea46b41e31f8c6592eea839fcf260184995f68cf644fc6",
-    "rouleau/plugin.h": "2c203577c1824f8e4f51d54526aecca7c48c003c5566298e0f351b02faaeeb22",
+    "rouleau/plugin.h": "96f5300f2e91aef60c11e50c94020d6b049b259f0fd218348838c83b77c1e81d",
 }
 
 SCENE = {
@@ -87,6 +87,13 @@ class The_first_release(unittest.TestCase):
                                      text=True, check=True).stdout
             names = [line.split()[-1] for line in symbols.splitlines() if " T " in line]
             self.assertEqual(names, ["rouleau_open_v1"])
+
+
+class Conforms(unittest.TestCase):
+    def test_its_plugins_pass_the_conformance_checks_of_this_release(self):
+        result = subprocess.run([PROGRAM, "conform", *sorted(PLUGINS.glob("*.json"))], capture_output=True, text=True,
+                                timeout=250)
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
 
 
 class Runs(unittest.TestCase):
@@ -146,6 +153,26 @@ class Runs(unittest.TestCase):
             centres = [(pair[0][axis] + pair[1][axis]) / 2 for pair in pairs]
             self.assertLess(max(centres) - min(centres), 1e-9 * 25.6e-6)
         self.assertLess(abs(summary["conservation"]["mass_drift"]), 1e-12)
+
+    def test_friction_slows_the_parting_of_cells_and_keeps_their_common_centre(self):
+        def run(name, interactions):
+            scene = json.loads(json.dumps(SCENE))
+            scene["domain"]["y"] = "periodic"
+            scene["interactions"] = interactions
+            scene["stages"] = [{"name": "rest", "duration": "20 ms"}]
+            scene["output"] = {"cells": {"seconds": 0.02}}
+            _, rows = self.run_scene(name, scene)
+            return rows[:2], rows[-2:]
+
+        damper = {"between": ["cell", "cell"], "model": "frozen.damper",
+                  "parameters": {"friction": "3e3 Pa s/m", "range": "2 um"}}
+        _, free = run("free", [BRUSH])
+        before, damped = run("damped", [BRUSH, damper])
+        parted = [pair[0]["min_gap_m"] - before[0]["min_gap_m"] for pair in (free, damped)]
+        self.assertGreater(parted[1], 0)
+        self.assertLess(parted[1], 0.9 * parted[0])
+        for axis in ("x_m", "y_m"):
+            self.assertLess(abs(damped[0][axis] + damped[1][axis] - before[0][axis] - before[1][axis]), 1e-9 * 25.6e-6)
 
     def test_a_branch_that_has_no_time_to_relax_is_a_spring_beside_the_other(self):
         def deformation(modulus, branch):
