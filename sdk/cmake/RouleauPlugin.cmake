@@ -1,10 +1,4 @@
-# rouleau_add_plugin(NAME) builds lib<NAME>.so from NAME.cpp, or NAME.c, in this folder and puts the folder's manifests
-# beside it: NAME.json, or one for each model where the library holds several.
-#
-# It sets what every plugin needs: C++17 or C11 at least, an optimised build if none was chosen, flags that let loops
-# become vector code without changing results, and that the library exports rouleau_open_v1 and nothing else. The
-# wide-vector variants of the hot loops are made by the SDK's headers; no further flags are needed.
-set(ROULEAU_PLUGIN_VERSION_SCRIPT "${CMAKE_CURRENT_LIST_DIR}/rouleau-plugin.map")
+# What find_package(Rouleau) gives to build plugins with: rouleau_add_plugin() and rouleau_add_conformance_test().
 
 # The manifests in the current folder, which may also hold files of CMake and of editors.
 function(rouleau_manifests variable)
@@ -13,6 +7,12 @@ function(rouleau_manifests variable)
   set(${variable} "${manifests}" PARENT_SCOPE)
 endfunction()
 
+# rouleau_add_plugin(NAME) builds lib<NAME>.so from NAME.cpp, or NAME.c, in this folder and puts the folder's manifests
+# beside it: NAME.json, or one for each model where the library holds several.
+#
+# It sets what every plugin needs: C++17 or C11 at least, an optimised build if none was chosen, flags that let loops
+# become vector code without changing results, and that the library exports rouleau_open_v1 and nothing else. The
+# wide-vector variants of the hot loops are made by the SDK's headers; no further flags are needed.
 function(rouleau_add_plugin name)
   set(source "${CMAKE_CURRENT_SOURCE_DIR}/${name}.cpp")
   set(language cxx_std_17)
@@ -25,6 +25,7 @@ function(rouleau_add_plugin name)
   if(NOT EXISTS "${source}")
     message(FATAL_ERROR "rouleau_add_plugin(${name}): neither ${name}.cpp nor ${name}.c is in ${CMAKE_CURRENT_SOURCE_DIR}")
   endif()
+  set(version_script "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/rouleau-plugin.map")
   rouleau_manifests(manifests)
   if(NOT manifests)
     message(FATAL_ERROR "rouleau_add_plugin(${name}): no manifest, ${name}.json, is in ${CMAKE_CURRENT_SOURCE_DIR}")
@@ -40,10 +41,10 @@ function(rouleau_add_plugin name)
   set_target_properties(${name} PROPERTIES C_VISIBILITY_PRESET hidden CXX_VISIBILITY_PRESET hidden
     VISIBILITY_INLINES_HIDDEN ON PREFIX lib SUFFIX .so)
   target_compile_options(${name} PRIVATE -fno-math-errno -fno-trapping-math $<$<COMPILE_LANGUAGE:CXX>:-Wno-psabi>)
-  target_link_options(${name} PRIVATE "LINKER:--version-script=${ROULEAU_PLUGIN_VERSION_SCRIPT}")
+  target_link_options(${name} PRIVATE "LINKER:--version-script=${version_script}")
   add_custom_command(TARGET ${name} POST_BUILD COMMAND ${CMAKE_COMMAND} -E copy_if_different
     ${manifests} $<TARGET_FILE_DIR:${name}> VERBATIM)
-  set_property(TARGET ${name} APPEND PROPERTY LINK_DEPENDS ${manifests} "${ROULEAU_PLUGIN_VERSION_SCRIPT}")
+  set_property(TARGET ${name} APPEND PROPERTY LINK_DEPENDS ${manifests} "${version_script}")
 endfunction()
 
 # rouleau_add_conformance_test(NAME) adds the test conform_NAME, which asks the program "rouleau" whether the plugin that

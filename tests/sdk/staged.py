@@ -56,8 +56,8 @@ class Case(unittest.TestCase):
 
     def check_conformance(self, build, program):
         """Runs a plugin's ctest. A program without "rouleau conform" must say so, and nothing else may be wrong."""
-        words = self.call(CMAKE.replace("cmake", "ctest") if Path(CMAKE).name == "cmake" else "ctest", "--test-dir",
-                          build, "--output-on-failure", expect=0 if self.has_conform(program) else 8)
+        words = self.call(Path(CMAKE).with_name("ctest"), "--test-dir", build, "--output-on-failure",
+                          expect=0 if self.has_conform(program) else 8)
         self.assertIn("conform_", words)
         if not self.has_conform(program):
             self.assertIn("rouleau conform: not in this version", words)
