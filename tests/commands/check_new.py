@@ -179,13 +179,7 @@ class Models_are_swapped_by_set_alone(Case):
     def run_scene(self, *settings):
         out = self.path / f"run{len(list(self.path.iterdir()))}"
         words = [w for s in settings for w in ("--set", s)]
-        return self.call("run", self.path / "scene.json", "--out", out, "--quiet", "--max-steps", "20", *words), out
-
-    def setUp(self):
-        super().setUp()
-        scene = json.loads(SCENE.read_text())
-        del scene["interactions"][0]["parameters"]["decay"]  # its default is the scene's value
-        (self.path / "scene.json").write_text(json.dumps(scene))
+        return self.call("run", SCENE, "--out", out, "--quiet", "--max-steps", "20", *words), out
 
     def test_from_morse_to_lennard_jones_by_the_models_name_because_parameters_share_theirs(self):
         for model in ("morse", "lennard-jones", "lennard-jones-shifted"):

@@ -18,7 +18,6 @@ class The_tutorial(Case):
         home = self.path / "home"
         home.mkdir()
         self.environment.update(HOME=str(home), PATH="/usr/local/bin:/usr/bin:/bin")
-        program = home / "rouleau/bin/rouleau"
         # The first block is to be run in the folder of the source, where the build lies in build/release.
         checkout = self.path / "checkout"
         (checkout / "build").mkdir(parents=True)
@@ -28,14 +27,7 @@ class The_tutorial(Case):
         installed = time.monotonic()
         desk = self.path / "desk"
         desk.mkdir()
-        blocks = BLOCKS[1:]
-        if not self.has_conform(program):
-            # Until the program has the command, ctest is expected to fail with its words; everything else is as written.
-            expected = ('"$OUT" 2>&1 && exit 99; grep -q "rouleau conform: not in this version" "$OUT"')
-            self.environment["OUT"] = str(self.path / "ctest.txt")
-            blocks = [re.sub(r"^(ctest .*)$", rf"\1 >{expected}", b, flags=re.MULTILINE) for b in blocks]
-            self.assertEqual(sum(b.count("exit 99") for b in blocks), 2)
-        words = self.call("bash", "-euc", "\n".join(blocks), cwd=desk)
+        words = self.call("bash", "-euc", "\n".join(BLOCKS[1:]), cwd=desk)
         print(f"tutorial: {installed - start:.1f} s to install, {time.monotonic() - installed:.1f} s for everything after")
         self.assertIn("org.example.yukawa 1.0.0: Screened repulsion", words)
         libraries = set()
