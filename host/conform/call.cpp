@@ -85,6 +85,7 @@ Arrays<T> place(Memory& memory, const Subject& subject, const Values& inputs, co
   const std::size_t bytes = count * sizeof(T), offset = call.offset * sizeof(T);
   const auto fill = [&](T* to, T value) { std::fill_n(to, count, value); };
   for (const std::string& name : subject.input_arrays()) {
+    if (call.absent.contains(name.substr(0, name.find('.')))) continue;
     auto* array = reinterpret_cast<T*>(memory.place("the input " + name, bytes, offset));
     const auto& values = inputs.at(name);
     for (std::size_t i = 0; i < count; ++i) array[i] = static_cast<T>(values[i]);
