@@ -6,6 +6,7 @@
 #include "check.hpp"
 #include "differences.hpp"
 #include "input/wording.hpp"
+#include "membrane_work.hpp"
 #include "trials.hpp"
 
 namespace rouleau::host {
@@ -147,6 +148,12 @@ std::vector<Check> interaction_checks() {
        "gives the same force without and with the energy",
        {"compute"},
        energy_optional,
+       kind},
+      {"state-restored",
+       Level::physics,
+       "goes on from a copy of its state with the same bits",
+       {"compute"},
+       check_state_restored,
        kind},
   };
 }
