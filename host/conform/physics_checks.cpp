@@ -137,7 +137,7 @@ Finding units(const Subject& subject) {
   for (const Trial& trial : trials(subject, random, Subject::typical_setting())) {
     for (int i = 0; i < 3; ++i) compare_lattices(worst, subject, trial, random);
   }
-  return worst.finding("nothing to compare");
+  return worst.finding("the same on all lattices");
 }
 
 /// Parameters of a reference in SI: its own, else defaults.
@@ -220,7 +220,7 @@ Finding reference(const Subject& subject) {
       });
     }
   }
-  return worst.finding("no outputs");
+  return worst.finding("exactly the reference numbers");
 }
 
 }  // namespace
