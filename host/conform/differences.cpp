@@ -45,7 +45,8 @@ std::array<Slope, steps> all_slopes(double largest, const F& f) {
   // The first two probes lie wide apart: the line through them.
   const int first = steps * 2 * reach;
   const double x0 = offset(first, largest), rise = (f(first + 1) - f(first)) / (offset(first + 1, largest) - x0);
-  double noise = epsilon * std::abs(f(first));
+  // Numbers below the smallest normal one have fewer digits.
+  double noise = epsilon * std::abs(f(first)) + std::numeric_limits<double>::min();
   for (int p = first + 2; p < first + probes; ++p) {
     noise = std::max(noise, std::abs(f(p) - f(first) - rise * (offset(p, largest) - x0)));
   }

@@ -55,6 +55,7 @@ Values at_distances(const Subject& subject, const Trial& trial, const std::vecto
 /// many diverge.
 double size_of(const Subject& subject, const Trial& trial, const std::string& name, double cutoff, Random& random) {
   std::vector<double> distances;
+  distances.reserve(101);
   for (int i = 0; i < 101; ++i) distances.push_back(cutoff * (0.5 + 0.005 * i));
   auto values = compute(subject, trial.instance, at_distances(subject, trial, distances, random)).at(name);
   for (double& value : values) value = std::abs(value);

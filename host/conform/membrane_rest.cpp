@@ -104,6 +104,7 @@ Finding check_state_restored(const Subject& subject) {
       return Finding::failed("a time step of 0 changes " + difference + trial.words);
     }
     std::vector<Values> course;
+    course.reserve(20);
     for (int step = 0; step < 20; ++step) course.push_back(subject.random_inputs(trial.instance, 101, random));
     const auto run = [&](const Trial& on) {
       Values state = start, outputs;

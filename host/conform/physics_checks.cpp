@@ -94,6 +94,7 @@ void compare_lattices(Worst& worst, const Subject& subject, const Trial& trial, 
       // What rounding of the numbers themselves was seen to do, with a margin for eight tries being few, and that of
       // the result. Products of more than fifty units are not expected.
       double limit = 16 * tolerance.at(name)[i] + 64 * epsilon * std::abs(values[i]);
+      limit += std::numeric_limits<double>::min();  // numbers below have fewer digits
       // A new state may be a sum with the old one, which cancels.
       if (name.starts_with("state.")) limit += 4 * epsilon * std::abs(inputs.at(name)[i]);
       worst.add(std::abs(there.at(name)[i] - values[i]), limit, [&, &name = name, &values = values] {
