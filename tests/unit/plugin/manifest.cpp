@@ -2,6 +2,7 @@
 #include "plugin/manifest.hpp"
 
 #include "input/document.hpp"
+#include "plugin/quantities.hpp"
 #include "plugin_folder.hpp"
 
 using namespace rouleau::host;
@@ -88,6 +89,10 @@ const std::vector<Fault> faults = {
     {R"([{"op": "add", "path": "/checks", "value": [{"inputs": {"distance": 1}, "outputs": {"forces": 1}}]}])",
      "/checks/0/outputs/forces",
      {"forces", "did you mean \"force\"?"}},
+    {R"([{"op": "add", "path": "/state", "value": [{"name": "bonds", "unit": "1"}]},
+         {"op": "add", "path": "/checks", "value": [{"inputs": {"bond": 1}, "outputs": {"force": 1}}]}])",
+     "/checks/0/inputs/bond",
+     {"did you mean \"bonds\"?", "\"state\""}},
     {R"([{"op": "add", "path": "/claims", "value": {"conservativ": true}}])", "/claims/conservativ", {"conservative"}},
 };
 
@@ -134,6 +139,27 @@ TEST_CASE("state variables begin with their initial value in SI, or with zero") 
   CHECK(manifest.state[1].unit == "1/um2");
   CHECK(manifest.state[1].dimension == Dimension{{0, -2, 0, 0, 0, 0}});
   CHECK(manifest.state[1].initial == 0);
+
+  remembering["checks"] = json::parse(R"([{"inputs": {"distance": 1e-6, "bonds": 2}, "outputs": {"force": 0}}])");
+  CHECK_NOTHROW(read_manifest(folder.write("good.json", remembering), Units()));
+}
+
+TEST_CASE("the dimension of every quantity is that of the unit which messages write behind it") {
+  const Units units;
+  for (const ModelKind kind : {ModelKind::membrane, ModelKind::interaction}) {
+    for (const std::string force : {"tension", "pressure"}) {  // which decides what an energy is
+      Manifest manifest{};
+      manifest.kind = kind;
+      manifest.gives = {force};
+      for (const auto& names : {inputs_of(kind), outputs_of(kind)}) {
+        for (const std::string& name : names) {
+          INFO(name);
+          const std::string unit = unit_of(manifest, name);
+          CHECK(dimension_of(manifest, name) == units.dimension(unit.empty() ? "1" : unit));
+        }
+      }
+    }
+  }
 }
 
 TEST_CASE("keys that begin with x- are the author's own and may stand in every object") {
