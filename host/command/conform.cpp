@@ -63,21 +63,25 @@ class Printer {
       std::cout << (plugin.id.empty() ? "" : plugin.kind + ' ' + plugin.id + ' ' + plugin.version + ", ")
                 << plugin.file.string() << '\n';
     }
+    const Level level = result.check->level;
+    if (plugin.results.size() == 1 || level != level_) std::cout << "  " << to_string(level) << '\n';
+    level_ = level;
     std::string verdict = to_string(result.finding.verdict), name = result.check->name;
     verdict.resize(9, ' ');
     name.resize(20, ' ');
-    std::cout << "  " << verdict << name << indented(result.finding.what) << numbers(result.finding) << '\n';
+    std::cout << "    " << verdict << name << indented(result.finding.what) << numbers(result.finding) << '\n';
     const Verdict v = result.finding.verdict;
     if (v == Verdict::fail || v == Verdict::crash || v == Verdict::timeout) {
-      std::cout << "           says that it " << result.check->says
-                << "\n           repeat: " << repeat(plugin, result, seed_) << '\n';
-      if (!result.output.empty()) std::cout << "           it printed: " << in_quotes(result.output) << '\n';
+      std::cout << "             must be true: it " << result.check->says
+                << "\n             repeat: " << repeat(plugin, result, seed_) << '\n';
+      if (!result.output.empty()) std::cout << "             it printed: " << in_quotes(result.output) << '\n';
     }
     std::cout.flush();
   }
 
  private:
   std::uint64_t seed_;
+  Level level_ = Level::interface;
 };
 
 json to_json(const Conformance& plugin, std::uint64_t seed) {
@@ -170,7 +174,8 @@ int conform_command(const std::vector<std::string>& arguments) {
               << (plugin.conforms() ? " conforms: " : " does not conform: ") << plugin.count(Verdict::pass)
               << " passed, " << plugin.count(Verdict::warn) << " warned, "
               << plugin.count(Verdict::fail) + plugin.count(Verdict::crash) + plugin.count(Verdict::timeout)
-              << " failed, " << plugin.count(Verdict::skip) << " skipped (seed " << chosen.seed << ")\n";
+              << " failed, " << plugin.count(Verdict::skip) << " skipped\n  any line again: rouleau conform "
+              << plugin.file.string() << " --only CHECK --seed " << chosen.seed << '\n';
   }
   if (as_json) {
     std::cout << json{{"rouleau", 1}, {"seed", chosen.seed}, {"conforms", conforms}, {"plugins", list}}.dump(

@@ -1,7 +1,180 @@
+// Level "robustness": a result depends on the element's inputs and on nothing else.
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <thread>
+
+#include "call.hpp"
 #include "check.hpp"
+#include "input/wording.hpp"
+#include "subject.hpp"
 
 namespace rouleau::host {
 
-std::vector<Check> block_checks() { return {}; }
+namespace {
+
+constexpr std::size_t ordinary_count = 67;  // no multiple of a vector's width
+
+/// Precisions that a model computes in.
+std::vector<bool> precisions(const Subject& subject) {
+  if (subject.manifest().kind == ModelKind::collision) return {false, true};
+  return {false};
+}
+
+/// Calls test(instance, inputs, call) for each choice and precision until it finds something.
+template <class Test>
+std::string first_fault(const Subject& subject, std::size_t count, const Test& test) {
+  Random random = subject.random();
+  for (const ModelInstance& instance : subject.make_each_choice()) {
+    for (const bool single : precisions(subject)) {
+      Call call;
+      call.single = single;
+      const std::string fault = test(instance, subject.random_inputs(instance, count, random), call);
+      if (!fault.empty()) return fault;
+    }
+  }
+  return {};
+}
+
+Finding hidden_state(const Subject& subject) {
+  Random random = subject.random();
+  const std::string fault =
+      first_fault(subject, ordinary_count, [&](const ModelInstance& instance, const Values& inputs, const Call& call) {
+        const Values first = compute(subject, instance, inputs, call);
+        std::string difference = first_difference(first, compute(subject, instance, inputs, call));
+        if (!difference.empty()) return "the same call twice: " + difference;
+        compute(subject, instance, subject.random_inputs(instance, 5, random), call);
+        const ModelInstance other = subject.make(subject.typical_parameters());
+        compute(subject, other, subject.random_inputs(other, 5, random), call);
+        difference = first_difference(first, compute(subject, instance, inputs, call));
+        return difference.empty() ? difference : "after other calls: " + difference;
+      });
+  if (!fault.empty()) return Finding::failed(fault);
+  const ModelInstance one = subject.make(), another = subject.make();
+  const Values inputs = subject.random_inputs(one, ordinary_count, random);
+  const auto difference = first_difference(compute(subject, one, inputs), compute(subject, another, inputs));
+  if (!difference.empty()) return Finding::failed("two instances with the same parameters: " + difference);
+  return Finding::passed("the same bits again, after other calls, and from another instance");
+}
+
+/// The elements in the order of `order`.
+Values permuted(const Values& values, const std::vector<std::size_t>& order) {
+  Values result;
+  for (const auto& [name, array] : values) {
+    for (const std::size_t i : order) result[name].push_back(array[i]);
+  }
+  return result;
+}
+
+Finding blocks(const Subject& subject) {
+  Random random = subject.random();
+  const std::string fault =
+      first_fault(subject, ordinary_count, [&](const ModelInstance& instance, const Values& inputs, Call call) {
+        const Values expected = compute(subject, instance, inputs, call);
+        for (std::size_t size = 1; size <= 37; ++size) {
+          call.block = size;
+          call.offset = size % 8;
+          call.backwards = size % 2 == 0;
+          const auto difference = first_difference(expected, compute(subject, instance, inputs, call));
+          if (!difference.empty()) {
+            return "cut into blocks of " + std::to_string(size) + ", " + std::to_string(call.offset) +
+                   " elements from a cache line: " + difference;
+          }
+        }
+        std::vector<std::size_t> order(ordinary_count);
+        std::iota(order.begin(), order.end(), 0);
+        std::shuffle(order.begin(), order.end(), random);
+        Call whole;
+        whole.single = call.single;
+        const auto difference =
+            first_difference(permuted(expected, order), compute(subject, instance, permuted(inputs, order), whole));
+        return difference.empty() ? difference : "in another order: " + difference;
+      });
+  if (!fault.empty()) return Finding::failed(fault);
+  return Finding::passed("blocks of 1 to 37 elements, any alignment and order, the same bits");
+}
+
+Finding aliasing(const Subject& subject) {
+  if (subject.manifest().kind != ModelKind::collision && subject.manifest().state.empty()) {
+    return Finding::skipped("no output of this model may lie over an input");
+  }
+  const std::string fault =
+      first_fault(subject, ordinary_count, [&](const ModelInstance& instance, const Values& inputs, Call call) {
+        const Values expected = compute(subject, instance, inputs, call);
+        call.in_place = true;
+        return first_difference(expected, compute(subject, instance, inputs, call));
+      });
+  if (!fault.empty()) return Finding::failed("outputs over inputs change " + fault);
+  return Finding::passed("outputs over inputs, the same bits");
+}
+
+/// What is no number, or is as small as numbers get, stays in its own element.
+Finding contained(const Subject& subject) {
+  const std::string fault =
+      first_fault(subject, ordinary_count, [&](const ModelInstance& instance, const Values& inputs, const Call& call) {
+        const Values expected = compute(subject, instance, inputs, call);
+        for (const std::size_t sick : {0UL, 3UL, 30UL, ordinary_count - 1}) {
+          for (const double value : {std::nan(""), std::numeric_limits<double>::infinity(),
+                                     std::numeric_limits<double>::denorm_min(), 1e-310}) {
+            Values changed = inputs;
+            for (auto& [name, array] : changed) array[sick] = value;
+            Values outputs = compute(subject, instance, changed, call);
+            for (auto& [name, array] : outputs) array[sick] = expected.at(name)[sick];
+            const auto difference = first_difference(expected, outputs);
+            if (!difference.empty()) {
+              return "element " + std::to_string(sick) + " with the value " + number(value) + " changes " + difference;
+            }
+          }
+        }
+        return std::string();
+      });
+  if (!fault.empty()) return Finding::failed(fault);
+  return Finding::passed("NaN, infinity and denormals in one element leave the others alone");
+}
+
+Finding threads(const Subject& subject) {
+  Random random = subject.random();
+  const ModelInstance instance = subject.make();
+  constexpr int thread_count = 8, calls = 300;
+  struct Task {
+    Values inputs, expected;
+  };
+  std::vector<Task> tasks;
+  for (int i = 0; i < thread_count; ++i) {
+    Task task{subject.random_inputs(instance, ordinary_count, random), {}};
+    task.expected = compute(subject, instance, task.inputs);
+    tasks.push_back(std::move(task));
+  }
+  std::atomic<int> differences{0}, waiting{thread_count};
+  std::vector<std::thread> workers;
+  for (const Task& task : tasks) {
+    workers.emplace_back([&] {
+      --waiting;
+      while (waiting > 0) std::this_thread::yield();
+      for (int i = 0; i < calls; ++i) {
+        if (!first_difference(task.expected, compute(subject, instance, task.inputs)).empty()) ++differences;
+      }
+    });
+  }
+  for (std::thread& worker : workers) worker.join();
+  return Finding::at_most(
+      differences, 0,
+      "wrong results of " + std::to_string(thread_count * calls) + " calls by eight threads on one instance");
+}
+
+}  // namespace
+
+std::vector<Check> block_checks() {
+  const Level level = Level::robustness;
+  return {
+      {"hidden-state", level, "remembers nothing from one call to the next", {"compute"}, hidden_state},
+      {"blocks", level, "gives the same however the host cuts its blocks", {"hidden-state"}, blocks},
+      {"aliasing", level, "bears outputs over inputs", {"hidden-state"}, aliasing},
+      {"contained", level, "keeps what is no number in its element", {"blocks"}, contained},
+      {"threads", level, "gives the same to eight threads on one instance", {"hidden-state"}, threads},
+  };
+}
 
 }  // namespace rouleau::host

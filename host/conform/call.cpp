@@ -32,34 +32,51 @@ T from_bits(std::uint64_t wide, std::uint32_t narrow) {
 /// The memory of one compute call.
 class Memory {
  public:
-  explicit Memory(Guard guard) : guard_(guard) {}
+  explicit Memory(const Call& call) : guard_(call.guard), read_only_(call.read_only) {}
 
-  /// Memory for an array at `offset` bytes from a cache line or, when guarded, flush with an inaccessible page.
-  std::byte* place(const std::string& name, std::size_t bytes, std::size_t offset) {
-    if (guard_ != Guard::none) return guarded(name, bytes).data();
+  /// An array at `offset` bytes from a cache line or, where the call says so, flush with an inaccessible page.
+  std::byte* array(const std::string& name, std::size_t bytes, std::size_t offset) {
+    if (guard_ == Guard::behind) return guarded(name, bytes, GuardedArray::Flush::behind).data();
+    if (guard_ == Guard::before) return guarded(name, bytes, GuardedArray::Flush::before).data();
+    return plain(bytes, offset);
+  }
+  /// The same for an input, which `fill` writes before it is protected.
+  template <class Fill>
+  std::byte* input(const std::string& name, std::size_t bytes, std::size_t offset, const Fill& fill) {
+    std::byte* place = nullptr;
+    if (read_only_) {
+      GuardedArray& protected_array = guarded(name, bytes, GuardedArray::Flush::before);
+      fill(place = protected_array.data());
+      protected_array.make_read_only();
+    } else {
+      fill(place = array(name, bytes, offset));
+    }
+    return place;
+  }
+  std::byte* unreadable(const std::string& name, std::size_t bytes) {
+    GuardedArray& array = guarded(name, bytes, GuardedArray::Flush::behind);
+    array.make_unreadable();
+    return array.data();
+  }
+  /// A struct or a list of pointers.
+  std::byte* part_of_block(const std::string& name, std::size_t bytes) {
+    return guard_ == Guard::structs ? guarded(name, bytes, GuardedArray::Flush::behind).data() : plain(bytes, 0);
+  }
+
+ private:
+  GuardedArray& guarded(const std::string& name, std::size_t bytes, GuardedArray::Flush flush) {
+    return *guarded_.emplace_back(std::make_unique<GuardedArray>(name, bytes, flush));
+  }
+  std::byte* plain(std::size_t bytes, std::size_t offset) {
     // A margin on both sides: what a faulty model writes there is for the check of bounds to find.
     constexpr std::size_t margin = 256;
     auto& block = plain_.emplace_back(new std::byte[bytes + offset + 2 * margin + 64]);
     const auto address = reinterpret_cast<std::uintptr_t>(block.get()) + margin;
     return block.get() + margin + (64 - address % 64) % 64 + offset;
   }
-  std::byte* unreadable(const std::string& name, std::size_t bytes) {
-    GuardedArray& array = guarded(name, bytes);
-    array.make_unreadable();
-    return array.data();
-  }
-  /// Forbids writing to the array placed last.
-  void protect_last() {
-    if (guard_ != Guard::none) guarded_.back()->make_read_only();
-  }
-
- private:
-  GuardedArray& guarded(const std::string& name, std::size_t bytes) {
-    const auto flush = guard_ == Guard::before ? GuardedArray::Flush::before : GuardedArray::Flush::behind;
-    return *guarded_.emplace_back(std::make_unique<GuardedArray>(name, bytes, flush));
-  }
 
   Guard guard_;
+  bool read_only_;
   std::vector<std::unique_ptr<std::byte[]>> plain_;
   std::vector<std::unique_ptr<GuardedArray>> guarded_;
 };
@@ -85,11 +102,10 @@ Arrays<T> place(Memory& memory, const Subject& subject, const Values& inputs, co
   const std::size_t bytes = count * sizeof(T), offset = call.offset * sizeof(T);
   const auto fill = [&](T* to, T value) { std::fill_n(to, count, value); };
   for (const std::string& name : subject.input_arrays()) {
-    auto* array = reinterpret_cast<T*>(memory.place("the input " + name, bytes, offset));
     const auto& values = inputs.at(name);
-    for (std::size_t i = 0; i < count; ++i) array[i] = static_cast<T>(values[i]);
-    if (!call.in_place) memory.protect_last();
-    arrays.in[name] = array;
+    arrays.in[name] = reinterpret_cast<T*>(memory.input("the input " + name, bytes, offset, [&](std::byte* place) {
+      for (std::size_t i = 0; i < count; ++i) reinterpret_cast<T*>(place)[i] = static_cast<T>(values[i]);
+    }));
   }
   const auto kind = subject.manifest().kind;
   for (const std::string& quantity : inputs_of(kind)) {
@@ -98,7 +114,7 @@ Arrays<T> place(Memory& memory, const Subject& subject, const Values& inputs, co
       const std::string words = "the input " + name + ", which its manifest does not declare";
       auto* array =
           reinterpret_cast<T*>(call.undeclared == Undeclared::unreadable ? memory.unreadable(words, bytes)
-                                                                         : memory.place(words, bytes, offset));
+                                                                         : memory.array(words, bytes, offset));
       if (call.undeclared == Undeclared::signalling_nan) {
         fill(array, from_bits<T>(signalling_bits, signalling_bits_single));
       }
@@ -112,7 +128,7 @@ Arrays<T> place(Memory& memory, const Subject& subject, const Values& inputs, co
       arrays.out[name] = arrays.in[over];
       continue;
     }
-    auto* array = reinterpret_cast<T*>(memory.place("the output " + name, bytes, offset));
+    auto* array = reinterpret_cast<T*>(memory.array("the output " + name, bytes, offset));
     fill(array, from_bits<T>(unwritten_bits, unwritten_bits_single));
     arrays.out[name] = array;
   }
@@ -124,9 +140,8 @@ template <class T>
 T** table(Memory& memory, const std::string& name, const std::vector<T*>& pointers) {
   if (pointers.empty() || pointers.front() == nullptr) return nullptr;
   const std::size_t bytes = pointers.size() * sizeof(T*);
-  auto** array = reinterpret_cast<T**>(memory.place("the list of pointers " + name, bytes, 0));
+  auto** array = reinterpret_cast<T**>(memory.part_of_block("the list of pointers " + name, bytes));
   std::copy(pointers.begin(), pointers.end(), array);
-  memory.protect_last();
   return array;
 }
 
@@ -209,19 +224,19 @@ Block element_block(const Tables<double>& tables, const std::array<Member<Block>
 /// Calls with the floating-point environment and exceptions kept from spreading. The block lies where arrays lie, so
 /// that reading past the fields of interface 1.0 hits a guard.
 template <class Block>
-void call_with(Memory& memory, Block block, std::uint32_t count, std::uint32_t appended, bool* mode_changed,
+void call_with(Memory& memory, Block block, std::uint32_t count, std::uint32_t appended, CallWatch* watch,
                void (*function)(const void*, const Block*), const void* self) {
   block.struct_size = static_cast<std::uint32_t>(sizeof block) + appended;
   block.count = count;
-  std::byte* placed = memory.place("the block's struct", sizeof block + appended, 0);
+  std::byte* placed = memory.part_of_block("the block's struct", sizeof block + appended);
   std::memset(placed, 0xab, sizeof block + appended);
   std::memcpy(placed, &block, sizeof block);
-  memory.protect_last();
   std::fenv_t environment;
   std::fegetenv(&environment);
-  const FloatingPointMode before = floating_point_mode();
   try {
+    if (watch != nullptr) watch->before();
     function(self, reinterpret_cast<const Block*>(placed));
+    if (watch != nullptr) watch->after();
   } catch (const std::exception& exception) {
     std::fesetenv(&environment);
     throw Fault(std::string("compute threw an exception: ") + exception.what());
@@ -229,7 +244,6 @@ void call_with(Memory& memory, Block block, std::uint32_t count, std::uint32_t a
     std::fesetenv(&environment);
     throw Fault("compute threw an exception");
   }
-  if (mode_changed != nullptr && floating_point_mode() != before) *mode_changed = true;
   std::fesetenv(&environment);
 }
 
@@ -239,24 +253,24 @@ void call_block(Memory& memory, const Subject& subject, const ModelInstance& ins
   const Tables<T> tables{memory, arrays, first};
   const void* self = instance.self();
   if constexpr (sizeof(T) == 4) {
-    call_with(memory, collision_block<rouleau_collision_block_f32>(tables), count, call.appended_bytes,
-              call.mode_changed, instance.collision().collide_f32, self);
+    call_with(memory, collision_block<rouleau_collision_block_f32>(tables), count, call.appended_bytes, call.watch,
+              instance.collision().collide_f32, self);
   } else if (subject.manifest().kind == ModelKind::collision) {
-    call_with(memory, collision_block<rouleau_collision_block_f64>(tables), count, call.appended_bytes,
-              call.mode_changed, instance.collision().collide_f64, self);
+    call_with(memory, collision_block<rouleau_collision_block_f64>(tables), count, call.appended_bytes, call.watch,
+              instance.collision().collide_f64, self);
   } else if (subject.manifest().kind == ModelKind::membrane) {
     call_with(memory, element_block(tables, membrane_members, subject.manifest().state.size(), call.time_step), count,
-              call.appended_bytes, call.mode_changed, instance.membrane().compute, self);
+              call.appended_bytes, call.watch, instance.membrane().compute, self);
   } else {
     call_with(memory, element_block(tables, interaction_members, subject.manifest().state.size(), call.time_step),
-              count, call.appended_bytes, call.mode_changed, instance.interaction().compute, self);
+              count, call.appended_bytes, call.watch, instance.interaction().compute, self);
   }
 }
 
 template <class T>
 Values compute_as(const Subject& subject, const ModelInstance& instance, const Values& inputs, const Call& call) {
   const std::size_t count = inputs.begin()->second.size();
-  Memory memory(call.guard);
+  Memory memory(call);
   const Arrays<T> arrays = place<T>(memory, subject, inputs, call, count);
   const std::size_t size = std::min(call.block, count), blocks = (count + size - 1) / size;
   for (std::size_t i = 0; i < blocks; ++i) {
@@ -282,19 +296,6 @@ Values compute_as(const Subject& subject, const ModelInstance& instance, const V
 Values compute(const Subject& subject, const ModelInstance& instance, const Values& inputs, const Call& call) {
   return call.single ? compute_as<float>(subject, instance, inputs, call)
                      : compute_as<double>(subject, instance, inputs, call);
-}
-
-FloatingPointMode floating_point_mode() {
-  std::uint64_t control = 0;
-#if defined(__x86_64__)
-  std::fenv_t environment;
-  std::fegetenv(&environment);
-  constexpr unsigned past_exceptions = 0x3f;
-  control = (std::uint64_t{environment.__control_word} << 32) | (environment.__mxcsr & ~past_exceptions);
-#elif defined(__aarch64__)
-  asm("mrs %0, fpcr" : "=r"(control));
-#endif
-  return {std::fegetround(), control};
 }
 
 bool is_unwritten(double value) { return std::bit_cast<std::uint64_t>(value) == unwritten_bits; }

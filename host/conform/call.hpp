@@ -13,8 +13,17 @@ namespace rouleau::host {
 /// What stands in place of inputs that the manifest does not declare.
 enum class Undeclared { null, unreadable, signalling_nan };
 
-/// Pages that end the process on any access, right behind or right before every array; inputs are then read-only, too.
-enum class Guard { none, behind, before };
+/// Where pages lie that end the process on any access: nowhere, right behind or right before every array, or right
+/// behind the block's struct and its lists of pointers.
+enum class Guard { none, behind, before, structs };
+
+/// Sees the moment right before and right after the model's function runs; allocations of compute() lie outside.
+class CallWatch {
+ public:
+  virtual ~CallWatch() = default;
+  virtual void before() = 0;
+  virtual void after() = 0;
+};
 
 /// How to call; every choice must give the same bits.
 struct Call {
@@ -25,23 +34,16 @@ struct Call {
   bool in_place = false;   ///< outputs over inputs where the interface allows it
   Undeclared undeclared = Undeclared::null;
   Guard guard = Guard::none;
+  bool read_only = false;                        ///< inputs in memory that cannot be written
   std::optional<std::set<std::string>> outputs;  ///< arrays that are wanted, of output_arrays(); others are NULL
   double time_step = 1;
-  bool* mode_changed = nullptr;      ///< set to true when a call changes the floating-point mode, else left alone
+  CallWatch* watch = nullptr;
   std::uint32_t appended_bytes = 0;  ///< a later host's blocks: longer by fields that this plugin does not know
 };
 
 /// Outputs of all wanted arrays. What the model did not write is a NaN of its own kind (`unwritten`). The
 /// floating-point environment is put back after each call. Throws Fault when an exception leaves the model.
 Values compute(const Subject& subject, const ModelInstance& instance, const Values& inputs, const Call& call = {});
-
-/// What decides how this thread computes: rounding, treatment of denormals, exceptions that trap.
-struct FloatingPointMode {
-  int rounding;
-  std::uint64_t control;  ///< the processor's control registers, without the flags of past exceptions
-  friend bool operator==(const FloatingPointMode&, const FloatingPointMode&) = default;
-};
-FloatingPointMode floating_point_mode();
 
 /// What compute's outputs hold where the model wrote nothing.
 bool is_unwritten(double value);

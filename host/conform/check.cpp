@@ -45,7 +45,7 @@ const std::vector<Check>& all_checks() {
   static const std::vector<Check> checks = [] {
     std::vector<Check> all;
     for (auto& part : {interface_checks(), physics_checks(), collision_checks(), membrane_checks(),
-                       interaction_checks(), input_checks(), block_checks(), process_checks(), speed_checks()}) {
+                       interaction_checks(), block_checks(), input_checks(), process_checks(), speed_checks()}) {
       all.insert(all.end(), part.begin(), part.end());
     }
     return all;

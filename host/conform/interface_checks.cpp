@@ -1,5 +1,6 @@
 // Level "interface": manifest, library, loading, the table, making an instance, a first call.
 #include <algorithm>
+#include <boost/core/demangle.hpp>
 #include <cmath>
 
 #include "call.hpp"
@@ -32,6 +33,7 @@ Finding exports(const Subject& subject) {
   auto symbols = exported_symbols(checked_library(subject.manifest()));
   std::erase(symbols, std::string(ROULEAU_OPEN_SYMBOL));
   if (symbols.empty()) return Finding::passed(ROULEAU_OPEN_SYMBOL " and nothing else");
+  for (std::string& symbol : symbols) symbol = boost::core::demangle(symbol.c_str());
   const std::string more = symbols.size() > 3 ? " and others" : "";
   if (symbols.size() > 3) symbols.resize(3);
   return Finding::failed("exports more than " ROULEAU_OPEN_SYMBOL ": " + listed(symbols) + more +
