@@ -60,10 +60,13 @@ void watch_signals() {
   for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) sigaction(signal, &action, nullptr);
 }
 
-Finding run(const Check& check, const std::string& file, std::uint64_t seed) {
+Finding run(const std::string& name, const std::string& file, std::uint64_t seed) {
   try {
     const Units units;
-    return check.run(Subject(read_manifest(file, units), seed));
+    const Subject subject(read_manifest(file, units), seed);
+    const Check* check = find_check(name, subject.manifest().kind);
+    if (check == nullptr) return Finding::skipped("is for models of another kind");
+    return check->run(subject);
   } catch (const Error& error) {
     return Finding::failed(error.what());
   } catch (const Fault& fault) {
@@ -82,8 +85,7 @@ int main(int count, char** words) {
     std::cerr << "usage: conform-check MANIFEST CHECK SEED\nrouleau conform starts this program; see its --help\n";
     return 2;
   }
-  const Check* check = find_check(words[2]);
-  if (check == nullptr) {
+  if (find_check(words[2]) == nullptr) {
     std::cerr << "conform-check: no check is called \"" << words[2] << "\"\n";
     return 2;
   }
@@ -91,7 +93,7 @@ int main(int count, char** words) {
   const rlimit no_core{0, 0};
   setrlimit(RLIMIT_CORE, &no_core);
   watch_signals();
-  send(run(*check, words[1], std::strtoull(words[3], nullptr, 10)));
+  send(run(words[2], words[1], std::strtoull(words[3], nullptr, 10)));
   // Not through static destructors: they are the plugin's, too, and the finding has been sent.
   _exit(0);
 }

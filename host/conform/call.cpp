@@ -102,6 +102,7 @@ Arrays<T> place(Memory& memory, const Subject& subject, const Values& inputs, co
   const std::size_t bytes = count * sizeof(T), offset = call.offset * sizeof(T);
   const auto fill = [&](T* to, T value) { std::fill_n(to, count, value); };
   for (const std::string& name : subject.input_arrays()) {
+    if (call.absent.contains(name.substr(0, name.find('.')))) continue;
     const auto& values = inputs.at(name);
     arrays.in[name] = reinterpret_cast<T*>(memory.input("the input " + name, bytes, offset, [&](std::byte* place) {
       for (std::size_t i = 0; i < count; ++i) reinterpret_cast<T*>(place)[i] = static_cast<T>(values[i]);

@@ -32,6 +32,7 @@ struct Call {
   std::size_t offset = 0;  ///< elements between a cache line's start and the arrays
   bool backwards = false;  ///< the last block first
   bool in_place = false;   ///< outputs over inputs where the interface allows it
+  std::set<std::string> absent;  ///< needs that are NULL all the same: a collision's "force", "relaxation_rate"
   Undeclared undeclared = Undeclared::null;
   Guard guard = Guard::none;
   bool read_only = false;                        ///< inputs in memory that cannot be written

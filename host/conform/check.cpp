@@ -66,8 +66,8 @@ std::vector<Check> foundations_first(std::vector<Check> checks) {
 const std::vector<Check>& all_checks() {
   static const std::vector<Check> checks = [] {
     std::vector<Check> all;
-    for (auto& part : {interface_checks(), physics_checks(), collision_checks(), membrane_checks(),
-                       interaction_checks(), block_checks(), input_checks(), process_checks(), speed_checks()}) {
+    for (auto& part : {interface_checks(), collision_checks(), membrane_checks(), interaction_checks(),
+                       physics_checks(), block_checks(), input_checks(), process_checks(), speed_checks()}) {
       all.insert(all.end(), part.begin(), part.end());
     }
     return foundations_first(std::move(all));
@@ -75,9 +75,11 @@ const std::vector<Check>& all_checks() {
   return checks;
 }
 
-const Check* find_check(const std::string& name) {
+const Check* find_check(const std::string& name, std::optional<ModelKind> kind) {
   const auto& checks = all_checks();
-  const auto found = std::find_if(checks.begin(), checks.end(), [&](const Check& check) { return check.name == name; });
+  const auto found = std::find_if(checks.begin(), checks.end(), [&](const Check& check) {
+    return check.name == name && (!kind || !check.kind || check.kind == kind);
+  });
   return found == checks.end() ? nullptr : &*found;
 }
 

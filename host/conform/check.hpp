@@ -60,7 +60,7 @@ std::vector<Check> speed_checks();
 
 /// Every check, those that others build on first.
 const std::vector<Check>& all_checks();
-/// The check of that name, or null.
-const Check* find_check(const std::string& name);
+/// The check of that name, or null. Kinds may have different checks of one name.
+const Check* find_check(const std::string& name, std::optional<ModelKind> kind = {});
 
 }  // namespace rouleau::host

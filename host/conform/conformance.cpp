@@ -61,7 +61,9 @@ class Session {
       for (const fs::path& file : rivals_) files.push_back(file.string());
       result.finding = Finding::failed("the id " + in_quotes(plugin_.id) + " is used by " + listed(files));
     }
-    verdicts_[check.name] = result.finding.verdict;
+    // What does not apply to this plugin blocks nothing; what was blocked itself does.
+    const bool holds = stands(result.finding.verdict) || (result.finding.verdict == Verdict::skip && blocker.empty());
+    holds_[check.name] = holds;
     return result;
   }
 
@@ -69,8 +71,8 @@ class Session {
   [[nodiscard]] std::string blocked_by(const Check& check) const {
     if (!options_.only.empty()) return {};
     for (const char* name : check.after) {
-      const auto found = verdicts_.find(name);
-      if (found != verdicts_.end() && !stands(found->second)) return name;
+      const auto found = holds_.find(name);
+      if (found != holds_.end() && !found->second) return name;
     }
     return {};
   }
@@ -78,7 +80,7 @@ class Session {
   const ConformanceOptions& options_;
   const Conformance& plugin_;
   const std::vector<fs::path>& rivals_;
-  std::map<std::string, Verdict> verdicts_;
+  std::map<std::string, bool> holds_;
 };
 
 /// The checks that the options ask for, of a kind (or of any, if the kind is not known).

@@ -252,10 +252,12 @@ void check_reference_numbers(const Document& document, const Manifest& manifest)
                       ": " + listed(known));
     }
   };
+  std::vector<std::string> inputs = manifest.needs;
+  for (const StateVariable& variable : manifest.state) inputs.push_back(variable.name);
   for (std::size_t i = 0; i < manifest.checks.size(); ++i) {
     const std::string at = "/checks/" + std::to_string(i);
     check(at, manifest.checks[i], "parameters", parameters, "parameters");
-    check(at, manifest.checks[i], "inputs", manifest.needs, "\"needs\"");
+    check(at, manifest.checks[i], "inputs", inputs, manifest.state.empty() ? "\"needs\"" : "\"needs\" and \"state\"");
     check(at, manifest.checks[i], "outputs", manifest.gives, "\"gives\"");
   }
 }

@@ -19,4 +19,10 @@ const std::vector<std::string>& outputs_of(ModelKind kind);
 /// The element that a membrane law's input or output belongs to; none for "energy", which belongs to all.
 std::optional<MembraneElement> element_of(const std::string& name);
 
+/// SI dimension and unit ("N/m") of an input or output of a model; that of a membrane law's energy follows from its
+/// element. Collision operators know no unit but those of the lattice: all of theirs are numbers, the force a momentum
+/// per step in units of the reference density.
+Dimension dimension_of(const Manifest& manifest, const std::string& name);
+std::string unit_of(const Manifest& manifest, const std::string& name);
+
 }  // namespace rouleau::host

@@ -1,0 +1,324 @@
+#include "membrane_work.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "call.hpp"
+#include "differences.hpp"
+#include "input/wording.hpp"
+#include "worst.hpp"
+
+namespace rouleau::host {
+
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+constexpr std::size_t elements = 16;
+constexpr int marks = 16, periods = 3;  ///< work is noted `marks` times in each period
+
+void take_state(Values& inputs, const Values& outputs) {
+  for (auto& [name, values] : inputs) {
+    if (name.starts_with("state.")) values = outputs.at(name);
+  }
+}
+
+/// Smooth closed paths of each coordinate around its value at rest, where they begin: by at most a half of it.
+class Path {
+ public:
+  Path(const std::vector<MembraneCoordinate>& coordinates, Random& random) : waves_(coordinates.size() * elements * 3) {
+    for (Wave& wave : waves_) {
+      wave = {uniform(random, -1.0 / 12, 1.0 / 12), uniform(random, 0, 2 * std::numbers::pi)};
+    }
+  }
+  /// Relative change of coordinate c of an element; `time` in periods.
+  [[nodiscard]] double change(std::size_t c, std::size_t element, double time) const {
+    double sum = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Wave& wave = waves_[(c * elements + element) * 3 + k];
+      const double angle = 2 * std::numbers::pi * static_cast<double>(k + 1) * time;
+      sum += wave.amplitude * (std::sin(angle + wave.phase) - std::sin(wave.phase));
+    }
+    return sum;
+  }
+
+ private:
+  struct Wave {
+    double amplitude = 0, phase = 0;
+  };
+  std::vector<Wave> waves_;
+};
+
+struct Work {
+  std::vector<double> done;  ///< on the element since the start, at each mark
+  double way = 0;            ///< the sum of the sizes of all steps, times the largest force
+};
+
+/// The work on each element along its path, by the trapezoidal rule.
+std::vector<Work> work_along(const Subject& subject, const Trial& trial, const Path& path, const Values& rest,
+                             double period, int steps) {
+  const auto coordinates = coordinates_of(subject.manifest());
+  std::vector<Work> work(elements);
+  Values inputs = rest;
+  Call call;
+  call.time_step = 0;
+  Values before = compute(subject, trial.instance, inputs, call);
+  call.time_step = period / steps;
+  std::vector<double> done(elements), force(elements * coordinates.size()), way(force.size());
+  for (int step = 1; step <= steps * periods; ++step) {
+    const Values last = inputs;
+    for (std::size_t c = 0; c < coordinates.size(); ++c) {
+      const std::string& variable = coordinates[c].variable;
+      for (std::size_t i = 0; i < elements; ++i) {
+        // A straight line curves as much as a cell does.
+        const double at = rest.at(variable)[i], scale = variable == "curvature" ? 0.2 : at;
+        inputs[variable][i] = at + scale * path.change(c, i, static_cast<double>(step) / steps);
+      }
+    }
+    if (inputs.contains("stretch_rate")) {
+      for (std::size_t i = 0; i < elements; ++i) {
+        inputs["stretch_rate"][i] = (inputs.at("stretch")[i] - last.at("stretch")[i]) / call.time_step;
+      }
+    }
+    const Values after = compute(subject, trial.instance, inputs, call);
+    for (std::size_t c = 0; c < coordinates.size(); ++c) {
+      const std::string &variable = coordinates[c].variable, &name = coordinates[c].force;
+      for (std::size_t i = 0; i < elements; ++i) {
+        const double moved = inputs.at(variable)[i] - last.at(variable)[i];
+        const double f0 = before.at(name)[i], f1 = after.at(name)[i];
+        done[i] += coordinates[c].sign * 0.5 * (f0 + f1) * moved;
+        way[c * elements + i] += std::abs(moved);
+        force[c * elements + i] = std::max(force[c * elements + i], std::abs(f1));
+      }
+    }
+    before = after;
+    take_state(inputs, after);
+    if (step % (steps / marks) == 0) {
+      for (std::size_t i = 0; i < elements; ++i) work[i].done.push_back(done[i]);
+    }
+  }
+  for (std::size_t k = 0; k < way.size(); ++k) work[k % elements].way += way[k] * force[k];
+  return work;
+}
+
+/// A unit for work in messages: that of the energy of this element.
+std::string energy_in_si(const Subject& subject, const Trial& trial, double lattice) {
+  return in_si(subject, trial.setting, "energy", lattice);
+}
+
+bool remembers_or_sees_rates(const Subject& subject) {
+  return !subject.manifest().state.empty() || subject.manifest().needs_input("stretch_rate");
+}
+
+bool can_move(const Subject& subject) {
+  const auto coordinates = coordinates_of(subject.manifest());
+  return std::all_of(coordinates.begin(), coordinates.end(), [&](const MembraneCoordinate& c) {
+    return subject.manifest().needs_input(c.variable) && (c.rest.empty() || subject.manifest().needs_input(c.rest));
+  });
+}
+
+/// Calls `see` with the work on each element, coarse and fine, over paths that take short and long times.
+template <class See>
+void for_each_path(const Subject& subject, const See& see) {
+  Random random = subject.random();
+  for (const Trial& trial : trials(subject, random, Subject::typical_setting(), 2)) {
+    for (int i = 0; i < 2; ++i) {
+      const double period = std::pow(10.0, uniform(random, 2, 7));
+      const Path path(coordinates_of(subject.manifest()), random);
+      const Values rest = at_rest(subject, trial, elements, random);
+      const auto coarse = work_along(subject, trial, path, rest, period, 64);
+      const auto fine = work_along(subject, trial, path, rest, period, 512);
+      for (std::size_t k = 0; k < elements; ++k) see(trial, rest, k, coarse[k], fine[k]);
+    }
+  }
+}
+
+/// Over any path that begins at rest an element gives back no more than was put in, and what it held at the start.
+Finding dissipation_of_state(const Subject& subject) {
+  Worst worst;
+  for_each_path(subject,
+                [&](const Trial& trial, const Values& rest, std::size_t k, const Work& coarse, const Work& fine) {
+                  double start = 0;
+                  if (subject.manifest().gives_output("energy")) {
+                    Call look;
+                    look.time_step = 0;
+                    start = compute(subject, trial.instance, rest, look).at("energy")[k];
+                  }
+                  for (std::size_t mark = 0; mark < fine.done.size(); ++mark) {
+                    // The rule's error is less than what eightfold refinement changes; forces round by some epsilon of
+                    // the largest.
+                    const double limit = std::abs(fine.done[mark] - coarse.done[mark]) + 64 * epsilon * fine.way;
+                    const double given_back = std::max(0.0, -fine.done[mark] - start);
+                    worst.add(given_back, limit, [&] {
+                      return "an element that moved from rest for " + number(static_cast<double>(mark + 1) / marks, 3) +
+                             " periods has given back " + energy_in_si(subject, trial, given_back) +
+                             " more than was put in" + trial.words + "; in lattice units";
+                    });
+                  }
+                });
+  return worst.finding("nothing to compare");
+}
+
+Finding dissipation_of_rates(const Subject& subject) {
+  Random random = subject.random();
+  Worst worst;
+  for (const Trial& trial : trials(subject, random, Subject::typical_setting())) {
+    Values moving = subject.random_inputs(trial.instance, 201, random);
+    for (double& rate : moving["stretch_rate"]) {
+      rate = std::copysign(std::pow(10.0, uniform(random, -8, -1)), uniform(random, -1, 1));
+    }
+    Values still = moving;
+    still["stretch_rate"].assign(201, 0);
+    const Values with = compute(subject, trial.instance, moving), without = compute(subject, trial.instance, still);
+    for (std::size_t i = 0; i < 201; ++i) {
+      const double rate = moving["stretch_rate"][i], tension = with.at("tension")[i],
+                   at_rest = without.at("tension")[i];
+      const auto words = [&](const std::string& what) {
+        return [&, what] { return what + " at " + place(subject, trial.setting, moving, i) + trial.words; };
+      };
+      // The two tensions are rounded on their own.
+      worst.add(std::max(0.0, -(tension - at_rest) * rate),
+                16 * epsilon * (std::abs(tension) + std::abs(at_rest)) * std::abs(rate),
+                words("power given off by the part of the tension that depends on the rate, in lattice units,"));
+      if (with.contains("tension_by_rate")) {
+        worst.add(std::max(0.0, -with.at("tension_by_rate")[i]), 0, words("a negative tension_by_rate of the size"));
+      }
+    }
+  }
+  return worst.finding("nothing to compare");
+}
+
+}  // namespace
+
+std::vector<MembraneCoordinate> coordinates_of(const Manifest& manifest) {
+  const std::vector<MembraneCoordinate> all = {{"stretch", "tension", "", 1},
+                                               {"curvature", "moment", "rest_curvature", 1},
+                                               {"area", "pressure", "rest_area", -1},
+                                               {"perimeter", "perimeter_tension", "rest_perimeter", 1}};
+  std::vector<MembraneCoordinate> given;
+  for (const auto& coordinate : all) {
+    if (manifest.gives_output(coordinate.force)) given.push_back(coordinate);
+  }
+  return given;
+}
+
+Values at_rest(const Subject& subject, const Trial& trial, std::size_t count, Random& random) {
+  Values inputs = subject.random_inputs(trial.instance, count, random);
+  const auto set = [&](const std::string& name, double value) {
+    if (inputs.contains(name)) inputs[name].assign(count, value);
+  };
+  set("stretch", 1);
+  set("stretch_rate", 0);
+  for (const std::string name : {"curvature", "area", "perimeter"}) {
+    if (inputs.contains(name) && inputs.contains("rest_" + name)) inputs[name] = inputs.at("rest_" + name);
+  }
+  for (std::size_t k = 0; k < subject.manifest().state.size(); ++k) {
+    set("state." + std::to_string(k), trial.instance.initial_state()[k]);
+  }
+  return inputs;
+}
+
+Finding check_rigid_motion(const Subject& subject) {
+  Random random = subject.random();
+  const bool has_state = !subject.manifest().state.empty(), gives_energy = subject.manifest().gives_output("energy");
+  Worst worst;
+  Decided decided;
+  for (const Trial& trial : trials(subject, random, Subject::typical_setting())) {
+    Values inputs = subject.random_inputs(trial.instance, 101, random);
+    Values moving = inputs;
+    if (inputs.contains("stretch_rate")) inputs["stretch_rate"].assign(101, 0);
+    Call look, step;
+    look.time_step = 0;
+    step.time_step = std::pow(10.0, uniform(random, 0, 5));
+    const Values now = compute(subject, trial.instance, inputs, look);
+    const Values later = compute(subject, trial.instance, inputs, step);
+    if (has_state && gives_energy) {
+      for (std::size_t i = 0; i < 101; ++i) {
+        const double gain = later.at("energy")[i] - now.at("energy")[i];
+        worst.add(std::max(0.0, gain), 64 * epsilon * std::abs(now.at("energy")[i]), [&] {
+          return "the energy grows, in lattice units, while nothing moves, at " +
+                 place(subject, trial.setting, inputs, i) + trial.words;
+        });
+      }
+    }
+    if (has_state) continue;
+    if (const auto difference = first_difference(now, later); !difference.empty()) {
+      return Finding::failed("what does not move depends on the time step (0 and " + number(step.time_step) +
+                             "): " + difference + trial.words);
+    }
+    if (!inputs.contains("stretch_rate") || !gives_energy) continue;
+    const auto& still_energy = now.at("energy");
+    const auto moving_energy = compute(subject, trial.instance, moving).at("energy");
+    for (std::size_t i = 0; i < 101; ++i) {
+      worst.add(std::abs(moving_energy[i] - still_energy[i]), 16 * epsilon * std::abs(still_energy[i]), [&] {
+        return "the energy depends on the rate, in lattice units by, at " + place(subject, trial.setting, moving, i) +
+               trial.words;
+      });
+    }
+    // What is left without motion is the gradient of the energy.
+    compare_derivative(worst, decided, subject, trial, inputs, {"tension", "energy", "stretch", 1});
+  }
+  return worst.finding("what does not move gives the same whatever the time step");
+}
+
+Finding check_dissipation(const Subject& subject) {
+  if (!remembers_or_sees_rates(subject)) return Finding::skipped("depends on no rate and has no state");
+  if (!can_move(subject)) return Finding::skipped("does not see all coordinates that it gives forces for");
+  return subject.manifest().state.empty() ? dissipation_of_rates(subject) : dissipation_of_state(subject);
+}
+
+/// The last of three periods, when state has forgotten the start.
+Finding check_closed_loop(const Subject& subject) {
+  if (!can_move(subject)) return Finding::skipped("does not see all coordinates that it gives forces for");
+  const bool conservative = subject.manifest().claims.value("conservative", false);
+  Worst worst;
+  for_each_path(subject, [&](const Trial& trial, const Values&, std::size_t /*element*/, const Work& coarse,
+                             const Work& fine) {
+    const auto last_period = [&](const Work& work) { return work.done.back() - work.done[marks * (periods - 1) - 1]; };
+    const double work = last_period(fine), wrong = conservative ? std::abs(work) : std::max(0.0, -work);
+    // The rule is exact but for rounding on smooth cycles, and its error falls by 64 where there are kinks.
+    const double limit = std::abs(last_period(coarse)) / 8 + 64 * epsilon * fine.way;
+    worst.add(wrong, limit, [&] {
+      return "a closed cycle takes the work " + energy_in_si(subject, trial, work) +
+             (conservative ? ", expected none" : ", expected none or more") + trial.words + "; in lattice units";
+    });
+  });
+  return worst.finding("nothing to compare");
+}
+
+Finding check_state_restored(const Subject& subject) {
+  if (subject.manifest().state.empty()) return Finding::skipped("has no state");
+  Random random = subject.random();
+  for (const Trial& trial : trials(subject, random, Subject::typical_setting())) {
+    const Values start = subject.random_inputs(trial.instance, 101, random);
+    Call look;
+    look.time_step = 0;
+    Values looked = compute(subject, trial.instance, start, look);
+    std::erase_if(looked, [](const auto& entry) { return !entry.first.starts_with("state."); });
+    if (const auto difference = first_difference(start, looked); !difference.empty()) {
+      return Finding::failed("a time step of 0 changes " + difference + trial.words);
+    }
+    std::vector<Values> course;
+    for (int step = 0; step < 20; ++step) course.push_back(subject.random_inputs(trial.instance, 101, random));
+    const auto run = [&](const Trial& on) {
+      Values state = start, outputs;
+      for (Values inputs : course) {
+        take_state(inputs, state);
+        outputs = state = compute(subject, on.instance, inputs);
+      }
+      return outputs;
+    };
+    const Values first = run(trial), again = run(trial);
+    if (const auto difference = first_difference(first, again); !difference.empty()) {
+      return Finding::failed("20 steps from a copy of the state give other bits: " + difference + trial.words);
+    }
+    const Trial other{subject.make(trial.parameters, trial.setting), trial.parameters, trial.setting, trial.words};
+    if (const auto difference = first_difference(first, run(other)); !difference.empty()) {
+      return Finding::failed("20 steps from a copy of the state in another instance give other bits: " + difference +
+                             trial.words);
+    }
+  }
+  return Finding::passed("20 steps from a copy of the state give the same bits; a time step of 0 leaves them");
+}
+
+}  // namespace rouleau::host

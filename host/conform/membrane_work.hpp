@@ -1,0 +1,30 @@
+// The checks of membrane laws that move an element and count the work: rigid motion, dissipation, cycles, state.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "check.hpp"
+#include "trials.hpp"
+
+namespace rouleau::host {
+
+/// A coordinate of an element and the force along it: force = sign d energy/d variable.
+struct MembraneCoordinate {
+  std::string variable, force, rest;  ///< `rest`: the input that holds its value at rest; empty: that is 1
+  double sign = 1;
+};
+/// Those of a law's element whose force the law gives.
+std::vector<MembraneCoordinate> coordinates_of(const Manifest& manifest);
+
+/// Elements at rest: stretch 1, rate 0, curvature, area and perimeter as at rest, state with its initial values.
+Values at_rest(const Subject& subject, const Trial& trial, std::size_t count, Random& random);
+
+Finding check_rigid_motion(const Subject& subject);
+Finding check_dissipation(const Subject& subject);
+Finding check_closed_loop(const Subject& subject);
+/// Of models of any kind with state.
+Finding check_state_restored(const Subject& subject);
+
+}  // namespace rouleau::host

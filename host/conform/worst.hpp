@@ -1,0 +1,45 @@
+// The worst of many comparisons of one check, and the finding that it makes.
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "check.hpp"
+
+namespace rouleau::host {
+
+class Worst {
+ public:
+  /// One comparison: passes when measured <= limit. `words()` names its place; it is asked for the worst one only,
+  /// which is that of the largest measured/limit.
+  template <class Words>
+  void add(double measured, double limit, const Words& words) {
+    ++count_;
+    double ratio = measured <= 0 && limit >= 0 ? 0 : measured / limit;
+    if (std::isnan(ratio)) ratio = std::numeric_limits<double>::infinity();
+    if (ratio <= ratio_) return;
+    ratio_ = ratio;
+    measured_ = measured;
+    limit_ = limit;
+    what_ = words();
+  }
+
+  [[nodiscard]] bool passes() const { return ratio_ <= 1; }
+  [[nodiscard]] int count() const { return count_; }
+
+  /// `nothing`: what to say when no comparison was made; that passes.
+  [[nodiscard]] Finding finding(const std::string& nothing) const {
+    if (count_ == 0) return Finding::passed(nothing);
+    Finding finding = Finding::at_most(measured_, limit_, what_);
+    if (!passes()) finding.verdict = Verdict::fail;  // infinite or not a number beside a limit that is
+    return finding;
+  }
+
+ private:
+  double ratio_ = -1, measured_ = 0, limit_ = 0;
+  int count_ = 0;
+  std::string what_;
+};
+
+}  // namespace rouleau::host
