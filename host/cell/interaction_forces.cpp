@@ -12,12 +12,6 @@ namespace {
 std::vector<double> cutoffs_of(const std::vector<Potential>& potentials) {
   std::vector<double> cutoffs;
   for (const Potential& potential : potentials) {
-    const Manifest& manifest = potential.model->manifest();
-    for (const std::string& need : manifest.needs) {
-      if (need == "distance") continue;
-      throw Error(ExitCode::plugin_refused, Place{manifest.file.string(), "/needs"},
-                  "interaction \"" + manifest.id + "\" needs \"" + need + "\", which this program does not give yet.");
-    }
     cutoffs.push_back(potential.model->interaction().cutoff(potential.model->self()));
   }
   return cutoffs;
@@ -50,7 +44,9 @@ InteractionForces::InteractionForces(const Membranes& membranes, std::vector<Pot
       scratch_(membranes.cells.size()),
       variables_(potentials_.size()) {
   for (const Potential& potential : potentials_) {
-    has_state_ = has_state_ || !potential.model->manifest().state.empty();
+    const Manifest& manifest = potential.model->manifest();
+    has_state_ = has_state_ || !manifest.state.empty();
+    needs_.push_back({manifest.needs_input("normal_velocity"), manifest.needs_input("tangential_velocity")});
   }
 }
 
@@ -115,6 +111,7 @@ void InteractionForces::apply(std::size_t potential, const ContactList& list, Ra
   block.count = static_cast<std::uint32_t>(count);
   block.time_step = 1;
   block.distance = distance;
+  give_velocities(potential, contacts.begin, count, all, scratch, block);
   (energy ? block.energy : block.force) = direct ? result + contacts.begin : scratch.law.data();
   model.interaction().compute(model.self(), &block);
   if (direct) return;
@@ -124,13 +121,40 @@ void InteractionForces::apply(std::size_t potential, const ContactList& list, Ra
   }
 }
 
+void InteractionForces::give_velocities(std::size_t potential, int first, int count, bool all, Scratch& scratch,
+                                        rouleau_interaction_block& block) const {
+  const auto give = [&](bool needed, const std::vector<double>& values, std::vector<double>& chosen,
+                        const double*& to) {
+    if (!needed) return;
+    to = values.data() + first;
+    if (all) return;
+    for (auto k = std::size_t{0}; k < static_cast<std::size_t>(count); ++k) {
+      chosen[k] = values[static_cast<std::size_t>(scratch.contact[k])];
+    }
+    to = chosen.data();
+  };
+  give(needs_[potential].normal_velocity, scratch.velocities.normal, scratch.normal, block.normal_velocity);
+  give(needs_[potential].tangential_velocity, scratch.velocities.tangential, scratch.tangential,
+       block.tangential_velocity);
+}
+
+void InteractionForces::prepare(int cell, const Membranes& membranes, Scratch& scratch) const {
+  const ContactList& list = contacts_.list(cell);
+  if (scratch.law.size() < list.node.size()) {  // only after the candidates were listed anew
+    for (auto* values : {&scratch.force, &scratch.law, &scratch.distance}) values->resize(list.node.size());
+    for (auto* values : {&scratch.normal, &scratch.tangential}) values->resize(list.node.size());
+    scratch.contact.resize(list.node.size());
+  }
+  if (std::any_of(needs_.begin(), needs_.end(),
+                  [](const Needs& needs) { return needs.normal_velocity || needs.tangential_velocity; })) {
+    scratch.velocities.measure(list, contacts_.neighbours().list(cell).pairs, membranes);
+  }
+}
+
 void InteractionForces::compute_forces(int cell, Membranes& membranes) {
   const ContactList& list = contacts_.list(cell);
   Scratch& scratch = scratch_[static_cast<std::size_t>(cell)];
-  if (scratch.force.size() < list.node.size()) {  // only after the candidates were listed anew
-    for (auto* values : {&scratch.force, &scratch.law, &scratch.distance}) values->resize(list.node.size());
-    scratch.contact.resize(list.node.size());
-  }
+  prepare(cell, membranes, scratch);
   const auto touched = static_cast<std::size_t>(contacts_.neighbours().list(cell).touched);
   scratch.reaction_x.assign(touched, 0.0);
   scratch.reaction_y.assign(touched, 0.0);
@@ -218,12 +242,9 @@ double InteractionForces::energy(const Membranes& membranes) const {
   double sum = 0;
   for (int cell = 0; cell < static_cast<int>(membranes.cells.size()); ++cell) {
     const ContactList& list = contacts_.list(cell);
-    const std::size_t room = list.node.size();
     Scratch scratch;
-    scratch.law.resize(room);
-    scratch.distance.resize(room);
-    scratch.contact.resize(room);
-    std::vector<double> energy(room, 0.0);
+    prepare(cell, membranes, scratch);
+    std::vector<double> energy(list.node.size(), 0.0);
     const int type = membranes.cells[static_cast<std::size_t>(cell)].type;
     for (std::size_t pair = 0; pair < list.ranges.size();) {
       const std::size_t first_pair = pair;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "contact.hpp"
+#include "contact_velocity.hpp"
 #include "membranes.hpp"
 #include "periodic_box.hpp"
 #include "plugin/model.hpp"
@@ -24,7 +25,6 @@ struct Potential {
 /// gradient of the energy, with neither net force nor net torque (Derjaguin; docs: physics, interaction).
 class InteractionForces {
  public:
-  /// Throws Error(plugin_refused) if a potential needs what this host does not give.
   InteractionForces(const Membranes& membranes, std::vector<Potential> potentials, PeriodicBox box);
 
   /// To be called before run() and by one thread: makes room for what potentials remember in `membranes.contacts`, as
@@ -48,7 +48,9 @@ class InteractionForces {
   struct Scratch {                               // of one cell's contacts
     std::vector<double> force;                   // sum of f over the potentials
     std::vector<double> law;                     // of one potential
+    ContactVelocities velocities;                // only if a potential needs them
     std::vector<double> distance;                // those within a cutoff shorter than that of the pair
+    std::vector<double> normal, tangential;      // velocities there
     std::vector<int> contact;                    // to which these belong
     std::vector<double> reaction_x, reaction_y;  // on the nodes of other cells that its pairs touch
     std::vector<double> state, fresh;            // of one pair's contacts, all variables; of the cell's nodes
@@ -59,6 +61,8 @@ class InteractionForces {
     Range contacts;
   };
   [[nodiscard]] TypeRange next_range(int cell, const Membranes& membranes, std::size_t& pair) const;
+  /// Makes room for a cell's contacts and measures what the potentials need of them besides the distance.
+  void prepare(int cell, const Membranes& membranes, Scratch& scratch) const;
   void compute_forces(int cell, Membranes& membranes);
   void apply(std::size_t potential, const ContactList& list, Range contacts, double* result, bool energy, bool first,
              Scratch& scratch) const;
@@ -74,8 +78,18 @@ class InteractionForces {
   void act(int cell, Membranes& membranes);
   void take_reactions(int cell, Membranes& membranes) const;
 
+  /// What a potential is given besides distances; looked up in its manifest once.
+  struct Needs {
+    bool normal_velocity, tangential_velocity;
+  };
+  /// Sets the block's inputs to those of the contacts scratch.contact[0, count), at scratch.distance; `all`: to those
+  /// of all contacts from `first` on.
+  void give_velocities(std::size_t potential, int first, int count, bool all, Scratch& scratch,
+                       rouleau_interaction_block& block) const;
+
   std::vector<Potential> potentials_;
   std::vector<double> cutoffs_;  // of the potentials
+  std::vector<Needs> needs_;     // of the potentials
   Contacts contacts_;
   std::vector<Scratch> scratch_;
   std::vector<std::vector<std::size_t>> variables_;  // of the potentials, in ContactMemory::variables once kept

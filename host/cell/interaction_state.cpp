@@ -68,6 +68,7 @@ void InteractionForces::apply_with_state(std::size_t potential, int cell, std::s
   block.count = static_cast<std::uint32_t>(count);
   block.time_step = next != nullptr ? 1 : 0;
   block.distance = scratch.distance.data();
+  give_velocities(potential, 0, static_cast<int>(count), false, scratch, block);
   (energy ? block.energy : block.force) = scratch.law.data();
   block.state = state.data();
   if (next != nullptr) block.new_state = new_state.data();

@@ -16,7 +16,7 @@ struct SlipTask {
   double shift, mobility;  // of the cell's type; mobility: slip per tangential force per length
   int smoothings;
   const double *x, *y;
-  const double *node_force_x, *node_force_y, *own_x, *own_y;  // all forces, and those of the membrane alone
+  const double *node_force_x, *node_force_y;
   double *tangent_x, *tangent_y, *inverse_chord;
   double *touch_x, *touch_y, *force_x, *force_y, *slip, *scratch_x, *scratch_y;
   double *velocity_x, *velocity_y;
@@ -46,7 +46,7 @@ struct Measure {
   }
 };
 
-struct Distribute {
+struct Respond {
   template <int register_bytes>
   ROULEAU_ALWAYS_INLINE static void run(const SlipTask* task) {
     const SlipTask t = *task;
@@ -55,7 +55,7 @@ struct Distribute {
     for_closed_outline<register_bytes>(t.begin, t.end, [&](auto tag, int i, int, int) {
       using S = decltype(tag);
       const S tx = load<S>(t.tangent_x, i), ty = load<S>(t.tangent_y, i);
-      const S along = load<S>(t.own_x, i) * tx + load<S>(t.own_y, i) * ty;
+      const S along = load<S>(t.node_force_x, i) * tx + load<S>(t.node_force_y, i) * ty;
       (2.0 * t.mobility * along * load<S>(t.inverse_chord, i)).store(slip + i);
     });
     for (int k = 0; k < t.smoothings; ++k) {
@@ -69,7 +69,7 @@ struct Distribute {
     for_closed_outline<register_bytes>(t.begin, t.end, [&](auto tag, int i, int, int) {
       using S = decltype(tag);
       const S tx = load<S>(t.tangent_x, i), ty = load<S>(t.tangent_y, i);
-      const S fx = load<S>(t.own_x, i), fy = load<S>(t.own_y, i);
+      const S fx = load<S>(t.node_force_x, i), fy = load<S>(t.node_force_y, i);
       const S along = fx * tx + fy * ty, outward = fx * ty - fy * tx;
       const S lever = t.shift * load<S>(t.inverse_chord, i);
       (-lever * (along * ty + outward * tx)).store(t.scratch_x + i);
@@ -77,8 +77,8 @@ struct Distribute {
     });
     for_closed_outline<register_bytes>(t.begin, t.end, [&](auto tag, int i, int before, int after) {
       using S = decltype(tag);
-      (load<S>(t.node_force_x, i) + (load<S>(t.scratch_x, before) - load<S>(t.scratch_x, after))).store(t.force_x + i);
-      (load<S>(t.node_force_y, i) + (load<S>(t.scratch_y, before) - load<S>(t.scratch_y, after))).store(t.force_y + i);
+      (load<S>(t.scratch_x, before) - load<S>(t.scratch_x, after)).store(t.force_x + i);
+      (load<S>(t.scratch_y, before) - load<S>(t.scratch_y, after)).store(t.force_y + i);
     });
   }
 };
@@ -131,8 +131,8 @@ SlipCorrection::SlipCorrection(const Membranes& membranes, std::vector<Type> typ
     const double stiffness = type.stretching_stiffness + type.bending_stiffness * curvature * curvature;
     smoothings_.push_back(smoothings_of(cell.rest_perimeter / cell.count, type.constants.slip / viscosity, stiffness));
   }
-  for (auto* values : {&own_x_, &own_y_, &tangent_x_, &tangent_y_, &inverse_chord_, &touch_x_, &touch_y_, &force_x_,
-                       &force_y_, &slip_, &scratch_x_, &scratch_y_}) {
+  for (auto* values : {&tangent_x_, &tangent_y_, &inverse_chord_, &touch_x_, &touch_y_, &force_x_, &force_y_, &slip_,
+                       &scratch_x_, &scratch_y_}) {
     values->assign(membranes.x.size(), 0.0);
   }
 }
@@ -153,8 +153,6 @@ void SlipCorrection::run(Worker worker, const Membranes& membranes, double* velo
                         membranes.y.data(),
                         membranes.force_x.data(),
                         membranes.force_y.data(),
-                        own_x_.data(),
-                        own_y_.data(),
                         tangent_x_.data(),
                         tangent_y_.data(),
                         inverse_chord_.data(),
@@ -187,14 +185,16 @@ void SlipCorrection::measure(Worker worker, const Membranes& membranes) {
   run<Measure>(worker, membranes, nullptr, nullptr);
 }
 
-void SlipCorrection::take_membrane_forces(Worker worker, const Membranes& membranes) {
-  const Range n = membranes.node_share(worker);
-  std::copy(membranes.force_x.begin() + n.begin, membranes.force_x.begin() + n.end, own_x_.begin() + n.begin);
-  std::copy(membranes.force_y.begin() + n.begin, membranes.force_y.begin() + n.end, own_y_.begin() + n.begin);
+void SlipCorrection::respond(Worker worker, const Membranes& membranes) {
+  run<Respond>(worker, membranes, nullptr, nullptr);
 }
 
-void SlipCorrection::distribute(Worker worker, const Membranes& membranes) {
-  run<Distribute>(worker, membranes, nullptr, nullptr);
+void SlipCorrection::complete(Worker worker, const Membranes& membranes) {
+  const Range nodes = membranes.node_share(worker);
+  for (auto i = static_cast<std::size_t>(nodes.begin); i < static_cast<std::size_t>(nodes.end); ++i) {
+    force_x_[i] = membranes.force_x[i] + force_x_[i];
+    force_y_[i] = membranes.force_y[i] + force_y_[i];
+  }
 }
 
 void SlipCorrection::correct(Worker worker, Membranes& membranes) {

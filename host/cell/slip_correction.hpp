@@ -25,11 +25,11 @@ class SlipCorrection {
 
   /// Pass over cells: directions at the present positions, and where the nodes touch the lattice.
   void measure(Worker worker, const Membranes& membranes);
-  /// Pass over cells, while their forces are still those of the membranes alone: remembers them. Couples and slip are
-  /// made of these; what cells do to each other goes straight to the fluid, or strongly attracting cells break.
-  void take_membrane_forces(Worker worker, const Membranes& membranes);
-  /// Pass over cells, once the forces on them are complete: what is spread, and the slip that goes with it.
-  void distribute(Worker worker, const Membranes& membranes);
+  /// Pass over cells, while their forces are still those of the membranes alone, of which couples and slip are made;
+  /// what cells do to each other goes straight to the fluid, or strongly attracting cells break.
+  void respond(Worker worker, const Membranes& membranes);
+  /// Pass over cells, once the forces on them are complete: makes forces() what is to be spread.
+  void complete(Worker worker, const Membranes& membranes);
   /// Pass over cells: turns velocities interpolated at the touching points into those of the membrane.
   void correct(Worker worker, Membranes& membranes);
 
@@ -47,11 +47,10 @@ class SlipCorrection {
   std::vector<Type> types_;
   double viscosity_;
   std::vector<int> smoothings_;                // of each cell's slip
-  std::vector<double> own_x_, own_y_;          // forces of the membranes alone
   std::vector<double> tangent_x_, tangent_y_;  // along the chord from the node before to the node after
   std::vector<double> inverse_chord_;          // 1 / its length
   std::vector<double> touch_x_, touch_y_;
-  std::vector<double> force_x_, force_y_;  // what is spread
+  std::vector<double> force_x_, force_y_;  // of the couples; in the end all that is spread
   std::vector<double> slip_;               // velocity along the tangent
   std::vector<double> scratch_x_, scratch_y_;
 };

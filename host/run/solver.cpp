@@ -70,7 +70,7 @@ void Solver<T>::plan_cell_passes(const Plan& plan) {
   if (plan.semi_implicit) membrane_forces_->make_semi_implicit(membranes_);
   const auto membrane = [this](Worker worker) {
     membrane_forces_->run(worker, membranes_);
-    if (slip_correction_) slip_correction_->take_membrane_forces(worker, membranes_);
+    if (slip_correction_) slip_correction_->respond(worker, membranes_);
   };
 
   std::vector<double> viscosity_ratio;
@@ -86,12 +86,10 @@ void Solver<T>::plan_cell_passes(const Plan& plan) {
     indicator_->measure(worker, membranes_);
     indicator_->cover(worker, membranes_);
   };
-  const auto distribute = [this](Worker worker) {
-    if (slip_correction_) slip_correction_->distribute(worker, membranes_);
-  };
+  const auto complete = [this](Worker worker) { slip_correction_->complete(worker, membranes_); };
   if (!plan.has_interactions) {
     forces_.push_back({"membrane", membrane, Meeting::none});
-    if (corrected) forces_.push_back({"corrections", distribute, Meeting::none});
+    if (corrected) forces_.push_back({"corrections", complete, Meeting::none});
     forces_.push_back({indicator_name_, cover});
     return;
   }
@@ -115,7 +113,7 @@ void Solver<T>::plan_cell_passes(const Plan& plan) {
   forces_.push_back({"interaction", interaction(1), Meeting::announce});
   forces_.push_back({indicator_name_, cover, Meeting::await});
   forces_.push_back({"interaction", interaction(2), corrected ? Meeting::none : Meeting::all});
-  if (corrected) forces_.push_back({"corrections", distribute});
+  if (corrected) forces_.push_back({"corrections", complete});
 }
 
 /// Passes over rows: each worker has its own rows and collides them afterwards. Only where y is periodic do the rows of

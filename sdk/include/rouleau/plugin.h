@@ -150,7 +150,7 @@ typedef struct rouleau_interaction_block {
 
   const double* distance;
   const double* normal_velocity;     /* d distance / dt */
-  const double* tangential_velocity; /* of the surfaces against each other, along the membrane */
+  const double* tangential_velocity; /* sliding; positive where the element runs counter-clockwise along its own cell */
 
   double* energy;            /* phi, per area */
   double* force;             /* - d phi / d distance, per area: positive repels */

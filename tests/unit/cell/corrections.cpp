@@ -93,8 +93,8 @@ TEST_CASE("the slip correction adds no force to the fluid") {
   Membranes m = cell_with_forces(random, 0.5);
   SlipCorrection correction(m, {{slip_constants(KernelKind::peskin4, 5), 0, 0}}, 1.0 / 6);
   correction.measure({}, m);
-  correction.take_membrane_forces({}, m);
-  correction.distribute({}, m);
+  correction.respond({}, m);
+  correction.complete({}, m);
   double x = 0, y = 0;
   for (std::size_t i = 0; i < m.x.size(); ++i) x += correction.forces().x[i], y += correction.forces().y[i];
   const ForceSums sums = force_sums(m);
@@ -115,8 +115,8 @@ TEST_CASE("the slip correction keeps the torque to second order in shift over ra
     }
     SlipCorrection correction(m, {{slip_constants(KernelKind::peskin4, 5), 0, 0}}, 1.0 / 6);
     correction.measure({}, m);
-    correction.take_membrane_forces({}, m);
-    correction.distribute({}, m);
+    correction.respond({}, m);
+    correction.complete({}, m);
     const NodeVectors at = correction.positions(), force = correction.forces();
     double torque = 0, expected = 0;
     for (std::size_t i = 0; i < m.x.size(); ++i) {
@@ -137,8 +137,8 @@ TEST_CASE("what the fluid does on the membrane is what the membrane does on the 
   constants.slip = 0;
   SlipCorrection correction(m, {{constants, 0, 0}}, 1.0 / 6);
   correction.measure({}, m);
-  correction.take_membrane_forces({}, m);
-  correction.distribute({}, m);
+  correction.respond({}, m);
+  correction.complete({}, m);
   double fluid = 0, membrane = 0, size = 0;
   for (std::size_t i = 0; i < m.x.size(); ++i) {
     fluid += correction.forces().x[i] * m.velocity_x[i] + correction.forces().y[i] * m.velocity_y[i];
@@ -162,8 +162,8 @@ TEST_CASE("the slip follows the tangential force along the membrane and costs en
   }
   SlipCorrection correction(m, {{slip_constants(KernelKind::peskin4, 1), GENERATE(0.0, 5.0), 0}}, viscosity);
   correction.measure({}, m);
-  correction.take_membrane_forces({}, m);
-  correction.distribute({}, m);
+  correction.respond({}, m);
+  correction.complete({}, m);
   correction.correct({}, m);
   const double chord = 2 * radius * std::sin(6.283185307179586 / 120), slip = 0.4137 * force / (chord / 2) / viscosity;
   for (std::size_t i = 0; i < m.x.size(); ++i) {
