@@ -256,13 +256,13 @@ std::vector<Check> input_checks() {
        "reads no input that its manifest does not declare",
        {"hidden-state"},
        declared_inputs},
-      {"needs-matter", level, "needs what it declares", {"compute", "hidden-state"}, needs_matter},
+      {"needs-matter", level, "needs what it declares", {"hidden-state"}, needs_matter},
       {"read-only-inputs", level, "does not write to its inputs", {"compute"}, read_only_inputs},
       {"bounds", level, "stays within its arrays", {"compute"}, bounds},
       {"outputs-optional",
        level,
        "gives the same whichever outputs are wanted",
-       {"compute", "hidden-state"},
+       {"hidden-state", "energy-optional"},
        outputs_optional},
   };
 }
