@@ -8,6 +8,7 @@ import concurrent.futures
 import functools
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -16,9 +17,8 @@ import unittest
 from pathlib import Path
 
 PROGRAM, PLUGINS, SOURCE = (Path(a).resolve() for a in sys.argv[1:4])
-HONEST = {kind: PLUGINS / "honest" / name / f"{name}.json"
-          for kind, name in [("interaction", "honest-potential"), ("membrane", "honest-law"),
-                             ("collision", "honest-operator")]}
+BASES = ["potential", "operator", "spring", "dashpot", "maxwell"]
+HONEST = {base: PLUGINS / "honest" / f"honest-{base}" / f"honest-{base}.json" for base in BASES}
 
 # Plugin: the verdict of the check that catches it, and words that say what happened. The check is its folder's name.
 EXPECTED = {
@@ -51,6 +51,19 @@ EXPECTED = {
     "symmetry/prefers-x": ("fail", "quarter turns"),
     "reductions/another-operator-with-inertia": ("fail", "with and without inertia at velocity 0"),
     "precision/another-rate-in-f32": ("fail", "in single and in double precision"),
+    # physics of membrane laws
+    "gradient/wrong-tension": ("fail", "denergy/dstretch is"),
+    "derivatives/wrong-stiffness": ("fail", "dtension/dstretch is"),
+    "rest-state/under-stress": ("warn", "under stress at rest"),
+    "rigid-motion/energy-of-rate": ("fail", "the energy depends on the rate"),
+    "moduli/buckles": ("fail", "negative"),
+    "dissipation/negative-viscosity": ("fail", "negative tension_by_rate"),
+    "closed-loop/dissipates-as-conservative": ("fail", "a closed cycle takes the work"),
+    "degenerate/crushed": ("fail", "energy is"),
+    "state-restored/ages-while-looked-at": ("fail", "a time step of 0 changes state.0"),
+    # physics of every kind
+    "units/lattice-length": ("fail", "on one lattice"),
+    "reference/another-number": ("fail", "the manifest's check 0 says"),
     # physics of interactions
     "gradient/wrong-derivative": ("fail", "-denergy/ddistance is"),
     "derivative/wrong-sign": ("fail", "dforce/ddistance is"),
@@ -105,10 +118,16 @@ def conform(*manifests, **limits):
 
 
 @functools.cache
-def honest(kind):
-    """Checks of the honest plugin of a kind, by name."""
-    _, report = conform(HONEST[kind])
+def honest(base):
+    """Checks of the honest plugin of a base, by name."""
+    _, report = conform(HONEST[base])
     return {check["name"]: check for check in report["plugins"][0]["checks"]}
+
+
+def base_of(name):
+    """The base that the source of a plugin includes."""
+    source, = SOURCE.glob(f"{name}.c*")
+    return re.search(r'#include "(\w+)\.h"', source.read_text())[1]
 
 
 def stands(check):
@@ -116,7 +135,7 @@ def stands(check):
 
 
 class Case(unittest.TestCase):
-    def assert_caught(self, plugin, by, verdict, words):
+    def assert_caught(self, plugin, base, by, verdict, words):
         """That this check alone has a bad verdict, and that all that builds on it is skipped and nothing else."""
         checks = {check["name"]: check for check in plugin["checks"]}
         caught = checks[by]
@@ -134,9 +153,10 @@ class Case(unittest.TestCase):
                 self.assertIn(check.get("blocked_by"), blocked, name)
                 blocked.add(name)
             elif plugin["kind"]:
-                alike = honest(plugin["kind"])[name]
-                self.assertEqual(check["verdict"], alike["verdict"],
-                                 f"{name} should not mind what {by} catches: {check['what']}\n{told}")
+                # A manifest of its own may claim more, to which a check then applies.
+                alike = honest(base)[name]
+                self.assertIn(check["verdict"], (alike["verdict"], "pass"),
+                              f"{name} should not mind what {by} catches: {check['what']}\n{told}")
                 self.assertNotIn("blocked_by", check, name)
 
 
@@ -152,14 +172,14 @@ class Each_check_catches_its_plugin(Case):
                     verdict, words = EXPECTED[name]
                     self.assertEqual(code, 0 if verdict == "warn" else 3)
                     self.assertEqual(report["conforms"], verdict == "warn")
-                    self.assert_caught(report["plugins"][0], name.split("/")[0], verdict, words)
+                    self.assert_caught(report["plugins"][0], base_of(name), name.split("/")[0], verdict, words)
 
     def test_every_source_is_run(self):
         sources = {f"{file.parent.name}/{file.stem}" for file in SOURCE.glob("*/*.c*")}
         self.assertEqual({name for name in sources if not name.startswith("honest/")}, set(EXPECTED))
 
     def test_every_check_has_a_plugin_that_it_must_catch(self):
-        checks = {name for kind in HONEST for name in honest(kind)}
+        checks = {name for base in BASES for name in honest(base)}
         broken_for = {name.split("/")[0] for name in EXPECTED} | {"manifest", "library"}
         self.assertEqual(checks - broken_for, set(), "add a plugin to tests/faulty for each")
         self.assertEqual(broken_for - checks, set(), "no such check")
@@ -167,11 +187,11 @@ class Each_check_catches_its_plugin(Case):
 
 class Nothing_is_wrong_with_the_honest_plugins(Case):
     def test_they_conform_without_a_warning(self):
-        for kind in HONEST:
-            for name, check in honest(kind).items():
-                with self.subTest(kind=kind, check=name):
-                    self.assertNotIn("blocked_by", check)
-                    self.assertIn(check["verdict"], ("pass", "skip"), check)
+        for base in BASES:
+            with self.subTest(base):
+                minded = {name: (check["verdict"], check["what"]) for name, check in honest(base).items()
+                          if check["verdict"] not in ("pass", "skip") or "blocked_by" in check}
+                self.assertEqual(minded, {})
 
 
 class Faults_of_files(Case):
@@ -184,13 +204,13 @@ class Faults_of_files(Case):
 
     def copy(self, folder):
         """A copy of the honest potential: its manifest and its library."""
-        copied = Path(shutil.copytree(HONEST["interaction"].parent, self.path / folder))
-        return copied / HONEST["interaction"].name, copied / "libhonest-potential.so"
+        copied = Path(shutil.copytree(HONEST["potential"].parent, self.path / folder))
+        return copied / HONEST["potential"].name, copied / "libhonest-potential.so"
 
     def assert_one_caught(self, manifest, by, words):
         code, report = conform(manifest)
         self.assertEqual(code, 3)
-        self.assert_caught(report["plugins"][0], by, "fail", words)
+        self.assert_caught(report["plugins"][0], "potential", by, "fail", words)
 
     def test_manifests(self):
         faults = {"library-path-leads-out": "library", "unknown-key": "homepage", "default-outside-limits": "must be above 0"}
@@ -204,7 +224,7 @@ class Faults_of_files(Case):
         code, report = conform(*manifests)
         self.assertEqual(code, 3)
         for plugin in report["plugins"]:
-            self.assert_caught(plugin, "manifest", "fail", str(manifests[1]))
+            self.assert_caught(plugin, "potential", "manifest", "fail", str(manifests[1]))
 
     def test_no_library(self):
         manifest, library = self.copy("plugin")
