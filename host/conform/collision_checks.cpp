@@ -39,7 +39,7 @@ Finding mass(const Subject& subject) {
     worst.add(std::abs(after.density() - before.density()), rounding * (before.size() + after.size()),
               [&] { return "a collision changes the density of a node by" + trial.words; });
   });
-  return worst.finding("nothing to compare");
+  return worst.finding("not at all");
 }
 
 Finding momentum(const Subject& subject) {
@@ -56,7 +56,7 @@ Finding momentum(const Subject& subject) {
                 });
     }
   });
-  return worst.finding("nothing to compare");
+  return worst.finding("by the force alone");
 }
 
 Finding velocity(const Subject& subject) {
@@ -71,7 +71,7 @@ Finding velocity(const Subject& subject) {
       });
     }
   });
-  return worst.finding("nothing to compare");
+  return worst.finding("the same bits");
 }
 
 /// Equilibria of random densities and velocities of the given size.
@@ -129,7 +129,7 @@ Finding equilibrium(const Subject& subject) {
              " and, with density and velocity halved, by" + trial.words;
     });
   }
-  return worst.finding("nothing to compare");
+  return worst.finding("they stay");
 }
 
 /// n = f - f_eq + S/2 with Guo's source S (Phys. Rev. E 65, 2002, eq. 20; its stress is uF + Fu) keeps the share 1 -
@@ -165,7 +165,7 @@ Finding stress_relaxation(const Subject& subject) {
       }
     }
   }
-  return worst.finding("nothing to compare");
+  return worst.finding("exactly so");
 }
 
 /// A symmetry of the square: a quarter turn `turns` times, after a reflection of x if asked for.
@@ -214,7 +214,7 @@ Finding symmetry(const Subject& subject) {
       }
     }
   }
-  return worst.finding("nothing to compare");
+  return worst.finding("the same bits");
 }
 
 /// The same nodes computed in two ways that must agree to rounding.
@@ -263,7 +263,7 @@ Finding reductions(const Subject& subject) {
             compute(subject, subject.make(trial.parameters, still), inputs, call), rounding,
             "with and without inertia at velocity 0");
   }
-  return worst.finding("nothing to compare");
+  return worst.finding("the same bits");
 }
 
 Finding precision(const Subject& subject) {
@@ -281,7 +281,7 @@ Finding precision(const Subject& subject) {
     compare(worst, trial, inputs, compute(subject, trial.instance, inputs, single),
             compute(subject, trial.instance, inputs), limit, "in single and in double precision");
   }
-  return worst.finding("nothing to compare");
+  return worst.finding("the same");
 }
 
 }  // namespace

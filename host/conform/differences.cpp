@@ -15,7 +15,7 @@ namespace {
 // how far these are from each other bounds the error of the first where the function is smooth across the step. Where
 // it has a kink or a jump within the step that bound is large or, close by, wrong; a step that is small enough not to
 // reach it is right again. Hence a claim fails only when the two steps with the smallest bounds both contradict it.
-constexpr int steps = 7, reach = 4, probes = 7;
+constexpr int steps = 7, reach = 4, probes = 16;
 constexpr int points = steps * 2 * reach + probes;
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
@@ -29,8 +29,10 @@ double largest_step(const std::string& variable, double value) {
 /// Offset of a point from the element: first all differences, then the probes of rounding noise.
 double offset(int point, double largest) {
   if (point >= steps * 2 * reach) {
-    // So near that the function is a straight line but for rounding, its own and that of the abscissa.
-    return (point - steps * 2 * reach - probes / 2) * largest * std::ldexp(1.0, -30);
+    // So near that the function is a straight line but for rounding, its own and that of the abscissa; not evenly
+    // spaced, for along an even row what is cut off may be the same everywhere.
+    const double golden = 0.6180339887498949 * (point - steps * 2 * reach);
+    return (golden - std::floor(golden)) * largest * std::ldexp(1.0, -24);
   }
   const int step = point / (2 * reach), side = point % (2 * reach);
   const int multiple = side < reach ? -(side + 1) : side - reach + 1;
@@ -40,12 +42,13 @@ double offset(int point, double largest) {
 /// All slopes of one element, with `f(point)`.
 template <class F>
 std::array<Slope, steps> all_slopes(double largest, const F& f) {
-  double noise = 0;
+  // The first two probes lie wide apart: the line through them.
   const int first = steps * 2 * reach;
-  for (int p = first + 1; p + 1 < first + probes; ++p) {
-    noise = std::max(noise, std::abs(f(p - 1) - 2 * f(p) + f(p + 1)));
+  const double x0 = offset(first, largest), rise = (f(first + 1) - f(first)) / (offset(first + 1, largest) - x0);
+  double noise = epsilon * std::abs(f(first));
+  for (int p = first + 2; p < first + probes; ++p) {
+    noise = std::max(noise, std::abs(f(p) - f(first) - rise * (offset(p, largest) - x0)));
   }
-  noise += epsilon * std::abs(f(first + probes / 2));
   std::array<Slope, steps> result;
   for (int step = 0; step < steps; ++step) {
     const double h = largest / std::pow(4.0, step);
@@ -58,7 +61,7 @@ std::array<Slope, steps> all_slopes(double largest, const F& f) {
     const double sixth = (3.0 / 4 * a - 3.0 / 20 * b + 1.0 / 60 * c) / h;
     const double eighth = (4.0 / 5 * a - 1.0 / 5 * b + 4.0 / 105 * c - 1.0 / 280 * d) / h;
     // Eight and four times also cover a kink in the slope that lies in the middle of the step. The noise was seen at
-    // seven points of its many, and the sizes of the eighth order's coefficients add up to 2.1.
+    // some points of many, and the sizes of the eighth order's coefficients add up to 2.1.
     const double error = 8 * std::abs(eighth - sixth) + 4 * std::abs(eighth - fourth) + 16 * noise / h;
     result[static_cast<std::size_t>(step)] = {eighth, error, false};
   }

@@ -26,7 +26,7 @@ Finding compare(const Subject& subject, const DerivativeClaim& claim) {
     return Finding::warned(claim.function + " is too rough for differences to tell at " + std::to_string(decided.no) +
                            " of " + std::to_string(decided.yes + decided.no) + " distances");
   }
-  return worst.finding("nothing to compare");
+  return worst.finding("as the differences are");
 }
 
 Finding gradient(const Subject& subject) {
@@ -85,7 +85,7 @@ Finding cutoff(const Subject& subject) {
       if (!smooth && trial.words.empty()) jumps += (jumps.empty() ? "" : ", ") + words;
     }
   }
-  if (smooth) return worst.finding("nothing to compare");
+  if (smooth) return worst.finding("energy and force are 0 at the cutoff");
   return Finding::passed("breaks off, as it may, with " + jumps);
 }
 

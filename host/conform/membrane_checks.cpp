@@ -40,7 +40,7 @@ Finding compare(const Subject& subject, const std::vector<DerivativeClaim>& clai
     return Finding::warned("too rough for differences to tell at " + std::to_string(decided.no) + " of " +
                            std::to_string(decided.yes + decided.no) + " places");
   }
-  return worst.finding("nothing to compare");
+  return worst.finding("as the differences are");
 }
 
 Finding gradient(const Subject& subject) {
@@ -127,7 +127,8 @@ Finding moduli(const Subject& subject) {
   Worst worst;
   Decided decided;
   std::string report;
-  for (const Trial& trial : trials(subject, random, Subject::typical_setting())) {
+  const auto all_trials = trials(subject, random, Subject::typical_setting());
+  for (const Trial& trial : all_trials) {
     const Values rest = at_rest(subject, trial, 8, random);
     for (const Modulus& modulus : all) {
       if (!manifest.gives_output(modulus.force) || !rest.contains(modulus.variable)) continue;
@@ -159,18 +160,17 @@ Finding moduli(const Subject& subject) {
         }
       }
       const double si = trial.setting.units.to_si(mean, dimension);
-      if (report.empty() || trial.words.find(',') == std::string::npos) {
-        const bool is_choice = std::any_of(manifest.parameters.begin(), manifest.parameters.end(), [&](const auto& p) {
-          return !p.choices.empty() && trial.words.starts_with(" with " + p.name + ' ');
-        });
-        if (trial.words.empty() || is_choice) {
-          report += (report.empty() ? "" : "; ") + std::string(modulus.words) + ' ' + number(si, 7) + " SI" +
-                    as_ratio(subject, trial, si, dimension) + trial.words;
-        }
+      // Of the draws at random the numbers would tell nobody anything.
+      const bool is_choice = std::any_of(manifest.parameters.begin(), manifest.parameters.end(), [&](const auto& p) {
+        return !p.choices.empty() && trial.words.starts_with(" with " + p.name + ' ');
+      });
+      if (&trial == &all_trials.front() || (is_choice && trial.words.find(',') == std::string::npos)) {
+        report += (report.empty() ? "" : "; ") + std::string(modulus.words) + ' ' + number(si, 7) + " SI" +
+                  as_ratio(subject, trial, si, dimension) + trial.words;
       }
     }
   }
-  Finding finding = worst.finding("nothing to compare");
+  Finding finding = worst.finding("stiff");
   if (finding.verdict == Verdict::pass) finding = Finding::passed(report);
   return finding;
 }

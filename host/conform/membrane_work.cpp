@@ -156,7 +156,7 @@ Finding dissipation_of_state(const Subject& subject) {
                     });
                   }
                 });
-  return worst.finding("nothing to compare");
+  return worst.finding("no element gives back more than was put in");
 }
 
 Finding dissipation_of_rates(const Subject& subject) {
@@ -185,7 +185,7 @@ Finding dissipation_of_rates(const Subject& subject) {
       }
     }
   }
-  return worst.finding("nothing to compare");
+  return worst.finding("what depends on the rate takes energy");
 }
 
 }  // namespace
@@ -283,7 +283,7 @@ Finding check_closed_loop(const Subject& subject) {
              (conservative ? ", expected none" : ", expected none or more") + trial.words + "; in lattice units";
     });
   });
-  return worst.finding("nothing to compare");
+  return worst.finding("no cycle takes work that it must not");
 }
 
 Finding check_state_restored(const Subject& subject) {

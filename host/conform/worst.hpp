@@ -28,9 +28,10 @@ class Worst {
   [[nodiscard]] bool passes() const { return ratio_ <= 1; }
   [[nodiscard]] int count() const { return count_; }
 
-  /// `nothing`: what to say when no comparison was made; that passes.
-  [[nodiscard]] Finding finding(const std::string& nothing) const {
-    if (count_ == 0) return Finding::passed(nothing);
+  /// `clean`: what to say when nothing was off at all.
+  [[nodiscard]] Finding finding(const std::string& clean) const {
+    if (count_ == 0) return Finding::passed(clean);
+    if (measured_ == 0) return Finding::at_most(0, limit_, clean);
     Finding finding = Finding::at_most(measured_, limit_, what_);
     if (!passes()) finding.verdict = Verdict::fail;  // infinite or not a number beside a limit that is
     return finding;

@@ -22,8 +22,8 @@ struct Bridging {
     const S u = 0.5 * k * (r - r0) * (r - r0), strain = min(u / thermal, S(300.0));  // far beyond, bonds break at once
     const S forming = on * exp(-c * strain), rate = forming + off * exp((1 - c) * strain),
             balance = n0 * forming / rate;
-    // As a change, so that a time step of 0 leaves the bits of n.
-    const S n = bonds[0] = bonds[0] + (balance - bonds[0]) * (1.0 - exp(-time_step * rate));
+    // In this form a time step of 0 leaves the bits of n.
+    const S kept = exp(-time_step * rate), n = bonds[0] = kept * bonds[0] + (1.0 - kept) * balance;
     return {n * u, -k * (r - r0) * n, -k * n};
   }
 };

@@ -11,9 +11,10 @@ struct StandardLinearSolid {
   template <class S>
   rouleau::Tension<S> operator()(const rouleau::Segment<S>& segment, rouleau::State<S, 1>& dashpot, double dt) const {
     const S kept = exp(S(-dt / tau)), before = segment.stretch - dt * segment.stretch_rate - dashpot[0];
-    // As a change, so that a time step of 0 leaves the bits of e_d.
-    dashpot[0] += (1.0 - kept) * (before - tau * segment.stretch_rate) + dt * segment.stretch_rate;
-    const S strain = segment.stretch - dashpot[0];
+    const S strain = kept * before + (1.0 - kept) * tau * segment.stretch_rate;
+    // stretch - strain, in the form in which a time step of 0 leaves the bits of e_d.
+    dashpot[0] =
+        kept * (dashpot[0] + dt * segment.stretch_rate) + (1.0 - kept) * (segment.stretch - tau * segment.stretch_rate);
     return {0.5 * E * strain * strain, E * strain, E * kept};
   }
 };
