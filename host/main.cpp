@@ -26,13 +26,14 @@ struct Command {
 constexpr std::array commands{
     Command{"run", "SCENE", "simulate a scene", run_command},
     Command{"plan", "SCENE", "what a run would compute, leave out and cost, without stepping", plan_command},
-    Command{"plugins", "[ID]", "models that were found, and why some were refused", plugins_command},
+    Command{"plugins", "[ID]", "models that were found, why some were refused; locks", plugins_command},
     Command{"conform", "MANIFEST...", "whether plugins do what the interface and their manifests say", conform_command},
+    Command{"new", "KIND NAME", "source, manifest and build file of a new model", new_command},
     Command{"report", "DIR", "make the report of a run's directory again", report_command},
 };
 
 /// Commands that users may have read about and that come with a later version.
-constexpr std::array later_commands{"new", "study", "limits"};
+constexpr std::array later_commands{"study", "limits"};
 
 std::string overview() {
   std::string text =

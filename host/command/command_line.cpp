@@ -16,7 +16,10 @@ options::options_description named(const options::options_description& all,
                                    const options::positional_options_description& positional) {
   options::options_description result("options");
   for (const auto& option : all.options()) {
-    const bool by_place = positional.max_total_count() > 0 && positional.name_for_position(0) == option->long_name();
+    bool by_place = false;
+    for (unsigned place = 0; place < positional.max_total_count(); ++place) {
+      by_place = by_place || positional.name_for_position(place) == option->long_name();
+    }
     if (!by_place) result.add(option);
   }
   return result;

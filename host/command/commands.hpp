@@ -13,6 +13,7 @@ int run_command(const std::vector<std::string>& arguments);
 int plan_command(const std::vector<std::string>& arguments);
 int plugins_command(const std::vector<std::string>& arguments);
 int conform_command(const std::vector<std::string>& arguments);
+int new_command(const std::vector<std::string>& arguments);
 int report_command(const std::vector<std::string>& arguments);
 
 }  // namespace rouleau::host

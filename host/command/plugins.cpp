@@ -1,10 +1,11 @@
-// rouleau plugins [ID]: what models were found, and everything their manifests say.
+// rouleau plugins [ID]: what models were found, and everything their manifests say; --lock SCENE binds a scene to them.
 #include <algorithm>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "command/command_line.hpp"
 #include "command/commands.hpp"
+#include "command/lock_scene.hpp"
 #include "input/wording.hpp"
 #include "plugin/catalog.hpp"
 #include "plugin/limits.hpp"
@@ -20,8 +21,12 @@ constexpr const char* help = R"(usage: rouleau plugins [ID] [options]
 Lists every model that was found, its manifest, and why others were refused.
 With the ID of a model: its parameters, units, defaults and limits. No library is opened.
 
+With --lock SCENE: writes SCENE's lock, NAME.lock.json beside NAME.json: id, kind, version and SHA-256 of library and
+manifest of each plugin that the scene names. Runs and plans of the scene then refuse every other plugin.
+
 Example:
   rouleau plugins morse
+  rouleau plugins --lock scenes/four-cells-shear.json
 )";
 
 /// A value as the manifest writes it: in the parameter's unit, or the word of a choice.
@@ -187,7 +192,7 @@ const Manifest& find(const Catalog& catalog, const std::string& id) {
 
 int plugins_command(const std::vector<std::string>& arguments) {
   namespace options = boost::program_options;
-  std::string id;
+  std::string id, scene, out;
   std::vector<std::string> plugin_dirs;
   bool as_json = false;
   options::options_description description("options");
@@ -196,9 +201,21 @@ int plugins_command(const std::vector<std::string>& arguments) {
   description.add_options()("plugin-dir", options::value(&plugin_dirs)->composing()->value_name("DIR"),
                             "search this folder for plugins first (repeatable)");
   description.add_options()("json", options::bool_switch(&as_json), "print JSON for programs");
+  description.add_options()("lock", options::value(&scene)->value_name("SCENE"), "write the lock of this scene")(
+      "out", options::value(&out)->value_name("FILE"), "with --lock: write it there");
   positional.add("id", 1);
   if (!parse_command_line("plugins", help, arguments, description, positional)) return 0;
 
+  if (!scene.empty()) {
+    if (!id.empty() || as_json) {
+      throw Error(ExitCode::bad_input, std::string("rouleau plugins --lock SCENE goes with --plugin-dir and --out, not "
+                                                   "with ") +
+                                           (as_json ? "--json" : "the ID of a model"));
+    }
+    lock_scene(scene, {plugin_dirs.begin(), plugin_dirs.end()}, out);
+    return static_cast<int>(ExitCode::done);
+  }
+  if (!out.empty()) throw Error(ExitCode::bad_input, "rouleau plugins: --out goes with --lock SCENE");
   const Catalog catalog(plugin_search_path({plugin_dirs.begin(), plugin_dirs.end()}, {}));
   const Units units;
   if (id.empty()) {

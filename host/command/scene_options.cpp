@@ -10,7 +10,9 @@ void SceneOptions::add_to(options::options_description& description,
       "set", options::value(&overrides)->composing()->value_name("POINTER=VALUE"),
       "replace a value of the scene, e.g. --set /numerics/tau=0.8 (repeatable; any JSON value)")(
       "plugin-dir", options::value(&plugin_dirs)->composing()->value_name("DIR"),
-      "search this folder for plugins first (repeatable)");
+      "search this folder for plugins first (repeatable)")(
+      "lock", options::value(&lock)->value_name("FILE"),
+      "use only the plugins of this lock (default: NAME.lock.json beside the scene NAME.json, if it is there)");
   positional.add("scene", 1);
 }
 
@@ -18,7 +20,14 @@ Scene SceneOptions::read() const { return read_scene(scene, overrides); }
 
 Catalog SceneOptions::catalog(const Scene& read) const {
   const std::vector<std::filesystem::path> given(plugin_dirs.begin(), plugin_dirs.end());
-  return Catalog(plugin_search_path(given, read.plugin_dirs));
+  Catalog catalog(plugin_search_path(given, read.plugin_dirs));
+  const std::filesystem::path file = lock.empty() ? lock_beside(scene) : std::filesystem::path(lock);
+  // A link that leads nowhere is a lock that cannot be read, not a scene without one.
+  std::error_code ignored;
+  if (!lock.empty() || std::filesystem::exists(std::filesystem::symlink_status(file, ignored))) {
+    catalog.set_lock(read_lock(file, scene));
+  }
+  return catalog;
 }
 
 }  // namespace rouleau::host

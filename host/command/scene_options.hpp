@@ -16,11 +16,13 @@ struct SceneOptions {
   std::string scene;
   std::vector<std::string> overrides;
   std::vector<std::string> plugin_dirs;
+  std::string lock;  ///< empty: the one beside the scene, if there is one
 
-  /// --set, --plugin-dir; the scene itself is positional.
+  /// --set, --plugin-dir, --lock; the scene itself is positional.
   void add_to(boost::program_options::options_description& options,
               boost::program_options::positional_options_description& positional);
   [[nodiscard]] Scene read() const;
+  /// What the search path offers, bound by the lock.
   [[nodiscard]] Catalog catalog(const Scene& scene) const;
 };
 

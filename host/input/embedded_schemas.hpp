@@ -1,4 +1,4 @@
-// The text of the shipped schemas; CMake writes the definitions from the schema files (embed_schemas.cmake).
+// The text of the shipped schemas; CMake writes the definitions from the schema files (embed_texts.cmake).
 #pragma once
 
 #include <string_view>
@@ -7,5 +7,6 @@ namespace rouleau::host {
 
 extern const std::string_view scene_schema_text;
 extern const std::string_view manifest_schema_text;
+extern const std::string_view lock_schema_text;
 
 }  // namespace rouleau::host

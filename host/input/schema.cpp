@@ -64,4 +64,9 @@ const nlohmann::json& manifest_schema() {
   return schema;
 }
 
+const nlohmann::json& lock_schema() {
+  static const auto schema = nlohmann::json::parse(lock_schema_text);
+  return schema;
+}
+
 }  // namespace rouleau::host

@@ -20,5 +20,6 @@ std::string nearest(std::string_view word, const std::vector<std::string>& candi
 /// The shipped schemas, compiled into the program and installed beside it.
 const nlohmann::json& scene_schema();
 const nlohmann::json& manifest_schema();
+const nlohmann::json& lock_schema();
 
 }  // namespace rouleau::host

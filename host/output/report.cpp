@@ -4,11 +4,10 @@
 #include <string_view>
 
 #include "output/report_data.hpp"
+#include "output/report_template.hpp"
 #include "output/run_directory.hpp"
 
 namespace rouleau::host {
-
-extern const std::string_view report_template;  ///< report.template.html, embedded by report_template.cmake
 
 std::filesystem::path write_report(const std::filesystem::path& directory) {
   // "</script>" or "<!--" inside a string of the data would end the data early: "<" is written as its escape.

@@ -87,6 +87,7 @@ json to_json(const Summary& summary) {
                                  {"kind", plugin.kind},
                                  {"library", plugin.library},
                                  {"sha256", plugin.sha256}});
+  result["lock"] = summary.lock ? json{{"file", summary.lock->file}, {"sha256", summary.lock->sha256}} : json();
   result["passes"] = json::array();
   for (const auto& pass : summary.passes)
     result["passes"].push_back({{"name", pass.name}, {"wall_s", number(pass.wall_s)}, {"calls", pass.calls}});

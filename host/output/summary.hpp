@@ -27,6 +27,10 @@ struct Omission {
 struct PluginUse {
   std::string id, version, kind, library, sha256;
 };
+/// The lock that a run obeyed.
+struct LockUse {
+  std::string file, sha256;
+};
 struct PassCost {
   std::string name;
   double wall_s = 0;
@@ -56,6 +60,7 @@ struct Summary {
   int threads = 1;
   std::string precision;
   std::vector<PluginUse> plugins;
+  std::optional<LockUse> lock;
   std::vector<PassCost> passes;
   std::vector<Omission> left_out;
   nlohmann::json dimensionless;  ///< object: name -> number (null: undefined)

@@ -8,6 +8,7 @@
 #include "input/document.hpp"
 #include "input/wording.hpp"
 #include "manifest_search.hpp"
+#include "trust.hpp"
 
 namespace rouleau::host {
 
@@ -60,6 +61,15 @@ std::vector<fs::path> installed_folders() {
   return folders;
 }
 
+/// A library that is not there, or lies elsewhere, is refused when it is opened.
+void require_trust(const fs::path& manifest, const fs::path& open_folder, const fs::path& library) {
+  const fs::path open = !open_folder.empty()
+                            ? open_folder
+                            : open_to_others({manifest, true_folder(manifest), library, true_folder(library)});
+  if (open.empty()) return;
+  throw Error(ExitCode::plugin_refused, Place{manifest.string(), {}, 0, 0}, why_not_trusted(open));
+}
+
 std::string names_of(const std::vector<fs::path>& files) {
   std::string text;
   for (const auto& file : files) text += "\n    " + file.string();
@@ -92,14 +102,16 @@ Catalog::Catalog(const std::vector<fs::path>& folders) : folders_(folders) {
   const FoundFiles found = find_json_files(folders);
   for (const auto& [place, reason] : found.unreadable) refused_.push_back({place, {}, reason});
   const Units units;
-  for (const auto& file : found.files) {
+  for (const auto& [file, open_folder] : found.files) {
     std::string id;
     try {
       const Document document = read_manifest_document(file);
       const auto& root = document.root();
       if (!root.is_object() || !root.contains("manifest")) continue;  // some other JSON file
       if (root.contains("id") && root["id"].is_string()) id = root["id"];
-      manifests_.push_back(read_manifest(document, file, units));
+      Manifest manifest = read_manifest(document, file, units);
+      require_trust(file, open_folder, manifest.library);
+      manifests_.push_back(std::move(manifest));
     } catch (const Error& error) {
       refused_.push_back({file, id, error.what()});
     }
@@ -131,7 +143,10 @@ void Catalog::refuse_duplicates() {
 const Manifest& Catalog::find(ModelKind kind, const std::string& id, const Place& place) const {
   for (const auto& manifest : manifests_) {
     if (manifest.id != id) continue;
-    if (manifest.kind == kind) return manifest;
+    if (manifest.kind == kind) {
+      if (lock_) require_locked(*lock_, manifest, place);
+      return manifest;
+    }
     throw Error(ExitCode::bad_input, place,
                 in_quotes(id) + " is a plugin of the kind " + to_string(manifest.kind) + "; here one of the kind " +
                     to_string(kind) + " is wanted: " + listed(ids(kind)));
@@ -157,6 +172,14 @@ void Catalog::throw_unknown(ModelKind kind, const std::string& id, const Place& 
   }
   if (!nameless.empty()) problem += "\n  could not be read:" + names_of(nameless);
   throw Error(ExitCode::bad_input, place, problem);
+}
+
+void Catalog::set_lock(Lock lock) {
+  for (Manifest& manifest : manifests_) {
+    const LockedPlugin* locked = lock.find(manifest.id);
+    if (locked != nullptr) manifest.locked = {lock.file.string(), lock.scene.string(), locked->library_sha256};
+  }
+  lock_ = std::move(lock);
 }
 
 std::vector<std::string> Catalog::ids(ModelKind kind) const {

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "error.hpp"
+#include "lock.hpp"
 #include "manifest.hpp"
 
 namespace rouleau::host {
@@ -25,15 +27,22 @@ class Catalog {
     std::string reason;
   };
 
-  /// Searches each folder and its sub-folders for *.json files with a "manifest" key.
+  /// Searches each folder and its sub-folders for *.json files with a "manifest" key. Refuses those that every user of
+  /// the machine could have written or replaced: they, their library, or a folder from theirs up to the searched one is
+  /// writable by others.
   explicit Catalog(const std::vector<std::filesystem::path>& folders);
+
+  /// From now on only what the lock holds is found, and libraries that differ from it are not opened.
+  void set_lock(Lock lock);
+  [[nodiscard]] const std::optional<Lock>& lock() const { return lock_; }
 
   [[nodiscard]] const std::vector<Manifest>& manifests() const { return manifests_; }
   [[nodiscard]] const std::vector<Refused>& refused() const { return refused_; }
   [[nodiscard]] const std::vector<std::filesystem::path>& folders() const { return folders_; }
 
   /// Manifest of a model. Throws Error(bad_input) at `place` for an id that nobody offers (nearest name, folders
-  /// searched) or that is of another kind; Error(plugin_refused) for a refused manifest or two manifests with this id.
+  /// searched) or that is of another kind; Error(plugin_refused) for a refused manifest, two manifests with this id,
+  /// or one that differs from the lock.
   [[nodiscard]] const Manifest& find(ModelKind kind, const std::string& id, const Place& place) const;
 
   /// Ids of the usable models of a kind, sorted.
@@ -46,6 +55,7 @@ class Catalog {
   std::vector<std::filesystem::path> folders_;
   std::vector<Manifest> manifests_;
   std::vector<Refused> refused_;
+  std::optional<Lock> lock_;
 };
 
 }  // namespace rouleau::host

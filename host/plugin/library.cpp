@@ -15,6 +15,7 @@
 #include "error.hpp"
 #include "exported_symbols.hpp"
 #include "input/wording.hpp"
+#include "lock.hpp"
 #include "table_checks.hpp"
 
 namespace rouleau::host {
@@ -72,6 +73,14 @@ boost::dll::shared_library& load(const Manifest& manifest, const fs::path& file)
 
 fs::path checked_library(const Manifest& manifest) {
   fs::path file = library_file(manifest);
+  if (manifest.locked) {
+    const std::string found = sha256(file);
+    if (found != manifest.locked->sha256) {
+      refuse(manifest, "is not the one that is locked\n  expected SHA-256 " + manifest.locked->sha256 +
+                           ", by the lock " + manifest.locked->lock + "\n  found SHA-256 " + found + "\n  " +
+                           lock_remedy(manifest.locked->lock, manifest.locked->scene));
+    }
+  }
   if (const std::string reason = reason_not_loadable(file, ROULEAU_OPEN_SYMBOL); !reason.empty()) {
     refuse(manifest, reason);
   }
@@ -94,6 +103,8 @@ const rouleau_model& model_of(rouleau_open_function open, const Manifest& manife
 }
 
 const rouleau_model& open_model(const Manifest& manifest) { return model_of(load_library(manifest), manifest); }
+
+std::string library_sha256(const Manifest& manifest) { return sha256(library_file(manifest)); }
 
 std::string sha256(const fs::path& file) {
   char digest[SHA256_DIGEST_STRING_LENGTH] = {};

@@ -37,6 +37,12 @@ struct StateVariable {
   double initial = 0;  ///< in coherent SI units
 };
 
+/// What a lock says of a plugin's library.
+struct LibraryLock {
+  std::string lock, scene;  ///< files
+  std::string sha256;
+};
+
 struct Manifest {
   std::filesystem::path file;     ///< the manifest itself
   std::filesystem::path library;  ///< absolute; checked to lie in the manifest's folder when the library is opened
@@ -52,6 +58,7 @@ struct Manifest {
   nlohmann::json
       stands_for;  ///< object: parameter -> value at which an interaction is the one it stands for; null: it is itself
   nlohmann::json claims, checks;
+  std::optional<LibraryLock> locked;  ///< a library with another hash is not opened
 
   [[nodiscard]] bool needs_input(const std::string& name) const;
   [[nodiscard]] bool gives_output(const std::string& name) const;

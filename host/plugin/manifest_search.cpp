@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <set>
 
+#include "trust.hpp"
+
 namespace rouleau::host {
 
 namespace {
@@ -13,8 +15,10 @@ class Search {
  public:
   FoundFiles found;
 
-  void folder(const fs::path& path) {
+  /// `open_above`: the first folder on the way here that every user may write to.
+  void folder(const fs::path& path, const fs::path& open_above = {}) {
     if (!is_new(path)) return;
+    const fs::path open = open_above.empty() ? open_to_others({path}) : open_above;
     std::vector<fs::path> files, folders;
     std::error_code error;
     for (fs::directory_iterator entry(path, error), end; !error && entry != end; entry.increment(error)) {
@@ -35,9 +39,9 @@ class Search {
     std::sort(files.begin(), files.end());
     std::sort(folders.begin(), folders.end());
     for (const auto& file : files) {
-      if (is_new(file)) found.files.push_back(file);
+      if (is_new(file)) found.files.push_back({file, open});
     }
-    for (const auto& child : folders) folder(child);
+    for (const auto& child : folders) folder(child, open);
   }
 
  private:

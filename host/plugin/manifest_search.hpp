@@ -8,8 +8,14 @@
 
 namespace rouleau::host {
 
+struct FoundFile {
+  std::filesystem::path path;
+  /// The first folder from the searched one down to the file's own that every user may write to; empty: none.
+  std::filesystem::path open_folder;
+};
+
 struct FoundFiles {
-  std::vector<std::filesystem::path> files;  ///< folder by folder; within one by name, before its sub-folders
+  std::vector<FoundFile> files;  ///< folder by folder; within one by name, before its sub-folders
   std::vector<std::pair<std::filesystem::path, std::string>> unreadable;  ///< place and reason
 };
 

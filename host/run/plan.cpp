@@ -282,6 +282,7 @@ Plan make_plan(const Scene& scene, const Catalog& catalog) {
   const Units units;
   Plan plan{};
   plan.scene = &scene;
+  if (catalog.lock()) plan.lock = {catalog.lock()->file.string(), catalog.lock()->sha256};
   plan.collision = plan_model(ModelKind::collision, scene.fluid.collision, scene, catalog, units, plan.warnings);
   for (const CellType& type : scene.cell_types) {
     auto& laws = plan.membranes.emplace_back();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,8 @@ struct Plan {
   bool has_interactions = false;
   bool semi_implicit = false;  ///< membranes: the step that numerics.coupling names or, if "auto", the limits ask for
   std::string coupling;        ///< which step that is and why, for people
+
+  std::optional<LockUse> lock;  ///< the lock that the plugins were held against
 
   std::vector<PlannedPass> passes;
   std::vector<Omission> left_out;

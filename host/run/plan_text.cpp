@@ -99,6 +99,7 @@ std::string to_text(const Plan& plan) {
     out << "  " << padded(std::string(to_string(model->manifest->kind)) + " " + model->manifest->id, 30)
         << model->manifest->library.string() << "\n";
   }
+  if (plan.lock) out << "  as locked by " << plan.lock->file << "\n";
   out << "\nCoupling of membranes and fluid\n  " << plan.coupling << "\n";
   out << "\nPasses of a step\n";
   for (const PlannedPass& pass : plan.passes) out << "  " << padded(pass.name, 14) << pass.why << "\n";
@@ -135,6 +136,8 @@ nlohmann::json to_json(const Plan& plan) {
                               {"version", model->manifest->version},
                               {"library", model->manifest->library.string()}});
   }
+  json["lock"] =
+      plan.lock ? nlohmann::json{{"file", plan.lock->file}, {"sha256", plan.lock->sha256}} : nlohmann::json();
   json["coupling"] = {{"semi_implicit", plan.semi_implicit}, {"why", plan.coupling}};
   json["passes"] = nlohmann::json::array();
   for (const PlannedPass& pass : plan.passes) json["passes"].push_back({{"name", pass.name}, {"why", pass.why}});

@@ -62,6 +62,7 @@ Summary describe(const Plan& plan, int threads) {
     const Manifest& m = *model->manifest;
     s.plugins.push_back({m.id, m.version, to_string(m.kind), m.library.string(), sha256(m.library)});
   }
+  s.lock = plan.lock;
   s.left_out = plan.left_out;
   s.dimensionless = plan.dimensionless;
   s.limits = plan.limits;

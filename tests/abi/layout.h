@@ -13,6 +13,9 @@
 #endif
 #define SIZE(type, bytes) LAYOUT_ASSERT(sizeof(type) == (bytes), "size of " #type)
 #define FIELD(type, field, offset) LAYOUT_ASSERT(offsetof(type, field) == (offset), #type "::" #field)
+/* Padding at the end would take in an appended field without a change of struct_size. */
+#define LAST(type, field) \
+  LAYOUT_ASSERT(offsetof(type, field) + sizeof(((type*)0)->field) == sizeof(type), "padding at the end of " #type)
 
 #if defined(__LP64__)
 
@@ -32,6 +35,8 @@ FIELD(rouleau_setup, weights, 72);
 FIELD(rouleau_setup, sound_speed_squared, 80);
 FIELD(rouleau_setup, relaxation_rate, 88);
 FIELD(rouleau_setup, inertia, 96);
+FIELD(rouleau_setup, reserved, 100);
+LAST(rouleau_setup, reserved);
 
 SIZE(rouleau_collision_block_f64, 48);
 FIELD(rouleau_collision_block_f64, struct_size, 0);
@@ -41,6 +46,7 @@ FIELD(rouleau_collision_block_f64, out, 16);
 FIELD(rouleau_collision_block_f64, force, 24);
 FIELD(rouleau_collision_block_f64, relaxation_rate, 32);
 FIELD(rouleau_collision_block_f64, velocity, 40);
+LAST(rouleau_collision_block_f64, velocity);
 
 SIZE(rouleau_collision_block_f32, 48);
 FIELD(rouleau_collision_block_f32, struct_size, 0);
@@ -50,11 +56,13 @@ FIELD(rouleau_collision_block_f32, out, 16);
 FIELD(rouleau_collision_block_f32, force, 24);
 FIELD(rouleau_collision_block_f32, relaxation_rate, 32);
 FIELD(rouleau_collision_block_f32, velocity, 40);
+LAST(rouleau_collision_block_f32, velocity);
 
 SIZE(rouleau_collision, 24);
 FIELD(rouleau_collision, struct_size, 0);
 FIELD(rouleau_collision, collide_f64, 8);
 FIELD(rouleau_collision, collide_f32, 16);
+LAST(rouleau_collision, collide_f32);
 
 SIZE(rouleau_membrane_block, 160);
 FIELD(rouleau_membrane_block, struct_size, 0);
@@ -78,10 +86,12 @@ FIELD(rouleau_membrane_block, tension_by_rate, 128);
 FIELD(rouleau_membrane_block, moment_by_curvature, 136);
 FIELD(rouleau_membrane_block, state, 144);
 FIELD(rouleau_membrane_block, new_state, 152);
+LAST(rouleau_membrane_block, new_state);
 
 SIZE(rouleau_membrane, 16);
 FIELD(rouleau_membrane, struct_size, 0);
 FIELD(rouleau_membrane, compute, 8);
+LAST(rouleau_membrane, compute);
 
 SIZE(rouleau_interaction_block, 80);
 FIELD(rouleau_interaction_block, struct_size, 0);
@@ -95,11 +105,13 @@ FIELD(rouleau_interaction_block, force, 48);
 FIELD(rouleau_interaction_block, force_by_distance, 56);
 FIELD(rouleau_interaction_block, state, 64);
 FIELD(rouleau_interaction_block, new_state, 72);
+LAST(rouleau_interaction_block, new_state);
 
 SIZE(rouleau_interaction, 24);
 FIELD(rouleau_interaction, struct_size, 0);
 FIELD(rouleau_interaction, cutoff, 8);
 FIELD(rouleau_interaction, compute, 16);
+LAST(rouleau_interaction, compute);
 
 SIZE(rouleau_model, 64);
 FIELD(rouleau_model, struct_size, 0);
@@ -111,11 +123,13 @@ FIELD(rouleau_model, destroy, 32);
 FIELD(rouleau_model, collision, 40);
 FIELD(rouleau_model, membrane, 48);
 FIELD(rouleau_model, interaction, 56);
+LAST(rouleau_model, interaction);
 
 SIZE(rouleau_plugin, 16);
 FIELD(rouleau_plugin, struct_size, 0);
 FIELD(rouleau_plugin, abi_minor, 4);
 FIELD(rouleau_plugin, models, 8);
+LAST(rouleau_plugin, models);
 
 #endif
 

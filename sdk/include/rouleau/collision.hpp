@@ -223,7 +223,8 @@ struct CollisionLoop {
       for (std::uint32_t i = 0; i < width; ++i) to[i] = from[first + (i < rest ? i : 0)];
       return to;
     };
-    Block padded = block;
+    Block padded{};  // not a copy: an older host's block may be smaller than this struct
+    padded.struct_size = sizeof padded;
     padded.count = width;
     for (int q = 0; q < 9; ++q) in[q] = out[q] = copy(block.in[q], values[q]);
     padded.in = in;

@@ -8,10 +8,14 @@
  *   threads    open, create and destroy are called from one thread; compute functions from any number of threads at
  *              once on one `self`, which they must not change
  *   compute    no allocation, lock, I/O, exception, global variable or change of the floating-point mode
- *   blocks     n >= 1 elements, any alignment; inputs are NULL unless the manifest's "needs" names them, outputs are
- *              NULL when the host does not want them; inputs are read-only
+ *   shapes     [n] is an array of n numbers; [m][n] is an array of m pointers to arrays of n numbers
+ *   blocks     n >= 1 elements, at any multiple of the number's own size; inputs are NULL unless the manifest's "needs"
+ *              names them, outputs are NULL when the host does not want them, also those that "gives" names; inputs are
+ *              read-only, and no output lies over an input unless said otherwise
  *   growth     fields are only ever appended; struct_size is the size the writer of the struct was compiled with, and
- *              a reader touches a field only if it lies within */
+ *              a reader touches a field only if it lies within. No struct has padding at its end, where an older writer
+ *              would seem to have written a field that it does not know
+ *   text       UTF-8, ends with NUL */
 #ifndef ROULEAU_PLUGIN_H
 #define ROULEAU_PLUGIN_H
 
@@ -41,29 +45,32 @@ typedef struct rouleau_setup {
   uint32_t struct_size;
   uint32_t host_minor; /* the host's ROULEAU_ABI_MINOR */
 
-  /* Parameters of the manifest, all of them, in its order. A parameter with K, mol or A in its unit arrives in SI,
-   * every other one in lattice units; a choice arrives as its index in the manifest's list. */
-  uint32_t parameter_count;
-  const char* const* parameter_names;
-  const double* parameter_values;
+  /* Parameters of the manifest, all of them, in its order, within its limits, defaults filled in. A parameter with K,
+   * mol or A in its unit arrives in SI, every other one in lattice units; a choice arrives as its index in the
+   * manifest's list. */
+  uint32_t parameter_count;           /* 0: the two arrays may be NULL */
+  const char* const* parameter_names; /* [parameter_count], each NUL-terminated */
+  const double* parameter_values;     /* [parameter_count] */
 
-  /* SI value of the lattice's length (m), time (s) and mass (kg). */
+  /* SI value of the lattice's length (m), time (s) and mass (kg): value in SI = value here times unit. */
   double length_unit, time_unit, mass_unit;
 
   /* The lattice: dimension, velocity set with its weights, speed of sound squared.
    * velocities[q * dimension + k] is component k of velocity q; populations have this order everywhere. */
-  uint32_t dimension, velocity_count;
-  const double* velocities;
-  const double* weights;
-  double sound_speed_squared;
+  uint32_t dimension, velocity_count; /* 2 and 9 in this version */
+  const double* velocities;           /* [velocity_count * dimension] */
+  const double* weights;              /* [velocity_count], their sum is 1 */
+  double sound_speed_squared;         /* 1/3 */
 
-  double relaxation_rate; /* 1/tau of the suspending fluid's shear stress */
-  uint32_t inertia;       /* 0: equilibrium and forcing without their quadratic terms (Stokes flow) */
+  double relaxation_rate; /* 1/tau of the suspending fluid's shear stress, in every step of this instance's life */
+  uint32_t inertia;       /* 0: equilibrium and forcing without their quadratic terms (Stokes flow); else 1 */
+  uint32_t reserved;      /* 0 */
 } rouleau_setup;
 
 /* ---- collision ------------------------------------------------------------------------------------------------- */
 
-/* One chunk of consecutive lattice nodes. Populations are deviations from rest, f_q - w_q.
+/* One chunk of consecutive lattice nodes, each computed from its own values alone. Populations are deviations from
+ * rest, f_q - w_q.
  * in[q][x] and out[q'][x] may be the same memory for the same x: read all populations of a node before writing any.
  * The velocity may lie over the force in the same way. */
 typedef struct rouleau_collision_block_f64 {
@@ -72,10 +79,11 @@ typedef struct rouleau_collision_block_f64 {
   const double* const* in;       /* [velocity_count][count], before collision */
   double* const* out;            /* [velocity_count][count], after collision */
   const double* const* force;    /* [dimension][count] force density, or NULL: none */
-  const double* relaxation_rate; /* [count] 1/tau, or NULL: that of the setup everywhere */
+  const double* relaxation_rate; /* [count] 1/tau of the shear stress, or NULL: that of the setup everywhere */
   double* const* velocity;       /* [dimension][count] sum f c + force/2 (reference density 1), or NULL */
 } rouleau_collision_block_f64;
 
+/* The same in single precision: a scene's "precision" decides which of the two functions is called. */
 typedef struct rouleau_collision_block_f32 {
   uint32_t struct_size;
   uint32_t count;
@@ -86,6 +94,7 @@ typedef struct rouleau_collision_block_f32 {
   float* const* velocity;
 } rouleau_collision_block_f32;
 
+/* Neither function is NULL. */
 typedef struct rouleau_collision {
   uint32_t struct_size;
   void (*collide_f64)(const void* self, const rouleau_collision_block_f64* block);
@@ -98,8 +107,9 @@ typedef struct rouleau_collision {
  *   tension             segments: element i joins node i and node i + 1
  *   moment              nodes, with the half segments on both sides
  *   pressure, perimeter_tension  whole cells
- * A law gives quantities of one element only. Curvature is turning angle over REST length, positive where the outline,
- * run through counter-clockwise, turns left. Energies are per rest length (tension, moment) or per cell. */
+ * A law gives quantities of one element only; arrays of the other elements are NULL, and every array that is not holds
+ * one value for each of the block's count elements. Curvature is turning angle over REST length, positive where the
+ * outline, run through counter-clockwise, turns left. Energies are per rest length (tension, moment) or per cell. */
 typedef struct rouleau_membrane_block {
   uint32_t struct_size;
   uint32_t count;
@@ -118,13 +128,13 @@ typedef struct rouleau_membrane_block {
   double* moment;   /* d energy / d curvature */
   double* pressure; /* - d energy / d area: positive pushes outward */
   double* perimeter_tension; /* d energy / d perimeter: added to the tension of every segment of the cell */
-  double* energy;
+  double* energy;            /* per rest length, or per cell */
 
   double* tension_by_stretch; /* derivatives, for steps that are implicit */
   double* tension_by_rate;    /* not negative; if "gives" names it, the host takes tension_by_rate x rate implicitly */
   double* moment_by_curvature;
 
-  const double* const* state; /* [states of the manifest][count], before the step, or NULL */
+  const double* const* state; /* [states of the manifest][count], before the step; NULL if the manifest has none */
   double* const* new_state;   /* after time_step; may be the same memory element by element; NULL: not wanted */
 } rouleau_membrane_block;
 
@@ -146,23 +156,23 @@ typedef struct rouleau_membrane {
 typedef struct rouleau_interaction_block {
   uint32_t struct_size;
   uint32_t count;
-  double time_step;
+  double time_step; /* as in a membrane's block */
 
-  const double* distance;
-  const double* normal_velocity;     /* d distance / dt */
+  const double* distance;            /* between the surfaces */
+  const double* normal_velocity;     /* d distance / dt: positive when the surfaces part */
   const double* tangential_velocity; /* sliding; positive where the element runs counter-clockwise along its own cell */
 
   double* energy;            /* phi, per area */
   double* force;             /* - d phi / d distance, per area: positive repels */
   double* force_by_distance; /* d force / d distance */
 
-  const double* const* state; /* [states of the manifest][count], before the step, or NULL */
+  const double* const* state; /* [states of the manifest][count], before the step; NULL if the manifest has none */
   double* const* new_state;   /* after time_step; may be the same memory element by element; NULL: not wanted */
 } rouleau_interaction_block;
 
 typedef struct rouleau_interaction {
   uint32_t struct_size;
-  double (*cutoff)(const void* self); /* distance beyond which energy and force are zero */
+  double (*cutoff)(const void* self); /* distance beyond which energy and force are zero; finite, not negative */
   void (*compute)(const void* self, const rouleau_interaction_block* block);
 } rouleau_interaction;
 
@@ -170,14 +180,16 @@ typedef struct rouleau_interaction {
 
 typedef struct rouleau_model {
   uint32_t struct_size;
-  uint32_t kind;
+  uint32_t kind;       /* ROULEAU_COLLISION_KIND, ROULEAU_MEMBRANE_KIND or ROULEAU_INTERACTION_KIND */
   const char* id;      /* the manifest's id */
   const char* version; /* the manifest's version */
 
   /* Makes an instance. Returns 0 and sets *self, or returns non-zero and writes one NUL-terminated sentence for the
-   * user into error (error_size bytes). The setup and all it points to end with the call. */
+   * user into error (error_size bytes, at least 256): also for a dimension or a velocity set that the model was not made
+   * for. The setup and all it points to end with the call. Instances live side by side: each stage of a scene, and each
+   * place in it that names the model, has its own. */
   int (*create)(const rouleau_setup* setup, void** self, char* error, size_t error_size);
-  void (*destroy)(void* self);
+  void (*destroy)(void* self); /* once for each instance, when no compute function runs on it any more */
 
   /* Exactly one is not NULL, as kind says. */
   const rouleau_collision* collision;
@@ -193,7 +205,8 @@ typedef struct rouleau_plugin {
 
 typedef const rouleau_plugin* (*rouleau_open_function)(uint32_t host_minor);
 
-/* The one exported function. Returns a static table, or NULL when the plugin cannot work with this host. */
+/* The one exported function. Returns a static table, or NULL when the plugin cannot work with this host. It may be
+ * called more than once and then returns the same; a library is never unloaded. */
 ROULEAU_EXPORT const rouleau_plugin* rouleau_open_v1(uint32_t host_minor);
 
 #ifdef __cplusplus

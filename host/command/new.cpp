@@ -1,0 +1,203 @@
+// rouleau new KIND NAME: a folder with a small model that works, to begin one's own from.
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <regex>
+
+#include "command/command_line.hpp"
+#include "command/commands.hpp"
+#include "command/templates.hpp"
+#include "input/wording.hpp"
+#include "plugin/catalog.hpp"
+
+namespace rouleau::host {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* help = R"(usage: rouleau new KIND NAME [options]
+
+Makes a folder with the source, the manifest and the CMakeLists.txt of a new model: a small one that works and passes its
+conformance tests as it is, to be changed into yours. Prints the commands that build, test and use it.
+KIND is collision, membrane or interaction. NAME is the model's id, a reverse domain name such as org.example.yukawa, or
+a plain name; folder and files have the name of its last part. Nothing is ever overwritten.
+
+Example:
+  rouleau new interaction org.example.yukawa
+)";
+
+struct Template {
+  const char* kind;
+  const std::string_view& source;
+  const std::string_view& manifest;
+  const char* setting;  ///< of a run of the four-cell scene that uses the model
+};
+
+const std::array templates{
+    Template{"collision", collision_source, collision_manifest, R"(/fluid/collision={"model": "model-id"})"},
+    Template{"membrane", membrane_source, membrane_manifest, R"(/cell_types/rbc/membrane/0={"model": "model-id"})"},
+    Template{"interaction", interaction_source, interaction_manifest, "/interactions/0/model=model-id"},
+};
+
+const Template& template_of(const std::string& kind) {
+  std::vector<std::string> kinds;
+  for (const Template& entry : templates) {
+    if (kind == entry.kind) return entry;
+    kinds.emplace_back(entry.kind);
+  }
+  throw Error(ExitCode::bad_input, "rouleau new: there is no kind " + in_quotes(kind) + did_you_mean(kind, kinds) +
+                                       "\n  the kinds of models are: " + listed(kinds));
+}
+
+/// A model's id, and what its last part becomes in the files.
+struct Name {
+  std::string id;
+  std::string file;  ///< name of folder, files and CMake target
+  std::string type;  ///< name of the C++ type
+};
+
+Name checked_name(const std::string& id) {
+  const auto refuse = [&](const std::string& problem) {
+    throw Error(ExitCode::bad_input, "rouleau new: " + in_quotes(id) + ' ' + problem);
+  };
+  // As in the schema of manifests; there a part after the first may begin with a digit, which no C++ type can.
+  static const std::regex pattern("[a-z][a-z0-9]*(-[a-z0-9]+)*(\\.[a-z0-9]+(-[a-z0-9]+)*)*");
+  if (id.size() > 100 || !std::regex_match(id, pattern)) {
+    refuse(
+        "cannot be the id of a model: lower-case letters, digits and '-', beginning with a letter, 100 characters at "
+        "most; a reverse domain name has '.' between its parts, such as org.example.yukawa");
+  }
+  Name name{id, id.substr(id.rfind('.') + 1), {}};
+  if (std::isdigit(static_cast<unsigned char>(name.file.front())) != 0) {
+    refuse("must have a last part that begins with a letter, because the C++ type is named after it");
+  }
+  for (const char* reserved : {"all", "clean", "help", "install", "package", "rouleau", "test"}) {
+    if (name.file == reserved) refuse("cannot be built: CMake has a target " + in_quotes(name.file) + " of its own");
+  }
+  bool begins = true;
+  for (const char c : name.file) {
+    if (c != '-') name.type += begins ? static_cast<char>(std::toupper(static_cast<unsigned char>(c))) : c;
+    begins = c == '-';
+  }
+  if (name.type.size() < 3) name.type += "Model";  // the formula's own letters
+  const Catalog installed(plugin_search_path({}, {}));
+  for (const Manifest& manifest : installed.manifests()) {
+    if (manifest.id == id) refuse("is the id of a model that is installed already: " + manifest.file.string());
+  }
+  return name;
+}
+
+std::string filled(std::string_view text, const Name& name) {
+  std::string result(text);
+  const auto replace = [&](std::string_view mark, const std::string& word) {
+    for (auto at = result.find(mark); at != std::string::npos; at = result.find(mark, at + word.size())) {
+      result.replace(at, mark.size(), word);
+    }
+  };
+  replace("model-id", name.id);
+  replace("model-name", name.file);
+  replace("ModelType", name.type);
+  return result;
+}
+
+[[noreturn]] void fail(const fs::path& path, const std::string& what, int error) {
+  throw Error(
+      ExitCode::input_output, Place{path.string(), {}, 0, 0},
+      what + ": " + std::strerror(error) + "\n  choose a folder that exists and that you may write to with --dir");
+}
+
+void write_new(const fs::path& file, const std::string& content) {
+  errno = 0;
+  std::ofstream stream(file, std::ios::binary);
+  stream << content;
+  stream.close();
+  if (!stream) fail(file, "cannot be written", errno != 0 ? errno : EIO);
+}
+
+/// Makes the folder with all its files, or nothing: they are written into one beside it, which then gets its name.
+void make_folder(const fs::path& folder, const Template& model, const Name& name) {
+  std::error_code error;
+  if (fs::exists(fs::symlink_status(folder, error))) {
+    throw Error(ExitCode::bad_input, Place{folder.string(), {}, 0, 0},
+                "exists already and is left as it is; choose another name, or another place with --dir");
+  }
+  const fs::path partial = folder.parent_path() / ("." + name.file + '.' + std::to_string(::getpid()) + ".partial");
+  if (!fs::create_directory(partial, error)) fail(folder, "cannot be made", error ? error.value() : EEXIST);
+  try {
+    write_new(partial / (name.file + ".cpp"), filled(model.source, name));
+    write_new(partial / (name.file + ".json"), filled(model.manifest, name));
+    write_new(partial / "CMakeLists.txt", filled(plugin_build_file, name));
+    fs::rename(partial, folder, error);  // replaces nothing but an empty folder that was made in this moment
+    if (error) fail(folder, "cannot be made", error.value());
+  } catch (...) {
+    fs::remove_all(partial, error);
+    throw;
+  }
+}
+
+/// A word as a shell reads it.
+std::string in_shell(const std::string& word) {
+  const auto plain = [](unsigned char c) { return std::isalnum(c) != 0 || std::strchr("/._-+=:,@%", c) != nullptr; };
+  if (!word.empty() && std::all_of(word.begin(), word.end(), plain)) return word;
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + '\'';
+}
+
+void print_next_steps(const fs::path& folder, const Template& model, const Name& name) {
+  std::error_code error;
+  const fs::path shared = fs::read_symlink("/proc/self/exe", error).parent_path().parent_path() / ROULEAU_DATA_FOLDER;
+  const bool has_sdk = fs::exists(shared / "cmake/Rouleau/RouleauConfig.cmake", error);
+  const fs::path installed_scene = shared / "rouleau/scenes/four-cells-shear.json";
+  const std::string scene = fs::exists(installed_scene, error) ? in_shell(installed_scene.string()) : "SCENE.json";
+  const std::string source = in_shell(folder.string()), build = in_shell((folder / "build").string());
+  std::cout << "Made " << folder.string() << " with " << name.file << ".cpp, " << name.file
+            << ".json and CMakeLists.txt: a model that works, to be changed into yours.\n";
+  if (name.id.find('.') == std::string::npos) {
+    std::cout << "The id " << in_quotes(name.id)
+              << " is a plain name, as shipped models have; for one that others are to use take a reverse domain name, "
+                 "such as org.example."
+              << name.file << ", which nobody else will choose.\n";
+  }
+  std::cout << "Next:\n  cmake -S " << source << " -B " << build
+            << (has_sdk ? " -DCMAKE_PREFIX_PATH=" + in_shell(shared.parent_path().string()) : "")
+            << "\n  cmake --build " << build << "\n  ctest --test-dir " << build
+            << " --output-on-failure\n  rouleau run " << scene << " --plugin-dir " << build << " --set "
+            << in_shell(filled(model.setting, name)) << '\n';
+  if (!has_sdk) {
+    std::cout << "The SDK is not beside this program: if cmake does not find Rouleau, add "
+                 "-DCMAKE_PREFIX_PATH=FOLDER, where it is installed.\n";
+  }
+}
+
+}  // namespace
+
+int new_command(const std::vector<std::string>& arguments) {
+  namespace options = boost::program_options;
+  std::string kind, id, directory = ".";
+  options::options_description description("options");
+  options::positional_options_description positional;
+  description.add_options()("kind", options::value(&kind)->required(), "KIND (collision, membrane or interaction)");
+  description.add_options()("name", options::value(&id)->required(), "NAME");
+  description.add_options()("dir", options::value(&directory)->value_name("DIR"),
+                            "make the folder in this one instead of the working directory");
+  positional.add("kind", 1).add("name", 1);
+  if (!parse_command_line("new", help, arguments, description, positional)) return 0;
+
+  const Template& model = template_of(kind);
+  const Name name = checked_name(id);
+  const fs::path folder = (fs::path(directory) / name.file).lexically_normal();
+  make_folder(folder, model, name);
+  print_next_steps(folder, model, name);
+  return static_cast<int>(ExitCode::done);
+}
+
+}  // namespace rouleau::host

@@ -1,0 +1,15 @@
+// The text of the files in sdk/template, which CMake compiles into the program (embed_texts.cmake).
+#pragma once
+
+#include <string_view>
+
+namespace rouleau::host {
+
+// In all of them ModelType stands for the name of the C++ type, model-name for that of the files and model-id for the
+// manifest's id.
+extern const std::string_view collision_source, collision_manifest;
+extern const std::string_view membrane_source, membrane_manifest;
+extern const std::string_view interaction_source, interaction_manifest;
+extern const std::string_view plugin_build_file;
+
+}  // namespace rouleau::host

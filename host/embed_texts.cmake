@@ -1,0 +1,34 @@
+# rouleau_embed_texts(TARGET HEADER VARIABLE FILE ...) compiles text files into a library of the host, each as the
+# `const std::string_view VARIABLE` of namespace rouleau::host that HEADER declares. The program then needs no file beside
+# it, and what it holds and what is installed cannot differ.
+function(rouleau_embed_texts target header)
+  set(definitions "")
+  while(ARGN)
+    list(POP_FRONT ARGN variable file)
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${file}")
+    file(READ "${file}" text)
+    if(text MATCHES "\\)ROULEAU\"")
+      message(FATAL_ERROR "${file} holds the end mark of the raw string it is to be embedded in")
+    endif()
+    # A string literal may have 64 KiB at least in every compiler; adjacent raw strings keep each piece far below.
+    string(LENGTH "${text}" length)
+    set(literal "")
+    set(at 0)
+    while(at LESS length)
+      string(SUBSTRING "${text}" ${at} 8000 piece)
+      string(APPEND literal "\n    R\"ROULEAU(${piece})ROULEAU\"")
+      math(EXPR at "${at} + 8000")
+    endwhile()
+    string(APPEND definitions "\nconst std::string_view ${variable} =${literal};\n")
+  endwhile()
+  set(source "${CMAKE_CURRENT_BINARY_DIR}/embedded/${target}.cpp")
+  file(CONFIGURE OUTPUT "${source}" @ONLY CONTENT [[
+// Written by CMake (host/embed_texts.cmake).
+#include "@header@"
+
+namespace rouleau::host {
+@definitions@
+}  // namespace rouleau::host
+]])
+  target_sources(${target} PRIVATE "${source}")
+endfunction()

@@ -1,0 +1,46 @@
+// The lock of a scene: which plugins it may use, by the hashes of their files.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "error.hpp"
+#include "manifest.hpp"
+
+namespace rouleau::host {
+
+struct LockedPlugin {
+  std::string id, kind, version;
+  std::string library_sha256, manifest_sha256;
+};
+
+struct Lock {
+  std::filesystem::path file;   ///< the lock itself
+  std::filesystem::path scene;  ///< the scene it is used for
+  std::string sha256;           ///< of the lock
+  std::vector<LockedPlugin> plugins;
+
+  /// Null for a plugin that the lock does not hold.
+  [[nodiscard]] const LockedPlugin* find(const std::string& id) const;
+};
+
+/// NAME.lock.json beside a scene NAME.json.
+std::filesystem::path lock_beside(const std::filesystem::path& scene);
+
+/// What a plugin is now. Throws Error(plugin_refused) when its library is not where it must be.
+LockedPlugin lock_plugin(const Manifest& manifest);
+/// Text of a lock, by kind and id.
+std::string lock_text(std::vector<LockedPlugin> plugins);
+
+/// Throws Error(input_output) for a lock that cannot be read, Error(bad_input) with its place for a damaged one.
+Lock read_lock(const std::filesystem::path& file, const std::filesystem::path& scene);
+
+/// Throws Error(plugin_refused) at `place` of the scene for a plugin that the lock does not hold or whose kind, version
+/// or manifest differ from it. Its library is compared when it is opened.
+void require_locked(const Lock& lock, const Manifest& manifest, const Place& place);
+
+/// What to do when a plugin is meant to differ from the lock.
+std::string lock_remedy(const std::filesystem::path& lock, const std::filesystem::path& scene);
+
+}  // namespace rouleau::host

@@ -1,0 +1,213 @@
+"""Which plugins a user gets and which are refused: search order, open folders, locks. Python's standard library only.
+
+usage: check_trust.py ROULEAU PLUGIN_FOLDER SOURCE_FOLDER
+"""
+
+import hashlib
+import json
+import os
+import shutil
+import subprocess
+import sys
+import unittest
+
+sys.dont_write_bytecode = True  # nothing is to appear in the source folder
+from check_commands import SHORT, Case
+
+
+class TrustCase(Case):
+    def setUp(self):
+        super().setUp()
+        self.file = self.scene()
+        self.lock = self.file.with_name("scene.lock.json")
+        self.morse = self.rouleau.plugins / "interaction/morse"
+
+    def copy_of_morse(self, name, plugin_id="org.example.mine"):
+        """A folder with the Morse potential under another id: its library is never opened."""
+        folder = self.path / name
+        folder.mkdir(parents=True)
+        manifest = json.loads((self.morse / "morse.json").read_text())
+        manifest["id"] = plugin_id
+        (folder / "mine.json").write_text(json.dumps(manifest))
+        return folder
+
+    def listed(self, *arguments, **options):
+        result = self.rouleau.run("plugins", "--json", *arguments, **options)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return json.loads(result.stdout)
+
+    def ids(self, *arguments, program=None, environment=None, **options):
+        """Ids that `rouleau plugins` lists with ROULEAU_PLUGIN_PATH as given."""
+        variables = {k: v for k, v in os.environ.items() if k != "ROULEAU_PLUGIN_PATH"}
+        if environment is not None:
+            variables["ROULEAU_PLUGIN_PATH"] = environment
+        result = subprocess.run([program or self.rouleau.program, "plugins", "--json", *arguments], capture_output=True,
+                                text=True, timeout=60, env=variables, **options)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return [p["id"] for p in json.loads(result.stdout)["plugins"]]
+
+    def change_library(self, name="interaction/morse/libmorse.so"):
+        with open(self.rouleau.plugins / name, "ab") as library:
+            library.write(b"x")  # the loader does not mind
+
+    def write_lock(self):
+        result = self.rouleau.run("plugins", "--lock", self.file)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return json.loads(self.lock.read_text())
+
+
+class Plugins_are_searched_where_the_user_said(TrustCase):
+    def test_never_in_the_working_directory(self):
+        folder = self.copy_of_morse("here")
+        for environment in (None, "", ":", "::"):
+            self.assertNotIn("org.example.mine", self.ids(cwd=folder, environment=environment))
+        self.assertIn("org.example.mine", self.ids("--plugin-dir", ".", cwd=folder))
+
+    def test_a_relative_folder_in_the_environment_is_refused(self):
+        self.copy_of_morse("here")
+        result = subprocess.run([self.rouleau.program, "plugins"], capture_output=True, text=True, cwd=self.path,
+                                env={**os.environ, "ROULEAU_PLUGIN_PATH": "here"})
+        self.assert_stops(result, 2, '"here"', "absolute")
+
+    def test_the_environment_counts_unless_the_program_runs_with_raised_privileges(self):
+        folder = self.copy_of_morse("here")
+        self.assertIn("org.example.mine", self.ids(environment=str(folder)))
+        if os.geteuid() != 0 or os.statvfs(self.path).f_flag & os.ST_NOSUID:
+            self.skipTest("only root can give a program another user's rights, and only where the file system lets it")
+        raised = self.rouleau.root / "bin" / "raised"
+        shutil.copy(self.rouleau.program, raised)
+        os.chown(raised, 65534, 65534)
+        raised.chmod(0o4755)
+        self.path.chmod(0o755)
+        found = self.ids(program=raised, environment=str(folder))
+        self.assertIn("morse", found)
+        self.assertNotIn("org.example.mine", found)
+
+    def test_an_earlier_folder_does_not_silently_win_over_a_later_one(self):
+        folder = self.copy_of_morse("here", "morse")
+        result = self.rouleau.run("plan", self.file, "--plugin-dir", folder)
+        self.assert_stops(result, 3, str(folder / "mine.json"), str(self.morse / "morse.json"))
+
+
+class Open_folders_are_refused(TrustCase):
+    def test_a_plugin_that_every_user_could_replace_is_listed_as_refused_and_stops_a_scene_that_names_it(self):
+        places = {self.rouleau.plugins: "folder", self.rouleau.plugins / "interaction": "folder", self.morse: "folder",
+                  self.morse / "morse.json": "file", self.morse / "libmorse.so": "file"}
+        for place, what in places.items():
+            with self.subTest(place):
+                mode = place.stat().st_mode & 0o7777
+                place.chmod(mode | 0o002)
+                words = (f"the {what} {place} (mode 0{mode | 0o002:o})", f"chmod o-w {place}")
+                refused = {r["id"]: r["reason"] for r in self.listed()["refused"]}
+                for word in words:
+                    self.assertIn(word, refused["morse"])
+                self.assertEqual("trt" in refused, place == self.rouleau.plugins)
+                self.assert_stops(self.rouleau.run("plan", self.file, "--set", "/interactions/0/model=morse"), 3, *words)
+                place.chmod(mode)
+        self.assertEqual(self.rouleau.run("plan", self.file).returncode, 0)
+
+    def test_a_scene_that_does_not_name_it_runs_on(self):
+        self.morse.chmod(0o777)
+        self.assertEqual(self.rouleau.run("plan", self.file, "--set", "/interactions=[]").returncode, 0)
+
+
+class A_lock_binds_a_scene_to_its_plugins(TrustCase):
+    def test_it_holds_every_plugin_of_the_scene_with_version_and_hashes(self):
+        lock = self.write_lock()
+        self.assertEqual([p["id"] for p in lock["plugins"]], ["trt", "morse", "bending", "neo-hookean"])
+        for plugin in lock["plugins"]:
+            folder = self.rouleau.plugins / plugin["kind"] / plugin["id"]
+            digest = lambda name: hashlib.sha256((folder / name).read_bytes()).hexdigest()
+            self.assertEqual(plugin["library_sha256"], digest(f"lib{plugin['id']}.so"))
+            self.assertEqual(plugin["manifest_sha256"], digest(f"{plugin['id']}.json"))
+            self.assertEqual(plugin["version"], json.loads((folder / f"{plugin['id']}.json").read_text())["version"])
+
+    def test_a_run_that_obeys_it_says_so_in_its_summary_and_a_plan_prints_it(self):
+        self.write_lock()
+        self.assertEqual(self.rouleau.run("run", self.file, "--out", self.path / "run", *SHORT).returncode, 0)
+        expected = {"file": str(self.lock), "sha256": hashlib.sha256(self.lock.read_bytes()).hexdigest()}
+        self.assertEqual(json.loads((self.path / "run/summary.json").read_text())["lock"], expected)
+        self.assertEqual(json.loads(self.rouleau.run("plan", self.file, "--json").stdout)["lock"], expected)
+        self.assertIn(f"as locked by {self.lock}", self.rouleau.run("plan", self.file).stdout)
+
+    def test_without_one_the_summary_holds_null(self):
+        self.assertEqual(self.rouleau.run("run", self.file, "--out", self.path / "run", *SHORT).returncode, 0)
+        self.assertIsNone(json.loads((self.path / "run/summary.json").read_text())["lock"])
+
+    def test_another_library_stops_run_and_plan_before_a_directory_is_made(self):
+        expected = next(p for p in self.write_lock()["plugins"] if p["id"] == "morse")["library_sha256"]
+        self.change_library()
+        found = hashlib.sha256((self.morse / "libmorse.so").read_bytes()).hexdigest()
+        words = (str(self.morse / "libmorse.so"), expected, found, str(self.lock), f"rouleau plugins --lock {self.file}")
+        self.assert_stops(self.rouleau.run("plan", self.file), 3, *words)
+        self.assert_stops(self.rouleau.run("run", self.file, "--out", self.path / "run", *SHORT), 3, *words)
+        self.assertFalse((self.path / "run").exists())
+        self.write_lock()
+        self.assertEqual(self.rouleau.run("plan", self.file).returncode, 0)
+
+    def test_another_manifest_stops_a_run(self):
+        self.write_lock()
+        manifest = self.morse / "morse.json"
+        manifest.write_text(manifest.read_text() + "\n")
+        self.assert_stops(self.rouleau.run("plan", self.file), 3, "/interactions/0/model", str(manifest),
+                          "expected SHA-256 of the manifest")
+
+    def test_a_model_swapped_by_set_is_refused_with_that_reason(self):
+        self.write_lock()
+        result = self.rouleau.run("plan", self.file, "--set", '/fluid/collision={"model": "bgk"}')
+        self.assert_stops(result, 3, '"bgk" is not in the lock', str(self.lock), "binds --set")
+        # Values may change: they are no plugins.
+        self.assertEqual(self.rouleau.run("plan", self.file, "--set", "/numerics/tau=0.9").returncode, 0)
+
+    def test_a_model_that_is_left_out_needs_no_library_but_its_manifest_decides_that(self):
+        self.write_lock()
+        nothing = ("--set", '/interactions/0/parameters/depth="0 J/m2"')
+        self.change_library()
+        self.assertEqual(self.rouleau.run("plan", self.file, *nothing).returncode, 0)
+        manifest = self.morse / "morse.json"
+        manifest.write_text(manifest.read_text() + "\n")
+        self.assert_stops(self.rouleau.run("plan", self.file, *nothing), 3, "SHA-256 of the manifest")
+
+    def test_a_lock_elsewhere_is_named(self):
+        other = self.path / "team.json"
+        result = self.rouleau.run("plugins", "--lock", self.file, "--out", other)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertFalse(self.lock.exists())
+        self.change_library()
+        self.assertEqual(self.rouleau.run("plan", self.file).returncode, 0)
+        self.assert_stops(self.rouleau.run("plan", self.file, "--lock", other), 3, str(other), f"--out {other}")
+
+    def test_a_damaged_lock_is_an_error_and_not_a_scene_without_one(self):
+        self.write_lock()
+        self.lock.write_text(self.lock.read_text().replace('"lock": 1', '"lock": 2'))
+        self.assert_stops(self.rouleau.run("plan", self.file), 2, str(self.lock), "/lock")
+        self.lock.write_text("")
+        self.assert_stops(self.rouleau.run("plan", self.file), 2, str(self.lock))
+        self.lock.unlink()
+        self.lock.symlink_to("nowhere")
+        self.assert_stops(self.rouleau.run("plan", self.file), 4, str(self.lock))
+        self.assert_stops(self.rouleau.run("plan", self.file, "--lock", self.path / "absent"), 4, "absent")
+
+    def test_a_scene_whose_plugins_cannot_be_used_is_not_locked(self):
+        (self.morse / "libmorse.so").unlink()
+        self.assert_stops(self.rouleau.run("plugins", "--lock", self.file), 3, "libmorse.so")
+        self.assertFalse(self.lock.exists())
+
+    def test_a_lock_that_cannot_be_written_leaves_the_former_one(self):
+        self.write_lock()
+        before = self.lock.read_bytes()
+        result = self.rouleau.run("plugins", "--lock", self.file, "--out", self.path / "absent" / "lock.json")
+        self.assert_stops(result, 4, "absent")
+        self.assertEqual(self.lock.read_bytes(), before)
+
+    def test_bad_usage_is_told(self):
+        self.assert_stops(self.rouleau.run("plugins", "morse", "--lock", self.file), 2, "the ID of a model")
+        self.assert_stops(self.rouleau.run("plugins", "--json", "--lock", self.file), 2, "--json")
+        self.assert_stops(self.rouleau.run("plugins", "--out", "x"), 2, "--lock")
+
+
+if __name__ == "__main__":
+    program = unittest.main(argv=sys.argv[:1], verbosity=2, exit=False)
+    failed = len(program.result.failures) + len(program.result.errors)
+    print(f"{program.result.testsRun - failed} passed, {failed} failed")
+    sys.exit(1 if failed else 0)
