@@ -235,7 +235,7 @@ std::vector<Check> physics_checks() {
       {"reference",
        Level::physics,
        "gives the reference numbers of its manifest",
-       {"compute", "units", "gradient", "derivative", "derivatives", "dissipation"},
+       {"units", "gradient", "derivative", "derivatives", "rigid-motion", "dissipation"},
        reference},
   };
 }
