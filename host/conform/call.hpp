@@ -29,9 +29,9 @@ class CallWatch {
 struct Call {
   bool single = false;                                          ///< collision: f32; values are rounded on the way in
   std::size_t block = std::numeric_limits<std::size_t>::max();  ///< elements in one call, at most
-  std::size_t offset = 0;  ///< elements between a cache line's start and the arrays
-  bool backwards = false;  ///< the last block first
-  bool in_place = false;   ///< outputs over inputs where the interface allows it
+  std::size_t offset = 0;        ///< elements between a cache line's start and the arrays
+  bool backwards = false;        ///< the last block first
+  bool in_place = false;         ///< outputs over inputs where the interface allows it
   std::set<std::string> absent;  ///< needs that are NULL all the same: a collision's "force", "relaxation_rate"
   Undeclared undeclared = Undeclared::null;
   Guard guard = Guard::none;

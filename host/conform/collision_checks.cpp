@@ -295,7 +295,7 @@ std::vector<Check> collision_checks() {
       {"velocity", level, "gives the velocity sum f c + F/2", {"compute"}, velocity, kind},
       {"equilibrium", level, "leaves populations in equilibrium alone", {"momentum"}, equilibrium, kind},
       {"stress-relaxation", level, "leaves 1 - 1/tau of the shear stress", {"equilibrium"}, stress_relaxation, kind},
-      {"symmetry", level, "has the eight symmetries of the square", {"stress-relaxation"}, symmetry, kind},
+      {"symmetry", level, "has the eight symmetries of the square", {"stress-relaxation", "velocity"}, symmetry, kind},
       {"reductions", level, "takes NULL inputs and no velocity as the interface says", {"symmetry"}, reductions, kind},
       {"precision", level, "gives in single precision what it gives in double", {"compute"}, precision, kind},
   };

@@ -146,11 +146,12 @@ Finding moduli(const Subject& subject) {
         const auto found = slopes(subject, trial, near, modulus.force, modulus.variable);
         for (std::size_t i = 0; i < found.size(); ++i) {
           const double slope = modulus.sign * found[i].value;
+          if (i == 0) mean += slope * (modulus.times_rest ? rest.at(modulus.variable)[0] : 1) / 2;
+          if (modulus.variable == std::string("stretch_rate")) continue;  // what the check of dissipation asks
           worst.add(std::max(0.0, -slope), found[i].error, [&] {
             return std::string("near rest the stiffness ") + modulus.words + " is negative, by, in lattice units," +
                    trial.words;
           });
-          if (i == 0) mean += slope * (modulus.times_rest ? rest.at(modulus.variable)[0] : 1) / 2;
         }
       }
       Dimension dimension = dimension_of(manifest, modulus.force);

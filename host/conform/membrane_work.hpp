@@ -21,6 +21,9 @@ std::vector<MembraneCoordinate> coordinates_of(const Manifest& manifest);
 /// Elements at rest: stretch 1, rate 0, curvature, area and perimeter as at rest, state with its initial values.
 Values at_rest(const Subject& subject, const Trial& trial, std::size_t count, Random& random);
 
+/// Makes the state that a step has left the input of the next one.
+void keep_state(Values& inputs, const Values& outputs);
+
 Finding check_rigid_motion(const Subject& subject);
 Finding check_dissipation(const Subject& subject);
 Finding check_closed_loop(const Subject& subject);
