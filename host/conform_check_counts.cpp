@@ -30,6 +30,7 @@ Function next(const char* name) {
 }  // namespace
 
 // The GNU C library offers its own functions under these names to programs that stand before them.
+#pragma GCC visibility push(default)  // for plugins to find; functions that are hidden count nothing
 extern "C" {
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t count, std::size_t size);
@@ -82,3 +83,4 @@ int pthread_spin_lock(pthread_spinlock_t* mutex) {
   return lock(mutex);
 }
 }
+#pragma GCC visibility pop

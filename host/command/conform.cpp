@@ -91,6 +91,7 @@ json to_json(const Conformance& plugin, std::uint64_t seed) {
     entry["name"] = result.check->name;
     entry["level"] = to_string(result.check->level);
     entry["says"] = result.check->says;
+    entry["after"] = result.check->after;
     entry["wall_s"] = result.wall_s;
     entry["repeat"] = repeat(plugin, result, seed);
     if (!result.blocked_by.empty()) entry["blocked_by"] = result.blocked_by;

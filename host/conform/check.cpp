@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <stdexcept>
 
 namespace rouleau::host {
 
@@ -41,6 +42,27 @@ Finding Finding::at_most(double measured, double limit, std::string what) {
   return {measured <= limit ? Verdict::pass : Verdict::fail, std::move(what), measured, limit};
 }
 
+namespace {
+
+/// The order of the files, but for checks that must wait for those that they build on.
+std::vector<Check> foundations_first(std::vector<Check> checks) {
+  std::vector<Check> ordered;
+  const auto is_placed = [&](const char* name) {
+    return std::any_of(ordered.begin(), ordered.end(), [&](const Check& c) { return std::string(c.name) == name; });
+  };
+  while (!checks.empty()) {
+    const auto ready = std::find_if(checks.begin(), checks.end(), [&](const Check& check) {
+      return std::all_of(check.after.begin(), check.after.end(), is_placed);
+    });
+    if (ready == checks.end()) throw std::logic_error(std::string(checks.front().name) + " builds on itself");
+    ordered.push_back(*ready);
+    checks.erase(ready);
+  }
+  return ordered;
+}
+
+}  // namespace
+
 const std::vector<Check>& all_checks() {
   static const std::vector<Check> checks = [] {
     std::vector<Check> all;
@@ -48,7 +70,7 @@ const std::vector<Check>& all_checks() {
                        physics_checks(), block_checks(), input_checks(), process_checks(), speed_checks()}) {
       all.insert(all.end(), part.begin(), part.end());
     }
-    return all;
+    return foundations_first(std::move(all));
   }();
   return checks;
 }

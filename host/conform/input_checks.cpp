@@ -249,16 +249,20 @@ Finding outputs_optional(const Subject& subject) {
 std::vector<Check> input_checks() {
   const Level level = Level::robustness;
   return {
-      {"parameters", level, "takes or refuses any parameters, in words", {"create"}, parameters},
-      {"struct-size", level, "keeps to the fields that both sides know", {"compute", "parameters"}, struct_size},
-      {"declared-inputs", level, "reads no input that its manifest does not declare", {"compute"}, declared_inputs},
-      {"needs-matter", level, "needs what it declares", {"compute", "hidden-state"}, needs_matter},
+      {"parameters", level, "takes or refuses any parameters, in words", {"struct-size"}, parameters},
+      {"struct-size", level, "keeps to the fields that both sides know", {"hidden-state"}, struct_size},
+      {"declared-inputs",
+       level,
+       "reads no input that its manifest does not declare",
+       {"hidden-state"},
+       declared_inputs},
+      {"needs-matter", level, "needs what it declares", {"hidden-state"}, needs_matter},
       {"read-only-inputs", level, "does not write to its inputs", {"compute"}, read_only_inputs},
       {"bounds", level, "stays within its arrays", {"compute"}, bounds},
       {"outputs-optional",
        level,
        "gives the same whichever outputs are wanted",
-       {"compute", "hidden-state"},
+       {"hidden-state", "energy-optional"},
        outputs_optional},
   };
 }

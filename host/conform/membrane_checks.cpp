@@ -221,7 +221,7 @@ std::vector<Check> membrane_checks() {
       {"moduli",
        level,
        "resists small changes of an element at rest as its derivatives say",
-       {"compute", "gradient", "derivatives"},
+       {"compute", "gradient", "derivatives", "dissipation"},
        moduli,
        kind},
       {"dissipation", level, "takes energy out of motion, never puts it in", {"compute"}, check_dissipation, kind},

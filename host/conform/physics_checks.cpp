@@ -243,7 +243,8 @@ std::vector<Check> physics_checks() {
       {"reference",
        Level::physics,
        "gives the reference numbers of its manifest",
-       {"compute", "units", "gradient", "derivative", "derivatives", "cutoff", "moduli", "dissipation", "closed-loop"},
+       {"units", "gradient", "derivative", "derivatives", "cutoff", "rigid-motion", "moduli", "dissipation",
+        "closed-loop"},
        reference},
   };
 }

@@ -195,7 +195,7 @@ std::vector<Check> process_checks() {
       {"floating-point-mode", level, "leaves the floating-point mode alone", {"compute"}, floating_point},
       {"quiet", level, "computes without allocation, lock, input or output", {"compute"}, quiet},
       {"leaks", level, "frees what it allocates", {"create"}, leaks},
-      {"fuzz", level, "bears any inputs", {"compute"}, fuzz},
+      {"fuzz", level, "bears any inputs", {"contained"}, fuzz},
   };
 }
 

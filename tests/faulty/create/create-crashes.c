@@ -1,0 +1,10 @@
+// Fault: create reads address 0.
+#include "potential.h"
+
+static int create(const rouleau_setup* setup, void** self, char* error, size_t error_size) {
+  const double* volatile nowhere = NULL;
+  if (*nowhere > 0) return 1;
+  return honest_create(setup, self, error, error_size);
+}
+
+POTENTIAL(create, honest_destroy, honest_compute)

@@ -1,0 +1,4 @@
+// Nothing is wrong with this law: what the faulty ones are compared with.
+#include "spring.h"
+
+LAW(honest_create, honest_destroy, honest_compute)
