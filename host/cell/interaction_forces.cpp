@@ -46,7 +46,8 @@ InteractionForces::InteractionForces(const Membranes& membranes, std::vector<Pot
   for (const Potential& potential : potentials_) {
     const Manifest& manifest = potential.model->manifest();
     has_state_ = has_state_ || !manifest.state.empty();
-    needs_.push_back({manifest.needs_input("normal_velocity"), manifest.needs_input("tangential_velocity")});
+    traits_.push_back({manifest.needs_input("normal_velocity"), manifest.needs_input("tangential_velocity"),
+                       manifest.gives_output("energy")});
   }
 }
 
@@ -133,8 +134,8 @@ void InteractionForces::give_velocities(std::size_t potential, int first, int co
     }
     to = chosen.data();
   };
-  give(needs_[potential].normal_velocity, scratch.velocities.normal, scratch.normal, block.normal_velocity);
-  give(needs_[potential].tangential_velocity, scratch.velocities.tangential, scratch.tangential,
+  give(traits_[potential].normal_velocity, scratch.velocities.normal, scratch.normal, block.normal_velocity);
+  give(traits_[potential].tangential_velocity, scratch.velocities.tangential, scratch.tangential,
        block.tangential_velocity);
 }
 
@@ -145,8 +146,8 @@ void InteractionForces::prepare(int cell, const Membranes& membranes, Scratch& s
     for (auto* values : {&scratch.normal, &scratch.tangential}) values->resize(list.node.size());
     scratch.contact.resize(list.node.size());
   }
-  if (std::any_of(needs_.begin(), needs_.end(),
-                  [](const Needs& needs) { return needs.normal_velocity || needs.tangential_velocity; })) {
+  if (std::any_of(traits_.begin(), traits_.end(),
+                  [](const Traits& traits) { return traits.normal_velocity || traits.tangential_velocity; })) {
     scratch.velocities.measure(list, contacts_.neighbours().list(cell).pairs, membranes);
   }
 }
@@ -250,7 +251,7 @@ double InteractionForces::energy(const Membranes& membranes) const {
       const std::size_t first_pair = pair;
       const TypeRange range = next_range(cell, membranes, pair);
       for (std::size_t p = 0; p < potentials_.size(); ++p) {
-        if (!acts_between(potentials_[p], type, range.type)) continue;
+        if (!traits_[p].energy || !acts_between(potentials_[p], type, range.type)) continue;
         if (variables_[p].empty()) apply(p, list, range.contacts, energy.data(), true, false, scratch);
         for (std::size_t q = first_pair; q < pair && !variables_[p].empty(); ++q) {
           apply_with_state(p, cell, q, membranes, energy.data(), true, nullptr, scratch);

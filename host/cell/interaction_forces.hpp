@@ -78,9 +78,9 @@ class InteractionForces {
   void act(int cell, Membranes& membranes);
   void take_reactions(int cell, Membranes& membranes) const;
 
-  /// What a potential is given besides distances; looked up in its manifest once.
-  struct Needs {
-    bool normal_velocity, tangential_velocity;
+  /// What a potential is given besides distances, and whether it has an energy; looked up in its manifest once.
+  struct Traits {
+    bool normal_velocity, tangential_velocity, energy;
   };
   /// Sets the block's inputs to those of the contacts scratch.contact[0, count), at scratch.distance; `all`: to those
   /// of all contacts from `first` on.
@@ -89,7 +89,7 @@ class InteractionForces {
 
   std::vector<Potential> potentials_;
   std::vector<double> cutoffs_;  // of the potentials
-  std::vector<Needs> needs_;     // of the potentials
+  std::vector<Traits> traits_;   // of the potentials
   Contacts contacts_;
   std::vector<Scratch> scratch_;
   std::vector<std::vector<std::size_t>> variables_;  // of the potentials, in ContactMemory::variables once kept

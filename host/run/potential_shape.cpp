@@ -28,6 +28,9 @@ Curve evaluate(const ModelInstance& potential, std::vector<double> distance) {
   block.count = static_cast<std::uint32_t>(count);
   block.time_step = 1;
   block.distance = curve.distance.data();
+  const std::vector<double> at_rest(count, 0.0);
+  if (potential.manifest().needs_input("normal_velocity")) block.normal_velocity = at_rest.data();
+  if (potential.manifest().needs_input("tangential_velocity")) block.tangential_velocity = at_rest.data();
   block.force = curve.force.data();
   if (potential.manifest().gives_output("energy")) {
     curve.energy.resize(count);
