@@ -1,6 +1,7 @@
 // Closest points: the lists against brute force while cells move.
 #include "cell/contact.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <map>
 #include <tuple>
@@ -20,6 +21,19 @@ void run(Contacts& contacts, const Membranes& m, int workers = 1) {
     run_pass(workers, [&](Worker worker) { contacts.run(worker, phase, m); });
   }
 }
+
+/// The rectangle around an outline: what is farther from it than the cutoff is farther from the outline.
+struct Rectangle {
+  double x_min, x_max, y_min, y_max;
+  Rectangle(const Membranes& m, const CellRange& cell) {
+    const auto [left, right] = std::minmax_element(m.x.begin() + cell.first, m.x.begin() + cell.end());
+    const auto [low, high] = std::minmax_element(m.y.begin() + cell.first, m.y.begin() + cell.end());
+    x_min = *left, x_max = *right, y_min = *low, y_max = *high;
+  }
+  [[nodiscard]] double distance(double x, double y) const {
+    return std::hypot(std::max({x_min - x, 0.0, x - x_max}), std::max({y_min - y, 0.0, y - y_max}));
+  }
+};
 
 /// Smallest distance of a node to an outline moved by (dx, dy).
 double brute_distance(const Membranes& m, int node, const CellRange& other, double dx, double dy) {
@@ -42,6 +56,7 @@ struct Tally {
 /// Every node against every cell and every image near enough.
 void compare(const Contacts& contacts, const Membranes& m, const PeriodicBox& box, Tally& tally) {
   for (int c = 0; c < static_cast<int>(m.cells.size()); ++c) {
+    const CellRange& cell = m.cells[static_cast<std::size_t>(c)];
     const ContactList& list = contacts.list(c);
     const auto& pairs = contacts.neighbours().list(c).pairs;
     std::map<std::tuple<int, int, int, int>, double> found;  // node, other, shift
@@ -55,12 +70,16 @@ void compare(const Contacts& contacts, const Membranes& m, const PeriodicBox& bo
     const int far_y = box.periodic_y() ? 3 : 0;
     long expected = 0;
     for (int b = 0; b < static_cast<int>(m.cells.size()); ++b) {
+      const CellRange& other = m.cells[static_cast<std::size_t>(b)];
+      const Rectangle around(m, other);
       for (int sx = -3; sx <= 3; ++sx) {
         for (int sy = -far_y; sy <= far_y; ++sy) {
           if (b == c && sx == 0 && sy == 0) continue;
-          for (int i = m.cells[static_cast<std::size_t>(c)].first; i < m.cells[static_cast<std::size_t>(c)].end();
-               ++i) {
-            const double d = brute_distance(m, i, m.cells[static_cast<std::size_t>(b)], sx * box.nx, sy * box.ny);
+          const double dx = sx * box.nx, dy = sy * box.ny;
+          for (int i = cell.first; i < cell.end(); ++i) {
+            const auto node = static_cast<std::size_t>(i);
+            if (around.distance(m.x[node] - dx, m.y[node] - dy) > cutoff + 1e-9) continue;
+            const double d = brute_distance(m, i, other, dx, dy);
             if (d > cutoff) continue;
             ++expected;
             const auto at = found.find({i, b, sx, sy});

@@ -1,5 +1,4 @@
 // In-place streaming, exchange across borders, activity: against plain two-array streaming and by conservation.
-#define CATCH_CONFIG_MAIN
 #include <array>
 #include <catch2/catch.hpp>
 #include <random>
