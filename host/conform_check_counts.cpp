@@ -32,11 +32,13 @@ Function next(const char* name) {
 // The GNU C library offers its own functions under these names to programs that stand before them.
 #pragma GCC visibility push(default)  // for plugins to find; functions that are hidden count nothing
 extern "C" {
+// NOLINTBEGIN(readability-identifier-naming)
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t count, std::size_t size);
 void* __libc_realloc(void* memory, std::size_t size);
 void* __libc_memalign(std::size_t alignment, std::size_t size);
 void __libc_free(void* memory);
+// NOLINTEND(readability-identifier-naming)
 
 void* malloc(std::size_t size) { return count_allocation(__libc_malloc(size)); }
 void* calloc(std::size_t count, std::size_t size) { return count_allocation(__libc_calloc(count, size)); }

@@ -11,6 +11,7 @@ namespace {
 
 std::vector<double> cutoffs_of(const std::vector<Potential>& potentials) {
   std::vector<double> cutoffs;
+  cutoffs.reserve(potentials.size());
   for (const Potential& potential : potentials) {
     cutoffs.push_back(potential.model->interaction().cutoff(potential.model->self()));
   }

@@ -32,7 +32,7 @@ std::string first_fault(const Subject& subject, std::size_t count, const Test& t
     for (const bool single : precisions(subject)) {
       Call call;
       call.single = single;
-      const std::string fault = test(instance, subject.random_inputs(instance, count, random), call);
+      std::string fault = test(instance, subject.random_inputs(instance, count, random), call);
       if (!fault.empty()) return fault;
     }
   }
@@ -153,6 +153,7 @@ Finding threads(const Subject& subject) {
   }
   std::atomic<int> calls{0}, differences{0}, waiting{thread_count};
   std::vector<std::thread> workers;
+  workers.reserve(tasks.size());
   for (const Task& task : tasks) {
     workers.emplace_back([&] {
       --waiting;

@@ -29,6 +29,9 @@ T from_bits(std::uint64_t wide, std::uint32_t narrow) {
     return std::bit_cast<T>(narrow);
 }
 
+bool untouched(double value) { return std::bit_cast<std::uint64_t>(value) == unwritten_bits; }
+bool untouched(float value) { return std::bit_cast<std::uint32_t>(value) == unwritten_bits_single; }
+
 /// The memory of one compute call.
 class Memory {
  public:
@@ -283,10 +286,7 @@ Values compute_as(const Subject& subject, const ModelInstance& instance, const V
   for (const auto& [name, array] : arrays.out) {
     auto& values = outputs[name];
     for (std::size_t i = 0; i < count; ++i) {
-      const bool untouched =
-          std::memcmp(&array[i], std::array{from_bits<T>(unwritten_bits, unwritten_bits_single)}.data(), sizeof(T)) ==
-          0;
-      values.push_back(untouched ? std::bit_cast<double>(unwritten_bits) : static_cast<double>(array[i]));
+      values.push_back(untouched(array[i]) ? std::bit_cast<double>(unwritten_bits) : static_cast<double>(array[i]));
     }
   }
   return outputs;
@@ -299,7 +299,7 @@ Values compute(const Subject& subject, const ModelInstance& instance, const Valu
                      : compute_as<double>(subject, instance, inputs, call);
 }
 
-bool is_unwritten(double value) { return std::bit_cast<std::uint64_t>(value) == unwritten_bits; }
+bool is_unwritten(double value) { return untouched(value); }
 
 std::string first_difference(const Values& a, const Values& b) {
   for (const auto& [name, values] : a) {

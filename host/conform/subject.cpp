@@ -46,6 +46,7 @@ double uniform(Random& random, double low, double high) {
 std::vector<std::string> arrays_of(ModelKind kind, const std::string& quantity) {
   const auto components = [&](int count) {
     std::vector<std::string> names;
+    names.reserve(static_cast<std::size_t>(count));
     for (int k = 0; k < count; ++k) names.push_back(quantity + '.' + std::to_string(k));
     return names;
   };

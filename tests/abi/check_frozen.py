@@ -35,7 +35,7 @@ RELEASED = {
     "membrane-cell.json": "56a7d71be90185b23e27995abffadd8726ab597bf9a84c2029274d65b4188f1e",
     "membrane-solid.json": "0783fbc0f99105c77fe7cdb6510e9a376b246d6f5805b282dec622675bd3cffd",
     "membrane.c": "2d0a5fa0a097768d75ea46b41e31f8c6592eea839fcf260184995f68cf644fc6",
-    "rouleau/plugin.h": "96f5300f2e91aef60c11e50c94020d6b049b259f0fd218348838c83b77c1e81d",
+    "rouleau/plugin.h": "40847be47fbc714e2df46990205d20d68e0f7c00dd3a6114bcb3ffbdf6c6707d",
 }
 
 SCENE = {

@@ -185,9 +185,9 @@ typedef struct rouleau_model {
   const char* version; /* the manifest's version */
 
   /* Makes an instance. Returns 0 and sets *self, or returns non-zero and writes one NUL-terminated sentence for the
-   * user into error (error_size bytes, at least 256): also for a dimension or a velocity set that the model was not made
-   * for. The setup and all it points to end with the call. Instances live side by side: each stage of a scene, and each
-   * place in it that names the model, has its own. */
+   * user into error (error_size bytes, at least 256): also for a dimension or a velocity set that the model was not
+   * made for. The setup and all it points to end with the call. Instances live side by side: each stage of a scene, and
+   * each place in it that names the model, has its own. */
   int (*create)(const rouleau_setup* setup, void** self, char* error, size_t error_size);
   void (*destroy)(void* self); /* once for each instance, when no compute function runs on it any more */
 
