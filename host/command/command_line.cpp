@@ -1,5 +1,6 @@
 #include "command_line.hpp"
 
+#include <algorithm>
 #include <iostream>
 
 #include "error.hpp"
@@ -17,7 +18,9 @@ options::options_description named(const options::options_description& all,
   options::options_description result("options");
   for (const auto& option : all.options()) {
     bool by_place = false;
-    for (unsigned place = 0; place < positional.max_total_count(); ++place) {
+    // A command may take any number of arguments by place, but has no more names for them than options.
+    const auto places = std::min<std::size_t>(positional.max_total_count(), all.options().size());
+    for (unsigned place = 0; place < places; ++place) {
       by_place = by_place || positional.name_for_position(place) == option->long_name();
     }
     if (!by_place) result.add(option);

@@ -68,6 +68,7 @@ std::vector<double> Subject::random_parameters(Random& random) const {
   std::vector<double> values = typical_parameters();
   for (std::size_t i = 0; i < values.size(); ++i) {
     const Parameter& parameter = manifest_.parameters[i];
+    if (random() % 2 == 0) continue;
     if (!parameter.choices.empty()) {
       values[i] = static_cast<double>(random() % parameter.choices.size());
     } else if (parameter.usual) {

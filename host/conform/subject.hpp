@@ -32,7 +32,8 @@ class Subject {
   /// Parameters in SI in the manifest's order: the default, or a value inside the usual range, or inside the limits.
   /// Defaults at which the model does nothing ("inactive_when") are not typical.
   [[nodiscard]] std::vector<double> typical_parameters() const;
-  /// Each parameter anywhere in its usual range or, without one, near its typical value; choices at random.
+  /// About half of the parameters anywhere in their usual range or, without one, near their typical value; choices at
+  /// random. The others are typical: many a model takes one of two parameters only.
   [[nodiscard]] std::vector<double> random_parameters(Random& random) const;
 
   /// A lattice as the shipped scenes have it: 20 spacings to a cell's radius, tau 1, no inertia.

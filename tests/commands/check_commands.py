@@ -229,7 +229,9 @@ class A_run_that_goes_bad_stops_before_garbage_is_written(Case):
 
 class Commands_do_what_they_say(Case):
     def test_help_is_everywhere_and_has_an_example(self):
-        for command in ("run", "plan", "plugins", "new", "report"):
+        commands = re.findall(r"^  ([a-z]+) ", self.rouleau.run("--help").stdout, re.MULTILINE)
+        self.assertGreaterEqual(set(commands), {"run", "plan", "plugins", "conform", "new", "report"})
+        for command in commands:
             result = self.rouleau.run(command, "--help")
             self.assertEqual(result.returncode, 0, result.stderr)
             self.assertIn("xample", result.stdout)
