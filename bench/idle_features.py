@@ -14,6 +14,7 @@ import re
 import subprocess
 import sys
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
@@ -35,10 +36,12 @@ def instructions(command: list, apart: tuple = ()) -> int:
 
 
 class Counter:
-    def __init__(self, build: Path, folder: Path):
-        self.build, self.folder = build, folder
+    """Counts on all cores, which counts do not mind; what its methods return gives the instructions per step when called."""
 
-    def scene(self, name: str, scene: dict, apart: tuple = ()) -> float:
+    def __init__(self, build: Path, folder: Path, pool: concurrent.futures.Executor):
+        self.build, self.folder, self.pool = build, folder, pool
+
+    def scene(self, name: str, scene: dict, apart: tuple = ()) -> Callable[[], float]:
         file = self.folder / f"{name}.json"
         file.write_text(json.dumps(scene))
         return self.per_step(lambda steps: instructions(
@@ -51,15 +54,13 @@ class Counter:
         header, data = rows[0].split(","), [row.split(",") for row in rows[1:] if not row.startswith("#")]
         return len({row[header.index("step")] for row in data})
 
-    def kernel(self, name: str) -> float:
+    def kernel(self, name: str) -> Callable[[], float]:
         return self.per_step(lambda steps: instructions(
             [self.build / "bin/rouleau-bench", "--kernel", name, "--steps", steps]))
 
-    @staticmethod
-    def per_step(count) -> float:
-        with concurrent.futures.ThreadPoolExecutor(2) as both:  # counts do not mind company
-            few, more = both.map(count, (FEW, MORE))
-        return (more - few) / (MORE - FEW)
+    def per_step(self, count: Callable[[int], int]) -> Callable[[], float]:
+        more, few = self.pool.submit(count, MORE), self.pool.submit(count, FEW)
+        return lambda: (more.result() - few.result()) / (MORE - FEW)
 
 
 def without(scene: dict, *keys: str) -> dict:
@@ -76,42 +77,41 @@ def main() -> int:
     quiet = without(full, "output")
     rows, failed = [], False
 
-    with tempfile.TemporaryDirectory() as folder:
-        count = Counter(arguments.build.resolve(), Path(folder))
+    equal, unnamed = copy.deepcopy(quiet), copy.deepcopy(quiet)
+    equal["cell_types"]["rbc"]["interior_viscosity"] = equal["fluid"]["viscosity"]
+    del unnamed["cell_types"]["rbc"]["interior_viscosity"]
+    shallow = copy.deepcopy(quiet)
+    shallow["interactions"][0]["parameters"]["depth"] = "0 J/m2"
+    often = copy.deepcopy(full)
+    often["output"]["fields"]["strain"] = often["output"]["cells"]["strain"] = 0.005
+    # Every run writes its first and its last state; how well they compress depends on the state.
+    due = ("*Observer::observe<*", "*RunDirectory::write(*")
 
-        def compare(feature: str, idle: float, without_it: float, active: float | None = None) -> None:
-            nonlocal failed
+    with (tempfile.TemporaryDirectory() as folder,
+          concurrent.futures.ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool):
+        count = Counter(arguments.build.resolve(), Path(folder), pool)
+        active = count.scene("full", quiet)
+        comparisons = [  # feature, idle, without it, in use
+            ("cells left out; bare fluid benchmark",
+             count.scene("fluid", without(quiet, "cells", "cell_types", "interactions")), count.kernel("plugin"), active),
+            ("equal viscosities; none named", count.scene("equal", equal), count.scene("unnamed", unnamed), active),
+            ("interaction of zero depth; no interaction", count.scene("shallow", shallow),
+             count.scene("alone", without(quiet, "interactions")), active),
+            ("output not due; none asked for", count.scene("output", full, due), count.scene("none", quiet, due),
+             count.scene("often", often))]
+        for feature, *costs in comparisons:
+            idle, without_it, in_use = (cost() for cost in costs)
             ratio = idle / without_it
             passed = abs(ratio - 1) <= LIMIT
             failed |= not passed
-            rows.append((feature, idle, without_it, ratio, active, "" if passed else "beyond 1 %"))
-
-        fluid = count.scene("fluid", without(quiet, "cells", "cell_types", "interactions"))
-        compare("cells left out; bare fluid benchmark", fluid, count.kernel("plugin"), count.scene("full", quiet))
-
-        equal, unnamed = copy.deepcopy(quiet), copy.deepcopy(quiet)
-        equal["cell_types"]["rbc"]["interior_viscosity"] = equal["fluid"]["viscosity"]
-        del unnamed["cell_types"]["rbc"]["interior_viscosity"]
-        compare("equal viscosities; none named", count.scene("equal", equal), count.scene("unnamed", unnamed), rows[0][4])
-
-        shallow = copy.deepcopy(quiet)
-        shallow["interactions"][0]["parameters"]["depth"] = "0 J/m2"
-        compare("interaction of zero depth; no interaction", count.scene("shallow", shallow),
-                count.scene("alone", without(quiet, "interactions")), rows[0][4])
-
-        often = copy.deepcopy(full)
-        often["output"]["fields"]["strain"] = often["output"]["cells"]["strain"] = 0.005
-        # Every run writes its first and its last state; how well they compress depends on the state.
-        due = ("*Observer::observe<*", "*RunDirectory::write(*")
-        idle = count.scene("output", full, due)
+            rows.append((feature, idle, without_it, ratio, in_use, "" if passed else "beyond 1 %"))
         if count.outputs("output") != 2:
             raise SystemExit("idle_features: outputs came due while the idle scene was counted")
-        compare("output not due; none asked for", idle, count.scene("none", quiet, due), count.scene("often", often))
 
     print("Instructions per step, four-cells-shear.json and what is left of it, AVX2, f64\n")
     print(f"{'idle feature; compared with':45} {'idle':>12} {'without':>12} {'ratio':>9} {'in use':>12}")
-    for feature, idle, without_it, ratio, active, verdict in rows:
-        print(f"{feature:45} {idle:12.0f} {without_it:12.0f} {ratio:9.5f} {active:12.0f} {verdict}")
+    for feature, idle, without_it, ratio, in_use, verdict in rows:
+        print(f"{feature:45} {idle:12.0f} {without_it:12.0f} {ratio:9.5f} {in_use:12.0f} {verdict}")
     return 1 if failed else 0
 
 
