@@ -27,4 +27,4 @@ struct Bridging {
     return {n * u, -k * (r - r0) * n, -k * n};
   }
 };
-ROULEAU_INTERACTION(Bridging, "bridging", "1.0.0")
+ROULEAU_INTERACTION(Bridging, "bridging", "1.0.1")

@@ -18,4 +18,4 @@ struct StandardLinearSolid {
     return {0.5 * E * strain * strain, E * strain, E * kept};
   }
 };
-ROULEAU_MEMBRANE(StandardLinearSolid, "standard-linear-solid", "1.0.0")
+ROULEAU_MEMBRANE(StandardLinearSolid, "standard-linear-solid", "1.0.1")
