@@ -1,4 +1,5 @@
 // Level "robustness": what a model is given to read and where it may write.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -31,8 +32,8 @@ Creation create_guarded(const Subject& subject, const std::vector<double>& value
   using Flush = GuardedArray::Flush;
   GuardedArray names("the setup's parameter names", given * sizeof(char*), Flush::behind);
   GuardedArray numbers("the setup's parameter values", given * sizeof(double), Flush::behind);
-  std::memcpy(names.data(), setup.get().parameter_names, given * sizeof(char*));
-  std::memcpy(numbers.data(), setup.get().parameter_values, given * sizeof(double));
+  std::copy_n(setup.get().parameter_names, given, reinterpret_cast<const char**>(names.data()));
+  std::copy_n(setup.get().parameter_values, given, reinterpret_cast<double*>(numbers.data()));
   setup.get().parameter_names = reinterpret_cast<const char* const*>(names.data());
   setup.get().parameter_values = reinterpret_cast<const double*>(numbers.data());
   setup.get().parameter_count = static_cast<std::uint32_t>(given);
