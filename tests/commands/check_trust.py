@@ -10,7 +10,6 @@ import shutil
 import subprocess
 import sys
 import unittest
-from unittest import mock
 
 sys.dont_write_bytecode = True  # nothing is to appear in the source folder
 from check_commands import SHORT, Case
@@ -75,14 +74,14 @@ class Plugins_are_searched_where_the_user_said(TrustCase):
         self.assertIn("org.example.mine", self.ids(environment=str(folder)))
         if os.geteuid() != 0 or os.statvfs(self.path).f_flag & os.ST_NOSUID:
             self.skipTest("only root can give a program another user's rights, and only where the file system lets it")
+        if b"__asan_init" in self.rouleau.program.read_bytes():
+            self.skipTest("a program with a leak checker, which nobody can take from it, ends when it has raised privileges")
         raised = self.rouleau.root / "bin" / "raised"
         shutil.copy(self.rouleau.program, raised)
         os.chown(raised, 65534, 65534)
         raised.chmod(0o4755)
         self.path.chmod(0o755)
-        # In a build with sanitizers: nobody may look for leaks in a process with other rights.
-        with mock.patch.dict(os.environ, ASAN_OPTIONS="detect_leaks=0"):
-            found = self.ids(program=raised, environment=str(folder))
+        found = self.ids(program=raised, environment=str(folder))
         self.assertIn("morse", found)
         self.assertNotIn("org.example.mine", found)
 
