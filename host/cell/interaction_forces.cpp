@@ -47,6 +47,8 @@ InteractionForces::InteractionForces(const Membranes& membranes, std::vector<Pot
   for (const Potential& potential : potentials_) {
     const Manifest& manifest = potential.model->manifest();
     has_state_ = has_state_ || !manifest.state.empty();
+    needs_velocities_ =
+        needs_velocities_ || manifest.needs_input("normal_velocity") || manifest.needs_input("tangential_velocity");
     traits_.push_back({manifest.needs_input("normal_velocity"), manifest.needs_input("tangential_velocity"),
                        manifest.gives_output("energy")});
   }
@@ -147,8 +149,7 @@ void InteractionForces::prepare(int cell, const Membranes& membranes, Scratch& s
     for (auto* values : {&scratch.normal, &scratch.tangential}) values->resize(list.node.size());
     scratch.contact.resize(list.node.size());
   }
-  if (std::any_of(traits_.begin(), traits_.end(),
-                  [](const Traits& traits) { return traits.normal_velocity || traits.tangential_velocity; })) {
+  if (needs_velocities_) {
     scratch.velocities.measure(list, contacts_.neighbours().list(cell).pairs, membranes);
   }
 }

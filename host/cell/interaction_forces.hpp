@@ -93,7 +93,7 @@ class InteractionForces {
   Contacts contacts_;
   std::vector<Scratch> scratch_;
   std::vector<std::vector<std::size_t>> variables_;  // of the potentials, in ContactMemory::variables once kept
-  bool has_state_ = false;
+  bool has_state_ = false, needs_velocities_ = false;
 };
 
 }  // namespace rouleau::host

@@ -7,7 +7,6 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <regex>
 
@@ -15,6 +14,7 @@
 #include "command/commands.hpp"
 #include "command/templates.hpp"
 #include "input/wording.hpp"
+#include "output/run_directory.hpp"
 #include "plugin/catalog.hpp"
 
 namespace rouleau::host {
@@ -114,14 +114,6 @@ std::string filled(std::string_view text, const Name& name) {
       what + ": " + std::strerror(error) + "\n  choose a folder that exists and that you may write to with --dir");
 }
 
-void write_new(const fs::path& file, const std::string& content) {
-  errno = 0;
-  std::ofstream stream(file, std::ios::binary);
-  stream << content;
-  stream.close();
-  if (!stream) fail(file, "cannot be written", errno != 0 ? errno : EIO);
-}
-
 /// Makes the folder with all its files, or nothing: they are written into one beside it, which then gets its name.
 void make_folder(const fs::path& folder, const Template& model, const Name& name) {
   std::error_code error;
@@ -132,9 +124,9 @@ void make_folder(const fs::path& folder, const Template& model, const Name& name
   const fs::path partial = folder.parent_path() / ("." + name.file + '.' + std::to_string(::getpid()) + ".partial");
   if (!fs::create_directory(partial, error)) fail(folder, "cannot be made", error ? error.value() : EEXIST);
   try {
-    write_new(partial / (name.file + ".cpp"), filled(model.source, name));
-    write_new(partial / (name.file + ".json"), filled(model.manifest, name));
-    write_new(partial / "CMakeLists.txt", filled(plugin_build_file, name));
+    write_file(partial / (name.file + ".cpp"), filled(model.source, name));
+    write_file(partial / (name.file + ".json"), filled(model.manifest, name));
+    write_file(partial / "CMakeLists.txt", filled(plugin_build_file, name));
     fs::rename(partial, folder, error);  // replaces nothing but an empty folder that was made in this moment
     if (error) fail(folder, "cannot be made", error.value());
   } catch (...) {

@@ -16,20 +16,12 @@ namespace rouleau::host {
 
 namespace {
 
-constexpr std::size_t ordinary_count = 67;  // no multiple of a vector's width
-
-/// Precisions that a model computes in.
-std::vector<bool> precisions(const Subject& subject) {
-  if (subject.manifest().kind == ModelKind::collision) return {false, true};
-  return {false};
-}
-
 /// Calls test(instance, inputs, call) for each choice and precision until it finds something.
 template <class Test>
 std::string first_fault(const Subject& subject, std::size_t count, const Test& test) {
   Random random = subject.random();
   for (const ModelInstance& instance : subject.make_each_choice()) {
-    for (const bool single : precisions(subject)) {
+    for (const bool single : subject.precisions()) {
       Call call;
       call.single = single;
       std::string fault = test(instance, subject.random_inputs(instance, count, random), call);
@@ -47,7 +39,7 @@ Finding hidden_state(const Subject& subject) {
         std::string difference = first_difference(first, compute(subject, instance, inputs, call));
         if (!difference.empty()) return "the same call twice: " + difference;
         compute(subject, instance, subject.random_inputs(instance, 5, random), call);
-        const ModelInstance other = subject.make(subject.typical_parameters());
+        const ModelInstance other = subject.make();
         compute(subject, other, subject.random_inputs(other, 5, random), call);
         difference = first_difference(first, compute(subject, instance, inputs, call));
         return difference.empty() ? difference : "after other calls: " + difference;

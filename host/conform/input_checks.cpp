@@ -18,8 +18,6 @@ namespace rouleau::host {
 
 namespace {
 
-constexpr std::size_t ordinary_count = 67;  // no multiple of a vector's width
-
 /// A call of create with everything between guards: parameters, the setup itself, the buffer for the error.
 struct Creation {
   bool made = false;
@@ -186,9 +184,10 @@ Finding read_only_inputs(const Subject& subject) {
     const Values inputs = subject.random_inputs(instance, ordinary_count, random);
     Call call;
     call.read_only = true;
-    compute(subject, instance, inputs, call);
-    call.single = subject.manifest().kind == ModelKind::collision;
-    if (call.single) compute(subject, instance, inputs, call);
+    for (const bool single : subject.precisions()) {
+      call.single = single;
+      compute(subject, instance, inputs, call);
+    }
   }
   return Finding::passed("inputs in memory that cannot be written");
 }
@@ -201,9 +200,10 @@ Finding bounds(const Subject& subject) {
       for (const Guard guard : {Guard::behind, Guard::before}) {
         Call call;
         call.guard = guard;
-        compute(subject, instance, inputs, call);
-        call.single = subject.manifest().kind == ModelKind::collision;
-        if (call.single) compute(subject, instance, inputs, call);
+        for (const bool single : subject.precisions()) {
+          call.single = single;
+          compute(subject, instance, inputs, call);
+        }
       }
     }
   }

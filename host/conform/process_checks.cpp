@@ -18,8 +18,6 @@ namespace rouleau::host {
 
 namespace {
 
-constexpr std::size_t ordinary_count = 67;
-
 /// What decides how this thread computes: rounding, treatment of denormals, exceptions that trap.
 struct FloatingPointMode {
   int rounding;
@@ -70,9 +68,10 @@ Finding floating_point(const Subject& subject) {
     Call call;
     call.watch = &watch;
     const Values inputs = subject.random_inputs(instance, ordinary_count, random);
-    compute(subject, instance, inputs, call);
-    call.single = subject.manifest().kind == ModelKind::collision;
-    if (call.single) compute(subject, instance, inputs, call);
+    for (const bool single : subject.precisions()) {
+      call.single = single;
+      compute(subject, instance, inputs, call);
+    }
   }
   if (watch.changed) return Finding::failed("compute changes the floating-point mode");
   return Finding::passed("rounding, denormals and traps are as before");

@@ -64,13 +64,29 @@ std::vector<double> Subject::typical_parameters() const {
   return values;
 }
 
+std::vector<std::vector<double>> Subject::parameters_of_each_choice() const {
+  const auto typical = typical_parameters();
+  std::vector<std::vector<double>> all = {typical};
+  for (std::size_t i = 0; i < typical.size(); ++i) {
+    for (std::size_t word = 0; word < manifest_.parameters[i].choices.size(); ++word) {
+      auto values = typical;
+      values[i] = static_cast<double>(word);
+      if (values != typical) all.push_back(std::move(values));
+    }
+  }
+  return all;
+}
+
 std::vector<double> Subject::random_parameters(Random& random) const {
   std::vector<double> values = typical_parameters();
   for (std::size_t i = 0; i < values.size(); ++i) {
     const Parameter& parameter = manifest_.parameters[i];
-    if (random() % 2 == 0) continue;
+    const auto which = random() % 8;
+    if (which < 3) continue;
     if (!parameter.choices.empty()) {
       values[i] = static_cast<double>(random() % parameter.choices.size());
+    } else if (which == 3 && parameter.usual && (*parameter.usual)[0] == parameter.minimum) {
+      values[i] = *parameter.minimum;
     } else if (parameter.usual) {
       // Not its very ends, which may touch a limit that is not allowed itself.
       values[i] = between((*parameter.usual)[0], (*parameter.usual)[1], uniform(random, 0.01, 0.99));
@@ -94,20 +110,19 @@ ModelSetting Subject::typical_setting() {
 
 std::vector<ModelInstance> Subject::make_each_choice(const ModelSetting& setting) const {
   std::vector<ModelInstance> instances;
-  const auto typical = typical_parameters();
-  instances.push_back(make(typical, setting));
-  for (std::size_t i = 0; i < typical.size(); ++i) {
-    for (std::size_t word = 0; word < manifest_.parameters[i].choices.size(); ++word) {
-      auto values = typical;
-      values[i] = static_cast<double>(word);
-      if (values == typical) continue;
-      try {
-        instances.push_back(make(values, setting));
-      } catch (const ModelRefused&) {  // a word that goes only with other values of other parameters
-      }
+  for (const auto& values : parameters_of_each_choice()) {
+    try {
+      instances.push_back(make(values, setting));
+    } catch (const ModelRefused&) {  // a word that goes only with other values of other parameters
+      if (instances.empty()) throw;  // typical ones go together
     }
   }
   return instances;
+}
+
+std::vector<bool> Subject::precisions() const {
+  if (manifest_.kind == ModelKind::collision) return {false, true};
+  return {false};
 }
 
 std::vector<std::string> Subject::input_arrays() const {

@@ -17,6 +17,9 @@ namespace rouleau::host {
 /// "state.0"...
 using Values = std::map<std::string, std::vector<double>>;
 
+/// Elements of an ordinary call: no multiple of a vector's width.
+inline constexpr std::size_t ordinary_count = 67;
+
 using Random = std::mt19937_64;
 /// Evenly distributed between two values.
 double uniform(Random& random, double low, double high);
@@ -32,8 +35,11 @@ class Subject {
   /// Parameters in SI in the manifest's order: the default, or a value inside the usual range, or inside the limits.
   /// Defaults at which the model does nothing ("inactive_when") are not typical.
   [[nodiscard]] std::vector<double> typical_parameters() const;
+  /// The typical ones, and these with each other word of each choice.
+  [[nodiscard]] std::vector<std::vector<double>> parameters_of_each_choice() const;
   /// About half of the parameters anywhere in their usual range or, without one, near their typical value; choices at
-  /// random. The others are typical: many a model takes one of two parameters only.
+  /// random. The others are typical, for many a model takes one of two parameters only, or the lowest usual value where
+  /// that is allowed: 0 often switches a part of a model.
   [[nodiscard]] std::vector<double> random_parameters(Random& random) const;
 
   /// A lattice as the shipped scenes have it: 20 spacings to a cell's radius, tau 1, no inertia.
@@ -47,6 +53,9 @@ class Subject {
   /// Instances with typical parameters and, in turn, with each other word of each choice; those that the model refuses
   /// are left out.
   [[nodiscard]] std::vector<ModelInstance> make_each_choice(const ModelSetting& setting = typical_setting()) const;
+
+  /// Whether calls are in single precision: those that the model computes in.
+  [[nodiscard]] std::vector<bool> precisions() const;
 
   /// Names of the arrays that the model is given (its needs, and its state) and gives (with its new state).
   [[nodiscard]] std::vector<std::string> input_arrays() const;

@@ -32,42 +32,19 @@ void try_to_make(std::vector<Trial>& trials, const Subject& subject, const std::
   try {
     trials.push_back({subject.make(values, setting), values, setting, differences(subject, values)});
   } catch (const ModelRefused&) {  // parameters that do not go together
+    if (trials.empty()) throw;     // typical ones do
   }
-}
-
-/// The lowest usual value where it may be taken: 0 often switches a part of a model, and other parameters then count.
-std::vector<double> draw(const Subject& subject, Random& random) {
-  auto values = subject.random_parameters(random);
-  const auto typical = subject.typical_parameters();
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const Parameter& parameter = subject.manifest().parameters[i];
-    const auto which = random() % 4;
-    if (which == 0) {
-      values[i] = typical[i];
-    } else if (which == 1 && parameter.usual && parameter.minimum && (*parameter.usual)[0] == *parameter.minimum) {
-      values[i] = *parameter.minimum;
-    }
-  }
-  return values;
 }
 
 }  // namespace
 
 std::vector<Trial> trials(const Subject& subject, Random& random, const ModelSetting& setting, int draws) {
   std::vector<Trial> all;
-  const auto typical = subject.typical_parameters();
-  all.push_back({subject.make(typical, setting), typical, setting, {}});
-  for (std::size_t i = 0; i < typical.size(); ++i) {
-    for (std::size_t word = 0; word < subject.manifest().parameters[i].choices.size(); ++word) {
-      auto values = typical;
-      values[i] = static_cast<double>(word);
-      if (values != typical) try_to_make(all, subject, values, setting);
-    }
-  }
-  if (typical.empty()) return all;
+  for (const auto& values : subject.parameters_of_each_choice()) try_to_make(all, subject, values, setting);
+  if (subject.manifest().parameters.empty()) return all;
   const std::size_t wanted = all.size() + static_cast<std::size_t>(draws);
   for (int i = 0; i < 20 * draws && all.size() < wanted; ++i) {
-    try_to_make(all, subject, draw(subject, random), setting);
+    try_to_make(all, subject, subject.random_parameters(random), setting);
   }
   return all;
 }
