@@ -31,4 +31,32 @@ namespace rouleau::host {
 }  // namespace rouleau::host
 ]])
   target_sources(${target} PRIVATE "${source}")
+  set_source_files_properties("${source}" PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+endfunction()
+
+# rouleau_assemble_page(RESULT TEMPLATE) writes RESULT: TEMPLATE with every line "@include FILE@" replaced by that file,
+# whose path counts from the template's folder.
+function(rouleau_assemble_page result template)
+  get_filename_component(folder "${template}" DIRECTORY)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${template}")
+  file(READ "${template}" page)
+  string(REGEX MATCHALL "@include [^@\n]+@" includes "${page}")
+  foreach(include IN LISTS includes)
+    string(REGEX REPLACE "@include ([^@]+)@" "\\1" piece "${include}")
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${folder}/${piece}")
+    file(READ "${folder}/${piece}" text)
+    string(REPLACE "${include}" "${text}" page "${page}")
+  endforeach()
+  file(WRITE "${result}" "${page}")
+endfunction()
+
+# rouleau_require_file(FILE SHA256 WORDS) stops with WORDS unless FILE is there with these bytes.
+function(rouleau_require_file file sha256 words)
+  set(found "missing")
+  if(EXISTS "${file}")
+    file(SHA256 "${file}" found)
+  endif()
+  if(NOT found STREQUAL sha256)
+    message(FATAL_ERROR "${file}\n  has SHA-256 ${found}, wanted ${sha256}\n  ${words}")
+  endif()
 endfunction()

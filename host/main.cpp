@@ -1,5 +1,6 @@
 // The program: finds the command, calls it, and turns what it throws into a message and an exit code.
 #include <array>
+#include <csignal>
 #include <cstring>
 #include <exception>
 #include <filesystem>
@@ -29,11 +30,10 @@ constexpr std::array commands{
     Command{"plugins", "[ID]", "models that were found, why some were refused; locks", plugins_command},
     Command{"conform", "MANIFEST...", "whether plugins do what the interface and their manifests say", conform_command},
     Command{"new", "KIND NAME", "source, manifest and build file of a new model", new_command},
-    Command{"report", "DIR", "make the report of a run's directory again", report_command},
+    Command{"study", "STUDY", "error against run time over a matrix of settings", study_command},
+    Command{"limits", "LIMITS", "where a model breaks, and how", limits_command},
+    Command{"report", "DIR", "a run's page again, two runs side by side, or frames as pictures", report_command},
 };
-
-/// Commands that users may have read about and that come with a later version.
-constexpr std::array later_commands{"study", "limits"};
 
 std::string overview() {
   std::string text =
@@ -70,9 +70,6 @@ int dispatch(const std::vector<std::string>& arguments) {
     if (word == command.name) return command.run({arguments.begin() + 1, arguments.end()});
     names.emplace_back(command.name);
   }
-  for (const char* name : later_commands) {
-    if (word == name) throw Error(ExitCode::bad_input, "rouleau " + word + ": not in this version");
-  }
   const bool is_option = word.starts_with('-');
   if (is_option) names = {"--help", "--version"};
   throw Error(ExitCode::bad_input, std::string("rouleau has no ") + (is_option ? "option " : "command ") +
@@ -88,6 +85,7 @@ int report(const std::string& message, ExitCode code) {
 }  // namespace
 
 int main(int count, char** words) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error like a full disk, with a message
   try {
     const int code = dispatch({words + (count > 0 ? 1 : 0), words + count});
     std::cout.flush();

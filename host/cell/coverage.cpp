@@ -9,7 +9,7 @@ namespace rouleau::host {
 
 namespace {
 
-constexpr int margin = 2;
+constexpr int window_margin = 2;
 
 /// Adds what one edge contributes to the columns right of it in one row. `a` and `b` are where it enters and leaves the
 /// row, `rise` its signed height there. After a sum along the row, an element holds the area right of the edge.
@@ -44,10 +44,10 @@ void cover(const Membranes& membranes, const CellRange& cell, Coverage& coverage
   coverage.width = coverage.height = 0;
   if (!box.usable()) return;
   // Node n's unit square is [n - 1/2, n + 1/2]: half a spacing later, it is the cell between two integers.
-  coverage.x0 = floor_int(box.x_min + 0.5) - margin;
-  coverage.y0 = floor_int(box.y_min + 0.5) - margin;
-  const int width = floor_int(box.x_max + 0.5) - coverage.x0 + 1 + margin;
-  const int height = floor_int(box.y_max + 0.5) - coverage.y0 + 1 + margin;
+  coverage.x0 = floor_int(box.x_min + 0.5) - window_margin;
+  coverage.y0 = floor_int(box.y_min + 0.5) - window_margin;
+  const int width = floor_int(box.x_max + 0.5) - coverage.x0 + 1 + window_margin;
+  const int height = floor_int(box.y_max + 0.5) - coverage.y0 + 1 + window_margin;
   if (static_cast<double>(width) * height > 1e8) return;  // blown up, see Bounds::usable
   coverage.width = width;
   coverage.height = height;

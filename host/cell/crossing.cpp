@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "bins.hpp"
 #include "geometry.hpp"
 
 namespace rouleau::host {
@@ -15,8 +16,6 @@ struct Segment {
   [[nodiscard]] double x_min() const { return std::min(from.x(), to.x()); }
   [[nodiscard]] double x_max() const { return std::max(from.x(), to.x()); }
 };
-
-double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 /// Segments of a cell, moved, that touch a box; in order of their left ends.
 void collect(const Membranes& membranes, const CellRange& cell, const Eigen::Vector2d& move, const Bounds& box,
@@ -123,9 +122,14 @@ std::optional<Crossing> find_crossing(const Membranes& membranes, const Periodic
   for (const CellRange& cell : membranes.cells) extent.push_back(bounds(membranes, cell));
   PairCheck check(membranes, box);
   std::optional<Crossing> found;
+  const Bins bins(extent, 0.0, box);
   const int count = static_cast<int>(membranes.cells.size());
+  std::vector<int> near;
   for (int a = 0; a < count && !found; ++a) {
-    for (int b = a; b < count && !found; ++b) {
+    bins.find(a, near);
+    std::sort(near.begin(), near.end());  // the crossing that is found first does not depend on the bins
+    for (const int b : near) {
+      if (b < a || found) continue;
       for_each_image(extent[static_cast<std::size_t>(a)], extent[static_cast<std::size_t>(b)], 0.0, box,
                      [&](ImageShift shift) {
                        // Of a cell's own images, one of two opposite ones is enough.

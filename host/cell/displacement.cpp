@@ -18,26 +18,23 @@ double largest_displacement(const std::vector<double>& x, const std::vector<doub
 }
 
 DisplacementWatch::DisplacementWatch(const Membranes& membranes)
-    : x_(membranes.x),
-      y_(membranes.y),
-      limit_(membranes.cells.size(), 0.0),
-      bound_(membranes.cells.size(), std::numeric_limits<double>::infinity()),
-      moved_(membranes.cells.size(), 1) {
-  std::fill(x_.begin(), x_.end(), std::nan(""));  // nothing remembered yet: no position is near
-}
+    : memory_{std::vector<double>(membranes.x.size(), std::nan("")),
+              std::vector<double>(membranes.y.size(), std::nan("")), std::vector<double>(membranes.cells.size(), 0.0),
+              std::vector<double>(membranes.cells.size(), std::numeric_limits<double>::infinity())},
+      moved_(membranes.cells.size(), 1) {}
 
 void DisplacementWatch::measure(Worker worker, const Membranes& membranes) {
   const Range cells = worker.share(membranes.cell_count());
   const bool unknown = membranes.largest_step.empty();
   for (int c = cells.begin; c < cells.end; ++c) {
     const auto at = static_cast<std::size_t>(c);
-    double& bound = bound_[at];
+    double& bound = memory_.bound[at];
     bound = unknown ? std::numeric_limits<double>::infinity() : bound + membranes.largest_step[at];
-    if (!(bound <= limit_[at])) {
+    if (!(bound <= memory_.limit[at])) {
       const CellRange& cell = membranes.cells[at];
-      bound = largest_displacement(membranes.x, membranes.y, x_, y_, {cell.first, cell.end()});
+      bound = largest_displacement(membranes.x, membranes.y, memory_.x, memory_.y, {cell.first, cell.end()});
     }
-    moved_[at] = !(bound <= limit_[at]);
+    moved_[at] = !(bound <= memory_.limit[at]);
   }
 }
 
@@ -47,10 +44,10 @@ bool DisplacementWatch::exceeded() const {
 
 void DisplacementWatch::remember(int cell, const Membranes& membranes, double limit) {
   const CellRange& range = membranes.cells[static_cast<std::size_t>(cell)];
-  std::copy(membranes.x.begin() + range.first, membranes.x.begin() + range.end(), x_.begin() + range.first);
-  std::copy(membranes.y.begin() + range.first, membranes.y.begin() + range.end(), y_.begin() + range.first);
-  limit_[static_cast<std::size_t>(cell)] = limit;
-  bound_[static_cast<std::size_t>(cell)] = 0;
+  std::copy(membranes.x.begin() + range.first, membranes.x.begin() + range.end(), memory_.x.begin() + range.first);
+  std::copy(membranes.y.begin() + range.first, membranes.y.begin() + range.end(), memory_.y.begin() + range.first);
+  memory_.limit[static_cast<std::size_t>(cell)] = limit;
+  memory_.bound[static_cast<std::size_t>(cell)] = 0;
 }
 
 }  // namespace rouleau::host

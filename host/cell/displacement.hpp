@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "membranes.hpp"
@@ -32,10 +33,18 @@ class DisplacementWatch {
   /// Remembers the present positions of a cell and how far its nodes may move from there. Does not change moved().
   void remember(int cell, const Membranes& membranes, double limit);
 
+  /// What it knows from one step to the next.
+  struct Memory {
+    std::vector<double> x, y;   ///< of the nodes; NaN: nothing remembered yet
+    std::vector<double> limit;  ///< of each cell
+    std::vector<double> bound;  ///< of each cell: upper bound of its nodes' displacements
+  };
+  [[nodiscard]] const Memory& memory() const { return memory_; }
+  /// Goes on from another watch's memory of the same cells.
+  void recall(Memory memory) { memory_ = std::move(memory); }
+
  private:
-  std::vector<double> x_, y_;
-  std::vector<double> limit_;        // of each cell
-  std::vector<double> bound_;        // of each cell: upper bound of its nodes' displacements
+  Memory memory_;
   std::vector<std::uint8_t> moved_;  // one per cell, so that the answer does not depend on the workers
 };
 

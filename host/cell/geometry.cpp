@@ -12,8 +12,6 @@ Eigen::Vector2d node(const Membranes& membranes, int i) {
   return {membranes.x[static_cast<std::size_t>(i)], membranes.y[static_cast<std::size_t>(i)]};
 }
 
-double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
-
 /// Square of the distance from a point to the segment p ... q.
 double square_distance(const Eigen::Vector2d& point, const Eigen::Vector2d& p, const Eigen::Vector2d& q) {
   const Eigen::Vector2d along = q - p, from = point - p;

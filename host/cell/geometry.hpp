@@ -9,12 +9,16 @@
 
 namespace rouleau::host {
 
+/// z component of the cross product: positive where b lies counter-clockwise of a.
+inline double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+
 /// Signed area, positive for a counter-clockwise outline.
 double enclosed_area(const Membranes& membranes, const CellRange& cell);
 double perimeter(const Membranes& membranes, const CellRange& cell);
 /// Smallest and largest stretch of a segment: length over rest length.
 struct StretchRange {
   double least = std::numeric_limits<double>::infinity(), most = 0;
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(StretchRange, least, most)
 };
 StretchRange stretch_range(const Membranes& membranes, const CellRange& cell);
 /// Centroid of the enclosed area.

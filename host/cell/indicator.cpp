@@ -136,6 +136,20 @@ void Indicator<T>::update(Worker worker, const Membranes& membranes, Field<T>& r
 }
 
 template <class T>
+void Indicator<T>::restore(const DisplacementWatch::Memory& memory, const Membranes& membranes,
+                           Field<T>& relaxation_rate, Activity& activity) {
+  const bool updated = !memory.x.empty() && !std::isnan(memory.x.front());
+  if (updated) {
+    Membranes at_update = membranes;
+    at_update.x = memory.x;
+    at_update.y = memory.y;
+    cover(Worker{}, at_update);
+    update(Worker{}, at_update, relaxation_rate, activity);
+  }
+  watch_.recall(memory);
+}
+
+template <class T>
 void Indicator<T>::collect_changes(Range own) {
   for (int y = own.begin; y < own.end; ++y) changed_[static_cast<std::size_t>(y)].clear();
   const auto include = [&](int y, Interval columns, int) {

@@ -41,6 +41,12 @@ class Indicator {
   /// The field must hold the plain rate before the first call; it is not touched unless varies().
   void update(Worker worker, const Membranes& membranes, Field<T>& relaxation_rate, Activity& activity);
 
+  /// What relaxation rate and activity were made from, for checkpoints.
+  [[nodiscard]] const DisplacementWatch::Memory& memory() const { return watch_.memory(); }
+  /// Not a pass: makes them again as they were, in place of those of a new stage.
+  void restore(const DisplacementWatch::Memory& memory, const Membranes& membranes, Field<T>& relaxation_rate,
+               Activity& activity);
+
  private:
   struct Interval {
     int begin, end;

@@ -268,6 +268,12 @@ double InteractionForces::energy(const Membranes& membranes) const {
   return sum;
 }
 
+std::string InteractionForces::without_energy() const {
+  for (std::size_t p = 0; p < potentials_.size(); ++p)
+    if (!traits_[p].energy) return potentials_[p].model->manifest().id;
+  return {};
+}
+
 double InteractionForces::closest_contact(int cell) const {
   const ContactList& list = contacts_.list(cell);
   double closest = std::numeric_limits<double>::infinity();

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "contact.hpp"
@@ -40,6 +41,8 @@ class InteractionForces {
 
   /// Energy of the contacts found by the last run() in their present state. Not a pass.
   [[nodiscard]] double energy(const Membranes& membranes) const;
+  /// A potential that acts but tells no energy; empty: none.
+  [[nodiscard]] std::string without_energy() const;
   /// Smallest distance of a node of this cell to another cell in the last run(); infinity if beyond every cutoff.
   [[nodiscard]] double closest_contact(int cell) const;
   [[nodiscard]] const Contacts& contacts() const { return contacts_; }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <rouleau/dispatch.hpp>
 #include <stdexcept>
 
@@ -107,25 +108,30 @@ void MembraneForces::measure(const Membranes& membranes, int cell, std::size_t a
   run_loop<MeasureCell>(arrays);
 }
 
-void MembraneForces::apply_law(const Law& law, const Membranes& membranes, int cell, std::size_t at,
-                               std::vector<ElementState>* next, CellState& sums, bool first_tension, bool first_moment,
-                               double* energy) {
-  Scratch& s = scratch_;
-  const CellRange& range = membranes.cells[static_cast<std::size_t>(cell)];
+void MembraneForces::give_inputs(const Law& law, const CellRange& range, int cell, std::size_t at,
+                                 const CellState& sums, rouleau_membrane_block& block) const {
   const bool whole_cell = law.pressure || law.perimeter_tension;
-  double pressure = 0, perimeter_tension = 0;
-  rouleau_membrane_block block{};
   block.struct_size = sizeof block;
   block.count = whole_cell ? 1 : static_cast<std::uint32_t>(range.count);
-  block.time_step = next != nullptr ? 1 : 0;
-  if (law.stretch) block.stretch = &s.stretch[at];
-  if (law.stretch_rate) block.stretch_rate = &s.rate[at];
-  if (law.curvature) block.curvature = &s.curvature[at];
+  if (law.stretch) block.stretch = &scratch_.stretch[at];
+  if (law.stretch_rate) block.stretch_rate = &scratch_.rate[at];
+  if (law.curvature) block.curvature = &scratch_.curvature[at];
   if (law.rest_curvature) block.rest_curvature = &rest_.curvature[offset(cell)];
   if (law.area) block.area = &sums.area;
   if (law.rest_area) block.rest_area = &range.rest_area;
   if (law.perimeter) block.perimeter = &sums.perimeter;
   if (law.rest_perimeter) block.rest_perimeter = &range.rest_perimeter;
+}
+
+void MembraneForces::apply_law(const Law& law, const Membranes& membranes, int cell, std::size_t at,
+                               std::vector<ElementState>* next, CellState& sums, bool first_tension, bool first_moment,
+                               double* energy) {
+  Scratch& s = scratch_;
+  const CellRange& range = membranes.cells[static_cast<std::size_t>(cell)];
+  double pressure = 0, perimeter_tension = 0;
+  rouleau_membrane_block block{};
+  give_inputs(law, range, cell, at, sums, block);
+  block.time_step = next != nullptr ? 1 : 0;
   if (law.tension) block.tension = first_tension ? &s.tension[at] : &s.law[at];
   if (law.moment) block.moment = first_moment ? &s.moment[at] : &s.law[at];
   if (law.pressure) block.pressure = &pressure;
@@ -169,24 +175,80 @@ MembraneForces::CellState MembraneForces::apply_laws(const Membranes& membranes,
   for (const Law& law : type.laws) {
     apply_law(law, membranes, cell, at, next, sums, !tension, !moment,
               energy != nullptr && law.energy ? &scratch_.energy[at] : nullptr);
+    if (energy != nullptr)
+      add_energy(law, membranes, cell, at, sums, tension ? &scratch_.law[at] : &scratch_.tension[at], *energy);
     tension |= law.tension;
     moment |= law.moment;
-    if (energy == nullptr || !law.energy) continue;
-    if (law.tension) {
-      energy->tension += weighted_sum(&scratch_.energy[at],
-                                      &membranes.rest_length[static_cast<std::size_t>(range.first)], range.count);
-    } else if (law.moment) {
-      energy->bending += weighted_sum(&scratch_.energy[at],
-                                      &membranes.rest_weight[static_cast<std::size_t>(range.first)], range.count);
-    } else {
-      energy->cell += scratch_.energy[at];
-    }
   }
   // Where no law gives them, the arrays may hold those of another type's cell.
   if (!tension) std::fill_n(&scratch_.tension[at], range.count, 0.0);
   if (!moment) std::fill_n(&scratch_.moment[at], range.count, 0.0);
   if (type.tension_by_rate) add_rate_tension(membranes, cell, at, next);
+  if (type.tension_by_rate && energy != nullptr) {
+    const auto first = static_cast<std::size_t>(range.first);
+    const double* implicit = &membranes.state[type.rate_tension].value[first];
+    for (int k = 0; k < range.count; ++k) {
+      const auto i = static_cast<std::size_t>(k);
+      energy->dissipation += implicit[k] * scratch_.rate[at + i] * membranes.rest_length[first + i];
+    }
+  }
   return sums;
+}
+
+double MembraneForces::integrated(const Law& law, const Membranes& membranes, const CellRange& range,
+                                  const double* energy) {
+  const auto first = static_cast<std::size_t>(range.first);
+  if (law.tension) return weighted_sum(energy, &membranes.rest_length[first], range.count);
+  if (law.moment) return weighted_sum(energy, &membranes.rest_weight[first], range.count);
+  return energy[0];
+}
+
+double MembraneForces::relaxed_energy(const Law& law, const Membranes& membranes, int cell, std::size_t at,
+                                      const CellState& sums) const {
+  const CellRange& range = membranes.cells[static_cast<std::size_t>(cell)];
+  const auto count = static_cast<std::size_t>(range.count);
+  const std::vector<double> still(count, 0.0);
+  std::vector<double> energy(count);
+  std::vector<std::vector<double>> values;
+  std::array<const double*, most_states> state{};
+  std::array<double*, most_states> new_state{};
+  for (std::size_t k = 0; k < law.state.size(); ++k) {
+    const double* present = &membranes.state[law.state[k]].value[static_cast<std::size_t>(range.first)];
+    values.emplace_back(present, present + count);
+  }
+  for (std::size_t k = 0; k < values.size(); ++k) state[k] = new_state[k] = values[k].data();
+  rouleau_membrane_block block{};
+  give_inputs(law, range, cell, at, sums, block);
+  if (law.stretch_rate) block.stretch_rate = still.data();
+  block.energy = energy.data();
+  block.state = state.data();
+  block.new_state = new_state.data();
+  block.time_step = 1;
+  law.model->membrane().compute(law.model->self(), &block);
+  block.new_state = nullptr;
+  block.time_step = 0;
+  law.model->membrane().compute(law.model->self(), &block);
+  return integrated(law, membranes, range, energy.data());
+}
+
+/// `tension`: that of this law alone.
+void MembraneForces::add_energy(const Law& law, const Membranes& membranes, int cell, std::size_t at,
+                                const CellState& sums, const double* tension, MembraneEnergy& energy) const {
+  const CellRange& range = membranes.cells[static_cast<std::size_t>(cell)];
+  if (!law.energy) {
+    // A law that only resists the rate of stretch stores nothing.
+    bool stores = !law.tension_by_rate;
+    for (int k = 0; k < range.count && !stores; ++k) {
+      const double by_rate = scratch_.law_by_rate[at + static_cast<std::size_t>(k)];
+      const double viscous = by_rate * scratch_.rate[at + static_cast<std::size_t>(k)];
+      stores = std::abs(tension[k] - viscous) > 1e-12 * std::abs(viscous);
+    }
+    if (stores) energy.unknown = law.model->manifest().id;
+    return;
+  }
+  const double present = integrated(law, membranes, range, &scratch_.energy[at]);
+  (law.tension ? energy.tension : law.moment ? energy.bending : energy.cell) += present;
+  if (!law.state.empty()) energy.dissipation += present - relaxed_energy(law, membranes, cell, at, sums);
 }
 
 /// T(stretch, rate) is taken apart into eta rate, for which the tension of the implicit step comes in, and the rest.

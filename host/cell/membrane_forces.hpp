@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "force_filter.hpp"
@@ -22,6 +23,10 @@ struct MembraneEnergy {
   double tension = 0;  ///< laws of segments
   double bending = 0;  ///< laws of nodes
   double cell = 0;     ///< laws of whole cells
+  /// Power that tensions by the rate of stretch take out of the motion, at the present velocities; and energy that laws
+  /// with a state lose in a step without motion.
+  double dissipation = 0;
+  std::string unknown;  ///< a law that acts but tells no energy; empty: none
   [[nodiscard]] double total() const { return tension + bending + cell; }
 };
 
@@ -97,6 +102,15 @@ class MembraneForces {
                        MembraneEnergy* energy);
   void apply_law(const Law& law, const Membranes& membranes, int cell, std::size_t at, std::vector<ElementState>* next,
                  CellState& sums, bool first_tension, bool first_moment, double* energy);
+  void give_inputs(const Law& law, const CellRange& range, int cell, std::size_t at, const CellState& sums,
+                   rouleau_membrane_block& block) const;
+  void add_energy(const Law& law, const Membranes& membranes, int cell, std::size_t at, const CellState& sums,
+                  const double* tension, MembraneEnergy& energy) const;
+  // Of one law in one cell, from the values per rest length or per cell.
+  static double integrated(const Law& law, const Membranes& membranes, const CellRange& range, const double* energy);
+  // What a law's energy will be after a step in which nothing moves.
+  double relaxed_energy(const Law& law, const Membranes& membranes, int cell, std::size_t at,
+                        const CellState& sums) const;
   void add_rate_tension(const Membranes& membranes, int cell, std::size_t at, std::vector<ElementState>* next);
   void act(Membranes& membranes, int cell, std::size_t at, const CellState& state);
 

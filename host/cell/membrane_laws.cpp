@@ -10,7 +10,7 @@ namespace rouleau::host {
 
 namespace {
 
-constexpr int margin = 8;  // doubles in the widest pack
+constexpr int pack_margin = 8;  // doubles in the widest pack
 
 }  // namespace
 
@@ -49,10 +49,10 @@ MembraneForces::MembraneForces(const Membranes& membranes, std::vector<MembraneL
 }
 
 void MembraneForces::allocate(const Membranes& membranes) {
-  std::size_t size = margin;
+  std::size_t size = pack_margin;
   for (const CellRange& cell : membranes.cells) {
     offset_.push_back(size);
-    size += static_cast<std::size_t>(cell.count + margin) / margin * margin + 2 * margin;
+    size += static_cast<std::size_t>(cell.count + pack_margin) / pack_margin * pack_margin + 2 * pack_margin;
   }
   Scratch& s = scratch_;
   for (auto* values : {&rest_.inverse_length, &rest_.inverse_weight, &rest_.curvature, &s.x, &s.y, &s.u, &s.v,

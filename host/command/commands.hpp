@@ -14,6 +14,8 @@ int plan_command(const std::vector<std::string>& arguments);
 int plugins_command(const std::vector<std::string>& arguments);
 int conform_command(const std::vector<std::string>& arguments);
 int new_command(const std::vector<std::string>& arguments);
+int study_command(const std::vector<std::string>& arguments);
+int limits_command(const std::vector<std::string>& arguments);
 int report_command(const std::vector<std::string>& arguments);
 
 }  // namespace rouleau::host

@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* help = R"(usage: rouleau new KIND NAME [options]
+constexpr const char* new_help = R"(usage: rouleau new KIND NAME [options]
 
 Makes a folder with the source, the manifest and the CMakeLists.txt of a new model: a small one that works and passes its
 conformance tests as it is, to be changed into yours. Prints the commands that build, test and use it.
@@ -182,7 +182,7 @@ int new_command(const std::vector<std::string>& arguments) {
   description.add_options()("dir", options::value(&directory)->value_name("DIR"),
                             "make the folder in this one instead of the working directory");
   positional.add("kind", 1).add("name", 1);
-  if (!parse_command_line("new", help, arguments, description, positional)) return 0;
+  if (!parse_command_line("new", new_help, arguments, description, positional)) return 0;
 
   const Template& model = template_of(kind);
   const Name name = checked_name(id);

@@ -11,7 +11,7 @@ namespace rouleau::host {
 
 namespace {
 
-constexpr const char* help = R"(usage: rouleau plan SCENE [options]
+constexpr const char* plan_help = R"(usage: rouleau plan SCENE [options]
 
 Prints, without a step: every conversion, dimensionless number and limit (value, limit, margin), what will be
 computed, what is left out and why, and the estimated time, memory and output size.
@@ -31,7 +31,7 @@ int plan_command(const std::vector<std::string>& arguments) {
   options::positional_options_description positional;
   scene_options.add_to(description, positional);
   description.add_options()("json", options::bool_switch(&json), "print JSON for programs");
-  if (!parse_command_line("plan", help, arguments, description, positional)) return 0;
+  if (!parse_command_line("plan", plan_help, arguments, description, positional)) return 0;
 
   const Scene scene = scene_options.read();
   const Catalog catalog = scene_options.catalog(scene);
@@ -39,7 +39,8 @@ int plan_command(const std::vector<std::string>& arguments) {
   // Placing the cells finds overlaps before a run does.
   if (plan.has_cells) make_membranes(scene, lattice_spacing(scene));
   if (json) {
-    std::cout << to_json(plan).dump(2) << "\n";
+    // Names of folders need not be UTF-8.
+    std::cout << to_json(plan).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
   } else {
     std::cout << to_text(plan);
   }

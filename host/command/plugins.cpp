@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* help = R"(usage: rouleau plugins [ID] [options]
+constexpr const char* plugins_help = R"(usage: rouleau plugins [ID] [options]
 
 Lists every model that was found, its manifest, and why others were refused.
 With the ID of a model: its parameters, units, defaults and limits. No library is opened.
@@ -109,11 +109,11 @@ void print(const Parameter& parameter, const Units& units) {
   if (!parameter.choices.empty()) {
     std::cout << ", one of " << listed(parameter.choices);
   } else {
-    std::cout << (parameter.unit == "1" ? ", a number" : " in " + parameter.unit);
+    std::cout << (parameter.unit == "1" ? ", a number" : " in " + printable(parameter.unit));
   }
   std::cout << (entry.contains("default") ? ", default " + value_text(entry["default"]) : ", must be given") << '\n';
   if (const std::string limits = limits_text(entry); !limits.empty()) std::cout << "        " << limits << '\n';
-  if (!parameter.doc.empty()) std::cout << "        " << parameter.doc << '\n';
+  if (!parameter.doc.empty()) std::cout << "        " << printable(parameter.doc) << '\n';
 }
 
 void print(const Manifest& manifest, const Units& units) {
@@ -121,9 +121,9 @@ void print(const Manifest& manifest, const Units& units) {
     if (text.empty()) return;
     std::string label = name;
     label.resize(15, ' ');
-    std::cout << "  " << label << text << '\n';
+    std::cout << "  " << label << printable(text) << '\n';
   };
-  std::cout << manifest.id << ' ' << manifest.version << ": " << manifest.title << '\n';
+  std::cout << manifest.id << ' ' << manifest.version << ": " << printable(manifest.title) << '\n';
   line("kind", to_string(manifest.kind));
   line("reference", manifest.reference);
   line("author", manifest.author);
@@ -156,13 +156,13 @@ void print(const Catalog& catalog) {
     std::cout << to_string(kind) << (ids.empty() ? ": none\n" : "\n");
     for (const std::string& id : ids) {
       const Manifest& manifest = catalog.find(kind, id, {});
-      std::cout << "  " << id << ' ' << manifest.version << "  " << manifest.title << "\n      "
+      std::cout << "  " << id << ' ' << manifest.version << "  " << printable(manifest.title) << "\n      "
                 << manifest.file.string() << '\n';
     }
   }
   if (!catalog.refused().empty()) std::cout << "refused\n";
   for (const auto& entry : catalog.refused()) {
-    std::cout << "  " << entry.file.string() << (entry.id.empty() ? "" : " (" + entry.id + ')') << '\n';
+    std::cout << "  " << entry.file.string() << (entry.id.empty() ? "" : " (" + printable(entry.id) + ')') << '\n';
     std::string reason = "    " + entry.reason;
     for (auto end = reason.find('\n'); end != std::string::npos; end = reason.find('\n', end + 1)) {
       reason.insert(end + 1, "    ");
@@ -204,7 +204,7 @@ int plugins_command(const std::vector<std::string>& arguments) {
   description.add_options()("lock", options::value(&scene)->value_name("SCENE"), "write the lock of this scene")(
       "out", options::value(&out)->value_name("FILE"), "with --lock: write it there");
   positional.add("id", 1);
-  if (!parse_command_line("plugins", help, arguments, description, positional)) return 0;
+  if (!parse_command_line("plugins", plugins_help, arguments, description, positional)) return 0;
 
   if (!scene.empty()) {
     if (!id.empty() || as_json) {
@@ -220,7 +220,8 @@ int plugins_command(const std::vector<std::string>& arguments) {
   const Units units;
   if (id.empty()) {
     if (as_json) {
-      std::cout << list(catalog, units).dump(2) << '\n';
+      // Names of folders need not be UTF-8.
+      std::cout << list(catalog, units).dump(2, ' ', false, json::error_handler_t::replace) << '\n';
     } else {
       print(catalog);
     }
@@ -228,7 +229,7 @@ int plugins_command(const std::vector<std::string>& arguments) {
   }
   const Manifest& manifest = find(catalog, id);
   if (as_json) {
-    std::cout << describe(manifest, units).dump(2) << '\n';
+    std::cout << describe(manifest, units).dump(2, ' ', false, json::error_handler_t::replace) << '\n';
   } else {
     print(manifest, units);
   }

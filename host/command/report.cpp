@@ -1,37 +1,136 @@
-// rouleau report DIR: the page about a run, made again from the run's files.
+// rouleau report DIR: the page about a run, a study or limits, about two runs side by side, or pictures, made again
+// from the files there.
 #include "output/report.hpp"
 
+#include <unistd.h>
+
+#include <cerrno>
+#include <charconv>
+#include <cstring>
 #include <iostream>
 
 #include "command/command_line.hpp"
 #include "command/commands.hpp"
 #include "error.hpp"
+#include "input/wording.hpp"
+#include "output/study_page.hpp"
 
 namespace rouleau::host {
 
 namespace {
 
-constexpr const char* help = R"(usage: rouleau report DIR
+namespace fs = std::filesystem;
 
-(Re)makes DIR/report.html from the files a run has left in DIR, and prints its path. The page is one file that needs
-no network. A run that was killed has a report too.
+constexpr const char* report_help = R"(usage: rouleau report DIR
+       rouleau report --compare A B [--out FILE]
+       rouleau report DIR --frames [--strains S,S,...] [--out DIR]
 
-Example:
+(Re)makes the page of what DIR holds, and prints its path: report.html from the files of a run, study.html from the
+study.json of a study, limits.html from a limits.json. A page is one file that needs no network. A run that was killed
+has a report too.
+With --compare a page with two runs side by side: animations at the same strain, charts over each other, and what
+differs in scenes, plugins and outcome. Both runs must have ended.
+With --frames pictures (PNG) of the outputs nearest to the strains, all of them in one figure.png, and where ffmpeg is
+installed a video of the run from the first to the last, frames.mp4.
+
+Examples:
   rouleau report runs/demo
+  rouleau report runs/capsule-study
+  rouleau report --compare runs/demo runs/demo-2 --out comparison.html
+  rouleau report runs/demo --frames --strains 0,5,10,15
 )";
+
+struct Options {
+  std::vector<std::string> directories, strains;
+  std::string out;
+  bool compare = false, frames = false;
+};
+
+std::string name_of(const fs::path& directory) {
+  return fs::absolute(directory / "").lexically_normal().parent_path().filename().string();
+}
+
+/// Numbers of "--strains 0,5,10", as text.
+std::vector<std::string> strains_of(const std::vector<std::string>& lists) {
+  std::vector<std::string> strains;
+  for (const std::string& list : lists) {
+    for (std::size_t begin = 0; begin <= list.size();) {
+      const std::size_t end = std::min(list.find(',', begin), list.size());
+      const std::string entry = list.substr(begin, end - begin);
+      double value = 0;
+      const auto [last, error] = std::from_chars(entry.data(), entry.data() + entry.size(), value);
+      if (error != std::errc() || last != entry.data() + entry.size() || !(value >= 0))
+        throw Error(ExitCode::bad_input, "rouleau report --strains: " + in_quotes(entry) +
+                                             " is no strain; it wants numbers from 0 with commas, for example 0,5,10");
+      strains.push_back(entry);
+      begin = end + 1;
+    }
+  }
+  return strains;
+}
+
+/// Becomes the program that draws, which lies in the same installation, or beside this one's build.
+[[noreturn]] void draw_frames(const Options& chosen) {
+  const fs::path directory = chosen.directories[0];
+  const fs::path program = fs::read_symlink("/proc/self/exe").parent_path().parent_path() / ROULEAU_LIBEXEC_FOLDER /
+                           "rouleau" / "draw-frames";
+  if (!fs::exists(program))
+    throw Error(ExitCode::input_output, Place{program.string(), "", 0, 0},
+                "is not there: this rouleau was built without cairo; install libcairo2-dev and build it again");
+  const std::string out =
+      chosen.out.empty() ? (directory / "").lexically_normal().parent_path().string() + "-frames" : chosen.out;
+  std::vector<std::string> words{program.string(), directory.string(), out};
+  const auto strains = strains_of(chosen.strains);
+  words.insert(words.end(), strains.begin(), strains.end());
+  std::vector<char*> pointers;
+  pointers.reserve(words.size() + 1);
+  for (std::string& word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+  std::cout.flush();
+  ::execv(program.c_str(), pointers.data());
+  throw Error(ExitCode::input_output, program.string() + " could not be started: " + std::strerror(errno));
+}
+
+void check(const Options& chosen) {
+  const auto refuse = [](const std::string& words) { throw Error(ExitCode::bad_input, "rouleau report: " + words); };
+  const std::size_t count = chosen.directories.size();
+  if (chosen.compare && chosen.frames) refuse("--compare and --frames do not go together; give one of them");
+  if (chosen.compare && count != 2)
+    refuse("--compare wants the directories of two runs, A and B; " + std::to_string(count) +
+           (count == 1 ? " was given" : " were given"));
+  if (!chosen.compare && count != 1) refuse("takes one directory; two runs are set side by side with --compare A B");
+  if (!chosen.strains.empty() && !chosen.frames) refuse("--strains is for --frames");
+  if (!chosen.out.empty() && !chosen.frames && !chosen.compare)
+    refuse("--out is for --compare and --frames; report.html lies in the run's directory");
+}
 
 }  // namespace
 
 int report_command(const std::vector<std::string>& arguments) {
   namespace options = boost::program_options;
-  std::string directory;
+  Options chosen;
   options::options_description description("options");
   options::positional_options_description positional;
-  description.add_options()("directory", options::value(&directory)->required(), "run's directory DIR");
-  positional.add("directory", 1);
-  if (!parse_command_line("report", help, arguments, description, positional)) return 0;
+  description.add_options()("directory", options::value(&chosen.directories)->required(), "directory DIR");
+  description.add_options()("compare", options::bool_switch(&chosen.compare), "two runs on one page");
+  description.add_options()("frames", options::bool_switch(&chosen.frames), "pictures, and a video where ffmpeg is");
+  description.add_options()("strains", options::value(&chosen.strains)->composing()->value_name("S,S,..."),
+                            "of the pictures (six from the first to the last)");
+  description.add_options()("out", options::value(&chosen.out)->value_name("PATH"),
+                            "file of the comparison (A-and-B.html), directory of the pictures (DIR-frames)");
+  positional.add("directory", -1);
+  if (!parse_command_line("report", report_help, arguments, description, positional)) return 0;
+  check(chosen);
+  if (chosen.frames) draw_frames(chosen);
 
-  std::cout << write_report(directory).string() << "\n";
+  if (chosen.compare) {
+    const auto& [a, b] = std::pair(chosen.directories[0], chosen.directories[1]);
+    const fs::path file = chosen.out.empty() ? name_of(a) + "-and-" + name_of(b) + ".html" : chosen.out;
+    write_comparison(a, b, file);
+    std::cout << file.string() << "\n";
+  } else {
+    for (const fs::path& page : write_pages(chosen.directories[0])) std::cout << page.string() << "\n";
+  }
   return static_cast<int>(ExitCode::done);
 }
 

@@ -1,5 +1,4 @@
 // rouleau run SCENE: simulate and write a run directory.
-#include <atomic>
 #include <csignal>
 #include <filesystem>
 #include <iostream>
@@ -8,6 +7,8 @@
 #include "cell/membranes.hpp"
 #include "command_line.hpp"
 #include "commands.hpp"
+#include "interruption.hpp"
+#include "output/checkpoint_file.hpp"
 #include "output/report.hpp"
 #include "run/simulation.hpp"
 #include "scene_options.hpp"
@@ -16,17 +17,19 @@ namespace rouleau::host {
 
 namespace {
 
-std::atomic<bool> interrupted = false;
-void interrupt(int) { interrupted = true; }
-
-constexpr const char* help = R"(usage: rouleau run SCENE [options]
+constexpr const char* run_help = R"(usage: rouleau run SCENE [options]
 
 Simulates a scene and writes a run directory: summary.json, cells.csv, aggregates.csv, aggregate_sizes.csv, series.csv,
-frames.h5 with frames.xmf (ParaView), log.jsonl and report.html.
+frames.h5 with frames.xmf (ParaView), log.jsonl, checkpoint.h5 and report.html.
+
+Ctrl-C, SIGTERM and a closed terminal end a run after a checkpoint. --resume goes on from the directory's last
+checkpoint, whatever ended the run, to the same results as without the break; without --out in runs/NAME of the scene.
+Where no run has been, or one was killed before its first checkpoint, it begins at the beginning.
 
 Example:
   rouleau run scenes/four-cells-shear.json --out runs/demo --threads 2
   rouleau run scenes/four-cells-shear.json --out runs/demo --overwrite --max-steps 2000
+  rouleau run scenes/four-cells-shear.json --out runs/demo --resume
   rouleau run scenes/four-cells-shear.json --set /interactions/0/parameters/depth='"1.3e-6 J/m2"'
 
 Exit codes: 0 done, 1 the simulation failed, 2 bad input, 3 a plugin was refused, 4 input/output, 130 interrupted
@@ -51,7 +54,7 @@ int run_command(const std::vector<std::string>& arguments) {
   namespace options = boost::program_options;
   SceneOptions scene_options;
   std::string out;
-  bool overwrite = false;
+  bool overwrite = false, resume = false;
   RunOptions run;
   options::options_description description("options");
   options::positional_options_description positional;
@@ -60,12 +63,20 @@ int run_command(const std::vector<std::string>& arguments) {
       "out", options::value(&out)->value_name("DIR"),
       "run directory (default: runs/NAME of the scene, or the first free one of runs/NAME-2, ...)")(
       "overwrite", options::bool_switch(&overwrite), "replace the run that the directory holds")(
+      "resume", options::bool_switch(&resume), "go on from the directory's checkpoint")(
+      "force", options::bool_switch(&run.force),
+      "with --resume: also where program, plugins, outputs or later stages differ from the checkpoint's")(
       "threads", options::value(&run.threads)->default_value(1)->value_name("N"),
       "threads; results do not depend on their number")(
       "max-steps", options::value(&run.max_steps)->value_name("N")->notifier(check_max_steps),
       "stop after N steps over all stages")("quiet", options::bool_switch(&run.quiet), "no progress on the terminal");
-  if (!parse_command_line("run", help, arguments, description, positional)) return 0;
+  if (!parse_command_line("run", run_help, arguments, description, positional)) return 0;
+  std::signal(SIGPIPE, SIG_IGN);  // when who reads the progress has gone the run goes on
 
+  if (resume && overwrite) {
+    throw Error(ExitCode::bad_input, "--resume and --overwrite: a run either goes on or is replaced; give one of them");
+  }
+  if (run.force && !resume) throw Error(ExitCode::bad_input, "--force: only together with --resume");
   const int processors = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   if (run.threads < 1 || run.threads > 1024) {
     throw Error(ExitCode::bad_input, "--threads " + std::to_string(run.threads) +
@@ -80,17 +91,28 @@ int run_command(const std::vector<std::string>& arguments) {
   if (plan.has_cells) make_membranes(scene, lattice_spacing(scene));
   for (const std::string& warning : plan.warnings) std::cerr << "warning: " << warning << "\n";
 
-  run.interrupted = &interrupted;
-  std::signal(SIGINT, interrupt);
-  std::signal(SIGTERM, interrupt);
+  run.interrupted = &listen_for_interruption();
   const std::filesystem::path named = std::filesystem::path("runs") / std::filesystem::path(scene_options.scene).stem();
-  const std::filesystem::path folder = !out.empty() ? std::filesystem::path(out)
-                                       : overwrite  ? named
-                                                    : unused_directory(named);
+  const std::filesystem::path folder = !out.empty()          ? std::filesystem::path(out)
+                                       : overwrite || resume ? named
+                                                             : unused_directory(named);
+  const std::string go_on = "rouleau run " + scene_options.scene + " --out " + folder.string() + " --resume";
+  const FormerRun former = resume ? FormerRun::resume : overwrite ? FormerRun::replace : FormerRun::keep;
   Summary summary;
   {
-    RunDirectory directory(folder, scene, overwrite ? FormerRun::replace : FormerRun::keep);
-    summary = simulate(plan, run, directory);
+    RunDirectory directory(folder, scene, former);
+    if (resume && !directory.resumes()) {
+      std::cerr << folder.string() << " holds no checkpoint: the run begins at the beginning\n";
+    }
+    try {
+      summary = simulate(plan, run, directory);
+    } catch (const Error& error) {
+      const bool kept = directory.is_open() && std::filesystem::exists(checkpoint_file(folder));
+      if (error.code() != ExitCode::input_output || !kept) throw;
+      throw Error(error.code(),
+                  std::string(error.what()) +
+                      "\n  what was computed up to the last checkpoint is kept; to go on from there: " + go_on);
+    }
   }
   const std::filesystem::path report = write_report(folder);
   std::cout << report.string() << "\n" << last_words(summary) << "\n";
@@ -102,6 +124,7 @@ int run_command(const std::vector<std::string>& arguments) {
               << f.value << ", limit " << f.limit << "\n  " << f.remedy << "\n";
   }
   if (summary.failure) return static_cast<int>(ExitCode::simulation_failed);
+  if (summary.status == "interrupted" && scene.output.checkpoint_seconds) std::cerr << "to go on: " << go_on << "\n";
   return static_cast<int>(summary.status == "interrupted" ? ExitCode::interrupted : ExitCode::done);
 }
 

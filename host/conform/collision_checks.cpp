@@ -16,7 +16,6 @@ namespace rouleau::host {
 
 namespace {
 
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
 /// Rounding of a sum of some fifty products and sums of a node's numbers, in units of epsilon times their sizes.
 constexpr double rounding = 64 * epsilon;
 

@@ -15,9 +15,8 @@ namespace {
 // how far these are from each other bounds the error of the first where the function is smooth across the step. Where
 // it has a kink or a jump within the step that bound is large or, close by, wrong; a step that is small enough not to
 // reach it is right again. Hence a claim fails only when the two steps with the smallest bounds both contradict it.
-constexpr int steps = 7, reach = 4, probes = 16;
-constexpr int points = steps * 2 * reach + probes;
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
+constexpr int step_sizes = 7, reach = 4, probes = 16;
+constexpr int points = step_sizes * 2 * reach + probes;
 
 /// The largest step: 2 % of a quantity, which all the singularities of usual laws are further away than.
 double largest_step(const std::string& variable, double value) {
@@ -28,10 +27,10 @@ double largest_step(const std::string& variable, double value) {
 
 /// Offset of a point from the element: first all differences, then the probes of rounding noise.
 double offset(int point, double largest) {
-  if (point >= steps * 2 * reach) {
+  if (point >= step_sizes * 2 * reach) {
     // So near that the function is a straight line but for rounding, its own and that of the abscissa; not evenly
     // spaced, for along an even row what is cut off may be the same everywhere.
-    const double golden = 0.6180339887498949 * (point - steps * 2 * reach);
+    const double golden = 0.6180339887498949 * (point - step_sizes * 2 * reach);
     return (golden - std::floor(golden)) * largest * std::ldexp(1.0, -24);
   }
   const int step = point / (2 * reach), side = point % (2 * reach);
@@ -41,17 +40,17 @@ double offset(int point, double largest) {
 
 /// All slopes of one element, with `f(point)`.
 template <class F>
-std::array<Slope, steps> all_slopes(double largest, const F& f) {
+std::array<Slope, step_sizes> all_slopes(double largest, const F& f) {
   // The first two probes lie wide apart: the line through them.
-  const int first = steps * 2 * reach;
+  const int first = step_sizes * 2 * reach;
   const double x0 = offset(first, largest), rise = (f(first + 1) - f(first)) / (offset(first + 1, largest) - x0);
   // Numbers below the smallest normal one have fewer digits.
   double noise = epsilon * std::abs(f(first)) + std::numeric_limits<double>::min();
   for (int p = first + 2; p < first + probes; ++p) {
     noise = std::max(noise, std::abs(f(p) - f(first) - rise * (offset(p, largest) - x0)));
   }
-  std::array<Slope, steps> result;
-  for (int step = 0; step < steps; ++step) {
+  std::array<Slope, step_sizes> result;
+  for (int step = 0; step < step_sizes; ++step) {
     const double h = largest / std::pow(4.0, step);
     std::array<double, reach> difference{};
     for (int j = 0; j < reach; ++j) {
@@ -72,8 +71,8 @@ std::array<Slope, steps> all_slopes(double largest, const F& f) {
 /// A bound beyond a ten-thousandth of the slope itself is no evidence.
 bool tells(double error, double size) { return error <= 1e-4 * size; }
 
-std::vector<std::array<Slope, steps>> ladder(const Subject& subject, const Trial& trial, const Values& inputs,
-                                             const std::string& function, const std::string& variable) {
+std::vector<std::array<Slope, step_sizes>> ladder(const Subject& subject, const Trial& trial, const Values& inputs,
+                                                  const std::string& function, const std::string& variable) {
   const std::size_t count = inputs.at(variable).size();
   Values many;
   for (const auto& [name, values] : inputs) {
@@ -87,7 +86,7 @@ std::vector<std::array<Slope, steps>> ladder(const Subject& subject, const Trial
   Call call;
   call.time_step = subject.manifest().state.empty() ? 1 : 0;
   const auto results = compute(subject, trial.instance, many, call).at(function);
-  std::vector<std::array<Slope, steps>> all;
+  std::vector<std::array<Slope, step_sizes>> all;
   for (std::size_t i = 0; i < count; ++i) {
     all.push_back(all_slopes(largest_step(variable, inputs.at(variable)[i]),
                              [&](int p) { return results[i * points + static_cast<std::size_t>(p)]; }));

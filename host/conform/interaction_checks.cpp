@@ -13,8 +13,6 @@ namespace rouleau::host {
 
 namespace {
 
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
-
 Finding compare(const Subject& subject, const DerivativeClaim& claim) {
   Random random = subject.random();
   Worst worst;

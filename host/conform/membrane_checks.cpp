@@ -14,8 +14,6 @@ namespace rouleau::host {
 
 namespace {
 
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
-
 Finding compare(const Subject& subject, const std::vector<DerivativeClaim>& claims) {
   Random random = subject.random();
   Worst worst;
@@ -43,7 +41,7 @@ Finding compare(const Subject& subject, const std::vector<DerivativeClaim>& clai
   return worst.finding("as the differences are");
 }
 
-Finding gradient(const Subject& subject) {
+Finding force_gradient(const Subject& subject) {
   const Manifest& manifest = subject.manifest();
   if (!manifest.claims.value("conservative", false)) return Finding::skipped("does not claim to be conservative");
   if (!manifest.gives_output("energy")) {
@@ -219,7 +217,7 @@ std::vector<Check> membrane_checks() {
   constexpr auto kind = ModelKind::membrane;
   constexpr auto level = Level::physics;
   return {
-      {"gradient", level, "gives forces that are derivatives of its energy", {"compute"}, gradient, kind},
+      {"gradient", level, "gives forces that are derivatives of its energy", {"compute"}, force_gradient, kind},
       {"derivatives", level, "gives the derivatives of its forces", {"compute", "gradient"}, derivatives, kind},
       {"rest-state", level, "exerts no force at rest", {"compute", "gradient"}, rest_state, kind},
       {"rigid-motion", level, "does not notice rigid motion", {"compute", "gradient"}, check_rigid_motion, kind},

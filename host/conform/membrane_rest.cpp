@@ -8,11 +8,7 @@
 
 namespace rouleau::host {
 
-namespace {
-
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
-
-}  // namespace
+namespace {}  // namespace
 
 void keep_state(Values& inputs, const Values& outputs) {
   for (auto& [name, values] : inputs) {

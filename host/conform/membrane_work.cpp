@@ -14,14 +14,14 @@ namespace rouleau::host {
 
 namespace {
 
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
-constexpr std::size_t elements = 16;
+constexpr std::size_t element_count = 16;
 constexpr int marks = 16, periods = 3;  ///< work is noted `marks` times in each period
 
 /// Smooth closed paths of each coordinate around its value at rest, where they begin: by at most a half of it.
 class Path {
  public:
-  Path(const std::vector<MembraneCoordinate>& coordinates, Random& random) : waves_(coordinates.size() * elements * 3) {
+  Path(const std::vector<MembraneCoordinate>& coordinates, Random& random)
+      : waves_(coordinates.size() * element_count * 3) {
     for (Wave& wave : waves_) {
       wave = {uniform(random, -1.0 / 12, 1.0 / 12), uniform(random, 0, 2 * std::numbers::pi)};
     }
@@ -33,7 +33,7 @@ class Path {
   [[nodiscard]] Place at(std::size_t c, std::size_t element, double time) const {
     Place place;
     for (std::size_t k = 0; k < 3; ++k) {
-      const Wave& wave = waves_[(c * elements + element) * 3 + k];
+      const Wave& wave = waves_[(c * element_count + element) * 3 + k];
       const double frequency = 2 * std::numbers::pi * static_cast<double>(k + 1), angle = frequency * time + wave.phase;
       place.change += wave.amplitude * (std::sin(angle) - std::sin(wave.phase));
       place.rate += wave.amplitude * frequency * std::cos(angle);
@@ -59,7 +59,7 @@ struct Work {
 std::vector<Work> work_along(const Subject& subject, const Trial& trial, const Path& path, const Values& rest,
                              double period, int steps) {
   const auto coordinates = coordinates_of(subject.manifest());
-  std::vector<Work> work(elements);
+  std::vector<Work> work(element_count);
   Values inputs = rest;
   Call call;
   call.time_step = 0;
@@ -69,26 +69,26 @@ std::vector<Work> work_along(const Subject& subject, const Trial& trial, const P
   const auto scale = [&](std::size_t c, std::size_t i) {
     return coordinates[c].variable == "curvature" ? 0.2 : rest.at(coordinates[c].variable)[i];
   };
-  std::vector<std::array<double, 5>> history(elements * coordinates.size());
-  std::vector<double> done(elements), force(elements * coordinates.size()), way(force.size());
+  std::vector<std::array<double, 5>> history(element_count * coordinates.size());
+  std::vector<double> done(element_count), force(element_count * coordinates.size()), way(force.size());
   for (int step = 1; step <= steps * periods; ++step) {
     const Values last = inputs;
     for (std::size_t c = 0; c < coordinates.size(); ++c) {
       const std::string& variable = coordinates[c].variable;
-      for (std::size_t i = 0; i < elements; ++i) {
+      for (std::size_t i = 0; i < element_count; ++i) {
         inputs[variable][i] =
             rest.at(variable)[i] + scale(c, i) * path.at(c, i, static_cast<double>(step) / steps).change;
       }
     }
     if (inputs.contains("stretch_rate")) {
-      for (std::size_t i = 0; i < elements; ++i) {
+      for (std::size_t i = 0; i < element_count; ++i) {
         inputs["stretch_rate"][i] = (inputs.at("stretch")[i] - last.at("stretch")[i]) / call.time_step;
       }
     }
     const Values after = compute(subject, trial.instance, inputs, call);
     for (std::size_t c = 0; c < coordinates.size(); ++c) {
       const std::string &variable = coordinates[c].variable, &name = coordinates[c].force;
-      for (std::size_t i = 0; i < elements; ++i) {
+      for (std::size_t i = 0; i < element_count; ++i) {
         const double moved = inputs.at(variable)[i] - last.at(variable)[i];
         const double f0 = before.at(name)[i], f1 = after.at(name)[i];
         done[i] += coordinates[c].sign * 0.5 * (f0 + f1) * moved;
@@ -96,22 +96,22 @@ std::vector<Work> work_along(const Subject& subject, const Trial& trial, const P
           const double rate = scale(c, i) * path.at(c, i, static_cast<double>(step) / steps).rate;
           work[i].last_period += coordinates[c].sign * f1 * rate / steps;
         }
-        auto& row = history[c * elements + i];
+        auto& row = history[c * element_count + i];
         row = {row[1], row[2], row[3], row[4], f1};
         if (step >= 5) {
           work[i].rough += std::abs(row[0] - 4 * row[1] + 6 * row[2] - 4 * row[3] + row[4]) * std::abs(moved);
         }
-        way[c * elements + i] += std::abs(moved);
-        force[c * elements + i] = std::max(force[c * elements + i], std::abs(f1));
+        way[c * element_count + i] += std::abs(moved);
+        force[c * element_count + i] = std::max(force[c * element_count + i], std::abs(f1));
       }
     }
     before = after;
     keep_state(inputs, after);
     if (step % (steps / marks) == 0) {
-      for (std::size_t i = 0; i < elements; ++i) work[i].done.push_back(done[i]);
+      for (std::size_t i = 0; i < element_count; ++i) work[i].done.push_back(done[i]);
     }
   }
-  for (std::size_t k = 0; k < way.size(); ++k) work[k % elements].way += way[k] * force[k];
+  for (std::size_t k = 0; k < way.size(); ++k) work[k % element_count].way += way[k] * force[k];
   return work;
 }
 
@@ -139,10 +139,10 @@ void for_each_path(const Subject& subject, const See& see) {
     for (int i = 0; i < 2; ++i) {
       const double period = std::pow(10.0, uniform(random, 2, 7));
       const Path path(coordinates_of(subject.manifest()), random);
-      const Values rest = at_rest(subject, trial, elements, random);
+      const Values rest = at_rest(subject, trial, element_count, random);
       const auto coarse = work_along(subject, trial, path, rest, period, 64);
       const auto fine = work_along(subject, trial, path, rest, period, 512);
-      for (std::size_t k = 0; k < elements; ++k) see(trial, rest, k, coarse[k], fine[k]);
+      for (std::size_t k = 0; k < element_count; ++k) see(trial, rest, k, coarse[k], fine[k]);
     }
   }
 }

@@ -14,8 +14,6 @@ namespace rouleau::host {
 
 namespace {
 
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
-
 ModelSetting rescaled(const ModelSetting& setting, Random& random) {
   const auto factor = [&] { return std::pow(10.0, uniform(random, -1, 1)); };
   ModelSetting other = setting;

@@ -2,15 +2,18 @@
 
 #include <fcntl.h>
 #include <poll.h>
-#include <spawn.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstring>
+#include <limits>
 
 #include "error.hpp"
 #include "report_line.hpp"
@@ -55,29 +58,49 @@ struct Pipe {
   }
 };
 
-pid_t start(const std::filesystem::path& program, const std::vector<std::string>& arguments, int finding, int output) {
-  posix_spawn_file_actions_t files;
-  posix_spawn_file_actions_init(&files);
-  posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_adddup2(&files, output, STDOUT_FILENO);
-  posix_spawn_file_actions_adddup2(&files, output, STDERR_FILENO);
-  posix_spawn_file_actions_adddup2(&files, finding, finding_descriptor);
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
-  posix_spawnattr_setpgroup(&attributes, 0);
+/// What the new process does until it becomes the program: only calls that are allowed after fork. Returns when one of
+/// them failed.
+void become(const char* program, char* const* words, int finding, int output, pid_t parent) {
+  setpgid(0, 0);
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) raise(SIGKILL);  // the parent died before it could be watched
+  const int input = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+  if (input < 0 || dup2(input, STDIN_FILENO) < 0 || dup2(output, STDOUT_FILENO) < 0 ||
+      dup2(output, STDERR_FILENO) < 0 || dup2(finding, finding_descriptor) < 0 ||
+      fcntl(finding_descriptor, F_SETFD, 0) < 0)
+    return;
+  execve(program, words, environ);
+}
 
+pid_t start(const std::filesystem::path& program, const std::vector<std::string>& arguments, int finding, int output) {
   std::vector<std::string> words = {program.string()};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> pointers;
   pointers.reserve(words.size() + 1);
   for (std::string& word : words) pointers.push_back(word.data());
   pointers.push_back(nullptr);
-  pid_t process = 0;
-  const int error = posix_spawn(&process, program.c_str(), &files, &attributes, pointers.data(), environ);
-  posix_spawn_file_actions_destroy(&files);
-  posix_spawnattr_destroy(&attributes);
-  if (error != 0) fail(program.string() + " could not be started", error);
+  Pipe failure;  // closes when the program has begun
+  const pid_t parent = getpid(), process = fork();
+  if (process < 0) fail(program.string() + " could not be started", errno);
+  if (process == 0) {
+    // Not where the finding goes.
+    const int told = fcntl(failure.to.get(), F_DUPFD_CLOEXEC, finding_descriptor + 1);
+    become(program.c_str(), pointers.data(), finding, output, parent);
+    const int error = errno;
+    if (write(told, &error, sizeof error) < 0) _exit(126);
+    _exit(127);
+  }
+  setpgid(process, process);  // whoever of the two comes first
+  failure.to.close();
+  int error = 0;
+  ssize_t size = 0;
+  do {
+    size = read(failure.from.get(), &error, sizeof error);
+  } while (size < 0 && errno == EINTR);
+  if (size == static_cast<ssize_t>(sizeof error)) {
+    waitpid(process, nullptr, 0);
+    fail(program.string() + " could not be started", error);
+  }
   return process;
 }
 
@@ -93,7 +116,7 @@ bool read_some(int descriptor, std::string& text, std::size_t largest) {
 }  // namespace
 
 ProcessEnd run_process(const std::filesystem::path& program, const std::vector<std::string>& arguments,
-                       double time_limit_s) {
+                       const ProcessLimits& limits) {
   Pipe finding, output;
   const auto begin = Clock::now();
   const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
@@ -105,29 +128,41 @@ ProcessEnd run_process(const std::filesystem::path& program, const std::vector<s
   // The finding's pipe closes when the process ends: nothing that the plugin starts gets this descriptor for good.
   bool open = true, talks = true;
   int status = 0;
+  rusage usage{};
+  double kill_at = std::numeric_limits<double>::infinity();
   while (true) {
     std::array<pollfd, 2> ends = {pollfd{open ? finding.from.get() : -1, POLLIN, 0},
                                   pollfd{talks ? output.from.get() : -1, POLLIN, 0}};
     constexpr int tick_ms = 20;
     poll(ends.data(), ends.size(), open || talks ? tick_ms : 1);
     if (ends[0].revents != 0) open = read_some(finding.from.get(), end.finding, 1 << 16);
-    if (ends[1].revents != 0) talks = read_some(output.from.get(), end.output, 4096);
-    if (waitpid(process, &status, WNOHANG) == process) break;
-    if (elapsed() > time_limit_s) {
-      end.timed_out = true;
-      kill(-process, SIGKILL);
-      waitpid(process, &status, 0);
-      break;
+    if (ends[1].revents != 0) talks = read_some(output.from.get(), end.output, limits.largest_output);
+    if (wait4(process, &status, WNOHANG, &usage) == process) break;
+    if (std::isinf(kill_at)) {
+      end.timed_out = elapsed() > limits.time_s;
+      end.stopped = limits.stop != nullptr && *limits.stop;
+      if (!end.timed_out && !end.stopped) continue;
+      if (limits.grace_s > 0) kill(-process, SIGTERM);
+      kill_at = elapsed() + limits.grace_s;
     }
+    if (elapsed() < kill_at) continue;
+    kill(-process, SIGKILL);
+    wait4(process, &status, 0, &usage);
+    break;
   }
   kill(-process, SIGKILL);  // what it started and left behind
   fcntl(finding.from.get(), F_SETFL, O_NONBLOCK);
   fcntl(output.from.get(), F_SETFL, O_NONBLOCK);
   while (open && read_some(finding.from.get(), end.finding, 1 << 16)) {
   }
-  while (talks && read_some(output.from.get(), end.output, 4096)) {
+  while (talks && read_some(output.from.get(), end.output, limits.largest_output)) {
   }
   end.wall_s = elapsed();
+  const auto seconds = [](const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  };
+  end.cpu_s = seconds(usage.ru_utime) + seconds(usage.ru_stime);
+  end.peak_rss_bytes = usage.ru_maxrss * 1024;
   if (WIFSIGNALED(status)) end.signal = WTERMSIG(status);
   if (WIFEXITED(status)) end.exit_code = WEXITSTATUS(status);
   return end;

@@ -9,6 +9,8 @@
 
 namespace rouleau::host {
 
+inline constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
 class Worst {
  public:
   /// One comparison: passes when measured <= limit. `words()` names its place; it is asked for the worst one only,

@@ -1,5 +1,6 @@
 #include "fluid.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <rouleau/dispatch.hpp>
@@ -40,8 +41,8 @@ std::size_t Fluid<T>::bytes() const {
 
 template <class T>
 inline bool Fluid<T>::reaches_border(int y) const {
-  constexpr int halo = Field<T>::halo;
-  return activity_.at_side(y) || ((y < halo || y >= setting_.ny - halo) && activity_.any(y));
+  constexpr int width = Field<T>::halo;
+  return activity_.at_side(y) || ((y < width || y >= setting_.ny - width) && activity_.any(y));
 }
 
 template <class T>
@@ -285,6 +286,27 @@ void Fluid<T>::take_over(Fluid& other, double factor) {
             static_cast<T>(equilibrium(q, factor * density, factor * jx, factor * jy) + factor * rest);
       }
     }
+  }
+  begin_exchange(lattice_);
+}
+
+template <class T>
+void Fluid<T>::copy_populations(int q, std::vector<T>& values) const {
+  values.clear();
+  for (int y = 0; y < setting_.ny; ++y) {
+    const T* in[9];
+    lattice_.row_pointers(parity_, y, in);
+    values.insert(values.end(), in[q], in[q] + setting_.nx);
+  }
+}
+
+template <class T>
+void Fluid<T>::restore(const std::function<const std::vector<T>&(int)>& populations, bool walls_have_acted) {
+  parity_ = Parity::even;
+  walls_have_acted_ = walls_have_acted;
+  for (int q = 0; q < 9; ++q) {
+    const T* from = populations(q).data();
+    for (int y = 0; y < setting_.ny; ++y, from += setting_.nx) std::copy_n(from, setting_.nx, lattice_.slot(q, y));
   }
   begin_exchange(lattice_);
 }

@@ -88,8 +88,22 @@ class Fluid {
     double lower, upper;
   };
   [[nodiscard]] WallStress wall_stress() const;
-  /// Populations before the next collision, for checkpoints and tests.
+  /// What of the fluid's energy there is and what becomes of it, summed over all nodes; state as in moments().
+  struct Energetics {
+    double kinetic;                 ///< u^2/2, density 1
+    double dissipation;             ///< what viscosity takes in a step, see energetics.cpp
+    double velocity_x, velocity_y;  ///< sums of u
+    double membrane_power;          ///< of the forces beside the body force, f . u
+  };
+  [[nodiscard]] Energetics energetics() const;
+  /// Populations before the next collision, for tests.
   [[nodiscard]] double population(int q, int x, int y) const;
+  /// All populations of one velocity before the next collision, row after row, for checkpoints. After settle().
+  void copy_populations(int q, std::vector<T>& values) const;
+  /// Whether the walls have exchanged momentum with this state of the fluid (WallStress).
+  [[nodiscard]] bool walls_have_acted() const { return walls_have_acted_; }
+  /// Goes on from what copy_populations() gave: `populations(q)` returns it for every q.
+  void restore(const std::function<const std::vector<T>&(int q)>& populations, bool walls_have_acted);
 
  private:
   [[nodiscard]] double equilibrium(int q, double density, double ux, double uy) const;

@@ -1,14 +1,16 @@
 #include "error.hpp"
 
+#include "wording.hpp"
+
 namespace rouleau::host {
 
 std::string to_string(const Place& place) {
-  std::string text = place.file;
+  std::string text = printable(place.file);
   if (place.line > 0) {
     text += ':' + std::to_string(place.line);
     if (place.column > 0) text += ':' + std::to_string(place.column);
   }
-  if (!place.pointer.empty()) text += (text.empty() ? "" : " ") + place.pointer;
+  if (!place.pointer.empty()) text += (text.empty() ? "" : " ") + printable(place.pointer);
   return text;
 }
 

@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "wording.hpp"
+
 namespace rouleau::host {
 
 /// The pointer of a member or element of what `parent` points to; `token` is unescaped.
@@ -71,7 +73,7 @@ inline std::string subject(std::string_view pointer) {
       name = token;
     }
   }
-  return name;
+  return printable(name);
 }
 
 }  // namespace rouleau::host

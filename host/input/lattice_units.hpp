@@ -35,6 +35,7 @@ inline constexpr Dimension pressure{{1, -1, -2, 0, 0, 0}};
 inline constexpr Dimension force_density{{1, -2, -2, 0, 0, 0}};
 inline constexpr Dimension tension{{1, 0, -2, 0, 0, 0}};
 inline constexpr Dimension energy_per_depth{{1, 1, -2, 0, 0, 0}};
+inline constexpr Dimension power_per_depth{{1, 1, -3, 0, 0, 0}};
 }  // namespace dimension
 
 }  // namespace rouleau::host

@@ -7,18 +7,6 @@
 #include "wording.hpp"
 
 namespace rouleau::host {
-namespace {
-
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
-
-std::string byte_name(char c) {
-  std::array<char, 16> name{};
-  std::snprintf(name.data(), name.size(), "byte 0x%02X", static_cast<unsigned>(static_cast<unsigned char>(c)));
-  return name.data();
-}
-
-/// Length of the UTF-8 character at `at`, 0 when there is none (RFC 3629: no overlong forms, no surrogates).
 std::size_t utf8_length(std::string_view text, std::size_t at) {
   const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
   const auto lead = byte(at);
@@ -34,6 +22,16 @@ std::size_t utf8_length(std::string_view text, std::size_t at) {
   const bool bad = (lead == 0xE0 && second < 0xA0) || (lead == 0xED && second > 0x9F) ||
                    (lead == 0xF0 && second < 0x90) || (lead == 0xF4 && second > 0x8F);
   return bad ? 0 : length;
+}
+
+namespace {
+
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
+
+std::string byte_name(char c) {
+  std::array<char, 16> name{};
+  std::snprintf(name.data(), name.size(), "byte 0x%02X", static_cast<unsigned>(static_cast<unsigned char>(c)));
+  return name.data();
 }
 
 class Diagnosis {
@@ -79,7 +77,7 @@ class Diagnosis {
     if (is_digit(at(p)) || at(p) == '-') return "number";
     if (at(p) == '"') return "text";
     const auto length = utf8_length(text_, p);
-    if (length == 0 || static_cast<unsigned char>(at(p)) < 0x20) return byte_name(at(p));
+    if (length == 0 || static_cast<unsigned char>(at(p)) < 0x20 || at(p) == 0x7f) return byte_name(at(p));
     return "'" + std::string(text_.substr(p, length)) + "'";
   }
 

@@ -23,6 +23,9 @@ struct Stumble {
 /// The fault as an exception, to be thrown by the caller.
 TextFault describe_malformed(std::string_view text, const Stumble& stumble);
 
+/// Length of the UTF-8 character at `at`, 0 when there is none (RFC 3629: no overlong forms, no surrogates).
+std::size_t utf8_length(std::string_view text, std::size_t at);
+
 /// One past the JSON number that begins at `start` (as far as the grammar goes).
 std::size_t end_of_number(std::string_view text, std::size_t start);
 

@@ -9,7 +9,7 @@ namespace rouleau::host {
 
 namespace {
 
-constexpr double turn = 2 * std::numbers::pi;
+constexpr double full_turn = 2 * std::numbers::pi;
 
 /// A closed curve by an angle in [0, 2 pi), counter-clockwise from the positive x axis, and its derivative.
 struct Curve {
@@ -59,7 +59,7 @@ double step(const Curve& curve, double angle, double chord, double stride) {
   const Eigen::Vector2d start = curve(angle).place;
   const auto distance = [&](const Curve::Point& point) { return (point.place - start).norm(); };
   double low = angle, high = angle + stride;
-  while (distance(curve(high)) < chord && high < angle + turn) low = std::exchange(high, high + stride);
+  while (distance(curve(high)) < chord && high < angle + full_turn) low = std::exchange(high, high + stride);
   double next = 0.5 * (low + high);
   for (int iteration = 0; iteration < 60; ++iteration) {
     const Curve::Point point = curve(next);
@@ -68,14 +68,14 @@ double step(const Curve& curve, double angle, double chord, double stride) {
     double newton = next - (length - chord) / slope;
     if (!(newton > low && newton < high)) newton = 0.5 * (low + high);
     const double change = std::abs(newton - std::exchange(next, newton));
-    if (change < 1e-16 * turn) break;
+    if (change < 1e-16 * full_turn) break;
   }
   return next;
 }
 
 /// Angles of nodes 0 ... segments when every segment has length `chord`; the last one ought to be a full turn.
 void march(const Curve& curve, double chord, std::vector<double>& angles) {
-  const double stride = turn / 4 / static_cast<double>(angles.size());
+  const double stride = full_turn / 4 / static_cast<double>(angles.size());
   angles[0] = 0;
   for (std::size_t i = 1; i < angles.size(); ++i) angles[i] = step(curve, angles[i - 1], chord, stride);
 }
@@ -89,14 +89,14 @@ Outline make_outline(const Shape& shape, int segments) {
 
   double chord = 0;
   for (int i = 0; i < segments; ++i) {
-    chord += (curve(turn * (i + 1) / segments).place - curve(turn * i / segments).place).norm() / segments;
+    chord += (curve(full_turn * (i + 1) / segments).place - curve(full_turn * i / segments).place).norm() / segments;
   }
   // Secant steps on the chord until the nodes close after exactly one turn.
   std::vector<double> angles(static_cast<std::size_t>(segments) + 1);
-  double old_chord = 0, old_excess = -turn;
+  double old_chord = 0, old_excess = -full_turn;
   for (int iteration = 0; iteration < 40; ++iteration) {
     march(curve, chord, angles);
-    const double excess = angles.back() - turn;
+    const double excess = angles.back() - full_turn;
     if (std::abs(excess) < 1e-15 * segments) break;
     const double next = chord - excess * (chord - old_chord) / (excess - old_excess);
     if (next == chord) break;
@@ -105,7 +105,7 @@ Outline make_outline(const Shape& shape, int segments) {
   }
 
   // What is left of the gap would all fall on the last segment: share it.
-  const double gap = angles.back() - turn;
+  const double gap = angles.back() - full_turn;
   for (int i = 0; i < segments; ++i) angles[static_cast<std::size_t>(i)] -= gap * i / segments;
 
   Outline outline;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <numbers>
 #include <random>
 
@@ -34,15 +35,6 @@ class RandomNumbers {
   std::mt19937_64 engine_;
 };
 
-double largest_radius(const Shape& shape) {
-  struct Size {
-    double operator()(const Biconcave& s) const { return s.radius; }
-    double operator()(const Circle& s) const { return s.radius; }
-    double operator()(const Ellipse& s) const { return s.semi_axes.maxCoeff(); }
-  };
-  return std::visit(Size{}, shape);
-}
-
 double region_area(const RandomPacking& packing) {
   return (packing.upper.x() - packing.lower.x()) * (packing.upper.y() - packing.lower.y());
 }
@@ -62,11 +54,12 @@ class Packer {
       : packings_(packings), cells_(cells), unit_(unit), numbers_(make_numbers(packings)) {
     box_x_ = {0, domain.size.x() / unit, true};
     box_y_ = {0, domain.size.y() / unit, domain.periodic_y};
-    outlines_.reserve(types.size());
-    for (const CellType& type : types) outlines_.emplace_back(type.shape, type.segments, unit);
-    for (const RigidOutline& outline : outlines_) {
-      allowance_ = std::max(allowance_, outline.allowance());
-      largest_ = std::max(largest_, outline.radius());
+    for (const CellPlacement& cell : cells) {
+      const CellType& type = types[static_cast<std::size_t>(cell.type)];
+      const auto [outline, is_new] = outlines_.try_emplace(cell.type, type.shape, type.segments, unit);
+      if (!is_new) continue;
+      allowance_ = std::max(allowance_, outline->second.allowance());
+      largest_ = std::max(largest_, outline->second.radius());
     }
     double gap = 0;
     for (const RandomPacking& packing : packings) {
@@ -126,7 +119,7 @@ class Packer {
 
   void set_obstacle(std::size_t i) {
     const CellPlacement& cell = cells_[i];
-    bodies_[i] = {&outlines_[static_cast<std::size_t>(cell.type)],
+    bodies_[i] = {&outlines_.at(cell.type),
                   {box_x_.wrapped(cell.center.x() / unit_), box_y_.wrapped(cell.center.y() / unit_)},
                   direction_of(cell.angle),
                   1};
@@ -136,7 +129,7 @@ class Packer {
   /// Draws places for a new cell, smaller and smaller, until one is free.
   bool insert(std::size_t i) {
     const Territory& own = territories_[static_cast<std::size_t>(owner_[i])];
-    RigidBody body{&outlines_[static_cast<std::size_t>(cells_[i].type)], {}, {}, 1};
+    RigidBody body{&outlines_.at(cells_[i].type), {}, {}, 1};
     for (; body.scale > smallest_scale; body.scale *= shrinking) {
       for (int trial = 0; trial < tries_at_a_size; ++trial) {
         body.center = {own.x.lower + own.x.length() * numbers_.below_one(),
@@ -286,7 +279,7 @@ class Packer {
   double unit_;  ///< m; all lengths below are multiples of it
   RandomNumbers numbers_;
   Axis box_x_, box_y_;
-  std::vector<RigidOutline> outlines_;  ///< by type
+  std::map<int, RigidOutline> outlines_;  ///< by type, of those that have cells
   double allowance_ = 0, largest_ = 0;
   std::vector<Territory> territories_;  ///< by packing
   std::optional<CenterGrid> grid_;
@@ -298,8 +291,17 @@ class Packer {
 
 }  // namespace
 
-long cells_for(double hematocrit, const CellType& type, const RandomPacking& packing) {
-  return std::lround(hematocrit * region_area(packing) / cell_area(type));
+double largest_radius(const Shape& shape) {
+  struct Size {
+    double operator()(const Biconcave& s) const { return s.radius; }
+    double operator()(const Circle& s) const { return s.radius; }
+    double operator()(const Ellipse& s) const { return s.semi_axes.maxCoeff(); }
+  };
+  return std::visit(Size{}, shape);
+}
+
+double cells_for(double hematocrit, const CellType& type, const RandomPacking& packing) {
+  return std::round(hematocrit * region_area(packing) / cell_area(type));
 }
 
 double hematocrit_of(const RandomPacking& packing, const CellType& type) {
@@ -309,8 +311,11 @@ double hematocrit_of(const RandomPacking& packing, const CellType& type) {
 std::optional<PackingShortfall> pack(const Domain& domain, const std::vector<CellType>& types,
                                      const std::vector<RandomPacking>& packings, std::vector<CellPlacement>& cells) {
   if (packings.empty()) return std::nullopt;
+  // Of the types that have cells: one that has none may be so large that rounding would deform the others.
   double unit = 0;
-  for (const CellType& type : types) unit = std::max(unit, largest_radius(type.shape));
+  for (const CellPlacement& cell : cells) {
+    unit = std::max(unit, largest_radius(types[static_cast<std::size_t>(cell.type)].shape));
+  }
   return Packer(domain, types, packings, cells, unit).pack();
 }
 

@@ -14,14 +14,18 @@ struct PackingShortfall {
   double hematocrit;    ///< of its region, by those of its cells and parts of cells that found room
 };
 
-/// Cells of this type that fill a share `hematocrit` of the packing's region, to the nearest whole number.
-long cells_for(double hematocrit, const CellType& type, const RandomPacking& packing);
+/// Half the longest way through a cell of this shape, m.
+double largest_radius(const Shape& shape);
+/// Cells of this type that fill a share `hematocrit` of the packing's region, to the nearest whole number; of cells
+/// that are tiny in a large region more than any integer holds.
+double cells_for(double hematocrit, const CellType& type, const RandomPacking& packing);
 /// Share of the packing's region that its cells fill.
 double hematocrit_of(const RandomPacking& packing, const CellType& type);
 
 /// Gives a centre and an angle to the cells of all packings, [first, first + count) of `cells`, in their shape at rest.
-/// All other cells are obstacles. Outlines keep the larger gap of the two packings from each other, and that of their
-/// own packing from obstacles and walls; periodic images count as cells.
+/// All other cells are obstacles. No cell may be longer, and no gap wider, than the domain is from corner to corner:
+/// the periodic images that come near a cell would be countless. Outlines keep the larger gap of the two packings from
+/// each other, and that of their own packing from obstacles and walls; periodic images count as cells.
 ///
 /// Random sequential adsorption ends, for cells of this shape, near a third of the area. So a cell that finds no room
 /// is drawn smaller, and hard-particle Monte Carlo moves (Metropolis et al., J. Chem. Phys. 21, 1953) of all cells make

@@ -101,17 +101,19 @@ Checks read_checks(const SceneFields& fields) {
   checks.mach = fields.value_or("/checks/mach", checks.mach);
   checks.node_step = fields.value_or("/checks/node_step", checks.node_step);
   checks.area_drift = fields.value_or("/checks/area_drift", checks.area_drift);
+  checks.stretch = fields.value_or("/checks/stretch", checks.stretch);
+  checks.energy_growth = fields.value_or("/checks/energy_growth", checks.energy_growth);
   checks.every_steps = fields.value_or("/checks/every_steps", checks.every_steps);
   return checks;
 }
 
-std::vector<std::filesystem::path> read_plugin_dirs(const SceneFields& fields) {
+std::vector<std::filesystem::path> read_plugin_dirs(const SceneFields& fields, const std::filesystem::path& beside) {
   std::vector<std::filesystem::path> folders;
   for (const auto& folder : fields.value_or("/plugin_dirs", std::vector<std::string>{})) {
     if (folder.find('\0') != std::string::npos) {
       fields.refuse(child_pointer("/plugin_dirs", folders.size()), "a folder's name cannot hold a NUL character");
     }
-    folders.emplace_back(folder);
+    folders.push_back(beside / folder);
   }
   return folders;
 }
@@ -130,14 +132,14 @@ Place Scene::place(const std::string& pointer) const {
   return document ? document->place(pointer) : Place{"", pointer, 0, 0};
 }
 
-Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+Scene read_unpacked_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   auto document = std::make_shared<Document>(Document::read(file));
   for (const auto& assignment : overrides) document->set(assignment);
   validate(*document, scene_schema());
 
   Scene scene;
   const SceneFields fields(*document);
-  scene.title = fields.value_or("/title", std::string());
+  if (fields.has("/title")) scene.title = fields.line("/title");
   scene.domain = read_domain(fields);
   scene.fluid = read_fluid(fields);
   scene.numerics = read_numerics(fields);
@@ -146,12 +148,18 @@ Scene read_scene(const std::filesystem::path& file, const std::vector<std::strin
   scene.interactions = read_interactions(fields, scene.cell_types);
   scene.stages = read_stages(fields, scene);
   scene.output = read_output(fields, scene.stages);
+  scene.output.field_storage = read_field_storage(fields, scene.domain);
   scene.at_rest = read_at_rest(fields);
   scene.checks = read_checks(fields);
-  scene.plugin_dirs = read_plugin_dirs(fields);
+  scene.plugin_dirs = read_plugin_dirs(fields, file.parent_path());
   check_membrane_nodes(fields, scene);
-  pack_cells(fields, scene);  // may take a while: after everything else has been found right
   scene.document = std::move(document);
+  return scene;
+}
+
+Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  Scene scene = read_unpacked_scene(file, overrides);
+  pack_cells(scene);  // may take a while: after everything else has been found right
   return scene;
 }
 

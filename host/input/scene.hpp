@@ -118,12 +118,25 @@ struct Cadence {
   [[nodiscard]] bool never() const { return !strain && !seconds; }
 };
 
+/// Which nodes of the lattice the fields in frames.h5 hold, and how.
+struct FieldStorage {
+  std::array<int, 2> first{0, 0};          ///< node along x and y
+  std::optional<std::array<int, 2>> last;  ///< none: to the lattice's end
+  int stride = 1;                          ///< every so many nodes from the first
+  Precision precision = Precision::f32;
+  int compression = 1;  ///< level of deflate, behind a shuffle of the bytes; 0: none
+  [[nodiscard]] bool whole() const { return !last && stride == 1; }
+  /// Nodes along an axis of a lattice that has `nodes` of them.
+  [[nodiscard]] int count(int axis, int nodes) const;
+};
+
 struct Output {
-  Cadence cells;                             ///< rows of cells.csv, aggregates.csv and membranes in frames.h5
-  Cadence fields;                            ///< fluid fields in frames.h5
-  std::vector<std::string> quantities;       ///< of "velocity", "density", "viscosity", "vorticity"
-  std::optional<double> checkpoint_seconds;  ///< of wall-clock time between checkpoints
-  double aggregate_gap = 0.75e-6;            ///< m; two cells are aggregated while their smallest gap is below
+  Cadence cells;                        ///< rows of cells.csv, aggregates.csv and membranes in frames.h5
+  Cadence fields;                       ///< fluid fields in frames.h5
+  std::vector<std::string> quantities;  ///< of "velocity", "density", "viscosity", "vorticity"
+  FieldStorage field_storage;
+  std::optional<double> checkpoint_seconds = 600;  ///< of wall-clock time between checkpoints; absent: none are written
+  double aggregate_gap = 0.75e-6;                  ///< m; two cells are aggregated while their smallest gap is below
 };
 
 /// "at rest": no node moved more than `displacement` within the last `window`.
@@ -137,7 +150,9 @@ struct Checks {
   double mach = 0.3;         ///< largest Mach number of the lattice flow
   double node_step = 0.5;    ///< largest displacement of a membrane node in one step, lattice spacings
   double area_drift = 0.02;  ///< largest relative change of a cell's area
-  int every_steps = 200;     ///< steps between checks of fields, area and crossings
+  double stretch = 5;        ///< largest length of a segment over the one it was placed with, and the other way round
+  double energy_growth = 0.02;  ///< largest gain of energy in a stage at rest, over the energies there are
+  int every_steps = 200;        ///< steps between checks of fields, area, segments and crossings
 };
 
 struct Scene {
@@ -153,7 +168,7 @@ struct Scene {
   Output output;
   AtRest at_rest;
   Checks checks;
-  std::vector<std::filesystem::path> plugin_dirs;  ///< relative ones are relative to the scene's folder
+  std::vector<std::filesystem::path> plugin_dirs;  ///< relative ones begin with the scene's folder
   std::shared_ptr<const Document> document;        ///< for places in later errors, and for the report
 
   /// Place of a JSON pointer in the scene file, for an Error.
@@ -164,5 +179,10 @@ struct Scene {
 /// `overrides` are "POINTER=VALUE" as given to --set; VALUE is any JSON value, or a bare word taken as a string.
 /// Throws Error with ExitCode::bad_input (or input_output when the file cannot be read).
 Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
+
+/// The two halves of read_scene: all but the places of the cells that are placed at random, and these places. Throws
+/// Error(bad_input) where they do not fit.
+Scene read_unpacked_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
+void pack_cells(Scene& scene);
 
 }  // namespace rouleau::host

@@ -6,7 +6,6 @@
 namespace rouleau::host {
 namespace {
 
-constexpr std::size_t most_cells = 1'000'000;
 constexpr std::size_t most_types = 1000;
 
 /// Names stand in columns of CSV files and in paths of HDF5 files.
@@ -91,7 +90,7 @@ class Placements {
   }
 
   void make_room(std::size_t count, const std::string& pointer) const {
-    if (count <= most_cells - cells_.size()) return;
+    if (count <= std::size_t{most_cells} - cells_.size()) return;
     fields_.refuse(pointer, "with these there would be " + std::to_string(cells_.size() + count) + " cells; at most " +
                                 std::to_string(most_cells) + " can be computed");
   }

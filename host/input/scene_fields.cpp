@@ -22,7 +22,7 @@ bool SceneFields::has(const std::string& pointer) const {
   return document_.root().contains(nlohmann::json::json_pointer(pointer));
 }
 
-double SceneFields::quantity(const std::string& pointer, std::string_view unit, Range range) const {
+double SceneFields::quantity(const std::string& pointer, std::string_view unit, AllowedRange range) const {
   const auto& value = at(pointer);
   const auto name = subject(pointer);
   double si = 0.0;
@@ -46,13 +46,22 @@ double SceneFields::quantity(const std::string& pointer, std::string_view unit, 
                       with_unit(range.least, unit) + " and " + with_unit(range.most, unit));
 }
 
-double SceneFields::quantity_or(const std::string& pointer, std::string_view unit, Range range,
+double SceneFields::quantity_or(const std::string& pointer, std::string_view unit, AllowedRange range,
                                 double otherwise) const {
   return has(pointer) ? quantity(pointer, unit, range) : otherwise;
 }
 
-Eigen::Vector2d SceneFields::quantities(const std::string& pointer, std::string_view unit, Range range) const {
+Eigen::Vector2d SceneFields::quantities(const std::string& pointer, std::string_view unit, AllowedRange range) const {
   return {quantity(child_pointer(pointer, 0U), unit, range), quantity(child_pointer(pointer, 1U), unit, range)};
+}
+
+std::string SceneFields::line(const std::string& pointer) const {
+  auto text = at(pointer).get<std::string>();
+  if (printable(text) != text) {
+    refuse(pointer, in_quotes(text) + " holds a control character; " + subject(pointer) +
+                        " is printed on one line: leave it out");
+  }
+  return text;
 }
 
 ModelChoice SceneFields::model(const std::string& pointer) const {

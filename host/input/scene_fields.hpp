@@ -15,20 +15,20 @@ namespace rouleau::host {
 
 /// Where a quantity may lie, in SI: from `least` to `most`, both included. The ranges are far wider than any sensible
 /// scene; they are there so that no later product overflows and no quotient divides by nothing.
-struct Range {
+struct AllowedRange {
   double least;
   double most;
 };
 
 namespace range {
-inline constexpr Range length{1e-12, 1.0};          ///< m
-inline constexpr Range place{-1.0, 1.0};            ///< m
-inline constexpr Range time{1e-12, 1e9};            ///< s
-inline constexpr Range density{1e-3, 1e6};          ///< kg/m3
-inline constexpr Range viscosity{1e-9, 1e6};        ///< Pa s
-inline constexpr Range shear_rate{0.0, 1e9};        ///< 1/s
-inline constexpr Range force_density{-1e15, 1e15};  ///< N/m3
-inline constexpr Range angle{-1e3, 1e3};            ///< rad
+inline constexpr AllowedRange length{1e-12, 1.0};          ///< m
+inline constexpr AllowedRange place{-1.0, 1.0};            ///< m
+inline constexpr AllowedRange time{1e-12, 1e9};            ///< s
+inline constexpr AllowedRange density{1e-3, 1e6};          ///< kg/m3
+inline constexpr AllowedRange viscosity{1e-9, 1e6};        ///< Pa s
+inline constexpr AllowedRange shear_rate{0.0, 1e9};        ///< 1/s
+inline constexpr AllowedRange force_density{-1e15, 1e15};  ///< N/m3
+inline constexpr AllowedRange angle{-1e3, 1e3};            ///< rad
 }  // namespace range
 
 class SceneFields {
@@ -39,15 +39,18 @@ class SceneFields {
   [[nodiscard]] bool has(const std::string& pointer) const;
 
   /// SI value of a quantity, or of a plain number; `unit` is what is wanted. Throws when it is outside the range.
-  [[nodiscard]] double quantity(const std::string& pointer, std::string_view unit, Range range) const;
-  [[nodiscard]] double quantity_or(const std::string& pointer, std::string_view unit, Range range,
+  [[nodiscard]] double quantity(const std::string& pointer, std::string_view unit, AllowedRange range) const;
+  [[nodiscard]] double quantity_or(const std::string& pointer, std::string_view unit, AllowedRange range,
                                    double otherwise) const;
-  [[nodiscard]] Eigen::Vector2d quantities(const std::string& pointer, std::string_view unit, Range range) const;
+  [[nodiscard]] Eigen::Vector2d quantities(const std::string& pointer, std::string_view unit, AllowedRange range) const;
 
   template <class T>
   [[nodiscard]] T value_or(const std::string& pointer, const T& otherwise) const {
     return has(pointer) ? at(pointer).get<T>() : otherwise;
   }
+
+  /// One line of text that will be printed; throws where it holds a control character.
+  [[nodiscard]] std::string line(const std::string& pointer) const;
 
   /// A model's id and parameters; the object at `pointer` has "model".
   [[nodiscard]] ModelChoice model(const std::string& pointer) const;
@@ -64,6 +67,9 @@ class SceneFields {
   Units units_;
 };
 
+/// More cannot be computed.
+inline constexpr long most_cells = 1'000'000;
+
 /// The parts of a scene, each in a file of its own.
 std::vector<CellType> read_cell_types(const SceneFields& fields, double fluid_viscosity);
 /// Cells as placed by hand; those placed at random have a type but no place yet. Packings go into `packings`.
@@ -71,9 +77,8 @@ std::vector<CellPlacement> read_cells(const SceneFields& fields, const std::vect
                                       const Domain& domain, std::vector<RandomPacking>& packings);
 RandomPacking read_packing(const SceneFields& fields, const std::string& entry, int type,
                            const std::vector<CellType>& types, const Domain& domain);
-/// Gives the cells of the packings their places; throws Error(bad_input) where they do not fit.
-void pack_cells(const SceneFields& fields, Scene& scene);
 std::vector<Stage> read_stages(const SceneFields& fields, const Scene& scene);
 Output read_output(const SceneFields& fields, const std::vector<Stage>& stages);
+FieldStorage read_field_storage(const SceneFields& fields, const Domain& domain);
 
 }  // namespace rouleau::host

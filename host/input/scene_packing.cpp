@@ -6,8 +6,6 @@
 namespace rouleau::host {
 namespace {
 
-constexpr long most_cells = 1'000'000;
-
 std::string percent(double share) { return number(100 * share, 4) + " %"; }
 
 /// The region as written; the whole domain without one.
@@ -29,6 +27,27 @@ void read_region(const SceneFields& fields, const std::string& pointer, const Do
       fields.refuse(pointer + "/upper" + name,
                     "the region's upper corner must lie above its lower corner along " + along);
     }
+  }
+}
+
+/// Refuses what is hopeless before it is tried: pack() takes its time, and looks at every periodic image that is near.
+void check_lengths(const SceneFields& fields, const RandomPacking& packing, const CellType& type) {
+  const double across = (packing.upper - packing.lower).norm(), length = 2 * largest_radius(type.shape);
+  const auto micrometres = [](double metres) { return number(metres * 1e6) + " um"; };
+  const auto room = micrometres(across) + " from corner to corner";
+  if (length > across) {
+    fields.refuse(packing.pointer + "/random", "a cell of the type " + type.name + " is " + micrometres(length) +
+                                                   " long, but its region is " + room +
+                                                   "\ntake a smaller cell or a larger region");
+  }
+  if (packing.gap > across) {
+    fields.refuse(packing.pointer + "/random/gap", "no two cells can be " + micrometres(packing.gap) +
+                                                       " apart in a region that is " + room + "; take a smaller gap");
+  }
+  if (packing.reached > 1) {
+    fields.refuse(packing.pointer + "/random", "these " + std::to_string(packing.count) + " cells would fill " +
+                                                   percent(packing.reached) +
+                                                   " of the region\nask for fewer cells, or a larger region");
   }
 }
 
@@ -54,31 +73,43 @@ RandomPacking read_packing(const SceneFields& fields, const std::string& entry, 
     packing.count = fields.at(pointer + "/count").get<int>();
   } else {
     packing.hematocrit = fields.at(pointer + "/hematocrit").get<double>();
-    const long count = cells_for(*packing.hematocrit, cell_type, packing);
+    const double count = cells_for(*packing.hematocrit, cell_type, packing);
     if (count < 1) {
       fields.refuse(pointer + "/hematocrit",
                     "that is less than half a cell in this region; ask for more, for a "
                     "larger region, or for a count");
     }
-    if (count > most_cells) {
-      fields.refuse(pointer + "/hematocrit", "that would be " + std::to_string(count) + " cells; at most " +
+    if (count > static_cast<double>(most_cells)) {
+      fields.refuse(pointer + "/hematocrit", "that would be " + number(count, 12) + " cells; at most " +
                                                  std::to_string(most_cells) + " can be computed");
     }
     packing.count = static_cast<int>(count);
   }
   packing.reached = hematocrit_of(packing, cell_type);
+  check_lengths(fields, packing, cell_type);
   return packing;
 }
 
-void pack_cells(const SceneFields& fields, Scene& scene) {
+void pack_cells(Scene& scene) {
+  if (scene.packings.empty()) return;
+  const double across = scene.domain.size.norm();
+  for (const CellPlacement& cell : scene.cells) {
+    const CellType& type = scene.cell_types[static_cast<std::size_t>(cell.type)];
+    if (2 * largest_radius(type.shape) <= across) continue;
+    SceneFields(*scene.document)
+        .refuse(cell.pointer, "a cell of the type " + type.name + " is " + number(2e6 * largest_radius(type.shape)) +
+                                  " um long, but the domain is " + number(across * 1e6) +
+                                  " um from corner to corner\ntake a smaller cell or a larger domain");
+  }
   const auto shortfall = pack(scene.domain, scene.cell_types, scene.packings, scene.cells);
   if (!shortfall) return;
   const RandomPacking& packing = scene.packings[shortfall->packing];
-  fields.refuse(packing.pointer + "/random",
-                "these " + std::to_string(packing.count) + " cells, " + percent(packing.reached) +
-                    " of the region, do not fit without overlap: moving and turning them came to a standstill at " +
-                    percent(shortfall->hematocrit) + "\nask for fewer cells, a gap smaller than " +
-                    number(packing.gap * 1e6, 3) + " um, or a larger region");
+  SceneFields(*scene.document)
+      .refuse(packing.pointer + "/random",
+              "these " + std::to_string(packing.count) + " cells, " + percent(packing.reached) +
+                  " of the region, do not fit without overlap: moving and turning them came to a standstill at " +
+                  percent(shortfall->hematocrit) + "\nask for fewer cells, a gap smaller than " +
+                  number(packing.gap * 1e6, 3) + " um, or a larger region");
 }
 
 }  // namespace rouleau::host

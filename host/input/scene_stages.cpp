@@ -46,7 +46,7 @@ void check_stage(const SceneFields& fields, const Stage& stage, const Scene& sce
 Stage read_stage(const SceneFields& fields, const std::string& pointer, const Scene& scene) {
   Stage stage;
   stage.pointer = pointer;
-  stage.name = fields.at(pointer + "/name").get<std::string>();
+  stage.name = fields.line(pointer + "/name");
   if (fields.has(pointer + "/duration")) stage.duration = fields.quantity(pointer + "/duration", "s", range::time);
   if (fields.has(pointer + "/strain")) stage.strain = fields.at(pointer + "/strain").get<double>();
   stage.until_at_rest = fields.has(pointer + "/until");
@@ -101,6 +101,8 @@ Output read_output(const SceneFields& fields, const std::vector<Stage>& stages) 
   output.quantities = fields.value_or("/output/fields/quantities", std::vector<std::string>{});
   if (fields.has("/output/checkpoint/seconds")) {
     output.checkpoint_seconds = fields.quantity("/output/checkpoint/seconds", "s", range::time);
+  } else if (fields.has("/output/checkpoint")) {
+    output.checkpoint_seconds.reset();  // "never"
   }
   output.aggregate_gap = fields.quantity_or("/output/aggregate_gap", "m", range::length, output.aggregate_gap);
   return output;

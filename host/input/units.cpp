@@ -77,9 +77,8 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
 /// Bytes above 0x7F belong to letters such as the mu of "µm".
-bool is_letter(char c) {
+bool is_unit_letter(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || c == '%' ||
          (static_cast<unsigned char>(c) & 0x80U) != 0;
 }
@@ -90,7 +89,7 @@ bool has_factor(std::string_view unit) {
   for (std::size_t i = 0; i < unit.size(); ++i) {
     if (!is_digit(unit[i]) || (i > 0 && is_digit(unit[i - 1]))) continue;
     const char before = i > 0 ? unit[i - 1] : ' ';
-    const bool power = is_letter(before) || before == '^' || before == ')' ||
+    const bool power = is_unit_letter(before) || before == '^' || before == ')' ||
                        (before == '*' && i > 1 && unit[i - 2] == '*') ||
                        ((before == '-' || before == '+') && i > 1 && unit[i - 2] != ' ');
     const auto next = unit.find_first_not_of(' ', i + 1);
@@ -104,6 +103,8 @@ bool has_factor(std::string_view unit) {
 
 struct Units::System {
   std::unique_ptr<ut_system, decltype(&ut_free_system)> system{nullptr, &ut_free_system};
+
+  static std::shared_ptr<const System> read();
 
   [[nodiscard]] Unit parse(const std::string& text) const {
     return {ut_parse(system.get(), text.c_str(), UT_UTF8), &ut_free};
@@ -119,12 +120,12 @@ struct Units::System {
   /// The first symbol in the unit that nobody knows, or empty.
   [[nodiscard]] std::string unknown_symbol(std::string_view unit) const {
     for (std::size_t i = 0; i < unit.size();) {
-      if (!is_letter(unit[i])) {
+      if (!is_unit_letter(unit[i])) {
         ++i;
         continue;
       }
       auto end = i;
-      while (end < unit.size() && is_letter(unit[end])) ++end;
+      while (end < unit.size() && is_unit_letter(unit[end])) ++end;
       auto symbol = std::string(unit.substr(i, end - i));
       if (!parse(symbol)) return symbol;
       i = end;
@@ -166,9 +167,9 @@ struct Units::System {
     unit = trimmed(unit);
     if (unit.empty()) throw UnitError("a unit is missing");
     if (unit.size() > longest_unit) throw UnitError(in_quotes(unit) + " is no unit");
-    // UDUNITS overlooks a ')' too many, and '@' gives a unit a zero of its own.
+    // UDUNITS overlooks a ')' too many and what follows a NUL, and '@' gives a unit a zero of its own.
     const bool unbalanced = std::count(unit.begin(), unit.end(), '(') != std::count(unit.begin(), unit.end(), ')');
-    const bool strange = unit.find('\0') != std::string_view::npos || unit.find('@') != std::string_view::npos;
+    const bool strange = printable(unit) != unit || unit.find('@') != std::string_view::npos;
     if (unbalanced || strange || has_factor(unit)) {
       throw UnitError(in_quotes(unit) +
                       " is no unit; write units like N/m, 1/um or dyn cm, with one number in front of them");
@@ -189,23 +190,29 @@ struct Units::System {
   }
 };
 
-Units::Units() : system_(std::make_unique<System>()) {
+std::shared_ptr<const Units::System> Units::System::read() {
+  auto read = std::make_shared<System>();
   ut_set_error_message_handler(ut_ignore);
-  system_->system.reset(ut_read_xml(nullptr));
-  if (!system_->system) {
+  read->system.reset(ut_read_xml(nullptr));
+  if (!read->system) {
     throw Error(
         ExitCode::input_output,
         "the database of units of UDUNITS-2 cannot be read (Debian: package libudunits2-data; see UDUNITS2_XML_PATH)");
   }
-  system_->define("dyn", "dyne");
-  system_->define("P", "poise");
-  system_->define("cP", "0.01 poise");
-  system_->define("deg", "degree");
-  system_->define("Da", "1.66053906660e-27 kg");  // CODATA 2018
-  system_->define("kDa", "1.66053906660e-24 kg");
+  read->define("dyn", "dyne");
+  read->define("P", "poise");
+  read->define("cP", "0.01 poise");
+  read->define("deg", "degree");
+  read->define("Da", "1.66053906660e-27 kg");  // CODATA 2018
+  read->define("kDa", "1.66053906660e-24 kg");
+  return read;
 }
 
-Units::~Units() = default;
+// Reading the database anew for each of its users was a sixth of all the instructions of `rouleau plan`.
+Units::Units() {
+  static const auto database = System::read();
+  system_ = database;
+}
 
 Dimension Units::dimension(std::string_view unit) const { return system_->take_apart(unit).dimension; }
 

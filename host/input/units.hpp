@@ -21,13 +21,10 @@ class UnitError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Parses units and quantities. Not thread-safe; cheap enough to make one per document.
+/// Parses units and quantities. Not thread-safe. The first one reads the database of UDUNITS-2, which all share.
 class Units {
  public:
   Units();
-  ~Units();
-  Units(const Units&) = delete;
-  Units& operator=(const Units&) = delete;
 
   /// Dimension of a unit such as "dyn/cm". Throws UnitError.
   [[nodiscard]] Dimension dimension(std::string_view unit) const;
@@ -41,7 +38,7 @@ class Units {
 
  private:
   struct System;
-  std::unique_ptr<System> system_;
+  std::shared_ptr<const System> system_;
 };
 
 }  // namespace rouleau::host

@@ -20,7 +20,8 @@ std::string shortened(std::string text, std::string_view end) {
 }
 
 std::string dumped(const nlohmann::json& value) {
-  return value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  // JSON escapes all control characters but DEL.
+  return printable(value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
 /// Distance in insertions, deletions, replacements and swaps of neighbours; upper and lower case count as the same.
@@ -47,6 +48,21 @@ std::size_t spelling_distance(std::string_view a, std::string_view b) {
 
 }  // namespace
 
+std::string printable(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte >= 0x20 && byte != 0x7f) {
+      result += c;
+      continue;
+    }
+    std::array<char, 8> escape{};
+    std::snprintf(escape.data(), escape.size(), "\\u%04x", unsigned{byte});
+    result += escape.data();
+  }
+  return result;
+}
+
 std::string in_quotes(std::string_view text) { return shortened(dumped(std::string(text)), "\""); }
 
 std::string shown(const nlohmann::json& value) {
@@ -56,7 +72,7 @@ std::string shown(const nlohmann::json& value) {
 std::string listed(const std::vector<std::string>& words) {
   if (words.empty()) return "none";
   std::string text;
-  for (const auto& word : words) text += (text.empty() ? "" : ", ") + word;
+  for (const auto& word : words) text += (text.empty() ? "" : ", ") + printable(word);
   return text;
 }
 

@@ -11,6 +11,9 @@ namespace rouleau::host {
 /// Text in double quotes, control characters escaped, shortened when long.
 std::string in_quotes(std::string_view text);
 
+/// Text without quotes, control characters escaped as in JSON: nothing that steers a terminal.
+std::string printable(std::string_view text);
+
 /// A JSON value as one would write it, shortened when long.
 std::string shown(const nlohmann::json& value);
 
@@ -28,5 +31,8 @@ std::string number(double value, int digits = 6);
 
 /// Lines after the first get the indent that Error gives the first.
 std::string indented(std::string problem);
+
+/// Of ASCII, whatever the locale.
+inline bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 }  // namespace rouleau::host

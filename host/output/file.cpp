@@ -73,14 +73,18 @@ void fail_file(const std::filesystem::path& file, const std::string& what, int e
               what + ": " + std::generic_category().message(error) + "\n  " + remedy(error));
 }
 
+void fail_reading(const std::filesystem::path& file, int error) {
+  throw Error(ExitCode::input_output, Place{file.string(), "", 0, 0},
+              "cannot be read: " + std::generic_category().message(error));
+}
+
 std::string read_text(const std::filesystem::path& file) {
   errno = 0;
   std::ifstream stream(file, std::ios::binary);
   std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
   if (!stream.is_open() || stream.bad()) {
     const int error = errno;
-    throw Error(ExitCode::input_output, Place{file.string(), "", 0, 0},
-                "cannot be read: " + std::generic_category().message(error != 0 ? error : EIO));
+    fail_reading(file, error != 0 ? error : EIO);
   }
   return text;
 }
@@ -102,16 +106,50 @@ void write_file(const std::filesystem::path& file, const std::string& content) {
     ::unlink(partial.c_str());
     fail_file(file, "cannot be written", error);
   }
-  // The new name itself lives in the folder. Some file systems cannot sync a folder (EINVAL); the file is whole all the
-  // same.
-  const Descriptor directory(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (directory.number() >= 0 && ::fsync(directory.number()) != 0 && errno != EINVAL && errno != EROFS)
-    fail_file(folder, "cannot be synchronised with the disk", errno);
+  synchronise(folder);
+}
+
+void write_into(const std::filesystem::path& file, std::string_view begin) {
+  Descriptor output(::open(file.c_str(), O_WRONLY | O_NOFOLLOW | O_CLOEXEC));
+  if (output.number() < 0 || !write_all(output.number(), begin) || ::fsync(output.number()) != 0 || !output.close())
+    fail_file(file, "cannot be written", errno);
+}
+
+void synchronise(const std::filesystem::path& file) {
+  const Descriptor opened(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
+  if (opened.number() < 0) fail_file(file, "cannot be opened", errno);
+  // Some file systems cannot synchronise a folder (EINVAL); the files in it are whole all the same.
+  if (::fsync(opened.number()) != 0 && errno != EINVAL && errno != EROFS)
+    fail_file(file, "cannot be synchronised with the disk", errno);
+}
+
+void move_into_place(const std::filesystem::path& from, const std::filesystem::path& to) {
+  std::error_code error;
+  std::filesystem::rename(from, to, error);
+  if (error) fail_file(to, "cannot be written", error.value());
+  synchronise(to.has_parent_path() ? to.parent_path() : ".");
+}
+
+Checksum require(const std::filesystem::path& file, const FileMark& mark) {
+  const std::string remedy =
+      ", and a run cannot go on from there\n  bring back the file as it was, or begin anew with --overwrite";
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(file, error);
+  if (error) fail_reading(file, error.value());
+  if (size < mark.bytes)
+    throw Error(ExitCode::input_output, Place{file.string(), "", 0, 0},
+                "is shorter than when the checkpoint was written, " + std::to_string(size) + " bytes instead of " +
+                    std::to_string(mark.bytes) + remedy);
+  Checksum checksum = checksum_of(file, 0, mark.bytes);
+  if (checksum.value() != mark.checksum)
+    throw Error(ExitCode::input_output, Place{file.string(), "", 0, 0},
+                "was changed since the checkpoint was written (the checksum of its first " +
+                    std::to_string(mark.bytes) + " bytes differs)" + remedy);
+  return checksum;
 }
 
 AppendFile::AppendFile(std::filesystem::path file, Access access) : file_(std::move(file)) {
-  const int flags = O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | (access == Access::shared ? O_TRUNC : 0);
-  Descriptor output(::open(file_.c_str(), flags, 0666));
+  Descriptor output(::open(file_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666));
   if (output.number() < 0) fail_file(file_, "cannot be created", errno);
   // File systems without locks answer with another error; then two runs in one directory are the user's affair.
   if (access == Access::exclusive && ::flock(output.number(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
@@ -130,22 +168,51 @@ AppendFile::AppendFile(std::filesystem::path file, Access access) : file_(std::m
 void AppendFile::clear() {
   if (std::fflush(stream_.get()) != 0 || ::ftruncate(::fileno(stream_.get()), 0) != 0)
     fail_file(file_, "cannot be emptied", errno);
+  checksum_ = {};
+  bytes_ = 0;
+}
+
+void AppendFile::go_back(const FileMark& mark) {
+  flush();
+  checksum_ = require(file_, mark);
+  bytes_ = mark.bytes;
+  if (::ftruncate(::fileno(stream_.get()), static_cast<off_t>(mark.bytes)) != 0)
+    fail_file(file_, "cannot be shortened", errno);
+}
+
+void AppendFile::end_line() {
+  flush();
+  const std::string text = read_text(file_);
+  const std::size_t end = text.rfind('\n');
+  const auto kept = static_cast<off_t>(end == std::string::npos ? 0 : end + 1);
+  if (::ftruncate(::fileno(stream_.get()), kept) != 0) fail_file(file_, "cannot be shortened", errno);
 }
 
 void AppendFile::write(std::string_view text) {
   if (std::fwrite(text.data(), 1, text.size(), stream_.get()) != text.size())
     fail_file(file_, "cannot be written", errno);
+  checksum_.update(text);
+  bytes_ += text.size();
 }
 
 void AppendFile::flush() {
   if (std::fflush(stream_.get()) != 0) fail_file(file_, "cannot be written", errno);
 }
 
-void AppendFile::close() {
+void AppendFile::synchronise() {
   flush();
   // A pipe or device cannot be synchronised (EINVAL), and need not be.
   if (::fsync(::fileno(stream_.get())) != 0 && errno != EINVAL && errno != EROFS)
     fail_file(file_, "cannot be written", errno);
+}
+
+FileMark AppendFile::mark() {
+  synchronise();
+  return {bytes_, checksum_.value()};
+}
+
+void AppendFile::close() {
+  synchronise();
   if (std::fclose(stream_.release()) != 0) fail_file(file_, "cannot be written", errno);
 }
 

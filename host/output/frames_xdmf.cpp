@@ -23,6 +23,16 @@ std::string attribute(const std::string& name, const std::string& kind, const st
          "</Attribute>\n";
 }
 
+/// XDMF has no place for units that ParaView would show; names stand on its colour bars and in its tables.
+std::string shown_name(const std::string& dataset) {
+  if (dataset == "tension") return "tension (N/m)";
+  if (dataset == "velocity") return "velocity (m/s)";
+  if (dataset == "density") return "density deviation";
+  if (dataset == "viscosity") return "viscosity (Pa s)";
+  if (dataset == "vorticity") return "vorticity (1/s)";
+  return dataset;
+}
+
 std::string begin_grid(const std::string& name, double time) {
   return "      <Grid Name=\"" + name + "\" GridType=\"Uniform\">\n        <Time Value=\"" + to_text(time) + "\"/>\n";
 }
@@ -40,43 +50,40 @@ std::string membranes(const FrameRecord& frame, const std::string& group) {
   }
   text +=
       "        <Geometry GeometryType=\"XY\">" + data_item(n + " 2", {"Float", 8}, group + "/points") + "</Geometry>\n";
-  text += attribute("tension", "Scalar", data_item(n, {"Float", 8}, group + "/tension"));
+  text += attribute(shown_name("tension"), "Scalar", data_item(n, {"Float", 8}, group + "/tension"));
   text += attribute("cell", "Scalar", data_item(n, {"Int", 4}, group + "/cell"));
   text += attribute("aggregate", "Scalar", data_item(n, {"Int", 4}, group + "/aggregate"));
   return text + "      </Grid>\n";
 }
 
-std::string fields(const FrameRecord& frame, const std::string& group, const std::array<double, 2>& size,
-                   const std::array<int, 2>& nodes) {
+std::string fields(const FrameRecord& frame, const std::string& group, const FieldGrid& grid) {
   // One layer of a 3-D mesh: ParaView lays a 2DCoRectMesh into the y-z plane, across the membranes. Slowest index
   // first.
-  const std::string shape = "1 " + std::to_string(nodes[1]) + " " + std::to_string(nodes[0]);
-  const double dx = size[0] / nodes[0], dy = size[1] / nodes[1];
+  const std::string shape = "1 " + std::to_string(grid.nodes[1]) + " " + std::to_string(grid.nodes[0]);
   const auto triple = [](double z, double y, double x) {
     return "<DataItem Dimensions=\"3\" NumberType=\"Float\" Precision=\"8\" Format=\"XML\">" + to_text(z) + " " +
            to_text(y) + " " + to_text(x) + "</DataItem>";
   };
   std::string text = begin_grid("fields", frame.time);
   text += "        <Topology TopologyType=\"3DCoRectMesh\" Dimensions=\"" + shape + "\"/>\n";
-  text += "        <Geometry GeometryType=\"ORIGIN_DXDYDZ\">" + triple(0, 0.5 * dy, 0.5 * dx) + triple(dx, dy, dx) +
-          "</Geometry>\n";
+  text += "        <Geometry GeometryType=\"ORIGIN_DXDYDZ\">" + triple(0, grid.origin[1], grid.origin[0]) +
+          triple(grid.spacing[0], grid.spacing[1], grid.spacing[0]) + "</Geometry>\n";
   for (const auto& name : frame.fields) {
     const bool vector = name == "velocity";
-    text += attribute(name, vector ? "Vector" : "Scalar",
-                      data_item(shape + (vector ? " 3" : ""), {"Float", 4}, group + "/" + name));
+    text += attribute(shown_name(name), vector ? "Vector" : "Scalar",
+                      data_item(shape + (vector ? " 3" : ""), {"Float", grid.bytes}, group + "/" + name));
   }
   return text + "      </Grid>\n";
 }
 
 }  // namespace
 
-std::string xdmf_text(const std::vector<FrameRecord>& frames, const std::string& h5, const std::array<double, 2>& size,
-                      const std::array<int, 2>& nodes) {
+std::string xdmf_text(const std::vector<FrameRecord>& frames, const std::string& h5, const FieldGrid& grid) {
   std::ostringstream membrane_grids, field_grids;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const std::string path = h5 + ":" + frame_path(i);
     if (frames[i].cells > 0) membrane_grids << membranes(frames[i], path + "/membranes");
-    if (!frames[i].fields.empty()) field_grids << fields(frames[i], path + "/fields", size, nodes);
+    if (!frames[i].fields.empty()) field_grids << fields(frames[i], path + "/fields", grid);
   }
   std::string text = "<?xml version=\"1.0\"?>\n<Xdmf Version=\"2.0\">\n  <Domain>\n";
   const auto collection = [&](const char* name, const std::string& grids) {

@@ -17,7 +17,11 @@ class Log {
   explicit Log(const std::filesystem::path& file);
   /// Drops a former run's lines.
   void clear() { file_.clear(); }
-  /// {"wall_s": seconds since the log was opened, "event": event, ...details}; details that are no object become
+  /// Keeps a former run's lines but for a last one that was never ended; time goes on from `elapsed` seconds.
+  void go_on(double elapsed);
+  /// Seconds since the log was opened, and those of the run it goes on from.
+  [[nodiscard]] double elapsed() const;
+  /// {"wall_s": elapsed(), "event": event, ...details}; details that are no object become
   /// "details", and a detail called wall_s or event is written as EVENT_wall_s.
   void write(const std::string& event, const nlohmann::json& details);
   void close() { file_.close(); }
@@ -25,6 +29,7 @@ class Log {
  private:
   AppendFile file_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  double before_ = 0;
 };
 
 }  // namespace rouleau::host

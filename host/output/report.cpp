@@ -1,8 +1,7 @@
 #include "output/report.hpp"
 
-#include <string>
-#include <string_view>
-
+#include "output/page_file.hpp"
+#include "output/report_compare.hpp"
 #include "output/report_data.hpp"
 #include "output/report_template.hpp"
 #include "output/run_directory.hpp"
@@ -10,18 +9,14 @@
 namespace rouleau::host {
 
 std::filesystem::path write_report(const std::filesystem::path& directory) {
-  // "</script>" or "<!--" inside a string of the data would end the data early: "<" is written as its escape.
-  // Everything the page shows is set as text, never as markup.
-  std::string data;
-  for (const char c : report_data(directory).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace))
-    data += c == '<' ? std::string("\\u003c") : std::string(1, c);
-
-  constexpr std::string_view mark = "@ROULEAU_DATA@";
-  std::string page(report_template);
-  page.replace(page.find(mark), mark.size(), data);
   auto file = directory / "report.html";
-  write_file(file, page);
+  write_file(file, page_with(report_template, report_data(directory)));
   return file;
+}
+
+void write_comparison(const std::filesystem::path& a, const std::filesystem::path& b,
+                      const std::filesystem::path& file) {
+  write_file(file, page_with(report_template, compare_data(a, b)));
 }
 
 }  // namespace rouleau::host

@@ -1,4 +1,4 @@
-// report.html: one self-contained page made from the files of a run's directory.
+// report.html: one self-contained page made from the files of a run's directory, or of two.
 #pragma once
 
 #include <filesystem>
@@ -8,5 +8,10 @@ namespace rouleau::host {
 /// (Re)makes DIR/report.html from DIR's files alone. Throws Error(input_output) or, for a directory that is no run,
 /// Error(bad_input).
 std::filesystem::path write_report(const std::filesystem::path& directory);
+
+/// Writes a page with two runs side by side into `file`. Throws as write_report, and Error(bad_input) where a run has
+/// not ended.
+void write_comparison(const std::filesystem::path& a, const std::filesystem::path& b,
+                      const std::filesystem::path& file);
 
 }  // namespace rouleau::host

@@ -4,7 +4,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -14,6 +13,8 @@
 #include "input/document.hpp"
 #include "output/file.hpp"
 #include "output/frames.hpp"
+#include "output/report_fields.hpp"
+#include "output/report_outlines.hpp"
 #include "output/report_table.hpp"
 
 namespace rouleau::host {
@@ -27,22 +28,21 @@ constexpr std::size_t most_outputs = 400;
 constexpr std::size_t most_lines = 12;       ///< of a chart
 constexpr std::size_t most_points = 300000;  ///< of all outlines: about 1.6 MB of page
 constexpr std::size_t fewest_nodes = 24;     ///< of an outline
-constexpr double micro = 1e6;
-
-/// Five digits are more than a screen shows and keep the page small.
-json shown(double value) {
+constexpr std::size_t most_fields = 120;     ///< outputs whose flow is shown
+/// Five digits are more than a screen shows and keep the page small; an axis needs more where a run is long.
+json shown_value(double value, int precision = 5) {
   if (!std::isfinite(value)) return nullptr;
   std::array<char, 32> digits{};
   const auto end =
-      std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::general, 5).ptr;
+      std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::general, precision).ptr;
   double rounded = 0;
   std::from_chars(digits.data(), end, rounded);
   return rounded;
 }
 
-json picked(const std::vector<double>& values, const Selection& selection, double factor = 1) {
+json picked(const std::vector<double>& values, const Selection& selection, double factor = 1, int precision = 5) {
   json result = json::array();
-  for (const std::size_t i : selection) result.push_back(shown(factor * values[i]));
+  for (const std::size_t i : selection) result.push_back(shown_value(factor * values[i], precision));
   return result;
 }
 
@@ -53,7 +53,7 @@ json lines(const std::vector<double>& column, std::size_t count, const Selection
   if (count <= most_lines) {
     for (std::size_t cell = 0; cell < count; ++cell) {
       json line = json::array();
-      for (const std::size_t output : selection) line.push_back(shown(at(output, cell)));
+      for (const std::size_t output : selection) line.push_back(shown_value(at(output, cell)));
       result.push_back(std::move(line));
     }
     return result;
@@ -70,9 +70,9 @@ json lines(const std::vector<double>& column, std::size_t count, const Selection
       sum += value;
       ++finite;
     }
-    smallest.push_back(shown(low));
-    mean.push_back(shown(finite > 0 ? sum / finite : std::numeric_limits<double>::quiet_NaN()));
-    largest.push_back(shown(high));
+    smallest.push_back(shown_value(low));
+    mean.push_back(shown_value(finite > 0 ? sum / finite : std::numeric_limits<double>::quiet_NaN()));
+    largest.push_back(shown_value(high));
   }
   return json::array({smallest, mean, largest});
 }
@@ -97,80 +97,47 @@ json cell_data(const StoredTable& table, std::size_t count, const Selection& sel
   return cells;
 }
 
-/// One output's outlines as the page holds them.
-void add_outlines(json& result, const OutlineSnapshot& outlines, std::size_t stride, double quantum) {
-  json origins = json::array();
-  std::vector<unsigned char> bytes;
-  const auto add = [&](double metres) {
-    const double limit = std::numeric_limits<std::int16_t>::max();
-    if (!std::isfinite(metres)) metres = 0;  // the last output of a diverged run
-    const auto value = static_cast<std::int16_t>(std::lround(std::clamp(metres / quantum, -limit, limit)));
-    const auto bits = static_cast<std::uint16_t>(value);
-    bytes.push_back(static_cast<unsigned char>(bits & 0xff));
-    bytes.push_back(static_cast<unsigned char>(bits >> 8));
-  };
-  for (std::size_t cell = 0; cell + 1 < outlines.first.size(); ++cell) {
-    const auto begin = static_cast<std::size_t>(outlines.first[cell]),
-               end = static_cast<std::size_t>(outlines.first[cell + 1]);
-    // The middle of the bounding box keeps every node within half its extent.
-    const auto middle = [&](const std::vector<double>& v) {
-      const auto [low, high] =
-          std::minmax_element(v.begin() + static_cast<long>(begin), v.begin() + static_cast<long>(end));
-      return std::round((*low + *high) / 2 / quantum) * quantum;
-    };
-    const double x = middle(outlines.x), y = middle(outlines.y);
-    origins.push_back(std::round(x * micro * 1000) / 1000);
-    origins.push_back(std::round(y * micro * 1000) / 1000);
-    for (std::size_t i = begin; i < end; i += stride) {
-      add(outlines.x[i] - x);
-      add(outlines.y[i] - y);
-    }
+json series_data(const StoredTable& series, const Selection& selection) {
+  json data;
+  for (const char* name : {"aggregate_count", "aggregate_size_weight_mean", "relative_viscosity", "particle_stress_Pa",
+                           "mach_max", "area_drift_max", "area_leakage_max", "mass_drift"})
+    data[name] = picked(series.numbers(name), selection);
+  for (const auto& [name, column] : {std::pair{"cell_free_layer_lower_um", "cell_free_layer_lower_m"},
+                                     std::pair{"cell_free_layer_upper_um", "cell_free_layer_upper_m"}}) {
+    data[name] = picked(series.numbers(column), selection, micro);
   }
-  result["origin_um"].push_back(std::move(origins));
-  result["nodes"].push_back(base64(bytes));
+  // The ledger of energies, which runs of earlier versions do not have.
+  for (const char* name :
+       {"kinetic_energy_J_per_m", "elastic_energy_J_per_m", "bending_energy_J_per_m", "interaction_energy_J_per_m",
+        "total_energy_J_per_m", "viscous_dissipation_W_per_m", "wall_power_W_per_m"})
+    if (series.has(name)) data[name] = picked(series.numbers(name), selection);
+  return data;
 }
 
-json outline_data(const FrameReader& reader, const Selection& selection, std::size_t stride) {
-  const auto size = reader.size();
-  json result{{"size_um", {size[0] * micro, size[1] * micro}},
-              {"periodic_y", reader.periodic_y()},
-              {"first", json::array()},
-              {"origin_um", json::array()},
-              {"nodes", json::array()}};
-  const double quantum = std::max(1e-9, std::hypot(size[0], size[1]) / std::numeric_limits<std::int16_t>::max());
-  result["quantum_um"] = quantum * micro;
-  std::vector<int> first;
-  for (const std::size_t output : selection) {
-    const auto outlines = reader.outlines(static_cast<int>(output));
-    if (first.empty()) {
-      first = outlines.first;
-      std::size_t shown_nodes = 0;
-      for (std::size_t cell = 0; cell < first.size(); ++cell) {
-        result["first"].push_back(shown_nodes);
-        if (cell + 1 < first.size()) {
-          const auto nodes = static_cast<std::size_t>(first[cell + 1] - first[cell]);
-          shown_nodes += (nodes + stride - 1) / stride;
-        }
-      }
-    }
-    if (first.empty() || outlines.first != first) return nullptr;
-    add_outlines(result, outlines, stride, quantum);
-  }
-  return first.empty() ? json(nullptr) : result;
+/// Which outputs a page shows, and how many of their nodes.
+struct Choice {
+  Selection outputs;
+  std::size_t stride = 1;
+};
+
+Choice choose(const std::vector<double>& aggregate_count, std::size_t nodes, std::size_t cells,
+              const Selection& with_fields) {
+  Choice choice{shown_outputs(aggregate_count, most_outputs)};
+  while (choice.outputs.size() * nodes / choice.stride > most_points &&
+         nodes / std::max<std::size_t>(1, cells) / (choice.stride + 1) >= fewest_nodes)
+    ++choice.stride;
+  const std::size_t per_output = std::max<std::size_t>(1, nodes / choice.stride);
+  if (choice.outputs.size() * per_output > most_points)
+    choice.outputs = shown_outputs(aggregate_count, std::max<std::size_t>(50, most_points / per_output));
+
+  std::set<std::size_t> outputs(choice.outputs.begin(), choice.outputs.end());
+  for (const std::size_t output : with_fields)
+    if (output < aggregate_count.size() && (outputs.size() + 1) * per_output <= most_points) outputs.insert(output);
+  choice.outputs.assign(outputs.begin(), outputs.end());
+  return choice;
 }
 
 }  // namespace
-
-std::string base64(const std::vector<unsigned char>& bytes) {
-  constexpr std::string_view letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const auto byte = [&](std::size_t k) { return i + k < bytes.size() ? unsigned{bytes[i + k]} : 0u; };
-    const unsigned triple = byte(0) << 16 | byte(1) << 8 | byte(2);
-    for (unsigned k = 0; k < 4; ++k) text += i + k <= bytes.size() ? letters[triple >> (18 - 6 * k) & 63] : '=';
-  }
-  return text;
-}
 
 std::vector<std::size_t> shown_outputs(const std::vector<double>& aggregate_count, std::size_t most) {
   const std::size_t n = aggregate_count.size();
@@ -201,8 +168,8 @@ json report_data(const std::filesystem::path& directory) {
 
   const StoredTable series(directory / "series.csv");
   const StoredTable cells(directory / "cells.csv");
-  std::size_t outputs = series.rows(), count = 0, stride = 1;
-  for (const double cell : cells.numbers("cell")) count = std::max(count, static_cast<std::size_t>(cell) + 1);
+  const std::size_t count = cells.count_of("cell");
+  std::size_t outputs = series.rows();
   if (count > 0) outputs = std::min(outputs, cells.rows() / count);  // a killed run may lack the last rows
 
   std::optional<FrameReader> reader;
@@ -217,34 +184,28 @@ json report_data(const std::filesystem::path& directory) {
 
   auto aggregate_count = series.numbers("aggregate_count");
   aggregate_count.resize(outputs);
-  auto selection = shown_outputs(aggregate_count, most_outputs);
-  if (reader && outputs > 0) {
-    const auto outlines = reader->outlines(0);
-    const std::size_t nodes = outlines.x.size(), cell_count = std::max<std::size_t>(1, count);
-    while (selection.size() * nodes / stride > most_points && nodes / cell_count / (stride + 1) >= fewest_nodes)
-      ++stride;
-    const std::size_t per_output = std::max<std::size_t>(1, nodes / stride);
-    if (selection.size() * per_output > most_points)
-      selection = shown_outputs(aggregate_count, std::max<std::size_t>(50, most_points / per_output));
-  }
+  const bool drawn = reader && outputs > 0;
+  const auto [selection, stride] = choose(aggregate_count, drawn ? reader->outlines(0).x.size() : 0, count,
+                                          drawn ? field_outputs(directory / "frames.h5", most_fields) : Selection{});
 
   data["shown"] = {{"outputs", selection.size()}, {"of", series.rows()}, {"node_stride", stride}};
-  for (const char* name : {"step", "time_s", "strain"}) data[name] = picked(series.numbers(name), selection);
+  constexpr int axis_precision = 9;
+  for (const char* name : {"time_s", "strain"}) data[name] = picked(series.numbers(name), selection, 1, axis_precision);
   const auto steps = series.numbers("step");
-  data["step"] = json::array();
-  for (const std::size_t i : selection) data["step"].push_back(std::llround(steps[i]));
   const auto stages = series.texts("stage_name");
-  data["stage"] = json::array();
-  for (const std::size_t i : selection) data["stage"].push_back(stages[i]);
-  for (const char* name : {"aggregate_count", "aggregate_size_weight_mean", "relative_viscosity", "particle_stress_Pa",
-                           "mach_max", "area_drift_max", "area_leakage_max", "mass_drift"})
-    data["series"][name] = picked(series.numbers(name), selection);
-  for (const auto& [name, column] : {std::pair{"cell_free_layer_lower_um", "cell_free_layer_lower_m"},
-                                     std::pair{"cell_free_layer_upper_um", "cell_free_layer_upper_m"}}) {
-    data["series"][name] = picked(series.numbers(column), selection, micro);
+  data["step"] = data["stage"] = json::array();
+  for (const std::size_t i : selection) {
+    data["step"].push_back(std::llround(steps[i]));
+    data["stage"].push_back(stages[i]);
   }
+  data["series"] = series_data(series, selection);
   data["cells"] = count > 0 && outputs > 0 ? cell_data(cells, count, selection) : json(nullptr);
-  data["outlines"] = reader && !selection.empty() ? outline_data(*reader, selection, stride) : json(nullptr);
+  data["outlines"] = drawn ? outline_data(*reader, selection, stride) : json(nullptr);
+  data["fields"] = drawn ? field_data(directory / "frames.h5", selection) : json(nullptr);
+  if (drawn) {
+    const auto size = reader->size();
+    data["domain"] = {{"size_um", {size[0] * micro, size[1] * micro}}, {"periodic_y", reader->periodic_y()}};
+  }
   if (note.empty() && count > 0 && outputs > 0 && data["outlines"].is_null())
     note = "No animation: the number of membrane nodes changes during the run.";
   data["shown"]["note"] = note;

@@ -11,20 +11,18 @@ namespace rouleau::host {
 ///   scene     text of scene.json, null when there is none
 ///   shown     {outputs, of, node_stride, note}: what was thinned, and why anything is missing
 ///   step, time_s, strain, stage   one entry per shown output
-///   series    name -> values per shown output
+///   series    name -> values per shown output; names of the energy ledger only where the run wrote them
 ///   cells     {labels, aggregate, deformation, angle_deg, min_gap_um}: aggregate by output and cell, the others
 ///             name -> lines of values per shown output (a line per cell; of more than 12 cells smallest, mean,
 ///             largest)
-///   outlines  {size_um, periodic_y, quantum_um, first, origin_um, nodes}: nodes[k] is, for shown output k, base64 of
-///             little-endian int16 x, y of every shown node, in quanta from its cell's origin; null when there are none
+///   domain    {size_um, periodic_y}; absent without frames
+///   outlines  outline_data() of the shown outputs (report_outlines.hpp), or null
+///   fields    field_data() of the shown outputs (report_fields.hpp), or null
 /// Undefined numbers are null. Throws Error(bad_input) when the directory is no run's.
 nlohmann::json report_data(const std::filesystem::path& directory);
 
 /// Outputs to show, at most about `most` of `aggregate_count`'s: evenly spread, the first, the last, and where the
 /// count changes.
 std::vector<std::size_t> shown_outputs(const std::vector<double>& aggregate_count, std::size_t most);
-
-/// Base64 (RFC 4648) of bytes.
-std::string base64(const std::vector<unsigned char>& bytes);
 
 }  // namespace rouleau::host

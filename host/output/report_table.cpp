@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "error.hpp"
+#include "input/wording.hpp"
 #include "output/file.hpp"
 
 namespace rouleau::host {
@@ -39,6 +40,10 @@ StoredTable::StoredTable(const std::filesystem::path& file) : file_(file) {
   }
 }
 
+bool StoredTable::has(const std::string& column) const {
+  return std::find(header_.begin(), header_.end(), column) != header_.end();
+}
+
 std::size_t StoredTable::index(const std::string& column) const {
   const auto found = std::find(header_.begin(), header_.end(), column);
   if (found == header_.end())
@@ -56,6 +61,23 @@ std::vector<double> StoredTable::numbers(const std::string& column) const {
     values.push_back(value);
   }
   return values;
+}
+
+std::size_t StoredTable::count_of(const std::string& column) const {
+  std::size_t count = 0;
+  const auto values = numbers(column);
+  for (std::size_t row = 0; row < values.size(); ++row) {
+    // Numbered things stand in a row each, so that a number beyond the rows is a damaged one; NaN fails as well.
+    if (!(values[row] >= 0 && values[row] < static_cast<double>(values.size()))) {
+      throw Error(ExitCode::bad_input, Place{file_.string(), "", 0, 0},
+                  "row " + std::to_string(row + 1) + " has " + in_quotes(rows_[row][index(column)]) +
+                      " in the column \"" + column + "\", which counts from 0 and has " +
+                      std::to_string(values.size()) +
+                      " rows\n  the file is damaged; repeat the run, or take the row out");
+    }
+    count = std::max(count, static_cast<std::size_t>(values[row]) + 1);
+  }
+  return count;
 }
 
 std::vector<std::string> StoredTable::texts(const std::string& column) const {

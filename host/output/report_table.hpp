@@ -13,8 +13,12 @@ class StoredTable {
   /// Throws Error(input_output) when the file cannot be read.
   explicit StoredTable(const std::filesystem::path& file);
   [[nodiscard]] std::size_t rows() const { return rows_.size(); }
+  [[nodiscard]] bool has(const std::string& column) const;
   /// Column as numbers; an empty or unreadable entry is NaN. Throws Error(bad_input) when there is no such column.
   [[nodiscard]] std::vector<double> numbers(const std::string& column) const;
+  /// One more than the largest number in a column that numbers things from 0. Throws Error(bad_input) with the row
+  /// for an entry that cannot be such a number.
+  [[nodiscard]] std::size_t count_of(const std::string& column) const;
   [[nodiscard]] std::vector<std::string> texts(const std::string& column) const;
 
  private:

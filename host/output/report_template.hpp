@@ -1,10 +1,11 @@
-// The text of report.template.html, which CMake compiles into the program (embed_texts.cmake).
+// The pages report.html, study.html and limits.html without their data: those of page/ with all they include, compiled
+// in by CMake (embed_texts.cmake).
 #pragma once
 
 #include <string_view>
 
 namespace rouleau::host {
 
-extern const std::string_view report_template;
+extern const std::string_view report_template, study_template, limits_template;
 
 }  // namespace rouleau::host

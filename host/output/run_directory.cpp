@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <string_view>
 #include <system_error>
 
 #include "input/document.hpp"
+#include "output/checkpoint_file.hpp"
 #include "output/file.hpp"
 #include "output/frames.hpp"
 #include "output/log.hpp"
@@ -15,13 +17,16 @@ namespace rouleau::host {
 
 namespace {
 
-constexpr std::array<std::string_view, 11> run_files{
+constexpr std::array<std::string_view, 12> run_files{
     "aggregate_sizes.csv", "cells.csv",   "aggregates.csv", "series.csv",    "frames.h5", "frames.xmf",
-    "summary.json",        "report.html", "scene.json",     "checkpoint.h5", "log.jsonl"};
+    "summary.json",        "report.html", "scene.json",     "checkpoint.h5", "log.jsonl", "checkpoint-previous.h5"};
+
+/// Left by a run that was killed while it wrote a file.
+bool is_partial(const std::string& name) { return name.starts_with('.') && name.ends_with(".partial"); }
 
 bool written_by_a_run(const std::string& name) {
-  const bool partial = name.starts_with('.') && name.ends_with(".partial");  // left by a run that was killed
-  return partial || std::find(run_files.begin(), run_files.end(), name) != run_files.end();
+  return is_partial(name) || segment_number(name) ||
+         std::find(run_files.begin(), run_files.end(), name) != run_files.end();
 }
 
 /// Makes the directory, and sees to it that nothing of the user's gets mixed up with the run's files.
@@ -43,18 +48,24 @@ std::filesystem::path prepared(std::filesystem::path directory) {
   return directory;
 }
 
+bool holds_checkpoint(const std::filesystem::path& directory) {
+  return std::filesystem::exists(checkpoint_file(directory)) ||
+         std::filesystem::exists(previous_checkpoint_file(directory));
+}
+
 /// A run writes its first line into the log before anything else, so that this also finds runs that were killed; one
 /// that never began has nothing to lose.
 bool holds_run(const std::filesystem::path& directory) {
   std::error_code missing;
   const auto log_size = std::filesystem::file_size(directory / "log.jsonl", missing);
   return (!missing && log_size > 0) || std::filesystem::exists(directory / "summary.json") ||
-         std::filesystem::exists(directory / "checkpoint.h5");
+         holds_checkpoint(directory);
 }
 
-void remove_former_run(const std::filesystem::path& directory) {
+template <class Choice>
+void remove_files(const std::filesystem::path& directory, Choice chosen) {
   for (const auto& entry : std::filesystem::directory_iterator(directory)) {
-    if (entry.path().filename() == "log.jsonl") continue;  // it holds the lock
+    if (!chosen(entry.path().filename().string())) continue;
     std::error_code error;
     std::filesystem::remove(entry.path(), error);
     if (error) fail_file(entry.path(), "of a former run cannot be removed", error.value());
@@ -62,6 +73,21 @@ void remove_former_run(const std::filesystem::path& directory) {
 }
 
 }  // namespace
+
+void to_json(nlohmann::json& json, const DirectoryMark& mark) {
+  nlohmann::json tables = nlohmann::json::array();
+  for (const FileMark& table : mark.tables) tables.push_back({{"bytes", table.bytes}, {"checksum", table.checksum}});
+  json = {{"tables", tables}, {"frames", mark.frames}, {"log_s", mark.log_s}};
+}
+
+void from_json(const nlohmann::json& json, DirectoryMark& mark) {
+  for (std::size_t k = 0; k < mark.tables.size(); ++k) {
+    const auto& table = json.at("tables").at(k);
+    mark.tables[k] = {table.at("bytes"), table.at("checksum")};
+  }
+  json.at("frames").get_to(mark.frames);
+  json.at("log_s").get_to(mark.log_s);
+}
 
 std::string scene_text(const Document& document) {
   const auto text = nlohmann::json::parse(document.text(), nullptr, false);
@@ -86,33 +112,57 @@ std::filesystem::path unused_directory(const std::filesystem::path& wanted) {
 }
 
 struct RunDirectory::Files {
-  Files(const std::filesystem::path& directory, Log opened, const Scene& scene)
-      : log(std::move(opened)), tables(directory), frames(directory / "frames.h5", scene) {}
+  explicit Files(Log opened) : log(std::move(opened)) {}
   Log log;
-  Tables tables;
-  FrameWriter frames;
+  std::optional<Tables> tables;
+  std::optional<FrameWriter> frames;
 };
 
 RunDirectory::RunDirectory(std::filesystem::path directory, const Scene& scene, FormerRun former)
-    : directory_(prepared(std::move(directory))) {
-  Log log(directory_ / "log.jsonl");  // before anything is removed: another run may be writing here
+    : directory_(prepared(std::move(directory))), scene_(scene) {
+  // The log before anything is removed: another run may be writing here.
+  files_ = std::make_unique<Files>(Log(directory_ / "log.jsonl"));
   if (former == FormerRun::keep && holds_run(directory_)) {
     throw Error(ExitCode::bad_input, Place{directory_.string(), "", 0, 0},
-                "holds a run already, which would be lost; choose another directory with --out, or replace that run "
-                "with --overwrite");
+                "holds a run already, which would be lost; choose another directory with --out, go on with that run "
+                "with --resume, or replace it with --overwrite");
   }
-  remove_former_run(directory_);
-  log.clear();
-  files_ = std::make_unique<Files>(directory_, std::move(log), scene);
+  if (former == FormerRun::resume) {
+    resumes_ = holds_checkpoint(directory_);
+    if (resumes_) return;
+    if (std::filesystem::exists(directory_ / "summary.json")) {
+      throw Error(ExitCode::bad_input, Place{directory_.string(), "", 0, 0},
+                  "holds a run that has ended and left no checkpoint to go on from; replace it with --overwrite");
+    }
+  }
+  remove_files(directory_, [](const std::string& name) { return name != "log.jsonl"; });  // which holds the lock
+  files_->log.clear();
+  files_->tables.emplace(directory_);
+  files_->frames.emplace(directory_ / "frames.h5", scene);
   if (scene.document) write_file(directory_ / "scene.json", scene_text(*scene.document));
 }
+
+bool RunDirectory::is_open() const { return files_ && files_->tables; }
+
+void RunDirectory::go_back(const DirectoryMark& mark) {
+  Tables::require(directory_, mark.tables);
+  files_->frames.emplace(directory_ / "frames.h5", scene_, mark.frames);
+  remove_files(directory_, [](const std::string& name) {
+    return is_partial(name) || name == "summary.json" || name == "report.html" || name == "frames.xmf";
+  });
+  files_->tables.emplace(directory_, mark.tables);
+  files_->log.go_on(mark.log_s);
+  if (scene_.document) write_file(directory_ / "scene.json", scene_text(*scene_.document));
+}
+
+DirectoryMark RunDirectory::mark() { return {files_->tables->mark(), files_->frames->seal(), files_->log.elapsed()}; }
 
 RunDirectory::~RunDirectory() = default;
 
 void RunDirectory::write(const Snapshot& snapshot) {
   if (!files_) throw std::logic_error("RunDirectory::write after finish");
-  files_->tables.write(snapshot);
-  files_->frames.write(snapshot);
+  files_->tables->write(snapshot);
+  files_->frames->write(snapshot);
 }
 
 void RunDirectory::log(const std::string& event, const nlohmann::json& details) {
@@ -123,9 +173,9 @@ void RunDirectory::log(const std::string& event, const nlohmann::json& details) 
 void RunDirectory::finish(const Summary& summary) {
   if (!files_) throw std::logic_error("RunDirectory::finish called twice");
   const auto files = std::move(files_);
-  files->tables.close();
-  files->frames.close();
-  write_file(directory_ / "frames.xmf", files->frames.xdmf());
+  files->tables->close();
+  files->frames->close();
+  write_file(directory_ / "frames.xmf", files->frames->xdmf());
   // Last: who finds a summary finds everything else complete.
   write_file(directory_ / "summary.json",
              to_json(summary).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");

@@ -9,8 +9,10 @@
 
 #include "error.hpp"
 #include "input/scene.hpp"
+#include "output/frame_segments.hpp"
 #include "output/snapshot.hpp"
 #include "output/summary.hpp"
+#include "output/tables.hpp"
 
 namespace rouleau::host {
 
@@ -25,17 +27,40 @@ std::string scene_text(const Document& document);
 std::filesystem::path unused_directory(const std::filesystem::path& wanted);
 
 /// What becomes of a run that is found in the directory of a new one.
-enum class FormerRun { keep, replace };
+enum class FormerRun {
+  keep,     ///< it is refused
+  replace,  ///< its files are removed
+  resume    ///< if it has a checkpoint the new run goes on from it; removed where it was killed before it wrote one
+};
+
+/// What the data files held when a checkpoint was written.
+struct DirectoryMark {
+  Tables::Mark tables;
+  FramesSaved frames;
+  double log_s = 0;  ///< Log::elapsed()
+};
+void to_json(nlohmann::json& json, const DirectoryMark& mark);
+void from_json(const nlohmann::json& json, DirectoryMark& mark);
 
 /// Writes the run directory of PRODUCT.md section 4. Every member throws Error(input_output) with path and reason.
 class RunDirectory {
  public:
   /// Makes the directory (and parents). Refuses one that holds files which no run wrote, one that another run is
-  /// writing into, and unless told to replace it one that holds a former run, finished or not.
+  /// writing into, and unless told what becomes of it one that holds a former run, finished or not.
   RunDirectory(std::filesystem::path directory, const Scene& scene, FormerRun former = FormerRun::keep);
   ~RunDirectory();
   RunDirectory(const RunDirectory&) = delete;
   RunDirectory& operator=(const RunDirectory&) = delete;
+
+  /// Whether the run that is found here goes on; then go_back() comes before anything is written.
+  [[nodiscard]] bool resumes() const { return resumes_; }
+  /// Whether there are data files to be written: not before go_back(), nor after finish().
+  [[nodiscard]] bool is_open() const;
+  /// Drops what was written after the mark. Throws Error(input_output), with all files as they were, where what was
+  /// written before is not there any more.
+  void go_back(const DirectoryMark& mark);
+  /// What there is now, which is on the disk when this returns.
+  DirectoryMark mark();
 
   /// Rows of cells.csv and aggregates.csv, outlines (and fields when not empty) into frames.h5.
   void write(const Snapshot& snapshot);
@@ -49,6 +74,8 @@ class RunDirectory {
  private:
   struct Files;
   std::filesystem::path directory_;
+  const Scene& scene_;
+  bool resumes_ = false;
   std::unique_ptr<Files> files_;
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -38,14 +39,24 @@ struct OutlineSnapshot {
   std::vector<double> tension;  ///< N/m of segment i (elastic and viscous laws together)
 };
 
-/// Fluid fields on the lattice, row by row from below, x fastest. Empty: not due or not wanted.
+/// Fluid fields on the nodes that the scene wants (FieldStorage), row by row from below, x fastest. Empty: not due or
+/// not wanted.
 struct FieldSnapshot {
   int nx = 0, ny = 0;
-  std::vector<float> velocity_x, velocity_y;  ///< m/s
-  std::vector<float> density;                 ///< relative deviation from the mean
-  std::vector<float> viscosity;               ///< Pa s
-  std::vector<float> vorticity;               ///< 1/s
+  std::vector<double> velocity_x, velocity_y;  ///< m/s
+  std::vector<double> density;                 ///< relative deviation from the mean
+  std::vector<double> viscosity;               ///< Pa s
+  std::vector<double> vorticity;               ///< 1/s
   [[nodiscard]] bool empty() const { return nx == 0; }
+};
+
+/// Energies and powers per depth (docs: physics, energy); NaN where the scene has no such thing, or nobody tells it.
+struct EnergySnapshot {
+  static constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  double kinetic = none, elastic = none, bending = none, interaction = none, total = none;  ///< J/m
+  double viscous_dissipation = none, membrane_dissipation = none;                           ///< W/m, lost
+  double wall_power = none, body_force_power = none;                                        ///< W/m, put in
+  std::string unknown;  ///< why the total is not known; empty: it is
 };
 
 struct Snapshot {
@@ -72,6 +83,7 @@ struct Snapshot {
   double area_leakage_max =
       0;                  ///< relative: what the area correction kept from leaking, of the worst cell; NaN without
   double mass_drift = 0;  ///< relative
+  EnergySnapshot energy;
   OutlineSnapshot outlines;
   FieldSnapshot fields;
 };

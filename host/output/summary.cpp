@@ -8,25 +8,26 @@ namespace {
 
 using nlohmann::json;
 
-/// JSON has no infinity and no NaN: undefined is null.
-json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
-
 json to_json(const Failure& failure) {
   return {{"reason", failure.reason},
           {"step", failure.step},
-          {"time_s", number(failure.time)},
-          {"strain", number(failure.strain)},
-          {"place_m", {number(failure.place[0]), number(failure.place[1])}},
+          {"time_s", number_or_null(failure.time)},
+          {"strain", number_or_null(failure.strain)},
+          {"place_m", {number_or_null(failure.place[0]), number_or_null(failure.place[1])}},
           {"cell", failure.cell < 0 ? json(nullptr) : json(failure.cell)},
-          {"value", number(failure.value)},
-          {"limit", number(failure.limit)},
+          {"value", number_or_null(failure.value)},
+          {"limit", number_or_null(failure.limit)},
           {"message", failure.message},
-          {"remedy", failure.remedy}};
+          {"remedy", failure.remedy},
+          {"mode", failure.mode.name},
+          {"wavelength_segments", number_or_null(failure.mode.wavelength)},
+          {"tangential_share", number_or_null(failure.mode.tangential_share)},
+          {"mode_step", failure.mode.step < 0 ? json(nullptr) : json(failure.mode.step)}};
 }
 
-json to_json(const AggregateEvent& event) {
-  return {{"strain", number(event.strain)},
-          {"time_s", number(event.time)},
+json written(const AggregateEvent& event) {
+  return {{"strain", number_or_null(event.strain)},
+          {"time_s", number_or_null(event.time)},
           {"count", event.count},
           {"members", event.members},
           {"through_image", event.through_image}};
@@ -39,7 +40,7 @@ json dimensionless(const json& given) {
                            "viscosity_ratio", "mach_max"})
     if (!all.contains(name)) all[name] = nullptr;
   for (auto& value : all)
-    if (value.is_number_float()) value = number(value.get<double>());
+    if (value.is_number_float()) value = number_or_null(value.get<double>());
   return all;
 }
 
@@ -57,6 +58,8 @@ std::string outcome(const Summary& summary) {
   return summary.status + " after " + steps + (summary.steps == 1 ? " step" : " steps");
 }
 
+nlohmann::json number_or_null(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+
 json to_json(const Summary& summary) {
   json result;
   result["status"] = summary.status;
@@ -71,11 +74,11 @@ json to_json(const Summary& summary) {
   result["outcome"] = outcome(summary);
   result["steps"] = summary.steps;
   result["steps_at_most"] = summary.steps_at_most;
-  result["strain"] = number(summary.strain);
-  result["simulated_time_s"] = number(summary.simulated_time_s);
-  result["wall_s"] = number(summary.wall_s);
-  result["steps_per_s"] = number(summary.steps_per_s);
-  result["mlups"] = number(summary.mlups);
+  result["strain"] = number_or_null(summary.strain);
+  result["simulated_time_s"] = number_or_null(summary.simulated_time_s);
+  result["wall_s"] = number_or_null(summary.wall_s);
+  result["steps_per_s"] = number_or_null(summary.steps_per_s);
+  result["mlups"] = number_or_null(summary.mlups);
   result["peak_rss_bytes"] = summary.peak_rss_bytes;
   result["threads"] = summary.threads;
   result["precision"] = summary.precision;
@@ -90,7 +93,7 @@ json to_json(const Summary& summary) {
   result["lock"] = summary.lock ? json{{"file", summary.lock->file}, {"sha256", summary.lock->sha256}} : json();
   result["passes"] = json::array();
   for (const auto& pass : summary.passes)
-    result["passes"].push_back({{"name", pass.name}, {"wall_s", number(pass.wall_s)}, {"calls", pass.calls}});
+    result["passes"].push_back({{"name", pass.name}, {"wall_s", number_or_null(pass.wall_s)}, {"calls", pass.calls}});
   result["left_out"] = json::array();
   for (const auto& omission : summary.left_out)
     result["left_out"].push_back({{"what", omission.what}, {"why", omission.why}});
@@ -99,26 +102,30 @@ json to_json(const Summary& summary) {
   result["limits"] = json::array();
   for (const auto& limit : summary.limits)
     result["limits"].push_back({{"name", limit.name},
-                                {"value", number(limit.value)},
-                                {"limit", number(limit.limit)},
-                                {"margin", number(limit.margin)},
+                                {"value", number_or_null(limit.value)},
+                                {"limit", number_or_null(limit.limit)},
+                                {"margin", number_or_null(limit.margin)},
                                 {"remedy", limit.remedy}});
   result["wells"] = summary.wells.is_null() ? json::array() : summary.wells;
-  result["conservation"] = {{"mass_drift", number(summary.mass_drift)},
-                            {"area_drift_max", number(summary.area_drift_max)},
-                            {"area_leakage_max", number(summary.area_leakage_max)},
-                            {"momentum_residual", number(summary.momentum_residual)}};
+  result["conservation"] = {{"mass_drift", number_or_null(summary.mass_drift)},
+                            {"area_drift_max", number_or_null(summary.area_drift_max)},
+                            {"area_leakage_max", number_or_null(summary.area_leakage_max)},
+                            {"momentum_residual", number_or_null(summary.momentum_residual)}};
   const bool cells = summary.stretch[1] > 0;
-  result["stretch"] = cells ? json{{"min", number(summary.stretch[0])}, {"max", number(summary.stretch[1])}} : json();
+  result["stretch"] =
+      cells ? json{{"min", number_or_null(summary.stretch[0])}, {"max", number_or_null(summary.stretch[1])}} : json();
   result["aggregates_final"] = summary.aggregates_final;
   result["aggregate_history"] = json::array();
-  for (const auto& event : summary.aggregate_history) result["aggregate_history"].push_back(to_json(event));
+  for (const auto& event : summary.aggregate_history) result["aggregate_history"].push_back(written(event));
 
   result["warnings"] = summary.warnings;
   result["conversions"] = summary.conversions.is_null() ? json::array() : summary.conversions;
   result["packings"] = summary.packings.is_null() ? json::array() : summary.packings;
+  result["energy"] = summary.energy;
+  result["output_estimate"] = summary.output_estimate;
   result["rheology"] = summary.rheology.is_null() ? json::array() : summary.rheology;
   result["stages"] = summary.stages.is_null() ? json::array() : summary.stages;
+  result["resumed"] = summary.resumed.is_null() ? json::array() : summary.resumed;
   return result;
 }
 

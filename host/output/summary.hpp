@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -9,9 +10,18 @@
 
 namespace rouleau::host {
 
+/// What a failure looks like (docs/stability.md).
+struct FailureMode {
+  std::string name = "none";  ///< tangential, normal, node-scale, leakage, collapse, sound, none
+  double wavelength = std::numeric_limits<double>::quiet_NaN();        ///< segments; NaN: no wave
+  double tangential_share = std::numeric_limits<double>::quiet_NaN();  ///< of the wave's energy
+  long step = -1;                                                      ///< whose motion told it; -1: none
+};
+
 /// Why a run stopped early.
 struct Failure {
-  std::string reason;  ///< code: non_finite, mach, node_step, crossing, area_drift, escaped
+  std::string
+      reason;  ///< code: non_finite, mach, node_step, escaped, area_drift, uneven_nodes, crossing, energy_growth
   long step = 0;
   double time = 0, strain = 0;
   std::array<double, 2> place{};  ///< m
@@ -19,6 +29,7 @@ struct Failure {
   double value = 0, limit = 0;    ///< what was measured and the limit it passed
   std::string message;            ///< one sentence
   std::string remedy;             ///< what to change
+  FailureMode mode;
 };
 
 struct Omission {
@@ -35,6 +46,7 @@ struct PassCost {
   std::string name;
   double wall_s = 0;
   long calls = 0;
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(PassCost, name, wall_s, calls)
 };
 /// A limit of the method: the scene's value, where it ends, and limit / value.
 struct Limit {
@@ -47,6 +59,7 @@ struct AggregateEvent {
   int count;
   std::vector<std::vector<int>> members;
   bool through_image;
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(AggregateEvent, strain, time, count, members, through_image)
 };
 
 struct Summary {
@@ -72,11 +85,17 @@ struct Summary {
   int aggregates_final = 0;
   std::vector<AggregateEvent> aggregate_history;  ///< one entry at each change
   std::vector<std::string> warnings;
-  nlohmann::json conversions;  ///< array: {quantity, si, unit, lattice} for each stage
-  nlohmann::json packings;     ///< array: cells that were placed at random
-  nlohmann::json rheology;     ///< array: means, break-up and rotation in each stage
-  nlohmann::json stages;       ///< array: how each stage ended
+  nlohmann::json conversions;      ///< array: {quantity, si, unit, lattice} for each stage
+  nlohmann::json output_estimate;  ///< object: what the run was expected to write
+  nlohmann::json packings;         ///< array: cells that were placed at random
+  nlohmann::json energy;           ///< object: growth of the total energy in stages at rest
+  nlohmann::json rheology;         ///< array: means, break-up and rotation in each stage
+  nlohmann::json stages;           ///< array: how each stage ended
+  nlohmann::json resumed;          ///< array: where the run went on from a checkpoint
 };
+
+/// JSON has neither infinity nor NaN: what is undefined is null.
+nlohmann::json number_or_null(double value);
 
 nlohmann::json to_json(const Summary& summary);
 

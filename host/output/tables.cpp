@@ -1,5 +1,6 @@
 #include "output/tables.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -12,6 +13,20 @@ namespace rouleau::host {
 
 namespace {
 
+constexpr std::array names{"cells.csv", "aggregates.csv", "series.csv", "aggregate_sizes.csv"};
+/// First lines, in the same order.
+constexpr std::array<std::string_view, 4> headers{
+    "step,time_s,strain,cell,type,x_m,y_m,angle_rad,deformation,area_m2,perimeter_m,min_gap_m,aggregate,"
+    "tank_treading_angle_rad,through_image,stretch_min,stretch_max\n",
+    "step,time_s,strain,aggregate_count,aggregate,members,through_image,rotation_rad,cell_a,cell_b,image_x,image_y,"
+    "gap_m,contact_length_m\n",
+    "step,time_s,strain,stage,stage_name,aggregate_count,rotation_rad,relative_viscosity,particle_stress_Pa,mach_max,"
+    "area_drift_max,mass_drift,area_leakage_max,flow_rate_m2_per_s,cell_free_layer_lower_m,cell_free_layer_upper_m,"
+    "aggregate_size_number_mean,aggregate_size_weight_mean,kinetic_energy_J_per_m,elastic_energy_J_per_m,"
+    "bending_energy_J_per_m,interaction_energy_J_per_m,total_energy_J_per_m,viscous_dissipation_W_per_m,"
+    "membrane_dissipation_W_per_m,wall_power_W_per_m,body_force_power_W_per_m\n",
+    "step,time_s,strain,cells,aggregates\n"};
+
 /// One line of a table.
 class Row {
  public:
@@ -19,12 +34,7 @@ class Row {
   Row& add(int value) { return raw(std::to_string(value)); }
   Row& add(long value) { return raw(std::to_string(value)); }
   Row& add(bool value) { return raw(value ? "1" : "0"); }
-  Row& add(const std::string& text) {
-    if (text.find_first_of(",\"\r\n") == std::string::npos) return raw(text);
-    std::string quoted = "\"";
-    for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return raw(quoted + "\"");
-  }
+  Row& add(const std::string& text) { return raw(csv_text(text)); }
   Row& skip(int columns) {
     for (int i = 0; i < columns; ++i) raw("");
     return *this;
@@ -71,6 +81,13 @@ double largest_rotation(const Snapshot& snapshot) {
 
 }  // namespace
 
+std::string csv_text(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + '"';
+}
+
 std::string to_text(double value) {
   if (std::isnan(value)) return "nan";
   if (std::isinf(value)) return value < 0 ? "-inf" : "inf";
@@ -79,39 +96,58 @@ std::string to_text(double value) {
   return {digits.data(), end};
 }
 
+std::vector<std::string> column_names(const std::string& table) {
+  const auto found = std::find(names.begin(), names.end(), table);
+  std::vector<std::string> columns;
+  if (found == names.end()) return columns;
+  columns.emplace_back();
+  for (const char c : headers[static_cast<std::size_t>(found - names.begin())]) {
+    if (c == ',')
+      columns.emplace_back();
+    else if (c != '\n')
+      columns.back() += c;
+  }
+  return columns;
+}
+
+void Tables::require(const std::filesystem::path& directory, const Mark& mark) {
+  for (std::size_t k = 0; k < mark.size(); ++k) host::require(directory / names[k], mark[k]);
+}
+
 Tables::Tables(const std::filesystem::path& directory)
-    : cells_(directory / "cells.csv"),
-      aggregates_(directory / "aggregates.csv"),
-      series_(directory / "series.csv"),
-      sizes_(directory / "aggregate_sizes.csv") {
-  cells_.write(
-      "step,time_s,strain,cell,type,x_m,y_m,angle_rad,deformation,area_m2,perimeter_m,min_gap_m,aggregate,"
-      "tank_treading_angle_rad,through_image,stretch_min,stretch_max\n");
-  aggregates_.write(
-      "step,time_s,strain,aggregate_count,aggregate,members,through_image,rotation_rad,cell_a,cell_b,image_x,image_y,"
-      "gap_m,contact_length_m\n");
-  series_.write(
-      "step,time_s,strain,stage,stage_name,aggregate_count,rotation_rad,relative_viscosity,particle_stress_Pa,mach_max,"
-      "area_drift_max,mass_drift,area_leakage_max,flow_rate_m2_per_s,cell_free_layer_lower_m,cell_free_layer_upper_m,"
-      "aggregate_size_number_mean,aggregate_size_weight_mean\n");
-  sizes_.write("step,time_s,strain,cells,aggregates\n");
+    : cells_(directory / names[0]),
+      aggregates_(directory / names[1]),
+      series_(directory / names[2]),
+      sizes_(directory / names[3]) {
+  for (std::size_t k = 0; k < headers.size(); ++k) {
+    files()[k]->clear();
+    files()[k]->write(headers[k]);
+  }
+}
+
+Tables::Tables(const std::filesystem::path& directory, const Mark& mark)
+    : cells_(directory / names[0]),
+      aggregates_(directory / names[1]),
+      series_(directory / names[2]),
+      sizes_(directory / names[3]) {
+  for (std::size_t k = 0; k < mark.size(); ++k) files()[k]->go_back(mark[k]);
 }
 
 void Tables::write(const Snapshot& snapshot) {
   write_cells(snapshot);
   write_aggregates(snapshot);
   write_series(snapshot);
-  cells_.flush();
-  aggregates_.flush();
-  series_.flush();
-  sizes_.flush();
+  for (AppendFile* file : files()) file->flush();
+}
+
+Tables::Mark Tables::mark() {
+  Mark mark;
+  for (std::size_t k = 0; k < mark.size(); ++k) mark[k] = files()[k]->mark();
+  return mark;
 }
 
 void Tables::close() {
-  cells_.close();
-  aggregates_.close();
-  series_.close();
-  sizes_.close();
+  for (AppendFile* file : files()) file->close();
 }
 
 void Tables::write_cells(const Snapshot& snapshot) {
@@ -166,6 +202,10 @@ void Tables::write_series(const Snapshot& snapshot) {
   row.add(snapshot.area_drift_max).add(snapshot.mass_drift).add(snapshot.area_leakage_max);
   row.add(snapshot.flow_rate).add(snapshot.cell_free_layer_lower).add(snapshot.cell_free_layer_upper);
   row.add(snapshot.aggregate_size_number_mean).add(snapshot.aggregate_size_weight_mean);
+  const EnergySnapshot& energy = snapshot.energy;
+  row.add(energy.kinetic).add(energy.elastic).add(energy.bending).add(energy.interaction).add(energy.total);
+  row.add(energy.viscous_dissipation).add(energy.membrane_dissipation);
+  row.add(energy.wall_power).add(energy.body_force_power);
   series_.write(row.line());
   for (const auto& [cells, aggregates] : snapshot.aggregate_sizes) {
     sizes_.write(begin_row(snapshot).add(cells).add(aggregates).line());

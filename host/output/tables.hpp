@@ -1,5 +1,4 @@
 // The tables of a run: cells.csv, aggregates.csv, aggregate_sizes.csv and series.csv, a block of rows per output time.
-// time.
 //
 // cells.csv       one row per output time and cell
 // aggregates.csv  one row per output time and contact, with the aggregate both cells belong to; an aggregate without
@@ -16,7 +15,10 @@
 // locale; infinite and undefined ones are inf and nan. Text is quoted as in RFC 4180 where it must be.
 #pragma once
 
+#include <array>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "output/file.hpp"
 #include "output/snapshot.hpp"
@@ -26,17 +28,35 @@ namespace rouleau::host {
 /// Shortest text that reads back as the same number; "inf", "-inf", "nan".
 std::string to_text(double value);
 
+/// Text as an entry of a CSV table: in quotes where it must be (RFC 4180).
+std::string csv_text(const std::string& text);
+
+/// Names of the columns of "cells.csv", "aggregates.csv", "series.csv" or "aggregate_sizes.csv".
+std::vector<std::string> column_names(const std::string& table);
+
 class Tables {
  public:
+  /// How much of each of the files there is, in the order of their declaration.
+  using Mark = std::array<FileMark, 4>;
+
+  /// Throws Error(input_output) unless the files begin with what they held at the mark.
+  static void require(const std::filesystem::path& directory, const Mark& mark);
+
   /// Creates the four files in `directory` with their header lines. Throws Error(input_output), as all members do.
   explicit Tables(const std::filesystem::path& directory);
+  /// Opens them, and drops what was written after the mark.
+  Tables(const std::filesystem::path& directory, const Mark& mark);
   void write(const Snapshot& snapshot);
+  /// To the disk.
+  Mark mark();
   void close();
 
  private:
   void write_cells(const Snapshot& snapshot);
   void write_aggregates(const Snapshot& snapshot);
   void write_series(const Snapshot& snapshot);
+
+  [[nodiscard]] std::array<AppendFile*, 4> files() { return {&cells_, &aggregates_, &series_, &sizes_}; }
 
   AppendFile cells_, aggregates_, series_, sizes_;
 };

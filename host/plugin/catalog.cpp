@@ -107,7 +107,9 @@ Catalog::Catalog(const std::vector<fs::path>& folders) : folders_(folders) {
     try {
       const Document document = read_manifest_document(file);
       const auto& root = document.root();
-      if (!root.is_object() || !root.contains("manifest")) continue;  // some other JSON file
+      // A manifest whose first key is damaged shall be told of, and not pass for some other JSON file.
+      const bool resembles = root.is_object() && root.contains("abi") && root.contains("library");
+      if (!resembles && !(root.is_object() && root.contains("manifest"))) continue;
       if (root.contains("id") && root["id"].is_string()) id = root["id"];
       Manifest manifest = read_manifest(document, file, units);
       require_trust(file, open_folder, manifest.library);

@@ -27,7 +27,8 @@ class Catalog {
     std::string reason;
   };
 
-  /// Searches each folder and its sub-folders for *.json files with a "manifest" key. Refuses those that every user of
+  /// Searches each folder and its sub-folders for *.json files with a "manifest" key (or, should that be
+  /// damaged, with "abi" and "library"). Refuses those that every user of
   /// the machine could have written or replaced: they, their library, or a folder from theirs up to the searched one is
   /// writable by others.
   explicit Catalog(const std::vector<std::filesystem::path>& folders);

@@ -60,7 +60,9 @@ bool is_exported(const Symbol& symbol) {
 }
 
 std::vector<std::string> exported(ElfFile& file, const std::vector<Section>& sections) {
+  constexpr std::size_t most_bytes = std::size_t{1} << 28;  // of all names; those of a damaged table may overlap
   std::vector<std::string> symbols;
+  std::size_t bytes = 0;
   for (const Section& section : sections) {
     if (section.sh_type != SHT_DYNSYM) continue;
     if (section.sh_link >= sections.size()) throw Damaged("has a damaged table of symbols");
@@ -68,7 +70,10 @@ std::vector<std::string> exported(ElfFile& file, const std::vector<Section>& sec
     std::vector<char> text = file.read<char>(names.sh_offset, names.sh_size);
     text.push_back('\0');
     for (const Symbol& symbol : file.read<Symbol>(section.sh_offset, section.sh_size / sizeof(Symbol))) {
-      if (is_exported(symbol) && symbol.st_name < text.size()) symbols.emplace_back(&text[symbol.st_name]);
+      if (!is_exported(symbol) || symbol.st_name >= text.size()) continue;
+      symbols.emplace_back(&text[symbol.st_name]);
+      bytes += symbols.back().size() + sizeof(std::string);
+      if (bytes > most_bytes) throw Damaged("has a damaged table of symbols");
     }
   }
   return symbols;

@@ -8,9 +8,9 @@
 #include <boost/dll/shared_library.hpp>
 #include <cerrno>
 #include <cstring>
-#include <memory>
+#include <map>
 #include <string>
-#include <vector>
+#include <utility>
 
 #include "error.hpp"
 #include "exported_symbols.hpp"
@@ -56,17 +56,19 @@ fs::path library_file(const Manifest& manifest) {
   return library;
 }
 
-/// Loads for good: code of a plugin may be anywhere on a stack, and its tables live in it.
+/// Loads for good: code of a plugin may be anywhere on a stack, and its tables live in it. Each file once, though the
+/// models of every stage are made anew.
 boost::dll::shared_library& load(const Manifest& manifest, const fs::path& file) {
-  static auto& loaded = *new std::vector<std::unique_ptr<boost::dll::shared_library>>;  // never destroyed
-  auto library = std::make_unique<boost::dll::shared_library>();
+  static auto& loaded = *new std::map<fs::path, boost::dll::shared_library>;  // never destroyed
+  if (const auto known = loaded.find(file); known != loaded.end()) return known->second;
+  boost::dll::shared_library library;
   std::error_code error;
-  library->load(file, boost::dll::load_mode::rtld_now | boost::dll::load_mode::rtld_local, error);
+  library.load(file, boost::dll::load_mode::rtld_now | boost::dll::load_mode::rtld_local, error);
   if (error) {
     const char* words = dlerror();  // Boost's own error says only "bad file descriptor"
     refuse(manifest, "could not be loaded: " + std::string(words != nullptr ? words : error.message().c_str()));
   }
-  return *loaded.emplace_back(std::move(library));
+  return loaded.emplace(file, std::move(library)).first->second;
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "error.hpp"
 #include "trust.hpp"
 
 namespace rouleau::host {
@@ -15,9 +16,21 @@ class Search {
  public:
   FoundFiles found;
 
+  void all_under(const fs::path& path) {
+    searched_ = path;
+    folders_ = 0;
+    folder(path, {});
+  }
+
+ private:
   /// `open_above`: the first folder on the way here that every user may write to.
-  void folder(const fs::path& path, const fs::path& open_above = {}) {
+  void folder(const fs::path& path, const fs::path& open_above) {
     if (!is_new(path)) return;
+    if (++folders_ > most_folders) {
+      throw Error(ExitCode::bad_input, Place{searched_.string(), {}, 0, 0},
+                  "more than " + std::to_string(most_folders) +
+                      " folders lie under this one, where plugins are looked for; name the folder that holds them");
+    }
     const fs::path open = open_above.empty() ? open_to_others({path}) : open_above;
     std::vector<fs::path> files, folders;
     std::error_code error;
@@ -44,7 +57,6 @@ class Search {
     for (const auto& child : folders) folder(child, open);
   }
 
- private:
   bool is_new(const fs::path& path) {
     std::error_code error;
     const fs::path canonical = fs::canonical(path, error);
@@ -59,6 +71,9 @@ class Search {
     found.unreadable.emplace_back(path, path.string() + "\n  cannot be read: " + reason);
   }
 
+  static constexpr int most_folders = 10'000;
+  fs::path searched_;
+  int folders_ = 0;  ///< under it so far
   std::set<fs::path> seen_;
 };
 
@@ -66,7 +81,7 @@ class Search {
 
 FoundFiles find_json_files(const std::vector<fs::path>& folders) {
   Search search;
-  for (const auto& folder : folders) search.folder(folder);
+  for (const auto& folder : folders) search.all_under(folder);
   return std::move(search.found);
 }
 

@@ -15,6 +15,7 @@ class AggregateHistory {
   [[nodiscard]] const std::vector<AggregateEvent>& events() const { return events_; }
   /// Aggregates at the last snapshot.
   [[nodiscard]] int count() const { return events_.empty() ? 0 : events_.back().count; }
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(AggregateHistory, events_)
 
  private:
   std::vector<AggregateEvent> events_;

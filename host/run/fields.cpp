@@ -11,49 +11,52 @@ FieldSnapshot observe_fields(Fluid<T>& fluid, const Scene& scene, const LatticeU
     const auto& q = scene.output.quantities;
     return std::find(q.begin(), q.end(), name) != q.end();
   };
+  const int nx = fluid.setting().nx, ny = fluid.setting().ny;
+  const FieldStorage& storage = scene.output.field_storage;
   FieldSnapshot f;
-  f.nx = fluid.setting().nx;
-  f.ny = fluid.setting().ny;
+  f.nx = storage.count(0, nx);
+  f.ny = storage.count(1, ny);
   const bool velocity = wanted("velocity"), density = wanted("density"), viscosity = wanted("viscosity");
   const bool vorticity = wanted("vorticity");
   const double speed = units.to_si(1, dimension::velocity), rate = units.to_si(1, dimension::rate);
   const double viscosity_unit = units.to_si(1, dimension::viscosity);
   const auto nodes = static_cast<std::size_t>(f.nx) * static_cast<std::size_t>(f.ny);
-  std::vector<std::vector<Moments>> rows(static_cast<std::size_t>(f.ny));
-  for (int y = 0; y < f.ny; ++y) fluid.moments(y, rows[static_cast<std::size_t>(y)]);
+  std::vector<std::vector<Moments>> rows(static_cast<std::size_t>(ny));
+  for (int y = 0; y < ny; ++y) fluid.moments(y, rows[static_cast<std::size_t>(y)]);
   for (auto [want, values] :
        {std::pair{velocity, &f.velocity_x}, std::pair{velocity, &f.velocity_y}, std::pair{density, &f.density},
         std::pair{viscosity, &f.viscosity}, std::pair{vorticity, &f.vorticity}}) {
     if (want) values->reserve(nodes);
   }
   const WallVelocity& walls = fluid.setting().walls;
-  for (int y = 0; y < f.ny; ++y) {
-    for (int x = 0; x < f.nx; ++x) {
+  for (int row = 0; row < f.ny; ++row) {
+    for (int column = 0; column < f.nx; ++column) {
+      const int x = storage.first[0] + column * storage.stride, y = storage.first[1] + row * storage.stride;
       const Moments& m = rows[static_cast<std::size_t>(y)][static_cast<std::size_t>(x)];
       if (velocity) {
-        f.velocity_x.push_back(static_cast<float>(m.ux * speed));
-        f.velocity_y.push_back(static_cast<float>(m.uy * speed));
+        f.velocity_x.push_back(m.ux * speed);
+        f.velocity_y.push_back(m.uy * speed);
       }
-      if (density) f.density.push_back(static_cast<float>(m.density));
+      if (density) f.density.push_back(m.density);
       if (viscosity) {
         double relaxation = fluid.setting().relaxation_rate;
         if (fluid.setting().viscosity_contrast && fluid.activity().active(x, y)) {
           relaxation = static_cast<double>(fluid.relaxation_rate().row(y)[x]);
         }
-        f.viscosity.push_back(static_cast<float>((1 / relaxation - 0.5) / 3 * viscosity_unit));
+        f.viscosity.push_back((1 / relaxation - 0.5) / 3 * viscosity_unit);
       }
       if (vorticity) {
         const auto at = [&](int i, int j) -> const Moments& {
-          return rows[static_cast<std::size_t>(j)][static_cast<std::size_t>((i + f.nx) % f.nx)];
+          return rows[static_cast<std::size_t>(j)][static_cast<std::size_t>((i + nx) % nx)];
         };
         const auto ux = [&](int j) {
-          if (fluid.setting().periodic_y) return at(x, (j + f.ny) % f.ny).ux;
+          if (fluid.setting().periodic_y) return at(x, (j + ny) % ny).ux;
           if (j < 0) return 2 * walls.lower - m.ux;
-          if (j >= f.ny) return 2 * walls.upper - m.ux;
+          if (j >= ny) return 2 * walls.upper - m.ux;
           return at(x, j).ux;
         };
         const double curl = (at(x + 1, y).uy - at(x - 1, y).uy) / 2 - (ux(y + 1) - ux(y - 1)) / 2;
-        f.vorticity.push_back(static_cast<float>(curl * rate));
+        f.vorticity.push_back(curl * rate);
       }
     }
   }

@@ -6,10 +6,7 @@
 
 namespace rouleau::host {
 
-namespace {
-
-/// Cell and place of a node before its last step.
-void set_node(Failure& f, const Membranes& membranes, int node, double spacing) {
+void locate_failure(Failure& f, const Membranes& membranes, int node, double spacing) {
   const auto k = static_cast<std::size_t>(node);
   f.place = {(membranes.x[k] - membranes.velocity_x[k] + 0.5) * spacing,
              (membranes.y[k] - membranes.velocity_y[k] + 0.5) * spacing};
@@ -17,8 +14,6 @@ void set_node(Failure& f, const Membranes& membranes, int node, double spacing) 
     if (node >= membranes.cells[c].first && node < membranes.cells[c].end()) f.cell = static_cast<int>(c);
   }
 }
-
-}  // namespace
 
 std::optional<Failure> check_nodes(const Membranes& membranes, double limit, int escaped, double spacing) {
   if (membranes.cells.empty()) return std::nullopt;
@@ -31,11 +26,11 @@ std::optional<Failure> check_nodes(const Membranes& membranes, double limit, int
     f.limit = limit;
     f.message = finite ? "a membrane node moved further in one step than its limit (in lattice spacings)"
                        : "the velocity of a membrane node is no number";
-    set_node(f, membranes, farthest.node, spacing);
+    locate_failure(f, membranes, farthest.node, spacing);
   } else if (escaped >= 0) {
     f.reason = "escaped";
     f.message = "a membrane node has left the domain through a wall";
-    set_node(f, membranes, escaped, spacing);
+    locate_failure(f, membranes, escaped, spacing);
   } else {
     return std::nullopt;
   }

@@ -9,6 +9,7 @@
 
 #include "cell/crossing.hpp"
 #include "cell/geometry.hpp"
+#include "energy.hpp"
 #include "fields.hpp"
 #include "method_limits.hpp"
 #include "node_checks.hpp"
@@ -65,7 +66,7 @@ double gap_to_others(const Membranes& membranes, int cell, const PeriodicBox& bo
 }  // namespace
 
 Observer::Observer(const Scene& scene, const Membranes& membranes)
-    : scene_(scene),
+    : scene_(&scene),
       box_{static_cast<double>(scene.domain.nodes[0]),
            scene.domain.periodic_y ? static_cast<double>(scene.domain.nodes[1]) : 0.0} {
   for (const CellRange& cell : membranes.cells) initial_area_.push_back(enclosed_area(membranes, cell));
@@ -112,9 +113,9 @@ template <class T>
 double Observer::follow_fluid(Fluid<T>& fluid) {
   fluid.settle();
   const auto [mass, speed] = fluid.extremes();
-  if (!initial_mass_) initial_mass_ = mass;
+  if (std::isnan(initial_mass_)) initial_mass_ = mass;
   const double nodes = static_cast<double>(fluid.setting().nx) * fluid.setting().ny;
-  mass_drift_ = std::max(mass_drift_, std::abs(mass - *initial_mass_) / nodes);
+  mass_drift_ = std::max(mass_drift_, std::abs(mass - initial_mass_) / nodes);
   const double mach = std::sqrt(3.0) * speed;
   mach_max_ = std::max(mach_max_, mach);
   return mach;
@@ -144,6 +145,29 @@ std::array<double, 2> extreme_node(const Fluid<T>& fluid) {
 
 }  // namespace
 
+std::optional<Failure> Observer::check_stretch(const Membranes& membranes, const LatticeUnits& units) const {
+  const double limit = scene_->checks.stretch;
+  for (std::size_t k = 0; k < membranes.cells.size(); ++k) {
+    const CellRange& cell = membranes.cells[k];
+    const auto* circle = std::get_if<Circle>(&scene_->cell_types[static_cast<std::size_t>(cell.type)].shape);
+    const double placed = circle != nullptr ? circle->prestretch : 1.0;
+    for (int i = cell.first; i < cell.end(); ++i) {
+      const auto from = static_cast<std::size_t>(i), to = static_cast<std::size_t>(cell.next(i));
+      const double dx = membranes.x[to] - membranes.x[from], dy = membranes.y[to] - membranes.y[from];
+      const double stretch = std::hypot(dx, dy) / (placed * membranes.rest_length[from]);
+      if (stretch <= limit && stretch * limit >= 1) continue;
+      const std::array<double, 2> place{(membranes.x[from] + 0.5) * units.length,
+                                        (membranes.y[from] + 0.5) * units.length};
+      return failure("uneven_nodes", place, static_cast<int>(k), stretch, stretch < 1 ? 1 / limit : limit,
+                     stretch < 1 ? "a segment of a membrane has become too short against the length it was placed with"
+                                 : "a segment of a membrane has become too long against the length it was placed with",
+                     "lower numerics.density_factor or the load, stiffen the membrane, or raise checks.stretch if it "
+                     "is meant to give way so far");
+    }
+  }
+  return std::nullopt;
+}
+
 template <class T>
 std::optional<Failure> Observer::check(Solver<T>& solver, const Membranes& membranes) {
   const LatticeUnits& units = solver.setting().units;
@@ -151,13 +175,13 @@ std::optional<Failure> Observer::check(Solver<T>& solver, const Membranes& membr
     return std::array<double, 2>{(x + 0.5) * units.length, (y + 0.5) * units.length};
   };
   const double mach = follow_fluid(solver.fluid());
-  if (!(mach <= scene_.checks.mach)) {
+  if (!(mach <= scene_->checks.mach)) {
     const auto [x, y] = extreme_node(solver.fluid());
     if (!std::isfinite(mach)) {
       return failure("non_finite", place(x, y), -1, std::nan(""), 0, "the fluid holds a value that is no number",
                      blown_up_remedy);
     }
-    return failure("mach", place(x, y), -1, mach, scene_.checks.mach,
+    return failure("mach", place(x, y), -1, mach, scene_->checks.mach,
                    "the flow is too fast for the lattice: Mach number above its limit",
                    "lower numerics.density_factor, the shear rate or the driving force, or raise the resolution");
   }
@@ -168,11 +192,11 @@ std::optional<Failure> Observer::check(Solver<T>& solver, const Membranes& membr
   // Where areas are kept, the correction that this took is the leak.
   const double leakage = area_leakage(membranes, &leaking);
   if (leakage > drift) drift = leakage, cell = leaking;
-  if (!(drift <= scene_.checks.area_drift)) {
+  if (!(drift <= scene_->checks.area_drift)) {
     const CellRange& drifting = membranes.cells[static_cast<std::size_t>(cell)];
     const Eigen::Vector2d c = centroid(membranes, drifting);
     return failure(
-        "area_drift", place(c.x(), c.y()), cell, drift, scene_.checks.area_drift,
+        "area_drift", place(c.x(), c.y()), cell, drift, scene_->checks.area_drift,
         std::string("a cell ") +
             (drift == leakage ? "would have changed its area by more than the limit without numerics.area_correction"
                               : "has changed its area by more than the limit") +
@@ -181,6 +205,7 @@ std::optional<Failure> Observer::check(Solver<T>& solver, const Membranes& membr
             "lower numerics.density_factor, raise the resolution, or raise checks.area_drift if this error is "
             "acceptable");
   }
+  if (auto uneven = check_stretch(membranes, units)) return uneven;
   if (const auto crossing = find_crossing(membranes, box_)) {
     return failure("crossing", place(crossing->place.x(), crossing->place.y()), crossing->cell, 0, 0,
                    crossing->cell == crossing->other ? "the membrane of a cell crosses itself"
@@ -194,7 +219,7 @@ std::optional<Failure> Observer::check(Solver<T>& solver, const Membranes& membr
 
 void Observer::observe_cells(const Membranes& membranes, const LatticeUnits& units, Snapshot& snapshot) {
   const double length = units.length;
-  const auto contacts = find_contacts(membranes, box_, scene_.output.aggregate_gap / length);
+  const auto contacts = find_contacts(membranes, box_, scene_->output.aggregate_gap / length);
   const Aggregates aggregates = find_aggregates(static_cast<int>(membranes.cells.size()), contacts);
   snapshot.aggregate_count = aggregates.count;
   snapshot.aggregate_sizes = aggregate_sizes(aggregates.label);
@@ -216,7 +241,7 @@ void Observer::observe_cells(const Membranes& membranes, const LatticeUnits& uni
     tank_treading_angle_[k] = started_ ? continued(marker, tank_treading_angle_[k], 2 * std::numbers::pi) : marker;
     CellSnapshot s;
     s.cell = static_cast<int>(k);
-    s.type = scene_.cell_types[static_cast<std::size_t>(cell.type)].name;
+    s.type = scene_->cell_types[static_cast<std::size_t>(cell.type)].name;
     s.x = (c.x() + 0.5) * length;
     s.y = (c.y() + 0.5) * length;
     s.angle = round ? std::nan("") : angle_[k];
@@ -254,18 +279,18 @@ Snapshot Observer::observe(Solver<T>& solver, const Membranes& membranes, bool w
   if (setting.shear_rate != 0) {
     const auto stress = solver.fluid().wall_stress();
     snapshot.relative_viscosity = (stress.lower - stress.upper) / 2 / (viscosity * setting.shear_rate);
-  } else if (is_driven_channel(setting, scene_)) {
+  } else if (is_driven_channel(setting, *scene_)) {
     const double rate = flow_rate(solver.fluid());
-    snapshot.relative_viscosity = apparent_viscosity(rate, setting, scene_.domain.nodes[1]);
+    snapshot.relative_viscosity = apparent_viscosity(rate, setting, scene_->domain.nodes[1]);
     snapshot.flow_rate = units.to_si(rate, dimension::velocity) * units.length;
   }
   if (!membranes.cells.empty()) {
-    if (!scene_.domain.periodic_y) {
-      const auto layer = cell_free_layer(membranes, scene_.domain.nodes[0], scene_.domain.nodes[1]);
+    if (!scene_->domain.periodic_y) {
+      const auto layer = cell_free_layer(membranes, scene_->domain.nodes[0], scene_->domain.nodes[1]);
       snapshot.cell_free_layer_lower = layer.lower * units.length;
       snapshot.cell_free_layer_upper = layer.upper * units.length;
     }
-    snapshot.particle_stress = units.to_si(particle_stress(membranes, scene_, viscosity), dimension::pressure);
+    snapshot.particle_stress = units.to_si(particle_stress(membranes, *scene_, viscosity), dimension::pressure);
     observe_cells(membranes, units, snapshot);
     snapshot.area_drift_max = area_drift(membranes);
     snapshot.area_leakage_max = area_leakage(membranes);
@@ -282,11 +307,12 @@ Snapshot Observer::observe(Solver<T>& solver, const Membranes& membranes, bool w
       outlines.tension.push_back(tension[i] * tension_unit);
     }
   }
-  if (with_fields) snapshot.fields = observe_fields(solver.fluid(), scene_, units);
+  snapshot.energy = observe_energy(solver, membranes);
+  if (with_fields) snapshot.fields = observe_fields(solver.fluid(), *scene_, units);
   return snapshot;
 }
 
-void Observer::start_stage() { initial_mass_.reset(); }
+void Observer::start_stage() { initial_mass_ = std::nan(""); }
 
 template Snapshot Observer::observe(Solver<float>&, const Membranes&, bool);
 template Snapshot Observer::observe(Solver<double>&, const Membranes&, bool);

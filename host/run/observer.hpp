@@ -1,6 +1,8 @@
 // Turns the state between two steps into a Snapshot in SI units, and checks that the state is sound.
 #pragma once
 
+#include <limits>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <vector>
 
@@ -37,26 +39,35 @@ class Observer {
   /// Sum of nodal forces over the sum of their magnitudes: rounding only, or an internal force is unbalanced.
   static double momentum_residual(const Membranes& membranes);
 
+  [[nodiscard]] const PeriodicBox& box() const { return box_; }
   [[nodiscard]] double mach_max() const { return mach_max_; }
   [[nodiscard]] double area_drift_max() const { return area_drift_max_; }
   [[nodiscard]] double mass_drift() const { return mass_drift_; }
   /// Of any segment at any output so far.
   [[nodiscard]] const StretchRange& stretch() const { return stretch_; }
+  /// Whether what it remembers is about so many cells.
+  [[nodiscard]] bool fits(const Membranes& membranes) const {
+    const std::size_t cells = membranes.cells.size();
+    return initial_area_.size() == cells && angle_.size() == cells && tank_treading_angle_.size() == cells;
+  }
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(Observer, initial_area_, angle_, tank_treading_angle_, rotation_, started_, mach_max_,
+                                 area_drift_max_, mass_drift_, initial_mass_, stretch_)
 
  private:
   /// Follows mass and Mach number; returns the latter, which is NaN if the fluid holds a value that is no number.
   template <class T>
   double follow_fluid(Fluid<T>& fluid);
+  [[nodiscard]] std::optional<Failure> check_stretch(const Membranes& membranes, const LatticeUnits& units) const;
   void observe_cells(const Membranes& membranes, const LatticeUnits& units, Snapshot& snapshot);
 
-  const Scene& scene_;
+  const Scene* scene_;
   PeriodicBox box_;
   std::vector<double> initial_area_;
   std::vector<double> angle_, tank_treading_angle_;  ///< last values, continuous
   Rotation rotation_;
   bool started_ = false;
   double mach_max_ = 0, area_drift_max_ = 0, mass_drift_ = 0;
-  std::optional<double> initial_mass_;
+  double initial_mass_ = std::numeric_limits<double>::quiet_NaN();  ///< none yet
   StretchRange stretch_;
 };
 

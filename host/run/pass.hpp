@@ -4,6 +4,7 @@
 #include <chrono>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "worker.hpp"
@@ -37,7 +38,8 @@ class PassClock {
     wall_s_[pass] += std::chrono::duration<double>(now - last_).count();
     last_ = now;
   }
-  [[nodiscard]] double wall_s(std::size_t pass) const { return wall_s_[pass]; }
+  /// What has gone to a pass since this was last asked.
+  [[nodiscard]] double take(std::size_t pass) { return std::exchange(wall_s_[pass], 0.0); }
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -20,6 +20,7 @@ class PassCosts {
   }
   /// In the order in which they were first added.
   [[nodiscard]] const std::vector<PassCost>& passes() const { return passes_; }
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(PassCosts, passes_)
 
  private:
   std::vector<PassCost> passes_;

@@ -33,8 +33,6 @@ double parameter_named(const std::vector<const PlannedModel*>& models, const std
   return std::nan("");
 }
 
-nlohmann::json number_or_null(double value) { return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(); }
-
 /// Force per volume that drives the fluid in a stage, N/m3.
 Eigen::Vector2d driving_force(const StageSetting& stage, const Scene& scene) {
   return scene.fluid.body_force + stage.stage->pressure_gradient;
@@ -196,7 +194,7 @@ void plan_passes(Plan& plan) {
     }
   }
   if (!scene.fluid.inertia) omit("convective inertia", "fluid.inertia is false: linear (Stokes) equilibrium");
-  if (scene.output.checkpoint_seconds) omit("checkpoints", "this version does not write them yet");
+  if (!scene.output.checkpoint_seconds) omit("checkpoints", "output.checkpoint is \"never\": a run cannot be resumed");
   if (scene.output.fields.never()) omit("fields in frames.h5", "output.fields is not set");
   if (scene.output.cells.never())
     omit(plan.has_cells ? "rows of the tables and outlines between the ends of stages"
@@ -213,25 +211,24 @@ void plan_estimate(Plan& plan) {
   const bool f64 = scene.numerics.precision == Precision::f64;
   // Measured on one core with AVX-512 (docs/performance.md); other machines differ by their memory and vector width.
   const double step = nodes * (f64 ? 1.5e-9 : 0.85e-9) + membrane_nodes * 50e-9;
-  double outputs = 2, fields = 0;
-  for (const StageSetting& stage : plan.stages) {
-    const double steps = static_cast<double>(stage.max_steps);
-    plan.estimate.steps += steps;
-    const auto count = [&](const Cadence& cadence) {
-      double n = 0;
-      if (cadence.strain && stage.shear_rate != 0) n += steps * std::abs(stage.shear_rate) / *cadence.strain;
-      if (cadence.seconds) n += steps * stage.units.time / *cadence.seconds;
-      return n;
-    };
-    outputs += count(scene.output.cells);
-    fields += count(scene.output.fields);
-  }
+  for (const StageSetting& stage : plan.stages) plan.estimate.steps += static_cast<double>(stage.max_steps);
   plan.estimate.wall_s = plan.estimate.steps * step;
   const double word = f64 ? 8 : 4;
   plan.estimate.memory_bytes =
       nodes * word * (9 + (plan.has_cells ? 2 : 0) + (plan.viscosity_contrast ? 1 : 0)) + membrane_nodes * 400;
-  plan.estimate.output_bytes = outputs * (membrane_nodes * 32 + 400 * static_cast<double>(scene.cells.size())) +
-                               fields * nodes * 4 * (2 + static_cast<double>(scene.output.quantities.size()));
+  plan.estimate.output = estimate_output(scene, plan.stages);
+}
+
+/// Every stage makes its models anew and has a row of the conversions for each of their parameters.
+void check_models_of_stages(const Scene& scene) {
+  constexpr std::size_t most = 100'000;
+  std::size_t models = 1 + scene.interactions.size();
+  for (const CellType& type : scene.cell_types) models += type.membrane.size();
+  if (models * scene.stages.size() <= most) return;
+  throw Error(ExitCode::bad_input, scene.place("/stages"),
+              std::to_string(scene.stages.size()) + " stages with " + std::to_string(models) + " models each make " +
+                  std::to_string(models * scene.stages.size()) + " models; at most " + std::to_string(most) +
+                  " can be computed: use fewer stages, cell types, laws or interactions");
 }
 
 void choose_coupling(Plan& plan) {
@@ -279,6 +276,7 @@ std::vector<const PlannedModel*> Plan::active_models() const {
 }
 
 Plan make_plan(const Scene& scene, const Catalog& catalog) {
+  check_models_of_stages(scene);
   const Units units;
   Plan plan{};
   plan.scene = &scene;

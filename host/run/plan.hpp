@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "output/summary.hpp"
+#include "output_estimate.hpp"
 #include "plugin/catalog.hpp"
 #include "plugin/parameters.hpp"
 #include "stage_setting.hpp"
@@ -28,7 +29,8 @@ struct PlannedPass {
 struct Estimate {
   double steps = 0;  ///< at most
   double wall_s = 0;
-  double memory_bytes = 0, output_bytes = 0;
+  double memory_bytes = 0;
+  OutputEstimate output;
 };
 
 struct Plan {

@@ -48,7 +48,8 @@ void try_models(const Plan& plan) {
       const ModelInstance instance(*model->manifest, model->parameters.values, setting);
     } catch (const ModelRefused& refused) {
       throw Error(ExitCode::bad_input, plan.scene->place(model->pointer),
-                  in_quotes(model->manifest->id) + " cannot be made with these parameters: " + refused.problem());
+                  in_quotes(model->manifest->id) + " cannot be made with these parameters: " + refused.problem() +
+                      "\n  its manifest: " + model->manifest->file.string());
     }
   }
 }

@@ -9,25 +9,25 @@ namespace rouleau::host {
 
 namespace {
 
-std::string number(double value, const char* format = "%.4g") {
+std::string formatted(double value, const char* format = "%.4g") {
   if (std::isnan(value)) return "-";
   char text[64];
   std::snprintf(text, sizeof text, format, value);
   return text;
 }
 
-std::string number(const nlohmann::json& value) { return value.is_number() ? number(value.get<double>()) : "-"; }
+std::string formatted(const nlohmann::json& value) { return value.is_number() ? formatted(value.get<double>()) : "-"; }
 
 std::string size(double bytes) {
-  if (bytes < 1e6) return number(bytes / 1e3, "%.0f") + " kB";
-  if (bytes < 1e9) return number(bytes / 1e6, "%.1f") + " MB";
-  return number(bytes / 1e9, "%.1f") + " GB";
+  if (bytes < 1e6) return formatted(bytes / 1e3, "%.0f") + " kB";
+  if (bytes < 1e9) return formatted(bytes / 1e6, "%.1f") + " MB";
+  return formatted(bytes / 1e9, "%.1f") + " GB";
 }
 
 std::string duration(double seconds) {
-  if (seconds < 120) return number(seconds, "%.1f") + " s";
-  if (seconds < 7200) return number(seconds / 60, "%.1f") + " min";
-  return number(seconds / 3600, "%.1f") + " h";
+  if (seconds < 120) return formatted(seconds, "%.1f") + " s";
+  if (seconds < 7200) return formatted(seconds / 60, "%.1f") + " min";
+  return formatted(seconds / 3600, "%.1f") + " h";
 }
 
 std::string padded(std::string text, std::size_t width) {
@@ -37,8 +37,8 @@ std::string padded(std::string text, std::size_t width) {
 
 std::string well_text(const nlohmann::json& well) {
   if (well["depth_J_m2"].is_null()) return "no attraction";
-  return number(well["depth_J_m2"]) + " J/m2 at " + number(well["zero_force_distance_m"]) + " m, width " +
-         number(well["width_m"]) + " m";
+  return formatted(well["depth_J_m2"]) + " J/m2 at " + formatted(well["zero_force_distance_m"]) + " m, width " +
+         formatted(well["width_m"]) + " m";
 }
 
 void write_wells(std::ostringstream& out, const nlohmann::json& wells) {
@@ -49,9 +49,33 @@ void write_wells(std::ostringstream& out, const nlohmann::json& wells) {
     out << "  " << padded(well["model"].get<std::string>() + ", " + between, 30) << well_text(well) << "\n";
     if (!well.contains("stands_for")) continue;
     out << "  " << padded("  which stands for", 30) << well_text(well["stands_for"]);
-    if (well.contains("widened")) out << "; widened " << number(well["widened"]) << " times";
+    if (well.contains("widened")) out << "; widened " << formatted(well["widened"]) << " times";
     out << "\n";
   }
+}
+
+void write_output(std::ostringstream& out, const Plan& plan) {
+  const OutputEstimate& output = plan.estimate.output;
+  out << "Output: at most " << size(output.frames_bytes) << " in frames.h5 (" << formatted(output.outputs, "%.0f")
+      << " frames, " << formatted(output.field_outputs, "%.0f") << " with fields), about " << size(output.tables_bytes)
+      << " in the tables\n";
+  if (output.compressed)
+    out << "  " << size(output.fields_bytes) << " of it are fields, which compression makes smaller by an unknown "
+        << "factor\n";
+  const FieldStorage& storage = plan.scene->output.field_storage;
+  if (plan.scene->output.fields.never() || storage.whole()) return;
+  const double spacing = lattice_spacing(*plan.scene) * 1e6;
+  out << "  fields at";
+  for (const int axis : {0, 1}) {
+    const auto a = static_cast<std::size_t>(axis);
+    const int count = storage.count(axis, plan.scene->domain.nodes[a]);
+    out << (axis == 0 ? " x = " : ", y = ") << formatted((storage.first[a] + 0.5) * spacing) << " um";
+    if (count > 1)
+      out << " to " << formatted((storage.first[a] + (count - 1) * storage.stride + 0.5) * spacing) << " um (" << count
+          << " nodes)";
+  }
+  out << ", " << formatted(storage.stride * spacing) << " um apart: lattice nodes inside the region"
+      << (storage.stride > 1 ? " from its lower left corner" : "") << "\n";
 }
 
 }  // namespace
@@ -66,21 +90,22 @@ std::string to_text(const Plan& plan) {
       << padded("lattice", 14) << "SI unit\n";
   for (const auto& row : plan.conversions) {
     out << "  " << padded(row["stage"].get<std::string>(), 12) << padded(row["quantity"].get<std::string>(), 36)
-        << padded(number(row["si"]), 14) << padded(number(row["lattice"]), 14) << row["unit"].get<std::string>()
+        << padded(formatted(row["si"]), 14) << padded(formatted(row["lattice"]), 14) << row["unit"].get<std::string>()
         << "\n";
   }
 
   if (!plan.packings.empty()) out << "\nCells packed at random\n";
   for (const auto& packing : plan.packings) {
     out << "  " << packing["count"] << " of type " << packing["type"].get<std::string>() << ", hematocrit "
-        << number(packing["hematocrit"]);
-    if (packing["hematocrit_asked"].is_number()) out << " of " << number(packing["hematocrit_asked"]) << " asked";
-    out << ", gap " << number(packing["gap_m"].get<double>() * 1e6, "%.3g") << " um, seed " << packing["seed"] << " ("
-        << packing["pointer"].get<std::string>() << ")\n";
+        << formatted(packing["hematocrit"]);
+    if (packing["hematocrit_asked"].is_number()) out << " of " << formatted(packing["hematocrit_asked"]) << " asked";
+    out << ", gap " << formatted(packing["gap_m"].get<double>() * 1e6, "%.3g") << " um, seed " << packing["seed"]
+        << " (" << packing["pointer"].get<std::string>() << ")\n";
   }
 
   out << "\nDimensionless numbers\n";
-  for (const auto& [name, value] : plan.dimensionless.items()) out << "  " << padded(name, 24) << number(value) << "\n";
+  for (const auto& [name, value] : plan.dimensionless.items())
+    out << "  " << padded(name, 24) << formatted(value) << "\n";
   if (!scene.fluid.inertia) {
     out << "  Convective inertia is left out (fluid.inertia false), so the simulated Reynolds number only scales the\n"
            "  unsteady term; the flow is Stokes flow.\n";
@@ -90,8 +115,8 @@ std::string to_text(const Plan& plan) {
   out << "\nLimits, sharpest first (margin below 1: beyond the limit)\n  " << padded("limit", 62) << padded("value", 12)
       << padded("limit", 12) << "margin\n";
   for (const Limit& limit : plan.limits) {
-    out << "  " << padded(limit.name, 62) << padded(number(limit.value), 12) << padded(number(limit.limit), 12)
-        << number(limit.margin, "%.3g") << (limit.margin < 1 ? "   " + limit.remedy : "") << "\n";
+    out << "  " << padded(limit.name, 62) << padded(formatted(limit.value), 12) << padded(formatted(limit.limit), 12)
+        << formatted(limit.margin, "%.3g") << (limit.margin < 1 ? "   " + limit.remedy : "") << "\n";
   }
 
   out << "\nModels\n";
@@ -106,14 +131,13 @@ std::string to_text(const Plan& plan) {
   out << "\nLeft out\n";
   for (const Omission& omission : plan.left_out) out << "  " << omission.what << ": " << omission.why << "\n";
 
-  out << "\nAt most " << number(plan.estimate.steps, "%.0f") << " steps, about " << duration(plan.estimate.wall_s)
-      << " on one core, " << size(plan.estimate.memory_bytes) << " of memory for fields, "
-      << size(plan.estimate.output_bytes) << " of output\n";
+  out << "\nAt most " << formatted(plan.estimate.steps, "%.0f") << " steps, about " << duration(plan.estimate.wall_s)
+      << " on one core, " << size(plan.estimate.memory_bytes) << " of memory for fields\n";
+  write_output(out, plan);
   return out.str();
 }
 
 nlohmann::json to_json(const Plan& plan) {
-  const auto finite = [](double value) { return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(); };
   nlohmann::json json;
   json["title"] = plan.scene->title;
   json["warnings"] = plan.warnings;
@@ -124,9 +148,9 @@ nlohmann::json to_json(const Plan& plan) {
   json["limits"] = nlohmann::json::array();
   for (const Limit& limit : plan.limits) {
     json["limits"].push_back({{"name", limit.name},
-                              {"value", finite(limit.value)},
-                              {"limit", finite(limit.limit)},
-                              {"margin", finite(limit.margin)},
+                              {"value", number_or_null(limit.value)},
+                              {"limit", number_or_null(limit.limit)},
+                              {"margin", number_or_null(limit.margin)},
                               {"remedy", limit.remedy}});
   }
   json["models"] = nlohmann::json::array();
@@ -146,7 +170,8 @@ nlohmann::json to_json(const Plan& plan) {
   json["estimate"] = {{"steps_at_most", plan.estimate.steps},
                       {"wall_s", plan.estimate.wall_s},
                       {"memory_bytes", plan.estimate.memory_bytes},
-                      {"output_bytes", plan.estimate.output_bytes}};
+                      {"output_bytes", plan.estimate.output.bytes()},
+                      {"output", to_json(plan.estimate.output)}};
   return json;
 }
 

@@ -2,6 +2,7 @@
 
 #include <sys/resource.h>
 #include <sys/utsname.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <ctime>
@@ -10,13 +11,14 @@
 
 #include "input/document.hpp"
 #include "output/run_directory.hpp"
+#include "plan.hpp"
 #include "plugin/library.hpp"
 
 namespace rouleau::host {
 
 std::string program_version() { return ROULEAU_VERSION; }
 
-std::string machine_description() {
+Machine this_machine() {
   std::string model = "unknown processor";
   std::ifstream info("/proc/cpuinfo");
   for (std::string line; std::getline(info, line);) {
@@ -27,8 +29,18 @@ std::string machine_description() {
   }
   utsname system{};
   uname(&system);
-  return model + ", " + std::to_string(std::thread::hardware_concurrency()) + " processors, " + system.sysname + " " +
-         system.release + " " + system.machine;
+#ifdef __clang__
+  const std::string compiler = "clang " __clang_version__;
+#else
+  const std::string compiler = "g++ " __VERSION__;
+#endif
+  return {model, std::thread::hardware_concurrency(), sysconf(_SC_PHYS_PAGES) * sysconf(_SC_PAGE_SIZE),
+          std::string(system.sysname) + " " + system.release + " " + system.machine, compiler};
+}
+
+std::string machine_description() {
+  const Machine machine = this_machine();
+  return machine.processor + ", " + std::to_string(machine.processors) + " processors, " + machine.system;
 }
 
 std::string present_time() {
@@ -70,6 +82,7 @@ Summary describe(const Plan& plan, int threads) {
   s.warnings = plan.warnings;
   s.conversions = plan.conversions;
   s.packings = plan.packings;
+  s.output_estimate = to_json(plan.estimate.output);
   return s;
 }
 

@@ -4,12 +4,21 @@
 #include <string>
 
 #include "output/summary.hpp"
-#include "plan.hpp"
 
 namespace rouleau::host {
 
+struct Plan;
+
 /// Version and, in a checkout, commit that the program was built from.
 std::string program_version();
+struct Machine {
+  std::string processor;  ///< model
+  unsigned processors;    ///< that the program may use
+  long memory_bytes;
+  std::string system;    ///< name, release, architecture
+  std::string compiler;  ///< that the program was built with
+};
+Machine this_machine();
 /// Processor model, number of processors, operating system.
 std::string machine_description();
 /// Present time, ISO 8601 in UTC.

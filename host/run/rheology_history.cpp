@@ -7,6 +7,8 @@
 #include <numbers>
 #include <set>
 
+#include "output/summary.hpp"
+
 namespace rouleau::host {
 
 namespace {
@@ -16,8 +18,6 @@ using nlohmann::json;
 constexpr std::array<const char*, 6> value_names{"relative_viscosity",         "flow_rate_m2_per_s",
                                                  "cell_free_layer_lower_m",    "cell_free_layer_upper_m",
                                                  "aggregate_size_number_mean", "aggregate_size_weight_mean"};
-
-json number_or_null(double value) { return std::isfinite(value) ? json(value) : json(); }
 
 /// First instant of the second half of a history, by time.
 template <class Instants>

@@ -1,6 +1,7 @@
 // What a run says about the rheology of its suspension over time: means, break-up of aggregates, tank treading.
 #pragma once
 
+#include <array>
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -28,17 +29,20 @@ class RheologyHistory {
   ///                      to the long axis, and of the long axis, over the last whole turns of the outline (as many as
   ///                      fit into the second half, one if there is one at all; turns 0: over the second half)
   [[nodiscard]] nlohmann::json stages() const;
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(RheologyHistory, stages_, stage_, start_strain_, start_time_)
 
  private:
   struct Instant {
     double strain, time;  ///< since the start of the stage
-    double values[6];
+    std::array<double, 6> values;
     std::vector<int> label;
     std::vector<double> marker, axis;  ///< rad, of each cell, continuous
+    NLOHMANN_DEFINE_TYPE_INTRUSIVE(Instant, strain, time, values, label, marker, axis)
   };
   struct StageHistory {
     std::string name;
     std::vector<Instant> instants;
+    NLOHMANN_DEFINE_TYPE_INTRUSIVE(StageHistory, name, instants)
   };
   static nlohmann::json means(const StageHistory& stage);
   static nlohmann::json dissociation(const StageHistory& stage);

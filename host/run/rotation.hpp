@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "aggregates.hpp"
@@ -18,6 +19,7 @@ class Rotation {
   /// has an aggregate that is closed to a ring through the periodic border: it has no ends.
   std::map<int, double> follow(const std::vector<CellContact>& contacts, const Aggregates& aggregates,
                                const std::vector<Eigen::Vector2d>& centers, const PeriodicBox& box);
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(Rotation, last_)
 
  private:
   std::map<std::vector<int>, double> last_;  ///< by members

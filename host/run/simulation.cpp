@@ -3,6 +3,7 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -12,17 +13,17 @@
 #include <set>
 #include <string>
 
-#include "aggregate_history.hpp"
 #include "barrier.hpp"
 #include "cell/motion.hpp"
+#include "checkpoint.hpp"
+#include "checkpoint_match.hpp"
+#include "energy_check.hpp"
+#include "failure_mode.hpp"
 #include "node_checks.hpp"
-#include "observer.hpp"
 #include "output/progress.hpp"
-#include "pass_costs.hpp"
 #include "provenance.hpp"
-#include "rheology_history.hpp"
+#include "run_state.hpp"
 #include "schedule.hpp"
-#include "solver.hpp"
 
 namespace rouleau::host {
 
@@ -31,7 +32,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-/// The state of a run that all its stages share.
+/// The stages of a run one after another, and the steps of each.
 class Simulation {
  public:
   Simulation(const Plan& plan, const RunOptions& options, RunDirectory& directory)
@@ -40,17 +41,24 @@ class Simulation {
         options_(options),
         directory_(directory),
         membranes_(plan.has_cells ? make_membranes(scene_, lattice_spacing(scene_)) : Membranes{}),
-        observer_(scene_, membranes_),
-        progress_(options.quiet) {}
+        state_(Observer(scene_, membranes_)),
+        progress_(options.quiet),
+        checkpoints_(scene_, directory) {}
 
   Summary run() {
     described_ = describe(plan_, options_.threads);
-    directory_.log("started", {{"title", scene_.title}, {"threads", options_.threads}});
+    Resumption resumption;
+    if (directory_.resumes()) {
+      resumption = open_checkpoint(directory_.path(), plan_, options_.force);
+      go_on_from(resumption);
+    } else {
+      directory_.log("started", {{"title", scene_.title}, {"threads", options_.threads}});
+    }
     for (const std::string& warning : plan_.warnings) directory_.log("warning", {{"message", warning}});
     if (scene_.numerics.precision == Precision::f64) {
-      run_stages<double>();
+      run_stages<double>(resumption.checkpoint.get());
     } else {
-      run_stages<float>();
+      run_stages<float>(resumption.checkpoint.get());
     }
     progress_.finish();
     Summary summary = summarise();
@@ -66,20 +74,55 @@ class Simulation {
     return names[static_cast<int>(ending)];
   }
 
+  /// Takes over what a checkpoint says of everything but the fluid.
+  void go_on_from(const Resumption& resumption) {
+    const CheckpointReader& reader = *resumption.checkpoint;
+    saved_ = reader.state();
+    restore(reader, saved_, plan_, state_, membranes_);
+    directory_.go_back(saved_.at("directory"));
+    reader.take_place(directory_.path());
+    nlohmann::json resumed{{"step", state_.steps}, {"threads", options_.threads}, {"accepted", resumption.accepted}};
+    if (!resumption.damage.empty()) resumed["damaged_checkpoint"] = resumption.damage;
+    state_.resumed.push_back(resumed);
+    directory_.log("resumed", resumed);
+  }
+
   template <class T>
-  void run_stages() {
+  void run_stages(const CheckpointReader* checkpoint) {
     std::unique_ptr<Solver<T>> solver;
-    for (int stage = 0; stage < static_cast<int>(plan_.stages.size()) && !stopped_; ++stage) {
+    for (; state_.stage < static_cast<int>(plan_.stages.size()) && !stopped_; ++state_.stage) {
       if (solver) {
-        const LatticeUnits &from = solver->setting().units, &to = plan_.stages[static_cast<std::size_t>(stage)].units;
+        const LatticeUnits& from = solver->setting().units;
+        const LatticeUnits& to = plan_.stages[static_cast<std::size_t>(state_.stage)].units;
         change_units(membranes_.state, from, to);
         change_units(membranes_.contacts, from, to);
       }
-      auto next = std::make_unique<Solver<T>>(plan_, stage, membranes_);
-      start_fluid(*next, solver.get());
+      const std::vector<double> steps_taken = membranes_.largest_step;
+      auto next = std::make_unique<Solver<T>>(plan_, state_.stage, membranes_);
+      if (checkpoint != nullptr) {
+        membranes_.largest_step = steps_taken;
+        restore(*checkpoint, saved_, *next);
+        checkpoint = nullptr;
+        saved_.clear();
+      } else {
+        start_fluid(*next, solver.get());
+        start_stage(next->setting());
+      }
       solver = std::move(next);
       run_stage(*solver);
     }
+  }
+
+  void start_stage(const StageSetting& setting) {
+    directory_.log(
+        "stage",
+        {{"name", setting.stage->name}, {"time_step_s", setting.units.time}, {"most_steps", setting.max_steps}});
+    state_.observer.start_stage();
+    state_.growth.start_stage();
+    state_.stage_step = 0;
+    state_.steps_before = state_.steps;
+    state_.stage_wall = 0;
+    state_.rest_watch.start(0, membranes_);
   }
 
   /// Fluid of a stage: the developed flow between its walls if the stage asks for it, else what the former stage left,
@@ -110,40 +153,34 @@ class Simulation {
   template <class T>
   void run_stage(Solver<T>& solver) {
     const StageSetting& setting = solver.setting();
-    directory_.log(
-        "stage",
-        {{"name", setting.stage->name}, {"time_step_s", setting.units.time}, {"most_steps", setting.max_steps}});
-    observer_.start_stage();
-    stage_step_ = 0;
-    stage_ending_ = Ending::none;
+    ending_ = Ending::none;
     const Schedule cells(scene_.output.cells, setting, true), fields(scene_.output.fields, setting, false);
-    rest_watch_ = membranes_;
-    rest_watch_step_ = 0;
-    steps_before_ = steps_;
-    next_attention_ = 0;
-    const auto start = Clock::now();
+    next_attention_ = state_.stage_step;
+    clock_ = Clock::now();
     step_loop(solver, cells, fields);
-    wall_ += seconds_since(start);
-    time_ += static_cast<double>(stage_step_) * setting.units.time;
-    strain_ += std::abs(setting.shear_rate) * static_cast<double>(stage_step_);
-    stages_.push_back({{"name", setting.stage->name},
-                       {"steps", stage_step_},
-                       {"ended_by", name(stage_ending_)},
-                       {"wall_s", seconds_since(start)}});
-    nlohmann::json ended = stages_.back();
+    take_time();
+    state_.end_stage(setting, name(ending_));
+    nlohmann::json ended = state_.stages.back();
     ended["stage_wall_s"] = ended["wall_s"];
     ended.erase("wall_s");
     directory_.log("stage_ended", ended);
-    stopped_ =
-        stage_ending_ == Ending::max_steps || stage_ending_ == Ending::interrupted || stage_ending_ == Ending::failed;
+    stopped_ = ending_ == Ending::max_steps || ending_ == Ending::interrupted || ending_ == Ending::failed;
   }
 
-  /// The steps of a stage. All workers run the same passes; what needs one of them alone happens between two steps, and
-  /// only when something is due.
+  /// The time since this was last called goes to the run and the stage.
+  void take_time() {
+    const double passed = seconds_since(clock_);
+    clock_ = Clock::now();
+    state_.wall += passed;
+    state_.stage_wall += passed;
+  }
+
+  /// The steps of a stage. All workers run the same passes; what needs one of them alone happens before or after the
+  /// forces of a step, and only when something is due.
   template <class T>
   void step_loop(Solver<T>& solver, const Schedule& cells, const Schedule& fields) {
     std::exception_ptr trouble;
-    std::atomic<long> stop_at{std::numeric_limits<long>::max()};
+    std::atomic<long> attend_at{std::numeric_limits<long>::max()};
     std::optional<Barrier> barrier;
 #pragma omp parallel num_threads(options_.threads)
     {
@@ -153,27 +190,46 @@ class Simulation {
       const Worker worker{omp_get_thread_num(), omp_get_num_threads()};
       const std::vector<Pass>&forces = solver.forces(), &advance = solver.advance();
       PassClock clock(forces.size() + advance.size());
-      for (long step = 0;; ++step) {
-        run_passes(forces, worker, *barrier, clock, 0);
-        if (step >= next_attention_ || step >= stop_at.load(std::memory_order_relaxed) || went_wrong(solver)) {
-          barrier->arrive_and_wait();
-          if (worker.first()) {
-            try {
-              between_steps(solver, step, cells, fields);
-            } catch (...) {
-              trouble = std::current_exception();
-              stage_ending_ = Ending::failed;
-            }
+      long counted = state_.stage_step;  // steps whose costs are in the state
+      const auto count_costs = [&](long step) {
+        add_costs(solver, clock, step - counted);
+        counted = step;
+      };
+      const auto alone = [&](auto&& action) {
+        barrier->arrive_and_wait();
+        if (worker.first()) {
+          try {
+            action();
+          } catch (...) {
+            trouble = std::current_exception();
+            ending_ = Ending::failed;
           }
-          barrier->arrive_and_wait();
-          if (stage_ending_ != Ending::none) break;
-          clock.resume();
+        }
+        barrier->arrive_and_wait();
+        clock.resume();
+      };
+      for (long step = state_.stage_step;; ++step) {
+        const bool attend = step >= next_attention_ || step >= attend_at.load(std::memory_order_relaxed);
+        if (attend) {
+          alone([&] {
+            count_costs(step);
+            attend_at.store(std::numeric_limits<long>::max(), std::memory_order_relaxed);
+            before_forces(solver, step);
+          });
+          if (ending_ == Ending::failed) break;
+        }
+        run_passes(forces, worker, *barrier, clock, 0);
+        if (attend || wants_a_look(solver)) {
+          alone([&] { after_forces(solver, step, cells, fields); });
+          if (ending_ != Ending::none) break;
         }
         run_passes(advance, worker, *barrier, clock, forces.size());
-        // A request to stop counts two steps later, when every worker has passed a barrier since.
-        if (worker.first() && interrupted()) stop_at.store(step + 2, std::memory_order_relaxed);
+        // A request counts two steps later, when every worker has passed a barrier since.
+        if (worker.first() && (interrupted() || checkpoints_.due()) && attend_at.load() > step + 2) {
+          attend_at.store(step + 2, std::memory_order_relaxed);
+        }
       }
-      if (worker.first()) add_costs(solver, clock);
+      if (worker.first()) count_costs(state_.stage_step);
     }
     if (trouble) std::rethrow_exception(trouble);
   }
@@ -201,76 +257,108 @@ class Simulation {
   }
 
   template <class T>
-  void add_costs(const Solver<T>& solver, const PassClock& clock) {
+  void add_costs(const Solver<T>& solver, PassClock& clock, long steps) {
     std::size_t at = 0;
     std::set<std::string> counted;
     for (const std::vector<Pass>* passes : {&solver.forces(), &solver.advance()}) {
       for (const Pass& pass : *passes) {
-        costs_.add(pass.name, clock.wall_s(at++), counted.insert(pass.name).second ? stage_step_ : 0);
+        state_.costs.add(pass.name, clock.take(at++), counted.insert(pass.name).second ? steps : 0);
       }
     }
   }
 
   [[nodiscard]] bool interrupted() const { return options_.interrupted != nullptr && options_.interrupted->load(); }
 
-  /// Whether the last step must not be followed by another; all workers come to the same answer.
+  /// Whether the last step must not be followed by another, or was faster than any before; all workers come to the same
+  /// answer.
   template <class T>
-  [[nodiscard]] bool went_wrong(const Solver<T>& solver) const {
-    return !(largest_step(membranes_) <= scene_.checks.node_step) || solver.escaped();
+  [[nodiscard]] bool wants_a_look(const Solver<T>& solver) const {
+    return !(largest_step(membranes_) <= std::min(scene_.checks.node_step, state_.growth.level())) || solver.escaped();
+  }
+
+  /// One thread, before the forces of a step: whether the stage ends here, and the checkpoint.
+  template <class T>
+  void before_forces(Solver<T>& solver, long step) {
+    const StageSetting& setting = solver.setting();
+    state_.stage_step = step;
+    state_.steps = state_.steps_before + step;
+    due_ending_ = next_ending(setting);
+    const bool last_stage = setting.index + 1 == static_cast<int>(plan_.stages.size());
+    const bool stops = due_ending_ == Ending::interrupted || due_ending_ == Ending::max_steps;
+    const bool ends = due_ending_ != Ending::none && (last_stage || stops);
+    if (checkpoints_.due() || (checkpoints_.wanted() && ends)) {
+      take_time();
+      const auto start = Clock::now();
+      checkpoints_.write(plan_, options_.threads, state_, membranes_, solver);
+      state_.costs.add("checkpoint", seconds_since(start), 1);
+    }
+    const bool window_over = step >= state_.rest_watch.end(rest_window(setting));
+    if (setting.stage->until_at_rest && window_over) state_.rest_watch.start(step, membranes_);
   }
 
   /// One thread, forces computed: outputs, checks, and whether the stage ends here.
   template <class T>
-  void between_steps(Solver<T>& solver, long step, const Schedule& cells, const Schedule& fields) {
+  void after_forces(Solver<T>& solver, long step, const Schedule& cells, const Schedule& fields) {
     const auto start = Clock::now();
-    stage_step_ = step;
-    steps_ = steps_before_ + step;
-    if (auto failure =
-            check_nodes(membranes_, scene_.checks.node_step, solver.escaped_node(), solver.setting().units.length)) {
-      fail(std::move(*failure), solver.setting());
+    const StageSetting& setting = solver.setting();
+    state_.stage_step = step;
+    state_.steps = state_.steps_before + step;
+    if (auto failure = check_nodes(membranes_, scene_.checks.node_step, solver.escaped_node(), setting.units.length)) {
+      fail(std::move(*failure), solver);
       return;
     }
+    if (largest_step(membranes_) > state_.growth.level()) state_.growth.note(state_.steps, membranes_);
+    if (checkpoints_.pending()) {
+      Observer look = state_.observer;  // one that leaves no trace
+      checkpoints_.settle(!look.check(solver, membranes_));
+    }
     // The end of a stage has been written; the beginning of the next is the same instant.
-    const bool written = stage_step_ == 0 && steps_ > 0;
-    const bool cells_due = !written && (steps_ == 0 || cells.due(stage_step_));
-    const bool fields_due = !written && !scene_.output.fields.never() && fields.due(stage_step_);
-    const bool check_due = stage_step_ % scene_.checks.every_steps == 0;
-    const Ending ending = next_ending(solver.setting());
-    if (cells_due || fields_due || check_due || ending != Ending::none) {
-      if (auto failure = observer_.check(solver, membranes_)) {
-        fail(std::move(*failure), solver.setting());
+    const bool written = step == 0 && state_.steps > 0;
+    const bool cells_due = !written && (state_.steps == 0 || cells.due(step));
+    const bool fields_due = !written && !scene_.output.fields.never() && fields.due(step);
+    const bool check_due = step % scene_.checks.every_steps == 0;
+    const bool last = due_ending_ != Ending::none;
+    if (cells_due || fields_due || check_due || last) {
+      if (auto failure = state_.observer.check(solver, membranes_)) {
+        fail(std::move(*failure), solver);
         return;
       }
-      const bool last = ending != Ending::none;
-      if (cells_due || fields_due || last) write(solver, fields_due || (last && !scene_.output.fields.never()));
-      momentum_residual_ = std::max(momentum_residual_, Observer::momentum_residual(membranes_));
-      progress_.update(progress(solver.setting()));
-      costs_.add("observe and check", seconds_since(start), 1);
+      if (check_due) state_.growth.check(state_.steps, membranes_);
+      if (cells_due || fields_due || last) {
+        const bool with_fields = fields_due || (last && !scene_.output.fields.never());
+        if (auto failure = write(solver, with_fields)) {
+          fail(std::move(*failure), solver);
+          return;
+        }
+      }
+      state_.momentum_residual = std::max(state_.momentum_residual, Observer::momentum_residual(membranes_));
+      progress_.update(progress(setting));
+      state_.costs.add("observe and check", seconds_since(start), 1);
     }
-    stage_ending_ = ending;
+    ending_ = due_ending_;
     const long check = (step / scene_.checks.every_steps + 1) * scene_.checks.every_steps;
-    next_attention_ = std::min({cells.next(step), fields.next(step), check, last_step(solver.setting())});
-    if (solver.setting().stage->until_at_rest) {
-      next_attention_ = std::min(next_attention_, rest_watch_step_ + rest_window(solver.setting()));
+    next_attention_ = std::min({cells.next(step), fields.next(step), check, last_step(setting)});
+    if (setting.stage->until_at_rest) {
+      next_attention_ = std::min(next_attention_, state_.rest_watch.end(rest_window(setting)));
     }
   }
 
   /// Step at which the stage ends unless something ends it before.
   [[nodiscard]] long last_step(const StageSetting& setting) const {
-    const long most = options_.max_steps >= 0 ? options_.max_steps - steps_before_ : setting.max_steps;
+    const long most = options_.max_steps >= 0 ? options_.max_steps - state_.steps_before : setting.max_steps;
     return std::min(setting.max_steps, most);
   }
 
-  Ending next_ending(const StageSetting& setting) {
+  [[nodiscard]] Ending next_ending(const StageSetting& setting) const {
     const Stage& stage = *setting.stage;
     if (interrupted()) return Ending::interrupted;
     if (stage.until_at_rest && at_rest(setting)) return Ending::at_rest;
-    if (stage_step_ >= setting.max_steps) {
+    if (state_.stage_step >= setting.max_steps) {
       const bool by_strain =
           stage.strain && (!stage.duration || *stage.strain / std::abs(stage.shear_rate) <= *stage.duration);
       return by_strain ? Ending::strain : Ending::duration;
     }
-    if (options_.max_steps >= 0 && steps_ >= options_.max_steps) return Ending::max_steps;
+    if (options_.max_steps >= 0 && state_.steps >= options_.max_steps) return Ending::max_steps;
     return Ending::none;
   }
 
@@ -278,42 +366,58 @@ class Simulation {
     return std::max(1L, std::lround(setting.steps_of(scene_.at_rest.window)));
   }
 
-  bool at_rest(const StageSetting& setting) {
-    if (stage_step_ - rest_watch_step_ < rest_window(setting)) return false;
-    const double limit = scene_.at_rest.displacement / setting.units.length;
-    const double moved =
-        largest_displacement(membranes_.x, membranes_.y, rest_watch_.x, rest_watch_.y, {0, membranes_.node_count()});
-    rest_watch_.x = membranes_.x;
-    rest_watch_.y = membranes_.y;
-    rest_watch_step_ = stage_step_;
-    return moved < limit;
-  }
-
-  void fail(Failure failure, const StageSetting& setting) {
-    failure.step = steps_;
-    failure.time = time_at(setting);
-    failure.strain = strain_at(setting);
-    directory_.log("diverged", {{"reason", failure.reason}, {"step", failure.step}, {"message", failure.message}});
-    failure_ = std::move(failure);
-    stage_ending_ = Ending::failed;
+  [[nodiscard]] bool at_rest(const StageSetting& setting) const {
+    return state_.stage_step >= state_.rest_watch.end(rest_window(setting)) &&
+           state_.rest_watch.moved(membranes_) < scene_.at_rest.displacement / setting.units.length;
   }
 
   template <class T>
-  void write(Solver<T>& solver, bool with_fields) {
-    Snapshot snapshot = observer_.observe(solver, membranes_, with_fields);
-    snapshot.step = steps_;
-    snapshot.time = time_at(solver.setting());
-    snapshot.strain = strain_at(solver.setting());
-    history_.follow(snapshot);
-    rheology_.follow(snapshot);
-    directory_.write(snapshot);
+  void fail(Failure failure, Solver<T>& solver) {
+    const StageSetting& setting = solver.setting();
+    failure.step = state_.steps;
+    failure.time = state_.time_at(setting);
+    failure.strain = state_.strain_at(setting);
+    tell_mode(failure, solver);
+    directory_.log("diverged", {{"reason", failure.reason}, {"step", failure.step}, {"message", failure.message}});
+    failure_ = std::move(failure);
+    ending_ = Ending::failed;
   }
 
-  [[nodiscard]] double time_at(const StageSetting& s) const {
-    return time_ + static_cast<double>(stage_step_) * s.units.time;
+  /// What the failure looks like, and what to do about that.
+  template <class T>
+  void tell_mode(Failure& failure, Solver<T>& solver) {
+    const double spacing = solver.setting().units.length;
+    const std::array<double, 2> place{failure.place[0] / spacing - 0.5, failure.place[1] / spacing - 0.5};
+    double oscillation = 0;
+    if (std::isfinite(place[0]) && std::isfinite(place[1])) {
+      solver.fluid().settle();
+      const auto nearest = [](double coordinate, int nodes) {
+        return static_cast<int>(std::lround(std::clamp(coordinate, -1.0 * nodes, 2.0 * nodes)));
+      };
+      oscillation = lattice_oscillation(solver.fluid(), nearest(place[0], scene_.domain.nodes[0]),
+                                        nearest(place[1], scene_.domain.nodes[1]));
+    }
+    find_mode(failure, membranes_, state_.growth, state_.observer.box(), place, oscillation, failure.step);
+    const std::string sentence = mode_sentence(failure), remedy = mode_remedy(failure, plan_.semi_implicit);
+    if (!sentence.empty()) failure.message += "; " + sentence;
+    if (!remedy.empty()) failure.remedy = remedy;
   }
-  [[nodiscard]] double strain_at(const StageSetting& s) const {
-    return strain_ + std::abs(s.shear_rate) * static_cast<double>(stage_step_);
+
+  /// Writes the present state, unless it has gained energy that nothing gave it: that failure is returned.
+  template <class T>
+  std::optional<Failure> write(Solver<T>& solver, bool with_fields) {
+    Snapshot snapshot = state_.observer.observe(solver, membranes_, with_fields);
+    snapshot.step = state_.steps;
+    snapshot.time = state_.time_at(solver.setting());
+    snapshot.strain = state_.strain_at(solver.setting());
+    const LatticeUnits& units = solver.setting().units;
+    state_.energy.follow(snapshot, solver.setting().is_driven(),
+                         units.to_si(solver.slight_energy(), dimension::energy_per_depth));
+    if (auto failure = check_energy(state_.energy, membranes_, plan_, units.length)) return failure;
+    state_.history.follow(snapshot);
+    state_.rheology.follow(snapshot);
+    directory_.write(snapshot);
+    return std::nullopt;
   }
 
   ProgressState progress(const StageSetting& setting) {
@@ -322,37 +426,23 @@ class Simulation {
       if (s.index < setting.index) before += static_cast<double>(s.max_steps);
       all += static_cast<double>(s.max_steps);
     }
-    return {steps_,
-            all > 0 ? (before + static_cast<double>(stage_step_)) / all : 1.0,
+    return {state_.steps,
+            all > 0 ? (before + static_cast<double>(state_.stage_step)) / all : 1.0,
             setting.stage->name,
-            strain_at(setting),
-            observer_.mach_max(),
-            observer_.area_drift_max(),
-            history_.count()};
+            state_.strain_at(setting),
+            state_.observer.mach_max(),
+            state_.observer.area_drift_max(),
+            state_.history.count()};
   }
 
   Summary summarise() {
     Summary s = described_;
-    s.status = failure_ ? "diverged" : (stage_ending_ == Ending::interrupted ? "interrupted" : "completed");
+    s.status = failure_ ? "diverged" : (ending_ == Ending::interrupted ? "interrupted" : "completed");
     s.failure = failure_;
-    s.steps = steps_;
-    s.strain = strain_;
-    s.simulated_time_s = time_;
-    s.wall_s = wall_;
-    s.steps_per_s = wall_ > 0 ? static_cast<double>(steps_) / wall_ : 0;
+    state_.report(s);
     s.mlups = s.steps_per_s * scene_.domain.nodes[0] * scene_.domain.nodes[1] / 1e6;
     s.peak_rss_bytes = peak_memory_bytes();
-    s.passes = costs_.passes();
-    s.dimensionless["mach_max"] = observer_.mach_max();
-    s.mass_drift = observer_.mass_drift();
-    s.area_drift_max = observer_.area_drift_max();
-    s.stretch = {observer_.stretch().least, observer_.stretch().most};
     s.area_leakage_max = Observer::area_leakage(membranes_);
-    s.momentum_residual = momentum_residual_;
-    s.aggregates_final = history_.count();
-    s.aggregate_history = history_.events();
-    s.rheology = rheology_.stages();
-    s.stages = stages_;
     return s;
   }
 
@@ -361,24 +451,17 @@ class Simulation {
   const RunOptions& options_;
   RunDirectory& directory_;
   Membranes membranes_;
-  Observer observer_;
+  RunState state_;
   Progress progress_;
 
-  long steps_ = 0, stage_step_ = 0;          ///< taken so far: by the run, by the stage
-  long steps_before_ = 0;                    ///< by the run when the stage began
-  long next_attention_ = 0;                  ///< step of the stage before which nothing is due
-  double time_ = 0, strain_ = 0, wall_ = 0;  ///< at the start of the present stage
-  Ending stage_ending_ = Ending::none;
+  long next_attention_ = 0;  ///< step of the stage before which nothing is due
+  Ending due_ending_ = Ending::none, ending_ = Ending::none;
   bool stopped_ = false;
-  Membranes rest_watch_;  ///< positions at the start of the window in which nothing may move
-  long rest_watch_step_ = 0;
   std::optional<Failure> failure_;
-  AggregateHistory history_;
-  RheologyHistory rheology_;
-  PassCosts costs_;
-  double momentum_residual_ = 0;
-  nlohmann::json stages_ = nlohmann::json::array();
-  Summary described_;  ///< what is known before the first step
+  Clock::time_point clock_;
+  Checkpoints checkpoints_;
+  nlohmann::json saved_;  ///< state of the checkpoint that the run goes on from
+  Summary described_;     ///< what is known before the first step
 };
 
 }  // namespace

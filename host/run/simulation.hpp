@@ -13,10 +13,12 @@ struct RunOptions {
   int threads = 1;
   long max_steps = -1;  ///< over all stages; negative: no limit
   bool quiet = false;
+  bool force = false;                              ///< go on from a checkpoint in spite of differences that are safe
   const std::atomic<bool>* interrupted = nullptr;  ///< set by a signal handler: stop at the next step
 };
 
-/// Runs a plan and writes into `directory`; the summary has been written when it returns. Throws Error(input_output).
+/// Runs a plan and writes into `directory`, going on from its checkpoint if it resumes; the summary has been written
+/// when it returns. Throws Error(input_output), and Error(bad_input) where the checkpoint belongs to another run.
 Summary simulate(const Plan& plan, const RunOptions& options, RunDirectory& directory);
 
 }  // namespace rouleau::host

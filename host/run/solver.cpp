@@ -1,5 +1,7 @@
 #include "solver.hpp"
 
+#include <numbers>
+
 #include "cell/area_correction.hpp"
 #include "cell/motion.hpp"
 #include "cell/stiffness.hpp"
@@ -49,6 +51,19 @@ void Solver<T>::plan_corrections(const Plan& plan, const std::vector<MembraneLaw
   if (keeps_areas_) membranes_.area_leakage.resize(membranes_.cells.size(), 0.0);  // earlier stages' leakage stays
 }
 
+template <class T>
+void Solver<T>::find_slight_energy(const std::vector<MembraneLaws>& laws) {
+  constexpr double strain = 1e-3;
+  for (const CellRange& cell : membranes_.cells) {
+    const double curvature = strain * 2 * std::numbers::pi / cell.rest_perimeter;  // of a circle that bends by as much
+    double density = 0;
+    for (const auto& law : laws[static_cast<std::size_t>(cell.type)]) {
+      density += (stretching_stiffness(*law) * strain * strain + bending_stiffness(*law) * curvature * curvature) / 2;
+    }
+    slight_energy_ += density * cell.rest_perimeter;
+  }
+}
+
 /// Passes over cells: each worker has its own cells, and what it reads of others lies behind a barrier.
 template <class T>
 void Solver<T>::plan_cell_passes(const Plan& plan) {
@@ -64,6 +79,7 @@ void Solver<T>::plan_cell_passes(const Plan& plan) {
     }
   }
   plan_corrections(plan, laws);
+  find_slight_energy(laws);
   membrane_forces_ = std::make_unique<MembraneForces>(membranes_, std::move(laws));
   membrane_forces_->keep_state(membranes_);
   if (slip_correction_) membrane_forces_->set_slip(slip_correction_->constants());

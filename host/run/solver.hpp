@@ -23,6 +23,12 @@ class Solver {
   Solver(const Plan& plan, int stage, Membranes& membranes);
 
   [[nodiscard]] Fluid<T>& fluid() { return fluid_; }
+  /// Null without cells.
+  [[nodiscard]] const Indicator<T>* indicator() const { return indicator_.get(); }
+  /// Relaxation rate and activity as they were at a checkpoint, between two steps; nothing to do without cells.
+  void restore_indicator(const DisplacementWatch::Memory& memory) {
+    if (indicator_) indicator_->restore(memory, membranes_, fluid_.relaxation_rate(), fluid_.activity());
+  }
   [[nodiscard]] const StageSetting& setting() const { return *setting_; }
   /// Force and spreading at the present positions; after them and a barrier the state may be observed.
   [[nodiscard]] const std::vector<Pass>& forces() const { return forces_; }
@@ -33,9 +39,17 @@ class Solver {
   [[nodiscard]] int escaped_node() const { return coupling_ ? coupling_->escaped() : -1; }
   /// Tension of every segment at the present positions, lattice units.
   void tensions(std::vector<double>& tension) const;
+  /// Nodes move otherwise than the lattice's fluid at their places does.
+  [[nodiscard]] bool corrects_motion() const { return slip_correction_ || keeps_areas_; }
+  /// Null where the scene has no cells, or no active interaction.
+  [[nodiscard]] MembraneForces* membrane_forces() { return membrane_forces_.get(); }
+  /// What it takes to stretch all membranes by 0.1 %: energies far below this are rounding. Lattice units.
+  [[nodiscard]] double slight_energy() const { return slight_energy_; }
+  [[nodiscard]] const InteractionForces* interaction_forces() const { return interaction_forces_.get(); }
 
  private:
   void plan_cell_passes(const Plan& plan);
+  void find_slight_energy(const std::vector<MembraneLaws>& laws);
   void plan_corrections(const Plan& plan, const std::vector<MembraneLaws>& laws);
   void plan_spreading(const Plan& plan);
   void plan_advance();
@@ -50,6 +64,7 @@ class Solver {
   std::unique_ptr<SlipCorrection> slip_correction_;
   std::unique_ptr<Indicator<T>> indicator_;
   bool keeps_areas_ = false;
+  double slight_energy_ = 0;
   std::string indicator_name_;
   std::vector<Pass> forces_, advance_;
 };

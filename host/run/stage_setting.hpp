@@ -20,6 +20,8 @@ struct StageSetting {
 
   [[nodiscard]] ModelSetting model_setting(bool inertia) const { return {units, 1 / tau, inertia}; }
   [[nodiscard]] FluidSetting fluid_setting(const Scene& scene, bool membranes, bool viscosity_contrast) const;
+  /// Walls or a force put energy in.
+  [[nodiscard]] bool is_driven() const { return shear_rate != 0 || body_force_x != 0 || body_force_y != 0; }
   /// Steps from one output to the next for a time interval in seconds (at least one).
   [[nodiscard]] double steps_of(double seconds) const { return seconds / units.time; }
 };

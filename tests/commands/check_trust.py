@@ -57,6 +57,16 @@ class TrustCase(Case):
 
 
 class Plugins_are_searched_where_the_user_said(TrustCase):
+    def test_a_relative_folder_of_a_scene_begins_with_the_folder_of_the_scene(self):
+        self.copy_of_morse("beside/models")
+        scene = self.file.rename(self.path / "beside" / self.file.name)
+        change = ["--set", '/plugin_dirs=["models"]', "--set", "/interactions/0/model=org.example.mine"]
+        elsewhere = self.path / "elsewhere"
+        elsewhere.mkdir()
+        result = self.rouleau.run("plan", scene, *change, cwd=elsewhere)
+        self.assertNotIn("plugin_dirs of the scene", result.stderr)
+        self.assertIn(str(self.path / "beside/models"), result.stderr)  # the copy has no library
+
     def test_never_in_the_working_directory(self):
         folder = self.copy_of_morse("here")
         for environment in (None, "", ":", "::"):

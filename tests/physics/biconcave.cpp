@@ -12,10 +12,10 @@ TEST_CASE("the biconcave cell at 20/s first passes -90 degrees at the reference'
   const double reference = read_reference("biconcave_channel.json")[0]["crossing_times"]["-90"][0];
   double passages[2];
   for (const int fine : {0, 1}) {
-    const SceneRun run = run_scene(std::string(ROULEAU_PHYSICS_SCENES) + "/biconcave.json",
-                                   {std::string("/cell_types/rbc/segments=") + (fine == 1 ? "148" : "99")});
+    const SceneRun run =
+        run_scene(scenes + "/biconcave.json", {std::string("/cell_types/rbc/segments=") + (fine == 1 ? "148" : "99")});
     REQUIRE(run.summary["status"] == "completed");
-    passages[fine] = value_at(run.column("angle_rad"), run.column("strain"), -std::numbers::pi / 2);
+    passages[fine] = interpolated_at(run.column("angle_rad"), run.column("strain"), -std::numbers::pi / 2);
     std::cout << "biconcave, 20/s, lambda 1, " << (fine == 1 ? 148 : 99) << " nodes: passes -90 deg at strain "
               << passages[fine] << " (reference " << reference << ", " << 100 * (passages[fine] / reference - 1)
               << " %)\n";
@@ -29,7 +29,7 @@ TEST_CASE("the number of nodes does not change how the biconcave cell turns", "[
   // A kernel with a first moment would turn the cell with 198 nodes 11 degrees less (PHYSICS: kernel).
   const std::vector<std::string> coarse{"/stages/0/strain=1"},
       fine{"/stages/0/strain=1", "/cell_types/rbc/segments=198"};
-  const std::string scene = std::string(ROULEAU_PHYSICS_SCENES) + "/biconcave.json";
+  const std::string scene = scenes + "/biconcave.json";
   const double a = run_scene(scene, coarse).column("angle_rad").back() * 180 / std::numbers::pi;
   const double b = run_scene(scene, fine).column("angle_rad").back() * 180 / std::numbers::pi;
   std::cout << "biconcave, angle at strain 1: " << a << " deg with 99 nodes, " << b << " deg with 198\n";

@@ -20,12 +20,10 @@ struct Steady {
 Steady steady_state(const SceneRun& run) {
   const auto strain = run.column("strain"), d = run.column("deformation"), angle = run.column("angle_rad");
   const auto marker = run.column("tank_treading_angle_rad"), area = run.column("area_m2");
-  const double turn = 2 * std::numbers::pi;
-  const double end = strain.back(), start = value_at(marker, strain, marker.back() + turn);
   const double phi = area.front() / (51.2e-6 * 25.6e-6);
   const auto viscosity = run.series_column("relative_viscosity");
-  return {d.back(), angle.back() * 180 / std::numbers::pi, end - start, (viscosity.back() - 1) / phi,
-          std::abs(area.back() / area.front() - 1) / end};
+  return {d.back(), angle.back() * 180 / std::numbers::pi, length_of_turns(strain, marker, 1, std::nullopt),
+          (viscosity.back() - 1) / phi, std::abs(area.back() / area.front() - 1) / strain.back()};
 }
 
 nlohmann::json reference(double ca, double lambda) {
@@ -40,7 +38,7 @@ nlohmann::json reference(double ca, double lambda) {
 
 TEST_CASE("segments up to the limit of plan keep the area", "[capsule]") {
   const auto [segments, most] = GENERATE(table<int, double>({{126, 1e-4}, {63, 2e-4}}));
-  const SceneRun run = run_scene(std::string(ROULEAU_PHYSICS_SCENES) + "/capsule.json",
+  const SceneRun run = run_scene(scenes + "/capsule.json",
                                  {"/cell_types/capsule/segments=" + std::to_string(segments), "/stages/0/strain=5"});
   REQUIRE(run.summary["status"] == "completed");
   CHECK(run.summary["warnings"].empty());
@@ -75,7 +73,7 @@ Steady run_capsule(const Capsule& c) {
     return text.str();
   };
   const SceneRun run =
-      run_scene(std::string(ROULEAU_PHYSICS_SCENES) + "/capsule.json",
+      run_scene(scenes + "/capsule.json",
                 {"/domain/nodes=[" + std::to_string(64 * c.radius / 5) + "," + std::to_string(32 * c.radius / 5) + "]",
                  "/cell_types/capsule/segments=" + std::to_string(std::lround(2 * std::numbers::pi * c.radius)),
                  "/cell_types/capsule/interior_viscosity=\"" + std::to_string(1.2 * c.lambda) + " cP\"",

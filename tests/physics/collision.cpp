@@ -11,7 +11,7 @@ using namespace rouleau::host;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// An operator with its parameters in the manifest's order, and the magic number (1/omega - 1/2)(1/s_odd - 1/2) that
 /// its rate for odd moments amounts to.

@@ -20,7 +20,7 @@ Stiff stiff_capsule(int radius, const char* interior_viscosity) {
   const int segments = static_cast<int>(std::lround(2 * std::numbers::pi * radius));
   const std::string membrane = "/cell_types/capsule/membrane/";
   const SceneRun run = run_scene(
-      std::string(ROULEAU_PHYSICS_SCENES) + "/capsule.json",
+      scenes + "/capsule.json",
       {"/domain/nodes=" + nodes, "/cell_types/capsule/segments=" + std::to_string(segments),
        membrane + "0/parameters/shear_modulus=7.68e-6", membrane + "1/parameters/modulus=2.4576e-17",
        std::string("/cell_types/capsule/interior_viscosity=") + interior_viscosity, "/stages/0/strain=5",

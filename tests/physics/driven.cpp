@@ -9,15 +9,15 @@ using namespace rouleau::host;
 
 namespace {
 
-const std::string ring = std::string(ROULEAU_PHYSICS_SCENES) + "/ring.json";
-const std::vector<std::string> driven{R"(/stages/0/pressure_gradient="2e4 Pa/m")", R"(/stages/0/duration="0.02 s")"};
+const std::vector<std::string> pressure_driven{R"(/stages/0/pressure_gradient="2e4 Pa/m")",
+                                               R"(/stages/0/duration="0.02 s")"};
 
 }  // namespace
 
 TEST_CASE("a developed pressure-driven flow stays the parabola that it was started as", "[conservation]") {
-  auto overrides = driven;
+  auto overrides = pressure_driven;
   overrides.insert(overrides.end(), {"/cells=[]", "/stages/0/start=developed", R"(/output/cells={"seconds": 0.002})"});
-  const SceneRun run = run_scene(ring, overrides);
+  const SceneRun run = run_scene(scenes + "/ring.json", overrides);
   REQUIRE(run.summary["status"] == "completed");
   const auto mach = run.series_column("mach_max");
   // Largest velocity G H^2 / (8 mu), in the two rows nearest to the middle.
@@ -28,9 +28,9 @@ TEST_CASE("a developed pressure-driven flow stays the parabola that it was start
 }
 
 TEST_CASE("cells without laws and with the fluid's viscosity do not change a driven flow", "[conservation]") {
-  auto overrides = driven;
+  auto overrides = pressure_driven;
   overrides.emplace_back("/cell_types/ring/membrane=[]");
-  SolverBench bench(ring, overrides);
+  SolverBench bench(scenes + "/ring.json", overrides);
   bench.start();
   const StageSetting& stage = bench.plan.stages[0];
   Fluid<double> alone(stage.fluid_setting(bench.scene, false, false), make_collision("trt", {0.1875}, 1.0, false));

@@ -5,12 +5,13 @@
 #include <numbers>
 
 #include "flow_fixture.hpp"
+#include "study/exact_flow.hpp"
 
 using namespace rouleau::host;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Order of convergence between two errors at grids that differ by a factor of two.
 double order(double coarse, double fine) { return std::log2(coarse / fine); }
@@ -21,36 +22,6 @@ void report(const std::string& what, const std::vector<double>& errors) {
   std::cout << ", orders";
   for (std::size_t i = 1; i < errors.size(); ++i) std::cout << " " << order(errors[i - 1], errors[i]);
   std::cout << "\n";
-}
-
-double relative_l2(const std::vector<double>& value, const std::vector<double>& exact) {
-  double error = 0, norm = 0;
-  for (std::size_t i = 0; i < value.size(); ++i) {
-    error += (value[i] - exact[i]) * (value[i] - exact[i]);
-    norm += exact[i] * exact[i];
-  }
-  return std::sqrt(error / norm);
-}
-
-/// Start-up of the flow between walls that begin to move with -U and +U, y from -1/2 to 1/2 of the height, t in H^2/nu.
-double couette_start(double y, double t) {
-  double u = 2 * y;
-  for (int n = 1; n < 200; ++n) {
-    const double k = 2 * pi * n;
-    u += 2 * (n % 2 == 0 ? 1 : -1) * 2 / k * std::sin(k * y) * std::exp(-k * k * t);
-  }
-  return u;
-}
-
-/// Start-up of the flow driven by a constant force between walls at rest, in units of the steady maximum; y from 0
-/// to 1.
-double poiseuille_start(double y, double t) {
-  double u = 4 * y * (1 - y);
-  for (int n = 1; n < 400; n += 2) {
-    const double k = pi * n;
-    u -= 32 / (k * k * k) * std::sin(k * y) * std::exp(-k * k * t);
-  }
-  return u;
 }
 
 }  // namespace

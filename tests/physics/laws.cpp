@@ -9,14 +9,12 @@ using namespace rouleau::host;
 
 namespace {
 
-const std::string capsule = std::string(ROULEAU_PHYSICS_SCENES) + "/capsule.json";
-
 /// An ellipse of axes 5 : 3 in shear, with a law instead of the neo-Hookean one (`place` "0") or beside it ("-").
 SceneRun ellipse_with(const std::string& place, const std::string& law, const std::string& parameters) {
-  return run_scene(capsule, {R"(/cell_types/capsule/shape={"ellipse": {"semi_axes": [5e-6, 3e-6]}})",
-                             "/cell_types/capsule/membrane/" + place + R"(={"model": ")" + law +
-                                 R"(", "parameters": {)" + parameters + "}}",
-                             "/stages/0/strain=8"});
+  return run_scene(scenes + "/capsule.json", {R"(/cell_types/capsule/shape={"ellipse": {"semi_axes": [5e-6, 3e-6]}})",
+                                              "/cell_types/capsule/membrane/" + place + R"(={"model": ")" + law +
+                                                  R"(", "parameters": {)" + parameters + "}}",
+                                              "/stages/0/strain=8"});
 }
 
 double largest_stretch(const SceneRun& run) {

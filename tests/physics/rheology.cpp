@@ -13,8 +13,6 @@ using namespace rouleau::host;
 
 namespace {
 
-const std::string capsule = std::string(ROULEAU_PHYSICS_SCENES) + "/capsule.json";
-
 /// A channel of 64 nodes driven so that the mean shear rate is 20/s, and the capsule, ten spacings in radius.
 std::vector<std::string> driven(const std::string& duration) {
   return {R"(/domain/size=["25.6 um", "25.6 um"])",
@@ -33,7 +31,7 @@ TEST_CASE("a driven flow without cells, or with cells that resist nothing, has t
   const char* without = GENERATE("/cells=[]", "/cell_types/capsule/membrane=[]");
   auto overrides = driven("0.1 s");
   overrides.emplace_back(without);
-  const SceneRun run = run_scene(capsule, overrides);
+  const SceneRun run = run_scene(scenes + "/capsule.json", overrides);
   REQUIRE(run.summary["status"] == "completed");
   // G H^3 / (12 mu), per depth.
   const double flow = 3750 * std::pow(25.6e-6, 3) / (12 * 1.2e-3);
@@ -47,7 +45,7 @@ TEST_CASE("a capsule lowers the flow rate of a channel by what the reciprocal th
   // A quarter of the scene's density: the cell travels, and the unsteady term would count (docs/rheology.md).
   auto overrides = driven("1 s");
   overrides.emplace_back("/numerics/density_factor=390");
-  SolverBench bench(capsule, overrides);
+  SolverBench bench(scenes + "/capsule.json", overrides);
   bench.start();
   const StageSetting& stage = bench.plan.stages[0];
   const double viscosity = (stage.tau - 0.5) / 3, height = 64, length = 64;
@@ -75,7 +73,8 @@ TEST_CASE("a capsule lowers the flow rate of a channel by what the reciprocal th
 TEST_CASE("the rate of tank treading in summary.json is that of the boundary-integral solution", "[rheology]") {
   // a = 10 spacings, where the plain scheme's slip makes the period 3.6 % too long (docs/accuracy.md; it is first
   // order).
-  const SceneRun run = run_scene(capsule, {"/domain/nodes=[128, 64]", "/cell_types/capsule/segments=63"});
+  const SceneRun run =
+      run_scene(scenes + "/capsule.json", {"/domain/nodes=[128, 64]", "/cell_types/capsule/segments=63"});
   REQUIRE(run.summary["status"] == "completed");
   const auto rotation = run.summary["rheology"][0]["rotation"][0];
   double reference = 0;
@@ -100,7 +99,7 @@ TEST_CASE("plan warns where a cell that travels would migrate wrongly, and with 
     auto overrides = driven("0.4 s");
     overrides.emplace_back(std::string("/fluid/inertia=") + inertia);
     overrides.emplace_back(std::string("/numerics/density_factor=") + density_factor);
-    const SceneRun run = run_scene(capsule, overrides);
+    const SceneRun run = run_scene(scenes + "/capsule.json", overrides);
     CHECK(run.summary["warnings"].size() == warnings);
     const auto y = run.column("y_m");
     return (y.back() - y.front()) * 1e6;

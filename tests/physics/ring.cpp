@@ -13,8 +13,6 @@ using namespace rouleau::host;
 
 namespace {
 
-const std::string ring = std::string(ROULEAU_PHYSICS_SCENES) + "/ring.json";
-
 /// Mean density deviation over nodes within (inside) or beyond (outside) given distances from the cell's centre.
 double mean_density(SolverBench& bench, double from, double to) {
   const Eigen::Vector2d c = centroid(bench.membranes, bench.membranes.cells[0]);
@@ -36,7 +34,7 @@ double mean_density(SolverBench& bench, double from, double to) {
 /// Relative excess of the pressure difference across the ring at rest over tension by radius. `tension`: at a stretch,
 /// over 1e-6 N/m.
 double pressure_excess(const std::vector<std::string>& overrides, const std::function<double(double)>& tension) {
-  SolverBench bench(ring, overrides);
+  SolverBench bench(scenes + "/ring.json", overrides);
   bench.start();
   bench.step(16000);  // sound that the sudden start made rings for about 10 000 steps
   bench.forces();
@@ -109,8 +107,9 @@ TEST_CASE("an elliptic disturbance of a pre-stretched ring decays as the boundar
   // At 20 spacings a kernel holds back the second mode's normal motion by (2/a)^2 x 1.05 spacings^2, 1 %; what the
   // plain scheme slips happens to hide part of that.
   const auto [corrected, tolerance] = GENERATE(table<const char*, double>({{"true", 0.02}, {"false", 0.01}}));
-  SolverBench bench(ring, {"/numerics/density_factor=75", std::string("/numerics/slip_correction=") + corrected,
-                           std::string("/numerics/area_correction=") + corrected});
+  SolverBench bench(scenes + "/ring.json",
+                    {"/numerics/density_factor=75", std::string("/numerics/slip_correction=") + corrected,
+                     std::string("/numerics/area_correction=") + corrected});
   Membranes& m = bench.membranes;
   const Eigen::Vector2d c = centroid(m, m.cells[0]);
   const double radius = 4e-6 / bench.plan.stages[0].units.length;

@@ -12,27 +12,12 @@
 #include <vector>
 
 #include "run/simulation.hpp"
+#include "scratch_folder.hpp"
+#include "study/history.hpp"
 
 namespace rouleau::host {
 
-/// A folder that ends with the test.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "rouleau-XXXXXX").string();
-    path_ = ::mkdtemp(pattern.data());
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
+inline const std::string scenes = ROULEAU_PHYSICS_SCENES;
 
 struct SceneRun {
   nlohmann::json summary;
@@ -76,7 +61,7 @@ inline SceneRun run_scene(const std::filesystem::path& file, const std::vector<s
   const Scene scene = read_scene(file, overrides);
   const Catalog catalog({ROULEAU_PLUGINS});
   const Plan plan = make_plan(scene, catalog);
-  const TemporaryFolder folder;
+  const test::ScratchFolder folder;
   RunOptions options;
   options.threads = threads;
   options.quiet = true;
@@ -89,16 +74,6 @@ inline SceneRun run_scene(const std::filesystem::path& file, const std::vector<s
   run.cells = read_table(folder.path() / "run" / "cells.csv");
   run.series = read_table(folder.path() / "run" / "series.csv");
   return run;
-}
-
-/// Value of y where x passes `at`, linear between rows.
-inline double value_at(const std::vector<double>& x, const std::vector<double>& y, double at) {
-  for (std::size_t i = 1; i < x.size(); ++i) {
-    if ((x[i - 1] - at) * (x[i] - at) <= 0 && x[i] != x[i - 1]) {
-      return y[i - 1] + (y[i] - y[i - 1]) * (at - x[i - 1]) / (x[i] - x[i - 1]);
-    }
-  }
-  return std::nan("");
 }
 
 inline nlohmann::json read_reference(const std::string& name) {

@@ -13,8 +13,6 @@ using namespace rouleau::host;
 
 namespace {
 
-const std::string scenes = ROULEAU_PHYSICS_SCENES;
-
 /// Largest node step, after 2500 steps or as soon as it is no small one, of a cell at rest whose nodes were moved by up
 /// to 0.001 spacings; moduli in lattice units.
 double disturbance(double shear_modulus, double bending_modulus, const std::string& coupling, double tau,

@@ -12,8 +12,6 @@ using namespace rouleau::host;
 
 namespace {
 
-const std::string scenes = ROULEAU_PHYSICS_SCENES;
-
 /// Amplitude of a stretch that goes along the ring like cos 2q, q the even places of the segments' middles.
 double stretch_amplitude(const Membranes& m) {
   double sum = 0;
@@ -26,20 +24,20 @@ double stretch_amplitude(const Membranes& m) {
   return 2 * sum / count;
 }
 
-constexpr double mu = 1.2e-3, radius = 4e-6, modulus = 1e-6, prestretch = 1.01;
+constexpr double plasma_viscosity = 1.2e-3, radius = 4e-6, modulus = 1e-6, prestretch = 1.01;
 
 /// Rate, in Es/(mu a), at which nodes come back that are shifted along a stretched ring by 0.002 sin 2q, between two
 /// times in mu a/Es. The rings' mean tension moves their shape, too, but slowly and, at this stretch, hardly.
 double ring_decay(double membrane_viscosity, double viscosity_ratio, double tau, double density_factor, double from,
                   double to) {
   std::ostringstream viscosity;
-  viscosity << membrane_viscosity * mu * radius;
+  viscosity << membrane_viscosity * plasma_viscosity * radius;
   // Densities are chosen for time steps of one size at all tau: dt = (tau - 1/2)/3 dx^2 rho f/mu.
   SolverBench bench(scenes + "/viscous-ring.json",
                     {"/numerics/tau=" + std::to_string(tau),
                      "/numerics/density_factor=" + std::to_string(density_factor * 0.5 / (tau - 0.5)),
                      "/cell_types/ring/shape/circle/prestretch=" + std::to_string(prestretch),
-                     "/cell_types/ring/interior_viscosity=" + std::to_string(mu * viscosity_ratio),
+                     "/cell_types/ring/interior_viscosity=" + std::to_string(plasma_viscosity * viscosity_ratio),
                      "/cell_types/ring/membrane/1/parameters/viscosity=" + viscosity.str()});
   Membranes& m = bench.membranes;
   const LatticeUnits& units = bench.plan.stages[0].units;
@@ -51,7 +49,7 @@ double ring_decay(double membrane_viscosity, double viscosity_ratio, double tau,
     m.y[i] = c.y() + radius / units.length * std::sin(angle);
   }
   bench.start();
-  const double unit = mu * radius / modulus / units.time;  // steps
+  const double unit = plasma_viscosity * radius / modulus / units.time;  // steps
   const long begin = std::lround(from * unit), end = std::lround(to * unit);
   bench.step(begin);
   const double before = stretch_amplitude(m);

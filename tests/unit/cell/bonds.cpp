@@ -9,11 +9,12 @@ using namespace rouleau::host::test;
 
 namespace {
 
-constexpr double sites = 0.7, stiffness = 0.3, length = 2.5, on = 0.02, off = 0.03, share = 0.4, thermal = 0.9;
+constexpr double sites = 0.7, stiffness = 0.3, bond_length = 2.5, on = 0.02, off = 0.03, forward_share = 0.4,
+                 thermal = 0.9;
 
 std::shared_ptr<const ModelInstance> bridging(double on_rate = on, double off_rate = off, double cutoff = 8) {
   return model(ModelKind::interaction, "bridging",
-               {sites, stiffness, length, on_rate, off_rate, share, thermal, cutoff});
+               {sites, stiffness, bond_length, on_rate, off_rate, forward_share, thermal, cutoff});
 }
 
 InteractionForces bonds_between(Membranes& m, std::shared_ptr<const ModelInstance> bond, PeriodicBox box = {1e4}) {
@@ -22,7 +23,7 @@ InteractionForces bonds_between(Membranes& m, std::shared_ptr<const ModelInstanc
   return forces;
 }
 
-void run(InteractionForces& forces, Membranes& m, int workers = 1) {
+void run_cleared(InteractionForces& forces, Membranes& m, int workers = 1) {
   for (auto* force : {&m.force_x, &m.force_y}) std::fill(force->begin(), force->end(), 0.0);
   for (int phase = 0; phase < InteractionForces::phases; ++phase) {
     run_pass(workers, [&](Worker worker) { forces.run(worker, phase, m); });
@@ -70,14 +71,15 @@ TEST_CASE("bonds at a fixed distance follow the solution of their rate equation 
   InteractionForces forces = bonds_between(m, bridging());
   int done = 0;
   for (const int steps : {1, 9, 40, 2000}) {
-    for (; done < steps; ++done) run(forces, m);
+    for (; done < steps; ++done) run_cleared(forces, m);
     for (const int cell : {0, 1}) {
       const std::vector<double> found = densities(forces, m, cell);
       REQUIRE(found.size() > 20);
       for (std::size_t i = 0; i < found.size(); ++i) {
         const double r = forces.contacts().list(cell).distance[i];
-        const double energy = stiffness / 2 * (r - length) * (r - length) / thermal;
-        const double forming = on * std::exp(-share * energy), rate = forming + off * std::exp((1 - share) * energy);
+        const double energy = stiffness / 2 * (r - bond_length) * (r - bond_length) / thermal;
+        const double forming = on * std::exp(-forward_share * energy),
+                     rate = forming + off * std::exp((1 - forward_share) * energy);
         REQUIRE(found[i] == Approx(sites * forming / rate * (1 - std::exp(-steps * rate))).epsilon(1e-11));
       }
     }
@@ -87,14 +89,14 @@ TEST_CASE("bonds at a fixed distance follow the solution of their rate equation 
 TEST_CASE("unstretched bonds in balance fill on/(on + off) of the sites") {
   Membranes m = biconcave_cells({{0, 0, 0}, {0, 18, 0}});
   InteractionForces forces = bonds_between(m, bridging());
-  run(forces, m);
+  run_cleared(forces, m);
   const ContactList& list = forces.contacts().list(0);
   std::size_t nearest = 0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(list.count); ++i) {
-    if (std::abs(list.distance[i] - length) < std::abs(list.distance[nearest] - length)) nearest = i;
+    if (std::abs(list.distance[i] - bond_length) < std::abs(list.distance[nearest] - bond_length)) nearest = i;
   }
-  move(m, 1, 0, length - list.distance[nearest]);
-  for (int step = 0; step < 3000; ++step) run(forces, m);
+  move(m, 1, 0, bond_length - list.distance[nearest]);
+  for (int step = 0; step < 3000; ++step) run_cleared(forces, m);
   double most = 0;
   for (const double n : densities(forces, m, 0)) most = std::max(most, n);
   // No node is at exactly that distance; balance is flat there: 0.1 away costs stiffness/2 0.01/thermal = 0.2 %.
@@ -105,12 +107,12 @@ TEST_CASE("unstretched bonds in balance fill on/(on + off) of the sites") {
 TEST_CASE("bonds stay with a node while the other surface slides past, and are lost beyond the cutoff") {
   Membranes m = biconcave_cells({{0, 0, 0}, {0, 18, 0}});
   InteractionForces forces = bonds_between(m, bridging(0, 1e-300, 12));  // nothing forms or breaks
-  run(forces, m);
+  run_cleared(forces, m);
   set_bonds(forces, m);
   const std::vector<double> before = m.contacts.of_cell[0].at(0).value;
   for (int step = 0; step < 30; ++step) {
     move(m, 1, 0.1, 0);  // three segments
-    run(forces, m);
+    run_cleared(forces, m);
   }
   const ContactList& list = forces.contacts().list(0);
   int kept = 0;
@@ -122,17 +124,17 @@ TEST_CASE("bonds stay with a node while the other surface slides past, and are l
   }
   CHECK(kept > 20);
   move(m, 1, 0, 40);
-  run(forces, m);
+  run_cleared(forces, m);
   CHECK(m.contacts.of_cell[0].empty());
   move(m, 1, 0, -40);
-  run(forces, m);
+  run_cleared(forces, m);
   for (const double n : m.contacts.of_cell[0].at(0).value) CHECK(n == 0);
 }
 
 TEST_CASE("a cell between two others has bonds with each of them, and with its own image") {
   Membranes m = biconcave_cells({{0, -18, 0}, {0, 0, 0}, {0, 18, 0}});
   InteractionForces forces = bonds_between(m, bridging(), {44.0});
-  for (int step = 0; step < 5; ++step) run(forces, m);
+  for (int step = 0; step < 5; ++step) run_cleared(forces, m);
   std::vector<int> others;
   for (const ContactState& state : m.contacts.of_cell[1]) {
     others.push_back(state.other);
@@ -147,11 +149,11 @@ TEST_CASE("forces of bonds are minus the gradient of their energy while none for
   Membranes m = biconcave_cells({{0, -18, 0.05}, {2, 0, 0.0}, {-1, 18, -0.08}});
   deform(m, random, 2, 0.02);
   InteractionForces forces = bonds_between(m, bridging(0, 1e-300, 14));
-  run(forces, m);
+  run_cleared(forces, m);
   set_bonds(forces, m);
-  run(forces, m);
+  run_cleared(forces, m);
   const auto energy = [&] {
-    run(forces, m);
+    run_cleared(forces, m);
     return forces.energy(m);
   };
   CHECK(forces.energy(m) > 0);
@@ -165,7 +167,7 @@ TEST_CASE("bonds pull without net force and torque, whatever their history") {
   InteractionForces forces = bonds_between(m, bridging());
   for (int step = 0; step < 20; ++step) {
     move(m, 1, 0.05, 0.01);
-    run(forces, m);
+    run_cleared(forces, m);
   }
   const ForceSums sums = force_sums(m);
   REQUIRE(sums.size > 0);
@@ -180,7 +182,7 @@ TEST_CASE("bonds add to other potentials, with a cutoff of their own") {
   InteractionForces together(m, {{{0, 0}, morse(0.2, 0.3, 2.5, 18)}, {{0, 0}, bridging()}}, {1e4});
   InteractionForces first(m, {{{0, 0}, morse(0.2, 0.3, 2.5, 18)}}, {1e4}), second(m, {{{0, 0}, bridging()}}, {1e4});
   together.keep_state(both), first.keep_state(one), second.keep_state(other);
-  for (int step = 0; step < 5; ++step) run(together, both), run(first, one), run(second, other);
+  for (int step = 0; step < 5; ++step) run_cleared(together, both), run_cleared(first, one), run_cleared(second, other);
   CHECK(one.contacts.of_cell.empty());
   double size = 0;
   for (std::size_t i = 0; i < m.x.size(); ++i) {
@@ -200,7 +202,7 @@ TEST_CASE("bonds are the same to the last bit for one, two and three workers, an
     Membranes m = start;
     InteractionForces forces = bonds_between(m, bridging(), {60.0, 90.0});
     for (int step = 0; step < 30; ++step) {
-      run(forces, m, workers);
+      run_cleared(forces, m, workers);
       if (workers == 2) (void)forces.energy(m);
       for (std::size_t i = 0; i < m.x.size(); ++i) {
         m.x[i] += 0.5 * m.force_x[i];
@@ -222,7 +224,7 @@ TEST_CASE("bonds are the same to the last bit for one, two and three workers, an
 TEST_CASE("the state of contacts goes on in other units, and potentials with state refuse to run before it is kept") {
   Membranes m = biconcave_cells({{0, 0, 0}, {1, 18, 0.03}});
   InteractionForces forces = bonds_between(m, bridging());
-  run(forces, m);
+  run_cleared(forces, m);
   const double before = densities(forces, m, 0)[3];
   m.contacts.variables[0].initial = 0.1;
   change_units(m.contacts, {1, 1, 1}, {0.5, 2, 3});

@@ -11,7 +11,7 @@ using namespace rouleau::host::test;
 
 namespace {
 
-constexpr double cutoff = 10;
+constexpr double reach = 10;
 
 struct Found {
   std::vector<ContactList> lists;
@@ -20,7 +20,7 @@ struct Found {
 
 Found search(const Membranes& m) {
   Cutoffs cutoffs(1);
-  cutoffs.raise(0, 0, cutoff);
+  cutoffs.raise(0, 0, reach);
   Contacts contacts(m, cutoffs, PeriodicBox{120});
   for (int phase = 0; phase < Contacts::phases; ++phase) contacts.run({}, phase, m);
   Found found;

@@ -122,3 +122,21 @@ TEST_CASE("positions that are not numbers are no crossing and no crash") {
   m.y[150] = std::numeric_limits<double>::infinity();
   CHECK_FALSE(find_crossing(m, {50, 50}));
 }
+
+TEST_CASE("of several crossings the one of the first cells is found, wherever they lie among thousands") {
+  std::vector<std::vector<std::pair<double, double>>> squares;
+  for (int row = 0; row < 100; ++row) {
+    for (int column = 0; column < 100; ++column) {
+      const double x = 6.0 * column, y = 6.0 * row;
+      squares.push_back({{x, y}, {x + 4, y}, {x + 4, y + 4}, {x, y + 4}});
+    }
+  }
+  CHECK_FALSE(find_crossing(polygons(squares), {600, 600}));
+  for (const std::size_t moved : {9876, 4321, 1234}) {
+    for (auto& [x, y] : squares[moved]) x += 3;
+  }
+  const auto crossing = find_crossing(polygons(squares), {600, 600});
+  REQUIRE(crossing);
+  CHECK(crossing->cell == 1234);
+  CHECK(crossing->other == 1235);
+}

@@ -277,3 +277,15 @@ TEST_CASE("what does not fit is said, with the hematocrit that was reached") {
   CHECK(packed.shortfall->hematocrit > 0.3);
   CHECK(packed.shortfall->hematocrit < 0.8);
 }
+
+TEST_CASE("a cell type without cells changes nothing, however large it is") {
+  const auto packed = [](const std::vector<Shape>& shapes) {
+    return Packed(80, 80, true, shapes).count(0, 4, 7, 0.2 * um).run().scene;
+  };
+  const Scene alone = packed({Biconcave{3.91 * um}}), beside = packed({Biconcave{3.91 * um}, Circle{1.0}});
+  REQUIRE(alone.cells.size() == beside.cells.size());
+  for (std::size_t i = 0; i < alone.cells.size(); ++i) {
+    CHECK(alone.cells[i].center == beside.cells[i].center);
+    CHECK(alone.cells[i].angle == beside.cells[i].angle);
+  }
+}

@@ -1,8 +1,10 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "folder.hpp"
 #include "input/document.hpp"
+#include "input/json_pointer.hpp"
 #include "input/parser.hpp"
+#include "scratch_folder.hpp"
 
 using Catch::Matchers::Contains;
 using rouleau::host::Document;
@@ -143,7 +145,7 @@ TEST_CASE("what follows a NUL byte is not overlooked") {
 }
 
 TEST_CASE("a file that cannot be read is trouble of input and output, and says why") {
-  const rouleau::test::Folder folder;
+  const rouleau::test::ScratchFolder folder;
   const auto code_of = [](const std::filesystem::path& path, const std::string& reason) {
     try {
       (void)Document::read(path);
@@ -208,4 +210,39 @@ TEST_CASE("a pointer that set cannot follow is refused with the option and a rem
   CHECK_THAT(message_of_set(document, "/a/b="), Contains("no value follows"));
   CHECK_THAT(message_of_set(document, "/a/b={\"x\": }"), Contains("not valid JSON, at its character 7"));
   CHECK_THAT(message_of_set(document, "/a/b={\"x\": 1, \"x\": 2}"), Contains("stands twice"));
+}
+
+TEST_CASE("no message holds a control character, whatever stands in the text, the pointer or the name of the file") {
+  using rouleau::host::Place;
+  const auto plain = [](const std::string& words) {
+    return std::none_of(words.begin(), words.end(),
+                        [](char c) { return (c >= 0 && c < 0x20 && c != '\n') || c == 0x7f; });
+  };
+  for (const std::string character : {"\x01", "\x1b[2J", "\x7f", "\r"}) {
+    CAPTURE(character);
+    for (const std::string& text : {character, "{\"a\": " + character, '"' + character, "{\"" + character}) {
+      CHECK(plain(message_of(text)));
+    }
+    CHECK(plain(to_string(Place{"folder/" + character, "/a" + character, 1, 1})));
+    CHECK(plain(rouleau::host::subject("/a/b" + character)));
+    auto document = Document::parse(R"({"a": 1})", "a.json");
+    for (const std::string& assignment : {character, "/a" + character, "/a={" + character, "/a/" + character + "=1"}) {
+      try {
+        document.set(assignment);
+      } catch (const Error& error) {
+        CHECK(plain(error.what()));
+      }
+    }
+  }
+}
+
+TEST_CASE("set takes UTF-8 only, in pointer and value: what is set is written into files of JSON") {
+  auto document = Document::parse(R"({"a": 1, "b": []})", "a.json");
+  for (const std::string assignment :
+       {"/a=w\xffrd", "/a=\"\xc3\"", "/\xfe=1", "/a=\xc0\xaf", "/a=\xed\xa0\x80", "/b/-=M\xfcller"}) {
+    CAPTURE(assignment);
+    CHECK_THAT(message_of_set(document, assignment), Contains("is no UTF-8") && Contains("its byte "));
+  }
+  document.set("/a=M\xc3\xbcller");
+  CHECK(document.root()["a"] == "M\xc3\xbcller");
 }

@@ -1,9 +1,9 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 
-#include "folder.hpp"
 #include "input/document.hpp"
 #include "input/scene.hpp"
+#include "scratch_folder.hpp"
 
 using namespace rouleau::host;
 using Catch::Matchers::Contains;
@@ -89,7 +89,7 @@ TEST_CASE("the contract's scene comes out in SI units") {
 }
 
 TEST_CASE("what a scene leaves out has the documented default") {
-  const rouleau::test::Folder folder;
+  const rouleau::test::ScratchFolder folder;
   const auto scene = read_scene(folder.write("least.json", R"({"rouleau": 1,
     "domain": {"size": [8e-6, 4e-6], "nodes": [8, 4], "y": "periodic"},
     "fluid": {"density": 1000, "viscosity": 1e-3},
@@ -105,8 +105,10 @@ TEST_CASE("what a scene leaves out has the documented default") {
   CHECK(scene.cells.empty());
   CHECK(scene.output.cells.never());
   CHECK(scene.output.fields.never());
-  CHECK_FALSE(scene.output.checkpoint_seconds);
+  CHECK(scene.output.checkpoint_seconds == 600.0);
   CHECK(scene.checks.every_steps == 200);
+  CHECK(scene.checks.stretch == 5);
+  CHECK(scene.checks.energy_growth == 0.02);
   CHECK(scene.place("/fluid/density").line == 3);
 }
 
@@ -122,7 +124,8 @@ TEST_CASE("everything that a scene may say is read") {
        "/cells/0/row/axis=y", "/interactions/0/between/1=egg", "/stages/1/start=developed",
        "/stages/1/pressure_gradient=1 kPa/m", "/stages/1/duration=0.5 s", "/output/cells/seconds=10 ms",
        "/output/aggregate_gap=1 um", "/at_rest={\"displacement\": \"0.02 um\", \"window\": \"0.1 s\"}",
-       "/checks={\"mach\": 0.1, \"node_step\": 0.2, \"area_drift\": 0.01, \"every_steps\": 50}",
+       "/checks={\"mach\": 0.1, \"node_step\": 0.2, \"area_drift\": 0.01, \"stretch\": 3, "
+       "\"energy_growth\": 0.001, \"every_steps\": 50}",
        "/plugin_dirs=[\"mine\"]"});
   CHECK(scene.fluid.body_force == Eigen::Vector2d(10, 0));
   CHECK(scene.numerics.precision == Precision::f32);
@@ -147,7 +150,10 @@ TEST_CASE("everything that a scene may say is read") {
   CHECK(scene.output.aggregate_gap == about(1e-6));
   CHECK(scene.at_rest.displacement == about(0.02e-6));
   CHECK(scene.checks.every_steps == 50);
-  CHECK(scene.plugin_dirs == std::vector<std::filesystem::path>{"mine"});
+  CHECK(scene.checks.stretch == 3);
+  CHECK(scene.checks.energy_growth == 0.001);
+  const auto beside = std::filesystem::path(contract_scene).parent_path();
+  CHECK(scene.plugin_dirs == std::vector<std::filesystem::path>{beside / "mine"});
 }
 
 TEST_CASE("a model is swapped with its parameters by set") {

@@ -232,3 +232,46 @@ TEST_CASE("the run keeps the scene as used: the user's text, or with --set the v
   { const RunDirectory run(folder.path(), scene); }
   CHECK(nlohmann::json::parse(read_text(folder.path() / "scene.json"))["title"] == "changed");
 }
+
+TEST_CASE("a growing file goes back to a mark, and only if what came before is still there") {
+  const ScratchFolder folder;
+  const auto file = folder.path() / "table.csv";
+  FileMark mark;
+  {
+    AppendFile table(file);
+    table.clear();
+    table.write("a,b\n");
+    table.write("1,2\n");
+    mark = table.mark();
+    CHECK(mark.bytes == 8);
+    table.write("3,4\n");
+    table.close();
+  }
+  {
+    AppendFile table(file);
+    table.go_back(mark);
+    table.write("5,6\n");
+    const FileMark now = table.mark();
+    CHECK(now.checksum == checksum_of(file).value());
+  }
+  CHECK(read_text(file) == "a,b\n1,2\n5,6\n");
+  AppendFile table(file);
+  write_into(file, "A");
+  CHECK_THROWS_WITH(table.go_back(mark),
+                    Contains("table.csv") && Contains("was changed since") && Contains("--overwrite"));
+  CHECK(read_text(file) == "A,b\n1,2\n5,6\n");
+  write_file(file, "a,b\n");
+  AppendFile shorter(file);
+  CHECK_THROWS_WITH(shorter.go_back(mark), Contains("4 bytes instead of 8"));
+}
+
+TEST_CASE("a last line that was never ended is dropped") {
+  const ScratchFolder folder;
+  const auto file = folder.path() / "log.jsonl";
+  write_file(file, "{\"event\": \"started\"}\n{\"eve");
+  AppendFile log(file);
+  log.end_line();
+  log.write("{}\n");
+  log.close();
+  CHECK(read_text(file) == "{\"event\": \"started\"}\n{}\n");
+}

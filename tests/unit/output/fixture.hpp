@@ -1,7 +1,5 @@
-// What the tests of a run's output share: a scratch folder, a small scene and snapshots of it.
+// What the tests of a run's output share: a small scene and snapshots of it.
 #pragma once
-
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -12,28 +10,11 @@
 #include "input/scene.hpp"
 #include "output/run_directory.hpp"
 #include "output/snapshot.hpp"
+#include "scratch_folder.hpp"
 
 namespace rouleau::host {
 
-/// A folder that vanishes with its owner.
-class ScratchFolder {
- public:
-  ScratchFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "rouleau-output-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot make a scratch folder");
-    path_ = name;
-  }
-  ~ScratchFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
+using test::ScratchFolder;
 
 inline Scene small_scene(const std::string& title = "two cells") {
   Scene scene;

@@ -116,7 +116,7 @@ TEST_CASE("a file of frames can be read up to the last frame while the run goes 
   const Scene scene = small_scene();
   RunDirectory run(folder.path(), scene);
   run.write(small_snapshot(0));
-  std::filesystem::copy_file(folder.path() / "frames.h5", folder.path() / ".killed.partial");
+  std::filesystem::copy_file(folder.path() / "frames-0001.h5", folder.path() / ".killed.partial");
   const FrameReader reader(folder.path() / ".killed.partial");
   CHECK(reader.frames() == 1);
   CHECK(reader.outlines(0).x.size() == 64);
@@ -169,4 +169,48 @@ TEST_CASE("HDF5's trouble with a file is told with the path and the system's wor
                     Catch::Contains("none.h5") && Catch::Contains("No such file"));
   write_file(folder.path() / "text.h5", "this is no HDF5 file");
   CHECK_THROWS_WITH(FrameReader(folder.path() / "text.h5"), Catch::Contains("text.h5") && Catch::Contains("HDF5 says"));
+}
+
+TEST_CASE("outlines whose first nodes do not fit their points are refused with file, frame and remedy") {
+  const ScratchFolder scratch;
+  const auto file = scratch.path() / "frames.h5";
+  for (const std::vector<int>& first : std::vector<std::vector<int>>{
+           {0, 1, 4}, {0, 5}, {1, 4}, {-1, 4}, {0, 3, 3}, {0, 3, 2}, {0, 2147483647}, {-2147483647, 4}}) {
+    CAPTURE(first);
+    {
+      Hdf5File damaged(file, Hdf5File::Mode::create);
+      for (const char* group : {"/frames", "/frames/000000", "/frames/000000/membranes"}) damaged.make_group(group);
+      damaged.write("/frames/000000/membranes/points", std::vector<double>(8), "m");
+      damaged.write("/frames/000000/membranes/tension", std::vector<double>(4), "N/m");
+      damaged.write("/frames/000000/membranes/first", first, "1");
+      damaged.close();
+    }
+    const FrameReader reader(file);
+    if (first == std::vector<int>{0, 1, 4}) {
+      CHECK(reader.outlines(0).first == first);
+      continue;
+    }
+    CHECK_THROWS_WITH(reader.outlines(0), Catch::Contains(file.string()) && Catch::Contains("/frames/000000") &&
+                                              Catch::Contains("repeat the run"));
+  }
+}
+
+TEST_CASE("a dataset that claims more numbers than its file can hold is refused before memory is asked for") {
+  const ScratchFolder scratch;
+  const auto file = scratch.path() / "frames.h5";
+  Hdf5File(file, Hdf5File::Mode::create).close();
+  {
+    const Hdf5Handle opened(H5Fopen(file.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
+    const hsize_t count = hsize_t{1} << 50, chunk = 1024;
+    const Hdf5Handle space(H5Screate_simple(1, &count, nullptr), H5Sclose);
+    const Hdf5Handle layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+    REQUIRE(H5Pset_chunk(layout.id(), 1, &chunk) >= 0);
+    const Hdf5Handle dataset(
+        H5Dcreate2(opened.id(), "/points", H5T_IEEE_F64LE, space.id(), H5P_DEFAULT, layout.id(), H5P_DEFAULT),
+        H5Dclose);
+    REQUIRE(dataset.valid());
+  }
+  const Hdf5File damaged(file, Hdf5File::Mode::read);
+  CHECK_THROWS_WITH(damaged.read("/points"), Catch::Contains(file.string()) && Catch::Contains("/points") &&
+                                                 Catch::Contains("1125899906842624 numbers"));
 }

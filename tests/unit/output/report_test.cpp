@@ -1,9 +1,11 @@
 #include <catch2/catch.hpp>
+#include <sstream>
 
 #include "fixture.hpp"
 #include "output/file.hpp"
 #include "output/report.hpp"
 #include "output/report_data.hpp"
+#include "output/report_outlines.hpp"
 
 using namespace rouleau::host;
 using Catch::Contains;
@@ -92,7 +94,7 @@ TEST_CASE("a diverged run's summary says why, where and what to change") {
   Summary summary = small_summary();
   summary.status = "diverged";
   summary.failure =
-      Failure{"mach", 12, 0.5, 1.5, {1e-6, 2e-6}, -1, 0.4, 0.3, "The flow is too fast.", "Lower density_factor."};
+      Failure{"mach", 12, 0.5, 1.5, {1e-6, 2e-6}, -1, 0.4, 0.3, "The flow is too fast.", "Lower density_factor.", {}};
   const json failure = to_json(summary)["failure"];
   CHECK(failure["reason"] == "mach");
   CHECK(failure["step"] == 12);
@@ -127,6 +129,43 @@ TEST_CASE("text from the scene cannot end the report's data or become markup") {
              Contains("</script><script>alert(1)</script><!-- \"'&"));
 }
 
+TEST_CASE("the report says whose chart library it holds") {
+  const ScratchFolder folder;
+  const std::string page = read_text(finished_run(folder.path(), "two cells"));
+  CHECK_THAT(page, Contains("uPlot") && Contains("Copyright (c) 2022 Leon Sorokin") && Contains("without restriction"));
+  CHECK_THAT(page, !Contains("@include"));
+}
+
+TEST_CASE("the energy ledger is shown where a run has one") {
+  const ScratchFolder folder;
+  finished_run(folder.path(), "two cells");
+  CHECK(report_data(folder.path())["series"].contains("total_energy_J_per_m"));
+
+  // A run of a version that had no ledger, and one that had a part of it.
+  std::string without, part, line;
+  std::istringstream lines(read_text(folder.path() / "series.csv"));
+  const auto columns_before = [](const std::string& header) {
+    const std::string before = header.substr(0, header.find(",kinetic_energy_J_per_m"));
+    return std::count(before.begin(), before.end(), ',') + 1;
+  };
+  long columns = 0;
+  for (int row = -1; std::getline(lines, line); ++row) {
+    if (row < 0) columns = columns_before(line);
+    std::size_t end = 0;
+    for (long column = 0; column < columns; ++column) end = line.find(',', end + (column > 0 ? 1 : 0));
+    without += line.substr(0, end) + "\n";
+    part += line.substr(0, end) +
+            (row < 0 ? ",total_energy_J_per_m,wall_power_W_per_m" : ",1.5e-12," + std::to_string(row)) + "\n";
+  }
+  write_file(folder.path() / "series.csv", without);
+  CHECK_FALSE(report_data(folder.path())["series"].contains("total_energy_J_per_m"));
+  write_file(folder.path() / "series.csv", part);
+  const json series = report_data(folder.path())["series"];
+  CHECK(series["total_energy_J_per_m"][4] == 1.5e-12);
+  CHECK(series["wall_power_W_per_m"] == json::array({0, 1, 2, 3, 4}));
+  CHECK_FALSE(series.contains("kinetic_energy_J_per_m"));
+}
+
 TEST_CASE("a run that was killed has a report too") {
   const ScratchFolder folder;
   const Scene scene = small_scene();
@@ -140,6 +179,26 @@ TEST_CASE("a run that was killed has a report too") {
   const json data = embedded(read_text(write_report(folder.path())));
   CHECK(data["summary"].is_null());
   CHECK(data["step"] == json::array({0}));
+}
+
+TEST_CASE("a run that was killed after a checkpoint shows the frames of all its segments") {
+  const ScratchFolder folder;
+  const Scene scene = small_scene();
+  {
+    RunDirectory run(folder.path(), scene);
+    for (long step = 0; step < 5; ++step) {
+      run.write(small_snapshot(step, step == 3));
+      if (step == 1) run.mark();
+    }
+    run.mark();
+  }
+  REQUIRE(std::filesystem::exists(folder.path() / "frames-0002.h5"));
+  const json data = report_data(folder.path());
+  CHECK(data["step"] == json::array({0, 1, 2, 3, 4}));
+  CHECK(data["outlines"]["nodes"].size() == 5);
+  CHECK(data["fields"]["outputs"] == json::array({3}));
+  write_file(folder.path() / "frames-0002.h5", "half");
+  CHECK(report_data(folder.path())["step"] == json::array({0, 1}));
 }
 
 TEST_CASE("a report without frames says why, and one without cells or outputs is still a report") {

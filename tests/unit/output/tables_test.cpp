@@ -107,3 +107,23 @@ TEST_CASE("a last line that a killed run left unfinished is dropped") {
   write_file(folder.path() / "t.csv", "a,b\n1,2\n3,");
   CHECK(StoredTable(folder.path() / "t.csv").numbers("b") == std::vector<double>{2});
 }
+
+TEST_CASE("a column that numbers things is counted, and a number that cannot be one is refused with its row") {
+  const ScratchFolder scratch;
+  const auto count = [&](const std::string& column) {
+    write_file(scratch.path() / "cells.csv", "cell\n" + column);
+    return StoredTable(scratch.path() / "cells.csv").count_of("cell");
+  };
+  CHECK(count("") == 0);
+  CHECK(count("0\n1\n0\n1\n") == 2);
+  for (const char* wrong : {"nan", "-1", "inf", "1e300", "2", ""}) {
+    CAPTURE(wrong);
+    try {
+      count("0\n" + std::string(wrong) + "\n");
+      FAIL("it was counted");
+    } catch (const Error& error) {
+      CHECK(error.code() == ExitCode::bad_input);
+      CHECK_THAT(error.what(), Catch::Contains("cells.csv") && Catch::Contains("row 2") && Catch::Contains(wrong));
+    }
+  }
+}

@@ -167,3 +167,12 @@ TEST_CASE("folders that the user named must exist and the environment's must be 
   const PluginPath variable("plugins");
   CHECK(thrown_by([&] { plugin_search_path({}, {}); }).code() == ExitCode::bad_input);
 }
+
+TEST_CASE("a folder that cannot be one of plugins, for it holds ten thousand others, is refused and not searched") {
+  const PluginFolder folder;
+  for (int i = 0; i <= 10'000; ++i) std::filesystem::create_directory(folder.path() / std::to_string(i));
+  const Error error = thrown_by([&] { Catalog({folder.path()}); });
+  CHECK(error.code() == ExitCode::bad_input);
+  CHECK(error.place().file == folder.path().string());
+  CHECK_THAT(error.what(), Contains("more than 10000 folders") && Contains("name the folder that holds them"));
+}

@@ -3,48 +3,26 @@
 
 #include <catch2/catch.hpp>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "error.hpp"
+#include "scratch_folder.hpp"
 
 namespace rouleau::host::test {
 
-class PluginFolder {
+class PluginFolder : public rouleau::test::ScratchFolder {
  public:
-  PluginFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "rouleau-test-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
-    path_ = name;
-  }
-  ~PluginFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  PluginFolder(const PluginFolder&) = delete;
-  PluginFolder& operator=(const PluginFolder&) = delete;
-
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
-  std::filesystem::path write(const std::filesystem::path& name, const std::string& text) const {
-    const auto file = path_ / name;
-    std::filesystem::create_directories(file.parent_path());
-    std::ofstream(file) << text;
-    return file;
-  }
+  using ScratchFolder::write;
   std::filesystem::path write(const std::filesystem::path& name, const nlohmann::json& document) const {
     return write(name, document.dump(2));
   }
   std::filesystem::path copy(const std::filesystem::path& file, const std::filesystem::path& name) const {
-    std::filesystem::create_directories((path_ / name).parent_path());
-    std::filesystem::copy_file(file, path_ / name);
-    return path_ / name;
+    std::filesystem::create_directories((path() / name).parent_path());
+    std::filesystem::copy_file(file, path() / name);
+    return path() / name;
   }
-
- private:
-  std::filesystem::path path_;
 };
 
 /// A manifest without a fault.

@@ -9,15 +9,15 @@ using namespace rouleau::host;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
-const PeriodicBox box{100, 0};
+using std::numbers::pi;
+const PeriodicBox hundred{100, 0};
 
 CellContact contact(int a, int b, ImageShift image = {}) { return {a, b, image, 0.1, 1}; }
 
 /// Angles of `cells` with these contacts and centres, as a follower that sees them for the first time gives them.
 std::map<int, double> angles(Rotation& rotation, const std::vector<CellContact>& contacts,
                              const std::vector<Eigen::Vector2d>& centers) {
-  return rotation.follow(contacts, find_aggregates(static_cast<int>(centers.size()), contacts), centers, box);
+  return rotation.follow(contacts, find_aggregates(static_cast<int>(centers.size()), contacts), centers, hundred);
 }
 
 /// A chain of four cells at this angle, in an order that is not the scene's.

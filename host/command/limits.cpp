@@ -1,0 +1,64 @@
+// rouleau limits LIMITS: where a model breaks, and how.
+#include <algorithm>
+#include <iostream>
+
+#include "command_line.hpp"
+#include "commands.hpp"
+#include "error.hpp"
+#include "interruption.hpp"
+#include "limits/limits_files.hpp"
+#include "limits/limits_run.hpp"
+
+namespace rouleau::host {
+
+namespace {
+
+constexpr const char* limits_help = R"(usage: rouleau limits LIMITS [options]
+
+Makes one parameter of a scene larger until the simulation fails, and finds the edge by bisection, for each combination
+of methods; or runs single extreme cases. A run that ends with too much area lost, energy gained at rest, nodes uneven
+or values that are no numbers has failed too, though it did not say so. Writes limits.json, limits.csv and limits.html, which name
+reason, step, mode and wavelength of each failure.
+
+What was tried is not tried again: after Ctrl-C the same command goes on in the same directory.
+
+Example:
+  rouleau limits limits/explicit-stiffness.json
+  rouleau limits limits/extreme.json --out runs/extreme
+
+Exit codes: 0 done, 1 an extreme case ended neither right nor with a reason, or otherwise than expected, 2 bad input,
+4 input/output, 130 interrupted
+)";
+
+}  // namespace
+
+int limits_command(const std::vector<std::string>& arguments) {
+  namespace options = boost::program_options;
+  std::string file, out;
+  LimitsOptions chosen;
+  options::options_description description("options");
+  options::positional_options_description positional;
+  description.add_options()("limits", options::value(&file)->required(), "LIMITS file (JSON)")(
+      "out", options::value(&out)->value_name("DIR"), "directory (default: runs/NAME of the file)")(
+      "quiet", options::bool_switch(&chosen.quiet), "no lines on what is being tried");
+  positional.add("limits", 1);
+  if (!parse_command_line("limits", limits_help, arguments, description, positional)) return 0;
+
+  const LimitsFile limits = read_limits(file);
+  chosen.directory =
+      out.empty() ? std::filesystem::path("runs") / std::filesystem::path(file).stem() : std::filesystem::path(out);
+  chosen.interrupted = &listen_for_interruption();
+  LimitsRun run(limits, chosen);
+  const bool ended = run.run();
+  std::cout << limits_text(limits_json(run.state())) << (chosen.directory / "limits.html").string() << "\n";
+  if (!ended) {
+    std::cerr << "interrupted; the same command goes on\n";
+    return static_cast<int>(ExitCode::interrupted);
+  }
+  const auto& cases = run.state().cases;
+  const bool well =
+      std::all_of(cases.begin(), cases.end(), [](const CaseResult& result) { return result.as_expected; });
+  return static_cast<int>(well ? ExitCode::done : ExitCode::simulation_failed);
+}
+
+}  // namespace rouleau::host

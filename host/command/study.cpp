@@ -1,0 +1,107 @@
+// rouleau study STUDY: error against run time over a matrix of settings.
+#include <cmath>
+#include <iostream>
+
+#include "command_line.hpp"
+#include "commands.hpp"
+#include "error.hpp"
+#include "input/units.hpp"
+#include "input/wording.hpp"
+#include "interruption.hpp"
+#include "study/study_files.hpp"
+#include "study/study_run.hpp"
+
+namespace rouleau::host {
+
+namespace {
+
+constexpr const char* study_help = R"(usage: rouleau study STUDY [options]
+
+Runs a scene over a matrix of settings (resolution, time step, models, any value of the scene), measures what each run
+found and what it cost, and writes study.json, study.csv and study.html: error against run time, which setting is the
+cheapest for an error, and how sure that is. A run that fails, hangs or is refused is a result like the others.
+
+Timed runs of all studies on a machine take turns. What was finished is not run again: after Ctrl-C, or with more axes,
+values or quantities, the same command goes on in the same directory.
+
+Example:
+  rouleau study studies/couette.json
+  rouleau study studies/couette.json --budget 5min --out runs/couette
+  rouleau study studies/poiseuille.json --repeats 5
+
+Exit codes: 0 done (also where points failed), 1 a repeated run gave other results, 2 bad input, 4 input/output,
+130 interrupted
+)";
+
+double budget_in_seconds(const std::string& text) {
+  // "5min" as well as "5 min"; a plain number is seconds.
+  const std::size_t digits = text.find_first_not_of("0123456789.eE+-");
+  const std::string number_text = text.substr(0, digits);
+  const std::string unit = digits == std::string::npos ? "s" : text.substr(text.find_first_not_of(' ', digits));
+  double seconds = NAN;
+  try {
+    seconds = Units().to_si(number_text + ' ' + unit, "s", "--budget");
+  } catch (const UnitError& error) {
+    throw Error(ExitCode::bad_input, "--budget " + in_quotes(text) + ": " + error.what());
+  }
+  if (seconds > 0) return seconds;
+  throw Error(ExitCode::bad_input, "--budget " + in_quotes(text) + ": wants a time above zero, for example 5min");
+}
+
+/// What was left out, what was found; false where a repeated run gave other results.
+bool tell_end(const StudyState& state) {
+  bool same = true;
+  for (const MatrixPoint& point : state.points) {
+    const std::string name = name_of(state.study->axes, point.point);
+    if (!point.record) std::cerr << "left out: " << name << ", " << point.left_out << "\n";
+    if (!point.record || point.record->difference.empty()) continue;
+    std::cerr << "not deterministic: " << name << ", " << point.record->difference << "\n";
+    same = false;
+  }
+  const nlohmann::json study = study_json(state);
+  for (const auto& sentence : study["sentences"]) std::cout << sentence["text"].get<std::string>() << "\n";
+  if (study["target"].is_object()) std::cout << study["target"]["sentence"].get<std::string>() << "\n";
+  return same;
+}
+
+}  // namespace
+
+int study_command(const std::vector<std::string>& arguments) {
+  namespace options = boost::program_options;
+  std::string file, out, budget, target;
+  int repeats = 0;
+  StudyOptions chosen;
+  options::options_description description("options");
+  options::positional_options_description positional;
+  description.add_options()("study", options::value(&file)->required(), "STUDY file (JSON)")(
+      "out", options::value(&out)->value_name("DIR"), "study's directory (default: runs/NAME of the study)")(
+      "budget", options::value(&budget)->value_name("TIME"),
+      "time for all runs, as 5min: the cheapest points first, and what would pass it is left out")(
+      "target", options::value(&target)->value_name("NAME=ERROR"),
+      "runs only what it takes to find the cheapest point whose error is below, as deformation=1%")(
+      "repeats", options::value(&repeats)->value_name("N"), "timed runs of each point (default: the study's, or 3)")(
+      "quiet", options::bool_switch(&chosen.quiet), "no lines on what is being run");
+  positional.add("study", 1);
+  if (!parse_command_line("study", study_help, arguments, description, positional)) return 0;
+
+  Study study = read_study(file);
+  if (repeats < 0 || repeats > 100)
+    throw Error(ExitCode::bad_input, "--repeats " + std::to_string(repeats) + ": wants a number from 1 to 100");
+  if (repeats > 0) study.repeats = repeats;
+  if (!budget.empty()) chosen.budget_s = budget_in_seconds(budget);
+  if (!target.empty()) chosen.target = read_target(target, study.quantities);
+  const std::filesystem::path named = std::filesystem::path("runs") / std::filesystem::path(file).stem();
+  chosen.directory = out.empty() ? named : std::filesystem::path(out);
+  chosen.interrupted = &listen_for_interruption();
+
+  StudyRun run(study, chosen);
+  const bool ended = run.run();
+  std::cout << (chosen.directory / "study.html").string() << "\n";
+  if (!ended) {
+    std::cerr << "interrupted; the same command goes on\n";
+    return static_cast<int>(ExitCode::interrupted);
+  }
+  return static_cast<int>(tell_end(run.state()) ? ExitCode::done : ExitCode::simulation_failed);
+}
+
+}  // namespace rouleau::host

@@ -1,0 +1,87 @@
+// ---------------------------------------------------------------------------------------------- elements and numbers
+const page = document.getElementById("page");
+
+function element(name, attributes = {}, ...children) {
+  const svg = ["svg", "g", "path", "line", "rect", "circle", "text", "tspan", "defs", "pattern", "clipPath"].includes(name);
+  const node = svg ? document.createElementNS("http://www.w3.org/2000/svg", name) : document.createElement(name);
+  for (const [key, value] of Object.entries(attributes))
+    if (key.startsWith("on")) node.addEventListener(key.slice(2), value); else node.setAttribute(key, value);
+  node.append(...children);
+  return node;
+}
+const raised = exponent => [...String(exponent)].map(c => c === "-" ? "⁻" : "⁰¹²³⁴⁵⁶⁷⁸⁹"[Number(c)]).join("");
+function format(value, digits = 4) {
+  if (value === null || value === undefined) return "–";
+  if (typeof value !== "number") return String(value);
+  if (value === 0) return "0";
+  const size = Math.abs(value);
+  if (Number.isInteger(value) && size < 1e9) return value.toLocaleString("en").replace(/,/g, "\u202f").replace("-", "−");
+  if (size >= 1e6 || size < 1e-3) {
+    const [mantissa, exponent] = value.toExponential(digits - 1).split("e");
+    return `${Number(mantissa)} × 10${raised(Number(exponent))}`.replace("-", "−");
+  }
+  return String(Number(value.toPrecision(digits))).replace("-", "−");
+}
+const spelled = name => name.replace(/(?<!_per)_(s|m|bytes)$/, ", $1").replace(/_/g, " ").replace(/^./, c => c.toUpperCase());
+const seconds = t => t === undefined || t === null ? "–" : t < 120 ? `${format(t, 3)} s` : t < 7200 ? `${format(t / 60, 3)} min` : `${format(t / 3600, 3)} h`;
+const css = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+const toneOf = label => `--c${((label % 8) + 8) % 8}`;
+
+/// A column is {title, number, and key or value (of a row, a text, number or node), mark (class of a cell)}. With
+/// `stacked`, on a narrow screen every row becomes a list of its columns; with `sortable` a click on a title sorts by what
+/// the column's `sort` (of a row; else key or value) gives, undefined ones last. `attributes(row)` are the row's.
+function table(columns, rows, {stacked = false, sortable = false, attributes = () => ({})} = {}) {
+  const valueOf = (c, row) => c.value ? c.value(row) : row[c.key];
+  const trs = rows.map(row => element("tr", attributes(row), ...columns.map(c => {
+    const value = valueOf(c, row);
+    const cell = element("td", {"data-title": c.title, class: [c.number ? "number" : "", c.mark ? c.mark(row) : ""].join(" ").trim()});
+    cell.append(value instanceof Node ? value : format(value));
+    return cell;
+  })));
+  const body = element("tbody", {}, ...trs);
+  const heads = columns.map(c => element("th", {scope: "col", ...(c.number ? {class: "number"} : {})}, c.title));
+  if (sortable) heads.forEach((head, i) => {
+    const of = rows.map(columns[i].sort ?? (row => valueOf(columns[i], row))), missing = v => v === null || v === undefined || v === "";
+    head.replaceChildren(element("button", {type: "button", onclick: () => {
+      const down = head.getAttribute("aria-sort") === "ascending", sign = down ? -1 : 1;
+      for (const other of heads) other.removeAttribute("aria-sort");
+      head.setAttribute("aria-sort", down ? "descending" : "ascending");
+      const order = rows.map((_, row) => row).sort((a, b) => missing(of[a]) || missing(of[b]) ? missing(of[a]) - missing(of[b]) || a - b
+        : sign * (typeof of[a] === "number" && typeof of[b] === "number" ? of[a] - of[b] : String(of[a]).localeCompare(String(of[b]), "en", {numeric: true})) || a - b);
+      body.append(...order.map(row => trs[row]));
+    }}, columns[i].title));
+  });
+  return element("div", {class: "card scroll" + (stacked ? " stacked" : "") + (sortable ? " sortable" : "")},
+    element("table", {}, ...(columns.some(c => c.title) ? [element("thead", {}, element("tr", {}, ...heads))] : []), body));
+}
+
+// Tables whose columns the host decides.
+function freeTable(rows) {
+  const keys = [...new Set(rows.flatMap(r => Object.keys(r)))];
+  const numeric = key => rows.every(r => r[key] === null || r[key] === undefined || typeof r[key] === "number");
+  return table(keys.map(key => ({title: spelled(key), number: numeric(key), value: r => typeof r[key] === "object" && r[key] !== null ? JSON.stringify(r[key]) : r[key]})), rows);
+}
+
+/// Passes of a run with their times as bars, the longest first.
+function passTable(passes) {
+  const total = passes.reduce((sum, pass) => sum + (pass.wall_s || 0), 0) || 1, counted = passes.some(pass => pass.calls !== undefined);
+  return table([{title: "Pass", key: "name"}, {title: "Time", number: true, value: r => seconds(r.wall_s)},
+    {title: "Share", number: true, value: r => `${(100 * r.wall_s / total).toFixed(1)} %`},
+    {title: "", value: r => element("span", {class: "share", style: `width:${(110 * r.wall_s / total).toFixed(0)}px`})},
+    ...(counted ? [{title: "Calls", key: "calls", number: true}, {title: "Each", number: true, value: r => r.calls ? `${format(1e6 * r.wall_s / r.calls, 3)} µs` : "–"}] : [])],
+    [...passes].sort((a, b) => b.wall_s - a.wall_s));
+}
+
+function warningBox(warnings, whose = "") {
+  return element("div", {class: "card status warn"}, element("strong", {}, (warnings.length === 1 ? "Warning" : `${warnings.length} warnings`) + whose),
+    element("ul", {}, ...warnings.map(w => element("li", {}, w))));
+}
+const note = text => element("p", {class: "quiet"}, text);
+
+// Sections, and the links to them that stand below the status.
+const links = element("nav", {"aria-label": "Sections"});
+function section(title, ...content) {
+  const id = title.toLowerCase().replace(/[^a-z]+/g, "-");
+  links.append(element("a", {href: `#${id}`}, title));
+  page.append(element("h2", {id}, title), ...content);
+}

@@ -1,0 +1,63 @@
+// --------------------------------------------------------------------------------------------------------- the page of limits
+const count = (number, one, many = `${one}s`) => `${number} ${number === 1 ? one : many}`;
+
+/// What the map and the cases come to, in sentences: {text, bad}.
+function limitsSentences(result, rows, unit) {
+  const told = [], {parameter, cases = []} = result;
+  if (rows.length) {
+    const unknown = rows.filter(row => edgeText(row, unit) === "not known yet").length, nowhere = rows.filter(row => edgeText(row, unit) === "stable nowhere").length, throughout = rows.filter(row => edgeText(row, unit) === "stable throughout").length;
+    const edge = rows.length - nowhere - throughout - unknown, range = [parameter.from, parameter.to].every(v => typeof v === "number") ? ` from ${format(parameter.from, 3)} to ${format(parameter.to, 3)} ${unit}` : "";
+    told.push({text: `${spelled(parameter.name ?? "the parameter")}${range}: of ${count(rows.length, "combination")} ${count(edge, "has an edge", "have an edge")}, ${throughout} ${throughout === 1 ? "is" : "are"} stable throughout, ${nowhere} nowhere${unknown ? `; of ${unknown} nothing is known yet` : ""}.`});
+  }
+  if (cases.length) {
+    const wrong = cases.filter(c => isWrong(c.verdict)), words = [...new Set(cases.map(c => c.verdict))].map(verdict => `${cases.filter(c => c.verdict === verdict).length} × ${verdict}`);
+    const other = cases.filter(c => c.as_expected === false).length;
+    told.push({text: `${count(cases.length, "extreme case")}: ${words.join(", ")}${other ? `; ${other} did not end as expected` : ""}.`, bad: wrong.length > 0});
+  }
+  return told;
+}
+
+function showLimits(result) {
+  const title = result.title || "Untitled limits", unit = result.parameter?.unit ?? "";
+  document.title = `${title} – Rouleau`;
+  page.append(element("h1", {}, title), note([result.limits_file, result.started, result.machine?.cpu].filter(Boolean).join(" · ")));
+  const {methods: rows, varied} = methodsOf(result.axes ?? [], result.edges ?? []), told = limitsSentences(result, mapRows(result), unit);
+  page.append(element("div", {class: "card status sentences" + (told.some(s => s.bad) ? " bad" : "")},
+    element("ul", {}, ...(told.length ? told : [{text: "Nothing has been tried yet."}]).map(s => element("li", s.bad ? {class: "over"} : {}, s.text)))));
+  const warnings = [...(result.complete === false ? ["The search has not come to its end; the same command goes on with it."] : []), ...(result.warnings ?? [])];
+  if (warnings.length) page.append(warningBox(warnings));
+  page.append(links);
+  const map = rows.length ? showMap(result, varied, unit) : null;
+  showEdges(result, unit);
+  showCases(result.cases ?? []);
+  showMargins(result.scenes ?? [], unit);
+  showSoundness(result);
+  showOrigin(result, result.limits_file, "Limits");
+  return map;
+}
+
+/// How long each trial ran, and what of one that completed counts as a failure.
+function showSoundness({steps, sound, parameter}) {
+  const facts = [["Steps of each trial", typeof steps === "number" ? format(steps) : null], ...(parameter?.pointers ?? []).map(pointer => ["Varied", pointer]),
+    ["Edge found to", typeof parameter?.precision === "number" ? `${parameter.scale === "linear" ? "" : "a factor of "}${format(parameter.precision, 4)}` : null],
+    ...Object.entries(sound ?? {}).map(([name, limit]) => [`Fails above: ${spelled(name).toLowerCase()}`, typeof limit === "number" ? format(limit) : null])];
+  if (facts.some(([, text]) => text)) section("What counts as failed", factTable(facts), note("Beside the reasons for which a run stops by itself: a run that completes but passes one of these has failed silently."));
+}
+
+function showMap(result, varied, unit) {
+  const controls = element("div", {class: "controls"}), place = element("div", {}), hidden = new Set();
+  section("Map of stability", controls);
+  const map = new LimitsMap(place, result);
+  page.append(element("div", {class: "card keys"}, mapLegend(map.rows)), place,
+    note("A bar goes from the least to the most value tried. Point at a bar to read what a trial came to."));
+  const order = element("select", {"aria-label": "Order", onchange: () => {
+    const edge = row => row.above?.stable_up_to ?? row.below?.stable_up_to ?? -Infinity;
+    const sorted = order.value === "edge" ? [...map.rows].sort((a, b) => edge(b) - edge(a)) : map.rows;
+    map.axisLine.before(...sorted.map(row => row.line));
+  }}, element("option", {value: ""}, "as in the matrix"), element("option", {value: "edge"}, "by edge"));
+  controls.append(element("label", {}, "Order", order), ...(varied.length ? axisButtons(varied, hidden, () => { for (const row of map.rows) row.line.hidden = !labelsShown(row.labels, hidden); }) : []));
+  if (varied.length > 1) page.append(element("h3", {}, "Stable range, as a grid"), gridTable(result, map.rows, varied, unit));
+  return map;
+}
+const data = JSON.parse(document.getElementById("data").textContent);
+const map = showLimits(data);

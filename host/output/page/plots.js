@@ -1,0 +1,99 @@
+// ------------------------------------------------------------------------------------ which charts a run or two have
+const cellTones = ["--c0", "--c1", "--c2", "--c3", "--c4", "--c5", "--c6", "--c7", "--c0", "--c1", "--c2", "--c3"];
+const runTones = ["--c0", "--c1"], runNames = ["A", "B"];
+
+/// Chart of the page: `names` are of series, `cells` of the cells' quantities.
+const quantities = [
+  {title: "Aggregates (lone cells count)", names: {aggregate_count: ""}, steps: true, whole: true, zero: true, needsCells: true, first: true},
+  {title: "Smallest gap to another cell", unit: "µm", cells: "min_gap_um", zero: true},
+  {title: "Deformation (L − B)/(L + B)", cells: "deformation"},
+  {title: "Angle of the long axis", unit: "°", cells: "angle_deg"},
+  {title: "Relative viscosity", names: {relative_viscosity: ""}},
+  {title: "Largest relative area drift", names: {area_drift_max: ""}, zero: true, needsCells: true},
+  {title: "Energy", unit: "J/m", names: {kinetic_energy_J_per_m: "kinetic", elastic_energy_J_per_m: "elastic", bending_energy_J_per_m: "bending",
+    interaction_energy_J_per_m: "interaction", total_energy_J_per_m: "total"}, optional: true},
+  {title: "Power", unit: "W/m", names: {viscous_dissipation_W_per_m: "dissipation", wall_power_W_per_m: "walls"}, optional: true},
+  {title: "Layers without cells", unit: "µm", names: {cell_free_layer_lower_um: "lower wall", cell_free_layer_upper_um: "upper wall"}, zero: true, needsCells: true, optional: true},
+  {title: "Aggregate size, mean over cells", names: {aggregate_size_weight_mean: ""}, steps: true, zero: true, needsCells: true},
+  {title: "Particle stress xy", unit: "Pa", names: {particle_stress_Pa: ""}, needsCells: true},
+  {title: "Largest Mach number", names: {mach_max: ""}, zero: true},
+  {title: "Largest area kept from leaking, relative", names: {area_leakage_max: ""}, zero: true, needsCells: true, optional: true},
+  {title: "Relative mass drift", names: {mass_drift: ""}, zero: true},
+];
+
+function smallestMeanLargest(run, name) {
+  const lines = run.cells[name];
+  if (run.cells.labels[0] === "smallest") return lines;
+  return [Math.min, null, Math.max].map(pick => run.step.map((_, i) => {
+    const values = lines.map(line => line[i]).filter(v => v !== null);
+    return !values.length ? null : pick ? pick(...values) : values.reduce((a, b) => a + b) / values.length;
+  }));
+}
+
+/// Lines of a quantity: of one run each cell's, of two runs each run's mean and range.
+function linesOf(quantity, runs) {
+  if (quantity.needsCells && !runs.some(run => run.cells)) return [];
+  const two = runs.length > 1;
+  return runs.flatMap((run, r) => {
+    const prefix = two ? `${runNames[r]} ` : "";
+    if (quantity.cells) {
+      if (!run.cells) return [];
+      if (two) {
+        const [low, mean, high] = smallestMeanLargest(run, quantity.cells);
+        return [{label: `${prefix}mean`, values: mean, run: r, tone: runTones[r], dashed: r === 1},
+                {label: `${prefix}range`, values: high, band: low, run: r, tone: runTones[r]}];
+      }
+      const summed = run.cells.labels[0] === "smallest";
+      return run.cells[quantity.cells].map((values, i) => ({values, run: r, tone: summed ? ["--c5", "--c0", "--c1"][i] : cellTones[i],
+        label: run.cells.labels[i].replace(/ \(.*/, "")}));
+    }
+    const names = Object.entries(quantity.names).filter(([name]) => run.series[name]);
+    return names.map(([name, label], i) => ({values: run.series[name], run: r, dashed: r === 1,
+      label: (prefix + label).trim(), tone: two && names.length === 1 ? runTones[r] : cellTones[i]}));
+  }).filter(line => line.values.some(v => v !== null));
+}
+
+/// Small numbers are told in a smaller unit, or as a multiple of a power of ten: {unit, factor}.
+function readable(unit, lines) {
+  const largest = Math.max(...lines.flatMap(line => [...line.values, ...(line.band || [])]).map(v => Math.abs(v ?? 0)));
+  const power = Math.ceil(-Math.log10(largest) / 3);  // of a thousand
+  if (!(largest < (unit ? 0.1 : 1e-4)) || largest === 0) return {unit, factor: 1};
+  const prefix = unit && ["", "m", "µ", "n", "p", "f", "a"][power];
+  return {unit: prefix ? prefix + unit : `10${raised(-3 * power)}${unit ? " " + unit : ""}`, factor: 10 ** (3 * power)};
+}
+const multiplied = (values, factor) => factor === 1 || !values ? values : values.map(v => v === null ? null : v * factor);
+
+/// Draws all charts that have something to show; returns why the others are missing, in sentences.
+function plots(timeline, first, grid) {
+  const missing = [], zero = [];
+  for (const quantity of quantities) {
+    const lines = linesOf(quantity, timeline.runs), parent = quantity.first ? first : grid;
+    if (!lines.length) { if (!quantity.optional && !(quantity.needsCells || quantity.cells) || (!quantity.optional && timeline.runs.some(run => run.cells))) missing.push(quantity.title); continue; }
+    // An axis up to 1 would speak of a size that is not there.
+    if (!quantity.whole && lines.every(line => line.values.every(v => !v))) { zero.push(quantity.title); continue; }
+    const {unit, factor} = readable(quantity.unit || "", lines);
+    for (const line of lines) { line.values = multiplied(line.values, factor); if (line.band) line.band = multiplied(line.band, factor); }
+    const beside = quantity.first && timeline.runs.length === 1;  // the animation
+    new Chart(parent, timeline, {...quantity, unit, lines, wide: beside, height: beside && innerWidth > 800 ? 290 : 180});
+  }
+  const listed = list => list.join(", ").toLowerCase().replace(/\bmach\b/g, "Mach");
+  const notes = [];
+  if (missing.length) notes.push(`Not shown, because undefined at every output: ${listed(missing)}.`);
+  if (zero.length) notes.push(`Not shown, because zero at every output: ${listed(zero)}.`);
+  return notes;
+}
+
+/// The choice of the horizontal axis, and the way back from a stretch of it.
+function axisControls(timeline) {
+  const controls = element("div", {class: "controls"});
+  if (timeline.runs.length === 1) {
+    const choices = [...(timeline.sheared ? [["strain", "over strain"]] : []), ["time_s", "over time"], ["output", "over outputs"]];
+    const select = element("select", {"aria-label": "Horizontal axis", onchange: () => { timeline.over = select.value; zoomed = null; redrawCharts(); timeline.seek(timeline.position); document.dispatchEvent(new Event("zoomed")); }},
+      ...choices.map(([value, text]) => element("option", {value}, text)));
+    controls.append(element("label", {}, "Charts", select));
+  }
+  const all = element("button", {type: "button", hidden: "", onclick: () => zoom(null)}, "Show all");
+  document.addEventListener("zoomed", () => { all.hidden = !zoomed; });
+  controls.append(all);
+  return controls;
+}

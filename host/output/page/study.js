@@ -1,0 +1,51 @@
+// ------------------------------------------------------------------------------------------------------ the page of a study
+function studyWarnings(study, view) {
+  const failed = view.points.filter(p => p.status !== "completed").length, left = study.left_out ?? [];
+  return [
+    ...(study.complete === false && !left.length ? ["The study has not come to its end; the same command goes on with it."] : []),
+    ...view.quantities.map(q => q.disagreement && (q.disagreement.includes(q.name) ? q.disagreement : `${q.name}: ${q.disagreement}`)),
+    ...view.quantities.map(q => q.reference?.why_not && `${q.name} ${typeof q.reference.value === "number" ? "has a reference with a doubt" : "has no reference"}: ${q.reference.why_not}`),
+    ...view.points.map(p => p.not_deterministic && `not deterministic: ${labelWords(p.labels)}: ${p.not_deterministic}`),
+    ...(failed ? [`${failed} of ${view.points.length} points failed; they stand at the upper border of the charts and in a table of their own.`] : []),
+    ...(left.length ? [`${left.length} ${left.length === 1 ? "point was" : "points were"} left out; the table at the end says which and why.`] : [])].filter(Boolean);
+}
+
+function sentenceBox(view) {
+  const {study} = view, find = (quantity, id) => id === null || id === undefined ? "" : element("button", {type: "button", class: "find", onclick: () => {
+    view.quantity = view.quantities.find(q => q.name === quantity) ?? view.quantity;
+    view.choose(id);
+    document.querySelector(".scatter:not([hidden])")?.scrollIntoView({block: "center"});
+  }}, "show");
+  // Where methods disagree is told among the warnings.
+  const told = (study.sentences ?? []).filter(s => !view.quantities.some(q => q.disagreement === s.text));
+  const lines = told.map(s => element("li", {}, ...(s.text.includes(s.quantity) ? [] : [element("b", {}, s.quantity), ": "]), s.text, " ", find(s.quantity, s.point)));
+  const {target} = study;
+  if (target) lines.unshift(element("li", {class: target.met ? "" : "over"}, element("b", {}, target.sentence ?? (target.met ? "The target is met." : "The target is not met.")), " ", find(target.quantity, target.point)));
+  if (!lines.length) lines.push(element("li", {}, "The study says nothing in a sentence: see the charts and tables."));
+  return element("div", {class: "card status sentences" + (target && !target.met ? " bad" : "")}, element("ul", {}, ...lines));
+}
+
+function showStudy(study) {
+  const view = new StudyView(study), title = study.title || "Untitled study";
+  document.title = `${title} – Rouleau`;
+  const completed = view.points.filter(p => p.status === "completed").length;
+  page.append(element("h1", {}, title), note([study.study_file, `${completed} of ${view.points.length} points completed`, study.started, study.machine?.cpu].filter(Boolean).join(" · ")), sentenceBox(view));
+  const warnings = studyWarnings(study, view);
+  if (warnings.length) page.append(warningBox(warnings));
+  page.append(links);
+  if (view.points.length && view.quantity) {
+    showStudyCharts(view);
+    showReferences(view);
+    showKnobs(view);
+    showPoints(view);
+    showFailures(view);
+    showPasses(view);
+  } else section("Results", element("p", {}, view.points.length ? "The points have been run, but study.json has no quantity of them." : "No point has been run."));
+  if ((study.left_out ?? []).length) section("Left out, and why", table([{title: "Point", value: r => labelWords(r.labels ?? {})}, {title: "Why", key: "why"},
+    {title: "Estimated time", number: true, value: r => seconds(r.estimated_s)}], study.left_out, {stacked: true}));
+  showOrigin(study, study.study_file, "Study");
+  view.changed();
+  return view;
+}
+const data = JSON.parse(document.getElementById("data").textContent);
+const view = showStudy(data);

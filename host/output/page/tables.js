@@ -1,0 +1,94 @@
+// -------------------------------------------------------------------------------------------------------------- tables
+function showScene(run) {
+  const {scene} = run, summary = run.summary || {}, shown = [];
+  if (scene) {
+    let expected;
+    try { expected = JSON.parse(scene).expected; } catch { /* a scene with comments is shown as text below all the same */ }
+    if (typeof expected === "string") shown.push(element("p", {}, element("b", {}, "What the scene expects: "), expected));
+  }
+  const conversions = Array.isArray(summary.conversions) ? summary.conversions : [];
+  if (conversions.length) shown.push(element("h3", {}, "Every conversion"), conversionTable(conversions));
+  const wells = summary.wells || [];
+  if (wells.length) shown.push(element("h3", {}, "Wells of the interactions"), table([{title: "Model", key: "model"}, {title: "Between", value: r => (r.between || []).join(", ")},
+    {title: "Zero-force distance, nm", number: true, value: r => r.zero_force_distance_m === null ? null : r.zero_force_distance_m * 1e9}, {title: "Depth, J/m²", key: "depth_J_m2", number: true},
+    {title: "Width, nm", number: true, value: r => r.width_m === null ? null : r.width_m * 1e9},
+    ...(wells.some(r => r.widened) ? [{title: "Widened", number: true, value: r => r.widened ? `${format(r.widened, 3)} ×` : "–"}] : [])], wells, {stacked: true}));
+  const packings = summary.packings || [];
+  if (packings.length) shown.push(element("h3", {}, "Cells placed at random"), freeTable(packings));
+  if (scene) shown.push(element("details", {}, element("summary", {}, "The scene as used (scene.json)"), element("pre", {class: "card"}, scene)));
+  if (shown.length) section("Scene and conversions", ...shown);
+}
+
+/// A row for each quantity, with a pair of columns for each stage where the stages differ.
+function conversionTable(conversions) {
+  const stages = [...new Set(conversions.map(c => c.stage))], names = [...new Set(conversions.map(c => c.quantity))];
+  const at = (name, stage) => conversions.find(c => c.quantity === name && c.stage === stage) || {};
+  const same = stages.every(stage => names.every(name => at(name, stage).si === at(name, stages[0]).si && at(name, stage).lattice === at(name, stages[0]).lattice));
+  const columns = (same ? stages.slice(0, 1) : stages).flatMap(stage => [
+    {title: same ? "SI" : `SI (${stage})`, number: true, value: name => at(name, stage).si ?? null},
+    {title: same ? "Lattice" : `Lattice (${stage})`, number: true, value: name => at(name, stage).lattice ?? null}]);
+  return table([{title: "Quantity", value: name => name}, {title: "Unit", value: name => at(name, stages.find(s => at(name, s).unit)).unit}, ...columns], names, {stacked: true});
+}
+
+function showDimensionless(given) {
+  const meaning = {
+    capillary: "shear stress against membrane elasticity", membrane_strain: "stretch that the shear stress asks for",
+    adhesion_number: "attraction against shear stress", viscosity_ratio: "interior against suspending fluid",
+    hematocrit: "share of the domain that the cells at rest enclose",
+  };
+  const has = name => given[name] !== undefined;
+  const rows = [];
+  if (has("reynolds_physical")) rows.push({name: "Reynolds number", real: given.reynolds_physical, simulated: given.reynolds_simulated, what: "inertia against viscosity; simulated with density_factor times the density"});
+  for (const [name, what] of Object.entries(meaning)) if (has(name)) rows.push({name: name === "capillary" ? "Capillary number" : spelled(name), real: given[name], simulated: given[name], what});
+  if (has("mach_wall")) rows.push({name: "Mach number of the walls", simulated: given.mach_wall, what: "of the lattice, not of the fluid"});
+  if (has("mach_max")) rows.push({name: "Largest Mach number", simulated: given.mach_max, what: "of the lattice; compressibility errors grow with its square"});
+  const known = new Set(["reynolds_physical", "reynolds_simulated", "mach_wall", "mach_max", ...Object.keys(meaning)]);
+  for (const [name, value] of Object.entries(given)) if (!known.has(name)) rows.push({name: spelled(name), real: value, simulated: value, what: ""});
+  if (rows.length) section("Dimensionless numbers", table([{title: "Number", key: "name"}, {title: "True", key: "real", number: true}, {title: "Simulated", key: "simulated", number: true}, {title: "What it is", key: "what"}], rows, {stacked: true}));
+}
+
+function showLimits(limits) {
+  if (!limits.length) return;
+  section("Limits and margins", table([{title: "Limit of the method", key: "name"}, {title: "Value", key: "value", number: true}, {title: "Limit", key: "limit", number: true},
+    {title: "Margin", number: true, value: r => r.margin === null ? "–" : `${format(r.margin, 3)} ×`, mark: r => r.margin === null ? "" : r.margin < 1 ? "over" : r.margin < 1.5 ? "near" : ""},
+    {title: "To widen it", key: "remedy"}], limits, {stacked: true}),
+    note("Margin: by what factor the value may still change before it passes the limit; below 1 it has passed."));
+}
+
+function showPlugins(summary) {
+  const plugins = summary.plugins || [];
+  if (!plugins.length) return;
+  const lock = summary.lock ? element("p", {}, "Locked by ", element("code", {}, summary.lock.file), ", SHA-256 ", element("code", {}, summary.lock.sha256))
+    : note("The run obeyed no lock: another version of a plugin would have been taken as well.");
+  section("Plugins", table([{title: "Id", key: "id"}, {title: "Version", key: "version"}, {title: "Kind", key: "kind"},
+    {title: "SHA-256", value: r => element("code", {}, r.sha256)}, {title: "Library", value: r => element("code", {}, r.library)}], plugins, {stacked: true}), lock);
+}
+
+function showPasses(passes) {
+  if (passes.length) section("Time by pass", passTable(passes));
+}
+
+function showHistory(summary) {
+  const history = summary.aggregate_history || [];
+  if (history.length) section("Aggregates", table([{title: "Strain", key: "strain", number: true}, {title: "Time, s", key: "time_s", number: true}, {title: "Count", key: "count", number: true},
+    {title: "Members", value: r => (r.members || []).map(m => m.join("+")).join(" | ")}, {title: "Held through the boundary", value: r => r.through_image ? "yes" : "no"}], history.slice(0, 200)),
+    ...(history.length > 200 ? [note(`The first 200 of ${history.length} changes; summary.json has all.`)] : []));
+  const means = (summary.rheology || []).flatMap(stage => Object.entries(stage.means || {}).filter(([, v]) => v && typeof v === "object" && typeof v.mean === "number")
+    .map(([name, v]) => ({stage: stage.stage, name, ...v})));
+  if (means.length) section("Means", table([{title: "Stage", key: "stage"}, {title: "Quantity", value: r => spelled(r.name)}, {title: "Mean", key: "mean", number: true}, {title: "Standard deviation", key: "deviation", number: true}], means),
+    note("Over the outputs of the second half of each stage."));
+}
+
+function showProvenance(run) {
+  const summary = run.summary || {};
+  if (summary.conservation) section("Conservation", table([{title: "Quantity", key: "name"}, {title: "Value", key: "value", number: true}],
+    Object.entries(summary.conservation).map(([name, value]) => ({name: spelled(name), value}))));
+  if (Array.isArray(summary.stages) && summary.stages.length) section("Stages", freeTable(summary.stages));
+  const origin = [["Scene", summary.scene_file], ["Scene SHA-256", summary.scene_sha256], ["Program", summary.git], ["Machine", summary.machine], ["Started", summary.started]].filter(([, v]) => v);
+  if (origin.length) section("Provenance", table([{title: "", value: r => r[0]}, {title: "", value: r => element("code", {}, r[1])}], origin));
+}
+
+function licences() {
+  page.append(element("details", {}, element("summary", {}, "Charts: uPlot 1.6.32, and its licence"),
+    element("pre", {class: "card prose"}, document.getElementById("uplot-licence").textContent.trim())));
+}

@@ -1,0 +1,209 @@
+#include "checkpoint.hpp"
+
+#include <array>
+#include <string>
+#include <utility>
+
+#include "checkpoint_match.hpp"
+
+namespace rouleau::host {
+
+namespace {
+
+using nlohmann::json;
+
+std::string population_name(int q) { return "/populations/" + std::to_string(q); }
+std::string state_name(std::size_t k) { return "/membranes/state/" + std::to_string(k); }
+
+/// Arrays of the membranes that have a value for each node or each cell.
+template <class M>
+auto arrays(M& m) {
+  return std::array{std::pair{"/membranes/x", &m.x}, std::pair{"/membranes/y", &m.y},
+                    std::pair{"/membranes/velocity_x", &m.velocity_x},
+                    std::pair{"/membranes/velocity_y", &m.velocity_y},
+                    std::pair{"/membranes/largest_step", &m.largest_step}};
+}
+
+void read(const CheckpointReader& reader, const std::string& path, std::vector<double>& values) {
+  reader.array(path, values.size(), values.data());
+}
+
+json described(const ElementState& s) {
+  return {{"cell_type", s.cell_type}, {"law", s.law},   {"model", s.model},
+          {"name", s.name},           {"unit", s.unit}, {"dimension", s.dimension.exponent}};
+}
+
+ElementState element_state(const json& d) {
+  return {d.at("cell_type"), d.at("law"), d.at("model"), d.at("name"), d.at("unit"), {d.at("dimension")}, {}};
+}
+
+json described(const ContactVariable& v) {
+  return {{"potential", v.potential}, {"model", v.model},     {"name", v.name},
+          {"unit", v.unit},           {"initial", v.initial}, {"dimension", v.dimension.exponent}};
+}
+
+ContactVariable contact_variable(const json& d) {
+  return {d.at("potential"), d.at("model"), d.at("name"), d.at("unit"), {d.at("dimension")}, d.at("initial")};
+}
+
+/// What interactions remember: which pairs of cells, and for each of them the next so many values of one array.
+json save_contacts(CheckpointWriter& writer, const ContactMemory& memory) {
+  json variables = json::array(), pairs = json::array();
+  for (const ContactVariable& variable : memory.variables) variables.push_back(described(variable));
+  std::vector<double> values;
+  for (std::size_t cell = 0; cell < memory.of_cell.size(); ++cell) {
+    for (const ContactState& s : memory.of_cell[cell]) {
+      pairs.push_back({cell, s.variable, s.other, s.shift.x, s.shift.y, s.value.size()});
+      values.insert(values.end(), s.value.begin(), s.value.end());
+    }
+  }
+  writer.array("/membranes/contacts", values);
+  return {{"variables", variables}, {"cells", memory.of_cell.size()}, {"pairs", pairs}};
+}
+
+/// A checkpoint that is whole and yet not what this program writes.
+[[noreturn]] void refuse(const CheckpointReader& reader, const std::string& what) {
+  throw Error(ExitCode::input_output, Place{reader.path().string(), "", 0, 0},
+              "does not hold what this program keeps in a checkpoint: " + what +
+                  "\n  go on with the program that wrote it, or begin anew with --overwrite");
+}
+
+void require(bool fits, const CheckpointReader& reader, const char* what) {
+  if (!fits) refuse(reader, what);
+}
+
+void restore_contacts(const CheckpointReader& reader, const json& saved, Membranes& membranes) {
+  ContactMemory& memory = membranes.contacts;
+  memory.variables.clear();
+  for (const json& variable : saved.at("variables")) memory.variables.push_back(contact_variable(variable));
+  const json& cells = saved.at("cells");
+  require(cells == 0 || cells == membranes.cells.size(), reader, "contacts of another number of cells");
+  memory.of_cell.assign(cells, {});
+  std::vector<double> values = reader.array("/membranes/contacts");
+  auto next = values.begin();
+  for (const json& pair : saved.at("pairs")) {
+    const std::size_t cell = pair.at(0), variable = pair.at(1);
+    const int other = pair.at(2);
+    const std::ptrdiff_t count = pair.at(5);
+    require(cell < memory.of_cell.size() && variable < memory.variables.size() && other >= 0 &&
+                other < static_cast<int>(memory.of_cell.size()),
+            reader, "a contact of a cell or of a variable that is not there");
+    require(count == membranes.cells[cell].count && count <= values.end() - next, reader, "a contact without values");
+    memory.of_cell[cell].push_back({variable, other, {pair.at(3), pair.at(4)}, {next, next + count}});
+    next += count;
+  }
+}
+
+/// Writes the arrays, and returns what belongs into the file's /state.
+json save(CheckpointWriter& writer, const Membranes& m) {
+  for (const auto& [path, values] : arrays(m)) writer.array(path, *values);
+  writer.array("/membranes/area_leakage", m.area_leakage);
+  json states = json::array();
+  for (std::size_t k = 0; k < m.state.size(); ++k) {
+    states.push_back(described(m.state[k]));
+    writer.array(state_name(k), m.state[k].value);
+  }
+  return {{"leakage", m.area_leakage.size()}, {"state", states}, {"contacts", save_contacts(writer, m.contacts)}};
+}
+
+template <class T>
+json save(CheckpointWriter& writer, Solver<T>& solver) {
+  Fluid<T>& fluid = solver.fluid();
+  fluid.settle();
+  std::vector<T> values;
+  const auto nx = static_cast<std::size_t>(fluid.setting().nx), ny = static_cast<std::size_t>(fluid.setting().ny);
+  for (int q = 0; q < 9; ++q) {
+    fluid.copy_populations(q, values);
+    writer.array(population_name(q), ny, nx, values.data());
+  }
+  if (solver.indicator() != nullptr) {
+    const DisplacementWatch::Memory& memory = solver.indicator()->memory();
+    writer.array("/indicator/x", memory.x);
+    writer.array("/indicator/y", memory.y);
+    writer.array("/indicator/limit", memory.limit);
+    writer.array("/indicator/bound", memory.bound);
+  }
+  return {{"walls_have_acted", fluid.walls_have_acted()}};
+}
+
+void restore_membranes(const CheckpointReader& reader, const json& saved, Membranes& m) {
+  m.largest_step.resize(m.cells.size());
+  for (const auto& [path, values] : arrays(m)) read(reader, path, *values);
+  const json& leakage = saved.at("leakage");
+  require(leakage == 0 || leakage == m.cells.size(), reader, "leakages of another number of cells");
+  m.area_leakage.resize(leakage);
+  read(reader, "/membranes/area_leakage", m.area_leakage);
+  m.state.clear();
+  for (const json& description : saved.at("state")) {
+    m.state.push_back(element_state(description));
+    m.state.back().value.resize(m.x.size());
+    read(reader, state_name(m.state.size() - 1), m.state.back().value);
+  }
+  restore_contacts(reader, saved.at("contacts"), m);
+}
+
+}  // namespace
+
+template <class T>
+void Checkpoints::write(const Plan& plan, int threads, const RunState& state, const Membranes& membranes,
+                        Solver<T>& solver) {
+  writer_ = std::make_unique<CheckpointWriter>(to_.path());
+  step_ = state.steps;
+  json saved_membranes = save(*writer_, membranes), saved_solver = save(*writer_, solver);
+  writer_->facts(checkpoint_facts(plan, state, threads));
+  writer_->state({{"run", state},
+                  {"membranes", std::move(saved_membranes)},
+                  {"solver", std::move(saved_solver)},
+                  {"directory", to_.mark()}});
+  writer_->finish();
+}
+
+void Checkpoints::settle(bool sound) {
+  if (sound) {
+    writer_->take_place();
+    to_.log("checkpoint", {{"step", step_}, {"bytes", writer_->bytes()}});
+  }
+  writer_.reset();
+  last_ = Clock::now();
+}
+
+void restore(const CheckpointReader& reader, const json& saved, const Plan& plan, RunState& state,
+             Membranes& membranes) {
+  try {
+    saved.at("run").get_to(state);
+    require(state.fits(plan, membranes), reader, "counts of another scene");
+    restore_membranes(reader, saved.at("membranes"), membranes);
+  } catch (const json::exception& error) {
+    refuse(reader, error.what());
+  }
+}
+
+template <class T>
+void restore(const CheckpointReader& reader, const json& saved, Solver<T>& solver) {
+  Fluid<T>& fluid = solver.fluid();
+  std::vector<T> values(static_cast<std::size_t>(fluid.setting().nx) * static_cast<std::size_t>(fluid.setting().ny));
+  try {
+    fluid.restore(
+        [&](int q) -> const std::vector<T>& {
+          reader.array(population_name(q), values.size(), values.data());
+          return values;
+        },
+        saved.at("solver").at("walls_have_acted"));
+  } catch (const json::exception& error) {
+    refuse(reader, error.what());
+  }
+  if (solver.indicator() == nullptr) return;
+  DisplacementWatch::Memory memory = solver.indicator()->memory();
+  read(reader, "/indicator/x", memory.x);
+  read(reader, "/indicator/y", memory.y);
+  read(reader, "/indicator/limit", memory.limit);
+  read(reader, "/indicator/bound", memory.bound);
+  solver.restore_indicator(memory);
+}
+
+template void Checkpoints::write(const Plan&, int, const RunState&, const Membranes&, Solver<float>&);
+template void Checkpoints::write(const Plan&, int, const RunState&, const Membranes&, Solver<double>&);
+template void restore(const CheckpointReader&, const json&, Solver<float>&);
+template void restore(const CheckpointReader&, const json&, Solver<double>&);
+
+}  // namespace rouleau::host

@@ -1,0 +1,56 @@
+// The state of a run in its checkpoint: fluid, membranes and what the run has counted and followed so far.
+//
+// A checkpoint is taken between two steps, before the forces of the next one. What can be computed again from positions
+// and populations is left out, except where it lags behind them: viscosities are renewed only when nodes have moved.
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "output/checkpoint_file.hpp"
+#include "output/run_directory.hpp"
+#include "run_state.hpp"
+#include "solver.hpp"
+
+namespace rouleau::host {
+
+/// The checkpoints of a run: when one is due, and the two steps in which it is made.
+class Checkpoints {
+ public:
+  Checkpoints(const Scene& scene, RunDirectory& directory)
+      : seconds_(scene.output.checkpoint_seconds), to_(directory) {}
+
+  /// Whether the scene wants any.
+  [[nodiscard]] bool wanted() const { return seconds_.has_value(); }
+  /// Whether the scene's time between two has passed.
+  [[nodiscard]] bool due() const {
+    return wanted() && std::chrono::duration<double>(Clock::now() - last_).count() >= *seconds_;
+  }
+  /// Writes the file, beside the last one.
+  template <class T>
+  void write(const Plan& plan, int threads, const RunState& state, const Membranes& membranes, Solver<T>& solver);
+  [[nodiscard]] bool pending() const { return writer_ != nullptr; }
+  /// The file takes its place if the state has been found sound. One that is not is left to the next regular check:
+  /// when checkpoints are written must not change what becomes of a run.
+  void settle(bool sound);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::optional<double> seconds_;
+  RunDirectory& to_;
+  std::unique_ptr<CheckpointWriter> writer_;
+  long step_ = 0;  ///< of the pending one
+  Clock::time_point last_ = Clock::now();
+};
+
+/// Into the state and the membranes of the same scene, before a solver is made for them. `saved`: the reader's state().
+/// Both throw Error(input_output) where the checkpoint does not fit.
+void restore(const CheckpointReader& reader, const nlohmann::json& saved, const Plan& plan, RunState& state,
+             Membranes& membranes);
+/// Into a new solver of the same stage.
+template <class T>
+void restore(const CheckpointReader& reader, const nlohmann::json& saved, Solver<T>& solver);
+
+}  // namespace rouleau::host

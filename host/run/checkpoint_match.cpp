@@ -1,0 +1,153 @@
+#include "checkpoint_match.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "input/document.hpp"
+#include "plugin/library.hpp"
+#include "provenance.hpp"
+
+namespace rouleau::host {
+
+namespace {
+
+using nlohmann::json;
+
+json plugin_facts(const Manifest& m) {
+  json state = json::array();
+  for (const StateVariable& variable : m.state) state.push_back({{"name", variable.name}, {"unit", variable.unit}});
+  return {{"id", m.id},
+          {"version", m.version},
+          {"kind", to_string(m.kind)},
+          {"sha256", sha256(m.library)},
+          {"state", state}};
+}
+
+std::string in_short(const json& value) {
+  constexpr std::size_t most = 60;
+  const std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
+  return text.size() <= most ? text : text.substr(0, most) + "...";
+}
+
+/// A part of the scene that decides what is written or when a stage ends, and not what a state means.
+bool is_harmless(const std::string& pointer, int stage) {
+  for (const char* part : {"/title", "/expected", "/output", "/checks", "/at_rest", "/plugin_dirs"}) {
+    if (pointer == part || pointer.starts_with(std::string(part) + "/")) return true;
+  }
+  const std::string stages = "/stages/";
+  if (!pointer.starts_with(stages)) return false;
+  if (pointer == stages + "-") return true;
+  const std::size_t end = pointer.find('/', stages.size());
+  const int changed = std::stoi(pointer.substr(stages.size(), end - stages.size()));
+  if (changed != stage) return changed > stage;
+  const std::string key = end == std::string::npos ? "" : pointer.substr(end + 1);
+  return key == "name" || key == "duration" || key == "strain" || key == "until";
+}
+
+void compare_scenes(const json& then, const json& now, int stage, std::vector<Difference>& differences) {
+  for (const json& change : json::diff(then, now)) {
+    const std::string pointer = change.at("path"), operation = change.at("op");
+    const json::json_pointer place(pointer);
+    std::string what = pointer + ": ";
+    what += operation == "add" ? "not in the checkpoint's scene" : in_short(then.at(place)) + " in the checkpoint";
+    what += operation == "remove" ? ", not there now" : ", " + in_short(change.at("value")) + " now";
+    differences.push_back({what, is_harmless(pointer, stage)});
+  }
+}
+
+void compare_plugins(const json& then, const Plan& plan, std::vector<Difference>& differences) {
+  std::map<std::string, json> now;
+  for (const PlannedModel* model : plan.active_models()) now[model->manifest->id] = plugin_facts(*model->manifest);
+  for (const json& plugin : then) {
+    const std::string id = plugin.at("id");
+    const auto found = now.find(id);
+    if (found == now.end()) continue;  // then the scenes differ too
+    const json& present = found->second;
+    if (plugin.at("sha256") == present.at("sha256")) continue;
+    const auto named = [](const json& p) {
+      return p.at("version").get<std::string>() + " (sha256 " + p.at("sha256").get<std::string>().substr(0, 12) +
+             "...)";
+    };
+    const bool same_state = plugin.at("state") == present.at("state");
+    differences.push_back({"plugin " + id + ": " + named(plugin) + " in the checkpoint, " + named(present) + " now" +
+                               (same_state ? "" : ", which remembers other things"),
+                           same_state});
+  }
+}
+
+std::string message(const std::filesystem::path& file, const json& facts, const std::vector<Difference>& differences,
+                    bool harmless) {
+  std::string text = "belongs to a run that differs from this one (step " +
+                     std::to_string(facts.at("step").get<long>()) + ", written " +
+                     facts.at("written").get<std::string>() + "):";
+  for (const Difference& difference : differences) {
+    text += "\n    " + difference.what + (harmless || difference.harmless ? "" : "   [changes what the state means]");
+  }
+  if (harmless) return text + "\n  none of this changes what the state means: --force goes on all the same";
+  return text + "\n  go on with what the checkpoint was made with (its scene is " +
+         (file.parent_path() / "scene.json").string() +
+         "), choose another directory with --out, or begin anew with "
+         "--overwrite";
+}
+
+}  // namespace
+
+json checkpoint_facts(const Plan& plan, const RunState& state, int threads) {
+  const StageSetting& setting = plan.stages[static_cast<std::size_t>(state.stage)];
+  json plugins = json::array();
+  for (const PlannedModel* model : plan.active_models()) plugins.push_back(plugin_facts(*model->manifest));
+  return {{"program", program_version()},
+          {"written", present_time()},
+          {"threads", threads},
+          {"stage", state.stage},
+          {"stage_name", setting.stage->name},
+          {"step", state.steps},
+          {"time_s", state.time_at(setting)},
+          {"strain", state.strain_at(setting)},
+          {"scene", plan.scene->document->root()},
+          {"plugins", plugins}};
+}
+
+std::vector<Difference> differences(const json& facts, const Plan& plan, int stage) {
+  std::vector<Difference> found;
+  compare_scenes(facts.at("scene"), plan.scene->document->root(), stage, found);
+  const std::string program = facts.at("program");
+  if (program != program_version()) {
+    found.push_back({"program: " + program + " in the checkpoint, " + program_version() + " now", true});
+  }
+  compare_plugins(facts.at("plugins"), plan, found);
+  return found;
+}
+
+Resumption open_checkpoint(const std::filesystem::path& directory, const Plan& plan, bool force) {
+  Resumption resumption;
+  const auto last = checkpoint_file(directory), previous = previous_checkpoint_file(directory);
+  try {
+    resumption.checkpoint = std::make_unique<CheckpointReader>(last);
+  } catch (const Error& error) {
+    if (error.code() != ExitCode::input_output) throw;
+    resumption.damage = error.what();
+    if (!std::filesystem::exists(previous)) {
+      throw Error(ExitCode::input_output,
+                  resumption.damage + "\n  and there is none before it to go on from; begin anew with --overwrite");
+    }
+    try {
+      resumption.checkpoint = std::make_unique<CheckpointReader>(previous);
+    } catch (const Error& second) {
+      throw Error(ExitCode::input_output, resumption.damage + "\n" + second.what() +
+                                              "\n  no checkpoint can be used; begin anew with --overwrite");
+    }
+  }
+  const json facts = resumption.checkpoint->facts();
+  const std::vector<Difference> found = differences(facts, plan, facts.at("stage"));
+  if (found.empty()) return resumption;
+  const bool harmless = std::all_of(found.begin(), found.end(), [](const Difference& d) { return d.harmless; });
+  if (!harmless || !force) {
+    throw Error(ExitCode::bad_input, Place{resumption.checkpoint->path().string(), "", 0, 0},
+                message(resumption.checkpoint->path(), facts, found, harmless));
+  }
+  for (const Difference& difference : found) resumption.accepted.push_back(difference.what);
+  return resumption;
+}
+
+}  // namespace rouleau::host

@@ -1,0 +1,33 @@
+#include "energy_check.hpp"
+
+#include <algorithm>
+
+#include "cell/motion.hpp"
+#include "node_checks.hpp"
+
+namespace rouleau::host {
+
+std::optional<Failure> check_energy(const EnergyHistory& energy, const Membranes& membranes, const Plan& plan,
+                                    double spacing) {
+  const double growth = energy.relative_growth(), limit = plan.scene->checks.energy_growth;
+  if (growth <= limit) return std::nullopt;
+  const bool bonds = std::any_of(plan.interactions.begin(), plan.interactions.end(), [](const PlannedModel& model) {
+    return model.active() && !model.manifest->state.empty();
+  });
+  if (bonds) return std::nullopt;
+  Failure failure;
+  failure.reason = "energy_growth";
+  failure.value = growth;
+  failure.limit = limit;
+  failure.message =
+      "cells and fluid at rest have gained energy (as a share of what there is), which they can only lose";
+  failure.remedy =
+      "lower numerics.density_factor, or take numerics.coupling \"explicit\" within its limits (rouleau plan prints "
+      "the "
+      "margins), or raise checks.energy_growth if this error is acceptable";
+  const int fastest = farthest_node(membranes).node;
+  if (fastest >= 0) locate_failure(failure, membranes, fastest, spacing);
+  return failure;
+}
+
+}  // namespace rouleau::host

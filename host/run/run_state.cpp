@@ -1,0 +1,32 @@
+#include "run_state.hpp"
+
+#include "cell/membranes.hpp"
+
+namespace rouleau::host {
+
+void RunState::report(Summary& s) const {
+  s.steps = steps;
+  s.strain = strain;
+  s.simulated_time_s = time;
+  s.wall_s = wall;
+  s.steps_per_s = wall > 0 ? static_cast<double>(steps) / wall : 0;
+  s.passes = costs.passes();
+  s.dimensionless["mach_max"] = observer.mach_max();
+  s.mass_drift = observer.mass_drift();
+  s.area_drift_max = observer.area_drift_max();
+  s.stretch = {observer.stretch().least, observer.stretch().most};
+  s.momentum_residual = momentum_residual;
+  s.aggregates_final = history.count();
+  s.aggregate_history = history.events();
+  s.rheology = rheology.stages();
+  s.energy = energy.summary();
+  s.stages = stages;
+  s.resumed = resumed;
+}
+
+bool RunState::fits(const Plan& plan, const Membranes& membranes) const {
+  return stage >= 0 && stage < static_cast<int>(plan.stages.size()) && stage_step >= 0 && steps_before >= 0 &&
+         steps >= stage_step && observer.fits(membranes) && growth.fits(membranes) && rest_watch.fits(membranes);
+}
+
+}  // namespace rouleau::host

@@ -1,0 +1,20 @@
+// The study's conclusions as they stand in study.json.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "study/analysis.hpp"
+#include "study/target.hpp"
+
+namespace rouleau::host {
+
+/// Puts "quantities", "fronts", "knobs" and "sentences" into study.json, and "results" into each of its "points", which
+/// must stand there in the order of the study's points. Their
+/// ids are their indices. Numbers that are not defined are null.
+void add_analysis(nlohmann::json& result, const StudyData& study, const std::vector<QuantityAnalysis>& analyses);
+
+/// The value of "target".
+nlohmann::json target_json(const StudyData& study, std::size_t quantity, double target, const TargetDecision& decision);
+
+}  // namespace rouleau::host

@@ -1,0 +1,60 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "study/analysis.hpp"
+
+namespace rouleau::host {
+
+std::vector<std::size_t> pareto_front(const std::vector<double>& time, const std::vector<double>& error) {
+  std::vector<std::size_t> candidates;
+  for (std::size_t i = 0; i < time.size(); ++i)
+    if (std::isfinite(time[i]) && std::isfinite(error[i])) candidates.push_back(i);
+  std::stable_sort(candidates.begin(), candidates.end(), [&](std::size_t a, std::size_t b) {
+    return time[a] != time[b] ? time[a] < time[b] : error[a] < error[b];
+  });
+  std::vector<std::size_t> front;
+  for (const std::size_t i : candidates)
+    if (front.empty() || error[i] < error[front.back()]) front.push_back(i);
+  return front;
+}
+
+std::vector<Knob> knobs_of(const StudyData& study, const std::vector<PointError>& errors) {
+  std::vector<Knob> knobs;
+  for (std::size_t axis = 0; axis < study.axes.size(); ++axis) {
+    for (std::size_t i = 0; i < study.points.size(); ++i) {
+      const auto label = static_cast<std::size_t>(study.points[i].setting[axis]);
+      const std::size_t last = study.axes[axis].ordered ? std::min(label + 2, study.axes[axis].labels.size())
+                                                        : study.axes[axis].labels.size();
+      for (std::size_t other = label + 1; other < last; ++other) {
+        std::vector<int> setting = study.points[i].setting;
+        setting[axis] = static_cast<int>(other);
+        const auto j = find_point(study, setting);
+        if (!j) continue;
+        Knob knob{axis,
+                  i,
+                  *j,
+                  told_error(errors[i]) / told_error(errors[*j]),
+                  study.points[*j].wall_s / study.points[i].wall_s,
+                  0};
+        if (knob.error_factor < 1) {
+          std::swap(knob.from, knob.to);
+          knob.error_factor = 1 / knob.error_factor;
+          knob.time_factor = 1 / knob.time_factor;
+        }
+        if (!std::isfinite(knob.error_factor) || !std::isfinite(knob.time_factor)) continue;
+        const bool free = knob.time_factor <= 1 && knob.error_factor > 1;
+        knob.gain = free ? std::numeric_limits<double>::infinity()
+                         : (knob.error_factor == 1 ? 0 : std::log(knob.error_factor) / std::log(knob.time_factor));
+        knobs.push_back(knob);
+      }
+    }
+  }
+  std::stable_sort(knobs.begin(), knobs.end(), [](const Knob& a, const Knob& b) {
+    return a.gain != b.gain ? a.gain > b.gain : a.error_factor > b.error_factor;
+  });
+  return knobs;
+}
+
+}  // namespace rouleau::host

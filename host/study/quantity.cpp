@@ -1,0 +1,156 @@
+#include "study/quantity.hpp"
+
+#include <algorithm>
+#include <array>
+#include <numbers>
+
+#include "input/document.hpp"
+#include "output/tables.hpp"
+#include "study/study_fields.hpp"
+
+namespace rouleau::host {
+
+namespace {
+
+/// What the kinds have in common, in the order of QuantityKind.
+struct KindTraits {
+  const char* name;
+  const char* unit;
+  ErrorKind error;
+  double target;  ///< 1 %, or what the field takes for good
+  std::vector<std::string> needed, optional;
+  bool exactly_zero = false;
+};
+
+const std::array<KindTraits, 12>& kinds() {
+  using enum ErrorKind;
+  static const std::array<KindTraits, 12> table{{
+      {"deformation", "", relative, 0.01, {}, {"cell", "at"}},
+      {"angle", "deg", absolute, 1, {}, {"cell", "at"}},
+      {"area_drift", "", absolute, 1e-3, {}, {}, true},
+      {"mass_drift", "", absolute, 1e-9, {}, {}, true},
+      {"passage", "", relative, 0.01, {"angle"}, {"cell"}},
+      {"period", "", relative, 0.01, {}, {"cell", "of", "turns", "from_strain"}},
+      {"gap", "m", relative, 0.01, {}, {"cell", "at"}},
+      {"dissociation_strain", "", relative, 0.1, {}, {"count", "for_good"}},
+      {"aggregate_count", "", absolute, 0.5, {}, {}},
+      {"relative_viscosity", "", relative, 0.01, {}, {"at", "intrinsic"}},
+      {"velocity_l2", "", absolute, 0.01, {"flow"}, {"steady"}, true},
+      {"column", "", relative, 0.01, {"table", "column"}, {"cell", "at"}},
+  }};
+  return table;
+}
+
+When read_when(const StudyFields& fields, const std::string& pointer) {
+  if (fields.scene_fields().at(pointer).is_string()) {
+    fields.choice(pointer, {"end"});
+    return {};
+  }
+  fields.only(pointer, {"strain", "time", "mean_from_strain"}, "\"at\"");
+  if (fields.scene_fields().at(pointer).size() != 1)
+    fields.scene_fields().refuse(pointer, "\"at\" is \"end\", or an object with one of strain, time, mean_from_strain");
+  if (fields.has(pointer + "/time"))
+    return {When::Kind::time, fields.scene_fields().quantity(pointer + "/time", "s", {0, range::time.most})};
+  if (fields.has(pointer + "/strain")) return {When::Kind::strain, fields.number(pointer + "/strain")};
+  return {When::Kind::mean_from_strain, fields.number(pointer + "/mean_from_strain")};
+}
+
+/// The unit that a column's name ends with.
+std::string unit_of_column(const std::string& name) {
+  constexpr std::array<std::array<const char*, 2>, 8> endings{{{"_J_per_m", "J/m"},
+                                                               {"_W_per_m", "W/m"},
+                                                               {"_m2_per_s", "m2/s"},
+                                                               {"_Pa", "Pa"},
+                                                               {"_rad", "rad"},
+                                                               {"_m2", "m2"},
+                                                               {"_m", "m"},
+                                                               {"_s", "s"}}};
+  for (const auto& [ending, unit] : endings)
+    if (name.ends_with(ending)) return unit;
+  return "";
+}
+
+void read_column(const StudyFields& fields, const std::string& pointer, Quantity& quantity) {
+  quantity.table =
+      std::array<const char*, 2>{"cells", "series"}[fields.choice(pointer + "/table", {"cells", "series"})];
+  quantity.column = fields.text(pointer + "/column");
+  const auto columns = column_names(quantity.table + ".csv");
+  if (std::find(columns.begin(), columns.end(), quantity.column) == columns.end()) {
+    fields.scene_fields().refuse(pointer + "/column",
+                                 quantity.table + ".csv has no column " + in_quotes(quantity.column) +
+                                     did_you_mean(quantity.column, columns) + "\nit has " + listed(columns));
+  }
+  quantity.unit = unit_of_column(quantity.column);
+}
+
+/// Keys of one kind or a few.
+void read_own_keys(const StudyFields& fields, const std::string& pointer, Quantity& quantity) {
+  if (fields.has(pointer + "/cell"))
+    quantity.cell = fields.count(pointer + "/cell", 0);
+  else if (quantity.kind == QuantityKind::gap)
+    quantity.cell = -1;
+  if (fields.has(pointer + "/at")) quantity.at = read_when(fields, pointer + "/at");
+  if (fields.has(pointer + "/angle"))
+    quantity.passed_angle = fields.scene_fields().quantity(pointer + "/angle", "rad", range::angle);
+  if (fields.has(pointer + "/of"))
+    quantity.of_long_axis = fields.choice(pointer + "/of", {"tank_treading", "rotation"}) == 1;
+  if (fields.has(pointer + "/turns")) quantity.turns = fields.positive(pointer + "/turns");
+  if (fields.has(pointer + "/from_strain")) quantity.from_strain = fields.number(pointer + "/from_strain");
+  if (fields.has(pointer + "/count")) quantity.count = fields.count(pointer + "/count", 1);
+  if (fields.has(pointer + "/for_good")) quantity.for_good = fields.yes(pointer + "/for_good");
+  if (fields.has(pointer + "/intrinsic")) quantity.intrinsic = fields.yes(pointer + "/intrinsic");
+  if (fields.has(pointer + "/flow"))
+    quantity.poiseuille = fields.choice(pointer + "/flow", {"couette", "poiseuille"}) == 1;
+  if (fields.has(pointer + "/steady")) quantity.steady = fields.yes(pointer + "/steady");
+  if (quantity.kind == QuantityKind::column) read_column(fields, pointer, quantity);
+}
+
+}  // namespace
+
+const char* name_of(QuantityKind kind) { return kinds()[static_cast<std::size_t>(kind)].name; }
+
+Quantity read_quantity(const Document& document, const std::string& pointer) {
+  const SceneFields scene_fields(document);
+  const StudyFields fields(scene_fields);
+  if (!scene_fields.at(pointer).is_object())
+    scene_fields.refuse(pointer, "a quantity is an object {\"name\", \"kind\", ...}");
+  for (const char* key : {"name", "kind"}) fields.needs(pointer, key, "a quantity");
+  std::vector<std::string> names;
+  for (const KindTraits& traits : kinds()) names.emplace_back(traits.name);
+  const std::size_t index = fields.choice(pointer + "/kind", names);
+  const KindTraits& traits = kinds()[index];
+
+  std::vector<std::string> keys{"name", "kind", "target", "reference", "error"};
+  keys.insert(keys.end(), traits.needed.begin(), traits.needed.end());
+  keys.insert(keys.end(), traits.optional.begin(), traits.optional.end());
+  const std::string whose = std::string("a quantity of kind ") + traits.name;
+  fields.only(pointer, keys, whose);
+  for (const std::string& key : traits.needed) fields.needs(pointer, key, whose);
+
+  Quantity quantity;
+  quantity.name = fields.text(pointer + "/name");
+  quantity.kind = static_cast<QuantityKind>(index);
+  quantity.unit = traits.unit;
+  quantity.error = traits.error;
+  if (fields.has(pointer + "/error"))
+    quantity.error =
+        fields.choice(pointer + "/error", {"relative", "absolute"}) == 0 ? ErrorKind::relative : ErrorKind::absolute;
+  quantity.target = fields.has(pointer + "/target") ? fields.positive(pointer + "/target") : traits.target;
+  read_own_keys(fields, pointer, quantity);
+  if (fields.has(pointer + "/reference"))
+    quantity.reference = read_reference(scene_fields, document, pointer + "/reference");
+  if (traits.exactly_zero) {
+    if (fields.has(pointer + "/reference") && quantity.reference.kind != ReferenceKind::analytic)
+      scene_fields.refuse(pointer + "/reference",
+                          std::string(traits.name) + " should be exactly 0: leave the reference out");
+    quantity.reference = {ReferenceKind::analytic, 0, 0, "exactly zero", {}};
+    if (quantity.kind == QuantityKind::velocity_l2) quantity.reference.source = "the exact flow";
+  }
+  if (quantity.error == ErrorKind::relative && quantity.reference.value == 0) {
+    scene_fields.refuse(fields.has(pointer + "/error") ? pointer + "/error" : pointer,
+                        "there is no error relative to a reference of 0: say \"error\": \"absolute\"");
+  }
+  return quantity;
+}
+
+}  // namespace rouleau::host

@@ -1,0 +1,134 @@
+#include "study/reference.hpp"
+
+#include <filesystem>
+
+#include "input/document.hpp"
+#include "study/study_fields.hpp"
+
+namespace rouleau::host {
+
+namespace {
+
+/// The number at a JSON pointer of a file that the study names.
+double number_of_file(const StudyFields& fields, const Document& file, const std::string& pointer) {
+  const std::string inside = fields.text(pointer);
+  const auto tokens = split_pointer(inside);
+  if (!tokens) {
+    fields.scene_fields().refuse(pointer, in_quotes(inside) + " is no JSON pointer (for example \"/0/steady/D\")");
+  }
+  const nlohmann::json* at = &file.root();
+  std::string reached;
+  for (const std::string& token : *tokens) {
+    const auto index = array_index(token);
+    const nlohmann::json* next = nullptr;
+    if (at->is_object() && at->contains(token)) next = &at->at(token);
+    if (at->is_array() && index && *index < at->size()) next = &at->at(*index);
+    if (next == nullptr) {
+      std::vector<std::string> names;
+      if (at->is_object())
+        for (const auto& [name, value] : at->items()) names.push_back(name);
+      fields.scene_fields().refuse(
+          pointer, file.file() + " has nothing at " + in_quotes(inside) + ": " +
+                       (reached.empty() ? "the document" : in_quotes(reached)) +
+                       (at->is_array() ? " has the entries 0 to " + std::to_string(static_cast<long>(at->size()) - 1)
+                                       : " has " + listed(names)) +
+                       did_you_mean(token, names));
+    }
+    at = next;
+    reached = child_pointer(reached, token);
+  }
+  if (!at->is_number())
+    fields.scene_fields().refuse(
+        pointer, file.file() + " has " + shown(*at) + " at " + in_quotes(inside) + ", which is not a number");
+  return at->get<double>();
+}
+
+Reference reference_of_file(const StudyFields& fields, const Document& document, const std::string& pointer) {
+  const std::string whose = "a reference with \"file\"";
+  fields.only(pointer, {"file", "pointer", "uncertainty", "factor", "offset", "source"}, whose);
+  fields.needs(pointer, "pointer", whose);
+  const std::string name = fields.text(pointer + "/file");
+  const Document file = Document::read(std::filesystem::path(document.file()).parent_path() / name);
+  const double factor = fields.has(pointer + "/factor") ? fields.number(pointer + "/factor") : 1.0;
+  const double offset = fields.has(pointer + "/offset") ? fields.number(pointer + "/offset") : 0.0;
+  Reference result;
+  result.kind = ReferenceKind::file;
+  result.value = factor * number_of_file(fields, file, pointer + "/pointer") + offset;
+  if (fields.has(pointer + "/uncertainty")) {
+    result.uncertainty = fields.is_text(pointer + "/uncertainty")
+                             ? std::abs(factor * number_of_file(fields, file, pointer + "/uncertainty"))
+                             : fields.number(pointer + "/uncertainty");
+  }
+  result.source = fields.has(pointer + "/source") ? fields.text(pointer + "/source")
+                                                  : name + " " + fields.text(pointer + "/pointer");
+  return result;
+}
+
+Reference reference_of_value(const StudyFields& fields, const std::string& pointer) {
+  fields.only(pointer, {"value", "uncertainty", "source"}, "a reference with \"value\"");
+  Reference result;
+  result.kind = ReferenceKind::value;
+  result.value = fields.number(pointer + "/value");
+  if (fields.has(pointer + "/uncertainty")) result.uncertainty = fields.number(pointer + "/uncertainty");
+  result.source = fields.has(pointer + "/source") ? fields.text(pointer + "/source") : "given in the study";
+  return result;
+}
+
+Reference reference_of_any_kind(const StudyFields& fields, const Document& document, const std::string& pointer) {
+  const SceneFields& scene = fields.scene_fields();
+  Reference result;
+  if (scene.at(pointer).is_string()) {
+    fields.choice(pointer, {"richardson"});
+    return result;
+  }
+  if (!scene.at(pointer).is_object()) {
+    scene.refuse(pointer,
+                 "a reference is \"richardson\", or an object with one of value, file, analytic, richardson, point");
+  }
+  if (fields.has(pointer + "/value")) return reference_of_value(fields, pointer);
+  if (fields.has(pointer + "/file")) return reference_of_file(fields, document, pointer);
+  if (fields.has(pointer + "/analytic")) {
+    fields.only(pointer, {"analytic"}, "a reference with \"analytic\"");
+    fields.choice(pointer + "/analytic", {"zero"});
+    result.kind = ReferenceKind::analytic;
+    result.value = 0;
+    result.source = "exactly zero";
+    return result;
+  }
+  if (fields.has(pointer + "/point")) {
+    fields.only(pointer, {"point"}, "a reference with \"point\"");
+    result.kind = ReferenceKind::point;
+    result.labels = fields.labels(pointer + "/point");
+    return result;
+  }
+  fields.only(pointer, {"richardson"}, "a reference");
+  fields.needs(pointer, "richardson", "a reference that is an object");
+  result.labels = fields.labels(pointer + "/richardson");
+  return result;
+}
+
+}  // namespace
+
+Reference read_reference(const SceneFields& scene_fields, const Document& document, const std::string& pointer) {
+  Reference result = reference_of_any_kind(StudyFields(scene_fields), document, pointer);
+  if (result.uncertainty < 0) scene_fields.refuse(pointer + "/uncertainty", "an uncertainty must not be below 0");
+  return result;
+}
+
+const char* name_of(ReferenceKind kind) {
+  switch (kind) {
+    case ReferenceKind::value:
+      return "value";
+    case ReferenceKind::file:
+      return "file";
+    case ReferenceKind::analytic:
+      return "analytic";
+    case ReferenceKind::richardson:
+      return "richardson";
+    case ReferenceKind::point:
+      return "point";
+  }
+  return "";
+}
+
+}  // namespace rouleau::host

@@ -1,0 +1,97 @@
+// Settings that make a scene's lattice and membranes finer or coarser together.
+#include <cmath>
+
+#include "input/json_pointer.hpp"
+#include "input/units.hpp"
+#include "input/wording.hpp"
+#include "matrix.hpp"
+
+namespace rouleau::host {
+
+namespace {
+
+using nlohmann::json;
+
+double length_of(const json& quantity) {
+  if (quantity.is_number()) return quantity.get<double>();
+  return quantity.is_string() ? Units().to_si(quantity.get<std::string>(), "m", "length") : NAN;
+}
+
+/// Radius of the first cell's type, or half its longest axis, in lattice spacings of the base scene; NaN without cells.
+double radius_in_spacings(const json& scene) {
+  if (scene.value("cells", json::array()).empty()) return NAN;
+  const json& first = scene["cells"][0];
+  const json& shape = scene["cell_types"][first["type"].get<std::string>()]["shape"];
+  const json& of = shape.begin().value();
+  json length;
+  if (of.contains("radius")) {
+    length = of["radius"];
+  } else if (of.contains("semi_axes")) {
+    length = of["semi_axes"][length_of(of["semi_axes"][0]) < length_of(of["semi_axes"][1]) ? 1 : 0];
+  }
+  const double spacing = length_of(scene["domain"]["size"][0]) / scene["domain"]["nodes"][0].get<double>();
+  return length_of(length) / spacing;
+}
+
+/// Denominator of the smallest step between factors that keep both numbers of nodes whole.
+long common_divisor(long a, long b) { return b == 0 ? a : common_divisor(b, a % b); }
+
+class Refinement {
+ public:
+  Refinement(const Document& document, const json& scene)
+      : document_(document), scene_(scene), radius_(radius_in_spacings(scene)) {}
+
+  [[nodiscard]] Setting setting(const std::string& pointer) const {
+    const double factor = document_.root()[json::json_pointer(pointer)].get<double>();
+    Setting setting;
+    json nodes = json::array();
+    for (const json& base : scene_["domain"]["nodes"]) nodes.push_back(whole(base.get<long>(), factor, pointer));
+    setting.set.emplace_back("/domain/nodes", nodes);
+    const json types = scene_.value("cell_types", json::object());
+    for (const auto& [name, type] : types.items()) {
+      const long segments = std::lround(type["segments"].get<double>() * factor);
+      setting.set.emplace_back(child_pointer(child_pointer("/cell_types", name), "segments"), segments);
+    }
+    setting.position = std::isnan(radius_) ? nodes[1].get<double>() : radius_ * factor;
+    setting.label = number(setting.position, 3);
+    // Whole numbers in full: 1024 nodes, not 1.02e+03.
+    if (std::abs(setting.position - std::round(setting.position)) < 1e-9 * setting.position)
+      setting.label = std::to_string(std::lround(setting.position));
+    return setting;
+  }
+
+ private:
+  [[nodiscard]] long whole(long base, double factor, const std::string& pointer) const {
+    const double nodes = static_cast<double>(base) * factor;
+    const long rounded = std::lround(nodes);
+    if (rounded > 0 && std::abs(nodes - static_cast<double>(rounded)) < 1e-9 * nodes) return rounded;
+    const json& all = scene_["domain"]["nodes"];
+    const long step = common_divisor(all[0].get<long>(), all[1].get<long>());
+    const auto steps = static_cast<double>(step);
+    throw Error(ExitCode::bad_input, document_.place(pointer),
+                "a factor of " + number(factor) + " makes " + number(nodes, 9) + " of the scene's " +
+                    std::to_string(base) + " nodes, which is not whole; write a multiple of 1/" + std::to_string(step) +
+                    ", for example " + number(std::max(1.0, std::round(factor * steps)) / steps, 12));
+  }
+
+  const Document& document_;
+  const json& scene_;
+  double radius_;
+};
+
+}  // namespace
+
+std::vector<Setting> refined_settings(const Document& document, const std::string& pointer, const json& base_scene) {
+  try {
+    const Refinement refinement(document, base_scene);
+    std::vector<Setting> settings;
+    const json& factors = document.root()[json::json_pointer(pointer)];
+    for (std::size_t i = 0; i < factors.size(); ++i) settings.push_back(refinement.setting(child_pointer(pointer, i)));
+    return settings;
+  } catch (const UnitError& error) {
+    throw Error(ExitCode::bad_input, document.place("/scene"),
+                "the scene cannot be refined: " + std::string(error.what()));
+  }
+}
+
+}  // namespace rouleau::host

@@ -1,0 +1,109 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "input/wording.hpp"
+#include "study/analysis.hpp"
+
+namespace rouleau::host {
+
+namespace {
+
+constexpr double of_no_target = std::numeric_limits<double>::quiet_NaN();
+
+/// "8 times cheaper than the default (6.4 s, 0.2 %)"
+std::string against_default(const StudyData& study, const Quantity& quantity, const std::vector<PointError>& errors,
+                            std::size_t chosen) {
+  const auto standard = find_point(study, study.default_setting);
+  if (!standard) return "";
+  if (*standard == chosen) return ", which is the default";
+  const double ratio = study.points[*standard].wall_s / study.points[chosen].wall_s;
+  const PointError& error = errors[*standard];
+  if (!std::isfinite(ratio) || !std::isfinite(error.error)) return "; the default has no value";
+  const std::string more = number(ratio >= 1 ? ratio : 1 / ratio, 2) + " times " + (ratio >= 1 ? "cheaper" : "dearer");
+  return ", " + more + " than the default (" + time_in_words(study.points[*standard].wall_s) + ", " +
+         error_in_words(quantity, error.error) + ")";
+}
+
+StudySentence cheapest_below(const StudyData& study, const Quantity& quantity, const QuantityAnalysis& analysis) {
+  const std::string target = error_in_words(quantity, quantity.target);
+  std::optional<std::size_t> chosen, nearest;
+  const auto bound = [&](std::size_t i) {
+    const PointError& e = analysis.errors[i];
+    return e.error + (std::isfinite(e.uncertainty) ? e.uncertainty : 0);
+  };
+  for (std::size_t i = 0; i < study.points.size(); ++i) {
+    if (!std::isfinite(bound(i)) || !std::isfinite(study.points[i].wall_s)) continue;
+    if (!nearest || bound(i) < bound(*nearest)) nearest = i;
+    if (bound(i) <= quantity.target && (!chosen || study.points[i].wall_s < study.points[*chosen].wall_s)) chosen = i;
+  }
+  const auto described = [&](std::size_t i) {
+    const PointError& e = analysis.errors[i];
+    return name_of(study, study.points[i].setting) + " (" + time_in_words(study.points[i].wall_s) + ", " +
+           error_in_words(quantity, e.error) +
+           (std::isfinite(e.uncertainty) && e.uncertainty > 0 ? " +- " + error_in_words(quantity, e.uncertainty) : "") +
+           ")";
+  };
+  if (chosen) {
+    return {"cheapest below " + target + ": " + described(*chosen) +
+                against_default(study, quantity, analysis.errors, *chosen),
+            quantity.target, chosen};
+  }
+  if (!nearest) {
+    const std::string why = analysis.reference.why_not.empty() ? "no run has a value" : analysis.reference.why_not;
+    return {"no error can be told: " + why, quantity.target, std::nullopt};
+  }
+  return {"no setting is shown to be below " + target + "; nearest: " + described(*nearest), quantity.target, nearest};
+}
+
+StudySentence best_knob(const StudyData& study, const Knob& knob) {
+  std::vector<int> rest = study.points[knob.to].setting;
+  rest[knob.axis] = -1;
+  const StudyAxis& axis = study.axes[knob.axis];
+  const auto label = [&](std::size_t point) {
+    return axis.labels[static_cast<std::size_t>(study.points[point].setting[knob.axis])];
+  };
+  const std::string elsewhere = name_of(study, rest);
+  const std::string price = knob.time_factor > 1 ? "for " + number(knob.time_factor, 3) + " times the time"
+                                                 : "and takes " + number(knob.time_factor, 3) + " times the time";
+  return {"buys most error per second: " + axis.name + " " + label(knob.to) + " instead of " + label(knob.from) +
+              (elsewhere.empty() ? "" : " (" + elsewhere + ")") + " divides the error by " +
+              number(knob.error_factor, 2) + " " + price,
+          of_no_target, knob.to};
+}
+
+}  // namespace
+
+std::vector<StudySentence> sentences_of(const StudyData& study, std::size_t quantity,
+                                        const QuantityAnalysis& analysis) {
+  std::vector<StudySentence> sentences{cheapest_below(study, study.quantities[quantity], analysis)};
+  // A knob that changes the error by less than this is lost in the noise of the clock.
+  constexpr double worth_telling = 1.2;
+  const auto best = std::find_if(analysis.knobs.begin(), analysis.knobs.end(),
+                                 [](const Knob& knob) { return knob.error_factor >= worth_telling; });
+  if (best != analysis.knobs.end()) sentences.push_back(best_knob(study, *best));
+  if (!analysis.disagreement.empty()) sentences.push_back({analysis.disagreement, of_no_target, std::nullopt});
+  return sentences;
+}
+
+std::string name_of(const StudyData& study, const std::vector<int>& setting) {
+  std::string name;
+  for (std::size_t i = 0; i < setting.size(); ++i) {
+    if (setting[i] < 0) continue;
+    name += (name.empty() ? "" : ", ") + study.axes[i].name + " " +
+            study.axes[i].labels[static_cast<std::size_t>(setting[i])];
+  }
+  return name;
+}
+
+std::string error_in_words(const Quantity& quantity, double error) {
+  if (quantity.error == ErrorKind::relative) return number(100 * error, 2) + " %";
+  return number(error, 2) + (quantity.unit.empty() ? "" : " " + quantity.unit);
+}
+
+std::string time_in_words(double seconds) {
+  if (seconds < 120) return number(seconds, 2) + " s";
+  return seconds < 7200 ? number(seconds / 60, 2) + " min" : number(seconds / 3600, 2) + " h";
+}
+
+}  // namespace rouleau::host

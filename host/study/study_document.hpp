@@ -1,0 +1,39 @@
+// A study as the user wrote it: scene, matrix, quantities and how they are timed, checked.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "input/document.hpp"
+#include "matrix.hpp"
+#include "quantity.hpp"
+
+namespace rouleau::host {
+
+struct Study {
+  std::shared_ptr<const Document> document;
+  std::string title;
+  std::filesystem::path file;
+  std::filesystem::path scene_file;  ///< the study's own file where it holds the scene
+  nlohmann::json scene;              ///< with the changes of "set"
+  std::vector<Axis> axes;
+  int line = -1;  ///< index of an axis; -1 without axes
+  Point default_point;
+  std::vector<Quantity> quantities;
+  int threads = 1, repeats = 3;
+  bool warm_up = true;
+  double time_limit_s = 3600;
+};
+
+/// Throws Error(bad_input) with the place of the first fault, in the study or in its scene, Error(input_output) for a
+/// file that cannot be read.
+Study read_study(const std::filesystem::path& file);
+
+/// The schemas of a study and of its study.json.
+const nlohmann::json& study_schema();
+const nlohmann::json& study_result_schema();
+
+}  // namespace rouleau::host

@@ -1,0 +1,20 @@
+// study.json, study.csv and study.html: how a study stands, each whole or not at all.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "study_state.hpp"
+
+namespace rouleau::host {
+
+/// What study.json says (study-result.schema.json).
+nlohmann::json study_json(const StudyState& state);
+/// The same as a table, one row per point.
+std::string study_csv(const nlohmann::json& study);
+
+/// Writes these and the page into the directory. Throws Error(input_output).
+void write_study_files(const StudyState& state, const std::filesystem::path& directory);
+
+}  // namespace rouleau::host

@@ -1,0 +1,72 @@
+// Runs the points of a study, one after the other, and keeps study.json true to what is there.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "run_cost.hpp"
+#include "study_state.hpp"
+#include "study_target.hpp"
+#include "timing_lock.hpp"
+
+namespace rouleau::host {
+
+struct StudyOptions {
+  std::filesystem::path directory;
+  double budget_s = std::numeric_limits<double>::infinity();  ///< wall time of all runs of this call
+  std::optional<StudyTarget> target = {};  ///< only what it takes to find the cheapest point that meets it is run
+  bool quiet = false;
+  std::filesystem::path program = "/proc/self/exe";
+  const std::atomic<bool>* interrupted = nullptr;
+};
+
+class StudyRun {
+ public:
+  /// Makes the directory, or goes on in the one that a study has left. Throws Error(bad_input) for a directory with
+  /// other files or that another study is writing into.
+  StudyRun(const Study& study, StudyOptions options);
+
+  /// Runs what has not been run, the cheapest points first. False when interrupted.
+  bool run();
+
+  [[nodiscard]] const StudyState& state() const { return state_; }
+
+ private:
+  enum class PointEnd { done, interrupted, out_of_budget };
+
+  void prepare();
+  void prepare_point(MatrixPoint& point);
+  void plan_point(MatrixPoint& point);
+  void run_all();
+  void run_for_target();
+  [[nodiscard]] bool interrupted() const;
+  [[nodiscard]] std::filesystem::path directory_of(const MatrixPoint& point) const;
+  [[nodiscard]] int runs_missing(const MatrixPoint& point) const;
+  [[nodiscard]] double expected_s(const MatrixPoint& point) const;
+  [[nodiscard]] std::vector<MatrixPoint*> missing_points();
+  /// In its turn among the timed runs of this machine; then study.json tells of it.
+  PointEnd take_turn(MatrixPoint& point);
+  PointEnd run_point(MatrixPoint& point);
+  TrialResult run_once(const MatrixPoint& point, bool warm_up);
+  void keep(MatrixPoint& point, const TrialResult& result);
+  void write() const;
+  void say(const std::string& line) const;
+
+  const Study& study_;
+  StudyOptions options_;
+  std::filesystem::path points_folder_;
+  StudyState state_;
+  RunCost cost_;
+  double spent_s_ = 0;
+  FileLock timing_lock_;
+  std::optional<FileLock> directory_lock_;
+};
+
+/// "3.2 s", "12 min", "2.1 h"
+std::string duration_text(double seconds);
+
+}  // namespace rouleau::host

@@ -1,0 +1,63 @@
+#include "study_state.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rouleau::host {
+
+namespace {
+
+StudyAxis axis_data(const Axis& axis) {
+  StudyAxis data{axis.name, {}, {}, true};
+  for (const Setting& setting : axis.settings) {
+    data.labels.push_back(setting.label);
+    data.ordered = data.ordered && std::isfinite(setting.position);
+    // Radii or heights in spacings: only ratios matter.
+    if (axis.refines) data.spacing.push_back(1 / setting.position);
+  }
+  return data;
+}
+
+}  // namespace
+
+bool StudyState::complete() const {
+  return std::all_of(points.begin(), points.end(), [](const MatrixPoint& point) { return point.left_out.empty(); });
+}
+
+void measure_point(const Study& study, MatrixPoint& point, const std::filesystem::path& directory) {
+  point.results.clear();
+  for (const Quantity& quantity : study.quantities) {
+    if (point.record->end == TrialEnd::completed) {
+      point.results.push_back(measure(quantity, directory));
+    } else {
+      point.results.push_back({NAN, 0, "the run did not complete: " + to_string(point.record->end)});
+    }
+  }
+}
+
+double median_wall_s(const PointRecord& record) {
+  std::vector<double> wall;
+  for (const TimedRun& run : record.runs) wall.push_back(run.wall_s);
+  if (wall.empty()) return NAN;
+  std::sort(wall.begin(), wall.end());
+  const std::size_t middle = wall.size() / 2;
+  return wall.size() % 2 == 1 ? wall[middle] : 0.5 * (wall[middle - 1] + wall[middle]);
+}
+
+StudyData study_data(const StudyState& state) {
+  const Study& study = *state.study;
+  StudyData data;
+  for (const Axis& axis : study.axes) data.axes.push_back(axis_data(axis));
+  data.line = study.line;
+  data.default_setting = study.default_point.setting;
+  data.quantities = study.quantities;
+  for (const MatrixPoint& point : state.points) {
+    const bool tried = point.record.has_value();
+    const bool timed = tried && point.record->end == TrialEnd::completed;
+    data.points.push_back(
+        {point.point.setting, tried, timed ? median_wall_s(*point.record) : NAN, point.estimated_s, point.results});
+  }
+  return data;
+}
+
+}  // namespace rouleau::host

@@ -1,0 +1,42 @@
+#include "study_target.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "error.hpp"
+#include "input/wording.hpp"
+
+namespace rouleau::host {
+
+StudyTarget read_target(const std::string& option, const std::vector<Quantity>& quantities) {
+  const auto refuse = [&](const std::string& problem) {
+    throw Error(ExitCode::bad_input, "--target " + in_quotes(option) + ": " + problem);
+  };
+  // A name may hold an '=', a number does not.
+  const std::size_t equals = option.rfind('=');
+  if (equals == std::string::npos) refuse("wants NAME=VALUE, for example --target deformation=1%");
+  const std::string name = option.substr(0, equals);
+  std::vector<std::string> names;
+  names.reserve(quantities.size());
+  for (const Quantity& quantity : quantities) names.push_back(quantity.name);
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end())
+    refuse("the study measures no " + in_quotes(name) + did_you_mean(name, names) + "; it measures " + listed(names));
+  const auto index = static_cast<std::size_t>(found - names.begin());
+  const Quantity& quantity = quantities[index];
+
+  double error = NAN;
+  const char *begin = option.data() + equals + 1, *end = option.data() + option.size();
+  const auto [rest, fault] = std::from_chars(begin, end, error);
+  const std::string unit(std::find_if(rest, end, [](char c) { return c != ' '; }), end);
+  const bool relative = quantity.error == ErrorKind::relative;
+  if (relative && unit == "%") error /= 100;
+  const bool known_unit = unit.empty() || unit == (relative ? "%" : quantity.unit);
+  if (fault != std::errc() || !known_unit || !(error > 0) || !std::isfinite(error))
+    refuse(std::string("wants an error above zero, ") +
+           (relative ? "as 1% or 0.01" : "as 0.5" + (quantity.unit.empty() ? "" : ' ' + quantity.unit)));
+  return {index, error};
+}
+
+}  // namespace rouleau::host

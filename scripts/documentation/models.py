@@ -1,0 +1,92 @@
+"""The page of every model that is shipped, from the manifests."""
+
+import json
+
+HEAD = """# Every model that is shipped
+
+Made by scripts/docs from the manifests in plugins/; not to be edited. [../models.md](../models.md) says what each
+computes and how to choose, `rouleau plugins ID` prints the same of any model that is installed, yours too. Quantities
+in a scene may have any unit of the same dimension; plain numbers are taken in SI units. Values outside the usual range
+are warned of, those outside the limits refused. A parameter without default must be given.
+"""
+KINDS = {
+    "collision": ("Collision operators", "`fluid.collision` of a scene."),
+    "membrane": ("Membrane laws", "In the list `cell_types.NAME.membrane`; all in it add up."),
+    "interaction": ("Interactions", "In the list `interactions`; all that are given add up."),
+}
+CLAIMS = {
+    "conservative": {True: "conservative", False: "not conservative"},
+    "smooth_at_cutoff": {True: "smooth at the cutoff", False: "broken off at the cutoff"},
+    "reproducible": {True: "reproducible to the last bit", False: "not reproducible"},
+}
+
+
+def number(value):
+    return value if isinstance(value, str) else f"{value:.10g}"
+
+
+def limits(parameter):
+    if "choices" in parameter:
+        return " or ".join(f'`"{word}"`' for word in parameter["choices"])
+    words = {"minimum": "at least", "exclusiveMinimum": "above", "maximum": "at most", "exclusiveMaximum": "below"}
+    return ", ".join(f"{word} {number(parameter[key])}" for key, word in words.items() if key in parameter)
+
+
+def parameter_row(parameter):
+    usual = " to ".join(number(value) for value in parameter.get("usual", []))
+    default = number(parameter["default"]) if "default" in parameter else "must be given"
+    unit = parameter.get("unit", "")
+    return [f"`{parameter['name']}`", unit, default, limits(parameter), usual, parameter.get("doc", "")]
+
+
+def names(words):
+    return ", ".join(f"`{word}`" for word in words)
+
+
+def claims(manifest):
+    said = []
+    for claim, value in manifest.get("claims", {}).items():
+        said.append(CLAIMS[claim][value] if claim in CLAIMS else f"{claim} {value}")
+    return ", ".join(said)
+
+
+def section(manifest, path):
+    text = f"\n### {manifest['id']}\n\n{manifest['title']}. Version {manifest['version']}.\n\n"
+    if manifest.get("parameters"):
+        text += "| parameter | unit | default | limits | usual | meaning |\n|---|---|---|---|---|---|\n"
+        text += "".join(f"| {' | '.join(parameter_row(p))} |\n" for p in manifest["parameters"])
+    else:
+        text += "No parameters.\n"
+    if manifest.get("state"):
+        text += "\n| remembers | unit | at first | meaning |\n|---|---|---|---|\n"
+        for state in manifest["state"]:
+            cells = [f"`{state['name']}`", state["unit"], number(state.get("initial", 0)), state.get("doc", "")]
+            text += f"| {' | '.join(cells)} |\n"
+    text += f"\n- needs {names(manifest['needs'])}\n- gives {names(manifest['gives'])}\n"
+    if claims(manifest):
+        text += f"- claims to be {claims(manifest)}\n"
+    if "inactive_when" in manifest:
+        at = " and ".join(f"`{key}` is {number(value)}" for key, value in manifest["inactive_when"].items())
+        text += f"- left out when {at}\n"
+    if "stands_for" in manifest:
+        at = " and ".join(f'`"{key}": "{value}"`' for key, value in manifest["stands_for"].items())
+        text += f"- stands for the potential at {at}: `plan` compares the two\n"
+    text += f"- {len(manifest.get('checks', []))} reference numbers in the manifest\n" if manifest.get("checks") else ""
+    if "reference" in manifest:
+        text += f"- reference: {manifest['reference']}\n"
+    return text + f"- manifest: [{path}](../../{path})\n"
+
+
+def page(folder):
+    manifests = []
+    for path in sorted(folder.glob("**/*.json")):
+        manifest = json.loads(path.read_text())
+        if "manifest" in manifest:
+            manifests.append((manifest, path.relative_to(folder.parent).as_posix()))
+    text = HEAD
+    for kind, (title, place) in KINDS.items():
+        text += f"\n## {title}\n\n{place}\n"
+        for manifest, path in sorted(manifests, key=lambda pair: pair[0]["id"]):
+            if manifest["kind"] == kind:
+                text += section(manifest, path)
+    return text

@@ -1,0 +1,12 @@
+"""The pages of the documentation in reading order: what the site shows and the tests of tests/docs go through."""
+
+CHAPTERS = {
+    "Begin": ["README.md", "docs/first-run.md", "docs/faq.md"],
+    "Use": ["docs/scene.md", "docs/models.md", "docs/output.md", "docs/resume.md", "docs/rheology.md",
+            "docs/study-quantities.md"],
+    "Reference": ["docs/reference/scene.md", "docs/reference/models.md"],
+    "Trust the numbers": ["docs/physics.md", "docs/accuracy.md", "docs/study.md", "docs/stability.md", "docs/paper.md",
+                          "docs/performance.md"],
+    "Extend": ["sdk/README.md", "docs/conformance.md", "docs/compatibility.md", "docs/trust.md", "docs/testing.md"],
+}
+PAGES = [page for pages in CHAPTERS.values() for page in pages]

@@ -1,0 +1,340 @@
+"""The pages that `rouleau report` makes, as headless Chromium shows them. Needs chromium and Python's standard library.
+
+usage: check_report.py ROULEAU PLUGIN_FOLDER SOURCE_FOLDER [--shots FOLDER]    (a screenshot of every page checked)
+"""
+import base64
+import csv
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+from browser import SCREENS, Browser, BrowserCase
+
+SKIPPED = 77  # for ctest
+PROGRAM, PLUGINS, SOURCE = (Path(a).resolve() for a in sys.argv[1:4])
+SHOTS = Path(sys.argv[5]) if sys.argv[4:5] == ["--shots"] else None
+SCENE = SOURCE / "scenes" / "four-cells-shear.json"
+LARGEST_PAGE = 3_000_000
+
+# No fewer outputs (103) and fields (17) than the demo has, on as many nodes, in a fifteenth of its strain.
+LIKE_THE_DEMO = ["--set", "/stages/0/duration=0.02", "--set", "/stages/1/strain=1",
+                 "--set", '/output={"cells": {"strain": 0.01}, "fields": {"strain": 0.06, "quantities": ["velocity", "viscosity"]}}']
+STRONGER = ["--set", '/interactions/0/parameters/depth="1.3e-6 J/m2"', "--set", '/stages/1/shear_rate="25 1/s"']
+
+
+def rouleau(*arguments):
+    result = subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, timeout=120,
+                            env={**os.environ, "ROULEAU_PLUGIN_PATH": str(PLUGINS)})
+    if result.returncode not in (0, 1):
+        raise RuntimeError(f"rouleau {' '.join(map(str, arguments))}: {result.stderr}")
+    return result
+
+
+def table(name):
+    with open(folder / name, newline="") as file:
+        return list(csv.reader(file))
+
+
+def setUpModule():
+    global folder, browser
+    folder = Path(tempfile.mkdtemp(prefix="rouleau-report-"))
+    rouleau("run", SCENE, "--out", folder / "a", "--quiet", *LIKE_THE_DEMO)
+    rouleau("run", SCENE, "--out", folder / "b", "--quiet", *LIKE_THE_DEMO, *STRONGER)
+    rouleau("report", "--compare", folder / "a", folder / "b", "--out", folder / "both.html")
+    browser = BrowserCase.browser = Browser()
+
+
+def tearDownModule():
+    browser.__exit__()
+    shutil.rmtree(folder, ignore_errors=True)
+
+
+class PageCase(BrowserCase):
+    def assert_sound(self, page, width=None):
+        """No exception, no word on the console, nothing fetched, nothing wider than the screen."""
+        self.assertEqual(page.faults(), [])
+        if width:
+            self.assertLessEqual(page.run("document.scrollingElement.scrollWidth"), width)
+
+
+class Every_page_on_every_screen(PageCase):
+    FILES = {"run": "a/report.html", "comparison": "both.html"}
+
+    def pages(self):
+        for name, file in self.FILES.items():
+            for screen in SCREENS:
+                for scheme in ("light", "dark"):
+                    with self.subTest(page=name, screen=screen, scheme=scheme):
+                        yield name, screen, scheme, self.open(folder / file, screen, scheme)
+
+    def test_shows_cells_and_charts_and_does_what_its_controls_say(self):
+        for name, screen, scheme, page in self.pages():
+            self.play_and_scrub(page)
+            self.show_the_flow(page)
+            self.hide_a_line(page)
+            self.assertGreaterEqual(page.run("document.querySelectorAll('.uplot canvas').length"), 9)
+            self.assert_sound(page, SCREENS[screen]["width"])
+            if SHOTS:
+                SHOTS.mkdir(parents=True, exist_ok=True)
+                (SHOTS / f"{name}-{screen}-{scheme}.png").write_bytes(base64.b64decode(page.screenshot()))
+
+    VIEWS = "[...document.querySelectorAll('canvas.view')].map(c => c.toDataURL()).join()"
+    DRAWN = "new Promise(r => requestAnimationFrame(() => requestAnimationFrame(() => r(true))))"
+
+    def button(self, page, text):
+        return f"[...document.querySelectorAll('button')].find(b => b.textContent === {json.dumps(text)})"
+
+    def play_and_scrub(self, page):
+        first = page.run(self.VIEWS)
+        page.run(self.button(page, "Play") + ".click()")
+        page.wait("timeline.position > 2")
+        self.assertNotEqual(page.run(self.VIEWS), first, "the animation does not move")
+        page.run(self.button(page, "Pause") + ".click()")
+        self.assertFalse(page.run("timeline.playing"))
+
+        seek = "(p => { const s = document.querySelector('input[type=range]'); s.value = p; s.dispatchEvent(new Event('input')); })"
+        last = page.run("timeline.count - 1")
+        page.run(f"{seek}({last})")
+        end = page.run(self.VIEWS)
+        words = page.run("document.querySelector('.now').textContent")
+        page.run(f"{seek}(0)")
+        self.assertEqual(page.run(self.VIEWS), first, "the first instant looks otherwise than before")
+        self.assertNotEqual(end, first)
+        self.assertNotEqual(page.run("document.querySelector('.now').textContent"), words)
+        # At the end playing begins anew; it stops there by itself.
+        page.run(f"{seek}({last}); document.querySelector('.controls select').value = '4'; " + self.button(page, "Play") + ".click()")
+        page.wait("timeline.playing && timeline.position < 20")
+        page.run(f"{seek}({last - 4}); " + self.button(page, "Play") + ".click()")
+        page.wait("!timeline.playing && timeline.position === timeline.count - 1")
+
+    def show_the_flow(self, page):
+        flow = "[...document.querySelectorAll('select')].find(s => [...s.options].some(o => o.value === 'speed'))"
+        choose = f"(v => {{ const s = {flow}; s.value = v; s.dispatchEvent(new Event('change')); }})"
+        looks = [page.run(self.VIEWS)]
+        for value, bar in (("speed", "Velocity magnitude, µm/s"), ("vorticity", "Vorticity, 1/s")):
+            page.run(f"{choose}('{value}')")
+            self.assertIn(bar, page.run("document.querySelector('.bar').textContent"))
+            looks.append(page.run(self.VIEWS))
+        page.run(f"{choose}('')")
+        self.assertEqual(page.run("document.querySelector('.bar').textContent"), "")
+        self.assertEqual(page.run(self.VIEWS), looks[0])
+        self.assertEqual(len(set(looks)), 3, "two flows look the same")
+
+    def hide_a_line(self, page):
+        chart = "charts.find(c => c.lines.length > 1)"
+        picture = f"{chart}.u.ctx.canvas.toDataURL()"
+        before = page.run(f"{self.DRAWN}.then(() => {picture})")
+        click = f"{chart}.keys[0].button.click()"
+        page.run(click)
+        self.assertEqual(page.run(f"{chart}.keys[0].button.getAttribute('aria-pressed')"), "false")
+        self.assertNotEqual(page.run(f"{self.DRAWN}.then(() => {picture})"), before, "the line is still there")
+        page.run(click)
+        self.assertEqual(page.run(f"{chart}.keys[0].button.getAttribute('aria-pressed')"), "true")
+
+
+class A_chart_under_the_mouse(PageCase):
+    def place(self, page, chart, share):
+        """Point of the screen at a share of a chart's width."""
+        box = page.run(f"(() => {{ charts[{chart}].u.over.scrollIntoView({{block: 'center'}}); const r = charts[{chart}].u.over.getBoundingClientRect();"
+                       f" return [r.left + {share} * r.width, r.top + r.height / 2]; }})()")
+        return box
+
+    def test_moves_the_instant_of_all_charts_and_of_the_animation(self):
+        for file in ("a/report.html", "both.html"):
+            page = self.open(folder / file)
+            page.wait("charts[1].u.status === 1")
+            view = page.run(Every_page_on_every_screen.VIEWS)
+            page.mouse("mouseMoved", *self.place(page, 1, 0.75))
+            page.wait("Math.abs(timeline.place() - 0.75) < 0.02")
+            self.assertNotEqual(page.run(Every_page_on_every_screen.VIEWS), view)
+            words = page.run("[...document.querySelectorAll('.legend .instant')].map(e => e.textContent)")
+            self.assertEqual(len(set(words)), 1, words)
+            self.assertIn("at strain 0.7", words[0])
+            lines = page.run("charts.map(c => c.u.cursor.left / c.u.over.clientWidth)")
+            for share in lines:
+                self.assertAlmostEqual(share, 0.75, delta=0.03)
+            self.assertEqual(page.faults(), [])
+
+    def test_shows_a_stretch_in_all_charts_after_a_drag_and_all_again_after_a_double_click(self):
+        page = self.open(folder / "a/report.html")
+        page.wait("charts[1].u.status === 1")
+        begin, end = self.place(page, 1, 0.25), self.place(page, 1, 0.5)
+        page.mouse("mouseMoved", *begin)
+        page.mouse("mousePressed", *begin, button="left", clickCount=1)
+        for share in (0.3, 0.4, 0.5):
+            page.mouse("mouseMoved", *self.place(page, 1, share), button="left", buttons=1)
+        page.mouse("mouseReleased", *end, button="left", clickCount=1)
+        page.wait("zoomed !== null && charts.every(c => c.u.scales.x.max < 0.6)")
+        for low, high in page.run("charts.map(c => [c.u.scales.x.min, c.u.scales.x.max])"):
+            self.assertAlmostEqual(low, 0.25, delta=0.02)
+            self.assertAlmostEqual(high, 0.5, delta=0.02)
+        for click in (1, 2):
+            page.mouse("mousePressed", *end, button="left", clickCount=click)
+            page.mouse("mouseReleased", *end, button="left", clickCount=click)
+        page.wait("zoomed === null && charts.every(c => c.u.scales.x.max > 0.99)")
+        self.assertEqual(page.faults(), [])
+
+    def test_has_the_axis_that_was_chosen(self):
+        page = self.open(folder / "a/report.html")
+        for over, last in (("time_s", page.run("data.time_s.at(-1)")), ("output", page.run("data.step.length - 1")), ("strain", page.run("data.strain.at(-1)"))):
+            page.run(f"(() => {{ const s = document.querySelector('select[aria-label=\"Horizontal axis\"]'); s.value = '{over}'; s.dispatchEvent(new Event('change')); }})()")
+            page.wait(f"charts.every(c => Math.abs(c.u.scales.x.max - {last}) <= 1e-9 * {last})")
+        self.assertEqual(page.faults(), [])
+
+
+class On_paper(PageCase):
+    def test_charts_are_dark_on_white_whatever_the_screen_was_and_nothing_stays_folded(self):
+        for file in ("a/report.html", "both.html"):
+            page = self.open(folder / file, scheme="dark")
+            page.run("""addEventListener('beforeprint', () => { window.seen = {page: css('--page'), text: css('--text'), open: !document.querySelector('details:not([open])'),
+                        fine: charts.every(c => c.style.paper)}; }); null""")
+            self.assertGreater(len(page.print_pdf()), 10000)
+            self.assertEqual(page.run("window.seen"), {"page": "#fff", "text": "#000", "open": True, "fine": True})
+            page.wait("!printing && charts.every(c => !c.style.paper)")
+            self.assertEqual(page.run("css('--page')"), "#14171b")
+            self.assertFalse(page.run("[...document.querySelectorAll('details')].some(d => d.open)"))
+            self.assertEqual(page.faults(), [])
+
+
+class The_page_of_a_run(PageCase):
+    def headings(self, page):
+        return page.run("[...document.querySelectorAll('h2')].map(h => h.textContent)")
+
+    def report(self, *options, scene=SCENE):
+        directory = folder / self.id()
+        shutil.rmtree(directory, ignore_errors=True)
+        rouleau("run", scene, "--out", directory, "--quiet", *options)
+        return directory / "report.html"
+
+    def scene(self, **changes):
+        file = folder / f"{self.id()}.json"
+        file.write_text(json.dumps({**json.loads(SCENE.read_text()), **changes}))
+        return file
+
+    def test_is_small_enough_to_be_sent(self):
+        self.assertGreaterEqual(len(table("a/series.csv")), 1 + 103)
+        for file in ("a/report.html", "both.html"):
+            self.assertLess((folder / file).stat().st_size, LARGEST_PAGE, file)
+
+    def test_has_its_parts_in_the_order_of_their_weight(self):
+        page = self.open(folder / "a/report.html")
+        self.assertEqual(self.headings(page)[:8], ["Cells", "Scene and conversions", "Dimensionless numbers", "Limits and margins", "Left out, and why",
+                                                   "Plugins", "Time by pass", "Aggregates"])
+        self.assertIn("Permission is hereby granted", page.run("document.querySelector('main').textContent"))
+
+    def test_begins_with_its_warnings(self):
+        # A well that the lattice does not resolve is warned of.
+        page = self.open(self.report("--max-steps", "20", "--set", '/interactions/0/parameters/zero_force_distance="0.3 um"'))
+        boxes = page.run("[...document.querySelectorAll('.status strong')].map(e => e.textContent)")
+        self.assertIn("arning", boxes[0])
+        self.assertIn("Cut short by --max-steps at step 20 of at most", boxes[1])
+        self.assert_sound(page)
+
+    def test_has_no_heading_for_cells_that_are_not_there_and_no_axis_for_what_is_zero(self):
+        page = self.open(self.report(scene=self.scene(
+            cell_types={}, cells=[], interactions=[], output={"cells": {"seconds": "10 us"}, "fields": {"seconds": "10 us", "quantities": ["velocity"]}},
+            stages=[{"name": "flow", "duration": "30 us", "pressure_gradient": "1 kPa/m"}])))
+        self.assertEqual(self.headings(page)[0], "Flow")
+        titles = page.run("[...document.querySelectorAll('.chart h3')].map(h => h.textContent)")
+        self.assertFalse([t for t in titles if t.startswith("Relative mass drift")])
+        self.assertIn("Largest Mach number, 10⁻⁶", titles)  # as a multiple that can be read
+        self.assertIn("zero at every output: relative mass drift", page.run("document.querySelector('main').textContent"))
+        self.assertEqual(page.run("timeline.over"), "time_s")
+        self.assert_sound(page)
+
+    def test_of_a_run_that_was_killed_says_so(self):
+        directory = folder / "killed"
+        shutil.copytree(folder / "a", directory)
+        (directory / "summary.json").unlink()
+        rouleau("report", directory)
+        page = self.open(directory / "report.html")
+        self.assertIn("Not finished", page.run("document.querySelector('.status').textContent"))
+        self.assertGreater(page.run("charts.length"), 5)
+        self.assert_sound(page)
+
+    def test_of_a_run_without_any_output_is_still_a_page(self):
+        directory = folder / "empty"
+        shutil.copytree(folder / "a", directory)
+        for name in ("series.csv", "cells.csv"):
+            text = (directory / name).read_text()
+            (directory / name).write_text(text.splitlines()[0] + "\n")
+        rouleau("report", directory)
+        page = self.open(directory / "report.html")
+        self.assertIn("No output has been written.", page.run("document.querySelector('main').textContent"))
+        self.assert_sound(page)
+
+    def test_draws_the_energy_ledger_where_the_run_kept_one(self):
+        directory = folder / "ledger"
+        shutil.copytree(folder / "a", directory)
+        rows = table("ledger/series.csv")
+        names = ["kinetic_energy_J_per_m", "elastic_energy_J_per_m", "bending_energy_J_per_m", "interaction_energy_J_per_m", "total_energy_J_per_m",
+                 "viscous_dissipation_W_per_m", "wall_power_W_per_m"]
+        with open(directory / "series.csv", "w", newline="") as file:
+            writer = csv.writer(file)
+            for i, row in enumerate(rows):
+                writer.writerow(row + [n for n in names if n not in row] if i == 0 else row + [f"{i}e-15"] * (len(names) - sum(n in rows[0] for n in names)))
+        rouleau("report", directory)
+        for file, lines in (("ledger/report.html", 5), ("a/report.html", None)):
+            page = self.open(folder / file)
+            chart = page.run("charts.find(c => c.plot.parentNode.getAttribute('aria-label') === 'Energy')?.lines.length ?? null")
+            if lines or "total_energy_J_per_m" not in rows[0]:
+                self.assertEqual(chart, lines)
+            self.assert_sound(page)
+
+
+class Two_runs(PageCase):
+    def test_move_together_and_what_differs_stands_below(self):
+        page = self.open(folder / "both.html")
+        strains = page.run("timeline.instants.map((_, p) => data.runs.map((run, r) => run.strain[timeline.output(r, p)]))")
+        for a, b in strains:
+            self.assertAlmostEqual(a, b, delta=0.01)
+        self.assertAlmostEqual(strains[-1][0], 1, delta=0.01)
+        text = page.run("document.querySelector('main').textContent")
+        self.assertIn("/interactions/0/parameters/depth", text)
+        self.assertIn("/stages/1/shear_rate", text)
+        self.assertIn("Both runs used the same plugins, byte for byte.", text)
+        self.assertIn("Dimensionless, adhesion number", text)
+        self.assert_sound(page)
+
+    def test_that_are_the_same_do_not_differ(self):
+        rouleau("report", "--compare", folder / "a", folder / "a", "--out", folder / "same.html")
+        page = self.open(folder / "same.html")
+        text = page.run("document.querySelector('main').textContent")
+        for words in ("Both runs have the same scene.", "All numbers are the same."):
+            self.assertIn(words, text)
+        self.assert_sound(page)
+
+
+class A_page_with_a_fault(PageCase):
+    """What the other tests look for is found where it is."""
+
+    FAULTS = {"exception": "setTimeout(() => { throw new Error('x'); })", "console": "console.error('x')",
+              "request": "new Image().src = 'http://127.0.0.1:9/x.png'",
+              "wide": "document.querySelector('main').append(Object.assign(document.createElement('div'), {style: 'width:500px;height:5px'}))"}
+
+    def test_is_found_out(self):
+        text = (folder / "a/report.html").read_text()
+        for name, script in self.FAULTS.items():
+            with self.subTest(name):
+                file = folder / f"{name}.html"
+                file.write_text(text.replace("</body>", f"<script>{script}</script></body>"))
+                page = self.open(file, "phone")
+                if name == "wide":
+                    self.assertGreater(page.run("document.scrollingElement.scrollWidth"), 390)
+                    continue
+                page.until(lambda: any(fault.startswith(name) for fault in page.faults()), f"a fault: {name}")
+
+
+if __name__ == "__main__":
+    if not shutil.which("chromium"):
+        print("skipped: there is no chromium (scripts/install-dependencies --full installs it)")
+        sys.exit(SKIPPED)
+    program = unittest.main(argv=sys.argv[:1], verbosity=2, exit=False)
+    failed = len(program.result.failures) + len(program.result.errors)
+    print(f"{program.result.testsRun - failed} passed, {failed} failed")
+    sys.exit(1 if failed else 0)

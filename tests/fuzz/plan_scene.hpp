@@ -1,0 +1,60 @@
+// The way of `rouleau plan`, for targets: from a scene's text to the printed plan.
+#pragma once
+
+#include <algorithm>
+
+#include "cell/membranes.hpp"
+#include "input/scene.hpp"
+#include "input/schema.hpp"
+#include "run/plan.hpp"
+#include "target.hpp"
+
+namespace rouleau::fuzz {
+
+/// The shipped plugins, as built beside the program.
+inline const host::Catalog& shipped_catalog() {
+  static const host::Catalog catalog({ROULEAU_PLUGINS});
+  return catalog;
+}
+
+/// Work that a scene may rightly ask for is bounded by time, not here: a thousand cells at random take minutes, and a
+/// million membrane nodes a second. Targets look at small scenes only, which reach the same lines.
+inline bool is_small(const host::Scene& scene) {
+  constexpr int most_cells = 200, most_packed = 8;
+  constexpr long most_membrane_nodes = 20'000;
+  long nodes = 0;
+  for (const auto& type : scene.cell_types) nodes += type.segments;
+  for (const auto& cell : scene.cells) nodes += scene.cell_types[static_cast<std::size_t>(cell.type)].segments;
+  int packed = 0;
+  for (const auto& packing : scene.packings) packed += packing.count;
+  return scene.cells.size() <= most_cells && packed <= most_packed && nodes <= most_membrane_nodes;
+}
+
+/// `rouleau plan FILE --set ...`, but for the scene's own plugin_dirs.
+inline void plan_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {}) {
+  may_refuse([&] {
+    auto scene = host::read_unpacked_scene(file, overrides);
+    if (!is_small(scene)) return;
+    host::pack_cells(scene);
+    const auto plan = host::make_plan(scene, shipped_catalog());
+    if (plan.has_cells) host::make_membranes(scene, host::lattice_spacing(scene));
+    require_printable(host::to_text(plan));
+    host::to_json(plan).dump();
+  });
+}
+
+/// Ids of the plugins and names of their parameters and choices.
+inline std::vector<std::string> plugin_words() {
+  std::vector<std::string> words;
+  for (const auto& manifest : shipped_catalog().manifests()) {
+    words.push_back(manifest.id);
+    for (const auto& parameter : manifest.parameters) {
+      words.push_back(parameter.name);
+      words.insert(words.end(), parameter.choices.begin(), parameter.choices.end());
+    }
+  }
+  if (words.empty()) throw std::runtime_error("no plugins in " ROULEAU_PLUGINS);
+  return words;
+}
+
+}  // namespace rouleau::fuzz
