@@ -1,5 +1,7 @@
 #include "scene_options.hpp"
 
+#include "run/numerics_bounds.hpp"
+
 namespace rouleau::host {
 
 namespace options = boost::program_options;
@@ -16,7 +18,9 @@ void SceneOptions::add_to(options::options_description& description,
   positional.add("scene", 1);
 }
 
-Scene SceneOptions::read() const { return read_scene(scene, overrides); }
+Scene SceneOptions::read() const {
+  return read_within_limits(scene, overrides, [&](const Scene& read) { return catalog(read); });
+}
 
 Catalog SceneOptions::catalog(const Scene& read) const {
   const std::vector<std::filesystem::path> given(plugin_dirs.begin(), plugin_dirs.end());

@@ -8,6 +8,7 @@
 
 #include "json_pointer.hpp"
 #include "parser.hpp"
+#include "put_value.hpp"
 
 namespace rouleau::host {
 namespace {
@@ -55,22 +56,26 @@ Document Document::parse(std::string_view text, std::string file, ExitCode code)
 Place Document::place(const std::string& pointer) const { return place_of(pointer, false); }
 Place Document::key_place(const std::string& pointer) const { return place_of(pointer, true); }
 
-bool Document::overridden(const std::string& pointer) const {
-  for (const auto& override_pointer : overrides_) {
-    if (pointer == override_pointer || pointer.starts_with(override_pointer + '/')) return true;
+void Document::put(const std::string& pointer, const nlohmann::json& value, const std::string& origin) {
+  overrides_.push_back({put_value(root_, pointer, value), origin});
+}
+
+const Document::Override* Document::override_at(const std::string& pointer) const {
+  for (const Override& override : overrides_) {
+    if (pointer == override.pointer || pointer.starts_with(override.pointer + '/')) return &override;
   }
-  return false;
+  return nullptr;
 }
 
 Place Document::place_of(const std::string& pointer, bool of_key) const {
-  if (overridden(pointer)) return {"--set", pointer, 0, 0};
+  if (const Override* override = override_at(pointer)) return {override->origin, pointer, 0, 0};
   if (tree_.size() == 0) return {file_, pointer, 0, 0};
   TextTree::Index node = 0;
   bool found = true;
   std::string reached;
   for (const auto& token : split_pointer(pointer).value_or(std::vector<std::string>{})) {
     reached = child_pointer(reached, token);
-    const auto child = overridden(reached) ? std::nullopt : tree_.child(text_, node, token);
+    const auto child = override_at(reached) != nullptr ? std::nullopt : tree_.child(text_, node, token);
     found = child.has_value();
     if (!found) break;
     node = *child;

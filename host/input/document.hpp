@@ -26,28 +26,36 @@ class Document {
   [[nodiscard]] const std::string& file() const { return file_; }
   [[nodiscard]] const std::string& text() const { return text_; }
 
-  /// Place of the value at a JSON pointer; of its nearest ancestor in the text if it is absent. A value made by --set
-  /// has no line: its place reads "--set /pointer".
+  /// Place of the value at a JSON pointer; of its nearest ancestor in the text if it is absent. A value that the text
+  /// does not have has no line: its place reads "--set /pointer", or names what else put it there.
   [[nodiscard]] Place place(const std::string& pointer) const;
   /// Place of the key of the member at `pointer` rather than of its value.
   [[nodiscard]] Place key_place(const std::string& pointer) const;
 
   /// Replaces or adds the value at "POINTER=VALUE" (as in --set). Throws Error(bad_input) naming the option.
   void set(const std::string& assignment);
+  /// Replaces or adds a value; `origin` stands for the file's name in its place. Throws PutError.
+  void put(const std::string& pointer, const nlohmann::json& value, const std::string& origin);
 
-  /// Was the value at `pointer`, or one that holds it, made by --set?
-  [[nodiscard]] bool overridden(const std::string& pointer) const;
+  /// Was the value at `pointer`, or one that holds it, made by set() or put()?
+  [[nodiscard]] bool overridden(const std::string& pointer) const { return override_at(pointer) != nullptr; }
   /// Places in the text's order, for whoever walks the whole document; offsets are into text().
   [[nodiscard]] const TextTree& tree() const { return tree_; }
 
  private:
   [[nodiscard]] Place place_of(const std::string& pointer, bool of_key) const;
 
+  struct Override {
+    std::string pointer, origin;  ///< of a value that the text does not have
+  };
+  /// What put the value at `pointer`, or one that holds it, into the document; null for values of the text.
+  [[nodiscard]] const Override* override_at(const std::string& pointer) const;
+
   nlohmann::json root_;
   std::string file_;
   std::string text_;
   TextTree tree_;
-  std::vector<std::string> overrides_;  ///< pointers of the values made by --set
+  std::vector<Override> overrides_;
 };
 
 }  // namespace rouleau::host

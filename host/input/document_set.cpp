@@ -61,6 +61,8 @@ class Assignment {
 
 }  // namespace
 
-void Document::set(const std::string& assignment) { overrides_.push_back(Assignment(assignment).apply(root_)); }
+void Document::set(const std::string& assignment) {
+  overrides_.push_back({Assignment(assignment).apply(root_), "--set"});
+}
 
 }  // namespace rouleau::host

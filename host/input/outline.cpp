@@ -114,6 +114,28 @@ Outline make_outline(const Shape& shape, int segments) {
   return outline;
 }
 
+double shape_radius(const Shape& shape) {
+  if (const auto* biconcave = std::get_if<Biconcave>(&shape)) return biconcave->radius;
+  if (const auto* circle = std::get_if<Circle>(&shape)) return circle->radius;
+  return std::get<Ellipse>(shape).semi_axes.maxCoeff();
+}
+
+double smallest_radius(const Scene& scene) {
+  double least = 0;
+  for (const CellPlacement& cell : scene.cells) {
+    const double radius = shape_radius(scene.cell_types[static_cast<std::size_t>(cell.type)].shape);
+    least = least == 0 ? radius : std::min(least, radius);
+  }
+  return least;
+}
+
+double shape_perimeter(const Shape& shape) {
+  if (const auto* biconcave = std::get_if<Biconcave>(&shape)) return 4.9285 * biconcave->radius;
+  if (const auto* circle = std::get_if<Circle>(&shape)) return full_turn * circle->radius;
+  const Eigen::Vector2d& a = std::get<Ellipse>(shape).semi_axes;
+  return full_turn / 2 * (3 * a.sum() - std::sqrt((3 * a.x() + a.y()) * (a.x() + 3 * a.y())));
+}
+
 double area_of(const Outline& outline) {
   double twice = 0;
   for (std::size_t i = 0; i < outline.nodes.size(); ++i) {

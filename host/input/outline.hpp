@@ -18,6 +18,13 @@ struct Outline {
 /// Throws std::invalid_argument for fewer than 3 segments or a size that is not positive.
 Outline make_outline(const Shape& shape, int segments);
 
+/// Half of the longest axis, m: what Reynolds, capillary and adhesion numbers are made with.
+double shape_radius(const Shape& shape);
+/// That of the smallest cell of a scene; 0 without cells.
+double smallest_radius(const Scene& scene);
+/// Length of the membrane as placed, m: exact for circles, to 1e-5 for others (Ramanujan's formula for ellipses).
+double shape_perimeter(const Shape& shape);
+
 /// Area that an outline encloses, m2.
 double area_of(const Outline& outline);
 

@@ -34,6 +34,7 @@ std::string spacing_remedy(const Domain& domain) {
 Domain read_domain(const SceneFields& fields) {
   Domain domain;
   domain.size = fields.quantities("/domain/size", "m", range::length);
+  fields.require("/domain", "nodes", "or \"numerics\": \"auto\" chooses them");
   domain.nodes = fields.at("/domain/nodes").get<std::array<int, 2>>();
   domain.periodic_y = fields.at("/domain/y").is_string();
   if (std::int64_t{domain.nodes[0]} * domain.nodes[1] > most_nodes) {
@@ -126,19 +127,10 @@ void check_membrane_nodes(const SceneFields& fields, const Scene& scene) {
                               std::to_string(most_membrane_nodes) + " can be computed: use fewer cells or segments");
 }
 
-}  // namespace
-
-Place Scene::place(const std::string& pointer) const {
-  return document ? document->place(pointer) : Place{"", pointer, 0, 0};
-}
-
-Scene read_unpacked_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
-  auto document = std::make_shared<Document>(Document::read(file));
-  for (const auto& assignment : overrides) document->set(assignment);
-  validate(*document, scene_schema());
-
+/// Everything but the document itself. `beside` is the folder that relative plugin folders begin with.
+Scene read_values(const Document& document, const std::filesystem::path& beside) {
   Scene scene;
-  const SceneFields fields(*document);
+  const SceneFields fields(document);
   if (fields.has("/title")) scene.title = fields.line("/title");
   scene.domain = read_domain(fields);
   scene.fluid = read_fluid(fields);
@@ -151,14 +143,42 @@ Scene read_unpacked_scene(const std::filesystem::path& file, const std::vector<s
   scene.output.field_storage = read_field_storage(fields, scene.domain);
   scene.at_rest = read_at_rest(fields);
   scene.checks = read_checks(fields);
-  scene.plugin_dirs = read_plugin_dirs(fields, file.parent_path());
+  scene.plugin_dirs = read_plugin_dirs(fields, beside);
   check_membrane_nodes(fields, scene);
+  return scene;
+}
+
+/// Puts what is chosen into a document that leaves its numerics open.
+NumericsChoice fill_in_numerics(Document& document, const std::filesystem::path& beside, const NumericsBounds& bounds) {
+  Document draft = document;
+  put_draft_numerics(draft);
+  const NumericsChoice choice = choose_numerics(read_values(draft, beside), document.root(), bounds);
+  put_choice(document, choice);
+  return choice;
+}
+
+}  // namespace
+
+Place Scene::place(const std::string& pointer) const {
+  return document ? document->place(pointer) : Place{"", pointer, 0, 0};
+}
+
+Scene read_unpacked_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides,
+                          const NumericsBounds& bounds) {
+  auto document = std::make_shared<Document>(Document::read(file));
+  for (const auto& assignment : overrides) document->set(assignment);
+  validate(*document, scene_schema());
+  std::optional<NumericsChoice> choice;
+  if (leaves_numerics_open(document->root())) choice = fill_in_numerics(*document, file.parent_path(), bounds);
+  Scene scene = read_values(*document, file.parent_path());
+  scene.numerics_choice = std::move(choice);
   scene.document = std::move(document);
   return scene;
 }
 
-Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
-  Scene scene = read_unpacked_scene(file, overrides);
+Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides,
+                 const NumericsBounds& bounds) {
+  Scene scene = read_unpacked_scene(file, overrides, bounds);
   pack_cells(scene);  // may take a while: after everything else has been found right
   return scene;
 }

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "error.hpp"
+#include "numerics_choice.hpp"
 
 namespace rouleau::host {
 
@@ -169,6 +170,7 @@ struct Scene {
   AtRest at_rest;
   Checks checks;
   std::vector<std::filesystem::path> plugin_dirs;  ///< relative ones begin with the scene's folder
+  std::optional<NumericsChoice> numerics_choice;   ///< what was chosen where the scene leaves its numerics open
   std::shared_ptr<const Document> document;        ///< for places in later errors, and for the report
 
   /// Place of a JSON pointer in the scene file, for an Error.
@@ -177,12 +179,15 @@ struct Scene {
 
 /// Reads, validates against the shipped schema and converts a scene.
 /// `overrides` are "POINTER=VALUE" as given to --set; VALUE is any JSON value, or a bare word taken as a string.
-/// Throws Error with ExitCode::bad_input (or input_output when the file cannot be read).
-Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
+/// `bounds` are for a scene that leaves its numerics open. Throws Error with ExitCode::bad_input (or input_output when
+/// the file cannot be read).
+Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {},
+                 const NumericsBounds& bounds = {});
 
 /// The two halves of read_scene: all but the places of the cells that are placed at random, and these places. Throws
 /// Error(bad_input) where they do not fit.
-Scene read_unpacked_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
+Scene read_unpacked_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {},
+                          const NumericsBounds& bounds = {});
 void pack_cells(Scene& scene);
 
 }  // namespace rouleau::host

@@ -117,6 +117,7 @@ std::vector<CellType> read_cell_types(const SceneFields& fields, double fluid_vi
     if (types.size() == most_types) {
       fields.refuse_key(pointer, "there are more than " + std::to_string(most_types) + " cell types");
     }
+    fields.require(pointer, "segments", "about one per lattice spacing; or \"numerics\": \"auto\" chooses them");
     CellType type{name,
                   read_shape(fields, pointer + "/shape"),
                   fields.at(pointer + "/segments").get<int>(),

@@ -81,6 +81,11 @@ int SceneFields::cell_type(const std::string& pointer, const std::vector<CellTyp
                       "\ncell_types has: " + listed(names));
 }
 
+void SceneFields::require(const std::string& pointer, const std::string& key, const std::string& otherwise) const {
+  if (has(child_pointer(pointer, key))) return;
+  refuse(pointer, in_quotes(key) + " is missing in " + subject(pointer) + "\ngive " + key + ", " + otherwise);
+}
+
 void SceneFields::refuse(const std::string& pointer, const std::string& problem) const {
   throw Error(ExitCode::bad_input, document_.place(pointer), indented(problem));
 }

@@ -58,6 +58,10 @@ class SceneFields {
   /// Index of the cell type that the text at `pointer` names.
   [[nodiscard]] int cell_type(const std::string& pointer, const std::vector<CellType>& types) const;
 
+  /// Throws when the object at `pointer` lacks a key that only some scenes may leave out; `otherwise` says what the
+  /// others do.
+  void require(const std::string& pointer, const std::string& key, const std::string& otherwise) const;
+
   /// Ends with Error(bad_input) at a value, or at a key. Lines of the problem after the first are indented here.
   [[noreturn]] void refuse(const std::string& pointer, const std::string& problem) const;
   [[noreturn]] void refuse_key(const std::string& pointer, const std::string& problem) const;

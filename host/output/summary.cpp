@@ -119,6 +119,7 @@ json to_json(const Summary& summary) {
   for (const auto& event : summary.aggregate_history) result["aggregate_history"].push_back(written(event));
 
   result["warnings"] = summary.warnings;
+  result["numerics_choice"] = summary.numerics_choice;
   result["conversions"] = summary.conversions.is_null() ? json::array() : summary.conversions;
   result["packings"] = summary.packings.is_null() ? json::array() : summary.packings;
   result["energy"] = summary.energy;

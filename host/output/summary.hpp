@@ -48,11 +48,15 @@ struct PassCost {
   long calls = 0;
   NLOHMANN_DEFINE_TYPE_INTRUSIVE(PassCost, name, wall_s, calls)
 };
+/// The setting that "numerics": "auto" changes where a limit is exceeded.
+enum class RemediedBy { nothing, density_factor, resolution };
+
 /// A limit of the method: the scene's value, where it ends, and limit / value.
 struct Limit {
   std::string name;
   double value, limit, margin;
   std::string remedy;
+  RemediedBy remedied_by = RemediedBy::nothing;
 };
 struct AggregateEvent {
   double strain, time;
@@ -87,6 +91,7 @@ struct Summary {
   std::vector<std::string> warnings;
   nlohmann::json conversions;      ///< array: {quantity, si, unit, lattice} for each stage
   nlohmann::json output_estimate;  ///< object: what the run was expected to write
+  nlohmann::json numerics_choice;  ///< object: what "numerics": "auto" chose and why; null where the scene pins all
   nlohmann::json packings;         ///< array: cells that were placed at random
   nlohmann::json energy;           ///< object: growth of the total energy in stages at rest
   nlohmann::json rheology;         ///< array: means, break-up and rotation in each stage

@@ -4,12 +4,6 @@
 
 namespace rouleau::host {
 
-double shape_radius(const Shape& shape) {
-  if (const auto* biconcave = std::get_if<Biconcave>(&shape)) return biconcave->radius;
-  if (const auto* circle = std::get_if<Circle>(&shape)) return circle->radius;
-  return std::get<Ellipse>(shape).semi_axes.maxCoeff();
-}
-
 double hematocrit(const Scene& scene) {
   std::vector<double> area;
   for (const CellType& type : scene.cell_types) area.push_back(area_of(make_outline(type.shape, type.segments)));

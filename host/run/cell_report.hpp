@@ -7,9 +7,6 @@
 
 namespace rouleau::host {
 
-/// Largest length scale of a shape, m: what Reynolds, capillary and adhesion numbers are made with.
-double shape_radius(const Shape& shape);
-
 /// Share of the domain's area that all cells enclose at rest.
 double hematocrit(const Scene& scene);
 

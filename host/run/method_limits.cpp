@@ -3,12 +3,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "cell/kernel_kind.hpp"
 #include "cell/slip_constants.hpp"
 #include "cell/stiffness.hpp"
-#include "cell_report.hpp"
+#include "input/outline.hpp"
 #include "method_limits.hpp"
 #include "plan.hpp"
 #include "potential_shape.hpp"
@@ -71,19 +70,8 @@ struct Stiffness {
   Bounded stretching, bending;
 };
 
-/// Mean length of a cell type's segments, m. Perimeters of ellipses by Ramanujan's formula.
-double segment_length(const CellType& type) {
-  double perimeter;
-  if (const auto* b = std::get_if<Biconcave>(&type.shape)) {
-    perimeter = 4.9285 * b->radius;
-  } else if (const auto* c = std::get_if<Circle>(&type.shape)) {
-    perimeter = 2 * std::numbers::pi * c->radius;
-  } else {
-    const Eigen::Vector2d& a = std::get<Ellipse>(type.shape).semi_axes;
-    perimeter = std::numbers::pi * (3 * a.sum() - std::sqrt((3 * a.x() + a.y()) * (a.x() + 3 * a.y())));
-  }
-  return perimeter / type.segments;
-}
+/// Mean length of a cell type's segments, m.
+double segment_length(const CellType& type) { return shape_perimeter(type.shape) / type.segments; }
 
 /// Of all cell types in a stage, the stretching and the bending stiffness that are nearest to their limits.
 Stiffness membrane_stiffness(const Plan& plan, const ModelSetting& setting) {
@@ -148,11 +136,13 @@ std::vector<Limit> find_limits(const Plan& plan) {
   const Scene& scene = *plan.scene;
   std::vector<Limit> limits;
   // `upper`: the value must stay below the limit; otherwise above it.
-  const auto add = [&](const std::string& name, double value, double limit, bool upper, const std::string& remedy) {
+  const auto add = [&](const std::string& name, double value, double limit, bool upper, const std::string& remedy,
+                       RemediedBy remedied_by = RemediedBy::nothing) {
     if (!std::isfinite(value)) return;
     const double margin = upper ? (value > 0 ? limit / value : std::numeric_limits<double>::infinity()) : value / limit;
-    limits.push_back({name, value, limit, margin, remedy});
+    limits.push_back({name, value, limit, margin, remedy, remedied_by});
   };
+  constexpr RemediedBy density = RemediedBy::density_factor, resolution = RemediedBy::resolution;
   const double tau = scene.numerics.tau;
   add("tau - 1/2", tau - 0.5, 0.005, false, "raise numerics.tau above 0.505");
   if (plan.semi_implicit) {
@@ -165,13 +155,13 @@ std::vector<Limit> find_limits(const Plan& plan) {
     const ModelSetting setting = stage.model_setting(scene.fluid.inertia);
     if (stage.wall_speed != 0) {
       add("Mach number of the walls" + where, std::abs(stage.wall_speed) * std::sqrt(3.0), 0.1, true,
-          "lower density_factor or shear_rate, or raise the resolution");
+          "lower density_factor or shear_rate, or raise the resolution", density);
     }
     if (stage.body_force_x != 0 && !scene.domain.periodic_y) {
       const double height = scene.domain.nodes[1];
       const double speed = std::abs(stage.body_force_x) * height * height / (8 * (tau - 0.5) / 3);
       add("Mach number of the driven flow" + where, speed * std::sqrt(3.0), 0.1, true,
-          "lower density_factor or the driving force, or raise the resolution");
+          "lower density_factor or the driving force, or raise the resolution", density);
     }
     if (!plan.has_cells) continue;
     if (stage.body_force_x != 0 && !scene.domain.periodic_y && !scene.fluid.inertia) {
@@ -185,7 +175,8 @@ std::vector<Limit> find_limits(const Plan& plan) {
       }
       add("Reynolds number of cells that travel, without convective inertia" + where,
           speed * radius / stage.units.length / viscosity, 0.05, true,
-          "set fluid.inertia to true, or lower density_factor: cells would migrate across the channel wrongly");
+          "set fluid.inertia to true, or lower density_factor: cells would migrate across the channel wrongly",
+          density);
     }
     const Stiffness membrane = membrane_stiffness(plan, setting);
     const bool gains = plan.semi_implicit && semi_implicit_gains(plan);
@@ -195,45 +186,48 @@ std::vector<Limit> find_limits(const Plan& plan) {
                                    : "lower density_factor, with which the lattice stiffness falls, or set "
                                      "numerics.coupling to \"semi-implicit\"";
     add("stretching stiffness" + coupled + where, membrane.stretching.value,
-        (gains ? stretching_gain : 1) * membrane.stretching.limit, true, softer);
+        (gains ? stretching_gain : 1) * membrane.stretching.limit, true, softer, density);
     add("bending stiffness" + coupled + where, membrane.bending.value,
-        (gains ? bending_gain : 1) * membrane.bending.limit, true, softer);
+        (gains ? bending_gain : 1) * membrane.bending.limit, true, softer, density);
     if (const double compression = prestress_compression(plan, stage); compression > 0) {
       add("compression of cells by their prestress, 3 T/a" + where, compression, 1e-3, true,
-          "lower density_factor: pressure compresses the lattice's fluid the more, the longer the time step");
+          "lower density_factor: pressure compresses the lattice's fluid the more, the longer the time step", density);
     }
-    double radius = 1e300, shortest = 1e300, longest = 0;
     for (const PlannedModel& model : plan.interactions) {
       if (!model.active()) continue;
       if (!model.manifest->state.empty()) continue;  // its stiffness is a matter of what it remembers
       const PotentialShape shape = find_shape(ModelInstance(*model.manifest, model.parameters.values, setting));
       add("contact stiffness of " + model.manifest->id + " in lattice units" + where, shape.stiffness,
-          interpolate(contact_limit, tau), true, "lower density_factor, with which the lattice stiffness falls");
+          interpolate(contact_limit, tau), true, "lower density_factor, with which the lattice stiffness falls",
+          density);
       if (stage.index != 0) continue;
       if (shape.well) {
         add("equilibrium gap of " + model.manifest->id + " in lattice spacings", shape.well->distance, 2.0, false,
             "raise the resolution or place the well farther out, for membranes whose gap it does not resolve stick "
-            "for ever");
+            "for ever",
+            resolution);
         add("width of the well of " + model.manifest->id + " in lattice spacings", shape.well->width(), narrowest_well,
             false,
             "raise the resolution or take a wider well, for the corners of membranes catch on each other in a narrow "
-            "one");
+            "one",
+            resolution);
       } else {
         add("range of the repulsion of " + model.manifest->id + " in lattice spacings", shape.range, 2.0, false,
             "raise the resolution or the range, for nearer than that the lattice moves two membranes together whatever "
-            "acts between them");
+            "acts between them",
+            resolution);
       }
     }
     if (stage.index != 0) continue;
+    double shortest = 1e300, longest = 0;
     for (const CellPlacement& cell : scene.cells) {
       const CellType& type = scene.cell_types[static_cast<std::size_t>(cell.type)];
-      radius = std::min(radius, shape_radius(type.shape) / stage.units.length);
       const double segment = segment_length(type) / stage.units.length;
       shortest = std::min(shortest, segment);
       longest = std::max(longest, segment);
     }
-    add("cell radius in lattice spacings", radius, 10, false,
-        "raise the resolution; results are converged from about 20");
+    add("cell radius in lattice spacings", smallest_radius(scene) / stage.units.length, 10, false,
+        "raise the resolution; results are converged from about 20", resolution);
     add("shortest segment in lattice spacings", shortest, 0.4, false,
         "take fewer segments; about one for each spacing is best");
     add("longest segment in lattice spacings", longest, longest_segment, true,

@@ -7,6 +7,9 @@
 #include "cell/kernel_kind.hpp"
 #include "cell_report.hpp"
 #include "input/document.hpp"
+#include "input/flow.hpp"
+#include "input/outline.hpp"
+#include "input/step_cost.hpp"
 #include "input/wording.hpp"
 #include "method_limits.hpp"
 #include "plan_models.hpp"
@@ -33,23 +36,9 @@ double parameter_named(const std::vector<const PlannedModel*>& models, const std
   return std::nan("");
 }
 
-/// Force per volume that drives the fluid in a stage, N/m3.
-Eigen::Vector2d driving_force(const StageSetting& stage, const Scene& scene) {
-  return scene.fluid.body_force + stage.stage->pressure_gradient;
-}
-
 /// A force on a fluid that is periodic along both axes meets no wall that could balance it.
 bool accelerates_for_ever(const StageSetting& stage, const Scene& scene) {
-  return scene.domain.periodic_y && driving_force(stage, scene) != Eigen::Vector2d::Zero();
-}
-
-/// Shear rate that a stage's numbers are made with, 1/s: that of the walls where they move; else that of the developed
-/// flow between them, |du/dy| averaged over the height, G H / (4 mu), which is its largest velocity over half the
-/// height.
-double mean_shear_rate(const StageSetting& stage, const Scene& scene) {
-  if (stage.stage->shear_rate != 0) return std::abs(stage.stage->shear_rate);
-  if (scene.domain.periodic_y) return 0;
-  return std::abs(driving_force(stage, scene).x()) * scene.domain.size.y() / (4 * scene.fluid.viscosity);
+  return scene.domain.periodic_y && driving_force(*stage.stage, scene) != Eigen::Vector2d::Zero();
 }
 
 nlohmann::json dimensionless_numbers(const Plan& plan) {
@@ -59,7 +48,7 @@ nlohmann::json dimensionless_numbers(const Plan& plan) {
   for (const StageSetting& stage : plan.stages) {
     wall_mach = std::max(wall_mach, std::abs(stage.wall_speed) * std::sqrt(3.0));
     unbounded = unbounded || accelerates_for_ever(stage, scene);
-    const double rate = mean_shear_rate(stage, scene);
+    const double rate = mean_shear_rate(*stage.stage, scene);
     if (rate > shear_rate) {
       shear_rate = rate;
       factor = stage.stage->density_factor;
@@ -208,12 +197,9 @@ void plan_estimate(Plan& plan) {
   double membrane_nodes = 0;
   for (const CellPlacement& cell : scene.cells)
     membrane_nodes += scene.cell_types[static_cast<std::size_t>(cell.type)].segments;
-  const bool f64 = scene.numerics.precision == Precision::f64;
-  // Measured on one core with AVX-512 (docs/performance.md); other machines differ by their memory and vector width.
-  const double step = nodes * (f64 ? 1.5e-9 : 0.85e-9) + membrane_nodes * 50e-9;
   for (const StageSetting& stage : plan.stages) plan.estimate.steps += static_cast<double>(stage.max_steps);
-  plan.estimate.wall_s = plan.estimate.steps * step;
-  const double word = f64 ? 8 : 4;
+  plan.estimate.wall_s = plan.estimate.steps * step_cost(nodes, membrane_nodes, scene.numerics.precision);
+  const double word = scene.numerics.precision == Precision::f64 ? 8 : 4;
   plan.estimate.memory_bytes =
       nodes * word * (9 + (plan.has_cells ? 2 : 0) + (plan.viscosity_contrast ? 1 : 0)) + membrane_nodes * 400;
   plan.estimate.output = estimate_output(scene, plan.stages);
@@ -249,6 +235,17 @@ void choose_coupling(Plan& plan) {
                   ", chosen by \"auto\": the explicit limit of the membranes' stiffness is " + number(margin, 3) +
                   " times what they have, " + (stiff ? "below " : "at least ") + number(comfortable_margin, 2) +
                   (stiff && !plan.semi_implicit ? "; at this numerics.tau the semi-implicit step would not help" : "");
+}
+
+nlohmann::json choice_json(const NumericsChoice& choice) {
+  nlohmann::json values = nlohmann::json::array();
+  for (const ChosenValue& chosen : choice.values) {
+    values.push_back({{"pointer", chosen.pointer}, {"value", chosen.value}, {"why", chosen.why}});
+  }
+  return {{"target_error", choice.target},
+          {"of", choice.steady ? "steady" : "motion"},
+          {"values", values},
+          {"expected_error", {{"resolution", choice.expected.resolution}, {"inertia", choice.expected.inertia}}}};
 }
 
 std::string warning_of(const Limit& limit) {
@@ -311,7 +308,7 @@ Plan make_plan(const Scene& scene, const Catalog& catalog) {
   for (const StageSetting& stage : plan.stages) {
     if (!accelerates_for_ever(stage, scene)) continue;
     const double acceleration =
-        driving_force(stage, scene).norm() / (scene.fluid.density * stage.stage->density_factor);
+        driving_force(*stage.stage, scene).norm() / (scene.fluid.density * stage.stage->density_factor);
     plan.warnings.push_back("stage " + stage.stage->name +
                             " drives a fluid that is periodic along x and y, so no wall holds it and it gains " +
                             number(acceleration, 3) +
@@ -325,6 +322,10 @@ Plan make_plan(const Scene& scene, const Catalog& catalog) {
     plan.warnings.emplace_back(
         "numerics.slip_correction with attracting cells: where the attraction is strong, cells leak more with it than "
         "without (docs/accuracy.md); watch area_leakage_max, or set it to false");
+  }
+  if (scene.numerics_choice) {
+    plan.numerics_choice = choice_json(*scene.numerics_choice);
+    if (!scene.numerics_choice->doubt.empty()) plan.warnings.push_back(scene.numerics_choice->doubt);
   }
   choose_coupling(plan);
   plan_passes(plan);

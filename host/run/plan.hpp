@@ -53,8 +53,9 @@ struct Plan {
   std::vector<std::string> warnings;
   nlohmann::json dimensionless;
   nlohmann::json conversions;
-  nlohmann::json wells;     ///< of the active interactions, in SI
-  nlohmann::json packings;  ///< packing_table()
+  nlohmann::json wells;            ///< of the active interactions, in SI
+  nlohmann::json packings;         ///< packing_table()
+  nlohmann::json numerics_choice;  ///< object: what "numerics": "auto" chose and why; null where the scene pins all
   Estimate estimate;
 
   /// Models whose libraries the run opens.

@@ -54,6 +54,17 @@ void write_wells(std::ostringstream& out, const nlohmann::json& wells) {
   }
 }
 
+void write_choice(std::ostringstream& out, const NumericsChoice& choice) {
+  out << "\nNumerics, chosen for an error of " << formatted(100 * choice.target) << " % of the "
+      << (choice.steady ? "steady state" : "motion") << "\n";
+  for (const ChosenValue& chosen : choice.values) {
+    out << "  " << padded(chosen.pointer, 28) << padded(chosen.value.dump(), 16) << chosen.why << "\n";
+  }
+  out << "  expected error " << formatted(100 * choice.expected.total(), "%.2g") << " %: lattice "
+      << formatted(100 * choice.expected.resolution, "%.2g") << " %, relaxed density "
+      << formatted(100 * choice.expected.inertia, "%.2g") << " % (docs/accuracy.md)\n";
+}
+
 void write_output(std::ostringstream& out, const Plan& plan) {
   const OutputEstimate& output = plan.estimate.output;
   out << "Output: at most " << size(output.frames_bytes) << " in frames.h5 (" << formatted(output.outputs, "%.0f")
@@ -86,6 +97,7 @@ std::string to_text(const Plan& plan) {
   out << (scene.title.empty() ? "untitled scene" : scene.title) << "\n";
   for (const std::string& warning : plan.warnings) out << "  warning: " << warning << "\n";
 
+  if (scene.numerics_choice) write_choice(out, *scene.numerics_choice);
   out << "\nConversions\n  " << padded("stage", 12) << padded("quantity", 36) << padded("SI", 14)
       << padded("lattice", 14) << "SI unit\n";
   for (const auto& row : plan.conversions) {
@@ -141,6 +153,7 @@ nlohmann::json to_json(const Plan& plan) {
   nlohmann::json json;
   json["title"] = plan.scene->title;
   json["warnings"] = plan.warnings;
+  json["numerics_choice"] = plan.numerics_choice;
   json["conversions"] = plan.conversions;
   json["packings"] = plan.packings;
   json["dimensionless"] = plan.dimensionless;

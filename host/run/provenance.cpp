@@ -79,6 +79,7 @@ Summary describe(const Plan& plan, int threads) {
   s.dimensionless = plan.dimensionless;
   s.limits = plan.limits;
   s.wells = plan.wells;
+  s.numerics_choice = plan.numerics_choice;
   s.warnings = plan.warnings;
   s.conversions = plan.conversions;
   s.packings = plan.packings;

@@ -1,6 +1,7 @@
 // A study's conclusions from its data: references, errors, Pareto fronts, which knob buys most, in words. No files.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <utility>
@@ -25,7 +26,8 @@ struct StudyPoint {
   bool tried = true;         ///< it was run, whatever came of it
   double wall_s;             ///< median of its timed runs; NaN where there is none
   double estimated_s;        ///< what a run was expected to take; NaN: nobody knows. Only of use before it is tried
-  std::vector<Measured> results;  ///< for each quantity; empty where it was not tried
+  std::vector<Measured> results;                     ///< for each quantity; empty where it was not tried
+  std::array<double, 2> wall_range{wall_s, wall_s};  ///< least and most of the timed runs
 };
 
 struct StudyData {
@@ -71,7 +73,7 @@ struct Knob {
   std::size_t axis;
   std::size_t from, to;  ///< points
   double error_factor;   ///< the error of `from` over that of `to`, at least 1
-  double time_factor;    ///< the time of `to` over that of `from`
+  double time_factor;    ///< the time of `to` over that of `from`; 1 where the ranges of their repeats overlap
   double gain;           ///< log(error_factor)/log(time_factor): infinite where it costs nothing
 };
 

@@ -6,6 +6,16 @@
 #include "study/analysis.hpp"
 
 namespace rouleau::host {
+namespace {
+
+/// What the second takes over what the first takes. A clock that cannot tell them apart says nothing about their price.
+double time_factor(const StudyPoint& a, const StudyPoint& b) {
+  const bool repeated = a.wall_range[0] < a.wall_range[1] || b.wall_range[0] < b.wall_range[1];
+  if (repeated && a.wall_range[0] <= b.wall_range[1] && b.wall_range[0] <= a.wall_range[1]) return 1;
+  return b.wall_s / a.wall_s;
+}
+
+}  // namespace
 
 std::vector<std::size_t> pareto_front(const std::vector<double>& time, const std::vector<double>& error) {
   std::vector<std::size_t> candidates;
@@ -32,12 +42,9 @@ std::vector<Knob> knobs_of(const StudyData& study, const std::vector<PointError>
         setting[axis] = static_cast<int>(other);
         const auto j = find_point(study, setting);
         if (!j) continue;
-        Knob knob{axis,
-                  i,
-                  *j,
-                  told_error(errors[i]) / told_error(errors[*j]),
-                  study.points[*j].wall_s / study.points[i].wall_s,
-                  0};
+        Knob knob{
+            axis, i, *j, told_error(errors[i]) / told_error(errors[*j]), time_factor(study.points[i], study.points[*j]),
+            0};
         if (knob.error_factor < 1) {
           std::swap(knob.from, knob.to);
           knob.error_factor = 1 / knob.error_factor;

@@ -164,6 +164,8 @@ class AxisReader {
 }  // namespace
 
 std::vector<Axis> read_axes(const Document& document, const std::string& pointer, const json& base_scene) {
+  constexpr std::size_t most_points = 10'000;
+  std::size_t points = 1;
   std::vector<Axis> axes;
   std::set<std::string> names;
   for (std::size_t i = 0; i < value_at(document, pointer).size(); ++i) {
@@ -172,6 +174,11 @@ std::vector<Axis> read_axes(const Document& document, const std::string& pointer
     if (!names.insert(axes.back().name).second)
       throw Error(ExitCode::bad_input, document.place(place + "/name"),
                   "two axes are called " + in_quotes(axes.back().name) + "; give each its own name");
+    points *= axes.back().settings.size();
+    if (points > most_points)
+      throw Error(ExitCode::bad_input, document.place(place),
+                  "with this axis the matrix has " + std::to_string(points) + " points; at most " +
+                      std::to_string(most_points) + " can be run: take fewer axes or values");
   }
   return axes;
 }

@@ -30,7 +30,8 @@ struct Point {
 };
 
 /// The axes at `pointer` of a document that fits the schema. Settings are tried on `base_scene`, and
-/// "refine" takes its nodes, segments and radii. Throws Error(bad_input) at the place of a fault.
+/// "refine" takes its nodes, segments and radii. Throws Error(bad_input) at the place of a fault, and where there would
+/// be more than 10 000 points.
 std::vector<Axis> read_axes(const Document& document, const std::string& pointer, const nlohmann::json& base_scene);
 
 /// All combinations; the last axis changes first. One point without settings where there is no axis.

@@ -20,16 +20,18 @@ double length_of(const json& quantity) {
 /// Radius of the first cell's type, or half its longest axis, in lattice spacings of the base scene; NaN without cells.
 double radius_in_spacings(const json& scene) {
   if (scene.value("cells", json::array()).empty()) return NAN;
-  const json& first = scene["cells"][0];
-  const json& shape = scene["cell_types"][first["type"].get<std::string>()]["shape"];
+  const json& first = scene.at("cells").at(0);
+  const json& shape = scene.at("cell_types").at(first.at("type").get<std::string>()).at("shape");
   const json& of = shape.begin().value();
   json length;
   if (of.contains("radius")) {
-    length = of["radius"];
+    length = of.at("radius");
   } else if (of.contains("semi_axes")) {
-    length = of["semi_axes"][length_of(of["semi_axes"][0]) < length_of(of["semi_axes"][1]) ? 1 : 0];
+    const json& axes = of.at("semi_axes");
+    length = length_of(axes.at(0)) < length_of(axes.at(1)) ? axes.at(1) : axes.at(0);
   }
-  const double spacing = length_of(scene["domain"]["size"][0]) / scene["domain"]["nodes"][0].get<double>();
+  const json& domain = scene.at("domain");
+  const double spacing = length_of(domain.at("size").at(0)) / domain.at("nodes").at(0).get<double>();
   return length_of(length) / spacing;
 }
 
@@ -45,11 +47,11 @@ class Refinement {
     const double factor = document_.root()[json::json_pointer(pointer)].get<double>();
     Setting setting;
     json nodes = json::array();
-    for (const json& base : scene_["domain"]["nodes"]) nodes.push_back(whole(base.get<long>(), factor, pointer));
+    for (const json& base : scene_.at("domain").at("nodes")) nodes.push_back(whole(base.get<long>(), factor, pointer));
     setting.set.emplace_back("/domain/nodes", nodes);
     const json types = scene_.value("cell_types", json::object());
     for (const auto& [name, type] : types.items()) {
-      const long segments = std::lround(type["segments"].get<double>() * factor);
+      const long segments = std::lround(type.at("segments").get<double>() * factor);
       setting.set.emplace_back(child_pointer(child_pointer("/cell_types", name), "segments"), segments);
     }
     setting.position = std::isnan(radius_) ? nodes[1].get<double>() : radius_ * factor;
@@ -91,6 +93,11 @@ std::vector<Setting> refined_settings(const Document& document, const std::strin
   } catch (const UnitError& error) {
     throw Error(ExitCode::bad_input, document.place("/scene"),
                 "the scene cannot be refined: " + std::string(error.what()));
+  } catch (const json::exception&) {
+    throw Error(
+        ExitCode::bad_input, document.place(pointer),
+        "the scene cannot be refined: that wants domain.nodes and the segments of every cell type, and cells of "
+        "types that there are");
   }
 }
 

@@ -64,8 +64,9 @@ StudySentence best_knob(const StudyData& study, const Knob& knob) {
     return axis.labels[static_cast<std::size_t>(study.points[point].setting[knob.axis])];
   };
   const std::string elsewhere = name_of(study, rest);
-  const std::string price = knob.time_factor > 1 ? "for " + number(knob.time_factor, 3) + " times the time"
-                                                 : "and takes " + number(knob.time_factor, 3) + " times the time";
+  const std::string price = knob.time_factor == 1  ? "for the same time"
+                            : knob.time_factor > 1 ? "for " + number(knob.time_factor, 3) + " times the time"
+                                                   : "and takes " + number(knob.time_factor, 3) + " times the time";
   return {"buys most error per second: " + axis.name + " " + label(knob.to) + " instead of " + label(knob.from) +
               (elsewhere.empty() ? "" : " (" + elsewhere + ")") + " divides the error by " +
               number(knob.error_factor, 2) + " " + price,

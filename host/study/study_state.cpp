@@ -35,14 +35,21 @@ void measure_point(const Study& study, MatrixPoint& point, const std::filesystem
   }
 }
 
-double median_wall_s(const PointRecord& record) {
+namespace {
+
+std::vector<double> sorted_wall_s(const PointRecord& record) {
   std::vector<double> wall;
   for (const TimedRun& run : record.runs) wall.push_back(run.wall_s);
-  if (wall.empty()) return NAN;
   std::sort(wall.begin(), wall.end());
-  const std::size_t middle = wall.size() / 2;
-  return wall.size() % 2 == 1 ? wall[middle] : 0.5 * (wall[middle - 1] + wall[middle]);
+  return wall;
 }
+
+double median(const std::vector<double>& sorted) {
+  const std::size_t middle = sorted.size() / 2;
+  return sorted.size() % 2 == 1 ? sorted[middle] : 0.5 * (sorted[middle - 1] + sorted[middle]);
+}
+
+}  // namespace
 
 StudyData study_data(const StudyState& state) {
   const Study& study = *state.study;
@@ -53,9 +60,11 @@ StudyData study_data(const StudyState& state) {
   data.quantities = study.quantities;
   for (const MatrixPoint& point : state.points) {
     const bool tried = point.record.has_value();
-    const bool timed = tried && point.record->end == TrialEnd::completed;
-    data.points.push_back(
-        {point.point.setting, tried, timed ? median_wall_s(*point.record) : NAN, point.estimated_s, point.results});
+    data.points.push_back({point.point.setting, tried, NAN, point.estimated_s, point.results});
+    if (!tried || point.record->end != TrialEnd::completed || point.record->runs.empty()) continue;
+    const std::vector<double> wall = sorted_wall_s(*point.record);
+    data.points.back().wall_s = median(wall);
+    data.points.back().wall_range = {wall.front(), wall.back()};
   }
   return data;
 }

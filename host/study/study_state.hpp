@@ -40,7 +40,4 @@ void measure_point(const Study& study, MatrixPoint& point, const std::filesystem
 /// The study as its conclusions are drawn from: every point, run or not, in the order of their ids.
 StudyData study_data(const StudyState& state);
 
-/// Of the wall times of a record's runs; NaN where there is none.
-double median_wall_s(const PointRecord& record);
-
 }  // namespace rouleau::host

@@ -244,6 +244,30 @@ class Commands_do_what_they_say(Case):
             self.assertIn(key, plan)
         self.assertAlmostEqual(plan["dimensionless"]["reynolds_physical"], 2.548e-4, delta=1e-6)
 
+    def test_open_numerics_are_chosen_told_and_kept_with_the_run(self):
+        scene = self.path / "open.json"
+        scene.write_text((SOURCE / "tests/physics/scenes/auto-capsule.json").read_text())
+        plan = json.loads(self.rouleau.run("plan", scene, "--json").stdout)
+        chosen = {entry["pointer"]: entry for entry in plan["numerics_choice"]["values"]}
+        self.assertEqual(set(chosen), {"/domain/nodes", "/cell_types/capsule/segments", "/numerics/tau", "/numerics/density_factor",
+                                       "/numerics/coupling", "/numerics/slip_correction", "/numerics/area_correction"})
+        for entry in chosen.values():
+            self.assertTrue(entry["why"])
+        self.assertIn("Numerics, chosen for an error of 1 % of the steady state", self.rouleau.run("plan", scene).stdout)
+        runs = [self.path / "run", self.path / "again"]
+        self.assertEqual(self.rouleau.run("run", scene, "--out", runs[0], *SHORT).returncode, 0)
+        kept = json.loads((runs[0] / "scene.json").read_text())
+        self.assertEqual(kept["domain"]["nodes"], chosen["/domain/nodes"]["value"])
+        self.assertEqual(kept["numerics"]["density_factor"], chosen["/numerics/density_factor"]["value"])
+        self.assertEqual(json.loads((runs[0] / "summary.json").read_text())["numerics_choice"], plan["numerics_choice"])
+        # What was chosen is a scene that pins everything, and runs to the same bits.
+        self.assertEqual(self.rouleau.run("run", runs[0] / "scene.json", "--out", runs[1], *SHORT).returncode, 0)
+        self.assertEqual(*[(run / "cells.csv").read_bytes() for run in runs])
+        self.assertEqual(json.loads((runs[1] / "summary.json").read_text())["numerics_choice"]["values"], [])
+        # A target that is out of reach is told.
+        pinned = self.rouleau.run("plan", scene, "--set", "/domain/nodes=[128,64]", "--set", "/numerics/auto/error=0.005")
+        self.assertIn("the expected error is 1 %, more than the target of 0.5 %", pinned.stdout)
+
     def test_a_limit_that_is_passed_is_warned_of_with_name_value_limit_and_remedy(self):
         plan = json.loads(self.rouleau.run("plan", SCENE, "--json", "--set", "/numerics/tau=0.502").stdout)
         self.assertEqual(plan["warnings"], ["tau - 1/2 is 0.002, below its limit of 0.005; raise numerics.tau above 0.505"])

@@ -25,6 +25,7 @@ PLACEHOLDERS = [
     (r"\bSCENE\b", "scenes/four-cells-shear.json"),
     (r"\[ID\]|(?<=plugins )\bID\b", "morse"),
     (r"\bSTUDY\b", "studies/couette.json"),
+    (r"\bLIMITS\b", "limits/shear-rate.json"),
     (r"\bMANIFEST(\.\.\.)?(?!\w)", "build/release/lib/rouleau/plugins/interaction/morse/morse.json --level interface"),
     (r"\bKIND NAME\b", "interaction org.example.documented"),
     (r"\bDIR\b", "runs/demo"),

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "run/numerics_bounds.hpp"
 #include "run/simulation.hpp"
 #include "scratch_folder.hpp"
 #include "study/history.hpp"
@@ -20,7 +21,7 @@ namespace rouleau::host {
 inline const std::string scenes = ROULEAU_PHYSICS_SCENES;
 
 struct SceneRun {
-  nlohmann::json summary;
+  nlohmann::json scene, summary;
   std::map<std::string, std::vector<std::string>> cells;   ///< columns of cells.csv
   std::map<std::string, std::vector<std::string>> series;  ///< columns of series.csv
 
@@ -58,7 +59,8 @@ inline std::map<std::string, std::vector<std::string>> read_table(const std::fil
 
 inline SceneRun run_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {},
                           int threads = 1) {
-  const Scene scene = read_scene(file, overrides);
+  const Scene scene = read_within_limits(
+      file, overrides, [](const Scene&) { return Catalog(std::vector<std::filesystem::path>{ROULEAU_PLUGINS}); });
   const Catalog catalog({ROULEAU_PLUGINS});
   const Plan plan = make_plan(scene, catalog);
   const test::ScratchFolder folder;
@@ -70,6 +72,7 @@ inline SceneRun run_scene(const std::filesystem::path& file, const std::vector<s
     simulate(plan, options, directory);
   }
   SceneRun run;
+  std::ifstream(folder.path() / "run" / "scene.json") >> run.scene;
   std::ifstream(folder.path() / "run" / "summary.json") >> run.summary;
   run.cells = read_table(folder.path() / "run" / "cells.csv");
   run.series = read_table(folder.path() / "run" / "series.csv");

@@ -158,6 +158,29 @@ TEST_CASE("a knob is an axis turned by one step, and gains the ratio of the loga
   CHECK(a.knobs[0].gain == Approx(std::log(8) / std::log(1.1)));
 }
 
+TEST_CASE("a knob costs nothing where the repeats' times overlap", "[analysis]") {
+  MadeUpStudy made_up;
+  made_up.resolutions = {10, 20};
+  made_up.value = [](double radius, int scheme) { return 1 + (scheme == 0 ? 1 : 0.1) / (radius * radius); };
+  made_up.time = [](double radius, int scheme) { return std::pow(radius / 10, 4) * (scheme == 0 ? 1 : 1.02); };
+  made_up.reference.kind = ReferenceKind::value;
+  made_up.reference.value = 1;
+  StudyData study = made_up.data();
+  const auto of_scheme = [&] {
+    for (const Knob& knob : analyse(study, 0).knobs) {
+      if (knob.axis == 1 && knob.to == 1) return knob;
+    }
+    return Knob{};
+  };
+  CHECK(of_scheme().time_factor == Approx(1.02));
+  study.points[0].wall_range = {0.95, 1.01};
+  study.points[1].wall_range = {1.015, 1.03};
+  CHECK(of_scheme().time_factor == Approx(1.02));
+  study.points[0].wall_range = {0.95, 1.03};
+  CHECK(of_scheme().time_factor == 1);
+  CHECK(std::isinf(of_scheme().gain));
+}
+
 TEST_CASE("what makes the error smaller and the run shorter is free, and comes first", "[analysis]") {
   MadeUpStudy study = two_schemes();
   study.reference = {ReferenceKind::value, 2, 0, "made up", {}};

@@ -62,6 +62,17 @@ TEST_CASE("refining to a broken number of nodes is refused with a factor that wo
   CHECK(words.find("a multiple of 1/8, for example 1.25") != std::string::npos);
 }
 
+TEST_CASE("a scene whose numerics are open cannot be refined, nor one with cells of no type") {
+  const std::string axis = R"([{"name": "r", "refine": [1, 2]}])";
+  json open = capsule_scene(), untyped = capsule_scene();
+  open["domain"].erase("nodes");
+  untyped["cells"][0]["type"] = "no such type";
+  for (const json& scene : {open, untyped}) {
+    CHECK(refusal(axis, scene).find("the scene cannot be refined: that wants domain.nodes and the segments") !=
+          std::string::npos);
+  }
+}
+
 TEST_CASE("values are labelled by themselves, and their positions are in SI") {
   const auto axes = axes_of(R"([
     {"name": "tau", "pointer": "/numerics/tau", "values": [0.8, 1, 2]},
@@ -127,6 +138,13 @@ TEST_CASE("a matrix that cannot be meant is refused at its place") {
   CHECK(refusal(R"([{"name": "s", "threads": [1, 2], "labels": ["one"]}])").find("1 labels for 2 settings") !=
         std::string::npos);
   CHECK(refusal(R"([{"name": "s", "settings": {"a": {"tau": 1}}}])").find("\"tau\" is no JSON pointer") !=
+        std::string::npos);
+  std::string numbers = "1";
+  for (int i = 2; i <= 101; ++i) numbers += ", " + std::to_string(i);
+  const std::string many = R"("values": [)" + numbers + "]}";
+  CHECK(refusal(R"([{"name": "s", "pointer": "/numerics/tau", )" + many +
+                R"(, {"name": "t", "pointer": "/numerics/density_factor", )" + many + "]")
+            .find("/matrix/1\n  with this axis the matrix has 10201 points; at most 10000 can be run") !=
         std::string::npos);
   CHECK(refusal(R"([{"name": "s", "settings": {"a": {"/title/b": 1}}}])").find("/matrix/0/settings/a/~1title~1b\n") !=
         std::string::npos);

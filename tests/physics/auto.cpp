@@ -1,0 +1,59 @@
+// "numerics": "auto" meets its target error against boundary-integral solutions, and what it chooses keeps the limits.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <iostream>
+#include <numbers>
+
+#include "scene_run.hpp"
+
+using namespace rouleau::host;
+
+namespace {
+
+std::string choice_of(const SceneRun& run) {
+  return run.scene["domain"]["nodes"].dump() + ", tau " + run.scene["numerics"]["tau"].dump() + ", density_factor " +
+         run.scene["numerics"]["density_factor"].dump() + ", " + run.summary["steps"].dump() + " steps";
+}
+
+}  // namespace
+
+TEST_CASE("auto meets the target error of a steady capsule that it was not given", "[auto]") {
+  struct Case {
+    double ca, lambda, target;
+  };
+  const Case c = GENERATE(Case{0.0125, 1, 0.01}, Case{0.0125, 1, 0.005}, Case{0.05, 1, 0.01}, Case{0.1, 1, 0.005},
+                          Case{0.2, 1, 0.01}, Case{0.05, 5, 0.02}, Case{0.05, 5, 0.01}, Case{0.05, 5, 0.005});
+  const double modulus = 9.6e-8 / c.ca;
+  const SceneRun run = run_scene(
+      scenes + "/auto-capsule.json",
+      {"/numerics/auto/error=" + std::to_string(c.target),
+       "/cell_types/capsule/interior_viscosity=\"" + std::to_string(1.2 * c.lambda) + " cP\"",
+       "/cell_types/capsule/membrane/0/parameters/shear_modulus=" + nlohmann::json(modulus).dump(),
+       "/cell_types/capsule/membrane/1/parameters/modulus=" + nlohmann::json(0.01 * modulus * 16e-12).dump()});
+  REQUIRE(run.summary["status"] == "completed");
+  CHECK(run.summary["warnings"].empty());
+  const double deformation = run.column("deformation").back();
+  for (const auto& entry : read_reference("capsule_channel.json")) {
+    if (entry["parameters"]["Ca"] != c.ca || entry["parameters"]["lam"] != c.lambda) continue;
+    const double error = deformation / entry["steady"]["D_inertia"].get<double>() - 1;
+    std::cout << "auto, capsule, Ca " << c.ca << ", lambda " << c.lambda << ", target " << 100 * c.target
+              << " %: error of the deformation " << 100 * error << " % (" << choice_of(run) << ")\n";
+    CHECK(std::abs(error) < c.target);
+  }
+}
+
+TEST_CASE("auto meets the target error of a turning biconcave cell", "[auto]") {
+  const double target = GENERATE(0.02, 0.01);
+  const SceneRun run =
+      run_scene(scenes + "/auto-biconcave.json", {"/numerics={\"auto\": {\"error\": " + std::to_string(target) + "}}"});
+  REQUIRE(run.summary["status"] == "completed");
+  const auto crossings = read_reference("biconcave_channel.json")[0]["crossing_times"];
+  for (const int angle : {0, -90}) {
+    const double reference = crossings[std::to_string(angle)][0];
+    const double passage =
+        interpolated_at(run.column("angle_rad"), run.column("strain"), angle * std::numbers::pi / 180);
+    std::cout << "auto, biconcave, target " << 100 * target << " %: passes " << angle << " deg at strain " << passage
+              << " (" << 100 * (passage / reference - 1) << " %; " << choice_of(run) << ")\n";
+    CHECK(std::abs(passage / reference - 1) < target);
+  }
+}
