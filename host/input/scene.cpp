@@ -152,7 +152,7 @@ Scene read_values(const Document& document, const std::filesystem::path& beside)
 NumericsChoice fill_in_numerics(Document& document, const std::filesystem::path& beside, const NumericsBounds& bounds) {
   Document draft = document;
   put_draft_numerics(draft);
-  const NumericsChoice choice = choose_numerics(read_values(draft, beside), document.root(), bounds);
+  NumericsChoice choice = choose_numerics(read_values(draft, beside), document.root(), bounds);
   put_choice(document, choice);
   return choice;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "input/wording.hpp"
+#include "output/frames_check.hpp"
 #include "output/report_table.hpp"
 
 namespace rouleau::host {
@@ -52,16 +53,21 @@ double number_at(const json& summary, const std::string& pointer) {
   return summary.contains(at) && summary[at].is_number() ? summary[at].get<double>() : std::nan("");
 }
 
-/// What a run that came to its end did not tell.
-json silent_failure(const json& summary, const fs::path& directory, const Soundness& soundness) {
-  if (!summary.is_object()) return failure_json("no_summary", "the run has left no summary.json");
+/// A run may stop for a reason, but before it writes what is no number. Null when it did.
+json garbage_written(const fs::path& directory) {
   const auto table = [&](const char* name, const std::vector<std::string>& columns) {
     return find_no_number(directory / name, columns);
   };
-  for (const auto& found : {table("cells.csv", {"x_m", "y_m", "deformation", "area_m2", "perimeter_m"}),
-                            table("series.csv", {"mach_max", "mass_drift", "kinetic_energy_J_per_m"})}) {
-    if (found) return failure_json("no_number_written", *found);
-  }
+  std::optional<std::string> found = table("cells.csv", {"x_m", "y_m", "deformation", "area_m2", "perimeter_m"});
+  if (!found) found = table("series.csv", {"mach_max", "mass_drift", "kinetic_energy_J_per_m"});
+  if (const fs::path frames = directory / "frames.h5"; !found && fs::exists(frames))
+    found = find_no_number_in_frames(frames);
+  return found ? failure_json(no_number_written, *found) : json();
+}
+
+/// What a run that came to its end did not tell.
+json silent_failure(const json& summary, const Soundness& soundness) {
+  if (!summary.is_object()) return failure_json("no_summary", "the run has left no summary.json");
   struct Bound {
     const char *reason, *pointer, *words;
     double most;
@@ -105,8 +111,11 @@ std::string failure_text(const json& failure) {
 Judgement judge(const TrialResult& result, const fs::path& directory, const Soundness& soundness) {
   Judgement judgement;
   judgement.end = to_string(result.end);
-  if (result.end == TrialEnd::completed) {
-    judgement.failure = silent_failure(result.summary, directory, soundness);
+  const bool ended = result.end == TrialEnd::completed || result.end == TrialEnd::diverged;
+  if (json garbage = ended ? garbage_written(directory) : json(); !garbage.is_null()) {
+    judgement.failure = std::move(garbage);
+  } else if (result.end == TrialEnd::completed) {
+    judgement.failure = silent_failure(result.summary, soundness);
   } else if (result.end == TrialEnd::diverged && result.summary.is_object() && result.summary.contains("failure")) {
     judgement.failure = told_failure(result.summary["failure"]);
   } else {

@@ -24,12 +24,15 @@ struct Judgement {
   nlohmann::json failure;  ///< null: none; {reason, step, mode, wavelength, message, remedy}, unknown ones null
 };
 
+/// Reason of a run that wrote what is no number: garbage, even if the run was stopped afterwards.
+inline constexpr const char* no_number_written = "no_number_written";
+
 /// A failure with nothing known but these.
 nlohmann::json failure_json(const std::string& reason, const std::string& message);
 /// A failure in a few words: "node_step at step 4, tangential, 6.2 segments".
 std::string failure_text(const nlohmann::json& failure);
 
-/// `directory`: of the trial's run, whose tables must hold no place or shape that is no number.
+/// `directory`: of the trial's run, whose tables must hold no place or shape that is no number, and its frames nothing.
 Judgement judge(const TrialResult& result, const std::filesystem::path& directory, const Soundness& soundness);
 
 }  // namespace rouleau::host

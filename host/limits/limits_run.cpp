@@ -158,7 +158,8 @@ CaseResult judge_case(const ExtremeCase& extreme, Judgement judgement, const fs:
                                            number(answer.value) + " +- " + number(answer.tolerance));
     }
   }
-  const bool has_reason = judgement.end == "diverged" || judgement.end == "refused";
+  const bool has_reason =
+      (judgement.end == "diverged" || judgement.end == "refused") && judgement.failure["reason"] != no_number_written;
   result.verdict = judgement.sound                                         ? "right answer"
                    : has_reason && judgement.failure["reason"].is_string() ? "stopped with a reason"
                                                                            : "WRONG";

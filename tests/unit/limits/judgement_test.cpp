@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "limits/limits_run.hpp"
+#include "output/frames_handle.hpp"
 
 using namespace rouleau::host;
 using nlohmann::json;
@@ -71,6 +72,26 @@ TEST_CASE("a shape that is no number has been written, an angle may be none", "[
   run.cells("nan");
   CHECK(run.reason() == "no_number_written");
   CHECK(run.judged().failure["message"].get<std::string>().find("deformation in row 3") != std::string::npos);
+}
+
+TEST_CASE("what is no number in a frame has been written, also where the run was then stopped", "[judgement]") {
+  RunToJudge run;
+  const auto frame = [&](double last) {
+    Hdf5File file(run.folder / "frames.h5", Hdf5File::Mode::create);
+    for (const char* group : {"/frames", "/frames/000000", "/frames/000000/fields"}) file.make_group(group);
+    file.write("/frames/000000/fields/density", std::vector<double>{1, 2, last}, "kg/m3");
+    file.close();
+  };
+  frame(3);
+  CHECK(run.judged().sound);
+  frame(std::nan(""));
+  run.result.end = GENERATE(TrialEnd::completed, TrialEnd::diverged);
+  run.result.summary["failure"] = {{"reason", "mach"}, {"step", 17}};
+  CHECK(run.reason() == "no_number_written");
+  CHECK(run.judged().failure["message"] ==
+        "/frames/000000/fields/density of frames.h5 holds a value that is no number");
+  // An extreme case may stop, but not like this.
+  CHECK(judge_case(ExtremeCase{"a case", "either", {}, 0, {}}, run.judged(), run.folder).verdict == "WRONG");
 }
 
 TEST_CASE("what the run tells of its failure is passed on, and a mode that is none is none", "[judgement]") {
