@@ -4,12 +4,12 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <numbers>
 #include <optional>
 
 #include "document.hpp"
 #include "flow.hpp"
 #include "json_pointer.hpp"
+#include "lattice_units.hpp"
 #include "outline.hpp"
 #include "scene_fields.hpp"
 #include "step_cost.hpp"
@@ -29,7 +29,6 @@ constexpr double finest_radius = 80;  ///< spacings; more is never chosen
 constexpr int fewest_rows = 16;       ///< of a lattice without cells
 // Without a flow inertia only decides how membranes come to rest. The limits of the plan lower it where they must.
 constexpr double density_factor_at_rest = 13000;
-
 constexpr int most_coarse_rows = 4096;
 
 /// A lattice with the same spacing along both axes; none when the ratio of the sides is not one of whole numbers.
@@ -71,14 +70,12 @@ double distance_from_one(double viscosity_ratio) {
 }
 
 /// Value between those at viscosity ratio 1 and 5, by the ratio's logarithm; beyond, extrapolated.
-double between(const double (&pair)[2], double viscosity_ratio) {
-  return std::max(0.0, pair[0] + distance_from_one(viscosity_ratio) * (pair[1] - pair[0]));
+double between(double at_one, double at_measured, double viscosity_ratio) {
+  return at_one + distance_from_one(viscosity_ratio) * (at_measured - at_one);
 }
 double between(const ShapeError (&pair)[2], double viscosity_ratio, double radius) {
-  const double t = distance_from_one(viscosity_ratio);
-  const double at_ten = pair[0].at_ten + t * (pair[1].at_ten - pair[0].at_ten);
-  const double order = std::clamp(pair[0].order + t * (pair[1].order - pair[0].order), 2.0, 3.0);
-  return at_ten * std::pow(10 / radius, order);
+  const double order = std::clamp(between(pair[0].order, pair[1].order, viscosity_ratio), 2.0, 3.0);
+  return between(pair[0].at_ten, pair[1].at_ten, viscosity_ratio) * std::pow(10 / radius, order);
 }
 
 /// What a person would write: three digits, rounded down. Whole numbers stay whole.
@@ -102,6 +99,8 @@ class Problem {
     ErrorShares error;
   };
   [[nodiscard]] std::vector<std::array<int, 2>> lattices() const;
+  [[nodiscard]] bool meets_target(const Trial& trial) const { return trial.error.total() <= target_ * (1 + 1e-9); }
+  [[nodiscard]] bool better(const Trial& a, const Trial& b) const;
   [[nodiscard]] Trial tried(const std::array<int, 2>& nodes, double tau) const;
   [[nodiscard]] double resolution_error(double spacing, double tau) const;
   [[nodiscard]] double inertia_error(double reynolds) const;
@@ -126,11 +125,11 @@ class Problem {
   double radius_ = 0;           ///< of the smallest cell, m
   double viscosity_ratio_ = 1;  ///< the furthest from 1
   double shear_rate_ = 0, strain_ = 0;
+  double reynolds_ = 0;  ///< of the true fluid, with the cells' radius or, without cells, half the height
 };
 
 Problem::Problem(const Scene& draft, const json& written, const NumericsBounds& bounds)
     : scene_(draft), written_(written), bounds_(bounds), numerics_(written.at("numerics")) {
-  if (!numerics_.is_object()) numerics_ = {{"auto", json::object()}};
   const json wanted = numerics_.at("auto");
   target_ = wanted.value("error", default_target);
   steady_ = wanted.value("of", "motion") == "steady";
@@ -153,6 +152,8 @@ Problem::Problem(const Scene& draft, const json& written, const NumericsBounds& 
     shear_rate_ = std::max(shear_rate_, rate);
     strain_ = std::max(strain_, stage.strain.value_or(stage.duration.value_or(0) * rate));
   }
+  const double length = has_cells_ ? radius_ : scene_.domain.size.y() / 2;
+  reynolds_ = scene_.fluid.density * shear_rate_ * length * length / scene_.fluid.viscosity;
 }
 
 std::vector<std::array<int, 2>> Problem::lattices() const {
@@ -176,6 +177,12 @@ std::vector<std::array<int, 2>> Problem::lattices() const {
   return found;
 }
 
+/// The cheaper one of those that meet the target; before them, the nearer one.
+bool Problem::better(const Trial& a, const Trial& b) const {
+  if (meets_target(a) != meets_target(b)) return meets_target(a);
+  return meets_target(a) ? a.cost < b.cost : a.error.total() < b.error.total();
+}
+
 NumericsChoice Problem::solve() const {
   std::vector<double> taus(relaxation_times.begin(), relaxation_times.end());
   if (!pinned("tau").is_null()) taus = {pinned("tau").get<double>()};
@@ -183,12 +190,7 @@ NumericsChoice Problem::solve() const {
   for (const auto& nodes : lattices()) {
     for (const double tau : taus) {
       const Trial trial = tried(nodes, tau);
-      const bool meets = trial.error.total() <= target_ * (1 + 1e-9);
-      const bool best_meets = best && best->error.total() <= target_ * (1 + 1e-9);
-      const bool better =
-          !best || (meets && !best_meets) ||
-          (meets == best_meets && (meets ? trial.cost < best->cost : trial.error.total() < best->error.total()));
-      if (better) best = trial;
+      if (!best || better(trial, *best)) best = trial;
     }
   }
   return chosen(*best);
@@ -199,26 +201,22 @@ Problem::Trial Problem::tried(const std::array<int, 2>& nodes, double tau) const
   Trial trial{nodes, tau, 1, 0, {}};
   const double spacing = scene_.domain.size.y() / nodes[1];
   trial.error.resolution = resolution_error(spacing, tau);
-  const FluidProperties& fluid = scene_.fluid;
-  const double length = has_cells_ ? radius_ : scene_.domain.size.y() / 2;
-  const double reynolds = fluid.density * shear_rate_ * length * length / fluid.viscosity;  // of the true fluid
+  const double true_step = time_step(tau, spacing, scene_.fluid.viscosity / scene_.fluid.density);  // of factor 1
   if (const json factor = pinned("density_factor"); !factor.is_null()) {
     trial.density_factor = factor.get<double>();
   } else if (shear_rate_ == 0) {
     trial.density_factor = has_cells_ ? std::min(density_factor_at_rest, bounds_.most_density_factor) : 1;
   } else {
     // Walls at shear_rate x height / 2 in units of the spacing over the time step.
-    const double steps = 3 * fluid.viscosity / ((tau - 0.5) * spacing * spacing * fluid.density);  // 1/s, of factor 1
-    const double wall_mach = std::sqrt(3.0) * shear_rate_ * scene_.domain.size.y() / 2 / spacing / steps;
-    const double allowed = most_reynolds(std::max(0.0, target_ - trial.error.resolution)) / reynolds;
+    const double wall_mach = std::sqrt(3.0) * shear_rate_ * scene_.domain.size.y() / 2 / spacing * true_step;
+    const double allowed = most_reynolds(target_ - trial.error.resolution) / reynolds_;
     // Without cells what is computed is how the fluid's own inertia lets a flow start.
     const double wanted = has_cells_ ? allowed : 1;
     trial.density_factor = std::max(1.0, std::min({wanted, most_mach / wall_mach, bounds_.most_density_factor}));
   }
-  trial.error.inertia = inertia_error(reynolds * trial.density_factor);
-  const double step = (tau - 0.5) / 3 * spacing * spacing * fluid.density * trial.density_factor / fluid.viscosity;
-  trial.cost =
-      step_cost(static_cast<double>(nodes[0]) * nodes[1], perimeters_ / spacing, scene_.numerics.precision) / step;
+  trial.error.inertia = inertia_error(reynolds_ * trial.density_factor);
+  trial.cost = step_cost(static_cast<double>(nodes[0]) * nodes[1], perimeters_ / spacing, scene_.numerics.precision) /
+               (true_step * trial.density_factor);
   return trial;
 }
 
@@ -235,7 +233,7 @@ double Problem::resolution_error(double spacing, double tau) const {
     const double radius = (ellipse != nullptr ? ellipse->semi_axes.minCoeff() : shape_radius(type->shape)) / spacing;
     double error = between(thin ? biconcave_cell : round_cell, viscosity_ratio_, radius) *
                    (1 + growth_with_tau * std::max(0.0, tau - 1));
-    if (!corrected_) error += between(slip_at_ten, viscosity_ratio_) * 10 / radius;
+    if (!corrected_) error += between(slip_at_ten[0], slip_at_ten[1], viscosity_ratio_) * 10 / radius;
     largest = std::max(largest, error);
   }
   return largest;
@@ -257,8 +255,7 @@ double Problem::most_reynolds(double error) const {
 std::string Problem::why_density_factor(const Trial& best) const {
   if (!has_cells_) return "without cells the fluid's own inertia is what decides";
   if (shear_rate_ == 0) return "at rest, as large as the limits of the membranes' stiffness allow";
-  const double reynolds = scene_.fluid.density * shear_rate_ * radius_ * radius_ / scene_.fluid.viscosity;
-  std::string why = "simulated Reynolds number " + number(reynolds * best.density_factor, 3) + ": " +
+  std::string why = "simulated Reynolds number " + number(reynolds_ * best.density_factor, 3) + ": " +
                     number(100 * best.error.inertia, 2) + " % of error";
   if (best.density_factor >= bounds_.most_density_factor * 0.99) why += "; more is beyond a limit of the plan";
   return why;
@@ -294,7 +291,7 @@ NumericsChoice Problem::chosen(const Trial& best) const {
                    : "left out, for cells that attract each other strongly leak with it");
     set("area_correction", true, "cells keep their areas");
   }
-  if (best.error.total() > target_ * (1 + 1e-9)) {
+  if (!meets_target(best)) {
     choice.doubt = "numerics.auto: the expected error is " + percent(best.error.total()) +
                    ", more than the target of " + percent(target_) +
                    ", with what the scene pins or the finest lattice that is tried";
@@ -307,6 +304,10 @@ NumericsChoice Problem::chosen(const Trial& best) const {
 }
 
 }  // namespace
+
+void spell_out_numerics(Document& document) {
+  if (!document.root().at("numerics").is_object()) document.put("/numerics", {{"auto", json::object()}}, origin);
+}
 
 void put_draft_numerics(Document& document) {
   const json root = document.root();
@@ -331,7 +332,6 @@ void put_draft_numerics(Document& document) {
 }
 
 void put_choice(Document& document, const NumericsChoice& choice) {
-  if (!document.root().at("numerics").is_object()) document.put("/numerics", {{"auto", json::object()}}, origin);
   for (const ChosenValue& value : choice.values) document.put(value.pointer, value.value, origin);
 }
 
@@ -344,4 +344,5 @@ bool leaves_numerics_open(const json& scene) {
   const json& numerics = scene.at("numerics");
   return numerics == "auto" || (numerics.is_object() && numerics.contains("auto"));
 }
+
 }  // namespace rouleau::host

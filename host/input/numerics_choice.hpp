@@ -23,6 +23,7 @@ struct NumericsBounds {
   double most_density_factor = std::numeric_limits<double>::infinity();
   double least_radius = 10;  ///< of the smallest cell, lattice spacings
   bool slip_correction = true;
+  bool operator==(const NumericsBounds&) const = default;
 };
 
 struct ChosenValue {
@@ -41,6 +42,9 @@ struct NumericsChoice {
 
 /// Does the scene leave its numerics open ("numerics": "auto", or an object with "auto")? False for what is no scene.
 bool leaves_numerics_open(const nlohmann::json& scene);
+
+/// Gives "numerics": "auto" the form of an object, as the functions below want it.
+void spell_out_numerics(Document& document);
 
 /// Gives a scene that leaves its numerics open values with which it can be read; they mean nothing. Throws
 /// Error(bad_input) when no lattice fits the domain.

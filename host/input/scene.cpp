@@ -150,6 +150,7 @@ Scene read_values(const Document& document, const std::filesystem::path& beside)
 
 /// Puts what is chosen into a document that leaves its numerics open.
 NumericsChoice fill_in_numerics(Document& document, const std::filesystem::path& beside, const NumericsBounds& bounds) {
+  spell_out_numerics(document);
   Document draft = document;
   put_draft_numerics(draft);
   NumericsChoice choice = choose_numerics(read_values(draft, beside), document.root(), bounds);

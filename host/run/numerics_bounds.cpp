@@ -50,11 +50,10 @@ Scene read_within_limits(const std::filesystem::path& file, const std::vector<st
   Scene scene = read_unpacked_scene(file, overrides, bounds);
   for (int tries = 0; tries < most_tries && scene.numerics_choice; ++tries) {
     const Catalog catalog = catalog_of(scene);
-    bounds = tightened(bounds, make_plan(scene, catalog));
-    Scene next = read_unpacked_scene(file, overrides, bounds);
-    const bool settled = next.document->root() == scene.document->root();
-    scene = std::move(next);
-    if (settled) break;
+    const NumericsBounds tighter = tightened(bounds, make_plan(scene, catalog));
+    if (tighter == bounds) break;
+    bounds = tighter;
+    scene = read_unpacked_scene(file, overrides, bounds);
   }
   pack_cells(scene);
   return scene;

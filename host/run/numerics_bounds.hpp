@@ -12,7 +12,7 @@
 namespace rouleau::host {
 
 /// read_scene() with ever tighter bounds until no limit is exceeded that a lower density_factor or a higher resolution
-/// would keep, or the choice does not change any more. A scene that pins its numerics is read once. `catalog_of` finds
+/// would keep, or the bounds do not change any more. A scene that pins its numerics is read once. `catalog_of` finds
 /// the plugins of a scene that has been read.
 Scene read_within_limits(const std::filesystem::path& file, const std::vector<std::string>& overrides,
                          const std::function<Catalog(const Scene&)>& catalog_of);

@@ -13,13 +13,12 @@ StageSetting make_stage_setting(const Scene& scene, int index) {
   const double spacing = lattice_spacing(scene);
   const double density = scene.fluid.density * stage.density_factor;
   const double tau = scene.numerics.tau;
-  const double kinematic_viscosity = scene.fluid.viscosity / density;
 
   StageSetting setting{};
   setting.stage = &stage;
   setting.index = index;
   setting.units.length = spacing;
-  setting.units.time = (tau - 0.5) / 3 * spacing * spacing / kinematic_viscosity;
+  setting.units.time = time_step(tau, spacing, scene.fluid.viscosity / density);
   setting.units.mass = density * spacing * spacing * spacing;
   setting.tau = tau;
   setting.shear_rate = setting.units.to_lattice(stage.shear_rate, dimension::rate);

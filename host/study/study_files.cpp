@@ -11,6 +11,7 @@
 #include "output/tables.hpp"
 #include "result_directory.hpp"
 #include "run/provenance.hpp"
+#include "spread.hpp"
 
 namespace rouleau::host {
 
@@ -20,13 +21,12 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 /// Median, range and all of what the repeats took.
-json spread_json(std::vector<double> values) {
-  const json all = values;
-  if (values.empty()) return {{"median", nullptr}, {"least", nullptr}, {"most", nullptr}, {"all", all}};
-  std::sort(values.begin(), values.end());
-  const std::size_t middle = values.size() / 2;
-  const double median = values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
-  return {{"median", median}, {"least", values.front()}, {"most", values.back()}, {"all", all}};
+json spread_json(const std::vector<double>& values) {
+  const Spread spread = spread_of(values);
+  return {{"median", number_or_null(spread.median)},
+          {"least", number_or_null(spread.least)},
+          {"most", number_or_null(spread.most)},
+          {"all", values}};
 }
 
 /// Passes of the run whose time is the median, or next below it.

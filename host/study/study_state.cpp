@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "spread.hpp"
+
 namespace rouleau::host {
 
 namespace {
@@ -35,22 +37,6 @@ void measure_point(const Study& study, MatrixPoint& point, const std::filesystem
   }
 }
 
-namespace {
-
-std::vector<double> sorted_wall_s(const PointRecord& record) {
-  std::vector<double> wall;
-  for (const TimedRun& run : record.runs) wall.push_back(run.wall_s);
-  std::sort(wall.begin(), wall.end());
-  return wall;
-}
-
-double median(const std::vector<double>& sorted) {
-  const std::size_t middle = sorted.size() / 2;
-  return sorted.size() % 2 == 1 ? sorted[middle] : 0.5 * (sorted[middle - 1] + sorted[middle]);
-}
-
-}  // namespace
-
 StudyData study_data(const StudyState& state) {
   const Study& study = *state.study;
   StudyData data;
@@ -60,11 +46,13 @@ StudyData study_data(const StudyState& state) {
   data.quantities = study.quantities;
   for (const MatrixPoint& point : state.points) {
     const bool tried = point.record.has_value();
-    data.points.push_back({point.point.setting, tried, NAN, point.estimated_s, point.results});
-    if (!tried || point.record->end != TrialEnd::completed || point.record->runs.empty()) continue;
-    const std::vector<double> wall = sorted_wall_s(*point.record);
-    data.points.back().wall_s = median(wall);
-    data.points.back().wall_range = {wall.front(), wall.back()};
+    std::vector<double> times;
+    if (tried && point.record->end == TrialEnd::completed) {
+      for (const TimedRun& run : point.record->runs) times.push_back(run.wall_s);
+    }
+    const Spread wall = spread_of(times);
+    data.points.push_back(
+        {point.point.setting, tried, wall.median, point.estimated_s, point.results, {wall.least, wall.most}});
   }
   return data;
 }

@@ -5,6 +5,7 @@ import os
 import select
 import shutil
 import subprocess
+import sys
 import tempfile
 import time
 import unittest
@@ -170,3 +171,17 @@ class BrowserCase(unittest.TestCase):
         page = self.browser.open(Path(file).as_uri(), scheme=scheme, **SCREENS[screen])
         self.addCleanup(page.close)
         return page
+
+
+SKIPPED = 77  # for ctest
+
+
+def main():
+    """Runs the tests of the script that calls it; without a browser they are skipped."""
+    if not shutil.which("chromium"):
+        print("skipped: there is no chromium (scripts/install-dependencies --full installs it)")
+        sys.exit(SKIPPED)
+    program = unittest.main(argv=sys.argv[:1], verbosity=2, exit=False)
+    failed = len(program.result.failures) + len(program.result.errors)
+    print(f"{program.result.testsRun - failed} passed, {failed} failed")
+    sys.exit(1 if failed else 0)

@@ -13,9 +13,8 @@ import tempfile
 import unittest
 from pathlib import Path
 
-from browser import SCREENS, Browser, BrowserCase
+from browser import SCREENS, Browser, BrowserCase, main
 
-SKIPPED = 77  # for ctest
 PROGRAM, PLUGINS, SOURCE = (Path(a).resolve() for a in sys.argv[1:4])
 SHOTS = Path(sys.argv[5]) if sys.argv[4:5] == ["--shots"] else None
 SCENE = SOURCE / "scenes" / "four-cells-shear.json"
@@ -331,10 +330,4 @@ class A_page_with_a_fault(PageCase):
 
 
 if __name__ == "__main__":
-    if not shutil.which("chromium"):
-        print("skipped: there is no chromium (scripts/install-dependencies --full installs it)")
-        sys.exit(SKIPPED)
-    program = unittest.main(argv=sys.argv[:1], verbosity=2, exit=False)
-    failed = len(program.result.failures) + len(program.result.errors)
-    print(f"{program.result.testsRun - failed} passed, {failed} failed")
-    sys.exit(1 if failed else 0)
+    main()

@@ -12,9 +12,8 @@ import unittest
 from pathlib import Path
 
 import study_fixture
-from browser import SCREENS, Browser, BrowserCase
+from browser import SCREENS, Browser, BrowserCase, main
 
-SKIPPED = 77  # for ctest
 PROGRAM = Path(sys.argv[1]).resolve()
 SHOTS = Path(sys.argv[3]) if sys.argv[2:3] == ["--shots"] else None
 LARGEST_PAGE = 1_000_000
@@ -382,10 +381,4 @@ class The_page_of_limits(PageCase):
 
 
 if __name__ == "__main__":
-    if not shutil.which("chromium"):
-        print("skipped: there is no chromium (scripts/install-dependencies --full installs it)")
-        sys.exit(SKIPPED)
-    program = unittest.main(argv=sys.argv[:1], verbosity=2, exit=False)
-    failed = len(program.result.failures) + len(program.result.errors)
-    print(f"{program.result.testsRun - failed} passed, {failed} failed")
-    sys.exit(1 if failed else 0)
+    main()

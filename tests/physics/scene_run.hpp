@@ -59,9 +59,9 @@ inline std::map<std::string, std::vector<std::string>> read_table(const std::fil
 
 inline SceneRun run_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {},
                           int threads = 1) {
-  const Scene scene = read_within_limits(
-      file, overrides, [](const Scene&) { return Catalog(std::vector<std::filesystem::path>{ROULEAU_PLUGINS}); });
-  const Catalog catalog({ROULEAU_PLUGINS});
+  const auto catalog_of = [](const Scene&) { return Catalog({ROULEAU_PLUGINS}); };
+  const Scene scene = read_within_limits(file, overrides, catalog_of);
+  const Catalog catalog = catalog_of(scene);
   const Plan plan = make_plan(scene, catalog);
   const test::ScratchFolder folder;
   RunOptions options;

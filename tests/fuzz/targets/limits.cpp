@@ -1,6 +1,7 @@
 // Files of limits: from the text to the values that the parameter would be tried with.
 #include "limits/limits_document.hpp"
 
+#include "first_points.hpp"
 #include "plan_scene.hpp"
 
 using namespace rouleau;
@@ -14,12 +15,7 @@ void fuzz_target(std::string_view bytes) {
         limits.parameter->written(value).dump();
       }
     }
-    int looked_at = 0;
-    for (const auto& point : host::cross(limits.axes)) {
-      if (++looked_at > 20) break;
-      fuzz::require_printable(host::name_of(limits.axes, point));
-      host::scene_of(limits.scene, limits.axes, point).dump();
-    }
+    fuzz::make_first_points(limits.scene, limits.axes);
   });
 }
 
