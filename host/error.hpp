@@ -28,14 +28,17 @@ struct Place {
 /// "file:line:column /pointer"; parts that are unknown are left out.
 std::string to_string(const Place& place);
 
-/// A fault that ends the command. what() is the whole message as the user sees it:
+/// A message whose control characters, but for the ends of lines, are escaped: it may quote what a file holds.
+std::string safe_lines(const std::string& message);
+
+/// A fault that ends the command. what() is the whole message as the user sees it, safe_lines():
 ///     file:line:column /pointer
 ///       problem, one sentence per line, with the value found and the remedy
 class Error : public std::runtime_error {
  public:
-  Error(ExitCode code, const std::string& problem) : std::runtime_error(problem), code_(code) {}
+  Error(ExitCode code, const std::string& problem) : std::runtime_error(safe_lines(problem)), code_(code) {}
   Error(ExitCode code, Place place, const std::string& problem)
-      : std::runtime_error(to_string(place) + "\n  " + problem), code_(code), place_(std::move(place)) {}
+      : std::runtime_error(to_string(place) + "\n  " + safe_lines(problem)), code_(code), place_(std::move(place)) {}
 
   [[nodiscard]] ExitCode code() const noexcept { return code_; }
   [[nodiscard]] const Place& place() const noexcept { return place_; }

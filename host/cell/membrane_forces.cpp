@@ -44,11 +44,10 @@ void MembraneForces::run(Worker worker, Membranes& membranes) {
   for (int cell = cells.begin; cell < cells.end; ++cell) {
     const std::size_t at = offset(cells.begin);
     const CellRange& range = membranes.cells[static_cast<std::size_t>(cell)];
-    const std::optional<ForceFilter>& filter = types_[static_cast<std::size_t>(range.type)].filter;
-    measure(membranes, cell, at, filter.has_value());
+    const bool semi_implicit = types_[static_cast<std::size_t>(range.type)].filter.has_value();
+    measure(membranes, cell, at, semi_implicit);
     act(membranes, cell, at, apply_laws(membranes, cell, at, &membranes.state, nullptr));
-    const auto first = static_cast<std::size_t>(range.first);
-    if (filter) filter->apply(&membranes.force_x[first], &membranes.force_y[first]);
+    if (semi_implicit) soften(membranes, cell);
   }
 }
 
@@ -294,6 +293,15 @@ void MembraneForces::act(Membranes& membranes, int cell, std::size_t at, const C
   arrays.with_moment = type.moment, arrays.with_pressure = type.cell;
   arrays.pressure = state.pressure, arrays.perimeter_tension = state.perimeter_tension;
   run_loop<ActOnCell>(arrays);
+}
+
+/// Makes the forces those of the semi-implicit step.
+void MembraneForces::soften(Membranes& membranes, int cell) const {
+  const CellRange& range = membranes.cells[static_cast<std::size_t>(cell)];
+  const Type& type = types_[static_cast<std::size_t>(range.type)];
+  const auto first = static_cast<std::size_t>(range.first);
+  const auto held = [&](int component) { return &membranes.state[type.held_force[component]].value[first]; };
+  type.filter->apply(&membranes.force_x[first], &membranes.force_y[first], held(0), held(1));
 }
 
 }  // namespace rouleau::host

@@ -37,8 +37,9 @@ class MembraneForces {
   /// `laws[t]` are the laws of cell type t. Throws Error(plugin_refused) if a law needs what this host does not give.
   MembraneForces(const Membranes& membranes, std::vector<MembraneLaws> laws);
 
-  /// From now on run() takes the semi-implicit step of stiff membranes (ForceFilter) with the laws' own stiffness.
-  void make_semi_implicit(const Membranes& membranes);
+  /// From now on run() takes the semi-implicit step of stiff membranes (ForceFilter) with the laws' own stiffness. To
+  /// be called before keep_state(), for the filter remembers, too.
+  void make_semi_implicit(const Membranes& membranes, double viscosity);
   /// Tells how the slip correction makes the nodes of each cell type give way to forces, which implicit steps must know
   /// (`slip` here is velocity per force per length, lattice units). To be called before make_semi_implicit().
   void set_slip(const std::vector<SlipConstants>& of_type);
@@ -70,9 +71,10 @@ class MembraneForces {
     std::vector<Law> laws;
     bool rate = false, tension = false, moment = false, cell = false;  // what the laws need or give, all together
     bool tension_by_rate = false;
-    std::size_t rate_tension = 0;       // in Membranes::state, if there is a tension by rate
-    SlipConstants slip{0, 0};           // what the slip correction adds; slip: velocity per force per length
-    std::optional<ForceFilter> filter;  // of a semi-implicit step
+    std::size_t rate_tension = 0;        // in Membranes::state, if there is a tension by rate
+    SlipConstants slip{0, 0};            // what the slip correction adds; slip: velocity per force per length
+    std::optional<ForceFilter> filter;   // of a semi-implicit step
+    std::size_t held_force[2] = {0, 0};  // of the filter, x and y: in Membranes::state
   };
   /// Constants of every cell: cell c from offset(c) on, with room on both sides for packs that run over its end.
   struct Rest {
@@ -113,6 +115,7 @@ class MembraneForces {
                         const CellState& sums) const;
   void add_rate_tension(const Membranes& membranes, int cell, std::size_t at, std::vector<ElementState>* next);
   void act(Membranes& membranes, int cell, std::size_t at, const CellState& state);
+  void soften(Membranes& membranes, int cell) const;
 
   std::vector<Type> types_;
   bool has_state_ = false, state_kept_ = false;

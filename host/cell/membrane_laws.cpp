@@ -74,7 +74,7 @@ void MembraneForces::allocate(const Membranes& membranes) {
   }
 }
 
-void MembraneForces::make_semi_implicit(const Membranes& membranes) {
+void MembraneForces::make_semi_implicit(const Membranes& membranes, double viscosity) {
   for (const CellRange& cell : membranes.cells) {
     Type& type = types_[static_cast<std::size_t>(cell.type)];
     if (type.filter) continue;
@@ -84,7 +84,8 @@ void MembraneForces::make_semi_implicit(const Membranes& membranes) {
       bending += bending_stiffness(*law.model);
     }
     const double length = cell.rest_perimeter / cell.count;
-    type.filter.emplace(cell.count, length, stiffening(type.slip.shift, length), stretching, bending);
+    type.filter.emplace(cell.count, length, stiffening(type.slip.shift, length), viscosity, stretching, bending);
+    has_state_ = true;
   }
 }
 
@@ -105,6 +106,9 @@ void MembraneForces::keep_state(Membranes& membranes) {
       }
     }
     if (type.tension_by_rate) type.rate_tension = keep(-1, "", {"rate_tension", "N/m", dimension::tension, 0}, 0);
+    for (int k = 0; k < 2 && type.filter; ++k) {
+      type.held_force[k] = keep(-1, "", {k == 0 ? "held_force_x" : "held_force_y", "N/m", dimension::tension, 0}, 0);
+    }
   }
   state_kept_ = true;
 }

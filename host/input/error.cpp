@@ -1,5 +1,8 @@
 #include "error.hpp"
 
+#include <algorithm>
+#include <string_view>
+
 #include "wording.hpp"
 
 namespace rouleau::host {
@@ -12,6 +15,16 @@ std::string to_string(const Place& place) {
   }
   if (!place.pointer.empty()) text += (text.empty() ? "" : " ") + printable(place.pointer);
   return text;
+}
+
+std::string safe_lines(const std::string& message) {
+  std::string safe;
+  for (std::size_t at = 0; at <= message.size();) {
+    const std::size_t end = std::min(message.find('\n', at), message.size());
+    safe += (at == 0 ? "" : "\n") + printable(std::string_view(message).substr(at, end - at));
+    at = end + 1;
+  }
+  return safe;
 }
 
 }  // namespace rouleau::host

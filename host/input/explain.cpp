@@ -1,6 +1,7 @@
 #include "explain.hpp"
 
 #include <algorithm>
+#include <map>
 #include <regex>
 #include <set>
 
@@ -17,6 +18,13 @@ using Result = std::optional<SchemaFault>;
 
 /// Matching recurses several times for every character of a text, so that a long one would exhaust the stack.
 constexpr std::size_t longest_matched = 1000;  // bytes
+
+/// A pattern of the schemas, which are asked for often: compiling one takes longer than all else that reading does.
+const std::regex& compiled(const std::string& pattern) {
+  thread_local std::map<std::string, std::regex> known;
+  const auto found = known.find(pattern);
+  return found != known.end() ? found->second : known.emplace(pattern, pattern).first->second;
+}
 
 /// Keys that belong to the other branches of a choice: known, but not beside the keys that are there.
 using OtherKeys = std::vector<std::string>;
@@ -133,7 +141,7 @@ class Explainer {
       return fault(at, in_quotes(text) + " is too long for " + name + ": at most " + std::to_string(longest_matched) +
                            " bytes" + description(at, rule));
     }
-    if (rule.contains("pattern") && !std::regex_search(text, std::regex(rule["pattern"].get<std::string>()))) {
+    if (rule.contains("pattern") && !std::regex_search(text, compiled(rule["pattern"].get<std::string>()))) {
       return fault(at, in_quotes(text) + " cannot be used for " + name + description(at, rule));
     }
     return {};
@@ -202,7 +210,7 @@ class Explainer {
       }
       bool matched = false;
       for (const auto& [pattern, part] : patterns.items()) {
-        if (!std::regex_search(key, std::regex(pattern))) continue;
+        if (!std::regex_search(key, compiled(pattern))) continue;
         matched = true;
         if (auto found = explain(member, part)) return found;
       }

@@ -23,7 +23,7 @@ using nlohmann::json;
 constexpr double default_target = 0.01;
 constexpr const char* origin = "numerics.auto";
 
-constexpr double most_mach = 0.0999;  ///< of the walls; `plan` warns above 0.1
+constexpr double nearly = 0.999;  ///< as much of a limit as is taken
 constexpr std::array relaxation_times{0.8, 1.0, 1.25, 1.5, 2.0, 2.5, 3.0};
 constexpr double finest_radius = 80;  ///< spacings; more is never chosen
 constexpr int fewest_rows = 16;       ///< of a lattice without cells
@@ -212,7 +212,8 @@ Problem::Trial Problem::tried(const std::array<int, 2>& nodes, double tau) const
     const double allowed = most_reynolds(target_ - trial.error.resolution) / reynolds_;
     // Without cells what is computed is how the fluid's own inertia lets a flow start.
     const double wanted = has_cells_ ? allowed : 1;
-    trial.density_factor = std::max(1.0, std::min({wanted, most_mach / wall_mach, bounds_.most_density_factor}));
+    trial.density_factor = std::max(1.0, std::min({wanted, nearly * largest_wall_mach(scene_.fluid.inertia) / wall_mach,
+                                                   bounds_.most_density_factor}));
   }
   trial.error.inertia = inertia_error(reynolds_ * trial.density_factor);
   trial.cost = step_cost(static_cast<double>(nodes[0]) * nodes[1], perimeters_ / spacing, scene_.numerics.precision) /

@@ -14,7 +14,7 @@ std::size_t put_index(const nlohmann::json& array, const std::string& token, con
   if (token == "-") return size;
   if (const auto index = array_index(token); index && *index < size) return *index;
   const auto last = size == 0 ? "" : size == 1 ? "0, or " : "0 to " + std::to_string(size - 1) + ", or ";
-  throw PutError(pointer + " is a list of " + std::to_string(size) + "; " + in_quotes(token) +
+  throw PutError(printable(pointer) + " is a list of " + std::to_string(size) + "; " + in_quotes(token) +
                  " is no place in it: write " + last + "- to append");
 }
 
@@ -44,7 +44,7 @@ std::string put_value(nlohmann::json& root, const std::string& whole, const nloh
       at = &(*at)[token];  // made when absent; the schema then says whether it may be there
       pointer = child_pointer(pointer, token);
     } else {
-      const auto holder = pointer.empty() ? "the document" : pointer;
+      const auto holder = pointer.empty() ? "the document" : printable(pointer);
       throw PutError(holder + " is " + shown(*at) + ", which has nothing inside; set " + holder + " itself");
     }
   }

@@ -152,7 +152,7 @@ struct Checks {
   double node_step = 0.5;    ///< largest displacement of a membrane node in one step, lattice spacings
   double area_drift = 0.02;  ///< largest relative change of a cell's area
   double stretch = 5;        ///< largest length of a segment over the one it was placed with, and the other way round
-  double energy_growth = 0.02;  ///< largest gain of energy in a stage at rest, over the energies there are
+  double energy_growth = 0.01;  ///< largest gain of energy in a stage at rest, over the energies there are
   int every_steps = 200;        ///< steps between checks of fields, area, segments and crossings
 };
 

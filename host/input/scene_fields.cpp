@@ -28,6 +28,9 @@ double SceneFields::quantity(const std::string& pointer, std::string_view unit, 
   double si = 0.0;
   if (value.is_number()) {
     si = value.get<double>();
+  } else if (!value.is_string()) {
+    refuse(pointer, shown(value) + " is no quantity; write " + name + " as a number in " + std::string(unit) +
+                        " or as text with its unit");
   } else {
     try {
       si = units_.to_si(value.get_ref<const std::string&>(), unit, name);

@@ -41,11 +41,12 @@ void validate(const Document& document, const nlohmann::json& schema, ExitCode c
   valijson::Schema rules;
   valijson::SchemaParser().populateSchema(Adapter(schema), rules);
   const Adapter target(document.root());
-  if (valijson::Validator().validate(rules, target, nullptr)) return;
+  thread_local valijson::Validator validator;  // keeps the patterns that it has compiled
+  if (validator.validate(rules, target, nullptr)) return;
 
   // A keyword that the explanation does not know: valijson's own words are better than none.
   valijson::ValidationResults results;
-  valijson::Validator().validate(rules, target, &results);
+  validator.validate(rules, target, &results);
   valijson::ValidationResults::Error deepest;
   for (const auto& error : results) {
     if (deepest.description.empty() || error.context.size() > deepest.context.size()) deepest = error;

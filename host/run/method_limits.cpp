@@ -7,6 +7,7 @@
 #include "cell/kernel_kind.hpp"
 #include "cell/slip_constants.hpp"
 #include "cell/stiffness.hpp"
+#include "input/flow.hpp"
 #include "input/outline.hpp"
 #include "method_limits.hpp"
 #include "plan.hpp"
@@ -45,10 +46,13 @@ constexpr std::array<TableEntry, 3> contact_limit{{{0.6, 0.65}, {1.0, 1.46}, {2.
 // of the strongest attraction at a width of 0.66, 5 % at 0.33, 11 % at 0.16 (docs/models.md).
 constexpr double narrowest_well = 0.5;
 
-// How many times stiffer membranes may be with the semi-implicit step, for tau from 0.6 to 10; below it gains nothing.
-// A single cell stays quiet at 40 times the stretching and 10 times the bending stiffness (docs/accuracy.md), but two
-// cells at rest in contact gain energy from between 5.6 and 9.4 times the stretching stiffness on (docs/stability.md).
-constexpr double stretching_gain = 5, bending_gain = 10, least_semi_implicit_tau = 0.6;
+// How many times stiffer membranes may be with the semi-implicit step, for tau from 0.6 to 5; below it gains nothing. A
+// single cell stays quiet at 80 times the stretching and 13 times the bending stiffness (docs/accuracy.md), two cells
+// that are sheared and come to rest in contact at 20 times the former. There are two exceptions: with the slip
+// correction and tau below 0.9 two cells bear 5 but not 10 times, for the slip of so stiff a membrane varies faster
+// than the correction can follow; at tau 10 a cell with segments of two spacings bears 4 times.
+constexpr double stretching_gain = 20, cautious_stretching_gain = 4, least_corrected_tau = 0.9, most_tau = 5;
+constexpr double bending_gain = 10, least_semi_implicit_tau = 0.6;
 
 /// Limit of a membrane between two fluids: the geometric mean of those at either side's relaxation time. Measured at
 /// tau 1 and ratio 5: 0.83 and 0.63 of the limits at ratio 1, by this rule 0.83 and 0.63.
@@ -118,6 +122,12 @@ double prestress_compression(const Plan& plan, const StageSetting& stage) {
   return most;
 }
 
+double stretching_gain_of(const Scene& scene) {
+  const Numerics& n = scene.numerics;
+  const bool cautious = (n.slip_correction && n.tau < least_corrected_tau) || n.tau > most_tau;
+  return cautious ? cautious_stretching_gain : stretching_gain;
+}
+
 }  // namespace
 
 bool semi_implicit_gains(const Plan& plan) { return plan.scene->numerics.tau >= least_semi_implicit_tau; }
@@ -154,8 +164,9 @@ std::vector<Limit> find_limits(const Plan& plan) {
     const std::string where = " (stage " + stage.stage->name + ")";
     const ModelSetting setting = stage.model_setting(scene.fluid.inertia);
     if (stage.wall_speed != 0) {
-      add("Mach number of the walls" + where, std::abs(stage.wall_speed) * std::sqrt(3.0), 0.1, true,
-          "lower density_factor or shear_rate, or raise the resolution", density);
+      add("Mach number of the walls" + where, std::abs(stage.wall_speed) * std::sqrt(3.0),
+          largest_wall_mach(scene.fluid.inertia), true, "lower density_factor or shear_rate, or raise the resolution",
+          density);
     }
     if (stage.body_force_x != 0 && !scene.domain.periodic_y) {
       const double height = scene.domain.nodes[1];
@@ -186,7 +197,7 @@ std::vector<Limit> find_limits(const Plan& plan) {
                                    : "lower density_factor, with which the lattice stiffness falls, or set "
                                      "numerics.coupling to \"semi-implicit\"";
     add("stretching stiffness" + coupled + where, membrane.stretching.value,
-        (gains ? stretching_gain : 1) * membrane.stretching.limit, true, softer, density);
+        (gains ? stretching_gain_of(scene) : 1) * membrane.stretching.limit, true, softer, density);
     add("bending stiffness" + coupled + where, membrane.bending.value,
         (gains ? bending_gain : 1) * membrane.bending.limit, true, softer, density);
     if (const double compression = prestress_compression(plan, stage); compression > 0) {

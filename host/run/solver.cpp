@@ -81,9 +81,9 @@ void Solver<T>::plan_cell_passes(const Plan& plan) {
   plan_corrections(plan, laws);
   find_slight_energy(laws);
   membrane_forces_ = std::make_unique<MembraneForces>(membranes_, std::move(laws));
-  membrane_forces_->keep_state(membranes_);
   if (slip_correction_) membrane_forces_->set_slip(slip_correction_->constants());
-  if (plan.semi_implicit) membrane_forces_->make_semi_implicit(membranes_);
+  if (plan.semi_implicit) membrane_forces_->make_semi_implicit(membranes_, (setting_->tau - 0.5) / 3);
+  membrane_forces_->keep_state(membranes_);
   const auto membrane = [this](Worker worker) {
     membrane_forces_->run(worker, membranes_);
     if (slip_correction_) slip_correction_->respond(worker, membranes_);

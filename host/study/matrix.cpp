@@ -82,7 +82,7 @@ class AxisReader {
     if (axis_.contains("settings")) axis.settings = named();
     if (axis_.contains("threads")) axis.settings = threads();
     relabel(axis);
-    refuse_same_labels(axis);
+    check_labels(axis);
     return axis;
   }
 
@@ -146,9 +146,17 @@ class AxisReader {
     for (std::size_t i = 0; i < labels.size(); ++i) axis.settings[i].label = labels[i];
   }
 
-  void refuse_same_labels(const Axis& axis) const {
+  void check_labels(const Axis& axis) const {
+    const auto check = [&](const std::string& pointer, const std::string& label) {
+      if (printable(label) == label) return;
+      refuse(pointer, in_quotes(label) +
+                          " holds a control character; names and labels are printed on one line: leave it "
+                          "out");
+    };
+    check(pointer_ + "/name", axis.name);
     std::set<std::string> seen;
     for (const Setting& setting : axis.settings) {
+      check(pointer_, setting.label);
       if (seen.insert(setting.label).second) continue;
       refuse(pointer_, "two settings of this axis are called " + in_quotes(setting.label) +
                            "; leave one out, or tell them apart by \"labels\"");

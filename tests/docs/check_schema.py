@@ -55,7 +55,7 @@ OTHER = {
 HEADER = {"/at_rest/displacement": ("0.01 um", r"displacement = 0\.01e-6;"), "/at_rest/window": ("0.2 s", r"window = 0\.2;"),
           "/checks/mach": (0.3, r"mach = 0\.3;"), "/checks/node_step": (0.5, r"node_step = 0\.5;"),
           "/checks/area_drift": (0.02, r"area_drift = 0\.02;"), "/checks/stretch": (5, r"stretch = 5;"),
-          "/checks/energy_growth": (0.02, r"energy_growth = 0\.02;"), "/checks/every_steps": (200, r"every_steps = 200;"),
+          "/checks/energy_growth": (0.01, r"energy_growth = 0\.01;"), "/checks/every_steps": (200, r"every_steps = 200;"),
           "/output/checkpoint": ({"seconds": 600}, r"checkpoint_seconds = 600;")}
 
 

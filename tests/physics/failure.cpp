@@ -150,18 +150,16 @@ TEST_CASE("energy that a suspension at rest gains stops it, though nothing else 
     overrides.push_back("/checks/energy_growth=" + limit);
     return run_scene(two_cells, overrides);
   };
-  // A hundred times a red cell's modulus: the semi-implicit step bears it as far as any other check can see.
-  const SceneRun stopped = run("6e-4 N/m", "0.02"), on = run("6e-4 N/m", "1000"), right = run("6e-6 N/m", "0.02");
+  // A thousand times a red cell's modulus: the semi-implicit step bears it as far as any other check can see.
+  const SceneRun stopped = run("6e-3 N/m", "0.01"), on = run("6e-3 N/m", "1000"), right = run("6e-6 N/m", "0.01");
   REQUIRE(stopped.summary["status"] == "diverged");
   CHECK(stopped.summary["failure"]["reason"] == "energy_growth");
-  CHECK(stopped.summary["failure"]["value"] > 0.02);
+  CHECK(stopped.summary["failure"]["value"] > 0.01);
   CHECK(on.summary["status"] == "completed");
   CHECK(right.summary["status"] == "completed");
   CHECK(right.summary["energy"]["largest_growth_at_rest_relative"] == 0);
   // What was gained has not been written.
-  const std::vector<double> total = stopped.series_column("total_energy_J_per_m");
-  const double least = *std::min_element(total.begin(), total.end());
-  CHECK(total.back() - least < 0.02 * std::abs(least));
+  CHECK(stopped.series_column("step").back() < stopped.summary["failure"]["step"]);
 }
 
 TEST_CASE("a segment that gives way too far stops a run", "[failure]") {

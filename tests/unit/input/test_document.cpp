@@ -203,6 +203,8 @@ TEST_CASE("a pointer that set cannot follow is refused with the option and a rem
   CHECK_THAT(message_of_set(document, "/l/first=1"), Contains("\"first\" is no place in it"));
   CHECK_THAT(message_of_set(document, "/l/00=1"), Contains("no place in it"));
   CHECK_THAT(message_of_set(document, "/a/b/c=1"), Contains("/a/b is 1, which has nothing inside"));
+  CHECK_THAT(message_of_set(Document::parse("{\"a\\u001b\": 1}", "a.json"), "/a\x1b/c=1"),
+             Contains("/a\\u001b is 1, which has nothing inside"));
   CHECK_THAT(message_of_set(document, "a/b=1"), Contains("write --set /a/b=1"));
   CHECK_THAT(message_of_set(document, "/a/b"), Contains("there is no '='"));
   CHECK_THAT(message_of_set(document, "=1"), Contains("the pointer is empty"));

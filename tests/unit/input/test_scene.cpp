@@ -108,7 +108,7 @@ TEST_CASE("what a scene leaves out has the documented default") {
   CHECK(scene.output.checkpoint_seconds == 600.0);
   CHECK(scene.checks.every_steps == 200);
   CHECK(scene.checks.stretch == 5);
-  CHECK(scene.checks.energy_growth == 0.02);
+  CHECK(scene.checks.energy_growth == 0.01);
   CHECK(scene.place("/fluid/density").line == 3);
 }
 
