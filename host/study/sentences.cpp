@@ -20,8 +20,10 @@ std::string against_default(const StudyData& study, const Quantity& quantity, co
   const double ratio = study.points[*standard].wall_s / study.points[chosen].wall_s;
   const PointError& error = errors[*standard];
   if (!std::isfinite(ratio) || !std::isfinite(error.error)) return "; the default has no value";
-  const std::string more = number(ratio >= 1 ? ratio : 1 / ratio, 2) + " times " + (ratio >= 1 ? "cheaper" : "dearer");
-  return ", " + more + " than the default (" + time_in_words(study.points[*standard].wall_s) + ", " +
+  const double times = std::max(ratio, 1 / ratio);
+  const std::string more =
+      times < 1.05 ? "as dear as" : number(times, 2) + " times " + (ratio >= 1 ? "cheaper than" : "dearer than");
+  return ", " + more + " the default (" + time_in_words(study.points[*standard].wall_s) + ", " +
          error_in_words(quantity, error.error) + ")";
 }
 

@@ -224,7 +224,7 @@ TargetDecision ended(const Search& search, std::optional<std::size_t> point, boo
     const auto standard = find_point(search.study, search.study.default_setting);
     const double ratio = standard ? search.cost[*standard] / search.cost[*point] : 0;
     if (standard && *standard == *point) result.sentence += ", which is the default";
-    if (std::isfinite(ratio) && ratio > 1)
+    if (std::isfinite(ratio) && ratio > 1.05)
       result.sentence += ", " + number(ratio, 2) + " times cheaper than the default";
     return result;
   }

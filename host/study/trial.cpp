@@ -21,9 +21,16 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t longest_words = 1U << 16U;
 
-/// The file itself: the child's own /proc/self would be another.
+/// The file itself: the child's own /proc/self would be another. What a new program at its place measures would go
+/// under the old one's hash, so that there is nothing for it but to stop.
 fs::path program_of(const Trial& trial) {
-  return fs::is_symlink(trial.program) ? fs::read_symlink(trial.program) : trial.program;
+  if (!fs::is_symlink(trial.program)) return trial.program;
+  const std::string file = fs::read_symlink(trial.program).string(), gone = " (deleted)";  // what Linux adds
+  if (!file.ends_with(gone)) return file;
+  throw Error(ExitCode::input_output,
+              "the program " + file.substr(0, file.size() - gone.size()) +
+                  " was replaced or removed meanwhile; call the same command again (what the old program measured is "
+                  "then measured anew)");
 }
 
 fs::path scene_file_of(const Trial& trial) {

@@ -7,6 +7,7 @@ import csv
 import fcntl
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -209,6 +210,24 @@ class A_study_goes_on(Case):
         code, finished = self.end_by(signal.SIGINT)
         self.assertEqual(code, 130)
         self.goes_on(finished)
+
+    def test_and_ends_in_words_when_its_program_is_replaced(self):
+        program = self.path / "prefix/bin" / PROGRAM.name
+        program.parent.mkdir(parents=True)
+        shutil.copy2(PROGRAM, program)
+        for folder in ("lib", "share"):
+            (program.parent.parent / folder).symlink_to(PROGRAM.parent.parent / folder)
+        command = self.command(self.study(self.MATRIX, scene=self.SLOW))
+        process = subprocess.Popen([str(program), *command[1:]], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+                                   text=True, env=self.environment)
+        self.addCleanup(process.kill)
+        self.wait_for(lambda: list(self.out.glob("points/*.running")), "the first run")
+        copy = program.with_name("new")
+        shutil.copy2(program, copy)
+        copy.replace(program)
+        _, words = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 4, words)
+        self.assertIn(f"the program {program} was replaced or removed meanwhile; call the same command again", words)
 
     def test_with_more_values_and_more_repeats(self):
         self.run_study(self.study([TAU]))
