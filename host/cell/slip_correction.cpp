@@ -46,7 +46,7 @@ struct Measure {
   }
 };
 
-struct Respond {
+struct Slip {
   template <int register_bytes>
   ROULEAU_ALWAYS_INLINE static void run(const SlipTask* task) {
     const SlipTask t = *task;
@@ -65,6 +65,13 @@ struct Respond {
       });
       std::swap(slip, other);
     }
+  }
+};
+
+struct Couple {
+  template <int register_bytes>
+  ROULEAU_ALWAYS_INLINE static void run(const SlipTask* task) {
+    const SlipTask t = *task;
     // The couple of every node: to the node after it, and its reverse to the node before.
     for_closed_outline<register_bytes>(t.begin, t.end, [&](auto tag, int i, int, int) {
       using S = decltype(tag);
@@ -185,11 +192,12 @@ void SlipCorrection::measure(Worker worker, const Membranes& membranes) {
   run<Measure>(worker, membranes, nullptr, nullptr);
 }
 
-void SlipCorrection::respond(Worker worker, const Membranes& membranes) {
-  run<Respond>(worker, membranes, nullptr, nullptr);
+void SlipCorrection::couple(Worker worker, const Membranes& membranes) {
+  run<Couple>(worker, membranes, nullptr, nullptr);
 }
 
 void SlipCorrection::complete(Worker worker, const Membranes& membranes) {
+  run<Slip>(worker, membranes, nullptr, nullptr);
   const Range nodes = membranes.node_share(worker);
   for (auto i = static_cast<std::size_t>(nodes.begin); i < static_cast<std::size_t>(nodes.end); ++i) {
     force_x_[i] = membranes.force_x[i] + force_x_[i];

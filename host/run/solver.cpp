@@ -86,7 +86,7 @@ void Solver<T>::plan_cell_passes(const Plan& plan) {
   membrane_forces_->keep_state(membranes_);
   const auto membrane = [this](Worker worker) {
     membrane_forces_->run(worker, membranes_);
-    if (slip_correction_) slip_correction_->respond(worker, membranes_);
+    if (slip_correction_) slip_correction_->couple(worker, membranes_);
   };
 
   std::vector<double> viscosity_ratio;

@@ -93,7 +93,7 @@ TEST_CASE("the slip correction adds no force to the fluid") {
   Membranes m = cell_with_forces(random, 0.5);
   SlipCorrection correction(m, {{slip_constants(KernelKind::peskin4, 5), 0, 0}}, 1.0 / 6);
   correction.measure({}, m);
-  correction.respond({}, m);
+  correction.couple({}, m);
   correction.complete({}, m);
   double x = 0, y = 0;
   for (std::size_t i = 0; i < m.x.size(); ++i) x += correction.forces().x[i], y += correction.forces().y[i];
@@ -115,7 +115,7 @@ TEST_CASE("the slip correction keeps the torque to second order in shift over ra
     }
     SlipCorrection correction(m, {{slip_constants(KernelKind::peskin4, 5), 0, 0}}, 1.0 / 6);
     correction.measure({}, m);
-    correction.respond({}, m);
+    correction.couple({}, m);
     correction.complete({}, m);
     const NodeVectors at = correction.positions(), force = correction.forces();
     double torque = 0, expected = 0;
@@ -137,7 +137,7 @@ TEST_CASE("what the fluid does on the membrane is what the membrane does on the 
   constants.slip = 0;
   SlipCorrection correction(m, {{constants, 0, 0}}, 1.0 / 6);
   correction.measure({}, m);
-  correction.respond({}, m);
+  correction.couple({}, m);
   correction.complete({}, m);
   double fluid = 0, membrane = 0, size = 0;
   for (std::size_t i = 0; i < m.x.size(); ++i) {
@@ -162,7 +162,7 @@ TEST_CASE("the slip follows the tangential force along the membrane and costs en
   }
   SlipCorrection correction(m, {{slip_constants(KernelKind::peskin4, 1), GENERATE(0.0, 5.0), 0}}, viscosity);
   correction.measure({}, m);
-  correction.respond({}, m);
+  correction.couple({}, m);
   correction.complete({}, m);
   correction.correct({}, m);
   const double chord = 2 * radius * std::sin(6.283185307179586 / 120), slip = 0.4137 * force / (chord / 2) / viscosity;
@@ -170,6 +170,18 @@ TEST_CASE("the slip follows the tangential force along the membrane and costs en
     const double along = (m.velocity_x[i] * m.force_x[i] + m.velocity_y[i] * m.force_y[i]) / force;
     REQUIRE(along == Approx(slip).epsilon(1e-3));
   }
+}
+
+TEST_CASE("the slip ends where the forces on the nodes balance") {
+  auto random = generator(86);
+  Membranes m = cell_with_forces(random, 0.5);
+  SlipCorrection correction(m, {{slip_constants(KernelKind::peskin4, 1), 0, 0}}, 1.0 / 6);
+  correction.measure({}, m);
+  correction.couple({}, m);
+  for (auto* values : {&m.force_x, &m.force_y, &m.velocity_x, &m.velocity_y}) values->assign(m.x.size(), 0.0);
+  correction.complete({}, m);
+  correction.correct({}, m);
+  for (std::size_t i = 0; i < m.x.size(); ++i) REQUIRE(std::hypot(m.velocity_x[i], m.velocity_y[i]) == 0);
 }
 
 TEST_CASE("the area correction makes no cell larger or smaller, and tells what would have been") {
