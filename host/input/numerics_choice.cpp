@@ -297,6 +297,14 @@ NumericsChoice Problem::chosen(const Trial& best) const {
                    ", more than the target of " + percent(target_) +
                    ", with what the scene pins or the finest lattice that is tried";
   }
+  constexpr double most_of_the_target = 0.8;
+  if (meets_target(best) && best.error.resolution > most_of_the_target * target_ && has_cells_ && shear_rate_ > 0 &&
+      written_.at("domain").contains("nodes") && pinned("density_factor").is_null()) {
+    choice.doubt = "numerics.auto: the lattice that domain.nodes names takes " + percent(best.error.resolution) +
+                   " of error already, and what is left of " + percent(target_) +
+                   " asks for small steps (density_factor " + number(best.density_factor, 3) +
+                   "); leave domain.nodes out, or allow a larger error";
+  }
   if (choice.doubt.empty() && has_cells_ && (viscosity_ratio_ < 0.99 || viscosity_ratio_ > 1.01 * measured_ratio)) {
     choice.doubt = "numerics.auto: the viscosity ratio " + number(viscosity_ratio_, 3) +
                    " lies outside of what errors were measured for (1 to " + number(measured_ratio) + ")";

@@ -37,7 +37,7 @@ struct NumericsChoice {
   bool steady;    ///< asked for the steady state, not for the motion
   ErrorShares expected;
   std::vector<ChosenValue> values;  ///< what the scene leaves open
-  std::string doubt;                ///< why the target may not be met; empty: it should
+  std::string doubt;                ///< why the target may not be met, or only at a price; empty: it should
 };
 
 /// Does the scene leave its numerics open ("numerics": "auto", or an object with "auto")? False for what is no scene.

@@ -56,6 +56,15 @@ TEST_CASE("what a scene gives is not chosen") {
   CHECK_THAT(scene.numerics_choice->doubt, Contains("more than the target of 1 %"));
 }
 
+TEST_CASE("a lattice that leaves next to nothing of the target is told what it costs") {
+  const std::string target = "/numerics={\"auto\": {\"error\": 0.01}}";
+  const Scene open = chosen_scene({target}, "/auto-biconcave.json");
+  CHECK(open.numerics_choice->doubt.empty());
+  const Scene named = chosen_scene({target, "/domain/nodes=[208,104]"}, "/auto-biconcave.json");
+  CHECK_THAT(named.numerics_choice->doubt, Contains("leave domain.nodes out, or allow a larger error"));
+  CHECK(estimated_cost(named) > 2 * estimated_cost(open));
+}
+
 TEST_CASE("the chosen scene read again is the same scene") {
   const Scene scene = chosen_scene({});
   const Scene again = chosen_scene({"/numerics=" + scene.document->root()["numerics"].dump(),
