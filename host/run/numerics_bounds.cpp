@@ -13,9 +13,9 @@ namespace {
 constexpr int most_tries = 20;
 constexpr double to_spare = 1.02;
 
-/// Wells deeper than this share of the membranes' stretching modulus leak with the slip correction: by 1.4 % of the
-/// area at 0.072, by nothing that was seen at 0.003 (docs/accuracy.md, cells in contact); between them nothing was
-/// measured.
+/// Wells deeper than this share of the membranes' stretching modulus leak with the slip correction: by 0.7 % of the
+/// area at rest at 0.072, by nothing that was seen at 0.003 (docs/accuracy.md, cells in contact); between them nothing
+/// was measured.
 constexpr double deepest_corrected_well = 0.02;
 
 bool attracts_strongly(const Plan& plan) {

@@ -318,7 +318,11 @@ Plan make_plan(const Scene& scene, const Catalog& catalog) {
   if (const KernelFacts& kernel = kernel_named(scene.numerics.kernel); plan.has_cells && *kernel.defect != 0) {
     plan.warnings.push_back(std::string("kernel ") + kernel.name + ": " + kernel.defect);
   }
-  if (scene.numerics.slip_correction && plan.has_interactions) {
+  // Where auto has chosen it, it has looked at how strong the attraction is.
+  const bool chosen = scene.numerics_choice &&
+                      std::any_of(scene.numerics_choice->values.begin(), scene.numerics_choice->values.end(),
+                                  [](const auto& value) { return value.pointer == "/numerics/slip_correction"; });
+  if (scene.numerics.slip_correction && plan.has_interactions && !chosen) {
     plan.warnings.emplace_back(
         "numerics.slip_correction with attracting cells: where the attraction is strong, cells leak more with it than "
         "without (docs/accuracy.md); watch area_leakage_max, or set it to false");

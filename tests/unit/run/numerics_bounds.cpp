@@ -1,6 +1,7 @@
 // What "numerics": "auto" chooses: pins hold, errors that are asked for decide, limits of the plan prevail.
 #include "run/numerics_bounds.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "run/plan.hpp"
@@ -63,6 +64,21 @@ TEST_CASE("a lattice that leaves next to nothing of the target is told what it c
   const Scene named = chosen_scene({target, "/domain/nodes=[208,104]"}, "/auto-biconcave.json");
   CHECK_THAT(named.numerics_choice->doubt, Contains("leave domain.nodes out, or allow a larger error"));
   CHECK(estimated_cost(named) > 2 * estimated_cost(open));
+}
+
+TEST_CASE("auto's own slip correction is not warned of") {
+  const std::string scene = std::string(ROULEAU_SCENES) + "/four-cells-shear.json";
+  const auto warned = [&](const std::vector<std::string>& overrides) {
+    const Scene read = read_within_limits(scene, overrides, shipped_plugins);
+    REQUIRE(read.numerics.slip_correction);
+    const Catalog catalog = shipped_plugins(read);
+    const std::vector<std::string> warnings = make_plan(read, catalog).warnings;
+    return std::any_of(warnings.begin(), warnings.end(), [](const std::string& warning) {
+      return warning.starts_with("numerics.slip_correction with attracting cells");
+    });
+  };
+  CHECK(warned({"/numerics/slip_correction=true"}));
+  CHECK_FALSE(warned({"/numerics={\"auto\": {\"error\": 0.05}}"}));
 }
 
 TEST_CASE("the chosen scene read again is the same scene") {
