@@ -160,6 +160,12 @@ TEST_CASE("energy that a suspension at rest gains stops it, though nothing else 
   CHECK(right.summary["energy"]["largest_growth_at_rest_relative"] == 0);
   // What was gained has not been written.
   CHECK(stopped.series_column("step").back() < stopped.summary["failure"]["step"]);
+  const std::vector<double> total = stopped.series_column("total_energy_J_per_m");
+  const double least = *std::min_element(total.begin(), total.end());
+  const nlohmann::json gain = stopped.summary["energy"];
+  const double there_is =
+      gain["largest_growth_at_rest_J_per_m"].get<double>() / gain["largest_growth_at_rest_relative"].get<double>();
+  CHECK(total.back() - least < 0.01 * there_is);
 }
 
 TEST_CASE("a segment that gives way too far stops a run", "[failure]") {

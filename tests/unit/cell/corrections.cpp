@@ -51,6 +51,13 @@ Membranes cell_with_forces(std::mt19937& random, double noise) {
   return m;
 }
 
+/// What a step does with the forces of membranes on which nothing else acts.
+void take_forces(SlipCorrection& correction, const Membranes& m) {
+  correction.measure({}, m);
+  correction.couple({}, m);
+  correction.complete({}, m);
+}
+
 }  // namespace
 
 TEST_CASE("the constants of the slip correction are those of the layer analysis before this program began") {
@@ -92,9 +99,7 @@ TEST_CASE("the slip correction adds no force to the fluid") {
   auto random = generator(82);
   Membranes m = cell_with_forces(random, 0.5);
   SlipCorrection correction(m, {{slip_constants(KernelKind::peskin4, 5), 0, 0}}, 1.0 / 6);
-  correction.measure({}, m);
-  correction.couple({}, m);
-  correction.complete({}, m);
+  take_forces(correction, m);
   double x = 0, y = 0;
   for (std::size_t i = 0; i < m.x.size(); ++i) x += correction.forces().x[i], y += correction.forces().y[i];
   const ForceSums sums = force_sums(m);
@@ -114,9 +119,7 @@ TEST_CASE("the slip correction keeps the torque to second order in shift over ra
       m.force_x[i] = -std::sin(angle) + std::cos(2 * angle), m.force_y[i] = std::cos(angle) + 0.3 * std::sin(3 * angle);
     }
     SlipCorrection correction(m, {{slip_constants(KernelKind::peskin4, 5), 0, 0}}, 1.0 / 6);
-    correction.measure({}, m);
-    correction.couple({}, m);
-    correction.complete({}, m);
+    take_forces(correction, m);
     const NodeVectors at = correction.positions(), force = correction.forces();
     double torque = 0, expected = 0;
     for (std::size_t i = 0; i < m.x.size(); ++i) {
@@ -136,9 +139,7 @@ TEST_CASE("what the fluid does on the membrane is what the membrane does on the 
   SlipConstants constants = slip_constants(KernelKind::peskin4, 5);
   constants.slip = 0;
   SlipCorrection correction(m, {{constants, 0, 0}}, 1.0 / 6);
-  correction.measure({}, m);
-  correction.couple({}, m);
-  correction.complete({}, m);
+  take_forces(correction, m);
   double fluid = 0, membrane = 0, size = 0;
   for (std::size_t i = 0; i < m.x.size(); ++i) {
     fluid += correction.forces().x[i] * m.velocity_x[i] + correction.forces().y[i] * m.velocity_y[i];
@@ -161,9 +162,7 @@ TEST_CASE("the slip follows the tangential force along the membrane and costs en
     m.force_x[i] = -force * std::sin(angle), m.force_y[i] = force * std::cos(angle);
   }
   SlipCorrection correction(m, {{slip_constants(KernelKind::peskin4, 1), GENERATE(0.0, 5.0), 0}}, viscosity);
-  correction.measure({}, m);
-  correction.couple({}, m);
-  correction.complete({}, m);
+  take_forces(correction, m);
   correction.correct({}, m);
   const double chord = 2 * radius * std::sin(6.283185307179586 / 120), slip = 0.4137 * force / (chord / 2) / viscosity;
   for (std::size_t i = 0; i < m.x.size(); ++i) {
