@@ -119,13 +119,15 @@ void BareFluid<T>::step(host::Worker worker) {
   task.count = lattice_.nx();
   task.relaxation_rate = relaxation_rate_;
   task.magic = magic_;
-  for (int y = rows.begin; y < rows.end; ++y) {
+  for (int i = 0; i < rows.end - rows.begin; ++i) {
+    const int y = parity_ == host::Parity::even ? rows.begin + i : rows.end - 1 - i;
     if (parity_ == host::Parity::even) receive_row(lattice_, y);
     lattice_.row_pointers(parity_, y, task.in, task.out);
     if (force_.x.allocated()) task.force_x = force_.x.row(y), task.force_y = force_.y.row(y);
     row(&task);
     add_wall_momentum(lattice_, y, walls_);
     if (parity_ == host::Parity::even) send_row(lattice_, y);
+    if (force_.x.allocated()) fill_velocity_halo(force_, y, false, walls_);
   }
 }
 

@@ -15,7 +15,7 @@ namespace rouleau::bench {
 enum class Kernel {
   move,    ///< nothing: they only travel, which is what memory allows
   plain,   ///< collision, Stokes flow
-  forced,  ///< collision with a force density, over which the velocity is written
+  forced,  ///< collision with a force density, over which the velocity is written, its halo included
 };
 
 template <class T>

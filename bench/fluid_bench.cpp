@@ -183,17 +183,18 @@ void check_precision(const char* name) {
 }
 
 template <class T>
-void run_one(const std::string& kernel, int nx, int ny, long steps) {
-  const auto plugin = plugin_fluid<T>(nx, ny, false, walls);
+void run_one(const std::string& kernel, bool force, int nx, int ny, long steps) {
+  const auto plugin = plugin_fluid<T>(nx, ny, force, walls);
   start_couette(*plugin);
   const auto advance = [&](auto& fluid) {
+    const Candidate all = candidate(kernel.c_str(), fluid);
     for (long i = 0; i < steps; ++i) {
-      fluid.step({});
-      fluid.end_step();
+      all.step({});
+      all.between({});
     }
   };
   if (kernel == "plugin") return advance(*plugin);
-  BareFluid<T> bare = bare_fluid(kernel == "move" ? Kernel::move : Kernel::plain, *plugin);
+  BareFluid<T> bare = bare_fluid(kernel == "move" ? Kernel::move : force ? Kernel::forced : Kernel::plain, *plugin);
   advance(bare);
 }
 
@@ -222,11 +223,11 @@ void fluid_table(double seconds) {
   }
 }
 
-void run_kernel(const char* kernel, bool f32, int nx, int ny, long steps) {
+void run_kernel(const char* kernel, bool f32, bool force, int nx, int ny, long steps) {
   if (f32) {
-    run_one<float>(kernel, nx, ny, steps);
+    run_one<float>(kernel, force, nx, ny, steps);
   } else {
-    run_one<double>(kernel, nx, ny, steps);
+    run_one<double>(kernel, force, nx, ny, steps);
   }
 }
 

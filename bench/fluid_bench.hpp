@@ -10,7 +10,8 @@ void fluid_table(double seconds);
 /// Throws if one is wrong; prints what it found.
 void check_fluid();
 
-/// Runs `steps` steps of one kernel, for counting its instructions: "plugin", "plain" or "move".
-void run_kernel(const char* kernel, bool f32, int nx, int ny, long steps);
+/// Runs `steps` steps of one kernel, for counting its instructions: "plugin", "plain" or "move"; with `force`, the
+/// first two read a force at every node and write its velocity over it.
+void run_kernel(const char* kernel, bool f32, bool force, int nx, int ny, long steps);
 
 }  // namespace rouleau::bench

@@ -36,7 +36,7 @@ const char* instruction_set() {
 
 int main(int argc, char** argv) {
   namespace options = boost::program_options;
-  bool check = false, whole = false, f32 = false;
+  bool check = false, whole = false, f32 = false, force = false;
   std::string only, kernel;
   double seconds = 1;
   long steps = 0;
@@ -52,6 +52,7 @@ int main(int argc, char** argv) {
   add("nx", options::value(&nx)->default_value(256), "with --kernel: nodes along x, a multiple of 16");
   add("ny", options::value(&ny)->default_value(128), "with --kernel: nodes along y");
   add("f32", options::bool_switch(&f32), "with --kernel: single precision");
+  add("force", options::bool_switch(&force), "with --kernel: every node has a force and writes its velocity");
   add("help", "this text");
   try {
     options::variables_map values;
@@ -63,7 +64,7 @@ int main(int argc, char** argv) {
       return 0;
     }
     if (!kernel.empty()) {
-      rouleau::bench::run_kernel(kernel.c_str(), f32, nx, ny, steps);
+      rouleau::bench::run_kernel(kernel.c_str(), f32, force, nx, ny, steps);
       return 0;
     }
     std::printf("%s, %u processors, %s\n%s, %s\n", processor().c_str(), std::thread::hardware_concurrency(),

@@ -116,11 +116,14 @@ void Fluid<T>::step(Worker worker) {
   const bool even = parity_ == Parity::even;
   const T* in[9];
   T* out[9];
-  for (int y = rows.begin; y < rows.end; ++y) {
-    if (y == rows.begin) {
+  // Up and down in turns: what a step has touched last, the next one finds in the cache.
+  const int first = even ? rows.begin : rows.end - 1, way = even ? 1 : -1;
+  for (int i = 0; i < rows.end - rows.begin; ++i) {
+    const int y = first + way * i;
+    if (i == 0) {
       lattice_.row_pointers(parity_, y, in, out);
     } else {
-      lattice_.next_row_pointers(parity_, y - 1, in, out);
+      lattice_.next_row_pointers(parity_, y - way, y, in, out);
     }
     if (even) receive_row(lattice_, y);
     collide_row(y, in, out);

@@ -6,6 +6,7 @@
 // w_q.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <rouleau/d2q9.hpp>
 
@@ -38,8 +39,8 @@ class Lattice {
   /// wall get half-way bounce-back: what would leave the fluid stays in its node and comes back reversed in the next
   /// step.
   void row_pointers(Parity parity, int y, const T* (&in)[9], T* (&out)[9]);
-  /// The same for row y + 1, given those of row y: quicker, row after row.
-  void next_row_pointers(Parity parity, int y, const T* (&in)[9], T* (&out)[9]);
+  /// The same given those of the row before, `from`, one above or below: quicker, row after row.
+  void next_row_pointers(Parity parity, int from, int y, const T* (&in)[9], T* (&out)[9]);
   /// The populations alone, for observers; exchange must be complete (Fluid::settle).
   void row_pointers(Parity parity, int y, const T* (&in)[9]) const;
 
@@ -84,12 +85,13 @@ inline void Lattice<T>::row_pointers(Parity parity, int y, const T* (&in)[9], T*
 }
 
 template <class T>
-inline void Lattice<T>::next_row_pointers(Parity parity, int y, const T* (&in)[9], T* (&out)[9]) {
-  if (outside(y - 1) || outside(y + 2)) {  // one of the two rows lies beside a wall
-    row_pointers(parity, y + 1, in, out);
+inline void Lattice<T>::next_row_pointers(Parity parity, int from, int y, const T* (&in)[9], T* (&out)[9]) {
+  if (outside(std::min(from, y) - 1) || outside(std::max(from, y) + 1)) {  // one of the two rows lies beside a wall
+    row_pointers(parity, y, in, out);
     return;
   }
-  d2q9::for_each_velocity([&](auto q) { in[q] += stride_, out[q] += stride_; });
+  const std::ptrdiff_t way = y > from ? stride_ : -stride_;
+  d2q9::for_each_velocity([&](auto q) { in[q] += way, out[q] += way; });
 }
 
 extern template class Lattice<float>;

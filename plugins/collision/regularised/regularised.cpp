@@ -14,7 +14,7 @@ struct Regularised {
     const S rising = f[5] + f[7], falling = f[6] + f[8];
     S xx = keep * ((f[1] + f[3]) + (rising + falling) - pressure), xy = keep * (rising - falling);
     S yy = keep * ((f[2] + f[4]) + (rising + falling) - pressure);
-    S momentum[2] = {node.velocity[0], node.velocity[1]};
+    S momentum[2] = {node.momentum[0], node.momentum[1]};
     if constexpr (Node::inertia) {
       // omega uu + (1 - omega/2)(uF + Fu) = (h u)v + (v h)u with h = omega u/2 + (1 - omega/2) F and v = u.
       S half[2] = {0.5 * omega * node.velocity[0], 0.5 * omega * node.velocity[1]};
@@ -27,8 +27,8 @@ struct Regularised {
       yy += 2.0 * half[1] * node.velocity[1];
     }
     if constexpr (Node::forced) {
-      momentum[0] += 0.5 * node.force[0];
-      momentum[1] += 0.5 * node.force[1];
+      momentum[0] += node.force[0];
+      momentum[1] += node.force[1];
     }
     const S even = node.density - 1.5 * (xx + yy);
     after[0] = rouleau::d2q9::weight[0] * even;

@@ -21,18 +21,19 @@ struct Node {
   S force[2];  ///< force density; not to be read unless forced
 
   S density;      ///< deviation from 1
-  S velocity[2];  ///< sum f c + force / 2
+  S momentum[2];  ///< sum f c, before the force has acted
+  S velocity[2];  ///< momentum + force / 2
 
-  /// Sets density and velocity from populations and force.
+  /// Sets density, momentum and velocity from populations and force.
   ROULEAU_ALWAYS_INLINE void compute_moments() {
     // Sums and differences of opposite pairs: what operators that relax even and odd parts compute as well.
     const S rising = f[5] - f[7], falling = f[6] - f[8];
     density = f[0] + ((f[1] + f[3]) + (f[2] + f[4])) + ((f[5] + f[7]) + (f[6] + f[8]));
-    velocity[0] = (f[1] - f[3]) + (rising - falling);
-    velocity[1] = (f[2] - f[4]) + (rising + falling);
-    if constexpr (Forced) {
-      velocity[0] += 0.5 * force[0];
-      velocity[1] += 0.5 * force[1];
+    momentum[0] = (f[1] - f[3]) + (rising - falling);
+    momentum[1] = (f[2] - f[4]) + (rising + falling);
+    for (int k = 0; k < 2; ++k) {
+      velocity[k] = momentum[k];
+      if constexpr (Forced) velocity[k] += 0.5 * force[k];
     }
   }
 
@@ -75,14 +76,14 @@ struct Node {
     }
     return gain;
   }
-  /// The same for the part that changes its sign with the velocity: 3 w_q c_q . (rate u + (1 - rate/2) F).
+  /// The same for the part that changes its sign with the velocity: 3 w_q c_q . (rate u + (1 - rate/2) F), in which the
+  /// half force in u and that in Guo's factor cancel.
   ROULEAU_ALWAYS_INLINE S odd_gain(int q, const S& rate) const {
     if constexpr (Forced) {
-      const S half = 1.0 - 0.5 * rate;
-      const S momentum[2] = {rate * velocity[0] + half * force[0], rate * velocity[1] + half * force[1]};
-      return 3.0 * d2q9::weight[q] * project(q, momentum);
+      const S gained[2] = {rate * momentum[0] + force[0], rate * momentum[1] + force[1]};
+      return 3.0 * d2q9::weight[q] * project(q, gained);
     } else {
-      return rate * (3.0 * d2q9::weight[q]) * project(q, velocity);
+      return rate * (3.0 * d2q9::weight[q]) * project(q, momentum);
     }
   }
 };
