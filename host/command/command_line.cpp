@@ -1,6 +1,8 @@
 #include "command_line.hpp"
 
 #include <algorithm>
+#include <cctype>
+#include <cstring>
 #include <iostream>
 
 #include "error.hpp"
@@ -62,6 +64,14 @@ bool parse_command_line(const std::string& command, const std::string& help, con
   } catch (const options::error& error) {
     throw Error(ExitCode::bad_input, std::string(error.what()) + hint);
   }
+}
+
+std::string in_shell(const std::string& word) {
+  const auto plain = [](unsigned char c) { return std::isalnum(c) != 0 || std::strchr("/._-+=:,@%", c) != nullptr; };
+  if (!word.empty() && std::all_of(word.begin(), word.end(), plain)) return word;
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + '\'';
 }
 
 }  // namespace rouleau::host

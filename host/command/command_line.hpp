@@ -1,4 +1,5 @@
-// Parses a command's options, with --help and errors that name the nearest option.
+// Parses a command's options, with --help and errors that name the nearest option; words for a command that a message
+// suggests.
 #pragma once
 
 #include <boost/program_options.hpp>
@@ -12,5 +13,8 @@ namespace rouleau::host {
 bool parse_command_line(const std::string& command, const std::string& help, const std::vector<std::string>& arguments,
                         boost::program_options::options_description& description,
                         const boost::program_options::positional_options_description& positional);
+
+/// A word as a shell reads it: in quotes where it needs them.
+std::string in_shell(const std::string& word);
 
 }  // namespace rouleau::host

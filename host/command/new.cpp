@@ -3,9 +3,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <iostream>
 #include <regex>
@@ -133,15 +131,6 @@ void make_folder(const fs::path& folder, const Template& model, const Name& name
     fs::remove_all(partial, error);
     throw;
   }
-}
-
-/// A word as a shell reads it.
-std::string in_shell(const std::string& word) {
-  const auto plain = [](unsigned char c) { return std::isalnum(c) != 0 || std::strchr("/._-+=:,@%", c) != nullptr; };
-  if (!word.empty() && std::all_of(word.begin(), word.end(), plain)) return word;
-  std::string quoted = "'";
-  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + '\'';
 }
 
 void print_next_steps(const fs::path& folder, const Template& model, const Name& name) {

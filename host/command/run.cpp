@@ -96,7 +96,7 @@ int run_command(const std::vector<std::string>& arguments) {
   const std::filesystem::path folder = !out.empty()          ? std::filesystem::path(out)
                                        : overwrite || resume ? named
                                                              : unused_directory(named);
-  const std::string go_on = "rouleau run " + scene_options.scene + " --out " + folder.string() + " --resume";
+  const std::string again = "rouleau run " + scene_options.in_shell() + " --out " + in_shell(folder.string());
   const FormerRun former = resume ? FormerRun::resume : overwrite ? FormerRun::replace : FormerRun::keep;
   Summary summary;
   {
@@ -107,11 +107,12 @@ int run_command(const std::vector<std::string>& arguments) {
     try {
       summary = simulate(plan, run, directory);
     } catch (const Error& error) {
-      const bool kept = directory.is_open() && std::filesystem::exists(checkpoint_file(folder));
-      if (error.code() != ExitCode::input_output || !kept) throw;
-      throw Error(error.code(),
-                  std::string(error.what()) +
-                      "\n  what was computed up to the last checkpoint is kept; to go on from there: " + go_on);
+      if (error.code() != ExitCode::input_output || !directory.is_open()) throw;
+      const std::string next =
+          std::filesystem::exists(checkpoint_file(folder))
+              ? "what was computed up to the last checkpoint is kept; to go on from there: " + again + " --resume"
+              : "no checkpoint was written yet; to begin again: " + again + " --overwrite";
+      throw Error(error.code(), std::string(error.what()) + "\n  " + next);
     }
   }
   const std::filesystem::path report = write_report(folder);
@@ -124,7 +125,9 @@ int run_command(const std::vector<std::string>& arguments) {
               << f.value << ", limit " << f.limit << "\n  " << f.remedy << "\n";
   }
   if (summary.failure) return static_cast<int>(ExitCode::simulation_failed);
-  if (summary.status == "interrupted" && scene.output.checkpoint_seconds) std::cerr << "to go on: " << go_on << "\n";
+  if (summary.status == "interrupted" && scene.output.checkpoint_seconds) {
+    std::cerr << "to go on: " << again << " --resume\n";
+  }
   return static_cast<int>(summary.status == "interrupted" ? ExitCode::interrupted : ExitCode::done);
 }
 

@@ -1,5 +1,6 @@
 #include "scene_options.hpp"
 
+#include "command/command_line.hpp"
 #include "run/numerics_bounds.hpp"
 
 namespace rouleau::host {
@@ -20,6 +21,14 @@ void SceneOptions::add_to(options::options_description& description,
 
 Scene SceneOptions::read() const {
   return read_within_limits(scene, overrides, [&](const Scene& read) { return catalog(read); });
+}
+
+std::string SceneOptions::in_shell() const {
+  std::string words = host::in_shell(scene);
+  for (const std::string& override : overrides) words += " --set " + host::in_shell(override);
+  for (const std::string& folder : plugin_dirs) words += " --plugin-dir " + host::in_shell(folder);
+  if (!lock.empty()) words += " --lock " + host::in_shell(lock);
+  return words;
 }
 
 Catalog SceneOptions::catalog(const Scene& read) const {

@@ -22,6 +22,8 @@ struct SceneOptions {
   void add_to(boost::program_options::options_description& options,
               boost::program_options::positional_options_description& positional);
   [[nodiscard]] Scene read() const;
+  /// The scene and these options as somebody would type them again.
+  [[nodiscard]] std::string in_shell() const;
   /// What the search path offers, bound by the lock.
   [[nodiscard]] Catalog catalog(const Scene& scene) const;
 };

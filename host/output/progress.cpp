@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <vector>
 
 namespace rouleau::host {
 
@@ -43,7 +44,48 @@ int terminal_width() {
   return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
 }
 
+double within_one(double fraction) { return std::isfinite(fraction) ? std::clamp(fraction, 0.0, 1.0) : 0.0; }
+
+/// The numbers of a line in their order, each with what it is worth where room is short.
+struct Part {
+  std::string text;
+  int worth;
+};
+std::vector<Part> parts(const ProgressState& state, double rate, double remaining_s) {
+  return {{formatted("%3.0f%%", 100 * within_one(state.fraction)), 9},
+          {"ETA " + duration(remaining_s), 8},
+          {formatted("strain %.2f", state.strain), 7},
+          {formatted("%.0f steps/s", rate), 3},
+          {formatted("Mach %.2g", state.mach_max), 1},
+          {formatted("area drift %.1e", state.area_drift), 2},
+          {formatted("%d aggregate%s", state.aggregates, state.aggregates == 1 ? "" : "s"), 4}};
+}
+std::string joined(const std::vector<Part>& parts) {
+  std::string text;
+  for (const Part& part : parts) text += (text.empty() ? "" : "  ") + part.text;
+  return text;
+}
+
 }  // namespace
+
+std::string progress_line(const ProgressState& state, double rate, double remaining_s, std::size_t width) {
+  std::vector<Part> shown = parts(state, rate, remaining_s);
+  const std::string stage = state.stage.substr(0, 16) + " ";
+  const auto free = [&] {
+    const std::size_t used = stage.size() + joined(shown).size();
+    return used < width ? width - used : std::size_t{0};
+  };
+  while (shown.size() > 1 && stage.size() + joined(shown).size() > width) {
+    shown.erase(
+        std::min_element(shown.begin(), shown.end(), [](const Part& a, const Part& b) { return a.worth < b.worth; }));
+  }
+  constexpr std::size_t around = 2, shortest = 10, longest = 30;  // of the bar: its brackets, and between them
+  std::string line = stage;
+  if (free() >= around + shortest) {
+    line += bar(within_one(state.fraction), static_cast<int>(std::min(longest, free() - around)));
+  }
+  return (line + joined(shown)).substr(0, width);
+}
 
 Progress::Progress(bool quiet)
     : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) == 1), start_(std::chrono::steady_clock::now()), last_(start_) {}
@@ -59,7 +101,7 @@ void Progress::update(const ProgressState& state) {
   if (since_last < (terminal_ ? 0.1 : 10.0)) return;
 
   const double elapsed = Seconds(now - start_).count();
-  const double fraction = std::isfinite(state.fraction) ? std::clamp(state.fraction, 0.0, 1.0) : 0.0;
+  const double fraction = within_one(state.fraction);
   const double gained = fraction - first_fraction_;
   const double remaining = gained > 0 ? elapsed * (1 - fraction) / gained : NAN;
   // The terminal shows the speed of the last second or so, a pipe that of the last line's interval.
@@ -68,20 +110,13 @@ void Progress::update(const ProgressState& state) {
   last_ = now;
   last_step_ = state.step;
 
-  const std::string numbers =
-      formatted("%3.0f%%  ETA %s  strain %.2f  %.0f steps/s  Mach %.2g  area drift %.1e  %d aggregate%s",
-                100 * fraction, duration(remaining).c_str(), state.strain, rate_, state.mach_max, state.area_drift,
-                state.aggregates, state.aggregates == 1 ? "" : "s");
   if (!terminal_) {
-    std::fprintf(stderr, "%s  step %ld  %s\n", state.stage.c_str(), state.step, numbers.c_str());
+    std::fprintf(stderr, "%s  step %ld  %s\n", state.stage.c_str(), state.step,
+                 joined(parts(state, rate_, remaining)).c_str());
     return;
   }
-  std::string line = state.stage.substr(0, 16) + " ";
-  const auto width = static_cast<std::size_t>(terminal_width() - 1);
-  if (width > line.size() + numbers.size() + 13)
-    line += bar(fraction, static_cast<int>(std::min<std::size_t>(30, width - line.size() - numbers.size() - 3)));
-  line = (line + numbers).substr(0, width);
-  std::fprintf(stderr, "\r%s\x1b[K", line.c_str());
+  const auto width = static_cast<std::size_t>(std::max(1, terminal_width() - 1));
+  std::fprintf(stderr, "\r%s\x1b[K", progress_line(state, rate_, remaining, width).c_str());
   std::fflush(stderr);
   drawn_ = true;
 }

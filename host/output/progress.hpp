@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <string>
 
 namespace rouleau::host {
@@ -15,6 +16,11 @@ struct ProgressState {
   double mach_max, area_drift;
   int aggregates;
 };
+
+/// One line of at most `width` characters for a terminal. Where all of it has no room, what tells least is left out:
+/// first the bar, then the Mach number, the area drift, the speed, the aggregates.
+/// rate: steps per second; remaining_s: not finite where it is not known.
+std::string progress_line(const ProgressState& state, double rate, double remaining_s, std::size_t width);
 
 /// Prints to stderr; cheap to call often: draws at most ten times a second (terminal) or every ten seconds (pipe).
 class Progress {

@@ -107,9 +107,9 @@ json series_data(const StoredTable& series, const Selection& selection) {
     data[name] = picked(series.numbers(column), selection, micro);
   }
   // The ledger of energies, which runs of earlier versions do not have.
-  for (const char* name :
-       {"kinetic_energy_J_per_m", "elastic_energy_J_per_m", "bending_energy_J_per_m", "interaction_energy_J_per_m",
-        "total_energy_J_per_m", "viscous_dissipation_W_per_m", "wall_power_W_per_m"})
+  for (const char* name : {"kinetic_energy_J_per_m", "elastic_energy_J_per_m", "bending_energy_J_per_m",
+                           "interaction_energy_J_per_m", "total_energy_J_per_m", "viscous_dissipation_W_per_m",
+                           "membrane_dissipation_W_per_m", "wall_power_W_per_m", "body_force_power_W_per_m"})
     if (series.has(name)) data[name] = picked(series.numbers(name), selection);
   return data;
 }

@@ -9,6 +9,7 @@ import os
 import pty
 import random
 import resource
+import shlex
 import shutil
 import signal
 import subprocess
@@ -120,7 +121,9 @@ class Disks(Case):
             result = run(directory, preexec_fn=limit(size))
             self.assert_stops(result, 4, str(directory), "File too large", "ulimit -f")
             if (directory / "checkpoint.h5").exists():
-                self.assertIn("--resume", result.stderr)
+                self.assertIn(f"--out {directory} --resume\n", result.stderr)
+            elif (directory / "scene.json").exists():
+                self.assertIn(f"--out {directory} --overwrite\n", result.stderr)
             self.assertEqual([], [e.name for e in directory.iterdir() if e.name.startswith(".")], "left over")
             self.assert_goes_on(directory)
 
@@ -306,6 +309,22 @@ class Terminals_and_clocks(Case):
         self.assertNotIn(started[:3], ("202", "203"), "the clock did not jump")
         alone = json.loads((LEFT_ALONE / "summary.json").read_text())["wall_s"]
         self.assertLess(json.loads((directory / "summary.json").read_text())["wall_s"], 100 * alone + 10)
+
+    def test_the_command_that_a_message_ends_with_goes_on_whatever_the_first_one_set(self):
+        directory = self.path / "a run with spaces"
+        process = subprocess.Popen(command(directory, "--set", "/fluid/viscosity=1.3 cP", "--plugin-dir", PLUGINS / "interaction"),
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        while not (directory / "checkpoint.h5").exists():
+            time.sleep(0.002)
+        process.terminate()
+        last = process.communicate()[1].splitlines()[-1]
+        self.assertEqual(process.returncode, 130)
+        self.assertTrue(last.startswith("to go on: rouleau run "), last)
+        words = shlex.split(last.partition(": rouleau ")[2])
+        again = subprocess.run([PROGRAM, *words, "--quiet"], capture_output=True, text=True)
+        self.assertEqual(again.returncode, 0, again.stderr)
+        self.assertEqual(json.loads((directory / "scene.json").read_text())["fluid"]["viscosity"], "1.3 cP")
+        self.assertEqual(len(json.loads((directory / "summary.json").read_text())["resumed"]), 1)
 
     def test_a_second_signal_does_not_wait(self):
         directory = self.path / "run"
