@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <rouleau/dispatch.hpp>
 
 namespace rouleau::host {
@@ -42,44 +43,46 @@ struct Search {
   struct Closest {
     S square, segment, along, x, y;
   };
-  /// The same of a group.
-  struct Found {
-    double along[size], distance[size], direction_x[size], direction_y[size];
-    int segment[size];
-  };
 
-  /// Appends the contacts of a group of nodes; the arrays have room for the whole group.
+  /// Appends the contacts of a group of nodes. The whole group is written, for which the arrays have room, and then
+  /// drawn together where nodes lie beyond the cutoff.
   template <class S>
   ROULEAU_ALWAYS_INLINE static int append(const SearchTask& t, const Neighbours::Group& group, const S& move_x,
                                           const S& move_y, int count) {
     constexpr int packs = size / S::size;
     Closest<S> closest[packs];
     find<S>(t, group, move_x, move_y, closest);
-    Found found;
     S nearest = 1e300, farthest = 0.0;
     for (int p = 0; p < packs; ++p) {
       const Closest<S>& c = closest[p];
-      const int at = p * S::size;
+      const int at = count + p * S::size;
       const S distance = sqrt(c.square), inverse = 1.0 / distance;
       nearest = min(distance, nearest);
       farthest = max(distance, farthest);
-      c.along.store(found.along + at);
-      distance.store(found.distance + at);
-      (c.x * inverse).store(found.direction_x + at);
-      (c.y * inverse).store(found.direction_y + at);
-      for (int k = 0; k < S::size; ++k) found.segment[at + k] = static_cast<int>(c.segment.vector[k]);
+      c.along.store(t.along + at);
+      distance.store(t.distance + at);
+      (c.x * inverse).store(t.direction_x + at);
+      (c.y * inverse).store(t.direction_y + at);
+      using Integers __attribute__((vector_size(S::size * sizeof(int)))) = int;
+      const Integers segment = __builtin_convertvector(c.segment.vector, Integers);
+      std::memcpy(t.segment + at, &segment, sizeof segment);
     }
-    if (!(least(nearest) >= ContactList::least_distance)) send_out(t, found);
+    for (int k = 0; k < size; ++k) t.node[count + k] = group.first + k;
+    if (!(least(nearest) >= ContactList::least_distance)) send_out(t, count);
     const int valid = std::min(size, t.nodes_end - group.first);
-    if (valid == size && largest(farthest) <= t.cutoff) {
-      put<size>(t, found, group.first, 0, count);
-      return count + size;
+    if (valid == size && largest(farthest) <= t.cutoff) return count + size;
+    int end = count;
+    for (int k = count; k < count + valid; ++k) {
+      const bool touches = t.distance[k] <= t.cutoff;
+      t.node[end] = t.node[k];
+      t.segment[end] = t.segment[k];
+      t.along[end] = t.along[k];
+      t.distance[end] = t.distance[k];
+      t.direction_x[end] = t.direction_x[k];
+      t.direction_y[end] = t.direction_y[k];
+      end += touches ? 1 : 0;
     }
-    for (int k = 0; k < valid; ++k) {
-      put<1>(t, found, group.first, k, count);
-      count += found.distance[k] <= t.cutoff ? 1 : 0;
-    }
-    return count;
+    return end;
   }
 
   template <class S>
@@ -111,29 +114,16 @@ struct Search {
     }
   }
 
-  /// Writes `count` nodes of a group from the k-th on to the list.
-  template <int count>
-  ROULEAU_ALWAYS_INLINE static void put(const SearchTask& t, const Found& found, int first, int k, int to) {
-    for (int i = 0; i < count; ++i) {
-      t.node[to + i] = first + k + i;
-      t.segment[to + i] = found.segment[k + i];
-    }
-    for (int i = 0; i < count; ++i) t.along[to + i] = found.along[k + i];
-    for (int i = 0; i < count; ++i) t.distance[to + i] = found.distance[k + i];
-    for (int i = 0; i < count; ++i) t.direction_x[to + i] = found.direction_x[k + i];
-    for (int i = 0; i < count; ++i) t.direction_y[to + i] = found.direction_y[k + i];
-  }
-
   /// A node on the other outline has no direction of its own: it is sent out along the segment's outward normal.
-  [[gnu::noinline, gnu::cold]] static void send_out(const SearchTask& t, Found& found) {
-    for (int k = 0; k < size; ++k) {
-      if (!(found.distance[k] > 0)) {
-        const int segment = found.segment[k];
+  [[gnu::noinline, gnu::cold]] static void send_out(const SearchTask& t, int begin) {
+    for (int k = begin; k < begin + size; ++k) {
+      if (!(t.distance[k] > 0)) {
+        const int segment = t.segment[k];
         const double inverse_length = std::sqrt(t.inverse_square[segment]);
-        found.direction_x[k] = t.along_y[segment] * inverse_length;
-        found.direction_y[k] = -t.along_x[segment] * inverse_length;
+        t.direction_x[k] = t.along_y[segment] * inverse_length;
+        t.direction_y[k] = -t.along_x[segment] * inverse_length;
       }
-      found.distance[k] = std::max(found.distance[k], ContactList::least_distance);
+      t.distance[k] = std::max(t.distance[k], ContactList::least_distance);
     }
   }
 };

@@ -1,7 +1,6 @@
 // Which nodes of the lattice feel a membrane: one bit for 16 nodes, read as runs.
 #pragma once
 
-#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <vector>
@@ -31,25 +30,18 @@ class Activity {
   /// Calls function(Run) for the runs of row y, left to right, covering [0, nx) exactly.
   template <class Function>
   void for_runs(int y, Function function) const {
-    const std::uint64_t* row = bits_.data() + static_cast<std::size_t>(words_) * y;
-    for (int x = 0; x < nx_;) {
-      const int bit = x / nodes_per_bit;
-      const bool on = (row[bit / bits_per_word] >> (bit % bits_per_word) & 1) != 0;
-      const int end = std::min(nx_, next_change(row, bit, on) * nodes_per_bit);
-      function(Run{x, end, on});
-      x = end;
-    }
+    for (const Run& run : runs_[static_cast<std::size_t>(y)]) function(run);
   }
   [[nodiscard]] bool active(int x, int y) const {
     const int bit = x / nodes_per_bit;
     return (bits_[static_cast<std::size_t>(words_) * y + bit / bits_per_word] >> (bit % bits_per_word) & 1) != 0;
   }
   /// Whether any node of row y is active; whether the first or the last one is.
-  [[nodiscard]] bool any(int y) const {
-    const auto row = bits_.begin() + static_cast<std::ptrdiff_t>(words_) * y;
-    return std::any_of(row, row + words_, [](std::uint64_t word) { return word != 0; });
+  [[nodiscard]] bool any(int y) const { return runs_[static_cast<std::size_t>(y)].size() > 1 || at_side(y); }
+  [[nodiscard]] bool at_side(int y) const {
+    const std::vector<Run>& runs = runs_[static_cast<std::size_t>(y)];
+    return runs.front().active || runs.back().active;
   }
-  [[nodiscard]] bool at_side(int y) const { return active(0, y) || active(nx_ - 1, y); }
   [[nodiscard]] double active_fraction() const;
 
  private:
@@ -65,8 +57,12 @@ class Activity {
     return word * bits_per_word + std::countr_zero(changed);
   }
 
+  /// Lists the runs of row y anew from its bits.
+  void list_runs(int y);
+
   int nx_ = 0, ny_ = 0, words_ = 0;
   std::vector<std::uint64_t> bits_;
+  std::vector<std::vector<Run>> runs_;  ///< of each row: read several times a step, changed when a membrane has moved
 };
 
 }  // namespace rouleau::host
