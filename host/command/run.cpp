@@ -96,7 +96,8 @@ int run_command(const std::vector<std::string>& arguments) {
   const std::filesystem::path folder = !out.empty()          ? std::filesystem::path(out)
                                        : overwrite || resume ? named
                                                              : unused_directory(named);
-  const std::string again = "rouleau run " + scene_options.in_shell() + " --out " + in_shell(folder.string());
+  const std::string again =
+      "rouleau run " + scene_options.in_shell() + " --out " + in_shell(folder.string()) + " --resume";
   const FormerRun former = resume ? FormerRun::resume : overwrite ? FormerRun::replace : FormerRun::keep;
   Summary summary;
   {
@@ -108,11 +109,10 @@ int run_command(const std::vector<std::string>& arguments) {
       summary = simulate(plan, run, directory);
     } catch (const Error& error) {
       if (error.code() != ExitCode::input_output || !directory.is_open()) throw;
-      const std::string next =
-          std::filesystem::exists(checkpoint_file(folder))
-              ? "what was computed up to the last checkpoint is kept; to go on from there: " + again + " --resume"
-              : "no checkpoint was written yet; to begin again: " + again + " --overwrite";
-      throw Error(error.code(), std::string(error.what()) + "\n  " + next);
+      const std::string next = std::filesystem::exists(checkpoint_file(folder))
+                                   ? "what was computed up to the last checkpoint is kept; to go on from there: "
+                                   : "no checkpoint was written yet; to begin again: ";
+      throw Error(error.code(), std::string(error.what()) + "\n  " + next + again);
     }
   }
   const std::filesystem::path report = write_report(folder);
@@ -126,7 +126,7 @@ int run_command(const std::vector<std::string>& arguments) {
   }
   if (summary.failure) return static_cast<int>(ExitCode::simulation_failed);
   if (summary.status == "interrupted" && scene.output.checkpoint_seconds) {
-    std::cerr << "to go on: " << again << " --resume\n";
+    std::cerr << "to go on: " << again << "\n";
   }
   return static_cast<int>(summary.status == "interrupted" ? ExitCode::interrupted : ExitCode::done);
 }

@@ -120,10 +120,9 @@ class Disks(Case):
             directory = self.path / f"limit-{number}"
             result = run(directory, preexec_fn=limit(size))
             self.assert_stops(result, 4, str(directory), "File too large", "ulimit -f")
-            if (directory / "checkpoint.h5").exists():
-                self.assertIn(f"--out {directory} --resume\n", result.stderr)
-            elif (directory / "scene.json").exists():
-                self.assertIn(f"--out {directory} --overwrite\n", result.stderr)
+            if (directory / "scene.json").exists():
+                first = "to go on from there" if (directory / "checkpoint.h5").exists() else "to begin again"
+                self.assertIn(f"{first}: rouleau run {SCENE} --out {directory} --resume\n", result.stderr)
             self.assertEqual([], [e.name for e in directory.iterdir() if e.name.startswith(".")], "left over")
             self.assert_goes_on(directory)
 
