@@ -169,6 +169,12 @@ nlohmann::json CheckpointReader::state() const {
   return state;
 }
 
+void CheckpointReader::refuse(const std::string& what) const {
+  throw Error(ExitCode::input_output, Place{path_.string(), "", 0, 0},
+              "does not hold what this program keeps in a checkpoint: " + what +
+                  "\n  go on with the program that wrote it, or begin anew with --overwrite");
+}
+
 bool CheckpointReader::has(const std::string& path) const { return file_->hdf5.has(path); }
 
 std::vector<double> CheckpointReader::array(const std::string& path) const { return file_->hdf5.read(path); }

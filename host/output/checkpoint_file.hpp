@@ -65,6 +65,8 @@ class CheckpointReader {
   void take_place(const std::filesystem::path& directory) const;
   [[nodiscard]] nlohmann::json facts() const;
   [[nodiscard]] nlohmann::json state() const;
+  /// Throws Error(input_output): the file is whole, but not what this program keeps in a checkpoint.
+  [[noreturn]] void refuse(const std::string& what) const;
   [[nodiscard]] bool has(const std::string& path) const;
   [[nodiscard]] std::vector<double> array(const std::string& path) const;
   /// An array that must have just so many values.

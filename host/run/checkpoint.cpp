@@ -62,14 +62,8 @@ json save_contacts(CheckpointWriter& writer, const ContactMemory& memory) {
 }
 
 /// A checkpoint that is whole and yet not what this program writes.
-[[noreturn]] void refuse(const CheckpointReader& reader, const std::string& what) {
-  throw Error(ExitCode::input_output, Place{reader.path().string(), "", 0, 0},
-              "does not hold what this program keeps in a checkpoint: " + what +
-                  "\n  go on with the program that wrote it, or begin anew with --overwrite");
-}
-
 void require(bool fits, const CheckpointReader& reader, const char* what) {
-  if (!fits) refuse(reader, what);
+  if (!fits) reader.refuse(what);
 }
 
 void restore_contacts(const CheckpointReader& reader, const json& saved, Membranes& membranes) {
@@ -167,14 +161,15 @@ void Checkpoints::settle(bool sound) {
   last_ = Clock::now();
 }
 
-void restore(const CheckpointReader& reader, const json& saved, const Plan& plan, RunState& state,
-             Membranes& membranes) {
+DirectoryMark restore(const CheckpointReader& reader, const json& saved, const Plan& plan, RunState& state,
+                      Membranes& membranes) {
   try {
     saved.at("run").get_to(state);
     require(state.fits(plan, membranes), reader, "counts of another scene");
     restore_membranes(reader, saved.at("membranes"), membranes);
+    return saved.at("directory").get<DirectoryMark>();
   } catch (const json::exception& error) {
-    refuse(reader, error.what());
+    reader.refuse(error.what());
   }
 }
 
@@ -190,7 +185,7 @@ void restore(const CheckpointReader& reader, const json& saved, Solver<T>& solve
         },
         saved.at("solver").at("walls_have_acted"));
   } catch (const json::exception& error) {
-    refuse(reader, error.what());
+    reader.refuse(error.what());
   }
   if (solver.indicator() == nullptr) return;
   DisplacementWatch::Memory memory = solver.indicator()->memory();

@@ -46,9 +46,9 @@ class Checkpoints {
 };
 
 /// Into the state and the membranes of the same scene, before a solver is made for them. `saved`: the reader's state().
-/// Both throw Error(input_output) where the checkpoint does not fit.
-void restore(const CheckpointReader& reader, const nlohmann::json& saved, const Plan& plan, RunState& state,
-             Membranes& membranes);
+/// Returns how far the files of the directory had come. Both throw Error(input_output) where the checkpoint does not fit.
+DirectoryMark restore(const CheckpointReader& reader, const nlohmann::json& saved, const Plan& plan, RunState& state,
+                      Membranes& membranes);
 /// Into a new solver of the same stage.
 template <class T>
 void restore(const CheckpointReader& reader, const nlohmann::json& saved, Solver<T>& solver);

@@ -119,6 +119,23 @@ std::vector<Difference> differences(const json& facts, const Plan& plan, int sta
   return found;
 }
 
+namespace {
+
+/// Takes note of how the checkpoint's run differs from this one, or refuses it.
+void accept_differences(Resumption& resumption, const Plan& plan, bool force) {
+  const CheckpointReader& checkpoint = *resumption.checkpoint;
+  const json facts = checkpoint.facts();
+  const std::vector<Difference> found = differences(facts, plan, facts.at("stage"));
+  const bool harmless = std::all_of(found.begin(), found.end(), [](const Difference& d) { return d.harmless; });
+  if (!found.empty() && !(harmless && force)) {
+    throw Error(ExitCode::bad_input, Place{checkpoint.path().string(), "", 0, 0},
+                message(checkpoint.path(), facts, found, harmless));
+  }
+  for (const Difference& difference : found) resumption.accepted.push_back(difference.what);
+}
+
+}  // namespace
+
 Resumption open_checkpoint(const std::filesystem::path& directory, const Plan& plan, bool force) {
   Resumption resumption;
   const auto last = checkpoint_file(directory), previous = previous_checkpoint_file(directory);
@@ -138,15 +155,11 @@ Resumption open_checkpoint(const std::filesystem::path& directory, const Plan& p
                                               "\n  no checkpoint can be used; begin anew with --overwrite");
     }
   }
-  const json facts = resumption.checkpoint->facts();
-  const std::vector<Difference> found = differences(facts, plan, facts.at("stage"));
-  if (found.empty()) return resumption;
-  const bool harmless = std::all_of(found.begin(), found.end(), [](const Difference& d) { return d.harmless; });
-  if (!harmless || !force) {
-    throw Error(ExitCode::bad_input, Place{resumption.checkpoint->path().string(), "", 0, 0},
-                message(resumption.checkpoint->path(), facts, found, harmless));
+  try {
+    accept_differences(resumption, plan, force);
+  } catch (const json::exception& error) {
+    resumption.checkpoint->refuse(error.what());
   }
-  for (const Difference& difference : found) resumption.accepted.push_back(difference.what);
   return resumption;
 }
 

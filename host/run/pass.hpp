@@ -1,12 +1,14 @@
-// One pass of a time step, and the clock that tells what each pass costs.
+// One pass of a time step, how the workers run several, and the clock that tells what each pass costs.
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <functional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "barrier.hpp"
 #include "worker.hpp"
 
 namespace rouleau::host {
@@ -46,5 +48,28 @@ class PassClock {
   std::vector<double> wall_s_;
   Clock::time_point last_ = Clock::now();
 };
+
+/// What each worker does with the passes, in their order. The first worker's clock counts them from `first` on.
+inline void run_passes(const std::vector<Pass>& passes, Worker worker, Barrier& barrier, PassClock& clock,
+                       std::size_t first) {
+  unsigned announced = 0;
+  for (std::size_t i = 0; i < passes.size(); ++i) {
+    passes[i].run(worker);
+    switch (passes[i].meeting) {
+      case Meeting::all:
+        barrier.arrive_and_wait();
+        break;
+      case Meeting::announce:
+        announced = barrier.arrive();
+        break;
+      case Meeting::await:
+        barrier.wait(announced);
+        break;
+      case Meeting::none:
+        break;
+    }
+    if (worker.first()) clock.lap(first + i);
+  }
+}
 
 }  // namespace rouleau::host

@@ -13,7 +13,6 @@
 #include <set>
 #include <string>
 
-#include "barrier.hpp"
 #include "cell/motion.hpp"
 #include "checkpoint.hpp"
 #include "checkpoint_match.hpp"
@@ -78,8 +77,7 @@ class Simulation {
   void go_on_from(const Resumption& resumption) {
     const CheckpointReader& reader = *resumption.checkpoint;
     saved_ = reader.state();
-    restore(reader, saved_, plan_, state_, membranes_);
-    directory_.go_back(saved_.at("directory"));
+    directory_.go_back(restore(reader, saved_, plan_, state_, membranes_));
     reader.take_place(directory_.path());
     nlohmann::json resumed{{"step", state_.steps}, {"threads", options_.threads}, {"accepted", resumption.accepted}};
     if (!resumption.damage.empty()) resumed["damaged_checkpoint"] = resumption.damage;
@@ -105,7 +103,7 @@ class Simulation {
         checkpoint = nullptr;
         saved_.clear();
       } else {
-        start_fluid(*next, solver.get());
+        next->start(solver.get());
         start_stage(next->setting());
       }
       solver = std::move(next);
@@ -123,31 +121,6 @@ class Simulation {
     state_.steps_before = state_.steps;
     state_.stage_wall = 0;
     state_.rest_watch.start(0, membranes_);
-  }
-
-  /// Fluid of a stage: the developed flow between its walls if the stage asks for it, else what the former stage left,
-  /// rescaled with the time step: velocities and density deviations of the same flow scale like the density factor.
-  template <class T>
-  void start_fluid(Solver<T>& solver, Solver<T>* former) {
-    const StageSetting& setting = solver.setting();
-    double faster = 0;  // what the membranes' last displacement is worth in the new time step
-    if (setting.stage->start == WallStart::developed) {
-      // Couette and Poiseuille flow, y from the middle of the channel.
-      const double middle = (scene_.domain.nodes[1] - 1) / 2.0, half_height = scene_.domain.nodes[1] / 2.0;
-      const double curvature = setting.body_force_x / ((setting.tau - 0.5) / 3);
-      solver.fluid().set_profile(
-          [&](double y) {
-            const double s = y - middle;
-            return setting.shear_rate * s + curvature * (half_height * half_height - s * s) / 2;
-          },
-          [&](double y) { return setting.shear_rate - curvature * (y - middle); });
-    } else if (former != nullptr) {
-      faster = setting.stage->density_factor / former->setting().stage->density_factor;
-      solver.fluid().take_over(former->fluid(), faster);
-    }
-    for (auto* velocity : {&membranes_.velocity_x, &membranes_.velocity_y}) {
-      for (double& v : *velocity) v *= faster;
-    }
   }
 
   template <class T>
@@ -232,28 +205,6 @@ class Simulation {
       if (worker.first()) count_costs(state_.stage_step);
     }
     if (trouble) std::rethrow_exception(trouble);
-  }
-
-  static void run_passes(const std::vector<Pass>& passes, Worker worker, Barrier& barrier, PassClock& clock,
-                         std::size_t first) {
-    unsigned announced = 0;
-    for (std::size_t i = 0; i < passes.size(); ++i) {
-      passes[i].run(worker);
-      switch (passes[i].meeting) {
-        case Meeting::all:
-          barrier.arrive_and_wait();
-          break;
-        case Meeting::announce:
-          announced = barrier.arrive();
-          break;
-        case Meeting::await:
-          barrier.wait(announced);
-          break;
-        case Meeting::none:
-          break;
-      }
-      if (worker.first()) clock.lap(first + i);
-    }
   }
 
   template <class T>

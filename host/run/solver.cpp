@@ -31,6 +31,28 @@ Solver<T>::Solver(const Plan& plan, int stage, Membranes& membranes)
 
 /// What the immersed boundary does wrong, and the scene wants put right.
 template <class T>
+void Solver<T>::start(Solver* former) {
+  double faster = 0;  // what the membranes' last displacement is worth in the new time step
+  if (setting_->stage->start == WallStart::developed) {
+    // Couette and Poiseuille flow, y from the middle of the channel.
+    const double half_height = fluid_.setting().ny / 2.0, middle = half_height - 0.5, rate = setting_->shear_rate;
+    const double curvature = setting_->body_force_x / ((setting_->tau - 0.5) / 3);
+    fluid_.set_profile(
+        [&](double y) {
+          const double s = y - middle;
+          return rate * s + curvature * (half_height * half_height - s * s) / 2;
+        },
+        [&](double y) { return rate - curvature * (y - middle); });
+  } else if (former != nullptr) {
+    faster = setting_->stage->density_factor / former->setting_->stage->density_factor;
+    fluid_.take_over(former->fluid_, faster);
+  }
+  for (auto* velocity : {&membranes_.velocity_x, &membranes_.velocity_y}) {
+    for (double& v : *velocity) v *= faster;
+  }
+}
+
+template <class T>
 void Solver<T>::plan_corrections(const Plan& plan, const std::vector<MembraneLaws>& laws) {
   const Scene& scene = *plan.scene;
   if (scene.numerics.slip_correction) {

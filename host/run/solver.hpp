@@ -22,6 +22,11 @@ class Solver {
  public:
   Solver(const Plan& plan, int stage, Membranes& membranes);
 
+  /// The fluid that the stage begins with: the developed flow between its walls if the stage asks for it, else what the
+  /// stage before left (null: there was none), rescaled with the time step: velocities and density deviations of the
+  /// same flow scale like the density factor. The nodes' velocities with it.
+  void start(Solver* former);
+
   [[nodiscard]] Fluid<T>& fluid() { return fluid_; }
   /// Null without cells.
   [[nodiscard]] const Indicator<T>* indicator() const { return indicator_.get(); }
