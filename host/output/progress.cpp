@@ -70,6 +70,7 @@ std::string joined(const std::vector<Part>& parts) {
 
 std::string progress_line(const ProgressState& state, double rate, double remaining_s, std::size_t width) {
   std::vector<Part> shown = parts(state, rate, remaining_s);
+  const std::size_t all = shown.size();
   const std::string stage = state.stage.substr(0, 16) + " ";
   const auto free = [&] {
     const std::size_t used = stage.size() + joined(shown).size();
@@ -81,7 +82,7 @@ std::string progress_line(const ProgressState& state, double rate, double remain
   }
   constexpr std::size_t around = 2, shortest = 10, longest = 30;  // of the bar: its brackets, and between them
   std::string line = stage;
-  if (free() >= around + shortest) {
+  if (shown.size() == all && free() >= around + shortest) {
     line += bar(within_one(state.fraction), static_cast<int>(std::min(longest, free() - around)));
   }
   return (line + joined(shown)).substr(0, width);

@@ -1,6 +1,6 @@
 #include "output/progress.hpp"
 
-#include <catch2/catch_test_macros.hpp>
+#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <string>
