@@ -278,7 +278,7 @@ class The_page_of_a_run(PageCase):
             for i, row in enumerate(rows):
                 writer.writerow(row + [n for n in names if n not in row] if i == 0 else row + [f"{i}e-15"] * (len(names) - sum(n in rows[0] for n in names)))
         rouleau("report", directory)
-        for file, lines in (("ledger/report.html", [3, 2, 2]), ("a/report.html", [None] * 3)):
+        for file, lines in (("ledger/report.html", [3, 2, 3]), ("a/report.html", [None] * 3)):
             page = self.open(folder / file)
             found = page.run("['Energy of the cells', 'Energy in all', 'Power'].map(title => charts.find(c => "
                              "c.plot.parentNode.getAttribute('aria-label') === title)?.lines.length ?? null)")
