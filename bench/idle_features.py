@@ -84,8 +84,9 @@ def main() -> int:
     shallow["interactions"][0]["parameters"]["depth"] = "0 J/m2"
     often = copy.deepcopy(full)
     often["output"]["fields"]["strain"] = often["output"]["cells"]["strain"] = 0.005
-    # Every run writes its first and its last state; how well they compress depends on the state.
-    due = ("*Observer::observe<*", "*RunDirectory::write(*")
+    # Every run writes its first and its last state, and reads them for its report; how well they compress depends on
+    # the state.
+    due = ("*Observer::observe<*", "*RunDirectory::write(*", "*RunDirectory::finish(*", "*host::write_report(*")
 
     with (tempfile.TemporaryDirectory() as folder,
           concurrent.futures.ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool):
