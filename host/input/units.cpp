@@ -117,20 +117,38 @@ struct Units::System {
     if (unit) ut_map_symbol_to_unit(symbol, UT_ASCII, unit.get());
   }
 
-  /// The first symbol in the unit that nobody knows, or empty.
-  [[nodiscard]] std::string unknown_symbol(std::string_view unit) const {
+  /// Calls function(symbol) for every run of letters in the unit until it returns false.
+  template <class Function>
+  static void for_symbols(std::string_view unit, Function function) {
     for (std::size_t i = 0; i < unit.size();) {
-      if (!is_unit_letter(unit[i])) {
-        ++i;
-        continue;
-      }
       auto end = i;
       while (end < unit.size() && is_unit_letter(unit[end])) ++end;
-      auto symbol = std::string(unit.substr(i, end - i));
-      if (!parse(symbol)) return symbol;
-      i = end;
+      if (end > i && !function(std::string(unit.substr(i, end - i)))) return;
+      i = std::max(end, i + 1);
     }
-    return "";
+  }
+
+  /// The first symbol in the unit that nobody knows, or empty.
+  [[nodiscard]] std::string unknown_symbol(std::string_view unit) const {
+    std::string unknown;
+    for_symbols(unit, [&](const std::string& symbol) {
+      if (!parse(symbol)) unknown = symbol;
+      return unknown.empty();
+    });
+    return unknown;
+  }
+
+  /// Throws where a symbol is a unit that nothing can be multiplied with. UDUNITS 2.2.28 would find that out as well,
+  /// but leaks the word behind a group when it does.
+  void require_plain_symbols(std::string_view unit) const {
+    for_symbols(unit, [&](const std::string& symbol) {
+      const auto parsed = parse(symbol);
+      Parts parts;
+      if (parsed && ut_accept_visitor(parsed.get(), &visitor, &parts) == UT_SUCCESS && !parts.refused.empty()) {
+        throw UnitError(in_quotes(unit) + " is not possible: " + parts.refused);
+      }
+      return true;
+    });
   }
 
   /// Usual units of a dimension.
@@ -174,8 +192,10 @@ struct Units::System {
       throw UnitError(in_quotes(unit) +
                       " is no unit; write units like N/m, 1/um or dyn cm, with one number in front of them");
     }
+    if (unit.find('(') != std::string_view::npos) require_plain_symbols(unit);
     const auto parsed = parse(std::string(unit));
     if (!parsed) {
+      require_plain_symbols(unit);
       const auto symbol = unknown_symbol(unit);
       if (symbol.empty()) throw UnitError(in_quotes(unit) + " is no unit; write units like N/m, 1/um or dyn cm");
       throw UnitError(unknown_unit(unit, symbol, wanted));

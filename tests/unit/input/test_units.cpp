@@ -96,6 +96,14 @@ TEST_CASE("an unknown symbol is named, with the nearest that is known") {
   CHECK_THROWS_WITH(units.scale("xyzzy"), "unknown unit \"xyzzy\"");
 }
 
+TEST_CASE("a logarithmic unit is not possible, alone or within others") {
+  const Units units;
+  for (const char* unit : {"dBZ", "m dBZ", "m(BZ)s", "N/(m dBm)"}) {
+    CHECK_THROWS_WITH(units.scale(unit), Contains(unit) && Contains(" is not possible: "));
+  }
+  CHECK(units.scale("N/(m per s)") == 1);
+}
+
 TEST_CASE("every unit that is suggested is known, and every example has its unit's dimension") {
   const Units units;
   for (const auto symbol : rouleau::host::usual_units()) {
