@@ -46,7 +46,8 @@ class Checkpoints {
 };
 
 /// Into the state and the membranes of the same scene, before a solver is made for them. `saved`: the reader's state().
-/// Returns how far the files of the directory had come. Both throw Error(input_output) where the checkpoint does not fit.
+/// Returns how far the files of the directory had come.
+/// Both functions throw Error(input_output) where the checkpoint does not fit.
 DirectoryMark restore(const CheckpointReader& reader, const nlohmann::json& saved, const Plan& plan, RunState& state,
                       Membranes& membranes);
 /// Into a new solver of the same stage.
