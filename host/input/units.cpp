@@ -11,6 +11,7 @@
 #include "dimension_names.hpp"
 #include "error.hpp"
 #include "schema.hpp"
+#include "unit_shape.hpp"
 #include "wording.hpp"
 
 namespace rouleau::host {
@@ -77,28 +78,6 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-/// Bytes above 0x7F belong to letters such as the mu of "µm".
-bool is_unit_letter(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || c == '%' ||
-         (static_cast<unsigned char>(c) & 0x80U) != 0;
-}
-
-/// UDUNITS takes any number for a factor of a unit ("um 2" is 2 um), which hides slips of the pen: here digits are
-/// exponents, and the only factor is the 1 of "1/um".
-bool has_factor(std::string_view unit) {
-  for (std::size_t i = 0; i < unit.size(); ++i) {
-    if (!is_digit(unit[i]) || (i > 0 && is_digit(unit[i - 1]))) continue;
-    const char before = i > 0 ? unit[i - 1] : ' ';
-    const bool power = is_unit_letter(before) || before == '^' || before == ')' ||
-                       (before == '*' && i > 1 && unit[i - 2] == '*') ||
-                       ((before == '-' || before == '+') && i > 1 && unit[i - 2] != ' ');
-    const auto next = unit.find_first_not_of(' ', i + 1);
-    const bool one = unit[i] == '1' && (next == std::string_view::npos || unit[next] == '/');
-    if (!power && !one) return true;
-  }
-  return false;
-}
-
 }  // namespace
 
 struct Units::System {
@@ -117,38 +96,18 @@ struct Units::System {
     if (unit) ut_map_symbol_to_unit(symbol, UT_ASCII, unit.get());
   }
 
-  /// Calls function(symbol) for every run of letters in the unit until it returns false.
-  template <class Function>
-  static void for_symbols(std::string_view unit, Function function) {
-    for (std::size_t i = 0; i < unit.size();) {
-      auto end = i;
-      while (end < unit.size() && is_unit_letter(unit[end])) ++end;
-      if (end > i && !function(std::string(unit.substr(i, end - i)))) return;
-      i = std::max(end, i + 1);
+  /// Throws where the symbol cannot be used in `unit`. `wanted`: see take_apart.
+  void require_usable(const std::string& symbol, std::string_view unit, const Dimension* wanted) const {
+    const auto parsed = parse(symbol);
+    Parts parts;
+    if (parsed) {
+      if (ut_accept_visitor(parsed.get(), &visitor, &parts) != UT_SUCCESS) parts.refused = "its meaning is unknown";
+    } else if (symbol == "lg" || symbol == "ln" || symbol == "lb") {
+      visit_logarithmic(nullptr, 0, nullptr, &parts);
+    } else {
+      throw UnitError(unknown_unit(unit, symbol, wanted));
     }
-  }
-
-  /// The first symbol in the unit that nobody knows, or empty.
-  [[nodiscard]] std::string unknown_symbol(std::string_view unit) const {
-    std::string unknown;
-    for_symbols(unit, [&](const std::string& symbol) {
-      if (!parse(symbol)) unknown = symbol;
-      return unknown.empty();
-    });
-    return unknown;
-  }
-
-  /// Throws where a symbol is a unit that nothing can be multiplied with. UDUNITS 2.2.28 would find that out as well,
-  /// but leaks the word behind a group when it does.
-  void require_plain_symbols(std::string_view unit) const {
-    for_symbols(unit, [&](const std::string& symbol) {
-      const auto parsed = parse(symbol);
-      Parts parts;
-      if (parsed && ut_accept_visitor(parsed.get(), &visitor, &parts) == UT_SUCCESS && !parts.refused.empty()) {
-        throw UnitError(in_quotes(unit) + " is not possible: " + parts.refused);
-      }
-      return true;
-    });
+    if (!parts.refused.empty()) throw UnitError(in_quotes(unit) + " is not possible: " + parts.refused);
   }
 
   /// Usual units of a dimension.
@@ -185,21 +144,14 @@ struct Units::System {
     unit = trimmed(unit);
     if (unit.empty()) throw UnitError("a unit is missing");
     if (unit.size() > longest_unit) throw UnitError(in_quotes(unit) + " is no unit");
-    // UDUNITS overlooks a ')' too many and what follows a NUL, and '@' gives a unit a zero of its own.
-    const bool unbalanced = std::count(unit.begin(), unit.end(), '(') != std::count(unit.begin(), unit.end(), ')');
-    const bool strange = printable(unit) != unit || unit.find('@') != std::string_view::npos;
-    if (unbalanced || strange || has_factor(unit)) {
+    const auto symbols = printable(unit) == unit ? symbols_of(unit) : std::nullopt;
+    if (!symbols) {
       throw UnitError(in_quotes(unit) +
                       " is no unit; write units like N/m, 1/um or dyn cm, with one number in front of them");
     }
-    if (unit.find('(') != std::string_view::npos) require_plain_symbols(unit);
+    for (const auto symbol : *symbols) require_usable(std::string(symbol), unit, wanted);
     const auto parsed = parse(std::string(unit));
-    if (!parsed) {
-      require_plain_symbols(unit);
-      const auto symbol = unknown_symbol(unit);
-      if (symbol.empty()) throw UnitError(in_quotes(unit) + " is no unit; write units like N/m, 1/um or dyn cm");
-      throw UnitError(unknown_unit(unit, symbol, wanted));
-    }
+    if (!parsed) throw UnitError(in_quotes(unit) + " is no unit; write units like N/m, 1/um or dyn cm");
     Parts parts;
     if (ut_accept_visitor(parsed.get(), &visitor, &parts) != UT_SUCCESS)
       throw UnitError(in_quotes(unit) + " is no unit");

@@ -48,6 +48,9 @@ TEST_CASE("units of the field and ways of writing them are understood") {
   CHECK(units.scale("m**2") == 1.0);
   CHECK(units.scale("J/(mol K)") == 1.0);
   CHECK(units.scale("\xC2\xB5m") == about(1e-6));
+  CHECK(units.scale("m\xC2\xB2\xC2\xB7s") == 1.0);
+  CHECK(units.scale("N-m") == 1.0);
+  CHECK(units.scale("cmH2O") == Approx(98.0665).epsilon(1e-4));
   CHECK(units.scale("J/degC") == 1.0);
   CHECK(units.scale("1") == 1.0);
   CHECK(units.to_si("10um", "m", "x") == about(1e-5));
@@ -127,8 +130,10 @@ TEST_CASE("every unit that is suggested is known, and every example has its unit
 
 TEST_CASE("a slip of the pen is no unit") {
   const Units units;
-  for (const char* text : {"3 10 um", "3 um 2", "3 2e-3 N/m", "6-3 dyn/cm", "3 um m -1", "3 K @ 5", "3 10/um", "3 (m",
-                           "3 m)", "3 m--2", "3 m s)", "3 /", "3 m 3 s", "3 m.2", "3 1e400 m", "3 m99999999999"}) {
+  for (const char* text :
+       {"3 10 um", "3 um 2",      "3 2e-3 N/m", "6-3 dyn/cm", "3 um m -1", "3 K @ 5",    "3 10/um",   "3 (m",
+        "3 m)",    "3 m--2",      "3 m s)",     "3 /",        "3 m 3 s",   "3 m.2",      "3 1e400 m", "3 m99999999999",
+        "3 m 0s",  "1 e1-0z3201", "1 m-0s",     "1 m^s",      "1 m^-",     "1 m from s", "1 m * / s", "1 m after"}) {
     INFO(text);
     CHECK_THROWS_AS(units.to_si(text, "m", "x"), UnitError);
   }
