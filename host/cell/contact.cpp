@@ -38,6 +38,7 @@ struct Search {
 
  private:
   static constexpr int size = Neighbours::group;
+  static constexpr double least_square = 1e-300;  // of a distance; has a root and an inverse
   /// The closest segment of each node.
   template <class S>
   struct Closest {
@@ -56,13 +57,13 @@ struct Search {
     for (int p = 0; p < packs; ++p) {
       const Closest<S>& c = closest[p];
       const int at = count + p * S::size;
-      const S distance = sqrt(c.square), inverse = 1.0 / distance;
-      nearest = min(distance, nearest);
-      farthest = max(distance, farthest);
+      const SquareRoot<S> distance = sqrt_and_inverse(max(c.square, S(least_square)));
+      nearest = min(distance.root, nearest);
+      farthest = max(distance.root, farthest);
       c.along.store(t.along + at);
-      distance.store(t.distance + at);
-      (c.x * inverse).store(t.direction_x + at);
-      (c.y * inverse).store(t.direction_y + at);
+      distance.root.store(t.distance + at);
+      (c.x * distance.inverse).store(t.direction_x + at);
+      (c.y * distance.inverse).store(t.direction_y + at);
       using Integers __attribute__((vector_size(S::size * sizeof(int)))) = int;
       const Integers segment = __builtin_convertvector(c.segment.vector, Integers);
       std::memcpy(t.segment + at, &segment, sizeof segment);
@@ -97,8 +98,9 @@ struct Search {
     }
     for (int r = group.run_begin; r < group.run_end; ++r) {
       for (int k = t.other_first + t.runs[r].begin; k < t.other_first + t.runs[r].end; ++k) {
-        const S from_x = t.x[k], from_y = t.y[k], along_x = t.along_x[k], along_y = t.along_y[k];
-        const S inverse_square = t.inverse_square[k];
+        const S from_x = S::broadcast(t.x + k), from_y = S::broadcast(t.y + k);
+        const S along_x = S::broadcast(t.along_x + k), along_y = S::broadcast(t.along_y + k);
+        const S inverse_square = S::broadcast(t.inverse_square + k);
         const S number = static_cast<double>(k);
         for (int p = 0; p < packs; ++p) {
           const Approach<S> approach(x[p] - from_x, y[p] - from_y, along_x, along_y, inverse_square);
@@ -117,7 +119,7 @@ struct Search {
   /// A node on the other outline has no direction of its own: it is sent out along the segment's outward normal.
   [[gnu::noinline, gnu::cold]] static void send_out(const SearchTask& t, int begin) {
     for (int k = begin; k < begin + size; ++k) {
-      if (!(t.distance[k] > 0)) {
+      if (t.direction_x[k] == 0 && t.direction_y[k] == 0) {
         const int segment = t.segment[k];
         const double inverse_length = std::sqrt(t.inverse_square[segment]);
         t.direction_x[k] = t.along_y[segment] * inverse_length;

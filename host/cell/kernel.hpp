@@ -19,7 +19,7 @@ struct Peskin4 {
   template <class S>
   ROULEAU_ALWAYS_INLINE static void keep(const S& fraction, S& p, S& q) {
     p = fraction;
-    q = sqrt(1.0 + 4.0 * fraction * (1.0 - fraction));
+    q = sqrt_and_inverse(1.0 + 4.0 * fraction * (1.0 - fraction)).root;
   }
   static constexpr double constant[4] = {0.375, 0.375, 0.125, 0.125};
   static constexpr double by_p[4] = {-0.25, -0.25, 0.25, 0.25};
@@ -52,7 +52,7 @@ struct Roma3 {
   template <class S>
   ROULEAU_ALWAYS_INLINE static void keep(const S& fraction, S& p, S& q) {
     p = fraction - 0.5;
-    q = sqrt(1.0 - 3.0 * p * p);
+    q = sqrt_and_inverse(1.0 - 3.0 * p * p).root;
   }
   static constexpr double constant[4] = {1.0 / 3, 1.0 / 3, 1.0 / 3, 0};
   static constexpr double by_p[4] = {-0.5, 0, 0.5, 0};

@@ -27,13 +27,14 @@ struct MeasureCell {
     const CellArrays a = *arrays;
     for (int i = 0; i < a.count; i += S::size) {
       const S dx = S::load(a.x + i + 1) - S::load(a.x + i), dy = S::load(a.y + i + 1) - S::load(a.y + i);
-      const S length = sqrt(dx * dx + dy * dy);
-      const S inverse = select(length > S(0.0), 1.0 / length, S(0.0));  // a segment without length has no direction
+      const S square = dx * dx + dy * dy;
+      const SquareRoot<S> length = sqrt_and_inverse(square);
+      const S inverse = select(square > S(0.0), length.inverse, S(0.0));  // without a length there is no direction
       const S tx = dx * inverse, ty = dy * inverse, inverse_rest = S::load(a.inverse_rest_length + i);
       tx.store(a.tangent_x + i);
       ty.store(a.tangent_y + i);
       inverse.store(a.inverse_length + i);
-      (length * inverse_rest).store(a.stretch + i);
+      (square * inverse * inverse_rest).store(a.stretch + i);
       if (a.with_rate) {
         const S du = S::load(a.u + i + 1) - S::load(a.u + i), dv = S::load(a.v + i + 1) - S::load(a.v + i);
         ((tx * du + ty * dv) * inverse_rest).store(a.rate + i);

@@ -13,8 +13,8 @@ namespace rouleau::host {
 template <class S>
 ROULEAU_ALWAYS_INLINE S turning_angle(const S& cross, const S& dot) {
   constexpr double pi = 3.14159265358979323846;
-  const S twice_square = 1.0 + abs(dot), half_cosine = sqrt(0.5 * twice_square);  // of cos(a/2)
-  const S t = cross / (2.0 * half_cosine + twice_square);
+  const S square = 0.5 + 0.5 * abs(dot), half_cosine = sqrt_and_inverse(square).root;  // of cos(a/2)
+  const S t = cross / (2.0 * (half_cosine + square));
   const S z = t * t;
   S p = -0.017805397205404436408;
   p = p * z + 0.037965257453852393342;

@@ -17,8 +17,10 @@ struct NeoHookean {
       return {0.5 * Es * (e - inverse) * (e - inverse), Es * (e - inverse * squared),
               Es * (1.0 + 3.0 * squared * squared)};
     }
-    const S root = sqrt(e), inverse = 1.0 / (e * root);
-    return {Es * (0.4 * e * e * root + 2.0 / root - 2.4), Es * (e * root - inverse), 1.5 * Es * (root + inverse / e)};
+    const auto [root, inverse_root] = sqrt_and_inverse(e);
+    const S inverse = inverse_root * inverse_root, cubed = inverse * inverse_root;
+    return {Es * (0.4 * e * e * root + 2.0 * inverse_root - 2.4), Es * (e * root - cubed),
+            1.5 * Es * (root + inverse * cubed)};
   }
 };
 ROULEAU_MEMBRANE(NeoHookean, "neo-hookean", "1.1.0")

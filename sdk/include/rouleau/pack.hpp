@@ -20,6 +20,12 @@
 
 namespace rouleau {
 
+/// What sqrt_and_inverse() returns.
+template <class S>
+struct SquareRoot {
+  S root, inverse;
+};
+
 template <class T, int N>
 struct Pack {
   using Number = T;
@@ -50,6 +56,22 @@ struct Pack {
     Pack p;
     std::memcpy(&p.vector, from, sizeof(Vector));
     return p;
+  }
+  /// The number at an address, N times. With AVX-512 the load does it alone, while a number that is in a register costs
+  /// an addition (see above) and a shuffle.
+  ROULEAU_ALWAYS_INLINE static Pack broadcast(const T* from) {
+#if defined(__x86_64__)
+    if constexpr (sizeof(Vector) == 64) {  // only in functions for AVX-512 are packs so wide
+      Pack p;
+      if constexpr (sizeof(T) == 8) {
+        asm("vbroadcastsd %1, %0" : "=v"(p.vector) : "m"(*from));
+      } else {
+        asm("vbroadcastss %1, %0" : "=v"(p.vector) : "m"(*from));
+      }
+      return p;
+    }
+#endif
+    return Pack(*from);
   }
   /// Writes N values to any address.
   ROULEAU_ALWAYS_INLINE void store(T* to) const { std::memcpy(to, &vector, sizeof(Vector)); }
@@ -87,6 +109,28 @@ struct Pack {
 #pragma GCC unroll 64  // without it, g++ 12 sometimes makes several narrow instructions of the loop
     for (int i = 0; i < N; ++i) root.vector[i] = std::sqrt(a.vector[i]);
     return root;
+  }
+  /// sqrt(a) and 1 / sqrt(a), each to 2 units in the last place, of normal positive numbers; of 0 they may be NaN.
+  /// Method: with AVX-512 Newton's for y^-2 = a from the processor's estimate to 14 bits, an eighth of the time that
+  /// the root and the quotient take.
+  ROULEAU_ALWAYS_INLINE friend SquareRoot<Pack> sqrt_and_inverse(const Pack& a) {
+#if defined(__x86_64__)
+    if constexpr (sizeof(Vector) == 64) {
+      constexpr bool in_double = sizeof(T) == 8;
+      Pack y;
+      if constexpr (in_double) {
+        asm("vrsqrt14pd %1, %0" : "=v"(y.vector) : "v"(a.vector));
+      } else {
+        asm("vrsqrt14ps %1, %0" : "=v"(y.vector) : "v"(a.vector));
+      }
+      const Pack half = 0.5 * a;
+      if constexpr (in_double) y += y * (0.5 - (half * y) * y);
+      y += y * (0.5 - (half * y) * y);
+      return {a * y, y};
+    }
+#endif
+    const Pack root = sqrt(a);
+    return {root, 1.0 / root};
   }
 
   /// e^x to 2 units in the last place; 0 below -708, infinite above 709. Double precision only.
@@ -140,6 +184,7 @@ struct Pack {
 using std::abs;
 using std::exp;
 using std::sqrt;
+ROULEAU_ALWAYS_INLINE SquareRoot<double> sqrt_and_inverse(double a) { return {std::sqrt(a), 1 / std::sqrt(a)}; }
 ROULEAU_ALWAYS_INLINE double select(bool mask, double a, double b) { return mask ? a : b; }
 ROULEAU_ALWAYS_INLINE double min(double a, double b) { return a < b ? a : b; }
 ROULEAU_ALWAYS_INLINE double max(double a, double b) { return a > b ? a : b; }

@@ -59,6 +59,32 @@ void check_arithmetic(unsigned seed) {
   }
 }
 
+/// Roots of a whole array and their inverses by one instruction set.
+template <class T>
+struct RootLoop {
+  template <int register_bytes>
+  ROULEAU_ALWAYS_INLINE static void run(const T* from, T* root, T* inverse, std::uint32_t count) {
+    using S = Pack<T, register_bytes / static_cast<int>(sizeof(T))>;
+    for (std::uint32_t i = 0; i < count; i += S::size) {
+      const auto result = sqrt_and_inverse(S::load(from + i));
+      result.root.store(root + i);
+      result.inverse.store(inverse + i);
+    }
+  }
+};
+
+/// Whether an array's numbers are taken one by one into whole packs.
+struct BroadcastLoop {
+  template <int register_bytes>
+  ROULEAU_ALWAYS_INLINE static void run(const double* from, int* different, std::uint32_t count) {
+    using S = Pack<double, register_bytes / 8>;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const S all = S::broadcast(from + i);
+      for (int k = 0; k < S::size; ++k) *different += all.vector[k] != from[i] ? 1 : 0;
+    }
+  }
+};
+
 /// exp of a whole array by one instruction set.
 struct ExpLoop {
   template <int register_bytes>
@@ -68,10 +94,11 @@ struct ExpLoop {
   }
 };
 
-/// Distance from the exact value in units of the last place of the double nearest to it.
-double ulps(double value, long double exact) {
-  const double nearest = static_cast<double>(exact);
-  const double ulp = std::nextafter(nearest, std::numeric_limits<double>::infinity()) - nearest;
+/// Distance from the exact value in units of the last place of the number nearest to it.
+template <class T>
+double ulps(T value, long double exact) {
+  const T nearest = static_cast<T>(exact);
+  const T ulp = std::nextafter(nearest, std::numeric_limits<T>::infinity()) - nearest;
   return static_cast<double>(std::abs(static_cast<long double>(value) - exact)) / ulp;
 }
 
@@ -85,7 +112,49 @@ std::vector<double> exp_of(std::vector<double> arguments, const std::string& set
   return results;
 }
 
+template <class T>
+void check_roots() {
+  const unsigned seed = std::random_device{}();
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<long double> exponent(std::numeric_limits<T>::min_exponent10 + 1,
+                                                       std::numeric_limits<T>::max_exponent10 - 1);
+  std::vector<T> arguments(1 << 16);
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    arguments[i] = static_cast<T>(i % 2 == 0 ? std::pow(10.0L, exponent(random)) : 1 + i * 1e-4L);
+  }
+  for (const auto& set : rouleau::test::instruction_sets()) {
+    std::vector<T> root(arguments.size()), inverse(arguments.size());
+    rouleau::test::pick_for<RootLoop<T>, const T*, T*, T*, std::uint32_t>(set)(
+        arguments.data(), root.data(), inverse.data(), static_cast<std::uint32_t>(arguments.size()));
+    double worst = 0;
+    T worst_argument = 0;
+    for (std::size_t i = 0; i < arguments.size(); ++i) {
+      const long double exact = std::sqrt(static_cast<long double>(arguments[i]));
+      const double error = std::max(ulps(root[i], exact), ulps(inverse[i], 1 / exact));
+      if (error > worst) worst = error, worst_argument = arguments[i];
+    }
+    CAPTURE(seed, sizeof(T), set, worst_argument);
+    CHECK(worst <= 2);
+  }
+}
+
 }  // namespace
+
+TEST_CASE("sqrt and 1 / sqrt are within two units in the last place for each instruction set") {
+  check_roots<double>();
+  check_roots<float>();
+}
+
+TEST_CASE("a number at an address fills a pack for each instruction set") {
+  const std::vector<double> numbers{0.0, 1.5, -2.0, std::numeric_limits<double>::infinity(), 1e-310};
+  for (const auto& set : rouleau::test::instruction_sets()) {
+    CAPTURE(set);
+    int different = 0;
+    rouleau::test::pick_for<BroadcastLoop, const double*, int*, std::uint32_t>(set)(
+        numbers.data(), &different, static_cast<std::uint32_t>(numbers.size()));
+    CHECK(different == 0);
+  }
+}
 
 TEST_CASE("packs of every width compute bit for bit what plain numbers do") {
   const unsigned seed = std::random_device{}();
