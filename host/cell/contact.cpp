@@ -97,11 +97,12 @@ struct Search {
       closest[p] = {1e300, 0.0, 0.0, 0.0, 0.0};
     }
     for (int r = group.run_begin; r < group.run_end; ++r) {
-      for (int k = t.other_first + t.runs[r].begin; k < t.other_first + t.runs[r].end; ++k) {
+      const int begin = t.other_first + t.runs[r].begin, end = t.other_first + t.runs[r].end;
+      S number = static_cast<double>(begin);
+      for (int k = begin; k < end; ++k, number += S(1.0)) {
         const S from_x = S::broadcast(t.x + k), from_y = S::broadcast(t.y + k);
         const S along_x = S::broadcast(t.along_x + k), along_y = S::broadcast(t.along_y + k);
         const S inverse_square = S::broadcast(t.inverse_square + k);
-        const S number = static_cast<double>(k);
         for (int p = 0; p < packs; ++p) {
           const Approach<S> approach(x[p] - from_x, y[p] - from_y, along_x, along_y, inverse_square);
           Closest<S>& c = closest[p];
