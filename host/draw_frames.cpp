@@ -66,10 +66,12 @@ class Run {
 
  private:
   static StoredTable table(const fs::path& directory) {
-    if (!fs::exists(directory / "series.csv") ||
-        !(fs::exists(directory / "frames.h5") || fs::exists(directory / "frames-0001.h5")))
+    if (!fs::exists(directory / "series.csv"))
       throw Error(ExitCode::bad_input, Place{directory.string(), "", 0, 0},
-                  "is no run's directory: frames are drawn from series.csv and frames.h5");
+                  fs::exists(directory) ? "is no run's directory: it has no series.csv" : "does not exist");
+    if (!fs::exists(directory / "frames.h5") && !fs::exists(directory / "frames-0001.h5"))
+      throw Error(ExitCode::bad_input, Place{(directory / "frames.h5").string(), "", 0, 0},
+                  "is missing: pictures are drawn from it; bring it back, or run the scene again");
     return StoredTable(directory / "series.csv");
   }
   StoredTable series_;

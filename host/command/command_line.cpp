@@ -66,6 +66,12 @@ bool parse_command_line(const std::string& command, const std::string& help, con
   }
 }
 
+std::function<void(const std::string&)> not_empty(const std::string& option) {
+  return [option](const std::string& value) {
+    if (value.empty()) throw Error(ExitCode::bad_input, option + " is empty; give a name, or leave the option out");
+  };
+}
+
 std::string in_shell(const std::string& word) {
   const auto plain = [](unsigned char c) { return std::isalnum(c) != 0 || std::strchr("/._-+=:,@%", c) != nullptr; };
   if (!word.empty() && std::all_of(word.begin(), word.end(), plain)) return word;

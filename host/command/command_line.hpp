@@ -3,6 +3,7 @@
 #pragma once
 
 #include <boost/program_options.hpp>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,10 @@ namespace rouleau::host {
 bool parse_command_line(const std::string& command, const std::string& help, const std::vector<std::string>& arguments,
                         boost::program_options::options_description& description,
                         const boost::program_options::positional_options_description& positional);
+
+/// Notifier of an option that names a file or a directory: throws Error(bad_input) where it is empty, as a variable of
+/// a shell may be that nobody has set.
+std::function<void(const std::string&)> not_empty(const std::string& option);
 
 /// A word as a shell reads it: in quotes where it needs them.
 std::string in_shell(const std::string& word);

@@ -39,8 +39,9 @@ int limits_command(const std::vector<std::string>& arguments) {
   options::options_description description("options");
   options::positional_options_description positional;
   description.add_options()("limits", options::value(&file)->required(), "LIMITS file (JSON)")(
-      "out", options::value(&out)->value_name("DIR"), "directory (default: runs/NAME of the file)")(
-      "quiet", options::bool_switch(&chosen.quiet), "no lines on what is being tried");
+      "out", options::value(&out)->value_name("DIR")->notifier(not_empty("--out")),
+      "directory (default: runs/NAME of the file)")("quiet", options::bool_switch(&chosen.quiet),
+                                                    "no lines on what is being tried");
   positional.add("limits", 1);
   if (!parse_command_line("limits", limits_help, arguments, description, positional)) return 0;
 

@@ -168,7 +168,7 @@ int new_command(const std::vector<std::string>& arguments) {
   options::positional_options_description positional;
   description.add_options()("kind", options::value(&kind)->required(), "KIND (collision, membrane or interaction)");
   description.add_options()("name", options::value(&id)->required(), "NAME");
-  description.add_options()("dir", options::value(&directory)->value_name("DIR"),
+  description.add_options()("dir", options::value(&directory)->value_name("DIR")->notifier(not_empty("--dir")),
                             "make the folder in this one instead of the working directory");
   positional.add("kind", 1).add("name", 1);
   if (!parse_command_line("new", new_help, arguments, description, positional)) return 0;

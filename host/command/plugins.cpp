@@ -202,7 +202,7 @@ int plugins_command(const std::vector<std::string>& arguments) {
                             "search this folder for plugins first (repeatable)");
   description.add_options()("json", options::bool_switch(&as_json), "print JSON for programs");
   description.add_options()("lock", options::value(&scene)->value_name("SCENE"), "write the lock of this scene")(
-      "out", options::value(&out)->value_name("FILE"), "with --lock: write it there");
+      "out", options::value(&out)->value_name("FILE")->notifier(not_empty("--out")), "with --lock: write it there");
   positional.add("id", 1);
   if (!parse_command_line("plugins", plugins_help, arguments, description, positional)) return 0;
 

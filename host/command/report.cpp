@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* report_help = R"(usage: rouleau report DIR
+constexpr const char* report_help = R"(usage: rouleau report DIR [--out FILE]
        rouleau report --compare A B [--out FILE]
        rouleau report DIR --frames [--strains S,S,...] [--out DIR]
 
@@ -91,6 +91,10 @@ std::vector<std::string> strains_of(const std::vector<std::string>& lists) {
   throw Error(ExitCode::input_output, program.string() + " could not be started: " + std::strerror(errno));
 }
 
+bool is_run(const fs::path& directory) {
+  return fs::exists(directory / "summary.json") || fs::exists(directory / "series.csv");
+}
+
 void check(const Options& chosen) {
   const auto refuse = [](const std::string& words) { throw Error(ExitCode::bad_input, "rouleau report: " + words); };
   const std::size_t count = chosen.directories.size();
@@ -100,8 +104,8 @@ void check(const Options& chosen) {
            (count == 1 ? " was given" : " were given"));
   if (!chosen.compare && count != 1) refuse("takes one directory; two runs are set side by side with --compare A B");
   if (!chosen.strains.empty() && !chosen.frames) refuse("--strains is for --frames");
-  if (!chosen.out.empty() && !chosen.frames && !chosen.compare)
-    refuse("--out is for --compare and --frames; report.html lies in the run's directory");
+  if (!chosen.out.empty() && !chosen.frames && !chosen.compare && !is_run(chosen.directories[0]))
+    refuse("--out is for the report of a run; pages of studies and limits lie in their directories");
 }
 
 }  // namespace
@@ -116,8 +120,10 @@ int report_command(const std::vector<std::string>& arguments) {
   description.add_options()("frames", options::bool_switch(&chosen.frames), "pictures, and a video where ffmpeg is");
   description.add_options()("strains", options::value(&chosen.strains)->composing()->value_name("S,S,..."),
                             "of the pictures (six from the first to the last)");
-  description.add_options()("out", options::value(&chosen.out)->value_name("PATH"),
-                            "file of the comparison (A-and-B.html), directory of the pictures (DIR-frames)");
+  description.add_options()(
+      "out", options::value(&chosen.out)->value_name("PATH")->notifier(not_empty("--out")),
+      "file of the report (DIR/report.html) or the comparison (A-and-B.html), directory of the pictures "
+      "(DIR-frames)");
   positional.add("directory", -1);
   if (!parse_command_line("report", report_help, arguments, description, positional)) return 0;
   check(chosen);
@@ -128,6 +134,8 @@ int report_command(const std::vector<std::string>& arguments) {
     const fs::path file = chosen.out.empty() ? name_of(a) + "-and-" + name_of(b) + ".html" : chosen.out;
     write_comparison(a, b, file);
     std::cout << file.string() << "\n";
+  } else if (!chosen.out.empty()) {
+    std::cout << write_report(chosen.directories[0], chosen.out).string() << "\n";
   } else {
     for (const fs::path& page : write_pages(chosen.directories[0])) std::cout << page.string() << "\n";
   }

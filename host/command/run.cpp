@@ -60,7 +60,7 @@ int run_command(const std::vector<std::string>& arguments) {
   options::positional_options_description positional;
   scene_options.add_to(description, positional);
   description.add_options()(
-      "out", options::value(&out)->value_name("DIR"),
+      "out", options::value(&out)->value_name("DIR")->notifier(not_empty("--out")),
       "run directory (default: runs/NAME of the scene, or the first free one of runs/NAME-2, ...)")(
       "overwrite", options::bool_switch(&overwrite), "replace the run that the directory holds")(
       "resume", options::bool_switch(&resume), "go on from the directory's checkpoint")(
@@ -125,8 +125,11 @@ int run_command(const std::vector<std::string>& arguments) {
               << f.value << ", limit " << f.limit << "\n  " << f.remedy << "\n";
   }
   if (summary.failure) return static_cast<int>(ExitCode::simulation_failed);
-  if (summary.status == "interrupted" && scene.output.checkpoint_seconds) {
+  if (summary.status == "interrupted" && summary.checkpoint_step) {
     std::cerr << "to go on: " << again << "\n";
+  } else if (summary.status == "interrupted") {
+    std::cerr << "no checkpoint was kept (output.checkpoint of the scene): the run can only begin again, with "
+                 "--overwrite\n";
   }
   return static_cast<int>(summary.status == "interrupted" ? ExitCode::interrupted : ExitCode::done);
 }

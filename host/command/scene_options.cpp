@@ -14,7 +14,7 @@ void SceneOptions::add_to(options::options_description& description,
       "replace a value of the scene, e.g. --set /numerics/tau=0.8 (repeatable; any JSON value)")(
       "plugin-dir", options::value(&plugin_dirs)->composing()->value_name("DIR"),
       "search this folder for plugins first (repeatable)")(
-      "lock", options::value(&lock)->value_name("FILE"),
+      "lock", options::value(&lock)->value_name("FILE")->notifier(not_empty("--lock")),
       "use only the plugins of this lock (default: NAME.lock.json beside the scene NAME.json, if it is there)");
   positional.add("scene", 1);
 }

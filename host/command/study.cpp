@@ -74,7 +74,8 @@ int study_command(const std::vector<std::string>& arguments) {
   options::options_description description("options");
   options::positional_options_description positional;
   description.add_options()("study", options::value(&file)->required(), "STUDY file (JSON)")(
-      "out", options::value(&out)->value_name("DIR"), "study's directory (default: runs/NAME of the study)")(
+      "out", options::value(&out)->value_name("DIR")->notifier(not_empty("--out")),
+      "study's directory (default: runs/NAME of the study)")(
       "budget", options::value(&budget)->value_name("TIME"),
       "time for all runs, as 5min: the cheapest points first, and what would pass it is left out")(
       "target", options::value(&target)->value_name("NAME=ERROR"),

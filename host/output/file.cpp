@@ -26,7 +26,7 @@ std::string remedy(int error) {
     case EACCES:
     case EPERM:
     case EROFS:
-      return "choose a directory you may write to with --out";
+      return "choose a directory you may write to with --out (to go on with a run, copy its directory there first)";
     case ENOENT:
     case ENOTDIR:
       return "check that every part of the path before the last is a directory";
@@ -75,7 +75,10 @@ void fail_file(const std::filesystem::path& file, const std::string& what, int e
 
 void fail_reading(const std::filesystem::path& file, int error) {
   throw Error(ExitCode::input_output, Place{file.string(), "", 0, 0},
-              "cannot be read: " + std::generic_category().message(error));
+              "cannot be read: " + std::generic_category().message(error) +
+                  (error == ENOENT   ? "\n  bring the file back, or check the path"
+                   : error == EACCES ? "\n  see to it that you may read it (ls -l)"
+                                     : ""));
 }
 
 std::string read_text(const std::filesystem::path& file) {

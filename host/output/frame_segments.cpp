@@ -76,7 +76,7 @@ std::vector<std::uint64_t> segments_in(const std::filesystem::path& file) {
 }
 
 constexpr const char* put_back =
-    "\n  put back the file as the run left it, or start the run anew in another directory (--out)";
+    "\n  put back the file as the run left it, or begin anew: with --overwrite, or in another directory (--out)";
 
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& problem) {
   throw Error(ExitCode::input_output, Place{file.string(), "", 0, 0}, problem + put_back);
@@ -93,8 +93,9 @@ void verify(const std::filesystem::path& frames, std::size_t number, const Frame
              "changed since (XXH3 " +
                  checksum_text(checksum_of(frames).value()) + "), and " + segment_name(number) +
                  ", which held them before, is gone");
-    refuse(file, "is missing: the checkpoint counts on its " + std::to_string(segment.frames) + " frames (" +
-                     std::to_string(segment.bytes) + " bytes)");
+    refuse(frames, "is missing, and so is " + segment_name(number) +
+                       ", which is what frames are written to before: the checkpoint counts on " +
+                       std::to_string(segment.frames) + " frames of it");
   }
   if (bytes != segment.bytes)
     refuse(file, "has " + std::to_string(bytes) + " bytes and had " + std::to_string(segment.bytes) +

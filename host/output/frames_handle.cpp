@@ -74,11 +74,16 @@ void Hdf5File::fail(const std::string& path) const {
   const std::string what =
       std::string(path.empty() ? "" : path + " ") + (mode_ == Mode::create ? "cannot be written" : "cannot be read");
   if (innermost.error != 0 && mode_ == Mode::create) fail_file(file_, what, innermost.error);
+  if (innermost.error == EAGAIN)  // HDF5's lock
+    throw Error(ExitCode::input_output, Place{file_.string(), "", 0, 0},
+                "is being written by a run: its frames can be read after the run's next checkpoint (every ten minutes "
+                "unless output.checkpoint of the scene says otherwise), or at its end");
   if (innermost.error != 0)
     throw Error(ExitCode::input_output, Place{file_.string(), "", 0, 0},
                 what + ": " + std::generic_category().message(innermost.error));
   throw Error(ExitCode::input_output, Place{file_.string(), "", 0, 0},
-              what + ": HDF5 says \"" + (innermost.words.empty() ? "unknown error" : innermost.words) + "\"");
+              what + ": HDF5 says \"" + (innermost.words.empty() ? "unknown error" : innermost.words) + "\"" +
+                  (mode_ == Mode::read ? "\n  the file is damaged: bring it back, or run the scene again" : ""));
 }
 
 Hdf5Handle Hdf5File::make_group(const std::string& path) {

@@ -51,41 +51,40 @@ struct Part {
   std::string text;
   int worth;
 };
-std::vector<Part> parts(const ProgressState& state, double rate, double remaining_s) {
-  return {{formatted("%3.0f%%", 100 * within_one(state.fraction)), 9},
+std::vector<Part> parts(const ProgressState& state, double rate, double remaining_s, bool brief) {
+  const char* const aggregates = brief ? "aggr." : state.aggregates == 1 ? "aggregate" : "aggregates";
+  return {{formatted(brief ? "%.0f%%" : "%3.0f%%", 100 * within_one(state.fraction)), 9},
           {"ETA " + duration(remaining_s), 8},
           {formatted("strain %.2f", state.strain), 7},
           {formatted("%.0f steps/s", rate), 3},
-          {formatted("Mach %.2g", state.mach_max), 1},
-          {formatted("area drift %.1e", state.area_drift), 2},
-          {formatted("%d aggregate%s", state.aggregates, state.aggregates == 1 ? "" : "s"), 4}};
+          {formatted(brief ? "Ma %.1g" : "Mach %.2g", state.mach_max), 1},
+          {formatted(brief ? "drift %.0e" : "area drift %.1e", state.area_drift), 2},
+          {formatted("%d %s", state.aggregates, aggregates), 4}};
 }
-std::string joined(const std::vector<Part>& parts) {
+std::string joined(const std::vector<Part>& parts, const char* between) {
   std::string text;
-  for (const Part& part : parts) text += (text.empty() ? "" : "  ") + part.text;
+  for (const Part& part : parts) text += (text.empty() ? "" : between) + part.text;
   return text;
 }
 
 }  // namespace
 
 std::string progress_line(const ProgressState& state, double rate, double remaining_s, std::size_t width) {
-  std::vector<Part> shown = parts(state, rate, remaining_s);
-  const std::size_t all = shown.size();
   const std::string stage = state.stage.substr(0, 16) + " ";
-  const auto free = [&] {
-    const std::size_t used = stage.size() + joined(shown).size();
-    return used < width ? width - used : std::size_t{0};
-  };
-  while (shown.size() > 1 && stage.size() + joined(shown).size() > width) {
+  const std::string whole = joined(parts(state, rate, remaining_s, false), "  ");
+  if (stage.size() + whole.size() <= width) {
+    const std::size_t free = width - stage.size() - whole.size();
+    constexpr std::size_t around = 2, shortest = 10, longest = 30;  // of the bar: its brackets, and between them
+    if (free < around + shortest) return stage + whole;
+    return stage + bar(within_one(state.fraction), static_cast<int>(std::min(longest, free - around))) + whole;
+  }
+  std::vector<Part> shown = parts(state, rate, remaining_s, true);
+  const auto line = [&] { return stage + joined(shown, " "); };
+  while (shown.size() > 1 && line().size() > width) {
     shown.erase(
         std::min_element(shown.begin(), shown.end(), [](const Part& a, const Part& b) { return a.worth < b.worth; }));
   }
-  constexpr std::size_t around = 2, shortest = 10, longest = 30;  // of the bar: its brackets, and between them
-  std::string line = stage;
-  if (shown.size() == all && free() >= around + shortest) {
-    line += bar(within_one(state.fraction), static_cast<int>(std::min(longest, free() - around)));
-  }
-  return (line + joined(shown)).substr(0, width);
+  return line().substr(0, width);
 }
 
 Progress::Progress(bool quiet)
@@ -113,7 +112,7 @@ void Progress::update(const ProgressState& state) {
 
   if (!terminal_) {
     std::fprintf(stderr, "%s  step %ld  %s\n", state.stage.c_str(), state.step,
-                 joined(parts(state, rate_, remaining)).c_str());
+                 joined(parts(state, rate_, remaining, false), "  ").c_str());
     return;
   }
   const auto width = static_cast<std::size_t>(std::max(1, terminal_width() - 1));

@@ -1,5 +1,7 @@
 #include "output/report.hpp"
 
+#include <iostream>
+
 #include "output/page_file.hpp"
 #include "output/report_compare.hpp"
 #include "output/report_data.hpp"
@@ -8,9 +10,11 @@
 
 namespace rouleau::host {
 
-std::filesystem::path write_report(const std::filesystem::path& directory) {
-  auto file = directory / "report.html";
-  write_file(file, page_with(report_template, report_data(directory)));
+std::filesystem::path write_report(const std::filesystem::path& directory, std::filesystem::path file) {
+  if (file.empty()) file = directory / "report.html";
+  const nlohmann::json data = report_data(directory);
+  for (const auto& words : data["shown"]["damage"]) std::cerr << "warning: " << words.get<std::string>() << "\n";
+  write_file(file, page_with(report_template, data));
   return file;
 }
 

@@ -5,9 +5,10 @@
 
 namespace rouleau::host {
 
-/// (Re)makes DIR/report.html from DIR's files alone. Throws Error(input_output) or, for a directory that is no run,
-/// Error(bad_input).
-std::filesystem::path write_report(const std::filesystem::path& directory);
+/// (Re)makes `file`, DIR/report.html when empty, from DIR's files alone, and returns its path. Says on the terminal
+/// which of an ended run's files are damaged: the page shows what can be read. Throws Error(input_output) or, for a
+/// directory that is no run, Error(bad_input).
+std::filesystem::path write_report(const std::filesystem::path& directory, std::filesystem::path file = {});
 
 /// Writes a page with two runs side by side into `file`. Throws as write_report, and Error(bad_input) where a run has
 /// not ended.

@@ -170,25 +170,47 @@ json report_data(const std::filesystem::path& directory) {
   const StoredTable cells(directory / "cells.csv");
   const std::size_t count = cells.count_of("cell");
   std::size_t outputs = series.rows();
-  if (count > 0) outputs = std::min(outputs, cells.rows() / count);  // a killed run may lack the last rows
+  json damage = json::array();
+  // A run that goes on, or was killed, may lack the last rows of a file; one that has ended may not.
+  const auto take = [&](const char* file, std::size_t has) {
+    if (ended && has < series.rows()) {
+      damage.push_back((directory / file).string() + " has " + std::to_string(has) + " outputs and series.csv " +
+                       std::to_string(series.rows()) + ": it was cut short; bring the whole file back, or run the " +
+                       "scene again. What is shown here ends where it ends.");
+    }
+    outputs = std::min(outputs, has);
+  };
+  if (count > 0) take("cells.csv", cells.rows() / count);
 
   std::optional<FrameReader> reader;
   std::string note;
-  try {
-    reader.emplace(directory / "frames.h5");
-    outputs = std::min(outputs, static_cast<std::size_t>(reader->frames()));
-  } catch (const Error& error) {  // the rest of the page is worth having
+  const auto without_animation = [&](const Error& error) {  // the rest of the page is worth having
     reader.reset();
     note = std::string("No animation: ") + error.what();
+    if (ended) damage.push_back(error.what());
+  };
+  try {
+    reader.emplace(directory / "frames.h5");
+    take("frames.h5", static_cast<std::size_t>(reader->frames()));
+  } catch (const Error& error) {
+    without_animation(error);
   }
 
   auto aggregate_count = series.numbers("aggregate_count");
   aggregate_count.resize(outputs);
-  const bool drawn = reader && outputs > 0;
-  const auto [selection, stride] = choose(aggregate_count, drawn ? reader->outlines(0).x.size() : 0, count,
-                                          drawn ? field_outputs(directory / "frames.h5", most_fields) : Selection{});
+  std::size_t nodes = 0;
+  Selection with_fields;
+  if (reader && outputs > 0) {
+    try {
+      nodes = reader->outlines(0).x.size();
+      with_fields = field_outputs(directory / "frames.h5", most_fields);
+    } catch (const Error& error) {
+      without_animation(error);
+    }
+  }
+  const auto [selection, stride] = choose(aggregate_count, nodes, count, with_fields);
 
-  data["shown"] = {{"outputs", selection.size()}, {"of", series.rows()}, {"node_stride", stride}};
+  data["shown"] = {{"outputs", selection.size()}, {"of", outputs}, {"node_stride", stride}};
   constexpr int axis_precision = 9;
   for (const char* name : {"time_s", "strain"}) data[name] = picked(series.numbers(name), selection, 1, axis_precision);
   const auto steps = series.numbers("step");
@@ -200,15 +222,22 @@ json report_data(const std::filesystem::path& directory) {
   }
   data["series"] = series_data(series, selection);
   data["cells"] = count > 0 && outputs > 0 ? cell_data(cells, count, selection) : json(nullptr);
-  data["outlines"] = drawn ? outline_data(*reader, selection, stride) : json(nullptr);
-  data["fields"] = drawn ? field_data(directory / "frames.h5", selection) : json(nullptr);
-  if (drawn) {
-    const auto size = reader->size();
-    data["domain"] = {{"size_um", {size[0] * micro, size[1] * micro}}, {"periodic_y", reader->periodic_y()}};
+  data["outlines"] = data["fields"] = nullptr;
+  if (reader && outputs > 0) {
+    try {
+      const auto size = reader->size();
+      data["domain"] = {{"size_um", {size[0] * micro, size[1] * micro}}, {"periodic_y", reader->periodic_y()}};
+      data["outlines"] = outline_data(*reader, selection, stride);
+      data["fields"] = field_data(directory / "frames.h5", selection);
+    } catch (const Error& error) {
+      without_animation(error);
+      data["outlines"] = data["fields"] = nullptr;
+    }
   }
   if (note.empty() && count > 0 && outputs > 0 && data["outlines"].is_null())
     note = "No animation: the number of membrane nodes changes during the run.";
   data["shown"]["note"] = note;
+  data["shown"]["damage"] = damage;
   return data;
 }
 

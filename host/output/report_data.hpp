@@ -9,7 +9,8 @@ namespace rouleau::host {
 /// Object with
 ///   summary   summary.json as it is, null when the run has not ended
 ///   scene     text of scene.json, null when there is none
-///   shown     {outputs, of, node_stride, note}: what was thinned, and why anything is missing
+///   shown     {outputs, of, node_stride, note, damage}: what was thinned, why there is no animation, and sentences on
+///             the files of an ended run that are damaged
 ///   step, time_s, strain, stage   one entry per shown output
 ///   series    name -> values per shown output; names of the energy ledger only where the run wrote them
 ///   cells     {labels, aggregate, deformation, angle_deg, min_gap_um}: aggregate by output and cell, the others

@@ -29,25 +29,6 @@ bool written_by_a_run(const std::string& name) {
          std::find(run_files.begin(), run_files.end(), name) != run_files.end();
 }
 
-/// Makes the directory, and sees to it that nothing of the user's gets mixed up with the run's files.
-std::filesystem::path prepared(std::filesystem::path directory) {
-  std::error_code error;
-  std::filesystem::create_directories(directory, error);
-  std::error_code ignored;
-  if (std::filesystem::exists(directory, ignored) && !std::filesystem::is_directory(directory, ignored))
-    throw Error(ExitCode::input_output, Place{directory.string(), "", 0, 0},
-                "is a file and not a directory; choose another place with --out");
-  if (error) fail_file(directory, "cannot be made", error.value());
-  std::filesystem::directory_iterator entries(directory, error);
-  if (error) fail_file(directory, "cannot be listed", error.value());
-  for (const auto& entry : entries)
-    if (!written_by_a_run(entry.path().filename().string()))
-      throw Error(ExitCode::bad_input, Place{directory.string(), "", 0, 0},
-                  "holds \"" + entry.path().filename().string() +
-                      "\", which no run wrote; choose another directory with --out, or move that file away");
-  return directory;
-}
-
 bool holds_checkpoint(const std::filesystem::path& directory) {
   return std::filesystem::exists(checkpoint_file(directory)) ||
          std::filesystem::exists(previous_checkpoint_file(directory));
@@ -60,6 +41,27 @@ bool holds_run(const std::filesystem::path& directory) {
   const auto log_size = std::filesystem::file_size(directory / "log.jsonl", missing);
   return (!missing && log_size > 0) || std::filesystem::exists(directory / "summary.json") ||
          holds_checkpoint(directory);
+}
+
+/// Makes the directory, and sees to it that nothing of the user's gets mixed up with the files of a new run. What
+/// somebody has put beside those of a run that is there already stays where it is.
+std::filesystem::path prepared(std::filesystem::path directory, FormerRun former) {
+  std::error_code error;
+  std::filesystem::create_directories(directory, error);
+  std::error_code ignored;
+  if (std::filesystem::exists(directory, ignored) && !std::filesystem::is_directory(directory, ignored))
+    throw Error(ExitCode::input_output, Place{directory.string(), "", 0, 0},
+                "is a file and not a directory; choose another place with --out");
+  if (error) fail_file(directory, "cannot be made", error.value());
+  std::filesystem::directory_iterator entries(directory, error);
+  if (error) fail_file(directory, "cannot be listed", error.value());
+  if (former != FormerRun::keep && holds_run(directory)) return directory;
+  for (const auto& entry : entries)
+    if (!written_by_a_run(entry.path().filename().string()))
+      throw Error(ExitCode::bad_input, Place{directory.string(), "", 0, 0},
+                  "holds \"" + entry.path().filename().string() +
+                      "\", which no run wrote; choose another directory with --out, or move that file away");
+  return directory;
 }
 
 template <class Choice>
@@ -119,7 +121,7 @@ struct RunDirectory::Files {
 };
 
 RunDirectory::RunDirectory(std::filesystem::path directory, const Scene& scene, FormerRun former)
-    : directory_(prepared(std::move(directory))), scene_(scene) {
+    : directory_(prepared(std::move(directory), former)), scene_(scene) {
   // The log before anything is removed: another run may be writing here.
   files_ = std::make_unique<Files>(Log(directory_ / "log.jsonl"));
   if (former == FormerRun::keep && holds_run(directory_)) {
@@ -135,7 +137,9 @@ RunDirectory::RunDirectory(std::filesystem::path directory, const Scene& scene, 
                   "holds a run that has ended and left no checkpoint to go on from; replace it with --overwrite");
     }
   }
-  remove_files(directory_, [](const std::string& name) { return name != "log.jsonl"; });  // which holds the lock
+  remove_files(directory_, [](const std::string& name) {
+    return written_by_a_run(name) && name != "log.jsonl";  // which holds the lock
+  });
   files_->log.clear();
   files_->tables.emplace(directory_);
   files_->frames.emplace(directory_ / "frames.h5", scene);

@@ -55,6 +55,8 @@ std::vector<fs::path> write_pages(const fs::path& directory) {
   if (has("study.json")) pages.push_back(write_study_page(directory));
   if (has("limits.json")) pages.push_back(write_limits_page(directory));
   if (has("summary.json") || has("series.csv")) pages.push_back(write_report(directory));
+  if (pages.empty() && !fs::exists(directory))
+    throw Error(ExitCode::bad_input, Place{directory.string(), "", 0, 0}, "does not exist");
   if (pages.empty())
     throw Error(
         ExitCode::bad_input, Place{directory.string(), "", 0, 0},

@@ -80,6 +80,7 @@ json to_json(const Summary& summary) {
   result["steps_per_s"] = number_or_null(summary.steps_per_s);
   result["mlups"] = number_or_null(summary.mlups);
   result["peak_rss_bytes"] = summary.peak_rss_bytes;
+  result["checkpoint_step"] = summary.checkpoint_step ? json(*summary.checkpoint_step) : json(nullptr);
   result["threads"] = summary.threads;
   result["precision"] = summary.precision;
 

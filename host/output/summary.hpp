@@ -74,6 +74,7 @@ struct Summary {
   long steps_at_most = 0;  ///< of all stages; one that ends at rest needs fewer
   double strain = 0, simulated_time_s = 0, wall_s = 0, steps_per_s = 0, mlups = 0;
   long peak_rss_bytes = 0;
+  std::optional<long> checkpoint_step;  ///< from which --resume goes on
   int threads = 1;
   std::string precision;
   std::vector<PluginUse> plugins;
@@ -89,7 +90,7 @@ struct Summary {
   int aggregates_final = 0;
   std::vector<AggregateEvent> aggregate_history;  ///< one entry at each change
   std::vector<std::string> warnings;
-  nlohmann::json conversions;      ///< array: {quantity, si, unit, lattice} for each stage
+  nlohmann::json conversions;      ///< array: {quantity, of, si, unit, lattice} for each stage
   nlohmann::json output_estimate;  ///< object: what the run was expected to write
   nlohmann::json numerics_choice;  ///< object: what "numerics": "auto" chose and why; null where the scene pins all
   nlohmann::json packings;         ///< array: cells that were placed at random

@@ -136,7 +136,8 @@ void Catalog::refuse_duplicates() {
     } else {
       refused_.push_back({manifest.file, manifest.id,
                           "  " + std::to_string(claimants.size()) + " manifests have the id " + in_quotes(manifest.id) +
-                              ':' + names_of(claimants)});
+                              ':' + names_of(claimants) +
+                              "\n  take all but one of their folders off the search path, or give a model another id"});
     }
   }
   manifests_ = std::move(unique);

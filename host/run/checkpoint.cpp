@@ -155,6 +155,7 @@ void Checkpoints::write(const Plan& plan, int threads, const RunState& state, co
 void Checkpoints::settle(bool sound) {
   if (sound) {
     writer_->take_place();
+    kept_ = step_;
     to_.log("checkpoint", {{"step", step_}, {"bytes", writer_->bytes()}});
   }
   writer_.reset();

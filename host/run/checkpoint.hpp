@@ -35,6 +35,10 @@ class Checkpoints {
   /// The file takes its place if the state has been found sound. One that is not is left to the next regular check:
   /// when checkpoints are written must not change what becomes of a run.
   void settle(bool sound);
+  /// Step of the checkpoint that the directory has, if it has one.
+  [[nodiscard]] std::optional<long> kept() const { return kept_; }
+  /// The run goes on from the directory's checkpoint.
+  void go_on_from(long step) { kept_ = step; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -42,6 +46,7 @@ class Checkpoints {
   RunDirectory& to_;
   std::unique_ptr<CheckpointWriter> writer_;
   long step_ = 0;  ///< of the pending one
+  std::optional<long> kept_;
   Clock::time_point last_ = Clock::now();
 };
 

@@ -208,22 +208,24 @@ std::vector<Limit> find_limits(const Plan& plan) {
       if (!model.active()) continue;
       if (!model.manifest->state.empty()) continue;  // its stiffness is a matter of what it remembers
       const PotentialShape shape = find_shape(ModelInstance(*model.manifest, model.parameters.values, setting));
-      add("contact stiffness of " + model.manifest->id + " in lattice units" + where, shape.stiffness,
+      const auto same = [&](const PlannedModel& other) { return other.manifest->id == model.manifest->id; };
+      const bool several = std::count_if(plan.interactions.begin(), plan.interactions.end(), same) > 1;
+      const std::string named = model.manifest->id + (several ? " (" + plan.owner_of(model) + ")" : "");
+      add("contact stiffness of " + named + " in lattice units" + where, shape.stiffness,
           interpolate(contact_limit, tau), true, "lower density_factor, with which the lattice stiffness falls",
           density);
       if (stage.index != 0) continue;
       if (shape.well) {
-        add("equilibrium gap of " + model.manifest->id + " in lattice spacings", shape.well->distance, 2.0, false,
+        add("equilibrium gap of " + named + " in lattice spacings", shape.well->distance, 2.0, false,
             "raise the resolution or place the well farther out, for membranes whose gap it does not resolve stick "
             "for ever",
             resolution);
-        add("width of the well of " + model.manifest->id + " in lattice spacings", shape.well->width(), narrowest_well,
-            false,
+        add("width of the well of " + named + " in lattice spacings", shape.well->width(), narrowest_well, false,
             "raise the resolution or take a wider well, for the corners of membranes catch on each other in a narrow "
             "one",
             resolution);
       } else {
-        add("range of the repulsion of " + model.manifest->id + " in lattice spacings", shape.range, 2.0, false,
+        add("range of the repulsion of " + named + " in lattice spacings", shape.range, 2.0, false,
             "raise the resolution or the range, for nearer than that the lattice moves two membranes together whatever "
             "acts between them",
             resolution);

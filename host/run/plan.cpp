@@ -92,9 +92,11 @@ nlohmann::json conversion_table(const Plan& plan, const Units& units) {
   const Scene& scene = *plan.scene;
   nlohmann::json table = nlohmann::json::array();
   for (const StageSetting& stage : plan.stages) {
-    const auto row = [&](const std::string& quantity, double si, const std::string& unit, double lattice) {
+    const auto row = [&](const std::string& quantity, double si, const std::string& unit, double lattice,
+                         const std::string& of = {}) {
       table.push_back({{"stage", stage.stage->name},
                        {"quantity", quantity},
+                       {"of", of},
                        {"si", number_or_null(si)},
                        {"unit", unit},
                        {"lattice", number_or_null(lattice)}});
@@ -111,7 +113,16 @@ nlohmann::json conversion_table(const Plan& plan, const Units& units) {
     if (stage.body_force_x != 0 || stage.body_force_y != 0) {
       row("driving force density", u.to_si(stage.body_force_x, dimension::force_density), "N/m3", stage.body_force_x);
     }
+    row("width of the domain", scene.domain.size.x(), "m", u.to_lattice(scene.domain.size.x(), dimension::length));
+    row("height of the domain", scene.domain.size.y(), "m", u.to_lattice(scene.domain.size.y(), dimension::length));
+    for (const CellType& type : scene.cell_types) {
+      const double radius = shape_radius(type.shape);
+      row("radius", radius, "m", u.to_lattice(radius, dimension::length), type.name);
+      row("interior viscosity", type.interior_viscosity, "Pa s",
+          u.to_lattice(type.interior_viscosity, dimension::viscosity), type.name);
+    }
     for (const PlannedModel* model : plan.active_models()) {
+      const std::string owner = plan.owner_of(*model);
       for (std::size_t i = 0; i < model->manifest->parameters.size(); ++i) {
         const Parameter& parameter = model->manifest->parameters[i];
         if (!parameter.choices.empty()) continue;
@@ -120,7 +131,7 @@ nlohmann::json conversion_table(const Plan& plan, const Units& units) {
         const double si = model->parameters.values[i];
         const bool in_si = units.scale(parameter.unit) == 1;
         row(model->manifest->id + ": " + parameter.name, si, in_si ? parameter.unit : "SI for " + parameter.unit,
-            stays_si ? si : u.to_lattice(si, parameter.dimension));
+            stays_si ? si : u.to_lattice(si, parameter.dimension), owner);
       }
     }
   }
@@ -254,6 +265,21 @@ std::string warning_of(const Limit& limit) {
 }
 
 }  // namespace
+
+std::string Plan::owner_of(const PlannedModel& model) const {
+  const auto name = [&](int type) { return scene->cell_types[static_cast<std::size_t>(type)].name; };
+  for (std::size_t type = 0; type < membranes.size(); ++type) {
+    for (const PlannedModel& law : membranes[type]) {
+      if (&law == &model) return name(static_cast<int>(type));
+    }
+  }
+  for (std::size_t i = 0; i < interactions.size(); ++i) {
+    if (&interactions[i] != &model) continue;
+    const auto [a, b] = scene->interactions[i].between;
+    return name(a) + ", " + name(b);
+  }
+  return {};
+}
 
 std::vector<const PlannedModel*> Plan::active_models() const {
   std::vector<const PlannedModel*> models{&collision};

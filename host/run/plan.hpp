@@ -60,6 +60,8 @@ struct Plan {
 
   /// Models whose libraries the run opens.
   [[nodiscard]] std::vector<const PlannedModel*> active_models() const;
+  /// The cell type of a law, the two types of an interaction ("rbc, platelet"); empty for the fluid's model.
+  [[nodiscard]] std::string owner_of(const PlannedModel& model) const;
 };
 
 /// Throws Error(bad_input or plugin_refused). The scene and the catalog must outlive the plan.

@@ -98,10 +98,12 @@ std::string to_text(const Plan& plan) {
   for (const std::string& warning : plan.warnings) out << "  warning: " << warning << "\n";
 
   if (scene.numerics_choice) write_choice(out, *scene.numerics_choice);
-  out << "\nConversions\n  " << padded("stage", 12) << padded("quantity", 36) << padded("SI", 14)
+  out << "\nConversions\n  " << padded("stage", 12) << padded("quantity", 40) << padded("SI", 14)
       << padded("lattice", 14) << "SI unit\n";
   for (const auto& row : plan.conversions) {
-    out << "  " << padded(row["stage"].get<std::string>(), 12) << padded(row["quantity"].get<std::string>(), 36)
+    const std::string of = row["of"];
+    const std::string quantity = row["quantity"].get<std::string>() + (of.empty() ? "" : " (" + of + ")");
+    out << "  " << padded(row["stage"].get<std::string>(), 12) << padded(quantity, 40)
         << padded(formatted(row["si"]), 14) << padded(formatted(row["lattice"]), 14) << row["unit"].get<std::string>()
         << "\n";
   }

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 #include <exception>
+#include <iostream>
 #include <limits>
 #include <optional>
 #include <set>
@@ -83,6 +84,21 @@ class Simulation {
     if (!resumption.damage.empty()) resumed["damaged_checkpoint"] = resumption.damage;
     state_.resumed.push_back(resumed);
     directory_.log("resumed", resumed);
+    checkpoints_.go_on_from(state_.steps);
+    say_where_it_goes_on(resumption.damage);
+  }
+
+  /// On the terminal, where what was lost is said even to whom wants no progress.
+  void say_where_it_goes_on(const std::string& damage) const {
+    const std::string step = "step " + std::to_string(state_.steps);
+    if (!damage.empty()) {
+      std::cerr << "warning: going on from " << step << ", the checkpoint before the last, for " << damage << "\n";
+    } else if (!options_.quiet) {
+      std::cerr << "going on from " << step << "\n";
+    }
+    if (options_.max_steps >= 0 && state_.steps > options_.max_steps) {
+      std::cerr << "warning: " << step << " lies beyond --max-steps " << options_.max_steps << "\n";
+    }
   }
 
   template <class T>
@@ -393,6 +409,7 @@ class Simulation {
     state_.report(s);
     s.mlups = s.steps_per_s * scene_.domain.nodes[0] * scene_.domain.nodes[1] / 1e6;
     s.peak_rss_bytes = peak_memory_bytes();
+    s.checkpoint_step = checkpoints_.kept();
     s.area_leakage_max = Observer::area_leakage(membranes_);
     return s;
   }

@@ -244,6 +244,26 @@ class Commands_do_what_they_say(Case):
             self.assertIn(key, plan)
         self.assertAlmostEqual(plan["dimensionless"]["reynolds_physical"], 2.548e-4, delta=1e-6)
 
+    def test_conversions_and_limits_say_whose_they_are(self):
+        scene = json.loads(SCENE.read_text())
+        stiff = json.loads(json.dumps(scene["cell_types"]["rbc"]))
+        stiff["membrane"][0]["parameters"]["shear_modulus"] = "2e-5 N/m"
+        scene["cell_types"]["stiff"] = stiff
+        scene["cells"][0]["row"]["count"] = 2
+        scene["cells"].append({"type": "stiff", "at": ["40 um", "12.544 um"]})
+        scene["interactions"].append({**scene["interactions"][0], "between": ["rbc", "stiff"]})
+        file = self.path / "two.json"
+        file.write_text(json.dumps(scene))
+        plan = json.loads(self.rouleau.run("plan", file, "--json").stdout)
+        found = {(row["of"], row["quantity"]): row["si"] for row in plan["conversions"] if row["stage"] == "shear"}
+        self.assertAlmostEqual(found["rbc", "neo-hookean: shear_modulus"], 6e-6)
+        self.assertAlmostEqual(found["stiff", "neo-hookean: shear_modulus"], 2e-5)
+        self.assertAlmostEqual(found["rbc, stiff", "morse: depth"], 5.2e-8, delta=1e-12)
+        self.assertAlmostEqual(found["stiff", "interior viscosity"], 6e-3)
+        self.assertEqual(sum(row["stage"] == "shear" for row in plan["conversions"]), len(found), "one row each")
+        gaps = [limit["name"] for limit in plan["limits"] if limit["name"].startswith("equilibrium gap")]
+        self.assertEqual(sorted(gaps), ["equilibrium gap of morse (rbc, rbc) in lattice spacings", "equilibrium gap of morse (rbc, stiff) in lattice spacings"])
+
     def test_open_numerics_are_chosen_told_and_kept_with_the_run(self):
         scene = self.path / "open.json"
         scene.write_text((SOURCE / "tests/physics/scenes/auto-capsule.json").read_text())
@@ -366,7 +386,10 @@ class Commands_do_what_they_say(Case):
                                  ((a, a, "--frames"), ("--compare and --frames",)), ((a, a, "--strains", "1"), ("--strains is for --frames",))):
             self.assert_stops(self.rouleau.run("report", "--compare", *arguments, cwd=self.path), 2, *words)
         self.assert_stops(self.rouleau.run("report", a, a), 2, "takes one directory", "--compare")
-        self.assert_stops(self.rouleau.run("report", a, "--out", out), 2, "--out is for --compare and --frames")
+        self.assertEqual(self.rouleau.run("report", a, "--out", out).stdout, f"{out}\n")
+        self.assertEqual(out.read_bytes(), (a / "report.html").read_bytes())
+        for empty in (("report", a, "--out", ""), ("run", SCENE, "--out", ""), ("run", SCENE, "--lock", "")):
+            self.assert_stops(self.rouleau.run(*empty, cwd=self.path), 2, f"{empty[-2]} is empty")
         self.assert_stops(self.rouleau.run("report", "--compare", a, a, "--out", self.path / "none/c.html"), 4, "none/c.html")
 
     def test_frames_are_pictures_of_chosen_strains(self):
@@ -416,10 +439,39 @@ class Commands_do_what_they_say(Case):
 
         for strains, words in (("0,40", ("no strain 40", "from 0 to 0.5")), ("0,x", ('"x" is no strain',)), ("-1", ('"-1" is no strain',)), ("1,", ('"" is no strain',))):
             self.assert_stops(self.rouleau.run("report", out, "--frames", f"--strains={strains}"), 2, *words)
-        self.assert_stops(self.rouleau.run("report", self.path / "none", "--frames"), 2, "none", "is no run's directory")
+        self.assert_stops(self.rouleau.run("report", self.path / "none", "--frames"), 2, "none", "does not exist")
+        self.assert_stops(self.rouleau.run("report", self.path, "--frames"), 2, str(self.path), "is no run's directory")
         file = self.path / "file"
         file.write_text("")
         self.assert_stops(self.rouleau.run("report", out, "--frames", "--out", file / "x"), 4, str(file))
+
+    def test_a_report_of_damaged_files_shows_the_rest_and_says_what_is_damaged(self):
+        out = self.path / "run"
+        self.assertEqual(self.rouleau.run("run", SCENE, "--out", out, "--max-steps", 2000, "--set", "/output/cells/strain=0.02").returncode, 0)
+        kept = {name: (out / name).read_bytes() for name in ("cells.csv", "frames.h5")}
+        for name, damage in (("frames.h5", lambda content: content[:20000]), ("cells.csv", lambda content: content[:len(content) // 2])):
+            with self.subTest(name):
+                (out / name).write_bytes(damage(kept[name]))
+                result = self.rouleau.run("report", out)
+                self.assertEqual(result.returncode, 0, result.stderr)
+                self.assertIn(f"warning: {out / name}", result.stderr)
+                (out / name).write_bytes(kept[name])
+        self.assertEqual(self.rouleau.run("report", out).stderr, "")
+
+    def test_what_somebody_put_beside_a_run_stays(self):
+        out = self.path / "run"
+        short = ("run", SCENE, "--out", out, "--max-steps")
+        self.assertEqual(self.rouleau.run(*short, 50).returncode, 0)
+        (out / "figure.png").write_text("mine")
+        for option in ("--resume", "--overwrite"):
+            result = self.rouleau.run(*short, 100, option)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertEqual((out / "figure.png").read_text(), "mine")
+        self.assertEqual(json.loads((out / "summary.json").read_text())["resumed"], [])
+        (out / "log.jsonl").unlink()
+        for name in ("summary.json", "checkpoint.h5"):
+            (out / name).unlink()
+        self.assert_stops(self.rouleau.run(*short, 100, "--overwrite"), 2, "figure.png", "which no run wrote")
 
     def test_the_hash_of_the_scene_is_that_of_the_file_in_the_run_directory(self):
         for name, settings in (("as_written", []), ("changed", ["--set", "/title=changed"])):

@@ -162,7 +162,8 @@ class Damaged_files(Case):
         for _ in range(6):
             directory = self.stopped()
             what = damage(directory / "checkpoint.h5")
-            self.assert_goes_on(directory)
+            words = self.assert_goes_on(directory).stderr
+            self.assertIn(f"the checkpoint before the last, for {directory / 'checkpoint.h5'}", words, what)
             resumed = json.loads((directory / "summary.json").read_text())["resumed"]
             self.assertIn("checkpoint.h5", resumed[0]["damaged_checkpoint"], what)
 
@@ -273,6 +274,7 @@ class Other_runs(Case):
         never = ["--set", '/output/checkpoint="never"']
         self.assertEqual(run(directory, *never, "--max-steps", 100).returncode, 0)
         self.assertFalse((directory / "checkpoint.h5").exists())
+        self.assertIsNone(json.loads((directory / "summary.json").read_text())["checkpoint_step"])
         self.assert_stops(run(directory, *never, "--resume"), 2, "no checkpoint", "--overwrite")
 
 
