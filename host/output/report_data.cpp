@@ -174,9 +174,9 @@ json report_data(const std::filesystem::path& directory) {
   // A run that goes on, or was killed, may lack the last rows of a file; one that has ended may not.
   const auto take = [&](const char* file, std::size_t has) {
     if (ended && has < series.rows()) {
-      damage.push_back((directory / file).string() + " has " + std::to_string(has) + " outputs and series.csv " +
-                       std::to_string(series.rows()) + ": it was cut short; bring the whole file back, or run the " +
-                       "scene again. What is shown here ends where it ends.");
+      damage.push_back((directory / file).string() + " holds " + std::to_string(has) + " of the " +
+                       std::to_string(series.rows()) + " outputs of series.csv: it was cut short; bring the whole " +
+                       "file back, or run the scene again. What is shown here ends where it ends.");
     }
     outputs = std::min(outputs, has);
   };

@@ -186,6 +186,20 @@ class A_chart_under_the_mouse(PageCase):
         self.assertEqual(page.faults(), [])
 
 
+class The_axis_of_a_chart(PageCase):
+    def test_has_numbers_that_differ(self):
+        page = self.open(folder / "a/report.html")
+        for values, step, words in (([90, 90.0005, 90.001], .0005, ["90", "90.0005", "90.001"]), ([-2.5, 0, 2.5], 2.5, ["−2.5", "0", "2.5"]),
+                                    ([123456, 123457], 1, ["1.23456e5", "1.23457e5"]), ([0.1, 0.2, 0.30000000000000004], .1, ["0.1", "0.2", "0.3"]),
+                                    ([2e-5, 4e-5], 2e-5, ["2e-5", "4e-5"])):
+            self.assertEqual(page.run(f"axisNumbers(null, {values}, 1, 32, {step})"), words)
+
+    def test_shows_a_value_without_neighbours_as_a_dot(self):
+        page = self.open(folder / "a/report.html")
+        self.assertEqual(page.run("lonely([1, null, 2, undefined, 3, null, undefined, 4])"), [0, 7])
+        self.assertEqual(page.run("lonely([undefined, 1, undefined])"), [1])
+
+
 class On_paper(PageCase):
     def test_charts_are_dark_on_white_whatever_the_screen_was_and_nothing_stays_folded(self):
         for file in ("a/report.html", "both.html"):
@@ -256,6 +270,77 @@ class The_page_of_a_run(PageCase):
         self.assertGreater(page.run("charts.length"), 5)
         self.assert_sound(page)
 
+    def changed(self, name, change, damage=None):
+        """The page of run a with another summary.json; `damage` is put where the program tells of damaged files."""
+        directory = folder / name
+        shutil.copytree(folder / "a", directory)
+        summary = json.loads((directory / "summary.json").read_text())
+        change(summary)
+        (directory / "summary.json").write_text(json.dumps(summary))
+        rouleau("report", directory)
+        if damage:
+            file = directory / "report.html"
+            begin, rest = file.read_text().split('<script type="application/json" id="data">', 1)
+            data, end = rest.split("</script>", 1)
+            data = json.loads(data)
+            data["shown"].update(damage=damage, note="No animation: frames.h5 cannot be read.")
+            data["outlines"] = data["fields"] = None
+            file.write_text(f'{begin}<script type="application/json" id="data">{json.dumps(data)}</script>{end}')
+        page = self.open(directory / "report.html")
+        self.assert_sound(page)
+        return page
+
+    def conversions(self, page):
+        found = page.run("(() => { const h = [...document.querySelectorAll('h3')].find(h => h.textContent === 'Every conversion'); return"
+                         " [...h.nextElementSibling.querySelectorAll('tr')].map(tr => [...tr.children].map(cell => cell.textContent)); })()")
+        return found[0], found[1:]
+
+    def test_has_every_conversion_with_the_cells_it_belongs_to(self):
+        def row(quantity, si, stage="shear", **more):
+            return {"quantity": quantity, "si": si, "lattice": si, "unit": "m", "stage": stage, **more}
+        head, rows = self.conversions(self.changed("of", lambda s: s.update(conversions=[
+            row(q, si + later, stage, of=of) for later, stage in enumerate(("first", "second"))
+            for q, si, of in (("spacing", 1, ""), ("a: modulus", 2, "rbc"), ("a: modulus", 3, "rbc #2"), ("m: depth", 4, "rbc, rbc"), ("m: depth", 5, "rbc, rbc"))])))
+        self.assertEqual(head, ["Quantity", "Of", "Unit", "SI (first)", "Lattice (first)", "SI (second)", "Lattice (second)"])
+        self.assertEqual([r[:2] + r[3:] for r in rows], [[q, of] + [str(si)] * 2 + [str(si + 1)] * 2 for q, of, si in (
+            ("spacing", "", 1), ("a: modulus", "rbc", 2), ("a: modulus", "rbc #2", 3), ("m: depth", "rbc, rbc", 4), ("m: depth", "rbc, rbc", 5))])
+        # Of an earlier version, which does not say what they belong to.
+        head, rows = self.conversions(self.changed("not-of", lambda s: s.update(conversions=[row("m: depth", si) for si in (1, 2, 3)])))
+        self.assertEqual(head, ["Quantity", "Unit", "SI", "Lattice"])
+        self.assertEqual([r[2] for r in rows], ["1", "2", "3"])
+
+    def test_says_whether_an_interrupted_run_can_go_on(self):
+        def interrupt(summary, **step):
+            summary.pop("checkpoint_step", None)
+            summary.update(status="interrupted", **step)
+        for name, step, words in (("kept", {"checkpoint_step": 1234}, "The same command with --resume goes on from step 1\u202f234."),
+                                  ("not-kept", {"checkpoint_step": None}, "No checkpoint was kept, so that it can only begin again."),
+                                  ("unsaid", {}, "continue it with --resume.")):
+            page = self.changed(name, lambda s: interrupt(s, **step))
+            self.assertIn(words, page.run("document.querySelector('[role=status]').textContent"))
+
+    def test_begins_with_what_is_damaged(self):
+        page = self.changed("damaged", lambda s: s.update(warnings=["a warning"], resumed=[
+            {"step": 5000, "threads": 1, "accepted": []}, {"step": 7000, "threads": 1, "accepted": [], "damaged_checkpoint": "checkpoint.h5 is damaged: its checksum is wrong"}]),
+            damage=["frames.h5 is damaged; run again", "cells.csv is cut short"])
+        boxes = page.run("[...document.querySelectorAll('.status')].map(e => [e.querySelector('strong').textContent, ...[...e.querySelectorAll('li')].map(li => li.textContent)])")
+        self.assertEqual(boxes[0], ["Some of the run's files are damaged", "frames.h5 is damaged; run again", "cells.csv is cut short"])
+        self.assertEqual(boxes[1][:2], ["2 warnings", "a warning"])
+        self.assertIn("at step 7\u202f000: checkpoint.h5 is damaged", boxes[1][2])
+        self.assertEqual(page.run("document.querySelector('h1').nextElementSibling.nextElementSibling.querySelector('strong').textContent"), boxes[0][0])
+        # Why there is no animation stands where it would be.
+        self.assertEqual(page.run("document.querySelector('.stage').firstElementChild.textContent"), "No animation: frames.h5 cannot be read.")
+        self.assertFalse(page.run("!!document.querySelector('canvas.view')"))
+
+    def test_of_a_diverged_run_shows_the_last_instant_with_the_place_marked(self):
+        failure = {"reason": "node_step", "step": 9999, "strain": 1, "time_s": 1, "place_m": [20e-6, 12e-6], "cell": 1, "value": 1, "limit": 0.5, "message": "", "remedy": ""}
+        page = self.changed("diverged", lambda s: s.update(status="diverged", failure=failure))
+        self.assertEqual(page.run("timeline.position"), page.run("timeline.count - 1"))
+        self.assertIn("the red ring marks the place", page.run("document.querySelector('.stage').textContent"))
+        marked = page.run(Every_page_on_every_screen.VIEWS)
+        page.run("data.summary.failure = null; timeline.seek(timeline.position)")
+        self.assertNotEqual(page.run(Every_page_on_every_screen.VIEWS), marked)
+
     def test_of_a_run_without_any_output_is_still_a_page(self):
         directory = folder / "empty"
         shutil.copytree(folder / "a", directory)
@@ -299,6 +384,24 @@ class Two_runs(PageCase):
         self.assertIn("/stages/1/shear_rate", text)
         self.assertIn("Both runs used the same plugins, byte for byte.", text)
         self.assertIn("Dimensionless, adhesion number", text)
+        self.assert_sound(page)
+
+    def test_are_compared_over_the_time_where_that_is_chosen(self):
+        page = self.open(folder / "both.html")
+        choose = "(v => { const s = document.querySelector('select[aria-label=\"Horizontal axis\"]'); s.value = v; s.dispatchEvent(new Event('change')); })"
+        self.assertEqual(page.run("[...document.querySelector('select[aria-label=\"Horizontal axis\"]').options].map(o => o.value)"), ["strain", "time_s"])
+        page.run("timeline.seek(timeline.count - 1)")
+        page.run(f"{choose}('time_s')")
+        last = page.run("Math.max(...data.runs.map(run => run.time_s.at(-1)))")
+        page.wait(f"charts.every(c => Math.abs(c.u.scales.x.max - {last}) <= 1e-9 * {last})")
+        slider = page.run("Number(document.querySelector('input[type=range]').max)")
+        self.assertEqual(slider, page.run("timeline.count - 1"))
+        for time, *outputs in page.run("timeline.instants.map((k, p) => [timeline.place(p), ...data.runs.map((run, r) => run.time_s[timeline.output(r, p)])])"):
+            for r, at in enumerate(outputs):
+                self.assertAlmostEqual(at, min(page.run(f"data.runs[{r}].time_s"), key=lambda t: abs(t - time)), delta=1e-9)
+        self.assertIn("Both show the same time", page.run("document.querySelector('main').textContent"))
+        page.run(f"{choose}('strain')")
+        page.wait("charts.every(c => c.u.scales.x.max < 1.1)")
         self.assert_sound(page)
 
     def test_that_are_the_same_do_not_differ(self):

@@ -27,8 +27,23 @@ class Animation {
     context.beginPath(); context.rect(0, 0, lx * scale, ly * scale); context.clip();
     const under = this.drawField(context, output, scale);
     if (this.outlines) this.drawCells(context, output, scale, under);
+    if (this.failed(output)) this.drawFailure(context, scale);
     context.restore();
     this.drawFrame(context, scale);
+  }
+
+  /// Whether a diverged run shows its last output, so that the place where it went bad is marked.
+  failed(output) { return output === this.data.step.length - 1 && (this.data.summary?.failure?.place_m || []).length === 2 && this.data.summary.failure.place_m.every(v => v !== null); }
+  drawFailure(context, scale) {
+    const inBox = (v, length) => v - Math.floor(v / length) * length, [x, y] = this.data.summary.failure.place_m.map(v => v * 1e6);
+    const at = [inBox(x, this.lx) * scale, (this.data.domain.periodic_y ? inBox(y, this.ly) : y) * scale];
+    for (const [colour, width] of [["--card", 6], ["--bad", 2.5]]) {
+      context.strokeStyle = css(colour); context.lineWidth = width;
+      context.beginPath(); context.arc(...at, 11, 0, 2 * Math.PI); context.stroke();
+      context.beginPath();
+      for (const [dx, dy] of [[1, 0], [0, 1], [-1, 0], [0, -1]]) { context.moveTo(at[0] + 7 * dx, at[1] + 7 * dy); context.lineTo(at[0] + 16 * dx, at[1] + 16 * dy); }
+      context.stroke();
+    }
   }
 
   drawField(context, output, scale) {
@@ -53,7 +68,7 @@ class Animation {
       for (let i = outlines.first[cell]; i < outlines.first[cell + 1]; ++i)
         ring.push([origins[2 * cell] + view.getInt16(4 * i, true) * outlines.quantum_um, origins[2 * cell + 1] + view.getInt16(4 * i + 2, true) * outlines.quantum_um]);
       const base = [-Math.floor(origins[2 * cell] / lx) * lx, outlines.periodic_y ? -Math.floor(origins[2 * cell + 1] / ly) * ly : 0];
-      const tone = css(toneOf(data.cells ? data.cells.aggregate[output][cell] : cell));
+      const tone = css(toneOf(data.cells ? data.cells.aggregate[output][cell] : cell)), bad = this.failed(output) && data.summary.failure.cell === cell;
       // The image in the box and its neighbours: what leaves on one side enters on the other.
       for (const ix of [-1, 0, 1]) for (const iy of outlines.periodic_y ? [-1, 0, 1] : [0]) {
         context.beginPath();
@@ -62,7 +77,7 @@ class Animation {
         context.globalAlpha = under ? 0.45 : 0.28; context.fillStyle = tone; context.fill();
         context.globalAlpha = 1;
         if (under) { context.strokeStyle = css("--card"); context.lineWidth = 4; context.stroke(); }
-        context.strokeStyle = tone; context.lineWidth = under ? 2 : 1.6; context.stroke();
+        context.strokeStyle = bad ? css("--bad") : tone; context.lineWidth = bad ? 3 : under ? 2 : 1.6; context.stroke();
       }
     }
   }
@@ -105,10 +120,19 @@ function animationControls(timeline, animations, chosen) {
     controls.append(element("label", {}, "Flow", under));
   }
   timeline.listeners.push(() => {
+    slider.max = Math.max(0, timeline.count - 1);
     slider.value = timeline.position;
     slider.setAttribute("aria-valuetext", timeline.words);
   });
   return controls;
+}
+
+/// What the mark in a diverged run's animation means.
+function failureNote(run) {
+  const failure = (run.summary || {}).failure;
+  if (!failure?.place_m || !run.step.length || !(run.outlines || run.fields)) return [];
+  const last = run.step.at(-1), cell = run.outlines && typeof failure.cell === "number" ? ", the red outline the cell" : "";
+  return [note(`At the last instant the red ring marks the place where the run diverged${cell}` + (last < failure.step ? `: at step ${format(failure.step)}, while what is drawn is of step ${format(last)}, the last written.` : "."))];
 }
 
 /// Strain, time, step and stage that a run shows.
@@ -116,7 +140,7 @@ function instantLine(timeline, run) {
   const data = timeline.runs[run], words = [element("span"), element("span"), element("span"), element("span")];
   timeline.listeners.push(() => {
     const i = timeline.output(run);
-    const texts = [`strain ${format(data.strain[i], 3)}`, `${format(data.time_s[i], 4)} s`, `step ${format(data.step[i])}`, data.stage[i]];
+    const texts = [`strain ${format(data.strain[i], 3)}`, `${format(data.time_s[i], 4)} s`, `step ${format(data.step[i])}`, `stage ${data.stage[i]}`];
     texts.forEach((text, k) => { words[k].textContent = text; });
   });
   return element("div", {class: "now"}, ...words);

@@ -35,7 +35,7 @@ function linearAxis(values, from, to, {room = .04, apart = 90} = {}) {
   low -= pad; high += pad;
   const rough = (high - low) * apart / Math.abs(to - from), power = 10 ** Math.floor(Math.log10(rough)), step = power * [1, 2, 5, 10].find(m => m * power >= rough);
   const ticks = [];
-  for (let i = Math.ceil(low / step); i * step <= high; ++i) ticks.push({value: i * step, text: format(Number((i * step).toPrecision(12)))});
+  for (let i = Math.ceil(low / step); i * step <= high; ++i) ticks.push({value: i * step, text: format(i * step, 12)});
   return {at: v => from + (v - low) / (high - low) * (to - from), low, high, ticks, fine: []};
 }
 

@@ -13,8 +13,21 @@ function chartStyle() {
   };
 }
 
-const axisNumber = v => v === 0 ? "0" : Math.abs(v) >= 1e5 || Math.abs(v) < 1e-4 ? v.toExponential(1).replace(".0e", "e").replace("e+", "e") : String(Number(v.toPrecision(4)));
-const axisNumbers = (u, splits) => splits.map(v => v === null ? "" : axisNumber(v).replace(/^-/, "−"));
+/// A number of an axis whose numbers are `step` apart, with as many digits as tell it from its neighbours.
+function axisNumber(v, step) {
+  if (v === 0) return "0";
+  const size = Math.abs(v), digits = Math.min(15, Math.max(1, Math.floor(Math.log10(size)) - Math.floor(Math.log10(step)) + 2));
+  const [mantissa, exponent] = v.toExponential(digits - 1).split("e");
+  return size >= 1e5 || size < 1e-4 ? `${Number(mantissa)}e${Number(exponent)}` : String(Number(v.toPrecision(digits)));
+}
+const axisNumbers = (u, splits, axis, space, step) => splits.map(v => v === null ? "" : axisNumber(v, step).replace(/^-/, "−"));
+
+/// Where a column of uPlot's table has a value and neither neighbour has one: no line leads there. Undefined is what only
+/// another run has.
+function lonely(values) {
+  const known = values.map((v, i) => i).filter(i => values[i] !== undefined);
+  return known.filter((i, k) => values[i] !== null && (values[known[k - 1]] ?? null) === null && (values[known[k + 1]] ?? null) === null);
+}
 const wholeSteps = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000, 20000, 50000, 100000];
 
 function verticalRange({whole, zero}) {
@@ -81,18 +94,21 @@ class Chart {
     return joined;
   }
 
-  options(style, xs) {
-    const {fine} = style, font = `${12 * fine}px system-ui, sans-serif`;
+  options(style, table) {
+    const {fine} = style, xs = table[0], font = `${12 * fine}px system-ui, sans-serif`;
     const whole = xs[0] < xs.at(-1) ? [xs[0], xs.at(-1)] : [xs[0], xs[0] + 1];
     const axis = {font, stroke: style.text, grid: {stroke: style.grid, width: fine}, ticks: {stroke: style.line, width: fine, size: 4 * fine}, gap: 4 * fine, values: axisNumbers};
     const series = [{}], bands = [];
     this.lines.forEach((line, i) => {
-      const stroke = css(line.tone), common = {stroke, show: !line.hidden, points: {show: xs.length === 1, size: 6 * fine},
-        paths: this.steps ? uPlot.paths.stepped({align: 1}) : uPlot.paths.linear()};
+      const stroke = css(line.tone), common = {stroke, show: !line.hidden, paths: this.steps ? uPlot.paths.stepped({align: 1}) : uPlot.paths.linear()};
+      const [first, second] = this.seriesOf[i].map(s => {  // each with dots for the values that no line would show
+        const dots = lonely(table[s]);
+        return {...common, points: dots.length ? {show: true, filter: () => dots, size: 6 * fine, fill: stroke} : {show: false}};
+      });
       const dash = line.dashed ? [5 * fine, 3 * fine] : style.dash(i)?.map(d => d * fine);
-      if (!line.band) { series.push({...common, width: 1.8 * fine, dash}); return; }
+      if (!line.band) { series.push({...first, width: 1.8 * fine, dash}); return; }
       bands.push({series: this.seriesOf[i], fill: stroke + "30"});
-      series.push({...common, width: .6 * fine}, {...common, width: .6 * fine});
+      series.push({...first, width: .6 * fine}, {...second, width: .6 * fine});
     });
     return {
       width: this.width * fine, height: this.height * fine, series, bands, pxAlign: true, padding: [8 * fine, 10 * fine, 0, 0],
@@ -146,7 +162,7 @@ class Chart {
     this.style = chartStyle();
     this.width = this.style.paper ? (this.wide ? 650 : 304) : Math.max(200, this.plot.clientWidth);
     const data = this.table();
-    this.u = new uPlot(this.options(this.style, data[0]), data, this.plot);
+    this.u = new uPlot(this.options(this.style, data), data, this.plot);
     if (this.style.paper) this.u.root.style.zoom = 1 / this.style.fine;
     this.u.over.addEventListener("pointerdown", e => { this.timeline.stop(); this.point(e); });
     this.u.over.addEventListener("pointermove", e => { if (e.pointerType !== "mouse" && e.buttons) this.point(e); });

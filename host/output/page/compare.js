@@ -8,7 +8,7 @@ const asText = value => value === undefined ? "–" : typeof value === "number" 
 function showComparison({runs, differences}) {
   document.title = `${runs.map(run => run.summary.title || run.directory).join(" | ")} – Rouleau`;
   page.append(element("h1", {}, "Two runs side by side"));
-  runs.forEach((run, r) => { if ((run.summary.warnings || []).length) page.append(warningBox(run.summary.warnings, ` of ${runNames[r]}`)); });
+  runs.forEach((run, r) => page.append(...warningBoxes(run, runNames[r])));
   page.append(element("div", {class: "pair"}, ...runs.map((run, r) => element("div", {}, runName(run, r), statusBox(run)))), links);
 
   const timeline = new Timeline(runs);
@@ -27,15 +27,19 @@ function showBothResults(timeline, runs) {
     const box = element("div", {class: "card"}, runName(run, r));
     views.append(box);
     if (run.outlines || run.fields) animations.push(new Animation(box, timeline, r, () => chosen.name));
-    else box.append(note(run.shown.note || "No animation: there are no cells."));
-    box.append(instantLine(timeline, r));
+    else if (!run.shown.note) box.append(note("No animation: there are no cells."));
+    box.append(...whyNoAnimation(run), instantLine(timeline, r), ...failureNote(run));
   });
   page.append(element("div", {class: "card", style: "margin-top:14px"}, animationControls(timeline, animations, chosen)));
-  page.append(note(timeline.sheared ? "Both show the same strain and, where it stands still, the same time since they came to rest: the nearest output of each." : "Both show the same time: the nearest output of each."));
+  const alike = note("");
+  timeline.listeners.push(() => {
+    alike.textContent = timeline.over === "strain" ? "Both show the same strain and, where it stands still, the same time since they came to rest: the nearest output of each."
+      : "Both show the same time: the nearest output of each.";
+  });
+  page.append(alike);
   const grid = element("div", {class: "charts"});
-  section("Plots", grid);
+  section("Plots", axisControls(timeline), grid);
   const notes = plots(timeline, grid, grid);
-  page.append(axisControls(timeline));
   const own = runs.map(notesOf);
   own.forEach((texts, r) => { for (const text of texts) {
     if (!own[1 - r].includes(text)) notes.push(`${runNames[r]}: ${text}`); else if (r === 0) notes.push(text);

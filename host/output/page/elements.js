@@ -55,11 +55,11 @@ function table(columns, rows, {stacked = false, sortable = false, attributes = (
     element("table", {}, ...(columns.some(c => c.title) ? [element("thead", {}, element("tr", {}, ...heads))] : []), body));
 }
 
-// Tables whose columns the host decides.
+// Tables whose columns the host decides; the name of what a row is about comes first.
 function freeTable(rows) {
-  const keys = [...new Set(rows.flatMap(r => Object.keys(r)))];
+  const keys = [...new Set(rows.flatMap(r => Object.keys(r)))].sort((a, b) => (b === "name") - (a === "name"));
   const numeric = key => rows.every(r => r[key] === null || r[key] === undefined || typeof r[key] === "number");
-  return table(keys.map(key => ({title: spelled(key), number: numeric(key), value: r => typeof r[key] === "object" && r[key] !== null ? JSON.stringify(r[key]) : r[key]})), rows);
+  return table(keys.map(key => ({title: spelled(key), number: numeric(key), value: r => typeof r[key] === "object" && r[key] !== null ? JSON.stringify(r[key]) : r[key]})), rows, {stacked: true});
 }
 
 /// Passes of a run with their times as bars, the longest first.
@@ -69,12 +69,11 @@ function passTable(passes) {
     {title: "Share", number: true, value: r => `${(100 * r.wall_s / total).toFixed(1)} %`},
     {title: "", value: r => element("span", {class: "share", style: `width:${(110 * r.wall_s / total).toFixed(0)}px`})},
     ...(counted ? [{title: "Calls", key: "calls", number: true}, {title: "Each", number: true, value: r => r.calls ? `${format(1e6 * r.wall_s / r.calls, 3)} µs` : "–"}] : [])],
-    [...passes].sort((a, b) => b.wall_s - a.wall_s));
+    [...passes].sort((a, b) => b.wall_s - a.wall_s), {stacked: true});
 }
 
-function warningBox(warnings, whose = "") {
-  return element("div", {class: "card status warn"}, element("strong", {}, (warnings.length === 1 ? "Warning" : `${warnings.length} warnings`) + whose),
-    element("ul", {}, ...warnings.map(w => element("li", {}, w))));
+function warningBox(warnings, whose = "", headline = warnings.length === 1 ? "Warning" : `${warnings.length} warnings`) {
+  return element("div", {class: "card status warn"}, element("strong", {}, headline + whose), element("ul", {}, ...warnings.map(w => element("li", {}, w))));
 }
 const note = text => element("p", {class: "quiet"}, text);
 

@@ -86,12 +86,12 @@ function plots(timeline, first, grid) {
   return notes;
 }
 
-/// The choice of the horizontal axis, and the way back from a stretch of it.
+/// The choice of the horizontal axis, if there is one, and the way back from a stretch of it.
 function axisControls(timeline) {
   const controls = element("div", {class: "controls"});
-  if (timeline.runs.length === 1) {
-    const choices = [...(timeline.sheared ? [["strain", "over strain"]] : []), ["time_s", "over time"], ["output", "over outputs"]];
-    const select = element("select", {"aria-label": "Horizontal axis", onchange: () => { timeline.over = select.value; zoomed = null; redrawCharts(); timeline.seek(timeline.position); document.dispatchEvent(new Event("zoomed")); }},
+  const choices = [...(timeline.sheared ? [["strain", "over strain"]] : []), ["time_s", "over time"], ...(timeline.runs.length === 1 ? [["output", "over outputs"]] : [])];
+  if (choices.length > 1) {
+    const select = element("select", {"aria-label": "Horizontal axis", onchange: () => { timeline.setOver(select.value); zoomed = null; redrawCharts(); timeline.seek(timeline.position); document.dispatchEvent(new Event("zoomed")); }},
       ...choices.map(([value, text]) => element("option", {value}, text)));
     controls.append(element("label", {}, "Charts", select));
   }

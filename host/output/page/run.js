@@ -1,4 +1,21 @@
 // ------------------------------------------------------------------------------------------------ the page of one run
+/// What has to be known before anything else: files that are damaged, and what the run warned of; `name` is that of one run
+/// among others.
+function warningBoxes(run, name = "") {
+  const damage = run.shown.damage || [], summary = run.summary || {}, warnings = [...(summary.warnings || [])];
+  for (const {step, damaged_checkpoint: damaged} of summary.resumed || [])
+    if (damaged) warnings.push(`The newest checkpoint was damaged, so that the run went on from the one before it, at step ${format(step)}: ${damaged}`);
+  return [...(damage.length ? [warningBox(damage, "", name ? `Some of the files of ${name} are damaged` : "Some of the run's files are damaged")] : []),
+    ...(warnings.length ? [warningBox(warnings, name && ` of ${name}`)] : [])];
+}
+
+/// How a run that was stopped can be ended; summaries of earlier versions do not say whether there is a checkpoint.
+function howToGoOn({checkpoint_step: step}) {
+  if (step === null) return "The run was stopped before its end. No checkpoint was kept, so that it can only begin again.";
+  if (step === undefined) return "The run was stopped before its end; continue it with --resume.";
+  return `The run was stopped before its end. The same command with --resume goes on from step ${format(step)}.`;
+}
+
 function statusBox(run) {
   const summary = run.summary || {};
   const words = {completed: "Completed", diverged: "Diverged", interrupted: "Interrupted"};
@@ -7,7 +24,7 @@ function statusBox(run) {
   const box = element("div", {class: "card status" + (status === "completed" && !cut ? "" : status === "diverged" ? " bad" : " warn"), role: "status"},
     element("strong", {}, cut ? (summary.outcome || "cut short by --max-steps").replace(/^./, c => c.toUpperCase()) : words[status] || "Not finished"));
   if (!run.summary) box.append(element("p", {}, "There is no summary.json: the run is still going on, or was killed. Below is what it had written."));
-  if (status === "interrupted") box.append(element("p", {}, "The run was stopped before its end; continue it with --resume."));
+  if (status === "interrupted") box.append(element("p", {}, howToGoOn(summary)));
   const failure = summary.failure;
   if (failure) {
     const where = failure.place_m ? `at (${failure.place_m.map(v => v === null ? "?" : format(v * 1e6)).join(", ")}) µm` : "";
@@ -28,7 +45,6 @@ function notesOf(run) {
   if (run.shown.outputs < run.shown.of) notes.push(`${run.shown.outputs} of ${run.shown.of} outputs are shown here; the files have all.`);
   if (run.outlines && run.shown.node_stride > 1) notes.push(`Outlines are drawn through one in ${run.shown.node_stride} of their nodes.`);
   if (run.fields) notes.push("The flow is shown as means over blocks of the lattice" + (run.fields.derived ? ", the vorticity computed from the velocity that was written." : "."));
-  if (run.shown.note) notes.push(run.shown.note);
   return notes;
 }
 
@@ -36,11 +52,10 @@ function showRun(run) {
   const summary = run.summary || {}, title = summary.title || "Untitled scene";
   document.title = `${title} – Rouleau`;
   page.append(element("h1", {}, title), note([summary.scene_file, summary.started, summary.machine].filter(Boolean).join(" · ")));
-  if ((summary.warnings || []).length) page.append(warningBox(summary.warnings));
-  page.append(statusBox(run), links);
+  page.append(...warningBoxes(run), statusBox(run), links);
 
   const timeline = new Timeline([run]);
-  if (!timeline.count) section("Results", element("p", {}, "No output has been written."));
+  if (!timeline.count) section("Results", element("p", {}, "No output has been written."), ...whyNoAnimation(run));
   else showResults(timeline, run);
   showScene(run);
   showDimensionless(summary.dimensionless || {});
@@ -51,9 +66,10 @@ function showRun(run) {
   showHistory(summary);
   showProvenance(run);
   licences();
-  timeline.seek(0);
+  timeline.seek(summary.status === "diverged" ? timeline.count - 1 : 0);  // where it went bad
   return timeline;
 }
+const whyNoAnimation = run => run.shown.note ? [element("p", {}, run.shown.note)] : [];
 
 function showResults(timeline, run) {
   const top = element("div", {class: "stage"}), grid = element("div", {class: "charts"}), side = element("div", {});
@@ -62,9 +78,10 @@ function showResults(timeline, run) {
     const chosen = {name: ""}, box = element("div", {class: "card"});
     top.append(box);
     const animation = new Animation(box, timeline, 0, () => chosen.name);
-    box.append(animationControls(timeline, [animation], chosen), instantLine(timeline, 0));
+    box.append(animationControls(timeline, [animation], chosen), instantLine(timeline, 0), ...failureNote(run), ...whyNoAnimation(run));
   } else {
     side.style.gridColumn = "1 / -1";
+    if (run.shown.note) top.append(element("div", {class: "card", style: "grid-column: 1 / -1"}, ...whyNoAnimation(run)));
   }
   top.append(side);
   const notes = plots(timeline, side, grid);

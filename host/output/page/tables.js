@@ -23,15 +23,23 @@ function showScene(run) {
   if (shown.length) section("Scene and conversions", ...shown);
 }
 
-/// A row for each quantity, with a pair of columns for each stage where the stages differ.
+/// A row for each quantity of each cell type or pair of them, with a pair of columns for each stage where the stages
+/// differ. What has the same quantity and `of` in a stage is told apart by its order: no conversion is left out.
 function conversionTable(conversions) {
-  const stages = [...new Set(conversions.map(c => c.stage))], names = [...new Set(conversions.map(c => c.quantity))];
-  const at = (name, stage) => conversions.find(c => c.quantity === name && c.stage === stage) || {};
-  const same = stages.every(stage => names.every(name => at(name, stage).si === at(name, stages[0]).si && at(name, stage).lattice === at(name, stages[0]).lattice));
+  const stages = [...new Set(conversions.map(c => c.stage))], rows = new Map(), met = new Map();
+  for (const c of conversions) {
+    const inStage = JSON.stringify([c.quantity, c.of, c.stage]), nth = met.get(inStage) ?? 0, key = JSON.stringify([c.quantity, c.of, nth]);
+    met.set(inStage, nth + 1);
+    if (!rows.has(key)) rows.set(key, {quantity: c.quantity, of: c.of ?? "", unit: undefined, stages: new Map()});
+    rows.get(key).unit ||= c.unit;
+    rows.get(key).stages.set(c.stage, c);
+  }
+  const all = [...rows.values()], at = (row, stage) => row.stages.get(stage) ?? {};
+  const same = stages.every(stage => all.every(row => at(row, stage).si === at(row, stages[0]).si && at(row, stage).lattice === at(row, stages[0]).lattice));
   const columns = (same ? stages.slice(0, 1) : stages).flatMap(stage => [
-    {title: same ? "SI" : `SI (${stage})`, number: true, value: name => at(name, stage).si ?? null},
-    {title: same ? "Lattice" : `Lattice (${stage})`, number: true, value: name => at(name, stage).lattice ?? null}]);
-  return table([{title: "Quantity", value: name => name}, {title: "Unit", value: name => at(name, stages.find(s => at(name, s).unit)).unit}, ...columns], names, {stacked: true});
+    {title: same ? "SI" : `SI (${stage})`, number: true, value: row => at(row, stage).si ?? null},
+    {title: same ? "Lattice" : `Lattice (${stage})`, number: true, value: row => at(row, stage).lattice ?? null}]);
+  return table([{title: "Quantity", key: "quantity"}, ...(all.some(row => row.of) ? [{title: "Of", key: "of"}] : []), {title: "Unit", key: "unit"}, ...columns], all, {stacked: true});
 }
 
 function showDimensionless(given) {
@@ -75,11 +83,11 @@ function showPasses(passes) {
 function showHistory(summary) {
   const history = summary.aggregate_history || [];
   if (history.length) section("Aggregates", table([{title: "Strain", key: "strain", number: true}, {title: "Time, s", key: "time_s", number: true}, {title: "Count", key: "count", number: true},
-    {title: "Members", value: r => (r.members || []).map(m => m.join("+")).join(" | ")}, {title: "Held through the boundary", value: r => r.through_image ? "yes" : "no"}], history.slice(0, 200)),
+    {title: "Members", value: r => (r.members || []).map(m => m.join("+")).join(" | ")}, {title: "Held through the boundary", value: r => r.through_image ? "yes" : "no"}], history.slice(0, 200), {stacked: true}),
     ...(history.length > 200 ? [note(`The first 200 of ${history.length} changes; summary.json has all.`)] : []));
   const means = (summary.rheology || []).flatMap(stage => Object.entries(stage.means || {}).filter(([, v]) => v && typeof v === "object" && typeof v.mean === "number")
     .map(([name, v]) => ({stage: stage.stage, name, ...v})));
-  if (means.length) section("Means", table([{title: "Stage", key: "stage"}, {title: "Quantity", value: r => spelled(r.name)}, {title: "Mean", key: "mean", number: true}, {title: "Standard deviation", key: "deviation", number: true}], means),
+  if (means.length) section("Means", table([{title: "Quantity", value: r => spelled(r.name)}, {title: "Stage", key: "stage"}, {title: "Mean", key: "mean", number: true}, {title: "Standard deviation", key: "deviation", number: true}], means, {stacked: true}),
     note("Over the outputs of the second half of each stage."));
 }
 
