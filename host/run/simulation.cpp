@@ -393,8 +393,12 @@ class Simulation {
       if (s.index < setting.index) before += static_cast<double>(s.max_steps);
       all += static_cast<double>(s.max_steps);
     }
+    double fraction = all > 0 ? (before + static_cast<double>(state_.stage_step)) / all : 1.0;
+    if (options_.max_steps > 0) {
+      fraction = std::max(fraction, static_cast<double>(state_.steps) / static_cast<double>(options_.max_steps));
+    }
     return {state_.steps,
-            all > 0 ? (before + static_cast<double>(state_.stage_step)) / all : 1.0,
+            fraction,
             setting.stage->name,
             state_.strain_at(setting),
             state_.observer.mach_max(),
