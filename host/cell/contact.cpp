@@ -38,7 +38,7 @@ struct Search {
 
  private:
   static constexpr int size = Neighbours::group;
-  static constexpr double least_square = 1e-300;  // of a distance; has a root and an inverse
+  static constexpr double no_distance = 1e-150;  // the least whose square has a root and an inverse
   /// The closest segment of each node.
   template <class S>
   struct Closest {
@@ -57,7 +57,7 @@ struct Search {
     for (int p = 0; p < packs; ++p) {
       const Closest<S>& c = closest[p];
       const int at = count + p * S::size;
-      const SquareRoot<S> distance = sqrt_and_inverse(max(c.square, S(least_square)));
+      const SquareRoot<S> distance = sqrt_and_inverse(max(c.square, S(no_distance * no_distance)));
       nearest = min(distance.root, nearest);
       farthest = max(distance.root, farthest);
       c.along.store(t.along + at);
@@ -120,7 +120,7 @@ struct Search {
   /// A node on the other outline has no direction of its own: it is sent out along the segment's outward normal.
   [[gnu::noinline, gnu::cold]] static void send_out(const SearchTask& t, int begin) {
     for (int k = begin; k < begin + size; ++k) {
-      if (t.direction_x[k] == 0 && t.direction_y[k] == 0) {
+      if (t.distance[k] <= 2 * no_distance) {  // the root is rounded
         const int segment = t.segment[k];
         const double inverse_length = std::sqrt(t.inverse_square[segment]);
         t.direction_x[k] = t.along_y[segment] * inverse_length;

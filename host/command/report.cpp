@@ -13,6 +13,7 @@
 #include "command/commands.hpp"
 #include "error.hpp"
 #include "input/wording.hpp"
+#include "output/report_data.hpp"
 #include "output/study_page.hpp"
 
 namespace rouleau::host {
@@ -91,10 +92,6 @@ std::vector<std::string> strains_of(const std::vector<std::string>& lists) {
   throw Error(ExitCode::input_output, program.string() + " could not be started: " + std::strerror(errno));
 }
 
-bool is_run(const fs::path& directory) {
-  return fs::exists(directory / "summary.json") || fs::exists(directory / "series.csv");
-}
-
 void check(const Options& chosen) {
   const auto refuse = [](const std::string& words) { throw Error(ExitCode::bad_input, "rouleau report: " + words); };
   const std::size_t count = chosen.directories.size();
@@ -104,7 +101,7 @@ void check(const Options& chosen) {
            (count == 1 ? " was given" : " were given"));
   if (!chosen.compare && count != 1) refuse("takes one directory; two runs are set side by side with --compare A B");
   if (!chosen.strains.empty() && !chosen.frames) refuse("--strains is for --frames");
-  if (!chosen.out.empty() && !chosen.frames && !chosen.compare && !is_run(chosen.directories[0]))
+  if (!chosen.out.empty() && !chosen.frames && !chosen.compare && !has_run(chosen.directories[0]))
     refuse("--out is for the report of a run; pages of studies and limits lie in their directories");
 }
 

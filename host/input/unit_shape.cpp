@@ -33,9 +33,9 @@ class Reader {
     rest_.remove_prefix(word.size());
     return true;
   }
-  template <class Words>
-  bool take_any(const Words& words) {
-    return std::any_of(std::begin(words), std::end(words), [this](std::string_view word) { return take(word); });
+  bool take_superscript() {
+    return std::any_of(std::begin(superscript_digits), std::end(superscript_digits),
+                       [this](std::string_view digit) { return take(digit); });
   }
   bool take_digit() {
     if (rest_.empty() || !is_digit(rest_.front())) return false;
@@ -53,12 +53,14 @@ class Reader {
     for (;;) {
       const bool apart = spaces();
       if (rest_.empty() || rest_.front() == ')') return true;
-      if (take("/") || (apart && (take("per ") || take("PER "))) || take("*") || take(".") || take(middle_dot) ||
-          take("-")) {
-        spaces();
-      }
+      take_operator(apart);
       if (!factor()) return false;
     }
+  }
+  /// Whether there is one.
+  bool take_operator(bool apart) {
+    if (apart && (take("per ") || take("PER "))) return true;
+    return take("/") || take("*") || take(".") || take(middle_dot) || take("-");
   }
   bool factor() {
     spaces();
@@ -88,7 +90,7 @@ class Reader {
   }
   /// There may be none.
   bool power() {
-    if (take_any(superscript_digits)) return !take_any(superscript_digits) || !take_any(superscript_digits);
+    if (take_superscript()) return !take_superscript() || !take_superscript();
     const bool wanted = take("^") || take("**");
     const bool has_sign = rest_.size() > 1 && (rest_[0] == '-' || rest_[0] == '+') && is_digit(rest_[1]);
     if (has_sign) rest_.remove_prefix(1);

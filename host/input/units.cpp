@@ -2,7 +2,6 @@
 
 #include <udunits2.h>
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
@@ -96,12 +95,18 @@ struct Units::System {
     if (unit) ut_map_symbol_to_unit(symbol, UT_ASCII, unit.get());
   }
 
+  static Parts parts_of(const Unit& unit) {
+    Parts parts;
+    if (ut_accept_visitor(unit.get(), &visitor, &parts) != UT_SUCCESS) parts.refused = "its meaning is unknown";
+    return parts;
+  }
+
   /// Throws where the symbol cannot be used in `unit`. `wanted`: see take_apart.
   void require_usable(const std::string& symbol, std::string_view unit, const Dimension* wanted) const {
     const auto parsed = parse(symbol);
     Parts parts;
     if (parsed) {
-      if (ut_accept_visitor(parsed.get(), &visitor, &parts) != UT_SUCCESS) parts.refused = "its meaning is unknown";
+      parts = parts_of(parsed);
     } else if (symbol == "lg" || symbol == "ln" || symbol == "lb") {
       visit_logarithmic(nullptr, 0, nullptr, &parts);
     } else {
@@ -116,11 +121,9 @@ struct Units::System {
     for (const auto& list : {usual_units(), usual_compounds()}) {
       for (const auto unit : list) {
         const auto parsed = parse(std::string(unit));
-        Parts parts;
-        if (parsed && ut_accept_visitor(parsed.get(), &visitor, &parts) == UT_SUCCESS && parts.refused.empty() &&
-            parts.dimension == dimension) {
-          found.emplace_back(unit);
-        }
+        if (!parsed) continue;
+        const Parts parts = parts_of(parsed);
+        if (parts.refused.empty() && parts.dimension == dimension) found.emplace_back(unit);
       }
     }
     return found;
@@ -152,9 +155,7 @@ struct Units::System {
     for (const auto symbol : *symbols) require_usable(std::string(symbol), unit, wanted);
     const auto parsed = parse(std::string(unit));
     if (!parsed) throw UnitError(in_quotes(unit) + " is no unit; write units like N/m, 1/um or dyn cm");
-    Parts parts;
-    if (ut_accept_visitor(parsed.get(), &visitor, &parts) != UT_SUCCESS)
-      throw UnitError(in_quotes(unit) + " is no unit");
+    Parts parts = parts_of(parsed);
     if (!parts.refused.empty()) throw UnitError(in_quotes(unit) + " is not possible: " + parts.refused);
     if (!std::isfinite(parts.scale) || !(parts.scale > 0))
       throw UnitError(in_quotes(unit) + " is too large or too small a unit");

@@ -94,8 +94,8 @@ void verify(const std::filesystem::path& frames, std::size_t number, const Frame
                  checksum_text(checksum_of(frames).value()) + "), and " + segment_name(number) +
                  ", which held them before, is gone");
     refuse(frames, "is missing, and so is " + segment_name(number) +
-                       ", which is what frames are written to before: the checkpoint counts on " +
-                       std::to_string(segment.frames) + " frames of it");
+                       ", into which a run writes them first: the checkpoint counts on " +
+                       std::to_string(segment.frames) + " frames");
   }
   if (bytes != segment.bytes)
     refuse(file, "has " + std::to_string(bytes) + " bytes and had " + std::to_string(segment.bytes) +

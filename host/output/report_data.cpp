@@ -156,11 +156,15 @@ std::vector<std::size_t> shown_outputs(const std::vector<double>& aggregate_coun
   return {selected.begin(), selected.end()};
 }
 
+bool has_run(const std::filesystem::path& directory) {
+  return std::filesystem::exists(directory / "summary.json") || std::filesystem::exists(directory / "series.csv");
+}
+
 json report_data(const std::filesystem::path& directory) {
-  const bool ended = std::filesystem::exists(directory / "summary.json");
-  if (!ended && !std::filesystem::exists(directory / "series.csv"))
+  if (!has_run(directory))
     throw Error(ExitCode::bad_input, Place{directory.string(), "", 0, 0},
                 "is no run's directory: it has neither summary.json nor series.csv");
+  const bool ended = std::filesystem::exists(directory / "summary.json");
   json data;
   data["summary"] = ended ? Document::read(directory / "summary.json").root() : json(nullptr);
   const bool has_scene = std::filesystem::exists(directory / "scene.json");
@@ -189,25 +193,21 @@ json report_data(const std::filesystem::path& directory) {
     note = std::string("No animation: ") + error.what();
     if (ended) damage.push_back(error.what());
   };
+  std::size_t nodes = 0;
+  Selection with_fields;
   try {
     reader.emplace(directory / "frames.h5");
     take("frames.h5", static_cast<std::size_t>(reader->frames()));
+    if (outputs > 0) {
+      nodes = reader->outlines(0).x.size();
+      with_fields = field_outputs(directory / "frames.h5", most_fields);
+    }
   } catch (const Error& error) {
     without_animation(error);
   }
 
   auto aggregate_count = series.numbers("aggregate_count");
   aggregate_count.resize(outputs);
-  std::size_t nodes = 0;
-  Selection with_fields;
-  if (reader && outputs > 0) {
-    try {
-      nodes = reader->outlines(0).x.size();
-      with_fields = field_outputs(directory / "frames.h5", most_fields);
-    } catch (const Error& error) {
-      without_animation(error);
-    }
-  }
   const auto [selection, stride] = choose(aggregate_count, nodes, count, with_fields);
 
   data["shown"] = {{"outputs", selection.size()}, {"of", outputs}, {"node_stride", stride}};
@@ -227,11 +227,11 @@ json report_data(const std::filesystem::path& directory) {
     try {
       const auto size = reader->size();
       data["domain"] = {{"size_um", {size[0] * micro, size[1] * micro}}, {"periodic_y", reader->periodic_y()}};
-      data["outlines"] = outline_data(*reader, selection, stride);
+      json outlines = outline_data(*reader, selection, stride);
       data["fields"] = field_data(directory / "frames.h5", selection);
+      data["outlines"] = std::move(outlines);  // both or none
     } catch (const Error& error) {
       without_animation(error);
-      data["outlines"] = data["fields"] = nullptr;
     }
   }
   if (note.empty() && count > 0 && outputs > 0 && data["outlines"].is_null())

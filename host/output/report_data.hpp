@@ -6,6 +6,9 @@
 
 namespace rouleau::host {
 
+/// Whether the directory has the files of a run, one that has not ended included.
+bool has_run(const std::filesystem::path& directory);
+
 /// Object with
 ///   summary   summary.json as it is, null when the run has not ended
 ///   scene     text of scene.json, null when there is none

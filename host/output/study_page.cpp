@@ -7,6 +7,7 @@
 #include "input/wording.hpp"
 #include "output/page_file.hpp"
 #include "output/report.hpp"
+#include "output/report_data.hpp"
 #include "output/report_template.hpp"
 #include "output/run_directory.hpp"
 
@@ -54,7 +55,7 @@ std::vector<fs::path> write_pages(const fs::path& directory) {
   std::vector<fs::path> pages;
   if (has("study.json")) pages.push_back(write_study_page(directory));
   if (has("limits.json")) pages.push_back(write_limits_page(directory));
-  if (has("summary.json") || has("series.csv")) pages.push_back(write_report(directory));
+  if (has_run(directory)) pages.push_back(write_report(directory));
   if (pages.empty() && !fs::exists(directory))
     throw Error(ExitCode::bad_input, Place{directory.string(), "", 0, 0}, "does not exist");
   if (pages.empty())
