@@ -4,10 +4,10 @@
 
 #include <functional>
 
-#include "fluid/exchange.hpp"
-#include "fluid/field.hpp"
-#include "fluid/lattice.hpp"
-#include "worker.hpp"
+#include "base/worker.hpp"
+#include "core/fluid/exchange.hpp"
+#include "core/fluid/field.hpp"
+#include "core/fluid/lattice.hpp"
 
 namespace rouleau::bench {
 
@@ -21,24 +21,24 @@ enum class Kernel {
 template <class T>
 class BareFluid {
  public:
-  BareFluid(Kernel kernel, int nx, int ny, double relaxation_rate, double magic, host::WallVelocity walls);
+  BareFluid(Kernel kernel, int nx, int ny, double relaxation_rate, double magic, fluid::WallVelocity walls);
 
   /// Sets populations, deviations from rest, before the first step.
   void set(const std::function<double(int q, int x, int y)>& population);
   /// The same state as other's, which must be between an even number of steps.
   [[nodiscard]] double population(int q, int x, int y) const;
-  [[nodiscard]] host::VectorField<T>& force() { return force_; }
+  [[nodiscard]] fluid::VectorField<T>& force() { return force_; }
 
-  void step(host::Worker worker);
-  void end_step() { parity_ = host::next(parity_); }
+  void step(rouleau::Worker worker);
+  void end_step() { parity_ = fluid::next(parity_); }
 
  private:
   Kernel kernel_;
   T relaxation_rate_, magic_;
-  host::WallVelocity walls_;
-  host::Lattice<T> lattice_;
-  host::VectorField<T> force_;
-  host::Parity parity_ = host::Parity::even;
+  fluid::WallVelocity walls_;
+  fluid::Lattice<T> lattice_;
+  fluid::VectorField<T> force_;
+  fluid::Parity parity_ = fluid::Parity::even;
 };
 
 extern template class BareFluid<float>;

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "bare_fluid.hpp"
-#include "fluid/fluid.hpp"
+#include "core/fluid/fluid.hpp"
 #include "measure.hpp"
 #include "plugin/catalog.hpp"
 
@@ -19,25 +19,25 @@ namespace rouleau::bench {
 namespace {
 
 constexpr double relaxation_rate = 1.0, magic = 0.1875;
-constexpr host::WallVelocity walls{-0.01, 0.01};
+constexpr fluid::WallVelocity walls{-0.01, 0.01};
 
-std::shared_ptr<const host::ModelInstance> trt() {
-  static const host::Catalog catalog({ROULEAU_PLUGINS});
-  return std::make_shared<const host::ModelInstance>(catalog.find(host::ModelKind::collision, "trt", {}),
-                                                     std::vector<double>{magic},
-                                                     host::ModelSetting{{1, 1, 1}, relaxation_rate, false});
+std::shared_ptr<const plugin::ModelInstance> trt() {
+  static const plugin::Catalog catalog({ROULEAU_PLUGINS});
+  return std::make_shared<const plugin::ModelInstance>(catalog.find(plugin::ModelKind::collision, "trt", {}),
+                                                       std::vector<double>{magic},
+                                                       plugin::ModelSetting{{1, 1, 1}, relaxation_rate, false});
 }
 
 /// The fluid of the program, with the trt plugin.
 template <class T>
-std::unique_ptr<host::Fluid<T>> plugin_fluid(int nx, int ny, bool forced, host::WallVelocity wall) {
-  host::FluidSetting setting{};
+std::unique_ptr<fluid::Fluid<T>> plugin_fluid(int nx, int ny, bool forced, fluid::WallVelocity wall) {
+  fluid::FluidSetting setting{};
   setting.nx = nx;
   setting.ny = ny;
   setting.relaxation_rate = relaxation_rate;
   setting.walls = wall;
   setting.membranes = forced;
-  auto fluid = std::make_unique<host::Fluid<T>>(setting, trt());
+  auto fluid = std::make_unique<fluid::Fluid<T>>(setting, trt());
   if (forced) {
     for (int y = 0; y < ny; ++y) fluid->activity().mark(y, 0, nx);
   }
@@ -45,15 +45,15 @@ std::unique_ptr<host::Fluid<T>> plugin_fluid(int nx, int ny, bool forced, host::
 }
 
 template <class T>
-void start_couette(host::Fluid<T>& fluid) {
+void start_couette(fluid::Fluid<T>& fluid) {
   const int ny = fluid.setting().ny;
   const double rate = (walls.upper - walls.lower) / ny;
   fluid.set_profile([=](double y) { return walls.lower + rate * (y + 0.5); }, [=](double) { return rate; });
 }
 
 template <class T>
-BareFluid<T> bare_fluid(Kernel kernel, host::Fluid<T>& like) {
-  const host::FluidSetting& setting = like.setting();
+BareFluid<T> bare_fluid(Kernel kernel, fluid::Fluid<T>& like) {
+  const fluid::FluidSetting& setting = like.setting();
   BareFluid<T> bare(kernel, setting.nx, setting.ny, relaxation_rate, magic, setting.walls);
   bare.set([&](int q, int x, int y) { return like.population(q, x, y); });
   return bare;
@@ -80,8 +80,8 @@ void require(bool right, const std::string& what, double found) {
 }
 
 template <class T>
-void clear(host::VectorField<T>& force, host::Worker worker) {
-  const host::Range rows = worker.share(force.x.ny());
+void clear(fluid::VectorField<T>& force, rouleau::Worker worker) {
+  const rouleau::Range rows = worker.share(force.x.ny());
   for (int y = rows.begin; y < rows.end; ++y) {
     std::fill_n(force.x.row(y), force.x.nx(), T(0));
     std::fill_n(force.y.row(y), force.y.nx(), T(0));
@@ -90,8 +90,8 @@ void clear(host::VectorField<T>& force, host::Worker worker) {
 
 template <class Fluid>
 Candidate candidate(const char* name, Fluid& fluid) {
-  return {name, [&fluid](host::Worker worker) { fluid.step(worker); },
-          [&fluid](host::Worker worker) {
+  return {name, [&fluid](rouleau::Worker worker) { fluid.step(worker); },
+          [&fluid](rouleau::Worker worker) {
             if (worker.first()) fluid.end_step();
             if (fluid.force().x.allocated()) clear(fluid.force(), worker);
           }};
@@ -158,7 +158,7 @@ void check_precision(const char* name) {
   BareFluid<T> bare_forced = bare_fluid(Kernel::forced, *forced);
   double worst = 0;
   for (long i = 0; i < steps; ++i) {
-    for (host::VectorField<T>* field : {&forced->force(), &bare_forced.force()}) {
+    for (fluid::VectorField<T>* field : {&forced->force(), &bare_forced.force()}) {
       for (int y = 0; y < ny; ++y) {
         for (int x = 0; x < nx; ++x) {
           field->x.row(y)[x] = static_cast<T>(1e-6 * std::sin(0.3 * x + 0.2 * y));

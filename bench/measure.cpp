@@ -6,7 +6,7 @@
 #include <chrono>
 #include <optional>
 
-#include "run/barrier.hpp"
+#include "core/solver/barrier.hpp"
 
 namespace rouleau::bench {
 
@@ -19,12 +19,12 @@ constexpr int rounds = 9;
 /// Mean time of a step.
 double time_steps(const Candidate& candidate, int threads, long steps) {
   double total = 0;
-  std::optional<host::Barrier> barrier;
+  std::optional<solver::Barrier> barrier;
 #pragma omp parallel num_threads(threads)
   {
 #pragma omp single
     barrier.emplace(omp_get_num_threads());
-    const host::Worker worker{omp_get_thread_num(), omp_get_num_threads()};
+    const Worker worker{omp_get_thread_num(), omp_get_num_threads()};
     for (long i = 0; i < steps; ++i) {
       const auto start = Clock::now();
       candidate.step(worker);

@@ -5,15 +5,15 @@
 #include <string>
 #include <vector>
 
-#include "worker.hpp"
+#include "base/worker.hpp"
 
 namespace rouleau::bench {
 
 /// One step of something, timed; what `between` does is not.
 struct Candidate {
   std::string name;
-  std::function<void(host::Worker)> step;     ///< all threads
-  std::function<void(host::Worker)> between;  ///< all threads, after a barrier; may be empty
+  std::function<void(rouleau::Worker)> step;     ///< all threads
+  std::function<void(rouleau::Worker)> between;  ///< all threads, after a barrier; may be empty
 };
 
 struct Timing {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "output/run_directory.hpp"
+#include "files/run_directory.hpp"
 #include "run/simulation.hpp"
 
 namespace rouleau::bench {
@@ -27,24 +27,24 @@ class Scratch {
   std::filesystem::path path_;
 };
 
-host::Summary run(const std::vector<std::string>& overrides, int threads, long max_steps) {
-  const host::Scene scene = host::read_scene(ROULEAU_SCENES "/four-cells-shear.json", overrides);
-  const host::Catalog catalog({ROULEAU_PLUGINS});
-  const host::Plan plan = make_plan(scene, catalog);
+run::Summary run(const std::vector<std::string>& overrides, int threads, long max_steps) {
+  const scene::Scene scene = scene::read_scene(ROULEAU_SCENES "/four-cells-shear.json", overrides);
+  const plugin::Catalog catalog({ROULEAU_PLUGINS});
+  const plan::Plan plan = plan::make_plan(scene, catalog);
   const Scratch scratch;
-  host::RunDirectory directory(scratch.path(), scene);
-  host::RunOptions options;
+  files::RunDirectory directory(scratch.path(), scene);
+  run::RunOptions options;
   options.threads = threads;
   options.max_steps = max_steps;
   options.quiet = true;
-  host::Summary summary = simulate(plan, options, directory);
+  run::Summary summary = simulate(plan, options, directory);
   if (summary.status != "completed") throw std::runtime_error("the scene did not complete: " + summary.status);
   return summary;
 }
 
-double microseconds(const host::Summary& s) { return s.wall_s / static_cast<double>(s.steps) * 1e6; }
-double microseconds(const host::Summary& s, const std::string& pass) {
-  for (const host::PassCost& cost : s.passes) {
+double microseconds(const run::Summary& s) { return s.wall_s / static_cast<double>(s.steps) * 1e6; }
+double microseconds(const run::Summary& s, const std::string& pass) {
+  for (const run::PassCost& cost : s.passes) {
     if (cost.name == pass) return cost.wall_s / static_cast<double>(s.steps) * 1e6;
   }
   return 0;
@@ -60,7 +60,7 @@ void scene_table(bool whole) {
     int threads;
   };
   const std::vector<Column> columns{{"f64", 1}, {"f32", 1}, {"f64", 2}, {"f32", 2}};
-  std::vector<host::Summary> runs;
+  std::vector<run::Summary> runs;
   for (const Column& column : columns) {
     runs.push_back(run({std::string("/numerics/precision=") + column.precision}, column.threads, whole ? -1 : 20000));
     // The answer, too: how many aggregates the scene ends with is known when it has run to its end.
@@ -70,17 +70,17 @@ void scene_table(bool whole) {
   for (const Column& column : columns)
     std::printf("  %s, %d thread%s", column.precision, column.threads, column.threads > 1 ? "s" : " ");
   std::printf("\n");
-  for (const host::PassCost& pass : runs[0].passes) {
+  for (const run::PassCost& pass : runs[0].passes) {
     std::printf("  %-20s", pass.name.c_str());
-    for (const host::Summary& s : runs) std::printf("  %14.2f", microseconds(s, pass.name));
+    for (const run::Summary& s : runs) std::printf("  %14.2f", microseconds(s, pass.name));
     std::printf("\n");
   }
   std::printf("  %-20s", "whole step");
-  for (const host::Summary& s : runs) std::printf("  %14.2f", microseconds(s));
+  for (const run::Summary& s : runs) std::printf("  %14.2f", microseconds(s));
   std::printf("\n  %-20s", "run, s");
-  for (const host::Summary& s : runs) std::printf("  %14.2f", s.wall_s);
+  for (const run::Summary& s : runs) std::printf("  %14.2f", s.wall_s);
   std::printf("\n  %-20s", "ns/node, not fluid");
-  for (const host::Summary& s : runs) std::printf("  %14.1f", (microseconds(s) - microseconds(s, "fluid")) / 400 * 1e3);
+  for (const run::Summary& s : runs) std::printf("  %14.1f", (microseconds(s) - microseconds(s, "fluid")) / 400 * 1e3);
   std::printf("\n  speed-up by the second thread: f64 %.2f, f32 %.2f; peak memory of the process %.1f MB\n",
               runs[0].wall_s / runs[2].wall_s, runs[1].wall_s / runs[3].wall_s,
               static_cast<double>(runs.back().peak_rss_bytes) / 1e6);
@@ -112,7 +112,7 @@ void cells_table() {
     // The walls move as fast as in the scene: with many tiles the shear is weaker.
     const double shear = 20.0 / tiles.up;
     for (const char* precision : {"f64", "f32"}) {
-      const host::Summary s =
+      const run::Summary s =
           run({std::string("/numerics/precision=") + precision,
                "/domain/nodes=[" + std::to_string(nx) + "," + std::to_string(ny) + "]",
                "/domain/size=[" + micrometres(nx) + "," + micrometres(ny) + "]",

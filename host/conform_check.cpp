@@ -14,16 +14,16 @@
 #include <iostream>
 #include <string>
 
+#include "base/error.hpp"
 #include "conform/call.hpp"
 #include "conform/check.hpp"
 #include "conform/guarded_memory.hpp"
 #include "conform/report_line.hpp"
 #include "conform/subject.hpp"
-#include "error.hpp"
 
 namespace {
 
-using namespace rouleau::host;
+using namespace rouleau;
 
 bool was_write([[maybe_unused]] const void* context) {
 #if defined(__x86_64__)
@@ -38,12 +38,12 @@ bool was_write([[maybe_unused]] const void* context) {
 void on_signal(int signal, siginfo_t* info, void* context) {
   char where[256], text[400];
   if ((signal == SIGSEGV || signal == SIGBUS) &&
-      GuardedArray::describe(info->si_addr, was_write(context), where, sizeof where)) {
+      conform::GuardedArray::describe(info->si_addr, was_write(context), where, sizeof where)) {
     std::snprintf(text, sizeof text, "the model %s", where);
-    send_from_signal(to_string(Verdict::fail), text);
+    conform::send_from_signal(conform::to_string(conform::Verdict::fail), text);
   } else {
     std::snprintf(text, sizeof text, "ended by the signal SIG%s", sigabbrev_np(signal));
-    send_from_signal(to_string(Verdict::crash), text);
+    conform::send_from_signal(conform::to_string(conform::Verdict::crash), text);
   }
   _exit(1);
 }
@@ -60,21 +60,21 @@ void watch_signals() {
   for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) sigaction(signal, &action, nullptr);
 }
 
-Finding run(const std::string& name, const std::string& file, std::uint64_t seed) {
+conform::Finding run(const std::string& name, const std::string& file, std::uint64_t seed) {
   try {
-    const Units units;
-    const Subject subject(read_manifest(file, units), seed);
-    const Check* check = find_check(name, subject.manifest().kind);
-    if (check == nullptr) return Finding::skipped("is for models of another kind");
+    const units::Units units;
+    const conform::Subject subject(plugin::read_manifest(file, units), seed);
+    const conform::Check* check = conform::find_check(name, subject.manifest().kind);
+    if (check == nullptr) return conform::Finding::skipped("is for models of another kind");
     return check->run(subject);
   } catch (const Error& error) {
-    return Finding::failed(error.what());
-  } catch (const Fault& fault) {
-    return {Verdict::crash, fault.what(), {}, {}};
+    return conform::Finding::failed(error.what());
+  } catch (const conform::Fault& fault) {
+    return {conform::Verdict::crash, fault.what(), {}, {}};
   } catch (const std::exception& exception) {
-    return {Verdict::crash, std::string("an exception: ") + exception.what(), {}, {}};
+    return {conform::Verdict::crash, std::string("an exception: ") + exception.what(), {}, {}};
   } catch (...) {
-    return {Verdict::crash, "an exception that is no std::exception", {}, {}};
+    return {conform::Verdict::crash, "an exception that is no std::exception", {}, {}};
   }
 }
 
@@ -85,7 +85,7 @@ int main(int count, char** words) {
     std::cerr << "usage: conform-check MANIFEST CHECK SEED\nrouleau conform starts this program; see its --help\n";
     return 2;
   }
-  if (find_check(words[2]) == nullptr) {
+  if (conform::find_check(words[2]) == nullptr) {
     std::cerr << "conform-check: no check is called \"" << words[2] << "\"\n";
     return 2;
   }
@@ -93,7 +93,7 @@ int main(int count, char** words) {
   const rlimit no_core{0, 0};
   setrlimit(RLIMIT_CORE, &no_core);
   watch_signals();
-  send(run(words[2], words[1], std::strtoull(words[3], nullptr, 10)));
+  conform::send(run(words[2], words[1], std::strtoull(words[3], nullptr, 10)));
   // Not through static destructors: they are the plugin's, too, and the finding has been sent.
   _exit(0);
 }

@@ -10,10 +10,10 @@
 
 namespace {
 
-rouleau::host::ProcessCounts counts;
+rouleau::conform::ProcessCounts counts;
 
 const bool registered = [] {
-  rouleau::host::process_counts = &counts;
+  rouleau::conform::process_counts = &counts;
   return true;
 }();
 

@@ -11,18 +11,22 @@
 #include <sstream>
 #include <system_error>
 
-#include "draw/figure.hpp"
-#include "draw/frame_choice.hpp"
-#include "draw/video.hpp"
-#include "error.hpp"
-#include "output/file.hpp"
-#include "output/frames.hpp"
-#include "output/report_table.hpp"
-#include "output/run_directory.hpp"
+#include "base/error.hpp"
+#include "files/csv_reader.hpp"
+#include "files/file.hpp"
+#include "files/frames.hpp"
+#include "files/run_directory.hpp"
+#include "report/draw/figure.hpp"
+#include "report/draw/frame_choice.hpp"
+#include "report/draw/video.hpp"
 
 namespace {
 
-using namespace rouleau::host;
+using rouleau::Error;
+using rouleau::ExitCode;
+using rouleau::Place;
+namespace files = rouleau::files;
+namespace report = rouleau::report;
 namespace fs = std::filesystem;
 
 constexpr std::size_t default_frames = 6, columns = 3;  // as in docs/pictures
@@ -50,9 +54,9 @@ class Run {
     if (frames == 0) throw Error(ExitCode::bad_input, Place{directory.string(), "", 0, 0}, "has no outputs to draw");
   }
 
-  [[nodiscard]] const OutputTimes& times() const { return times_; }
-  [[nodiscard]] PanelBox box() const { return {reader_.size(), reader_.periodic_y()}; }
-  [[nodiscard]] Panel panel(std::size_t output) const {
+  [[nodiscard]] const report::OutputTimes& times() const { return times_; }
+  [[nodiscard]] report::PanelBox box() const { return {reader_.size(), reader_.periodic_y()}; }
+  [[nodiscard]] report::Panel panel(std::size_t output) const {
     const auto outlines = reader_.outlines(static_cast<int>(output));
     const auto count = static_cast<long>(aggregates_[output]);
     const std::string held =
@@ -65,18 +69,18 @@ class Run {
   }
 
  private:
-  static StoredTable table(const fs::path& directory) {
+  static files::StoredTable table(const fs::path& directory) {
     if (!fs::exists(directory / "series.csv"))
       throw Error(ExitCode::bad_input, Place{directory.string(), "", 0, 0},
                   fs::exists(directory) ? "is no run's directory: it has no series.csv" : "does not exist");
     if (!fs::exists(directory / "frames.h5") && !fs::exists(directory / "frames-0001.h5"))
       throw Error(ExitCode::bad_input, Place{(directory / "frames.h5").string(), "", 0, 0},
                   "is missing: pictures are drawn from it; bring it back, or run the scene again");
-    return StoredTable(directory / "series.csv");
+    return files::StoredTable(directory / "series.csv");
   }
-  StoredTable series_;
-  FrameReader reader_;
-  OutputTimes times_;
+  files::StoredTable series_;
+  files::FrameReader reader_;
+  report::OutputTimes times_;
   std::vector<double> aggregates_;
 };
 
@@ -88,20 +92,22 @@ std::string file_name(std::size_t place, std::string instant) {
 
 void draw(const fs::path& directory, const fs::path& out, const std::vector<double>& strains) {
   const Run run(directory);
-  const auto chosen = strains.empty() ? even_outputs(run.times(), default_frames) : outputs_at(run.times(), strains);
+  const auto chosen =
+      strains.empty() ? report::even_outputs(run.times(), default_frames) : report::outputs_at(run.times(), strains);
   std::error_code error;
   fs::create_directories(out, error);
-  if (error) fail_file(out, "cannot be made", error.value());
+  if (error) files::fail_file(out, "cannot be made", error.value());
   const auto write = [&](const std::string& name, const std::string& bytes) {
-    write_file(out / name, bytes);
+    files::write_file(out / name, bytes);
     std::cout << (out / name).string() << '\n' << std::flush;
   };
-  std::vector<Panel> panels;
+  std::vector<report::Panel> panels;
   for (const std::size_t output : chosen) {
     panels.push_back(run.panel(output));
-    write(file_name(panels.size(), run.instant(output)), draw_panels(run.box(), {panels.back()}, 1, frame_width));
+    write(file_name(panels.size(), run.instant(output)),
+          report::draw_panels(run.box(), {panels.back()}, 1, frame_width));
   }
-  write("figure.png", draw_panels(run.box(), panels, columns, panel_width));
+  write("figure.png", report::draw_panels(run.box(), panels, columns, panel_width));
 
   const std::size_t outputs = chosen.back() - chosen.front() + 1;
   if (outputs < 2) return;
@@ -109,15 +115,15 @@ void draw(const fs::path& directory, const fs::path& out, const std::vector<doub
   const int per_second = std::clamp(static_cast<int>(outputs) / video_seconds, 5, 30);
   const auto picture = [&]() -> std::optional<std::string> {
     if (next > chosen.back()) return std::nullopt;
-    return draw_panels(run.box(), {run.panel(next++)}, 1, frame_width);
+    return report::draw_panels(run.box(), {run.panel(next++)}, 1, frame_width);
   };
-  if (write_video(out / "frames.mp4", per_second, picture))
+  if (report::write_video(out / "frames.mp4", per_second, picture))
     std::cout << (out / "frames.mp4").string() << '\n';
   else
     std::cout << "no video, because there is no ffmpeg (Debian: apt-get install ffmpeg)\n";
 }
 
-int report(const std::string& message, ExitCode code) {
+int fail(const std::string& message, ExitCode code) {
   std::cerr << message << '\n';
   return static_cast<int>(code);
 }
@@ -129,19 +135,19 @@ int main(int count, char** words) {
     std::cerr << "usage: draw-frames DIR OUT [STRAIN...]\nrouleau report DIR --frames starts this program\n";
     return static_cast<int>(ExitCode::bad_input);
   }
-  const Drawing drawing;
+  const report::Drawing drawing;
   try {
     std::vector<double> strains;
     for (int i = 3; i < count; ++i) strains.push_back(std::strtod(words[i], nullptr));
     draw(words[1], words[2], strains);
     std::cout.flush();
-    if (!std::cout) return report("rouleau: the output could not be written", ExitCode::input_output);
+    if (!std::cout) return fail("rouleau: the output could not be written", ExitCode::input_output);
     return static_cast<int>(ExitCode::done);
   } catch (const Error& error) {
-    return report(error.what(), error.code());
+    return fail(error.what(), error.code());
   } catch (const std::bad_alloc&) {
-    return report("rouleau: there is not enough memory to draw frames", ExitCode::input_output);
+    return fail("rouleau: there is not enough memory to draw frames", ExitCode::input_output);
   } catch (const std::exception& error) {
-    return report(std::string("rouleau: internal error, please report it: ") + error.what(), ExitCode::input_output);
+    return fail(std::string("rouleau: internal error, please report it: ") + error.what(), ExitCode::input_output);
   }
 }

@@ -9,13 +9,14 @@
 #include <string>
 #include <vector>
 
+#include "base/error.hpp"
+#include "base/text.hpp"
 #include "command/commands.hpp"
-#include "error.hpp"
-#include "input/wording.hpp"
 
 namespace {
 
-using namespace rouleau::host;
+using namespace rouleau;
+using namespace rouleau::command;
 
 struct Command {
   const char* name;

@@ -5,10 +5,11 @@
 #include <cstring>
 #include <iostream>
 
-#include "error.hpp"
-#include "input/schema.hpp"
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "json/schema.hpp"
 
-namespace rouleau::host {
+namespace rouleau::command {
 
 namespace options = boost::program_options;
 
@@ -80,4 +81,4 @@ std::string in_shell(const std::string& word) {
   return quoted + '\'';
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::command

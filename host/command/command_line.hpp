@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace rouleau::host {
+namespace rouleau::command {
 
 /// Stores the options' values. Returns false after printing `help` and the options when --help is among the arguments.
 /// Throws Error(bad_input) for an unknown option (nearest name), a missing or malformed value, a missing argument.
@@ -22,4 +22,4 @@ std::function<void(const std::string&)> not_empty(const std::string& option);
 /// A word as a shell reads it: in quotes where it needs them.
 std::string in_shell(const std::string& word);
 
-}  // namespace rouleau::host
+}  // namespace rouleau::command

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace rouleau::host {
+namespace rouleau::command {
 
 // Each takes the arguments after the command's name, prints its own help for --help, returns the exit code, and throws
 // Error for what the user should know.
@@ -18,4 +18,4 @@ int study_command(const std::vector<std::string>& arguments);
 int limits_command(const std::vector<std::string>& arguments);
 int report_command(const std::vector<std::string>& arguments);
 
-}  // namespace rouleau::host
+}  // namespace rouleau::command

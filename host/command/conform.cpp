@@ -3,18 +3,18 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "command/command_line.hpp"
-#include "command/commands.hpp"
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "command_line.hpp"
+#include "commands.hpp"
 #include "conform/conformance.hpp"
 #include "conform/report_line.hpp"
-#include "error.hpp"
-#include "input/wording.hpp"
 
-namespace rouleau::host {
+namespace rouleau::command {
 
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 namespace fs = std::filesystem;
 
 std::string help() {
@@ -30,25 +30,27 @@ Example:
 
 Checks:
 )";
-  for (const Level level : {Level::interface, Level::physics, Level::robustness, Level::speed}) {
-    text += std::string("  ") + to_string(level) + '\n';
-    for (const Check& check : all_checks()) {
+  for (const conform::Level level :
+       {conform::Level::interface, conform::Level::physics, conform::Level::robustness, conform::Level::speed}) {
+    text += std::string("  ") + conform::to_string(level) + '\n';
+    for (const conform::Check& check : conform::all_checks()) {
       if (check.level != level) continue;
       std::string name = check.name;
       name.resize(20, ' ');
-      text += "    " + name + check.says + (check.kind ? std::string(" (") + to_string(*check.kind) + ')' : "") + '\n';
+      text += "    " + name + check.says +
+              (check.kind ? std::string(" (") + plugin::to_string(*check.kind) + ')' : "") + '\n';
     }
   }
   return text;
 }
 
-std::string repeat(const Conformance& plugin, const CheckResult& result, std::uint64_t seed) {
+std::string repeat(const conform::Conformance& plugin, const conform::CheckResult& result, std::uint64_t seed) {
   return "rouleau conform " + plugin.file.string() + " --only " + result.check->name + " --seed " +
          std::to_string(seed);
 }
 
 /// "3.2e-12, limit 1e-09".
-std::string numbers(const Finding& finding) {
+std::string numbers(const conform::Finding& finding) {
   if (!finding.measured) return {};
   return ": " + number(*finding.measured, 3) + (finding.limit ? ", limit " + number(*finding.limit, 3) : "");
 }
@@ -58,20 +60,20 @@ class Printer {
  public:
   explicit Printer(std::uint64_t seed) : seed_(seed) {}
 
-  void operator()(const Conformance& plugin, const CheckResult& result) {
+  void operator()(const conform::Conformance& plugin, const conform::CheckResult& result) {
     if (plugin.results.size() == 1) {
       std::cout << (plugin.id.empty() ? "" : plugin.kind + ' ' + plugin.id + ' ' + plugin.version + ", ")
                 << plugin.file.string() << '\n';
     }
-    const Level level = result.check->level;
-    if (plugin.results.size() == 1 || level != level_) std::cout << "  " << to_string(level) << '\n';
+    const conform::Level level = result.check->level;
+    if (plugin.results.size() == 1 || level != level_) std::cout << "  " << conform::to_string(level) << '\n';
     level_ = level;
-    std::string verdict = to_string(result.finding.verdict), name = result.check->name;
+    std::string verdict = conform::to_string(result.finding.verdict), name = result.check->name;
     verdict.resize(9, ' ');
     name.resize(20, ' ');
     std::cout << "    " << verdict << name << indented(result.finding.what) << numbers(result.finding) << '\n';
-    const Verdict v = result.finding.verdict;
-    if (v == Verdict::fail || v == Verdict::crash || v == Verdict::timeout) {
+    const conform::Verdict v = result.finding.verdict;
+    if (v == conform::Verdict::fail || v == conform::Verdict::crash || v == conform::Verdict::timeout) {
       std::cout << "             must be true: it " << result.check->says
                 << "\n             repeat: " << repeat(plugin, result, seed_) << '\n';
       if (!result.output.empty()) std::cout << "             it printed: " << in_quotes(result.output) << '\n';
@@ -81,15 +83,15 @@ class Printer {
 
  private:
   std::uint64_t seed_;
-  Level level_ = Level::interface;
+  conform::Level level_ = conform::Level::interface;
 };
 
-json to_json(const Conformance& plugin, std::uint64_t seed) {
-  json checks = json::array();
-  for (const CheckResult& result : plugin.results) {
-    json entry = to_json(result.finding);
+Json to_json(const conform::Conformance& plugin, std::uint64_t seed) {
+  Json checks = Json::array();
+  for (const conform::CheckResult& result : plugin.results) {
+    Json entry = conform::to_json(result.finding);
     entry["name"] = result.check->name;
-    entry["level"] = to_string(result.check->level);
+    entry["level"] = conform::to_string(result.check->level);
     entry["says"] = result.check->says;
     entry["after"] = result.check->after;
     entry["wall_s"] = result.wall_s;
@@ -102,20 +104,21 @@ json to_json(const Conformance& plugin, std::uint64_t seed) {
           {"conforms", plugin.conforms()},    {"checks", checks}};
 }
 
-Level level_named(const std::string& name) {
+conform::Level level_named(const std::string& name) {
   std::vector<std::string> names;
-  for (const Level level : {Level::interface, Level::physics, Level::robustness, Level::speed}) {
-    if (name == to_string(level)) return level;
-    names.emplace_back(to_string(level));
+  for (const conform::Level level :
+       {conform::Level::interface, conform::Level::physics, conform::Level::robustness, conform::Level::speed}) {
+    if (name == conform::to_string(level)) return level;
+    names.emplace_back(conform::to_string(level));
   }
   throw Error(ExitCode::bad_input, "rouleau conform --level: there is no level " + in_quotes(name) +
                                        did_you_mean(name, names) + "\n  levels: " + listed(names));
 }
 
 std::string check_named(const std::string& name) {
-  if (find_check(name) != nullptr) return name;
+  if (conform::find_check(name) != nullptr) return name;
   std::vector<std::string> names;
-  for (const Check& check : all_checks()) names.emplace_back(check.name);
+  for (const conform::Check& check : conform::all_checks()) names.emplace_back(check.name);
   throw Error(ExitCode::bad_input, "rouleau conform --only: there is no check " + in_quotes(name) +
                                        did_you_mean(name, names) + "\n  checks: " + listed(names));
 }
@@ -134,7 +137,7 @@ void require_file(const fs::path& file) {
 int conform_command(const std::vector<std::string>& arguments) {
   namespace options = boost::program_options;
   std::vector<std::string> manifests, only, levels;
-  ConformanceOptions chosen;
+  conform::ConformanceOptions chosen;
   chosen.seed = std::random_device{}();
   bool as_json = false;
   options::options_description description("options");
@@ -161,28 +164,30 @@ int conform_command(const std::vector<std::string>& arguments) {
   for (const std::string& file : manifests) require_file(files.emplace_back(file));
 
   Printer print(chosen.seed);
-  const auto all = check_conformance(files, chosen, [&](const Conformance& plugin, const CheckResult& result) {
-    if (!as_json) print(plugin, result);
-  });
+  const auto all = conform::check_conformance(
+      files, chosen, [&](const conform::Conformance& plugin, const conform::CheckResult& result) {
+        if (!as_json) print(plugin, result);
+      });
   bool conforms = true;
-  json list = json::array();
-  for (const Conformance& plugin : all) {
+  Json list = Json::array();
+  for (const conform::Conformance& plugin : all) {
     conforms = conforms && plugin.conforms();
     list.push_back(to_json(plugin, chosen.seed));
     if (as_json) continue;
     std::cout << (plugin.id.empty() ? plugin.file.string() : plugin.id)
-              << (plugin.conforms() ? " conforms: " : " does not conform: ") << plugin.count(Verdict::pass)
-              << " passed, " << plugin.count(Verdict::warn) << " warned, "
-              << plugin.count(Verdict::fail) + plugin.count(Verdict::crash) + plugin.count(Verdict::timeout)
-              << " failed, " << plugin.count(Verdict::skip) << " skipped\n  any line again: rouleau conform "
+              << (plugin.conforms() ? " conforms: " : " does not conform: ") << plugin.count(conform::Verdict::pass)
+              << " passed, " << plugin.count(conform::Verdict::warn) << " warned, "
+              << plugin.count(conform::Verdict::fail) + plugin.count(conform::Verdict::crash) +
+                     plugin.count(conform::Verdict::timeout)
+              << " failed, " << plugin.count(conform::Verdict::skip) << " skipped\n  any line again: rouleau conform "
               << plugin.file.string() << " --only CHECK --seed " << chosen.seed << '\n';
   }
   if (as_json) {
-    std::cout << json{{"rouleau", 1}, {"seed", chosen.seed}, {"conforms", conforms}, {"plugins", list}}.dump(
-                     2, ' ', false, json::error_handler_t::replace)
+    std::cout << Json{{"rouleau", 1}, {"seed", chosen.seed}, {"conforms", conforms}, {"plugins", list}}.dump(
+                     2, ' ', false, Json::error_handler_t::replace)
               << '\n';
   }
   return static_cast<int>(conforms ? ExitCode::done : ExitCode::plugin_refused);
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::command

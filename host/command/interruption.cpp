@@ -2,7 +2,7 @@
 
 #include <csignal>
 
-namespace rouleau::host {
+namespace rouleau::command {
 
 namespace {
 
@@ -23,4 +23,4 @@ const std::atomic<bool>& listen_for_interruption() {
   return interruption_asked;
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::command

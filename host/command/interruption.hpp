@@ -3,9 +3,9 @@
 
 #include <atomic>
 
-namespace rouleau::host {
+namespace rouleau::command {
 
 /// From now on the first of these signals sets the flag; a second one of the same kind ends the program at once.
 const std::atomic<bool>& listen_for_interruption();
 
-}  // namespace rouleau::host
+}  // namespace rouleau::command

@@ -2,14 +2,14 @@
 #include <algorithm>
 #include <iostream>
 
+#include "base/error.hpp"
 #include "command_line.hpp"
 #include "commands.hpp"
-#include "error.hpp"
 #include "interruption.hpp"
-#include "limits/limits_files.hpp"
-#include "limits/limits_run.hpp"
+#include "stability/limits_files.hpp"
+#include "stability/limits_run.hpp"
 
-namespace rouleau::host {
+namespace rouleau::command {
 
 namespace {
 
@@ -35,7 +35,7 @@ Exit codes: 0 done, 1 an extreme case ended neither right nor with a reason, or 
 int limits_command(const std::vector<std::string>& arguments) {
   namespace options = boost::program_options;
   std::string file, out;
-  LimitsOptions chosen;
+  stability::LimitsOptions chosen;
   options::options_description description("options");
   options::positional_options_description positional;
   description.add_options()("limits", options::value(&file)->required(), "LIMITS file (JSON)")(
@@ -45,21 +45,22 @@ int limits_command(const std::vector<std::string>& arguments) {
   positional.add("limits", 1);
   if (!parse_command_line("limits", limits_help, arguments, description, positional)) return 0;
 
-  const LimitsFile limits = read_limits(file);
+  const stability::LimitsFile limits = stability::read_limits(file);
   chosen.directory =
       out.empty() ? std::filesystem::path("runs") / std::filesystem::path(file).stem() : std::filesystem::path(out);
   chosen.interrupted = &listen_for_interruption();
-  LimitsRun run(limits, chosen);
+  stability::LimitsRun run(limits, chosen);
   const bool ended = run.run();
-  std::cout << limits_text(limits_json(run.state())) << (chosen.directory / "limits.html").string() << "\n";
+  std::cout << stability::limits_text(stability::limits_json(run.state()))
+            << (chosen.directory / "limits.html").string() << "\n";
   if (!ended) {
     std::cerr << "interrupted; the same command goes on\n";
     return static_cast<int>(ExitCode::interrupted);
   }
   const auto& cases = run.state().cases;
   const bool well =
-      std::all_of(cases.begin(), cases.end(), [](const CaseResult& result) { return result.as_expected; });
+      std::all_of(cases.begin(), cases.end(), [](const stability::CaseResult& result) { return result.as_expected; });
   return static_cast<int>(well ? ExitCode::done : ExitCode::simulation_failed);
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::command

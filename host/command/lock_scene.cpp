@@ -3,27 +3,29 @@
 #include <algorithm>
 #include <iostream>
 
-#include "input/scene.hpp"
-#include "output/run_directory.hpp"
+#include "files/file.hpp"
+#include "files/run_directory.hpp"
 #include "plugin/catalog.hpp"
 #include "plugin/lock.hpp"
+#include "scene/scene.hpp"
 
-namespace rouleau::host {
+namespace rouleau::command {
 
 namespace {
 
 /// Every plugin that a scene names, once, whether its parameters let it act or not.
-std::vector<const Manifest*> named_plugins(const Scene& scene, const Catalog& catalog) {
-  std::vector<const Manifest*> named;
-  const auto add = [&](ModelKind kind, const ModelChoice& choice) {
-    const Manifest& manifest = catalog.find(kind, choice.model, scene.place(choice.pointer + "/model"));
+std::vector<const plugin::Manifest*> named_plugins(const scene::Scene& scene, const plugin::Catalog& catalog) {
+  std::vector<const plugin::Manifest*> named;
+  const auto add = [&](plugin::ModelKind kind, const scene::ModelChoice& choice) {
+    const plugin::Manifest& manifest = catalog.find(kind, choice.model, scene.place(choice.pointer + "/model"));
     if (std::find(named.begin(), named.end(), &manifest) == named.end()) named.push_back(&manifest);
   };
-  add(ModelKind::collision, scene.fluid.collision);
-  for (const CellType& type : scene.cell_types) {
-    for (const ModelChoice& law : type.membrane) add(ModelKind::membrane, law);
+  add(plugin::ModelKind::collision, scene.fluid.collision);
+  for (const scene::CellType& type : scene.cell_types) {
+    for (const scene::ModelChoice& law : type.membrane) add(plugin::ModelKind::membrane, law);
   }
-  for (const Interaction& interaction : scene.interactions) add(ModelKind::interaction, interaction.potential);
+  for (const scene::Interaction& interaction : scene.interactions)
+    add(plugin::ModelKind::interaction, interaction.potential);
   return named;
 }
 
@@ -31,17 +33,18 @@ std::vector<const Manifest*> named_plugins(const Scene& scene, const Catalog& ca
 
 void lock_scene(const std::filesystem::path& scene_file, const std::vector<std::filesystem::path>& plugin_dirs,
                 const std::filesystem::path& out) {
-  const Scene scene = read_scene(scene_file);
-  const Catalog catalog(plugin_search_path(plugin_dirs, scene.plugin_dirs));
-  std::vector<LockedPlugin> locked;
-  for (const Manifest* manifest : named_plugins(scene, catalog)) locked.push_back(lock_plugin(*manifest));
-  const std::filesystem::path file = out.empty() ? lock_beside(scene_file) : out;
-  write_file(file, lock_text(locked));
+  const scene::Scene scene = scene::read_scene(scene_file);
+  const plugin::Catalog catalog(plugin::plugin_search_path(plugin_dirs, scene.plugin_dirs));
+  std::vector<plugin::LockedPlugin> locked;
+  for (const plugin::Manifest* manifest : named_plugins(scene, catalog))
+    locked.push_back(plugin::lock_plugin(*manifest));
+  const std::filesystem::path file = out.empty() ? plugin::lock_beside(scene_file) : out;
+  files::write_file(file, plugin::lock_text(locked));
   std::cout << file.string() << '\n';
-  for (const LockedPlugin& plugin : locked) {
+  for (const plugin::LockedPlugin& plugin : locked) {
     std::cout << "  " << plugin.kind << ' ' << plugin.id << ' ' << plugin.version << "  " << plugin.library_sha256
               << '\n';
   }
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::command

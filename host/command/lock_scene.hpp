@@ -4,11 +4,11 @@
 #include <filesystem>
 #include <vector>
 
-namespace rouleau::host {
+namespace rouleau::command {
 
 /// Writes to `out` (empty: beside the scene), whole or not at all, and prints what is locked. Throws Error as for a
 /// run: bad_input for a wrong scene, plugin_refused for a plugin that cannot be used, input_output.
 void lock_scene(const std::filesystem::path& scene, const std::vector<std::filesystem::path>& plugin_dirs,
                 const std::filesystem::path& out);
 
-}  // namespace rouleau::host
+}  // namespace rouleau::command

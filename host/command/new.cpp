@@ -8,14 +8,15 @@
 #include <iostream>
 #include <regex>
 
-#include "command/command_line.hpp"
-#include "command/commands.hpp"
-#include "command/templates.hpp"
-#include "input/wording.hpp"
-#include "output/run_directory.hpp"
+#include "base/text.hpp"
+#include "command_line.hpp"
+#include "commands.hpp"
+#include "files/file.hpp"
+#include "files/run_directory.hpp"
 #include "plugin/catalog.hpp"
+#include "templates.hpp"
 
-namespace rouleau::host {
+namespace rouleau::command {
 
 namespace {
 
@@ -86,8 +87,8 @@ Name checked_name(const std::string& id) {
     begins = c == '-';
   }
   if (name.type.size() < 3) name.type += "Model";  // the formula's own letters
-  const Catalog installed(plugin_search_path({}, {}));
-  for (const Manifest& manifest : installed.manifests()) {
+  const plugin::Catalog installed(plugin::plugin_search_path({}, {}));
+  for (const plugin::Manifest& manifest : installed.manifests()) {
     if (manifest.id == id) refuse("is the id of a model that is installed already: " + manifest.file.string());
   }
   return name;
@@ -122,9 +123,9 @@ void make_folder(const fs::path& folder, const Template& model, const Name& name
   const fs::path partial = folder.parent_path() / ("." + name.file + '.' + std::to_string(::getpid()) + ".partial");
   if (!fs::create_directory(partial, error)) fail(folder, "cannot be made", error ? error.value() : EEXIST);
   try {
-    write_file(partial / (name.file + ".cpp"), filled(model.source, name));
-    write_file(partial / (name.file + ".json"), filled(model.manifest, name));
-    write_file(partial / "CMakeLists.txt", filled(plugin_build_file, name));
+    files::write_file(partial / (name.file + ".cpp"), filled(model.source, name));
+    files::write_file(partial / (name.file + ".json"), filled(model.manifest, name));
+    files::write_file(partial / "CMakeLists.txt", filled(plugin_build_file, name));
     fs::rename(partial, folder, error);  // replaces nothing but an empty folder that was made in this moment
     if (error) fail(folder, "cannot be made", error.value());
   } catch (...) {
@@ -181,4 +182,4 @@ int new_command(const std::vector<std::string>& arguments) {
   return static_cast<int>(ExitCode::done);
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::command

@@ -1,13 +1,13 @@
 // rouleau plan SCENE: everything a run would decide, without a step.
 #include <iostream>
 
-#include "cell/membranes.hpp"
 #include "command_line.hpp"
 #include "commands.hpp"
-#include "run/plan.hpp"
+#include "core/membrane/membranes.hpp"
+#include "plan/plan.hpp"
 #include "scene_options.hpp"
 
-namespace rouleau::host {
+namespace rouleau::command {
 
 namespace {
 
@@ -33,18 +33,18 @@ int plan_command(const std::vector<std::string>& arguments) {
   description.add_options()("json", options::bool_switch(&json), "print JSON for programs");
   if (!parse_command_line("plan", plan_help, arguments, description, positional)) return 0;
 
-  const Scene scene = scene_options.read();
-  const Catalog catalog = scene_options.catalog(scene);
-  const Plan plan = make_plan(scene, catalog);
+  const scene::Scene scene = scene_options.read();
+  const plugin::Catalog catalog = scene_options.catalog(scene);
+  const plan::Plan plan = plan::make_plan(scene, catalog);
   // Placing the cells finds overlaps before a run does.
-  if (plan.has_cells) make_membranes(scene, lattice_spacing(scene));
+  if (plan.has_cells) membrane::make_membranes(scene, plan::lattice_spacing(scene));
   if (json) {
     // Names of folders need not be UTF-8.
-    std::cout << to_json(plan).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
+    std::cout << plan::to_json(plan).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
   } else {
-    std::cout << to_text(plan);
+    std::cout << plan::to_text(plan);
   }
   return 0;
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::command

@@ -3,18 +3,18 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "command/command_line.hpp"
-#include "command/commands.hpp"
-#include "command/lock_scene.hpp"
-#include "input/wording.hpp"
+#include "base/text.hpp"
+#include "command_line.hpp"
+#include "commands.hpp"
+#include "lock_scene.hpp"
 #include "plugin/catalog.hpp"
-#include "plugin/limits.hpp"
+#include "plugin/parameter_ranges.hpp"
 
-namespace rouleau::host {
+namespace rouleau::command {
 
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 
 constexpr const char* plugins_help = R"(usage: rouleau plugins [ID] [options]
 
@@ -30,14 +30,14 @@ Example:
 )";
 
 /// A value as the manifest writes it: in the parameter's unit, or the word of a choice.
-json written(double si, const Parameter& parameter, const Units& units) {
+Json written(double si, const plugin::Parameter& parameter, const units::Units& units) {
   if (!parameter.choices.empty()) return parameter.choices.at(static_cast<std::size_t>(si));
   // Six digits hide the rounding of the way to SI and back.
-  return json::parse(number(si / units.scale(parameter.unit)));
+  return Json::parse(number(si / units.scale(parameter.unit)));
 }
 
-json describe(const Parameter& parameter, const Units& units) {
-  json entry = {{"name", parameter.name}, {"doc", parameter.doc}};
+Json describe(const plugin::Parameter& parameter, const units::Units& units) {
+  Json entry = {{"name", parameter.name}, {"doc", parameter.doc}};
   if (parameter.choices.empty()) {
     entry["unit"] = parameter.unit;
   } else {
@@ -53,22 +53,22 @@ json describe(const Parameter& parameter, const Units& units) {
   add("exclusiveMaximum", parameter.exclusive_maximum);
   if (parameter.usual) {
     const auto [low, high] = *parameter.usual;
-    entry["usual"] = json::array({written(low, parameter, units), written(high, parameter, units)});
+    entry["usual"] = Json::array({written(low, parameter, units), written(high, parameter, units)});
   }
   return entry;
 }
 
-std::vector<std::string> state_names(const Manifest& manifest) {
+std::vector<std::string> state_names(const plugin::Manifest& manifest) {
   std::vector<std::string> names;
-  for (const StateVariable& variable : manifest.state) names.push_back(variable.name);
+  for (const plugin::StateVariable& variable : manifest.state) names.push_back(variable.name);
   return names;
 }
 
-json describe(const Manifest& manifest, const Units& units) {
-  json parameters = json::array();
-  for (const Parameter& parameter : manifest.parameters) parameters.push_back(describe(parameter, units));
+Json describe(const plugin::Manifest& manifest, const units::Units& units) {
+  Json parameters = Json::array();
+  for (const plugin::Parameter& parameter : manifest.parameters) parameters.push_back(describe(parameter, units));
   return {{"id", manifest.id},
-          {"kind", to_string(manifest.kind)},
+          {"kind", plugin::to_string(manifest.kind)},
           {"version", manifest.version},
           {"title", manifest.title},
           {"reference", manifest.reference},
@@ -85,9 +85,9 @@ json describe(const Manifest& manifest, const Units& units) {
           {"claims", manifest.claims}};
 }
 
-std::string value_text(const json& value) { return value.is_number() ? number(value.get<double>()) : value.dump(); }
+std::string value_text(const Json& value) { return value.is_number() ? number(value.get<double>()) : value.dump(); }
 
-std::string limits_text(const json& parameter) {
+std::string limits_text(const Json& parameter) {
   std::string text;
   const auto add = [&](const char* key, const char* sign) {
     if (parameter.contains(key)) text += (text.empty() ? "" : ", ") + std::string(sign) + value_text(parameter[key]);
@@ -97,14 +97,14 @@ std::string limits_text(const json& parameter) {
   add("maximum", "<= ");
   add("exclusiveMaximum", "< ");
   if (parameter.contains("usual")) {
-    const json& usual = parameter["usual"];
+    const Json& usual = parameter["usual"];
     text += (text.empty() ? "usually " : "; usually ") + value_text(usual[0]) + " to " + value_text(usual[1]);
   }
   return text;
 }
 
-void print(const Parameter& parameter, const Units& units) {
-  const json entry = describe(parameter, units);
+void print(const plugin::Parameter& parameter, const units::Units& units) {
+  const Json entry = describe(parameter, units);
   std::cout << "    " << parameter.name;
   if (!parameter.choices.empty()) {
     std::cout << ", one of " << listed(parameter.choices);
@@ -116,7 +116,7 @@ void print(const Parameter& parameter, const Units& units) {
   if (!parameter.doc.empty()) std::cout << "        " << printable(parameter.doc) << '\n';
 }
 
-void print(const Manifest& manifest, const Units& units) {
+void print(const plugin::Manifest& manifest, const units::Units& units) {
   const auto line = [](const char* name, const std::string& text) {
     if (text.empty()) return;
     std::string label = name;
@@ -124,7 +124,7 @@ void print(const Manifest& manifest, const Units& units) {
     std::cout << "  " << label << printable(text) << '\n';
   };
   std::cout << manifest.id << ' ' << manifest.version << ": " << printable(manifest.title) << '\n';
-  line("kind", to_string(manifest.kind));
+  line("kind", plugin::to_string(manifest.kind));
   line("reference", manifest.reference);
   line("author", manifest.author);
   line("license", manifest.license);
@@ -137,11 +137,11 @@ void print(const Manifest& manifest, const Units& units) {
   if (manifest.stands_for.is_object()) line("stands for", manifest.stands_for.dump());
   if (!manifest.claims.empty()) line("claims", manifest.claims.dump());
   std::cout << "  parameters" << (manifest.parameters.empty() ? "     none\n" : "\n");
-  for (const Parameter& parameter : manifest.parameters) print(parameter, units);
+  for (const plugin::Parameter& parameter : manifest.parameters) print(parameter, units);
 }
 
-json list(const Catalog& catalog, const Units& units) {
-  json plugins = json::array(), refused = json::array(), folders = json::array();
+Json list(const plugin::Catalog& catalog, const units::Units& units) {
+  Json plugins = Json::array(), refused = Json::array(), folders = Json::array();
   for (const auto& manifest : catalog.manifests()) plugins.push_back(describe(manifest, units));
   for (const auto& entry : catalog.refused()) {
     refused.push_back({{"manifest", entry.file.string()}, {"id", entry.id}, {"reason", entry.reason}});
@@ -150,12 +150,13 @@ json list(const Catalog& catalog, const Units& units) {
   return {{"plugins", plugins}, {"refused", refused}, {"folders", folders}};
 }
 
-void print(const Catalog& catalog) {
-  for (const ModelKind kind : {ModelKind::collision, ModelKind::membrane, ModelKind::interaction}) {
+void print(const plugin::Catalog& catalog) {
+  for (const plugin::ModelKind kind :
+       {plugin::ModelKind::collision, plugin::ModelKind::membrane, plugin::ModelKind::interaction}) {
     const auto ids = catalog.ids(kind);
-    std::cout << to_string(kind) << (ids.empty() ? ": none\n" : "\n");
+    std::cout << plugin::to_string(kind) << (ids.empty() ? ": none\n" : "\n");
     for (const std::string& id : ids) {
-      const Manifest& manifest = catalog.find(kind, id, {});
+      const plugin::Manifest& manifest = catalog.find(kind, id, {});
       std::cout << "  " << id << ' ' << manifest.version << "  " << printable(manifest.title) << "\n      "
                 << manifest.file.string() << '\n';
     }
@@ -174,7 +175,7 @@ void print(const Catalog& catalog) {
 }
 
 /// The manifest with an id, of any kind.
-const Manifest& find(const Catalog& catalog, const std::string& id) {
+const plugin::Manifest& find(const plugin::Catalog& catalog, const std::string& id) {
   std::vector<std::string> ids;
   for (const auto& manifest : catalog.manifests()) {
     if (manifest.id == id) return manifest;
@@ -182,7 +183,7 @@ const Manifest& find(const Catalog& catalog, const std::string& id) {
   }
   const auto& refused = catalog.refused();
   if (std::any_of(refused.begin(), refused.end(), [&](const auto& entry) { return entry.id == id; })) {
-    return catalog.find(ModelKind::collision, id, {"rouleau plugins", {}, 0, 0});
+    return catalog.find(plugin::ModelKind::collision, id, {"rouleau plugins", {}, 0, 0});
   }
   throw Error(ExitCode::bad_input, "rouleau plugins: no plugin has the id " + in_quotes(id) + did_you_mean(id, ids) +
                                        "\n  there are: " + listed(ids));
@@ -216,24 +217,24 @@ int plugins_command(const std::vector<std::string>& arguments) {
     return static_cast<int>(ExitCode::done);
   }
   if (!out.empty()) throw Error(ExitCode::bad_input, "rouleau plugins: --out goes with --lock SCENE");
-  const Catalog catalog(plugin_search_path({plugin_dirs.begin(), plugin_dirs.end()}, {}));
-  const Units units;
+  const plugin::Catalog catalog(plugin::plugin_search_path({plugin_dirs.begin(), plugin_dirs.end()}, {}));
+  const units::Units units;
   if (id.empty()) {
     if (as_json) {
       // Names of folders need not be UTF-8.
-      std::cout << list(catalog, units).dump(2, ' ', false, json::error_handler_t::replace) << '\n';
+      std::cout << list(catalog, units).dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
     } else {
       print(catalog);
     }
     return static_cast<int>(ExitCode::done);
   }
-  const Manifest& manifest = find(catalog, id);
+  const plugin::Manifest& manifest = find(catalog, id);
   if (as_json) {
-    std::cout << describe(manifest, units).dump(2, ' ', false, json::error_handler_t::replace) << '\n';
+    std::cout << describe(manifest, units).dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
   } else {
     print(manifest, units);
   }
   return static_cast<int>(ExitCode::done);
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::command

@@ -1,6 +1,6 @@
 // rouleau report DIR: the page about a run, a study or limits, about two runs side by side, or pictures, made again
 // from the files there.
-#include "output/report.hpp"
+#include "report/report.hpp"
 
 #include <unistd.h>
 
@@ -9,14 +9,14 @@
 #include <cstring>
 #include <iostream>
 
-#include "command/command_line.hpp"
-#include "command/commands.hpp"
-#include "error.hpp"
-#include "input/wording.hpp"
-#include "output/report_data.hpp"
-#include "output/study_page.hpp"
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "command_line.hpp"
+#include "commands.hpp"
+#include "report/report_data.hpp"
+#include "report/result_page.hpp"
 
-namespace rouleau::host {
+namespace rouleau::command {
 
 namespace {
 
@@ -101,7 +101,7 @@ void check(const Options& chosen) {
            (count == 1 ? " was given" : " were given"));
   if (!chosen.compare && count != 1) refuse("takes one directory; two runs are set side by side with --compare A B");
   if (!chosen.strains.empty() && !chosen.frames) refuse("--strains is for --frames");
-  if (!chosen.out.empty() && !chosen.frames && !chosen.compare && !has_run(chosen.directories[0]))
+  if (!chosen.out.empty() && !chosen.frames && !chosen.compare && !report::has_run(chosen.directories[0]))
     refuse("--out is for the report of a run; pages of studies and limits lie in their directories");
 }
 
@@ -129,14 +129,14 @@ int report_command(const std::vector<std::string>& arguments) {
   if (chosen.compare) {
     const auto& [a, b] = std::pair(chosen.directories[0], chosen.directories[1]);
     const fs::path file = chosen.out.empty() ? name_of(a) + "-and-" + name_of(b) + ".html" : chosen.out;
-    write_comparison(a, b, file);
+    report::write_comparison(a, b, file);
     std::cout << file.string() << "\n";
   } else if (!chosen.out.empty()) {
-    std::cout << write_report(chosen.directories[0], chosen.out).string() << "\n";
+    std::cout << report::write_report(chosen.directories[0], chosen.out).string() << "\n";
   } else {
-    for (const fs::path& page : write_pages(chosen.directories[0])) std::cout << page.string() << "\n";
+    for (const fs::path& page : report::write_pages(chosen.directories[0])) std::cout << page.string() << "\n";
   }
   return static_cast<int>(ExitCode::done);
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::command

@@ -4,16 +4,16 @@
 #include <iostream>
 #include <thread>
 
-#include "cell/membranes.hpp"
 #include "command_line.hpp"
 #include "commands.hpp"
+#include "core/membrane/membranes.hpp"
+#include "files/checkpoint_file.hpp"
 #include "interruption.hpp"
-#include "output/checkpoint_file.hpp"
-#include "output/report.hpp"
+#include "report/report.hpp"
 #include "run/simulation.hpp"
 #include "scene_options.hpp"
 
-namespace rouleau::host {
+namespace rouleau::command {
 
 namespace {
 
@@ -35,8 +35,8 @@ Example:
 Exit codes: 0 done, 1 the simulation failed, 2 bad input, 3 a plugin was refused, 4 input/output, 130 interrupted
 )";
 
-std::string last_words(const Summary& summary) {
-  std::string text = outcome(summary);
+std::string last_words(const run::Summary& summary) {
+  std::string text = run::outcome(summary);
   if (summary.aggregate_history.empty()) return text;
   return text + ", " + std::to_string(summary.aggregates_final) +
          (summary.aggregates_final == 1 ? " aggregate" : " aggregates");
@@ -55,7 +55,7 @@ int run_command(const std::vector<std::string>& arguments) {
   SceneOptions scene_options;
   std::string out;
   bool overwrite = false, resume = false;
-  RunOptions run;
+  run::RunOptions run;
   options::options_description description("options");
   options::positional_options_description positional;
   scene_options.add_to(description, positional);
@@ -83,42 +83,44 @@ int run_command(const std::vector<std::string>& arguments) {
                                          ": wants a number from 1 to 1024 (this machine has " +
                                          std::to_string(processors) + " processors)");
   }
-  const Scene scene = scene_options.read();
+  const scene::Scene scene = scene_options.read();
   run.threads = std::min(run.threads, std::max(1, scene.domain.nodes[1] / 4));
-  const Catalog catalog = scene_options.catalog(scene);
-  const Plan plan = make_plan(scene, catalog);
+  const plugin::Catalog catalog = scene_options.catalog(scene);
+  const plan::Plan plan = plan::make_plan(scene, catalog);
   // Placing the cells finds overlaps before a directory is made.
-  if (plan.has_cells) make_membranes(scene, lattice_spacing(scene));
+  if (plan.has_cells) membrane::make_membranes(scene, plan::lattice_spacing(scene));
   for (const std::string& warning : plan.warnings) std::cerr << "warning: " << warning << "\n";
 
   run.interrupted = &listen_for_interruption();
   const std::filesystem::path named = std::filesystem::path("runs") / std::filesystem::path(scene_options.scene).stem();
   const std::filesystem::path folder = !out.empty()          ? std::filesystem::path(out)
                                        : overwrite || resume ? named
-                                                             : unused_directory(named);
+                                                             : files::unused_directory(named);
   const std::string again =
       "rouleau run " + scene_options.in_shell() + " --out " + in_shell(folder.string()) + " --resume";
-  const FormerRun former = resume ? FormerRun::resume : overwrite ? FormerRun::replace : FormerRun::keep;
-  Summary summary;
+  const files::FormerRun former = resume      ? files::FormerRun::resume
+                                  : overwrite ? files::FormerRun::replace
+                                              : files::FormerRun::keep;
+  run::Summary summary;
   {
-    RunDirectory directory(folder, scene, former);
+    files::RunDirectory directory(folder, scene, former);
     if (resume && !directory.resumes()) {
       std::cerr << folder.string() << " holds no checkpoint: the run begins at the beginning\n";
     }
     try {
-      summary = simulate(plan, run, directory);
+      summary = run::simulate(plan, run, directory);
     } catch (const Error& error) {
       if (error.code() != ExitCode::input_output || !directory.is_open()) throw;
-      const std::string next = std::filesystem::exists(checkpoint_file(folder))
+      const std::string next = std::filesystem::exists(files::checkpoint_file(folder))
                                    ? "what was computed up to the last checkpoint is kept; to go on from there: "
                                    : "no checkpoint was written yet; to begin again: ";
       throw Error(error.code(), std::string(error.what()) + "\n  " + next + again);
     }
   }
-  const std::filesystem::path report = write_report(folder);
+  const std::filesystem::path report = report::write_report(folder);
   std::cout << report.string() << "\n" << last_words(summary) << "\n";
   if (summary.failure) {
-    const Failure& f = *summary.failure;
+    const monitor::Failure& f = *summary.failure;
     std::cerr << f.reason << " at step " << f.step << ", strain " << f.strain;
     if (f.cell >= 0) std::cerr << ", cell " << f.cell;
     std::cerr << ", place (" << f.place[0] * 1e6 << ", " << f.place[1] * 1e6 << ") um\n  " << f.message << "\n  found "
@@ -134,4 +136,4 @@ int run_command(const std::vector<std::string>& arguments) {
   return static_cast<int>(summary.status == "interrupted" ? ExitCode::interrupted : ExitCode::done);
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::command

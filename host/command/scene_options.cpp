@@ -1,9 +1,9 @@
 #include "scene_options.hpp"
 
-#include "command/command_line.hpp"
-#include "run/numerics_bounds.hpp"
+#include "command_line.hpp"
+#include "plan/numerics_auto_limits.hpp"
 
-namespace rouleau::host {
+namespace rouleau::command {
 
 namespace options = boost::program_options;
 
@@ -19,28 +19,28 @@ void SceneOptions::add_to(options::options_description& description,
   positional.add("scene", 1);
 }
 
-Scene SceneOptions::read() const {
-  return read_within_limits(scene, overrides, [&](const Scene& read) { return catalog(read); });
+scene::Scene SceneOptions::read() const {
+  return plan::read_within_limits(scene, overrides, [&](const scene::Scene& read) { return catalog(read); });
 }
 
 std::string SceneOptions::in_shell() const {
-  std::string words = host::in_shell(scene);
-  for (const std::string& override : overrides) words += " --set " + host::in_shell(override);
-  for (const std::string& folder : plugin_dirs) words += " --plugin-dir " + host::in_shell(folder);
-  if (!lock.empty()) words += " --lock " + host::in_shell(lock);
+  std::string words = command::in_shell(scene);
+  for (const std::string& override : overrides) words += " --set " + command::in_shell(override);
+  for (const std::string& folder : plugin_dirs) words += " --plugin-dir " + command::in_shell(folder);
+  if (!lock.empty()) words += " --lock " + command::in_shell(lock);
   return words;
 }
 
-Catalog SceneOptions::catalog(const Scene& read) const {
+plugin::Catalog SceneOptions::catalog(const scene::Scene& read) const {
   const std::vector<std::filesystem::path> given(plugin_dirs.begin(), plugin_dirs.end());
-  Catalog catalog(plugin_search_path(given, read.plugin_dirs));
-  const std::filesystem::path file = lock.empty() ? lock_beside(scene) : std::filesystem::path(lock);
+  plugin::Catalog catalog(plugin::plugin_search_path(given, read.plugin_dirs));
+  const std::filesystem::path file = lock.empty() ? plugin::lock_beside(scene) : std::filesystem::path(lock);
   // A link that leads nowhere is a lock that cannot be read, not a scene without one.
   std::error_code ignored;
   if (!lock.empty() || std::filesystem::exists(std::filesystem::symlink_status(file, ignored))) {
-    catalog.set_lock(read_lock(file, scene));
+    catalog.set_lock(plugin::read_lock(file, scene));
   }
   return catalog;
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::command

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "input/scene.hpp"
 #include "plugin/catalog.hpp"
+#include "scene/scene.hpp"
 
-namespace rouleau::host {
+namespace rouleau::command {
 
 /// Options of `rouleau run` and `rouleau plan` that decide which scene is meant.
 struct SceneOptions {
@@ -21,11 +21,11 @@ struct SceneOptions {
   /// --set, --plugin-dir, --lock; the scene itself is positional.
   void add_to(boost::program_options::options_description& options,
               boost::program_options::positional_options_description& positional);
-  [[nodiscard]] Scene read() const;
+  [[nodiscard]] scene::Scene read() const;
   /// The scene and these options as somebody would type them again.
   [[nodiscard]] std::string in_shell() const;
   /// What the search path offers, bound by the lock.
-  [[nodiscard]] Catalog catalog(const Scene& scene) const;
+  [[nodiscard]] plugin::Catalog catalog(const scene::Scene& scene) const;
 };
 
-}  // namespace rouleau::host
+}  // namespace rouleau::command

@@ -2,16 +2,16 @@
 #include <cmath>
 #include <iostream>
 
+#include "base/error.hpp"
+#include "base/text.hpp"
 #include "command_line.hpp"
 #include "commands.hpp"
-#include "error.hpp"
-#include "input/units.hpp"
-#include "input/wording.hpp"
 #include "interruption.hpp"
 #include "study/study_files.hpp"
 #include "study/study_run.hpp"
+#include "units/units.hpp"
 
-namespace rouleau::host {
+namespace rouleau::command {
 
 namespace {
 
@@ -40,8 +40,8 @@ double budget_in_seconds(const std::string& text) {
   const std::string unit = digits == std::string::npos ? "s" : text.substr(text.find_first_not_of(' ', digits));
   double seconds = NAN;
   try {
-    seconds = Units().to_si(number_text + ' ' + unit, "s", "--budget");
-  } catch (const UnitError& error) {
+    seconds = units::Units().to_si(number_text + ' ' + unit, "s", "--budget");
+  } catch (const units::UnitError& error) {
     throw Error(ExitCode::bad_input, "--budget " + in_quotes(text) + ": " + error.what());
   }
   if (seconds > 0) return seconds;
@@ -49,16 +49,16 @@ double budget_in_seconds(const std::string& text) {
 }
 
 /// What was left out, what was found; false where a repeated run gave other results.
-bool tell_end(const StudyState& state) {
+bool tell_end(const study::StudyState& state) {
   bool same = true;
-  for (const MatrixPoint& point : state.points) {
-    const std::string name = name_of(state.study->axes, point.point);
+  for (const study::MatrixPoint& point : state.points) {
+    const std::string name = trial::name_of(state.study->axes, point.point);
     if (!point.record) std::cerr << "left out: " << name << ", " << point.left_out << "\n";
     if (!point.record || point.record->difference.empty()) continue;
     std::cerr << "not deterministic: " << name << ", " << point.record->difference << "\n";
     same = false;
   }
-  const nlohmann::json study = study_json(state);
+  const nlohmann::json study = study::study_json(state);
   for (const auto& sentence : study["sentences"]) std::cout << sentence["text"].get<std::string>() << "\n";
   if (study["target"].is_object()) std::cout << study["target"]["sentence"].get<std::string>() << "\n";
   return same;
@@ -70,7 +70,7 @@ int study_command(const std::vector<std::string>& arguments) {
   namespace options = boost::program_options;
   std::string file, out, budget, target;
   int repeats = 0;
-  StudyOptions chosen;
+  study::StudyOptions chosen;
   options::options_description description("options");
   options::positional_options_description positional;
   description.add_options()("study", options::value(&file)->required(), "STUDY file (JSON)")(
@@ -85,17 +85,17 @@ int study_command(const std::vector<std::string>& arguments) {
   positional.add("study", 1);
   if (!parse_command_line("study", study_help, arguments, description, positional)) return 0;
 
-  Study study = read_study(file);
+  study::Study study = study::read_study(file);
   if (repeats < 0 || repeats > 100)
     throw Error(ExitCode::bad_input, "--repeats " + std::to_string(repeats) + ": wants a number from 1 to 100");
   if (repeats > 0) study.repeats = repeats;
   if (!budget.empty()) chosen.budget_s = budget_in_seconds(budget);
-  if (!target.empty()) chosen.target = read_target(target, study.quantities);
+  if (!target.empty()) chosen.target = study::read_target(target, study.quantities);
   const std::filesystem::path named = std::filesystem::path("runs") / std::filesystem::path(file).stem();
   chosen.directory = out.empty() ? named : std::filesystem::path(out);
   chosen.interrupted = &listen_for_interruption();
 
-  StudyRun run(study, chosen);
+  study::StudyRun run(study, chosen);
   const bool ended = run.run();
   std::cout << (chosen.directory / "study.html").string() << "\n";
   if (!ended) {
@@ -105,4 +105,4 @@ int study_command(const std::vector<std::string>& arguments) {
   return static_cast<int>(tell_end(run.state()) ? ExitCode::done : ExitCode::simulation_failed);
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::command

@@ -1,9 +1,9 @@
-// The text of the files in sdk/template, which CMake compiles into the program (embed_texts.cmake).
+// The text of the files in sdk/template, which CMake compiles into the program (cmake/embed_texts.cmake).
 #pragma once
 
 #include <string_view>
 
-namespace rouleau::host {
+namespace rouleau::command {
 
 // In all of them ModelType stands for the name of the C++ type, model-name for that of the files and model-id for the
 // manifest's id.
@@ -12,4 +12,4 @@ extern const std::string_view membrane_source, membrane_manifest;
 extern const std::string_view interaction_source, interaction_manifest;
 extern const std::string_view plugin_build_file;
 
-}  // namespace rouleau::host
+}  // namespace rouleau::command

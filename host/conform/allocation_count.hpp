@@ -4,7 +4,7 @@
 #include <atomic>
 #include <cstdint>
 
-namespace rouleau::host {
+namespace rouleau::conform {
 
 struct ProcessCounts {
   std::atomic<std::int64_t> allocations{0}, releases{0};  ///< by malloc and its kin, and by new
@@ -14,4 +14,4 @@ struct ProcessCounts {
 /// Set by the program that counts; null where nothing does (builds with sanitizers, which have their own malloc).
 inline ProcessCounts* process_counts = nullptr;
 
-}  // namespace rouleau::host
+}  // namespace rouleau::conform

@@ -8,11 +8,11 @@
 #include <cstring>
 #include <memory>
 
+#include "base/text.hpp"
 #include "guarded_memory.hpp"
-#include "input/wording.hpp"
 #include "plugin/quantities.hpp"
 
-namespace rouleau::host {
+namespace rouleau::conform {
 
 namespace {
 
@@ -112,7 +112,7 @@ Arrays<T> place(Memory& memory, const Subject& subject, const Values& inputs, co
     }));
   }
   const auto kind = subject.manifest().kind;
-  for (const std::string& quantity : inputs_of(kind)) {
+  for (const std::string& quantity : plugin::inputs_of(kind)) {
     if (subject.manifest().needs_input(quantity) || call.undeclared == Undeclared::null) continue;
     for (const std::string& name : arrays_of(kind, quantity)) {
       const std::string words = "the input " + name + ", which its manifest does not declare";
@@ -252,17 +252,17 @@ void call_with(Memory& memory, Block block, std::uint32_t count, std::uint32_t a
 }
 
 template <class T>
-void call_block(Memory& memory, const Subject& subject, const ModelInstance& instance, const Arrays<T>& arrays,
+void call_block(Memory& memory, const Subject& subject, const plugin::ModelInstance& instance, const Arrays<T>& arrays,
                 std::size_t first, std::uint32_t count, const Call& call) {
   const Tables<T> tables{memory, arrays, first};
   const void* self = instance.self();
   if constexpr (sizeof(T) == 4) {
     call_with(memory, collision_block<rouleau_collision_block_f32>(tables), count, call.appended_bytes, call.watch,
               instance.collision().collide_f32, self);
-  } else if (subject.manifest().kind == ModelKind::collision) {
+  } else if (subject.manifest().kind == plugin::ModelKind::collision) {
     call_with(memory, collision_block<rouleau_collision_block_f64>(tables), count, call.appended_bytes, call.watch,
               instance.collision().collide_f64, self);
-  } else if (subject.manifest().kind == ModelKind::membrane) {
+  } else if (subject.manifest().kind == plugin::ModelKind::membrane) {
     call_with(memory, element_block(tables, membrane_members, subject.manifest().state.size(), call.time_step), count,
               call.appended_bytes, call.watch, instance.membrane().compute, self);
   } else {
@@ -272,7 +272,8 @@ void call_block(Memory& memory, const Subject& subject, const ModelInstance& ins
 }
 
 template <class T>
-Values compute_as(const Subject& subject, const ModelInstance& instance, const Values& inputs, const Call& call) {
+Values compute_as(const Subject& subject, const plugin::ModelInstance& instance, const Values& inputs,
+                  const Call& call) {
   const std::size_t count = inputs.begin()->second.size();
   Memory memory(call);
   const Arrays<T> arrays = place<T>(memory, subject, inputs, call, count);
@@ -294,7 +295,7 @@ Values compute_as(const Subject& subject, const ModelInstance& instance, const V
 
 }  // namespace
 
-Values compute(const Subject& subject, const ModelInstance& instance, const Values& inputs, const Call& call) {
+Values compute(const Subject& subject, const plugin::ModelInstance& instance, const Values& inputs, const Call& call) {
   return call.single ? compute_as<float>(subject, instance, inputs, call)
                      : compute_as<double>(subject, instance, inputs, call);
 }
@@ -315,4 +316,4 @@ std::string first_difference(const Values& a, const Values& b) {
   return {};
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::conform

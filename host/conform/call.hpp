@@ -8,7 +8,7 @@
 
 #include "subject.hpp"
 
-namespace rouleau::host {
+namespace rouleau::conform {
 
 /// What stands in place of inputs that the manifest does not declare.
 enum class Undeclared { null, unreadable, signalling_nan };
@@ -44,7 +44,8 @@ struct Call {
 
 /// Outputs of all wanted arrays. What the model did not write is a NaN of its own kind (`unwritten`). The
 /// floating-point environment is put back after each call. Throws Fault when an exception leaves the model.
-Values compute(const Subject& subject, const ModelInstance& instance, const Values& inputs, const Call& call = {});
+Values compute(const Subject& subject, const plugin::ModelInstance& instance, const Values& inputs,
+               const Call& call = {});
 
 /// What compute's outputs hold where the model wrote nothing.
 bool is_unwritten(double value);
@@ -57,4 +58,4 @@ struct Fault : std::runtime_error {
 /// The first difference in bits of two results, "energy[3]: 1.5 and 1.25"; empty when there is none. NaNs are alike.
 std::string first_difference(const Values& a, const Values& b);
 
-}  // namespace rouleau::host
+}  // namespace rouleau::conform

@@ -4,7 +4,7 @@
 #include <iterator>
 #include <stdexcept>
 
-namespace rouleau::host {
+namespace rouleau::conform {
 
 const char* to_string(Level level) {
   switch (level) {
@@ -75,7 +75,7 @@ const std::vector<Check>& all_checks() {
   return checks;
 }
 
-const Check* find_check(const std::string& name, std::optional<ModelKind> kind) {
+const Check* find_check(const std::string& name, std::optional<plugin::ModelKind> kind) {
   const auto& checks = all_checks();
   const auto found = std::find_if(checks.begin(), checks.end(), [&](const Check& check) {
     return check.name == name && (!kind || !check.kind || check.kind == kind);
@@ -83,4 +83,4 @@ const Check* find_check(const std::string& name, std::optional<ModelKind> kind) 
   return found == checks.end() ? nullptr : &*found;
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::conform

@@ -7,7 +7,7 @@
 
 #include "plugin/manifest.hpp"
 
-namespace rouleau::host {
+namespace rouleau::conform {
 
 class Subject;
 
@@ -44,7 +44,7 @@ struct Check {
   const char* says;                ///< what is true of a plugin that passes
   std::vector<const char*> after;  ///< checks without which this one tells nothing; they stand before it in the list
   Finding (*run)(const Subject&);
-  std::optional<ModelKind> kind = {};  ///< for models of this kind only
+  std::optional<plugin::ModelKind> kind = {};  ///< for models of this kind only
 };
 
 // The checks of each file of this folder; `all_checks` puts them in order.
@@ -61,6 +61,6 @@ std::vector<Check> speed_checks();
 /// Every check, those that others build on first.
 const std::vector<Check>& all_checks();
 /// The check of that name, or null. Kinds may have different checks of one name.
-const Check* find_check(const std::string& name, std::optional<ModelKind> kind = {});
+const Check* find_check(const std::string& name, std::optional<plugin::ModelKind> kind = {});
 
-}  // namespace rouleau::host
+}  // namespace rouleau::conform

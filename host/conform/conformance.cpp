@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <map>
 
-#include "error.hpp"
-#include "input/document.hpp"
-#include "input/wording.hpp"
-#include "process.hpp"
+#include "base/error.hpp"
+#include "base/process.hpp"
+#include "base/text.hpp"
+#include "json/document.hpp"
 #include "report_line.hpp"
 
-namespace rouleau::host {
+namespace rouleau::conform {
 
 namespace {
 
@@ -96,7 +96,8 @@ std::vector<const Check*> chosen(const ConformanceOptions& options, const std::s
   }
   std::vector<const Check*> checks;
   for (const Check& check : all) {
-    if (wanted.contains(check.name) && (!check.kind || to_string(*check.kind) == kind)) checks.push_back(&check);
+    if (wanted.contains(check.name) && (!check.kind || plugin::to_string(*check.kind) == kind))
+      checks.push_back(&check);
   }
   return checks;
 }
@@ -116,15 +117,15 @@ std::vector<Conformance> check_conformance(const std::vector<fs::path>& manifest
                                            const std::function<void(const Conformance&, const CheckResult&)>& watch) {
   std::vector<Conformance> all;
   std::map<std::string, std::vector<fs::path>> claimants;
-  const Units units;
+  const units::Units units;
   for (const fs::path& file : manifests) {
     Conformance& conformance = all.emplace_back();
     conformance.file = file;
     try {
-      const Manifest manifest = read_manifest(file, units);
+      const plugin::Manifest manifest = plugin::read_manifest(file, units);
       conformance.id = manifest.id;
       conformance.version = manifest.version;
-      conformance.kind = to_string(manifest.kind);
+      conformance.kind = plugin::to_string(manifest.kind);
       claimants[manifest.id].push_back(file);
     } catch (const Error&) {  // the check of the manifest says what is wrong
     }
@@ -139,4 +140,4 @@ std::vector<Conformance> check_conformance(const std::vector<fs::path>& manifest
   return all;
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::conform

@@ -9,7 +9,7 @@
 
 #include "check.hpp"
 
-namespace rouleau::host {
+namespace rouleau::conform {
 
 struct ConformanceOptions {
   std::set<std::string> only;  ///< names of checks; empty: all. These run whatever they build on.
@@ -43,4 +43,4 @@ std::vector<Conformance> check_conformance(const std::vector<std::filesystem::pa
                                            const ConformanceOptions& options,
                                            const std::function<void(const Conformance&, const CheckResult&)>& watch);
 
-}  // namespace rouleau::host
+}  // namespace rouleau::conform

@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <new>
 
-namespace rouleau::host {
+namespace rouleau::conform {
 
 namespace {
 
@@ -66,4 +66,4 @@ bool GuardedArray::describe(const void* address, bool write, char* text, std::si
   return false;
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::conform

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace rouleau::host {
+namespace rouleau::conform {
 
 /// Memory of one array in pages of its own, with an inaccessible page on both sides. Not copyable; unmapped at the end.
 class GuardedArray {
@@ -34,4 +34,4 @@ class GuardedArray {
   const char* access_ = "";  ///< what is forbidden inside the array
 };
 
-}  // namespace rouleau::host
+}  // namespace rouleau::conform

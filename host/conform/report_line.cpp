@@ -6,11 +6,11 @@
 #include <cstdio>
 #include <cstring>
 
-namespace rouleau::host {
+namespace rouleau::conform {
 
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 
 Verdict verdict_named(const std::string& name) {
   for (const Verdict verdict :
@@ -31,22 +31,22 @@ void write_all(const char* text, std::size_t size) {
 
 }  // namespace
 
-json to_json(const Finding& finding) {
-  json entry = {{"verdict", to_string(finding.verdict)}, {"what", finding.what}};
+Json to_json(const Finding& finding) {
+  Json entry = {{"verdict", to_string(finding.verdict)}, {"what", finding.what}};
   // JSON has no word for numbers that are none; as text they survive.
   const auto add = [&](const char* key, const std::optional<double>& value) {
-    if (value) entry[key] = std::isfinite(*value) ? json(*value) : json(std::to_string(*value));
+    if (value) entry[key] = std::isfinite(*value) ? Json(*value) : Json(std::to_string(*value));
   };
   add("measured", finding.measured);
   add("limit", finding.limit);
   return entry;
 }
 
-Finding finding_from(const json& entry) {
+Finding finding_from(const Json& entry) {
   Finding finding{verdict_named(entry.at("verdict")), entry.at("what"), {}, {}};
   const auto read = [&](const char* key) -> std::optional<double> {
     if (!entry.contains(key)) return {};
-    const json& value = entry[key];
+    const Json& value = entry[key];
     return value.is_string() ? std::stod(value.get<std::string>()) : value.get<double>();
   };
   finding.measured = read("measured");
@@ -55,7 +55,7 @@ Finding finding_from(const json& entry) {
 }
 
 void send(const Finding& finding) {
-  const std::string line = to_json(finding).dump(-1, ' ', false, json::error_handler_t::replace) + '\n';
+  const std::string line = to_json(finding).dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
   write_all(line.data(), line.size());
 }
 
@@ -65,4 +65,4 @@ void send_from_signal(const char* verdict, const char* text) {
   write_all(line, static_cast<std::size_t>(size));
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::conform

@@ -5,7 +5,7 @@
 
 #include "check.hpp"
 
-namespace rouleau::host {
+namespace rouleau::conform {
 
 /// The descriptor that the child writes its finding to; standard output belongs to whatever the plugin prints.
 inline constexpr int finding_descriptor = 3;
@@ -18,4 +18,4 @@ void send(const Finding& finding);
 /// The same from a signal handler: no allocation. `text` must hold no quotes, backslashes or control characters.
 void send_from_signal(const char* verdict, const char* text);
 
-}  // namespace rouleau::host
+}  // namespace rouleau::conform

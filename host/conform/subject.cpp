@@ -5,7 +5,7 @@
 
 #include "call.hpp"
 
-namespace rouleau::host {
+namespace rouleau::conform {
 
 namespace {
 
@@ -16,7 +16,7 @@ double between(double low, double high, double share) {
 }
 
 /// A value that the limits allow, for parameters without default and usual range.
-double allowed(const Parameter& parameter) {
+double allowed(const plugin::Parameter& parameter) {
   const auto low = parameter.minimum ? parameter.minimum : parameter.exclusive_minimum;
   const auto high = parameter.maximum ? parameter.maximum : parameter.exclusive_maximum;
   if (low && high) return between(*low, *high, 0.5);
@@ -25,7 +25,7 @@ double allowed(const Parameter& parameter) {
   return 1;
 }
 
-double usual_or_allowed(const Parameter& parameter) {
+double usual_or_allowed(const plugin::Parameter& parameter) {
   if (!parameter.choices.empty()) return 0;
   if (parameter.usual) return between((*parameter.usual)[0], (*parameter.usual)[1], 0.5);
   return allowed(parameter);
@@ -43,21 +43,21 @@ double uniform(Random& random, double low, double high) {
   return std::uniform_real_distribution<double>(low, high)(random);
 }
 
-std::vector<std::string> arrays_of(ModelKind kind, const std::string& quantity) {
+std::vector<std::string> arrays_of(plugin::ModelKind kind, const std::string& quantity) {
   const auto components = [&](int count) {
     std::vector<std::string> names;
     names.reserve(static_cast<std::size_t>(count));
     for (int k = 0; k < count; ++k) names.push_back(quantity + '.' + std::to_string(k));
     return names;
   };
-  if (kind == ModelKind::collision && quantity == "populations") return components(9);
-  if (kind == ModelKind::collision && (quantity == "force" || quantity == "velocity")) return components(2);
+  if (kind == plugin::ModelKind::collision && quantity == "populations") return components(9);
+  if (kind == plugin::ModelKind::collision && (quantity == "force" || quantity == "velocity")) return components(2);
   return {quantity};
 }
 
 std::vector<double> Subject::typical_parameters() const {
   std::vector<double> values;
-  for (const Parameter& parameter : manifest_.parameters) {
+  for (const plugin::Parameter& parameter : manifest_.parameters) {
     const bool idle = manifest_.inactive_when.is_object() && manifest_.inactive_when.contains(parameter.name);
     values.push_back(parameter.default_value && !idle ? *parameter.default_value : usual_or_allowed(parameter));
   }
@@ -80,7 +80,7 @@ std::vector<std::vector<double>> Subject::parameters_of_each_choice() const {
 std::vector<double> Subject::random_parameters(Random& random) const {
   std::vector<double> values = typical_parameters();
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const Parameter& parameter = manifest_.parameters[i];
+    const plugin::Parameter& parameter = manifest_.parameters[i];
     const auto which = random() % 8;
     if (which < 3) continue;
     if (!parameter.choices.empty()) {
@@ -101,27 +101,27 @@ std::vector<double> Subject::random_parameters(Random& random) const {
   return values;
 }
 
-ModelSetting Subject::typical_setting() {
+plugin::ModelSetting Subject::typical_setting() {
   const double length = 0.1955e-6, density = 1000, viscosity = 1.2e-6, relaxation = 3000;  // m, kg/m3, m2/s, 1
   const double simulated_density = density * relaxation;
   const double time = length * length / (6 * viscosity / relaxation);
   return {{length, time, simulated_density * length * length * length}, 1, false};
 }
 
-std::vector<ModelInstance> Subject::make_each_choice(const ModelSetting& setting) const {
-  std::vector<ModelInstance> instances;
+std::vector<plugin::ModelInstance> Subject::make_each_choice(const plugin::ModelSetting& setting) const {
+  std::vector<plugin::ModelInstance> instances;
   for (const auto& values : parameters_of_each_choice()) {
     try {
       instances.push_back(make(values, setting));
-    } catch (const ModelRefused&) {  // a word that goes only with other values of other parameters
-      if (instances.empty()) throw;  // typical ones go together
+    } catch (const plugin::ModelRefused&) {  // a word that goes only with other values of other parameters
+      if (instances.empty()) throw;          // typical ones go together
     }
   }
   return instances;
 }
 
 std::vector<bool> Subject::precisions() const {
-  if (manifest_.kind == ModelKind::collision) return {false, true};
+  if (manifest_.kind == plugin::ModelKind::collision) return {false, true};
   return {false};
 }
 
@@ -143,8 +143,9 @@ std::vector<std::string> Subject::output_arrays() const {
   return names;
 }
 
-Values Subject::random_inputs(const ModelInstance& instance, std::size_t count, Random& random) const {
-  const double cutoff = manifest_.kind == ModelKind::interaction ? instance.interaction().cutoff(instance.self()) : 0;
+Values Subject::random_inputs(const plugin::ModelInstance& instance, std::size_t count, Random& random) const {
+  const double cutoff =
+      manifest_.kind == plugin::ModelKind::interaction ? instance.interaction().cutoff(instance.self()) : 0;
   // The ranges of what simulations meet, in lattice units: Mach numbers below 0.1, stretches by a half to two, cells of
   // about twenty spacings.
   const std::map<std::string, std::pair<double, double>> ranges = {
@@ -183,4 +184,4 @@ Values Subject::random_inputs(const ModelInstance& instance, std::size_t count, 
   return inputs;
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::conform

@@ -10,7 +10,7 @@
 #include "plugin/manifest.hpp"
 #include "plugin/model.hpp"
 
-namespace rouleau::host {
+namespace rouleau::conform {
 
 /// Values of the elements of a call by name, all of one length: the names of "needs" and "gives". Quantities with
 /// components have one entry for each, "populations.0" to ".8", "force.0", "velocity.1"; state variables are
@@ -26,9 +26,9 @@ double uniform(Random& random, double low, double high);
 
 class Subject {
  public:
-  Subject(Manifest manifest, std::uint64_t seed) : manifest_(std::move(manifest)), seed_(seed) {}
+  Subject(plugin::Manifest manifest, std::uint64_t seed) : manifest_(std::move(manifest)), seed_(seed) {}
 
-  [[nodiscard]] const Manifest& manifest() const { return manifest_; }
+  [[nodiscard]] const plugin::Manifest& manifest() const { return manifest_; }
   /// A generator that starts anew at each call: a check's inputs depend on the seed alone.
   [[nodiscard]] Random random() const { return Random(seed_); }
 
@@ -43,16 +43,17 @@ class Subject {
   [[nodiscard]] std::vector<double> random_parameters(Random& random) const;
 
   /// A lattice as the shipped scenes have it: 20 spacings to a cell's radius, tau 1, no inertia.
-  [[nodiscard]] static ModelSetting typical_setting();
+  [[nodiscard]] static plugin::ModelSetting typical_setting();
 
-  [[nodiscard]] ModelInstance make() const { return make(typical_parameters()); }
-  [[nodiscard]] ModelInstance make(const std::vector<double>& parameters,
-                                   const ModelSetting& setting = typical_setting()) const {
+  [[nodiscard]] plugin::ModelInstance make() const { return make(typical_parameters()); }
+  [[nodiscard]] plugin::ModelInstance make(const std::vector<double>& parameters,
+                                           const plugin::ModelSetting& setting = typical_setting()) const {
     return {manifest_, parameters, setting};
   }
   /// Instances with typical parameters and, in turn, with each other word of each choice; those that the model refuses
   /// are left out.
-  [[nodiscard]] std::vector<ModelInstance> make_each_choice(const ModelSetting& setting = typical_setting()) const;
+  [[nodiscard]] std::vector<plugin::ModelInstance> make_each_choice(
+      const plugin::ModelSetting& setting = typical_setting()) const;
 
   /// Whether calls are in single precision: those that the model computes in.
   [[nodiscard]] std::vector<bool> precisions() const;
@@ -63,14 +64,14 @@ class Subject {
 
   /// Inputs as flowing cells and fluids have them, in lattice units. State is what a number of steps with other random
   /// inputs make of its initial value.
-  [[nodiscard]] Values random_inputs(const ModelInstance& instance, std::size_t count, Random& random) const;
+  [[nodiscard]] Values random_inputs(const plugin::ModelInstance& instance, std::size_t count, Random& random) const;
 
  private:
-  Manifest manifest_;
+  plugin::Manifest manifest_;
   std::uint64_t seed_;
 };
 
 /// Arrays that stand for a quantity of the manifest: "force" of a collision operator is "force.0" and "force.1".
-std::vector<std::string> arrays_of(ModelKind kind, const std::string& quantity);
+std::vector<std::string> arrays_of(plugin::ModelKind kind, const std::string& quantity);
 
-}  // namespace rouleau::host
+}  // namespace rouleau::conform

@@ -14,7 +14,7 @@
 
 #include "report_line.hpp"
 
-namespace rouleau::host {
+namespace rouleau::conform {
 
 namespace {
 
@@ -83,4 +83,4 @@ bool forbid_system_calls() {
   return prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 && prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &filter) == 0;
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::conform

@@ -5,12 +5,12 @@
 #include <map>
 #include <set>
 
-#include "input/document.hpp"
-#include "input/wording.hpp"
+#include "base/text.hpp"
+#include "json/document.hpp"
 #include "manifest_search.hpp"
 #include "trust.hpp"
 
-namespace rouleau::host {
+namespace rouleau::plugin {
 
 namespace {
 
@@ -101,11 +101,11 @@ std::vector<fs::path> plugin_search_path(const std::vector<fs::path>& command_li
 Catalog::Catalog(const std::vector<fs::path>& folders) : folders_(folders) {
   const FoundFiles found = find_json_files(folders);
   for (const auto& [place, reason] : found.unreadable) refused_.push_back({place, {}, reason});
-  const Units units;
+  const units::Units units;
   for (const auto& [file, open_folder] : found.files) {
     std::string id;
     try {
-      const Document document = read_manifest_document(file);
+      const json::Document document = read_manifest_document(file);
       const auto& root = document.root();
       // A manifest whose first key is damaged shall be told of, and not pass for some other JSON file.
       const bool resembles = root.is_object() && root.contains("abi") && root.contains("library");
@@ -194,4 +194,4 @@ std::vector<std::string> Catalog::ids(ModelKind kind) const {
   return names;
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::plugin

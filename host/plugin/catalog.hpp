@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "error.hpp"
+#include "base/error.hpp"
 #include "lock.hpp"
 #include "manifest.hpp"
 
-namespace rouleau::host {
+namespace rouleau::plugin {
 
 /// Folders to search, first to last: --plugin-dir, the scene's plugin_dirs, ROULEAU_PLUGIN_PATH (secure_getenv, ':'
 /// separated), the installation beside the program. Never the working directory. Entries that do not exist are left
@@ -59,4 +59,4 @@ class Catalog {
   std::optional<Lock> lock_;
 };
 
-}  // namespace rouleau::host
+}  // namespace rouleau::plugin

@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace rouleau::host {
+namespace rouleau::plugin {
 
 namespace {
 
@@ -126,4 +126,4 @@ std::vector<std::string> exported_symbols(const std::filesystem::path& path) {
   return exported(file, file.read<Section>(header.e_shoff, header.e_shnum));
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::plugin

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace rouleau::host {
+namespace rouleau::plugin {
 
 /// Why the loader could not use a file as a library with this exported symbol: "is not an ELF file", "is made for
 /// another machine", "is cut short", "does not export ..."; empty when nothing speaks against it.
@@ -18,4 +18,4 @@ std::string reason_not_loadable(const std::filesystem::path& file, const std::st
 /// Names of all symbols that other modules can see. Throws std::runtime_error for a file that is no library or damaged.
 std::vector<std::string> exported_symbols(const std::filesystem::path& file);
 
-}  // namespace rouleau::host
+}  // namespace rouleau::plugin

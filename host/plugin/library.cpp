@@ -12,13 +12,13 @@
 #include <string>
 #include <utility>
 
-#include "error.hpp"
+#include "base/error.hpp"
+#include "base/text.hpp"
 #include "exported_symbols.hpp"
-#include "input/wording.hpp"
 #include "lock.hpp"
 #include "table_checks.hpp"
 
-namespace rouleau::host {
+namespace rouleau::plugin {
 
 namespace {
 
@@ -123,4 +123,4 @@ std::string sha256_of(std::string_view text) {
   return SHA256Data(reinterpret_cast<const std::uint8_t*>(text.data()), text.size(), digest);
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::plugin

@@ -9,7 +9,7 @@
 
 #include "manifest.hpp"
 
-namespace rouleau::host {
+namespace rouleau::plugin {
 
 /// The model that a manifest describes. Opens its library (RTLD_NOW | RTLD_LOCAL) after checking that it lies beside
 /// the manifest (no path, no link out), is the one that a lock may ask for, and exports rouleau_open_v1; never unloads
@@ -33,4 +33,4 @@ std::string sha256(const std::filesystem::path& file);
 /// SHA-256 of a text, in the same form.
 std::string sha256_of(std::string_view text);
 
-}  // namespace rouleau::host
+}  // namespace rouleau::plugin

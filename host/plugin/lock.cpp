@@ -4,12 +4,13 @@
 #include <set>
 #include <tuple>
 
-#include "input/document.hpp"
-#include "input/schema.hpp"
-#include "input/wording.hpp"
+#include "base/text.hpp"
+#include "json/document.hpp"
+#include "json/schema.hpp"
+#include "json/shown.hpp"
 #include "library.hpp"
 
-namespace rouleau::host {
+namespace rouleau::plugin {
 
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
@@ -42,8 +43,8 @@ std::string lock_text(std::vector<LockedPlugin> plugins) {
 }
 
 Lock read_lock(const fs::path& file, const fs::path& scene) {
-  const Document document = Document::read(file);
-  validate(document, lock_schema());
+  const json::Document document = json::Document::read(file);
+  json::validate(document, json::lock_schema());
   Lock lock{file, scene, sha256(file), {}};
   std::set<std::string> seen;
   const auto& plugins = document.root()["plugins"];
@@ -51,7 +52,7 @@ Lock read_lock(const fs::path& file, const fs::path& scene) {
     const auto& entry = plugins[i];
     if (!seen.insert(entry["id"]).second) {
       throw Error(ExitCode::bad_input, document.place("/plugins/" + std::to_string(i) + "/id"),
-                  "the lock holds " + shown(entry["id"]) + " twice; " + lock_remedy(file, scene));
+                  "the lock holds " + json::shown(entry["id"]) + " twice; " + lock_remedy(file, scene));
     }
     lock.plugins.push_back(
         {entry["id"], entry["kind"], entry["version"], entry["library_sha256"], entry["manifest_sha256"]});
@@ -88,4 +89,4 @@ std::string lock_remedy(const fs::path& lock, const fs::path& scene) {
          (lock == lock_beside(scene) ? "" : " --out " + lock.string());
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::plugin

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "error.hpp"
+#include "base/error.hpp"
 #include "manifest.hpp"
 
-namespace rouleau::host {
+namespace rouleau::plugin {
 
 struct LockedPlugin {
   std::string id, kind, version;
@@ -23,6 +23,11 @@ struct Lock {
 
   /// Null for a plugin that the lock does not hold.
   [[nodiscard]] const LockedPlugin* find(const std::string& id) const;
+};
+
+/// The lock that a run obeyed.
+struct LockUse {
+  std::string file, sha256;
 };
 
 /// NAME.lock.json beside a scene NAME.json.
@@ -43,4 +48,4 @@ void require_locked(const Lock& lock, const Manifest& manifest, const Place& pla
 /// What to do when a plugin is meant to differ from the lock.
 std::string lock_remedy(const std::filesystem::path& lock, const std::filesystem::path& scene);
 
-}  // namespace rouleau::host
+}  // namespace rouleau::plugin

@@ -8,27 +8,27 @@
 #include <limits>
 #include <sstream>
 
-#include "input/document.hpp"
-#include "input/schema.hpp"
-#include "manifest_checks.hpp"
+#include "json/document.hpp"
+#include "json/schema.hpp"
+#include "manifest_reader.hpp"
 
-namespace rouleau::host {
+namespace rouleau::plugin {
 
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
+using Json = nlohmann::json;
 
-std::string text_of(const json& object, const char* key) { return object.value(key, std::string()); }
+std::string text_of(const Json& object, const char* key) { return object.value(key, std::string()); }
 
-std::vector<std::string> words_of(const json& root, const char* key) {
+std::vector<std::string> words_of(const Json& root, const char* key) {
   return root.value(key, std::vector<std::string>());
 }
 
 /// The author's own keys never reach the rest of the host.
-json without_own_keys(const json& value) {
+Json without_own_keys(const Json& value) {
   if (!value.is_object()) return value;
-  json kept = json::object();
+  Json kept = Json::object();
   for (const auto& [key, member] : value.items()) {
     if (!key.starts_with("x-")) kept[key] = member;
   }
@@ -51,7 +51,7 @@ bool Manifest::gives_output(const std::string& name) const {
   return std::find(gives.begin(), gives.end(), name) != gives.end();
 }
 
-Document read_manifest_document(const fs::path& file) {
+json::Document read_manifest_document(const fs::path& file) {
   const Place place{file.string(), {}, 0, 0};
   std::error_code error;
   if (!fs::is_regular_file(file, error)) {
@@ -71,12 +71,12 @@ Document read_manifest_document(const fs::path& file) {
   if (!stream || stream.bad()) {
     throw Error(ExitCode::plugin_refused, place, std::string("cannot be read: ") + std::strerror(errno));
   }
-  return Document::parse(text.str(), file.string(), ExitCode::plugin_refused);
+  return json::Document::parse(text.str(), file.string(), ExitCode::plugin_refused);
 }
 
-Manifest read_manifest(const Document& document, const fs::path& file, const Units& units) {
-  validate(document, manifest_schema(), ExitCode::plugin_refused);
-  const json& root = document.root();
+Manifest read_manifest(const json::Document& document, const fs::path& file, const units::Units& units) {
+  json::validate(document, json::manifest_schema(), ExitCode::plugin_refused);
+  const Json& root = document.root();
 
   Manifest manifest;
   manifest.file = file;
@@ -92,10 +92,10 @@ Manifest read_manifest(const Document& document, const fs::path& file, const Uni
   manifest.needs = words_of(root, "needs");
   manifest.gives = words_of(root, "gives");
   manifest.state = read_state(document, units);
-  manifest.inactive_when = without_own_keys(root.value("inactive_when", json()));
-  manifest.stands_for = without_own_keys(root.value("stands_for", json()));
-  manifest.claims = without_own_keys(root.value("claims", json::object()));
-  manifest.checks = root.value("checks", json::array());
+  manifest.inactive_when = without_own_keys(root.value("inactive_when", Json()));
+  manifest.stands_for = without_own_keys(root.value("stands_for", Json()));
+  manifest.claims = without_own_keys(root.value("claims", Json::object()));
+  manifest.checks = root.value("checks", Json::array());
   check_quantities(document, manifest);
   check_parameter_values(document, manifest, "inactive_when", manifest.inactive_when, units);
   check_parameter_values(document, manifest, "stands_for", manifest.stands_for, units);
@@ -103,8 +103,8 @@ Manifest read_manifest(const Document& document, const fs::path& file, const Uni
   return manifest;
 }
 
-Manifest read_manifest(const fs::path& file, const Units& units) {
+Manifest read_manifest(const fs::path& file, const units::Units& units) {
   return read_manifest(read_manifest_document(file), file, units);
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::plugin

@@ -8,11 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "input/units.hpp"
+#include "units/units.hpp"
 
-namespace rouleau::host {
-
+namespace rouleau::json {
 class Document;
+}
+namespace rouleau::plugin {
 
 enum class ModelKind { collision = 1, membrane = 2, interaction = 3 };
 const char* to_string(ModelKind kind);
@@ -21,7 +22,7 @@ const char* to_string(ModelKind kind);
 struct Parameter {
   std::string name;
   std::string unit;  ///< "1" for a number; empty for a choice
-  Dimension dimension;
+  units::Dimension dimension;
   std::vector<std::string> choices;     ///< not empty: a word of this list; its index is what the model gets
   std::optional<double> default_value;  ///< absent: the scene must give it
   std::optional<double> minimum, exclusive_minimum, maximum, exclusive_maximum;  ///< outside: refused
@@ -33,7 +34,7 @@ struct Parameter {
 struct StateVariable {
   std::string name;
   std::string unit;
-  Dimension dimension;
+  units::Dimension dimension;
   double initial = 0;  ///< in coherent SI units
 };
 
@@ -65,10 +66,10 @@ struct Manifest {
 };
 
 /// Text of a manifest as JSON with places. Throws Error(plugin_refused) when it cannot be read or is no JSON.
-Document read_manifest_document(const std::filesystem::path& file);
+json::Document read_manifest_document(const std::filesystem::path& file);
 /// Validates a manifest. Throws Error(plugin_refused) with place, problem and remedy.
-Manifest read_manifest(const Document& document, const std::filesystem::path& file, const Units& units);
+Manifest read_manifest(const json::Document& document, const std::filesystem::path& file, const units::Units& units);
 /// Reads and validates a manifest. Throws Error(plugin_refused) with place, problem and remedy.
-Manifest read_manifest(const std::filesystem::path& file, const Units& units);
+Manifest read_manifest(const std::filesystem::path& file, const units::Units& units);
 
-}  // namespace rouleau::host
+}  // namespace rouleau::plugin

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <set>
 
-#include "error.hpp"
+#include "base/error.hpp"
 #include "trust.hpp"
 
-namespace rouleau::host {
+namespace rouleau::plugin {
 
 namespace {
 
@@ -85,4 +85,4 @@ FoundFiles find_json_files(const std::vector<fs::path>& folders) {
   return std::move(search.found);
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::plugin

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace rouleau::host {
+namespace rouleau::plugin {
 
 struct FoundFile {
   std::filesystem::path path;
@@ -24,4 +24,4 @@ struct FoundFiles {
 /// Throws Error(bad_input) for a folder with more than 10'000 folders in it, which no folder of plugins is.
 FoundFiles find_json_files(const std::vector<std::filesystem::path>& folders);
 
-}  // namespace rouleau::host
+}  // namespace rouleau::plugin

@@ -3,10 +3,10 @@
 #include <cmath>
 #include <string>
 
-#include "error.hpp"
+#include "base/error.hpp"
 #include "library.hpp"
 
-namespace rouleau::host {
+namespace rouleau::plugin {
 
 namespace {
 
@@ -45,4 +45,4 @@ ModelInstance::ModelInstance(const Manifest& manifest, const std::vector<double>
   }
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::plugin

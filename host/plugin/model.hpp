@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "error.hpp"
+#include "base/error.hpp"
 #include "manifest.hpp"
 #include "model_setup.hpp"
 
-namespace rouleau::host {
+namespace rouleau::plugin {
 
 /// A model's create function has reported an error: as a rule these parameters do not go together.
 class ModelRefused : public Error {
@@ -46,4 +46,4 @@ class ModelInstance {
   std::unique_ptr<void, void (*)(void*)> self_;
 };
 
-}  // namespace rouleau::host
+}  // namespace rouleau::plugin

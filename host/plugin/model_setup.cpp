@@ -3,20 +3,20 @@
 #include <rouleau/d2q9.hpp>
 #include <stdexcept>
 
-namespace rouleau::host {
+namespace rouleau::plugin {
 
 namespace {
 
 /// Temperature, amount of substance and current have no lattice unit: what holds one of them stays in SI.
-bool has_lattice_unit(const Dimension& dimension) {
+bool has_lattice_unit(const units::Dimension& dimension) {
   return dimension.exponent[3] == 0 && dimension.exponent[4] == 0 && dimension.exponent[5] == 0;
 }
 
 std::vector<double> lattice_values(const Manifest& manifest, const std::vector<double>& values,
-                                   const LatticeUnits& units) {
+                                   const units::LatticeUnits& units) {
   std::vector<double> lattice(values);
   for (std::size_t i = 0; i < lattice.size(); ++i) {
-    const Dimension& dimension = manifest.parameters[i].dimension;
+    const units::Dimension& dimension = manifest.parameters[i].dimension;
     if (has_lattice_unit(dimension)) lattice[i] = units.to_lattice(values[i], dimension);
   }
   return lattice;
@@ -50,4 +50,4 @@ ModelSetup::ModelSetup(const Manifest& manifest, const std::vector<double>& valu
   setup_.inertia = setting.inertia ? 1 : 0;
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::plugin

@@ -6,14 +6,14 @@
 #include <array>
 #include <vector>
 
-#include "input/lattice_units.hpp"
 #include "manifest.hpp"
+#include "units/lattice_units.hpp"
 
-namespace rouleau::host {
+namespace rouleau::plugin {
 
 /// What all models of a stage are told about the lattice.
 struct ModelSetting {
-  LatticeUnits units;
+  units::LatticeUnits units;
   double relaxation_rate;  ///< 1/tau of the suspending fluid
   bool inertia;
 };
@@ -37,4 +37,4 @@ class ModelSetup {
   rouleau_setup setup_{};
 };
 
-}  // namespace rouleau::host
+}  // namespace rouleau::plugin

@@ -4,26 +4,28 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "input/document.hpp"
-#include "input/json_pointer.hpp"
-#include "input/wording.hpp"
-#include "limits.hpp"
+#include "base/text.hpp"
+#include "json/document.hpp"
+#include "json/json_pointer.hpp"
+#include "json/shown.hpp"
+#include "parameter_ranges.hpp"
 
-namespace rouleau::host {
+namespace rouleau::plugin {
 
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 
 /// Resolves the parameters of one model of the scene.
 class Resolver {
  public:
-  Resolver(const ModelChoice& choice, const Manifest& manifest, const Scene& scene, const Units& units)
+  Resolver(const scene::ModelChoice& choice, const Manifest& manifest, const scene::Scene& scene,
+           const units::Units& units)
       : choice_(choice), manifest_(manifest), scene_(scene), units_(units) {}
 
   ParameterValues resolve() {
     if (!choice_.parameters.is_null() && !choice_.parameters.is_object()) {
-      refuse("/parameters", shown(choice_.parameters) + " is no object of parameters");
+      refuse("/parameters", json::shown(choice_.parameters) + " is no object of parameters");
     }
     refuse_unknown();
     ParameterValues result;
@@ -41,7 +43,9 @@ class Resolver {
   [[noreturn]] void refuse(const std::string& below, const std::string& problem) const {
     throw Error(ExitCode::bad_input, scene_.place(choice_.pointer + below), problem);
   }
-  [[nodiscard]] static std::string pointer_of(const std::string& name) { return child_pointer("/parameters", name); }
+  [[nodiscard]] static std::string pointer_of(const std::string& name) {
+    return json::child_pointer("/parameters", name);
+  }
 
   void refuse_unknown() const {
     std::vector<std::string> names;
@@ -60,13 +64,13 @@ class Resolver {
     const bool given = choice_.parameters.is_object() && choice_.parameters.contains(parameter.name);
     if (!given && parameter.default_value) return *parameter.default_value;
     if (!given) refuse("", missing(parameter));
-    const json& written = choice_.parameters[parameter.name];
+    const Json& written = choice_.parameters[parameter.name];
     if (!parameter.choices.empty()) return index_of(parameter, written);
     const double value = quantity(parameter, written);
     const std::string wanted = violated_limit(value, parameter, units_);
     if (!wanted.empty()) {
-      refuse(pointer_of(parameter.name),
-             parameter.name + " is " + shown(written) + in_unit(parameter, written, value) + "; it must be " + wanted);
+      refuse(pointer_of(parameter.name), parameter.name + " is " + json::shown(written) +
+                                             in_unit(parameter, written, value) + "; it must be " + wanted);
     }
     return value;
   }
@@ -78,18 +82,18 @@ class Resolver {
     return parameter.doc.empty() ? text : text + "\n  " + parameter.doc;
   }
 
-  [[nodiscard]] double index_of(const Parameter& parameter, const json& written) const {
+  [[nodiscard]] double index_of(const Parameter& parameter, const Json& written) const {
     const auto& words = parameter.choices;
     const std::string word = written.is_string() ? written.get<std::string>() : "";
     const auto found = std::find(words.begin(), words.end(), word);
     if (!written.is_string() || found == words.end()) {
-      refuse(pointer_of(parameter.name), parameter.name + " is " + shown(written) + did_you_mean(word, words) +
-                                             "\n  it must be one of: " + listed(words));
+      refuse(pointer_of(parameter.name), parameter.name + " is " + json::shown(written) +
+                                             did_you_mean(word, words) + "\n  it must be one of: " + listed(words));
     }
     return static_cast<double>(found - words.begin());
   }
 
-  [[nodiscard]] double quantity(const Parameter& parameter, const json& written) const {
+  [[nodiscard]] double quantity(const Parameter& parameter, const Json& written) const {
     const std::string pointer = pointer_of(parameter.name);
     double value = 0;
     if (written.is_number()) {
@@ -97,21 +101,22 @@ class Resolver {
     } else if (written.is_string()) {
       try {
         value = units_.to_si(written.get<std::string>(), parameter.unit, parameter.name);
-      } catch (const UnitError& error) {
+      } catch (const units::UnitError& error) {
         refuse(pointer, error.what());
       }
     } else {
       refuse(pointer,
-             parameter.name + " is " + shown(written) + "; it must be " +
+             parameter.name + " is " + json::shown(written) + "; it must be " +
                  (parameter.unit == "1" ? "a number"
                                         : "a quantity such as \"1 " + parameter.unit + "\", or a plain number in SI"));
     }
-    if (!std::isfinite(value)) refuse(pointer, parameter.name + " is " + shown(written) + "; it must be finite");
+    if (!std::isfinite(value))
+      refuse(pointer, parameter.name + " is " + json::shown(written) + "; it must be finite");
     return value;
   }
 
   /// " (5.2e-08 J/m2)" after a value that was not written in the parameter's unit.
-  [[nodiscard]] std::string in_unit(const Parameter& parameter, const json& written, double value) const {
+  [[nodiscard]] std::string in_unit(const Parameter& parameter, const Json& written, double value) const {
     const std::string text = value_text(value, parameter, units_);
     const bool same = written.is_string() ? written == text : parameter.unit == "1";
     return same ? "" : " (" + text + ')';
@@ -125,12 +130,12 @@ class Resolver {
   }
 
   [[nodiscard]] bool is_inactive(const std::vector<double>& values) const {
-    const json& conditions = manifest_.inactive_when;
+    const Json& conditions = manifest_.inactive_when;
     if (!conditions.is_object() || conditions.empty()) return false;
     for (std::size_t i = 0; i < values.size(); ++i) {
       const Parameter& parameter = manifest_.parameters[i];
       if (!conditions.contains(parameter.name)) continue;
-      const json& condition = conditions[parameter.name];
+      const Json& condition = conditions[parameter.name];
       const double wanted = parameter.choices.empty() ? condition.get<double>() * units_.scale(parameter.unit)
                                                       : index_of(parameter, condition);
       if (!same_quantity(values[i], wanted)) return false;
@@ -138,17 +143,17 @@ class Resolver {
     return true;
   }
 
-  const ModelChoice& choice_;
+  const scene::ModelChoice& choice_;
   const Manifest& manifest_;
-  const Scene& scene_;
-  const Units& units_;
+  const scene::Scene& scene_;
+  const units::Units& units_;
 };
 
 }  // namespace
 
-ParameterValues resolve_parameters(const ModelChoice& choice, const Manifest& manifest, const Scene& scene,
-                                   const Units& units) {
+ParameterValues resolve_parameters(const scene::ModelChoice& choice, const Manifest& manifest,
+                                   const scene::Scene& scene, const units::Units& units) {
   return Resolver(choice, manifest, scene, units).resolve();
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::plugin

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "input/scene.hpp"
 #include "manifest.hpp"
+#include "scene/scene.hpp"
 
-namespace rouleau::host {
+namespace rouleau::plugin {
 
 /// Values in SI in the manifest's order (index for a choice).
 struct ParameterValues {
@@ -18,7 +18,7 @@ struct ParameterValues {
 
 /// Throws Error(bad_input) for an unknown name (nearest, and the model's list), a wrong unit, a value outside its
 /// limits, or a missing parameter, each with its place in the scene.
-ParameterValues resolve_parameters(const ModelChoice& choice, const Manifest& manifest, const Scene& scene,
-                                   const Units& units);
+ParameterValues resolve_parameters(const scene::ModelChoice& choice, const Manifest& manifest,
+                                   const scene::Scene& scene, const units::Units& units);
 
-}  // namespace rouleau::host
+}  // namespace rouleau::plugin

@@ -2,12 +2,12 @@
 
 #include <map>
 
-namespace rouleau::host {
+namespace rouleau::plugin {
 
 namespace {
 
 struct Quantity {
-  Dimension dimension;
+  units::Dimension dimension;
   const char* unit;
 };
 
@@ -100,10 +100,10 @@ std::optional<MembraneElement> element_of(const std::string& name) {
   return found == elements.end() ? std::nullopt : std::optional(found->second);
 }
 
-Dimension dimension_of(const Manifest& manifest, const std::string& name) {
+units::Dimension dimension_of(const Manifest& manifest, const std::string& name) {
   return quantity_of(manifest, name).dimension;
 }
 
 std::string unit_of(const Manifest& manifest, const std::string& name) { return quantity_of(manifest, name).unit; }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::plugin

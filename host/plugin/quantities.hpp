@@ -6,7 +6,7 @@
 
 #include "manifest.hpp"
 
-namespace rouleau::host {
+namespace rouleau::plugin {
 
 /// Element of a membrane that a law describes (plugin.h, rouleau_membrane_block).
 enum class MembraneElement { segment, node, cell };
@@ -22,7 +22,7 @@ std::optional<MembraneElement> element_of(const std::string& name);
 /// SI dimension and unit ("N/m") of an input or output of a model; that of a membrane law's energy follows from its
 /// element. Collision operators know no unit but those of the lattice: all of theirs are numbers, the force a momentum
 /// per step in units of the reference density.
-Dimension dimension_of(const Manifest& manifest, const std::string& name);
+units::Dimension dimension_of(const Manifest& manifest, const std::string& name);
 std::string unit_of(const Manifest& manifest, const std::string& name);
 
-}  // namespace rouleau::host
+}  // namespace rouleau::plugin

@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "input/wording.hpp"
+#include "base/text.hpp"
 
-namespace rouleau::host {
+namespace rouleau::plugin {
 
 namespace {
 
@@ -95,4 +95,4 @@ FoundModel find_model(const rouleau_plugin& plugin, const Manifest& manifest) {
                        "\n  its models: " + listed(ids)};
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::plugin

@@ -7,7 +7,7 @@
 
 #include "manifest.hpp"
 
-namespace rouleau::host {
+namespace rouleau::plugin {
 
 struct FoundModel {
   const rouleau_model* model;  ///< null when there is a fault
@@ -17,4 +17,4 @@ struct FoundModel {
 /// The model of the manifest in a plugin's table, complete and in agreement with the manifest.
 FoundModel find_model(const rouleau_plugin& plugin, const Manifest& manifest);
 
-}  // namespace rouleau::host
+}  // namespace rouleau::plugin

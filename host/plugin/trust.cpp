@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace rouleau::host {
+namespace rouleau::plugin {
 
 namespace {
 
@@ -44,4 +44,4 @@ fs::path true_folder(const fs::path& file) {
   return error ? fs::path() : canonical.parent_path();
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::plugin

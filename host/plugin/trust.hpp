@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace rouleau::host {
+namespace rouleau::plugin {
 
 /// The first of the paths, links followed, that users other than its owner and group may write to; empty: none. With
 /// the sticky bit, too, which keeps others from replacing a file but not from adding one. What cannot be looked at is
@@ -18,4 +18,4 @@ std::string why_not_trusted(const std::filesystem::path& open);
 /// The folder that holds a file when all links are followed.
 std::filesystem::path true_folder(const std::filesystem::path& file);
 
-}  // namespace rouleau::host
+}  // namespace rouleau::plugin

@@ -6,11 +6,11 @@
 
 #include "checkpoint_match.hpp"
 
-namespace rouleau::host {
+namespace rouleau::run {
 
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 
 std::string population_name(int q) { return "/populations/" + std::to_string(q); }
 std::string state_name(std::size_t k) { return "/membranes/state/" + std::to_string(k); }
@@ -24,35 +24,35 @@ auto arrays(M& m) {
                     std::pair{"/membranes/largest_step", &m.largest_step}};
 }
 
-void read(const CheckpointReader& reader, const std::string& path, std::vector<double>& values) {
+void read(const files::CheckpointReader& reader, const std::string& path, std::vector<double>& values) {
   reader.array(path, values.size(), values.data());
 }
 
-json described(const ElementState& s) {
+Json described(const membrane::ElementState& s) {
   return {{"cell_type", s.cell_type}, {"law", s.law},   {"model", s.model},
           {"name", s.name},           {"unit", s.unit}, {"dimension", s.dimension.exponent}};
 }
 
-ElementState element_state(const json& d) {
+membrane::ElementState element_state(const Json& d) {
   return {d.at("cell_type"), d.at("law"), d.at("model"), d.at("name"), d.at("unit"), {d.at("dimension")}, {}};
 }
 
-json described(const ContactVariable& v) {
+Json described(const membrane::ContactVariable& v) {
   return {{"potential", v.potential}, {"model", v.model},     {"name", v.name},
           {"unit", v.unit},           {"initial", v.initial}, {"dimension", v.dimension.exponent}};
 }
 
-ContactVariable contact_variable(const json& d) {
+membrane::ContactVariable contact_variable(const Json& d) {
   return {d.at("potential"), d.at("model"), d.at("name"), d.at("unit"), {d.at("dimension")}, d.at("initial")};
 }
 
 /// What interactions remember: which pairs of cells, and for each of them the next so many values of one array.
-json save_contacts(CheckpointWriter& writer, const ContactMemory& memory) {
-  json variables = json::array(), pairs = json::array();
-  for (const ContactVariable& variable : memory.variables) variables.push_back(described(variable));
+Json save_contacts(files::CheckpointWriter& writer, const membrane::ContactMemory& memory) {
+  Json variables = Json::array(), pairs = Json::array();
+  for (const membrane::ContactVariable& variable : memory.variables) variables.push_back(described(variable));
   std::vector<double> values;
   for (std::size_t cell = 0; cell < memory.of_cell.size(); ++cell) {
-    for (const ContactState& s : memory.of_cell[cell]) {
+    for (const membrane::ContactState& s : memory.of_cell[cell]) {
       pairs.push_back({cell, s.variable, s.other, s.shift.x, s.shift.y, s.value.size()});
       values.insert(values.end(), s.value.begin(), s.value.end());
     }
@@ -62,20 +62,20 @@ json save_contacts(CheckpointWriter& writer, const ContactMemory& memory) {
 }
 
 /// A checkpoint that is whole and yet not what this program writes.
-void require(bool fits, const CheckpointReader& reader, const char* what) {
+void require(bool fits, const files::CheckpointReader& reader, const char* what) {
   if (!fits) reader.refuse(what);
 }
 
-void restore_contacts(const CheckpointReader& reader, const json& saved, Membranes& membranes) {
-  ContactMemory& memory = membranes.contacts;
+void restore_contacts(const files::CheckpointReader& reader, const Json& saved, membrane::Membranes& membranes) {
+  membrane::ContactMemory& memory = membranes.contacts;
   memory.variables.clear();
-  for (const json& variable : saved.at("variables")) memory.variables.push_back(contact_variable(variable));
-  const json& cells = saved.at("cells");
+  for (const Json& variable : saved.at("variables")) memory.variables.push_back(contact_variable(variable));
+  const Json& cells = saved.at("cells");
   require(cells == 0 || cells == membranes.cells.size(), reader, "contacts of another number of cells");
   memory.of_cell.assign(cells, {});
   std::vector<double> values = reader.array("/membranes/contacts");
   auto next = values.begin();
-  for (const json& pair : saved.at("pairs")) {
+  for (const Json& pair : saved.at("pairs")) {
     const std::size_t cell = pair.at(0), variable = pair.at(1);
     const int other = pair.at(2);
     const std::ptrdiff_t count = pair.at(5);
@@ -89,10 +89,10 @@ void restore_contacts(const CheckpointReader& reader, const json& saved, Membran
 }
 
 /// Writes the arrays, and returns what belongs into the file's /state.
-json save(CheckpointWriter& writer, const Membranes& m) {
+Json save(files::CheckpointWriter& writer, const membrane::Membranes& m) {
   for (const auto& [path, values] : arrays(m)) writer.array(path, *values);
   writer.array("/membranes/area_leakage", m.area_leakage);
-  json states = json::array();
+  Json states = Json::array();
   for (std::size_t k = 0; k < m.state.size(); ++k) {
     states.push_back(described(m.state[k]));
     writer.array(state_name(k), m.state[k].value);
@@ -101,8 +101,8 @@ json save(CheckpointWriter& writer, const Membranes& m) {
 }
 
 template <class T>
-json save(CheckpointWriter& writer, Solver<T>& solver) {
-  Fluid<T>& fluid = solver.fluid();
+Json save(files::CheckpointWriter& writer, solver::Solver<T>& solver) {
+  fluid::Fluid<T>& fluid = solver.fluid();
   fluid.settle();
   std::vector<T> values;
   const auto nx = static_cast<std::size_t>(fluid.setting().nx), ny = static_cast<std::size_t>(fluid.setting().ny);
@@ -111,7 +111,7 @@ json save(CheckpointWriter& writer, Solver<T>& solver) {
     writer.array(population_name(q), ny, nx, values.data());
   }
   if (solver.indicator() != nullptr) {
-    const DisplacementWatch::Memory& memory = solver.indicator()->memory();
+    const membrane::DisplacementWatch::Memory& memory = solver.indicator()->memory();
     writer.array("/indicator/x", memory.x);
     writer.array("/indicator/y", memory.y);
     writer.array("/indicator/limit", memory.limit);
@@ -120,15 +120,15 @@ json save(CheckpointWriter& writer, Solver<T>& solver) {
   return {{"walls_have_acted", fluid.walls_have_acted()}};
 }
 
-void restore_membranes(const CheckpointReader& reader, const json& saved, Membranes& m) {
+void restore_membranes(const files::CheckpointReader& reader, const Json& saved, membrane::Membranes& m) {
   m.largest_step.resize(m.cells.size());
   for (const auto& [path, values] : arrays(m)) read(reader, path, *values);
-  const json& leakage = saved.at("leakage");
+  const Json& leakage = saved.at("leakage");
   require(leakage == 0 || leakage == m.cells.size(), reader, "leakages of another number of cells");
   m.area_leakage.resize(leakage);
   read(reader, "/membranes/area_leakage", m.area_leakage);
   m.state.clear();
-  for (const json& description : saved.at("state")) {
+  for (const Json& description : saved.at("state")) {
     m.state.push_back(element_state(description));
     m.state.back().value.resize(m.x.size());
     read(reader, state_name(m.state.size() - 1), m.state.back().value);
@@ -139,11 +139,11 @@ void restore_membranes(const CheckpointReader& reader, const json& saved, Membra
 }  // namespace
 
 template <class T>
-void Checkpoints::write(const Plan& plan, int threads, const RunState& state, const Membranes& membranes,
-                        Solver<T>& solver) {
-  writer_ = std::make_unique<CheckpointWriter>(to_.path());
+void Checkpoints::write(const plan::Plan& plan, int threads, const RunState& state,
+                        const membrane::Membranes& membranes, solver::Solver<T>& solver) {
+  writer_ = std::make_unique<files::CheckpointWriter>(to_.path());
   step_ = state.steps;
-  json saved_membranes = save(*writer_, membranes), saved_solver = save(*writer_, solver);
+  Json saved_membranes = save(*writer_, membranes), saved_solver = save(*writer_, solver);
   writer_->facts(checkpoint_facts(plan, state, threads));
   writer_->state({{"run", state},
                   {"membranes", std::move(saved_membranes)},
@@ -162,21 +162,21 @@ void Checkpoints::settle(bool sound) {
   last_ = Clock::now();
 }
 
-DirectoryMark restore(const CheckpointReader& reader, const json& saved, const Plan& plan, RunState& state,
-                      Membranes& membranes) {
+files::DirectoryMark restore(const files::CheckpointReader& reader, const Json& saved, const plan::Plan& plan,
+                             RunState& state, membrane::Membranes& membranes) {
   try {
     saved.at("run").get_to(state);
     require(state.fits(plan, membranes), reader, "counts of another scene");
     restore_membranes(reader, saved.at("membranes"), membranes);
-    return saved.at("directory").get<DirectoryMark>();
-  } catch (const json::exception& error) {
+    return saved.at("directory").get<files::DirectoryMark>();
+  } catch (const Json::exception& error) {
     reader.refuse(error.what());
   }
 }
 
 template <class T>
-void restore(const CheckpointReader& reader, const json& saved, Solver<T>& solver) {
-  Fluid<T>& fluid = solver.fluid();
+void restore(const files::CheckpointReader& reader, const Json& saved, solver::Solver<T>& solver) {
+  fluid::Fluid<T>& fluid = solver.fluid();
   std::vector<T> values(static_cast<std::size_t>(fluid.setting().nx) * static_cast<std::size_t>(fluid.setting().ny));
   try {
     fluid.restore(
@@ -185,11 +185,11 @@ void restore(const CheckpointReader& reader, const json& saved, Solver<T>& solve
           return values;
         },
         saved.at("solver").at("walls_have_acted"));
-  } catch (const json::exception& error) {
+  } catch (const Json::exception& error) {
     reader.refuse(error.what());
   }
   if (solver.indicator() == nullptr) return;
-  DisplacementWatch::Memory memory = solver.indicator()->memory();
+  membrane::DisplacementWatch::Memory memory = solver.indicator()->memory();
   read(reader, "/indicator/x", memory.x);
   read(reader, "/indicator/y", memory.y);
   read(reader, "/indicator/limit", memory.limit);
@@ -197,9 +197,11 @@ void restore(const CheckpointReader& reader, const json& saved, Solver<T>& solve
   solver.restore_indicator(memory);
 }
 
-template void Checkpoints::write(const Plan&, int, const RunState&, const Membranes&, Solver<float>&);
-template void Checkpoints::write(const Plan&, int, const RunState&, const Membranes&, Solver<double>&);
-template void restore(const CheckpointReader&, const json&, Solver<float>&);
-template void restore(const CheckpointReader&, const json&, Solver<double>&);
+template void Checkpoints::write(const plan::Plan&, int, const RunState&, const membrane::Membranes&,
+                                 solver::Solver<float>&);
+template void Checkpoints::write(const plan::Plan&, int, const RunState&, const membrane::Membranes&,
+                                 solver::Solver<double>&);
+template void restore(const files::CheckpointReader&, const Json&, solver::Solver<float>&);
+template void restore(const files::CheckpointReader&, const Json&, solver::Solver<double>&);
 
-}  // namespace rouleau::host
+}  // namespace rouleau::run

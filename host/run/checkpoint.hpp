@@ -9,17 +9,17 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "output/checkpoint_file.hpp"
-#include "output/run_directory.hpp"
+#include "core/solver/solver.hpp"
+#include "files/checkpoint_file.hpp"
+#include "files/run_directory.hpp"
 #include "run_state.hpp"
-#include "solver.hpp"
 
-namespace rouleau::host {
+namespace rouleau::run {
 
 /// The checkpoints of a run: when one is due, and the two steps in which it is made.
 class Checkpoints {
  public:
-  Checkpoints(const Scene& scene, RunDirectory& directory)
+  Checkpoints(const scene::Scene& scene, files::RunDirectory& directory)
       : seconds_(scene.output.checkpoint_seconds), to_(directory) {}
 
   /// Whether the scene wants any.
@@ -30,7 +30,8 @@ class Checkpoints {
   }
   /// Writes the file, beside the last one.
   template <class T>
-  void write(const Plan& plan, int threads, const RunState& state, const Membranes& membranes, Solver<T>& solver);
+  void write(const plan::Plan& plan, int threads, const RunState& state, const membrane::Membranes& membranes,
+             solver::Solver<T>& solver);
   [[nodiscard]] bool pending() const { return writer_ != nullptr; }
   /// The file takes its place if the state has been found sound. One that is not is left to the next regular check:
   /// when checkpoints are written must not change what becomes of a run.
@@ -43,8 +44,8 @@ class Checkpoints {
  private:
   using Clock = std::chrono::steady_clock;
   std::optional<double> seconds_;
-  RunDirectory& to_;
-  std::unique_ptr<CheckpointWriter> writer_;
+  files::RunDirectory& to_;
+  std::unique_ptr<files::CheckpointWriter> writer_;
   long step_ = 0;  ///< of the pending one
   std::optional<long> kept_;
   Clock::time_point last_ = Clock::now();
@@ -53,10 +54,10 @@ class Checkpoints {
 /// Into the state and the membranes of the same scene, before a solver is made for them. `saved`: the reader's state().
 /// Returns how far the files of the directory had come.
 /// Both functions throw Error(input_output) where the checkpoint does not fit.
-DirectoryMark restore(const CheckpointReader& reader, const nlohmann::json& saved, const Plan& plan, RunState& state,
-                      Membranes& membranes);
+files::DirectoryMark restore(const files::CheckpointReader& reader, const nlohmann::json& saved, const plan::Plan& plan,
+                             RunState& state, membrane::Membranes& membranes);
 /// Into a new solver of the same stage.
 template <class T>
-void restore(const CheckpointReader& reader, const nlohmann::json& saved, Solver<T>& solver);
+void restore(const files::CheckpointReader& reader, const nlohmann::json& saved, solver::Solver<T>& solver);
 
-}  // namespace rouleau::host
+}  // namespace rouleau::run

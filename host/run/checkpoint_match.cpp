@@ -3,29 +3,30 @@
 #include <algorithm>
 #include <map>
 
-#include "input/document.hpp"
+#include "json/document.hpp"
 #include "plugin/library.hpp"
 #include "provenance.hpp"
 
-namespace rouleau::host {
+namespace rouleau::run {
 
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 
-json plugin_facts(const Manifest& m) {
-  json state = json::array();
-  for (const StateVariable& variable : m.state) state.push_back({{"name", variable.name}, {"unit", variable.unit}});
+Json plugin_facts(const plugin::Manifest& m) {
+  Json state = Json::array();
+  for (const plugin::StateVariable& variable : m.state)
+    state.push_back({{"name", variable.name}, {"unit", variable.unit}});
   return {{"id", m.id},
           {"version", m.version},
-          {"kind", to_string(m.kind)},
-          {"sha256", sha256(m.library)},
+          {"kind", plugin::to_string(m.kind)},
+          {"sha256", plugin::sha256(m.library)},
           {"state", state}};
 }
 
-std::string in_short(const json& value) {
+std::string in_short(const Json& value) {
   constexpr std::size_t most = 60;
-  const std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
+  const std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
   return text.size() <= most ? text : text.substr(0, most) + "...";
 }
 
@@ -44,10 +45,10 @@ bool is_harmless(const std::string& pointer, int stage) {
   return key == "name" || key == "duration" || key == "strain" || key == "until";
 }
 
-void compare_scenes(const json& then, const json& now, int stage, std::vector<Difference>& differences) {
-  for (const json& change : json::diff(then, now)) {
+void compare_scenes(const Json& then, const Json& now, int stage, std::vector<Difference>& differences) {
+  for (const Json& change : Json::diff(then, now)) {
     const std::string pointer = change.at("path"), operation = change.at("op");
-    const json::json_pointer place(pointer);
+    const Json::json_pointer place(pointer);
     std::string what = pointer + ": ";
     what += operation == "add" ? "not in the checkpoint's scene" : in_short(then.at(place)) + " in the checkpoint";
     what += operation == "remove" ? ", not there now" : ", " + in_short(change.at("value")) + " now";
@@ -55,16 +56,17 @@ void compare_scenes(const json& then, const json& now, int stage, std::vector<Di
   }
 }
 
-void compare_plugins(const json& then, const Plan& plan, std::vector<Difference>& differences) {
-  std::map<std::string, json> now;
-  for (const PlannedModel* model : plan.active_models()) now[model->manifest->id] = plugin_facts(*model->manifest);
-  for (const json& plugin : then) {
+void compare_plugins(const Json& then, const plan::Plan& plan, std::vector<Difference>& differences) {
+  std::map<std::string, Json> now;
+  for (const plan::PlannedModel* model : plan.active_models())
+    now[model->manifest->id] = plugin_facts(*model->manifest);
+  for (const Json& plugin : then) {
     const std::string id = plugin.at("id");
     const auto found = now.find(id);
     if (found == now.end()) continue;  // then the scenes differ too
-    const json& present = found->second;
+    const Json& present = found->second;
     if (plugin.at("sha256") == present.at("sha256")) continue;
-    const auto named = [](const json& p) {
+    const auto named = [](const Json& p) {
       return p.at("version").get<std::string>() + " (sha256 " + p.at("sha256").get<std::string>().substr(0, 12) +
              "...)";
     };
@@ -75,7 +77,7 @@ void compare_plugins(const json& then, const Plan& plan, std::vector<Difference>
   }
 }
 
-std::string message(const std::filesystem::path& file, const json& facts, const std::vector<Difference>& differences,
+std::string message(const std::filesystem::path& file, const Json& facts, const std::vector<Difference>& differences,
                     bool harmless) {
   std::string text = "belongs to a run that differs from this one (step " +
                      std::to_string(facts.at("step").get<long>()) + ", written " +
@@ -92,10 +94,10 @@ std::string message(const std::filesystem::path& file, const json& facts, const 
 
 }  // namespace
 
-json checkpoint_facts(const Plan& plan, const RunState& state, int threads) {
-  const StageSetting& setting = plan.stages[static_cast<std::size_t>(state.stage)];
-  json plugins = json::array();
-  for (const PlannedModel* model : plan.active_models()) plugins.push_back(plugin_facts(*model->manifest));
+Json checkpoint_facts(const plan::Plan& plan, const RunState& state, int threads) {
+  const plan::StageSetting& setting = plan.stages[static_cast<std::size_t>(state.stage)];
+  Json plugins = Json::array();
+  for (const plan::PlannedModel* model : plan.active_models()) plugins.push_back(plugin_facts(*model->manifest));
   return {{"program", program_version()},
           {"written", present_time()},
           {"threads", threads},
@@ -108,7 +110,7 @@ json checkpoint_facts(const Plan& plan, const RunState& state, int threads) {
           {"plugins", plugins}};
 }
 
-std::vector<Difference> differences(const json& facts, const Plan& plan, int stage) {
+std::vector<Difference> differences(const Json& facts, const plan::Plan& plan, int stage) {
   std::vector<Difference> found;
   compare_scenes(facts.at("scene"), plan.scene->document->root(), stage, found);
   const std::string program = facts.at("program");
@@ -122,9 +124,9 @@ std::vector<Difference> differences(const json& facts, const Plan& plan, int sta
 namespace {
 
 /// Takes note of how the checkpoint's run differs from this one, or refuses it.
-void accept_differences(Resumption& resumption, const Plan& plan, bool force) {
-  const CheckpointReader& checkpoint = *resumption.checkpoint;
-  const json facts = checkpoint.facts();
+void accept_differences(Resumption& resumption, const plan::Plan& plan, bool force) {
+  const files::CheckpointReader& checkpoint = *resumption.checkpoint;
+  const Json facts = checkpoint.facts();
   const std::vector<Difference> found = differences(facts, plan, facts.at("stage"));
   const bool harmless = std::all_of(found.begin(), found.end(), [](const Difference& d) { return d.harmless; });
   if (!found.empty() && !(harmless && force)) {
@@ -136,11 +138,11 @@ void accept_differences(Resumption& resumption, const Plan& plan, bool force) {
 
 }  // namespace
 
-Resumption open_checkpoint(const std::filesystem::path& directory, const Plan& plan, bool force) {
+Resumption open_checkpoint(const std::filesystem::path& directory, const plan::Plan& plan, bool force) {
   Resumption resumption;
-  const auto last = checkpoint_file(directory), previous = previous_checkpoint_file(directory);
+  const auto last = files::checkpoint_file(directory), previous = files::previous_checkpoint_file(directory);
   try {
-    resumption.checkpoint = std::make_unique<CheckpointReader>(last);
+    resumption.checkpoint = std::make_unique<files::CheckpointReader>(last);
   } catch (const Error& error) {
     if (error.code() != ExitCode::input_output) throw;
     resumption.damage = error.what();
@@ -149,7 +151,7 @@ Resumption open_checkpoint(const std::filesystem::path& directory, const Plan& p
                   resumption.damage + "\n  and there is none before it to go on from; begin anew with --overwrite");
     }
     try {
-      resumption.checkpoint = std::make_unique<CheckpointReader>(previous);
+      resumption.checkpoint = std::make_unique<files::CheckpointReader>(previous);
     } catch (const Error& second) {
       throw Error(ExitCode::input_output, resumption.damage + "\n" + second.what() +
                                               "\n  no checkpoint can be used; begin anew with --overwrite");
@@ -157,10 +159,10 @@ Resumption open_checkpoint(const std::filesystem::path& directory, const Plan& p
   }
   try {
     accept_differences(resumption, plan, force);
-  } catch (const json::exception& error) {
+  } catch (const Json::exception& error) {
     resumption.checkpoint->refuse(error.what());
   }
   return resumption;
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::run

@@ -7,32 +7,32 @@
 #include <string>
 #include <vector>
 
-#include "output/checkpoint_file.hpp"
-#include "plan.hpp"
+#include "files/checkpoint_file.hpp"
+#include "plan/plan.hpp"
 #include "run_state.hpp"
 
-namespace rouleau::host {
+namespace rouleau::run {
 
 /// What a checkpoint says of itself, as JSON: format, program, written (UTC), threads, precision; stage, stage_name,
 /// step, time_s, strain; scene; plugins [{id, version, kind, sha256, state [{name, unit}]}].
-nlohmann::json checkpoint_facts(const Plan& plan, const RunState& state, int threads);
+nlohmann::json checkpoint_facts(const plan::Plan& plan, const RunState& state, int threads);
 
 struct Difference {
   std::string what;  ///< one line: where, what the checkpoint has, what there is now
   bool harmless;     ///< the checkpoint's state means the same in both: --force may go on
 };
 /// What differs between the run that wrote these facts and the present one.
-std::vector<Difference> differences(const nlohmann::json& facts, const Plan& plan, int present_stage);
+std::vector<Difference> differences(const nlohmann::json& facts, const plan::Plan& plan, int present_stage);
 
 /// A checkpoint to go on from, and what was accepted for it.
 struct Resumption {
-  std::unique_ptr<CheckpointReader> checkpoint;
+  std::unique_ptr<files::CheckpointReader> checkpoint;
   std::vector<std::string> accepted;  ///< differences, with --force
   std::string damage;                 ///< why it is the previous checkpoint; empty: it is the last
 };
 
 /// Opens the directory's checkpoint; the previous one where that is damaged. Throws Error(input_output) when neither
 /// can be used, Error(bad_input) where it belongs to another run and `force` is not given or not safe.
-Resumption open_checkpoint(const std::filesystem::path& directory, const Plan& plan, bool force);
+Resumption open_checkpoint(const std::filesystem::path& directory, const plan::Plan& plan, bool force);
 
-}  // namespace rouleau::host
+}  // namespace rouleau::run

@@ -2,13 +2,18 @@
 #pragma once
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "output/summary.hpp"
+namespace rouleau::run {
 
-namespace rouleau::host {
-
+struct PassCost {
+  std::string name;
+  double wall_s = 0;
+  long calls = 0;
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(PassCost, name, wall_s, calls)
+};
 class PassCosts {
  public:
   /// Adds wall-clock time and calls to a pass.
@@ -26,4 +31,4 @@ class PassCosts {
   std::vector<PassCost> passes_;
 };
 
-}  // namespace rouleau::host
+}  // namespace rouleau::run

@@ -9,12 +9,12 @@
 #include <fstream>
 #include <thread>
 
-#include "input/document.hpp"
-#include "output/run_directory.hpp"
-#include "plan.hpp"
+#include "files/run_directory.hpp"
+#include "json/document.hpp"
+#include "plan/plan.hpp"
 #include "plugin/library.hpp"
 
-namespace rouleau::host {
+namespace rouleau::run {
 
 std::string program_version() { return ROULEAU_VERSION; }
 
@@ -58,21 +58,21 @@ long peak_memory_bytes() {
   return usage.ru_maxrss * 1024L;
 }
 
-Summary describe(const Plan& plan, int threads) {
-  const Scene& scene = *plan.scene;
+Summary describe(const plan::Plan& plan, int threads) {
+  const scene::Scene& scene = *plan.scene;
   Summary s;
   s.title = scene.title;
   s.scene_file = scene.document->file();
-  s.scene_sha256 = sha256_of(scene_text(*scene.document));
+  s.scene_sha256 = plugin::sha256_of(files::scene_text(*scene.document));
   s.git = program_version();
   s.machine = machine_description();
   s.started = present_time();
   s.threads = threads;
-  for (const StageSetting& stage : plan.stages) s.steps_at_most += stage.max_steps;
-  s.precision = scene.numerics.precision == Precision::f64 ? "f64" : "f32";
-  for (const PlannedModel* model : plan.active_models()) {
-    const Manifest& m = *model->manifest;
-    s.plugins.push_back({m.id, m.version, to_string(m.kind), m.library.string(), sha256(m.library)});
+  for (const plan::StageSetting& stage : plan.stages) s.steps_at_most += stage.max_steps;
+  s.precision = scene.numerics.precision == scene::Precision::f64 ? "f64" : "f32";
+  for (const plan::PlannedModel* model : plan.active_models()) {
+    const plugin::Manifest& m = *model->manifest;
+    s.plugins.push_back({m.id, m.version, plugin::to_string(m.kind), m.library.string(), plugin::sha256(m.library)});
   }
   s.lock = plan.lock;
   s.left_out = plan.left_out;
@@ -83,8 +83,8 @@ Summary describe(const Plan& plan, int threads) {
   s.warnings = plan.warnings;
   s.conversions = plan.conversions;
   s.packings = plan.packings;
-  s.output_estimate = to_json(plan.estimate.output);
+  s.output_estimate = plan::to_json(plan.estimate.output);
   return s;
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::run

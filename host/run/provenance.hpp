@@ -3,11 +3,12 @@
 
 #include <string>
 
-#include "output/summary.hpp"
+#include "summary.hpp"
 
-namespace rouleau::host {
-
+namespace rouleau::plan {
 struct Plan;
+}
+namespace rouleau::run {
 
 /// Version and, in a checkout, commit that the program was built from.
 std::string program_version();
@@ -27,6 +28,6 @@ std::string present_time();
 long peak_memory_bytes();
 
 /// The part of a summary that is known before the first step: scene, models with their hashes, plan, machine.
-Summary describe(const Plan& plan, int threads);
+Summary describe(const plan::Plan& plan, int threads);
 
-}  // namespace rouleau::host
+}  // namespace rouleau::run

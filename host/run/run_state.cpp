@@ -1,8 +1,8 @@
 #include "run_state.hpp"
 
-#include "cell/membranes.hpp"
+#include "core/membrane/membranes.hpp"
 
-namespace rouleau::host {
+namespace rouleau::run {
 
 void RunState::report(Summary& s) const {
   s.steps = steps;
@@ -24,9 +24,9 @@ void RunState::report(Summary& s) const {
   s.resumed = resumed;
 }
 
-bool RunState::fits(const Plan& plan, const Membranes& membranes) const {
+bool RunState::fits(const plan::Plan& plan, const membrane::Membranes& membranes) const {
   return stage >= 0 && stage < static_cast<int>(plan.stages.size()) && stage_step >= 0 && steps_before >= 0 &&
          steps >= stage_step && observer.fits(membranes) && growth.fits(membranes) && rest_watch.fits(membranes);
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::run

@@ -14,18 +14,18 @@
 #include <set>
 #include <string>
 
-#include "cell/motion.hpp"
 #include "checkpoint.hpp"
 #include "checkpoint_match.hpp"
-#include "energy_check.hpp"
-#include "failure_mode.hpp"
-#include "node_checks.hpp"
-#include "output/progress.hpp"
+#include "core/membrane/motion.hpp"
+#include "monitor/energy_check.hpp"
+#include "monitor/failure_mode.hpp"
+#include "monitor/node_checks.hpp"
+#include "plan/schedule.hpp"
+#include "progress.hpp"
 #include "provenance.hpp"
 #include "run_state.hpp"
-#include "schedule.hpp"
 
-namespace rouleau::host {
+namespace rouleau::run {
 
 namespace {
 
@@ -35,13 +35,14 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 /// The stages of a run one after another, and the steps of each.
 class Simulation {
  public:
-  Simulation(const Plan& plan, const RunOptions& options, RunDirectory& directory)
+  Simulation(const plan::Plan& plan, const RunOptions& options, files::RunDirectory& directory)
       : plan_(plan),
         scene_(*plan.scene),
         options_(options),
         directory_(directory),
-        membranes_(plan.has_cells ? make_membranes(scene_, lattice_spacing(scene_)) : Membranes{}),
-        state_(Observer(scene_, membranes_)),
+        membranes_(plan.has_cells ? membrane::make_membranes(scene_, plan::lattice_spacing(scene_))
+                                  : membrane::Membranes{}),
+        state_(observe::Observer(scene_, membranes_)),
         progress_(options.quiet),
         checkpoints_(scene_, directory) {}
 
@@ -55,7 +56,7 @@ class Simulation {
       directory_.log("started", {{"title", scene_.title}, {"threads", options_.threads}});
     }
     for (const std::string& warning : plan_.warnings) directory_.log("warning", {{"message", warning}});
-    if (scene_.numerics.precision == Precision::f64) {
+    if (scene_.numerics.precision == scene::Precision::f64) {
       run_stages<double>(resumption.checkpoint.get());
     } else {
       run_stages<float>(resumption.checkpoint.get());
@@ -76,7 +77,7 @@ class Simulation {
 
   /// Takes over what a checkpoint says of everything but the fluid.
   void go_on_from(const Resumption& resumption) {
-    const CheckpointReader& reader = *resumption.checkpoint;
+    const files::CheckpointReader& reader = *resumption.checkpoint;
     saved_ = reader.state();
     directory_.go_back(restore(reader, saved_, plan_, state_, membranes_));
     reader.take_place(directory_.path());
@@ -102,17 +103,17 @@ class Simulation {
   }
 
   template <class T>
-  void run_stages(const CheckpointReader* checkpoint) {
-    std::unique_ptr<Solver<T>> solver;
+  void run_stages(const files::CheckpointReader* checkpoint) {
+    std::unique_ptr<solver::Solver<T>> solver;
     for (; state_.stage < static_cast<int>(plan_.stages.size()) && !stopped_; ++state_.stage) {
       if (solver) {
-        const LatticeUnits& from = solver->setting().units;
-        const LatticeUnits& to = plan_.stages[static_cast<std::size_t>(state_.stage)].units;
-        change_units(membranes_.state, from, to);
-        change_units(membranes_.contacts, from, to);
+        const units::LatticeUnits& from = solver->setting().units;
+        const units::LatticeUnits& to = plan_.stages[static_cast<std::size_t>(state_.stage)].units;
+        membrane::change_units(membranes_.state, from, to);
+        membrane::change_units(membranes_.contacts, from, to);
       }
       const std::vector<double> steps_taken = membranes_.largest_step;
-      auto next = std::make_unique<Solver<T>>(plan_, state_.stage, membranes_);
+      auto next = std::make_unique<solver::Solver<T>>(plan_, state_.stage, membranes_);
       if (checkpoint != nullptr) {
         membranes_.largest_step = steps_taken;
         restore(*checkpoint, saved_, *next);
@@ -127,7 +128,7 @@ class Simulation {
     }
   }
 
-  void start_stage(const StageSetting& setting) {
+  void start_stage(const plan::StageSetting& setting) {
     directory_.log(
         "stage",
         {{"name", setting.stage->name}, {"time_step_s", setting.units.time}, {"most_steps", setting.max_steps}});
@@ -140,10 +141,10 @@ class Simulation {
   }
 
   template <class T>
-  void run_stage(Solver<T>& solver) {
-    const StageSetting& setting = solver.setting();
+  void run_stage(solver::Solver<T>& solver) {
+    const plan::StageSetting& setting = solver.setting();
     ending_ = Ending::none;
-    const Schedule cells(scene_.output.cells, setting, true), fields(scene_.output.fields, setting, false);
+    const plan::Schedule cells(scene_.output.cells, setting, true), fields(scene_.output.fields, setting, false);
     next_attention_ = state_.stage_step;
     clock_ = Clock::now();
     step_loop(solver, cells, fields);
@@ -167,18 +168,18 @@ class Simulation {
   /// The steps of a stage. All workers run the same passes; what needs one of them alone happens before or after the
   /// forces of a step, and only when something is due.
   template <class T>
-  void step_loop(Solver<T>& solver, const Schedule& cells, const Schedule& fields) {
+  void step_loop(solver::Solver<T>& solver, const plan::Schedule& cells, const plan::Schedule& fields) {
     std::exception_ptr trouble;
     std::atomic<long> attend_at{std::numeric_limits<long>::max()};
-    std::optional<Barrier> barrier;
+    std::optional<solver::Barrier> barrier;
 #pragma omp parallel num_threads(options_.threads)
     {
       // The system may grant fewer threads than were asked for.
 #pragma omp single
       barrier.emplace(omp_get_num_threads());
       const Worker worker{omp_get_thread_num(), omp_get_num_threads()};
-      const std::vector<Pass>&forces = solver.forces(), &advance = solver.advance();
-      PassClock clock(forces.size() + advance.size());
+      const std::vector<solver::Pass>&forces = solver.forces(), &advance = solver.advance();
+      solver::PassClock clock(forces.size() + advance.size());
       long counted = state_.stage_step;  // steps whose costs are in the state
       const auto count_costs = [&](long step) {
         add_costs(solver, clock, step - counted);
@@ -224,11 +225,11 @@ class Simulation {
   }
 
   template <class T>
-  void add_costs(const Solver<T>& solver, PassClock& clock, long steps) {
+  void add_costs(const solver::Solver<T>& solver, solver::PassClock& clock, long steps) {
     std::size_t at = 0;
     std::set<std::string> counted;
-    for (const std::vector<Pass>* passes : {&solver.forces(), &solver.advance()}) {
-      for (const Pass& pass : *passes) {
+    for (const std::vector<solver::Pass>* passes : {&solver.forces(), &solver.advance()}) {
+      for (const solver::Pass& pass : *passes) {
         state_.costs.add(pass.name, clock.take(at++), counted.insert(pass.name).second ? steps : 0);
       }
     }
@@ -239,14 +240,15 @@ class Simulation {
   /// Whether the last step must not be followed by another, or was faster than any before; all workers come to the same
   /// answer.
   template <class T>
-  [[nodiscard]] bool wants_a_look(const Solver<T>& solver) const {
-    return !(largest_step(membranes_) <= std::min(scene_.checks.node_step, state_.growth.level())) || solver.escaped();
+  [[nodiscard]] bool wants_a_look(const solver::Solver<T>& solver) const {
+    return !(membrane::largest_step(membranes_) <= std::min(scene_.checks.node_step, state_.growth.level())) ||
+           solver.escaped();
   }
 
   /// One thread, before the forces of a step: whether the stage ends here, and the checkpoint.
   template <class T>
-  void before_forces(Solver<T>& solver, long step) {
-    const StageSetting& setting = solver.setting();
+  void before_forces(solver::Solver<T>& solver, long step) {
+    const plan::StageSetting& setting = solver.setting();
     state_.stage_step = step;
     state_.steps = state_.steps_before + step;
     due_ending_ = next_ending(setting);
@@ -265,18 +267,19 @@ class Simulation {
 
   /// One thread, forces computed: outputs, checks, and whether the stage ends here.
   template <class T>
-  void after_forces(Solver<T>& solver, long step, const Schedule& cells, const Schedule& fields) {
+  void after_forces(solver::Solver<T>& solver, long step, const plan::Schedule& cells, const plan::Schedule& fields) {
     const auto start = Clock::now();
-    const StageSetting& setting = solver.setting();
+    const plan::StageSetting& setting = solver.setting();
     state_.stage_step = step;
     state_.steps = state_.steps_before + step;
-    if (auto failure = check_nodes(membranes_, scene_.checks.node_step, solver.escaped_node(), setting.units.length)) {
+    if (auto failure =
+            monitor::check_nodes(membranes_, scene_.checks.node_step, solver.escaped_node(), setting.units.length)) {
       fail(std::move(*failure), solver);
       return;
     }
-    if (largest_step(membranes_) > state_.growth.level()) state_.growth.note(state_.steps, membranes_);
+    if (membrane::largest_step(membranes_) > state_.growth.level()) state_.growth.note(state_.steps, membranes_);
     if (checkpoints_.pending()) {
-      Observer look = state_.observer;  // one that leaves no trace
+      observe::Observer look = state_.observer;  // one that leaves no trace
       checkpoints_.settle(!look.check(solver, membranes_));
     }
     // The end of a stage has been written; the beginning of the next is the same instant.
@@ -298,7 +301,7 @@ class Simulation {
           return;
         }
       }
-      state_.momentum_residual = std::max(state_.momentum_residual, Observer::momentum_residual(membranes_));
+      state_.momentum_residual = std::max(state_.momentum_residual, observe::Observer::momentum_residual(membranes_));
       progress_.update(progress(setting));
       state_.costs.add("observe and check", seconds_since(start), 1);
     }
@@ -311,13 +314,13 @@ class Simulation {
   }
 
   /// Step at which the stage ends unless something ends it before.
-  [[nodiscard]] long last_step(const StageSetting& setting) const {
+  [[nodiscard]] long last_step(const plan::StageSetting& setting) const {
     const long most = options_.max_steps >= 0 ? options_.max_steps - state_.steps_before : setting.max_steps;
     return std::min(setting.max_steps, most);
   }
 
-  [[nodiscard]] Ending next_ending(const StageSetting& setting) const {
-    const Stage& stage = *setting.stage;
+  [[nodiscard]] Ending next_ending(const plan::StageSetting& setting) const {
+    const scene::Stage& stage = *setting.stage;
     if (interrupted()) return Ending::interrupted;
     if (stage.until_at_rest && at_rest(setting)) return Ending::at_rest;
     if (state_.stage_step >= setting.max_steps) {
@@ -329,18 +332,18 @@ class Simulation {
     return Ending::none;
   }
 
-  [[nodiscard]] long rest_window(const StageSetting& setting) const {
+  [[nodiscard]] long rest_window(const plan::StageSetting& setting) const {
     return std::max(1L, std::lround(setting.steps_of(scene_.at_rest.window)));
   }
 
-  [[nodiscard]] bool at_rest(const StageSetting& setting) const {
+  [[nodiscard]] bool at_rest(const plan::StageSetting& setting) const {
     return state_.stage_step >= state_.rest_watch.end(rest_window(setting)) &&
            state_.rest_watch.moved(membranes_) < scene_.at_rest.displacement / setting.units.length;
   }
 
   template <class T>
-  void fail(Failure failure, Solver<T>& solver) {
-    const StageSetting& setting = solver.setting();
+  void fail(monitor::Failure failure, solver::Solver<T>& solver) {
+    const plan::StageSetting& setting = solver.setting();
     failure.step = state_.steps;
     failure.time = state_.time_at(setting);
     failure.strain = state_.strain_at(setting);
@@ -352,7 +355,7 @@ class Simulation {
 
   /// What the failure looks like, and what to do about that.
   template <class T>
-  void tell_mode(Failure& failure, Solver<T>& solver) {
+  void tell_mode(monitor::Failure& failure, solver::Solver<T>& solver) {
     const double spacing = solver.setting().units.length;
     const std::array<double, 2> place{failure.place[0] / spacing - 0.5, failure.place[1] / spacing - 0.5};
     double oscillation = 0;
@@ -361,35 +364,36 @@ class Simulation {
       const auto nearest = [](double coordinate, int nodes) {
         return static_cast<int>(std::lround(std::clamp(coordinate, -1.0 * nodes, 2.0 * nodes)));
       };
-      oscillation = lattice_oscillation(solver.fluid(), nearest(place[0], scene_.domain.nodes[0]),
-                                        nearest(place[1], scene_.domain.nodes[1]));
+      oscillation = monitor::lattice_oscillation(solver.fluid(), nearest(place[0], scene_.domain.nodes[0]),
+                                                 nearest(place[1], scene_.domain.nodes[1]));
     }
-    find_mode(failure, membranes_, state_.growth, state_.observer.box(), place, oscillation, failure.step);
-    const std::string sentence = mode_sentence(failure), remedy = mode_remedy(failure, plan_.semi_implicit);
+    monitor::find_mode(failure, membranes_, state_.growth, state_.observer.box(), place, oscillation, failure.step);
+    const std::string sentence = monitor::mode_sentence(failure),
+                      remedy = monitor::mode_remedy(failure, plan_.semi_implicit);
     if (!sentence.empty()) failure.message += "; " + sentence;
     if (!remedy.empty()) failure.remedy = remedy;
   }
 
   /// Writes the present state, unless it has gained energy that nothing gave it: that failure is returned.
   template <class T>
-  std::optional<Failure> write(Solver<T>& solver, bool with_fields) {
-    Snapshot snapshot = state_.observer.observe(solver, membranes_, with_fields);
+  std::optional<monitor::Failure> write(solver::Solver<T>& solver, bool with_fields) {
+    observe::Snapshot snapshot = state_.observer.observe(solver, membranes_, with_fields);
     snapshot.step = state_.steps;
     snapshot.time = state_.time_at(solver.setting());
     snapshot.strain = state_.strain_at(solver.setting());
-    const LatticeUnits& units = solver.setting().units;
+    const units::LatticeUnits& units = solver.setting().units;
     state_.energy.follow(snapshot, solver.setting().is_driven(),
-                         units.to_si(solver.slight_energy(), dimension::energy_per_depth));
-    if (auto failure = check_energy(state_.energy, membranes_, plan_, units.length)) return failure;
+                         units.to_si(solver.slight_energy(), units::dimension::energy_per_depth));
+    if (auto failure = monitor::check_energy(state_.energy, membranes_, plan_, units.length)) return failure;
     state_.history.follow(snapshot);
     state_.rheology.follow(snapshot);
     directory_.write(snapshot);
     return std::nullopt;
   }
 
-  ProgressState progress(const StageSetting& setting) {
+  ProgressState progress(const plan::StageSetting& setting) {
     double before = 0, all = 0;
-    for (const StageSetting& s : plan_.stages) {
+    for (const plan::StageSetting& s : plan_.stages) {
       if (s.index < setting.index) before += static_cast<double>(s.max_steps);
       all += static_cast<double>(s.max_steps);
     }
@@ -414,22 +418,22 @@ class Simulation {
     s.mlups = s.steps_per_s * scene_.domain.nodes[0] * scene_.domain.nodes[1] / 1e6;
     s.peak_rss_bytes = peak_memory_bytes();
     s.checkpoint_step = checkpoints_.kept();
-    s.area_leakage_max = Observer::area_leakage(membranes_);
+    s.area_leakage_max = observe::Observer::area_leakage(membranes_);
     return s;
   }
 
-  const Plan& plan_;
-  const Scene& scene_;
+  const plan::Plan& plan_;
+  const scene::Scene& scene_;
   const RunOptions& options_;
-  RunDirectory& directory_;
-  Membranes membranes_;
+  files::RunDirectory& directory_;
+  membrane::Membranes membranes_;
   RunState state_;
   Progress progress_;
 
   long next_attention_ = 0;  ///< step of the stage before which nothing is due
   Ending due_ending_ = Ending::none, ending_ = Ending::none;
   bool stopped_ = false;
-  std::optional<Failure> failure_;
+  std::optional<monitor::Failure> failure_;
   Clock::time_point clock_;
   Checkpoints checkpoints_;
   nlohmann::json saved_;  ///< state of the checkpoint that the run goes on from
@@ -438,8 +442,8 @@ class Simulation {
 
 }  // namespace
 
-Summary simulate(const Plan& plan, const RunOptions& options, RunDirectory& directory) {
+Summary simulate(const plan::Plan& plan, const RunOptions& options, files::RunDirectory& directory) {
   return Simulation(plan, options, directory).run();
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::run

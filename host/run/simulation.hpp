@@ -3,11 +3,11 @@
 
 #include <atomic>
 
-#include "output/run_directory.hpp"
-#include "output/summary.hpp"
-#include "plan.hpp"
+#include "files/run_directory.hpp"
+#include "plan/plan.hpp"
+#include "summary.hpp"
 
-namespace rouleau::host {
+namespace rouleau::run {
 
 struct RunOptions {
   int threads = 1;
@@ -19,6 +19,6 @@ struct RunOptions {
 
 /// Runs a plan and writes into `directory`, going on from its checkpoint if it resumes; the summary has been written
 /// when it returns. Throws Error(input_output), and Error(bad_input) where the checkpoint belongs to another run.
-Summary simulate(const Plan& plan, const RunOptions& options, RunDirectory& directory);
+Summary simulate(const plan::Plan& plan, const RunOptions& options, files::RunDirectory& directory);
 
-}  // namespace rouleau::host
+}  // namespace rouleau::run

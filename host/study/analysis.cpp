@@ -1,13 +1,13 @@
-#include "study/analysis.hpp"
+#include "analysis.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 
-#include "input/wording.hpp"
+#include "base/text.hpp"
 
-namespace rouleau::host {
+namespace rouleau::study {
 
 namespace {
 
@@ -236,4 +236,4 @@ std::vector<QuantityAnalysis> analyse(const StudyData& study) {
   return result;
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::study

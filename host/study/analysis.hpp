@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "study/quantity.hpp"
-#include "study/richardson.hpp"
+#include "quantity.hpp"
+#include "richardson.hpp"
 
-namespace rouleau::host {
+namespace rouleau::study {
 
 struct StudyAxis {
   std::string name;
@@ -118,4 +118,4 @@ std::string time_in_words(double seconds);
 /// Index of the point with this setting.
 std::optional<std::size_t> find_point(const StudyData& study, const std::vector<int>& setting);
 
-}  // namespace rouleau::host
+}  // namespace rouleau::study

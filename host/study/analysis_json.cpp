@@ -1,40 +1,41 @@
-#include "study/analysis_json.hpp"
+#include "analysis_json.hpp"
 
-#include "output/summary.hpp"
+#include "json/number_or_null.hpp"
+#include "run/summary.hpp"
 
-namespace rouleau::host {
+namespace rouleau::study {
 
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 
-json said(const std::string& text) { return text.empty() ? json() : json(text); }
+Json said(const std::string& text) { return text.empty() ? Json() : Json(text); }
 
-json labels_json(const StudyData& study, const std::vector<int>& setting) {
-  json labels = json::object();
+Json labels_json(const StudyData& study, const std::vector<int>& setting) {
+  Json labels = Json::object();
   for (std::size_t i = 0; i < setting.size(); ++i)
     if (setting[i] >= 0) labels[study.axes[i].name] = study.axes[i].labels[static_cast<std::size_t>(setting[i])];
   return labels;
 }
 
-json reference_json(const ResolvedReference& reference) {
+Json reference_json(const ResolvedReference& reference) {
   return {{"kind", name_of(reference.kind)},
-          {"value", number_or_null(reference.value)},
-          {"uncertainty", number_or_null(reference.uncertainty)},
-          {"order", number_or_null(reference.order)},
+          {"value", json::number_or_null(reference.value)},
+          {"uncertainty", json::number_or_null(reference.uncertainty)},
+          {"order", json::number_or_null(reference.order)},
           {"source", said(reference.source)},
           {"points", reference.points},
           {"why_not", said(reference.why_not)}};
 }
 
-json quantity_json(const StudyData& study, const Quantity& quantity, const QuantityAnalysis& analysis) {
-  json methods = json::array();
+Json quantity_json(const StudyData& study, const Quantity& quantity, const QuantityAnalysis& analysis) {
+  Json methods = Json::array();
   for (const MethodLimit& method : analysis.by_method) {
     const Extrapolation& e = method.extrapolation;
     methods.push_back({{"method", labels_json(study, method.setting)},
-                       {"order", number_or_null(e.order)},
-                       {"limit", number_or_null(e.limit)},
-                       {"uncertainty", number_or_null(e.uncertainty)},
+                       {"order", json::number_or_null(e.order)},
+                       {"limit", json::number_or_null(e.limit)},
+                       {"uncertainty", json::number_or_null(e.uncertainty)},
                        {"points", method.used},
                        {"why_not", said(e.remark)}});
   }
@@ -44,8 +45,8 @@ json quantity_json(const StudyData& study, const Quantity& quantity, const Quant
           {"by_method", std::move(methods)}, {"disagreement", said(analysis.disagreement)}};
 }
 
-json knobs_json(const StudyData& study, const std::vector<Knob>& knobs) {
-  json result = json::array();
+Json knobs_json(const StudyData& study, const std::vector<Knob>& knobs) {
+  Json result = Json::array();
   for (const Knob& knob : knobs) {
     std::vector<int> fixed = study.points[knob.from].setting;
     const auto label = [&](std::size_t point) {
@@ -58,7 +59,7 @@ json knobs_json(const StudyData& study, const std::vector<Knob>& knobs) {
                       {"fixed", labels_json(study, fixed)},
                       {"error_factor", knob.error_factor},
                       {"time_factor", knob.time_factor},
-                      {"gain", number_or_null(knob.gain)},
+                      {"gain", json::number_or_null(knob.gain)},
                       {"free", std::isinf(knob.gain)}});
   }
   return result;
@@ -66,8 +67,8 @@ json knobs_json(const StudyData& study, const std::vector<Knob>& knobs) {
 
 }  // namespace
 
-void add_analysis(json& result, const StudyData& study, const std::vector<QuantityAnalysis>& analyses) {
-  json quantities = json::array(), fronts = json::object(), knobs = json::object(), sentences = json::array();
+void add_analysis(Json& result, const StudyData& study, const std::vector<QuantityAnalysis>& analyses) {
+  Json quantities = Json::array(), fronts = Json::object(), knobs = Json::object(), sentences = Json::array();
   for (std::size_t q = 0; q < analyses.size(); ++q) {
     const Quantity& quantity = study.quantities[q];
     quantities.push_back(quantity_json(study, quantity, analyses[q]));
@@ -76,16 +77,17 @@ void add_analysis(json& result, const StudyData& study, const std::vector<Quanti
     for (const StudySentence& sentence : analyses[q].sentences) {
       sentences.push_back({{"quantity", quantity.name},
                            {"text", sentence.text},
-                           {"target", number_or_null(sentence.target)},
-                           {"point", sentence.point ? json(*sentence.point) : json()}});
+                           {"target", json::number_or_null(sentence.target)},
+                           {"point", sentence.point ? Json(*sentence.point) : Json()}});
     }
     for (std::size_t i = 0; i < study.points.size(); ++i) {
       const PointError& error = analyses[q].errors[i];
-      result["points"][i]["results"][quantity.name] = {{"value", number_or_null(error.value)},
-                                                       {"error", number_or_null(error.error)},
-                                                       {"deviation", number_or_null(error.deviation)},
-                                                       {"uncertainty", number_or_null(error.uncertainty)},
-                                                       {"why_not", said(error.why_not)}};
+      result["points"][i]["results"][quantity.name] = {
+          {"value", json::number_or_null(error.value)},
+          {"error", json::number_or_null(error.error)},
+          {"deviation", json::number_or_null(error.deviation)},
+          {"uncertainty", json::number_or_null(error.uncertainty)},
+          {"why_not", said(error.why_not)}};
     }
   }
   result["quantities"] = std::move(quantities);
@@ -94,14 +96,14 @@ void add_analysis(json& result, const StudyData& study, const std::vector<Quanti
   result["sentences"] = std::move(sentences);
 }
 
-json target_json(const StudyData& study, std::size_t quantity, double target, const TargetDecision& decision) {
+Json target_json(const StudyData& study, std::size_t quantity, double target, const TargetDecision& decision) {
   return {{"quantity", study.quantities[quantity].name},
           {"value", target},
           {"met", decision.met},
-          {"point", decision.point ? json(*decision.point) : json()},
-          {"estimated_error", number_or_null(decision.estimated_error)},
-          {"uncertainty", number_or_null(decision.uncertainty)},
+          {"point", decision.point ? Json(*decision.point) : Json()},
+          {"estimated_error", json::number_or_null(decision.estimated_error)},
+          {"uncertainty", json::number_or_null(decision.uncertainty)},
           {"sentence", decision.sentence}};
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::study

@@ -4,10 +4,10 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "study/analysis.hpp"
-#include "study/target.hpp"
+#include "analysis.hpp"
+#include "target.hpp"
 
-namespace rouleau::host {
+namespace rouleau::study {
 
 /// Puts "quantities", "fronts", "knobs" and "sentences" into study.json, and "results" into each of its "points", which
 /// must stand there in the order of the study's points. Their
@@ -17,4 +17,4 @@ void add_analysis(nlohmann::json& result, const StudyData& study, const std::vec
 /// The value of "target".
 nlohmann::json target_json(const StudyData& study, std::size_t quantity, double target, const TargetDecision& decision);
 
-}  // namespace rouleau::host
+}  // namespace rouleau::study

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-namespace rouleau::host {
+namespace rouleau::study {
 
 /// Start-up of the flow between walls that begin to move with -U and +U: velocity over U; y from -1/2 to 1/2 of the
 /// height, t in height^2/(kinematic viscosity). Steady for infinite t.
@@ -40,4 +40,4 @@ inline double relative_l2(const std::vector<double>& value, const std::vector<do
   return std::sqrt(error / norm);
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::study

@@ -3,9 +3,9 @@
 #include <limits>
 #include <numeric>
 
-#include "study/analysis.hpp"
+#include "analysis.hpp"
 
-namespace rouleau::host {
+namespace rouleau::study {
 namespace {
 
 /// What the second takes over what the first takes. A clock that cannot tell them apart says nothing about their price.
@@ -64,4 +64,4 @@ std::vector<Knob> knobs_of(const StudyData& study, const std::vector<PointError>
   return knobs;
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::study

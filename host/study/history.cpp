@@ -1,11 +1,11 @@
-#include "study/history.hpp"
+#include "history.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
-namespace rouleau::host {
+namespace rouleau::study {
 
 namespace {
 
@@ -80,4 +80,4 @@ Dissociation dissociation(const std::vector<CountChange>& changes, const Column&
   return {found - start_strain, found - before, false};
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::study

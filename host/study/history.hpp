@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-namespace rouleau::host {
+namespace rouleau::study {
 
 using Column = std::vector<double>;
 
@@ -38,4 +38,4 @@ struct Dissociation {
 Dissociation dissociation(const std::vector<CountChange>& changes, const Column& output_strain, double start_time,
                           double start_strain, int count, bool for_good);
 
-}  // namespace rouleau::host
+}  // namespace rouleau::study

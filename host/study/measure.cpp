@@ -4,19 +4,19 @@
 #include <limits>
 #include <numbers>
 
-#include "input/document.hpp"
-#include "input/scene.hpp"
-#include "input/wording.hpp"
-#include "output/file.hpp"
-#include "output/report_table.hpp"
-#include "study/history.hpp"
-#include "study/quantity.hpp"
+#include "base/text.hpp"
+#include "files/csv_reader.hpp"
+#include "files/file.hpp"
+#include "history.hpp"
+#include "json/document.hpp"
+#include "quantity.hpp"
+#include "scene/scene.hpp"
 
-namespace rouleau::host {
+namespace rouleau::study {
 
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 
 Measured undefined_because(std::string why_not) {
   return {std::numeric_limits<double>::quiet_NaN(), 0, std::move(why_not)};
@@ -32,10 +32,10 @@ struct Rows {
 };
 
 struct CellRows : Rows {
-  const StoredTable& table;
+  const files::StoredTable& table;
   std::vector<std::size_t> rows;
 
-  CellRows(const StoredTable& cells, int cell) : table(cells) {
+  CellRows(const files::StoredTable& cells, int cell) : table(cells) {
     const Column number = cells.numbers("cell");
     for (std::size_t i = 0; i < number.size(); ++i)
       if (number[i] == cell) rows.push_back(i);
@@ -69,7 +69,7 @@ Measured taken(const Rows& rows, const Column& values, const When& when) {
   return defined_or(interpolated_at(x, values, when.value), nothing);
 }
 
-Measured of_cell(const Quantity& quantity, const StoredTable& cells) {
+Measured of_cell(const Quantity& quantity, const files::StoredTable& cells) {
   const CellRows rows(cells, quantity.cell);
   if (rows.rows.empty()) return undefined_because("the run has no cell " + std::to_string(quantity.cell));
   const When when = quantity.at.value_or(When{});
@@ -96,7 +96,7 @@ Measured of_cell(const Quantity& quantity, const StoredTable& cells) {
   }
 }
 
-Measured smallest_gap(const Quantity& quantity, const StoredTable& cells) {
+Measured smallest_gap(const Quantity& quantity, const files::StoredTable& cells) {
   const Column number_of = cells.numbers("cell"), step = cells.numbers("step"), gaps = cells.numbers("min_gap_m");
   const Column strain = cells.numbers("strain"), time = cells.numbers("time_s");
   Rows rows;
@@ -118,24 +118,24 @@ Measured smallest_gap(const Quantity& quantity, const StoredTable& cells) {
                                  : defined_or(*smallest, "there is no second cell or image to measure a gap to");
 }
 
-Measured of_series(const Quantity& quantity, const std::filesystem::path& directory, const StoredTable& series) {
+Measured of_series(const Quantity& quantity, const std::filesystem::path& directory, const files::StoredTable& series) {
   const Rows rows{series.numbers("strain"), series.numbers("time_s")};
   const bool viscosity = quantity.kind == QuantityKind::relative_viscosity;
   const Column values = series.numbers(viscosity ? "relative_viscosity" : quantity.column);
   Measured result = taken(rows, values, quantity.at.value_or(When{}));
   if (!quantity.intrinsic || !result.why_not.empty()) return result;
-  const StoredTable cells(directory / "cells.csv");
+  const files::StoredTable cells(directory / "cells.csv");
   const Column area = cells.numbers("area_m2"), step = cells.numbers("step");
   double covered = 0;
   for (std::size_t i = 0; i < area.size() && step[i] == step[0]; ++i) covered += area[i];
   if (!(covered > 0)) return undefined_because("the run has no cells that could thicken the fluid");
-  const Scene scene = read_unpacked_scene(directory / "scene.json");
+  const scene::Scene scene = scene::read_unpacked_scene(directory / "scene.json");
   result.value = (result.value - 1) / (covered / scene.domain.size.prod());
   return result;
 }
 
-Measured of_dissociation(const Quantity& quantity, const std::filesystem::path& directory, const json& summary) {
-  const StoredTable series(directory / "series.csv"), cells(directory / "cells.csv");
+Measured of_dissociation(const Quantity& quantity, const std::filesystem::path& directory, const Json& summary) {
+  const files::StoredTable series(directory / "series.csv"), cells(directory / "cells.csv");
   const int count = quantity.count.value_or(static_cast<int>(cells.count_of("cell")));
   const Column strain = series.numbers("strain"), time = series.numbers("time_s"), stage = series.numbers("stage");
   std::size_t sheared = 1;
@@ -145,7 +145,7 @@ Measured of_dissociation(const Quantity& quantity, const std::filesystem::path& 
   std::size_t start = sheared;
   while (start > 0 && stage[start] == stage[sheared]) --start;
   std::vector<CountChange> changes;
-  for (const json& event : summary.at("aggregate_history"))
+  for (const Json& event : summary.at("aggregate_history"))
     changes.push_back({event.at("time_s"), event.at("strain"), event.at("count")});
   const Dissociation found = dissociation(changes, strain, time[start], strain[start], count, quantity.for_good);
   if (found.at_start)
@@ -156,14 +156,14 @@ Measured of_dissociation(const Quantity& quantity, const std::filesystem::path& 
   return result;
 }
 
-Measured of_summary(const json& value, const std::string& what) {
+Measured of_summary(const Json& value, const std::string& what) {
   return value.is_number() ? Measured{value.get<double>(), 0, ""} : undefined_because("summary.json has no " + what);
 }
 
-std::string why_incomplete(const json& summary) {
+std::string why_incomplete(const Json& summary) {
   const std::string status = summary.value("status", "unknown");
   if (status == "completed") return "";
-  const json failure = summary.value("failure", json());
+  const Json failure = summary.value("failure", Json());
   return "the run " + (status == "diverged" ? std::string("diverged") : "was " + status) +
          (failure.is_object() ? ": " + failure.value("message", "") : "");
 }
@@ -171,16 +171,16 @@ std::string why_incomplete(const json& summary) {
 }  // namespace
 
 Measured measure(const Quantity& quantity, const std::filesystem::path& run_directory) {
-  const json summary = Document::read(run_directory / "summary.json").root();
+  const Json summary = json::Document::read(run_directory / "summary.json").root();
   if (const std::string why_not = why_incomplete(summary); !why_not.empty()) return undefined_because(why_not);
   switch (quantity.kind) {
     case QuantityKind::deformation:
     case QuantityKind::angle:
     case QuantityKind::passage:
     case QuantityKind::period:
-      return of_cell(quantity, StoredTable(run_directory / "cells.csv"));
+      return of_cell(quantity, files::StoredTable(run_directory / "cells.csv"));
     case QuantityKind::gap:
-      return smallest_gap(quantity, StoredTable(run_directory / "cells.csv"));
+      return smallest_gap(quantity, files::StoredTable(run_directory / "cells.csv"));
     case QuantityKind::area_drift:
       return of_summary(summary.at("conservation").at("area_drift_max"), "area drift: the scene has no cells");
     case QuantityKind::mass_drift:
@@ -190,14 +190,15 @@ Measured measure(const Quantity& quantity, const std::filesystem::path& run_dire
     case QuantityKind::dissociation_strain:
       return of_dissociation(quantity, run_directory, summary);
     case QuantityKind::relative_viscosity:
-      return of_series(quantity, run_directory, StoredTable(run_directory / "series.csv"));
+      return of_series(quantity, run_directory, files::StoredTable(run_directory / "series.csv"));
     case QuantityKind::velocity_l2:
       return velocity_error(quantity, run_directory);
     case QuantityKind::column:
-      return quantity.table == "cells" ? of_cell(quantity, StoredTable(run_directory / "cells.csv"))
-                                       : of_series(quantity, run_directory, StoredTable(run_directory / "series.csv"));
+      return quantity.table == "cells"
+                 ? of_cell(quantity, files::StoredTable(run_directory / "cells.csv"))
+                 : of_series(quantity, run_directory, files::StoredTable(run_directory / "series.csv"));
   }
   return undefined_because("");
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::study

@@ -1,14 +1,14 @@
-#include "study/quantity.hpp"
+#include "quantity.hpp"
 
 #include <algorithm>
 #include <array>
 #include <numbers>
 
-#include "input/document.hpp"
-#include "output/tables.hpp"
-#include "study/study_fields.hpp"
+#include "files/tables.hpp"
+#include "json/document.hpp"
+#include "study_fields.hpp"
 
-namespace rouleau::host {
+namespace rouleau::study {
 
 namespace {
 
@@ -50,7 +50,7 @@ When read_when(const StudyFields& fields, const std::string& pointer) {
   if (fields.scene_fields().at(pointer).size() != 1)
     fields.scene_fields().refuse(pointer, "\"at\" is \"end\", or an object with one of strain, time, mean_from_strain");
   if (fields.has(pointer + "/time"))
-    return {When::Kind::time, fields.scene_fields().quantity(pointer + "/time", "s", {0, range::time.most})};
+    return {When::Kind::time, fields.scene_fields().quantity(pointer + "/time", "s", {0, scene::range::time.most})};
   if (fields.has(pointer + "/strain")) return {When::Kind::strain, fields.number(pointer + "/strain")};
   return {When::Kind::mean_from_strain, fields.number(pointer + "/mean_from_strain")};
 }
@@ -74,7 +74,7 @@ void read_column(const StudyFields& fields, const std::string& pointer, Quantity
   quantity.table =
       std::array<const char*, 2>{"cells", "series"}[fields.choice(pointer + "/table", {"cells", "series"})];
   quantity.column = fields.text(pointer + "/column");
-  const auto columns = column_names(quantity.table + ".csv");
+  const auto columns = files::column_names(quantity.table + ".csv");
   if (std::find(columns.begin(), columns.end(), quantity.column) == columns.end()) {
     fields.scene_fields().refuse(pointer + "/column",
                                  quantity.table + ".csv has no column " + in_quotes(quantity.column) +
@@ -91,7 +91,7 @@ void read_own_keys(const StudyFields& fields, const std::string& pointer, Quanti
     quantity.cell = -1;
   if (fields.has(pointer + "/at")) quantity.at = read_when(fields, pointer + "/at");
   if (fields.has(pointer + "/angle"))
-    quantity.passed_angle = fields.scene_fields().quantity(pointer + "/angle", "rad", range::angle);
+    quantity.passed_angle = fields.scene_fields().quantity(pointer + "/angle", "rad", scene::range::angle);
   if (fields.has(pointer + "/of"))
     quantity.of_long_axis = fields.choice(pointer + "/of", {"tank_treading", "rotation"}) == 1;
   if (fields.has(pointer + "/turns")) quantity.turns = fields.positive(pointer + "/turns");
@@ -109,8 +109,8 @@ void read_own_keys(const StudyFields& fields, const std::string& pointer, Quanti
 
 const char* name_of(QuantityKind kind) { return kinds()[static_cast<std::size_t>(kind)].name; }
 
-Quantity read_quantity(const Document& document, const std::string& pointer) {
-  const SceneFields scene_fields(document);
+Quantity read_quantity(const json::Document& document, const std::string& pointer) {
+  const scene::SceneFields scene_fields(document);
   const StudyFields fields(scene_fields);
   if (!scene_fields.at(pointer).is_object())
     scene_fields.refuse(pointer, "a quantity is an object {\"name\", \"kind\", ...}");
@@ -153,4 +153,4 @@ Quantity read_quantity(const Document& document, const std::string& pointer) {
   return quantity;
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::study

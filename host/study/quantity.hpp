@@ -5,9 +5,9 @@
 #include <optional>
 #include <string>
 
-#include "study/reference.hpp"
+#include "reference.hpp"
 
-namespace rouleau::host {
+namespace rouleau::study {
 
 enum class QuantityKind {
   deformation,
@@ -63,7 +63,7 @@ struct Quantity {
 };
 
 /// The quantity at `pointer` of a study; docs/study.md tells the keys of each kind. Throws Error(bad_input).
-Quantity read_quantity(const Document& document, const std::string& pointer);
+Quantity read_quantity(const json::Document& document, const std::string& pointer);
 
 /// "deformation", ...
 const char* name_of(QuantityKind kind);
@@ -81,4 +81,4 @@ Measured measure(const Quantity& quantity, const std::filesystem::path& run_dire
 /// Relative L2 distance of the last velocity field in frames.h5 from the exact flow (part of measure).
 Measured velocity_error(const Quantity& quantity, const std::filesystem::path& run_directory);
 
-}  // namespace rouleau::host
+}  // namespace rouleau::study

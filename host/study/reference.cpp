@@ -1,25 +1,26 @@
-#include "study/reference.hpp"
+#include "reference.hpp"
 
 #include <filesystem>
 
-#include "input/document.hpp"
-#include "study/study_fields.hpp"
+#include "json/document.hpp"
+#include "json/shown.hpp"
+#include "study_fields.hpp"
 
-namespace rouleau::host {
+namespace rouleau::study {
 
 namespace {
 
 /// The number at a JSON pointer of a file that the study names.
-double number_of_file(const StudyFields& fields, const Document& file, const std::string& pointer) {
+double number_of_file(const StudyFields& fields, const json::Document& file, const std::string& pointer) {
   const std::string inside = fields.text(pointer);
-  const auto tokens = split_pointer(inside);
+  const auto tokens = json::split_pointer(inside);
   if (!tokens) {
     fields.scene_fields().refuse(pointer, in_quotes(inside) + " is no JSON pointer (for example \"/0/steady/D\")");
   }
   const nlohmann::json* at = &file.root();
   std::string reached;
   for (const std::string& token : *tokens) {
-    const auto index = array_index(token);
+    const auto index = json::array_index(token);
     const nlohmann::json* next = nullptr;
     if (at->is_object() && at->contains(token)) next = &at->at(token);
     if (at->is_array() && index && *index < at->size()) next = &at->at(*index);
@@ -35,20 +36,20 @@ double number_of_file(const StudyFields& fields, const Document& file, const std
                        did_you_mean(token, names));
     }
     at = next;
-    reached = child_pointer(reached, token);
+    reached = json::child_pointer(reached, token);
   }
   if (!at->is_number())
     fields.scene_fields().refuse(
-        pointer, file.file() + " has " + shown(*at) + " at " + in_quotes(inside) + ", which is not a number");
+        pointer, file.file() + " has " + json::shown(*at) + " at " + in_quotes(inside) + ", which is not a number");
   return at->get<double>();
 }
 
-Reference reference_of_file(const StudyFields& fields, const Document& document, const std::string& pointer) {
+Reference reference_of_file(const StudyFields& fields, const json::Document& document, const std::string& pointer) {
   const std::string whose = "a reference with \"file\"";
   fields.only(pointer, {"file", "pointer", "uncertainty", "factor", "offset", "source"}, whose);
   fields.needs(pointer, "pointer", whose);
   const std::string name = fields.text(pointer + "/file");
-  const Document file = Document::read(std::filesystem::path(document.file()).parent_path() / name);
+  const json::Document file = json::Document::read(std::filesystem::path(document.file()).parent_path() / name);
   const double factor = fields.has(pointer + "/factor") ? fields.number(pointer + "/factor") : 1.0;
   const double offset = fields.has(pointer + "/offset") ? fields.number(pointer + "/offset") : 0.0;
   Reference result;
@@ -74,8 +75,8 @@ Reference reference_of_value(const StudyFields& fields, const std::string& point
   return result;
 }
 
-Reference reference_of_any_kind(const StudyFields& fields, const Document& document, const std::string& pointer) {
-  const SceneFields& scene = fields.scene_fields();
+Reference reference_of_any_kind(const StudyFields& fields, const json::Document& document, const std::string& pointer) {
+  const scene::SceneFields& scene = fields.scene_fields();
   Reference result;
   if (scene.at(pointer).is_string()) {
     fields.choice(pointer, {"richardson"});
@@ -109,7 +110,8 @@ Reference reference_of_any_kind(const StudyFields& fields, const Document& docum
 
 }  // namespace
 
-Reference read_reference(const SceneFields& scene_fields, const Document& document, const std::string& pointer) {
+Reference read_reference(const scene::SceneFields& scene_fields, const json::Document& document,
+                         const std::string& pointer) {
   Reference result = reference_of_any_kind(StudyFields(scene_fields), document, pointer);
   if (result.uncertainty < 0) scene_fields.refuse(pointer + "/uncertainty", "an uncertainty must not be below 0");
   return result;
@@ -131,4 +133,4 @@ const char* name_of(ReferenceKind kind) {
   return "";
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::study

@@ -5,10 +5,13 @@
 #include <map>
 #include <string>
 
-namespace rouleau::host {
-
+namespace rouleau::json {
 class Document;
+}
+namespace rouleau::scene {
 class SceneFields;
+}
+namespace rouleau::study {
 
 enum class ReferenceKind {
   value,       ///< given in the study
@@ -34,9 +37,9 @@ struct Reference {
 ///                           the file is relative to the document's folder; value = number x factor + offset
 ///     {"analytic": "zero"}  "richardson"  {"richardson": {"scheme": "corrected"}}  {"point": {"resolution": "40"}}
 /// Throws Error(bad_input) at the place of a fault, Error(input_output) for a file that cannot be read.
-Reference read_reference(const SceneFields& fields, const Document& document, const std::string& pointer);
+Reference read_reference(const scene::SceneFields& fields, const json::Document& document, const std::string& pointer);
 
 /// "value", "file", ...
 const char* name_of(ReferenceKind kind);
 
-}  // namespace rouleau::host
+}  // namespace rouleau::study

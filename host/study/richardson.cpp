@@ -1,13 +1,13 @@
-#include "study/richardson.hpp"
+#include "richardson.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
-#include "input/wording.hpp"
+#include "base/text.hpp"
 
-namespace rouleau::host {
+namespace rouleau::study {
 
 namespace {
 
@@ -258,4 +258,4 @@ Extrapolation extrapolate(const std::vector<GridValue>& grids) {
   return result;
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::study

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace rouleau::host {
+namespace rouleau::study {
 
 /// A value found on one grid. `spacing` is positive and in any unit: only ratios matter.
 struct GridValue {
@@ -51,4 +51,4 @@ double observed_order(const std::array<GridValue, 3>& grids);
 /// are those of the least-squares fit to the finest four, each weighed by 1/spacing^2.
 Extrapolation extrapolate(const std::vector<GridValue>& grids);
 
-}  // namespace rouleau::host
+}  // namespace rouleau::study

@@ -2,10 +2,10 @@
 #include <cmath>
 #include <limits>
 
-#include "input/wording.hpp"
-#include "study/analysis.hpp"
+#include "analysis.hpp"
+#include "base/text.hpp"
 
-namespace rouleau::host {
+namespace rouleau::study {
 
 namespace {
 
@@ -109,4 +109,4 @@ std::string time_in_words(double seconds) {
   return seconds < 7200 ? number(seconds / 60, 2) + " min" : number(seconds / 3600, 2) + " h";
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::study

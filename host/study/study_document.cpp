@@ -3,26 +3,27 @@
 #include <algorithm>
 #include <set>
 
+#include "base/text.hpp"
 #include "embedded_schemas.hpp"
-#include "input/json_pointer.hpp"
-#include "input/scene.hpp"
-#include "input/schema.hpp"
-#include "input/wording.hpp"
-#include "shared_keys.hpp"
+#include "json/json_pointer.hpp"
+#include "json/schema.hpp"
+#include "scene/scene.hpp"
+#include "trial/shared_keys.hpp"
 
-namespace rouleau::host {
+namespace rouleau::study {
 
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
+using Json = nlohmann::json;
 
 /// The scene with the changes of "set", found right as far as that can be said without plugins.
-json read_base_scene(const Document& document, const fs::path& scene_file) {
-  const json& given = document.root()["scene"];
-  json scene = read_changed_scene(document, scene_file, "study's");
+Json read_base_scene(const json::Document& document, const fs::path& scene_file) {
+  const Json& given = document.root()["scene"];
+  Json scene = trial::read_changed_scene(document, scene_file, "study's");
   try {
-    validate(Document::parse(scene.dump(2), scene_file.string()), scene_schema());
+    json::validate(json::Document::parse(scene.dump(2), scene_file.string()),
+                            json::scene_schema());
   } catch (const Error& error) {
     // The changed scene has no lines of its own: those of the study, or of its "set".
     const std::string what = error.what(), problem = what.substr(std::min(what.find('\n') + 3, what.size()));
@@ -39,10 +40,12 @@ void refuse_useless_axes(const Study& study) {
     std::string first;
     bool any = false;
     for (std::size_t i = 0; i < study.axes[a].settings.size() && !any; ++i) {
-      Point point = study.default_point;
+      trial::Point point = study.default_point;
       point.setting[a] = static_cast<int>(i);
       try {
-        validate(Document::parse(scene_of(study.scene, study.axes, point).dump(2), "the scene"), scene_schema());
+        json::validate(
+            json::Document::parse(trial::scene_of(study.scene, study.axes, point).dump(2), "the scene"),
+            json::scene_schema());
         any = true;
       } catch (const Error& error) {
         if (first.empty())
@@ -50,14 +53,14 @@ void refuse_useless_axes(const Study& study) {
       }
     }
     if (!any)
-      throw Error(ExitCode::bad_input, study.document->place(child_pointer("/matrix", a)),
+      throw Error(ExitCode::bad_input, study.document->place(json::child_pointer("/matrix", a)),
                   "no setting of this axis makes a scene that can be run; the first: " + first);
   }
 }
 
-std::vector<std::string> labels_in(const Axis& axis) {
+std::vector<std::string> labels_in(const trial::Axis& axis) {
   std::vector<std::string> labels;
-  for (const Setting& setting : axis.settings) labels.push_back(setting.label);
+  for (const trial::Setting& setting : axis.settings) labels.push_back(setting.label);
   return labels;
 }
 
@@ -71,9 +74,9 @@ int index_of(const std::vector<std::string>& words, const std::string& word, con
 }
 
 int read_line(const Study& study) {
-  const json& root = study.document->root();
+  const Json& root = study.document->root();
   std::vector<std::string> names;
-  for (const Axis& axis : study.axes) names.push_back(axis.name);
+  for (const trial::Axis& axis : study.axes) names.push_back(axis.name);
   if (root.contains("line")) return index_of(names, root["line"], study.document->place("/line"), "axis of the matrix");
   for (std::size_t a = 0; a < study.axes.size(); ++a) {
     if (study.axes[a].refines) return static_cast<int>(a);
@@ -81,34 +84,34 @@ int read_line(const Study& study) {
   return study.axes.empty() ? -1 : 0;
 }
 
-Point read_default(const Study& study) {
-  const Document& document = *study.document;
-  Point point;
+trial::Point read_default(const Study& study) {
+  const json::Document& document = *study.document;
+  trial::Point point;
   for (std::size_t a = 0; a < study.axes.size(); ++a) {
     int first = 0;
     if (study.axes[a].refines) {
-      const json& factors = document.root()["matrix"][a]["refine"];
-      const auto one = std::find(factors.begin(), factors.end(), json(1));
+      const Json& factors = document.root()["matrix"][a]["refine"];
+      const auto one = std::find(factors.begin(), factors.end(), Json(1));
       first = one == factors.end() ? 0 : static_cast<int>(one - factors.begin());
     }
     point.setting.push_back(first);
   }
   std::vector<std::string> names;
-  for (const Axis& axis : study.axes) names.push_back(axis.name);
-  const json given = document.root().value("default", json::object());
+  for (const trial::Axis& axis : study.axes) names.push_back(axis.name);
+  const Json given = document.root().value("default", Json::object());
   for (const auto& [name, label] : given.items()) {
-    const std::string place = child_pointer("/default", name);
+    const std::string place = json::child_pointer("/default", name);
     const auto axis = static_cast<std::size_t>(index_of(names, name, document.key_place(place), "axis of the matrix"));
     point.setting[axis] = index_of(labels_in(study.axes[axis]), label, document.place(place), "label of this axis");
   }
   return point;
 }
 
-std::vector<Quantity> read_quantities(const Document& document) {
+std::vector<Quantity> read_quantities(const json::Document& document) {
   std::vector<Quantity> quantities;
   std::set<std::string> names;
   for (std::size_t i = 0; i < document.root()["quantities"].size(); ++i) {
-    const std::string pointer = child_pointer("/quantities", i);
+    const std::string pointer = json::child_pointer("/quantities", i);
     quantities.push_back(read_quantity(document, pointer));
     if (!names.insert(quantities.back().name).second)
       throw Error(ExitCode::bad_input, document.place(pointer + "/name"),
@@ -121,15 +124,15 @@ std::vector<Quantity> read_quantities(const Document& document) {
 
 Study read_study(const fs::path& file) {
   Study study;
-  study.document = std::make_shared<const Document>(Document::read(file));
-  const Document& document = *study.document;
-  validate(document, study_schema());
-  const json& root = document.root();
+  study.document = std::make_shared<const json::Document>(json::Document::read(file));
+  const json::Document& document = *study.document;
+  json::validate(document, study_schema());
+  const Json& root = document.root();
   study.title = root.value("title", file.stem().string());
   study.file = file;
-  study.scene_file = scene_file_of(document, file);
+  study.scene_file = trial::scene_file_of(document, file);
   study.scene = read_base_scene(document, study.scene_file);
-  study.axes = read_axes(document, "/matrix", study.scene);
+  study.axes = trial::read_axes(document, "/matrix", study.scene);
   study.default_point = read_default(study);
   study.line = read_line(study);
   refuse_useless_axes(study);
@@ -137,18 +140,18 @@ Study read_study(const fs::path& file) {
   study.threads = root.value("threads", study.threads);
   study.repeats = root.value("repeats", study.repeats);
   study.warm_up = root.value("warm_up", study.warm_up);
-  if (root.contains("time_limit")) study.time_limit_s = read_time_limit(document, "10 min");
+  if (root.contains("time_limit")) study.time_limit_s = trial::read_time_limit(document, "10 min");
   return study;
 }
 
-const json& study_schema() {
-  static const json schema = with_matrix_definitions(study_schema_text);
+const Json& study_schema() {
+  static const Json schema = trial::with_matrix_definitions(study_schema_text);
   return schema;
 }
 
-const json& study_result_schema() {
-  static const json schema = json::parse(study_result_schema_text);
+const Json& study_result_schema() {
+  static const Json schema = Json::parse(study_result_schema_text);
   return schema;
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::study

@@ -7,21 +7,21 @@
 #include <string>
 #include <vector>
 
-#include "input/document.hpp"
-#include "matrix.hpp"
+#include "json/document.hpp"
 #include "quantity.hpp"
+#include "trial/matrix.hpp"
 
-namespace rouleau::host {
+namespace rouleau::study {
 
 struct Study {
-  std::shared_ptr<const Document> document;
+  std::shared_ptr<const json::Document> document;
   std::string title;
   std::filesystem::path file;
   std::filesystem::path scene_file;  ///< the study's own file where it holds the scene
   nlohmann::json scene;              ///< with the changes of "set"
-  std::vector<Axis> axes;
+  std::vector<trial::Axis> axes;
   int line = -1;  ///< index of an axis; -1 without axes
-  Point default_point;
+  trial::Point default_point;
   std::vector<Quantity> quantities;
   int threads = 1, repeats = 3;
   bool warm_up = true;
@@ -36,4 +36,4 @@ Study read_study(const std::filesystem::path& file);
 const nlohmann::json& study_schema();
 const nlohmann::json& study_result_schema();
 
-}  // namespace rouleau::host
+}  // namespace rouleau::study

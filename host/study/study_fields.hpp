@@ -6,46 +6,47 @@
 #include <string>
 #include <vector>
 
-#include "input/json_pointer.hpp"
-#include "input/scene_fields.hpp"
-#include "input/schema.hpp"
-#include "input/wording.hpp"
+#include "base/text.hpp"
+#include "json/json_pointer.hpp"
+#include "json/schema.hpp"
+#include "json/shown.hpp"
+#include "scene/scene_reader.hpp"
 
-namespace rouleau::host {
+namespace rouleau::study {
 
 /// Values at JSON pointers of a study. Every member throws Error(bad_input) at the place of a value of another type.
 class StudyFields {
  public:
-  explicit StudyFields(const SceneFields& fields) : fields_(fields) {}
+  explicit StudyFields(const scene::SceneFields& fields) : fields_(fields) {}
 
-  [[nodiscard]] const SceneFields& scene_fields() const { return fields_; }
+  [[nodiscard]] const scene::SceneFields& scene_fields() const { return fields_; }
   [[nodiscard]] bool has(const std::string& pointer) const { return fields_.has(pointer); }
   [[nodiscard]] bool is_text(const std::string& pointer) const { return fields_.at(pointer).is_string(); }
 
   [[nodiscard]] std::string text(const std::string& pointer) const {
-    if (!is_text(pointer)) fields_.refuse(pointer, subject(pointer) + " must be a text");
+    if (!is_text(pointer)) fields_.refuse(pointer, json::subject(pointer) + " must be a text");
     return fields_.line(pointer);
   }
   [[nodiscard]] double number(const std::string& pointer) const {
     const auto& value = fields_.at(pointer);
-    if (!value.is_number()) fields_.refuse(pointer, shown(value) + " is not a number");
+    if (!value.is_number()) fields_.refuse(pointer, json::shown(value) + " is not a number");
     return value.get<double>();
   }
   [[nodiscard]] double positive(const std::string& pointer) const {
     const double value = number(pointer);
-    if (!(value > 0)) fields_.refuse(pointer, shown(fields_.at(pointer)) + " must be greater than 0");
+    if (!(value > 0)) fields_.refuse(pointer, json::shown(fields_.at(pointer)) + " must be greater than 0");
     return value;
   }
   [[nodiscard]] int count(const std::string& pointer, int least) const {
     const auto& value = fields_.at(pointer);
     constexpr long long most = 1'000'000'000;
     if (!value.is_number_integer() || value.get<long long>() < least || value.get<long long>() > most)
-      fields_.refuse(pointer, shown(value) + " must be a whole number from " + std::to_string(least) + " on");
+      fields_.refuse(pointer, json::shown(value) + " must be a whole number from " + std::to_string(least) + " on");
     return value.get<int>();
   }
   [[nodiscard]] bool yes(const std::string& pointer) const {
     const auto& value = fields_.at(pointer);
-    if (!value.is_boolean()) fields_.refuse(pointer, shown(value) + " must be true or false");
+    if (!value.is_boolean()) fields_.refuse(pointer, json::shown(value) + " must be true or false");
     return value.get<bool>();
   }
   /// One of the words, as its index.
@@ -59,7 +60,8 @@ class StudyFields {
   [[nodiscard]] std::map<std::string, std::string> labels(const std::string& pointer) const {
     if (!fields_.at(pointer).is_object()) fields_.refuse(pointer, "labels are given as {\"axis\": \"label\"}");
     std::map<std::string, std::string> result;
-    for (const auto& [name, value] : fields_.at(pointer).items()) result[name] = text(child_pointer(pointer, name));
+    for (const auto& [name, value] : fields_.at(pointer).items())
+      result[name] = text(json::child_pointer(pointer, name));
     return result;
   }
   /// The object at `pointer` has no other keys than these.
@@ -67,17 +69,18 @@ class StudyFields {
     if (!fields_.at(pointer).is_object()) fields_.refuse(pointer, whose + " must be an object {...}");
     for (const auto& [name, value] : fields_.at(pointer).items()) {
       if (std::find(keys.begin(), keys.end(), name) != keys.end()) continue;
-      fields_.refuse_key(child_pointer(pointer, name), in_quotes(name) + " is no key of " + whose +
-                                                           did_you_mean(name, keys) + "\nit may have " + listed(keys));
+      fields_.refuse_key(
+          json::child_pointer(pointer, name),
+          in_quotes(name) + " is no key of " + whose + did_you_mean(name, keys) + "\nit may have " + listed(keys));
     }
   }
   /// The object at `pointer` has this key.
   void needs(const std::string& pointer, const std::string& key, const std::string& whose) const {
-    if (!has(child_pointer(pointer, key))) fields_.refuse(pointer, whose + " needs " + in_quotes(key));
+    if (!has(json::child_pointer(pointer, key))) fields_.refuse(pointer, whose + " needs " + in_quotes(key));
   }
 
  private:
-  const SceneFields& fields_;
+  const scene::SceneFields& fields_;
 };
 
-}  // namespace rouleau::host
+}  // namespace rouleau::study

@@ -7,7 +7,7 @@
 
 #include "study_state.hpp"
 
-namespace rouleau::host {
+namespace rouleau::study {
 
 /// What study.json says (study-result.schema.json).
 nlohmann::json study_json(const StudyState& state);
@@ -17,4 +17,4 @@ std::string study_csv(const nlohmann::json& study);
 /// Writes these and the page into the directory. Throws Error(input_output).
 void write_study_files(const StudyState& state, const std::filesystem::path& directory);
 
-}  // namespace rouleau::host
+}  // namespace rouleau::study

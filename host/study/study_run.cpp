@@ -6,35 +6,35 @@
 #include <set>
 
 #include "analysis_json.hpp"
-#include "error.hpp"
-#include "fingerprint.hpp"
-#include "input/wording.hpp"
-#include "result_directory.hpp"
+#include "base/error.hpp"
+#include "base/text.hpp"
 #include "run/provenance.hpp"
 #include "study_files.hpp"
 #include "target.hpp"
+#include "trial/fingerprint.hpp"
+#include "trial/result_directory.hpp"
 
-namespace rouleau::host {
+namespace rouleau::study {
 
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
+using Json = nlohmann::json;
 
 /// A warm-up fills the caches of the system and lets the processor find its frequency; it need not go to the end.
 constexpr double warm_up_part = 0.1;
 
 std::string words_of(const MatrixPoint& point) {
-  const PointRecord& record = *point.record;
-  if (record.end != TrialEnd::completed) {
-    std::string text = to_string(record.end);
+  const trial::PointRecord& record = *point.record;
+  if (record.end != trial::TrialEnd::completed) {
+    std::string text = trial::to_string(record.end);
     const std::string message =
         record.failure["message"].is_string() ? record.failure["message"].get<std::string>() : "";
     if (record.failure["step"].is_number()) text += " at step " + record.failure["step"].dump();
     return message.empty() ? text : text + ": " + message.substr(0, message.find('\n'));
   }
   std::vector<double> walls;
-  for (const TimedRun& run : record.runs) walls.push_back(run.wall_s);
+  for (const trial::TimedRun& run : record.runs) walls.push_back(run.wall_s);
   const auto [least, most] = std::minmax_element(walls.begin(), walls.end());
   std::string text = record.steps.dump() + " steps in " + duration_text(*least);
   if (walls.size() > 1) text += " to " + duration_text(*most);
@@ -54,23 +54,23 @@ StudyRun::StudyRun(const Study& study, StudyOptions options)
     : study_(study),
       options_(std::move(options)),
       points_folder_(options_.directory / "points"),
-      timing_lock_(timing_lock_file()) {
-  take_result_directory(options_.directory, {"study.json", "study", "study"}, directory_lock_);
+      timing_lock_(trial::timing_lock_file()) {
+  trial::take_result_directory(options_.directory, {"study.json", "study", "study"}, directory_lock_);
   state_.study = &study_;
-  state_.started = present_time();
+  state_.started = run::present_time();
 }
 
 bool StudyRun::interrupted() const { return options_.interrupted != nullptr && *options_.interrupted; }
 
 fs::path StudyRun::directory_of(const MatrixPoint& point) const {
-  return points_folder_ / directory_name(point.fingerprint);
+  return points_folder_ / trial::directory_name(point.fingerprint);
 }
 
 void StudyRun::prepare() {
-  const std::vector<Point> all = cross(study_.axes);
+  const std::vector<trial::Point> all = trial::cross(study_.axes);
   for (std::size_t i = 0; i < all.size(); ++i) {
-    state_.points.push_back({static_cast<int>(i), all[i], scene_of(study_.scene, study_.axes, all[i]),
-                             threads_of(study_.axes, all[i], study_.threads)});
+    state_.points.push_back({static_cast<int>(i), all[i], trial::scene_of(study_.scene, study_.axes, all[i]),
+                             trial::threads_of(study_.axes, all[i], study_.threads)});
     prepare_point(state_.points.back());
   }
   for (MatrixPoint& point : state_.points) {
@@ -79,11 +79,12 @@ void StudyRun::prepare() {
 }
 
 void StudyRun::prepare_point(MatrixPoint& point) {
-  point.fingerprint =
-      fingerprint(point.scene, study_.scene_file, {"threads " + std::to_string(point.threads), machine_description()});
-  point.record = read_record(points_folder_, point.fingerprint);
+  point.fingerprint = trial::fingerprint(point.scene, study_.scene_file,
+                                         {"threads " + std::to_string(point.threads), run::machine_description()});
+  point.record = trial::read_record(points_folder_, point.fingerprint);
   // What did not end in time may with more of it.
-  if (point.record && point.record->end == TrialEnd::timed_out && point.record->time_limit_s < study_.time_limit_s)
+  if (point.record && point.record->end == trial::TrialEnd::timed_out &&
+      point.record->time_limit_s < study_.time_limit_s)
     point.record.reset();
   if (point.record) {
     measure_point(study_, point, directory_of(point));
@@ -93,10 +94,10 @@ void StudyRun::prepare_point(MatrixPoint& point) {
 }
 
 void StudyRun::plan_point(MatrixPoint& point) {
-  Trial trial{point.scene, study_.scene_file, directory_of(point)};
+  trial::Trial trial{point.scene, study_.scene_file, directory_of(point)};
   trial.program = options_.program;
   trial.interrupted = options_.interrupted;
-  const json plan = plan_trial(trial);
+  const Json plan = trial::plan_trial(trial);
   point.estimated_s = plan.is_object() ? plan["estimate"].value("wall_s", NAN) : NAN;
   point.steps_at_most = plan.is_object() ? plan["estimate"].value("steps_at_most", 0.0) : 0;
 }
@@ -104,7 +105,7 @@ void StudyRun::plan_point(MatrixPoint& point) {
 /// Timed runs that a point still wants.
 int StudyRun::runs_missing(const MatrixPoint& point) const {
   if (!point.record) return study_.repeats;
-  if (point.record->end != TrialEnd::completed) return 0;
+  if (point.record->end != trial::TrialEnd::completed) return 0;
   return std::max(0, study_.repeats - static_cast<int>(point.record->runs.size()));
 }
 
@@ -132,7 +133,7 @@ bool StudyRun::run() {
   if (missing < all) say(std::to_string(all - missing) + " of " + std::to_string(all) + " points have been run before");
   write();
   options_.target ? run_for_target() : run_all();
-  if (!interrupted()) state_.finished = present_time();
+  if (!interrupted()) state_.finished = run::present_time();
   write();
   return !interrupted();
 }
@@ -155,7 +156,7 @@ void StudyRun::run_all() {
     }
     double all = 0;
     for (const MatrixPoint* other : missing) all += expected_s(*other);
-    say(name_of(study_.axes, point.point) + ": expected " + duration_text(expected) + "; " +
+    say(trial::name_of(study_.axes, point.point) + ": expected " + duration_text(expected) + "; " +
         std::to_string(missing.size()) + " of " + std::to_string(state_.points.size()) + " points left, " +
         duration_text(std::min(all, left)));
     if (take_turn(point) != PointEnd::done) passed.insert(point.id);
@@ -175,7 +176,7 @@ void StudyRun::run_for_target() {
       break;
     }
     MatrixPoint& point = state_.points[*decision.next];
-    say(name_of(study_.axes, point.point) + ": expected " + duration_text(expected_s(point)));
+    say(trial::name_of(study_.axes, point.point) + ": expected " + duration_text(expected_s(point)));
     in_budget = take_turn(point) == PointEnd::done;
   }
   if (interrupted()) return;
@@ -188,7 +189,7 @@ StudyRun::PointEnd StudyRun::take_turn(MatrixPoint& point) {
   const auto waits = [&] { say("  waiting: another study on this machine is taking times"); };
   if (!timing_lock_.wait(waits, options_.interrupted)) return PointEnd::interrupted;
   // Another point may have had the same scene.
-  if (!point.record) point.record = read_record(points_folder_, point.fingerprint);
+  if (!point.record) point.record = trial::read_record(points_folder_, point.fingerprint);
   const PointEnd end = run_point(point);
   timing_lock_.release();
   if (end == PointEnd::out_of_budget && !point.record) point.left_out = "stopped when the budget was used up";
@@ -208,10 +209,10 @@ StudyRun::PointEnd StudyRun::run_point(MatrixPoint& point) {
   while (runs_missing(point) > 0) {
     const double left = options_.budget_s - spent_s_;
     if (left <= 0) return PointEnd::out_of_budget;
-    const TrialResult result = run_once(point, !warm);
+    const trial::TrialResult result = run_once(point, !warm);
     spent_s_ += result.wall_s;
-    if (result.end == TrialEnd::interrupted) return PointEnd::interrupted;
-    if (result.end == TrialEnd::timed_out && left < study_.time_limit_s) return PointEnd::out_of_budget;
+    if (result.end == trial::TrialEnd::interrupted) return PointEnd::interrupted;
+    if (result.end == trial::TrialEnd::timed_out && left < study_.time_limit_s) return PointEnd::out_of_budget;
     if (warm) keep(point, result);
     warm = true;
   }
@@ -219,11 +220,11 @@ StudyRun::PointEnd StudyRun::run_point(MatrixPoint& point) {
 }
 
 /// In a directory of its own, which takes its name when the run is whole.
-TrialResult StudyRun::run_once(const MatrixPoint& point, bool warm_up) {
+trial::TrialResult StudyRun::run_once(const MatrixPoint& point, bool warm_up) {
   const fs::path directory = directory_of(point).string() + ".running";
   fs::remove_all(directory);
-  Trial trial{point.scene, study_.scene_file, directory, point.threads,
-              std::min(study_.time_limit_s, options_.budget_s - spent_s_)};
+  trial::Trial trial{point.scene, study_.scene_file, directory, point.threads,
+                     std::min(study_.time_limit_s, options_.budget_s - spent_s_)};
   trial.program = options_.program;
   trial.interrupted = options_.interrupted;
   trial.written_scene = directory_of(point).string() + ".scene.json";
@@ -231,25 +232,25 @@ TrialResult StudyRun::run_once(const MatrixPoint& point, bool warm_up) {
     const long steps = std::max(1L, std::lround(warm_up_part * point.steps_at_most));
     trial.options = {"--max-steps", std::to_string(steps)};
   }
-  TrialResult result = run_trial(trial);
-  const bool by_study = result.end == TrialEnd::timed_out && trial.time_limit_s < study_.time_limit_s;
-  if (result.end == TrialEnd::interrupted || by_study || warm_up) fs::remove_all(directory);
+  trial::TrialResult result = trial::run_trial(trial);
+  const bool by_study = result.end == trial::TrialEnd::timed_out && trial.time_limit_s < study_.time_limit_s;
+  if (result.end == trial::TrialEnd::interrupted || by_study || warm_up) fs::remove_all(directory);
   return result;
 }
 
-void StudyRun::keep(MatrixPoint& point, const TrialResult& result) {
+void StudyRun::keep(MatrixPoint& point, const trial::TrialResult& result) {
   const fs::path whole = directory_of(point), ran = whole.string() + ".running";
-  PointRecord record = point.record.value_or(PointRecord{});
+  trial::PointRecord record = point.record.value_or(trial::PointRecord{});
   record.fingerprint = point.fingerprint;
-  record.machine = machine_description();
+  record.machine = run::machine_description();
   record.time_limit_s = study_.time_limit_s;
-  add_run(record, result, ran);
-  const bool first = record.runs.size() == 1 || result.end != TrialEnd::completed;
+  trial::add_run(record, result, ran);
+  const bool first = record.runs.size() == 1 || result.end != trial::TrialEnd::completed;
   if (first) fs::remove_all(whole);
   if (first && fs::exists(ran)) fs::rename(ran, whole);
   fs::remove_all(ran);
-  write_record(points_folder_, record);
-  if (result.end == TrialEnd::completed && result.summary.is_object())
+  trial::write_record(points_folder_, record);
+  if (result.end == trial::TrialEnd::completed && result.summary.is_object())
     cost_.learn(point.point, point.estimated_s, result.summary.value("wall_s", result.wall_s), result.wall_s);
   point.record = std::move(record);
 }
@@ -260,4 +261,4 @@ void StudyRun::say(const std::string& line) const {
   if (!options_.quiet) std::cerr << line << std::endl;
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::study

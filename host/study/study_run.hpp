@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "run_cost.hpp"
 #include "study_state.hpp"
 #include "study_target.hpp"
-#include "timing_lock.hpp"
+#include "trial/file_lock.hpp"
+#include "trial/run_cost.hpp"
 
-namespace rouleau::host {
+namespace rouleau::study {
 
 struct StudyOptions {
   std::filesystem::path directory;
@@ -51,8 +51,8 @@ class StudyRun {
   /// In its turn among the timed runs of this machine; then study.json tells of it.
   PointEnd take_turn(MatrixPoint& point);
   PointEnd run_point(MatrixPoint& point);
-  TrialResult run_once(const MatrixPoint& point, bool warm_up);
-  void keep(MatrixPoint& point, const TrialResult& result);
+  trial::TrialResult run_once(const MatrixPoint& point, bool warm_up);
+  void keep(MatrixPoint& point, const trial::TrialResult& result);
   void write() const;
   void say(const std::string& line) const;
 
@@ -60,13 +60,13 @@ class StudyRun {
   StudyOptions options_;
   std::filesystem::path points_folder_;
   StudyState state_;
-  RunCost cost_;
+  trial::RunCost cost_;
   double spent_s_ = 0;
-  FileLock timing_lock_;
-  std::optional<FileLock> directory_lock_;
+  trial::FileLock timing_lock_;
+  std::optional<trial::FileLock> directory_lock_;
 };
 
 /// "3.2 s", "12 min", "2.1 h"
 std::string duration_text(double seconds);
 
-}  // namespace rouleau::host
+}  // namespace rouleau::study

@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "spread.hpp"
+#include "trial/median_range.hpp"
 
-namespace rouleau::host {
+namespace rouleau::study {
 
 namespace {
 
-StudyAxis axis_data(const Axis& axis) {
+StudyAxis axis_data(const trial::Axis& axis) {
   StudyAxis data{axis.name, {}, {}, true};
-  for (const Setting& setting : axis.settings) {
+  for (const trial::Setting& setting : axis.settings) {
     data.labels.push_back(setting.label);
     data.ordered = data.ordered && std::isfinite(setting.position);
     // Radii or heights in spacings: only ratios matter.
@@ -29,10 +29,10 @@ bool StudyState::complete() const {
 void measure_point(const Study& study, MatrixPoint& point, const std::filesystem::path& directory) {
   point.results.clear();
   for (const Quantity& quantity : study.quantities) {
-    if (point.record->end == TrialEnd::completed) {
+    if (point.record->end == trial::TrialEnd::completed) {
       point.results.push_back(measure(quantity, directory));
     } else {
-      point.results.push_back({NAN, 0, "the run did not complete: " + to_string(point.record->end)});
+      point.results.push_back({NAN, 0, "the run did not complete: " + trial::to_string(point.record->end)});
     }
   }
 }
@@ -40,21 +40,21 @@ void measure_point(const Study& study, MatrixPoint& point, const std::filesystem
 StudyData study_data(const StudyState& state) {
   const Study& study = *state.study;
   StudyData data;
-  for (const Axis& axis : study.axes) data.axes.push_back(axis_data(axis));
+  for (const trial::Axis& axis : study.axes) data.axes.push_back(axis_data(axis));
   data.line = study.line;
   data.default_setting = study.default_point.setting;
   data.quantities = study.quantities;
   for (const MatrixPoint& point : state.points) {
     const bool tried = point.record.has_value();
     std::vector<double> times;
-    if (tried && point.record->end == TrialEnd::completed) {
-      for (const TimedRun& run : point.record->runs) times.push_back(run.wall_s);
+    if (tried && point.record->end == trial::TrialEnd::completed) {
+      for (const trial::TimedRun& run : point.record->runs) times.push_back(run.wall_s);
     }
-    const Spread wall = spread_of(times);
+    const trial::Spread wall = trial::spread_of(times);
     data.points.push_back(
         {point.point.setting, tried, wall.median, point.estimated_s, point.results, {wall.least, wall.most}});
   }
   return data;
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::study

@@ -7,23 +7,23 @@
 #include <vector>
 
 #include "analysis.hpp"
-#include "point_record.hpp"
 #include "study_document.hpp"
+#include "trial/point_record.hpp"
 
-namespace rouleau::host {
+namespace rouleau::study {
 
 /// A point of the matrix and what is known of it.
 struct MatrixPoint {
   int id;  ///< place in cross()
-  Point point;
+  trial::Point point;
   nlohmann::json scene;
   int threads;
   std::string fingerprint = {};
-  double estimated_s = 0;                  ///< by the plan, one run; NaN: the plan refused
-  double steps_at_most = 0;                ///< by the plan
-  std::optional<PointRecord> record = {};  ///< whole or with fewer repeats than asked for
-  std::vector<Measured> results = {};      ///< for each quantity, once it has been run
-  std::string left_out = {};               ///< why it has not been run; empty: it has
+  double estimated_s = 0;                         ///< by the plan, one run; NaN: the plan refused
+  double steps_at_most = 0;                       ///< by the plan
+  std::optional<trial::PointRecord> record = {};  ///< whole or with fewer repeats than asked for
+  std::vector<Measured> results = {};             ///< for each quantity, once it has been run
+  std::string left_out = {};                      ///< why it has not been run; empty: it has
 };
 
 struct StudyState {
@@ -40,4 +40,4 @@ void measure_point(const Study& study, MatrixPoint& point, const std::filesystem
 /// The study as its conclusions are drawn from: every point, run or not, in the order of their ids.
 StudyData study_data(const StudyState& state);
 
-}  // namespace rouleau::host
+}  // namespace rouleau::study

@@ -4,10 +4,10 @@
 #include <charconv>
 #include <cmath>
 
-#include "error.hpp"
-#include "input/wording.hpp"
+#include "base/error.hpp"
+#include "base/text.hpp"
 
-namespace rouleau::host {
+namespace rouleau::study {
 
 StudyTarget read_target(const std::string& option, const std::vector<Quantity>& quantities) {
   const auto refuse = [&](const std::string& problem) {
@@ -39,4 +39,4 @@ StudyTarget read_target(const std::string& option, const std::vector<Quantity>& 
   return {index, error};
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::study

@@ -6,7 +6,7 @@
 
 #include "quantity.hpp"
 
-namespace rouleau::host {
+namespace rouleau::study {
 
 struct StudyTarget {
   std::size_t quantity;  ///< index
@@ -16,4 +16,4 @@ struct StudyTarget {
 /// "deformation=1%", "angle=0.5 deg", "area_drift=1e-4". Throws Error(bad_input) naming the option.
 StudyTarget read_target(const std::string& option, const std::vector<Quantity>& quantities);
 
-}  // namespace rouleau::host
+}  // namespace rouleau::study

@@ -1,12 +1,12 @@
-#include "study/target.hpp"
+#include "target.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "input/wording.hpp"
+#include "base/text.hpp"
 
-namespace rouleau::host {
+namespace rouleau::study {
 
 namespace {
 
@@ -343,4 +343,4 @@ TargetDecision decide_target(const StudyData& study, std::size_t quantity, doubl
   return ended(search, nearest, false);
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::study

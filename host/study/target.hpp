@@ -11,9 +11,9 @@
 #include <optional>
 #include <string>
 
-#include "study/analysis.hpp"
+#include "analysis.hpp"
 
-namespace rouleau::host {
+namespace rouleau::study {
 
 struct TargetDecision {
   std::optional<std::size_t> next;   ///< point to run before asking again; none: the search has ended
@@ -44,4 +44,4 @@ TargetBound bound_of(const StudyData& study, std::size_t quantity, const Quantit
 /// all points, were wrong by. NaN where nobody knows.
 double cost_of(const StudyData& study, std::size_t point);
 
-}  // namespace rouleau::host
+}  // namespace rouleau::study

@@ -1,12 +1,12 @@
 #include <cmath>
 #include <limits>
 
-#include "input/scene.hpp"
-#include "output/velocity_field.hpp"
-#include "study/exact_flow.hpp"
-#include "study/quantity.hpp"
+#include "exact_flow.hpp"
+#include "files/velocity_reader.hpp"
+#include "quantity.hpp"
+#include "scene/scene.hpp"
 
-namespace rouleau::host {
+namespace rouleau::study {
 
 namespace {
 
@@ -15,17 +15,18 @@ Measured no_velocity_error(std::string why_not) {
 }
 
 /// Force per volume along x that drives a stage, Pa/m.
-double drive(const Scene& scene, const Stage& stage) {
+double drive(const scene::Scene& scene, const scene::Stage& stage) {
   return scene.fluid.body_force.x() + stage.pressure_gradient.x();
 }
 
 /// Why the exact flows do not hold for a run; empty where they do.
-std::string why_no_exact_flow(const Scene& scene) {
+std::string why_no_exact_flow(const scene::Scene& scene) {
   if (!scene.cells.empty() || !scene.packings.empty())
     return "the scene has cells, and the exact flow is of the fluid alone";
   return scene.domain.periodic_y ? "the scene has no walls" : "";
 }
-std::string why_no_exact_flow(const Quantity& quantity, const Scene& scene, const Stage& stage, bool first) {
+std::string why_no_exact_flow(const Quantity& quantity, const scene::Scene& scene, const scene::Stage& stage,
+                              bool first) {
   if (quantity.poiseuille && drive(scene, stage) == 0)
     return "nothing drives the fluid along x in the stage " + stage.name;
   if (quantity.poiseuille && stage.shear_rate != 0) return "the walls move in the stage " + stage.name;
@@ -33,7 +34,7 @@ std::string why_no_exact_flow(const Quantity& quantity, const Scene& scene, cons
   if (!quantity.poiseuille && drive(scene, stage) != 0) return "a force drives the fluid in the stage " + stage.name;
   if (!quantity.steady && !first)
     return "the start-up is known of a fluid at rest, and the stage " + stage.name + " is not the first";
-  if (!quantity.steady && !quantity.poiseuille && stage.start == WallStart::developed)
+  if (!quantity.steady && !quantity.poiseuille && stage.start == scene::WallStart::developed)
     return "the stage " + stage.name + " starts with the developed flow";
   return "";
 }
@@ -41,11 +42,11 @@ std::string why_no_exact_flow(const Quantity& quantity, const Scene& scene, cons
 }  // namespace
 
 Measured velocity_error(const Quantity& quantity, const std::filesystem::path& run_directory) {
-  const Scene scene = read_unpacked_scene(run_directory / "scene.json");
+  const scene::Scene scene = scene::read_unpacked_scene(run_directory / "scene.json");
   if (const std::string why_not = why_no_exact_flow(scene); !why_not.empty()) return no_velocity_error(why_not);
-  const auto field = last_velocity(run_directory / "frames.h5");
+  const auto field = files::last_velocity(run_directory / "frames.h5");
   if (!field) return no_velocity_error("frames.h5 has no velocity: ask for it in output.fields");
-  const Stage& stage = scene.stages.at(field->stage);
+  const scene::Stage& stage = scene.stages.at(field->stage);
   if (const std::string why_not = why_no_exact_flow(quantity, scene, stage, field->stage == 0); !why_not.empty())
     return no_velocity_error(why_not);
 
@@ -67,4 +68,4 @@ Measured velocity_error(const Quantity& quantity, const std::filesystem::path& r
   return std::isfinite(error) ? Measured{error, 0, ""} : no_velocity_error("the velocity in frames.h5 is not finite");
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::study

@@ -5,7 +5,7 @@ import re
 
 HEAD = """# Every key of a scene
 
-Made by scripts/docs from host/input/scene.schema.json, the schema that the program itself checks scenes with; not to be
+Made by scripts/docs from host/scene/scene.schema.json, the schema that the program itself checks scenes with; not to be
 edited. [../scene.md](../scene.md) is the introduction, with an example and what a table cannot say.
 
 The first column is the JSON pointer, as `--set` and messages use it; `N` stands for the place in a list, from 0, `NAME`

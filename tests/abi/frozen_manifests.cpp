@@ -4,18 +4,20 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "input/document.hpp"
-#include "input/schema.hpp"
+#include "json/document.hpp"
+#include "json/schema.hpp"
 #include "plugin/manifest.hpp"
 
-using namespace rouleau::host;
+using namespace rouleau::json;
+using namespace rouleau::plugin;
+using namespace rouleau::units;
 namespace fs = std::filesystem;
-using nlohmann::json;
+using Json = nlohmann::json;
 
 namespace {
 
 /// Every "properties" of a schema, as pointers of the documents it describes; arrays' items count as /*.
-void collect_keys(const json& schema, const std::string& at, std::vector<std::string>& keys) {
+void collect_keys(const Json& schema, const std::string& at, std::vector<std::string>& keys) {
   if (schema.contains("properties")) {
     for (const auto& [name, member] : schema["properties"].items()) {
       keys.push_back(at + '/' + name);
@@ -25,13 +27,13 @@ void collect_keys(const json& schema, const std::string& at, std::vector<std::st
   if (schema.contains("items")) collect_keys(schema["items"], at + "/*", keys);
 }
 
-bool holds(const json& document, const std::string& key) {
+bool holds(const Json& document, const std::string& key) {
   if (key.empty()) return true;
   const auto end = std::min(key.find('/', 1), key.size());
   const std::string name = key.substr(1, end - 1), rest = key.substr(end);
   if (name != "*") return document.is_object() && document.contains(name) && holds(document[name], rest);
   return document.is_array() &&
-         std::any_of(document.begin(), document.end(), [&](const json& entry) { return holds(entry, rest); });
+         std::any_of(document.begin(), document.end(), [&](const Json& entry) { return holds(entry, rest); });
 }
 
 }  // namespace
@@ -81,15 +83,15 @@ TEST_CASE("the manifest with every key means what it meant") {
   CHECK(m.state[0].name == "bonds");
   CHECK(m.state[0].initial == Approx(3e12));
   CHECK(m.state[1].initial == 0);
-  CHECK(m.inactive_when == json{{"depth", 0}});
-  CHECK(m.stands_for == json{{"place", "physical"}});
-  CHECK(m.claims == json{{"conservative", true}, {"smooth_at_cutoff", false}, {"reproducible", true}, {"budget", 25}});
+  CHECK(m.inactive_when == Json{{"depth", 0}});
+  CHECK(m.stands_for == Json{{"place", "physical"}});
+  CHECK(m.claims == Json{{"conservative", true}, {"smooth_at_cutoff", false}, {"reproducible", true}, {"budget", 25}});
   CHECK(m.checks.size() == 2);
 }
 
 TEST_CASE("the manifest with every key has every key of the first release's schema") {
   const std::vector<std::string> appended_later = {};  // keys of later releases have their place here
-  const json document = Document::read(fs::path(FROZEN_SOURCES) / "every-key.json").root();
+  const Json document = Document::read(fs::path(FROZEN_SOURCES) / "every-key.json").root();
   std::vector<std::string> keys, missing;
   collect_keys(manifest_schema(), "", keys);
   for (const auto& key : keys) {

@@ -8,7 +8,7 @@
 #include "plugin/catalog.hpp"
 #include "plugin/model.hpp"
 
-using namespace rouleau::host;
+using namespace rouleau::plugin;
 
 namespace {
 

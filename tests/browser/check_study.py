@@ -120,7 +120,7 @@ class What_the_pages_are_tested_with(unittest.TestCase):
         except ImportError:
             self.skipTest("there is no python3-jsonschema (scripts/install-dependencies --full installs it)")
         source = Path(__file__).resolve().parent.parent.parent
-        results = {"host/study/study-result.schema.json": (STUDY, study_fixture.large_study(), study_fixture.small_study()), "host/limits/limits-result.schema.json": (LIMITS,)}
+        results = {"host/study/study-result.schema.json": (STUDY, study_fixture.large_study(), study_fixture.small_study()), "host/stability/limits-result.schema.json": (LIMITS,)}
         for name, fixtures in results.items():
             if (source / name).exists():
                 schema = json.loads((source / name).read_text())

@@ -572,7 +572,7 @@ class Documents_tell_what_is_so(Case):
                 for value in rule:
                     yield from keys(value)
 
-        for key in set(keys(json.loads((SOURCE / "host/input/scene.schema.json").read_text()))):
+        for key in set(keys(json.loads((SOURCE / "host/scene/scene.schema.json").read_text()))):
             self.assertTrue(re.search(rf"/{re.escape(key)}`|^## {re.escape(key)}$", text, re.MULTILINE), key)
 
     def test_every_column_key_and_log_event_of_a_run_is_in_its_document(self):

@@ -14,7 +14,7 @@ import unittest
 
 SOURCE, BUILD = map(pathlib.Path, sys.argv[1:3])
 PROGRAM = BUILD / "bin/rouleau"
-SCHEMA = json.loads((SOURCE / "host/input/scene.schema.json").read_text())
+SCHEMA = json.loads((SOURCE / "host/scene/scene.schema.json").read_text())
 
 SCENE = {
     "rouleau": 1,
@@ -152,7 +152,7 @@ class The_schema(unittest.TestCase):
     def test_every_default_is_what_the_program_takes_when_the_key_is_left_out(self):
         with_default = {p: rule["default"] for p, rule in RULES.items() if "default" in rule}
         self.assertEqual(set(OTHER), set(with_default))
-        header = (SOURCE / "host/input/scene.hpp").read_text()
+        header = (SOURCE / "host/scene/scene.hpp").read_text()
         base = {}
         for pointer, default in with_default.items():
             other = OTHER.get(pointer)

@@ -3,23 +3,23 @@
 
 #include <algorithm>
 
-#include "cell/membranes.hpp"
-#include "input/scene.hpp"
-#include "input/schema.hpp"
-#include "run/plan.hpp"
+#include "core/membrane/membranes.hpp"
+#include "json/schema.hpp"
+#include "plan/plan.hpp"
+#include "scene/scene.hpp"
 #include "target.hpp"
 
 namespace rouleau::fuzz {
 
 /// The shipped plugins, as built beside the program.
-inline const host::Catalog& shipped_catalog() {
-  static const host::Catalog catalog({ROULEAU_PLUGINS});
+inline const plugin::Catalog& shipped_catalog() {
+  static const plugin::Catalog catalog({ROULEAU_PLUGINS});
   return catalog;
 }
 
 /// Work that a scene may rightly ask for is bounded by time, not here: a thousand cells at random take minutes, and a
 /// million membrane nodes a second. Targets look at small scenes only, which reach the same lines.
-inline bool is_small(const host::Scene& scene) {
+inline bool is_small(const scene::Scene& scene) {
   constexpr int most_cells = 200, most_packed = 8;
   constexpr long most_membrane_nodes = 20'000;
   long nodes = 0;
@@ -33,13 +33,13 @@ inline bool is_small(const host::Scene& scene) {
 /// `rouleau plan FILE --set ...`, but for the scene's own plugin_dirs.
 inline void plan_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {}) {
   may_refuse([&] {
-    auto scene = host::read_unpacked_scene(file, overrides);
+    auto scene = scene::read_unpacked_scene(file, overrides);
     if (!is_small(scene)) return;
-    host::pack_cells(scene);
-    const auto plan = host::make_plan(scene, shipped_catalog());
-    if (plan.has_cells) host::make_membranes(scene, host::lattice_spacing(scene));
-    require_printable(host::to_text(plan));
-    host::to_json(plan).dump();
+    scene::pack_cells(scene);
+    const auto plan = plan::make_plan(scene, shipped_catalog());
+    if (plan.has_cells) membrane::make_membranes(scene, plan::lattice_spacing(scene));
+    require_printable(plan::to_text(plan));
+    plan::to_json(plan).dump();
   });
 }
 

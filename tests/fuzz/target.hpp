@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-#include "error.hpp"
+#include "base/error.hpp"
 
 /// A target: everything that the bytes of a file can set off in one part of the host. It returns for good bytes and for
 /// bad ones; it ends the process where the host does not keep what it promises.
@@ -68,11 +68,11 @@ template <class Work>
 void may_refuse(Work work) {
   try {
     work();
-  } catch (const host::Error& error) {
+  } catch (const rouleau::Error& error) {
     const std::string message = error.what();
     if (message.empty()) broken_promise("an error without words", message);
     require_printable(message);
-    if (error.code() == host::ExitCode::bad_input && error.place().file.empty()) {
+    if (error.code() == rouleau::ExitCode::bad_input && error.place().file.empty()) {
       broken_promise("bad input, but no place", message);
     }
   }

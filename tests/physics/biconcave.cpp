@@ -5,7 +5,8 @@
 
 #include "scene_run.hpp"
 
-using namespace rouleau::host;
+using namespace rouleau::study;
+using namespace rouleau::test;
 
 TEST_CASE("the biconcave cell at 20/s first passes -90 degrees at the reference's strain, whatever the number of nodes",
           "[biconcave]") {

@@ -8,7 +8,8 @@
 
 #include "scene_run.hpp"
 
-using namespace rouleau::host;
+using namespace rouleau::study;
+using namespace rouleau::test;
 
 namespace {
 

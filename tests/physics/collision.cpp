@@ -7,7 +7,9 @@
 
 #include "flow_fixture.hpp"
 
-using namespace rouleau::host;
+using namespace rouleau;
+using namespace rouleau::fluid;
+using namespace rouleau::test;
 
 namespace {
 

@@ -6,7 +6,7 @@
 #include "rigid_disc.hpp"
 #include "scene_run.hpp"
 
-using namespace rouleau::host;
+using namespace rouleau::test;
 
 namespace {
 

@@ -5,7 +5,9 @@
 #include "scene_run.hpp"
 #include "solver_fixture.hpp"
 
-using namespace rouleau::host;
+using namespace rouleau::fluid;
+using namespace rouleau::plan;
+using namespace rouleau::test;
 
 namespace {
 

@@ -1,5 +1,5 @@
 // The energy ledger against exact energies and powers, and against itself: what is lost must have been there.
-#include "run/energy.hpp"
+#include "observe/energy.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -7,11 +7,19 @@
 #include <iostream>
 #include <numbers>
 
-#include "cell/geometry.hpp"
+#include "core/membrane/geometry.hpp"
 #include "scene_run.hpp"
 #include "solver_fixture.hpp"
 
-using namespace rouleau::host;
+using namespace rouleau;
+using namespace rouleau::fluid;
+using namespace rouleau::membrane;
+using namespace rouleau::observe;
+using namespace rouleau::plan;
+using namespace rouleau::plugin;
+using namespace rouleau::scene;
+using namespace rouleau::solver;
+using namespace rouleau::test;
 
 namespace {
 

@@ -10,7 +10,8 @@
 #include "scene_run.hpp"
 #include "solver_fixture.hpp"
 
-using namespace rouleau::host;
+using namespace rouleau::test;
+using namespace rouleau::units;
 
 namespace {
 

@@ -7,7 +7,9 @@
 #include "flow_fixture.hpp"
 #include "study/exact_flow.hpp"
 
-using namespace rouleau::host;
+using namespace rouleau::fluid;
+using namespace rouleau::study;
+using namespace rouleau::test;
 
 namespace {
 

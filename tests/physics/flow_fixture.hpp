@@ -5,10 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "fluid/fluid.hpp"
+#include "core/fluid/fluid.hpp"
 #include "plugin/catalog.hpp"
 
-namespace rouleau::host {
+namespace rouleau::test {
+
+using namespace fluid;
+using namespace plugin;
 
 inline const Catalog& plugins() {
   static const Catalog catalog({ROULEAU_PLUGINS});
@@ -41,4 +44,4 @@ std::vector<Moments> column(Fluid<T>& fluid, int x) {
   return result;
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::test

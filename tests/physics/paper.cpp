@@ -5,7 +5,7 @@
 
 #include "scene_run.hpp"
 
-using namespace rouleau::host;
+using namespace rouleau::test;
 
 TEST_CASE("at 1.3e-6 J/m2 and 50/s a rouleau parts into two pairs with inertia at Re 3.5, and never without",
           "[paper]") {

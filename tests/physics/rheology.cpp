@@ -1,5 +1,5 @@
 // Observables of blood rheology against exact flows, the reciprocal theorem and boundary integrals.
-#include "run/rheology.hpp"
+#include "observe/rheology.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -9,7 +9,10 @@
 #include "scene_run.hpp"
 #include "solver_fixture.hpp"
 
-using namespace rouleau::host;
+using namespace rouleau::fluid;
+using namespace rouleau::observe;
+using namespace rouleau::plan;
+using namespace rouleau::test;
 
 namespace {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace rouleau::host {
+namespace rouleau::test {
 
 struct RigidDisc {
   double intrinsic_viscosity;  ///< (mean wall stress / (viscosity x shear rate) - 1) / area fraction, dilute
@@ -73,4 +73,4 @@ inline RigidDisc rigid_disc(double height, double period, int inside, int behind
   return {std::abs(dipole) / pi, f(2 * n), (a * f - b).cwiseAbs().maxCoeff()};
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::test

@@ -5,7 +5,7 @@
 
 #include "scene_run.hpp"
 
-using namespace rouleau::host;
+using namespace rouleau::test;
 
 namespace {
 

@@ -11,12 +11,18 @@
 #include <string>
 #include <vector>
 
-#include "run/numerics_bounds.hpp"
+#include "plan/numerics_auto_limits.hpp"
 #include "run/simulation.hpp"
 #include "scratch_folder.hpp"
 #include "study/history.hpp"
 
-namespace rouleau::host {
+namespace rouleau::test {
+
+using namespace files;
+using namespace plan;
+using namespace plugin;
+using namespace run;
+using namespace scene;
 
 inline const std::string scenes = ROULEAU_PHYSICS_SCENES;
 
@@ -85,4 +91,4 @@ inline nlohmann::json read_reference(const std::string& name) {
   return data;
 }
 
-}  // namespace rouleau::host
+}  // namespace rouleau::test

@@ -1,10 +1,15 @@
 // The solver of a scene's first stage, to be stepped by a test that changes the membranes first.
 #pragma once
 
+#include "core/solver/solver.hpp"
 #include "flow_fixture.hpp"
-#include "run/solver.hpp"
 
-namespace rouleau::host {
+namespace rouleau::test {
+
+using namespace membrane;
+using namespace plan;
+using namespace scene;
+using namespace solver;
 
 struct SolverBench {
   explicit SolverBench(const std::string& file, const std::vector<std::string>& overrides = {})
@@ -30,4 +35,4 @@ struct SolverBench {
   std::unique_ptr<Solver<double>> solver;
 };
 
-}  // namespace rouleau::host
+}  // namespace rouleau::test

@@ -4,12 +4,14 @@
 #include <iostream>
 #include <random>
 
-#include "cell/geometry.hpp"
-#include "cell/motion.hpp"
+#include "core/membrane/geometry.hpp"
+#include "core/membrane/motion.hpp"
 #include "scene_run.hpp"
 #include "solver_fixture.hpp"
 
-using namespace rouleau::host;
+using namespace rouleau::membrane;
+using namespace rouleau::test;
+using namespace rouleau::units;
 
 namespace {
 

@@ -4,11 +4,13 @@
 #include <iostream>
 #include <numbers>
 
-#include "cell/geometry.hpp"
+#include "core/membrane/geometry.hpp"
 #include "scene_run.hpp"
 #include "solver_fixture.hpp"
 
-using namespace rouleau::host;
+using namespace rouleau::membrane;
+using namespace rouleau::test;
+using namespace rouleau::units;
 
 namespace {
 

@@ -2,25 +2,26 @@
 // under a checksum that is right. (Bytes that were changed later are what the checksum is for: tests/resume.)
 #include "run/checkpoint.hpp"
 
-#include "input/parser.hpp"
+#include "json/parser.hpp"
 #include "plan_scene.hpp"
 #include "run/checkpoint_match.hpp"
 #include "scratch_folder.hpp"
-
 using namespace rouleau;
-using nlohmann::json;
+using Json = nlohmann::json;
 
 namespace {
 
 /// A scene with everything that remembers: bonds, a law with a memory, leakage, viscosities, two stages.
 struct Run {
   Run()
-      : scene(host::read_scene(ROULEAU_FUZZ_SCENES "/checkpoint.json")),
-        plan(host::make_plan(scene, fuzz::shipped_catalog())) {}
-  [[nodiscard]] host::Membranes membranes() const { return host::make_membranes(scene, host::lattice_spacing(scene)); }
+      : scene(scene::read_scene(ROULEAU_FUZZ_SCENES "/checkpoint.json")),
+        plan(plan::make_plan(scene, fuzz::shipped_catalog())) {}
+  [[nodiscard]] membrane::Membranes membranes() const {
+    return membrane::make_membranes(scene, plan::lattice_spacing(scene));
+  }
 
-  host::Scene scene;
-  host::Plan plan;
+  scene::Scene scene;
+  plan::Plan plan;
 };
 
 const Run& the_run() {
@@ -29,47 +30,47 @@ const Run& the_run() {
 }
 
 /// Arrays of the input: {"/path": [numbers]}.
-void write_arrays(host::CheckpointWriter& writer, const json& arrays) {
+void write_arrays(files::CheckpointWriter& writer, const Json& arrays) {
   for (const auto& [path, values] : arrays.items()) {
     if (!path.starts_with('/') || path.find("//") != std::string::npos || path.ends_with('/')) continue;
     std::vector<double> numbers;
-    for (const json& value : values) numbers.push_back(value.is_number() ? value.get<double>() : 0);
+    for (const Json& value : values) numbers.push_back(value.is_number() ? value.get<double>() : 0);
     writer.array(path, numbers);
   }
 }
 
 void resume(const std::filesystem::path& directory) {
   const Run& run = the_run();
-  const auto resumption = host::open_checkpoint(directory, run.plan, true);
-  const json saved = resumption.checkpoint->state();
-  host::Membranes membranes = run.membranes();
-  host::RunState state{host::Observer(run.scene, membranes)};
-  host::restore(*resumption.checkpoint, saved, run.plan, state, membranes);
-  host::Solver<double> solver(run.plan, state.stage, membranes);
-  host::restore(*resumption.checkpoint, saved, solver);
-  host::Summary summary;
+  const auto resumption = run::open_checkpoint(directory, run.plan, true);
+  const Json saved = resumption.checkpoint->state();
+  membrane::Membranes membranes = run.membranes();
+  run::RunState state{observe::Observer(run.scene, membranes)};
+  run::restore(*resumption.checkpoint, saved, run.plan, state, membranes);
+  solver::Solver<double> solver(run.plan, state.stage, membranes);
+  run::restore(*resumption.checkpoint, saved, solver);
+  run::Summary summary;
   state.report(summary);
-  host::to_json(summary).dump(-1, ' ', false, json::error_handler_t::replace);
+  run::to_json(summary).dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 }  // namespace
 
 void fuzz_target(std::string_view bytes) {
   static const test::ScratchFolder folder;
-  json input;
+  Json input;
   try {
-    input = host::parse_json(bytes).root;
-  } catch (const host::TextFault&) {
+    input = json::parse_json(bytes).root;
+  } catch (const json::TextFault&) {
     return;
   }
   if (!input.is_object()) return;
   {
-    host::CheckpointWriter writer(folder.path());
+    files::CheckpointWriter writer(folder.path());
     try {
-      write_arrays(writer, input.value("arrays", json::object()));
-      writer.facts(input.value("facts", json()));
-      writer.state(input.value("state", json()));
-    } catch (const host::Error&) {
+      write_arrays(writer, input.value("arrays", Json::object()));
+      writer.facts(input.value("facts", Json()));
+      writer.state(input.value("state", Json()));
+    } catch (const rouleau::Error&) {
       return;  // HDF5 takes no such path
     }
     writer.finish();
@@ -79,6 +80,6 @@ void fuzz_target(std::string_view bytes) {
 }
 
 fuzz::Form fuzz_form() {
-  static const json anything = json::object();
+  static const Json anything = Json::object();
   return {&anything, {}};
 }

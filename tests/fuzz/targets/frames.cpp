@@ -1,5 +1,5 @@
 // Outlines read back from a frames.h5: our reader, and HDF5 under it.
-#include "output/frames.hpp"
+#include "files/frames.hpp"
 
 #include <algorithm>
 
@@ -10,7 +10,7 @@ using namespace rouleau;
 void fuzz_target(std::string_view bytes) {
   const fuzz::MemoryFile file(bytes);
   fuzz::may_refuse([&] {
-    const host::FrameReader reader(file.path());
+    const files::FrameReader reader(file.path());
     static_cast<void>(reader.size());
     static_cast<void>(reader.periodic_y());
     const int frames = reader.frames();

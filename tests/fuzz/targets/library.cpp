@@ -6,7 +6,7 @@ using namespace rouleau;
 
 void fuzz_target(std::string_view bytes) {
   const fuzz::MemoryFile file(bytes);
-  fuzz::may_refuse([&] { fuzz::require_printable(host::reason_not_loadable(file.path(), "rouleau_open_v1")); });
+  fuzz::may_refuse([&] { fuzz::require_printable(plugin::reason_not_loadable(file.path(), "rouleau_open_v1")); });
 }
 
 fuzz::Form fuzz_form() { return {}; }

@@ -1,5 +1,5 @@
 // Files of limits: from the text to the values that the parameter would be tried with.
-#include "limits/limits_document.hpp"
+#include "stability/limits_document.hpp"
 
 #include "first_points.hpp"
 #include "plan_scene.hpp"
@@ -9,7 +9,7 @@ using namespace rouleau;
 void fuzz_target(std::string_view bytes) {
   const fuzz::MemoryFile file(bytes);
   fuzz::may_refuse([&] {
-    const auto limits = host::read_limits(file.path());
+    const auto limits = stability::read_limits(file.path());
     if (limits.parameter) {
       for (const double value : {limits.parameter->range.from, limits.parameter->range.to}) {
         limits.parameter->written(value).dump();
@@ -19,4 +19,4 @@ void fuzz_target(std::string_view bytes) {
   });
 }
 
-fuzz::Form fuzz_form() { return {&host::limits_schema(), fuzz::plugin_words()}; }
+fuzz::Form fuzz_form() { return {&stability::limits_schema(), fuzz::plugin_words()}; }

@@ -1,5 +1,5 @@
 // A run's directory as `rouleau report` reads it: summary.json, series.csv and cells.csv, split by lines of "====".
-#include "output/report_data.hpp"
+#include "report/report_data.hpp"
 
 #include <fstream>
 
@@ -20,7 +20,7 @@ void fuzz_target(std::string_view bytes) {
     bytes.remove_prefix(std::min(end + border.size(), bytes.size()));
   }
   fuzz::may_refuse(
-      [&] { host::report_data(folder.path()).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace); });
+      [&] { report::report_data(folder.path()).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace); });
 }
 
 fuzz::Form fuzz_form() { return {}; }

@@ -9,9 +9,9 @@ using namespace rouleau;
 void fuzz_target(std::string_view bytes) {
   const fuzz::MemoryFile file(bytes);
   fuzz::may_refuse([&] {
-    const auto study = host::read_study(file.path());
+    const auto study = study::read_study(file.path());
     fuzz::make_first_points(study.scene, study.axes);
   });
 }
 
-fuzz::Form fuzz_form() { return {&host::study_schema(), fuzz::plugin_words()}; }
+fuzz::Form fuzz_form() { return {&study::study_schema(), fuzz::plugin_words()}; }

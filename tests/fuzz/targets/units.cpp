@@ -1,5 +1,5 @@
 // Units and quantities, as scenes and manifests write them.
-#include "input/units.hpp"
+#include "units/units.hpp"
 
 #include <cmath>
 
@@ -13,7 +13,7 @@ template <class Work>
 void may_be_no_unit(Work work) {
   try {
     work();
-  } catch (const host::UnitError& error) {
+  } catch (const units::UnitError& error) {
     if (std::string_view(error.what()).empty()) fuzz::broken_promise("a unit is refused without words", "");
     fuzz::require_printable(error.what());
   }
@@ -22,7 +22,7 @@ void may_be_no_unit(Work work) {
 }  // namespace
 
 void fuzz_target(std::string_view bytes) {
-  static const host::Units units;
+  static const units::Units units;
   for (const char* wanted : {"m", "1", "rad", "Pa s", "K", "J/m2", "cm3 mol/g2"}) {
     may_be_no_unit([&] {
       if (!std::isfinite(units.to_si(bytes, wanted, "this"))) fuzz::broken_promise("not finite", std::string(bytes));

@@ -9,7 +9,7 @@
 
 namespace {
 
-using namespace rouleau::host;
+using namespace rouleau::conform;
 
 }  // namespace
 

@@ -7,7 +7,7 @@
 
 namespace {
 
-using rouleau::host::GuardedArray;
+using rouleau::conform::GuardedArray;
 
 std::string description(const void* address, bool write) {
   char text[256] = "nothing";

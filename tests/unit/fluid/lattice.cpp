@@ -6,7 +6,10 @@
 
 #include "flow_fixture.hpp"
 
-using namespace rouleau::host;
+using namespace rouleau;
+using namespace rouleau::fluid;
+using namespace rouleau::plugin;
+using namespace rouleau::test;
 namespace d2q9 = rouleau::d2q9;
 
 namespace {

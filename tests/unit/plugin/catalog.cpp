@@ -8,16 +8,20 @@
 
 #include "plugin_folder.hpp"
 
-using namespace rouleau::host;
-using namespace rouleau::host::test;
+using rouleau::Error;
+using rouleau::ExitCode;
+using rouleau::Place;
+using namespace rouleau::plugin;
+using namespace rouleau::test;
+using namespace rouleau::test;
 using Catch::Matchers::Contains;
-using nlohmann::json;
+using Json = nlohmann::json;
 namespace fs = std::filesystem;
 
 namespace {
 
-json manifest_with_id(const std::string& id) {
-  json manifest = good_manifest();
+Json manifest_with_id(const std::string& id) {
+  Json manifest = good_manifest();
   manifest["id"] = id;
   return manifest;
 }
@@ -77,7 +81,7 @@ TEST_CASE("two manifests with one id are both refused and the error names both f
 
 TEST_CASE("a broken manifest is not silently replaced by another one with its id") {
   const PluginFolder mine, shipped;
-  json broken = manifest_with_id("morse");
+  Json broken = manifest_with_id("morse");
   broken["parameters"][0]["unit"] = "no unit at all";
   const auto one = mine.write("morse.json", broken);
   const auto two = shipped.write("morse.json", manifest_with_id("morse"));

@@ -8,16 +8,20 @@
 #include "plugin/model.hpp"
 #include "plugin_folder.hpp"
 
-using namespace rouleau::host;
-using namespace rouleau::host::test;
+using rouleau::Error;
+using rouleau::ExitCode;
+using namespace rouleau::plugin;
+using namespace rouleau::test;
+using namespace rouleau::units;
+using namespace rouleau::test;
 using Catch::Matchers::Contains;
-using nlohmann::json;
+using Json = nlohmann::json;
 namespace fs = std::filesystem;
 
 namespace {
 
 Manifest manifest_in(const PluginFolder& folder, const std::string& id = "good") {
-  json manifest = good_manifest();
+  Json manifest = good_manifest();
   manifest["id"] = id;
   return read_manifest(folder.write(id + ".json", manifest), Units());
 }

@@ -5,10 +5,14 @@
 #include "plugin/library.hpp"
 #include "plugin_folder.hpp"
 
-using namespace rouleau::host;
-using namespace rouleau::host::test;
+using rouleau::Error;
+using rouleau::ExitCode;
+using rouleau::Place;
+using namespace rouleau::plugin;
+using namespace rouleau::test;
+using namespace rouleau::test;
 using Catch::Matchers::Contains;
-using nlohmann::json;
+using Json = nlohmann::json;
 namespace fs = std::filesystem;
 
 namespace {
@@ -33,8 +37,8 @@ struct LockedFolder : PluginFolder {
   }
   /// The error with the lock changed by a JSON Patch.
   [[nodiscard]] Error damaged_by(const char* patch) const {
-    const auto whole = json::parse(std::ifstream(lock_file()));
-    const auto file = write("damaged.json", whole.patch(json::parse(patch)));
+    const auto whole = Json::parse(std::ifstream(lock_file()));
+    const auto file = write("damaged.json", whole.patch(Json::parse(patch)));
     return thrown_by([&] { (void)read_lock(file, scene()); });
   }
 };
@@ -89,12 +93,12 @@ TEST_CASE("another library than the locked one is not opened, and both hashes ar
 }
 
 TEST_CASE("another manifest, version or kind than the locked one is not found") {
-  const std::vector<std::pair<json, std::string>> changes = {
+  const std::vector<std::pair<Json, std::string>> changes = {
       {{{"title", "Another title"}}, "expected SHA-256 of the manifest "},
       {{{"version", "1.0.1"}}, "expected version 1.0.0, by the lock "}};
   for (const auto& [change, words] : changes) {
     const LockedFolder folder;
-    json manifest = good_manifest();
+    Json manifest = good_manifest();
     manifest.update(change);
     folder.write("good.json", manifest);
     const Catalog catalog = folder.locked_catalog();
@@ -114,7 +118,7 @@ TEST_CASE("another manifest, version or kind than the locked one is not found") 
 
 TEST_CASE("a plugin that the lock does not hold is not found, and --set is no way round") {
   const LockedFolder folder;
-  json other = good_manifest();
+  Json other = good_manifest();
   other["id"] = "other";
   folder.write("other.json", other);
   const Catalog catalog = folder.locked_catalog();

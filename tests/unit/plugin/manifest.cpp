@@ -1,14 +1,18 @@
 // The reading of manifests: what a manifest says, and how a wrong one is refused.
 #include "plugin/manifest.hpp"
 
-#include "input/document.hpp"
+#include "json/document.hpp"
 #include "plugin/quantities.hpp"
 #include "plugin_folder.hpp"
 
-using namespace rouleau::host;
-using namespace rouleau::host::test;
+using rouleau::Error;
+using rouleau::ExitCode;
+using namespace rouleau::plugin;
+using namespace rouleau::test;
+using namespace rouleau::units;
+using namespace rouleau::test;
 using Catch::Matchers::Contains;
-using nlohmann::json;
+using Json = nlohmann::json;
 
 namespace {
 
@@ -19,7 +23,7 @@ struct Fault {
   std::vector<std::string> words;
 };
 
-Error refusal(const json& manifest) {
+Error refusal(const Json& manifest) {
   const PluginFolder folder;
   const auto file = folder.write("broken.json", manifest);
   return thrown_by([&] { read_manifest(file, Units()); });
@@ -101,7 +105,7 @@ const std::vector<Fault> faults = {
 TEST_CASE("every broken manifest is refused at the place of its fault with words that help") {
   for (const Fault& fault : faults) {
     INFO(fault.patch);
-    const Error error = refusal(good_manifest().patch(json::parse(fault.patch)));
+    const Error error = refusal(good_manifest().patch(Json::parse(fault.patch)));
     INFO(error.what());
     CHECK(error.code() == ExitCode::plugin_refused);
     CHECK(error.place().pointer == fault.pointer);
@@ -128,8 +132,8 @@ TEST_CASE("a manifest's numbers become SI and its order of parameters is kept") 
 }
 
 TEST_CASE("state variables begin with their initial value in SI, or with zero") {
-  json remembering = good_manifest();
-  remembering["state"] = json::parse(
+  Json remembering = good_manifest();
+  remembering["state"] = Json::parse(
       R"([{"name": "age", "unit": "ms", "initial": 5}, {"name": "bonds", "unit": "1/um2", "doc": "Per area."}])");
   const PluginFolder folder;
   const Manifest manifest = read_manifest(folder.write("good.json", remembering), Units());
@@ -140,7 +144,7 @@ TEST_CASE("state variables begin with their initial value in SI, or with zero") 
   CHECK(manifest.state[1].dimension == Dimension{{0, -2, 0, 0, 0, 0}});
   CHECK(manifest.state[1].initial == 0);
 
-  remembering["checks"] = json::parse(R"([{"inputs": {"distance": 1e-6, "bonds": 2}, "outputs": {"force": 0}}])");
+  remembering["checks"] = Json::parse(R"([{"inputs": {"distance": 1e-6, "bonds": 2}, "outputs": {"force": 0}}])");
   CHECK_NOTHROW(read_manifest(folder.write("good.json", remembering), Units()));
 }
 
@@ -163,20 +167,20 @@ TEST_CASE("the dimension of every quantity is that of the unit which messages wr
 }
 
 TEST_CASE("keys that begin with x- are the author's own and may stand in every object") {
-  json own = good_manifest();
+  Json own = good_manifest();
   own["x-note"] = {{"a", 1}};
   own["parameters"][0]["x-symbol"] = "D_e";
   own["inactive_when"]["x-why"] = "no well";
   own["claims"]["x-tested"] = true;
-  own["checks"] = json::parse(R"([{"inputs": {"distance": 1e-6, "x-n": "note"}, "outputs": {"force": 0}, "x-n": 1}])");
+  own["checks"] = Json::parse(R"([{"inputs": {"distance": 1e-6, "x-n": "note"}, "outputs": {"force": 0}, "x-n": 1}])");
   const PluginFolder folder;
   const Manifest manifest = read_manifest(folder.write("own.json", own), Units());
-  CHECK(manifest.inactive_when == json{{"depth", 0}});
-  CHECK(manifest.claims == json::object());
+  CHECK(manifest.inactive_when == Json{{"depth", 0}});
+  CHECK(manifest.claims == Json::object());
 }
 
 TEST_CASE("a membrane law belongs to one element") {
-  json law = good_manifest();
+  Json law = good_manifest();
   law["kind"] = "membrane";
   law["needs"] = {"stretch"};
   law["gives"] = {"tension", "energy", "tension_by_stretch"};

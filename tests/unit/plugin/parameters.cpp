@@ -1,20 +1,26 @@
 // A scene's parameters against a manifest: conversion, defaults, limits, and messages that say what to write instead.
 #include "plugin/parameters.hpp"
 
-#include "input/document.hpp"
+#include "json/document.hpp"
 #include "plugin_folder.hpp"
 
-using namespace rouleau::host;
-using namespace rouleau::host::test;
+using rouleau::Error;
+using rouleau::ExitCode;
+using namespace rouleau::json;
+using namespace rouleau::plugin;
+using namespace rouleau::scene;
+using namespace rouleau::test;
+using namespace rouleau::units;
+using namespace rouleau::test;
 using Catch::Matchers::Contains;
-using nlohmann::json;
+using Json = nlohmann::json;
 
 namespace {
 
 /// A model of a scene with these parameters, and the manifest that they are meant for.
 class Case {
  public:
-  explicit Case(const std::string& parameters, const json& manifest = good_manifest())
+  explicit Case(const std::string& parameters, const Json& manifest = good_manifest())
       : manifest_(read_manifest(folder_.write("m.json", manifest), units_)) {
     const std::string text = "{\"model\": {\n  \"parameters\": " + parameters + "}}";
     scene_.document = std::make_shared<const Document>(Document::parse(text, "scene.json"));
@@ -107,7 +113,7 @@ TEST_CASE("a model is inactive when all conditions of its manifest hold") {
   CHECK(Case(R"({"depth": 0})").resolve().inactive);
   CHECK(Case(R"({"depth": "0 dyn/cm"})").resolve().inactive);
   CHECK_FALSE(Case(R"({"depth": "1e-9 uJ/m2"})").resolve().inactive);
-  json manifest = good_manifest();
+  Json manifest = good_manifest();
   manifest["inactive_when"] = {{"depth", 1}, {"form", "sharp"}};
   CHECK(Case(R"({"depth": 1e-6, "form": "sharp"})", manifest).resolve().inactive);
   CHECK_FALSE(Case(R"({"depth": 1e-6})", manifest).resolve().inactive);
@@ -116,7 +122,7 @@ TEST_CASE("a model is inactive when all conditions of its manifest hold") {
 }
 
 TEST_CASE("a model without parameters takes none") {
-  json manifest = good_manifest();
+  Json manifest = good_manifest();
   manifest.erase("parameters");
   manifest.erase("inactive_when");
   CHECK(Case("{}", manifest).resolve().values.empty());

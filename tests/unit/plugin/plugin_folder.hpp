@@ -7,10 +7,10 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "error.hpp"
+#include "base/error.hpp"
 #include "scratch_folder.hpp"
 
-namespace rouleau::host::test {
+namespace rouleau::test {
 
 class PluginFolder : public rouleau::test::ScratchFolder {
  public:
@@ -51,4 +51,4 @@ inline Error thrown_by(const std::function<void()>& action) {
   throw std::logic_error("not reached");
 }
 
-}  // namespace rouleau::host::test
+}  // namespace rouleau::test

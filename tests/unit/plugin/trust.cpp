@@ -6,8 +6,10 @@
 #include "plugin/catalog.hpp"
 #include "plugin_folder.hpp"
 
-using namespace rouleau::host;
-using namespace rouleau::host::test;
+using namespace rouleau;
+using namespace rouleau::plugin;
+using namespace rouleau::test;
+using namespace rouleau::test;
 using Catch::Matchers::Contains;
 namespace fs = std::filesystem;
 

@@ -3,10 +3,15 @@
 #include <catch2/catch.hpp>
 #include <cstring>
 
-#include "input/document.hpp"
+#include "json/document.hpp"
 #include "run/checkpoint_match.hpp"
 
-using namespace rouleau::host;
+using namespace rouleau::membrane;
+using namespace rouleau::observe;
+using namespace rouleau::plan;
+using namespace rouleau::plugin;
+using namespace rouleau::run;
+using namespace rouleau::scene;
 using Catch::Contains;
 
 namespace {

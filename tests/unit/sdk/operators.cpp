@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "operators/source.hpp"
+#include "unit/sdk/operators/source.hpp"
 
 namespace rouleau::test {
 

@@ -7,7 +7,8 @@
 #include "made_up_study.hpp"
 #include "study/analysis_json.hpp"
 
-using namespace rouleau::host;
+using namespace rouleau::study;
+using namespace rouleau::test;
 
 namespace {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-using namespace rouleau::host;
+using namespace rouleau::study;
 
 namespace {
 constexpr double turn = 2 * std::numbers::pi;

@@ -7,7 +7,9 @@
 
 #include "study/analysis.hpp"
 
-namespace rouleau::host {
+namespace rouleau::test {
+
+using namespace study;
 
 /// Two axes: "resolution", the line, and "scheme". Value and time of a point by radius in spacings and scheme.
 struct MadeUpStudy {
@@ -53,4 +55,4 @@ struct MadeUpStudy {
   }
 };
 
-}  // namespace rouleau::host
+}  // namespace rouleau::test

@@ -5,22 +5,31 @@
 #include <fstream>
 #include <functional>
 
-#include "../output/fixture.hpp"
-#include "input/document.hpp"
+#include "json/document.hpp"
 #include "study/exact_flow.hpp"
+#include "unit/run_fixture.hpp"
 
-using namespace rouleau::host;
+using rouleau::Error;
+using rouleau::ExitCode;
+using namespace rouleau::files;
+using namespace rouleau::json;
+using namespace rouleau::monitor;
+using namespace rouleau::observe;
+using namespace rouleau::run;
+using namespace rouleau::scene;
+using namespace rouleau::study;
+using namespace rouleau::test;
 
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 
-Quantity quantity_of(const json& written, const std::string& file = "study.json") {
-  return read_quantity(Document::parse(json{{"quantities", {written}}}.dump(), file), "/quantities/0");
+Quantity quantity_of(const Json& written, const std::string& file = "study.json") {
+  return read_quantity(Document::parse(Json{{"quantities", {written}}}.dump(), file), "/quantities/0");
 }
 
 /// What is said of a quantity that cannot be right, without the place.
-std::string refusal(const json& written) {
+std::string refusal(const Json& written) {
   try {
     quantity_of(written);
   } catch (const Error& error) {
@@ -34,8 +43,8 @@ std::string refusal(const json& written) {
 }
 
 /// Four round cells in a box of 40 x 20 um, at rest for 2 s and then sheared with 20 1/s.
-json scene_of_cells() {
-  return json::parse(R"({
+Json scene_of_cells() {
+  return Json::parse(R"({
     "rouleau": 1,
     "domain": {"size": ["40 um", "20 um"], "nodes": [64, 32], "y": {"lower": {"wall": {}}, "upper": {"wall": {}}}},
     "fluid": {"density": "1 g/cm3", "viscosity": "1 cP"},
@@ -46,21 +55,21 @@ json scene_of_cells() {
     "output": {"cells": {"strain": 0.25}}})");
 }
 
-json scene_of_fluid(const std::string& stage,
+Json scene_of_fluid(const std::string& stage,
                     const std::string& output = R"({"fields": {"strain": 1, "quantities": ["density"]}})") {
-  json scene = json::parse(R"({
+  Json scene = Json::parse(R"({
     "rouleau": 1,
     "domain": {"size": ["10 um", "20 um"], "nodes": [8, 16], "y": {"lower": {"wall": {}}, "upper": {"wall": {}}}},
     "fluid": {"density": "1 g/cm3", "viscosity": "1 cP"}, "numerics": {"density_factor": 10}})");
-  scene["stages"] = {json::parse(stage)};
-  scene["output"] = json::parse(output);
+  scene["stages"] = {Json::parse(stage)};
+  scene["output"] = Json::parse(output);
   return scene;
 }
 
 /// A directory written by the program's own writers.
 class WrittenRun {
  public:
-  WrittenRun(const json& scene, const std::vector<Snapshot>& snapshots, const Summary& summary = small_summary()) {
+  WrittenRun(const Json& scene, const std::vector<Snapshot>& snapshots, const Summary& summary = small_summary()) {
     std::ofstream(folder_.path() / "scene.json") << scene;
     const Scene read = read_scene(folder_.path() / "scene.json");
     RunDirectory run(directory(), read);
@@ -68,8 +77,8 @@ class WrittenRun {
     run.finish(summary);
   }
   [[nodiscard]] std::filesystem::path directory() const { return folder_.path() / "run"; }
-  [[nodiscard]] Measured measured(const json& written) const { return measure(quantity_of(written), directory()); }
-  [[nodiscard]] double value(const json& written) const {
+  [[nodiscard]] Measured measured(const Json& written) const { return measure(quantity_of(written), directory()); }
+  [[nodiscard]] double value(const Json& written) const {
     const Measured result = measured(written);
     CHECK(std::isfinite(result.value) == result.why_not.empty());
     return result.value;
@@ -119,7 +128,7 @@ Summary summary_of_cells() {
   return summary;
 }
 
-json named(json keys) {
+Json named(Json keys) {
   keys["name"] = "q";
   return keys;
 }
@@ -175,7 +184,7 @@ TEST_CASE("dissociation is told from the start of shear, as exactly as the outpu
 
 TEST_CASE("what a run does not have is not a number but a reason", "[quantity]") {
   const WrittenRun run(scene_of_cells(), sheared_cells(), summary_of_cells());
-  const auto why_not = [&](const json& keys) {
+  const auto why_not = [&](const Json& keys) {
     const Measured result = run.measured(named(keys));
     CHECK(std::isnan(result.value));
     return result.why_not;
@@ -230,10 +239,10 @@ constexpr const char* exactly = R"({"fields": {"strain": 1, "quantities": ["velo
 TEST_CASE("the exact flows have no velocity error, and one that is a thousandth too fast has a thousandth",
           "[quantity]") {
   const double scale = GENERATE(0.0, 1e-3);
-  const json couette = named({{"kind", "velocity_l2"}, {"flow", "couette"}});
-  const json poiseuille = named({{"kind", "velocity_l2"}, {"flow", "poiseuille"}});
-  const json moving = scene_of_fluid(R"({"name": "flow", "shear_rate": "20 1/s", "strain": 5})", exactly);
-  const json driven = scene_of_fluid(R"({"name": "flow", "pressure_gradient": "30 Pa/m", "duration": "1 s"})",
+  const Json couette = named({{"kind", "velocity_l2"}, {"flow", "couette"}});
+  const Json poiseuille = named({{"kind", "velocity_l2"}, {"flow", "poiseuille"}});
+  const Json moving = scene_of_fluid(R"({"name": "flow", "shear_rate": "20 1/s", "strain": 5})", exactly);
+  const Json driven = scene_of_fluid(R"({"name": "flow", "pressure_gradient": "30 Pa/m", "duration": "1 s"})",
                                      R"({"fields": {"seconds": 1, "quantities": ["velocity"], "precision": "f64"}})");
   const auto sheared = [](double y) { return 20 * (y - 10e-6); };
   const auto parabola = [](double y) { return 30 / (2 * 1e-3) * y * (20e-6 - y); };
@@ -247,7 +256,7 @@ TEST_CASE("the exact flows have no velocity error, and one that is a thousandth 
 }
 
 TEST_CASE("the start of a flow is compared with its series, at the viscosity it is simulated with", "[quantity]") {
-  const json moving = scene_of_fluid(R"({"name": "flow", "shear_rate": "20 1/s", "strain": 5})", exactly);
+  const Json moving = scene_of_fluid(R"({"name": "flow", "shear_rate": "20 1/s", "strain": 5})", exactly);
   // Kinematic viscosity 1e-6 m2/s over the density factor 10: height^2 / nu is 4 ms.
   const double time = 0.06 * 4e-3;
   const auto start = [](double y) { return 200e-6 * couette_start(y / 20e-6 - 0.5, 0.06); };
@@ -269,7 +278,7 @@ TEST_CASE("the series of the start tend to the steady flows", "[quantity]") {
 }
 
 TEST_CASE("a run without velocity says what to ask for", "[quantity]") {
-  const json moving = scene_of_fluid(R"({"name": "flow", "shear_rate": "20 1/s", "strain": 5})");
+  const Json moving = scene_of_fluid(R"({"name": "flow", "shear_rate": "20 1/s", "strain": 5})");
   Snapshot nothing;
   nothing.stage_name = "flow";
   const WrittenRun run(moving, {nothing});
@@ -331,7 +340,7 @@ TEST_CASE("a reference can be a number of a file, with its uncertainty beside it
 }
 
 TEST_CASE("references of other kinds are read", "[quantity]") {
-  const auto reference = [](const json& written) {
+  const auto reference = [](const Json& written) {
     return quantity_of({{"name", "D"}, {"kind", "deformation"}, {"reference", written}}).reference;
   };
   CHECK(reference("richardson").kind == ReferenceKind::richardson);
@@ -376,7 +385,7 @@ TEST_CASE("a pointer that leads nowhere in a reference's file is refused with wh
   ScratchFolder folder;
   std::ofstream(folder.path() / "values.json") << R"({"steady": {"D": 0.25, "note": "good"}, "list": [1, 2]})";
   const auto said = [&](const std::string& pointer) {
-    const json written =
+    const Json written =
         named({{"kind", "deformation"}, {"reference", {{"file", "values.json"}, {"pointer", pointer}}}});
     try {
       return std::to_string(quantity_of(written, (folder.path() / "study.json").string()).reference.value);
@@ -390,7 +399,7 @@ TEST_CASE("a pointer that leads nowhere in a reference's file is refused with wh
   CHECK(said("/list/2").find("\"/list\" has the entries 0 to 1") != std::string::npos);
   CHECK(said("/steady/note").find("\"good\" at \"/steady/note\", which is not a number") != std::string::npos);
   CHECK(said("steady").find("is no JSON pointer") != std::string::npos);
-  const json missing = named({{"kind", "angle"}, {"reference", {{"file", "nothing.json"}, {"pointer", "/a"}}}});
+  const Json missing = named({{"kind", "angle"}, {"reference", {{"file", "nothing.json"}, {"pointer", "/a"}}}});
   try {
     quantity_of(missing, (folder.path() / "study.json").string());
     FAIL("it was read");

@@ -8,7 +8,7 @@
 #include <iostream>
 #include <random>
 
-using namespace rouleau::host;
+using namespace rouleau::study;
 
 namespace {
 

@@ -2,7 +2,7 @@
 // a file of its own in this folder: the loops are most of what there is to compile.
 #pragma once
 
-#include "../operators.hpp"
+#include "unit/sdk/operators.hpp"
 
 namespace rouleau::test {
 

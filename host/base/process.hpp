@@ -1,0 +1,41 @@
+// Runs a program in a process group of its own with a time limit, and leaves nothing of it behind.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace rouleau {
+
+/// When a process is ended, and how much of it is kept.
+struct ProcessLimits {
+  double time_s;
+  double grace_s = 0;                       ///< between SIGTERM and SIGKILL; 0: SIGKILL at once
+  const std::atomic<bool>* stop = nullptr;  ///< set by a signal handler: ended as at the time limit
+  std::size_t largest_output = 4096;        ///< bytes of ProcessEnd::output
+};
+
+struct ProcessEnd {
+  bool timed_out = false;
+  bool stopped = false;  ///< by ProcessLimits::stop
+  int exit_code = 0;     ///< when it ended by itself
+  int signal = 0;        ///< that ended it, or 0
+  std::string finding;   ///< what it wrote to descriptor 3
+  std::string output;    ///< the beginning of what it wrote to standard output and standard error
+  double wall_s = 0;
+  double cpu_s = 0;         ///< of all its threads, in user and system mode
+  long peak_rss_bytes = 0;  ///< largest resident memory; at least what the caller had when it started the process
+};
+
+/// Starts `program` with the arguments and an empty standard input. At the time limit, and in any case when it ends,
+/// its whole process group is killed; it is killed, too, when the calling thread dies. Throws Error(input_output) when
+/// it cannot be started.
+ProcessEnd run_process(const std::filesystem::path& program, const std::vector<std::string>& arguments,
+                       const ProcessLimits& limits);
+inline ProcessEnd run_process(const std::filesystem::path& program, const std::vector<std::string>& arguments,
+                              double time_limit_s) {
+  return run_process(program, arguments, ProcessLimits{time_limit_s});
+}
+
+}  // namespace rouleau

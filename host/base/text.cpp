@@ -1,0 +1,121 @@
+#include "text.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+namespace rouleau {
+namespace {
+
+constexpr std::size_t longest_shown = 80;
+
+/// Distance in insertions, deletions, replacements and swaps of neighbours; upper and lower case count as the same.
+std::size_t spelling_distance(std::string_view a, std::string_view b) {
+  const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; };
+  std::vector<std::size_t> before(b.size() + 1);
+  std::vector<std::size_t> last(b.size() + 1);
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) last[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const bool same = lower(a[i - 1]) == lower(b[j - 1]);
+      row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + (same ? 0 : 1)});
+      if (i > 1 && j > 1 && lower(a[i - 1]) == lower(b[j - 2]) && lower(a[i - 2]) == lower(b[j - 1])) {
+        row[j] = std::min(row[j], before[j - 2] + 1);
+      }
+    }
+    before.swap(last);
+    last.swap(row);
+  }
+  return last[b.size()];
+}
+
+}  // namespace
+
+std::string printable(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte >= 0x20 && byte != 0x7f) {
+      result += c;
+      continue;
+    }
+    std::array<char, 8> escape{};
+    std::snprintf(escape.data(), escape.size(), "\\u%04x", unsigned{byte});
+    result += escape.data();
+  }
+  return result;
+}
+
+std::string shortened(std::string text, std::string_view end) {
+  if (text.size() <= longest_shown) return text;
+  std::size_t length = longest_shown - 3;
+  // A character of several bytes is not cut: bytes 10xxxxxx continue one.
+  while (length > 0 && (static_cast<unsigned char>(text[length]) & 0xC0U) == 0x80U) --length;
+  return text.substr(0, length) + "..." + std::string(end);
+}
+
+std::string in_quotes(std::string_view text) {
+  // JSON escapes all control characters but DEL, and bytes that are no UTF-8 become U+FFFD.
+  const auto replace = nlohmann::json::error_handler_t::replace;
+  return shortened(printable(nlohmann::json(std::string(text)).dump(-1, ' ', false, replace)), "\"");
+}
+
+std::string listed(const std::vector<std::string>& words) {
+  if (words.empty()) return "none";
+  std::string text;
+  for (const auto& word : words) text += (text.empty() ? "" : ", ") + printable(word);
+  return text;
+}
+
+std::string nearest(std::string_view word, const std::vector<std::string>& candidates) {
+  constexpr std::size_t longest_word = 64;
+  std::string best;
+  if (word.empty() || word.size() > longest_word) return best;
+  std::size_t best_distance = word.size() <= 2 ? 2 : std::max<std::size_t>(2, word.size() / 3 + 1);
+  for (const auto& candidate : candidates) {
+    if (candidate.size() > longest_word) continue;
+    auto distance = spelling_distance(word, candidate);
+    // A word cut short or drawn out ("params", "nodes_xy") is near although many letters differ.
+    const auto shorter = std::min(word.size(), candidate.size());
+    const auto same = static_cast<std::size_t>(
+        std::mismatch(word.begin(), word.begin() + static_cast<std::ptrdiff_t>(shorter), candidate.begin()).first -
+        word.begin());
+    const bool begins_alike = same >= 3 && same + 1 >= shorter && word.size() != candidate.size();
+    if (begins_alike) distance = std::min<std::size_t>(distance, 1);
+    if (distance >= std::max(word.size(), candidate.size())) continue;  // nothing in common
+    const bool same_first = word.front() == candidate.front() && (best.empty() || word.front() != best.front());
+    if (distance < best_distance || (distance == best_distance && !best.empty() && same_first)) {
+      best_distance = distance;
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates) {
+  const auto near = nearest(word, candidates);
+  return near.empty() || near == word ? "" : "; did you mean " + in_quotes(near) + "?";
+}
+
+std::string misspelt(std::string_view word, const std::vector<std::string>& candidates) {
+  const auto near = nearest(word, candidates);
+  return !near.empty() && spelling_distance(word, near) <= word.size() / 6 ? near : "";
+}
+
+std::string number(double value, int digits) {
+  std::array<char, 48> text{};
+  std::snprintf(text.data(), text.size(), "%.*g", digits, value);
+  return text.data();
+}
+
+std::string indented(std::string problem) {
+  for (auto at = problem.find('\n'); at != std::string::npos; at = problem.find('\n', at + 1)) {
+    problem.insert(at + 1, "  ");
+  }
+  return problem;
+}
+
+}  // namespace rouleau

@@ -1,0 +1,40 @@
+// How values, lists and suggestions are written in messages.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace rouleau {
+
+/// Text in double quotes, control characters escaped, shortened when long.
+std::string in_quotes(std::string_view text);
+
+/// Text without quotes, control characters escaped as in JSON: nothing that steers a terminal.
+std::string printable(std::string_view text);
+
+/// Cut to eighty bytes, whole characters and "..." with `end` behind them; shorter text as it is.
+std::string shortened(std::string text, std::string_view end = {});
+
+/// "a, b, c"; "none" when empty.
+std::string listed(const std::vector<std::string>& words);
+
+/// The candidate that `word` was most likely meant to be, or empty when none is near.
+std::string nearest(std::string_view word, const std::vector<std::string>& candidates);
+
+/// `; did you mean "tau"?`, or nothing when no candidate is near.
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates);
+
+/// The candidate that the word is, or is but for one letter in six; empty when there is none.
+std::string misspelt(std::string_view word, const std::vector<std::string>& candidates);
+
+/// A number as short as it can be read back with six digits, or with `digits`.
+std::string number(double value, int digits = 6);
+
+/// Lines after the first get the indent that Error gives the first.
+std::string indented(std::string problem);
+
+/// Of ASCII, whatever the locale.
+inline bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+}  // namespace rouleau

@@ -1,0 +1,63 @@
+# rouleau_embed_texts(TARGET NAMESPACE HEADER VARIABLE FILE ...) compiles text files into a library of the host, each as the
+# `const std::string_view VARIABLE` of namespace rouleau::NAMESPACE that HEADER declares. The program then needs no file beside
+# it, and what it holds and what is installed cannot differ.
+function(rouleau_embed_texts target namespace header)
+  set(definitions "")
+  while(ARGN)
+    list(POP_FRONT ARGN variable file)
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${file}")
+    file(READ "${file}" text)
+    if(text MATCHES "\\)ROULEAU\"")
+      message(FATAL_ERROR "${file} holds the end mark of the raw string it is to be embedded in")
+    endif()
+    # Some compilers bound one raw string; g++ and clang++ bound neither it nor the sum of adjacent ones.
+    string(LENGTH "${text}" length)
+    set(literal "")
+    set(at 0)
+    while(at LESS length)
+      string(SUBSTRING "${text}" ${at} 8000 piece)
+      string(APPEND literal "\n    R\"ROULEAU(${piece})ROULEAU\"")
+      math(EXPR at "${at} + 8000")
+    endwhile()
+    string(APPEND definitions "\nconst std::string_view ${variable} =${literal};\n")
+  endwhile()
+  set(source "${CMAKE_CURRENT_BINARY_DIR}/embedded/${target}.cpp")
+  file(CONFIGURE OUTPUT "${source}" @ONLY CONTENT [[
+// Written by CMake (host/cmake/embed_texts.cmake).
+#include "@header@"
+
+namespace rouleau::@namespace@ {
+@definitions@
+}  // namespace rouleau::@namespace@
+]])
+  target_sources(${target} PRIVATE "${source}")
+  # Of the texts' lengths the standard promises 64 KiB alone, and clang++ says so.
+  set_source_files_properties("${source}" PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON COMPILE_OPTIONS -Wno-overlength-strings)
+endfunction()
+
+# rouleau_assemble_page(RESULT TEMPLATE) writes RESULT: TEMPLATE with every line "@include FILE@" replaced by that file,
+# whose path counts from the template's folder.
+function(rouleau_assemble_page result template)
+  get_filename_component(folder "${template}" DIRECTORY)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${template}")
+  file(READ "${template}" page)
+  string(REGEX MATCHALL "@include [^@\n]+@" includes "${page}")
+  foreach(include IN LISTS includes)
+    string(REGEX REPLACE "@include ([^@]+)@" "\\1" piece "${include}")
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${folder}/${piece}")
+    file(READ "${folder}/${piece}" text)
+    string(REPLACE "${include}" "${text}" page "${page}")
+  endforeach()
+  file(WRITE "${result}" "${page}")
+endfunction()
+
+# rouleau_require_file(FILE SHA256 WORDS) stops with WORDS unless FILE is there with these bytes.
+function(rouleau_require_file file sha256 words)
+  set(found "missing")
+  if(EXISTS "${file}")
+    file(SHA256 "${file}" found)
+  endif()
+  if(NOT found STREQUAL sha256)
+    message(FATAL_ERROR "${file}\n  has SHA-256 ${found}, wanted ${sha256}\n  ${words}")
+  endif()
+endfunction()

@@ -1,0 +1,177 @@
+// Level "robustness": a result depends on the element's inputs and on nothing else.
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <thread>
+
+#include "base/text.hpp"
+#include "conform/call.hpp"
+#include "conform/check.hpp"
+#include "conform/subject.hpp"
+
+namespace rouleau::conform {
+
+namespace {
+
+/// Calls test(instance, inputs, call) for each choice and precision until it finds something.
+template <class Test>
+std::string first_fault(const Subject& subject, std::size_t count, const Test& test) {
+  Random random = subject.random();
+  for (const plugin::ModelInstance& instance : subject.make_each_choice()) {
+    for (const bool single : subject.precisions()) {
+      Call call;
+      call.single = single;
+      std::string fault = test(instance, subject.random_inputs(instance, count, random), call);
+      if (!fault.empty()) return fault;
+    }
+  }
+  return {};
+}
+
+Finding hidden_state(const Subject& subject) {
+  Random random = subject.random();
+  const std::string fault = first_fault(
+      subject, ordinary_count, [&](const plugin::ModelInstance& instance, const Values& inputs, const Call& call) {
+        const Values first = compute(subject, instance, inputs, call);
+        std::string difference = first_difference(first, compute(subject, instance, inputs, call));
+        if (!difference.empty()) return "the same call twice: " + difference;
+        compute(subject, instance, subject.random_inputs(instance, 5, random), call);
+        const plugin::ModelInstance other = subject.make();
+        compute(subject, other, subject.random_inputs(other, 5, random), call);
+        difference = first_difference(first, compute(subject, instance, inputs, call));
+        return difference.empty() ? difference : "after other calls: " + difference;
+      });
+  if (!fault.empty()) return Finding::failed(fault);
+  const plugin::ModelInstance one = subject.make(), another = subject.make();
+  const Values inputs = subject.random_inputs(one, ordinary_count, random);
+  const auto difference = first_difference(compute(subject, one, inputs), compute(subject, another, inputs));
+  if (!difference.empty()) return Finding::failed("two instances with the same parameters: " + difference);
+  return Finding::passed("the same bits again, after other calls, and from another instance");
+}
+
+/// The elements in the order of `order`.
+Values permuted(const Values& values, const std::vector<std::size_t>& order) {
+  Values result;
+  for (const auto& [name, array] : values) {
+    for (const std::size_t i : order) result[name].push_back(array[i]);
+  }
+  return result;
+}
+
+Finding blocks(const Subject& subject) {
+  Random random = subject.random();
+  const std::string fault =
+      first_fault(subject, ordinary_count, [&](const plugin::ModelInstance& instance, const Values& inputs, Call call) {
+        const Values expected = compute(subject, instance, inputs, call);
+        for (std::size_t size = 1; size <= 37; ++size) {
+          call.block = size;
+          call.offset = size % 8;
+          call.backwards = size % 2 == 0;
+          const auto difference = first_difference(expected, compute(subject, instance, inputs, call));
+          if (!difference.empty()) {
+            return "cut into blocks of " + std::to_string(size) + ", " + std::to_string(call.offset) +
+                   " elements from a cache line: " + difference;
+          }
+        }
+        std::vector<std::size_t> order(ordinary_count);
+        std::iota(order.begin(), order.end(), 0);
+        std::shuffle(order.begin(), order.end(), random);
+        Call whole;
+        whole.single = call.single;
+        const auto difference =
+            first_difference(permuted(expected, order), compute(subject, instance, permuted(inputs, order), whole));
+        return difference.empty() ? difference : "in another order: " + difference;
+      });
+  if (!fault.empty()) return Finding::failed(fault);
+  return Finding::passed("blocks of 1 to 37 elements, any alignment and order, the same bits");
+}
+
+Finding aliasing(const Subject& subject) {
+  if (subject.manifest().kind != plugin::ModelKind::collision && subject.manifest().state.empty()) {
+    return Finding::skipped("no output of this model may lie over an input");
+  }
+  const std::string fault =
+      first_fault(subject, ordinary_count, [&](const plugin::ModelInstance& instance, const Values& inputs, Call call) {
+        const Values expected = compute(subject, instance, inputs, call);
+        call.in_place = true;
+        return first_difference(expected, compute(subject, instance, inputs, call));
+      });
+  if (!fault.empty()) return Finding::failed("outputs over inputs change " + fault);
+  return Finding::passed("outputs over inputs, the same bits");
+}
+
+/// What is no number, or is as small as numbers get, stays in its own element.
+Finding contained(const Subject& subject) {
+  const std::string fault = first_fault(
+      subject, ordinary_count, [&](const plugin::ModelInstance& instance, const Values& inputs, const Call& call) {
+        const Values expected = compute(subject, instance, inputs, call);
+        for (const std::size_t sick : {0UL, 3UL, 30UL, ordinary_count - 1}) {
+          for (const double value : {std::nan(""), std::numeric_limits<double>::infinity(),
+                                     std::numeric_limits<double>::denorm_min(), 1e-310}) {
+            Values changed = inputs;
+            for (auto& [name, array] : changed) array[sick] = value;
+            Values outputs = compute(subject, instance, changed, call);
+            for (auto& [name, array] : outputs) array[sick] = expected.at(name)[sick];
+            const auto difference = first_difference(expected, outputs);
+            if (!difference.empty()) {
+              return "element " + std::to_string(sick) + " with the value " + number(value) + " changes " + difference;
+            }
+          }
+        }
+        return std::string();
+      });
+  if (!fault.empty()) return Finding::failed(fault);
+  return Finding::passed("NaN, infinity and denormals in one element leave the others alone");
+}
+
+Finding threads(const Subject& subject) {
+  Random random = subject.random();
+  const plugin::ModelInstance instance = subject.make();
+  // Calls must last, or no two of them meet: setting one up takes longer than computing a few elements.
+  constexpr std::size_t count = 4099;
+  constexpr int thread_count = 8, least_calls = 300;
+  constexpr std::chrono::seconds least_time{1};
+  struct Task {
+    Values inputs, expected;
+  };
+  std::vector<Task> tasks;
+  for (int i = 0; i < thread_count; ++i) {
+    Task task{subject.random_inputs(instance, count, random), {}};
+    task.expected = compute(subject, instance, task.inputs);
+    tasks.push_back(std::move(task));
+  }
+  std::atomic<int> calls{0}, differences{0}, waiting{thread_count};
+  std::vector<std::thread> workers;
+  workers.reserve(tasks.size());
+  for (const Task& task : tasks) {
+    workers.emplace_back([&] {
+      --waiting;
+      while (waiting > 0) std::this_thread::yield();
+      const auto begin = std::chrono::steady_clock::now();
+      for (int i = 0; i < least_calls || std::chrono::steady_clock::now() - begin < least_time; ++i, ++calls) {
+        if (!first_difference(task.expected, compute(subject, instance, task.inputs)).empty()) ++differences;
+      }
+    });
+  }
+  for (std::thread& worker : workers) worker.join();
+  return Finding::at_most(differences, 0,
+                          "wrong results of " + std::to_string(calls) + " calls by eight threads on one instance");
+}
+
+}  // namespace
+
+std::vector<Check> block_checks() {
+  const Level level = Level::robustness;
+  return {
+      {"hidden-state", level, "remembers nothing from one call to the next", {"compute"}, hidden_state},
+      {"blocks", level, "gives the same however the host cuts its blocks", {"hidden-state", "bounds"}, blocks},
+      {"aliasing", level, "bears outputs over inputs", {"hidden-state"}, aliasing},
+      {"contained", level, "keeps what is no number in its element", {"blocks"}, contained},
+      {"threads", level, "gives the same to eight threads on one instance", {"hidden-state"}, threads},
+  };
+}
+
+}  // namespace rouleau::conform

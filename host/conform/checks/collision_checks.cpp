@@ -1,0 +1,303 @@
+// Level "physics" for collision operators: what a collision conserves, where it leads and how fast, its symmetries.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <rouleau/d2q9.hpp>
+
+#include "base/text.hpp"
+#include "collision_nodes.hpp"
+#include "conform/call.hpp"
+#include "conform/check.hpp"
+#include "trials.hpp"
+#include "worst.hpp"
+
+namespace rouleau::conform {
+
+namespace {
+
+/// Rounding of a sum of some fifty products and sums of a node's numbers, in units of epsilon times their sizes.
+constexpr double rounding = 64 * epsilon;
+
+/// Calls a function with every node of every trial, before and after.
+void for_each_collision(const Subject& subject,
+                        const std::function<void(const Trial&, const CollisionNode&, const CollisionNode&)>& see) {
+  Random random = subject.random();
+  for (const Trial& trial : collision_trials(subject, random)) {
+    const Values inputs = subject.random_inputs(trial.instance, 101, random);
+    const Values outputs = compute(subject, trial.instance, inputs);
+    for (std::size_t i = 0; i < 101; ++i) see(trial, node_of(inputs, i, trial), node_of(outputs, i, trial));
+  }
+}
+
+Finding mass(const Subject& subject) {
+  if (!subject.manifest().claims.value("conservative", true))
+    return Finding::skipped("says that it is not conservative");
+  Worst worst;
+  for_each_collision(subject, [&](const Trial& trial, const CollisionNode& before, const CollisionNode& after) {
+    worst.add(std::abs(after.density() - before.density()), rounding * (before.size() + after.size()),
+              [&] { return "a collision changes the density of a node by" + trial.words; });
+  });
+  return worst.finding("not at all");
+}
+
+Finding momentum(const Subject& subject) {
+  if (!subject.manifest().claims.value("conservative", true))
+    return Finding::skipped("says that it is not conservative");
+  Worst worst;
+  for_each_collision(subject, [&](const Trial& trial, const CollisionNode& before, const CollisionNode& after) {
+    for (std::size_t k = 0; k < 2; ++k) {
+      worst.add(std::abs(after.momentum(k) - before.momentum(k) - before.force[k]),
+                rounding * (before.size() + after.size()), [&] {
+                  return std::string(k == 0 ? "x" : "y") + "-momentum changes by " +
+                         number(after.momentum(k) - before.momentum(k)) + " where the force is " +
+                         number(before.force[k]) + trial.words;
+                });
+    }
+  });
+  return worst.finding("by the force alone");
+}
+
+Finding velocity(const Subject& subject) {
+  if (!subject.manifest().gives_output("velocity")) return Finding::skipped("gives no velocity");
+  Worst worst;
+  for_each_collision(subject, [&](const Trial& trial, const CollisionNode& before, const CollisionNode& after) {
+    for (std::size_t k = 0; k < 2; ++k) {
+      const double expected = before.momentum(k) + 0.5 * before.force[k];
+      worst.add(std::abs(after.velocity[k] - expected), rounding * before.size(), [&] {
+        return "velocity." + std::to_string(k) + " is " + number(after.velocity[k], 17) + ", sum f c + F/2 is " +
+               number(expected, 17) + trial.words;
+      });
+    }
+  });
+  return worst.finding("the same bits");
+}
+
+/// Equilibria of random densities and velocities of the given size.
+Values equilibria(const Subject& subject, const Trial& trial, double size) {
+  Random random = subject.random();
+  Values inputs = subject.random_inputs(trial.instance, 101, random);
+  for (std::size_t i = 0; i < 101; ++i) {
+    CollisionNode node;
+    const double density = size * uniform(random, -1, 1);
+    node.set_equilibrium(density, {size * uniform(random, -1, 1), size * uniform(random, -1, 1)},
+                         trial.setting.inertia);
+    node.store(inputs, i);
+  }
+  return inputs;
+}
+
+/// How far a collision moves them, at the most, relative to `size`.
+double change_of_equilibria(const Subject& subject, const Trial& trial, double size) {
+  const Values inputs = equilibria(subject, trial, size);
+  Call call;
+  call.absent = {"force"};
+  const Values outputs = compute(subject, trial.instance, inputs, call);
+  double most = 0;
+  for (std::size_t i = 0; i < 101; ++i) {
+    const CollisionNode before = node_of(inputs, i, trial), after = node_of(outputs, i, trial);
+    for (std::size_t q = 0; q < 9; ++q) {
+      const double change = std::abs(after.f[q] - before.f[q]);
+      if (!(change <= most)) most = change;
+    }
+  }
+  return most;
+}
+
+/// Without inertia the equilibrium is known: it is linear in density and momentum. With inertia operators agree on the
+/// terms of second order; what they add is of third order or higher, and halving density and velocity must make it
+/// eight times smaller at least.
+Finding equilibrium(const Subject& subject) {
+  Random random = subject.random();
+  Worst worst;
+  for (const Trial& trial : collision_trials(subject, random)) {
+    const double size = 0.1, whole = change_of_equilibria(subject, trial, size),
+                 half = change_of_equilibria(subject, trial, size / 2);
+    if (!trial.setting.inertia) {
+      worst.add(whole, rounding * size,
+                [&] { return "a collision changes populations in equilibrium by" + trial.words; });
+      continue;
+    }
+    // A Maxwellian has (uuv + uvv)/4 in a diagonal population, which a rate of 2 doubles; twice that for what else an
+    // operator may have. At 0.1 terms of fourth order are a tenth of those of third order: hence 7, not 8.
+    const double third_order = 2 * size * size * size;
+    worst.add(whole, third_order + rounding * size,
+              [&] { return "a collision changes populations in equilibrium by" + trial.words; });
+    worst.add(half, whole / 7 + rounding * size, [&] {
+      return "a collision changes populations in equilibrium by " + number(whole, 3) +
+             " and, with density and velocity halved, by" + trial.words;
+    });
+  }
+  return worst.finding("they stay");
+}
+
+/// n = f - f_eq + S/2 with Guo's source S (Phys. Rev. E 65, 2002, eq. 20; its stress is uF + Fu) keeps the share 1 -
+/// 1/tau of its shear stress. Equilibrium and source have the stresses uu and uF + Fu, without inertia none.
+Finding stress_relaxation(const Subject& subject) {
+  if (!subject.manifest().needs_input("relaxation_rate")) return Finding::skipped("takes no relaxation rate");
+  Random random = subject.random();
+  Worst worst;
+  for (const Trial& trial : collision_trials(subject, random)) {
+    for (const std::set<std::string>& absent :
+         {std::set<std::string>{}, {"force"}, {"relaxation_rate"}, {"force", "relaxation_rate"}}) {
+      const Values inputs = subject.random_inputs(trial.instance, 101, random);
+      Call call;
+      call.absent = absent;
+      const Values outputs = compute(subject, trial.instance, inputs, call);
+      for (std::size_t i = 0; i < 101; ++i) {
+        CollisionNode before = node_of(inputs, i, trial);
+        if (absent.contains("force")) before.force = {};
+        if (absent.contains("relaxation_rate")) before.relaxation_rate = trial.setting.relaxation_rate;
+        const CollisionNode after = node_of(outputs, i, trial);
+        const auto is = after.shear_stress(), was = before.shear_stress();
+        const auto equilibrium = before.equilibrium_stress(), source = before.source_stress();
+        for (std::size_t k = 0; k < 2; ++k) {
+          const double left = is[k] - equilibrium[k] - source[k] / 2;
+          const double expected = (1 - before.relaxation_rate) * (was[k] - equilibrium[k] + source[k] / 2);
+          worst.add(std::abs(left - expected), rounding * (before.size() + after.size()), [&] {
+            return std::string("of the stress ") + (k == 0 ? "xy" : "xx - yy") + " beyond equilibrium " +
+                   number(left, 17) + " is left, expected " + number(expected, 17) + ", at tau " +
+                   number(1 / before.relaxation_rate, 4) +
+                   (absent.contains("force") ? " without force" : " with a force") + trial.words + "; they differ by";
+          });
+        }
+      }
+    }
+  }
+  return worst.finding("exactly so");
+}
+
+/// A symmetry of the square: a quarter turn `turns` times, after a reflection of x if asked for.
+struct SquareSymmetry {
+  int turns;
+  bool reflect;
+
+  [[nodiscard]] std::array<double, 2> moved(std::array<double, 2> v) const {
+    if (reflect) v[0] = -v[0];
+    for (int i = 0; i < turns; ++i) v = {-v[1], v[0]};
+    return v;
+  }
+  [[nodiscard]] CollisionNode operator()(const CollisionNode& node) const {
+    CollisionNode image = node;
+    for (std::size_t q = 0; q < 9; ++q) {
+      const auto to = moved({double(d2q9::velocity[q][0]), double(d2q9::velocity[q][1])});
+      for (std::size_t p = 0; p < 9; ++p) {
+        if (d2q9::velocity[p][0] == to[0] && d2q9::velocity[p][1] == to[1]) image.f[p] = node.f[q];
+      }
+    }
+    image.force = moved(node.force);
+    image.velocity = moved(node.velocity);
+    return image;
+  }
+  [[nodiscard]] std::string words() const {
+    return (reflect ? "a reflection and " : "") + std::to_string(turns) + " quarter turns";
+  }
+};
+
+Finding symmetry(const Subject& subject) {
+  Random random = subject.random();
+  Worst worst;
+  for (const Trial& trial : collision_trials(subject, random)) {
+    const Values inputs = subject.random_inputs(trial.instance, 101, random);
+    const Values outputs = compute(subject, trial.instance, inputs);
+    for (int k = 1; k < 8; ++k) {
+      const SquareSymmetry image{k % 4, k >= 4};
+      Values turned = inputs;
+      for (std::size_t i = 0; i < 101; ++i) image(node_of(inputs, i, trial)).store(turned, i);
+      const Values results = compute(subject, trial.instance, turned);
+      for (std::size_t i = 0; i < 101; ++i) {
+        const CollisionNode expected = image(node_of(outputs, i, trial)), found = node_of(results, i, trial);
+        const double limit = rounding * (expected.size() + node_of(inputs, i, trial).size());
+        worst.add(found.distance(expected), limit,
+                  [&] { return "after " + image.words() + " of its node a result differs by" + trial.words; });
+      }
+    }
+  }
+  return worst.finding("the same bits");
+}
+
+/// The same nodes computed in two ways that must agree to rounding.
+void compare(Worst& worst, const Trial& trial, const Values& inputs, const Values& a, const Values& b, double limit,
+             const std::string& words) {
+  for (std::size_t i = 0; i < a.begin()->second.size(); ++i) {
+    const CollisionNode one = node_of(a, i, trial), other = node_of(b, i, trial);
+    worst.add(one.distance(other), limit * (node_of(inputs, i, trial).size() + one.size()),
+              [&] { return words + ", a result differs by" + trial.words; });
+  }
+}
+
+Finding reductions(const Subject& subject) {
+  Random random = subject.random();
+  Worst worst;
+  for (const Trial& trial : collision_trials(subject, random)) {
+    Values inputs = subject.random_inputs(trial.instance, 101, random);
+    if (subject.manifest().needs_input("relaxation_rate")) {
+      Values even = inputs;
+      even["relaxation_rate"].assign(101, trial.setting.relaxation_rate);
+      Call call;
+      call.absent = {"relaxation_rate"};
+      compare(worst, trial, inputs, compute(subject, trial.instance, inputs, call),
+              compute(subject, trial.instance, even), rounding,
+              "without relaxation rates and with that of the setup everywhere");
+    }
+    if (subject.manifest().needs_input("force")) {
+      for (const char* name : {"force.0", "force.1"}) inputs[name].assign(101, 0);
+      Call call;
+      call.absent = {"force"};
+      compare(worst, trial, inputs, compute(subject, trial.instance, inputs, call),
+              compute(subject, trial.instance, inputs), rounding, "without force and with the force 0");
+    }
+    if (!trial.setting.inertia) continue;
+    // The momentum is taken away: what is left of the velocity is rounding.
+    for (std::size_t i = 0; i < 101; ++i) {
+      CollisionNode node = node_of(inputs, i, trial);
+      node.remove_momentum();
+      node.store(inputs, i);
+    }
+    plugin::ModelSetting still = trial.setting;
+    still.inertia = false;
+    Call call;
+    call.absent = {"force"};
+    compare(worst, trial, inputs, compute(subject, trial.instance, inputs, call),
+            compute(subject, subject.make(trial.parameters, still), inputs, call), rounding,
+            "with and without inertia at velocity 0");
+  }
+  return worst.finding("the same bits");
+}
+
+Finding precision(const Subject& subject) {
+  // As `rounding`, for numbers of 24 bits.
+  constexpr double limit = 64 * double{std::numeric_limits<float>::epsilon()};
+  Random random = subject.random();
+  Worst worst;
+  for (const Trial& trial : collision_trials(subject, random)) {
+    Values inputs = subject.random_inputs(trial.instance, 101, random);
+    for (auto& [name, values] : inputs) {
+      for (double& value : values) value = static_cast<float>(value);
+    }
+    Call single;
+    single.single = true;
+    compare(worst, trial, inputs, compute(subject, trial.instance, inputs, single),
+            compute(subject, trial.instance, inputs), limit, "in single and in double precision");
+  }
+  return worst.finding("the same");
+}
+
+}  // namespace
+
+std::vector<Check> collision_checks() {
+  constexpr auto kind = plugin::ModelKind::collision;
+  constexpr auto level = Level::physics;
+  return {
+      {"mass", level, "conserves mass", {"compute"}, mass, kind},
+      {"momentum", level, "changes momentum by the force and nothing else", {"mass"}, momentum, kind},
+      {"velocity", level, "gives the velocity sum f c + F/2", {"compute"}, velocity, kind},
+      {"equilibrium", level, "leaves populations in equilibrium alone", {"momentum"}, equilibrium, kind},
+      {"stress-relaxation", level, "leaves 1 - 1/tau of the shear stress", {"equilibrium"}, stress_relaxation, kind},
+      {"symmetry", level, "has the eight symmetries of the square", {"stress-relaxation", "velocity"}, symmetry, kind},
+      {"reductions", level, "takes NULL inputs and no velocity as the interface says", {"symmetry"}, reductions, kind},
+      {"precision", level, "gives in single precision what it gives in double", {"compute"}, precision, kind},
+  };
+}
+
+}  // namespace rouleau::conform

@@ -1,0 +1,247 @@
+// Level "physics" for membrane laws: forces against energies, derivatives, the state of rest, degenerate elements.
+#include <algorithm>
+#include <cmath>
+
+#include "base/text.hpp"
+#include "conform/call.hpp"
+#include "conform/check.hpp"
+#include "differences.hpp"
+#include "membrane_work.hpp"
+#include "plugin/quantities.hpp"
+#include "worst.hpp"
+
+namespace rouleau::conform {
+
+namespace {
+
+Finding compare(const Subject& subject, const std::vector<DerivativeClaim>& claims) {
+  Random random = subject.random();
+  Worst worst;
+  Decided decided;
+  for (const Trial& trial : trials(subject, random, Subject::typical_setting())) {
+    const Values inputs = subject.random_inputs(trial.instance, 64, random);
+    for (const DerivativeClaim& claim : claims) {
+      if (inputs.contains(claim.variable)) {
+        compare_derivative(worst, decided, subject, trial, inputs, claim);
+        continue;
+      }
+      // It cannot depend on what it is not given.
+      const auto given = compute(subject, trial.instance, inputs).at(claim.derivative);
+      for (const double value : given) {
+        worst.add(std::abs(value), 0, [&] {
+          return claim.derivative + " is not 0, though " + claim.variable + " is not among its \"needs\"";
+        });
+      }
+    }
+  }
+  if (decided.yes < decided.no && worst.passes()) {
+    return Finding::warned("too rough for differences to tell at " + std::to_string(decided.no) + " of " +
+                           std::to_string(decided.yes + decided.no) + " places");
+  }
+  return worst.finding("as the differences are");
+}
+
+Finding force_gradient(const Subject& subject) {
+  const plugin::Manifest& manifest = subject.manifest();
+  if (!manifest.claims.value("conservative", false)) return Finding::skipped("does not claim to be conservative");
+  if (!manifest.gives_output("energy")) {
+    return Finding::failed("claims to be conservative, but gives no energy that its forces could be derived from");
+  }
+  std::vector<DerivativeClaim> claims;
+  for (const auto& c : coordinates_of(manifest)) claims.push_back({c.force, "energy", c.variable, c.sign});
+  return compare(subject, claims);
+}
+
+Finding derivatives(const Subject& subject) {
+  const std::vector<DerivativeClaim> all = {{"tension_by_stretch", "tension", "stretch", 1},
+                                            {"tension_by_rate", "tension", "stretch_rate", 1},
+                                            {"moment_by_curvature", "moment", "curvature", 1}};
+  std::vector<DerivativeClaim> given;
+  for (const DerivativeClaim& claim : all) {
+    if (subject.manifest().gives_output(claim.derivative)) given.push_back(claim);
+  }
+  if (given.empty()) return Finding::skipped("gives no derivatives");
+  return compare(subject, given);
+}
+
+/// The largest force at rest beside that of elements a tenth away from it.
+Finding rest_state(const Subject& subject) {
+  Random random = subject.random();
+  std::string prestressed;
+  for (const Trial& trial : trials(subject, random, Subject::typical_setting(), 0)) {
+    const Values rest = at_rest(subject, trial, 21, random);
+    const Values forces = compute(subject, trial.instance, rest);
+    for (const auto& c : coordinates_of(subject.manifest())) {
+      Values away = rest;
+      if (away.contains(c.variable)) {
+        for (double& value : away[c.variable]) value += c.variable == "curvature" ? 0.1 : 0.1 * value;
+      }
+      const auto beside = compute(subject, trial.instance, away).at(c.force);
+      for (std::size_t i = 0; i < 21; ++i) {
+        const double force = forces.at(c.force)[i];
+        // Forces at rest are differences of terms whose sizes are those of forces nearby.
+        if (std::abs(force) <= 64 * epsilon * std::abs(beside[i])) continue;
+        const std::string words = c.force + ' ' + in_si(subject, trial.setting, c.force, force) + " at " +
+                                  place(subject, trial.setting, rest, i) + trial.words;
+        if (trial.words.empty()) return Finding::warned("is under stress at rest: " + words);
+        if (prestressed.empty()) prestressed = words;
+      }
+    }
+  }
+  return Finding::passed(prestressed.empty() ? "no force at rest"
+                                             : "no force at rest with typical parameters; " + prestressed);
+}
+
+/// "; 3 x shear_modulus": a modulus over each parameter of its dimension.
+std::string as_ratio(const Subject& subject, const Trial& trial, double si, const units::Dimension& dimension) {
+  std::string words;
+  for (std::size_t k = 0; k < trial.parameters.size(); ++k) {
+    const plugin::Parameter& parameter = subject.manifest().parameters[k];
+    if (!parameter.choices.empty() || parameter.dimension != dimension || trial.parameters[k] == 0) continue;
+    if (dimension == units::Dimension{}) continue;
+    words += " = " + number(si / trial.parameters[k], 7) + " x " + parameter.name;
+  }
+  return words;
+}
+
+struct Modulus {
+  const char* force;
+  const char* variable;
+  const char* words;
+  const char* declared;  ///< output that must be the same
+  bool times_rest;       ///< per relative change of the variable
+  double sign;
+};
+
+/// Slopes a ten-thousandth to both sides of rest, where a law may have a kink; their mean is that at rest to 1e-8.
+Finding moduli(const Subject& subject) {
+  const std::vector<Modulus> all = {{"tension", "stretch", "dT/dstretch", "tension_by_stretch", false, 1},
+                                    {"tension", "stretch_rate", "dT/drate", "tension_by_rate", false, 1},
+                                    {"moment", "curvature", "dmoment/dcurvature", "moment_by_curvature", false, 1},
+                                    {"pressure", "area", "-A0 dp/dA", "", true, -1},
+                                    {"perimeter_tension", "perimeter", "P0 dtension/dperimeter", "", true, 1}};
+  const plugin::Manifest& manifest = subject.manifest();
+  Random random = subject.random();
+  Worst worst;
+  Decided decided;
+  std::string report;
+  const auto all_trials = trials(subject, random, Subject::typical_setting());
+  for (const Trial& trial : all_trials) {
+    const Values rest = at_rest(subject, trial, 8, random);
+    for (const Modulus& modulus : all) {
+      if (!manifest.gives_output(modulus.force) || !rest.contains(modulus.variable)) continue;
+      double mean = 0;
+      for (const double side : {-1e-4, 1e-4}) {
+        Values near = rest;
+        for (double& value : near[modulus.variable]) {
+          const bool small = std::abs(value) < 0.05;  // a flat rest state, or a rate
+          value += side * (small ? 0.05 : std::abs(value));
+        }
+        if (manifest.gives_output(modulus.declared)) {
+          compare_derivative(worst, decided, subject, trial, near,
+                             {modulus.declared, modulus.force, modulus.variable, 1});
+        }
+        const auto found = slopes(subject, trial, near, modulus.force, modulus.variable);
+        for (std::size_t i = 0; i < found.size(); ++i) {
+          const double slope = modulus.sign * found[i].value;
+          if (i == 0) mean += slope * (modulus.times_rest ? rest.at(modulus.variable)[0] : 1) / 2;
+          if (modulus.variable == std::string("stretch_rate")) continue;  // what the check of dissipation asks
+          worst.add(std::max(0.0, -slope), found[i].error, [&] {
+            return std::string("near rest the stiffness ") + modulus.words + " is negative, by, in lattice units," +
+                   trial.words;
+          });
+        }
+      }
+      units::Dimension dimension = plugin::dimension_of(manifest, modulus.force);
+      if (!modulus.times_rest) {
+        for (std::size_t k = 0; k < 6; ++k) {
+          dimension.exponent[k] -= plugin::dimension_of(manifest, modulus.variable).exponent[k];
+        }
+      }
+      const double si = trial.setting.units.to_si(mean, dimension);
+      // Of the draws at random the numbers would tell nobody anything.
+      const bool is_choice = std::any_of(manifest.parameters.begin(), manifest.parameters.end(), [&](const auto& p) {
+        return !p.choices.empty() && trial.words.starts_with(" with " + p.name + ' ');
+      });
+      if (&trial == &all_trials.front() || (is_choice && trial.words.find(',') == std::string::npos)) {
+        report += (report.empty() ? "" : "; ") + std::string(modulus.words) + ' ' + number(si, 7) + " SI" +
+                  as_ratio(subject, trial, si, dimension) + trial.words;
+      }
+    }
+  }
+  Finding finding = worst.finding("stiff");
+  if (finding.verdict == Verdict::pass) finding = Finding::passed(report);
+  return finding;
+}
+
+/// Elements crushed, torn and folded.
+/// A law may outgrow the numbers where an element is torn or crushed, and the run then says that it diverged; but it
+/// may not give what is no number, and not outgrow them where cells in a strong flow come to.
+Finding degenerate(const Subject& subject) {
+  Random random = subject.random();
+  for (const Trial& trial : trials(subject, random, Subject::typical_setting())) {
+    std::vector<Values> extremes;
+    constexpr std::size_t count = 91;  // 1e-6 to 1e3 in tenths of a decade
+    const auto factor_of = [](std::size_t i) { return std::pow(10.0, -6 + 0.1 * static_cast<double>(i)); };
+    const Values ordinary = subject.random_inputs(trial.instance, count, random);
+    for (const auto& [name, values] : ordinary) {
+      Values inputs = ordinary;
+      auto& array = inputs[name];
+      for (std::size_t i = 0; i < count; ++i) {
+        const double factor = factor_of(i);
+        if (name == "stretch") array[i] = factor;
+        if (name == "stretch_rate" || name == "curvature") array[i] = std::copysign(factor, values[i]);
+        if (name == "area" || name == "perimeter") array[i] = factor * values[i];
+      }
+      if (name == "area" || name == "curvature" || name == "stretch_rate") array[0] = 0;
+      extremes.push_back(std::move(inputs));
+    }
+    for (const Values& inputs : extremes) {
+      for (const auto& [name, values] : compute(subject, trial.instance, inputs)) {
+        for (std::size_t i = 0; i < count; ++i) {
+          const double factor = factor_of(i);
+          const bool met_in_flow = factor > 0.25 && factor < 4;
+          if (std::isfinite(values[i]) || (std::isinf(values[i]) && !met_in_flow)) continue;
+          return Finding::failed(name + " is " + number(values[i]) + " at " + place(subject, trial.setting, inputs, i) +
+                                 trial.words);
+        }
+      }
+    }
+  }
+  return Finding::passed("a number for elements that are crushed, torn and folded, finite up to fourfold");
+}
+
+}  // namespace
+
+std::vector<Check> membrane_checks() {
+  constexpr auto kind = plugin::ModelKind::membrane;
+  constexpr auto level = Level::physics;
+  return {
+      {"gradient", level, "gives forces that are derivatives of its energy", {"compute"}, force_gradient, kind},
+      {"derivatives", level, "gives the derivatives of its forces", {"compute", "gradient"}, derivatives, kind},
+      {"rest-state", level, "exerts no force at rest", {"compute", "gradient"}, rest_state, kind},
+      {"rigid-motion", level, "does not notice rigid motion", {"compute", "gradient"}, check_rigid_motion, kind},
+      {"moduli",
+       level,
+       "resists small changes of an element at rest as its derivatives say",
+       {"compute", "gradient", "derivatives", "dissipation"},
+       moduli,
+       kind},
+      {"dissipation", level, "takes energy out of motion, never puts it in", {"compute"}, check_dissipation, kind},
+      {"closed-loop",
+       level,
+       "takes no work over closed cycles, or if not conservative none that is negative",
+       {"compute", "gradient", "dissipation"},
+       check_closed_loop,
+       kind},
+      {"degenerate", level, "gives numbers for elements crushed, torn or folded", {"compute"}, degenerate, kind},
+      {"state-restored",
+       level,
+       "goes on from a copy of its state with the same bits",
+       {"compute"},
+       check_state_restored,
+       kind},
+  };
+}
+
+}  // namespace rouleau::conform

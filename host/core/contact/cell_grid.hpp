@@ -1,0 +1,39 @@
+// Which cells can be near a cell, found without looking at all of them.
+#pragma once
+
+#include <vector>
+
+#include "core/membrane/periodic_box.hpp"
+
+namespace rouleau::contact {
+
+/// Cells sorted into bins by the middle of their bounds. A bin is as large as the largest cell and the reach together,
+/// so that whatever is within reach of a cell lies in its own bin or in one of the eight around it, over periodic
+/// borders too. Building and asking cost a time proportional to the number of cells.
+class Bins {
+ public:
+  /// Bounds that are not usable() are near nothing.
+  Bins(const std::vector<membrane::Bounds>& bounds, double reach, const membrane::PeriodicBox& box);
+
+  /// Sets `near` to the cells in the bins around that of `cell`, itself included, each once, in no particular order.
+  void find(int cell, std::vector<int>& near) const;
+
+ private:
+  struct Axis {
+    double origin = 0, width = 1;
+    int count = 1;
+    bool periodic = false;
+    [[nodiscard]] int bin(double middle) const;
+  };
+  static Axis make_axis(double least, double most, double width, double period);
+  /// Calls function(bin) for the bins around `bin` along an axis, each once.
+  template <class Function>
+  static void for_around(const Axis& axis, int bin, Function function);
+
+  Axis x_, y_;
+  std::vector<int> bin_;    // of each cell; -1: not usable
+  std::vector<int> begin_;  // of each bin: its first place in cells_, and one more
+  std::vector<int> cells_;  // bin by bin
+};
+
+}  // namespace rouleau::contact

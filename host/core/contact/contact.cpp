@@ -1,0 +1,196 @@
+#include "contact.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <rouleau/dispatch.hpp>
+
+namespace rouleau::contact {
+
+namespace {
+
+/// The nodes of one cell against one other cell's image.
+struct SearchTask {
+  const double *x, *y, *along_x, *along_y, *inverse_square;
+  const Neighbours::Group *groups, *groups_end;
+  const Neighbours::SegmentRun* runs;
+  double move_x, move_y;  // of the image
+  int nodes_end;          // of the cell
+  int other_first;        // of the other cell
+  double cutoff;
+  int *node, *segment;
+  double *along, *distance, *direction_x, *direction_y;
+  int count;  // contacts before and, when done, after
+};
+
+struct Search {
+  template <int register_bytes>
+  ROULEAU_ALWAYS_INLINE static void run(SearchTask* task) {
+    using S = Pack<double, register_bytes / 8>;
+    const SearchTask t = *task;
+    int count = t.count;
+    const S move_x = t.move_x, move_y = t.move_y;
+    for (const Neighbours::Group* group = t.groups; group != t.groups_end; ++group) {
+      count = append<S>(t, *group, move_x, move_y, count);
+    }
+    task->count = count;
+  }
+
+ private:
+  static constexpr int size = Neighbours::group;
+  static constexpr double no_distance = 1e-150;  // the least whose square has a root and an inverse
+  /// The closest segment of each node.
+  template <class S>
+  struct Closest {
+    S square, segment, along, x, y;
+  };
+
+  /// Appends the contacts of a group of nodes. The whole group is written, for which the arrays have room, and then
+  /// drawn together where nodes lie beyond the cutoff.
+  template <class S>
+  ROULEAU_ALWAYS_INLINE static int append(const SearchTask& t, const Neighbours::Group& group, const S& move_x,
+                                          const S& move_y, int count) {
+    constexpr int packs = size / S::size;
+    Closest<S> closest[packs];
+    find<S>(t, group, move_x, move_y, closest);
+    S nearest = 1e300, farthest = 0.0;
+    for (int p = 0; p < packs; ++p) {
+      const Closest<S>& c = closest[p];
+      const int at = count + p * S::size;
+      const SquareRoot<S> distance = sqrt_and_inverse(max(c.square, S(no_distance * no_distance)));
+      nearest = min(distance.root, nearest);
+      farthest = max(distance.root, farthest);
+      c.along.store(t.along + at);
+      distance.root.store(t.distance + at);
+      (c.x * distance.inverse).store(t.direction_x + at);
+      (c.y * distance.inverse).store(t.direction_y + at);
+      using Integers __attribute__((vector_size(S::size * sizeof(int)))) = int;
+      const Integers segment = __builtin_convertvector(c.segment.vector, Integers);
+      std::memcpy(t.segment + at, &segment, sizeof segment);
+    }
+    for (int k = 0; k < size; ++k) t.node[count + k] = group.first + k;
+    if (!(least(nearest) >= ContactList::least_distance)) send_out(t, count);
+    const int valid = std::min(size, t.nodes_end - group.first);
+    if (valid == size && largest(farthest) <= t.cutoff) return count + size;
+    int end = count;
+    for (int k = count; k < count + valid; ++k) {
+      const bool touches = t.distance[k] <= t.cutoff;
+      t.node[end] = t.node[k];
+      t.segment[end] = t.segment[k];
+      t.along[end] = t.along[k];
+      t.distance[end] = t.distance[k];
+      t.direction_x[end] = t.direction_x[k];
+      t.direction_y[end] = t.direction_y[k];
+      end += touches ? 1 : 0;
+    }
+    return end;
+  }
+
+  template <class S>
+  ROULEAU_ALWAYS_INLINE static void find(const SearchTask& t, const Neighbours::Group& group, const S& move_x,
+                                         const S& move_y, Closest<S>* closest) {
+    constexpr int packs = size / S::size;
+    S x[packs], y[packs];
+    for (int p = 0; p < packs; ++p) {
+      x[p] = S::load(t.x + group.first + p * S::size) - move_x;
+      y[p] = S::load(t.y + group.first + p * S::size) - move_y;
+      closest[p] = {1e300, 0.0, 0.0, 0.0, 0.0};
+    }
+    for (int r = group.run_begin; r < group.run_end; ++r) {
+      const int begin = t.other_first + t.runs[r].begin, end = t.other_first + t.runs[r].end;
+      S number = static_cast<double>(begin);
+      for (int k = begin; k < end; ++k, number += S(1.0)) {
+        const S from_x = S::broadcast(t.x + k), from_y = S::broadcast(t.y + k);
+        const S along_x = S::broadcast(t.along_x + k), along_y = S::broadcast(t.along_y + k);
+        const S inverse_square = S::broadcast(t.inverse_square + k);
+        for (int p = 0; p < packs; ++p) {
+          const Approach<S> approach(x[p] - from_x, y[p] - from_y, along_x, along_y, inverse_square);
+          Closest<S>& c = closest[p];
+          const auto nearer = approach.square < c.square;
+          c.square = select(nearer, approach.square, c.square);
+          c.segment = select(nearer, number, c.segment);
+          c.along = select(nearer, approach.along, c.along);
+          c.x = select(nearer, approach.x, c.x);
+          c.y = select(nearer, approach.y, c.y);
+        }
+      }
+    }
+  }
+
+  /// A node on the other outline has no direction of its own: it is sent out along the segment's outward normal.
+  [[gnu::noinline, gnu::cold]] static void send_out(const SearchTask& t, int begin) {
+    for (int k = begin; k < begin + size; ++k) {
+      if (t.distance[k] <= 2 * no_distance) {  // the root is rounded
+        const int segment = t.segment[k];
+        const double inverse_length = std::sqrt(t.inverse_square[segment]);
+        t.direction_x[k] = t.along_y[segment] * inverse_length;
+        t.direction_y[k] = -t.along_x[segment] * inverse_length;
+      }
+      t.distance[k] = std::max(t.distance[k], ContactList::least_distance);
+    }
+  }
+};
+
+}  // namespace
+
+Contacts::Contacts(const membrane::Membranes& membranes, Cutoffs cutoffs, membrane::PeriodicBox box)
+    : neighbours_(membranes, std::move(cutoffs), box), segments_(membranes), lists_(membranes.cells.size()) {}
+
+void Contacts::run(Worker worker, int phase, const membrane::Membranes& membranes) {
+  if (phase == 0) {
+    neighbours_.measure(worker, membranes);
+    segments_.update(worker, membranes);
+    return;
+  }
+  neighbours_.refresh(worker, membranes, segments_);
+  const bool renewed = neighbours_.renewed();
+  const Range cells = worker.share(membranes.cell_count());
+  for (int cell = cells.begin; cell < cells.end; ++cell) {
+    if (renewed) reserve(cell);
+    search(membranes, cell);
+  }
+}
+
+void Contacts::reserve(int cell) {
+  ContactList& list = lists_[static_cast<std::size_t>(cell)];
+  const Neighbours::CellList& candidates = neighbours_.list(cell);
+  list.ranges.resize(candidates.pairs.size());
+  const std::size_t room = candidates.groups.size() * Neighbours::group + SegmentTable::margin;
+  if (room <= list.node.size()) return;
+  for (auto* values : {&list.node, &list.segment}) values->resize(room);
+  for (auto* values : {&list.along, &list.distance, &list.direction_x, &list.direction_y}) values->resize(room);
+}
+
+void Contacts::search(const membrane::Membranes& membranes, int cell) {
+  static const auto function = Dispatch<Search, SearchTask*>::pick();
+  ContactList& list = lists_[static_cast<std::size_t>(cell)];
+  const Neighbours::CellList& candidates = neighbours_.list(cell);
+  const membrane::CellRange& own = membranes.cells[static_cast<std::size_t>(cell)];
+  SearchTask task{};
+  task.x = segments_.x.data(), task.y = segments_.y.data();
+  task.along_x = segments_.along_x.data(), task.along_y = segments_.along_y.data();
+  task.inverse_square = segments_.inverse_square.data();
+  task.runs = candidates.runs.data();
+  task.nodes_end = own.end();
+  task.node = list.node.data(), task.segment = list.segment.data();
+  task.along = list.along.data(), task.distance = list.distance.data();
+  task.direction_x = list.direction_x.data(), task.direction_y = list.direction_y.data();
+  for (std::size_t p = 0; p < candidates.pairs.size(); ++p) {
+    const Neighbours::Pair& pair = candidates.pairs[p];
+    const membrane::CellRange& other = membranes.cells[static_cast<std::size_t>(pair.other)];
+    const double cutoff = neighbours_.cutoffs()(own.type, other.type);
+    const int before = task.count;
+    if (pair.group_begin != pair.group_end) {
+      task.groups = candidates.groups.data() + pair.group_begin;
+      task.groups_end = candidates.groups.data() + pair.group_end;
+      task.move_x = pair.shift.x * neighbours_.box().nx, task.move_y = pair.shift.y * neighbours_.box().ny;
+      task.other_first = other.first;
+      task.cutoff = cutoff;
+      function(&task);
+    }
+    list.ranges[p] = {before, task.count};
+  }
+  list.count = task.count;
+}
+
+}  // namespace rouleau::contact

@@ -1,0 +1,147 @@
+#include "crossing.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "cell_grid.hpp"
+#include "core/membrane/geometry.hpp"
+
+namespace rouleau::contact {
+
+namespace {
+
+struct Segment {
+  int node, next;  // indices in Membranes
+  Eigen::Vector2d from, to;
+  [[nodiscard]] double x_min() const { return std::min(from.x(), to.x()); }
+  [[nodiscard]] double x_max() const { return std::max(from.x(), to.x()); }
+};
+
+/// Segments of a cell, moved, that touch a box; in order of their left ends.
+void collect(const membrane::Membranes& membranes, const membrane::CellRange& cell, const Eigen::Vector2d& move,
+             const membrane::Bounds& box, std::vector<Segment>& segments) {
+  segments.clear();
+  const auto node = [&](int i) -> Eigen::Vector2d {
+    return Eigen::Vector2d(membranes.x[static_cast<std::size_t>(i)], membranes.y[static_cast<std::size_t>(i)]) + move;
+  };
+  for (int i = cell.first; i < cell.end(); ++i) {
+    const int next = cell.next(i);
+    const Segment segment{i, next, node(i), node(next)};
+    if (segment.x_min() > box.x_max || segment.x_max() < box.x_min) continue;
+    if (std::min(segment.from.y(), segment.to.y()) > box.y_max ||
+        std::max(segment.from.y(), segment.to.y()) < box.y_min) {
+      continue;
+    }
+    segments.push_back(segment);
+  }
+  std::sort(segments.begin(), segments.end(), [](const Segment& a, const Segment& b) { return a.x_min() < b.x_min(); });
+}
+
+/// Where two segments cross. A point exactly on the other segment's line counts as outside of it, so that outlines that
+/// only touch from outside do not cross, and a crossing through a node is still found once.
+std::optional<Eigen::Vector2d> intersection(const Segment& a, const Segment& b) {
+  const Eigen::Vector2d u = a.to - a.from, v = b.to - b.from;
+  const double b_from = membrane::cross(u, b.from - a.from), b_to = membrane::cross(u, b.to - a.from);
+  if ((b_from > 0) == (b_to > 0)) return std::nullopt;
+  const double a_from = membrane::cross(v, a.from - b.from), a_to = membrane::cross(v, a.to - b.from);
+  if ((a_from > 0) == (a_to > 0)) return std::nullopt;
+  return Eigen::Vector2d(a.from + a_from / (a_from - a_to) * u);
+}
+
+struct Found {
+  int node;
+  Eigen::Vector2d place;
+};
+
+/// First crossing between two lists sorted by their left ends; `same`: both are the same list of one cell.
+std::optional<Found> sweep(const std::vector<Segment>& as, const std::vector<Segment>& bs, bool same) {
+  std::size_t begin = 0;
+  double widest = 0;
+  for (const Segment& b : bs) widest = std::max(widest, b.x_max() - b.x_min());
+  for (const Segment& a : as) {
+    while (begin < bs.size() && bs[begin].x_min() + widest < a.x_min()) ++begin;
+    for (std::size_t k = begin; k < bs.size() && bs[k].x_min() <= a.x_max(); ++k) {
+      const Segment& b = bs[k];
+      if (same && (b.node <= a.node || b.node == a.next || b.next == a.node)) continue;
+      if (const auto place = intersection(a, b)) return Found{a.node, *place};
+    }
+  }
+  return std::nullopt;
+}
+
+bool contains(const membrane::Bounds& outer, const membrane::Bounds& inner) {
+  return outer.x_min <= inner.x_min && inner.x_max <= outer.x_max && outer.y_min <= inner.y_min &&
+         inner.y_max <= outer.y_max;
+}
+
+/// Looks at one pair of cells and one image of the second.
+class PairCheck {
+ public:
+  PairCheck(const membrane::Membranes& membranes, const membrane::PeriodicBox& box)
+      : membranes_(membranes), box_(box) {}
+
+  std::optional<Crossing> operator()(int a, int b, membrane::ImageShift shift) {
+    const membrane::CellRange& cell = membranes_.cells[static_cast<std::size_t>(a)];
+    const membrane::CellRange& other = membranes_.cells[static_cast<std::size_t>(b)];
+    const Eigen::Vector2d move(shift.x * box_.nx, shift.y * box_.ny);
+    const membrane::Bounds own = membrane::bounds(membranes_, cell);
+    membrane::Bounds moved = membrane::bounds(membranes_, other);
+    moved = {moved.x_min + move.x(), moved.x_max + move.x(), moved.y_min + move.y(), moved.y_max + move.y()};
+    const membrane::Bounds common{std::max(own.x_min, moved.x_min), std::min(own.x_max, moved.x_max),
+                                  std::max(own.y_min, moved.y_min), std::min(own.y_max, moved.y_max)};
+    const bool same = a == b && shift == membrane::ImageShift{};
+    collect(membranes_, cell, Eigen::Vector2d::Zero(), common, own_);
+    if (!same) collect(membranes_, other, move, common, other_);
+    if (const auto found = sweep(own_, same ? own_ : other_, same)) {
+      return Crossing{a, b, shift, found->node, found->place, false};
+    }
+    if (same) return std::nullopt;
+    if (contains(moved, own)) {
+      const Eigen::Vector2d node = first_node(cell);
+      if (membrane::depth_inside(membranes_, other, node - move) > 0)
+        return Crossing{a, b, shift, cell.first, node, true};
+    }
+    if (contains(own, moved)) {
+      const Eigen::Vector2d node = first_node(other);
+      if (membrane::depth_inside(membranes_, cell, node + move) > 0)
+        return Crossing{b, a, -shift, other.first, node, true};
+    }
+    return std::nullopt;
+  }
+
+ private:
+  [[nodiscard]] Eigen::Vector2d first_node(const membrane::CellRange& cell) const {
+    return {membranes_.x[static_cast<std::size_t>(cell.first)], membranes_.y[static_cast<std::size_t>(cell.first)]};
+  }
+  const membrane::Membranes& membranes_;
+  const membrane::PeriodicBox& box_;
+  std::vector<Segment> own_, other_;
+};
+
+}  // namespace
+
+std::optional<Crossing> find_crossing(const membrane::Membranes& membranes, const membrane::PeriodicBox& box) {
+  std::vector<membrane::Bounds> extent;
+  for (const membrane::CellRange& cell : membranes.cells) extent.push_back(membrane::bounds(membranes, cell));
+  PairCheck check(membranes, box);
+  std::optional<Crossing> found;
+  const Bins bins(extent, 0.0, box);
+  const int count = static_cast<int>(membranes.cells.size());
+  std::vector<int> near;
+  for (int a = 0; a < count && !found; ++a) {
+    bins.find(a, near);
+    std::sort(near.begin(), near.end());  // the crossing that is found first does not depend on the bins
+    for (const int b : near) {
+      if (b < a || found) continue;
+      membrane::for_each_image(extent[static_cast<std::size_t>(a)], extent[static_cast<std::size_t>(b)], 0.0, box,
+                               [&](membrane::ImageShift shift) {
+                                 // Of a cell's own images, one of two opposite ones is enough.
+                                 if (found || (a == b && (shift.x < 0 || (shift.x == 0 && shift.y < 0)))) return;
+                                 found = check(a, b, shift);
+                               });
+    }
+  }
+  return found;
+}
+
+}  // namespace rouleau::contact

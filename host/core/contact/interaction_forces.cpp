@@ -1,0 +1,285 @@
+#include "interaction_forces.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+namespace rouleau::contact {
+
+namespace {
+
+std::vector<double> cutoffs_of(const std::vector<Potential>& potentials) {
+  std::vector<double> cutoffs;
+  cutoffs.reserve(potentials.size());
+  for (const Potential& potential : potentials) {
+    cutoffs.push_back(potential.model->interaction().cutoff(potential.model->self()));
+  }
+  return cutoffs;
+}
+
+Cutoffs pair_cutoffs(const membrane::Membranes& membranes, const std::vector<Potential>& potentials,
+                     const std::vector<double>& cutoffs) {
+  int types = 1;
+  for (const membrane::CellRange& cell : membranes.cells) types = std::max(types, cell.type + 1);
+  for (const Potential& potential : potentials)
+    types = std::max({types, potential.between[0] + 1, potential.between[1] + 1});
+  Cutoffs result(types);
+  for (std::size_t p = 0; p < potentials.size(); ++p) {
+    result.raise(potentials[p].between[0], potentials[p].between[1], cutoffs[p]);
+  }
+  return result;
+}
+
+bool acts_between(const Potential& potential, int a, int b) {
+  return (potential.between[0] == a && potential.between[1] == b) ||
+         (potential.between[0] == b && potential.between[1] == a);
+}
+
+}  // namespace
+
+InteractionForces::InteractionForces(const membrane::Membranes& membranes, std::vector<Potential> potentials,
+                                     membrane::PeriodicBox box)
+    : potentials_(std::move(potentials)),
+      cutoffs_(cutoffs_of(potentials_)),
+      contacts_(membranes, pair_cutoffs(membranes, potentials_, cutoffs_), box),
+      scratch_(membranes.cells.size()),
+      variables_(potentials_.size()) {
+  for (const Potential& potential : potentials_) {
+    const plugin::Manifest& manifest = potential.model->manifest();
+    has_state_ = has_state_ || !manifest.state.empty();
+    needs_velocities_ =
+        needs_velocities_ || manifest.needs_input("normal_velocity") || manifest.needs_input("tangential_velocity");
+    traits_.push_back({manifest.needs_input("normal_velocity"), manifest.needs_input("tangential_velocity"),
+                       manifest.gives_output("energy")});
+  }
+}
+
+void InteractionForces::run(Worker worker, int phase, membrane::Membranes& membranes) {
+  if (has_state_ && membranes.contacts.of_cell.empty()) {
+    throw std::logic_error("potentials with state: keep_state() comes before run()");
+  }
+  const Range cells = worker.share(static_cast<int>(membranes.cells.size()));
+  switch (phase) {
+    case 0:
+      contacts_.run(worker, 0, membranes);
+      break;
+    case 1:
+      contacts_.run(worker, 1, membranes);
+      for (int cell = cells.begin; cell < cells.end; ++cell) {
+        compute_forces(cell, membranes);
+        act(cell, membranes);
+      }
+      break;
+    default:
+      contacts_.neighbours().link(worker, membranes);
+      for (int cell = cells.begin; cell < cells.end; ++cell) take_reactions(cell, membranes);
+      break;
+  }
+}
+
+// Pairs are listed by type of the other cell, so that a potential gets its distances in one piece.
+InteractionForces::TypeRange InteractionForces::next_range(int cell, const membrane::Membranes& membranes,
+                                                           std::size_t& pair) const {
+  const std::vector<Neighbours::Pair>& pairs = contacts_.neighbours().list(cell).pairs;
+  const std::vector<Range>& ranges = contacts_.list(cell).ranges;
+  const auto type_of = [&](std::size_t p) { return membranes.cells[static_cast<std::size_t>(pairs[p].other)].type; };
+  TypeRange result{type_of(pair), ranges[pair]};
+  for (++pair; pair < pairs.size() && type_of(pair) == result.type; ++pair) result.contacts.end = ranges[pair].end;
+  return result;
+}
+
+/// Adds (or, if it is the first, sets) one potential's force or energy at the contacts to `result`.
+void InteractionForces::apply(std::size_t potential, const ContactList& list, Range contacts, double* result,
+                              bool energy, bool first, Scratch& scratch) const {
+  const plugin::ModelInstance& model = *potentials_[potential].model;
+  const double cutoff = cutoffs_[potential];
+  const int own_type = potentials_[potential].between[0], other_type = potentials_[potential].between[1];
+  const bool all = !(cutoff < contacts_.neighbours().cutoffs()(own_type, other_type));
+  int count = contacts.end - contacts.begin;
+  const double* distance = list.distance.data() + contacts.begin;
+  if (!all) {
+    count = 0;
+    for (int i = contacts.begin; i < contacts.end; ++i) {
+      scratch.distance[static_cast<std::size_t>(count)] = list.distance[static_cast<std::size_t>(i)];
+      scratch.contact[static_cast<std::size_t>(count)] = i;
+      count += list.distance[static_cast<std::size_t>(i)] <= cutoff ? 1 : 0;
+    }
+    distance = scratch.distance.data();
+  }
+  if (first && !(all && count > 0)) std::fill(result + contacts.begin, result + contacts.end, 0.0);
+  if (count == 0) return;
+
+  const bool direct = first && all;
+  rouleau_interaction_block block{};
+  block.struct_size = sizeof block;
+  block.count = static_cast<std::uint32_t>(count);
+  block.time_step = 1;
+  block.distance = distance;
+  give_velocities(potential, contacts.begin, count, all, scratch, block);
+  (energy ? block.energy : block.force) = direct ? result + contacts.begin : scratch.law.data();
+  model.interaction().compute(model.self(), &block);
+  if (direct) return;
+  for (int i = 0; i < count; ++i) {
+    result[all ? contacts.begin + i : scratch.contact[static_cast<std::size_t>(i)]] +=
+        scratch.law[static_cast<std::size_t>(i)];
+  }
+}
+
+void InteractionForces::give_velocities(std::size_t potential, int first, int count, bool all, Scratch& scratch,
+                                        rouleau_interaction_block& block) const {
+  const auto give = [&](bool needed, const std::vector<double>& values, std::vector<double>& chosen,
+                        const double*& to) {
+    if (!needed) return;
+    to = values.data() + first;
+    if (all) return;
+    for (auto k = std::size_t{0}; k < static_cast<std::size_t>(count); ++k) {
+      chosen[k] = values[static_cast<std::size_t>(scratch.contact[k])];
+    }
+    to = chosen.data();
+  };
+  give(traits_[potential].normal_velocity, scratch.velocities.normal, scratch.normal, block.normal_velocity);
+  give(traits_[potential].tangential_velocity, scratch.velocities.tangential, scratch.tangential,
+       block.tangential_velocity);
+}
+
+void InteractionForces::prepare(int cell, const membrane::Membranes& membranes, Scratch& scratch) const {
+  const ContactList& list = contacts_.list(cell);
+  if (scratch.law.size() < list.node.size()) {  // only after the candidates were listed anew
+    for (auto* values : {&scratch.force, &scratch.law, &scratch.distance}) values->resize(list.node.size());
+    for (auto* values : {&scratch.normal, &scratch.tangential}) values->resize(list.node.size());
+    scratch.contact.resize(list.node.size());
+  }
+  if (needs_velocities_) {
+    scratch.velocities.measure(list, contacts_.neighbours().list(cell).pairs, membranes);
+  }
+}
+
+void InteractionForces::compute_forces(int cell, membrane::Membranes& membranes) {
+  const ContactList& list = contacts_.list(cell);
+  Scratch& scratch = scratch_[static_cast<std::size_t>(cell)];
+  prepare(cell, membranes, scratch);
+  const auto touched = static_cast<std::size_t>(contacts_.neighbours().list(cell).touched);
+  scratch.reaction_x.assign(touched, 0.0);
+  scratch.reaction_y.assign(touched, 0.0);
+  const int type = membranes.cells[static_cast<std::size_t>(cell)].type;
+  std::vector<membrane::ContactState> none;
+  NextState next{has_state_ ? membranes.contacts.of_cell[static_cast<std::size_t>(cell)] : none};
+  for (std::size_t pair = 0; pair < list.ranges.size();) {
+    const std::size_t first_pair = pair;
+    const TypeRange range = next_range(cell, membranes, pair);
+    bool first = true;
+    for (std::size_t p = 0; p < potentials_.size(); ++p) {
+      if (!acts_between(potentials_[p], type, range.type)) continue;
+      if (variables_[p].empty()) {
+        apply(p, list, range.contacts, scratch.force.data(), false, first, scratch);
+      } else {
+        if (first) {
+          std::fill(scratch.force.data() + range.contacts.begin, scratch.force.data() + range.contacts.end, 0.0);
+        }
+        for (std::size_t q = first_pair; q < pair; ++q) {
+          apply_with_state(p, cell, q, membranes, scratch.force.data(), false, &next, scratch);
+        }
+      }
+      first = false;
+    }
+  }
+  next.states.resize(next.kept);  // pairs that do not touch any more
+}
+
+void InteractionForces::act(int cell, membrane::Membranes& membranes) {
+  const ContactList& list = contacts_.list(cell);
+  const std::vector<Neighbours::Pair>& pairs = contacts_.neighbours().list(cell).pairs;
+  Scratch& scratch = scratch_[static_cast<std::size_t>(cell)];
+  const double *force = scratch.force.data(), *weight = membranes.rest_weight.data(), *along = list.along.data();
+  double *force_x = membranes.force_x.data(), *force_y = membranes.force_y.data();
+  const int *node = list.node.data(), *segment = list.segment.data();
+  const double *direction_x = list.direction_x.data(), *direction_y = list.direction_y.data();
+  for (std::size_t p = 0; p < pairs.size(); ++p) {
+    const Neighbours::Pair& pair = pairs[p];
+    const int to_touched =
+        pair.reaction - pair.touched.begin - membranes.cells[static_cast<std::size_t>(pair.other)].first;
+    double *reaction_x = scratch.reaction_x.data(), *reaction_y = scratch.reaction_y.data();
+    const auto act_at = [&](int i) {
+      const double f = 0.5 * weight[node[i]] * force[i], fx = f * direction_x[i], fy = f * direction_y[i];
+      const int begin = segment[i] + to_touched;
+      force_x[node[i]] += fx;
+      force_y[node[i]] += fy;
+      reaction_x[begin] -= (1 - along[i]) * fx;
+      reaction_y[begin] -= (1 - along[i]) * fy;
+      reaction_x[begin + 1] -= along[i] * fx;
+      reaction_y[begin + 1] -= along[i] * fy;
+    };
+    // Consecutive contacts often share a segment, and each sum waits for the one before: two halves take turns.
+    const Range range = list.ranges[p];
+    const int half = (range.end - range.begin) / 2, middle = range.begin + half;
+    for (int i = range.begin; i < middle; ++i) {
+      act_at(i);
+      act_at(i + half);
+    }
+    for (int i = middle + half; i < range.end; ++i) act_at(i);
+  }
+}
+
+void InteractionForces::take_reactions(int cell, membrane::Membranes& membranes) const {
+  const membrane::CellRange& own = membranes.cells[static_cast<std::size_t>(cell)];
+  for (const Neighbours::Pair& pair : contacts_.neighbours().list(cell).pairs) {
+    const Neighbours::Pair& opposite =
+        contacts_.neighbours().list(pair.other).pairs[static_cast<std::size_t>(pair.reverse)];
+    const Scratch& scratch = scratch_[static_cast<std::size_t>(pair.other)];
+    const double* reaction_x = scratch.reaction_x.data() + opposite.reaction - opposite.touched.begin;
+    const double* reaction_y = scratch.reaction_y.data() + opposite.reaction - opposite.touched.begin;
+    double *force_x = membranes.force_x.data() + own.first, *force_y = membranes.force_y.data() + own.first;
+    const int last = std::min(opposite.touched.end, own.count);
+    for (int k = opposite.touched.begin; k < last; ++k) {
+      force_x[k] += reaction_x[k];
+      force_y[k] += reaction_y[k];
+    }
+    if (opposite.touched.end > own.count) {
+      force_x[0] += reaction_x[own.count];
+      force_y[0] += reaction_y[own.count];
+    }
+  }
+}
+
+double InteractionForces::energy(const membrane::Membranes& membranes) const {
+  double sum = 0;
+  for (int cell = 0; cell < static_cast<int>(membranes.cells.size()); ++cell) {
+    const ContactList& list = contacts_.list(cell);
+    Scratch scratch;
+    prepare(cell, membranes, scratch);
+    std::vector<double> energy(list.node.size(), 0.0);
+    const int type = membranes.cells[static_cast<std::size_t>(cell)].type;
+    for (std::size_t pair = 0; pair < list.ranges.size();) {
+      const std::size_t first_pair = pair;
+      const TypeRange range = next_range(cell, membranes, pair);
+      for (std::size_t p = 0; p < potentials_.size(); ++p) {
+        if (!traits_[p].energy || !acts_between(potentials_[p], type, range.type)) continue;
+        if (variables_[p].empty()) apply(p, list, range.contacts, energy.data(), true, false, scratch);
+        for (std::size_t q = first_pair; q < pair && !variables_[p].empty(); ++q) {
+          apply_with_state(p, cell, q, membranes, energy.data(), true, nullptr, scratch);
+        }
+      }
+    }
+    for (int i = 0; i < list.count; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      sum += 0.5 * membranes.rest_weight[static_cast<std::size_t>(list.node[at])] * energy[at];
+    }
+  }
+  return sum;
+}
+
+std::string InteractionForces::without_energy() const {
+  for (std::size_t p = 0; p < potentials_.size(); ++p)
+    if (!traits_[p].energy) return potentials_[p].model->manifest().id;
+  return {};
+}
+
+double InteractionForces::closest_contact(int cell) const {
+  const ContactList& list = contacts_.list(cell);
+  double closest = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < list.count; ++i) closest = std::min(closest, list.distance[static_cast<std::size_t>(i)]);
+  return closest;
+}
+
+}  // namespace rouleau::contact

@@ -1,0 +1,102 @@
+// Forces between cells: potentials integrated over facing membranes, with the reaction on the other cell.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/worker.hpp"
+#include "contact.hpp"
+#include "contact_velocity.hpp"
+#include "core/membrane/membranes.hpp"
+#include "core/membrane/periodic_box.hpp"
+#include "plugin/model.hpp"
+
+namespace rouleau::contact {
+
+/// A potential between cells of two types (unordered; equal: between different cells of one type and own images).
+struct Potential {
+  std::array<int, 2> between;
+  std::shared_ptr<const plugin::ModelInstance> model;
+};
+
+/// Node i with rest weight Lb at distance r of its closest point on another cell: energy Lb/2 phi(r), force Lb/2 f(r)
+/// along the connecting line, the reaction shared by the ends of the other segment. With rest weights this is the exact
+/// gradient of the energy, with neither net force nor net torque (Derjaguin; docs: physics, interaction).
+class InteractionForces {
+ public:
+  InteractionForces(const membrane::Membranes& membranes, std::vector<Potential> potentials, membrane::PeriodicBox box);
+
+  /// To be called before run() and by one thread: makes room for what potentials remember in `membranes.contacts`, as
+  /// far as it is not there from an earlier stage. Nothing to do for potentials without state.
+  void keep_state(membrane::Membranes& membranes);
+
+  static constexpr int phases = 3;
+  /// Pass over cells: phases 0, 1, 2 with a barrier after each. Adds to force_x and force_y and advances the state of
+  /// the contacts by one step.
+  void run(Worker worker, int phase, membrane::Membranes& membranes);
+  /// True if there is nothing to do: run() may be left out.
+  [[nodiscard]] bool empty() const { return potentials_.empty(); }
+
+  /// Energy of the contacts found by the last run() in their present state. Not a pass.
+  [[nodiscard]] double energy(const membrane::Membranes& membranes) const;
+  /// A potential that acts but tells no energy; empty: none.
+  [[nodiscard]] std::string without_energy() const;
+  /// Smallest distance of a node of this cell to another cell in the last run(); infinity if beyond every cutoff.
+  [[nodiscard]] double closest_contact(int cell) const;
+  [[nodiscard]] const Contacts& contacts() const { return contacts_; }
+
+ private:
+  struct Scratch {                               // of one cell's contacts
+    std::vector<double> force;                   // sum of f over the potentials
+    std::vector<double> law;                     // of one potential
+    ContactVelocities velocities;                // only if a potential needs them
+    std::vector<double> distance;                // those within a cutoff shorter than that of the pair
+    std::vector<double> normal, tangential;      // velocities there
+    std::vector<int> contact;                    // to which these belong
+    std::vector<double> reaction_x, reaction_y;  // on the nodes of other cells that its pairs touch
+    std::vector<double> state, fresh;            // of one pair's contacts, all variables; of the cell's nodes
+  };
+  /// Consecutive contacts of a cell with all cells of one type.
+  struct TypeRange {
+    int type;
+    Range contacts;
+  };
+  [[nodiscard]] TypeRange next_range(int cell, const membrane::Membranes& membranes, std::size_t& pair) const;
+  /// Makes room for a cell's contacts and measures what the potentials need of them besides the distance.
+  void prepare(int cell, const membrane::Membranes& membranes, Scratch& scratch) const;
+  void compute_forces(int cell, membrane::Membranes& membranes);
+  void apply(std::size_t potential, const ContactList& list, Range contacts, double* result, bool energy, bool first,
+             Scratch& scratch) const;
+  /// The same for a potential that remembers, at the contacts of one pair. `next`: takes the state after the step, and
+  /// keeps the arrays of the pairs that still touch at its front; null: someone looks, and there is no step.
+  struct NextState {
+    std::vector<membrane::ContactState>& states;
+    std::size_t kept = 0;
+  };
+  void apply_with_state(std::size_t potential, int cell, std::size_t pair, const membrane::Membranes& membranes,
+                        double* result, bool energy, NextState* next, Scratch& scratch) const;
+  /// Forces on the cell's own nodes; those on others are left for their workers.
+  void act(int cell, membrane::Membranes& membranes);
+  void take_reactions(int cell, membrane::Membranes& membranes) const;
+
+  /// What a potential is given besides distances, and whether it has an energy; looked up in its manifest once.
+  struct Traits {
+    bool normal_velocity, tangential_velocity, energy;
+  };
+  /// Sets the block's inputs to those of the contacts scratch.contact[0, count), at scratch.distance; `all`: to those
+  /// of all contacts from `first` on.
+  void give_velocities(std::size_t potential, int first, int count, bool all, Scratch& scratch,
+                       rouleau_interaction_block& block) const;
+
+  std::vector<Potential> potentials_;
+  std::vector<double> cutoffs_;  // of the potentials
+  std::vector<Traits> traits_;   // of the potentials
+  Contacts contacts_;
+  std::vector<Scratch> scratch_;
+  std::vector<std::vector<std::size_t>> variables_;  // of the potentials, in ContactMemory::variables once kept
+  bool has_state_ = false, needs_velocities_ = false;
+};
+
+}  // namespace rouleau::contact

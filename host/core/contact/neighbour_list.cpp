@@ -1,0 +1,217 @@
+#include "neighbour_list.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <rouleau/dispatch.hpp>
+
+namespace rouleau::contact {
+
+namespace {
+
+constexpr double thinnest_skin = 0.01, thickest_skin = 0.5, usual_skin = 0.2;
+constexpr double lifetime = 120;  // steps that lists should last
+constexpr int bridged = 2;        // segments between two runs that are searched rather than stepped over
+
+/// One group of nodes against all segments of the other cell.
+struct CandidateTask {
+  const double *x, *y, *along_x, *along_y, *inverse_square;  // of the other cell's segments
+  int segments;
+  const double *node_x, *node_y;  // of the group, moved into the other cell's image
+  int nodes;
+  double skin, cutoff;
+  double* square;  // [nodes][segments rounded up]
+  double* excess;  // [segments rounded up]: negative for candidates
+};
+
+struct Candidates {
+  template <int register_bytes>
+  ROULEAU_ALWAYS_INLINE static void run(const CandidateTask* task) {
+    using S = Pack<double, register_bytes / 8>;
+    const CandidateTask t = *task;
+    const int stride = (t.segments + SegmentTable::margin - 1) / SegmentTable::margin * SegmentTable::margin;
+    for (int k = 0; k < stride; k += S::size) S(std::numeric_limits<double>::infinity()).store(t.excess + k);
+    double numbers[S::size];
+    for (int k = 0; k < S::size; ++k) numbers[k] = k;
+    const S lane = S::load(numbers);
+    for (int i = 0; i < t.nodes; ++i) {
+      double* square = t.square + i * stride;
+      const S x = t.node_x[i], y = t.node_y[i];
+      S nearest = std::numeric_limits<double>::infinity(), left = t.segments;
+      for (int k = 0; k < t.segments; k += S::size) {
+        const Approach<S> approach(x - S::load(t.x + k), y - S::load(t.y + k), S::load(t.along_x + k),
+                                   S::load(t.along_y + k), S::load(t.inverse_square + k));
+        approach.square.store(square + k);
+        // The lanes beyond the last segment hold those of the next cell.
+        const S own = select(lane < left, approach.square, S(std::numeric_limits<double>::infinity()));
+        nearest = min(own, nearest);
+        left -= S(S::size);
+      }
+      const double limit = min(std::sqrt(least(nearest)) + 4 * t.skin, t.cutoff + 2 * t.skin);
+      const S limit_square = limit * limit * (1 + 1e-12);  // room for rounding
+      for (int k = 0; k < t.segments; k += S::size) {
+        min(S::load(square + k) - limit_square, S::load(t.excess + k)).store(t.excess + k);
+      }
+    }
+  }
+};
+
+/// Skin for lists that are made now.
+double suitable_skin(const membrane::Membranes& membranes) {
+  if (membranes.largest_step.empty()) return usual_skin;  // nobody keeps account of the steps
+  double skin = thinnest_skin;  // also where a step is no number: the run's own checks will tell
+  for (const double step : membranes.largest_step) skin = std::max(skin, lifetime * step);
+  return std::min(skin, thickest_skin);
+}
+
+/// Distance between two boxes, the second moved.
+double distance(const membrane::Bounds& a, const membrane::Bounds& b, double move_x, double move_y) {
+  const double dx = std::max({0.0, b.x_min + move_x - a.x_max, a.x_min - b.x_max - move_x});
+  const double dy = std::max({0.0, b.y_min + move_y - a.y_max, a.y_min - b.y_max - move_y});
+  return std::hypot(dx, dy);
+}
+
+}  // namespace
+
+void Cutoffs::raise(int a, int b, double cutoff) {
+  const double value = std::max((*this)(a, b), cutoff);
+  cutoff_[static_cast<std::size_t>(a) * types_ + b] = value;
+  cutoff_[static_cast<std::size_t>(b) * types_ + a] = value;
+}
+
+double Cutoffs::largest() const { return *std::max_element(cutoff_.begin(), cutoff_.end()); }
+
+Neighbours::Neighbours(const membrane::Membranes& membranes, Cutoffs cutoffs, membrane::PeriodicBox box)
+    : cutoffs_(std::move(cutoffs)),
+      box_(box),
+      watch_(membranes),
+      rank_(membranes.cells.size()),
+      lists_(membranes.cells.size()) {
+  std::vector<int> order(membranes.cells.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+    return membranes.cells[static_cast<std::size_t>(a)].type < membranes.cells[static_cast<std::size_t>(b)].type;
+  });
+  for (std::size_t k = 0; k < order.size(); ++k) rank_[static_cast<std::size_t>(order[k])] = static_cast<int>(k);
+  int most = 0;
+  for (const membrane::CellRange& cell : membranes.cells) most = std::max(most, cell.count);
+  const auto stride = static_cast<std::size_t>(most + SegmentTable::margin);
+  for (CellList& list : lists_) {
+    list.square.resize(stride * group);
+    list.excess.resize(stride);
+  }
+}
+
+void Neighbours::refresh(Worker worker, const membrane::Membranes& membranes, const SegmentTable& segments) {
+  if (!renewed()) return;
+  const Range cells = worker.share(membranes.cell_count());
+  const double skin = suitable_skin(membranes);
+  // Every worker sorts all cells: that is quicker than to wait for one who does.
+  const Bins bins(segments.bounds, cutoffs_.largest() + 2 * skin, box_);
+  for (int cell = cells.begin; cell < cells.end; ++cell) {
+    CellList& list = lists_[static_cast<std::size_t>(cell)];
+    list.pairs.clear();
+    list.groups.clear();
+    list.runs.clear();
+    list.touched = 0;
+    list_pairs(membranes, cell, bins, segments, skin);
+    for (Pair& pair : list.pairs) list_candidates(membranes, cell, pair, segments, skin);
+    watch_.remember(cell, membranes, skin);
+  }
+  if (worker.first()) ++renewals_;
+}
+
+void Neighbours::list_pairs(const membrane::Membranes& membranes, int cell, const Bins& bins,
+                            const SegmentTable& segments, double skin) {
+  CellList& list = lists_[static_cast<std::size_t>(cell)];
+  const int type = membranes.cells[static_cast<std::size_t>(cell)].type;
+  const membrane::Bounds& own = segments.bounds[static_cast<std::size_t>(cell)];
+  bins.find(cell, list.near);
+  std::sort(list.near.begin(), list.near.end(),
+            [&](int a, int b) { return rank_[static_cast<std::size_t>(a)] < rank_[static_cast<std::size_t>(b)]; });
+  for (const int other : list.near) {
+    const double cutoff = cutoffs_(type, membranes.cells[static_cast<std::size_t>(other)].type);
+    if (!(cutoff > 0)) continue;
+    membrane::for_each_image(own, segments.bounds[static_cast<std::size_t>(other)], cutoff + 2 * skin, box_,
+                             [&](membrane::ImageShift shift) {
+                               if (other != cell || !(shift == membrane::ImageShift{}))
+                                 list.pairs.push_back({{other, shift}, 0, 0, {0, 0}, 0, -1});
+                             });
+  }
+}
+
+void Neighbours::list_candidates(const membrane::Membranes& membranes, int cell, Pair& pair,
+                                 const SegmentTable& segments, double skin) {
+  static const auto candidates = Dispatch<Candidates, const CandidateTask*>::pick();
+  CellList& list = lists_[static_cast<std::size_t>(cell)];
+  const membrane::CellRange& own = membranes.cells[static_cast<std::size_t>(cell)];
+  const membrane::CellRange& other = membranes.cells[static_cast<std::size_t>(pair.other)];
+  const double move_x = pair.shift.x * box_.nx, move_y = pair.shift.y * box_.ny;
+  const double cutoff = cutoffs_(own.type, other.type);
+  double x[group], y[group];
+  const CandidateTask task{segments.x.data() + other.first,
+                           segments.y.data() + other.first,
+                           segments.along_x.data() + other.first,
+                           segments.along_y.data() + other.first,
+                           segments.inverse_square.data() + other.first,
+                           other.count,
+                           x,
+                           y,
+                           group,
+                           skin,
+                           cutoff,
+                           list.square.data(),
+                           list.excess.data()};
+  pair.group_begin = static_cast<int>(list.groups.size());
+  const std::size_t first_run = list.runs.size();
+  for (int first = own.first; first < own.end(); first += group) {
+    membrane::Bounds bounds{segments.x[first], segments.x[first], segments.y[first], segments.y[first]};
+    for (int k = 0; k < group; ++k) {
+      const int i = std::min(first + k, own.end() - 1);
+      x[k] = segments.x[i] - move_x;
+      y[k] = segments.y[i] - move_y;
+      bounds.x_min = std::min(bounds.x_min, segments.x[i]), bounds.x_max = std::max(bounds.x_max, segments.x[i]);
+      bounds.y_min = std::min(bounds.y_min, segments.y[i]), bounds.y_max = std::max(bounds.y_max, segments.y[i]);
+    }
+    const double reach = cutoff + 2 * skin + 1e-9;
+    if (distance(bounds, segments.bounds[static_cast<std::size_t>(pair.other)], move_x, move_y) > reach) continue;
+    candidates(&task);
+    const auto run_begin = static_cast<int>(list.runs.size());
+    for (int k = 0; k < other.count; ++k) {
+      if (!(list.excess[static_cast<std::size_t>(k)] <= 0)) continue;
+      // Few long runs cost less than many short ones.
+      if (static_cast<int>(list.runs.size()) > run_begin && k - list.runs.back().end < bridged) {
+        list.runs.back().end = k + 1;
+      } else {
+        list.runs.push_back({k, k + 1});
+      }
+    }
+    const auto run_end = static_cast<int>(list.runs.size());
+    if (run_end > run_begin) list.groups.push_back({first, run_begin, run_end});
+  }
+  pair.group_end = static_cast<int>(list.groups.size());
+  for (std::size_t r = first_run; r < list.runs.size(); ++r) {
+    const Range ends{list.runs[r].begin, list.runs[r].end + 1};
+    pair.touched =
+        r == first_run ? ends : Range{std::min(pair.touched.begin, ends.begin), std::max(pair.touched.end, ends.end)};
+  }
+  pair.reaction = list.touched;
+  list.touched += pair.touched.end - pair.touched.begin;
+}
+
+void Neighbours::link(Worker worker, const membrane::Membranes& membranes) {
+  if (!renewed()) return;
+  const Range cells = worker.share(static_cast<int>(membranes.cells.size()));
+  for (int cell = cells.begin; cell < cells.end; ++cell) {
+    for (Pair& pair : lists_[static_cast<std::size_t>(cell)].pairs) {
+      const std::vector<Pair>& others = lists_[static_cast<std::size_t>(pair.other)].pairs;
+      const auto opposite = std::find_if(others.begin(), others.end(), [&](const Pair& candidate) {
+        return candidate.other == cell && candidate.shift == -pair.shift;
+      });
+      pair.reverse = static_cast<int>(opposite - others.begin());
+    }
+  }
+}
+
+}  // namespace rouleau::contact

@@ -1,0 +1,105 @@
+// Which segments can be the closest ones to a group of nodes, for all pairs of cells and images within reach.
+#pragma once
+
+#include <vector>
+
+#include "base/worker.hpp"
+#include "cell_grid.hpp"
+#include "core/membrane/displacement_watch.hpp"
+#include "core/membrane/membranes.hpp"
+#include "core/membrane/periodic_box.hpp"
+#include "segment_cache.hpp"
+
+namespace rouleau::contact {
+
+/// Largest distance at which cells of two types interact, symmetric; 0: they do not.
+class Cutoffs {
+ public:
+  explicit Cutoffs(int types) : types_(types), cutoff_(static_cast<std::size_t>(types) * types, 0.0) {}
+  void raise(int a, int b, double cutoff);
+  [[nodiscard]] double largest() const;
+  [[nodiscard]] double operator()(int a, int b) const { return cutoff_[static_cast<std::size_t>(a) * types_ + b]; }
+
+ private:
+  int types_;
+  std::vector<double> cutoff_;
+};
+
+/// Ordered pair: nodes of a cell against the outline of `other` moved by `shift` periods.
+struct CellPair {
+  int other;
+  membrane::ImageShift shift;
+};
+
+/// Lists of candidate segments that stay complete while no node has moved further than `skin`.
+///
+/// Why that is exact. Let d_k be the distance of a node to segment k when the list is made and d'_k later. A point of a
+/// segment is a convex combination of its ends, so it has moved by at most the skin, like the node: |d'_k - d_k| <= 2
+/// skin for every k. If k is the closest segment later and m was when the list was made, then
+///     d_k <= d'_k + 2 skin <= d'_m + 2 skin <= d_m + 4 skin,  and  d_k <= cutoff + 2 skin if d'_k <= cutoff.
+/// A segment with d_k above min(d_m + 4 skin, cutoff + 2 skin) can therefore be left out.
+///
+/// A thin skin makes short lists that are soon out of date: each is chosen for the speed at which the nodes move.
+class Neighbours {
+ public:
+  static constexpr int group = 8;  ///< consecutive nodes that share one list
+
+  /// Segments [begin, end), counted from the first of the other cell.
+  struct SegmentRun {
+    int begin, end;
+  };
+  /// Candidates for nodes [first, first + group) of a cell: runs [run_begin, run_end) of its list.
+  struct Group {
+    int first;
+    int run_begin, run_end;
+  };
+  /// One ordered pair and its groups that have candidates.
+  struct Pair : CellPair {
+    int group_begin, group_end;
+    Range touched;  ///< ends of the candidates: nodes of `other` from its first on; its count stands for node 0 again
+    int reaction;   ///< where those nodes begin among all that the cell touches
+    int reverse;    ///< index of the opposite pair in the list of `other`
+  };
+  /// All that belongs to the nodes of one cell.
+  struct CellList {
+    std::vector<Pair> pairs;  ///< ordered by type of the other cell, then by the other cell, then by shift
+    std::vector<Group> groups;
+    std::vector<SegmentRun> runs;
+    int touched;                 ///< number of nodes of other cells that the pairs touch
+    std::vector<int> near;       ///< while the list is made: cells that may be near
+    std::vector<double> square;  ///< while the list is made: [group][segment] square distances
+    std::vector<double> excess;  ///< while the list is made: how far each segment is from being a candidate
+  };
+
+  Neighbours(const membrane::Membranes& membranes, Cutoffs cutoffs, membrane::PeriodicBox box);
+
+  /// Pass 1: has a node moved too far?
+  void measure(Worker worker, const membrane::Membranes& membranes) { watch_.measure(worker, membranes); }
+  /// Pass 2: if one has, makes the lists of this worker's cells anew. `segments` are those of the present positions.
+  void refresh(Worker worker, const membrane::Membranes& membranes, const SegmentTable& segments);
+  /// Pass 3: if the lists are new, finds the opposite pairs of this worker's cells.
+  void link(Worker worker, const membrane::Membranes& membranes);
+  /// Whether the lists are new in this step; the same for all workers from pass 2 on.
+  [[nodiscard]] bool renewed() const { return watch_.exceeded(); }
+
+  [[nodiscard]] const CellList& list(int cell) const { return lists_[static_cast<std::size_t>(cell)]; }
+  [[nodiscard]] const Cutoffs& cutoffs() const { return cutoffs_; }
+  [[nodiscard]] const membrane::PeriodicBox& box() const { return box_; }
+  /// How often the lists were made.
+  [[nodiscard]] long renewals() const { return renewals_; }
+
+ private:
+  void list_pairs(const membrane::Membranes& membranes, int cell, const Bins& bins, const SegmentTable& segments,
+                  double skin);
+  void list_candidates(const membrane::Membranes& membranes, int cell, Pair& pair, const SegmentTable& segments,
+                       double skin);
+
+  Cutoffs cutoffs_;
+  membrane::PeriodicBox box_;
+  membrane::DisplacementWatch watch_;
+  std::vector<int> rank_;  // of each cell: its place when they are ordered by type, then by number
+  std::vector<CellList> lists_;
+  long renewals_ = 0;
+};
+
+}  // namespace rouleau::contact

@@ -1,0 +1,69 @@
+#include "segment_cache.hpp"
+
+#include <algorithm>
+#include <rouleau/dispatch.hpp>
+
+namespace rouleau::contact {
+
+namespace {
+
+struct UpdateTask {
+  const double *from_x, *from_y;
+  double *x, *y, *along_x, *along_y, *inverse_square;
+  int first, end;
+  membrane::Bounds bounds;
+};
+
+struct Update {
+  template <int register_bytes>
+  ROULEAU_ALWAYS_INLINE static void run(UpdateTask* task) {
+    using S = Pack<double, register_bytes / 8>;
+    const UpdateTask t = *task;
+    int i = t.first;
+    S x_min = t.from_x[i], x_max = x_min, y_min = t.from_y[i], y_max = y_min;
+    for (; i + S::size < t.end; i += S::size) {
+      const S x = S::load(t.from_x + i), y = S::load(t.from_y + i);
+      x_min = min(x, x_min), x_max = max(x, x_max), y_min = min(y, y_min), y_max = max(y, y_max);
+      const S dx = S::load(t.from_x + i + 1) - x, dy = S::load(t.from_y + i + 1) - y, square = dx * dx + dy * dy;
+      x.store(t.x + i);
+      y.store(t.y + i);
+      dx.store(t.along_x + i);
+      dy.store(t.along_y + i);
+      select(square > S(0.0), 1.0 / square, S(0.0)).store(t.inverse_square + i);
+    }
+    membrane::Bounds b{least(x_min), largest(x_max), least(y_min), largest(y_max)};
+    for (; i < t.end; ++i) {
+      const double x = t.from_x[i], y = t.from_y[i];
+      b = {min(b.x_min, x), max(b.x_max, x), min(b.y_min, y), max(b.y_max, y)};
+      const int next = i + 1 == t.end ? t.first : i + 1;
+      const double dx = t.from_x[next] - x, dy = t.from_y[next] - y, square = dx * dx + dy * dy;
+      t.x[i] = x;
+      t.y[i] = y;
+      t.along_x[i] = dx;
+      t.along_y[i] = dy;
+      t.inverse_square[i] = square > 0 ? 1 / square : 0.0;
+    }
+    task->bounds = b;
+  }
+};
+
+}  // namespace
+
+SegmentTable::SegmentTable(const membrane::Membranes& membranes) : bounds(membranes.cells.size(), membrane::Bounds{}) {
+  const std::size_t size = membranes.x.size() + margin;
+  for (auto* values : {&x, &y, &along_x, &along_y, &inverse_square}) values->assign(size, 0.0);
+}
+
+void SegmentTable::update(Worker worker, const membrane::Membranes& membranes) {
+  static const auto function = Dispatch<Update, UpdateTask*>::pick();
+  const Range cells = worker.share(static_cast<int>(membranes.cells.size()));
+  for (int c = cells.begin; c < cells.end; ++c) {
+    const membrane::CellRange& cell = membranes.cells[static_cast<std::size_t>(c)];
+    UpdateTask task{membranes.x.data(), membranes.y.data(),    x.data(),   y.data(),   along_x.data(),
+                    along_y.data(),     inverse_square.data(), cell.first, cell.end(), membrane::Bounds{}};
+    function(&task);
+    bounds[static_cast<std::size_t>(c)] = task.bounds;
+  }
+}
+
+}  // namespace rouleau::contact

@@ -1,0 +1,134 @@
+#include "area_fraction.hpp"
+
+#include <algorithm>
+
+#include "core/membrane/geometry.hpp"
+#include "core/membrane/rounding.hpp"
+
+namespace rouleau::coupling {
+
+namespace {
+
+constexpr int window_margin = 2;
+
+/// Adds what one edge contributes to the columns right of it in one row. `a` and `b` are where it enters and leaves the
+/// row, `rise` its signed height there. After a sum along the row, an element holds the area right of the edge.
+void add_piece(double* row, int& begin, int& end, double a, double b, double rise) {
+  const double left = std::min(a, b), right = std::max(a, b);
+  const int first = membrane::floor_int(left), last = membrane::floor_int(right);
+  begin = std::min(begin, first);
+  end = std::max(end, last + 1);
+  if (first == last) {
+    const double inside = rise * (first + 1 - 0.5 * (left + right));
+    row[first] += inside;
+    row[first + 1] += rise - inside;
+    return;
+  }
+  // The area right of the edge in column c is that of a trapezium; c ends at c + 1.
+  const double slope = rise / (right - left);
+  double before = 0;  // area in the columns up to c, minus what the running sum already gives them
+  for (int c = first; c <= last; ++c) {
+    const double from = std::max(left, static_cast<double>(c)), to = std::min(right, c + 1.0);
+    const double height = slope * (to - from), passed = slope * (from - left);
+    const double area = passed + height * (c + 1 - 0.5 * (from + to));
+    row[c] += area - before;
+    before = area;
+  }
+  row[last + 1] += rise - before;
+}
+
+}  // namespace
+
+void cover(const membrane::Membranes& membranes, const membrane::CellRange& cell, Coverage& coverage) {
+  const membrane::Bounds box = membrane::bounds(membranes, cell);
+  coverage.width = coverage.height = 0;
+  if (!box.usable()) return;
+  // Node n's unit square is [n - 1/2, n + 1/2]: half a spacing later, it is the cell between two integers.
+  coverage.x0 = membrane::floor_int(box.x_min + 0.5) - window_margin;
+  coverage.y0 = membrane::floor_int(box.y_min + 0.5) - window_margin;
+  const int width = membrane::floor_int(box.x_max + 0.5) - coverage.x0 + 1 + window_margin;
+  const int height = membrane::floor_int(box.y_max + 0.5) - coverage.y0 + 1 + window_margin;
+  if (static_cast<double>(width) * height > 1e8) return;  // blown up, see Bounds::usable
+  coverage.width = width;
+  coverage.height = height;
+  coverage.value.assign(static_cast<std::size_t>(width) * height, 0.0);
+  coverage.begin.assign(static_cast<std::size_t>(height), width);
+  coverage.end.assign(static_cast<std::size_t>(height), 0);
+
+  const double shift_x = 0.5 - coverage.x0, shift_y = 0.5 - coverage.y0;
+  const double *xs = membranes.x.data(), *ys = membranes.y.data();
+  for (int i = cell.first; i < cell.end(); ++i) {
+    const int j = cell.next(i);
+    double x0 = xs[i] + shift_x, y0 = ys[i] + shift_y, x1 = xs[j] + shift_x, y1 = ys[j] + shift_y;
+    if (y0 == y1) continue;
+    // The interior of a counter-clockwise outline lies right of edges that go down.
+    double sign = -1;
+    if (y0 > y1) {
+      std::swap(x0, x1);
+      std::swap(y0, y1);
+      sign = 1;
+    }
+    const double slope = (x1 - x0) / (y1 - y0);
+    const double left = std::min(x0, x1), right = std::max(x0, x1);
+    double x = x0, y = y0;
+    for (int r = membrane::floor_int(y0); y < y1; ++r) {
+      const double next_y = std::min(r + 1.0, y1);
+      // Rounding must not leave the box.
+      const double next_x = next_y < y1 ? std::clamp(x0 + (next_y - y0) * slope, left, right) : x1;
+      add_piece(coverage.row(r), coverage.begin[static_cast<std::size_t>(r)], coverage.end[static_cast<std::size_t>(r)],
+                x, next_x, sign * (next_y - y));
+      x = next_x;
+      y = next_y;
+    }
+  }
+  for (int r = 0; r < height; ++r) {
+    const int begin = coverage.begin[static_cast<std::size_t>(r)], end = coverage.end[static_cast<std::size_t>(r)];
+    if (begin >= end) {
+      coverage.begin[static_cast<std::size_t>(r)] = coverage.end[static_cast<std::size_t>(r)] = 0;
+      continue;
+    }
+    double* row = coverage.row(r);
+    double sum = 0;
+    for (int c = begin; c < end; ++c) row[c] = sum += row[c];
+    row[end] = 0;  // left and right edges cancel there, up to rounding
+  }
+}
+
+void smooth(Coverage& coverage, std::vector<double>& scratch) {
+  const int width = coverage.width, height = coverage.height;
+  if (width == 0) return;
+  scratch.assign(coverage.value.size(), 0.0);
+  for (int r = 0; r < height; ++r) {
+    const double* from = coverage.row(r);
+    double* to = scratch.data() + static_cast<std::size_t>(r) * width;
+    for (int c = 1; c < width - 1; ++c) to[c] = 0.25 * (from[c - 1] + from[c + 1]) + 0.5 * from[c];
+  }
+  for (int r = 1; r < height - 1; ++r) {
+    const double *below = scratch.data() + static_cast<std::size_t>(r - 1) * width, *here = below + width,
+                 *above = here + width;
+    double* to = coverage.row(r);
+    for (int c = 0; c < width; ++c) to[c] = 0.25 * (below[c] + above[c]) + 0.5 * here[c];
+  }
+  // Rows and columns that are not zero grow by one on every side.
+  const std::vector<int>& old_begin = coverage.begin;
+  const std::vector<int>& old_end = coverage.end;
+  int begin_before = 0, end_before = 0;  // of row r - 1, before it was changed
+  for (int r = 0; r < height; ++r) {
+    int begin = width, end = 0;
+    const auto include = [&](int b, int e) {
+      if (b >= e) return;
+      begin = std::min(begin, b - 1);
+      end = std::max(end, e + 1);
+    };
+    const auto at = static_cast<std::size_t>(r);
+    include(begin_before, end_before);
+    include(old_begin[at], old_end[at]);
+    if (r + 1 < height) include(old_begin[at + 1], old_end[at + 1]);
+    begin_before = old_begin[at];
+    end_before = old_end[at];
+    coverage.begin[at] = begin < end ? begin : 0;
+    coverage.end[at] = begin < end ? end : 0;
+  }
+}
+
+}  // namespace rouleau::coupling

@@ -1,0 +1,357 @@
+#include "coupling.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <rouleau/dispatch.hpp>
+
+#include "kernel.hpp"
+
+namespace rouleau::coupling {
+
+namespace {
+
+constexpr std::size_t large_field = 1 << 20;  // bytes; a field that does not stay in the cache
+constexpr int outside = -1000000;             // row of a node whose stencil is not on the lattice
+
+/// Base nodes and what is kept of the weights (kernel.hpp): written by Locate, read by the others.
+template <class Integer, class Number>
+struct Stencils {
+  Integer *column, *row;
+  Number *p_x, *q_x, *p_y, *q_y;
+};
+template <class T>
+using KnownStencils = Stencils<const int, const T>;
+
+template <class T>
+struct LocateTask {
+  Stencils<int, T> to;
+  const double *x, *y;
+  int begin, end;
+  int nx, ny;
+  bool periodic_y;
+  bool escaped;  // set when a node's stencil is not on the lattice
+};
+
+/// Base nodes and what is kept of the weights, which is computed in double precision before it is rounded to T.
+template <class T, class Kernel>
+struct Locate {
+  template <int register_bytes>
+  ROULEAU_ALWAYS_INLINE static void run(LocateTask<T>* task) {
+    using S = Pack<double, register_bytes / 8>;
+    const LocateTask<T> t = *task;
+    S lowest = 0.0;
+    for (int first = t.begin; first < t.end; first += S::size) {
+      const int valid = std::min(S::size, t.end - first);
+      if (valid == S::size) {
+        lowest = min(group<S>(t, S::load(t.x + first), S::load(t.y + first), first, valid), lowest);
+      } else {
+        double x[S::size] = {}, y[S::size] = {};
+        std::copy_n(t.x + first, valid, x);
+        std::copy_n(t.y + first, valid, y);
+        lowest = min(group<S>(t, S::load(x), S::load(y), first, valid), lowest);
+      }
+    }
+    task->escaped = least(lowest) == outside;
+  }
+
+ private:
+  /// Largest integer not above x, for |x| < 2^51.
+  template <class S>
+  ROULEAU_ALWAYS_INLINE static S floor(const S& x) {
+    const S shift = 6755399441055744.0, rounded = (x + shift) - shift;
+    return select(rounded > x, rounded - 1.0, rounded);
+  }
+  template <class S>
+  ROULEAU_ALWAYS_INLINE static S wrap(const S& base, double period) {
+    const S inside = base - period * floor(base * (1.0 / period));
+    const S raised = select(inside < S(0.0), inside + period, inside);  // the quotient may be rounded across an integer
+    return select(raised >= S(period), raised - period, raised);
+  }
+  /// Returns the base rows.
+  template <class S>
+  ROULEAU_ALWAYS_INLINE static S group(const LocateTask<T>& t, const S& x, const S& y, int first, int valid) {
+    const S shifted_x = x + Kernel::shift, shifted_y = y + Kernel::shift;
+    S base_x = floor(shifted_x), base_y = floor(shifted_y);
+    S p_x, q_x, p_y, q_y;
+    Kernel::keep(shifted_x - base_x, p_x, q_x);
+    Kernel::keep(shifted_y - base_y, p_y, q_y);
+    base_x = wrap(base_x, t.nx);
+    // Beyond 1e9, and for NaN, the conversion to int below would be undefined. One comparison a line: g++ 12 takes
+    // combined masks apart element by element.
+    const S last = 1e9, none = outside;
+    if (t.periodic_y) {
+      base_y = select(abs(y) < last, wrap(base_y, t.ny), none);
+    } else {
+      base_y = select(base_y >= S(-1.0), base_y, none);
+      base_y = select(base_y < S(t.ny), base_y, none);
+    }
+    base_y = select(abs(x) < last, base_y, none);
+    base_x = select(base_y > S(outside + 1.0), base_x, S(0.0));
+    put(base_x, t.to.column + first, valid);
+    put(base_y, t.to.row + first, valid);
+    put(p_x, t.to.p_x + first, valid);
+    put(q_x, t.to.q_x + first, valid);
+    put(p_y, t.to.p_y + first, valid);
+    put(q_y, t.to.q_y + first, valid);
+    return base_y;
+  }
+  /// Writes the first `valid` of the values, converted.
+  template <class S, class To>
+  ROULEAU_ALWAYS_INLINE static void put(const S& values, To* to, int valid) {
+    using Converted __attribute__((vector_size(S::size * sizeof(To)))) = To;
+    const Converted converted = __builtin_convertvector(values.vector, Converted);
+    if (valid == S::size) {
+      std::memcpy(to, &converted, sizeof converted);
+    } else {
+      for (int k = 0; k < valid; ++k) to[k] = converted[k];
+    }
+  }
+};
+
+template <class T>
+struct SpreadTask {
+  KnownStencils<T> at;
+  const double *force_x, *force_y;
+  int nodes;
+  int row_begin, row_end;  // rows of this worker
+  T *origin_x, *origin_y;  // of the fields' row 0
+  std::ptrdiff_t stride;   // from one row to the next, the same in both
+};
+
+template <class T, class Kernel>
+struct Spread {
+  template <int register_bytes>
+  ROULEAU_ALWAYS_INLINE static void run(const SpreadTask<T>* task) {
+    const SpreadTask<T> t = *task;
+    // Neighbouring nodes add to the same places, and a sum that is still on its way to memory stalls the next one:
+    // nodes from four parts of the list take turns.
+    constexpr int parts = 4;
+    const int length = t.nodes / parts;
+    for (int i = 0; i < length; ++i) {
+      for (int part = 0; part < parts; ++part) spread(t, part * length + i);
+    }
+    for (int i = parts * length; i < t.nodes; ++i) spread(t, i);
+  }
+
+ private:
+  using Four = Pack<T, 4>;
+  ROULEAU_ALWAYS_INLINE static void spread(const SpreadTask<T>& t, int i) {
+    const int first = t.at.row[i] - 1;
+    if (first + 4 <= t.row_begin || first >= t.row_end) return;
+    const Four wx = KernelWeights<Kernel, T>(t.at.p_x[i], t.at.q_x[i]).weight;
+    const SpreadWeights<Kernel, T> wy(t.at.p_y[i], t.at.q_y[i]);
+    const Four fx = wx * Four(t.force_x[i]), fy = wx * Four(t.force_y[i]);
+    const std::ptrdiff_t at = first * t.stride + t.at.column[i] - 1;
+    if (first >= t.row_begin && first + 4 <= t.row_end) {
+      for (int k = 0; k < 4; ++k) add(t, fx, fy, wy.weight[k], at + k * t.stride);
+    } else {
+      for (int k = 0; k < 4; ++k) {
+        if (first + k >= t.row_begin && first + k < t.row_end) add(t, fx, fy, wy.weight[k], at + k * t.stride);
+      }
+    }
+  }
+  ROULEAU_ALWAYS_INLINE static void add(const SpreadTask<T>& t, const Four& fx, const Four& fy, const Four& weight,
+                                        std::ptrdiff_t at) {
+    (Four::load(t.origin_x + at) + fx * weight).store(t.origin_x + at);
+    (Four::load(t.origin_y + at) + fy * weight).store(t.origin_y + at);
+  }
+};
+
+template <class T>
+struct InterpolateTask {
+  KnownStencils<T> at;
+  double *velocity_x, *velocity_y;
+  int begin, end;
+  const T *origin_x, *origin_y;
+  std::ptrdiff_t stride;
+  bool fetch_ahead;  // most of the fields has left the cache since the fluid's step
+};
+
+template <class T, class Kernel>
+struct Interpolate {
+  template <int register_bytes>
+  ROULEAU_ALWAYS_INLINE static void run(const InterpolateTask<T>* task) {
+    const InterpolateTask<T> t = *task;
+    int i = t.begin;
+    for (; i + 2 <= t.end; i += 2) {
+      if (t.fetch_ahead && i + lead + 2 <= t.end) {
+        fetch(t, i + lead);
+        fetch(t, i + lead + 1);
+      }
+      Four u[2], v[2];
+      for (int k = 0; k < 2; ++k) weigh(t, i + k, u[k], v[k]);
+      const Four sums = sum(u[0], u[1], v[0], v[1]);
+      for (int k = 0; k < 2; ++k) {
+        t.velocity_x[i + k] = sums.vector[k];
+        t.velocity_y[i + k] = sums.vector[2 + k];
+      }
+    }
+    if (i < t.end) {
+      Four u, v;
+      weigh(t, i, u, v);
+      const Four sums = sum(u, u, v, v);
+      t.velocity_x[i] = sums.vector[0];
+      t.velocity_y[i] = sums.vector[2];
+    }
+  }
+
+ private:
+  using Four = Pack<T, 4>;
+  static constexpr int lead = 16;  // nodes from the fetched one to the present one
+  ROULEAU_ALWAYS_INLINE static void fetch(const InterpolateTask<T>& t, int i) {
+    if (t.at.row[i] == outside) return;
+    const std::ptrdiff_t at = (t.at.row[i] - 1) * t.stride + t.at.column[i];
+    for (int k = 0; k < 4; ++k) {
+      __builtin_prefetch(t.origin_x + at + k * t.stride);
+      __builtin_prefetch(t.origin_y + at + k * t.stride);
+    }
+  }
+  /// Columns of the stencil, weighted along y and x: their sums are the node's velocity.
+  ROULEAU_ALWAYS_INLINE static void weigh(const InterpolateTask<T>& t, int i, Four& u, Four& v) {
+    u = v = T(0);
+    if (t.at.row[i] == outside) return;
+    const Four wx = KernelWeights<Kernel, T>(t.at.p_x[i], t.at.q_x[i]).weight;
+    const SpreadWeights<Kernel, T> wy(t.at.p_y[i], t.at.q_y[i]);
+    const std::ptrdiff_t at = (t.at.row[i] - 1) * t.stride + t.at.column[i] - 1;
+    for (int k = 0; k < 4; ++k) {
+      u += Four::load(t.origin_x + at + k * t.stride) * wy.weight[k];
+      v += Four::load(t.origin_y + at + k * t.stride) * wy.weight[k];
+    }
+    u *= wx;
+    v *= wx;
+  }
+  /// Sums of four packs, side by side.
+  ROULEAU_ALWAYS_INLINE static Four sum(const Four& a, const Four& b, const Four& c, const Four& d) {
+    const Four low = Four(interleave_even(a.vector, b.vector)) + Four(interleave_odd(a.vector, b.vector));
+    const Four high = Four(interleave_even(c.vector, d.vector)) + Four(interleave_odd(c.vector, d.vector));
+    return Four(first_halves(low.vector, high.vector)) + Four(second_halves(low.vector, high.vector));
+  }
+  using Vector = typename Four::Vector;
+  ROULEAU_ALWAYS_INLINE static Vector interleave_even(const Vector& a, const Vector& b) {
+    return __builtin_shufflevector(a, b, 0, 4, 2, 6);
+  }
+  ROULEAU_ALWAYS_INLINE static Vector interleave_odd(const Vector& a, const Vector& b) {
+    return __builtin_shufflevector(a, b, 1, 5, 3, 7);
+  }
+  ROULEAU_ALWAYS_INLINE static Vector first_halves(const Vector& a, const Vector& b) {
+    return __builtin_shufflevector(a, b, 0, 1, 4, 5);
+  }
+  ROULEAU_ALWAYS_INLINE static Vector second_halves(const Vector& a, const Vector& b) {
+    return __builtin_shufflevector(a, b, 2, 3, 6, 7);
+  }
+};
+
+template <class T>
+std::ptrdiff_t row_stride(const fluid::Field<T>& field) {
+  return field.row(1) - field.row(0);
+}
+
+}  // namespace
+
+/// The loops for one kernel.
+template <class T>
+struct Coupling<T>::Loops {
+  void (*locate)(LocateTask<T>*);
+  void (*spread)(const SpreadTask<T>*);
+  void (*interpolate)(const InterpolateTask<T>*);
+
+  template <class Kernel>
+  static const Loops* of() {
+    static const Loops loops{Dispatch<Locate<T, Kernel>, LocateTask<T>*>::pick(),
+                             Dispatch<Spread<T, Kernel>, const SpreadTask<T>*>::pick(),
+                             Dispatch<Interpolate<T, Kernel>, const InterpolateTask<T>*>::pick()};
+    return &loops;
+  }
+  static const Loops* of(KernelKind kernel) {
+    switch (kernel) {
+      case KernelKind::cosine4:
+        return of<Cosine4>();
+      case KernelKind::roma3:
+        return of<Roma3>();
+      case KernelKind::linear2:
+        return of<Linear2>();
+      case KernelKind::peskin4:
+        break;
+    }
+    return of<Peskin4>();
+  }
+};
+
+template <class T>
+Coupling<T>::Coupling(KernelKind kernel, int nx, int ny, bool periodic_y)
+    : loops_(Loops::of(kernel)), nx_(nx), ny_(ny), periodic_y_(periodic_y) {}
+
+template <class T>
+void Coupling<T>::reserve(const membrane::Membranes& membranes) {
+  const auto nodes = static_cast<std::size_t>(membranes.node_count());
+  column_.assign(nodes, 0);
+  row_.assign(nodes, outside);
+  for (auto* values : {&p_x_, &q_x_, &p_y_, &q_y_}) values->assign(nodes, T(0));
+  escaped_.assign(membranes.cells.size(), 0);
+}
+
+template <class T>
+void Coupling<T>::locate(Worker worker, const membrane::Membranes& membranes, membrane::NodeVectors position) {
+  const Range cells = worker.share(membranes.cell_count());
+  for (int c = cells.begin; c < cells.end; ++c) {
+    const membrane::CellRange& cell = membranes.cells[static_cast<std::size_t>(c)];
+    LocateTask<T> task{{column_.data(), row_.data(), p_x_.data(), q_x_.data(), p_y_.data(), q_y_.data()},
+                       position.x,
+                       position.y,
+                       cell.first,
+                       cell.end(),
+                       nx_,
+                       ny_,
+                       periodic_y_,
+                       false};
+    loops_->locate(&task);
+    escaped_[static_cast<std::size_t>(c)] = task.escaped ? 1 : 0;
+  }
+}
+
+template <class T>
+void Coupling<T>::spread(Worker worker, membrane::NodeVectors node_force, fluid::VectorField<T>& force) const {
+  const Range rows = worker.share(ny_);
+  const int halo = fluid::Field<T>::halo;
+  const SpreadTask<T> task{{column_.data(), row_.data(), p_x_.data(), q_x_.data(), p_y_.data(), q_y_.data()},
+                           node_force.x,
+                           node_force.y,
+                           static_cast<int>(column_.size()),
+                           worker.first() ? -halo : rows.begin,
+                           worker.last() ? ny_ + halo : rows.end,
+                           force.x.row(0),
+                           force.y.row(0),
+                           row_stride(force.x)};
+  loops_->spread(&task);
+}
+
+template <class T>
+void Coupling<T>::interpolate(Worker worker, membrane::Membranes& membranes,
+                              const fluid::VectorField<T>& velocity) const {
+  const Range nodes = membranes.node_share(worker);
+  const InterpolateTask<T> task{{column_.data(), row_.data(), p_x_.data(), q_x_.data(), p_y_.data(), q_y_.data()},
+                                membranes.velocity_x.data(),
+                                membranes.velocity_y.data(),
+                                nodes.begin,
+                                nodes.end,
+                                velocity.x.row(0),
+                                velocity.y.row(0),
+                                row_stride(velocity.x),
+                                velocity.x.bytes() > large_field};
+  loops_->interpolate(&task);
+}
+
+template <class T>
+bool Coupling<T>::any_escaped() const {
+  return std::any_of(escaped_.begin(), escaped_.end(), [](std::uint8_t escaped) { return escaped != 0; });
+}
+
+template <class T>
+int Coupling<T>::escaped() const {
+  return any_escaped() ? static_cast<int>(std::find(row_.begin(), row_.end(), outside) - row_.begin()) : -1;
+}
+
+template class Coupling<float>;
+template class Coupling<double>;
+
+}  // namespace rouleau::coupling

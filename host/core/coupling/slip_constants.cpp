@@ -1,0 +1,113 @@
+#include "slip_constants.hpp"
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "kernel.hpp"
+
+namespace rouleau::coupling {
+
+namespace {
+
+constexpr double reach = 6;  // spacings; all distributions lie well within
+constexpr int steps_per_unit = 512;
+constexpr int points = static_cast<int>(2 * reach) * steps_per_unit + 1;
+
+/// Distribution function of a random distance at -reach ... reach.
+class Distribution {
+ public:
+  /// From a density, which is normalised here.
+  template <class Density>
+  explicit Distribution(Density density) : values_(points) {
+    double sum = 0;
+    for (int i = 0; i < points; ++i) {
+      const double before = sum;
+      sum += density(place(i));
+      values_[static_cast<std::size_t>(i)] = (before + sum) / 2;
+    }
+    for (double& value : values_) value /= sum;
+  }
+  static double place(int i) { return -reach + static_cast<double>(i) / steps_per_unit; }
+  /// Probability of a distance up to x.
+  [[nodiscard]] double operator()(double x) const {
+    const double at = (x + reach) * steps_per_unit;
+    if (at <= 0) return 0;
+    if (at >= points - 1) return 1;
+    const auto i = static_cast<std::size_t>(at);
+    return values_[i] + (at - static_cast<double>(i)) * (values_[i + 1] - values_[i]);
+  }
+
+ private:
+  std::vector<double> values_;
+};
+
+/// Expectation of the largest of independent distances with the product of distribution functions `product`.
+template <class Product>
+double expected_largest(Product product) {
+  double integral = 0;
+  for (int i = 0; i < points; ++i) {
+    const double weight = i == 0 || i == points - 1 ? 0.5 : 1;
+    integral += weight * product(Distribution::place(i));
+  }
+  return reach - integral / steps_per_unit;
+}
+
+/// Density of the distance of a lattice node from a point, weighted as the kernel does, averaged over the point's
+/// place.
+template <class Kernel>
+double kernel_density(double distance) {
+  // The node k - 1 after the base of X lies at k - 1 - (fraction - shift).
+  for (int k = 0; k < 4; ++k) {
+    const double fraction = k - 1 + Kernel::shift - distance;
+    if (fraction < 0 || fraction >= 1) continue;
+    Pack<double, 1> p, q;
+    Kernel::keep(Pack<double, 1>(fraction), p, q);
+    return Kernel::constant[k] + Kernel::by_p[k] * p.vector[0] + Kernel::by_q[k] * q.vector[0];
+  }
+  return 0;
+}
+
+Distribution kernel_distribution(KernelKind kernel) {
+  switch (kernel) {
+    case KernelKind::cosine4:
+      return Distribution(kernel_density<Cosine4>);
+    case KernelKind::roma3:
+      return Distribution(kernel_density<Roma3>);
+    case KernelKind::linear2:
+      return Distribution(kernel_density<Linear2>);
+    case KernelKind::peskin4:
+      break;
+  }
+  return Distribution(kernel_density<Peskin4>);
+}
+
+/// The indicator: exact coverage of unit squares, smoothed once by (1/4, 1/2, 1/4).
+double indicator_density(double distance) {
+  const double r = std::abs(distance);
+  return r < 0.5 ? 0.5 : (r < 1.5 ? 0.25 : 0);
+}
+
+}  // namespace
+
+SlipConstants slip_constants(KernelKind kernel, double viscosity_ratio) {
+  const Distribution y = kernel_distribution(kernel), z(indicator_density);
+  const double inside = 1 / viscosity_ratio, difference = 1 - inside;
+  const double m = expected_largest([&](double x) { return y(x) * y(x); });
+  if (difference == 0) return {0, m};
+  // Falls with d: the slope lies between -1 and 0 times the larger of both fluidities.
+  const auto mismatch = [&](double d) {
+    return difference * expected_largest([&](double x) { return y(x + d) * z(x); }) - inside * d;
+  };
+  double low = -4, high = 4;
+  while (high - low > 1e-10) {
+    const double middle = (low + high) / 2;
+    (mismatch(middle) > 0 ? low : high) = middle;
+  }
+  const double d = (low + high) / 2;
+  const double all = expected_largest([&](double x) { return y(x) * y(x) * z(x - d); });
+  const double two = expected_largest([&](double x) { return y(x) * z(x - d); });
+  return {d, inside * m + difference * (all - two)};
+}
+
+}  // namespace rouleau::coupling

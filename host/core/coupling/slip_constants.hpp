@@ -1,0 +1,26 @@
+// Constants of the slip correction, from the one-dimensional analysis of a membrane that a kernel has smeared out.
+#pragma once
+
+#include "kernel_kind.hpp"
+
+namespace rouleau::coupling {
+
+/// A plane membrane with tangential force f per length between fluidities b_o = 1 outside and b_i = 1/ratio inside
+/// (in units of 1/viscosity outside; Db = b_o - b_i). Y, Y', Y'' are distributed as the kernel, Z as the smoothed
+/// indicator's edge. Smearing delays the membrane by slip x f:
+///     slip = b_i m + Db r(d),   m = E max(Y, Y'),   r(d) = E max(Y, Y', Z + d) - E max(Y, Z + d),
+/// once force and velocity act at a distance d inside the membrane such that  Db E max(Y - d, Z) = b_i d,  where the
+/// kink of the velocity and the jump between both fluids vanish (docs: physics, slip correction).
+struct SlipConstants {
+  double shift;  ///< d, lattice spacings towards the inside; negative for a ratio below 1
+  double slip;   ///< velocity per tangential force per length, times the viscosity outside; lattice spacings
+};
+
+/// How many times stiffer a membrane with segments of this length (spacings) is to the fluid where its forces act at
+/// the distance `shift`: the couples of the shift and their adjoint both gain sin(q) shift/length at q a segment.
+inline double stiffening(double shift, double length) { return 1 + (shift / length) * (shift / length); }
+
+/// `viscosity_ratio`: inside over outside; the mean of viscosities must be the harmonic one.
+SlipConstants slip_constants(KernelKind kernel, double viscosity_ratio);
+
+}  // namespace rouleau::coupling

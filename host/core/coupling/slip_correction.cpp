@@ -1,0 +1,212 @@
+#include "slip_correction.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <rouleau/dispatch.hpp>
+
+#include "core/membrane/closed_outline.hpp"
+
+namespace rouleau::coupling {
+
+namespace {
+
+/// One cell's nodes [begin, end) in arrays of all nodes.
+struct SlipTask {
+  int begin, end;
+  double shift, mobility;  // of the cell's type; mobility: slip per tangential force per length
+  int smoothings;
+  const double *x, *y;
+  const double *node_force_x, *node_force_y;
+  double *tangent_x, *tangent_y, *inverse_chord;
+  double *touch_x, *touch_y, *force_x, *force_y, *slip, *scratch_x, *scratch_y;
+  double *velocity_x, *velocity_y;
+};
+
+template <class S>
+ROULEAU_ALWAYS_INLINE S load(const double* from, int i) {
+  return S::load(from + i);
+}
+
+struct Measure {
+  template <int register_bytes>
+  ROULEAU_ALWAYS_INLINE static void run(const SlipTask* task) {
+    const SlipTask t = *task;
+    membrane::for_closed_outline<register_bytes>(t.begin, t.end, [&](auto tag, int i, int before, int after) {
+      using S = decltype(tag);
+      const S dx = load<S>(t.x, after) - load<S>(t.x, before), dy = load<S>(t.y, after) - load<S>(t.y, before);
+      const S chord = sqrt(dx * dx + dy * dy);
+      const S inverse = select(chord > S(0.0), 1.0 / chord, S(0.0));  // a fold without width has no direction
+      const S tx = dx * inverse, ty = dy * inverse;
+      tx.store(t.tangent_x + i);
+      ty.store(t.tangent_y + i);
+      inverse.store(t.inverse_chord + i);
+      (load<S>(t.x, i) - t.shift * ty).store(t.touch_x + i);  // outward normal: (ty, -tx)
+      (load<S>(t.y, i) + t.shift * tx).store(t.touch_y + i);
+    });
+  }
+};
+
+struct Slip {
+  template <int register_bytes>
+  ROULEAU_ALWAYS_INLINE static void run(const SlipTask* task) {
+    const SlipTask t = *task;
+    double *slip = t.slip, *other = t.scratch_x;
+    if (t.smoothings % 2 != 0) std::swap(slip, other);  // so that the last smoothing ends in t.slip
+    membrane::for_closed_outline<register_bytes>(t.begin, t.end, [&](auto tag, int i, int, int) {
+      using S = decltype(tag);
+      const S tx = load<S>(t.tangent_x, i), ty = load<S>(t.tangent_y, i);
+      const S along = load<S>(t.node_force_x, i) * tx + load<S>(t.node_force_y, i) * ty;
+      (2.0 * t.mobility * along * load<S>(t.inverse_chord, i)).store(slip + i);
+    });
+    for (int k = 0; k < t.smoothings; ++k) {
+      membrane::for_closed_outline<register_bytes>(t.begin, t.end, [&](auto tag, int i, int before, int after) {
+        using S = decltype(tag);
+        (0.25 * (load<S>(slip, before) + load<S>(slip, after)) + 0.5 * load<S>(slip, i)).store(other + i);
+      });
+      std::swap(slip, other);
+    }
+  }
+};
+
+struct Couple {
+  template <int register_bytes>
+  ROULEAU_ALWAYS_INLINE static void run(const SlipTask* task) {
+    const SlipTask t = *task;
+    // The couple of every node: to the node after it, and its reverse to the node before.
+    membrane::for_closed_outline<register_bytes>(t.begin, t.end, [&](auto tag, int i, int, int) {
+      using S = decltype(tag);
+      const S tx = load<S>(t.tangent_x, i), ty = load<S>(t.tangent_y, i);
+      const S fx = load<S>(t.node_force_x, i), fy = load<S>(t.node_force_y, i);
+      const S along = fx * tx + fy * ty, outward = fx * ty - fy * tx;
+      const S lever = t.shift * load<S>(t.inverse_chord, i);
+      (-lever * (along * ty + outward * tx)).store(t.scratch_x + i);
+      (-lever * (outward * ty - along * tx)).store(t.scratch_y + i);
+    });
+    membrane::for_closed_outline<register_bytes>(t.begin, t.end, [&](auto tag, int i, int before, int after) {
+      using S = decltype(tag);
+      (load<S>(t.scratch_x, before) - load<S>(t.scratch_x, after)).store(t.force_x + i);
+      (load<S>(t.scratch_y, before) - load<S>(t.scratch_y, after)).store(t.force_y + i);
+    });
+  }
+};
+
+struct Correct {
+  template <int register_bytes>
+  ROULEAU_ALWAYS_INLINE static void run(const SlipTask* task) {
+    const SlipTask t = *task;
+    std::copy(t.velocity_x + t.begin, t.velocity_x + t.end, t.scratch_x + t.begin);
+    std::copy(t.velocity_y + t.begin, t.velocity_y + t.end, t.scratch_y + t.begin);
+    membrane::for_closed_outline<register_bytes>(t.begin, t.end, [&](auto tag, int i, int before, int after) {
+      using S = decltype(tag);
+      const S tx = load<S>(t.tangent_x, i), ty = load<S>(t.tangent_y, i);
+      const S lever = t.shift * load<S>(t.inverse_chord, i);
+      const S du = lever * (load<S>(t.scratch_x, after) - load<S>(t.scratch_x, before));
+      const S dv = lever * (load<S>(t.scratch_y, after) - load<S>(t.scratch_y, before));
+      const S along = du * tx + dv * ty, outward = du * ty - dv * tx;
+      const S tangential = load<S>(t.slip, i) - outward;
+      (load<S>(t.scratch_x, i) + tangential * tx - along * ty).store(t.velocity_x + i);
+      (load<S>(t.scratch_y, i) + tangential * ty + along * tx).store(t.velocity_y + i);
+    });
+  }
+};
+
+/// How often the slip is smoothed by (1/4, 1/2, 1/4) along the membrane. A tangential displacement of wave number q per
+/// segment meets tension, and gains in a step the slip -C 4 sin^2(q/2) cos^2p(q/2) times itself after p smoothings,
+/// with C = mobility x stiffness / length^2. That must stay below 2 for all q in an explicit step, and below 2/3 in a
+/// semi-implicit one, whose forces belong to the end of the step; 0.3 is kept. Smoothing over about a lattice spacing
+/// is needed anyway where nodes stand closer: the fluid does not damp what the kernel cannot see.
+int smoothings_of(double length, double mobility, double stiffness) {
+  const double number = mobility * stiffness / (length * length);
+  int passes = std::max(1, static_cast<int>(std::lround(1 / (length * length))));
+  constexpr int most = 256;  // enough for thirty times the stiffness that explicit coupling bears
+  // The largest 4 sin^2(q/2) cos^2p(q/2) over q is 4/(p + 1) (p/(p + 1))^p.
+  while (passes < most && number * 4 / (passes + 1) * std::pow(passes / (passes + 1.0), passes) > 0.3) ++passes;
+  return std::min(passes, most);
+}
+
+}  // namespace
+
+SlipCorrection::SlipCorrection(const membrane::Membranes& membranes, std::vector<Type> types, double viscosity)
+    : types_(std::move(types)), viscosity_(viscosity) {
+  for (const membrane::CellRange& cell : membranes.cells) {
+    const Type& type = types_[static_cast<std::size_t>(cell.type)];
+    // Sliding along a curved membrane changes its curvature too, by curvature x d slide / d length.
+    double curvature = 0;
+    for (int k = cell.first; k < cell.end(); ++k) {
+      curvature = std::max(curvature, std::abs(membranes.rest_curvature[static_cast<std::size_t>(k)]));
+    }
+    const double stiffness = type.stretching_stiffness + type.bending_stiffness * curvature * curvature;
+    smoothings_.push_back(smoothings_of(cell.rest_perimeter / cell.count, type.constants.slip / viscosity, stiffness));
+  }
+  for (auto* values : {&tangent_x_, &tangent_y_, &inverse_chord_, &touch_x_, &touch_y_, &force_x_, &force_y_, &slip_,
+                       &scratch_x_, &scratch_y_}) {
+    values->assign(membranes.x.size(), 0.0);
+  }
+}
+
+template <class Loop>
+void SlipCorrection::run(Worker worker, const membrane::Membranes& membranes, double* velocity_x, double* velocity_y) {
+  static const auto function = Dispatch<Loop, const SlipTask*>::pick();
+  const Range cells = worker.share(membranes.cell_count());
+  for (int c = cells.begin; c < cells.end; ++c) {
+    const membrane::CellRange& cell = membranes.cells[static_cast<std::size_t>(c)];
+    const SlipConstants& constants = types_[static_cast<std::size_t>(cell.type)].constants;
+    const SlipTask task{cell.first,
+                        cell.end(),
+                        constants.shift,
+                        constants.slip / viscosity_,
+                        smoothings_[static_cast<std::size_t>(c)],
+                        membranes.x.data(),
+                        membranes.y.data(),
+                        membranes.force_x.data(),
+                        membranes.force_y.data(),
+                        tangent_x_.data(),
+                        tangent_y_.data(),
+                        inverse_chord_.data(),
+                        touch_x_.data(),
+                        touch_y_.data(),
+                        force_x_.data(),
+                        force_y_.data(),
+                        slip_.data(),
+                        scratch_x_.data(),
+                        scratch_y_.data(),
+                        velocity_x,
+                        velocity_y};
+    function(&task);
+  }
+}
+
+std::vector<SlipConstants> SlipCorrection::constants() const {
+  std::vector<SlipConstants> constants;
+  for (const Type& type : types_) constants.push_back({type.constants.shift, type.constants.slip / viscosity_});
+  return constants;
+}
+
+double SlipCorrection::largest_shift() const {
+  double largest = 0;
+  for (const Type& type : types_) largest = std::max(largest, std::abs(type.constants.shift));
+  return largest;
+}
+
+void SlipCorrection::measure(Worker worker, const membrane::Membranes& membranes) {
+  run<Measure>(worker, membranes, nullptr, nullptr);
+}
+
+void SlipCorrection::couple(Worker worker, const membrane::Membranes& membranes) {
+  run<Couple>(worker, membranes, nullptr, nullptr);
+}
+
+void SlipCorrection::complete(Worker worker, const membrane::Membranes& membranes) {
+  run<Slip>(worker, membranes, nullptr, nullptr);
+  const Range nodes = membranes.node_share(worker);
+  for (auto i = static_cast<std::size_t>(nodes.begin); i < static_cast<std::size_t>(nodes.end); ++i) {
+    force_x_[i] = membranes.force_x[i] + force_x_[i];
+    force_y_[i] = membranes.force_y[i] + force_y_[i];
+  }
+}
+
+void SlipCorrection::correct(Worker worker, membrane::Membranes& membranes) {
+  run<Correct>(worker, membranes, membranes.velocity_x.data(), membranes.velocity_y.data());
+}
+
+}  // namespace rouleau::coupling

@@ -1,0 +1,59 @@
+// Takes the tangential slip out of the immersed boundary, which the smearing of forces over the kernel leaves behind.
+#pragma once
+
+#include <vector>
+
+#include "base/worker.hpp"
+#include "core/membrane/membranes.hpp"
+#include "slip_constants.hpp"
+
+namespace rouleau::coupling {
+
+/// Forces act and velocities are read at X - d n (n outward); the couple that this takes away is given back by forces
+/// on both neighbours, and the velocities are turned by the adjoint of that. A node then gains the slip
+/// `slip / viscosity x` tangential force per length, smoothed along the membrane (docs: physics, slip correction).
+class SlipCorrection {
+ public:
+  /// What the correction has to know of a cell type, lattice units.
+  struct Type {
+    SlipConstants constants;
+    double stretching_stiffness;  ///< d tension / d stretch: stiff membranes need their slip smoothed more often
+    double bending_stiffness;     ///< d moment / d curvature
+  };
+  /// `viscosity`: of the suspending fluid, lattice units.
+  SlipCorrection(const membrane::Membranes& membranes, std::vector<Type> types, double viscosity);
+
+  /// Pass over cells: directions at the present positions, and where the nodes touch the lattice.
+  void measure(Worker worker, const membrane::Membranes& membranes);
+  /// Pass over cells, while their forces are still those of the membranes alone, of which the couples are made; those
+  /// of what cells do to each other would break strongly attracting cells.
+  void couple(Worker worker, const membrane::Membranes& membranes);
+  /// Pass over cells, once the forces on them are complete: the slip, which must vanish where all forces are in
+  /// balance, and what is to be spread, forces().
+  void complete(Worker worker, const membrane::Membranes& membranes);
+  /// Pass over cells: turns velocities interpolated at the touching points into those of the membrane.
+  void correct(Worker worker, membrane::Membranes& membranes);
+
+  /// Of each cell type, with the slip as velocity per tangential force per length, lattice units.
+  [[nodiscard]] std::vector<SlipConstants> constants() const;
+  /// Largest |d| of the types, spacings.
+  [[nodiscard]] double largest_shift() const;
+  [[nodiscard]] membrane::NodeVectors positions() const { return {touch_x_.data(), touch_y_.data()}; }
+  [[nodiscard]] membrane::NodeVectors forces() const { return {force_x_.data(), force_y_.data()}; }
+
+ private:
+  template <class Loop>
+  void run(Worker worker, const membrane::Membranes& membranes, double* velocity_x, double* velocity_y);
+
+  std::vector<Type> types_;
+  double viscosity_;
+  std::vector<int> smoothings_;                // of each cell's slip
+  std::vector<double> tangent_x_, tangent_y_;  // along the chord from the node before to the node after
+  std::vector<double> inverse_chord_;          // 1 / its length
+  std::vector<double> touch_x_, touch_y_;
+  std::vector<double> force_x_, force_y_;  // of the couples; in the end all that is spread
+  std::vector<double> slip_;               // velocity along the tangent
+  std::vector<double> scratch_x_, scratch_y_;
+};
+
+}  // namespace rouleau::coupling

@@ -1,0 +1,224 @@
+#include "viscosity_field.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/membrane/geometry.hpp"
+#include "core/membrane/rounding.hpp"
+
+namespace rouleau::coupling {
+
+namespace {
+
+/// Nodes may move this far before the next update; the marks allow for a whole spacing.
+constexpr double displacement_limit = 0.1;
+
+}  // namespace
+
+template <class T>
+Indicator<T>::Indicator(const membrane::Membranes& membranes, std::vector<double> viscosity_ratio, ViscosityMean mean,
+                        double reach_beyond, double relaxation_rate, int nx, int ny, bool periodic_y)
+    : ratio_(std::move(viscosity_ratio)),
+      mean_(mean),
+      margin_(static_cast<int>(std::ceil(reach_beyond))),
+      plain_rate_(relaxation_rate),
+      nx_(nx),
+      ny_(ny),
+      periodic_y_(periodic_y),
+      watch_(membranes),
+      cells_(membranes.cells.size()),
+      changed_(static_cast<std::size_t>(ny)) {
+  for (const membrane::CellRange& cell : membranes.cells) varies_ |= ratio_[static_cast<std::size_t>(cell.type)] != 1;
+}
+
+template <class T>
+int Indicator<T>::lattice_row(int y) const {
+  if (periodic_y_) return membrane::wrapped(y, ny_);
+  return y >= 0 && y < ny_ ? y : -1;
+}
+
+template <class T>
+template <class Function>
+void Indicator<T>::for_rows(const Rows& rows, Range own, Function function) const {
+  for (std::size_t k = 0; k < rows.columns.size(); ++k) {
+    const int y = lattice_row(rows.first + static_cast<int>(k));
+    if (y >= own.begin && y < own.end) function(y, rows.columns[k], static_cast<int>(k));
+  }
+}
+
+template <class T>
+template <class Function>
+void Indicator<T>::for_pieces(Interval columns, Function function) const {
+  for (int begin = columns.begin; begin < columns.end;) {
+    const int x = membrane::wrapped(begin, nx_);
+    const int end = std::min(columns.end, begin + nx_ - x);
+    function(x, begin, end);
+    begin = end;
+  }
+}
+
+template <class T>
+void Indicator<T>::cover(Worker worker, const membrane::Membranes& membranes) {
+  const Range cells = worker.share(membranes.cell_count());
+  std::vector<double> scratch;
+  for (int c = cells.begin; c < cells.end; ++c) {
+    if (!watch_.moved(c)) continue;
+    const membrane::CellRange& cell = membranes.cells[static_cast<std::size_t>(c)];
+    Reach& reach = cells_[static_cast<std::size_t>(c)];
+    std::swap(reach.covered, reach.covered_before);
+    reach.covered.columns.clear();
+    if (ratio_[static_cast<std::size_t>(cell.type)] != 1) {
+      Coverage& coverage = reach.coverage;
+      coupling::cover(membranes, cell, coverage);
+      smooth(coverage, scratch);
+      reach.covered.first = coverage.y0;
+      for (int j = 0; j < coverage.height; ++j) {
+        const auto at = static_cast<std::size_t>(j);
+        reach.covered.columns.push_back({coverage.x0 + coverage.begin[at], coverage.x0 + coverage.end[at]});
+      }
+    }
+    find_reach(membranes, cell, reach);
+    watch_.remember(c, membranes, displacement_limit);
+  }
+}
+
+// A node at (X, Y) reaches columns floor(X) - 1 ... floor(X) + 2 and the same rows; one more each for its motion, and
+// the margin.
+template <class T>
+void Indicator<T>::find_reach(const membrane::Membranes& membranes, const membrane::CellRange& cell,
+                              Reach& reach) const {
+  Rows& reached = reach.reached;
+  reached.columns.clear();
+  const membrane::Bounds box = membrane::bounds(membranes, cell);
+  if (!box.usable()) return;
+  const Rows& covered = reach.covered;
+  int first = membrane::floor_int(box.y_min) - 2 - margin_, last = membrane::floor_int(box.y_max) + 3 + margin_;
+  if (!covered.columns.empty()) {
+    first = std::min(first, covered.first);
+    last = std::max(last, covered.first + static_cast<int>(covered.columns.size()) - 1);
+  }
+  const auto rows = static_cast<std::size_t>(last - first + 1);
+  const Interval none{1 << 30, -(1 << 30)};
+  const auto include = [](Interval& to, int begin, int end) {
+    to = {std::min(to.begin, begin), std::max(to.end, end)};
+  };
+  std::vector<Interval> columns(rows, none);  // of the nodes between this row and the next
+  for (int i = cell.first; i < cell.end(); ++i) {
+    const int x = membrane::floor_int(membranes.x[static_cast<std::size_t>(i)]);
+    const int y = membrane::floor_int(membranes.y[static_cast<std::size_t>(i)]);
+    include(columns[static_cast<std::size_t>(y - first)], x - 2 - margin_, x + 4 + margin_);
+  }
+  reached.first = first;
+  reached.columns.assign(rows, none);
+  for (int r = 0; r < static_cast<int>(rows); ++r) {
+    Interval& to = reached.columns[static_cast<std::size_t>(r)];
+    for (int k = std::max(0, r - 3 - margin_); k <= std::min(static_cast<int>(rows) - 1, r + 2 + margin_); ++k) {
+      include(to, columns[static_cast<std::size_t>(k)].begin, columns[static_cast<std::size_t>(k)].end);
+    }
+  }
+  for (std::size_t j = 0; j < covered.columns.size(); ++j) {
+    const Interval& added = covered.columns[j];
+    if (added.begin >= added.end) continue;
+    include(reached.columns[static_cast<std::size_t>(covered.first - first) + j], added.begin, added.end);
+  }
+}
+
+template <class T>
+void Indicator<T>::update(Worker worker, const membrane::Membranes& membranes, fluid::Field<T>& relaxation_rate,
+                          fluid::Activity& activity) {
+  const Range own = worker.share(ny_);
+  if (varies_) {
+    collect_changes(own);
+    set_rates(membranes, own, relaxation_rate);
+  }
+  activity.clear(own.begin, own.end);
+  for (const Reach& reach : cells_) {
+    for_rows(reach.reached, own, [&](int y, Interval columns, int) { activity.mark(y, columns.begin, columns.end); });
+  }
+}
+
+template <class T>
+void Indicator<T>::restore(const membrane::DisplacementWatch::Memory& memory, const membrane::Membranes& membranes,
+                           fluid::Field<T>& relaxation_rate, fluid::Activity& activity) {
+  const bool updated = !memory.x.empty() && !std::isnan(memory.x.front());
+  if (updated) {
+    membrane::Membranes at_update = membranes;
+    at_update.x = memory.x;
+    at_update.y = memory.y;
+    cover(Worker{}, at_update);
+    update(Worker{}, at_update, relaxation_rate, activity);
+  }
+  watch_.recall(memory);
+}
+
+template <class T>
+void Indicator<T>::collect_changes(Range own) {
+  for (int y = own.begin; y < own.end; ++y) changed_[static_cast<std::size_t>(y)].clear();
+  const auto include = [&](int y, Interval columns, int) {
+    columns.end = std::min(columns.end, columns.begin + nx_);
+    for_pieces(columns, [&](int x, int begin, int end) {
+      // Intervals of a row stay disjoint, since what is done to them is not to be done twice.
+      Interval added{x, x + end - begin};
+      std::vector<Interval>& row = changed_[static_cast<std::size_t>(y)];
+      for (std::size_t k = 0; k < row.size();) {
+        if (row[k].end < added.begin || added.end < row[k].begin) {
+          ++k;
+          continue;
+        }
+        added = {std::min(added.begin, row[k].begin), std::max(added.end, row[k].end)};
+        row[k] = row.back();
+        row.pop_back();
+      }
+      row.push_back(added);
+    });
+  };
+  for (std::size_t c = 0; c < cells_.size(); ++c) {
+    if (!watch_.moved(static_cast<int>(c))) continue;
+    for_rows(cells_[c].covered_before, own, include);
+    for_rows(cells_[c].covered, own, include);
+  }
+}
+
+template <class T>
+void Indicator<T>::set_rates(const membrane::Membranes& membranes, Range own, fluid::Field<T>& rate) {
+  const auto for_changed = [&](auto function) {
+    for (int y = own.begin; y < own.end; ++y) {
+      T* row = rate.row(y);
+      for (const Interval& interval : changed_[static_cast<std::size_t>(y)]) {
+        for (int x = interval.begin; x < interval.end; ++x) function(row[x]);
+      }
+    }
+  };
+  const bool harmonic = mean_ == ViscosityMean::harmonic;
+  // The field holds the sum over cells of (ratio - 1) I, or (1/ratio - 1) I, until every cell has been added.
+  for_changed([](T& value) { value = 0; });
+  for (std::size_t c = 0; c < cells_.size(); ++c) {
+    const double ratio = ratio_[static_cast<std::size_t>(membranes.cells[c].type)];
+    const double excess = (harmonic ? 1 / ratio : ratio) - 1;
+    if (excess == 0) continue;
+    const Coverage& coverage = cells_[c].coverage;
+    for_rows(cells_[c].covered, own, [&](int y, Interval columns, int place) {
+      if (changed_[static_cast<std::size_t>(y)].empty()) return;
+      const double* from = coverage.row(place);
+      T* row = rate.row(y);
+      for_pieces(columns, [&](int x, int begin, int end) {
+        for (const Interval& interval : changed_[static_cast<std::size_t>(y)]) {
+          const int first = std::max(x, interval.begin), last = std::min(x + end - begin, interval.end);
+          const double* value = from + (begin - coverage.x0) - x;
+          for (int k = first; k < last; ++k) row[k] += static_cast<T>(excess * value[k]);
+        }
+      });
+    });
+  }
+  const T plain = static_cast<T>(plain_rate_), outside = static_cast<T>(1 / plain_rate_ - 0.5);
+  if (harmonic) {
+    for_changed([=](T& value) { value = value == T(0) ? plain : T(1) / (T(0.5) + outside / (T(1) + value)); });
+  } else {
+    for_changed([=](T& value) { value = value == T(0) ? plain : T(1) / (T(0.5) + outside * (T(1) + value)); });
+  }
+}
+
+template class Indicator<float>;
+template class Indicator<double>;
+
+}  // namespace rouleau::coupling

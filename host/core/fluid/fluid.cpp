@@ -1,0 +1,320 @@
+#include "fluid.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <rouleau/dispatch.hpp>
+#include <type_traits>
+
+#include "max_speed.hpp"
+
+namespace rouleau::fluid {
+
+namespace d2q9 = rouleau::d2q9;
+
+template <class T>
+Fluid<T>::Fluid(const FluidSetting& setting, std::shared_ptr<const plugin::ModelInstance> collision)
+    : setting_(setting),
+      collision_(std::move(collision)),
+      lattice_(setting.nx, setting.ny, setting.periodic_y),
+      activity_(setting.nx, setting.ny) {
+  if constexpr (std::is_same_v<T, double>) {
+    collide_ = collision_->collision().collide_f64;
+  } else {
+    collide_ = collision_->collision().collide_f32;
+  }
+  if (setting.membranes) force_ = {Field<T>(setting.nx, setting.ny), Field<T>(setting.nx, setting.ny)};
+  if (setting.viscosity_contrast) {
+    relaxation_rate_ = Field<T>(setting.nx, setting.ny);
+    relaxation_rate_.fill(static_cast<T>(setting.relaxation_rate));
+  }
+  if (setting.body_force_x != 0 || setting.body_force_y != 0) {
+    body_force_row_[0].assign(static_cast<std::size_t>(setting.nx), static_cast<T>(setting.body_force_x));
+    body_force_row_[1].assign(static_cast<std::size_t>(setting.nx), static_cast<T>(setting.body_force_y));
+  }
+}
+
+template <class T>
+std::size_t Fluid<T>::bytes() const {
+  return lattice_.bytes() + force_.x.bytes() + force_.y.bytes() + relaxation_rate_.bytes();
+}
+
+template <class T>
+inline bool Fluid<T>::reaches_border(int y) const {
+  constexpr int width = Field<T>::halo;
+  return activity_.at_side(y) || ((y < width || y >= setting_.ny - width) && activity_.any(y));
+}
+
+template <class T>
+void Fluid<T>::clear_force(Worker worker) {
+  const Range rows = worker.share(setting_.ny);
+  const auto set = [](T* row, const Run& run, T value) {
+    if (value == T(0)) {
+      std::memset(row + run.begin, 0, sizeof(T) * static_cast<std::size_t>(run.end - run.begin));
+    } else {
+      std::fill(row + run.begin, row + run.end, value);
+    }
+  };
+  const T body_force_x = static_cast<T>(setting_.body_force_x), body_force_y = static_cast<T>(setting_.body_force_y);
+  for (int y = rows.begin; y < rows.end; ++y) {
+    activity_.for_runs(y, [&](const Run& run) {
+      if (!run.active) return;
+      set(force_.x.row(y), run, body_force_x);
+      set(force_.y.row(y), run, body_force_y);
+    });
+    if (reaches_border(y)) clear_force_halo(force_, y, setting_.periodic_y);
+  }
+}
+
+template <class T>
+void Fluid<T>::fold_force(Worker worker) {
+  const Range rows = worker.share(setting_.ny);
+  for (int y = rows.begin; y < rows.end; ++y) {
+    if (reaches_border(y)) fold_force_row(force_, y, setting_.periodic_y);
+  }
+}
+
+template <class T>
+void Fluid<T>::collide_row(int y, const T* (&in)[9], T* (&out)[9]) {
+  const void* const self = collision_->self();
+  const T* body_force[2] = {body_force_row_[0].data(), body_force_row_[1].data()};
+  const T* const* const background = body_force_row_[0].empty() ? nullptr : body_force;
+  const T* force[2];
+  T* velocity[2];
+  Block block{};
+  block.struct_size = sizeof(Block);
+  block.in = in;
+  block.out = out;
+  int at = 0;  // where the pointers stand
+  const auto move_to = [&](int x) {
+    if (x == at) return;
+    d2q9::for_each_velocity([&](auto q) { in[q] += x - at, out[q] += x - at; });
+    at = x;
+  };
+  activity_.for_runs(y, [&](const Run& run) {
+    move_to(run.begin);
+    block.count = static_cast<std::uint32_t>(run.end - run.begin);
+    if (run.active && setting_.membranes) {
+      force[0] = velocity[0] = force_.x.row(y) + run.begin;
+      force[1] = velocity[1] = force_.y.row(y) + run.begin;
+      block.force = force;
+      block.velocity = velocity;
+      block.relaxation_rate = setting_.viscosity_contrast ? relaxation_rate_.row(y) + run.begin : nullptr;
+    } else {
+      block.force = background;
+      block.velocity = nullptr;
+      block.relaxation_rate = nullptr;
+    }
+    collide_(self, &block);
+  });
+  move_to(0);
+}
+
+template <class T>
+void Fluid<T>::step(Worker worker) {
+  const Range rows = worker.share(setting_.ny);
+  const bool even = parity_ == Parity::even;
+  const T* in[9];
+  T* out[9];
+  // Up and down in turns: what a step has touched last, the next one finds in the cache.
+  const int first = even ? rows.begin : rows.end - 1, way = even ? 1 : -1;
+  for (int i = 0; i < rows.end - rows.begin; ++i) {
+    const int y = first + way * i;
+    if (i == 0) {
+      lattice_.row_pointers(parity_, y, in, out);
+    } else {
+      lattice_.next_row_pointers(parity_, y - way, y, in, out);
+    }
+    if (even) receive_row(lattice_, y);
+    collide_row(y, in, out);
+    add_wall_momentum(lattice_, y, setting_.walls);
+    if (even) send_row(lattice_, y);
+    if (setting_.membranes && reaches_border(y)) {
+      fill_velocity_halo(force_, y, setting_.periodic_y, setting_.walls);
+    }
+  }
+}
+
+template <class T>
+void Fluid<T>::settle() {
+  if (parity_ != Parity::even) return;
+  for (int y = 0; y < setting_.ny; ++y) receive_row(lattice_, y);
+}
+
+template <class T>
+double Fluid<T>::population(int q, int x, int y) const {
+  const T* in[9];
+  lattice_.row_pointers(parity_, y, in);
+  return static_cast<double>(in[q][x]);
+}
+
+template <class T>
+void Fluid<T>::moments(int y, std::vector<Moments>& row) const {
+  const T* in[9];
+  lattice_.row_pointers(parity_, y, in);
+  row.assign(static_cast<std::size_t>(setting_.nx), Moments{});
+  activity_.for_runs(y, [&](const Run& run) {
+    for (int x = run.begin; x < run.end; ++x) {
+      Moments& m = row[static_cast<std::size_t>(x)];
+      for (int q = 0; q < 9; ++q) {
+        const double f = static_cast<double>(in[q][x]);
+        m.density += f;
+        m.ux += d2q9::velocity[q][0] * f;
+        m.uy += d2q9::velocity[q][1] * f;
+      }
+      const bool own_force = run.active && setting_.membranes;
+      m.ux += 0.5 * (own_force ? static_cast<double>(force_.x.row(y)[x]) : setting_.body_force_x);
+      m.uy += 0.5 * (own_force ? static_cast<double>(force_.y.row(y)[x]) : setting_.body_force_y);
+    }
+  });
+}
+
+template <class T>
+double Fluid<T>::mass() const {
+  double mass = 0;
+  for (int y = 0; y < setting_.ny; ++y) {
+    const T* in[9];
+    lattice_.row_pointers(parity_, y, in);
+    for (const T* population : in) {
+      for (int x = 0; x < setting_.nx; ++x) mass += static_cast<double>(population[x]);
+    }
+  }
+  return mass;
+}
+
+template <class T>
+typename Fluid<T>::Extremes Fluid<T>::extremes() const {
+  static const auto function = Dispatch<FindExtremes, ExtremesTask<T>*>::pick();
+  Extremes result{0, 0};
+  double speed_square = 0, zero = 0;
+  for (int y = 0; y < setting_.ny; ++y) {
+    const T* in[9];
+    lattice_.row_pointers(parity_, y, in);
+    double row_mass = 0;
+    activity_.for_runs(y, [&](const Run& run) {
+      ExtremesTask<T> task{};
+      d2q9::for_each_velocity([&](auto q) { task.in[q] = in[q] + run.begin; });
+      if (run.active && setting_.membranes) {
+        task.force[0] = force_.x.row(y) + run.begin;
+        task.force[1] = force_.y.row(y) + run.begin;
+      }
+      task.body_force[0] = static_cast<T>(setting_.body_force_x);
+      task.body_force[1] = static_cast<T>(setting_.body_force_y);
+      task.count = run.end - run.begin;
+      function(&task);
+      row_mass += task.mass;
+      speed_square = std::max(speed_square, task.speed_square);
+      zero += task.zero;
+    });
+    result.mass += row_mass;
+  }
+  result.mass += zero;
+  result.speed = std::sqrt(speed_square) + zero;
+  return result;
+}
+
+template <class T>
+typename Fluid<T>::WallStress Fluid<T>::wall_stress() const {
+  if (!walls_have_acted_) return {std::nan(""), std::nan("")};
+  // A population that leaves towards the wall and returns gives the wall c_q f_q - c_-q f_-q = c_q (f_q + f_-q); the
+  // one that left is the one that came back plus the wall's own momentum: f_q = f_-q + 6 w_q c_q . u_wall.
+  const auto stress = [&](int y, int outward, double speed) {
+    const T* in[9];
+    lattice_.row_pointers(parity_, y, in);
+    double sum = 0;
+    for (int q = 1; q < 9; ++q) {
+      const int cx = d2q9::velocity[q][0];
+      if (d2q9::velocity[q][1] != outward || cx == 0) continue;
+      const T* returned = in[d2q9::opposite[q]];
+      const double moved = 6 * d2q9::weight[q] * cx * speed;
+      for (int x = 0; x < setting_.nx; ++x) sum += cx * (2 * static_cast<double>(returned[x]) + moved);
+    }
+    return sum / setting_.nx;
+  };
+  return {stress(0, -1, setting_.walls.lower), stress(setting_.ny - 1, +1, setting_.walls.upper)};
+}
+
+template <class T>
+double Fluid<T>::equilibrium(int q, double density, double ux, double uy) const {
+  const double along = d2q9::velocity[q][0] * ux + d2q9::velocity[q][1] * uy;
+  const double quadratic = setting_.inertia ? 4.5 * along * along - 1.5 * (ux * ux + uy * uy) : 0.0;
+  return d2q9::weight[q] * (density + 3 * along + quadratic);
+}
+
+template <class T>
+void Fluid<T>::set_state(const std::function<State(int, int)>& state) {
+  parity_ = Parity::even;
+  walls_have_acted_ = true;  // a state that is given is one that goes with these walls
+  const double tau = 1 / setting_.relaxation_rate;
+  for (int y = 0; y < setting_.ny; ++y) {
+    for (int x = 0; x < setting_.nx; ++x) {
+      const State s = state(x, y);
+      // Populations hold the momentum without the half force that the velocity includes.
+      const double jx = s.ux - 0.5 * setting_.body_force_x, jy = s.uy - 0.5 * setting_.body_force_y;
+      for (int q = 0; q < 9; ++q) {
+        const double cx = d2q9::velocity[q][0], cy = d2q9::velocity[q][1];
+        const double strain = cx * cx * s.gradient[0] + cx * cy * (s.gradient[1] + s.gradient[2]) +
+                              cy * cy * s.gradient[3] - (s.gradient[0] + s.gradient[3]) / 3;
+        lattice_.slot(q, y)[x] = static_cast<T>(equilibrium(q, s.density, jx, jy) - 3 * tau * d2q9::weight[q] * strain);
+      }
+    }
+  }
+  begin_exchange(lattice_);
+}
+
+template <class T>
+void Fluid<T>::set_profile(const std::function<double(double)>& velocity,
+                           const std::function<double(double)>& shear_rate) {
+  set_state([&](int, int y) { return State{0, velocity(y), 0, {0, shear_rate(y), 0, 0}}; });
+}
+
+template <class T>
+void Fluid<T>::take_over(Fluid& other, double factor) {
+  other.settle();
+  parity_ = Parity::even;
+  for (int y = 0; y < setting_.ny; ++y) {
+    const T* in[9];
+    other.lattice_.row_pointers(other.parity_, y, in);
+    for (int x = 0; x < setting_.nx; ++x) {
+      double density = 0, jx = 0, jy = 0;
+      for (int q = 0; q < 9; ++q) {
+        const double f = static_cast<double>(in[q][x]);
+        density += f;
+        jx += d2q9::velocity[q][0] * f;
+        jy += d2q9::velocity[q][1] * f;
+      }
+      for (int q = 0; q < 9; ++q) {
+        const double rest = static_cast<double>(in[q][x]) - equilibrium(q, density, jx, jy);
+        lattice_.slot(q, y)[x] =
+            static_cast<T>(equilibrium(q, factor * density, factor * jx, factor * jy) + factor * rest);
+      }
+    }
+  }
+  begin_exchange(lattice_);
+}
+
+template <class T>
+void Fluid<T>::copy_populations(int q, std::vector<T>& values) const {
+  values.clear();
+  for (int y = 0; y < setting_.ny; ++y) {
+    const T* in[9];
+    lattice_.row_pointers(parity_, y, in);
+    values.insert(values.end(), in[q], in[q] + setting_.nx);
+  }
+}
+
+template <class T>
+void Fluid<T>::restore(const std::function<const std::vector<T>&(int)>& populations, bool walls_have_acted) {
+  parity_ = Parity::even;
+  walls_have_acted_ = walls_have_acted;
+  for (int q = 0; q < 9; ++q) {
+    const T* from = populations(q).data();
+    for (int y = 0; y < setting_.ny; ++y, from += setting_.nx) std::copy_n(from, setting_.nx, lattice_.slot(q, y));
+  }
+  begin_exchange(lattice_);
+}
+
+template class Fluid<float>;
+template class Fluid<double>;
+
+}  // namespace rouleau::fluid

@@ -1,0 +1,131 @@
+// The fluid of one stage: its lattice, what acts on it, and one step of collision and streaming.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <type_traits>
+#include <vector>
+
+#include "base/worker.hpp"
+#include "exchange.hpp"
+#include "field.hpp"
+#include "lattice.hpp"
+#include "node_mask.hpp"
+#include "plugin/model.hpp"
+
+namespace rouleau::fluid {
+
+/// What a fluid is made of. Lattice units.
+struct FluidSetting {
+  int nx, ny;
+  bool periodic_y;
+  double relaxation_rate;  ///< 1/tau of the suspending fluid
+  bool inertia = false;    ///< initial states include the quadratic terms of the equilibrium
+  WallVelocity walls = {};
+  double body_force_x = 0, body_force_y = 0;  ///< force density everywhere
+  bool membranes = false;                     ///< keep force and velocity where nodes are active
+  bool viscosity_contrast = false;            ///< keep a relaxation rate where nodes are active
+};
+
+/// Moments of one node before collision.
+struct Moments {
+  double density;  ///< deviation from 1
+  double ux, uy;   ///< with half the force
+};
+
+template <class T>
+class Fluid {
+ public:
+  Fluid(const FluidSetting& setting, std::shared_ptr<const plugin::ModelInstance> collision);
+
+  [[nodiscard]] const FluidSetting& setting() const { return setting_; }
+  [[nodiscard]] Activity& activity() { return activity_; }
+  [[nodiscard]] VectorField<T>& force() { return force_; }  ///< before step(); velocity after it
+  [[nodiscard]] Field<T>& relaxation_rate() { return relaxation_rate_; }
+  [[nodiscard]] std::size_t bytes() const;
+
+  /// Sets velocity u(y) with shear rate du/dy along x everywhere, density 1 (equilibrium and first-order part).
+  void set_profile(const std::function<double(double y)>& velocity, const std::function<double(double y)>& shear_rate);
+  /// General initial state: deviation of density, velocity and its gradient {du/dx, du/dy, dv/dx, dv/dy} at a node.
+  struct State {
+    double density, ux, uy, gradient[4];
+  };
+  void set_state(const std::function<State(int x, int y)>& state);
+  /// Takes over another fluid's state with velocities and density deviation times `factor`: what a stage with another
+  /// time step does. Without inertia this scales every population; with it, equilibrium and the rest scale each by its
+  /// rule.
+  void take_over(Fluid& other, double factor);
+
+  // Passes, in the order of a step. A worker handles its share of rows; a barrier must follow each.
+  /// Sets the force in active nodes to the body force, and in the halo nodes that belong to their rows to zero.
+  void clear_force(Worker worker);
+  /// Brings home what was spread onto halo nodes.
+  void fold_force(Worker worker);
+  /// Collision and streaming; leaves the velocity of active nodes in force(), halo included.
+  void step(Worker worker);
+  /// Ends the step; one worker only.
+  void end_step() {
+    parity_ = next(parity_);
+    walls_have_acted_ = true;
+  }
+
+  // Observers; between steps, one thread.
+  /// Completes the exchange so that moments() may be called.
+  void settle();
+  /// Moments of row y, x = 0..nx-1, of the state before the next step. The force of that step must have been folded.
+  void moments(int y, std::vector<Moments>& row) const;
+  /// Sum of density deviations over all nodes.
+  [[nodiscard]] double mass() const;
+  /// Mass and largest speed, as moments() would give them, in one sweep.
+  struct Extremes {
+    double mass, speed;  ///< not a number if any density or velocity is none
+  };
+  [[nodiscard]] Extremes extremes() const;
+  /// Mean shear stress that the fluid exerts on the lower and the upper wall, along +x, by momentum exchange. NaN
+  /// between the start of a fluid at rest (or taken over) and its first step: walls that have just begun to move have
+  /// exchanged nothing yet.
+  struct WallStress {
+    double lower, upper;
+  };
+  [[nodiscard]] WallStress wall_stress() const;
+  /// What of the fluid's energy there is and what becomes of it, summed over all nodes; state as in moments().
+  struct Energetics {
+    double kinetic;                 ///< u^2/2, density 1
+    double dissipation;             ///< what viscosity takes in a step, see energetics.cpp
+    double velocity_x, velocity_y;  ///< sums of u
+    double membrane_power;          ///< of the forces beside the body force, f . u
+  };
+  [[nodiscard]] Energetics energetics() const;
+  /// Populations before the next collision, for tests.
+  [[nodiscard]] double population(int q, int x, int y) const;
+  /// All populations of one velocity before the next collision, row after row, for checkpoints. After settle().
+  void copy_populations(int q, std::vector<T>& values) const;
+  /// Whether the walls have exchanged momentum with this state of the fluid (WallStress).
+  [[nodiscard]] bool walls_have_acted() const { return walls_have_acted_; }
+  /// Goes on from what copy_populations() gave: `populations(q)` returns it for every q.
+  void restore(const std::function<const std::vector<T>&(int q)>& populations, bool walls_have_acted);
+
+ private:
+  [[nodiscard]] double equilibrium(int q, double density, double ux, double uy) const;
+  /// Whether membranes may reach the halo that belongs to row y.
+  [[nodiscard]] bool reaches_border(int y) const;
+  /// Pointers to the populations of row y, as Lattice::row_pointers gives them; they come back unchanged.
+  void collide_row(int y, const T* (&in)[9], T* (&out)[9]);
+
+  using Block = std::conditional_t<std::is_same_v<T, double>, rouleau_collision_block_f64, rouleau_collision_block_f32>;
+  FluidSetting setting_;
+  std::shared_ptr<const plugin::ModelInstance> collision_;
+  void (*collide_)(const void* self, const Block* block);  ///< of the collision model
+  Lattice<T> lattice_;
+  Parity parity_ = Parity::even;
+  bool walls_have_acted_ = false;
+  Activity activity_;
+  VectorField<T> force_;
+  Field<T> relaxation_rate_;
+  std::vector<T> body_force_row_[2];  ///< constant; empty without a body force
+};
+
+extern template class Fluid<float>;
+extern template class Fluid<double>;
+
+}  // namespace rouleau::fluid

@@ -1,0 +1,60 @@
+// The loop that looks for the largest speed and sums the mass, for any width of vector registers.
+#pragma once
+
+#include <algorithm>
+#include <rouleau/collision.hpp>
+
+namespace rouleau::fluid {
+
+/// Nodes of one run of a row, and what was found.
+template <class T>
+struct ExtremesTask {
+  const T* in[9];
+  const T* force[2];  // per node, or null
+  T body_force[2];
+  int count;
+  double mass, speed_square, zero;
+};
+
+/// Sum of the densities, largest speed; `zero` becomes NaN with the first value that is not finite.
+struct FindExtremes {
+  template <int register_bytes>
+  ROULEAU_ALWAYS_INLINE static void run(ExtremesTask<float>* task) {
+    sweep<register_bytes>(*task);
+  }
+  template <int register_bytes>
+  ROULEAU_ALWAYS_INLINE static void run(ExtremesTask<double>* task) {
+    sweep<register_bytes>(*task);
+  }
+
+ private:
+  template <int register_bytes, class T>
+  ROULEAU_ALWAYS_INLINE static void sweep(ExtremesTask<T>& task) {
+    constexpr int width = register_bytes / sizeof(T);
+    const ExtremesTask<T> t = task;
+    const int whole = t.count / width * width;
+    sweep<Pack<T, width>>(t, 0, whole, task);
+    sweep<Pack<T, 1>>(t, whole, t.count, task);
+  }
+  template <class S, class T>
+  ROULEAU_ALWAYS_INLINE static void sweep(const ExtremesTask<T>& t, int begin, int end, ExtremesTask<T>& result) {
+    S mass = 0, fastest = 0, zero = 0;
+    for (int x = begin; x < end; x += S::size) {
+      Node<S, true, false> node;
+      d2q9::for_each_velocity([&](auto q) { node.f[q] = S::load(t.in[q] + x); });
+      for (int k = 0; k < 2; ++k) node.force[k] = t.force[k] != nullptr ? S::load(t.force[k] + x) : S(t.body_force[k]);
+      node.compute_moments();
+      const S square = node.velocity[0] * node.velocity[0] + node.velocity[1] * node.velocity[1];
+      mass += node.density;
+      fastest = max(square, fastest);
+      zero += (square - square) + (node.density - node.density);
+    }
+    for (int k = 0; k < S::size; ++k) {
+      result.mass += static_cast<double>(mass.vector[k]);
+      result.speed_square = std::max(result.speed_square, static_cast<double>(fastest.vector[k]));
+      result.zero += static_cast<double>(zero.vector[k]);
+    }
+  }
+};
+
+}  // namespace rouleau::fluid

@@ -1,0 +1,61 @@
+#include "node_mask.hpp"
+
+#include <algorithm>
+
+namespace rouleau::fluid {
+
+Activity::Activity(int nx, int ny)
+    : nx_(nx),
+      ny_(ny),
+      words_((nx + nodes_per_bit * bits_per_word - 1) / (nodes_per_bit * bits_per_word)),
+      bits_(static_cast<std::size_t>(words_) * ny, 0),
+      runs_(static_cast<std::size_t>(ny), {Run{0, nx, false}}) {}
+
+void Activity::clear(int first_row, int end_row) {
+  std::fill(bits_.begin() + static_cast<std::ptrdiff_t>(words_) * first_row,
+            bits_.begin() + static_cast<std::ptrdiff_t>(words_) * end_row, 0);
+  for (int y = first_row; y < end_row; ++y) runs_[static_cast<std::size_t>(y)].assign(1, {0, nx_, false});
+}
+
+void Activity::mark(int y, int begin, int end) {
+  if (y < 0 || y >= ny_ || begin >= end) return;
+  if (end - begin >= nx_) {
+    begin = 0;
+    end = nx_;
+  }
+  const int shift = (begin % nx_ + nx_) % nx_ - begin;
+  begin += shift;
+  end += shift;
+  if (end > nx_) {
+    mark(y, 0, end - nx_);
+    end = nx_;
+  }
+  std::uint64_t* row = bits_.data() + static_cast<std::size_t>(words_) * y;
+  for (int bit = begin / nodes_per_bit; bit <= (end - 1) / nodes_per_bit; ++bit) {
+    row[bit / bits_per_word] |= std::uint64_t{1} << (bit % bits_per_word);
+  }
+  list_runs(y);
+}
+
+void Activity::list_runs(int y) {
+  const std::uint64_t* row = bits_.data() + static_cast<std::size_t>(words_) * y;
+  std::vector<Run>& runs = runs_[static_cast<std::size_t>(y)];
+  runs.clear();
+  for (int x = 0; x < nx_;) {
+    const int bit = x / nodes_per_bit;
+    const bool on = (row[bit / bits_per_word] >> (bit % bits_per_word) & 1) != 0;
+    const int end = std::min(nx_, next_change(row, bit, on) * nodes_per_bit);
+    runs.push_back({x, end, on});
+    x = end;
+  }
+}
+
+double Activity::active_fraction() const {
+  long count = 0;
+  for (int y = 0; y < ny_; ++y) {
+    for_runs(y, [&](const Run& run) { count += run.active ? run.end - run.begin : 0; });
+  }
+  return static_cast<double>(count) / (static_cast<double>(nx_) * ny_);
+}
+
+}  // namespace rouleau::fluid

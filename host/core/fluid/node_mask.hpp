@@ -1,0 +1,68 @@
+// Which nodes of the lattice feel a membrane: one bit for 16 nodes, read as runs.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+namespace rouleau::fluid {
+
+/// Consecutive nodes [begin, end) of a row that are all active or all not.
+struct Run {
+  int begin, end;
+  bool active;
+};
+
+/// Active nodes carry force, velocity and relaxation rate; the others are collided without.
+class Activity {
+ public:
+  static constexpr int nodes_per_bit = 16;
+
+  Activity() = default;
+  /// Nothing is active.
+  Activity(int nx, int ny);
+
+  /// Takes the marks of rows [first_row, end_row) away.
+  void clear(int first_row, int end_row);
+  /// Marks the nodes [begin, end) of a row; the columns are taken periodically, rows outside [0, ny) are left out.
+  void mark(int y, int begin, int end);
+
+  /// Calls function(Run) for the runs of row y, left to right, covering [0, nx) exactly.
+  template <class Function>
+  void for_runs(int y, Function function) const {
+    for (const Run& run : runs_[static_cast<std::size_t>(y)]) function(run);
+  }
+  [[nodiscard]] bool active(int x, int y) const {
+    const int bit = x / nodes_per_bit;
+    return (bits_[static_cast<std::size_t>(words_) * y + bit / bits_per_word] >> (bit % bits_per_word) & 1) != 0;
+  }
+  /// Whether any node of row y is active; whether the first or the last one is.
+  [[nodiscard]] bool any(int y) const { return runs_[static_cast<std::size_t>(y)].size() > 1 || at_side(y); }
+  [[nodiscard]] bool at_side(int y) const {
+    const std::vector<Run>& runs = runs_[static_cast<std::size_t>(y)];
+    return runs.front().active || runs.back().active;
+  }
+  [[nodiscard]] double active_fraction() const;
+
+ private:
+  static constexpr int bits_per_word = 64;
+  /// First bit from `bit` on that is not `on`; beyond the row's last bit if there is none.
+  [[nodiscard]] int next_change(const std::uint64_t* row, int bit, bool on) const {
+    int word = bit / bits_per_word;
+    std::uint64_t changed = (on ? ~row[word] : row[word]) >> (bit % bits_per_word) << (bit % bits_per_word);
+    while (changed == 0) {
+      if (++word == words_) return words_ * bits_per_word;
+      changed = on ? ~row[word] : row[word];
+    }
+    return word * bits_per_word + std::countr_zero(changed);
+  }
+
+  /// Lists the runs of row y anew from its bits.
+  void list_runs(int y);
+
+  int nx_ = 0, ny_ = 0, words_ = 0;
+  std::vector<std::uint64_t> bits_;
+  std::vector<std::vector<Run>> runs_;  ///< of each row: read several times a step, changed when a membrane has moved
+};
+
+}  // namespace rouleau::fluid

@@ -1,0 +1,43 @@
+// Zeroed memory for lattice arrays: whole cache lines, and huge pages for large arrays where the system has them.
+#pragma once
+
+#include <cstddef>
+#include <cstring>
+#include <memory>
+#include <new>
+
+#if defined(__linux__)
+#include <sys/mman.h>
+#endif
+
+namespace rouleau::fluid {
+
+/// `count` values of T, all zero. An array of at least half a huge page begins on one, so that a step over a lattice
+/// that has left the cache does not miss the page tables too.
+template <class T>
+class Storage {
+ public:
+  Storage() = default;
+  explicit Storage(std::size_t count) : count_(count) {
+    const std::align_val_t alignment{2 * bytes() >= huge_page ? huge_page : cache_line};
+    data_ = {static_cast<T*>(::operator new(bytes(), alignment)), Free{alignment}};
+#if defined(__linux__)
+    if (alignment == std::align_val_t{huge_page}) madvise(data_.get(), bytes(), MADV_HUGEPAGE);
+#endif
+    std::memset(static_cast<void*>(data_.get()), 0, bytes());
+  }
+
+  [[nodiscard]] T* data() const { return data_.get(); }
+  [[nodiscard]] std::size_t bytes() const { return sizeof(T) * count_; }
+
+ private:
+  static constexpr std::size_t cache_line = 64, huge_page = std::size_t{2} << 20;
+  struct Free {
+    std::align_val_t alignment{cache_line};
+    void operator()(T* p) const { ::operator delete(p, alignment); }
+  };
+  std::size_t count_ = 0;
+  std::unique_ptr<T[], Free> data_;
+};
+
+}  // namespace rouleau::fluid

@@ -1,0 +1,75 @@
+#include "area_correction.hpp"
+
+#include <rouleau/dispatch.hpp>
+
+#include "closed_outline.hpp"
+
+namespace rouleau::membrane {
+
+namespace {
+
+constexpr double relaxation = 50;  // steps in which a difference of area goes by a factor e
+
+struct AreaTask {
+  int begin, end;
+  const double *x, *y;
+  double *velocity_x, *velocity_y;
+  double rest_area;
+  double gain;  // of area in this step without the correction
+};
+
+struct KeepArea {
+  template <int register_bytes>
+  ROULEAU_ALWAYS_INLINE static void run(AreaTask* task) {
+    const AreaTask t = *task;
+    double area = 0, gain = 0, square = 0;
+    for_closed_outline<register_bytes>(t.begin, t.end, [&](auto tag, int i, int before, int after) {
+      using S = decltype(tag);
+      const S ax = S::load(t.y + after) - S::load(t.y + before), ay = S::load(t.x + before) - S::load(t.x + after);
+      // Relative to the first node, so that a cell far from the origin keeps its digits.
+      const S x = S::load(t.x + i) - t.x[t.begin], y = S::load(t.y + i) - t.y[t.begin];
+      area += sum(x * ax + y * ay);
+      gain += sum(S::load(t.velocity_x + i) * ax + S::load(t.velocity_y + i) * ay);
+      square += sum(ax * ax + ay * ay);
+    });
+    area /= 4, gain /= 2, square /= 4;
+    task->gain = gain;
+    const double factor = square > 0 ? 0.5 * ((t.rest_area - area) / relaxation - gain) / square : 0;
+    for_closed_outline<register_bytes>(t.begin, t.end, [&](auto tag, int i, int before, int after) {
+      using S = decltype(tag);
+      const S ax = S::load(t.y + after) - S::load(t.y + before), ay = S::load(t.x + before) - S::load(t.x + after);
+      (S::load(t.velocity_x + i) + factor * ax).store(t.velocity_x + i);
+      (S::load(t.velocity_y + i) + factor * ay).store(t.velocity_y + i);
+    });
+  }
+
+ private:
+  template <class S>
+  ROULEAU_ALWAYS_INLINE static double sum(const S& values) {
+    double total = 0;
+    for (int k = 0; k < S::size; ++k) total += values.vector[k];
+    return total;
+  }
+};
+
+}  // namespace
+
+void keep_areas(Worker worker, Membranes& membranes) {
+  static const auto function = Dispatch<KeepArea, AreaTask*>::pick();
+  const Range cells = worker.share(membranes.cell_count());
+  for (int c = cells.begin; c < cells.end; ++c) {
+    const CellRange& cell = membranes.cells[static_cast<std::size_t>(c)];
+    AreaTask task{cell.first,
+                  cell.end(),
+                  membranes.x.data(),
+                  membranes.y.data(),
+                  membranes.velocity_x.data(),
+                  membranes.velocity_y.data(),
+                  cell.rest_area,
+                  0};
+    function(&task);
+    membranes.area_leakage[static_cast<std::size_t>(c)] -= task.gain / cell.rest_area;
+  }
+}
+
+}  // namespace rouleau::membrane

@@ -1,0 +1,15 @@
+// Keeps the areas of the cells: takes what would leak in a step out of the nodes' velocities.
+#pragma once
+
+#include "base/worker.hpp"
+#include "membranes.hpp"
+
+namespace rouleau::membrane {
+
+/// Pass over cells, once the velocities are complete. With A_i = dA/dX_i, every node of a cell gains c A_i, where c
+/// makes the sum of V_i . A_i bring the area back to its rest value within 50 steps. What the velocities alone would
+/// have changed is the leakage; it is added to area_leakage, positive where the cell would have lost area, which must
+/// have one value for each cell.
+void keep_areas(Worker worker, Membranes& membranes);
+
+}  // namespace rouleau::membrane

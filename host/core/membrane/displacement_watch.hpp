@@ -1,0 +1,51 @@
+// Tells when nodes have moved so far that lists made from their old positions must be made anew.
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "base/worker.hpp"
+#include "membranes.hpp"
+
+namespace rouleau::membrane {
+
+/// Largest distance between corresponding nodes [nodes.begin, nodes.end) of two sets of positions; NaN if a position is
+/// no number.
+double largest_displacement(const std::vector<double>& x, const std::vector<double>& y,
+                            const std::vector<double>& old_x, const std::vector<double>& old_y, Range nodes);
+
+/// Remembers positions and compares. After construction every cell counts as moved.
+///
+/// No node has moved further than the sum of its cell's largest steps, so positions are compared only once that sum has
+/// passed the limit; the displacement found then takes the sum's place.
+class DisplacementWatch {
+ public:
+  DisplacementWatch() = default;
+  explicit DisplacementWatch(const Membranes& membranes);
+
+  /// Pass over cells, once a step. A barrier must lie between it and the next two.
+  void measure(Worker worker, const Membranes& membranes);
+  /// True if a node of the cell had moved further than its limit (or is not a number) at the last measure().
+  [[nodiscard]] bool moved(int cell) const { return moved_[static_cast<std::size_t>(cell)] != 0; }
+  /// True if any cell has moved.
+  [[nodiscard]] bool exceeded() const;
+  /// Remembers the present positions of a cell and how far its nodes may move from there. Does not change moved().
+  void remember(int cell, const Membranes& membranes, double limit);
+
+  /// What it knows from one step to the next.
+  struct Memory {
+    std::vector<double> x, y;   ///< of the nodes; NaN: nothing remembered yet
+    std::vector<double> limit;  ///< of each cell
+    std::vector<double> bound;  ///< of each cell: upper bound of its nodes' displacements
+  };
+  [[nodiscard]] const Memory& memory() const { return memory_; }
+  /// Goes on from another watch's memory of the same cells.
+  void recall(Memory memory) { memory_ = std::move(memory); }
+
+ private:
+  Memory memory_;
+  std::vector<std::uint8_t> moved_;  // one per cell, so that the answer does not depend on the workers
+};
+
+}  // namespace rouleau::membrane

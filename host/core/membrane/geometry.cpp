@@ -1,0 +1,185 @@
+#include "geometry.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace rouleau::membrane {
+
+namespace {
+
+Eigen::Vector2d node(const Membranes& membranes, int i) {
+  return {membranes.x[static_cast<std::size_t>(i)], membranes.y[static_cast<std::size_t>(i)]};
+}
+
+/// Square of the distance from a point to the segment p ... q.
+double square_distance(const Eigen::Vector2d& point, const Eigen::Vector2d& p, const Eigen::Vector2d& q) {
+  const Eigen::Vector2d along = q - p, from = point - p;
+  const double square = along.squaredNorm();
+  const double s = square > 0 ? std::clamp(from.dot(along) / square, 0.0, 1.0) : 0.0;
+  return (from - s * along).squaredNorm();
+}
+
+/// Moments of area about `origin`: area, first moments, second moments xx, xy, yy.
+struct Moments {
+  double area = 0;
+  Eigen::Vector2d first = Eigen::Vector2d::Zero();
+  double xx = 0, xy = 0, yy = 0;
+};
+Moments moments(const Membranes& membranes, const CellRange& cell, const Eigen::Vector2d& origin) {
+  Moments sum;
+  for (int i = cell.first; i < cell.end(); ++i) {
+    const Eigen::Vector2d p = node(membranes, i) - origin, q = node(membranes, cell.next(i)) - origin;
+    const double twice = cross(p, q);
+    sum.area += twice / 2;
+    sum.first += twice / 6 * (p + q);
+    sum.xx += twice / 12 * (p.x() * p.x() + p.x() * q.x() + q.x() * q.x());
+    sum.yy += twice / 12 * (p.y() * p.y() + p.y() * q.y() + q.y() * q.y());
+    sum.xy += twice / 24 * (2 * p.x() * p.y() + p.x() * q.y() + q.x() * p.y() + 2 * q.x() * q.y());
+  }
+  return sum;
+}
+
+}  // namespace
+
+double enclosed_area(const Membranes& membranes, const CellRange& cell) {
+  // Relative to the first node: far from the origin the digits would cancel otherwise.
+  const Eigen::Vector2d origin = node(membranes, cell.first);
+  double twice = 0;
+  for (int i = cell.first; i < cell.end(); ++i) {
+    twice += cross(node(membranes, i) - origin, node(membranes, cell.next(i)) - origin);
+  }
+  return twice / 2;
+}
+
+double perimeter(const Membranes& membranes, const CellRange& cell) {
+  double sum = 0;
+  for (int i = cell.first; i < cell.end(); ++i) sum += (node(membranes, cell.next(i)) - node(membranes, i)).norm();
+  return sum;
+}
+
+StretchRange stretch_range(const Membranes& membranes, const CellRange& cell) {
+  StretchRange range;
+  for (int i = cell.first; i < cell.end(); ++i) {
+    const double length = (node(membranes, cell.next(i)) - node(membranes, i)).norm();
+    const double stretch = length / membranes.rest_length[static_cast<std::size_t>(i)];
+    range.least = std::min(range.least, stretch);
+    range.most = std::max(range.most, stretch);
+  }
+  return range;
+}
+
+Eigen::Vector2d centroid(const Membranes& membranes, const CellRange& cell) {
+  const Eigen::Vector2d origin = node(membranes, cell.first);
+  const Moments sum = moments(membranes, cell, origin);
+  return origin + sum.first / sum.area;
+}
+
+Bounds bounds(const Membranes& membranes, const CellRange& cell) {
+  const auto first = static_cast<std::size_t>(cell.first);
+  Bounds b{membranes.x[first], membranes.x[first], membranes.y[first], membranes.y[first]};
+  double zero = 0;  // becomes NaN with the first position that is not finite
+  for (std::size_t i = first; i < static_cast<std::size_t>(cell.end()); ++i) {
+    const double x = membranes.x[i], y = membranes.y[i];
+    b = {std::min(b.x_min, x), std::max(b.x_max, x), std::min(b.y_min, y), std::max(b.y_max, y)};
+    zero += 0 * x + 0 * y;
+  }
+  return {b.x_min + zero, b.x_max + zero, b.y_min + zero, b.y_max + zero};
+}
+
+InertiaEllipse inertia_ellipse(const Membranes& membranes, const CellRange& cell) {
+  const Moments sum = moments(membranes, cell, centroid(membranes, cell));
+  const double xx = sum.xx / sum.area, xy = sum.xy / sum.area, yy = sum.yy / sum.area;
+  const double middle = (xx + yy) / 2, radius = std::hypot((xx - yy) / 2, xy);
+  InertiaEllipse ellipse{};
+  ellipse.semi_major = 2 * std::sqrt(middle + radius);
+  ellipse.semi_minor = 2 * std::sqrt(std::max(0.0, middle - radius));
+  ellipse.angle = 0.5 * std::atan2(2 * xy, xx - yy);
+  ellipse.deformation = (ellipse.semi_major - ellipse.semi_minor) / (ellipse.semi_major + ellipse.semi_minor);
+  return ellipse;
+}
+
+double marker_angle(const Membranes& membranes, const CellRange& cell) {
+  const Eigen::Vector2d arm = node(membranes, cell.first) - centroid(membranes, cell);
+  return std::atan2(arm.y(), arm.x());
+}
+
+namespace {
+
+/// Smallest square distance from a point to an outline with these bounds; `best` if it is not below that.
+double nearest(const Membranes& membranes, const CellRange& cell, const Bounds& box, const Eigen::Vector2d& point,
+               double best) {
+  const double dx = std::max({0.0, box.x_min - point.x(), point.x() - box.x_max});
+  const double dy = std::max({0.0, box.y_min - point.y(), point.y() - box.y_max});
+  if (!(dx * dx + dy * dy <= best)) return best;
+  for (int j = cell.first; j < cell.end(); ++j) {
+    best = std::min(best, square_distance(point, node(membranes, j), node(membranes, cell.next(j))));
+  }
+  return best;
+}
+
+/// The same from the nodes of `a` moved by `move` to the outline of `b`.
+double nearest_node(const Membranes& membranes, const CellRange& a, const CellRange& b, const Eigen::Vector2d& move,
+                    double best) {
+  const Bounds box = bounds(membranes, b);
+  for (int i = a.first; i < a.end(); ++i) best = nearest(membranes, b, box, node(membranes, i) + move, best);
+  return best;
+}
+
+}  // namespace
+
+double outline_distance(const Membranes& membranes, const CellRange& a, const CellRange& b, ImageShift shift,
+                        const PeriodicBox& box, double limit) {
+  const Eigen::Vector2d move(shift.x * box.nx, shift.y * box.ny);
+  const double outside = limit * limit;
+  double best = std::nextafter(outside, std::numeric_limits<double>::infinity());
+  best = nearest_node(membranes, a, b, -move, best);
+  best = nearest_node(membranes, b, a, move, best);
+  return best <= outside && std::isfinite(best) ? std::sqrt(best) : std::numeric_limits<double>::infinity();
+}
+
+double facing_length(const Membranes& membranes, const CellRange& a, const CellRange& b, ImageShift shift,
+                     const PeriodicBox& box, double reach) {
+  const Eigen::Vector2d move(shift.x * box.nx, shift.y * box.ny);
+  const Bounds bounds_b = bounds(membranes, b);
+  double length = 0;
+  for (int i = a.first; i < a.end(); ++i) {
+    const bool near = nearest(membranes, b, bounds_b, node(membranes, i) - move, reach * reach) < reach * reach;
+    if (near) length += membranes.rest_weight[static_cast<std::size_t>(i)];
+  }
+  return length;
+}
+
+double smallest_gap(const Membranes& membranes, int a, int b, const PeriodicBox& box, double limit) {
+  const CellRange& cell = membranes.cells[static_cast<std::size_t>(a)];
+  const CellRange& other = membranes.cells[static_cast<std::size_t>(b)];
+  double gap = std::numeric_limits<double>::infinity();
+  for_each_image(bounds(membranes, cell), bounds(membranes, other), limit, box, [&](ImageShift shift) {
+    if (a == b && shift == ImageShift{}) return;
+    gap = std::min(gap, outline_distance(membranes, cell, other, shift, box, std::min(gap, limit)));
+  });
+  return gap;
+}
+
+double smallest_gap(const Membranes& membranes, int a, const PeriodicBox& box, double limit) {
+  double gap = std::numeric_limits<double>::infinity();
+  for (int b = 0; b < static_cast<int>(membranes.cells.size()); ++b) {
+    gap = std::min(gap, smallest_gap(membranes, a, b, box, std::min(gap, limit)));
+  }
+  return gap;
+}
+
+double depth_inside(const Membranes& membranes, const CellRange& cell, const Eigen::Vector2d& point) {
+  double square = std::numeric_limits<double>::infinity();
+  int winding = 0;
+  for (int i = cell.first; i < cell.end(); ++i) {
+    const Eigen::Vector2d p = node(membranes, i), q = node(membranes, cell.next(i));
+    square = std::min(square, square_distance(point, p, q));
+    const double side = cross(q - p, point - p);
+    if (p.y() <= point.y() && q.y() > point.y() && side > 0) ++winding;
+    if (p.y() > point.y() && q.y() <= point.y() && side < 0) --winding;
+  }
+  return winding != 0 ? std::sqrt(square) : -std::sqrt(square);
+}
+
+}  // namespace rouleau::membrane

@@ -1,0 +1,127 @@
+// Forces of the membrane laws on the nodes: minus the gradient of the laws' energies.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/worker.hpp"
+#include "core/coupling/slip_constants.hpp"
+#include "membranes.hpp"
+#include "plugin/model.hpp"
+#include "semi_implicit_filter.hpp"
+#include "tension_rate.hpp"
+
+namespace rouleau::membrane {
+
+/// Laws of one cell type; they add up.
+using MembraneLaws = std::vector<std::shared_ptr<const plugin::ModelInstance>>;
+
+/// Energies stored in the membranes, in lattice units.
+struct MembraneEnergy {
+  double tension = 0;  ///< laws of segments
+  double bending = 0;  ///< laws of nodes
+  double cell = 0;     ///< laws of whole cells
+  /// Power that tensions by the rate of stretch take out of the motion, at the present velocities; and energy that laws
+  /// with a state lose in a step without motion.
+  double dissipation = 0;
+  std::string unknown;  ///< a law that acts but tells no energy; empty: none
+  [[nodiscard]] double total() const { return tension + bending + cell; }
+};
+
+/// Turns tensions, moments, pressures and perimeter tensions into nodal forces whose sum and torque vanish
+/// (docs: physics, membranes). Only the inputs that some law of a type needs are computed.
+class MembraneForces {
+ public:
+  /// `laws[t]` are the laws of cell type t. Throws Error(plugin_refused) if a law needs what this host does not give.
+  MembraneForces(const Membranes& membranes, std::vector<MembraneLaws> laws);
+
+  /// From now on run() takes the semi-implicit step of stiff membranes (ForceFilter) with the laws' own stiffness. To
+  /// be called before keep_state(), for the filter remembers, too.
+  void make_semi_implicit(const Membranes& membranes, double viscosity);
+  /// Tells how the slip correction makes the nodes of each cell type give way to forces, which implicit steps must know
+  /// (`slip` here is velocity per force per length, lattice units). To be called before make_semi_implicit().
+  void set_slip(const std::vector<coupling::SlipConstants>& of_type);
+
+  /// To be called before run() and by one thread: adds what the laws remember to `membranes.state`, as far as it is not
+  /// there from an earlier stage. Nothing to do for laws without state.
+  void keep_state(Membranes& membranes);
+
+  /// Pass over cells: sets force_x and force_y and advances the state of the laws by one step. The stretch rate is that
+  /// of velocity_x, velocity_y.
+  void run(Worker worker, Membranes& membranes);
+
+  /// Energies at the present positions and state. Not a pass: one thread, no other in run().
+  [[nodiscard]] MembraneEnergy energies(const Membranes& membranes);
+  [[nodiscard]] double energy(const Membranes& membranes) { return energies(membranes).total(); }
+
+  /// Sets the tension of every segment, all laws together, at the present positions and state. Not a pass either.
+  void tensions(const Membranes& membranes, std::vector<double>& tension);
+
+ private:
+  /// What the table of one law is asked for in every step; looked up in its manifest once.
+  struct Law {
+    std::shared_ptr<const plugin::ModelInstance> model;
+    bool stretch, stretch_rate, curvature, rest_curvature, area, rest_area, perimeter, rest_perimeter;  // its inputs
+    bool tension, moment, pressure, perimeter_tension, energy, tension_by_rate;                         // its outputs
+    std::vector<std::size_t> state;  // in Membranes::state, once kept
+  };
+  struct Type {
+    std::vector<Law> laws;
+    bool rate = false, tension = false, moment = false, cell = false;  // what the laws need or give, all together
+    bool tension_by_rate = false;
+    std::size_t rate_tension = 0;        // in Membranes::state, if there is a tension by rate
+    coupling::SlipConstants slip{0, 0};  // what the slip correction adds; slip: velocity per force per length
+    std::optional<ForceFilter> filter;   // of a semi-implicit step
+    std::size_t held_force[2] = {0, 0};  // of the filter, x and y: in Membranes::state
+  };
+  /// Constants of every cell: cell c from offset(c) on, with room on both sides for packs that run over its end.
+  struct Rest {
+    std::vector<double> inverse_length, inverse_weight, curvature;
+  };
+  /// One cell's working arrays, with room for ghost nodes too. A worker uses those of its first cell for all its cells,
+  /// one after the other, so that they stay in its cache: the room of all its cells is as large as any of them.
+  struct Scratch {
+    std::vector<double> x, y, u, v;
+    std::vector<double> tangent_x, tangent_y, inverse_length, stretch, rate, curvature;
+    std::vector<double> tension, moment, law, energy;  // sums; one law's contribution and its energy
+    std::vector<double> segment_force_x, segment_force_y;
+    std::vector<double> by_rate, law_by_rate;  // d tension / d rate: sum, one law's; only if a law gives it
+  };
+  struct CellState {
+    double area = 0, perimeter = 0, pressure = 0, perimeter_tension = 0;
+  };
+
+  static Law describe(std::shared_ptr<const plugin::ModelInstance> model);
+  void allocate(const Membranes& membranes);
+  [[nodiscard]] std::size_t offset(int cell) const { return offset_[static_cast<std::size_t>(cell)]; }
+  // `at`: where the working arrays begin.
+  // `ahead`: where the nodes will be after another step like the last one.
+  void measure(const Membranes& membranes, int cell, std::size_t at, bool ahead);
+  // `next`: where the state after the step goes; null: someone looks, and there is no step.
+  CellState apply_laws(const Membranes& membranes, int cell, std::size_t at, std::vector<ElementState>* next,
+                       MembraneEnergy* energy);
+  void apply_law(const Law& law, const Membranes& membranes, int cell, std::size_t at, std::vector<ElementState>* next,
+                 CellState& sums, bool first_tension, bool first_moment, double* energy);
+  void give_inputs(const Law& law, const CellRange& range, int cell, std::size_t at, const CellState& sums,
+                   rouleau_membrane_block& block) const;
+  void add_energy(const Law& law, const Membranes& membranes, int cell, std::size_t at, const CellState& sums,
+                  const double* tension, MembraneEnergy& energy) const;
+  // Of one law in one cell, from the values per rest length or per cell.
+  static double integrated(const Law& law, const Membranes& membranes, const CellRange& range, const double* energy);
+  // What a law's energy will be after a step in which nothing moves.
+  double relaxed_energy(const Law& law, const Membranes& membranes, int cell, std::size_t at,
+                        const CellState& sums) const;
+  void add_rate_tension(const Membranes& membranes, int cell, std::size_t at, std::vector<ElementState>* next);
+  void act(Membranes& membranes, int cell, std::size_t at, const CellState& state);
+  void soften(Membranes& membranes, int cell) const;
+
+  std::vector<Type> types_;
+  bool has_state_ = false, state_kept_ = false;
+  std::vector<std::size_t> offset_;  // of each cell's node 0
+  Rest rest_;
+  Scratch scratch_;
+};
+
+}  // namespace rouleau::membrane

@@ -1,0 +1,23 @@
+// Moves the membranes' nodes by one step.
+#pragma once
+
+#include "base/worker.hpp"
+#include "membranes.hpp"
+
+namespace rouleau::membrane {
+
+/// Pass over cells: adds the velocity to the positions of this worker's cells (explicit Euler) and sets largest_step,
+/// which must have one value for each cell; NaN where a velocity is no number.
+void move_nodes(Worker worker, Membranes& membranes);
+
+/// The node with the largest step, for messages.
+struct FarthestNode {
+  double step;  ///< lattice spacings; NaN if any velocity is no number
+  int node;     ///< whose; -1 without nodes
+};
+FarthestNode farthest_node(const Membranes& membranes);
+
+/// Largest of all steps; NaN if any is.
+double largest_step(const Membranes& membranes);
+
+}  // namespace rouleau::membrane

@@ -1,0 +1,59 @@
+// The box whose periodic images of a cell count as neighbours.
+#pragma once
+
+#include <cmath>
+
+namespace rouleau::membrane {
+
+/// Period of the lattice in spacings: always periodic along x, along y only if `ny` is not 0.
+struct PeriodicBox {
+  double nx;
+  double ny = 0;
+  [[nodiscard]] bool periodic_y() const { return ny > 0; }
+};
+
+/// Bounding box of a set of points.
+struct Bounds {
+  double x_min, x_max, y_min, y_max;
+
+  /// False for the positions of a simulation that has just blown up (not finite, or absurdly large). The checks of the
+  /// run will report them; until then nothing may crash or hang on them.
+  [[nodiscard]] bool usable() const {
+    const double far = 1e9, large = 1e5;
+    return x_min > -far && x_max < far && y_min > -far && y_max < far && x_max - x_min < large && y_max - y_min < large;
+  }
+};
+
+/// An image of a cell: shifted by x periods along x and y periods along y.
+struct ImageShift {
+  int x = 0, y = 0;
+  friend bool operator==(const ImageShift&, const ImageShift&) = default;
+  [[nodiscard]] ImageShift operator-() const { return {-x, -y}; }
+};
+
+/// Calls `visit(ImageShift)` for every image of `b` whose bounds come within `reach` of the bounds of `a`, in a fixed
+/// order. Bounds that are not usable() have no images. If it visits a shift for (a, b), it visits the opposite one for
+/// (b, a), whatever the rounding: IEEE subtraction and division are symmetric under change of sign.
+template <class Visit>
+void for_each_image(const Bounds& a, const Bounds& b, double reach, const PeriodicBox& box, Visit visit) {
+  if (!a.usable() || !b.usable()) return;
+  const auto first = [&](double a_min, double b_max, double period) {
+    return static_cast<int>(std::ceil((a_min - b_max - reach) / period));
+  };
+  const auto last = [&](double a_max, double b_min, double period) {
+    return static_cast<int>(std::floor((a_max - b_min + reach) / period));
+  };
+  int y_first = 0, y_last = 0;
+  if (box.periodic_y()) {
+    y_first = first(a.y_min, b.y_max, box.ny);
+    y_last = last(a.y_max, b.y_min, box.ny);
+  } else if (!(a.y_max - b.y_min + reach >= 0 && a.y_min - b.y_max - reach <= 0)) {
+    return;
+  }
+  const int x_first = first(a.x_min, b.x_max, box.nx), x_last = last(a.x_max, b.x_min, box.nx);
+  for (int y = y_first; y <= y_last; ++y) {
+    for (int x = x_first; x <= x_last; ++x) visit(ImageShift{x, y});
+  }
+}
+
+}  // namespace rouleau::membrane

@@ -1,0 +1,18 @@
+// From positions to lattice indices, without the library calls that std::floor is on plain x86-64.
+#pragma once
+
+namespace rouleau::membrane {
+
+/// Largest integer not above `value`, which must fit an int.
+inline int floor_int(double value) {
+  const int truncated = static_cast<int>(value);
+  return truncated - (value < truncated ? 1 : 0);
+}
+
+/// i modulo period, in [0, period).
+inline int wrapped(int i, int period) {
+  const int rest = i % period;
+  return rest < 0 ? rest + period : rest;
+}
+
+}  // namespace rouleau::membrane

@@ -1,0 +1,21 @@
+// How stiff membrane laws are: what decides whether a step may be explicit, and what a semi-implicit one is made with.
+#pragma once
+
+#include <vector>
+
+#include "plugin/model.hpp"
+
+namespace rouleau::membrane {
+
+/// Largest d tension / d stretch of a law of segments at these stretches, without rate and with its initial state; by
+/// differences of the tension where the law gives no derivative. 0 for other laws. Lattice units.
+double stretching_stiffness(const plugin::ModelInstance& law, const std::vector<double>& stretches = {0.95, 1.0, 1.1});
+
+/// Tension of a law of segments at a stretch, at once; 0 for other laws.
+double tension_at(const plugin::ModelInstance& law, double stretch);
+
+/// d moment / d curvature of a law of nodes, as much of it as the law gives, for a shape that is flat at rest. 0 for
+/// other laws. Lattice units.
+double bending_stiffness(const plugin::ModelInstance& law);
+
+}  // namespace rouleau::membrane

@@ -1,0 +1,222 @@
+#include "file.hpp"
+#include "base/error.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+#include <utility>
+
+namespace rouleau::files {
+
+namespace {
+
+std::string remedy(int error) {
+  switch (error) {
+    case ENOSPC:
+    case EDQUOT:
+      return "free some space there, or write to another disk with --out";
+    case EFBIG:
+      return "raise the file size limit (ulimit -f), or write fewer outputs";
+    case EACCES:
+    case EPERM:
+    case EROFS:
+      return "choose a directory you may write to with --out (to go on with a run, copy its directory there first)";
+    case ENOENT:
+    case ENOTDIR:
+      return "check that every part of the path before the last is a directory";
+    case EMFILE:
+    case ENFILE:
+      return "close other files, or raise the limit (ulimit -n)";
+    default:
+      return "check the disk, or write to another one with --out";
+  }
+}
+
+/// A file descriptor that closes itself; close() reports what the destructor cannot.
+class Descriptor {
+ public:
+  explicit Descriptor(int number) : number_(number) {}
+  ~Descriptor() {
+    if (number_ >= 0) ::close(number_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  [[nodiscard]] int number() const { return number_; }
+  bool close() { return ::close(std::exchange(number_, -1)) == 0; }
+
+ private:
+  int number_;
+};
+
+bool write_all(int descriptor, std::string_view text) {
+  while (!text.empty()) {
+    const ssize_t written = ::write(descriptor, text.data(), text.size());
+    if (written < 0) {
+      if (errno == EINTR) continue;
+      return false;
+    }
+    text.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return true;
+}
+
+}  // namespace
+
+void fail_file(const std::filesystem::path& file, const std::string& what, int error) {
+  throw Error(ExitCode::input_output, Place{file.string(), "", 0, 0},
+              what + ": " + std::generic_category().message(error) + "\n  " + remedy(error));
+}
+
+void fail_reading(const std::filesystem::path& file, int error) {
+  throw Error(ExitCode::input_output, Place{file.string(), "", 0, 0},
+              "cannot be read: " + std::generic_category().message(error) +
+                  (error == ENOENT   ? "\n  bring the file back, or check the path"
+                   : error == EACCES ? "\n  see to it that you may read it (ls -l)"
+                                     : ""));
+}
+
+std::string read_text(const std::filesystem::path& file) {
+  errno = 0;
+  std::ifstream stream(file, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  if (!stream.is_open() || stream.bad()) {
+    const int error = errno;
+    fail_reading(file, error != 0 ? error : EIO);
+  }
+  return text;
+}
+
+void write_file(const std::filesystem::path& file, const std::string& content) {
+  const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
+  // A rename would replace a device or a socket by a plain file.
+  std::error_code ignored;
+  const auto status = std::filesystem::status(file, ignored);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+    fail_file(file, "is no regular file and cannot be replaced", EEXIST);
+
+  const auto partial = folder / ("." + file.filename().string() + "." + std::to_string(::getpid()) + ".partial");
+  Descriptor output(::open(partial.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666));
+  if (output.number() < 0) fail_file(file, "cannot be created", errno);
+  if (!write_all(output.number(), content) || ::fsync(output.number()) != 0 || !output.close() ||
+      ::rename(partial.c_str(), file.c_str()) != 0) {
+    const int error = errno;
+    ::unlink(partial.c_str());
+    fail_file(file, "cannot be written", error);
+  }
+  synchronise(folder);
+}
+
+void write_into(const std::filesystem::path& file, std::string_view begin) {
+  Descriptor output(::open(file.c_str(), O_WRONLY | O_NOFOLLOW | O_CLOEXEC));
+  if (output.number() < 0 || !write_all(output.number(), begin) || ::fsync(output.number()) != 0 || !output.close())
+    fail_file(file, "cannot be written", errno);
+}
+
+void synchronise(const std::filesystem::path& file) {
+  const Descriptor opened(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
+  if (opened.number() < 0) fail_file(file, "cannot be opened", errno);
+  // Some file systems cannot synchronise a folder (EINVAL); the files in it are whole all the same.
+  if (::fsync(opened.number()) != 0 && errno != EINVAL && errno != EROFS)
+    fail_file(file, "cannot be synchronised with the disk", errno);
+}
+
+void move_into_place(const std::filesystem::path& from, const std::filesystem::path& to) {
+  std::error_code error;
+  std::filesystem::rename(from, to, error);
+  if (error) fail_file(to, "cannot be written", error.value());
+  synchronise(to.has_parent_path() ? to.parent_path() : ".");
+}
+
+Checksum require(const std::filesystem::path& file, const FileMark& mark) {
+  const std::string remedy =
+      ", and a run cannot go on from there\n  bring back the file as it was, or begin anew with --overwrite";
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(file, error);
+  if (error) fail_reading(file, error.value());
+  if (size < mark.bytes)
+    throw Error(ExitCode::input_output, Place{file.string(), "", 0, 0},
+                "is shorter than when the checkpoint was written, " + std::to_string(size) + " bytes instead of " +
+                    std::to_string(mark.bytes) + remedy);
+  Checksum checksum = checksum_of(file, 0, mark.bytes);
+  if (checksum.value() != mark.checksum)
+    throw Error(ExitCode::input_output, Place{file.string(), "", 0, 0},
+                "was changed since the checkpoint was written (the checksum of its first " +
+                    std::to_string(mark.bytes) + " bytes differs)" + remedy);
+  return checksum;
+}
+
+AppendFile::AppendFile(std::filesystem::path file, Access access) : file_(std::move(file)) {
+  Descriptor output(::open(file_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666));
+  if (output.number() < 0) fail_file(file_, "cannot be created", errno);
+  // File systems without locks answer with another error; then two runs in one directory are the user's affair.
+  if (access == Access::exclusive && ::flock(output.number(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+    throw Error(ExitCode::bad_input, Place{file_.string(), "", 0, 0},
+                "another run is writing into this directory; wait for it, or choose another one with --out");
+  const int number = ::fcntl(output.number(), F_DUPFD_CLOEXEC, 0);  // shares the lock
+  if (number < 0) fail_file(file_, "cannot be created", errno);
+  stream_.reset(::fdopen(number, "a"));
+  if (!stream_) {
+    const int error = errno;
+    ::close(number);
+    fail_file(file_, "cannot be created", error);
+  }
+}
+
+void AppendFile::clear() {
+  if (std::fflush(stream_.get()) != 0 || ::ftruncate(::fileno(stream_.get()), 0) != 0)
+    fail_file(file_, "cannot be emptied", errno);
+  checksum_ = {};
+  bytes_ = 0;
+}
+
+void AppendFile::go_back(const FileMark& mark) {
+  flush();
+  checksum_ = require(file_, mark);
+  bytes_ = mark.bytes;
+  if (::ftruncate(::fileno(stream_.get()), static_cast<off_t>(mark.bytes)) != 0)
+    fail_file(file_, "cannot be shortened", errno);
+}
+
+void AppendFile::end_line() {
+  flush();
+  const std::string text = read_text(file_);
+  const std::size_t end = text.rfind('\n');
+  const auto kept = static_cast<off_t>(end == std::string::npos ? 0 : end + 1);
+  if (::ftruncate(::fileno(stream_.get()), kept) != 0) fail_file(file_, "cannot be shortened", errno);
+}
+
+void AppendFile::write(std::string_view text) {
+  if (std::fwrite(text.data(), 1, text.size(), stream_.get()) != text.size())
+    fail_file(file_, "cannot be written", errno);
+  checksum_.update(text);
+  bytes_ += text.size();
+}
+
+void AppendFile::flush() {
+  if (std::fflush(stream_.get()) != 0) fail_file(file_, "cannot be written", errno);
+}
+
+void AppendFile::synchronise() {
+  flush();
+  // A pipe or device cannot be synchronised (EINVAL), and need not be.
+  if (::fsync(::fileno(stream_.get())) != 0 && errno != EINVAL && errno != EROFS)
+    fail_file(file_, "cannot be written", errno);
+}
+
+FileMark AppendFile::mark() {
+  synchronise();
+  return {bytes_, checksum_.value()};
+}
+
+void AppendFile::close() {
+  synchronise();
+  if (std::fclose(stream_.release()) != 0) fail_file(file_, "cannot be written", errno);
+}
+
+}  // namespace rouleau::files

@@ -1,0 +1,230 @@
+#include "frames.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+
+#include "base/error.hpp"
+
+namespace rouleau::files {
+
+std::string frame_path(std::size_t frame) {
+  std::string digits = std::to_string(frame);
+  if (digits.size() < 6) digits.insert(0, 6 - digits.size(), '0');
+  return "/frames/" + digits;
+}
+
+bool equal_cells(const std::vector<int>& first) {
+  for (std::size_t cell = 0; cell + 1 < first.size(); ++cell)
+    if (first[cell + 1] - first[cell] != first[1] - first[0]) return false;
+  return true;
+}
+
+FrameWriter::FrameWriter(std::filesystem::path file, const scene::Scene& scene)
+    : file_(std::move(file)),
+      title_(scene.title),
+      size_{scene.domain.size.x(), scene.domain.size.y()},
+      nodes_(scene.domain.nodes),
+      periodic_y_(scene.domain.periodic_y),
+      storage_(scene.output.field_storage) {}
+
+void FrameWriter::write_header(Hdf5File& target) const {
+  target.attribute("/", "format", "rouleau frames 1");
+  target.attribute("/", "title", title_);
+  target.attribute("/", "size_m", std::vector<double>{size_[0], size_[1]});
+  target.attribute("/", "nodes", std::vector<double>{double(nodes_[0]), double(nodes_[1])});
+  target.attribute("/", "periodic_y", periodic_y_ ? 1L : 0L);
+  if (!storage_.whole()) {
+    const FieldGrid grid = field_grid();
+    target.attribute("/", "fields_first_m", std::vector<double>(grid.origin.begin(), grid.origin.end()));
+    target.attribute("/", "fields_spacing_m", std::vector<double>(grid.spacing.begin(), grid.spacing.end()));
+  }
+  target.make_group("/frames");
+  target.make_group("/topology");
+  target.flush();
+}
+
+void FrameWriter::open_segment() {
+  open_.emplace(segment(saved_.segments.size() + 1), Hdf5File::Mode::create);
+  write_header(*open_);
+  topology_here_ = false;
+}
+
+void FrameWriter::write(const observe::Snapshot& snapshot) {
+  if (!open_) open_segment();
+  const std::string frame = frame_path(frames_.size());
+  open_->make_group(frame);
+  open_->attribute(frame, "step", snapshot.step);
+  open_->attribute(frame, "time_s", snapshot.time);
+  open_->attribute(frame, "strain", snapshot.strain);
+  open_->attribute(frame, "stage", static_cast<long>(snapshot.stage));
+  open_->attribute(frame, "stage_name", snapshot.stage_name);
+  FrameRecord record;
+  record.time = snapshot.time;
+  if (!snapshot.outlines.x.empty()) write_membranes(frame, snapshot, record);
+  if (!snapshot.fields.empty()) write_fields(frame, snapshot.fields, record);
+  open_->flush();
+  frames_.push_back(std::move(record));
+}
+
+void FrameWriter::write_membranes(const std::string& frame, const observe::Snapshot& snapshot, FrameRecord& record) {
+  const auto& outlines = snapshot.outlines;
+  if (!topology_here_ || outlines.first != first_) write_topology(outlines.first);
+  record.nodes = topology_record_.nodes;
+  record.cells = topology_record_.cells;
+  record.connectivity = topology_record_.connectivity;
+  record.uniform = topology_record_.uniform;
+
+  const std::string group = frame + "/membranes";
+  open_->make_group(group);
+  std::vector<double> points(2 * outlines.x.size());
+  for (std::size_t i = 0; i < outlines.x.size(); ++i) {
+    points[2 * i] = outlines.x[i];
+    points[2 * i + 1] = outlines.y[i];
+  }
+  open_->write(group + "/points", {outlines.x.size(), 2}, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, points.data(), "m");
+  // frames.xmf promises every attribute at every frame, so that ParaView can colour the whole animation.
+  auto tension = outlines.tension;
+  tension.resize(outlines.x.size(), 0.0);
+  open_->write(group + "/tension", tension, "N/m");
+
+  std::map<int, int> label;
+  for (const auto& cell : snapshot.cells) label[cell.cell] = cell.aggregate;
+  std::vector<int> aggregate(outlines.x.size());
+  for (std::size_t cell = 0; cell < record.cells; ++cell) {
+    const auto known = label.find(static_cast<int>(cell));
+    std::fill(aggregate.begin() + outlines.first[cell], aggregate.begin() + outlines.first[cell + 1],
+              known == label.end() ? static_cast<int>(cell) : known->second);
+  }
+  open_->write(group + "/aggregate", aggregate, "1");
+  for (const char* shared : {"/first", "/cell", "/connectivity"}) open_->link(topology_ + shared, group + shared);
+}
+
+void FrameWriter::write_topology(const std::vector<int>& first) {
+  constexpr int polyline = 2;  // XDMF's code in a mixed topology, followed by the number of nodes
+  const std::size_t cells = first.size() - 1;
+  topology_record_ = {};
+  topology_record_.nodes = static_cast<std::size_t>(first.back());
+  topology_record_.cells = cells;
+  topology_record_.uniform = equal_cells(first);
+
+  std::vector<int> owner, connectivity;
+  for (std::size_t cell = 0; cell < cells; ++cell) {
+    if (!topology_record_.uniform)
+      connectivity.insert(connectivity.end(), {polyline, first[cell + 1] - first[cell] + 1});
+    for (int node = first[cell]; node < first[cell + 1]; ++node) {
+      owner.push_back(static_cast<int>(cell));
+      connectivity.push_back(node);
+    }
+    connectivity.push_back(first[cell]);  // closes the outline
+  }
+  topology_record_.connectivity = connectivity.size();
+
+  // A new segment repeats the topology that still holds, under its name.
+  if (first != first_ || topologies_ == 0) topology_ = "/topology/" + std::to_string(topologies_++);
+  topology_here_ = true;
+  open_->make_group(topology_);
+  open_->write(topology_ + "/first", first, "1");
+  open_->write(topology_ + "/cell", owner, "1");
+  open_->write(topology_ + "/connectivity", connectivity, "1");
+  first_ = first;
+}
+
+void FrameWriter::write_fields(const std::string& frame, const observe::FieldSnapshot& fields, FrameRecord& record) {
+  const std::string group = frame + "/fields";
+  open_->make_group(group);
+  const auto nx = static_cast<hsize_t>(fields.nx), ny = static_cast<hsize_t>(fields.ny);
+  const auto write = [&](const char* name, const std::vector<hsize_t>& shape, const std::vector<double>& values,
+                         const char* unit) {
+    const std::string path = group + "/" + name;
+    if (storage_.precision == scene::Precision::f64) {
+      open_->write(path, shape, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, values.data(), unit, storage_.compression);
+    } else {
+      const std::vector<float> single(values.begin(), values.end());
+      open_->write(path, shape, H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, single.data(), unit, storage_.compression);
+    }
+    record.fields.emplace_back(name);
+  };
+  if (!fields.velocity_x.empty()) {
+    std::vector<double> velocity(3 * nx * ny, 0.0);
+    for (std::size_t i = 0; i < nx * ny; ++i) {
+      velocity[3 * i] = fields.velocity_x[i];
+      velocity[3 * i + 1] = fields.velocity_y[i];
+    }
+    write("velocity", {ny, nx, 3}, velocity, "m/s");
+  }
+  const auto scalar = [&](const char* name, const std::vector<double>& values, const char* unit) {
+    if (!values.empty()) write(name, {ny, nx}, values, unit);
+  };
+  scalar("density", fields.density, "1");
+  scalar("viscosity", fields.viscosity, "Pa s");
+  scalar("vorticity", fields.vorticity, "1/s");
+}
+
+FieldGrid FrameWriter::field_grid() const {
+  FieldGrid grid;
+  for (const std::size_t axis : {std::size_t{0}, std::size_t{1}}) {
+    const double spacing = size_[axis] / nodes_[axis];
+    grid.nodes[axis] = storage_.count(static_cast<int>(axis), nodes_[axis]);
+    grid.origin[axis] = (storage_.first[axis] + 0.5) * spacing;
+    grid.spacing[axis] = storage_.stride * spacing;
+  }
+  grid.bytes = storage_.precision == scene::Precision::f64 ? 8 : 4;
+  return grid;
+}
+
+std::string FrameWriter::xdmf() const { return xdmf_text(frames_, file_.filename().string(), field_grid()); }
+
+Hdf5File open_frames(const std::filesystem::path& file) {
+  const auto segment = [&](std::size_t number) {
+    return std::filesystem::absolute(file).parent_path() / segment_name(number);
+  };
+  if (std::filesystem::exists(file) || !std::filesystem::exists(segment(1)))
+    return Hdf5File(file, Hdf5File::Mode::read);
+  Hdf5File all(file, Hdf5File::Mode::memory);
+  all.make_group("/frames");
+  for (std::size_t number = 1; std::filesystem::exists(segment(number)); ++number) {
+    try {
+      const Hdf5File part(segment(number), Hdf5File::Mode::read);
+      if (number == 1) all.copy_attributes(part, "/");
+      for (const std::string& frame : part.names("/frames")) all.link_to(segment(number), "/frames/" + frame);
+    } catch (const Error&) {
+      if (number == 1) throw;
+      break;  // the last one may be half written
+    }
+  }
+  return all;
+}
+
+std::array<double, 2> FrameReader::size() const {
+  return {file_.read_attribute("/", "size_m", 0), file_.read_attribute("/", "size_m", 1)};
+}
+
+long FrameReader::step(int frame) const {
+  return static_cast<long>(file_.read_attribute(frame_path(static_cast<std::size_t>(frame)), "step"));
+}
+
+observe::OutlineSnapshot FrameReader::outlines(int frame) const {
+  observe::OutlineSnapshot outlines;
+  const std::string group = frame_path(static_cast<std::size_t>(frame)) + "/membranes";
+  if (!file_.has(group)) return outlines;
+  const auto points = file_.read(group + "/points");
+  const auto nodes = static_cast<double>(points.size()) / 2;
+  double before = -1;
+  for (const double first : file_.read(group + "/first")) {
+    const bool begins = before >= 0 || first == 0;
+    if (!(begins && first > before && first <= nodes)) {
+      throw Error(ExitCode::input_output, Place{file_.path().string(), "", 0, 0},
+                  group + "/first does not fit " + group + "/points: the file is damaged; repeat the run");
+    }
+    outlines.first.push_back(static_cast<int>(before = first));
+  }
+  for (std::size_t i = 0; i + 1 < points.size(); i += 2) {
+    outlines.x.push_back(points[i]);
+    outlines.y.push_back(points[i + 1]);
+  }
+  outlines.tension = file_.read(group + "/tension");
+  return outlines;
+}
+
+}  // namespace rouleau::files

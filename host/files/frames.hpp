@@ -1,0 +1,130 @@
+// frames.h5: outlines of all cells at every output time, fluid fields where due, in a form ParaView and h5py open.
+//
+//   /                      attributes format, title, size_m [2], nodes [2], periodic_y; where output.fields has a
+//   region
+//                          or a stride: fields_first_m [2], fields_spacing_m [2]
+//   /frames/000000         attributes step, time_s, strain, stage, stage_name
+//     membranes/points     [n, 2] f64, m, not wrapped into the box
+//     membranes/tension    [n] f64, N/m, of the segment from this node to the cell's next one
+//     membranes/first      [cells + 1] i32, first node of each cell and the total
+//     membranes/cell       [n] i32     membranes/aggregate [n] i32, label: smallest index of its cells
+//     membranes/connectivity           closed polylines for XDMF
+//     fields/velocity      [ny, nx, 3] f32 or f64, m/s (third component 0: XDMF's vectors have three)
+//     fields/density, viscosity, vorticity [ny, nx] f32 or f64
+//
+// Every dataset has its unit as attribute "unit". Node (i, j) of the lattice lies at ((i + 1/2) dx, (j + 1/2) dx).
+// first, cell and connectivity are links to one dataset as long as they do not change, so that they cost nothing per
+// frame.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "frame_segments.hpp"
+#include "hdf5_file.hpp"
+#include "observe/snapshot.hpp"
+#include "scene/scene.hpp"
+
+namespace rouleau::files {
+
+/// What frames.xmf has to know about a frame.
+struct FrameRecord {
+  double time = 0;                   ///< s
+  std::size_t nodes = 0, cells = 0;  ///< of membranes; 0: none
+  std::size_t connectivity = 0;      ///< entries
+  bool uniform = false;              ///< all cells have the same number of nodes
+  std::vector<std::string> fields;   ///< datasets under fields/
+};
+
+/// Where the nodes lie that the fields are given at, and how their numbers are stored.
+struct FieldGrid {
+  std::array<double, 2> origin{}, spacing{};  ///< m, of the first node, and between nodes
+  std::array<int, 2> nodes{};
+  int bytes = 4;  ///< of a number
+};
+
+/// Writes frames.h5, in segments (frame_segments.hpp) so that no more than what follows the last checkpoint is lost
+/// when the program is killed. What is in the file does not depend on the number of segments. Every member throws
+/// Error(input_output).
+class FrameWriter {
+ public:
+  /// Of a new run. `file` is frames.h5, which close() makes.
+  FrameWriter(std::filesystem::path file, const scene::Scene& scene);
+  /// Goes on behind the frames that seal() has told of before. They must be there as they were, in their segments or
+  /// in a frames.h5 made of them; whatever was written after them is dropped.
+  FrameWriter(std::filesystem::path file, const scene::Scene& scene, const FramesSaved& saved);
+
+  /// Adds a frame and hands it to the system, so that a crash later on mostly leaves a segment that can be read.
+  void write(const observe::Snapshot& snapshot);
+  /// Closes the segment, synchronises it with the disk, and tells of all segments so far. The next frame begins
+  /// another.
+  const FramesSaved& seal();
+  /// Makes frames.h5 of all segments and removes them. Nothing may be written after it.
+  void close();
+  /// The frames.xmf that goes with the file.
+  [[nodiscard]] std::string xdmf() const;
+
+ private:
+  [[nodiscard]] std::filesystem::path segment(std::size_t number) const {
+    return file_.parent_path() / segment_name(number);
+  }
+  void open_segment();
+  void write_header(Hdf5File& target) const;
+  void write_membranes(const std::string& frame, const observe::Snapshot& snapshot, FrameRecord& record);
+  void write_topology(const std::vector<int>& first);
+  void write_fields(const std::string& frame, const observe::FieldSnapshot& fields, FrameRecord& record);
+  [[nodiscard]] FieldGrid field_grid() const;
+  void read_back(const std::filesystem::path& source, std::size_t frames);
+  void merge() const;
+  void copy_frames(const std::filesystem::path& source, std::size_t first, std::size_t count, Hdf5File& target) const;
+
+  std::filesystem::path file_;
+  std::string title_;
+  std::array<double, 2> size_;
+  std::array<int, 2> nodes_;
+  bool periodic_y_;
+  scene::FieldStorage storage_;
+  FramesSaved saved_;             ///< every sealed segment
+  FramesFound found_;             ///< those of them that frames.h5 holds already
+  std::optional<Hdf5File> open_;  ///< the segment that is being written
+  std::vector<FrameRecord> frames_;
+  std::vector<int> first_;       ///< as in the topology written last
+  FrameRecord topology_record_;  ///< of the topology written last
+  std::string topology_;         ///< its group
+  bool topology_here_ = false;   ///< it is in the open segment
+  int topologies_ = 0;
+};
+
+/// XDMF text: one temporal collection for the membranes and one for the fields, for frames 0, 1, ... of `h5`.
+std::string xdmf_text(const std::vector<FrameRecord>& frames, const std::string& h5, const FieldGrid& grid);
+
+/// frames.h5 for reading; of a run that is still going on, or was killed, the segments it would be made of, as if they
+/// were one file. Throws Error(input_output).
+Hdf5File open_frames(const std::filesystem::path& file);
+
+/// Outlines read back from a run's frames. Throws Error(input_output).
+class FrameReader {
+ public:
+  explicit FrameReader(const std::filesystem::path& file) : file_(open_frames(file)) {}
+  [[nodiscard]] std::array<double, 2> size() const;  ///< of the domain, m
+  [[nodiscard]] bool periodic_y() const { return file_.read_attribute("/", "periodic_y") != 0; }
+  [[nodiscard]] int frames() const { return file_.members("/frames"); }
+  [[nodiscard]] long step(int frame) const;
+  /// Empty (no cells) when the frame has no membranes.
+  [[nodiscard]] observe::OutlineSnapshot outlines(int frame) const;
+
+ private:
+  Hdf5File file_;
+};
+
+/// "/frames/000012"
+std::string frame_path(std::size_t frame);
+/// All cells have the same number of nodes; `first` as in OutlineSnapshot.
+bool equal_cells(const std::vector<int>& first);
+/// The datasets that a frame's fields may have, in the order of frames.xmf.
+inline constexpr std::array<const char*, 4> field_names{"velocity", "density", "viscosity", "vorticity"};
+
+}  // namespace rouleau::files

@@ -1,0 +1,99 @@
+// frames.xmf: tells ParaView what the datasets of frames.h5 mean.
+#include <sstream>
+
+#include "frames.hpp"
+#include "tables.hpp"
+
+namespace rouleau::files {
+
+namespace {
+
+struct Item {
+  const char* type;  ///< Int or Float
+  int precision;     ///< bytes
+};
+
+std::string data_item(const std::string& dimensions, Item item, const std::string& dataset) {
+  return "<DataItem Dimensions=\"" + dimensions + "\" NumberType=\"" + item.type + "\" Precision=\"" +
+         std::to_string(item.precision) + "\" Format=\"HDF\">" + dataset + "</DataItem>";
+}
+
+std::string attribute(const std::string& name, const std::string& kind, const std::string& item) {
+  return "        <Attribute Name=\"" + name + "\" AttributeType=\"" + kind + "\" Center=\"Node\">" + item +
+         "</Attribute>\n";
+}
+
+/// XDMF has no place for units that ParaView would show; names stand on its colour bars and in its tables.
+std::string shown_name(const std::string& dataset) {
+  if (dataset == "tension") return "tension (N/m)";
+  if (dataset == "velocity") return "velocity (m/s)";
+  if (dataset == "density") return "density deviation";
+  if (dataset == "viscosity") return "viscosity (Pa s)";
+  if (dataset == "vorticity") return "vorticity (1/s)";
+  return dataset;
+}
+
+std::string begin_grid(const std::string& name, double time) {
+  return "      <Grid Name=\"" + name + "\" GridType=\"Uniform\">\n        <Time Value=\"" + to_text(time) + "\"/>\n";
+}
+
+std::string membranes(const FrameRecord& frame, const std::string& group) {
+  const std::string n = std::to_string(frame.nodes), cells = std::to_string(frame.cells);
+  std::string text = begin_grid("membranes", frame.time);
+  if (frame.uniform) {
+    const std::string per_cell = std::to_string(frame.connectivity / frame.cells);
+    text += "        <Topology TopologyType=\"Polyline\" NumberOfElements=\"" + cells + "\" NodesPerElement=\"" +
+            per_cell + "\">" + data_item(cells + " " + per_cell, {"Int", 4}, group + "/connectivity") + "</Topology>\n";
+  } else {
+    text += "        <Topology TopologyType=\"Mixed\" NumberOfElements=\"" + cells + "\">" +
+            data_item(std::to_string(frame.connectivity), {"Int", 4}, group + "/connectivity") + "</Topology>\n";
+  }
+  text +=
+      "        <Geometry GeometryType=\"XY\">" + data_item(n + " 2", {"Float", 8}, group + "/points") + "</Geometry>\n";
+  text += attribute(shown_name("tension"), "Scalar", data_item(n, {"Float", 8}, group + "/tension"));
+  text += attribute("cell", "Scalar", data_item(n, {"Int", 4}, group + "/cell"));
+  text += attribute("aggregate", "Scalar", data_item(n, {"Int", 4}, group + "/aggregate"));
+  return text + "      </Grid>\n";
+}
+
+std::string fields(const FrameRecord& frame, const std::string& group, const FieldGrid& grid) {
+  // One layer of a 3-D mesh: ParaView lays a 2DCoRectMesh into the y-z plane, across the membranes. Slowest index
+  // first.
+  const std::string shape = "1 " + std::to_string(grid.nodes[1]) + " " + std::to_string(grid.nodes[0]);
+  const auto triple = [](double z, double y, double x) {
+    return "<DataItem Dimensions=\"3\" NumberType=\"Float\" Precision=\"8\" Format=\"XML\">" + to_text(z) + " " +
+           to_text(y) + " " + to_text(x) + "</DataItem>";
+  };
+  std::string text = begin_grid("fields", frame.time);
+  text += "        <Topology TopologyType=\"3DCoRectMesh\" Dimensions=\"" + shape + "\"/>\n";
+  text += "        <Geometry GeometryType=\"ORIGIN_DXDYDZ\">" + triple(0, grid.origin[1], grid.origin[0]) +
+          triple(grid.spacing[0], grid.spacing[1], grid.spacing[0]) + "</Geometry>\n";
+  for (const auto& name : frame.fields) {
+    const bool vector = name == "velocity";
+    text += attribute(shown_name(name), vector ? "Vector" : "Scalar",
+                      data_item(shape + (vector ? " 3" : ""), {"Float", grid.bytes}, group + "/" + name));
+  }
+  return text + "      </Grid>\n";
+}
+
+}  // namespace
+
+std::string xdmf_text(const std::vector<FrameRecord>& frames, const std::string& h5, const FieldGrid& grid) {
+  std::ostringstream membrane_grids, field_grids;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const std::string path = h5 + ":" + frame_path(i);
+    if (frames[i].cells > 0) membrane_grids << membranes(frames[i], path + "/membranes");
+    if (!frames[i].fields.empty()) field_grids << fields(frames[i], path + "/fields", grid);
+  }
+  std::string text = "<?xml version=\"1.0\"?>\n<Xdmf Version=\"2.0\">\n  <Domain>\n";
+  const auto collection = [&](const char* name, const std::string& grids) {
+    if (grids.empty()) return;
+    text += std::string("    <Grid Name=\"") + name + "\" GridType=\"Collection\" CollectionType=\"Temporal\">\n" +
+            grids + "    </Grid>\n";
+  };
+  collection("membranes", membrane_grids.str());
+  collection("fields", field_grids.str());
+  return text + "  </Domain>\n</Xdmf>\n";
+}
+
+}  // namespace rouleau::files

@@ -1,0 +1,284 @@
+#include "hdf5_file.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <string_view>
+#include <system_error>
+
+#include "base/error.hpp"
+#include "file.hpp"
+
+namespace rouleau::files {
+
+namespace {
+
+/// HDF5 keeps the system's errno only in the text of its innermost error: "..., errno = 28, error message = '...',
+/// ...".
+struct Innermost {
+  int error = 0;
+  std::string words;
+};
+
+herr_t visit(unsigned, const H5E_error2_t* entry, void* client) {
+  auto& innermost = *static_cast<Innermost*>(client);
+  const std::string_view words = entry->desc != nullptr ? entry->desc : "";
+  if (innermost.words.empty()) innermost.words = words;
+  constexpr std::string_view key = "errno = ";
+  const auto at = words.find(key);
+  if (innermost.error == 0 && at != std::string_view::npos) innermost.error = std::atoi(words.data() + at + key.size());
+  return 0;
+}
+
+}  // namespace
+
+Hdf5File::Hdf5File(std::filesystem::path file, Mode mode, hsize_t user_block) : file_(std::move(file)), mode_(mode) {
+  // HDF5's own clean-up at exit crashes on a file that could not be closed because the disk is full. It has nothing to
+  // do: every identifier here is owned. Only the first call counts, and it must come before any other of HDF5.
+  H5dont_atexit();
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are thrown, not printed
+  const auto access = owned(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "");
+  // Smaller object headers than the default; readable by every HDF5 since 1.8, and after a crash too.
+  check(H5Pset_libver_bounds(access.id(), H5F_LIBVER_V18, H5F_LIBVER_V18), "");
+  if (mode == Mode::read) {
+    handle_ = owned(H5Fopen(file_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "");
+    return;
+  }
+  if (mode == Mode::memory) check(H5Pset_fapl_core(access.id(), std::size_t{1} << 16, false), "");
+  const auto creation = untimed(H5P_FILE_CREATE, "");
+  check(H5Pset_userblock(creation.id(), user_block), "");
+  // HDF5 takes two files of one name for the same, also in memory.
+  static std::atomic<long> made{0};
+  const std::string name = file_.string() + (mode == Mode::memory ? " in memory, " + std::to_string(++made) : "");
+  handle_ = owned(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, creation.id(), access.id()), H5Fclose, "");
+}
+
+Hdf5Handle Hdf5File::untimed(hid_t kind, const std::string& path) const {
+  auto properties = owned(H5Pcreate(kind), H5Pclose, path);
+  check(H5Pset_obj_track_times(properties.id(), false), path);
+  return properties;
+}
+
+Hdf5Handle Hdf5File::owned(hid_t id, Hdf5Handle::Close closer, const std::string& path) const {
+  if (id < 0) fail(path);
+  return {id, closer};
+}
+
+void Hdf5File::check(herr_t status, const std::string& path) const {
+  if (status < 0) fail(path);
+}
+
+void Hdf5File::fail(const std::string& path) const {
+  Innermost innermost;
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, visit, &innermost);
+  const std::string what =
+      std::string(path.empty() ? "" : path + " ") + (mode_ == Mode::create ? "cannot be written" : "cannot be read");
+  if (innermost.error != 0 && mode_ == Mode::create) fail_file(file_, what, innermost.error);
+  if (innermost.error == EAGAIN)  // HDF5's lock
+    throw Error(ExitCode::input_output, Place{file_.string(), "", 0, 0},
+                "is being written by a run: its frames can be read after the run's next checkpoint (every ten minutes "
+                "unless output.checkpoint of the scene says otherwise), or at its end");
+  if (innermost.error != 0)
+    throw Error(ExitCode::input_output, Place{file_.string(), "", 0, 0},
+                what + ": " + std::generic_category().message(innermost.error));
+  throw Error(ExitCode::input_output, Place{file_.string(), "", 0, 0},
+              what + ": HDF5 says \"" + (innermost.words.empty() ? "unknown error" : innermost.words) + "\"" +
+                  (mode_ == Mode::read ? "\n  the file is damaged: bring it back, or run the scene again" : ""));
+}
+
+Hdf5Handle Hdf5File::make_group(const std::string& path) {
+  const auto creation = untimed(H5P_GROUP_CREATE, path);
+  return owned(H5Gcreate2(handle_.id(), path.c_str(), H5P_DEFAULT, creation.id(), H5P_DEFAULT), H5Gclose, path);
+}
+
+bool Hdf5File::has(const std::string& path) const {
+  // H5Lexists wants every step of the way to exist.
+  for (std::size_t at = path.find('/', 1); at != std::string::npos; at = path.find('/', at + 1))
+    if (H5Lexists(handle_.id(), path.substr(0, at).c_str(), H5P_DEFAULT) <= 0) return false;
+  return H5Lexists(handle_.id(), path.c_str(), H5P_DEFAULT) > 0;
+}
+
+int Hdf5File::members(const std::string& path) const {
+  H5G_info_t info;
+  check(H5Gget_info_by_name(handle_.id(), path.c_str(), &info, H5P_DEFAULT), path);
+  return static_cast<int>(info.nlinks);
+}
+
+void Hdf5File::write(const std::string& path, const std::vector<hsize_t>& shape, hid_t stored, hid_t given,
+                     const void* data, const std::string& unit, int compression) {
+  const auto space = owned(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose, path);
+  const auto layout = untimed(H5P_DATASET_CREATE, path);
+  const bool any = std::all_of(shape.begin(), shape.end(), [](hsize_t n) { return n > 0; });
+  if (compression > 0 && any) {
+    auto chunk = shape;
+    hsize_t row = H5Tget_size(stored);
+    for (std::size_t i = 1; i < shape.size(); ++i) row *= shape[i];
+    chunk[0] = std::clamp<hsize_t>((hsize_t{1} << 20) / row, 1, shape[0]);
+    check(H5Pset_chunk(layout.id(), static_cast<int>(chunk.size()), chunk.data()), path);
+    check(H5Pset_shuffle(layout.id()), path);
+    check(H5Pset_deflate(layout.id(), static_cast<unsigned>(compression)), path);
+  }
+  auto dataset =
+      owned(H5Dcreate2(handle_.id(), path.c_str(), stored, space.id(), H5P_DEFAULT, layout.id(), H5P_DEFAULT), H5Dclose,
+            path);
+  if (any) check(H5Dwrite(dataset.id(), given, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), path);
+  if (!dataset.close()) fail(path);
+  attribute(path, "unit", unit);
+}
+
+void Hdf5File::write(const std::string& path, const std::vector<double>& values, const std::string& unit) {
+  write(path, {values.size()}, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, values.data(), unit);
+}
+
+void Hdf5File::write(const std::string& path, const std::vector<int>& values, const std::string& unit) {
+  write(path, {values.size()}, H5T_STD_I32LE, H5T_NATIVE_INT, values.data(), unit);
+}
+
+std::vector<std::string> Hdf5File::names(const std::string& path) const {
+  std::vector<std::string> found;
+  const auto group = owned(H5Gopen2(handle_.id(), path.c_str(), H5P_DEFAULT), H5Gclose, path);
+  const auto add = [](hid_t, const char* name, const H5L_info_t*, void* list) -> herr_t {
+    static_cast<std::vector<std::string>*>(list)->emplace_back(name);
+    return 0;
+  };
+  check(H5Literate(group.id(), H5_INDEX_NAME, H5_ITER_INC, nullptr, add, &found), path);
+  return found;
+}
+
+haddr_t Hdf5File::address(const std::string& path) const {
+  H5O_info_t info;
+  check(H5Oget_info_by_name(handle_.id(), path.c_str(), &info, H5P_DEFAULT), path);
+  return info.addr;
+}
+
+std::size_t Hdf5File::elements(const std::string& path) const {
+  return elements_of(owned(H5Dopen2(handle_.id(), path.c_str(), H5P_DEFAULT), H5Dclose, path), path);
+}
+
+std::size_t Hdf5File::elements_of(const Hdf5Handle& dataset, const std::string& path) const {
+  const auto space = owned(H5Dget_space(dataset.id()), H5Sclose, path);
+  const hssize_t count = H5Sget_simple_extent_npoints(space.id());
+  if (count < 0) fail(path);
+  const auto file = owned(H5Iget_file_id(dataset.id()), H5Fclose, path);  // another one behind a link_to()
+  hsize_t bytes = 0;
+  check(H5Fget_filesize(file.id(), &bytes), path);
+  // A damaged extent must not use up the memory: deflate, at its best, makes one byte of 1032.
+  if (static_cast<double>(count) > 1032.0 * static_cast<double>(bytes)) {
+    throw Error(ExitCode::input_output, Place{file_.string(), "", 0, 0},
+                path + " has " + std::to_string(count) + " numbers, more than the file can hold: it is damaged");
+  }
+  return static_cast<std::size_t>(count);
+}
+
+void Hdf5File::copy(const Hdf5File& from, const std::string& path) {
+  check(H5Ocopy(from.handle_.id(), path.c_str(), handle_.id(), path.c_str(), H5P_DEFAULT, H5P_DEFAULT), path);
+}
+
+void Hdf5File::copy_attributes(const Hdf5File& from, const std::string& path) {
+  const auto source = from.owned(H5Oopen(from.handle_.id(), path.c_str(), H5P_DEFAULT), H5Oclose, path);
+  const auto target = owned(H5Oopen(handle_.id(), path.c_str(), H5P_DEFAULT), H5Oclose, path);
+  const int count = H5Aget_num_attrs(source.id());
+  for (int i = 0; i < count; ++i) {
+    const auto old = from.owned(
+        H5Aopen_by_idx(source.id(), ".", H5_INDEX_NAME, H5_ITER_INC, static_cast<hsize_t>(i), H5P_DEFAULT, H5P_DEFAULT),
+        H5Aclose, path);
+    std::string name(static_cast<std::size_t>(H5Aget_name(old.id(), 0, nullptr)), '\0');
+    H5Aget_name(old.id(), name.size() + 1, name.data());
+    const auto type = from.owned(H5Aget_type(old.id()), H5Tclose, path);
+    const auto space = from.owned(H5Aget_space(old.id()), H5Sclose, path);
+    std::vector<char> value(H5Tget_size(type.id()) *
+                            static_cast<std::size_t>(H5Sget_simple_extent_npoints(space.id())));
+    from.check(H5Aread(old.id(), type.id(), value.data()), path);
+    auto copied =
+        owned(H5Acreate2(target.id(), name.c_str(), type.id(), space.id(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose, path);
+    const herr_t written = H5Awrite(copied.id(), type.id(), value.data());
+    H5Dvlen_reclaim(type.id(), space.id(), H5P_DEFAULT, value.data());  // texts of variable length
+    check(written, path);
+    if (!copied.close()) fail(path);
+  }
+}
+
+void Hdf5File::link_to(const std::filesystem::path& file, const std::string& path) {
+  check(H5Lcreate_external(file.c_str(), path.c_str(), handle_.id(), path.c_str(), H5P_DEFAULT, H5P_DEFAULT), path);
+}
+
+void Hdf5File::link(const std::string& existing, const std::string& path) {
+  check(H5Lcreate_hard(handle_.id(), existing.c_str(), handle_.id(), path.c_str(), H5P_DEFAULT, H5P_DEFAULT), path);
+}
+
+void Hdf5File::attribute(const std::string& path, const std::string& name, hid_t stored, hid_t given, hsize_t count,
+                         const void* value) {
+  const auto space = count == 0 ? owned(H5Screate(H5S_SCALAR), H5Sclose, path)
+                                : owned(H5Screate_simple(1, &count, nullptr), H5Sclose, path);
+  auto attribute = owned(H5Acreate_by_name(handle_.id(), path.c_str(), name.c_str(), stored, space.id(), H5P_DEFAULT,
+                                           H5P_DEFAULT, H5P_DEFAULT),
+                         H5Aclose, path);
+  check(H5Awrite(attribute.id(), given, value), path);
+  if (!attribute.close()) fail(path);
+}
+
+void Hdf5File::attribute(const std::string& path, const std::string& name, double value) {
+  attribute(path, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, 0, &value);
+}
+
+void Hdf5File::attribute(const std::string& path, const std::string& name, long value) {
+  attribute(path, name, H5T_STD_I64LE, H5T_NATIVE_LONG, 0, &value);
+}
+
+void Hdf5File::attribute(const std::string& path, const std::string& name, const std::vector<double>& value) {
+  attribute(path, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, value.size(), value.data());
+}
+
+void Hdf5File::attribute(const std::string& path, const std::string& name, const std::string& value) {
+  const auto type = owned(H5Tcopy(H5T_C_S1), H5Tclose, path);
+  check(H5Tset_size(type.id(), H5T_VARIABLE), path);  // h5py makes these str and fixed ones bytes
+  check(H5Tset_cset(type.id(), H5T_CSET_UTF8), path);
+  const char* const text = value.c_str();
+  attribute(path, name, type.id(), type.id(), 0, &text);
+}
+
+std::vector<double> Hdf5File::read(const std::string& path) const {
+  const auto dataset = owned(H5Dopen2(handle_.id(), path.c_str(), H5P_DEFAULT), H5Dclose, path);
+  std::vector<double> values(elements_of(dataset, path));
+  if (!values.empty())
+    check(H5Dread(dataset.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), path);
+  return values;
+}
+
+void Hdf5File::read(const std::string& path, hid_t wanted, void* values) const {
+  const auto dataset = owned(H5Dopen2(handle_.id(), path.c_str(), H5P_DEFAULT), H5Dclose, path);
+  check(H5Dread(dataset.id(), wanted, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), path);
+}
+
+std::vector<std::size_t> Hdf5File::shape(const std::string& path) const {
+  const auto dataset = owned(H5Dopen2(handle_.id(), path.c_str(), H5P_DEFAULT), H5Dclose, path);
+  const auto space = owned(H5Dget_space(dataset.id()), H5Sclose, path);
+  const int rank = H5Sget_simple_extent_ndims(space.id());
+  if (rank < 0) fail(path);
+  std::vector<hsize_t> sizes(static_cast<std::size_t>(rank));
+  check(H5Sget_simple_extent_dims(space.id(), sizes.data(), nullptr), path);
+  return {sizes.begin(), sizes.end()};
+}
+
+bool Hdf5File::has_attribute(const std::string& path, const std::string& name) const {
+  return H5Aexists_by_name(handle_.id(), path.c_str(), name.c_str(), H5P_DEFAULT) > 0;
+}
+
+double Hdf5File::read_attribute(const std::string& path, const std::string& name, std::size_t index) const {
+  const auto attribute = owned(H5Aopen_by_name(handle_.id(), path.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+                               H5Aclose, path + "@" + name);
+  const auto space = owned(H5Aget_space(attribute.id()), H5Sclose, path);
+  const hssize_t count = H5Sget_simple_extent_npoints(space.id());
+  if (count <= static_cast<hssize_t>(index)) fail(path + "@" + name);
+  std::vector<double> values(static_cast<std::size_t>(count));
+  check(H5Aread(attribute.id(), H5T_NATIVE_DOUBLE, values.data()), path + "@" + name);
+  return values[index];
+}
+
+void Hdf5File::flush() { check(H5Fflush(handle_.id(), H5F_SCOPE_GLOBAL), ""); }
+
+void Hdf5File::close() {
+  if (!handle_.close()) fail("");
+}
+
+}  // namespace rouleau::files

@@ -1,0 +1,189 @@
+#include "run_directory.hpp"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <string_view>
+#include <system_error>
+
+#include "checkpoint_file.hpp"
+#include "file.hpp"
+#include "frames.hpp"
+#include "json/document.hpp"
+#include "log.hpp"
+#include "tables.hpp"
+
+namespace rouleau::files {
+
+namespace {
+
+constexpr std::array<std::string_view, 12> run_files{
+    "aggregate_sizes.csv", "cells.csv",   "aggregates.csv", "series.csv",    "frames.h5", "frames.xmf",
+    "summary.json",        "report.html", "scene.json",     "checkpoint.h5", "log.jsonl", "checkpoint-previous.h5"};
+
+/// Left by a run that was killed while it wrote a file.
+bool is_partial(const std::string& name) { return name.starts_with('.') && name.ends_with(".partial"); }
+
+bool written_by_a_run(const std::string& name) {
+  return is_partial(name) || segment_number(name) ||
+         std::find(run_files.begin(), run_files.end(), name) != run_files.end();
+}
+
+bool holds_checkpoint(const std::filesystem::path& directory) {
+  return std::filesystem::exists(checkpoint_file(directory)) ||
+         std::filesystem::exists(previous_checkpoint_file(directory));
+}
+
+/// A run writes its first line into the log before anything else, so that this also finds runs that were killed; one
+/// that never began has nothing to lose.
+bool holds_run(const std::filesystem::path& directory) {
+  std::error_code missing;
+  const auto log_size = std::filesystem::file_size(directory / "log.jsonl", missing);
+  return (!missing && log_size > 0) || std::filesystem::exists(directory / "summary.json") ||
+         holds_checkpoint(directory);
+}
+
+/// Makes the directory, and sees to it that nothing of the user's gets mixed up with the files of a new run. What
+/// somebody has put beside those of a run that is there already stays where it is.
+std::filesystem::path prepared(std::filesystem::path directory, FormerRun former) {
+  std::error_code error;
+  std::filesystem::create_directories(directory, error);
+  std::error_code ignored;
+  if (std::filesystem::exists(directory, ignored) && !std::filesystem::is_directory(directory, ignored))
+    throw Error(ExitCode::input_output, Place{directory.string(), "", 0, 0},
+                "is a file and not a directory; choose another place with --out");
+  if (error) fail_file(directory, "cannot be made", error.value());
+  std::filesystem::directory_iterator entries(directory, error);
+  if (error) fail_file(directory, "cannot be listed", error.value());
+  if (former != FormerRun::keep && holds_run(directory)) return directory;
+  for (const auto& entry : entries)
+    if (!written_by_a_run(entry.path().filename().string()))
+      throw Error(ExitCode::bad_input, Place{directory.string(), "", 0, 0},
+                  "holds \"" + entry.path().filename().string() +
+                      "\", which no run wrote; choose another directory with --out, or move that file away");
+  return directory;
+}
+
+template <class Choice>
+void remove_files(const std::filesystem::path& directory, Choice chosen) {
+  for (const auto& entry : std::filesystem::directory_iterator(directory)) {
+    if (!chosen(entry.path().filename().string())) continue;
+    std::error_code error;
+    std::filesystem::remove(entry.path(), error);
+    if (error) fail_file(entry.path(), "of a former run cannot be removed", error.value());
+  }
+}
+
+}  // namespace
+
+void to_json(nlohmann::json& json, const DirectoryMark& mark) {
+  nlohmann::json tables = nlohmann::json::array();
+  for (const FileMark& table : mark.tables) tables.push_back({{"bytes", table.bytes}, {"checksum", table.checksum}});
+  json = {{"tables", tables}, {"frames", mark.frames}, {"log_s", mark.log_s}};
+}
+
+void from_json(const nlohmann::json& json, DirectoryMark& mark) {
+  for (std::size_t k = 0; k < mark.tables.size(); ++k) {
+    const auto& table = json.at("tables").at(k);
+    mark.tables[k] = {table.at("bytes"), table.at("checksum")};
+  }
+  json.at("frames").get_to(mark.frames);
+  json.at("log_s").get_to(mark.log_s);
+}
+
+std::string scene_text(const json::Document& document) {
+  const auto text = nlohmann::json::parse(document.text(), nullptr, false);
+  return text == document.root() ? document.text() : document.root().dump(2) + "\n";
+}
+
+std::filesystem::path unused_directory(const std::filesystem::path& wanted) {
+  std::error_code error;
+  if (wanted.has_parent_path()) std::filesystem::create_directories(wanted.parent_path(), error);
+  if (error) fail_file(wanted.parent_path(), "cannot be made", error.value());
+  for (long number = 1;; ++number) {
+    auto directory = wanted;
+    if (number > 1) directory += "-" + std::to_string(number);
+    if (std::filesystem::create_directory(directory, error)) return directory;
+    const bool taken = std::filesystem::exists(std::filesystem::symlink_status(directory));
+    if (!taken) fail_file(directory, "cannot be made", error ? error.value() : EIO);
+    std::error_code ignored;
+    if (std::filesystem::is_directory(directory, ignored) && std::filesystem::is_empty(directory, ignored)) {
+      return directory;
+    }
+  }
+}
+
+struct RunDirectory::Files {
+  explicit Files(Log opened) : log(std::move(opened)) {}
+  Log log;
+  std::optional<Tables> tables;
+  std::optional<FrameWriter> frames;
+};
+
+RunDirectory::RunDirectory(std::filesystem::path directory, const scene::Scene& scene, FormerRun former)
+    : directory_(prepared(std::move(directory), former)), scene_(scene) {
+  // The log before anything is removed: another run may be writing here.
+  files_ = std::make_unique<Files>(Log(directory_ / "log.jsonl"));
+  if (former == FormerRun::keep && holds_run(directory_)) {
+    throw Error(ExitCode::bad_input, Place{directory_.string(), "", 0, 0},
+                "holds a run already, which would be lost; choose another directory with --out, go on with that run "
+                "with --resume, or replace it with --overwrite");
+  }
+  if (former == FormerRun::resume) {
+    resumes_ = holds_checkpoint(directory_);
+    if (resumes_) return;
+    if (std::filesystem::exists(directory_ / "summary.json")) {
+      throw Error(ExitCode::bad_input, Place{directory_.string(), "", 0, 0},
+                  "holds a run that has ended and left no checkpoint to go on from; replace it with --overwrite");
+    }
+  }
+  remove_files(directory_, [](const std::string& name) {
+    return written_by_a_run(name) && name != "log.jsonl";  // which holds the lock
+  });
+  files_->log.clear();
+  files_->tables.emplace(directory_);
+  files_->frames.emplace(directory_ / "frames.h5", scene);
+  if (scene.document) write_file(directory_ / "scene.json", scene_text(*scene.document));
+}
+
+bool RunDirectory::is_open() const { return files_ && files_->tables; }
+
+void RunDirectory::go_back(const DirectoryMark& mark) {
+  Tables::require(directory_, mark.tables);
+  files_->frames.emplace(directory_ / "frames.h5", scene_, mark.frames);
+  remove_files(directory_, [](const std::string& name) {
+    return is_partial(name) || name == "summary.json" || name == "report.html" || name == "frames.xmf";
+  });
+  files_->tables.emplace(directory_, mark.tables);
+  files_->log.go_on(mark.log_s);
+  if (scene_.document) write_file(directory_ / "scene.json", scene_text(*scene_.document));
+}
+
+DirectoryMark RunDirectory::mark() { return {files_->tables->mark(), files_->frames->seal(), files_->log.elapsed()}; }
+
+RunDirectory::~RunDirectory() = default;
+
+void RunDirectory::write(const observe::Snapshot& snapshot) {
+  if (!files_) throw std::logic_error("RunDirectory::write after finish");
+  files_->tables->write(snapshot);
+  files_->frames->write(snapshot);
+}
+
+void RunDirectory::log(const std::string& event, const nlohmann::json& details) {
+  if (!files_) throw std::logic_error("RunDirectory::log after finish");
+  files_->log.write(event, details);
+}
+
+void RunDirectory::finish(const run::Summary& summary) {
+  if (!files_) throw std::logic_error("RunDirectory::finish called twice");
+  const auto files = std::move(files_);
+  files->tables->close();
+  files->frames->close();
+  write_file(directory_ / "frames.xmf", files->frames->xdmf());
+  // Last: who finds a summary finds everything else complete.
+  write_file(directory_ / "summary.json",
+             run::to_json(summary).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  files->log.close();
+}
+
+}  // namespace rouleau::files

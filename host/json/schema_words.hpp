@@ -1,0 +1,39 @@
+// What a JSON Schema asks for, in words.
+#pragma once
+
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace rouleau::json {
+
+/// The rule itself, or what its "$ref" points to within `schema`.
+const nlohmann::json& resolve(const nlohmann::json& schema, const nlohmann::json& rule);
+
+/// Is the value of the type(s) the rule names, if any?
+bool fits_type(const nlohmann::json& value, const nlohmann::json& rule);
+
+/// `the text "6 Pa"`, `the number 3`, `an object`, ...
+std::string kind_and_value(const nlohmann::json& value);
+
+/// "a whole number", "an object with a, b", `"periodic"`, ...
+std::string wanted_kind(const nlohmann::json& schema, const nlohmann::json& rule);
+
+/// "at least 8 and at most 100000", "above 0.5", ...
+std::string range_words(const nlohmann::json& rule);
+
+/// `"f16" is not possible for precision; did you mean "f64"?` and the list of what is.
+std::string not_among(const nlohmann::json& value, const std::string& name, const nlohmann::json& allowed);
+
+std::vector<std::string> keys_of(const nlohmann::json& object);
+
+/// Where in a document of this schema the keys stand: key -> pointers such as /cell_types/NAME/segments and
+/// /stages/N/strain, in the schema's order.
+std::map<std::string, std::vector<std::string>> places_of_keys(const nlohmann::json& schema);
+
+/// Characters (code points) of UTF-8 text.
+std::size_t character_count(const std::string& text);
+
+}  // namespace rouleau::json

@@ -1,0 +1,32 @@
+// Why a run stopped early, and what that looks like.
+#pragma once
+
+#include <array>
+#include <limits>
+#include <string>
+
+namespace rouleau::monitor {
+
+/// What a failure looks like (docs/stability.md).
+struct FailureMode {
+  std::string name = "none";  ///< tangential, normal, node-scale, leakage, collapse, sound, none
+  double wavelength = std::numeric_limits<double>::quiet_NaN();        ///< segments; NaN: no wave
+  double tangential_share = std::numeric_limits<double>::quiet_NaN();  ///< of the wave's energy
+  long step = -1;                                                      ///< whose motion told it; -1: none
+};
+
+/// Why a run stopped early.
+struct Failure {
+  std::string
+      reason;  ///< code: non_finite, mach, node_step, escaped, area_drift, uneven_nodes, crossing, energy_growth
+  long step = 0;
+  double time = 0, strain = 0;
+  std::array<double, 2> place{};  ///< m
+  int cell = -1;                  ///< -1: none
+  double value = 0, limit = 0;    ///< what was measured and the limit it passed
+  std::string message;            ///< one sentence
+  std::string remedy;             ///< what to change
+  FailureMode mode;
+};
+
+}  // namespace rouleau::monitor

@@ -1,0 +1,177 @@
+#include "failure_mode.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "membrane_wave.hpp"
+
+namespace rouleau::monitor {
+
+namespace {
+
+constexpr int oscillation_window = 8;  // nodes each way
+
+/// Distance from a place to the nearest node of a cell, over all images; infinite without finite nodes.
+double distance_to(const membrane::Membranes& m, const membrane::CellRange& cell, const std::array<double, 2>& place,
+                   const membrane::PeriodicBox& box) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (int i = cell.first; i < cell.end(); ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    double dx = m.x[k] - place[0], dy = m.y[k] - place[1];
+    dx -= box.nx * std::round(dx / box.nx);
+    if (box.periodic_y()) dy -= box.ny * std::round(dy / box.ny);
+    nearest = std::fmin(nearest, std::hypot(dx, dy));  // a NaN is farther than anything
+  }
+  return nearest;
+}
+
+struct Surroundings {
+  int cell = -1;  ///< nearest to the place, if within its neighbourhood
+  bool contact = false;
+};
+
+Surroundings find_surroundings(int cell, const membrane::Membranes& m, const std::array<double, 2>& place,
+                               const membrane::PeriodicBox& box) {
+  Surroundings found{cell, false};
+  double nearest = membrane_neighbourhood;
+  int near = 0;
+  for (int c = 0; c < m.cell_count(); ++c) {
+    const double distance = distance_to(m, m.cells[static_cast<std::size_t>(c)], place, box);
+    near += distance < contact_neighbourhood && c != cell ? 1 : 0;
+    if (cell < 0 && distance < nearest) nearest = distance, found.cell = c;
+  }
+  found.contact = near > (cell < 0 ? 1 : 0);
+  return found;
+}
+
+/// The first prominent wave of the cell, from what was noted of its growth or from its last step.
+FailureMode wave_of(int cell, const membrane::Membranes& m, const GrowthWatch& growth, long step) {
+  FailureMode mode;
+  const auto read = [&mode](const MembraneWave& wave, long at) {
+    if (!(wave.prominence >= prominent)) return false;
+    mode.wavelength = wave.wavelength;
+    mode.tangential_share = wave.tangential_share;
+    mode.step = at;
+    const char* direction = wave.tangential_share >= 0.5 ? "tangential" : "normal";
+    mode.name = wave.wavelength <= longest_node_wave ? "node-scale" : direction;
+    return true;
+  };
+  for (const Excursion& e : growth.excursions()) {
+    if (e.cell == cell && read(find_wave(e.x, e.y, e.velocity_x, e.velocity_y), e.step)) return mode;
+  }
+  const membrane::CellRange& range = m.cells[static_cast<std::size_t>(cell)];
+  const auto part = [&range](const std::vector<double>& values) {
+    return std::span(values).subspan(static_cast<std::size_t>(range.first), static_cast<std::size_t>(range.count));
+  };
+  read(find_wave(part(m.x), part(m.y), part(m.velocity_x), part(m.velocity_y)), step);
+  return mode;
+}
+
+}  // namespace
+
+double lattice_oscillation(int x, int y, const std::function<FluidSample(int x, int y)>& sample) {
+  double most = 0;
+  for (const bool along_x : {true, false}) {
+    std::vector<FluidSample> line;
+    for (int i = -oscillation_window; i <= oscillation_window; ++i) {
+      line.push_back(along_x ? sample(x + i, y) : sample(x, y + i));
+    }
+    double differences = 0, energy = 0;
+    int counted = 0, known = 0;
+    for (std::size_t q = 0; q < 3; ++q) {
+      double mean = 0;
+      int values = 0;
+      for (const FluidSample& s : line) {
+        if (std::isfinite(s[q])) mean += s[q], ++values;
+      }
+      mean /= std::max(values, 1);
+      for (const FluidSample& s : line) {
+        if (std::isfinite(s[q])) energy += (s[q] - mean) * (s[q] - mean), ++known;
+      }
+      for (std::size_t i = 1; i + 1 < line.size(); ++i) {
+        const double difference = line[i - 1][q] - 2 * line[i][q] + line[i + 1][q];
+        if (std::isfinite(difference)) differences += difference * difference, ++counted;
+      }
+    }
+    // A wave of amplitude 1 two spacings long has second differences of 4.
+    if (counted > 0 && energy > 0) most = std::max(most, (differences / counted) / (16 * energy / known));
+  }
+  return most;
+}
+
+template <class T>
+double lattice_oscillation(const fluid::Fluid<T>& fluid, int x, int y) {
+  const fluid::FluidSetting& setting = fluid.setting();
+  std::vector<std::vector<fluid::Moments>> rows(static_cast<std::size_t>(setting.ny));
+  return lattice_oscillation(x, y, [&](int i, int j) -> FluidSample {
+    const int nx = setting.nx, ny = setting.ny;
+    if (setting.periodic_y) j = (j % ny + ny) % ny;
+    if (j < 0 || j >= ny) return {std::nan(""), std::nan(""), std::nan("")};
+    auto& row = rows[static_cast<std::size_t>(j)];
+    if (row.empty()) fluid.moments(j, row);
+    const fluid::Moments& m = row[static_cast<std::size_t>((i % nx + nx) % nx)];
+    return {m.ux, m.uy, m.density / std::sqrt(3.0)};
+  });
+}
+
+template double lattice_oscillation(const fluid::Fluid<float>&, int, int);
+template double lattice_oscillation(const fluid::Fluid<double>&, int, int);
+
+void find_mode(monitor::Failure& failure, const membrane::Membranes& membranes, const GrowthWatch& growth,
+               const membrane::PeriodicBox& box, std::array<double, 2> place, double oscillation, long step) {
+  const Surroundings around = find_surroundings(failure.cell, membranes, place, box);
+  FailureMode mode;
+  if (around.cell >= 0) mode = wave_of(around.cell, membranes, growth, step);
+  const bool waves = mode.name != "none";
+  if (failure.reason == "area_drift") {
+    mode.name = "leakage";
+  } else if (!waves && (failure.reason == "crossing" || around.contact)) {
+    mode.name = "collapse";
+  } else if (!waves && (around.cell < 0 || oscillation >= lattice_oscillation_limit)) {
+    mode.name = "sound";
+  }
+  failure.mode = mode;
+}
+
+std::string mode_sentence(const monitor::Failure& failure) {
+  const FailureMode& mode = failure.mode;
+  if (std::isfinite(mode.wavelength)) {
+    char text[200];
+    const char* direction = mode.tangential_share >= 0.5 ? "along" : "across";
+    std::snprintf(text, sizeof text, "nodes move %s the membrane in waves of %.2g segments, first seen at step %ld",
+                  direction, mode.wavelength, mode.step);
+    return text;
+  }
+  if (mode.name == "collapse" && failure.reason != "crossing") return "it happened where two membranes are in contact";
+  if (mode.name == "sound" && failure.reason != "mach") return "no membrane is near: the fluid itself fails";
+  return "";
+}
+
+std::string mode_remedy(const monitor::Failure& failure, bool semi_implicit) {
+  const FailureMode& mode = failure.mode;
+  const std::string step = semi_implicit
+                               ? "lower numerics.density_factor"
+                               : "lower numerics.density_factor or set numerics.coupling to \"semi-implicit\"";
+  // These say themselves what to do, whatever moves when they happen.
+  for (const char* reason : {"area_drift", "uneven_nodes", "crossing"}) {
+    if (failure.reason == reason) return "";
+  }
+  if (mode.name == "node-scale" && mode.tangential_share >= 0.5) {
+    return "the nodes zigzag: take the peskin4 kernel and about one segment for each spacing; " + step;
+  }
+  if (std::isfinite(mode.wavelength)) {
+    return std::string(mode.tangential_share >= 0.5 ? "the membrane resists stretching"
+                                                    : "the membrane resists bending") +
+           " too much for the time step: " + step;
+  }
+  if (mode.name == "collapse") {
+    return "lower numerics.density_factor or the attraction, raise the resolution, or stiffen bending";
+  }
+  if (mode.name == "sound" && failure.reason != "mach") {
+    return "raise numerics.tau, take the \"trt\" collision, or lower numerics.density_factor";
+  }
+  return "";
+}
+
+}  // namespace rouleau::monitor

@@ -1,0 +1,41 @@
+#include "node_checks.hpp"
+
+#include <cmath>
+
+#include "core/membrane/motion.hpp"
+
+namespace rouleau::monitor {
+
+void locate_failure(Failure& f, const membrane::Membranes& membranes, int node, double spacing) {
+  const auto k = static_cast<std::size_t>(node);
+  f.place = {(membranes.x[k] - membranes.velocity_x[k] + 0.5) * spacing,
+             (membranes.y[k] - membranes.velocity_y[k] + 0.5) * spacing};
+  for (std::size_t c = 0; c < membranes.cells.size(); ++c) {
+    if (node >= membranes.cells[c].first && node < membranes.cells[c].end()) f.cell = static_cast<int>(c);
+  }
+}
+
+std::optional<Failure> check_nodes(const membrane::Membranes& membranes, double limit, int escaped, double spacing) {
+  if (membranes.cells.empty()) return std::nullopt;
+  Failure f;
+  if (!(membrane::largest_step(membranes) <= limit)) {
+    const membrane::FarthestNode farthest = membrane::farthest_node(membranes);
+    const bool finite = std::isfinite(farthest.step);
+    f.reason = finite ? "node_step" : "non_finite";
+    f.value = farthest.step;
+    f.limit = limit;
+    f.message = finite ? "a membrane node moved further in one step than its limit (in lattice spacings)"
+                       : "the velocity of a membrane node is no number";
+    locate_failure(f, membranes, farthest.node, spacing);
+  } else if (escaped >= 0) {
+    f.reason = "escaped";
+    f.message = "a membrane node has left the domain through a wall";
+    locate_failure(f, membranes, escaped, spacing);
+  } else {
+    return std::nullopt;
+  }
+  f.remedy = blown_up_remedy;
+  return f;
+}
+
+}  // namespace rouleau::monitor

@@ -1,0 +1,23 @@
+// What every step asks of the membrane nodes.
+#pragma once
+
+#include <optional>
+
+#include "core/membrane/membranes.hpp"
+#include "failure.hpp"
+
+namespace rouleau::monitor {
+
+/// What to do when a run has blown up for no narrower reason.
+inline constexpr const char* blown_up_remedy =
+    "lower numerics.density_factor (it divides every lattice stiffness and speed), or see the margins that "
+    "rouleau plan prints";
+
+/// Sets cell and place (before its last step) of a failure to those of a node. `spacing` in m.
+void locate_failure(Failure& failure, const membrane::Membranes& membranes, int node, double spacing);
+
+/// The first check that the last step failed, without its time: a node that moved further than `limit` lattice
+/// spacings, is nowhere, or (`escaped`, -1: none) has left the domain. `spacing` in m.
+std::optional<Failure> check_nodes(const membrane::Membranes& membranes, double limit, int escaped, double spacing);
+
+}  // namespace rouleau::monitor

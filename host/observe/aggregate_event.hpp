@@ -1,0 +1,17 @@
+// A change in who is aggregated with whom.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <vector>
+
+namespace rouleau::observe {
+
+struct AggregateEvent {
+  double strain, time;
+  int count;
+  std::vector<std::vector<int>> members;
+  bool through_image;
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(AggregateEvent, strain, time, count, members, through_image)
+};
+
+}  // namespace rouleau::observe

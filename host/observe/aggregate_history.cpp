@@ -1,0 +1,23 @@
+#include "aggregate_history.hpp"
+
+namespace rouleau::observe {
+
+void AggregateHistory::follow(const Snapshot& snapshot) {
+  if (snapshot.cells.empty()) return;
+  AggregateEvent event{snapshot.strain, snapshot.time, snapshot.aggregate_count, {}, false};
+  std::vector<int> slot(snapshot.cells.size(), -1);
+  for (const CellSnapshot& cell : snapshot.cells) {
+    int& s = slot[static_cast<std::size_t>(cell.aggregate)];
+    if (s < 0) {
+      s = static_cast<int>(event.members.size());
+      event.members.emplace_back();
+    }
+    event.members[static_cast<std::size_t>(s)].push_back(cell.cell);
+    event.through_image = event.through_image || cell.through_image;
+  }
+  const bool changed =
+      events_.empty() || events_.back().members != event.members || events_.back().through_image != event.through_image;
+  if (changed) events_.push_back(std::move(event));
+}
+
+}  // namespace rouleau::observe

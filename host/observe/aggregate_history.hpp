@@ -1,0 +1,24 @@
+// How aggregates form and come apart: one event for each change.
+#pragma once
+
+#include <vector>
+
+#include "aggregate_event.hpp"
+#include "snapshot.hpp"
+
+namespace rouleau::observe {
+
+class AggregateHistory {
+ public:
+  /// Adds an event if members or contacts across the periodic border differ from those before.
+  void follow(const Snapshot& snapshot);
+  [[nodiscard]] const std::vector<AggregateEvent>& events() const { return events_; }
+  /// Aggregates at the last snapshot.
+  [[nodiscard]] int count() const { return events_.empty() ? 0 : events_.back().count; }
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(AggregateHistory, events_)
+
+ private:
+  std::vector<AggregateEvent> events_;
+};
+
+}  // namespace rouleau::observe

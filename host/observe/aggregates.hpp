@@ -1,0 +1,32 @@
+// Who is aggregated with whom: contacts between membranes over all periodic images, and the clusters they make.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/membrane/membranes.hpp"
+#include "core/membrane/periodic_box.hpp"
+
+namespace rouleau::observe {
+
+struct CellContact {
+  int cell_a, cell_b;          ///< cell_a < cell_b, or equal for a cell and its own image
+  membrane::ImageShift image;  ///< of b
+  double gap;                  ///< smallest distance between the two polygons, lattice units
+  double contact_length;       ///< rest length of a's nodes nearer to b than `reach`
+};
+
+/// All pairs nearer than `reach` (lattice units).
+std::vector<CellContact> find_contacts(const membrane::Membranes& membranes, const membrane::PeriodicBox& box,
+                                       double reach);
+
+struct Aggregates {
+  int count = 0;
+  std::vector<int> label;           ///< of each cell: smallest index in its aggregate
+  std::vector<bool> through_image;  ///< of each cell: its aggregate has a contact across the periodic border
+};
+
+/// Connected components of the contacts.
+Aggregates find_aggregates(int cells, const std::vector<CellContact>& contacts);
+
+}  // namespace rouleau::observe

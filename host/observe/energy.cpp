@@ -1,0 +1,109 @@
+#include "energy.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rouleau::observe {
+
+namespace {
+
+/// Power that the membranes give away, at the velocities of their last step.
+double given_away(const membrane::Membranes& m) {
+  double power = 0;
+  for (std::size_t i = 0; i < m.x.size(); ++i) power += m.force_x[i] * m.velocity_x[i] + m.force_y[i] * m.velocity_y[i];
+  return power;
+}
+
+}  // namespace
+
+template <class T>
+EnergySnapshot observe_energy(solver::Solver<T>& solver, const membrane::Membranes& membranes) {
+  const units::LatticeUnits& units = solver.setting().units;
+  const double joule = units.to_si(1, units::dimension::energy_per_depth),
+               watt = units.to_si(1, units::dimension::power_per_depth);
+  const fluid::FluidSetting& setting = solver.fluid().setting();
+  EnergySnapshot energy;
+  const auto fluid = solver.fluid().energetics();
+  energy.kinetic = fluid.kinetic * joule;
+  energy.viscous_dissipation = fluid.dissipation * watt;
+  energy.total = energy.kinetic;
+  if (!setting.periodic_y) {
+    const auto stress = solver.fluid().wall_stress();  // what the fluid does to the walls
+    energy.wall_power = -(stress.lower * setting.walls.lower + stress.upper * setting.walls.upper) * setting.nx * watt;
+  }
+  if (setting.body_force_x != 0 || setting.body_force_y != 0) {
+    energy.body_force_power =
+        (setting.body_force_x * fluid.velocity_x + setting.body_force_y * fluid.velocity_y) * watt;
+  }
+  if (membrane::MembraneForces* forces = solver.membrane_forces()) {
+    const membrane::MembraneEnergy membrane = forces->energies(membranes);
+    energy.elastic = (membrane.tension + membrane.cell) * joule;
+    energy.bending = membrane.bending * joule;
+    energy.membrane_dissipation = membrane.dissipation * watt;
+    energy.total += energy.elastic + energy.bending;
+    // What corrected nodes give away and the lattice does not get is lost in the layers beside the membranes, which the
+    // lattice does not resolve and the correction stands for.
+    if (solver.corrects_motion()) energy.viscous_dissipation += (given_away(membranes) - fluid.membrane_power) * watt;
+    if (!membrane.unknown.empty()) energy.unknown = "membrane law " + membrane.unknown + " tells no energy";
+  }
+  if (const contact::InteractionForces* forces = solver.interaction_forces()) {
+    energy.interaction = forces->energy(membranes) * joule;
+    energy.total += energy.interaction;
+    const std::string silent = forces->without_energy();
+    if (!silent.empty()) energy.unknown = "interaction " + silent + " tells no energy";
+  }
+  if (!energy.unknown.empty()) energy.total = EnergySnapshot::none;
+  return energy;
+}
+
+template EnergySnapshot observe_energy(solver::Solver<float>&, const membrane::Membranes&);
+template EnergySnapshot observe_energy(solver::Solver<double>&, const membrane::Membranes&);
+
+void EnergyHistory::follow(const Snapshot& snapshot, bool driven, double floor) {
+  const EnergySnapshot& energy = snapshot.energy;
+  if (!energy.unknown.empty()) unknown_ = energy.unknown;
+  follows_ = !driven && std::isfinite(energy.total);
+  if (!follows_) return;
+  double magnitude = floor;
+  for (const double part : {energy.kinetic, energy.elastic, energy.bending, energy.interaction})
+    if (std::isfinite(part)) magnitude += std::abs(part);
+  if (snapshot.stage != stage_) {
+    stage_ = snapshot.stage;
+    at_rest_.push_back({snapshot.stage_name, energy.total, 0, snapshot.time, magnitude});
+  }
+  Stage& stage = at_rest_.back();
+  stage.magnitude = std::max(stage.magnitude, magnitude);
+  if (energy.total - stage.least > stage.growth) {
+    stage.growth = energy.total - stage.least;
+    stage.growth_time = snapshot.time;
+  }
+  stage.least = std::min(stage.least, energy.total);
+}
+
+double EnergyHistory::relative_growth() const {
+  if (!follows_ || at_rest_.empty() || !(at_rest_.back().magnitude > 0)) return 0;
+  return at_rest_.back().growth / at_rest_.back().magnitude;
+}
+
+nlohmann::json EnergyHistory::summary() const {
+  nlohmann::json stages = nlohmann::json::array(), largest, relative;
+  double most = -1;
+  for (const Stage& stage : at_rest_) {
+    const nlohmann::json ratio =
+        stage.magnitude > 0 ? nlohmann::json(stage.growth / stage.magnitude) : nlohmann::json();
+    stages.push_back({{"stage", stage.name},
+                      {"growth_J_per_m", stage.growth},
+                      {"time_s", stage.growth > 0 ? nlohmann::json(stage.growth_time) : nlohmann::json()},
+                      {"relative", ratio}});
+    if (stage.growth <= most) continue;
+    most = stage.growth;
+    largest = stage.growth;
+    relative = ratio;
+  }
+  return {{"largest_growth_at_rest_J_per_m", largest},
+          {"largest_growth_at_rest_relative", relative},
+          {"stages_at_rest", stages},
+          {"unknown", unknown_.empty() ? nlohmann::json() : nlohmann::json(unknown_)}};
+}
+
+}  // namespace rouleau::observe

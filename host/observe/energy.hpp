@@ -1,0 +1,45 @@
+// The energy ledger: what energy a suspension holds, what it loses and what is put in, at an output time.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "core/solver/solver.hpp"
+#include "snapshot.hpp"
+
+namespace rouleau::observe {
+
+/// State before the next step of `solver`, whose forces have been computed and whose fluid is settled.
+template <class T>
+EnergySnapshot observe_energy(solver::Solver<T>& solver, const membrane::Membranes& membranes);
+
+/// Follows the total energy through the stages at rest, where it may only fall.
+class EnergyHistory {
+ public:
+  /// `driven`: walls or a force put energy in. `floor`: J/m, added to the
+  /// energies that growth is compared with, so that rounding is no growth where there is next to none.
+  void follow(const Snapshot& snapshot, bool driven, double floor = 0);
+  /// Growth in the present stage over the largest sum of the energies' magnitudes, floor included; 0 where it is driven
+  /// or its energy is not known.
+  [[nodiscard]] double relative_growth() const;
+  /// summary.json's "energy".
+  [[nodiscard]] nlohmann::json summary() const;
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(EnergyHistory, at_rest_, stage_, follows_, unknown_)
+
+ private:
+  struct Stage {
+    std::string name;
+    double least = 0;        ///< J/m, total so far
+    double growth = 0;       ///< J/m, largest rise above what was the least before
+    double growth_time = 0;  ///< s, when it was largest
+    double magnitude = 0;    ///< J/m, largest sum of the energies' magnitudes
+    NLOHMANN_DEFINE_TYPE_INTRUSIVE(Stage, name, least, growth, growth_time, magnitude)
+  };
+  std::vector<Stage> at_rest_;
+  int stage_ = -1;        ///< of the last entry
+  bool follows_ = false;  ///< the present stage is the last entry
+  std::string unknown_;
+};
+
+}  // namespace rouleau::observe

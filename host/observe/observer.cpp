@@ -1,0 +1,325 @@
+#include "observer.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <numbers>
+
+#include "core/contact/crossing.hpp"
+#include "core/membrane/geometry.hpp"
+#include "energy.hpp"
+#include "fields.hpp"
+#include "monitor/node_checks.hpp"
+#include "particle_stress.hpp"
+#include "plan/stability_limits.hpp"
+#include "rheology.hpp"
+
+namespace rouleau::observe {
+
+namespace {
+
+/// A circle has no long axis: below this deformation its direction would be that of rounding errors.
+constexpr double roundest = 1e-6;
+
+/// The value nearest to `previous` that differs from `angle` by a multiple of `period`.
+double continued(double angle, double previous, double period) {
+  return angle + period * std::round((previous - angle) / period);
+}
+
+monitor::Failure failure(std::string reason, std::array<double, 2> place, int cell, double value, double limit,
+                         std::string message, std::string remedy) {
+  monitor::Failure f;
+  f.reason = std::move(reason);
+  f.place = place;
+  f.cell = cell;
+  f.value = value;
+  f.limit = limit;
+  f.message = std::move(message);
+  f.remedy = std::move(remedy);
+  return f;
+}
+
+/// What to do first about a cell that leaks, if its segments (mean length in spacings) are the reason.
+std::string leak_remedy(double segment) {
+  if (!(segment > plan::longest_segment)) return "";
+  std::array<char, 200> text{};
+  std::snprintf(
+      text.data(), text.size(),
+      "take more segments (this cell's are %.2g lattice spacings long, and fluid leaks between nodes that lie "
+      "more than %g apart; about one for each spacing is best), ",
+      segment, plan::longest_segment);
+  return text.data();
+}
+
+/// Smallest gap of a cell to any other or to an image, looked for in growing neighbourhoods up to the size of the box.
+double gap_to_others(const membrane::Membranes& membranes, int cell, const membrane::PeriodicBox& box) {
+  const double most = 2 * std::max(box.nx, box.ny);
+  for (double limit = box.nx / 16; limit < most; limit *= 2) {
+    const double gap = membrane::smallest_gap(membranes, cell, box, limit);
+    if (std::isfinite(gap)) return gap;
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+Observer::Observer(const scene::Scene& scene, const membrane::Membranes& membranes)
+    : scene_(&scene),
+      box_{static_cast<double>(scene.domain.nodes[0]),
+           scene.domain.periodic_y ? static_cast<double>(scene.domain.nodes[1]) : 0.0} {
+  for (const membrane::CellRange& cell : membranes.cells)
+    initial_area_.push_back(membrane::enclosed_area(membranes, cell));
+  for (const scene::CellPlacement& cell : scene.cells) angle_.push_back(cell.angle);
+  tank_treading_angle_.assign(membranes.cells.size(), 0.0);
+}
+
+double Observer::area_drift(const membrane::Membranes& membranes, int* whose) const {
+  double most = 0;
+  for (std::size_t k = 0; k < membranes.cells.size(); ++k) {
+    const double drift = std::abs(membrane::enclosed_area(membranes, membranes.cells[k]) / initial_area_[k] - 1);
+    if (drift > most || !std::isfinite(drift)) {
+      most = drift;
+      if (whose != nullptr) *whose = static_cast<int>(k);
+    }
+  }
+  return most;
+}
+
+double Observer::area_leakage(const membrane::Membranes& membranes, int* whose) {
+  if (membranes.area_leakage.empty()) return std::nan("");
+  double most = 0;
+  for (std::size_t k = 0; k < membranes.area_leakage.size(); ++k) {
+    const double leakage = std::abs(membranes.area_leakage[k]);
+    if (leakage > most || !std::isfinite(leakage)) {
+      most = leakage;
+      if (whose != nullptr) *whose = static_cast<int>(k);
+    }
+  }
+  return most;
+}
+
+double Observer::momentum_residual(const membrane::Membranes& m) {
+  double net_x = 0, net_y = 0, magnitudes = 0;
+  for (std::size_t i = 0; i < m.x.size(); ++i) {
+    net_x += m.force_x[i];
+    net_y += m.force_y[i];
+    magnitudes += std::hypot(m.force_x[i], m.force_y[i]);
+  }
+  return magnitudes > 0 ? std::hypot(net_x, net_y) / magnitudes : 0;
+}
+
+template <class T>
+double Observer::follow_fluid(fluid::Fluid<T>& fluid) {
+  fluid.settle();
+  const auto [mass, speed] = fluid.extremes();
+  if (std::isnan(initial_mass_)) initial_mass_ = mass;
+  const double nodes = static_cast<double>(fluid.setting().nx) * fluid.setting().ny;
+  mass_drift_ = std::max(mass_drift_, std::abs(mass - initial_mass_) / nodes);
+  const double mach = std::sqrt(3.0) * speed;
+  mach_max_ = std::max(mach_max_, mach);
+  return mach;
+}
+
+namespace {
+
+/// Node with the first value that is no number, else the one with the largest speed.
+template <class T>
+std::array<double, 2> extreme_node(const fluid::Fluid<T>& fluid) {
+  std::array<double, 2> place{0, 0};
+  double fastest = -1;
+  std::vector<fluid::Moments> row;
+  for (int y = 0; y < fluid.setting().ny; ++y) {
+    fluid.moments(y, row);
+    for (int x = 0; x < fluid.setting().nx; ++x) {
+      const fluid::Moments& m = row[static_cast<std::size_t>(x)];
+      const double square = m.ux * m.ux + m.uy * m.uy;
+      const bool finite = std::isfinite(square) && std::isfinite(m.density);
+      if (!finite || square > fastest) place = {static_cast<double>(x), static_cast<double>(y)};
+      if (!finite) return place;
+      fastest = std::max(fastest, square);
+    }
+  }
+  return place;
+}
+
+}  // namespace
+
+std::optional<monitor::Failure> Observer::check_stretch(const membrane::Membranes& membranes,
+                                                        const units::LatticeUnits& units) const {
+  const double limit = scene_->checks.stretch;
+  for (std::size_t k = 0; k < membranes.cells.size(); ++k) {
+    const membrane::CellRange& cell = membranes.cells[k];
+    const auto* circle = std::get_if<scene::Circle>(&scene_->cell_types[static_cast<std::size_t>(cell.type)].shape);
+    const double placed = circle != nullptr ? circle->prestretch : 1.0;
+    for (int i = cell.first; i < cell.end(); ++i) {
+      const auto from = static_cast<std::size_t>(i), to = static_cast<std::size_t>(cell.next(i));
+      const double dx = membranes.x[to] - membranes.x[from], dy = membranes.y[to] - membranes.y[from];
+      const double stretch = std::hypot(dx, dy) / (placed * membranes.rest_length[from]);
+      if (stretch <= limit && stretch * limit >= 1) continue;
+      const std::array<double, 2> place{(membranes.x[from] + 0.5) * units.length,
+                                        (membranes.y[from] + 0.5) * units.length};
+      return failure("uneven_nodes", place, static_cast<int>(k), stretch, stretch < 1 ? 1 / limit : limit,
+                     stretch < 1 ? "a segment of a membrane has become too short against the length it was placed with"
+                                 : "a segment of a membrane has become too long against the length it was placed with",
+                     "lower numerics.density_factor or the load, stiffen the membrane, or raise checks.stretch if it "
+                     "is meant to give way so far");
+    }
+  }
+  return std::nullopt;
+}
+
+template <class T>
+std::optional<monitor::Failure> Observer::check(solver::Solver<T>& solver, const membrane::Membranes& membranes) {
+  const units::LatticeUnits& units = solver.setting().units;
+  const auto place = [&](double x, double y) {
+    return std::array<double, 2>{(x + 0.5) * units.length, (y + 0.5) * units.length};
+  };
+  const double mach = follow_fluid(solver.fluid());
+  if (!(mach <= scene_->checks.mach)) {
+    const auto [x, y] = extreme_node(solver.fluid());
+    if (!std::isfinite(mach)) {
+      return failure("non_finite", place(x, y), -1, std::nan(""), 0, "the fluid holds a value that is no number",
+                     monitor::blown_up_remedy);
+    }
+    return failure("mach", place(x, y), -1, mach, scene_->checks.mach,
+                   "the flow is too fast for the lattice: Mach number above its limit",
+                   "lower numerics.density_factor, the shear rate or the driving force, or raise the resolution");
+  }
+  if (membranes.cells.empty()) return std::nullopt;
+  int cell = -1, leaking = -1;
+  double drift = area_drift(membranes, &cell);
+  area_drift_max_ = std::max(area_drift_max_, drift);
+  // Where areas are kept, the correction that this took is the leak.
+  const double leakage = area_leakage(membranes, &leaking);
+  if (leakage > drift) drift = leakage, cell = leaking;
+  if (!(drift <= scene_->checks.area_drift)) {
+    const membrane::CellRange& drifting = membranes.cells[static_cast<std::size_t>(cell)];
+    const Eigen::Vector2d c = membrane::centroid(membranes, drifting);
+    return failure(
+        "area_drift", place(c.x(), c.y()), cell, drift, scene_->checks.area_drift,
+        std::string("a cell ") +
+            (drift == leakage ? "would have changed its area by more than the limit without numerics.area_correction"
+                              : "has changed its area by more than the limit") +
+            ": fluid leaks through its membrane or is compressed",
+        leak_remedy(membrane::perimeter(membranes, drifting) / drifting.count) +
+            "lower numerics.density_factor, raise the resolution, or raise checks.area_drift if this error is "
+            "acceptable");
+  }
+  if (auto uneven = check_stretch(membranes, units)) return uneven;
+  if (const auto crossing = contact::find_crossing(membranes, box_)) {
+    return failure("crossing", place(crossing->place.x(), crossing->place.y()), crossing->cell, 0, 0,
+                   crossing->cell == crossing->other ? "the membrane of a cell crosses itself"
+                                                     : "the membranes of cells " + std::to_string(crossing->cell) +
+                                                           " and " + std::to_string(crossing->other) +
+                                                           (crossing->inside ? " lie one inside the other" : " cross"),
+                   "lower numerics.density_factor or the attraction, raise the resolution, or stiffen bending");
+  }
+  return std::nullopt;
+}
+
+void Observer::observe_cells(const membrane::Membranes& membranes, const units::LatticeUnits& units,
+                             Snapshot& snapshot) {
+  const double length = units.length;
+  const auto contacts = find_contacts(membranes, box_, scene_->output.aggregate_gap / length);
+  const Aggregates aggregates = find_aggregates(static_cast<int>(membranes.cells.size()), contacts);
+  snapshot.aggregate_count = aggregates.count;
+  snapshot.aggregate_sizes = aggregate_sizes(aggregates.label);
+  snapshot.aggregate_size_number_mean = number_mean(snapshot.aggregate_sizes);
+  snapshot.aggregate_size_weight_mean = weight_mean(snapshot.aggregate_sizes);
+  for (const CellContact& c : contacts) {
+    snapshot.contacts.push_back(
+        {c.cell_a, c.cell_b, {c.image.x, c.image.y}, c.gap * length, c.contact_length * length});
+  }
+  std::vector<Eigen::Vector2d> centers;
+  for (std::size_t k = 0; k < membranes.cells.size(); ++k) {
+    const membrane::CellRange& cell = membranes.cells[k];
+    const Eigen::Vector2d c = membrane::centroid(membranes, cell);
+    centers.push_back(c);
+    const membrane::InertiaEllipse ellipse = membrane::inertia_ellipse(membranes, cell);
+    const double marker = membrane::marker_angle(membranes, cell);
+    const bool round = !(ellipse.deformation > roundest);
+    if (!round) angle_[k] = continued(ellipse.angle, angle_[k], std::numbers::pi);
+    tank_treading_angle_[k] = started_ ? continued(marker, tank_treading_angle_[k], 2 * std::numbers::pi) : marker;
+    CellSnapshot s;
+    s.cell = static_cast<int>(k);
+    s.type = scene_->cell_types[static_cast<std::size_t>(cell.type)].name;
+    s.x = (c.x() + 0.5) * length;
+    s.y = (c.y() + 0.5) * length;
+    s.angle = round ? std::nan("") : angle_[k];
+    s.deformation = ellipse.deformation;
+    s.area = membrane::enclosed_area(membranes, cell) * length * length;
+    s.perimeter = membrane::perimeter(membranes, cell) * length;
+    s.tank_treading_angle = tank_treading_angle_[k];
+    s.min_gap = gap_to_others(membranes, static_cast<int>(k), box_) * length;
+    s.aggregate = aggregates.label[k];
+    s.through_image = aggregates.through_image[k];
+    const membrane::StretchRange stretch = membrane::stretch_range(membranes, cell);
+    s.stretch_min = stretch.least;
+    s.stretch_max = stretch.most;
+    stretch_.least = std::min(stretch_.least, stretch.least);
+    stretch_.most = std::max(stretch_.most, stretch.most);
+    snapshot.cells.push_back(std::move(s));
+  }
+  snapshot.rotation = rotation_.follow(contacts, aggregates, centers, box_);
+  started_ = true;
+}
+
+template <class T>
+Snapshot Observer::observe(solver::Solver<T>& solver, const membrane::Membranes& membranes, bool with_fields) {
+  const plan::StageSetting& setting = solver.setting();
+  const units::LatticeUnits& units = setting.units;
+  Snapshot snapshot;
+  snapshot.stage = setting.index;
+  snapshot.stage_name = setting.stage->name;
+  snapshot.mach_max = follow_fluid(solver.fluid());
+  snapshot.mass_drift = mass_drift_;
+  const double viscosity = (setting.tau - 0.5) / 3;
+  snapshot.relative_viscosity = snapshot.flow_rate = snapshot.area_leakage_max = std::nan("");
+  snapshot.cell_free_layer_lower = snapshot.cell_free_layer_upper = std::nan("");
+  snapshot.aggregate_size_number_mean = snapshot.aggregate_size_weight_mean = std::nan("");
+  if (setting.shear_rate != 0) {
+    const auto stress = solver.fluid().wall_stress();
+    snapshot.relative_viscosity = (stress.lower - stress.upper) / 2 / (viscosity * setting.shear_rate);
+  } else if (is_driven_channel(setting, *scene_)) {
+    const double rate = flow_rate(solver.fluid());
+    snapshot.relative_viscosity = apparent_viscosity(rate, setting, scene_->domain.nodes[1]);
+    snapshot.flow_rate = units.to_si(rate, units::dimension::velocity) * units.length;
+  }
+  if (!membranes.cells.empty()) {
+    if (!scene_->domain.periodic_y) {
+      const auto layer = cell_free_layer(membranes, scene_->domain.nodes[0], scene_->domain.nodes[1]);
+      snapshot.cell_free_layer_lower = layer.lower * units.length;
+      snapshot.cell_free_layer_upper = layer.upper * units.length;
+    }
+    snapshot.particle_stress = units.to_si(particle_stress(membranes, *scene_, viscosity), units::dimension::pressure);
+    observe_cells(membranes, units, snapshot);
+    snapshot.area_drift_max = area_drift(membranes);
+    snapshot.area_leakage_max = area_leakage(membranes);
+    area_drift_max_ = std::max(area_drift_max_, snapshot.area_drift_max);
+    std::vector<double> tension;
+    solver.tensions(tension);
+    const double tension_unit = units.to_si(1, units::dimension::tension);
+    OutlineSnapshot& outlines = snapshot.outlines;
+    for (const membrane::CellRange& cell : membranes.cells) outlines.first.push_back(cell.first);
+    outlines.first.push_back(membranes.node_count());
+    for (std::size_t i = 0; i < membranes.x.size(); ++i) {
+      outlines.x.push_back((membranes.x[i] + 0.5) * units.length);
+      outlines.y.push_back((membranes.y[i] + 0.5) * units.length);
+      outlines.tension.push_back(tension[i] * tension_unit);
+    }
+  }
+  snapshot.energy = observe_energy(solver, membranes);
+  if (with_fields) snapshot.fields = observe_fields(solver.fluid(), *scene_, units);
+  return snapshot;
+}
+
+void Observer::start_stage() { initial_mass_ = std::nan(""); }
+
+template Snapshot Observer::observe(solver::Solver<float>&, const membrane::Membranes&, bool);
+template Snapshot Observer::observe(solver::Solver<double>&, const membrane::Membranes&, bool);
+template std::optional<monitor::Failure> Observer::check(solver::Solver<float>&, const membrane::Membranes&);
+template std::optional<monitor::Failure> Observer::check(solver::Solver<double>&, const membrane::Membranes&);
+
+}  // namespace rouleau::observe

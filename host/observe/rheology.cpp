@@ -1,0 +1,94 @@
+#include "rheology.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/membrane/rounding.hpp"
+
+namespace rouleau::observe {
+
+bool is_driven_channel(const plan::StageSetting& setting, const scene::Scene& scene) {
+  return setting.body_force_x != 0 && setting.shear_rate == 0 && !scene.domain.periodic_y;
+}
+
+template <class T>
+double flow_rate(const fluid::Fluid<T>& fluid) {
+  const fluid::FluidSetting& setting = fluid.setting();
+  std::vector<double> mean(static_cast<std::size_t>(setting.ny));
+  std::vector<fluid::Moments> row;
+  double sum = 0;
+  for (int y = 0; y < setting.ny; ++y) {
+    fluid.moments(y, row);
+    double& value = mean[static_cast<std::size_t>(y)];
+    for (int x = 0; x < setting.nx; ++x) value += row[static_cast<std::size_t>(x)].ux;
+    value /= setting.nx;
+    sum += value;
+  }
+  if (setting.periodic_y) return sum;
+  // Slopes at the walls of parabolas through the wall and the two rows nearest to it, rows at 1/2 and 3/2.
+  const auto slope = [](double wall, double first, double second) { return -8 * wall / 3 + 3 * first - second / 3; };
+  const std::size_t last = mean.size() - 1;
+  const double lower = slope(setting.walls.lower, mean[0], mean[1]);
+  const double upper = -slope(setting.walls.upper, mean[last], mean[last - 1]);
+  return sum + (upper - lower) / 24;
+}
+
+template double flow_rate(const fluid::Fluid<float>&);
+template double flow_rate(const fluid::Fluid<double>&);
+
+double apparent_viscosity(double flow_rate, const plan::StageSetting& setting, int height) {
+  const double viscosity = (setting.tau - 0.5) / 3;
+  const double alone = setting.body_force_x * std::pow(height, 3) / (12 * viscosity);
+  return flow_rate != 0 ? alone / flow_rate : std::nan("");
+}
+
+CellFreeLayer cell_free_layer(const membrane::Membranes& membranes, int nx, int ny) {
+  const double half = ny / 2.0, lower_wall = -0.5, upper_wall = ny - 0.5;
+  std::vector<double> lower(static_cast<std::size_t>(nx), half), upper(static_cast<std::size_t>(nx), half);
+  for (const membrane::CellRange& cell : membranes.cells) {
+    for (int i = cell.first; i < cell.end(); ++i) {
+      const auto from = static_cast<std::size_t>(i), to = static_cast<std::size_t>(cell.next(i));
+      const double x0 = membranes.x[from], x1 = membranes.x[to], y0 = membranes.y[from], y1 = membranes.y[to];
+      const double left = std::min(x0, x1), right = std::max(x0, x1);
+      // The last state of a run that blew up may hold anything.
+      if (!(right - left < nx && std::abs(left) < 1e9)) continue;
+      for (double x = std::ceil(left); x <= right; ++x) {
+        const double y = x1 != x0 ? y0 + (y1 - y0) * (x - x0) / (x1 - x0) : y0;
+        const auto column = static_cast<std::size_t>(membrane::wrapped(static_cast<int>(x), nx));
+        lower[column] = std::min(lower[column], std::min(y, x1 != x0 ? y : y1) - lower_wall);
+        upper[column] = std::min(upper[column], upper_wall - std::max(y, x1 != x0 ? y : y1));
+      }
+    }
+  }
+  CellFreeLayer mean{0, 0};
+  for (const double value : lower) mean.lower += value / nx;
+  for (const double value : upper) mean.upper += value / nx;
+  return mean;
+}
+
+std::map<int, int> aggregate_sizes(const std::vector<int>& label) {
+  std::map<int, int> members, sizes;
+  for (const int l : label) ++members[l];
+  for (const auto& [l, size] : members) ++sizes[size];
+  return sizes;
+}
+
+double number_mean(const std::map<int, int>& sizes) {
+  double cells = 0, aggregates = 0;
+  for (const auto& [size, count] : sizes) {
+    cells += static_cast<double>(size) * count;
+    aggregates += count;
+  }
+  return cells / aggregates;
+}
+
+double weight_mean(const std::map<int, int>& sizes) {
+  double cells = 0, squares = 0;
+  for (const auto& [size, count] : sizes) {
+    cells += static_cast<double>(size) * count;
+    squares += static_cast<double>(size) * size * count;
+  }
+  return squares / cells;
+}
+
+}  // namespace rouleau::observe

@@ -1,0 +1,42 @@
+// Observables of blood rheology at one instant: flow rate, apparent viscosity, cell-free layers, sizes of aggregates.
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "core/fluid/fluid.hpp"
+#include "core/membrane/membranes.hpp"
+#include "plan/stage_scales.hpp"
+#include "snapshot.hpp"
+
+namespace rouleau::observe {
+
+/// Whether a force along x drives this stage's fluid between walls at rest: a flow with a steady flow rate.
+bool is_driven_channel(const plan::StageSetting& setting, const scene::Scene& scene);
+
+/// Integral of the velocity along x over the height, averaged over the length; lattice units. Exact for velocities that
+/// are parabolas in y (midpoint rule with its end correction; the walls' velocity counts as a value). The fluid must be
+/// settled, between steps.
+template <class T>
+double flow_rate(const fluid::Fluid<T>& fluid);
+
+/// Flow rate of the suspending fluid alone, G H^3 / (12 mu) of plane Poiseuille flow, over `flow_rate` (lattice): the
+/// relative apparent viscosity of a driven suspension. Not a number where nothing flows.
+double apparent_viscosity(double flow_rate, const plan::StageSetting& setting, int height);
+
+/// Thickness of the layers without cells at both walls, spacings: in each column of the lattice the distance from the
+/// wall to the nearest membrane, averaged over the columns (edge of the core as in Fedosov, Caswell, Popel and
+/// Karniadakis, Microcirculation 17, 2010). Half the height counts where no membrane is nearer.
+struct CellFreeLayer {
+  double lower, upper;
+};
+CellFreeLayer cell_free_layer(const membrane::Membranes& membranes, int nx, int ny);
+
+/// Number of aggregates by their number of cells, from a label for each cell.
+std::map<int, int> aggregate_sizes(const std::vector<int>& label);
+/// Cells per aggregate: sum of n / number of aggregates. NaN without any.
+double number_mean(const std::map<int, int>& sizes);
+/// Size of the aggregate in which a cell finds itself, averaged over cells: sum of n^2 / sum of n. NaN without any.
+double weight_mean(const std::map<int, int>& sizes);
+
+}  // namespace rouleau::observe

@@ -1,0 +1,173 @@
+#include "rheology_history.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <set>
+
+#include "json/number_or_null.hpp"
+
+namespace rouleau::observe {
+
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::array<const char*, 6> value_names{"relative_viscosity",         "flow_rate_m2_per_s",
+                                                 "cell_free_layer_lower_m",    "cell_free_layer_upper_m",
+                                                 "aggregate_size_number_mean", "aggregate_size_weight_mean"};
+
+/// First instant of the second half of a history, by time.
+template <class Instants>
+std::size_t second_half(const Instants& instants) {
+  const double middle = instants.back().time / 2;
+  std::size_t first = 0;
+  while (first + 1 < instants.size() && instants[first].time < middle) ++first;
+  return first;
+}
+
+/// Whether all (or, `any`, some two) of these cells share an aggregate.
+bool together(const std::vector<int>& label, const std::vector<int>& members, bool any) {
+  std::set<int> labels;
+  for (const int cell : members) labels.insert(label[static_cast<std::size_t>(cell)]);
+  return any ? labels.size() < members.size() : labels.size() == 1;
+}
+
+/// A moment between two instants, and the angles there.
+struct Turned {
+  double strain, time, marker, axis;
+};
+
+}  // namespace
+
+void RheologyHistory::follow(const Snapshot& snapshot) {
+  if (snapshot.stage != stage_) {
+    // The end of a stage is the beginning of the next one and is not written again.
+    std::vector<Instant> first;
+    if (!stages_.empty()) first.push_back(stages_.back().instants.back());
+    for (Instant& instant : first) {
+      start_strain_ += instant.strain;
+      start_time_ += instant.time;
+      instant.strain = instant.time = 0;
+      std::fill(std::begin(instant.values), std::end(instant.values), std::nan(""));
+    }
+    stages_.push_back({snapshot.stage_name, std::move(first)});
+    stage_ = snapshot.stage;
+  }
+  Instant now{
+      snapshot.strain - start_strain_,
+      snapshot.time - start_time_,
+      {snapshot.relative_viscosity, snapshot.flow_rate, snapshot.cell_free_layer_lower, snapshot.cell_free_layer_upper,
+       snapshot.aggregate_size_number_mean, snapshot.aggregate_size_weight_mean},
+      {},
+      {},
+      {}};
+  for (const CellSnapshot& cell : snapshot.cells) {
+    now.label.push_back(cell.aggregate);
+    now.marker.push_back(cell.tank_treading_angle);
+    now.axis.push_back(cell.angle);
+  }
+  stages_.back().instants.push_back(std::move(now));
+}
+
+Json RheologyHistory::means(const StageHistory& stage) {
+  const std::size_t first = second_half(stage.instants);
+  Json result{{"from_s", stage.instants[first].time}, {"outputs", stage.instants.size() - first}};
+  for (std::size_t k = 0; k < value_names.size(); ++k) {
+    double sum = 0, count = 0, squares = 0;
+    for (std::size_t i = first; i < stage.instants.size(); ++i) {
+      const double value = stage.instants[i].values[k];
+      if (!std::isfinite(value)) continue;
+      sum += value;
+      ++count;
+    }
+    const double mean = sum / count;
+    for (std::size_t i = first; i < stage.instants.size(); ++i) {
+      const double value = stage.instants[i].values[k];
+      if (std::isfinite(value)) squares += (value - mean) * (value - mean);
+    }
+    if (count > 0) {
+      result[value_names[k]] = {{"mean", mean},
+                                {"deviation", count > 1 ? Json(std::sqrt(squares / (count - 1))) : Json()}};
+    } else {
+      result[value_names[k]] = nullptr;
+    }
+  }
+  return result;
+}
+
+Json RheologyHistory::dissociation(const StageHistory& stage) {
+  Json result = Json::array();
+  std::map<int, std::vector<int>> aggregates;
+  const std::vector<int>& start = stage.instants.front().label;
+  for (std::size_t cell = 0; cell < start.size(); ++cell) aggregates[start[cell]].push_back(static_cast<int>(cell));
+  for (const auto& [label, members] : aggregates) {
+    if (members.size() < 2) continue;
+    const auto since = [&, &cells = members](bool any) -> Json {
+      std::size_t i = stage.instants.size();
+      while (i > 0 && !together(stage.instants[i - 1].label, cells, any)) --i;
+      if (i == stage.instants.size()) return nullptr;
+      return {{"strain", stage.instants[i].strain},
+              {"strain_before", stage.instants[i - 1].strain},
+              {"time_s", stage.instants[i].time}};
+    };
+    result.push_back({{"members", members}, {"parted", since(false)}, {"separate", since(true)}});
+  }
+  return result;
+}
+
+Json RheologyHistory::rotation(const StageHistory& stage) {
+  Json result = Json::array();
+  const auto& instants = stage.instants;
+  const double turn = 2 * std::numbers::pi;
+  for (std::size_t cell = 0; cell < instants.back().marker.size(); ++cell) {
+    // A round cell has no long axis (NaN) and does not tumble.
+    const auto at = [&](std::size_t i) {
+      const double axis = instants[i].axis[cell];
+      return Turned{instants[i].strain, instants[i].time, instants[i].marker[cell], std::isfinite(axis) ? axis : 0.0};
+    };
+    const Turned end = at(instants.size() - 1);
+    const std::size_t half = second_half(instants);
+    Turned start = at(half);
+    const auto turns_since = [&](const Turned& t) { return std::floor(std::abs(end.marker - t.marker) / turn); };
+    double turns = turns_since(start);
+    for (std::size_t i = half; turns < 1 && i-- > 0;) turns = std::min(1.0, turns_since(at(i)));
+    // The last moment at which the outline was so many turns behind its end, between two outputs.
+    for (std::size_t i = instants.size() - 1; turns >= 1 && i-- > 0;) {
+      const Turned before = at(i), after = at(i + 1);
+      const double behind = std::abs(end.marker - before.marker), behind_after = std::abs(end.marker - after.marker);
+      if (behind < turns * turn) continue;
+      const double s = (behind - turns * turn) / (behind - behind_after);
+      const auto between = [s](double a, double b) { return a + s * (b - a); };
+      start = {between(before.strain, after.strain), between(before.time, after.time),
+               between(before.marker, after.marker), between(before.axis, after.axis)};
+      break;
+    }
+    const double strain = end.strain - start.strain, time = end.time - start.time;
+    const double treading = end.marker - start.marker - (end.axis - start.axis), tumbling = end.axis - start.axis;
+    result.push_back({{"cell", cell},
+                      {"turns", turns},
+                      {"strain", strain},
+                      {"time_s", time},
+                      {"tank_treading_rad_per_strain", json::number_or_null(treading / strain)},
+                      {"tumbling_rad_per_strain", json::number_or_null(tumbling / strain)},
+                      {"tank_treading_rad_per_s", json::number_or_null(treading / time)},
+                      {"tumbling_rad_per_s", json::number_or_null(tumbling / time)}});
+  }
+  return result;
+}
+
+Json RheologyHistory::stages() const {
+  Json result = Json::array();
+  for (const StageHistory& stage : stages_) {
+    result.push_back({{"stage", stage.name},
+                      {"means", means(stage)},
+                      {"dissociation", dissociation(stage)},
+                      {"rotation", rotation(stage)}});
+  }
+  return result;
+}
+
+}  // namespace rouleau::observe

@@ -1,0 +1,56 @@
+// What a run says about the rheology of its suspension over time: means, break-up of aggregates, tank treading.
+#pragma once
+
+#include <array>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "snapshot.hpp"
+
+namespace rouleau::observe {
+
+/// Follows the snapshots of a run. Costs nothing between them.
+class RheologyHistory {
+ public:
+  void follow(const Snapshot& snapshot);
+
+  /// One object for each stage that has been seen, in order:
+  ///   stage              its name
+  ///   means              over the outputs of the stage's second half, {from_s, outputs, and for each of
+  ///                      relative_viscosity, flow_rate_m2_per_s, cell_free_layer_lower_m, cell_free_layer_upper_m,
+  ///                      aggregate_size_number_mean, aggregate_size_weight_mean: {mean, deviation}}: standard
+  ///                      deviation of the outputs; null where no output has a value
+  ///   dissociation       of each aggregate of two or more cells at the stage's start, {members, parted, separate};
+  ///                      each of the two {strain, strain_before, time_s} from the start of the stage, or null: at
+  ///                      `strain` the output after which its members never again were all in one aggregate (parted),
+  ///                      or no two of them in one (separate); `strain_before`: the output before that one
+  ///   rotation           of each cell, {cell, turns, strain, time_s, tank_treading_rad_per_strain, tumbling_...,
+  ///                      tank_treading_rad_per_s, tumbling_...}: mean rates of the outline about the centroid relative
+  ///                      to the long axis, and of the long axis, over the last whole turns of the outline (as many as
+  ///                      fit into the second half, one if there is one at all; turns 0: over the second half)
+  [[nodiscard]] nlohmann::json stages() const;
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(RheologyHistory, stages_, stage_, start_strain_, start_time_)
+
+ private:
+  struct Instant {
+    double strain, time;  ///< since the start of the stage
+    std::array<double, 6> values;
+    std::vector<int> label;
+    std::vector<double> marker, axis;  ///< rad, of each cell, continuous
+    NLOHMANN_DEFINE_TYPE_INTRUSIVE(Instant, strain, time, values, label, marker, axis)
+  };
+  struct StageHistory {
+    std::string name;
+    std::vector<Instant> instants;
+    NLOHMANN_DEFINE_TYPE_INTRUSIVE(StageHistory, name, instants)
+  };
+  static nlohmann::json means(const StageHistory& stage);
+  static nlohmann::json dissociation(const StageHistory& stage);
+  static nlohmann::json rotation(const StageHistory& stage);
+
+  std::vector<StageHistory> stages_;
+  int stage_ = -1;
+  double start_strain_ = 0, start_time_ = 0;
+};
+
+}  // namespace rouleau::observe

@@ -1,0 +1,94 @@
+#include "rotation.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace rouleau::observe {
+
+namespace {
+
+/// Shift of every cell that brings it beside its neighbours in the aggregate; the cell with the smallest index stays.
+struct Unwrapping {
+  std::vector<membrane::ImageShift> shift;
+  std::vector<bool> endless;  ///< by label: some way along the contacts leads back to an image of where it began
+};
+
+Unwrapping unwrap(const std::vector<CellContact>& contacts, const Aggregates& aggregates) {
+  const std::size_t cells = aggregates.label.size();
+  struct Step {
+    std::size_t to;
+    membrane::ImageShift image;
+  };
+  std::vector<std::vector<Step>> steps(cells);
+  for (const CellContact& c : contacts) {
+    const auto a = static_cast<std::size_t>(c.cell_a), b = static_cast<std::size_t>(c.cell_b);
+    steps[a].push_back({b, c.image});
+    steps[b].push_back({a, -c.image});
+  }
+  Unwrapping result{std::vector<membrane::ImageShift>(cells), std::vector<bool>(cells, false)};
+  std::vector<bool> reached(cells, false);
+  for (std::size_t root = 0; root < cells; ++root) {
+    if (reached[root]) continue;
+    reached[root] = true;
+    for (std::vector<std::size_t> open{root}; !open.empty();) {
+      const std::size_t cell = open.back();
+      open.pop_back();
+      for (const Step& step : steps[cell]) {
+        const membrane::ImageShift own = result.shift[cell], there{own.x + step.image.x, own.y + step.image.y};
+        if (!reached[step.to]) {
+          reached[step.to] = true;
+          result.shift[step.to] = there;
+          open.push_back(step.to);
+        } else if (!(result.shift[step.to] == there)) {
+          result.endless[static_cast<std::size_t>(aggregates.label[cell])] = true;
+        }
+      }
+    }
+  }
+  return result;
+}
+
+/// Angle of the line through the two points that lie farthest apart, in (-pi/2, pi/2].
+double angle_of_longest(const std::vector<Eigen::Vector2d>& points) {
+  Eigen::Vector2d longest = Eigen::Vector2d::Zero();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (std::size_t j = i + 1; j < points.size(); ++j) {
+      const Eigen::Vector2d line = points[j] - points[i];
+      if (line.squaredNorm() > longest.squaredNorm()) longest = line;
+    }
+  }
+  const double angle = std::atan2(longest.y(), longest.x());
+  if (angle > std::numbers::pi / 2) return angle - std::numbers::pi;
+  return angle <= -std::numbers::pi / 2 ? angle + std::numbers::pi : angle;
+}
+
+}  // namespace
+
+std::map<int, double> Rotation::follow(const std::vector<CellContact>& contacts, const Aggregates& aggregates,
+                                       const std::vector<Eigen::Vector2d>& centers, const membrane::PeriodicBox& box) {
+  const Unwrapping unwrapped = unwrap(contacts, aggregates);
+  std::map<int, std::vector<int>> members;
+  for (std::size_t i = 0; i < aggregates.label.size(); ++i) members[aggregates.label[i]].push_back(static_cast<int>(i));
+  std::map<int, double> angles;
+  std::map<std::vector<int>, double> now;
+  for (auto& [label, cells] : members) {
+    if (cells.size() < 2 || unwrapped.endless[static_cast<std::size_t>(label)]) continue;
+    std::vector<Eigen::Vector2d> points;
+    for (const int cell : cells) {
+      const auto k = static_cast<std::size_t>(cell);
+      const Eigen::Vector2d shift(unwrapped.shift[k].x * box.nx, unwrapped.shift[k].y * box.ny);
+      points.emplace_back(centers[k] + shift);
+    }
+    double angle = angle_of_longest(points);
+    const auto before = last_.find(cells);
+    if (before != last_.end()) {
+      angle += std::numbers::pi * std::round((before->second - angle) / std::numbers::pi);
+    }
+    angles[label] = angle;
+    now.emplace(std::move(cells), angle);
+  }
+  last_ = std::move(now);
+  return angles;
+}
+
+}  // namespace rouleau::observe

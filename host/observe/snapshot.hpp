@@ -1,0 +1,91 @@
+// What one output time looks like: cells, aggregates, stresses and, when due, fields. Everything in SI units.
+#pragma once
+
+#include <array>
+#include <limits>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace rouleau::observe {
+
+struct CellSnapshot {
+  int cell;  ///< 0-based, in the order of the scene
+  std::string type;
+  double x, y;                 ///< centroid, m; x is not wrapped into the box
+  double angle;                ///< of the long axis of the inertia ellipse, rad, continuous in time; NaN for a circle
+  double deformation;          ///< (L - B) / (L + B) of the inertia ellipse
+  double area;                 ///< m2
+  double perimeter;            ///< m
+  double tank_treading_angle;  ///< of the first node about the centroid, rad, continuous in time
+  double min_gap;      ///< m, to the nearest membrane of another cell or of an image; infinite when there is none
+  int aggregate;       ///< label: smallest index of a cell of the aggregate it belongs to
+  bool through_image;  ///< its aggregate is held together by a contact across the periodic boundary
+  double stretch_min, stretch_max;  ///< of its segments: length over rest length
+};
+
+/// Two cells (or a cell and an image) whose gap is below Output::aggregate_gap.
+struct ContactSnapshot {
+  int cell_a, cell_b;
+  std::array<int, 2> image;  ///< periodic shift of cell_b, in boxes
+  double gap;                ///< m, smallest
+  double contact_length;     ///< m, length of a's membrane nearer than the aggregate gap
+};
+
+/// Outlines of all cells, one after another.
+struct OutlineSnapshot {
+  std::vector<int> first;       ///< first node of each cell, and the total at the end
+  std::vector<double> x, y;     ///< m, not wrapped
+  std::vector<double> tension;  ///< N/m of segment i (elastic and viscous laws together)
+};
+
+/// Fluid fields on the nodes that the scene wants (FieldStorage), row by row from below, x fastest. Empty: not due or
+/// not wanted.
+struct FieldSnapshot {
+  int nx = 0, ny = 0;
+  std::vector<double> velocity_x, velocity_y;  ///< m/s
+  std::vector<double> density;                 ///< relative deviation from the mean
+  std::vector<double> viscosity;               ///< Pa s
+  std::vector<double> vorticity;               ///< 1/s
+  [[nodiscard]] bool empty() const { return nx == 0; }
+};
+
+/// Energies and powers per depth (docs: physics, energy); NaN where the scene has no such thing, or nobody tells it.
+struct EnergySnapshot {
+  static constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  double kinetic = none, elastic = none, bending = none, interaction = none, total = none;  ///< J/m
+  double viscous_dissipation = none, membrane_dissipation = none;                           ///< W/m, lost
+  double wall_power = none, body_force_power = none;                                        ///< W/m, put in
+  std::string unknown;  ///< why the total is not known; empty: it is
+};
+
+struct Snapshot {
+  long step = 0;
+  double time = 0;    ///< s since the first stage began
+  double strain = 0;  ///< accumulated over the stages
+  int stage = 0;
+  std::string stage_name;
+  std::vector<CellSnapshot> cells;
+  std::vector<ContactSnapshot> contacts;
+  int aggregate_count = 0;  ///< single cells count too
+  /// Angle of the line through an aggregate's outermost cells against x, rad, by its label, followed over turns while
+  /// its members stay the same. Not there for lone cells, nor where an aggregate closed through images has no ends.
+  std::map<int, double> rotation;
+  std::map<int, int> aggregate_sizes;     ///< number of aggregates by their number of cells
+  double aggregate_size_number_mean = 0;  ///< cells per aggregate; NaN without cells
+  double aggregate_size_weight_mean = 0;  ///< cells in the aggregate of a cell, averaged over cells; NaN without cells
+  double relative_viscosity = 0;  ///< wall shear stress / (viscosity x shear rate), or of the flow rate; NaN: neither
+  double flow_rate = 0;           ///< m2/s, per depth, of a driven channel; NaN elsewhere
+  double cell_free_layer_lower = 0, cell_free_layer_upper = 0;  ///< m; NaN without walls or cells
+  double particle_stress = 0;  ///< xy, Pa: membranes and viscosity contrast, per area of the domain
+  double mach_max = 0;
+  double area_drift_max = 0;  ///< relative
+  double area_leakage_max =
+      0;                  ///< relative: what the area correction kept from leaking, of the worst cell; NaN without
+  double mass_drift = 0;  ///< relative
+  EnergySnapshot energy;
+  OutlineSnapshot outlines;
+  FieldSnapshot fields;
+};
+
+}  // namespace rouleau::observe

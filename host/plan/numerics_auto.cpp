@@ -1,0 +1,361 @@
+#include "numerics_auto.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+
+#include "base/text.hpp"
+#include "json/document.hpp"
+#include "json/json_pointer.hpp"
+#include "scene/driving_flow.hpp"
+#include "scene/scene_reader.hpp"
+#include "shape/outline.hpp"
+#include "step_cost.hpp"
+#include "units/lattice_units.hpp"
+
+namespace rouleau::plan {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr double default_target = 0.01;
+constexpr const char* origin = "numerics.auto";
+
+constexpr double nearly = 0.999;  ///< as much of a limit as is taken
+constexpr std::array relaxation_times{0.8, 1.0, 1.25, 1.5, 2.0, 2.5, 3.0};
+constexpr double finest_radius = 80;  ///< spacings; more is never chosen
+constexpr int fewest_rows = 16;       ///< of a lattice without cells
+// Without a flow inertia only decides how membranes come to rest. The limits of the plan lower it where they must.
+constexpr double density_factor_at_rest = 13000;
+constexpr int most_coarse_rows = 4096;
+
+/// A lattice with the same spacing along both axes; none when the ratio of the sides is not one of whole numbers.
+std::optional<std::array<int, 2>> coarsest_lattice(const Eigen::Vector2d& size) {
+  constexpr double tolerance = 1e-9;
+  for (int ny = 4; ny <= most_coarse_rows; ++ny) {
+    const double nx = ny * size.x() / size.y();
+    if (nx > 3.5 && nx < 65536.5 && std::abs(nx - std::round(nx)) < tolerance * nx) {
+      return std::array{static_cast<int>(std::lround(nx)), ny};
+    }
+  }
+  return {};
+}
+
+// What was measured (docs/accuracy.md, "What auto goes by"). Errors are relative, lengths in spacings.
+
+/// Error of a shape at ten spacings a radius and tau 1, and the power of the spacing with which it falls.
+struct ShapeError {
+  double at_ten, order;
+};
+constexpr double measured_ratio = 5;  ///< viscosity ratio of the second of each pair
+constexpr ShapeError round_cell[2] = {{0.010, 2}, {0.021, 2}};
+constexpr ShapeError biconcave_cell[2] = {{0.040, 3}, {0.039, 2}};
+constexpr double growth_with_tau = 0.2;  ///< of that error, for each unit of tau above 1
+// Without slip correction the tangential slip of the membrane, of first order, comes on top.
+constexpr double slip_at_ten[2] = {0.014, 0.025};
+
+// A fluid that is simulated denser: strains at which things happen are wrong by this share of the Reynolds number.
+constexpr double motion_by_reynolds = 0.024;
+// Disturbances of the steady state die out as 0.7 exp(-1.35 strain / sqrt(Reynolds number)).
+constexpr double steady_amplitude = 0.7, steady_rate = 1.35;
+
+/// Start-up of Couette and Poiseuille flow without cells: this times ((tau - 1/2)/rows)^2.
+constexpr double start_up_error = 1.2;
+
+/// How far a viscosity ratio is from 1, with the measured one at 1.
+double distance_from_one(double viscosity_ratio) {
+  return std::abs(std::log(viscosity_ratio)) / std::log(measured_ratio);
+}
+
+/// Value between those at viscosity ratio 1 and 5, by the ratio's logarithm; beyond, extrapolated.
+double between(double at_one, double at_measured, double viscosity_ratio) {
+  return at_one + distance_from_one(viscosity_ratio) * (at_measured - at_one);
+}
+double between(const ShapeError (&pair)[2], double viscosity_ratio, double radius) {
+  const double order = std::clamp(between(pair[0].order, pair[1].order, viscosity_ratio), 2.0, 3.0);
+  return between(pair[0].at_ten, pair[1].at_ten, viscosity_ratio) * std::pow(10 / radius, order);
+}
+
+/// What a person would write: three digits, rounded down. Whole numbers stay whole.
+Json three_digits_below(double value) {
+  const double digit = std::pow(10, std::floor(std::log10(value)) - 2);
+  const double rounded = std::stod(number(std::floor(value / digit * (1 + 1e-12)) * digit, 3));
+  if (rounded == std::floor(rounded) && rounded < 1e15) return static_cast<std::int64_t>(rounded);
+  return rounded;
+}
+
+/// What the error and the cost of a scene depend on, and what it pins.
+class Problem {
+ public:
+  Problem(const scene::Scene& draft, const Json& written, const NumericsBounds& bounds);
+  [[nodiscard]] NumericsChoice solve() const;
+
+ private:
+  struct Trial {
+    std::array<int, 2> nodes{};
+    double tau = 1, density_factor = 1, cost = 0;
+    ErrorShares error;
+  };
+  [[nodiscard]] std::vector<std::array<int, 2>> lattices() const;
+  [[nodiscard]] bool meets_target(const Trial& trial) const { return trial.error.total() <= target_ * (1 + 1e-9); }
+  [[nodiscard]] bool better(const Trial& a, const Trial& b) const;
+  [[nodiscard]] Trial tried(const std::array<int, 2>& nodes, double tau) const;
+  [[nodiscard]] double resolution_error(double spacing, double tau) const;
+  [[nodiscard]] double inertia_error(double reynolds) const;
+  /// The largest simulated Reynolds number whose inertia_error() is at most this.
+  [[nodiscard]] double most_reynolds(double error) const;
+  [[nodiscard]] double decay() const {
+    return steady_rate * strain_ / std::sqrt(0.5 + 0.5 * std::max(1.0, viscosity_ratio_));
+  }
+  [[nodiscard]] std::string why_density_factor(const Trial& best) const;
+  [[nodiscard]] NumericsChoice chosen(const Trial& best) const;
+  [[nodiscard]] Json pinned(const char* key) const { return numerics_.contains(key) ? numerics_.at(key) : Json(); }
+
+  const scene::Scene& scene_;
+  const Json& written_;
+  NumericsBounds bounds_;
+  Json numerics_;  ///< what the scene says of them
+  double target_ = default_target;
+  bool steady_ = false, corrected_ = true;
+  bool has_cells_ = false;
+  std::vector<const scene::CellType*> used_types_;
+  double perimeters_ = 0;       ///< of all cells together, m
+  double radius_ = 0;           ///< of the smallest cell, m
+  double viscosity_ratio_ = 1;  ///< the furthest from 1
+  double shear_rate_ = 0, strain_ = 0;
+  double reynolds_ = 0;  ///< of the true fluid, with the cells' radius or, without cells, half the height
+};
+
+Problem::Problem(const scene::Scene& draft, const Json& written, const NumericsBounds& bounds)
+    : scene_(draft), written_(written), bounds_(bounds), numerics_(written.at("numerics")) {
+  const Json wanted = numerics_.at("auto");
+  target_ = wanted.value("error", default_target);
+  steady_ = wanted.value("of", "motion") == "steady";
+  corrected_ = numerics_.value("slip_correction", bounds_.slip_correction);
+  has_cells_ = !scene_.cells.empty();
+  radius_ = shape::smallest_radius(scene_);
+  std::vector<int> placed(scene_.cell_types.size());
+  for (const scene::CellPlacement& cell : scene_.cells) ++placed[static_cast<std::size_t>(cell.type)];
+  for (std::size_t i = 0; i < placed.size(); ++i) {
+    if (placed[i] == 0) continue;
+    const scene::CellType& type = scene_.cell_types[i];
+    used_types_.push_back(&type);
+    perimeters_ += placed[i] * shape::shape_perimeter(type.shape);
+    const double ratio = type.interior_viscosity / scene_.fluid.viscosity;
+    if (std::abs(std::log(ratio)) > std::abs(std::log(viscosity_ratio_))) viscosity_ratio_ = ratio;
+  }
+  for (const scene::Stage& stage : scene_.stages) {
+    const double rate = scene::mean_shear_rate(stage, scene_);
+    if (rate == 0) continue;
+    shear_rate_ = std::max(shear_rate_, rate);
+    strain_ = std::max(strain_, stage.strain.value_or(stage.duration.value_or(0) * rate));
+  }
+  const double length = has_cells_ ? radius_ : scene_.domain.size.y() / 2;
+  reynolds_ = scene_.fluid.density * shear_rate_ * length * length / scene_.fluid.viscosity;
+}
+
+std::vector<std::array<int, 2>> Problem::lattices() const {
+  const Json nodes = written_.at("domain").value("nodes", Json());
+  if (!nodes.is_null()) return {nodes.get<std::array<int, 2>>()};
+  const auto coarsest = *coarsest_lattice(scene_.domain.size);  // the draft has found one
+  // Beyond the finest lattice the plan's limits may be exceeded, and it warns.
+  const double least = has_cells_ ? std::min(bounds_.least_radius, finest_radius) : fewest_rows / 2.0;
+  std::vector<std::array<int, 2>> found;
+  std::array<int, 2> finest = coarsest;
+  for (int factor = 1;; ++factor) {
+    const std::array nodes_tried{coarsest[0] * factor, coarsest[1] * factor};
+    if (nodes_tried[0] > 65536 || nodes_tried[1] > 65536) break;
+    const double spacing = scene_.domain.size.y() / nodes_tried[1];
+    const double size = has_cells_ ? radius_ / spacing : std::min(nodes_tried[0], nodes_tried[1]) / 2.0;
+    finest = nodes_tried;
+    if (size >= least * (1 - 1e-9)) found.push_back(nodes_tried);
+    if (size >= finest_radius) break;
+  }
+  if (found.empty()) found.push_back(finest);
+  return found;
+}
+
+/// The cheaper one of those that meet the target; before them, the nearer one.
+bool Problem::better(const Trial& a, const Trial& b) const {
+  if (meets_target(a) != meets_target(b)) return meets_target(a);
+  return meets_target(a) ? a.cost < b.cost : a.error.total() < b.error.total();
+}
+
+NumericsChoice Problem::solve() const {
+  std::vector<double> taus(relaxation_times.begin(), relaxation_times.end());
+  if (!pinned("tau").is_null()) taus = {pinned("tau").get<double>()};
+  std::optional<Trial> best;
+  for (const auto& nodes : lattices()) {
+    for (const double tau : taus) {
+      const Trial trial = tried(nodes, tau);
+      if (!best || better(trial, *best)) best = trial;
+    }
+  }
+  return chosen(*best);
+}
+
+/// The densest fluid that the error leaves room for, and what it costs.
+Problem::Trial Problem::tried(const std::array<int, 2>& nodes, double tau) const {
+  Trial trial{nodes, tau, 1, 0, {}};
+  const double spacing = scene_.domain.size.y() / nodes[1];
+  trial.error.resolution = resolution_error(spacing, tau);
+  const double true_step =
+      units::time_step(tau, spacing, scene_.fluid.viscosity / scene_.fluid.density);  // of factor 1
+  if (const Json factor = pinned("density_factor"); !factor.is_null()) {
+    trial.density_factor = factor.get<double>();
+  } else if (shear_rate_ == 0) {
+    trial.density_factor = has_cells_ ? std::min(density_factor_at_rest, bounds_.most_density_factor) : 1;
+  } else {
+    // Walls at shear_rate x height / 2 in units of the spacing over the time step.
+    const double wall_mach = std::sqrt(3.0) * shear_rate_ * scene_.domain.size.y() / 2 / spacing * true_step;
+    const double allowed = most_reynolds(target_ - trial.error.resolution) / reynolds_;
+    // Without cells what is computed is how the fluid's own inertia lets a flow start.
+    const double wanted = has_cells_ ? allowed : 1;
+    trial.density_factor =
+        std::max(1.0, std::min({wanted, nearly * scene::largest_wall_mach(scene_.fluid.inertia) / wall_mach,
+                                bounds_.most_density_factor}));
+  }
+  trial.error.inertia = inertia_error(reynolds_ * trial.density_factor);
+  trial.cost = step_cost(static_cast<double>(nodes[0]) * nodes[1], perimeters_ / spacing, scene_.numerics.precision) /
+               (true_step * trial.density_factor);
+  return trial;
+}
+
+/// That of the cell type for which it is largest.
+double Problem::resolution_error(double spacing, double tau) const {
+  if (!has_cells_) {
+    const double shape = (tau - 0.5) * spacing / scene_.domain.size.y();
+    return start_up_error * shape * shape;
+  }
+  double largest = 0;
+  for (const scene::CellType* type : used_types_) {
+    const bool thin = std::holds_alternative<scene::Biconcave>(type->shape);
+    const auto* ellipse = std::get_if<scene::Ellipse>(&type->shape);
+    const double radius =
+        (ellipse != nullptr ? ellipse->semi_axes.minCoeff() : shape::shape_radius(type->shape)) / spacing;
+    double error = between(thin ? biconcave_cell : round_cell, viscosity_ratio_, radius) *
+                   (1 + growth_with_tau * std::max(0.0, tau - 1));
+    if (!corrected_) error += between(slip_at_ten[0], slip_at_ten[1], viscosity_ratio_) * 10 / radius;
+    largest = std::max(largest, error);
+  }
+  return largest;
+}
+
+double Problem::inertia_error(double reynolds) const {
+  if (!has_cells_ || !(reynolds > 0)) return 0;
+  return steady_ ? steady_amplitude * std::exp(-decay() / std::sqrt(reynolds)) : motion_by_reynolds * reynolds;
+}
+
+double Problem::most_reynolds(double error) const {
+  if (!(error > 0)) return 0;
+  if (!steady_) return error / motion_by_reynolds;
+  if (error >= steady_amplitude) return std::numeric_limits<double>::infinity();
+  const double root = decay() / std::log(steady_amplitude / error);
+  return root * root;
+}
+
+std::string Problem::why_density_factor(const Trial& best) const {
+  if (!has_cells_) return "without cells the fluid's own inertia is what decides";
+  if (shear_rate_ == 0) return "at rest, as large as the limits of the membranes' stiffness allow";
+  std::string why = "simulated Reynolds number " + number(reynolds_ * best.density_factor, 3) + ": " +
+                    number(100 * best.error.inertia, 2) + " % of error";
+  if (best.density_factor >= bounds_.most_density_factor * 0.99) why += "; more is beyond a limit of the plan";
+  return why;
+}
+
+NumericsChoice Problem::chosen(const Trial& best) const {
+  NumericsChoice choice{target_, steady_, best.error, {}, {}};
+  const auto choose = [&](const std::string& pointer, const Json& value, const std::string& why) {
+    choice.values.push_back({pointer, value, why});
+  };
+  const auto percent = [](double share) { return number(100 * share, 2) + " %"; };
+  const double spacing = scene_.domain.size.y() / best.nodes[1];
+  if (!written_.at("domain").contains("nodes")) {
+    choose("/domain/nodes", best.nodes,
+           has_cells_ ? "the smallest cell's radius is " + number(radius_ / spacing, 3) +
+                            " spacings: " + percent(best.error.resolution) + " of error"
+                      : std::to_string(best.nodes[1]) + " rows: " + percent(best.error.resolution) + " of error");
+  }
+  for (const scene::CellType& type : scene_.cell_types) {
+    if (written_.at("cell_types").at(type.name).contains("segments")) continue;
+    const double segments = std::clamp(std::round(shape::shape_perimeter(type.shape) / spacing), 8.0, 100000.0);
+    choose("/cell_types/" + type.name + "/segments", static_cast<int>(segments), "one for each spacing");
+  }
+  const auto set = [&](const char* key, const Json& value, const std::string& why) {
+    if (!numerics_.contains(key)) choose(std::string("/numerics/") + key, value, why);
+  };
+  set("tau", best.tau, "the cheapest with this resolution");
+  set("density_factor", three_digits_below(best.density_factor), why_density_factor(best));
+  if (has_cells_) {
+    set("coupling", "auto", "explicit or semi-implicit, by the limits of the membranes' stiffness");
+    set("slip_correction", corrected_,
+        corrected_ ? "takes the first-order error of the immersed boundary out"
+                   : "left out, for cells that attract each other strongly leak with it");
+    set("area_correction", true, "cells keep their areas");
+  }
+  if (!meets_target(best)) {
+    choice.doubt = "numerics.auto: the expected error is " + percent(best.error.total()) +
+                   ", more than the target of " + percent(target_) +
+                   ", with what the scene pins or the finest lattice that is tried";
+  }
+  constexpr double most_of_the_target = 0.8;
+  if (meets_target(best) && best.error.resolution > most_of_the_target * target_ && has_cells_ && shear_rate_ > 0 &&
+      written_.at("domain").contains("nodes") && pinned("density_factor").is_null()) {
+    choice.doubt = "numerics.auto: the lattice that domain.nodes names takes " + percent(best.error.resolution) +
+                   " of error already, and what is left of " + percent(target_) +
+                   " asks for small steps (density_factor " + number(best.density_factor, 3) +
+                   "); leave domain.nodes out, or allow a larger error";
+  }
+  if (choice.doubt.empty() && has_cells_ && (viscosity_ratio_ < 0.99 || viscosity_ratio_ > 1.01 * measured_ratio)) {
+    choice.doubt = "numerics.auto: the viscosity ratio " + number(viscosity_ratio_, 3) +
+                   " lies outside of what errors were measured for (1 to " + number(measured_ratio) + ")";
+  }
+  return choice;
+}
+
+}  // namespace
+
+void spell_out_numerics(json::Document& document) {
+  if (!document.root().at("numerics").is_object()) document.put("/numerics", {{"auto", Json::object()}}, origin);
+}
+
+void put_draft_numerics(json::Document& document) {
+  const Json root = document.root();
+  const scene::SceneFields fields(document);
+  if (!root.at("domain").contains("nodes")) {
+    const Eigen::Vector2d size = fields.quantities("/domain/size", "m", scene::range::length);
+    const auto lattice = coarsest_lattice(size);
+    if (!lattice) {
+      fields.refuse("/domain/size",
+                    "the ratio of these sides is not one of whole numbers up to " + std::to_string(most_coarse_rows) +
+                        ", so that no lattice with the same spacing along both can be chosen\n"
+                        "write sides with a simple ratio, such as [\"50 um\", \"25 um\"], or give nodes");
+    }
+    // As fine as a lattice that might be chosen: a region of output must hold nodes.
+    const int factor = std::max(1, 1024 / std::max((*lattice)[0], (*lattice)[1]));
+    document.put("/domain/nodes", Json{(*lattice)[0] * factor, (*lattice)[1] * factor}, origin);
+  }
+  const Json types = root.value("cell_types", Json::object());
+  for (const auto& [name, type] : types.items()) {
+    if (!type.contains("segments"))
+      document.put(json::child_pointer("/cell_types", name) + "/segments", 64, origin);
+  }
+}
+
+void put_choice(json::Document& document, const NumericsChoice& choice) {
+  for (const ChosenValue& value : choice.values) document.put(value.pointer, value.value, origin);
+}
+
+NumericsChoice choose_numerics(const scene::Scene& draft, const Json& written, const NumericsBounds& bounds) {
+  return Problem(draft, written, bounds).solve();
+}
+
+bool leaves_numerics_open(const Json& scene) {
+  if (!scene.is_object() || !scene.contains("numerics")) return false;
+  const Json& numerics = scene.at("numerics");
+  return numerics == "auto" || (numerics.is_object() && numerics.contains("auto"));
+}
+
+}  // namespace rouleau::plan

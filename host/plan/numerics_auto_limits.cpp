@@ -1,0 +1,62 @@
+#include "numerics_auto_limits.hpp"
+
+#include <algorithm>
+
+#include "plan.hpp"
+#include "plan_models.hpp"
+#include "shape/outline.hpp"
+
+namespace rouleau::plan {
+namespace {
+
+/// Every try at least halves what exceeds a limit, or nearly keeps it.
+constexpr int most_tries = 20;
+constexpr double to_spare = 1.02;
+
+/// Wells deeper than this share of the membranes' stretching modulus leak with the slip correction: by 0.7 % of the
+/// area at rest at 0.072, by nothing that was seen at 0.003 (docs/accuracy.md, cells in contact); between them nothing
+/// was measured.
+constexpr double deepest_corrected_well = 0.02;
+
+bool attracts_strongly(const Plan& plan) {
+  const double modulus = stretching_modulus(plan);
+  for (const auto& well : plan.wells) {
+    const auto& depth = well.at("depth_J_m2");
+    if (depth.is_number() && !(depth.get<double>() <= deepest_corrected_well * modulus)) return true;
+  }
+  return false;
+}
+
+NumericsBounds tightened(NumericsBounds bounds, const Plan& plan) {
+  if (attracts_strongly(plan)) bounds.slip_correction = false;
+  for (const Limit& limit : plan.limits) {
+    if (limit.margin >= 1 || !(limit.margin > 0)) continue;
+    if (limit.remedied_by == RemediedBy::density_factor) {
+      const double kept = plan.scene->numerics.density_factor * limit.margin / to_spare;
+      bounds.most_density_factor = std::min(bounds.most_density_factor, kept);
+    } else if (limit.remedied_by == RemediedBy::resolution) {
+      const double radius = shape::smallest_radius(*plan.scene) / lattice_spacing(*plan.scene);
+      bounds.least_radius = std::max(bounds.least_radius, radius / limit.margin);
+    }
+  }
+  return bounds;
+}
+
+}  // namespace
+
+scene::Scene read_within_limits(const std::filesystem::path& file, const std::vector<std::string>& overrides,
+                                const std::function<plugin::Catalog(const scene::Scene&)>& catalog_of) {
+  NumericsBounds bounds;
+  scene::Scene scene = scene::read_unpacked_scene(file, overrides, bounds);
+  for (int tries = 0; tries < most_tries && scene.numerics_choice; ++tries) {
+    const plugin::Catalog catalog = catalog_of(scene);
+    const NumericsBounds tighter = tightened(bounds, make_plan(scene, catalog));
+    if (tighter == bounds) break;
+    bounds = tighter;
+    scene = scene::read_unpacked_scene(file, overrides, bounds);
+  }
+  scene::pack_cells(scene);
+  return scene;
+}
+
+}  // namespace rouleau::plan

@@ -1,0 +1,19 @@
+// What a plan tells of its models in SI units, found with the models' own functions.
+#pragma once
+
+#include "plan.hpp"
+
+namespace rouleau::plan {
+
+/// Makes every active model once, so that a plan never promises a run that cannot start. Throws Error(bad_input) with
+/// the model's place in the scene when it refuses its parameters, Error(plugin_refused) when its library is refused.
+void try_models(const Plan& plan);
+
+/// One entry for each active interaction: place, depth and width of its well (null where it attracts nowhere), and,
+/// where the manifest says what the potential stands for, those of that potential and by how much the well was widened.
+nlohmann::json describe_wells(const Plan& plan);
+
+/// d tension / d stretch at rest, N/m: of all laws together, of the cell type that has least; NaN where there is none.
+double stretching_modulus(const Plan& plan);
+
+}  // namespace rouleau::plan

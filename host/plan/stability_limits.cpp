@@ -1,0 +1,254 @@
+// Limits of the method for a scene, measured with the 4-point kernel (docs/accuracy.md).
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "core/coupling/kernel_kind.hpp"
+#include "core/coupling/slip_constants.hpp"
+#include "core/membrane/stiffness.hpp"
+#include "plan.hpp"
+#include "potential_shape.hpp"
+#include "scene/driving_flow.hpp"
+#include "shape/outline.hpp"
+#include "stability_limits.hpp"
+
+namespace rouleau::plan {
+
+namespace {
+
+struct TableEntry {
+  double tau, value;
+};
+
+/// Value at tau, linear in log tau' with tau' = tau - 1/2, constant beyond the ends of the table.
+template <std::size_t n>
+double interpolate(const std::array<TableEntry, n>& table, double tau) {
+  if (tau <= table.front().tau) return table.front().value;
+  for (std::size_t i = 1; i < n; ++i) {
+    if (tau > table[i].tau) continue;
+    const double t =
+        std::log((tau - 0.5) / (table[i - 1].tau - 0.5)) / std::log((table[i].tau - 0.5) / (table[i - 1].tau - 0.5));
+    return std::exp((1 - t) * std::log(table[i - 1].value) + t * std::log(table[i].value));
+  }
+  return table.back().value;
+}
+
+// Largest stiffness d tension / d stretch, d moment / d curvature and d force / d distance at which one cell at rest
+// stayed quiet. The first is three times the largest shear modulus of a neo-Hookean membrane.
+constexpr std::array<TableEntry, 6> stretch_limit{
+    {{0.505, 0.18}, {0.55, 1.7}, {0.6, 2.3}, {1.0, 6.3}, {2.0, 5.1}, {10.0, 2.1}}};
+constexpr std::array<TableEntry, 5> bending_limit{{{0.55, 0.36}, {0.6, 0.86}, {1.0, 6.8}, {2.0, 3.8}, {5.0, 1.7}}};
+constexpr std::array<TableEntry, 3> contact_limit{{{0.6, 0.65}, {1.0, 1.46}, {2.0, 0.97}}};
+
+// Narrowest well, in spacings. Cells at rest settle even in wells of a twelfth of a spacing; but where segments are one
+// spacing long, their corners catch on each other in a narrower one: sliding along a rim of 5 spacings radius meets 2 %
+// of the strongest attraction at a width of 0.66, 5 % at 0.33, 11 % at 0.16 (docs/models.md).
+constexpr double narrowest_well = 0.5;
+
+// How many times stiffer membranes may be with the semi-implicit step, for tau from 0.6 to 5; below it gains nothing. A
+// single cell stays quiet at 80 times the stretching and 13 times the bending stiffness (docs/accuracy.md), two cells
+// that are sheared and come to rest in contact at 20 times the former. There are two exceptions: with the slip
+// correction and tau below 0.9 two cells bear 5 but not 10 times, for the slip of so stiff a membrane varies faster
+// than the correction can follow; at tau 10 a cell with segments of two spacings bears 4 times.
+constexpr double stretching_gain = 20, cautious_stretching_gain = 4, least_corrected_tau = 0.9, most_tau = 5;
+constexpr double bending_gain = 10, least_semi_implicit_tau = 0.6;
+
+/// Limit of a membrane between two fluids: the geometric mean of those at either side's relaxation time. Measured at
+/// tau 1 and ratio 5: 0.83 and 0.63 of the limits at ratio 1, by this rule 0.83 and 0.63.
+template <std::size_t n>
+double limit_between(const std::array<TableEntry, n>& table, double tau, double viscosity_ratio) {
+  return std::sqrt(interpolate(table, tau) * interpolate(table, 0.5 + viscosity_ratio * (tau - 0.5)));
+}
+
+/// A stiffness as the fluid feels it, and its limit with explicit coupling.
+struct Bounded {
+  double value = 0, limit = 1;
+  [[nodiscard]] double margin() const { return limit / value; }
+  /// Becomes the other, unless that is further from its limit.
+  void narrow(const Bounded& other) {
+    if (!(margin() < other.margin())) *this = other;
+  }
+};
+struct Stiffness {
+  Bounded stretching, bending;
+};
+
+/// Mean length of a cell type's segments, m.
+double segment_length(const scene::CellType& type) { return shape::shape_perimeter(type.shape) / type.segments; }
+
+/// Of all cell types in a stage, the stretching and the bending stiffness that are nearest to their limits.
+Stiffness membrane_stiffness(const Plan& plan, const plugin::ModelSetting& setting) {
+  const scene::Scene& scene = *plan.scene;
+  const coupling::KernelFacts& kernel = coupling::kernel_named(scene.numerics.kernel);
+  const double tau = scene.numerics.tau;
+  Stiffness nearest;
+  for (std::size_t t = 0; t < plan.membranes.size(); ++t) {
+    const scene::CellType& cell = scene.cell_types[t];
+    const double ratio = cell.interior_viscosity / scene.fluid.viscosity;
+    double factor = 1;
+    if (scene.numerics.slip_correction) {
+      factor = coupling::stiffening(coupling::slip_constants(kernel.kind, ratio).shift,
+                                    segment_length(cell) / setting.units.length);
+    }
+    double stretching = 0, bending = 0;
+    for (const PlannedModel& law : plan.membranes[t]) {
+      if (!law.active()) continue;
+      const plugin::ModelInstance instance(*law.manifest, law.parameters.values, setting);
+      stretching += membrane::stretching_stiffness(instance);
+      bending += membrane::bending_stiffness(instance);
+    }
+    nearest.stretching.narrow({factor * stretching, kernel.stretch_limit * limit_between(stretch_limit, tau, ratio)});
+    nearest.bending.narrow({factor * bending, kernel.bending_limit * limit_between(bending_limit, tau, ratio)});
+  }
+  return nearest;
+}
+
+/// Relative change of the area of a cell whose membrane is stretched from the start: the tension T over the radius a is
+/// a pressure, and density deviates by three times the pressure. 0 without prestretch.
+double prestress_compression(const Plan& plan, const StageSetting& stage) {
+  double most = 0;
+  for (std::size_t type = 0; type < plan.membranes.size(); ++type) {
+    const auto* circle = std::get_if<scene::Circle>(&plan.scene->cell_types[type].shape);
+    if (circle == nullptr) continue;
+    double tension = 0;
+    for (const PlannedModel& law : plan.membranes[type]) {
+      if (!law.active()) continue;
+      const plugin::ModelInstance instance(*law.manifest, law.parameters.values,
+                                           stage.model_setting(plan.scene->fluid.inertia));
+      tension += membrane::tension_at(instance, circle->prestretch);
+    }
+    most = std::max(most, 3 * std::abs(tension) * stage.units.length / circle->radius);
+  }
+  return most;
+}
+
+double stretching_gain_of(const scene::Scene& scene) {
+  const scene::Numerics& n = scene.numerics;
+  const bool cautious = (n.slip_correction && n.tau < least_corrected_tau) || n.tau > most_tau;
+  return cautious ? cautious_stretching_gain : stretching_gain;
+}
+
+}  // namespace
+
+bool semi_implicit_gains(const Plan& plan) { return plan.scene->numerics.tau >= least_semi_implicit_tau; }
+
+double explicit_margin(const Plan& plan) {
+  double margin = std::numeric_limits<double>::infinity();
+  if (!plan.has_cells) return margin;
+  for (const StageSetting& stage : plan.stages) {
+    const Stiffness nearest = membrane_stiffness(plan, stage.model_setting(plan.scene->fluid.inertia));
+    margin = std::min({margin, nearest.stretching.margin(), nearest.bending.margin()});
+  }
+  return margin;
+}
+
+std::vector<Limit> find_limits(const Plan& plan) {
+  const scene::Scene& scene = *plan.scene;
+  std::vector<Limit> limits;
+  // `upper`: the value must stay below the limit; otherwise above it.
+  const auto add = [&](const std::string& name, double value, double limit, bool upper, const std::string& remedy,
+                       RemediedBy remedied_by = RemediedBy::nothing) {
+    if (!std::isfinite(value)) return;
+    const double margin = upper ? (value > 0 ? limit / value : std::numeric_limits<double>::infinity()) : value / limit;
+    limits.push_back({name, value, limit, margin, remedy, remedied_by});
+  };
+  constexpr RemediedBy density = RemediedBy::density_factor, resolution = RemediedBy::resolution;
+  const double tau = scene.numerics.tau;
+  add("tau - 1/2", tau - 0.5, 0.005, false, "raise numerics.tau above 0.505");
+  if (plan.semi_implicit) {
+    add("tau of the semi-implicit step", tau, least_semi_implicit_tau, false,
+        "raise numerics.tau, for the semi-implicit step gains nothing at low viscosity");
+  }
+
+  for (const StageSetting& stage : plan.stages) {
+    const std::string where = " (stage " + stage.stage->name + ")";
+    const plugin::ModelSetting setting = stage.model_setting(scene.fluid.inertia);
+    if (stage.wall_speed != 0) {
+      add("Mach number of the walls" + where, std::abs(stage.wall_speed) * std::sqrt(3.0),
+          scene::largest_wall_mach(scene.fluid.inertia), true,
+          "lower density_factor or shear_rate, or raise the resolution", density);
+    }
+    if (stage.body_force_x != 0 && !scene.domain.periodic_y) {
+      const double height = scene.domain.nodes[1];
+      const double speed = std::abs(stage.body_force_x) * height * height / (8 * (tau - 0.5) / 3);
+      add("Mach number of the driven flow" + where, speed * std::sqrt(3.0), 0.1, true,
+          "lower density_factor or the driving force, or raise the resolution", density);
+    }
+    if (!plan.has_cells) continue;
+    if (stage.body_force_x != 0 && !scene.domain.periodic_y && !scene.fluid.inertia) {
+      // Without u.grad u the unsteady term is not the same for a fluid that moves as a whole: a cell that travels with
+      // it leaves a wake and migrates wrongly, in proportion to this number (docs/rheology.md).
+      const double height = scene.domain.nodes[1], viscosity = (tau - 0.5) / 3;
+      const double speed = std::abs(stage.body_force_x) * height * height / (12 * viscosity);
+      double radius = 0;
+      for (const scene::CellPlacement& cell : scene.cells) {
+        radius = std::max(radius, shape::shape_radius(scene.cell_types[static_cast<std::size_t>(cell.type)].shape));
+      }
+      add("Reynolds number of cells that travel, without convective inertia" + where,
+          speed * radius / stage.units.length / viscosity, 0.05, true,
+          "set fluid.inertia to true, or lower density_factor: cells would migrate across the channel wrongly",
+          density);
+    }
+    const Stiffness membrane = membrane_stiffness(plan, setting);
+    const bool gains = plan.semi_implicit && semi_implicit_gains(plan);
+    const std::string coupled = plan.semi_implicit ? ", semi-implicit step" : " in lattice units";
+    const std::string softer = plan.semi_implicit
+                                   ? "lower density_factor, with which the lattice stiffness falls"
+                                   : "lower density_factor, with which the lattice stiffness falls, or set "
+                                     "numerics.coupling to \"semi-implicit\"";
+    add("stretching stiffness" + coupled + where, membrane.stretching.value,
+        (gains ? stretching_gain_of(scene) : 1) * membrane.stretching.limit, true, softer, density);
+    add("bending stiffness" + coupled + where, membrane.bending.value,
+        (gains ? bending_gain : 1) * membrane.bending.limit, true, softer, density);
+    if (const double compression = prestress_compression(plan, stage); compression > 0) {
+      add("compression of cells by their prestress, 3 T/a" + where, compression, 1e-3, true,
+          "lower density_factor: pressure compresses the lattice's fluid the more, the longer the time step", density);
+    }
+    for (const PlannedModel& model : plan.interactions) {
+      if (!model.active()) continue;
+      if (!model.manifest->state.empty()) continue;  // its stiffness is a matter of what it remembers
+      const PotentialShape shape = find_shape(plugin::ModelInstance(*model.manifest, model.parameters.values, setting));
+      const auto same = [&](const PlannedModel& other) { return other.manifest->id == model.manifest->id; };
+      const bool several = std::count_if(plan.interactions.begin(), plan.interactions.end(), same) > 1;
+      const std::string named = model.manifest->id + (several ? " (" + plan.owner_of(model) + ")" : "");
+      add("contact stiffness of " + named + " in lattice units" + where, shape.stiffness,
+          interpolate(contact_limit, tau), true, "lower density_factor, with which the lattice stiffness falls",
+          density);
+      if (stage.index != 0) continue;
+      if (shape.well) {
+        add("equilibrium gap of " + named + " in lattice spacings", shape.well->distance, 2.0, false,
+            "raise the resolution or place the well farther out, for membranes whose gap it does not resolve stick "
+            "for ever",
+            resolution);
+        add("width of the well of " + named + " in lattice spacings", shape.well->width(), narrowest_well, false,
+            "raise the resolution or take a wider well, for the corners of membranes catch on each other in a narrow "
+            "one",
+            resolution);
+      } else {
+        add("range of the repulsion of " + named + " in lattice spacings", shape.range, 2.0, false,
+            "raise the resolution or the range, for nearer than that the lattice moves two membranes together whatever "
+            "acts between them",
+            resolution);
+      }
+    }
+    if (stage.index != 0) continue;
+    double shortest = 1e300, longest = 0;
+    for (const scene::CellPlacement& cell : scene.cells) {
+      const scene::CellType& type = scene.cell_types[static_cast<std::size_t>(cell.type)];
+      const double segment = segment_length(type) / stage.units.length;
+      shortest = std::min(shortest, segment);
+      longest = std::max(longest, segment);
+    }
+    add("cell radius in lattice spacings", shape::smallest_radius(scene) / stage.units.length, 10, false,
+        "raise the resolution; results are converged from about 20", resolution);
+    add("shortest segment in lattice spacings", shortest, 0.4, false,
+        "take fewer segments; about one for each spacing is best");
+    add("longest segment in lattice spacings", longest, longest_segment, true,
+        "take more segments, for fluid leaks between nodes that lie far apart; about one for each spacing is best");
+  }
+  std::stable_sort(limits.begin(), limits.end(), [](const Limit& a, const Limit& b) { return a.margin < b.margin; });
+  return limits;
+}
+
+}  // namespace rouleau::plan

@@ -1,0 +1,54 @@
+#include "stage_scales.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace rouleau::plan {
+
+double lattice_spacing(const scene::Scene& scene) { return scene.domain.size.x() / scene.domain.nodes[0]; }
+
+StageSetting make_stage_setting(const scene::Scene& scene, int index) {
+  const scene::Stage& stage = scene.stages[static_cast<std::size_t>(index)];
+  const double spacing = lattice_spacing(scene);
+  const double density = scene.fluid.density * stage.density_factor;
+  const double tau = scene.numerics.tau;
+
+  StageSetting setting{};
+  setting.stage = &stage;
+  setting.index = index;
+  setting.units.length = spacing;
+  setting.units.time = units::time_step(tau, spacing, scene.fluid.viscosity / density);
+  setting.units.mass = density * spacing * spacing * spacing;
+  setting.tau = tau;
+  setting.shear_rate = setting.units.to_lattice(stage.shear_rate, units::dimension::rate);
+  setting.wall_speed = setting.shear_rate * scene.domain.nodes[1] / 2;
+  const Eigen::Vector2d force = scene.fluid.body_force + stage.pressure_gradient;
+  setting.body_force_x = setting.units.to_lattice(force.x(), units::dimension::force_density);
+  setting.body_force_y = setting.units.to_lattice(force.y(), units::dimension::force_density);
+
+  double steps = std::numeric_limits<double>::infinity();
+  if (stage.duration) steps = std::min(steps, *stage.duration / setting.units.time);
+  if (stage.strain) steps = std::min(steps, *stage.strain / std::abs(setting.shear_rate));
+  constexpr double most = 1e15;
+  setting.max_steps = static_cast<long>(std::ceil(std::min(steps, most) - 1e-6));
+  return setting;
+}
+
+fluid::FluidSetting StageSetting::fluid_setting(const scene::Scene& scene, bool membranes,
+                                                bool viscosity_contrast) const {
+  fluid::FluidSetting setting{};
+  setting.nx = scene.domain.nodes[0];
+  setting.ny = scene.domain.nodes[1];
+  setting.periodic_y = scene.domain.periodic_y;
+  setting.relaxation_rate = 1 / tau;
+  setting.inertia = scene.fluid.inertia;
+  setting.walls = {-wall_speed, wall_speed};
+  setting.body_force_x = body_force_x;
+  setting.body_force_y = body_force_y;
+  setting.membranes = membranes;
+  setting.viscosity_contrast = viscosity_contrast;
+  return setting;
+}
+
+}  // namespace rouleau::plan

@@ -1,0 +1,36 @@
+// One stage in lattice units: the conversions that a stage's density factor decides.
+#pragma once
+
+#include "core/fluid/fluid.hpp"
+#include "plugin/model.hpp"
+#include "scene/scene.hpp"
+#include "units/lattice_units.hpp"
+
+namespace rouleau::plan {
+
+struct StageSetting {
+  const scene::Stage* stage;
+  int index;
+  units::LatticeUnits units;
+  double tau;
+  double shear_rate;                  ///< lattice
+  double wall_speed;                  ///< lattice, of the upper wall; the lower one moves the other way
+  double body_force_x, body_force_y;  ///< lattice, body force and pressure gradient
+  long max_steps;                     ///< of duration or strain, whichever is shorter
+
+  [[nodiscard]] plugin::ModelSetting model_setting(bool inertia) const { return {units, 1 / tau, inertia}; }
+  [[nodiscard]] fluid::FluidSetting fluid_setting(const scene::Scene& scene, bool membranes,
+                                                  bool viscosity_contrast) const;
+  /// Walls or a force put energy in.
+  [[nodiscard]] bool is_driven() const { return shear_rate != 0 || body_force_x != 0 || body_force_y != 0; }
+  /// Steps from one output to the next for a time interval in seconds (at least one).
+  [[nodiscard]] double steps_of(double seconds) const { return seconds / units.time; }
+};
+
+/// Spacing of the lattice, m.
+double lattice_spacing(const scene::Scene& scene);
+
+/// Conversions of stage `index`: with density rho f (f the density factor) as unit, dt = (tau - 1/2)/3 dx^2 rho f / mu.
+StageSetting make_stage_setting(const scene::Scene& scene, int index);
+
+}  // namespace rouleau::plan

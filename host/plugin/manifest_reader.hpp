@@ -1,0 +1,31 @@
+// What a JSON Schema cannot say about a manifest: units, limits, and names that must fit each other.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "json/document.hpp"
+#include "manifest.hpp"
+
+namespace rouleau::plugin {
+
+// All of these expect a document that fits the schema, and throw Error(plugin_refused) with the place of the fault.
+
+/// The parameters, with numbers in SI. Units must parse; names be unique; limits, usual range and default fit together.
+std::vector<Parameter> read_parameters(const json::Document& document, const units::Units& units);
+
+/// The state variables, with initial values in SI. Units must parse and have a size on the lattice; names be unique.
+std::vector<StateVariable> read_state(const json::Document& document, const units::Units& units);
+
+/// "needs" and "gives" hold names of the manifest's kind only, and what every model of this kind must have; a membrane
+/// law keeps to one element.
+void check_quantities(const json::Document& document, const Manifest& manifest);
+
+/// An object of the manifest ("inactive_when", "stands_for") names parameters and gives values that these can have.
+void check_parameter_values(const json::Document& document, const Manifest& manifest, const char* key,
+                            const nlohmann::json& values, const units::Units& units);
+
+/// "checks" name parameters, inputs of "needs" and outputs of "gives".
+void check_reference_numbers(const json::Document& document, const Manifest& manifest);
+
+}  // namespace rouleau::plugin

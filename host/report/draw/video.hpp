@@ -1,0 +1,16 @@
+// A video made of pictures by ffmpeg, where that is installed.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+
+namespace rouleau::report {
+
+/// Writes `file` (MP4, H.264), whole or not at all, from PNG pictures of one size, which `next` hands out until it has
+/// no more. False when there is no ffmpeg. Throws Error(input_output) with ffmpeg's words when it fails.
+bool write_video(const std::filesystem::path& file, int frames_per_second,
+                 const std::function<std::optional<std::string>()>& next);
+
+}  // namespace rouleau::report

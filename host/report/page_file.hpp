@@ -1,0 +1,14 @@
+// Puts the data of a page into its template: what report.html, study.html and limits.html have in common.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+
+namespace rouleau::report {
+
+/// `page` with its mark for the data replaced by `data`, in such a way that no text in the data can end it early or
+/// become markup.
+std::string page_with(std::string_view page, const nlohmann::json& data);
+
+}  // namespace rouleau::report

@@ -1,0 +1,18 @@
+// report.html: one self-contained page made from the files of a run's directory, or of two.
+#pragma once
+
+#include <filesystem>
+
+namespace rouleau::report {
+
+/// (Re)makes `file`, DIR/report.html when empty, from DIR's files alone, and returns its path. Says on the terminal
+/// which of an ended run's files are damaged: the page shows what can be read. Throws Error(input_output) or, for a
+/// directory that is no run, Error(bad_input).
+std::filesystem::path write_report(const std::filesystem::path& directory, std::filesystem::path file = {});
+
+/// Writes a page with two runs side by side into `file`. Throws as write_report, and Error(bad_input) where a run has
+/// not ended.
+void write_comparison(const std::filesystem::path& a, const std::filesystem::path& b,
+                      const std::filesystem::path& file);
+
+}  // namespace rouleau::report

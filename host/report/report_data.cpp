@@ -1,0 +1,244 @@
+#include "report_data.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <set>
+#include <string_view>
+
+#include "files/csv_reader.hpp"
+#include "files/file.hpp"
+#include "files/frames.hpp"
+#include "json/document.hpp"
+#include "report_fields.hpp"
+#include "report_outlines.hpp"
+
+namespace rouleau::report {
+
+namespace {
+
+using Json = nlohmann::json;
+using Selection = std::vector<std::size_t>;
+
+constexpr std::size_t most_outputs = 400;
+constexpr std::size_t most_lines = 12;       ///< of a chart
+constexpr std::size_t most_points = 300000;  ///< of all outlines: about 1.6 MB of page
+constexpr std::size_t fewest_nodes = 24;     ///< of an outline
+constexpr std::size_t most_fields = 120;     ///< outputs whose flow is shown
+/// Five digits are more than a screen shows and keep the page small; an axis needs more where a run is long.
+Json shown_value(double value, int precision = 5) {
+  if (!std::isfinite(value)) return nullptr;
+  std::array<char, 32> digits{};
+  const auto end =
+      std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::general, precision).ptr;
+  double rounded = 0;
+  std::from_chars(digits.data(), end, rounded);
+  return rounded;
+}
+
+Json picked(const std::vector<double>& values, const Selection& selection, double factor = 1, int precision = 5) {
+  Json result = Json::array();
+  for (const std::size_t i : selection) result.push_back(shown_value(factor * values[i], precision));
+  return result;
+}
+
+/// Lines of a chart from a column of cells.csv: `count` cells per output.
+Json lines(const std::vector<double>& column, std::size_t count, const Selection& selection, double factor) {
+  Json result = Json::array();
+  const auto at = [&](std::size_t output, std::size_t cell) { return factor * column[output * count + cell]; };
+  if (count <= most_lines) {
+    for (std::size_t cell = 0; cell < count; ++cell) {
+      Json line = Json::array();
+      for (const std::size_t output : selection) line.push_back(shown_value(at(output, cell)));
+      result.push_back(std::move(line));
+    }
+    return result;
+  }
+  Json smallest = Json::array(), mean = Json::array(), largest = Json::array();
+  for (const std::size_t output : selection) {
+    double low = std::numeric_limits<double>::infinity(), high = -low, sum = 0;
+    int finite = 0;
+    for (std::size_t cell = 0; cell < count; ++cell) {
+      const double value = at(output, cell);
+      if (!std::isfinite(value)) continue;
+      low = std::min(low, value);
+      high = std::max(high, value);
+      sum += value;
+      ++finite;
+    }
+    smallest.push_back(shown_value(low));
+    mean.push_back(shown_value(finite > 0 ? sum / finite : std::numeric_limits<double>::quiet_NaN()));
+    largest.push_back(shown_value(high));
+  }
+  return Json::array({smallest, mean, largest});
+}
+
+Json cell_data(const files::StoredTable& table, std::size_t count, const Selection& selection) {
+  Json cells{{"labels", Json::array()}, {"aggregate", Json::array()}};
+  const auto types = table.texts("type");
+  if (count <= most_lines)
+    for (std::size_t cell = 0; cell < count; ++cell)
+      cells["labels"].push_back("cell " + std::to_string(cell) + " (" + types[cell] + ")");
+  else
+    cells["labels"] = {"smallest", "mean", "largest"};
+  const auto aggregate = table.numbers("aggregate");
+  for (const std::size_t output : selection) {
+    Json labels = Json::array();
+    for (std::size_t cell = 0; cell < count; ++cell) labels.push_back(std::lround(aggregate[output * count + cell]));
+    cells["aggregate"].push_back(std::move(labels));
+  }
+  cells["deformation"] = lines(table.numbers("deformation"), count, selection, 1);
+  cells["angle_deg"] = lines(table.numbers("angle_rad"), count, selection, 180 / std::numbers::pi);
+  cells["min_gap_um"] = lines(table.numbers("min_gap_m"), count, selection, micro);
+  return cells;
+}
+
+Json series_data(const files::StoredTable& series, const Selection& selection) {
+  Json data;
+  for (const char* name : {"aggregate_count", "aggregate_size_weight_mean", "relative_viscosity", "particle_stress_Pa",
+                           "mach_max", "area_drift_max", "area_leakage_max", "mass_drift"})
+    data[name] = picked(series.numbers(name), selection);
+  for (const auto& [name, column] : {std::pair{"cell_free_layer_lower_um", "cell_free_layer_lower_m"},
+                                     std::pair{"cell_free_layer_upper_um", "cell_free_layer_upper_m"}}) {
+    data[name] = picked(series.numbers(column), selection, micro);
+  }
+  // The ledger of energies, which runs of earlier versions do not have.
+  for (const char* name : {"kinetic_energy_J_per_m", "elastic_energy_J_per_m", "bending_energy_J_per_m",
+                           "interaction_energy_J_per_m", "total_energy_J_per_m", "viscous_dissipation_W_per_m",
+                           "membrane_dissipation_W_per_m", "wall_power_W_per_m", "body_force_power_W_per_m"})
+    if (series.has(name)) data[name] = picked(series.numbers(name), selection);
+  return data;
+}
+
+/// Which outputs a page shows, and how many of their nodes.
+struct Choice {
+  Selection outputs;
+  std::size_t stride = 1;
+};
+
+Choice choose(const std::vector<double>& aggregate_count, std::size_t nodes, std::size_t cells,
+              const Selection& with_fields) {
+  Choice choice{shown_outputs(aggregate_count, most_outputs)};
+  while (choice.outputs.size() * nodes / choice.stride > most_points &&
+         nodes / std::max<std::size_t>(1, cells) / (choice.stride + 1) >= fewest_nodes)
+    ++choice.stride;
+  const std::size_t per_output = std::max<std::size_t>(1, nodes / choice.stride);
+  if (choice.outputs.size() * per_output > most_points)
+    choice.outputs = shown_outputs(aggregate_count, std::max<std::size_t>(50, most_points / per_output));
+
+  std::set<std::size_t> outputs(choice.outputs.begin(), choice.outputs.end());
+  for (const std::size_t output : with_fields)
+    if (output < aggregate_count.size() && (outputs.size() + 1) * per_output <= most_points) outputs.insert(output);
+  choice.outputs.assign(outputs.begin(), outputs.end());
+  return choice;
+}
+
+}  // namespace
+
+std::vector<std::size_t> shown_outputs(const std::vector<double>& aggregate_count, std::size_t most) {
+  const std::size_t n = aggregate_count.size();
+  std::set<std::size_t> selected;
+  if (n <= most) {
+    for (std::size_t i = 0; i < n; ++i) selected.insert(i);
+  } else {
+    for (std::size_t k = 0; k < most; ++k) selected.insert(k * (n - 1) / (most - 1));
+    std::size_t changes = 0;
+    for (std::size_t i = 1; i < n && changes < most / 2; ++i)
+      if (aggregate_count[i] != aggregate_count[i - 1]) {
+        selected.insert({i - 1, i});
+        ++changes;
+      }
+  }
+  return {selected.begin(), selected.end()};
+}
+
+bool has_run(const std::filesystem::path& directory) {
+  return std::filesystem::exists(directory / "summary.json") || std::filesystem::exists(directory / "series.csv");
+}
+
+Json report_data(const std::filesystem::path& directory) {
+  if (!has_run(directory))
+    throw Error(ExitCode::bad_input, Place{directory.string(), "", 0, 0},
+                "is no run's directory: it has neither summary.json nor series.csv");
+  const bool ended = std::filesystem::exists(directory / "summary.json");
+  Json data;
+  data["summary"] = ended ? json::Document::read(directory / "summary.json").root() : Json(nullptr);
+  const bool has_scene = std::filesystem::exists(directory / "scene.json");
+  data["scene"] = has_scene ? Json(files::read_text(directory / "scene.json")) : Json(nullptr);
+
+  const files::StoredTable series(directory / "series.csv");
+  const files::StoredTable cells(directory / "cells.csv");
+  const std::size_t count = cells.count_of("cell");
+  std::size_t outputs = series.rows();
+  Json damage = Json::array();
+  // A run that goes on, or was killed, may lack the last rows of a file; one that has ended may not.
+  const auto take = [&](const char* file, std::size_t has) {
+    if (ended && has < series.rows()) {
+      damage.push_back((directory / file).string() + " holds " + std::to_string(has) + " of the " +
+                       std::to_string(series.rows()) + " outputs of series.csv: it was cut short; bring the whole " +
+                       "file back, or run the scene again. What is shown here ends where it ends.");
+    }
+    outputs = std::min(outputs, has);
+  };
+  if (count > 0) take("cells.csv", cells.rows() / count);
+
+  std::optional<files::FrameReader> reader;
+  std::string note;
+  const auto without_animation = [&](const Error& error) {  // the rest of the page is worth having
+    reader.reset();
+    note = std::string("No animation: ") + error.what();
+    if (ended) damage.push_back(error.what());
+  };
+  std::size_t nodes = 0;
+  Selection with_fields;
+  try {
+    reader.emplace(directory / "frames.h5");
+    take("frames.h5", static_cast<std::size_t>(reader->frames()));
+    if (outputs > 0) {
+      nodes = reader->outlines(0).x.size();
+      with_fields = field_outputs(directory / "frames.h5", most_fields);
+    }
+  } catch (const Error& error) {
+    without_animation(error);
+  }
+
+  auto aggregate_count = series.numbers("aggregate_count");
+  aggregate_count.resize(outputs);
+  const auto [selection, stride] = choose(aggregate_count, nodes, count, with_fields);
+
+  data["shown"] = {{"outputs", selection.size()}, {"of", outputs}, {"node_stride", stride}};
+  constexpr int axis_precision = 9;
+  for (const char* name : {"time_s", "strain"}) data[name] = picked(series.numbers(name), selection, 1, axis_precision);
+  const auto steps = series.numbers("step");
+  const auto stages = series.texts("stage_name");
+  data["step"] = data["stage"] = Json::array();
+  for (const std::size_t i : selection) {
+    data["step"].push_back(std::llround(steps[i]));
+    data["stage"].push_back(stages[i]);
+  }
+  data["series"] = series_data(series, selection);
+  data["cells"] = count > 0 && outputs > 0 ? cell_data(cells, count, selection) : Json(nullptr);
+  data["outlines"] = data["fields"] = nullptr;
+  if (reader && outputs > 0) {
+    try {
+      const auto size = reader->size();
+      data["domain"] = {{"size_um", {size[0] * micro, size[1] * micro}}, {"periodic_y", reader->periodic_y()}};
+      Json outlines = outline_data(*reader, selection, stride);
+      data["fields"] = field_data(directory / "frames.h5", selection);
+      data["outlines"] = std::move(outlines);  // both or none
+    } catch (const Error& error) {
+      without_animation(error);
+    }
+  }
+  if (note.empty() && count > 0 && outputs > 0 && data["outlines"].is_null())
+    note = "No animation: the number of membrane nodes changes during the run.";
+  data["shown"]["note"] = note;
+  data["shown"]["damage"] = damage;
+  return data;
+}
+
+}  // namespace rouleau::report

@@ -1,0 +1,32 @@
+// What report.html shows, gathered from the files of a run's directory and thinned to what a page can carry.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+namespace rouleau::report {
+
+/// Whether the directory has the files of a run, one that has not ended included.
+bool has_run(const std::filesystem::path& directory);
+
+/// Object with
+///   summary   summary.json as it is, null when the run has not ended
+///   scene     text of scene.json, null when there is none
+///   shown     {outputs, of, node_stride, note, damage}: what was thinned, why there is no animation, and sentences on
+///             the files of an ended run that are damaged
+///   step, time_s, strain, stage   one entry per shown output
+///   series    name -> values per shown output; names of the energy ledger only where the run wrote them
+///   cells     {labels, aggregate, deformation, angle_deg, min_gap_um}: aggregate by output and cell, the others
+///             name -> lines of values per shown output (a line per cell; of more than 12 cells smallest, mean,
+///             largest)
+///   domain    {size_um, periodic_y}; absent without frames
+///   outlines  outline_data() of the shown outputs (report_outlines.hpp), or null
+///   fields    field_data() of the shown outputs (report_fields.hpp), or null
+/// Undefined numbers are null. Throws Error(bad_input) when the directory is no run's.
+nlohmann::json report_data(const std::filesystem::path& directory);
+
+/// Outputs to show, at most about `most` of `aggregate_count`'s: evenly spread, the first, the last, and where the
+/// count changes.
+std::vector<std::size_t> shown_outputs(const std::vector<double>& aggregate_count, std::size_t most);
+
+}  // namespace rouleau::report

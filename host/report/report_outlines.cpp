@@ -1,0 +1,90 @@
+#include "report_outlines.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string_view>
+
+namespace rouleau::report {
+
+namespace {
+
+using Json = nlohmann::json;
+
+/// One output's outlines as the page holds them.
+void add_outlines(Json& result, const observe::OutlineSnapshot& outlines, std::size_t stride, double quantum) {
+  Json origins = Json::array();
+  std::vector<unsigned char> bytes;
+  const auto add = [&](double metres) {
+    const double limit = std::numeric_limits<std::int16_t>::max();
+    if (!std::isfinite(metres)) metres = 0;  // the last output of a diverged run
+    const auto value = static_cast<std::int16_t>(std::lround(std::clamp(metres / quantum, -limit, limit)));
+    const auto bits = static_cast<std::uint16_t>(value);
+    bytes.push_back(static_cast<unsigned char>(bits & 0xff));
+    bytes.push_back(static_cast<unsigned char>(bits >> 8));
+  };
+  for (std::size_t cell = 0; cell + 1 < outlines.first.size(); ++cell) {
+    const auto begin = static_cast<std::size_t>(outlines.first[cell]),
+               end = static_cast<std::size_t>(outlines.first[cell + 1]);
+    // The middle of the bounding box keeps every node within half its extent.
+    const auto middle = [&](const std::vector<double>& v) {
+      const auto [low, high] =
+          std::minmax_element(v.begin() + static_cast<long>(begin), v.begin() + static_cast<long>(end));
+      return std::round((*low + *high) / 2 / quantum) * quantum;
+    };
+    const double x = middle(outlines.x), y = middle(outlines.y);
+    origins.push_back(std::round(x * micro * 1000) / 1000);
+    origins.push_back(std::round(y * micro * 1000) / 1000);
+    for (std::size_t i = begin; i < end; i += stride) {
+      add(outlines.x[i] - x);
+      add(outlines.y[i] - y);
+    }
+  }
+  result["origin_um"].push_back(std::move(origins));
+  result["nodes"].push_back(base64(bytes));
+}
+
+}  // namespace
+
+Json outline_data(const files::FrameReader& reader, const std::vector<std::size_t>& selection, std::size_t stride) {
+  const auto size = reader.size();
+  Json result{{"size_um", {size[0] * micro, size[1] * micro}},
+              {"periodic_y", reader.periodic_y()},
+              {"first", Json::array()},
+              {"origin_um", Json::array()},
+              {"nodes", Json::array()}};
+  const double quantum = std::max(1e-9, std::hypot(size[0], size[1]) / std::numeric_limits<std::int16_t>::max());
+  result["quantum_um"] = quantum * micro;
+  std::vector<int> first;
+  for (const std::size_t output : selection) {
+    const auto outlines = reader.outlines(static_cast<int>(output));
+    if (first.empty()) {
+      first = outlines.first;
+      std::size_t shown_nodes = 0;
+      for (std::size_t cell = 0; cell < first.size(); ++cell) {
+        result["first"].push_back(shown_nodes);
+        if (cell + 1 < first.size()) {
+          const auto nodes = static_cast<std::size_t>(first[cell + 1] - first[cell]);
+          shown_nodes += (nodes + stride - 1) / stride;
+        }
+      }
+    }
+    if (first.empty() || outlines.first != first) return nullptr;
+    add_outlines(result, outlines, stride, quantum);
+  }
+  return first.empty() ? Json(nullptr) : result;
+}
+
+std::string base64(const std::vector<unsigned char>& bytes) {
+  constexpr std::string_view letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const auto byte = [&](std::size_t k) { return i + k < bytes.size() ? unsigned{bytes[i + k]} : 0u; };
+    const unsigned triple = byte(0) << 16 | byte(1) << 8 | byte(2);
+    for (unsigned k = 0; k < 4; ++k) text += i + k <= bytes.size() ? letters[triple >> (18 - 6 * k) & 63] : '=';
+  }
+  return text;
+}
+
+}  // namespace rouleau::report

@@ -1,0 +1,24 @@
+// The cells' outlines as report.html carries them: integers relative to each cell's origin, in base64.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "files/frames.hpp"
+
+namespace rouleau::report {
+
+/// A report tells lengths in micrometres.
+inline constexpr double micro = 1e6;
+
+/// {size_um, periodic_y, quantum_um, first, origin_um, nodes} of the outputs `selection`, one node in `stride` of every
+/// cell: nodes[k] is, for the k-th of them, base64 of little-endian int16 x, y of every node, in quanta from its cell's
+/// origin. Null when there are no cells, or when the number of their nodes changes.
+nlohmann::json outline_data(const files::FrameReader& reader, const std::vector<std::size_t>& selection,
+                            std::size_t stride);
+
+/// Base64 (RFC 4648) of bytes.
+std::string base64(const std::vector<unsigned char>& bytes);
+
+}  // namespace rouleau::report

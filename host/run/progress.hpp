@@ -1,0 +1,40 @@
+// What a user sees while a run goes on: a bar on a terminal, a line now and then in a pipe.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <string>
+
+namespace rouleau::run {
+
+/// State of a run for display.
+struct ProgressState {
+  long step;
+  double fraction;  ///< of the whole run that is done, estimated, 0..1
+  std::string stage;
+  double strain;
+  double mach_max, area_drift;
+  int aggregates;
+};
+
+/// One line of at most `width` characters for a terminal. Where all of it has no room, what tells least is left out:
+/// first the bar, then the Mach number, the area drift, the speed, the aggregates.
+/// rate: steps per second; remaining_s: not finite where it is not known.
+std::string progress_line(const ProgressState& state, double rate, double remaining_s, std::size_t width);
+
+/// Prints to stderr; cheap to call often: draws at most ten times a second (terminal) or every ten seconds (pipe).
+class Progress {
+ public:
+  explicit Progress(bool quiet);
+  void update(const ProgressState& state);
+  /// Clears the bar's line: what is printed next starts on a clean one.
+  void finish();
+
+ private:
+  bool quiet_, terminal_, drawn_ = false;
+  std::chrono::steady_clock::time_point start_, last_;
+  long first_step_ = -1, last_step_ = 0;
+  double first_fraction_ = 0, rate_ = 0;  ///< at the first update; steps per second, smoothed
+};
+
+}  // namespace rouleau::run

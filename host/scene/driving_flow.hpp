@@ -1,0 +1,21 @@
+// What drives the flow of a stage.
+#pragma once
+
+#include "scene.hpp"
+
+namespace rouleau::scene {
+
+/// Force per volume that drives the fluid in a stage, N/m3.
+Eigen::Vector2d driving_force(const Stage& stage, const Scene& scene);
+
+/// Shear rate that a stage's numbers are made with, 1/s: that of the walls where they move; else that of the developed
+/// flow between them, |du/dy| averaged over the height, G H / (4 mu), which is its largest velocity over half the
+/// height. 0 at rest, and where no wall holds a flow that is driven.
+double mean_shear_rate(const Stage& stage, const Scene& scene);
+
+/// Largest Mach number of moving walls without a warning. Without convective inertia the fluid's equations are linear
+/// in the velocity, and what is left is the membranes' step in time: a capsule's deformation changes by 2e-4 from 0.03
+/// to 0.2 (docs/accuracy.md).
+inline double largest_wall_mach(bool inertia) { return inertia ? 0.1 : 0.2; }
+
+}  // namespace rouleau::scene

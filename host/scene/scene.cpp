@@ -1,0 +1,188 @@
+#include "scene.hpp"
+
+#include <cmath>
+#include <cstdint>
+
+#include "base/text.hpp"
+#include "json/document.hpp"
+#include "json/json_pointer.hpp"
+#include "json/schema.hpp"
+#include "scene_reader.hpp"
+
+namespace rouleau::scene {
+namespace {
+
+constexpr std::int64_t most_nodes = std::int64_t{1} << 28;
+constexpr std::int64_t most_membrane_nodes = 100'000'000;
+/// How far the spacings along x and y may differ: far above rounding of the text's digits, far below any effect.
+constexpr double spacing_tolerance = 1e-9;
+
+std::string in_micrometres(double metres) { return '"' + number(metres * 1e6, 12) + " um\""; }
+
+/// Says how to make the spacing the same along both directions, by size always and by nodes where a whole number does.
+std::string spacing_remedy(const Domain& domain) {
+  const Eigen::Vector2d spacing(domain.size.x() / domain.nodes[0], domain.size.y() / domain.nodes[1]);
+  std::string remedy =
+      "write size [" + in_micrometres(domain.size.x()) + ", " + in_micrometres(spacing.x() * domain.nodes[1]) + ']';
+  const double nodes = domain.size.y() / spacing.x();
+  if (std::abs(nodes - std::round(nodes)) < spacing_tolerance * nodes && nodes > 3.5 && nodes < 65536.5) {
+    remedy += " or nodes [" + std::to_string(domain.nodes[0]) + ", " + number(std::round(nodes), 12) + ']';
+  }
+  return remedy;
+}
+
+Domain read_domain(const SceneFields& fields) {
+  Domain domain;
+  domain.size = fields.quantities("/domain/size", "m", range::length);
+  fields.require("/domain", "nodes", "or \"numerics\": \"auto\" chooses them");
+  domain.nodes = fields.at("/domain/nodes").get<std::array<int, 2>>();
+  domain.periodic_y = fields.at("/domain/y").is_string();
+  if (std::int64_t{domain.nodes[0]} * domain.nodes[1] > most_nodes) {
+    fields.refuse("/domain/nodes", std::to_string(domain.nodes[0]) + " x " + std::to_string(domain.nodes[1]) +
+                                       " nodes are too many; at most " + std::to_string(most_nodes) +
+                                       " can be computed");
+  }
+  const double along_x = domain.size.x() / domain.nodes[0];
+  const double along_y = domain.size.y() / domain.nodes[1];
+  if (std::abs(along_x - along_y) > spacing_tolerance * along_x) {
+    fields.refuse("/domain/size", "the lattice spacing would be " + number(along_x * 1e6) + " um along x but " +
+                                      number(along_y * 1e6) + " um along y; it must be the same along both\n" +
+                                      spacing_remedy(domain));
+  }
+  return domain;
+}
+
+FluidProperties read_fluid(const SceneFields& fields) {
+  FluidProperties fluid;
+  fluid.density = fields.quantity("/fluid/density", "kg/m3", range::density);
+  fluid.viscosity = fields.quantity("/fluid/viscosity", "Pa s", range::viscosity);
+  fluid.inertia = fields.value_or("/fluid/inertia", false);
+  if (fields.has("/fluid/body_force")) {
+    fluid.body_force = fields.quantities("/fluid/body_force", "N/m3", range::force_density);
+  }
+  fluid.collision = fields.has("/fluid/collision") ? fields.model("/fluid/collision")
+                                                   : ModelChoice{"trt", nlohmann::json::object(), "/fluid/collision"};
+  return fluid;
+}
+
+Numerics read_numerics(const SceneFields& fields) {
+  Numerics numerics;
+  numerics.tau = fields.value_or("/numerics/tau", numerics.tau);
+  numerics.density_factor = fields.value_or("/numerics/density_factor", numerics.density_factor);
+  numerics.kernel = fields.value_or("/numerics/kernel", numerics.kernel);
+  numerics.precision =
+      fields.value_or("/numerics/precision", std::string("f64")) == "f32" ? Precision::f32 : Precision::f64;
+  numerics.coupling = fields.value_or("/numerics/coupling", numerics.coupling);
+  numerics.slip_correction = fields.value_or("/numerics/slip_correction", numerics.slip_correction);
+  numerics.area_correction = fields.value_or("/numerics/area_correction", numerics.area_correction);
+  return numerics;
+}
+
+std::vector<Interaction> read_interactions(const SceneFields& fields, const std::vector<CellType>& types) {
+  std::vector<Interaction> interactions;
+  const auto count = fields.has("/interactions") ? fields.at("/interactions").size() : 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto pointer = json::child_pointer("/interactions", i);
+    interactions.push_back(
+        {{fields.cell_type(pointer + "/between/0", types), fields.cell_type(pointer + "/between/1", types)},
+         fields.model(pointer)});
+  }
+  return interactions;
+}
+
+AtRest read_at_rest(const SceneFields& fields) {
+  AtRest at_rest;
+  at_rest.displacement = fields.quantity_or("/at_rest/displacement", "m", range::length, at_rest.displacement);
+  at_rest.window = fields.quantity_or("/at_rest/window", "s", range::time, at_rest.window);
+  return at_rest;
+}
+
+Checks read_checks(const SceneFields& fields) {
+  Checks checks;
+  checks.mach = fields.value_or("/checks/mach", checks.mach);
+  checks.node_step = fields.value_or("/checks/node_step", checks.node_step);
+  checks.area_drift = fields.value_or("/checks/area_drift", checks.area_drift);
+  checks.stretch = fields.value_or("/checks/stretch", checks.stretch);
+  checks.energy_growth = fields.value_or("/checks/energy_growth", checks.energy_growth);
+  checks.every_steps = fields.value_or("/checks/every_steps", checks.every_steps);
+  return checks;
+}
+
+std::vector<std::filesystem::path> read_plugin_dirs(const SceneFields& fields, const std::filesystem::path& beside) {
+  std::vector<std::filesystem::path> folders;
+  for (const auto& folder : fields.value_or("/plugin_dirs", std::vector<std::string>{})) {
+    if (folder.find('\0') != std::string::npos) {
+      fields.refuse(json::child_pointer("/plugin_dirs", folders.size()), "a folder's name cannot hold a NUL character");
+    }
+    folders.push_back(beside / folder);
+  }
+  return folders;
+}
+
+void check_membrane_nodes(const SceneFields& fields, const Scene& scene) {
+  std::int64_t nodes = 0;
+  for (const auto& cell : scene.cells) nodes += scene.cell_types[static_cast<std::size_t>(cell.type)].segments;
+  if (nodes <= most_membrane_nodes) return;
+  fields.refuse("/cells", "the cells have " + std::to_string(nodes) + " membrane nodes in all; at most " +
+                              std::to_string(most_membrane_nodes) + " can be computed: use fewer cells or segments");
+}
+
+/// Everything but the document itself. `beside` is the folder that relative plugin folders begin with.
+Scene read_values(const json::Document& document, const std::filesystem::path& beside) {
+  Scene scene;
+  const SceneFields fields(document);
+  if (fields.has("/title")) scene.title = fields.line("/title");
+  scene.domain = read_domain(fields);
+  scene.fluid = read_fluid(fields);
+  scene.numerics = read_numerics(fields);
+  scene.cell_types = read_cell_types(fields, scene.fluid.viscosity);
+  scene.cells = read_cells(fields, scene.cell_types, scene.domain, scene.packings);
+  scene.interactions = read_interactions(fields, scene.cell_types);
+  scene.stages = read_stages(fields, scene);
+  scene.output = read_output(fields, scene.stages);
+  scene.output.field_storage = read_field_storage(fields, scene.domain);
+  scene.at_rest = read_at_rest(fields);
+  scene.checks = read_checks(fields);
+  scene.plugin_dirs = read_plugin_dirs(fields, beside);
+  check_membrane_nodes(fields, scene);
+  return scene;
+}
+
+/// Puts what is chosen into a document that leaves its numerics open.
+plan::NumericsChoice fill_in_numerics(json::Document& document, const std::filesystem::path& beside,
+                                      const plan::NumericsBounds& bounds) {
+  plan::spell_out_numerics(document);
+  json::Document draft = document;
+  plan::put_draft_numerics(draft);
+  plan::NumericsChoice choice = plan::choose_numerics(read_values(draft, beside), document.root(), bounds);
+  plan::put_choice(document, choice);
+  return choice;
+}
+
+}  // namespace
+
+Place Scene::place(const std::string& pointer) const {
+  return document ? document->place(pointer) : Place{"", pointer, 0, 0};
+}
+
+Scene read_unpacked_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides,
+                          const plan::NumericsBounds& bounds) {
+  auto document = std::make_shared<json::Document>(json::Document::read(file));
+  for (const auto& assignment : overrides) document->set(assignment);
+  json::validate(*document, json::scene_schema());
+  std::optional<plan::NumericsChoice> choice;
+  if (plan::leaves_numerics_open(document->root())) choice = fill_in_numerics(*document, file.parent_path(), bounds);
+  Scene scene = read_values(*document, file.parent_path());
+  scene.numerics_choice = std::move(choice);
+  scene.document = std::move(document);
+  return scene;
+}
+
+Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides,
+                 const plan::NumericsBounds& bounds) {
+  Scene scene = read_unpacked_scene(file, overrides, bounds);
+  pack_cells(scene);  // may take a while: after everything else has been found right
+  return scene;
+}
+
+}  // namespace rouleau::scene

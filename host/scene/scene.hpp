@@ -1,0 +1,194 @@
+// A scene as the user wrote it: checked, in SI units, with the place of every value for later errors.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "base/error.hpp"
+#include "plan/numerics_auto.hpp"
+
+namespace rouleau::json {
+class Document;
+}
+namespace rouleau::scene {
+
+/// A plugin named by the scene. Its parameters stay as written (JSON) until a manifest gives them unit and meaning.
+struct ModelChoice {
+  std::string model;          ///< plugin id
+  nlohmann::json parameters;  ///< object: name -> "6e-3 dyn/cm" | number in SI | choice word
+  std::string pointer;        ///< JSON pointer of the object that names the model
+};
+
+struct Domain {
+  Eigen::Vector2d size;      ///< m
+  std::array<int, 2> nodes;  ///< lattice nodes along x and y; the spacing is the same along both
+  bool periodic_y = false;   ///< false: solid walls below and above; x is periodic always
+};
+
+struct FluidProperties {
+  double density;                                        ///< kg/m3
+  double viscosity;                                      ///< Pa s, of the suspending fluid
+  bool inertia = false;                                  ///< false: linear (Stokes) equilibrium
+  Eigen::Vector2d body_force = Eigen::Vector2d::Zero();  ///< N/m3, in every stage
+  ModelChoice collision;                                 ///< "trt" when the scene names none
+};
+
+enum class Precision { f32, f64 };
+
+struct Numerics {
+  double tau = 1.0;             ///< relaxation time of the suspending fluid, in time steps
+  double density_factor = 1.0;  ///< the fluid is simulated this many times denser than it is
+  std::string kernel = "peskin4";
+  Precision precision = Precision::f64;
+  std::string coupling = "explicit";  ///< or "semi-implicit", or "auto": the limits of the plan decide
+  bool slip_correction = false;       ///< take the tangential slip of the immersed boundary out
+  bool area_correction = false;       ///< keep the cells' areas, and report what would have leaked
+};
+
+struct Biconcave {
+  double radius;
+};  ///< m; reduced-volume red cell, long axis along x at angle 0
+struct Circle {
+  double radius;
+  double prestretch = 1.0;
+};  ///< radius as placed (m); rest length = length / prestretch
+struct Ellipse {
+  Eigen::Vector2d semi_axes;
+};  ///< m, first along x at angle 0
+using Shape = std::variant<Biconcave, Circle, Ellipse>;
+
+struct CellType {
+  std::string name;
+  Shape shape;
+  int segments;
+  double interior_viscosity;          ///< Pa s
+  std::vector<ModelChoice> membrane;  ///< laws that add up
+};
+
+/// One cell to be placed; rows and lists are expanded already.
+struct CellPlacement {
+  int type;                ///< index into Scene::cell_types
+  Eigen::Vector2d center;  ///< m
+  double angle;            ///< rad, counter-clockwise
+  std::string pointer;     ///< entry of /cells that asked for it
+};
+
+/// Cells that were placed at random.
+struct RandomPacking {
+  int type;                          ///< index into Scene::cell_types
+  int first, count;                  ///< its cells are Scene::cells[first] ... [first + count - 1]
+  std::optional<double> hematocrit;  ///< asked for, a share of the region; empty: a number of cells was
+  double reached;                    ///< share of the region that the cells fill at rest
+  std::uint32_t seed;
+  double gap;                    ///< m, kept from other cells, their images and walls
+  Eigen::Vector2d lower, upper;  ///< m, corners of the region that holds the cells
+  std::string pointer;           ///< entry of /cells
+};
+
+struct Interaction {
+  std::array<int, 2> between;  ///< indices into Scene::cell_types; unordered
+  ModelChoice potential;
+};
+
+enum class WallStart { impulsive, developed };
+
+struct Stage {
+  std::string name;
+  std::optional<double> duration;  ///< s
+  std::optional<double> strain;    ///< strain of this stage, shear_rate x time
+  bool until_at_rest = false;
+  double shear_rate = 0.0;  ///< 1/s; walls move with +-shear_rate x height / 2
+  WallStart start = WallStart::impulsive;
+  Eigen::Vector2d pressure_gradient =
+      Eigen::Vector2d::Zero();  ///< force per volume that drives the flow, Pa/m, along x
+  double density_factor;        ///< Numerics::density_factor unless the stage has its own
+  std::string pointer;
+};
+
+/// When an output is due: every so much strain, every so many seconds of simulated time, or both. Empty: never.
+struct Cadence {
+  std::optional<double> strain;
+  std::optional<double> seconds;
+  [[nodiscard]] bool never() const { return !strain && !seconds; }
+};
+
+/// Which nodes of the lattice the fields in frames.h5 hold, and how.
+struct FieldStorage {
+  std::array<int, 2> first{0, 0};          ///< node along x and y
+  std::optional<std::array<int, 2>> last;  ///< none: to the lattice's end
+  int stride = 1;                          ///< every so many nodes from the first
+  Precision precision = Precision::f32;
+  int compression = 1;  ///< level of deflate, behind a shuffle of the bytes; 0: none
+  [[nodiscard]] bool whole() const { return !last && stride == 1; }
+  /// Nodes along an axis of a lattice that has `nodes` of them.
+  [[nodiscard]] int count(int axis, int nodes) const;
+};
+
+struct Output {
+  Cadence cells;                        ///< rows of cells.csv, aggregates.csv and membranes in frames.h5
+  Cadence fields;                       ///< fluid fields in frames.h5
+  std::vector<std::string> quantities;  ///< of "velocity", "density", "viscosity", "vorticity"
+  FieldStorage field_storage;
+  std::optional<double> checkpoint_seconds = 600;  ///< of wall-clock time between checkpoints; absent: none are written
+  double aggregate_gap = 0.75e-6;                  ///< m; two cells are aggregated while their smallest gap is below
+};
+
+/// "at rest": no node moved more than `displacement` within the last `window`.
+struct AtRest {
+  double displacement = 0.01e-6;  ///< m
+  double window = 0.2;            ///< s
+};
+
+/// Limits beyond which a run stops before it writes garbage.
+struct Checks {
+  double mach = 0.3;         ///< largest Mach number of the lattice flow
+  double node_step = 0.5;    ///< largest displacement of a membrane node in one step, lattice spacings
+  double area_drift = 0.02;  ///< largest relative change of a cell's area
+  double stretch = 5;        ///< largest length of a segment over the one it was placed with, and the other way round
+  double energy_growth = 0.01;  ///< largest gain of energy in a stage at rest, over the energies there are
+  int every_steps = 200;        ///< steps between checks of fields, area, segments and crossings
+};
+
+struct Scene {
+  std::string title;
+  Domain domain;
+  FluidProperties fluid;
+  Numerics numerics;
+  std::vector<CellType> cell_types;
+  std::vector<CellPlacement> cells;
+  std::vector<RandomPacking> packings;
+  std::vector<Interaction> interactions;
+  std::vector<Stage> stages;
+  Output output;
+  AtRest at_rest;
+  Checks checks;
+  std::vector<std::filesystem::path> plugin_dirs;       ///< relative ones begin with the scene's folder
+  std::optional<plan::NumericsChoice> numerics_choice;  ///< what was chosen where the scene leaves its numerics open
+  std::shared_ptr<const json::Document> document;       ///< for places in later errors, and for the report
+
+  /// Place of a JSON pointer in the scene file, for an Error.
+  [[nodiscard]] Place place(const std::string& pointer) const;
+};
+
+/// Reads, validates against the shipped schema and converts a scene.
+/// `overrides` are "POINTER=VALUE" as given to --set; VALUE is any JSON value, or a bare word taken as a string.
+/// `bounds` are for a scene that leaves its numerics open. Throws Error with ExitCode::bad_input (or input_output when
+/// the file cannot be read).
+Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {},
+                 const plan::NumericsBounds& bounds = {});
+
+/// The two halves of read_scene: all but the places of the cells that are placed at random, and these places. Throws
+/// Error(bad_input) where they do not fit.
+Scene read_unpacked_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {},
+                          const plan::NumericsBounds& bounds = {});
+void pack_cells(Scene& scene);
+
+}  // namespace rouleau::scene

@@ -1,0 +1,139 @@
+// Cell types and where cells are placed.
+#include "base/text.hpp"
+#include "json/json_pointer.hpp"
+#include "scene_reader.hpp"
+
+namespace rouleau::scene {
+namespace {
+
+constexpr std::size_t most_types = 1000;
+
+/// Names stand in columns of CSV files and in paths of HDF5 files.
+bool is_plain_name(const std::string& name) {
+  const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+  if (name.empty() || name.size() > 100 || !letter(name.front())) return false;
+  for (const char c : name) {
+    if (!letter(c) && !(c >= '0' && c <= '9') && c != '_' && c != '-' && c != '.') return false;
+  }
+  return true;
+}
+
+Shape read_shape(const SceneFields& fields, const std::string& pointer) {
+  if (fields.has(pointer + "/biconcave"))
+    return Biconcave{fields.quantity(pointer + "/biconcave/radius", "m", range::length)};
+  if (fields.has(pointer + "/circle")) {
+    return Circle{fields.quantity(pointer + "/circle/radius", "m", range::length),
+                  fields.value_or(pointer + "/circle/prestretch", 1.0)};
+  }
+  return Ellipse{fields.quantities(pointer + "/ellipse/semi_axes", "m", range::length)};
+}
+
+class Placements {
+ public:
+  Placements(const SceneFields& fields, const std::vector<CellType>& types, const Domain& domain,
+             std::vector<RandomPacking>& packings)
+      : fields_(fields), types_(types), domain_(domain), packings_(packings) {}
+
+  std::vector<CellPlacement> read() {
+    const auto count = fields_.has("/cells") ? fields_.at("/cells").size() : 0;
+    for (std::size_t i = 0; i < count; ++i) read_entry(json::child_pointer("/cells", i));
+    return std::move(cells_);
+  }
+
+ private:
+  void read_entry(const std::string& pointer) {
+    const int type = fields_.cell_type(pointer + "/type", types_);
+    if (fields_.has(pointer + "/row")) {
+      read_row(type, pointer);
+    } else if (fields_.has(pointer + "/random")) {
+      read_random(type, pointer);
+    } else if (fields_.has(pointer + "/list")) {
+      const auto count = fields_.at(pointer + "/list").size();
+      make_room(count, pointer + "/list");
+      for (std::size_t i = 0; i < count; ++i) place_one(type, json::child_pointer(pointer + "/list", i));
+    } else {
+      make_room(1, pointer);
+      place_one(type, pointer);
+    }
+  }
+
+  void place_one(int type, const std::string& pointer) {
+    cells_.push_back({type, fields_.quantities(pointer + "/at", "m", range::place), angle(pointer), pointer});
+  }
+
+  void read_row(int type, const std::string& entry) {
+    const auto pointer = entry + "/row";
+    const auto count = fields_.at(pointer + "/count").get<std::size_t>();
+    make_room(count, pointer + "/count");
+    const double spacing = fields_.quantity(pointer + "/spacing", "m", range::length);
+    const auto center = fields_.quantities(pointer + "/center", "m", range::place);
+    const double turn = angle(pointer);
+    const Eigen::Vector2d direction = fields_.value_or(pointer + "/axis", std::string("x")) == "y"
+                                          ? Eigen::Vector2d::UnitY()
+                                          : Eigen::Vector2d::UnitX();
+    const double middle = 0.5 * static_cast<double>(count - 1);
+    for (std::size_t i = 0; i < count; ++i) {
+      cells_.push_back({type, center + (static_cast<double>(i) - middle) * spacing * direction, turn, entry});
+    }
+  }
+
+  void read_random(int type, const std::string& entry) {
+    RandomPacking packing = read_packing(fields_, entry, type, types_, domain_);
+    make_room(static_cast<std::size_t>(packing.count), entry + "/random");
+    packing.first = static_cast<int>(cells_.size());
+    for (int i = 0; i < packing.count; ++i) cells_.push_back({type, Eigen::Vector2d::Zero(), 0, entry});
+    packings_.push_back(std::move(packing));
+  }
+
+  [[nodiscard]] double angle(const std::string& pointer) const {
+    return fields_.quantity_or(pointer + "/angle", "rad", range::angle, 0.0);
+  }
+
+  void make_room(std::size_t count, const std::string& pointer) const {
+    if (count <= std::size_t{most_cells} - cells_.size()) return;
+    fields_.refuse(pointer, "with these there would be " + std::to_string(cells_.size() + count) + " cells; at most " +
+                                std::to_string(most_cells) + " can be computed");
+  }
+
+  const SceneFields& fields_;
+  const std::vector<CellType>& types_;
+  const Domain& domain_;
+  std::vector<RandomPacking>& packings_;
+  std::vector<CellPlacement> cells_;
+};
+
+}  // namespace
+
+std::vector<CellType> read_cell_types(const SceneFields& fields, double fluid_viscosity) {
+  std::vector<CellType> types;
+  if (!fields.has("/cell_types")) return types;
+  for (const auto& [name, value] : fields.at("/cell_types").items()) {
+    const auto pointer = json::child_pointer("/cell_types", name);
+    if (!is_plain_name(name)) {
+      fields.refuse_key(
+          pointer,
+          in_quotes(name) + " is no name for a cell type; use letters, digits, '_', '-' and '.', a letter first");
+    }
+    if (types.size() == most_types) {
+      fields.refuse_key(pointer, "there are more than " + std::to_string(most_types) + " cell types");
+    }
+    fields.require(pointer, "segments", "about one per lattice spacing; or \"numerics\": \"auto\" chooses them");
+    CellType type{name,
+                  read_shape(fields, pointer + "/shape"),
+                  fields.at(pointer + "/segments").get<int>(),
+                  fields.quantity_or(pointer + "/interior_viscosity", "Pa s", range::viscosity, fluid_viscosity),
+                  {}};
+    for (std::size_t i = 0; i < value.at("membrane").size(); ++i) {
+      type.membrane.push_back(fields.model(json::child_pointer(pointer + "/membrane", i)));
+    }
+    types.push_back(std::move(type));
+  }
+  return types;
+}
+
+std::vector<CellPlacement> read_cells(const SceneFields& fields, const std::vector<CellType>& types,
+                                      const Domain& domain, std::vector<RandomPacking>& packings) {
+  return Placements(fields, types, domain, packings).read();
+}
+
+}  // namespace rouleau::scene

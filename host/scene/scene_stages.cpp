@@ -1,0 +1,111 @@
+// Stages of a scene, and what is written when.
+#include <algorithm>
+
+#include "base/text.hpp"
+#include "json/json_pointer.hpp"
+#include "scene_reader.hpp"
+
+namespace rouleau::scene {
+namespace {
+
+/// Faults that the schema cannot see because they lie between the keys of a stage.
+void check_stage(const SceneFields& fields, const Stage& stage, const Scene& scene) {
+  const auto& pointer = stage.pointer;
+  const bool flows = stage.shear_rate > 0.0 || stage.pressure_gradient.x() != 0.0;
+  if (fields.has(pointer + "/shear_rate") && scene.domain.periodic_y) {
+    fields.refuse_key(pointer + "/shear_rate",
+                      "shear needs walls that move, but domain.y is \"periodic\"\n"
+                      "write \"y\": {\"lower\": {\"wall\": {}}, \"upper\": {\"wall\": {}}}, or leave out shear_rate");
+  }
+  if (fields.has(pointer + "/start") && !flows) {
+    fields.refuse_key(pointer + "/start",
+                      "start says how a flow begins, but this stage has neither shear_rate nor pressure_gradient");
+  }
+  if (stage.strain && !(stage.shear_rate > 0.0)) {
+    fields.refuse_key(pointer + "/strain",
+                      "strain grows only where walls move, and this stage has no shear_rate; "
+                      "give one, or end the stage by duration");
+  }
+  if (stage.until_at_rest && flows) {
+    fields.refuse(pointer + "/until", "cells never come to rest in a stage that flows; end it by duration or strain");
+  }
+  if (stage.until_at_rest && scene.cells.empty()) {
+    fields.refuse(pointer + "/until", "there are no cells that could come to rest; end the stage by duration");
+  }
+  if (stage.until_at_rest && !stage.duration) {
+    fields.refuse(pointer + "/until",
+                  "\"at_rest\" needs a duration beside it, the longest time to wait: cells that never "
+                  "come to rest would run for ever");
+  }
+  if (!stage.duration && !stage.strain) {
+    fields.refuse(pointer, "this stage never ends; give duration (such as \"2 s\")" +
+                               std::string(stage.shear_rate > 0.0 ? " or strain (such as 15)" : ""));
+  }
+}
+
+Stage read_stage(const SceneFields& fields, const std::string& pointer, const Scene& scene) {
+  Stage stage;
+  stage.pointer = pointer;
+  stage.name = fields.line(pointer + "/name");
+  if (fields.has(pointer + "/duration")) stage.duration = fields.quantity(pointer + "/duration", "s", range::time);
+  if (fields.has(pointer + "/strain")) stage.strain = fields.at(pointer + "/strain").get<double>();
+  stage.until_at_rest = fields.has(pointer + "/until");
+  stage.shear_rate = fields.quantity_or(pointer + "/shear_rate", "1/s", range::shear_rate, 0.0);
+  stage.start = fields.value_or(pointer + "/start", std::string("impulsive")) == "developed" ? WallStart::developed
+                                                                                             : WallStart::impulsive;
+  stage.pressure_gradient.x() = fields.quantity_or(pointer + "/pressure_gradient", "Pa/m", range::force_density, 0.0);
+  stage.density_factor = fields.value_or(pointer + "/density_factor", scene.numerics.density_factor);
+  check_stage(fields, stage, scene);
+  return stage;
+}
+
+Cadence read_cadence(const SceneFields& fields, const std::string& pointer, const std::vector<Stage>& stages) {
+  Cadence cadence;
+  if (!fields.has(pointer)) return cadence;
+  if (fields.has(pointer + "/strain")) cadence.strain = fields.at(pointer + "/strain").get<double>();
+  if (fields.has(pointer + "/seconds")) cadence.seconds = fields.quantity(pointer + "/seconds", "s", range::time);
+  if (cadence.never()) {
+    fields.refuse(pointer,
+                  json::subject(pointer) + " does not say when: give strain (such as 0.25) or seconds (such as 0.1)");
+  }
+  const bool shears =
+      std::any_of(stages.begin(), stages.end(), [](const Stage& stage) { return stage.shear_rate > 0.0; });
+  if (cadence.strain && !cadence.seconds && !shears) {
+    fields.refuse_key(pointer + "/strain",
+                      "no stage has a shear_rate, so strain never grows and this output never comes due; use seconds");
+  }
+  return cadence;
+}
+
+}  // namespace
+
+std::vector<Stage> read_stages(const SceneFields& fields, const Scene& scene) {
+  std::vector<Stage> stages;
+  for (std::size_t i = 0; i < fields.at("/stages").size(); ++i) {
+    auto stage = read_stage(fields, json::child_pointer("/stages", i), scene);
+    for (const auto& earlier : stages) {
+      if (earlier.name == stage.name) {
+        fields.refuse(stage.pointer + "/name",
+                      "two stages are called " + in_quotes(stage.name) + "; give each its own name");
+      }
+    }
+    stages.push_back(std::move(stage));
+  }
+  return stages;
+}
+
+Output read_output(const SceneFields& fields, const std::vector<Stage>& stages) {
+  Output output;
+  output.cells = read_cadence(fields, "/output/cells", stages);
+  output.fields = read_cadence(fields, "/output/fields", stages);
+  output.quantities = fields.value_or("/output/fields/quantities", std::vector<std::string>{});
+  if (fields.has("/output/checkpoint/seconds")) {
+    output.checkpoint_seconds = fields.quantity("/output/checkpoint/seconds", "s", range::time);
+  } else if (fields.has("/output/checkpoint")) {
+    output.checkpoint_seconds.reset();  // "never"
+  }
+  output.aggregate_gap = fields.quantity_or("/output/aggregate_gap", "m", range::length, output.aggregate_gap);
+  return output;
+}
+
+}  // namespace rouleau::scene

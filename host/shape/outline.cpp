@@ -1,0 +1,148 @@
+#include "outline.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <utility>
+
+namespace rouleau::shape {
+
+namespace {
+
+constexpr double full_turn = 2 * std::numbers::pi;
+
+/// A closed curve by an angle in [0, 2 pi), counter-clockwise from the positive x axis, and its derivative.
+struct Curve {
+  struct Point {
+    Eigen::Vector2d place, derivative;
+  };
+  Point (*at)(const scene::Shape&, double angle);
+  const scene::Shape& shape;
+  Point operator()(double angle) const { return at(shape, angle); }
+};
+
+/// x = R cos(a), y = R/2 sin(a) (0.207 + 2.002 (x/R)^2 - 1.122 (x/R)^4): smooth at the rim, where y(x) is not.
+Curve::Point biconcave(const scene::Shape& shape, double angle) {
+  const double radius = std::get<scene::Biconcave>(shape).radius;
+  const double c = std::cos(angle), s = std::sin(angle), c2 = c * c;
+  const double thickness = 0.207 + c2 * (2.002 - 1.122 * c2);
+  const double change = c * (2 * 2.002 - 4 * 1.122 * c2);  // d thickness / d c
+  return {{radius * c, 0.5 * radius * s * thickness}, {-radius * s, 0.5 * radius * (c * thickness - s * s * change)}};
+}
+
+Curve::Point circle(const scene::Shape& shape, double angle) {
+  const double radius = std::get<scene::Circle>(shape).radius;
+  const double c = std::cos(angle), s = std::sin(angle);
+  return {{radius * c, radius * s}, {-radius * s, radius * c}};
+}
+
+Curve::Point ellipse(const scene::Shape& shape, double angle) {
+  const Eigen::Vector2d axes = std::get<scene::Ellipse>(shape).semi_axes;
+  const double c = std::cos(angle), s = std::sin(angle);
+  return {{axes.x() * c, axes.y() * s}, {-axes.x() * s, axes.y() * c}};
+}
+
+Curve curve_of(const scene::Shape& shape) {
+  constexpr decltype(Curve::at) curves[] = {biconcave, circle, ellipse};  // in the order of the variant
+  return {curves[shape.index()], shape};
+}
+
+double smallest_size(const scene::Shape& shape) {
+  if (const auto* cell = std::get_if<scene::Biconcave>(&shape)) return cell->radius;
+  if (const auto* cell = std::get_if<scene::Circle>(&shape)) return cell->radius;
+  return std::get<scene::Ellipse>(shape).semi_axes.minCoeff();
+}
+
+/// Angle of the next node: the first one after `angle` where the curve is `chord` away. `stride` is a small part of a
+/// turn.
+double step(const Curve& curve, double angle, double chord, double stride) {
+  const Eigen::Vector2d start = curve(angle).place;
+  const auto distance = [&](const Curve::Point& point) { return (point.place - start).norm(); };
+  double low = angle, high = angle + stride;
+  while (distance(curve(high)) < chord && high < angle + full_turn) low = std::exchange(high, high + stride);
+  double next = 0.5 * (low + high);
+  for (int iteration = 0; iteration < 60; ++iteration) {
+    const Curve::Point point = curve(next);
+    const double length = distance(point), slope = (point.place - start).dot(point.derivative) / length;
+    (length < chord ? low : high) = next;
+    double newton = next - (length - chord) / slope;
+    if (!(newton > low && newton < high)) newton = 0.5 * (low + high);
+    const double change = std::abs(newton - std::exchange(next, newton));
+    if (change < 1e-16 * full_turn) break;
+  }
+  return next;
+}
+
+/// Angles of nodes 0 ... segments when every segment has length `chord`; the last one ought to be a full turn.
+void march(const Curve& curve, double chord, std::vector<double>& angles) {
+  const double stride = full_turn / 4 / static_cast<double>(angles.size());
+  angles[0] = 0;
+  for (std::size_t i = 1; i < angles.size(); ++i) angles[i] = step(curve, angles[i - 1], chord, stride);
+}
+
+}  // namespace
+
+Outline make_outline(const scene::Shape& shape, int segments) {
+  if (segments < 3) throw std::invalid_argument("an outline needs at least 3 segments");
+  if (!(smallest_size(shape) > 0)) throw std::invalid_argument("the size of a cell must be positive");
+  const Curve curve = curve_of(shape);
+
+  double chord = 0;
+  for (int i = 0; i < segments; ++i) {
+    chord += (curve(full_turn * (i + 1) / segments).place - curve(full_turn * i / segments).place).norm() / segments;
+  }
+  // Secant steps on the chord until the nodes close after exactly one turn.
+  std::vector<double> angles(static_cast<std::size_t>(segments) + 1);
+  double old_chord = 0, old_excess = -full_turn;
+  for (int iteration = 0; iteration < 40; ++iteration) {
+    march(curve, chord, angles);
+    const double excess = angles.back() - full_turn;
+    if (std::abs(excess) < 1e-15 * segments) break;
+    const double next = chord - excess * (chord - old_chord) / (excess - old_excess);
+    if (next == chord) break;
+    old_chord = std::exchange(chord, next);
+    old_excess = excess;
+  }
+
+  // What is left of the gap would all fall on the last segment: share it.
+  const double gap = angles.back() - full_turn;
+  for (int i = 0; i < segments; ++i) angles[static_cast<std::size_t>(i)] -= gap * i / segments;
+
+  Outline outline;
+  outline.nodes.reserve(static_cast<std::size_t>(segments));
+  for (int i = 0; i < segments; ++i) outline.nodes.push_back(curve(angles[static_cast<std::size_t>(i)]).place);
+  return outline;
+}
+
+double shape_radius(const scene::Shape& shape) {
+  if (const auto* biconcave = std::get_if<scene::Biconcave>(&shape)) return biconcave->radius;
+  if (const auto* circle = std::get_if<scene::Circle>(&shape)) return circle->radius;
+  return std::get<scene::Ellipse>(shape).semi_axes.maxCoeff();
+}
+
+double smallest_radius(const scene::Scene& scene) {
+  double least = 0;
+  for (const scene::CellPlacement& cell : scene.cells) {
+    const double radius = shape_radius(scene.cell_types[static_cast<std::size_t>(cell.type)].shape);
+    least = least == 0 ? radius : std::min(least, radius);
+  }
+  return least;
+}
+
+double shape_perimeter(const scene::Shape& shape) {
+  if (const auto* biconcave = std::get_if<scene::Biconcave>(&shape)) return 4.9285 * biconcave->radius;
+  if (const auto* circle = std::get_if<scene::Circle>(&shape)) return full_turn * circle->radius;
+  const Eigen::Vector2d& a = std::get<scene::Ellipse>(shape).semi_axes;
+  return full_turn / 2 * (3 * a.sum() - std::sqrt((3 * a.x() + a.y()) * (a.x() + 3 * a.y())));
+}
+
+double area_of(const Outline& outline) {
+  double twice = 0;
+  for (std::size_t i = 0; i < outline.nodes.size(); ++i) {
+    const Eigen::Vector2d &p = outline.nodes[i], &q = outline.nodes[(i + 1) % outline.nodes.size()];
+    twice += p.x() * q.y() - p.y() * q.x();
+  }
+  return twice / 2;
+}
+
+}  // namespace rouleau::shape

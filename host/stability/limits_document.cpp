@@ -1,0 +1,222 @@
+#include "limits_document.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+#include "base/text.hpp"
+#include "embedded_schemas.hpp"
+#include "json/json_pointer.hpp"
+#include "json/put_value.hpp"
+#include "json/schema.hpp"
+#include "scene/scene.hpp"
+#include "trial/shared_keys.hpp"
+#include "units/units.hpp"
+
+namespace rouleau::stability {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+/// The scene with the changes of "set", found right as far as that can be said without plugins.
+Json read_limits_scene(const json::Document& document, const fs::path& scene_file) {
+  const Json& given = document.root()["scene"];
+  Json scene = trial::read_changed_scene(document, scene_file, "limits file's");
+  try {
+    json::validate(json::Document::parse(scene.dump(2), scene_file.string()),
+                            json::scene_schema());
+  } catch (const Error& error) {
+    const std::string what = error.what();
+    throw Error(ExitCode::bad_input, document.place(given.is_string() ? "/set" : "/scene"),
+                "the scene, " + error.place().pointer + what.substr(std::min(what.find('\n'), what.size())));
+  }
+  return scene;
+}
+
+struct NumberWithUnit {
+  double value = 0;
+  std::string unit;
+};
+
+/// "6e-6 N/m" in its parts; a plain number has no unit.
+NumberWithUnit read_value(const json::Document& document, const std::string& pointer) {
+  const Json& given = document.root().at(Json::json_pointer(pointer));
+  if (given.is_number()) return {given.get<double>(), ""};
+  const std::string text = given.get<std::string>();
+  char* end = nullptr;
+  NumberWithUnit read{std::strtod(text.c_str(), &end), ""};
+  const auto used = static_cast<std::size_t>(end - text.c_str());
+  const std::size_t unit = text.find_first_not_of(' ', used);
+  if (unit != std::string::npos) read.unit = text.substr(unit);
+  try {
+    if (used == 0) throw units::UnitError("it does not begin with a number");
+    if (!read.unit.empty()) (void)units::Units().dimension(read.unit);
+  } catch (const units::UnitError& error) {
+    throw Error(
+        ExitCode::bad_input, document.place(pointer),
+        in_quotes(text) + " is no value with a unit: " + error.what() + "; write for example \"6e-6 N/m\" or 6");
+  }
+  return read;
+}
+
+std::vector<std::string> read_pointers(const json::Document& document) {
+  const Json& given = document.root()["parameter"];
+  const bool one = given.contains("pointer"), several = given.contains("pointers");
+  if (one == several)
+    throw Error(ExitCode::bad_input, document.place("/parameter"),
+                one ? "has both pointer and pointers; leave one of them out"
+                    : "wants \"pointer\", the place of the parameter in the scene, for example "
+                      "\"/numerics/density_factor\"");
+  return one ? std::vector<std::string>{given["pointer"].get<std::string>()}
+             : given["pointers"].get<std::vector<std::string>>();
+}
+
+LimitsParameter read_parameter(const json::Document& document, const Json& scene) {
+  const Json& given = document.root()["parameter"];
+  const auto refuse = [&document](const std::string& pointer, const std::string& problem) {
+    throw Error(ExitCode::bad_input, document.place(pointer), problem);
+  };
+  LimitsParameter parameter;
+  parameter.name = given["name"];
+  parameter.pointers = read_pointers(document);
+  const NumberWithUnit from = read_value(document, "/parameter/from"), to = read_value(document, "/parameter/to");
+  if (from.unit != to.unit)
+    refuse("/parameter/to",
+           "is in " + in_quotes(to.unit) + ", and from in " + in_quotes(from.unit) + "; write both in the same unit");
+  parameter.unit = from.unit;
+  SearchRange& range = parameter.range;
+  range = {from.value, to.value};
+  range.whole = given.value("whole", false);
+  range.scale = given.value("scale", "log") == "linear" ? Scale::linear : Scale::logarithmic;
+  if (!(range.from < range.to) || !std::isfinite(range.to))
+    refuse("/parameter/to", number(range.to) + " is not above from, " + number(range.from) + "; exchange them");
+  const bool logarithmic = range.scale == Scale::logarithmic;
+  if (logarithmic && !(range.from > 0))
+    refuse("/parameter/from", number(range.from) + " has no logarithm; begin above zero, or set scale to \"linear\"");
+  range.precision = given.value("precision", logarithmic ? 1.1 : (range.to - range.from) / 100);
+  if (logarithmic && !(range.precision > 1.0001))
+    refuse("/parameter/precision",
+           number(range.precision) + " is a ratio on the log scale; write one above 1.0001, for example 1.1");
+  if (!logarithmic && !(range.precision >= 1e-4 * (range.to - range.from)))
+    refuse("/parameter/precision",
+           number(range.precision) + " is finer than a ten-thousandth of the range; write more");
+  for (const double end : {range.from, range.to}) {
+    Json tried = scene;
+    try {
+      for (const std::string& pointer : parameter.pointers)
+        (void)json::put_value(tried, pointer, parameter.written(end));
+      if (end == range.from)
+        json::validate(json::Document::parse(tried.dump(2), "the scene"),
+                                json::scene_schema());
+    } catch (const json::PutError& error) {
+      refuse(given.contains("pointer") ? "/parameter/pointer" : "/parameter/pointers", error.what());
+    } catch (const Error& error) {
+      const std::string what = error.what();
+      refuse("/parameter/from", "the scene with this value, " + error.place().pointer +
+                                    what.substr(std::min(what.find('\n'), what.size())));
+    }
+  }
+  return parameter;
+}
+
+ExtremeCase read_case(const json::Document& document, std::size_t index, const LimitsFile& limits) {
+  const std::string at = json::child_pointer("/cases", index);
+  const Json& given = document.root()["cases"][index];
+  ExtremeCase extreme;
+  extreme.name = given["name"];
+  extreme.expect = given.value("expect", "either");
+  extreme.steps = given.value("steps", limits.steps);
+  extreme.scene = limits.scene;
+  if (given.contains("set")) trial::put_changes(extreme.scene, document, at + "/set");
+  if (given.contains("answer")) {
+    const Json& a = given["answer"];
+    extreme.answer = {a["table"], a["column"], a.value("source", ""), a.value("cell", 0), a["value"], a["tolerance"]};
+  }
+  for (const ExtremeCase& other : limits.cases) {
+    if (other.name == extreme.name)
+      throw Error(ExitCode::bad_input, document.place(at + "/name"),
+                  in_quotes(extreme.name) + " is the name of another case, too; give each its own");
+  }
+  return extreme;
+}
+
+/// Files and folders of "scenes", the latter with all below them, in order.
+std::vector<fs::path> read_scene_list(const json::Document& document, const fs::path& folder) {
+  std::vector<fs::path> scenes;
+  const Json& given = document.root()["scenes"];
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    const fs::path named = folder / given[i].get<std::string>();
+    if (!fs::exists(named))
+      throw Error(ExitCode::bad_input, document.place(json::child_pointer("/scenes", i)),
+                  "there is no " + named.string() + "; the path begins with the limits file's folder");
+    if (!fs::is_directory(named)) {
+      scenes.push_back(named);
+      continue;
+    }
+    std::vector<fs::path> below;
+    for (const auto& entry : fs::recursive_directory_iterator(named)) {
+      if (entry.is_regular_file() && entry.path().extension() == ".json") below.push_back(entry.path());
+    }
+    std::sort(below.begin(), below.end());
+    scenes.insert(scenes.end(), below.begin(), below.end());
+  }
+  return scenes;
+}
+
+Soundness read_soundness(const Json& given) {
+  Soundness sound;
+  sound.area_drift = given.value("area_drift", sound.area_drift);
+  sound.energy_growth = given.value("energy_growth", sound.energy_growth);
+  sound.stretch = given.value("stretch", sound.stretch);
+  sound.mass_drift = given.value("mass_drift", sound.mass_drift);
+  return sound;
+}
+
+}  // namespace
+
+Json LimitsParameter::written(double value) const {
+  if (unit.empty()) return range.whole ? Json(std::lround(value)) : Json(value);
+  char text[40];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return std::string(text) + ' ' + unit;
+}
+
+LimitsFile read_limits(const fs::path& file) {
+  LimitsFile limits;
+  limits.document = std::make_shared<const json::Document>(json::Document::read(file));
+  const json::Document& document = *limits.document;
+  json::validate(document, limits_schema());
+  const Json& root = document.root();
+  if (!root.contains("parameter") && !root.contains("cases"))
+    throw Error(ExitCode::bad_input, document.place(""),
+                "has neither \"parameter\", whose edge of stability is looked for, nor \"cases\"; write one of them");
+  limits.title = root.value("title", file.stem().string());
+  limits.file = file;
+  limits.scene_file = trial::scene_file_of(document, file);
+  limits.scene = read_limits_scene(document, limits.scene_file);
+  limits.steps = root.value("steps", 0L);
+  if (root.contains("matrix")) limits.axes = trial::read_axes(document, "/matrix", limits.scene);
+  if (root.contains("parameter")) limits.parameter = read_parameter(document, limits.scene);
+  if (root.contains("cases")) {
+    for (std::size_t i = 0; i < root["cases"].size(); ++i) limits.cases.push_back(read_case(document, i, limits));
+  }
+  if (root.contains("sound")) limits.soundness = read_soundness(root["sound"]);
+  if (root.contains("scenes")) limits.scenes = read_scene_list(document, file.parent_path());
+  if (root.contains("time_limit")) limits.time_limit_s = trial::read_time_limit(document, "2 min");
+  return limits;
+}
+
+const Json& limits_schema() {
+  static const Json schema = trial::with_matrix_definitions(limits_schema_text);
+  return schema;
+}
+
+const Json& limits_result_schema() {
+  static const Json schema = Json::parse(limits_result_schema_text);
+  return schema;
+}
+
+}  // namespace rouleau::stability

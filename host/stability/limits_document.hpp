@@ -1,0 +1,63 @@
+// A limits file as the user wrote it: scene, combinations of methods, the parameter whose edge is sought, cases.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bisection.hpp"
+#include "json/document.hpp"
+#include "judgement.hpp"
+#include "trial/matrix.hpp"
+
+namespace rouleau::stability {
+
+struct LimitsParameter {
+  std::string name, unit;  ///< unit: empty for plain numbers
+  std::vector<std::string> pointers;
+  SearchRange range;  ///< in the unit
+  /// As it stands in a scene: "6e-06 N/m", or a number.
+  [[nodiscard]] nlohmann::json written(double value) const;
+};
+
+/// What the last row of a table should say.
+struct RightAnswer {
+  std::string table, column, source;
+  int cell = 0;
+  double value = 0, tolerance = 0;
+};
+
+struct ExtremeCase {
+  std::string name, expect;  ///< right, stops, either
+  nlohmann::json scene;
+  long steps = 0;  ///< 0: all of the scene's
+  std::optional<RightAnswer> answer;
+};
+
+struct LimitsFile {
+  std::shared_ptr<const json::Document> document;
+  std::string title;
+  std::filesystem::path file;
+  std::filesystem::path scene_file;  ///< the limits file itself where it holds the scene
+  nlohmann::json scene;              ///< with the changes of "set"
+  std::vector<trial::Axis> axes;
+  std::optional<LimitsParameter> parameter;
+  std::vector<ExtremeCase> cases;
+  std::vector<std::filesystem::path> scenes;  ///< whose margins are told
+  long steps = 0;                             ///< of a trial; 0: all of the scene's
+  Soundness soundness;
+  double time_limit_s = 120;
+};
+
+/// Throws Error(bad_input) with the place of the first fault, in the file or in its scene; Error(input_output) for one
+/// that cannot be read.
+LimitsFile read_limits(const std::filesystem::path& file);
+
+/// The schemas of a limits file and of its limits.json.
+const nlohmann::json& limits_schema();
+const nlohmann::json& limits_result_schema();
+
+}  // namespace rouleau::stability

@@ -1,0 +1,228 @@
+#include "limits_files.hpp"
+
+#include <cmath>
+#include <sstream>
+
+#include "base/text.hpp"
+#include "files/csv_reader.hpp"
+#include "files/file.hpp"
+#include "files/run_directory.hpp"
+#include "files/tables.hpp"
+#include "report/result_page.hpp"
+#include "run/provenance.hpp"
+#include "scene_margins.hpp"
+#include "trial/fingerprint.hpp"
+#include "trial/result_directory.hpp"
+
+namespace rouleau::stability {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+Json optional_json(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
+
+Json parameter_json(const LimitsParameter& parameter) {
+  return {{"name", parameter.name},
+          {"unit", parameter.unit},
+          {"pointers", parameter.pointers},
+          {"from", parameter.range.from},
+          {"to", parameter.range.to},
+          {"scale", parameter.range.scale == Scale::linear ? "linear" : "log"},
+          {"precision", parameter.range.precision},
+          {"whole", parameter.range.whole}};
+}
+
+Json trial_json(const LimitsTrial& trial) {
+  const Json& f = trial.judgement.failure;
+  const auto of = [&f](const char* key) { return f.is_object() ? f[key] : Json(); };
+  return {{"value", trial.value}, {"end", trial.judgement.end}, {"reason", of("reason")},
+          {"step", of("step")},   {"mode", of("mode")},         {"wavelength", of("wavelength")}};
+}
+
+Json edge_json(const LimitsState& state, const CombinationResult& combination, std::size_t index) {
+  const StabilityEdge& edge = combination.search.edges[index];
+  Json failure, trials = Json::array();
+  for (const LimitsTrial& trial : combination.trials) {
+    if (edge.unstable_from && trial.value == *edge.unstable_from) failure = trial.judgement.failure;
+    // Two edges share the trials of their search; they are told with the first.
+    if (index == 0) trials.push_back(trial_json(trial));
+  }
+  return {{"labels", trial::labels_of(state.limits->axes, combination.point)},
+          {"direction", edge.direction == StabilityEdge::Direction::above ? "above" : "below"},
+          {"stable_up_to", optional_json(edge.stable_up_to)},
+          {"unstable_from", optional_json(edge.unstable_from)},
+          {"out_of_order", combination.search.out_of_order},
+          {"failure", failure},
+          {"trials", trials}};
+}
+
+Json case_json(const CaseResult& result) {
+  return {{"name", result.extreme->name}, {"expect", result.extreme->expect},  {"verdict", result.verdict},
+          {"outcome", result.outcome},    {"as_expected", result.as_expected}, {"failure", result.judgement.failure}};
+}
+
+/// What a reader should know before trusting an edge.
+Json limits_warnings(const LimitsState& state) {
+  Json warnings = Json::array();
+  for (const CombinationResult& combination : state.combinations) {
+    if (combination.search.out_of_order.empty()) continue;
+    std::string values;
+    for (const double value : combination.search.out_of_order) {
+      values += (values.empty() ? "" : ", ") + number(value);
+      for (const LimitsTrial& trial : combination.trials) {
+        if (trial.value == value) values += trial.judgement.sound ? " (stable)" : " (unstable)";
+      }
+    }
+    warnings.push_back(trial::name_of(state.limits->axes, combination.point) +
+                       ": there is more than one edge; these values contradict the one that was found: " + values);
+  }
+  return warnings;
+}
+
+std::string cell(const Json& value) {
+  if (value.is_null()) return "";
+  if (value.is_number_float()) return number(value.get<double>());
+  if (!value.is_string()) return value.dump();
+  return files::csv_text(value.get<std::string>());
+}
+
+std::string row_of(const Json& fields) {
+  std::string line;
+  for (std::size_t i = 0; i < fields.size(); ++i) line += (i == 0 ? "" : ",") + cell(fields[i]);
+  return line + '\n';
+}
+
+std::string labels_text(const Json& labels) {
+  std::string text;
+  for (const auto& [name, label] : labels.items())
+    text += (text.empty() ? "" : ", ") + name + ' ' + label.get<std::string>();
+  return text.empty() ? "the scene" : text;
+}
+
+}  // namespace
+
+double last_value(const fs::path& directory, const RightAnswer& answer) {
+  const fs::path file = directory / (answer.table + ".csv");
+  if (!fs::exists(file)) return std::nan("");
+  const files::StoredTable table(file);
+  if (!table.has(answer.column)) return std::nan("");
+  const std::vector<double> values = table.numbers(answer.column);
+  if (answer.table != "cells") return values.empty() ? std::nan("") : values.back();
+  const std::vector<std::string> cells = table.texts("cell");
+  for (std::size_t row = values.size(); row-- > 0;) {
+    if (cells[row] == std::to_string(answer.cell)) return values[row];
+  }
+  return std::nan("");
+}
+
+Json limits_json(const LimitsState& state) {
+  const LimitsFile& limits = *state.limits;
+  Json edges = Json::array(), cases = Json::array();
+  std::size_t combinations = limits.parameter ? trial::cross(limits.axes).size() : 0;
+  bool complete = state.combinations.size() == combinations && state.cases.size() == limits.cases.size();
+  for (const CombinationResult& combination : state.combinations) {
+    complete = complete && combination.search.complete;
+    for (std::size_t i = 0; i < combination.search.edges.size(); ++i) edges.push_back(edge_json(state, combination, i));
+  }
+  for (const CaseResult& result : state.cases) cases.push_back(case_json(result));
+  return {{"rouleau_limits_result", 1},
+          {"title", limits.title},
+          {"limits_file", limits.file.string()},
+          {"scene_file", limits.scene_file.string()},
+          {"program", run::program_version()},
+          {"program_sha256", trial::program_sha256()},
+          {"machine", trial::machine_json()},
+          {"started", state.started},
+          {"finished", state.finished.empty() ? Json() : Json(state.finished)},
+          {"complete", complete},
+          {"sound",
+           {{"area_drift", limits.soundness.area_drift},
+            {"energy_growth", limits.soundness.energy_growth},
+            {"stretch", limits.soundness.stretch},
+            {"mass_drift", limits.soundness.mass_drift}}},
+          {"steps", limits.steps > 0 ? Json(limits.steps) : Json()},
+          {"axes", trial::axes_json(limits.axes)},
+          {"parameter", limits.parameter ? parameter_json(*limits.parameter) : Json()},
+          {"edges", edges},
+          {"cases", cases},
+          {"scenes", scene_margins(state)},
+          {"warnings", limits_warnings(state)}};
+}
+
+std::string limits_csv(const Json& limits) {
+  Json head = {"kind", "name"};
+  for (const Json& axis : limits["axes"]) head.push_back(axis["name"]);
+  for (const char* name : {"direction", "stable_up_to", "unstable_from", "unit", "expect", "verdict", "reason", "step",
+                           "mode", "wavelength_segments"})
+    head.push_back(name);
+  std::string table = row_of(head);
+  const auto add_failure = [](Json& row, const Json& failure) {
+    for (const char* key : {"reason", "step", "mode", "wavelength"})
+      row.push_back(failure.is_object() ? failure[key] : Json());
+  };
+  for (const Json& edge : limits["edges"]) {
+    Json row = {"edge", limits["parameter"]["name"]};
+    for (const Json& axis : limits["axes"]) row.push_back(edge["labels"][axis["name"].get<std::string>()]);
+    for (const char* key : {"direction", "stable_up_to", "unstable_from"}) row.push_back(edge[key]);
+    row.push_back(limits["parameter"]["unit"]);
+    row.push_back(nullptr);
+    row.push_back(nullptr);
+    add_failure(row, edge["failure"]);
+    table += row_of(row);
+  }
+  for (const Json& extreme : limits["cases"]) {
+    Json row = {"case", extreme["name"]};
+    for (std::size_t i = 0; i < limits["axes"].size() + 4; ++i) row.push_back(nullptr);
+    row.push_back(extreme["expect"]);
+    row.push_back(extreme["verdict"]);
+    add_failure(row, extreme["failure"]);
+    table += row_of(row);
+  }
+  return table;
+}
+
+std::string limits_text(const Json& limits) {
+  std::ostringstream text;
+  const auto value = [&](const Json& v) {
+    const std::string unit = limits["parameter"]["unit"].get<std::string>();
+    return number(v.get<double>()) + (unit.empty() ? "" : ' ' + unit);
+  };
+  if (!limits["edges"].empty()) text << limits["parameter"]["name"].get<std::string>() << "\n";
+  for (const Json& edge : limits["edges"]) {
+    text << "  " << labels_text(edge["labels"]) << ": ";
+    const Json &stable = edge["stable_up_to"], &unstable = edge["unstable_from"];
+    if (stable.is_null()) {
+      text << "stable nowhere; ";
+    } else if (unstable.is_null()) {
+      text << "stable throughout";
+    } else {
+      text << (edge["direction"] == "above" ? "stable up to " : "stable down to ") << value(stable) << ", not at "
+           << value(unstable) << ": ";
+    }
+    text << (edge["failure"].is_null() ? "" : failure_text(edge["failure"])) << "\n";
+  }
+  for (const Json& extreme : limits["cases"]) {
+    text << "  " << extreme["name"].get<std::string>() << ": " << extreme["verdict"].get<std::string>();
+    if (!extreme["failure"].is_null()) text << " (" << failure_text(extreme["failure"]) << ")";
+    if (!extreme["as_expected"]) text << ", expected: " << extreme["expect"].get<std::string>();
+    text << "\n";
+  }
+  for (const Json& scene : limits["scenes"]) {
+    text << "  margin of " << scene["scene"].get<std::string>() << ": ";
+    text << (scene["margin"].is_null() ? scene["why_not"].get<std::string>() : number(scene["margin"].get<double>(), 3))
+         << "\n";
+  }
+  for (const Json& warning : limits["warnings"]) text << "warning: " << warning.get<std::string>() << "\n";
+  return text.str();
+}
+
+void write_limits_files(const LimitsState& state, const fs::path& directory) {
+  const Json limits = limits_json(state);
+  files::write_file(directory / "limits.csv", limits_csv(limits));
+  files::write_file(directory / "limits.json", limits.dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
+  report::write_limits_page(directory);
+}
+
+}  // namespace rouleau::stability

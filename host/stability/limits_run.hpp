@@ -1,0 +1,87 @@
+// Runs the trials of a limits file, remembers what each came to, and keeps limits.json true to what is known.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "limits_document.hpp"
+#include "trial/file_lock.hpp"
+
+namespace rouleau::stability {
+
+struct LimitsOptions {
+  std::filesystem::path directory;
+  bool quiet = false;
+  std::filesystem::path program = "/proc/self/exe";
+  const std::atomic<bool>* interrupted = nullptr;
+};
+
+struct LimitsTrial {
+  double value;
+  Judgement judgement;
+};
+
+/// What was found for one combination of methods.
+struct CombinationResult {
+  trial::Point point;
+  EdgeSearch search;
+  std::vector<LimitsTrial> trials;   ///< in the order of the search
+  std::filesystem::path scene_file;  ///< of one of them
+};
+
+/// What a run came to, and where it lies.
+struct JudgedRun {
+  Judgement judgement;
+  std::filesystem::path directory;
+};
+
+struct CaseResult {
+  const ExtremeCase* extreme;
+  Judgement judgement;
+  std::string verdict;  ///< "right answer", "stopped with a reason", "WRONG"
+  std::string outcome;  ///< one sentence
+  bool as_expected = false;
+};
+
+struct LimitsState {
+  const LimitsFile* limits;
+  std::vector<CombinationResult> combinations;
+  std::vector<CaseResult> cases;
+  std::string started, finished;  ///< finished: empty while it runs
+};
+
+class LimitsRun {
+ public:
+  /// Makes the directory, or goes on in the one that the same command has left. Throws Error(bad_input) for a directory
+  /// with other files or that another program is writing into.
+  LimitsRun(const LimitsFile& limits, LimitsOptions options);
+
+  /// Tries what has not been tried. False when interrupted.
+  bool run();
+  [[nodiscard]] const LimitsState& state() const { return state_; }
+
+ private:
+  void search(const trial::Point& point);
+  void try_case(const ExtremeCase& extreme);
+  /// Nothing when interrupted.
+  std::optional<JudgedRun> try_scene(const nlohmann::json& scene, long steps);
+  void write() const;
+  void say(const std::string& line) const;
+  [[nodiscard]] bool interrupted() const { return options_.interrupted != nullptr && *options_.interrupted; }
+
+  const LimitsFile& limits_;
+  LimitsOptions options_;
+  std::filesystem::path points_folder_;
+  LimitsState state_;
+  std::optional<trial::FileLock> directory_lock_;
+};
+
+/// "right answer" where a case came to its end soundly, and to the answer where one is given; "stopped with a reason"
+/// where the program told why; "WRONG" else. `directory`: of its run.
+CaseResult judge_case(const ExtremeCase& extreme, Judgement judgement, const std::filesystem::path& directory);
+
+}  // namespace rouleau::stability

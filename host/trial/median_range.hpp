@@ -1,0 +1,23 @@
+// What repeated measurements of one thing come to.
+#pragma once
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+namespace rouleau::trial {
+
+/// NaN where nothing was measured.
+struct Spread {
+  double median = std::numeric_limits<double>::quiet_NaN(), least = median, most = median;
+};
+
+inline Spread spread_of(std::vector<double> values) {
+  if (values.empty()) return {};
+  std::sort(values.begin(), values.end());
+  const std::size_t middle = values.size() / 2;
+  return {values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]), values.front(),
+          values.back()};
+}
+
+}  // namespace rouleau::trial

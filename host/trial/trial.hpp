@@ -1,0 +1,50 @@
+// One simulation in a process of its own, so that a crash, a hang or a lack of memory is a result and not the end.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace rouleau::trial {
+
+struct Trial {
+  nlohmann::json scene;
+  std::filesystem::path scene_file;  ///< that the scene was made from: its folder is where relative plugin_dirs begin,
+                                     ///< and the lock beside it binds
+  std::filesystem::path directory;   ///< of the run; the run that it may hold is replaced
+  int threads = 1;
+  double time_limit_s = 3600;
+  double grace_s = 20;  ///< between being asked to end and being killed: the rest of a step, a checkpoint, the report
+  std::filesystem::path written_scene = {};  ///< where the complete scene is written; empty: DIRECTORY.scene.json
+  std::vector<std::string> options = {};     ///< more options of `rouleau run`, as --max-steps 1000
+  std::filesystem::path program = "/proc/self/exe";  ///< that is run: this very one, but in its unit tests
+  const std::atomic<bool>* interrupted = nullptr;    ///< set by a signal handler: ends the trial
+};
+
+enum class TrialEnd { completed, diverged, refused, timed_out, crashed, interrupted };
+/// "completed", "timed_out" ...
+std::string to_string(TrialEnd end);
+/// The end that is called so; nothing where none is.
+std::optional<TrialEnd> trial_end_named(const std::string& name);
+
+struct TrialResult {
+  TrialEnd end = TrialEnd::crashed;
+  nlohmann::json summary;   ///< summary.json; null when there is none
+  std::string message;      ///< why it did not complete, in the program's own words where it had any; empty: it did
+  double wall_s = 0;        ///< of the whole process; that of the stepping is in the summary
+  double cpu_s = 0;         ///< of the whole process, all threads
+  long peak_rss_bytes = 0;  ///< the summary's where there is one
+};
+
+/// Runs this very program, rouleau run, as a child. The complete scene is written beside the directory. At the time
+/// limit and when interrupted the child is asked to end (it then leaves a whole run directory) and killed where it does
+/// not. Throws Error(input_output) where the scene cannot be written or the program cannot be started.
+TrialResult run_trial(const Trial& trial);
+
+/// What `rouleau plan --json` says about the trial, as another child; null where it refuses. Opens no run directory.
+nlohmann::json plan_trial(const Trial& trial);
+
+}  // namespace rouleau::trial

@@ -1,0 +1,46 @@
+// The lattice's units of length, time and mass: the one place where SI becomes lattice units and back.
+#pragma once
+
+#include <cmath>
+
+#include "units.hpp"
+
+namespace rouleau::units {
+
+/// SI value of one lattice unit each. Density of the simulated fluid is 1 in lattice units.
+struct LatticeUnits {
+  double length;  ///< m, the spacing
+  double time;    ///< s, one step
+  double mass;    ///< kg
+
+  /// Size in SI of the lattice unit of a dimension. Temperature, amount and current have no lattice unit.
+  [[nodiscard]] double unit(const Dimension& d) const {
+    return std::pow(mass, d.exponent[0]) * std::pow(length, d.exponent[1]) * std::pow(time, d.exponent[2]);
+  }
+  [[nodiscard]] double to_lattice(double si, const Dimension& d) const { return si / unit(d); }
+  [[nodiscard]] double to_si(double lattice, const Dimension& d) const { return lattice * unit(d); }
+};
+
+/// Seconds of one step: the lattice's viscosity (tau - 1/2)/3 in spacings^2 per step is the fluid's, m2/s.
+inline double time_step(double tau, double spacing, double kinematic_viscosity) {
+  return (tau - 0.5) / 3 * spacing * spacing / kinematic_viscosity;
+}
+
+/// Dimensions that the host itself converts.
+namespace dimension {
+inline constexpr Dimension number{};
+inline constexpr Dimension length{{0, 1, 0, 0, 0, 0}};
+inline constexpr Dimension area{{0, 2, 0, 0, 0, 0}};
+inline constexpr Dimension time{{0, 0, 1, 0, 0, 0}};
+inline constexpr Dimension rate{{0, 0, -1, 0, 0, 0}};
+inline constexpr Dimension velocity{{0, 1, -1, 0, 0, 0}};
+inline constexpr Dimension density{{1, -3, 0, 0, 0, 0}};
+inline constexpr Dimension viscosity{{1, -1, -1, 0, 0, 0}};
+inline constexpr Dimension pressure{{1, -1, -2, 0, 0, 0}};
+inline constexpr Dimension force_density{{1, -2, -2, 0, 0, 0}};
+inline constexpr Dimension tension{{1, 0, -2, 0, 0, 0}};
+inline constexpr Dimension energy_per_depth{{1, 1, -2, 0, 0, 0}};
+inline constexpr Dimension power_per_depth{{1, 1, -3, 0, 0, 0}};
+}  // namespace dimension
+
+}  // namespace rouleau::units

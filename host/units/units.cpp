@@ -1,0 +1,233 @@
+#include "units.hpp"
+
+#include <udunits2.h>
+
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <vector>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "dimension_names.hpp"
+#include "json/schema.hpp"
+#include "unit_grammar.hpp"
+
+namespace rouleau::units {
+namespace {
+
+using Unit = std::unique_ptr<ut_unit, decltype(&ut_free)>;
+
+/// A unit taken apart: one of it is `scale` coherent SI units of `dimension`, and its zero lies at `offset` of them.
+struct Parts {
+  Dimension dimension;
+  double scale = 1.0;
+  double offset = 0.0;
+  std::string refused;  ///< why a unit that UDUNITS knows cannot be used here; empty when it can
+};
+
+ut_status refuse(Parts& parts, const char* reason) {
+  parts.refused = reason;
+  return UT_SUCCESS;
+}
+
+void add_base(Parts& parts, const ut_unit* base, int power) {
+  constexpr std::array<std::string_view, 6> known{"kg", "m", "s", "K", "mol", "A"};
+  const char* found = ut_get_symbol(base, UT_ASCII);
+  const std::string_view symbol = found == nullptr ? "" : found;
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    if (symbol == known[i]) {
+      parts.dimension.exponent[i] += power;
+      return;
+    }
+  }
+  if (symbol != "rad") parts.refused = "only kg, m, s, K, mol, A and angles can be used";
+}
+
+/// Walks down the structure that UDUNITS keeps; `arg` is the Parts to fill.
+ut_status visit_basic(const ut_unit* unit, void* arg) {
+  add_base(*static_cast<Parts*>(arg), unit, 1);
+  return UT_SUCCESS;
+}
+ut_status visit_product(const ut_unit*, int count, const ut_unit* const* units, const int* powers, void* arg) {
+  for (int i = 0; i < count; ++i) add_base(*static_cast<Parts*>(arg), units[i], powers[i]);
+  return UT_SUCCESS;
+}
+ut_status visit_galilean(const ut_unit*, double scale, const ut_unit* under, double offset, void* arg);
+ut_status visit_timestamp(const ut_unit*, const ut_unit*, double, void* arg) {
+  return refuse(*static_cast<Parts*>(arg), "dates cannot be used");
+}
+ut_status visit_logarithmic(const ut_unit*, double, const ut_unit*, void* arg) {
+  return refuse(*static_cast<Parts*>(arg), "logarithmic units cannot be used");
+}
+
+constexpr ut_visitor visitor{visit_basic, visit_product, visit_galilean, visit_timestamp, visit_logarithmic};
+
+ut_status visit_galilean(const ut_unit*, double scale, const ut_unit* under, double offset, void* arg) {
+  auto& parts = *static_cast<Parts*>(arg);
+  const double outer = parts.scale;
+  parts.scale = outer * scale;
+  parts.offset += offset * parts.scale;
+  return ut_accept_visitor(under, &visitor, arg);
+}
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
+  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
+  return text;
+}
+
+}  // namespace
+
+struct Units::System {
+  std::unique_ptr<ut_system, decltype(&ut_free_system)> system{nullptr, &ut_free_system};
+
+  static std::shared_ptr<const System> read();
+
+  [[nodiscard]] Unit parse(const std::string& text) const {
+    return {ut_parse(system.get(), text.c_str(), UT_UTF8), &ut_free};
+  }
+
+  /// Gives a symbol the meaning of `definition`, unless the database has the symbol already.
+  void define(const char* symbol, const char* definition) const {
+    if (parse(symbol)) return;
+    const auto unit = parse(definition);
+    if (unit) ut_map_symbol_to_unit(symbol, UT_ASCII, unit.get());
+  }
+
+  static Parts parts_of(const Unit& unit) {
+    Parts parts;
+    if (ut_accept_visitor(unit.get(), &visitor, &parts) != UT_SUCCESS) parts.refused = "its meaning is unknown";
+    return parts;
+  }
+
+  /// Throws where the symbol cannot be used in `unit`. `wanted`: see take_apart.
+  void require_usable(const std::string& symbol, std::string_view unit, const Dimension* wanted) const {
+    const auto parsed = parse(symbol);
+    Parts parts;
+    if (parsed) {
+      parts = parts_of(parsed);
+    } else if (symbol == "lg" || symbol == "ln" || symbol == "lb") {
+      visit_logarithmic(nullptr, 0, nullptr, &parts);
+    } else {
+      throw UnitError(unknown_unit(unit, symbol, wanted));
+    }
+    if (!parts.refused.empty()) throw UnitError(in_quotes(unit) + " is not possible: " + parts.refused);
+  }
+
+  /// Usual units of a dimension.
+  [[nodiscard]] std::vector<std::string> units_of(const Dimension& dimension) const {
+    std::vector<std::string> found;
+    for (const auto& list : {usual_units(), usual_compounds()}) {
+      for (const auto unit : list) {
+        const auto parsed = parse(std::string(unit));
+        if (!parsed) continue;
+        const Parts parts = parts_of(parsed);
+        if (parts.refused.empty() && parts.dimension == dimension) found.emplace_back(unit);
+      }
+    }
+    return found;
+  }
+
+  /// Words for a unit that holds an unknown symbol: what is nearest among the units of the wanted dimension, if that is
+  /// known, before what the symbol alone looks like.
+  [[nodiscard]] std::string unknown_unit(std::string_view unit, const std::string& symbol,
+                                         const Dimension* wanted) const {
+    const auto suggested = [](std::string_view found, const std::string& near) {
+      return "unknown unit " + in_quotes(found) + (near.empty() ? "" : " (did you mean " + in_quotes(near) + "?)");
+    };
+    const auto of_dimension = wanted != nullptr ? nearest(unit, units_of(*wanted)) : "";
+    if (!of_dimension.empty()) return suggested(unit, of_dimension);
+    return suggested(symbol, nearest(symbol, {usual_units().begin(), usual_units().end()}));
+  }
+
+  /// `wanted`: the dimension that the unit should have, where that is known.
+  [[nodiscard]] Parts take_apart(std::string_view unit, const Dimension* wanted = nullptr) const {
+    constexpr std::size_t longest_unit = 100;
+    unit = trimmed(unit);
+    if (unit.empty()) throw UnitError("a unit is missing");
+    if (unit.size() > longest_unit) throw UnitError(in_quotes(unit) + " is no unit");
+    const auto symbols = printable(unit) == unit ? symbols_of(unit) : std::nullopt;
+    if (!symbols) {
+      throw UnitError(in_quotes(unit) +
+                      " is no unit; write units like N/m, 1/um or dyn cm, with one number in front of them");
+    }
+    for (const auto symbol : *symbols) require_usable(std::string(symbol), unit, wanted);
+    const auto parsed = parse(std::string(unit));
+    if (!parsed) throw UnitError(in_quotes(unit) + " is no unit; write units like N/m, 1/um or dyn cm");
+    Parts parts = parts_of(parsed);
+    if (!parts.refused.empty()) throw UnitError(in_quotes(unit) + " is not possible: " + parts.refused);
+    if (!std::isfinite(parts.scale) || !(parts.scale > 0))
+      throw UnitError(in_quotes(unit) + " is too large or too small a unit");
+    return parts;
+  }
+};
+
+std::shared_ptr<const Units::System> Units::System::read() {
+  auto read = std::make_shared<System>();
+  ut_set_error_message_handler(ut_ignore);
+  read->system.reset(ut_read_xml(nullptr));
+  if (!read->system) {
+    throw Error(
+        ExitCode::input_output,
+        "the database of units of UDUNITS-2 cannot be read (Debian: package libudunits2-data; see UDUNITS2_XML_PATH)");
+  }
+  read->define("dyn", "dyne");
+  read->define("P", "poise");
+  read->define("cP", "0.01 poise");
+  read->define("deg", "degree");
+  read->define("Da", "1.66053906660e-27 kg");  // CODATA 2018
+  read->define("kDa", "1.66053906660e-24 kg");
+  return read;
+}
+
+// Reading the database anew for each of its users was a sixth of all the instructions of `rouleau plan`.
+Units::Units() {
+  static const auto database = System::read();
+  system_ = database;
+}
+
+Dimension Units::dimension(std::string_view unit) const { return system_->take_apart(unit).dimension; }
+
+double Units::scale(std::string_view unit) const {
+  const auto parts = system_->take_apart(unit);
+  if (parts.offset != 0.0) {
+    throw UnitError(in_quotes(unit) + " is not a plain multiple of an SI unit, its zero is shifted; use K instead");
+  }
+  return parts.scale;
+}
+
+double Units::to_si(std::string_view quantity, std::string_view wanted, std::string_view name) const {
+  const auto dimension = this->dimension(wanted);
+  const auto wants = "; " + std::string(name) + " wants " + wanted_unit(wanted, dimension);
+  const auto text = trimmed(quantity);
+  const auto unsigned_text = text.starts_with('+') ? text.substr(1) : text;
+  double value = 0.0;
+  const auto [end, failure] = std::from_chars(unsigned_text.data(), unsigned_text.data() + unsigned_text.size(), value);
+  if (failure == std::errc::result_out_of_range)
+    throw UnitError(in_quotes(quantity) + " is beyond the range of numbers" + wants);
+  if (failure != std::errc{}) throw UnitError(in_quotes(quantity) + " does not begin with a number" + wants);
+  if (!std::isfinite(value)) throw UnitError(in_quotes(quantity) + " is not finite" + wants);
+
+  const auto unit = trimmed(unsigned_text.substr(static_cast<std::size_t>(end - unsigned_text.data())));
+  if (unit.empty()) {
+    if (dimension == Dimension{}) return value;
+    throw UnitError(in_quotes(quantity) + " has no unit" + wants + "; a number without quotes is taken in SI units");
+  }
+  if (unit.front() == ',') throw UnitError(in_quotes(quantity) + " has a comma; write the number with a point" + wants);
+  Parts parts;
+  try {
+    parts = system_->take_apart(unit, &dimension);
+  } catch (const UnitError& error) {
+    throw UnitError("in " + in_quotes(quantity) + ": " + error.what() + wants);
+  }
+  if (parts.dimension != dimension) throw UnitError(in_quotes(quantity) + " is " + kind_of(parts.dimension) + wants);
+  if (parts.offset != 0.0 && trimmed(wanted) != "K") {
+    throw UnitError(in_quotes(quantity) + " is a temperature with a shifted zero" + wants);
+  }
+  const double si = value * parts.scale + parts.offset;
+  if (!std::isfinite(si)) throw UnitError(in_quotes(quantity) + " is beyond the range of numbers" + wants);
+  return si;
+}
+
+}  // namespace rouleau::units

@@ -1,0 +1,146 @@
+// Cells and laws for the tests of this folder: lattice units are SI units here.
+#pragma once
+
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <random>
+#include <vector>
+
+#include "base/worker.hpp"
+#include "core/membrane/membranes.hpp"
+#include "core/membrane/periodic_box.hpp"
+#include "plugin/catalog.hpp"
+#include "plugin/model.hpp"
+
+namespace rouleau::test {
+
+using namespace membrane;
+using namespace plugin;
+using namespace scene;
+
+/// Seed of a test's random numbers, shown when the test fails.
+inline std::mt19937 generator(unsigned seed) {
+  std::cout << "seed " << seed << '\n';
+  return std::mt19937(seed);
+}
+
+inline std::shared_ptr<const ModelInstance> model(ModelKind kind, const char* id, const std::vector<double>& values) {
+  static const Catalog catalog({ROULEAU_PLUGINS});
+  return std::make_shared<ModelInstance>(catalog.find(kind, id, {}), values, ModelSetting{{1, 1, 1}, 1.0, false});
+}
+inline std::shared_ptr<const ModelInstance> neo_hookean(double modulus) {
+  return model(ModelKind::membrane, "neo-hookean", {modulus, 0});
+}
+inline std::shared_ptr<const ModelInstance> bending(double modulus) {
+  return model(ModelKind::membrane, "bending", {modulus, 0, 0});
+}
+inline std::shared_ptr<const ModelInstance> morse(double depth, double decay, double distance, double cutoff) {
+  return model(ModelKind::interaction, "morse", {depth, decay, distance, cutoff});
+}
+
+struct Placed {
+  double x, y, angle = 0;
+};
+
+/// Scene of biconcave cells of one type (radius 20, spacing 1) in lattice coordinates.
+inline Scene biconcave_scene(const std::vector<Placed>& places, PeriodicBox box, int height, int segments = 100) {
+  Scene scene{};
+  scene.domain.nodes = {static_cast<int>(box.nx), box.periodic_y() ? static_cast<int>(box.ny) : height};
+  scene.domain.size = {box.nx, static_cast<double>(scene.domain.nodes[1])};
+  scene.domain.periodic_y = box.periodic_y();
+  scene.cell_types.push_back({"red", Biconcave{20.0}, segments, 1.0, {}});
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    scene.cells.push_back({0, {places[i].x + 0.5, places[i].y + 0.5}, places[i].angle, "/cells/" + std::to_string(i)});
+  }
+  return scene;
+}
+
+/// The same cells, wherever they are and whatever they cross.
+inline Membranes biconcave_cells(const std::vector<Placed>& places, int segments = 100) {
+  const PeriodicBox far{1e6};
+  Membranes all;
+  for (const Placed& place : places) {
+    const Membranes one = make_membranes(biconcave_scene({{0, 1000, 0}}, far, 2000, segments), 1.0);
+    CellRange range = one.cells[0];
+    range.first = all.node_count();
+    all.cells.push_back(range);
+    const double c = std::cos(place.angle), s = std::sin(place.angle);
+    for (std::size_t i = 0; i < one.x.size(); ++i) {
+      const double x = one.x[i], y = one.y[i] - 1000;
+      all.x.push_back(place.x + c * x - s * y);
+      all.y.push_back(place.y + s * x + c * y);
+    }
+    all.rest_length.insert(all.rest_length.end(), one.rest_length.begin(), one.rest_length.end());
+    all.rest_weight.insert(all.rest_weight.end(), one.rest_weight.begin(), one.rest_weight.end());
+    all.rest_curvature.insert(all.rest_curvature.end(), one.rest_curvature.begin(), one.rest_curvature.end());
+  }
+  for (auto* values : {&all.force_x, &all.force_y, &all.velocity_x, &all.velocity_y}) values->assign(all.x.size(), 0.0);
+  return all;
+}
+
+/// Moves every node by smooth waves along the outline of up to `amplitude`, and by up to `noise` on its own.
+inline void deform(Membranes& membranes, std::mt19937& random, double amplitude, double noise = 0) {
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (const CellRange& cell : membranes.cells) {
+    for (int wave = 1; wave <= 4; ++wave) {
+      const double ax = amplitude / 4 * uniform(random), ay = amplitude / 4 * uniform(random),
+                   phase = 4 * uniform(random);
+      for (int i = cell.first; i < cell.end(); ++i) {
+        const double angle = 6.283185307179586 * wave * (i - cell.first) / cell.count + phase;
+        membranes.x[static_cast<std::size_t>(i)] += ax * std::cos(angle);
+        membranes.y[static_cast<std::size_t>(i)] += ay * std::sin(angle);
+      }
+    }
+    for (int i = cell.first; i < cell.end(); ++i) {
+      membranes.x[static_cast<std::size_t>(i)] += noise * uniform(random);
+      membranes.y[static_cast<std::size_t>(i)] += noise * uniform(random);
+    }
+  }
+}
+
+/// Sums of the nodal forces: both components, torque, and what they are to be compared with.
+struct ForceSums {
+  double x = 0, y = 0, torque = 0, size = 0, lever = 0;
+};
+inline ForceSums force_sums(const Membranes& m) {
+  ForceSums sums;
+  for (std::size_t i = 0; i < m.x.size(); ++i) {
+    sums.x += m.force_x[i];
+    sums.y += m.force_y[i];
+    sums.torque += m.x[i] * m.force_y[i] - m.y[i] * m.force_x[i];
+    sums.size += std::hypot(m.force_x[i], m.force_y[i]);
+    sums.lever += std::hypot(m.x[i], m.y[i]) * std::hypot(m.force_x[i], m.force_y[i]);
+  }
+  return sums;
+}
+
+/// Largest difference between the forces and minus the central differences of `energy`, over the largest force.
+template <class Energy>
+double gradient_error(Membranes& membranes, Energy energy, double step) {
+  double worst = 0, largest = 0;
+  const auto compare = [&](std::vector<double>& position, const std::vector<double>& force) {
+    for (std::size_t i = 0; i < position.size(); ++i) {
+      const double before = position[i];
+      position[i] = before + step;
+      const double above = energy();
+      position[i] = before - step;
+      const double below = energy();
+      position[i] = before;
+      worst = std::max(worst, std::abs(force[i] + (above - below) / (2 * step)));
+      largest = std::max(largest, std::abs(force[i]));
+    }
+  };
+  const std::vector<double> force_x = membranes.force_x, force_y = membranes.force_y;
+  compare(membranes.x, force_x);
+  compare(membranes.y, force_y);
+  return worst / largest;
+}
+
+/// One pass by several workers, one after the other: what threads would do between two barriers.
+template <class Pass>
+void run_pass(int workers, Pass pass) {
+  for (int index = 0; index < workers; ++index) pass(Worker{index, workers});
+}
+
+}  // namespace rouleau::test

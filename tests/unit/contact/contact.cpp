@@ -1,0 +1,249 @@
+// Closest points: the lists against brute force while cells move.
+#include "core/contact/contact.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <map>
+#include <tuple>
+
+#include "core/membrane/geometry.hpp"
+#include "unit/cell_fixture.hpp"
+
+using namespace rouleau;
+using namespace rouleau::contact;
+using namespace rouleau::membrane;
+using namespace rouleau::test;
+using namespace rouleau::test;
+
+namespace {
+
+constexpr double cutoff = 18;
+
+void run(Contacts& contacts, const Membranes& m, int workers = 1) {
+  for (int phase = 0; phase < Contacts::phases; ++phase) {
+    run_pass(workers, [&](Worker worker) { contacts.run(worker, phase, m); });
+  }
+}
+
+/// The rectangle around an outline: what is farther from it than the cutoff is farther from the outline.
+struct Rectangle {
+  double x_min, x_max, y_min, y_max;
+  Rectangle(const Membranes& m, const CellRange& cell) {
+    const auto [left, right] = std::minmax_element(m.x.begin() + cell.first, m.x.begin() + cell.end());
+    const auto [low, high] = std::minmax_element(m.y.begin() + cell.first, m.y.begin() + cell.end());
+    x_min = *left, x_max = *right, y_min = *low, y_max = *high;
+  }
+  [[nodiscard]] double distance(double x, double y) const {
+    return std::hypot(std::max({x_min - x, 0.0, x - x_max}), std::max({y_min - y, 0.0, y - y_max}));
+  }
+};
+
+/// Smallest distance of a node to an outline moved by (dx, dy).
+double brute_distance(const Membranes& m, int node, const CellRange& other, double dx, double dy) {
+  const double px = m.x[static_cast<std::size_t>(node)] - dx, py = m.y[static_cast<std::size_t>(node)] - dy;
+  double best = 1e300;
+  for (int j = other.first; j < other.end(); ++j) {
+    const auto a = static_cast<std::size_t>(j), b = static_cast<std::size_t>(other.next(j));
+    const double ux = m.x[b] - m.x[a], uy = m.y[b] - m.y[a], wx = px - m.x[a], wy = py - m.y[a];
+    const double square = ux * ux + uy * uy;
+    const double s = square > 0 ? std::min(1.0, std::max(0.0, (wx * ux + wy * uy) / square)) : 0.0;
+    best = std::min(best, std::hypot(wx - s * ux, wy - s * uy));
+  }
+  return best;
+}
+
+struct Tally {
+  long contacts = 0, missing = 0, wrong = 0, extra = 0;
+};
+
+/// Every node against every cell and every image near enough.
+void compare(const Contacts& contacts, const Membranes& m, const PeriodicBox& box, Tally& tally) {
+  for (int c = 0; c < static_cast<int>(m.cells.size()); ++c) {
+    const CellRange& cell = m.cells[static_cast<std::size_t>(c)];
+    const ContactList& list = contacts.list(c);
+    const auto& pairs = contacts.neighbours().list(c).pairs;
+    std::map<std::tuple<int, int, int, int>, double> found;  // node, other, shift
+    for (std::size_t p = 0; p < pairs.size(); ++p) {
+      for (int i = list.ranges[p].begin; i < list.ranges[p].end; ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        found[{list.node[k], pairs[p].other, pairs[p].shift.x, pairs[p].shift.y}] = list.distance[k];
+      }
+    }
+    tally.contacts += static_cast<long>(found.size());
+    const int far_y = box.periodic_y() ? 3 : 0;
+    long expected = 0;
+    for (int b = 0; b < static_cast<int>(m.cells.size()); ++b) {
+      const CellRange& other = m.cells[static_cast<std::size_t>(b)];
+      const Rectangle around(m, other);
+      for (int sx = -3; sx <= 3; ++sx) {
+        for (int sy = -far_y; sy <= far_y; ++sy) {
+          if (b == c && sx == 0 && sy == 0) continue;
+          const double dx = sx * box.nx, dy = sy * box.ny;
+          for (int i = cell.first; i < cell.end(); ++i) {
+            const auto node = static_cast<std::size_t>(i);
+            if (around.distance(m.x[node] - dx, m.y[node] - dy) > cutoff + 1e-9) continue;
+            const double d = brute_distance(m, i, other, dx, dy);
+            if (d > cutoff) continue;
+            ++expected;
+            const auto at = found.find({i, b, sx, sy});
+            if (at == found.end()) {
+              tally.missing += d < cutoff - 1e-9 ? 1 : 0;
+            } else if (std::abs(at->second - std::max(d, ContactList::least_distance)) > 1e-11) {
+              ++tally.wrong;
+            }
+          }
+        }
+      }
+    }
+    tally.extra += static_cast<long>(found.size()) > expected + 2 ? 1 : 0;
+  }
+}
+
+}  // namespace
+
+TEST_CASE("closest points are those of brute force on moving, turning, deforming and overlapping cells") {
+  const PeriodicBox box = GENERATE(PeriodicBox{90.0}, PeriodicBox{90.0, 70.0}, PeriodicBox{45.0});
+  // Lists are made for the speed of the nodes where that is known, and for any speed where it is not.
+  const bool known = GENERATE(false, true);
+  const double speed = known ? GENERATE(0.02, 0.2) : 1.0;
+  auto random = generator(61);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  Tally tally;
+  long renewals = 0;
+  for (int scene = 0; scene < 6; ++scene) {
+    std::vector<Placed> places;
+    for (int k = 0; k < 5; ++k) places.push_back({60 * uniform(random), 30 * uniform(random), 3 * uniform(random)});
+    Membranes m = biconcave_cells(places, 97 + scene);
+    deform(m, random, 4, 0.2);
+    Cutoffs cutoffs(1);
+    cutoffs.raise(0, 0, cutoff);
+    if (known) m.largest_step.assign(m.cells.size(), 0.001 * speed);
+    Contacts contacts(m, cutoffs, box);
+    for (int step = 0; step < 12; ++step) {
+      run(contacts, m, 1 + step % 3);
+      compare(contacts, m, box, tally);
+      // Move by up to the skin since the lists were made, by rigid motion and by single nodes.
+      const std::vector<double> old_x = m.x, old_y = m.y;
+      for (const CellRange& cell : m.cells) {
+        const double vx = speed * 0.06 * uniform(random), vy = speed * 0.06 * uniform(random),
+                     turn = speed * 0.003 * uniform(random);
+        const Eigen::Vector2d center = centroid(m, cell);
+        for (int i = cell.first; i < cell.end(); ++i) {
+          const auto k = static_cast<std::size_t>(i);
+          const double rx = m.x[k] - center.x(), ry = m.y[k] - center.y();
+          m.x[k] += vx - turn * ry + speed * 0.02 * uniform(random);
+          m.y[k] += vy + turn * rx + speed * 0.02 * uniform(random);
+        }
+      }
+      if (known)
+        m.largest_step.assign(m.cells.size(), largest_displacement(m.x, m.y, old_x, old_y, {0, m.node_count()}));
+    }
+    renewals += contacts.neighbours().renewals();
+  }
+  std::cout << tally.contacts << " contacts, " << renewals << " lists made in 72 steps\n";
+  CHECK(tally.contacts > 20000);
+  CHECK(tally.missing == 0);
+  CHECK(tally.wrong == 0);
+  CHECK(tally.extra == 0);
+  CHECK(renewals < 60);
+}
+
+TEST_CASE("a node that is nowhere makes no contact and spoils no other, over periodic borders too") {
+  for (const std::size_t broken : {0u, 1u, 2u}) {
+    Membranes m = biconcave_cells({{10, 10, 0}, {14, 28, 0}, {60, 40, 1}});
+    const auto node = static_cast<std::size_t>(m.cells[broken].first + 3);
+    m.x[node] = std::nan("");
+    m.largest_step.assign(3, 0.001);
+    m.largest_step[broken] = std::nan("");
+    Cutoffs cutoffs(1);
+    cutoffs.raise(0, 0, cutoff);
+    Contacts contacts(m, cutoffs, {90.0, 70.0});
+    run(contacts, m);
+    for (int c = 0; c < 3; ++c) {
+      const ContactList& list = contacts.list(c);
+      for (std::size_t k = 0; k < static_cast<std::size_t>(list.count); ++k) {
+        REQUIRE(list.distance[k] <= cutoff);
+        for (const int i : {list.node[k], list.segment[k]}) REQUIRE(static_cast<std::size_t>(i) != node);
+      }
+    }
+    CHECK(contacts.list(0).count > 0);
+  }
+}
+
+TEST_CASE("bins find every cell and image within reach, in boxes of any size, over periodic borders") {
+  auto random = generator(64);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  long found = 0, pairs = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    const PeriodicBox box{30 + 400 * uniform(random), trial % 2 == 0 ? 0.0 : 30 + 300 * uniform(random)};
+    const double reach = 1 + 20 * uniform(random), largest = 5 + 50 * uniform(random);
+    std::vector<Bounds> bounds;
+    for (int c = 0; c < 60; ++c) {
+      const double x = (3 * uniform(random) - 1) * box.nx, y = (3 * uniform(random) - 1) * 200;
+      bounds.push_back({x, x + largest * uniform(random), y, y + largest * uniform(random)});
+    }
+    bounds[17].x_min = std::nan("");
+    const Bins bins(bounds, reach, box);
+    std::vector<int> near;
+    for (int a = 0; a < 60; ++a) {
+      bins.find(a, near);
+      std::sort(near.begin(), near.end());
+      REQUIRE(std::adjacent_find(near.begin(), near.end()) == near.end());
+      found += static_cast<long>(near.size());
+      for (int b = 0; b < 60; ++b) {
+        bool images = false;
+        for_each_image(bounds[static_cast<std::size_t>(a)], bounds[static_cast<std::size_t>(b)], reach, box,
+                       [&](ImageShift) { images = true; });
+        if (images) REQUIRE(std::binary_search(near.begin(), near.end(), b));
+        pairs += images ? 1 : 0;
+      }
+    }
+  }
+  CHECK(pairs > 20000);
+  CHECK(found < 200 * 60 * 60 / 2);
+}
+
+TEST_CASE("a remembered direction and place belong to the distance") {
+  auto random = generator(62);
+  Membranes m = biconcave_cells({{0, 0, 0.1}, {3, 17, 0}});
+  deform(m, random, 2, 0.1);
+  Cutoffs cutoffs(1);
+  cutoffs.raise(0, 0, cutoff);
+  Contacts contacts(m, cutoffs, {1e4});
+  run(contacts, m);
+  for (int c = 0; c < 2; ++c) {
+    const ContactList& list = contacts.list(c);
+    REQUIRE(list.count > 50);
+    for (int i = 0; i < list.count; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      const auto a = static_cast<std::size_t>(list.segment[k]),
+                 b = static_cast<std::size_t>(m.cells[static_cast<std::size_t>(1 - c)].next(list.segment[k]));
+      const double px = (1 - list.along[k]) * m.x[a] + list.along[k] * m.x[b];
+      const double py = (1 - list.along[k]) * m.y[a] + list.along[k] * m.y[b];
+      const auto n = static_cast<std::size_t>(list.node[k]);
+      REQUIRE(m.x[n] - px == Approx(list.distance[k] * list.direction_x[k]).margin(1e-12));
+      REQUIRE(m.y[n] - py == Approx(list.distance[k] * list.direction_y[k]).margin(1e-12));
+      REQUIRE(std::hypot(list.direction_x[k], list.direction_y[k]) == Approx(1).epsilon(1e-14));
+    }
+  }
+}
+
+TEST_CASE("every image is visited from both cells") {
+  auto random = generator(63);
+  std::uniform_real_distribution<double> uniform(-300, 300);
+  long visits = 0;
+  for (int trial = 0; trial < 20000; ++trial) {
+    const double ax = uniform(random), ay = uniform(random), bx = uniform(random), by = uniform(random);
+    const Bounds a{ax, ax + 40, ay, ay + 13}, b{bx, bx + 13, by, by + 40};
+    // Bounds that touch exactly, too: the reach is a difference of coordinates.
+    const double reach = trial % 2 == 0 ? 19 : std::abs(b.x_min - a.x_max);
+    const PeriodicBox box{60.0 + trial % 7 / 3.0, trial % 3 == 0 ? 0.0 : 77.0};
+    std::vector<ImageShift> there, back;
+    for_each_image(a, b, reach, box, [&](ImageShift shift) { there.push_back(shift); });
+    for_each_image(b, a, reach, box, [&](ImageShift shift) { back.push_back(-shift); });
+    REQUIRE(there.size() == back.size());
+    REQUIRE(std::is_permutation(there.begin(), there.end(), back.begin()));
+    visits += static_cast<long>(there.size());
+  }
+  CHECK(visits > 10000);
+}

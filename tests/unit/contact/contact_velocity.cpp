@@ -1,0 +1,111 @@
+// Velocities at contacts: the rate of the distance, and sliding that both cells see alike.
+#include "core/contact/contact_velocity.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "unit/cell_fixture.hpp"
+
+using namespace rouleau::contact;
+using namespace rouleau::membrane;
+using namespace rouleau::test;
+using namespace rouleau::test;
+
+namespace {
+
+constexpr double reach = 10;
+
+struct Found {
+  std::vector<ContactList> lists;
+  std::vector<ContactVelocities> velocities;
+};
+
+Found search(const Membranes& m) {
+  Cutoffs cutoffs(1);
+  cutoffs.raise(0, 0, reach);
+  Contacts contacts(m, cutoffs, PeriodicBox{120});
+  for (int phase = 0; phase < Contacts::phases; ++phase) contacts.run({}, phase, m);
+  Found found;
+  for (int cell = 0; cell < m.cell_count(); ++cell) {
+    found.lists.push_back(contacts.list(cell));
+    found.velocities.emplace_back().measure(contacts.list(cell), contacts.neighbours().list(cell).pairs, m);
+  }
+  return found;
+}
+
+/// Three cells above one another, the lowest also beside its own image.
+Membranes facing_cells(std::mt19937& random) {
+  Membranes m = biconcave_cells({{0, 0, 0}, {5, 17, 0.05}, {100, 2, -0.1}});
+  deform(m, random, 0.5);
+  return m;
+}
+
+Membranes moved(Membranes m, double time) {
+  for (std::size_t i = 0; i < m.x.size(); ++i) {
+    m.x[i] += time * m.velocity_x[i];
+    m.y[i] += time * m.velocity_y[i];
+  }
+  return m;
+}
+
+}  // namespace
+
+TEST_CASE("the normal velocity of a contact is the rate at which its distance changes") {
+  auto random = generator(91);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  Membranes m = facing_cells(random);
+  for (std::size_t i = 0; i < m.x.size(); ++i) m.velocity_x[i] = uniform(random), m.velocity_y[i] = uniform(random);
+  const double step = 1e-5;
+  const Found now = search(m), before = search(moved(m, -step)), after = search(moved(m, step));
+  int compared = 0;
+  for (std::size_t cell = 0; cell < now.lists.size(); ++cell) {
+    const ContactList &list = now.lists[cell], &earlier = before.lists[cell], &later = after.lists[cell];
+    if (list.count != earlier.count || list.count != later.count) continue;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(list.count); ++i) {
+      // Where the closest point goes over to another segment, the distance has a kink.
+      if (list.segment[i] != earlier.segment[i] || list.segment[i] != later.segment[i]) continue;
+      if (list.node[i] != earlier.node[i] || list.node[i] != later.node[i]) continue;
+      const double rate = (later.distance[i] - earlier.distance[i]) / (2 * step);
+      // Differences: rounding of distances up to ten over the step, and step^2 over the smallest distance.
+      REQUIRE(now.velocities[cell].normal[i] == Approx(rate).margin(1e-9));
+      ++compared;
+    }
+  }
+  CHECK(compared > 100);
+}
+
+TEST_CASE("two cells that slide against each other see the same sliding, and its size with the approach is the speed") {
+  auto random = generator(92);
+  Membranes m = facing_cells(random);
+  const double u = 0.3, v = -0.4;
+  const CellRange& upper = m.cells[1];
+  for (auto i = static_cast<std::size_t>(upper.first); i < static_cast<std::size_t>(upper.end()); ++i) {
+    m.velocity_x[i] = u;
+    m.velocity_y[i] = v;
+  }
+  const Found found = search(m);
+  double below = 0, above = 0;
+  for (const std::size_t cell : {0UL, 1UL}) {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(found.lists[cell].count); ++i) {
+      const double normal = found.velocities[cell].normal[i], tangential = found.velocities[cell].tangential[i];
+      const double speed = std::hypot(normal, tangential);
+      CHECK((speed == Approx(0.5) || speed < 1e-15));  // against the upper cell, or against one that rests like it
+      (cell == 0 ? below : above) += tangential;
+    }
+  }
+  // The upper cell goes to the right: along its lower side that is counter-clockwise, and so it is for the lower cell,
+  // which against it goes to the left along its upper side.
+  CHECK(below > 0);
+  CHECK(above > 0);
+}
+
+TEST_CASE("cells that move together neither approach nor slide") {
+  auto random = generator(93);
+  Membranes m = facing_cells(random);
+  std::fill(m.velocity_x.begin(), m.velocity_x.end(), 0.7);
+  std::fill(m.velocity_y.begin(), m.velocity_y.end(), -0.2);
+  for (const ContactVelocities& velocities : search(m).velocities) {
+    for (const double value : velocities.normal) CHECK(std::abs(value) < 1e-15);
+    for (const double value : velocities.tangential) CHECK(std::abs(value) < 1e-15);
+  }
+}

@@ -1,0 +1,252 @@
+// Membrane laws and interactions as forces: gradients, balances, independence of the workers.
+#include <catch2/catch.hpp>
+#include <limits>
+
+#include "core/contact/interaction_forces.hpp"
+#include "core/membrane/geometry.hpp"
+#include "core/membrane/membrane_forces.hpp"
+#include "core/membrane/turning_angle.hpp"
+#include "unit/cell_fixture.hpp"
+
+using namespace rouleau;
+using namespace rouleau::contact;
+using namespace rouleau::membrane;
+using namespace rouleau::test;
+using namespace rouleau::test;
+
+namespace {
+
+const std::vector<Placed> rouleau_of_three = {{0, -18, 0.05}, {2, 0, 0.0}, {-1, 18, -0.08}};
+
+MembraneForces membrane_forces(const Membranes& m, MembraneLaws laws) { return {m, {std::move(laws)}}; }
+
+void run(InteractionForces& forces, Membranes& m, int workers = 1) {
+  for (int phase = 0; phase < InteractionForces::phases; ++phase) {
+    run_pass(workers, [&](Worker worker) { forces.run(worker, phase, m); });
+  }
+}
+void clear(Membranes& m) {
+  std::fill(m.force_x.begin(), m.force_x.end(), 0.0);
+  std::fill(m.force_y.begin(), m.force_y.end(), 0.0);
+}
+
+}  // namespace
+
+TEST_CASE("the turning angle is the two-argument arc tangent to 1e-14") {
+  double worst = 0;
+  for (int k = -200000; k <= 200000; ++k) {
+    const double angle = k * (3.141592653589793 / 200000);
+    for (const double tiny : {1.0, 1e-5}) {
+      const double s = std::sin(angle * tiny), c = std::cos(angle * tiny), exact = std::atan2(s, c);
+      const double error = std::abs(turning_angle<double>(s, c) - exact);
+      if (exact != 0) worst = std::max(worst, error / std::abs(exact));
+    }
+  }
+  CHECK(worst < 1e-14);
+  CHECK(turning_angle<double>(0.0, 0.0) == 0);
+  CHECK(turning_angle<double>(0.0, 1.0) == 0);
+  CHECK(std::abs(turning_angle<double>(0.0, -1.0)) == Approx(3.141592653589793));
+}
+
+TEST_CASE("membrane forces are minus the gradient of the energy") {
+  const unsigned seed = GENERATE(1u, 2u, 3u);
+  auto random = generator(seed);
+  const bool elastic = GENERATE(true, false);
+  Membranes m = biconcave_cells({{100, 60, 0.4}, {160, 70, 2}}, elastic ? 100 : 93);
+  deform(m, random, 4, 0.2);
+  MembraneForces forces = membrane_forces(m, {elastic ? neo_hookean(0.1) : bending(0.5)});
+  forces.run({}, m);
+  // Central differences: truncation 1e-4^2, rounding 1e-16 E / (1e-4 F).
+  CHECK(gradient_error(
+            m, [&] { return forces.energy(m); }, 1e-4) < 1e-7);
+}
+
+TEST_CASE("membrane forces have no net force and no net torque") {
+  auto random = generator(11);
+  Membranes m = biconcave_cells({{100, 60, 0.4}, {160, 70, 2}});
+  deform(m, random, 6, 0.3);
+  const MembraneLaws laws = GENERATE(MembraneLaws{neo_hookean(0.1)}, MembraneLaws{bending(0.5)},
+                                     MembraneLaws{neo_hookean(0.1), bending(0.5), neo_hookean(0.3)});
+  MembraneForces forces = membrane_forces(m, laws);
+  forces.run({}, m);
+  const ForceSums sums = force_sums(m);
+  REQUIRE(sums.size > 0);
+  CHECK(std::abs(sums.x) < 1e-12 * sums.size);
+  CHECK(std::abs(sums.y) < 1e-12 * sums.size);
+  CHECK(std::abs(sums.torque) < 1e-12 * sums.lever);
+}
+
+TEST_CASE("laws of one cell type add up") {
+  auto random = generator(12);
+  Membranes m = biconcave_cells({{100, 60, 0.4}});
+  deform(m, random, 4, 0.1);
+  Membranes together = m, one = m, two = m;
+  membrane_forces(m, {neo_hookean(0.1), bending(0.4)}).run({}, together);
+  membrane_forces(m, {neo_hookean(0.1)}).run({}, one);
+  membrane_forces(m, {bending(0.4)}).run({}, two);
+  for (std::size_t i = 0; i < m.x.size(); ++i) {
+    REQUIRE(together.force_x[i] == Approx(one.force_x[i] + two.force_x[i]).margin(1e-14));
+  }
+  std::vector<double> tension;
+  MembraneForces forces = membrane_forces(m, {neo_hookean(0.1), bending(0.4)});
+  forces.tensions(m, tension);
+  const double dx = m.x[1] - m.x[0], dy = m.y[1] - m.y[0], e = std::hypot(dx, dy) / m.rest_length[0];
+  CHECK(tension[0] == Approx(0.1 * (std::pow(e, 1.5) - std::pow(e, -1.5))));
+}
+
+TEST_CASE("cells feel the laws of their own type alone, in any order") {
+  auto random = generator(13);
+  Membranes m = biconcave_cells({{100, 60, 0.4}, {160, 70, 2}, {220, 60, 1}, {280, 60, 0}});
+  deform(m, random, 4, 0.1);
+  const std::vector<MembraneLaws> laws = {{neo_hookean(0.1), bending(0.4)}, {bending(0.3)}, {neo_hookean(0.2)}, {}};
+  std::vector<Membranes> alone;
+  for (const MembraneLaws& list : laws) {
+    alone.push_back(m);
+    membrane_forces(m, list).run({}, alone.back());
+  }
+  const std::vector<int> order = GENERATE(std::vector<int>{0, 1, 2, 3}, std::vector<int>{0, 3, 2, 1});
+  for (std::size_t c = 0; c < order.size(); ++c) m.cells[c].type = order[c];
+  MembraneForces(m, laws).run({}, m);
+  for (const CellRange& cell : m.cells) {
+    const Membranes& expected = alone[static_cast<std::size_t>(cell.type)];
+    for (auto i = static_cast<std::size_t>(cell.first); i < static_cast<std::size_t>(cell.end()); ++i) {
+      REQUIRE(m.force_x[i] == expected.force_x[i]);
+      REQUIRE(m.force_y[i] == expected.force_y[i]);
+    }
+  }
+}
+
+TEST_CASE("a cell at rest feels no force, and a law that does nothing leaves none behind") {
+  Membranes m = biconcave_cells({{100, 60, 0.4}});
+  std::fill(m.force_x.begin(), m.force_x.end(), 7.0);
+  membrane_forces(m, {neo_hookean(0.1), bending(0.4)}).run({}, m);
+  for (const double force : m.force_x) REQUIRE(std::abs(force) < 1e-12);
+  std::fill(m.force_x.begin(), m.force_x.end(), 7.0);
+  membrane_forces(m, {}).run({}, m);
+  for (const double force : m.force_x) REQUIRE(force == 0);
+}
+
+TEST_CASE("interaction forces are minus the gradient of the energy") {
+  const unsigned seed = GENERATE(21u, 22u);
+  auto random = generator(seed);
+  const PeriodicBox box = GENERATE(PeriodicBox{1e4}, PeriodicBox{47.0}, PeriodicBox{47.0, 54.0});
+  Membranes m = biconcave_cells(rouleau_of_three);
+  deform(m, random, 2, 0.02);
+  // A deep cutoff: at 18 the Morse energy is e^-11 of its depth, so that nodes that come and go do not show.
+  InteractionForces forces(m, {{{0, 0}, morse(0.2, 0.75, 2.5, 18)}}, box);
+  run(forces, m);
+  const auto energy = [&] {
+    run(forces, m);
+    return forces.energy(m);
+  };
+  // At a node whose closest point is about to jump to another segment the energy has a kink; few nodes are at one.
+  CHECK(gradient_error(m, energy, 1e-5) < 1e-7);
+}
+
+TEST_CASE("interaction forces have no net force and no net torque") {
+  auto random = generator(31);
+  Membranes m = biconcave_cells(rouleau_of_three);
+  deform(m, random, 3, 0.1);
+  InteractionForces forces(m, {{{0, 0}, morse(0.2, 0.75, 2.5, 18)}}, {1e4});
+  run(forces, m);
+  const ForceSums sums = force_sums(m);
+  REQUIRE(sums.size > 0);
+  CHECK(std::abs(sums.x) < 1e-12 * sums.size);
+  CHECK(std::abs(sums.y) < 1e-12 * sums.size);
+  CHECK(std::abs(sums.torque) < 1e-12 * sums.lever);
+}
+
+TEST_CASE("periodic images pull as other cells at the same places would") {
+  Membranes one = biconcave_cells({{0, 0, 0}}), row = biconcave_cells({{-46, 0, 0}, {0, 0, 0}, {46, 0, 0}});
+  InteractionForces periodic(one, {{{0, 0}, morse(0.2, 0.4, 2.5, 18)}}, {46.0});
+  InteractionForces open(row, {{{0, 0}, morse(0.2, 0.4, 2.5, 18)}}, {1e5});
+  run(periodic, one);
+  run(open, row);
+  double size = 0;
+  for (std::size_t i = 0; i < one.x.size(); ++i) {
+    REQUIRE(one.force_x[i] == Approx(row.force_x[i + 100]).margin(1e-14));
+    REQUIRE(one.force_y[i] == Approx(row.force_y[i + 100]).margin(1e-14));
+    size += std::abs(one.force_x[i]);
+  }
+  CHECK(size > 1e-3);
+  CHECK(periodic.closest_contact(0) == Approx(6));
+}
+
+TEST_CASE("several potentials between two types add up, each within its own cutoff") {
+  auto random = generator(41);
+  Membranes m = biconcave_cells(rouleau_of_three);
+  deform(m, random, 2);
+  m.cells[1].type = 1;
+  const auto far = morse(0.2, 0.3, 2.5, 18), near = morse(0.1, 0.5, 3, 6);
+  Membranes both = m, first = m, second = m, other = m;
+  InteractionForces sum(m, {{{0, 1}, far}, {{1, 0}, near}}, {1e4}), a(m, {{{0, 1}, far}}, {1e4}),
+      b(m, {{{0, 1}, near}}, {1e4}), c(m, {{{1, 1}, far}}, {1e4});
+  run(sum, both), run(a, first), run(b, second), run(c, other);
+  double size = 0;
+  for (std::size_t i = 0; i < m.x.size(); ++i) {
+    REQUIRE(both.force_y[i] == Approx(first.force_y[i] + second.force_y[i]).margin(1e-13));
+    REQUIRE(other.force_y[i] == 0);
+    size += std::abs(second.force_y[i]);
+  }
+  CHECK(size > 0);
+  CHECK(sum.energy(both) == Approx(a.energy(first) + b.energy(second)));
+}
+
+TEST_CASE("forces are the same to the last bit for one, two and three workers") {
+  auto random = generator(51);
+  Membranes start = biconcave_cells({{0, -19, 0.05}, {2, 0, 0.0}, {-1, 18, -0.08}, {30, 30, 1.3}});
+  deform(start, random, 2, 0.05);
+  std::vector<Membranes> results;
+  for (const int workers : {1, 2, 3}) {
+    Membranes m = start;
+    MembraneForces membrane = membrane_forces(m, {neo_hookean(0.1), bending(0.4)});
+    InteractionForces interaction(m, {{{0, 0}, morse(0.2, 0.3, 2.5, 18)}}, {60.0, 90.0});
+    for (int step = 0; step < 30; ++step) {
+      run_pass(workers, [&](Worker worker) { membrane.run(worker, m); });
+      run(interaction, m, workers);
+      for (std::size_t i = 0; i < m.x.size(); ++i) {
+        m.x[i] += 0.2 * m.force_x[i];
+        m.y[i] += 0.2 * m.force_y[i];
+      }
+    }
+    results.push_back(m);
+  }
+  for (std::size_t k = 1; k < results.size(); ++k) {
+    CHECK(results[k].x == results[0].x);
+    CHECK(results[k].force_y == results[0].force_y);
+  }
+}
+
+TEST_CASE("coincident nodes and nodes on another outline give no NaN") {
+  Membranes m = biconcave_cells({{0, 0, 0}, {0, 14, 0}});
+  m.x[5] = m.x[4], m.y[5] = m.y[4];  // a segment without length
+  // A node in the middle of a segment of the other cell, one on a node of it, one on its segment without length.
+  m.x[150] = (m.x[20] + m.x[21]) / 2, m.y[150] = (m.y[20] + m.y[21]) / 2;
+  m.x[160] = m.x[30], m.y[160] = m.y[30];
+  m.x[170] = m.x[5], m.y[170] = m.y[5];
+  membrane_forces(m, {bending(0.4)}).run({}, m);
+  for (const double force : m.force_x) REQUIRE(std::isfinite(force));
+  clear(m);
+  InteractionForces interaction(m, {{{0, 0}, morse(0.2, 0.3, 2.5, 18)}}, {1e4});
+  run(interaction, m);
+  for (std::size_t i = 0; i < m.x.size(); ++i) {
+    REQUIRE(std::isfinite(m.force_x[i]));
+    REQUIRE(std::isfinite(m.force_y[i]));
+  }
+  const ForceSums sums = force_sums(m);
+  CHECK(std::abs(sums.y) < 1e-12 * sums.size);
+}
+
+TEST_CASE("positions that are not numbers end no pass and cross no bound") {
+  Membranes m = biconcave_cells({{0, 0, 0}, {0, 18, 0}});
+  InteractionForces interaction(m, {{{0, 0}, morse(0.2, 0.3, 2.5, 18)}}, {60.0, 60.0});
+  run(interaction, m);
+  for (const double bad : {std::nan(""), 1e300, std::numeric_limits<double>::infinity()}) {
+    Membranes broken = m;
+    broken.x[7] = bad;
+    broken.y[120] = -bad;
+    run(interaction, broken);
+    membrane_forces(broken, {neo_hookean(0.1), bending(0.4)}).run({}, broken);
+  }
+  SUCCEED();
+}

@@ -1,0 +1,297 @@
+// Membranes that remember: tension by rate, stepped implicitly, and laws with state of their own.
+#include <catch2/catch.hpp>
+
+#include "core/membrane/membrane_forces.hpp"
+#include "unit/cell_fixture.hpp"
+
+using namespace rouleau;
+using namespace rouleau::membrane;
+using namespace rouleau::plugin;
+using namespace rouleau::test;
+using namespace rouleau::units;
+using namespace rouleau::test;
+
+namespace {
+
+std::shared_ptr<const ModelInstance> viscous(double viscosity) {
+  return model(ModelKind::membrane, "viscous", {viscosity});
+}
+std::shared_ptr<const ModelInstance> maxwell(double modulus, double relaxation_time) {
+  return model(ModelKind::membrane, "standard-linear-solid", {modulus, relaxation_time});
+}
+
+MembraneForces forces_with(Membranes& m, MembraneLaws laws) {
+  MembraneForces forces(m, {std::move(laws)});
+  forces.keep_state(m);
+  return forces;
+}
+
+/// d length / dt of every segment.
+std::vector<double> length_rates(const Membranes& m) {
+  std::vector<double> rates;
+  for (const CellRange& cell : m.cells) {
+    for (int i = cell.first; i < cell.end(); ++i) {
+      const auto k = static_cast<std::size_t>(i), n = static_cast<std::size_t>(cell.next(i));
+      const double dx = m.x[n] - m.x[k], dy = m.y[n] - m.y[k];
+      rates.push_back((dx * (m.velocity_x[n] - m.velocity_x[k]) + dy * (m.velocity_y[n] - m.velocity_y[k])) /
+                      std::hypot(dx, dy));
+    }
+  }
+  return rates;
+}
+
+void set_random_velocities(Membranes& m, std::mt19937& random, double size) {
+  std::normal_distribution<double> normal(0, size);
+  for (auto* velocity : {&m.velocity_x, &m.velocity_y}) {
+    for (double& v : *velocity) v = normal(random);
+  }
+}
+
+/// Every length of the membrane times a factor.
+void scale(Membranes& m, double factor) {
+  for (auto* position : {&m.x, &m.y}) {
+    for (double& p : *position) p *= factor;
+  }
+}
+
+const std::vector<double>& state(const Membranes& m, const char* name) { return find_state(m.state, 0, name)->value; }
+
+}  // namespace
+
+TEST_CASE("the implicit tension of a steady motion becomes viscosity times rate") {
+  auto random = generator(101);
+  Membranes m = biconcave_cells({{100, 60, 0.4}}, 99);
+  deform(m, random, 3, 0.1);
+  set_random_velocities(m, random, 1e-3);
+  const double viscosity = GENERATE(0.1, 10.0);
+  MembraneForces forces = forces_with(m, {viscous(viscosity)});
+  // What is missing falls by a factor of at least 1 - 1/(1 + 16 viscosity/length) in a step.
+  for (int step = 0; step < 10000; ++step) forces.run({}, m);
+  std::vector<double> tension;
+  forces.tensions(m, tension);
+  const std::vector<double> rates = length_rates(m);
+  double largest = 0;
+  for (const double t : tension) largest = std::max(largest, std::abs(t));
+  for (std::size_t i = 0; i < tension.size(); ++i) {
+    const std::size_t n = i + 1 < tension.size() ? i + 1 : 0;
+    const double length = std::hypot(m.x[n] - m.x[i], m.y[n] - m.y[i]);
+    REQUIRE(tension[i] == Approx(viscosity * rates[i] / length).margin(1e-11 * largest));
+  }
+}
+
+TEST_CASE("whatever the motion, a viscous membrane never gives back more than it has taken") {
+  // Random velocities, new in every step: the worst that a step taken with the velocities of the last one can meet.
+  auto random = generator(102);
+  const double viscosity = GENERATE(0.01, 1.0, 100.0, 7000.0);
+  Membranes m = biconcave_cells({{100, 60, 0.4}}, 99);
+  deform(m, random, 3, 0.1);
+  MembraneForces forces = forces_with(m, {viscous(viscosity)});
+  double work = 0;
+  for (int step = 0; step < 2000; ++step) {
+    set_random_velocities(m, random, 1e-3);
+    forces.run({}, m);
+    const std::vector<double> rates = length_rates(m);
+    for (std::size_t i = 0; i < rates.size(); ++i) work += state(m, "rate_tension")[i] * rates[i];
+    REQUIRE(work > 0);
+  }
+}
+
+TEST_CASE("membrane viscosity costs rigid motion nothing and leaves no net force and torque") {
+  auto random = generator(103);
+  Membranes m = biconcave_cells({{100, 60, 0.4}, {160, 70, 2}});
+  deform(m, random, 3, 0.1);
+  MembraneForces forces = forces_with(m, {viscous(200)});
+  SECTION("rigid motion") {
+    for (std::size_t i = 0; i < m.x.size(); ++i) {
+      m.velocity_x[i] = 0.01 - 0.002 * m.y[i];
+      m.velocity_y[i] = -0.02 + 0.002 * m.x[i];
+    }
+    forces.run({}, m);
+    // Rates are differences of velocities of size 0.4: rounding, times the viscosity over a length near 1.
+    for (const double force : m.force_x) REQUIRE(std::abs(force) < 200 * 1e-15);
+  }
+  SECTION("any motion") {
+    for (int step = 0; step < 10; ++step) {
+      set_random_velocities(m, random, 1e-3);
+      forces.run({}, m);
+    }
+    const ForceSums sums = force_sums(m);
+    REQUIRE(sums.size > 0);
+    CHECK(std::abs(sums.x) < 1e-12 * sums.size);
+    CHECK(std::abs(sums.torque) < 1e-12 * sums.lever);
+  }
+}
+
+TEST_CASE("the tension of a Maxwell branch falls exponentially after a step of stretch") {
+  Membranes m = biconcave_cells({{100, 60, 0.4}});
+  const double time = GENERATE(0.3, 5.0, 1e4);  // in steps
+  MembraneForces forces = forces_with(m, {maxwell(0.2, time)});
+  forces.run({}, m);
+  scale(m, 1.1);
+  std::vector<double> tension;
+  for (int step = 1; step <= 20; ++step) {
+    forces.run({}, m);
+    forces.tensions(m, tension);
+    // Differences of stretches near 1: an absolute error of a few 1e-16 in each.
+    for (const double t : tension)
+      REQUIRE(t == Approx(0.2 * 0.1 * std::exp(-step / time)).epsilon(1e-12).margin(1e-16));
+  }
+}
+
+TEST_CASE("a Maxwell branch is a spring when it relaxes slowly and a dashpot when it relaxes fast") {
+  Membranes m = biconcave_cells({{0, 0, 0}});
+  const double rate = 1e-4;
+  std::vector<double> tension;
+  SECTION("slowly") {
+    MembraneForces forces = forces_with(m, {maxwell(0.2, 1e12)});
+    scale(m, 1.07);
+    forces.run({}, m);
+    forces.tensions(m, tension);
+    for (const double t : tension) REQUIRE(t == Approx(0.2 * 0.07));
+  }
+  SECTION("fast") {
+    MembraneForces forces = forces_with(m, {maxwell(0.2, 10)});
+    for (int step = 0; step < 400; ++step) {
+      for (std::size_t i = 0; i < m.x.size(); ++i) {  // d stretch / dt = rate: every length grows by rate in a step
+        m.velocity_x[i] = rate * m.x[i] / (1 + rate * step);
+        m.velocity_y[i] = rate * m.y[i] / (1 + rate * step);
+        m.x[i] += m.velocity_x[i];
+        m.y[i] += m.velocity_y[i];
+      }
+      forces.run({}, m);
+    }
+    forces.tensions(m, tension);
+    for (const double t : tension) REQUIRE(t == Approx(0.2 * 10 * rate).epsilon(1e-9));  // e^-40 is left of the start
+  }
+}
+
+TEST_CASE("the work done on a Maxwell branch is what its spring holds and its dashpot loses, to second order") {
+  const double modulus = 0.2, time = 300;
+  const auto missing = [&](int steps_per_cycle) {
+    Membranes m = biconcave_cells({{0, 0, 0}});
+    const double cycle = 2000, dt = cycle / steps_per_cycle;
+    MembraneForces forces = forces_with(m, {maxwell(modulus, time / dt)});
+    double work = 0, loss = 0, before = 0, stretch = 1;
+    const double rest = m.cells[0].rest_perimeter;
+    for (int step = 1; step <= steps_per_cycle; ++step) {
+      const double next = 1 + 0.1 * std::sin(6.283185307179586 * step / steps_per_cycle);
+      for (std::size_t i = 0; i < m.x.size(); ++i) {
+        m.velocity_x[i] = m.x[i] * (next / stretch - 1);
+        m.velocity_y[i] = m.y[i] * (next / stretch - 1);
+      }
+      scale(m, next / stretch);
+      // Velocities are the displacement of the last step, along the same directions.
+      forces.run({}, m);
+      std::vector<double> tension;
+      forces.tensions(m, tension);
+      work += rest * (before + tension[0]) / 2 * (next - stretch);
+      loss += rest * (before * before + tension[0] * tension[0]) / 2 / (modulus * time) * dt;
+      before = tension[0];
+      stretch = next;
+    }
+    return (work - loss - forces.energies(m).tension) / work;
+  };
+  const double coarse = std::abs(missing(100)), fine = std::abs(missing(200));
+  CHECK(coarse < 1e-2);
+  CHECK(coarse / fine == Approx(4).epsilon(0.1));
+}
+
+TEST_CASE("who looks at energies and tensions does not make time pass") {
+  auto random = generator(104);
+  Membranes m = biconcave_cells({{100, 60, 0.4}});
+  deform(m, random, 3, 0.1);
+  set_random_velocities(m, random, 1e-3);
+  MembraneForces forces = forces_with(m, {neo_hookean(0.1), maxwell(0.2, 3), viscous(5)});
+  for (int step = 0; step < 5; ++step) forces.run({}, m);
+  const std::vector<ElementState> before = m.state;
+  std::vector<double> first, second;
+  forces.tensions(m, first);
+  const double energy = forces.energy(m);
+  forces.tensions(m, second);
+  CHECK(first == second);
+  CHECK(forces.energy(m) == energy);
+  REQUIRE(m.state.size() == 2);
+  for (std::size_t k = 0; k < before.size(); ++k) CHECK(m.state[k].value == before[k].value);
+  // The tensions seen are those that made the forces: segment i pulls node i by T_i t_i and node i + 1 by -T_i t_i.
+  double worst = 0;
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    const std::size_t b = i > 0 ? i - 1 : first.size() - 1, n = i + 1 < first.size() ? i + 1 : 0;
+    const auto along = [&](std::size_t from, std::size_t to) {
+      return (m.x[to] - m.x[from]) / std::hypot(m.x[to] - m.x[from], m.y[to] - m.y[from]);
+    };
+    worst = std::max(worst, std::abs(m.force_x[i] - first[i] * along(i, n) + first[b] * along(b, i)));
+  }
+  CHECK(worst < 1e-13);
+}
+
+TEST_CASE("two branches of one type and the same law of another type each remember for themselves") {
+  Membranes m = biconcave_cells({{100, 60, 0.4}, {160, 70, 2}});
+  m.cells[1].type = 1;
+  MembraneForces forces(m, {{maxwell(0.2, 5), maxwell(0.3, 50)}, {maxwell(0.2, 500)}});
+  forces.keep_state(m);
+  REQUIRE(m.state.size() == 3);
+  scale(m, 1.1);
+  for (int step = 0; step < 4; ++step) forces.run({}, m);
+  std::vector<double> tension;
+  forces.tensions(m, tension);
+  CHECK(tension[7] == Approx(0.02 * std::exp(-4 / 5.0) + 0.03 * std::exp(-4 / 50.0)));
+  CHECK(tension[107] == Approx(0.02 * std::exp(-4 / 500.0)));
+}
+
+TEST_CASE("state goes on in a stage with another time step") {
+  // One unit of time is 1 s first and 0.25 s then; tensions, in kg/s2, count 16 times less.
+  const LatticeUnits before{1, 1, 1}, after{1, 0.25, 1};
+  Membranes m = biconcave_cells({{100, 60, 0.4}});
+  MembraneForces first = forces_with(m, {maxwell(0.2, 5), viscous(3)});
+  scale(m, 1.1);
+  for (int step = 0; step < 3; ++step) first.run({}, m);
+  for (ElementState& variable : m.state) {
+    if (variable.name == "rate_tension") variable.value.assign(m.x.size(), 0.32);
+  }
+  change_units(m.state, before, after);
+  const auto maxwell_after = std::make_shared<ModelInstance>(maxwell(1, 1)->manifest(), std::vector<double>{0.2, 5},
+                                                             ModelSetting{after, 1.0, false});
+  const auto viscous_after =
+      std::make_shared<ModelInstance>(viscous(1)->manifest(), std::vector<double>{3}, ModelSetting{after, 1.0, false});
+  MembraneForces second = forces_with(m, {maxwell_after, viscous_after});
+  REQUIRE(m.state.size() == 2);
+  CHECK(state(m, "rate_tension")[5] == Approx(0.02));
+  m.state[1].value.assign(m.x.size(), 0.0);
+  for (int step = 0; step < 8; ++step) second.run({}, m);  // 2 s more
+  std::vector<double> tension;
+  second.tensions(m, tension);
+  for (const double t : tension) REQUIRE(after.to_si(t, dimension::tension) == Approx(0.02 * std::exp(-5 / 5.0)));
+}
+
+TEST_CASE("forces and state are the same to the last bit for one, two and three workers") {
+  auto random = generator(105);
+  Membranes start = biconcave_cells({{0, -19, 0.05}, {2, 0, 0.0}, {-1, 18, -0.08}, {30, 30, 1.3}}, 93);
+  deform(start, random, 2, 0.05);
+  std::vector<Membranes> results;
+  for (const int workers : {1, 2, 3}) {
+    Membranes m = start;
+    MembraneForces forces = forces_with(m, {neo_hookean(0.1), maxwell(0.2, 7), viscous(50), bending(0.1)});
+    for (int step = 0; step < 30; ++step) {
+      run_pass(workers, [&](Worker worker) { forces.run(worker, m); });
+      for (std::size_t i = 0; i < m.x.size(); ++i) {
+        m.x[i] += m.velocity_x[i] = 0.02 * m.force_x[i];
+        m.y[i] += m.velocity_y[i] = 0.02 * m.force_y[i];
+      }
+    }
+    results.push_back(m);
+  }
+  for (std::size_t k = 1; k < results.size(); ++k) {
+    CHECK(results[k].x == results[0].x);
+    CHECK(results[k].force_y == results[0].force_y);
+    for (std::size_t v = 0; v < 2; ++v) CHECK(results[k].state[v].value == results[0].state[v].value);
+  }
+}
+
+TEST_CASE("laws with state refuse to run before their state is kept") {
+  Membranes m = biconcave_cells({{100, 60, 0.4}});
+  MembraneForces forces(m, {{viscous(1)}});
+  CHECK_THROWS_AS(forces.run({}, m), std::logic_error);
+  MembraneForces without(m, {{neo_hookean(1)}});
+  without.keep_state(m);
+  CHECK(m.state.empty());
+}

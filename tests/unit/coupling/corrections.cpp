@@ -1,0 +1,220 @@
+// The corrections of the immersed boundary: constants of the layer analysis, conservation, adjointness, areas.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/coupling/kernel.hpp"
+#include "core/coupling/slip_correction.hpp"
+#include "core/membrane/area_correction.hpp"
+#include "core/membrane/geometry.hpp"
+#include "unit/cell_fixture.hpp"
+
+using namespace rouleau::coupling;
+using namespace rouleau::membrane;
+using namespace rouleau::test;
+using namespace rouleau::test;
+
+namespace {
+
+/// A distance drawn from a kernel: uniform place of a node, lattice nodes by their weights.
+template <class Kernel>
+double draw(std::mt19937& random) {
+  std::uniform_real_distribution<double> uniform(0, 1);
+  using One = rouleau::Pack<double, 1>;
+  const double fraction = uniform(random);
+  One p, q;
+  Kernel::keep(One(fraction), p, q);
+  double rest = uniform(random);
+  for (int k = 0; k < 4; ++k) {
+    rest -= Kernel::constant[k] + Kernel::by_p[k] * p.vector[0] + Kernel::by_q[k] * q.vector[0];
+    if (rest < 0) return k - 1 - (fraction - Kernel::shift);
+  }
+  return 2 - (fraction - Kernel::shift);
+}
+
+/// A distance drawn from the smoothed indicator's edge: a unit square, and -1, 0 or 1 with weights 1, 2, 1.
+double draw_indicator(std::mt19937& random) {
+  std::uniform_real_distribution<double> uniform(0, 1);
+  std::uniform_int_distribution<int> quarter(0, 3);
+  const int k = quarter(random);
+  return uniform(random) - 0.5 + (k == 0 ? -1 : (k == 1 ? 1 : 0));
+}
+
+Membranes cell_with_forces(std::mt19937& random, double noise) {
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  Membranes m = biconcave_cells({{40, 30, 0.4}}, 120);
+  deform(m, random, 1, 0.02);
+  for (std::size_t i = 0; i < m.x.size(); ++i) {
+    const double angle = 6.283185307179586 * static_cast<double>(i) / static_cast<double>(m.x.size());
+    m.force_x[i] = std::cos(2 * angle) + noise * uniform(random);
+    m.force_y[i] = std::sin(3 * angle) + noise * uniform(random);
+    m.velocity_x[i] = std::cos(angle) + noise * uniform(random);
+    m.velocity_y[i] = std::sin(2 * angle) + noise * uniform(random);
+  }
+  return m;
+}
+
+/// What a step does with the forces of membranes on which nothing else acts.
+void take_forces(SlipCorrection& correction, const Membranes& m) {
+  correction.measure({}, m);
+  correction.couple({}, m);
+  correction.complete({}, m);
+}
+
+}  // namespace
+
+TEST_CASE("the constants of the slip correction are those of the layer analysis before this program began") {
+  struct Row {
+    KernelKind kernel;
+    double ratio, shift, slip;  // slip over the mean fluidity (1 + 1/ratio)/2, as the analysis gives it
+  };
+  for (const Row& row : {Row{KernelKind::peskin4, 1, 0, 0.413}, Row{KernelKind::peskin4, 2, 0.294, 0.382},
+                         Row{KernelKind::peskin4, 5, 0.675, 0.278}, Row{KernelKind::peskin4, 10, 0.951, 0.193},
+                         Row{KernelKind::peskin4, 20, 1.213, 0.125}, Row{KernelKind::peskin4, 0.2, -0.675, 0.278},
+                         Row{KernelKind::roma3, 1, 0, 0.312}, Row{KernelKind::roma3, 5, 0.604, 0.212},
+                         Row{KernelKind::roma3, 20, 1.082, 0.099}, Row{KernelKind::linear2, 1, 0, 0.2333}}) {
+    const SlipConstants c = slip_constants(row.kernel, row.ratio);
+    CHECK(c.shift == Approx(row.shift).margin(1e-3));
+    CHECK(c.slip / ((1 + 1 / row.ratio) / 2) == Approx(row.slip).margin(1e-3));
+  }
+}
+
+TEST_CASE("the constants fulfil their two conditions when distances are drawn at random") {
+  auto random = generator(81);
+  const double ratio = GENERATE(1.0, 5.0, 0.2, 20.0);
+  const SlipConstants c = slip_constants(KernelKind::peskin4, ratio);
+  const double inside = 1 / ratio, difference = 1 - inside;
+  constexpr int count = 1000000;
+  double kink = 0, m = 0, r = 0;
+  for (int i = 0; i < count; ++i) {
+    const double y = draw<Peskin4>(random), other = draw<Peskin4>(random), z = draw_indicator(random);
+    kink += std::max(y - c.shift, z);
+    m += std::max(y, other);
+    r += std::max({y, other, z + c.shift}) - std::max(y, z + c.shift);
+  }
+  // Distances lie within 4 spacings: the mean of a million of them is known to 4e-3, at four standard deviations.
+  const double known = 4 * 1.0 / std::sqrt(count);
+  CHECK(difference * kink / count == Approx(inside * c.shift).margin(std::abs(difference) * known + 1e-12));
+  CHECK(inside * m / count + difference * r / count == Approx(c.slip).margin((inside + std::abs(difference)) * known));
+}
+
+TEST_CASE("the slip correction adds no force to the fluid") {
+  auto random = generator(82);
+  Membranes m = cell_with_forces(random, 0.5);
+  SlipCorrection correction(m, {{slip_constants(KernelKind::peskin4, 5), 0, 0}}, 1.0 / 6);
+  take_forces(correction, m);
+  double x = 0, y = 0;
+  for (std::size_t i = 0; i < m.x.size(); ++i) x += correction.forces().x[i], y += correction.forces().y[i];
+  const ForceSums sums = force_sums(m);
+  CHECK(std::abs(x - sums.x) < 1e-14 * sums.size);
+  CHECK(std::abs(y - sums.y) < 1e-14 * sums.size);
+}
+
+TEST_CASE("the slip correction keeps the torque to second order in shift over radius") {
+  // Two cells of one shape, forces alike, one twice as large: what is missing of the torque shrinks fourfold.
+  double missing[2];
+  for (const int size : {1, 2}) {
+    Membranes m = biconcave_cells({{0, 0, 0}}, 400);
+    for (double& x : m.x) x *= size;
+    for (double& y : m.y) y *= size;
+    for (std::size_t i = 0; i < m.x.size(); ++i) {
+      const double angle = 6.283185307179586 * static_cast<double>(i) / 400;
+      m.force_x[i] = -std::sin(angle) + std::cos(2 * angle), m.force_y[i] = std::cos(angle) + 0.3 * std::sin(3 * angle);
+    }
+    SlipCorrection correction(m, {{slip_constants(KernelKind::peskin4, 5), 0, 0}}, 1.0 / 6);
+    take_forces(correction, m);
+    const NodeVectors at = correction.positions(), force = correction.forces();
+    double torque = 0, expected = 0;
+    for (std::size_t i = 0; i < m.x.size(); ++i) {
+      torque += at.x[i] * force.y[i] - at.y[i] * force.x[i];
+      expected += m.x[i] * m.force_y[i] - m.y[i] * m.force_x[i];
+    }
+    missing[size - 1] = std::abs(torque / expected - 1);
+  }
+  INFO("missing " << missing[0] << " and " << missing[1]);
+  CHECK(missing[0] < 2e-3);
+  CHECK(missing[0] / missing[1] > 3.5);
+}
+
+TEST_CASE("what the fluid does on the membrane is what the membrane does on the fluid, but for the slip's own work") {
+  auto random = generator(83);
+  Membranes m = cell_with_forces(random, 0.5);
+  SlipConstants constants = slip_constants(KernelKind::peskin4, 5);
+  constants.slip = 0;
+  SlipCorrection correction(m, {{constants, 0, 0}}, 1.0 / 6);
+  take_forces(correction, m);
+  double fluid = 0, membrane = 0, size = 0;
+  for (std::size_t i = 0; i < m.x.size(); ++i) {
+    fluid += correction.forces().x[i] * m.velocity_x[i] + correction.forces().y[i] * m.velocity_y[i];
+  }
+  correction.correct({}, m);
+  for (std::size_t i = 0; i < m.x.size(); ++i) {
+    membrane += m.force_x[i] * m.velocity_x[i] + m.force_y[i] * m.velocity_y[i];
+    size += std::hypot(m.force_x[i], m.force_y[i]) * std::hypot(m.velocity_x[i], m.velocity_y[i]);
+  }
+  CHECK(std::abs(fluid - membrane) < 1e-14 * size);
+}
+
+TEST_CASE("the slip follows the tangential force along the membrane and costs energy") {
+  // A circle pulled round: slip x force per length / viscosity, everywhere alike, whatever the smoothing.
+  Membranes m = biconcave_cells({{0, 0, 0}}, 120);
+  const double radius = 19, force = 0.01, viscosity = 0.2;
+  for (std::size_t i = 0; i < m.x.size(); ++i) {
+    const double angle = 6.283185307179586 * static_cast<double>(i) / 120;
+    m.x[i] = radius * std::cos(angle), m.y[i] = radius * std::sin(angle);
+    m.force_x[i] = -force * std::sin(angle), m.force_y[i] = force * std::cos(angle);
+  }
+  SlipCorrection correction(m, {{slip_constants(KernelKind::peskin4, 1), GENERATE(0.0, 5.0), 0}}, viscosity);
+  take_forces(correction, m);
+  correction.correct({}, m);
+  const double chord = 2 * radius * std::sin(6.283185307179586 / 120), slip = 0.4137 * force / (chord / 2) / viscosity;
+  for (std::size_t i = 0; i < m.x.size(); ++i) {
+    const double along = (m.velocity_x[i] * m.force_x[i] + m.velocity_y[i] * m.force_y[i]) / force;
+    REQUIRE(along == Approx(slip).epsilon(1e-3));
+  }
+}
+
+TEST_CASE("the slip ends where the forces on the nodes balance") {
+  auto random = generator(86);
+  Membranes m = cell_with_forces(random, 0.5);
+  SlipCorrection correction(m, {{slip_constants(KernelKind::peskin4, 1), 0, 0}}, 1.0 / 6);
+  correction.measure({}, m);
+  correction.couple({}, m);
+  for (auto* values : {&m.force_x, &m.force_y, &m.velocity_x, &m.velocity_y}) values->assign(m.x.size(), 0.0);
+  correction.complete({}, m);
+  correction.correct({}, m);
+  for (std::size_t i = 0; i < m.x.size(); ++i) REQUIRE(std::hypot(m.velocity_x[i], m.velocity_y[i]) == 0);
+}
+
+TEST_CASE("the area correction makes no cell larger or smaller, and tells what would have been") {
+  auto random = generator(84);
+  Membranes m = cell_with_forces(random, 0.1);
+  m.cells[0].rest_area = enclosed_area(m, m.cells[0]);
+  for (auto* velocity : {&m.velocity_x, &m.velocity_y}) {
+    for (double& v : *velocity) v *= 1e-4;
+  }
+  m.area_leakage.assign(1, 0.0);
+  Membranes moved = m;
+  for (std::size_t i = 0; i < m.x.size(); ++i) moved.x[i] += m.velocity_x[i], moved.y[i] += m.velocity_y[i];
+  const double leak = 1 - enclosed_area(moved, m.cells[0]) / m.cells[0].rest_area;
+  keep_areas({}, m);
+  CHECK(m.area_leakage[0] == Approx(leak).epsilon(1e-3));
+  for (std::size_t i = 0; i < m.x.size(); ++i) m.x[i] += m.velocity_x[i], m.y[i] += m.velocity_y[i];
+  // What is left is of second order in the displacement of 1e-4.
+  CHECK(std::abs(enclosed_area(m, m.cells[0]) / m.cells[0].rest_area - 1) < 1e-9);
+  CHECK(std::abs(leak) > 1e-6);
+}
+
+TEST_CASE("the area correction brings a wrong area back") {
+  Membranes m = biconcave_cells({{40, 30, 0.4}}, 120);
+  m.cells[0].rest_area *= 1.01;
+  m.area_leakage.assign(1, 0.0);
+  for (int step = 0; step < 500; ++step) {
+    std::fill(m.velocity_x.begin(), m.velocity_x.end(), 0.0);
+    std::fill(m.velocity_y.begin(), m.velocity_y.end(), 0.0);
+    keep_areas({}, m);
+    for (std::size_t i = 0; i < m.x.size(); ++i) m.x[i] += m.velocity_x[i], m.y[i] += m.velocity_y[i];
+  }
+  // A fiftieth of the difference goes in each step.
+  CHECK(enclosed_area(m, m.cells[0]) / m.cells[0].rest_area - 1 ==
+        Approx(-0.01 / 1.01 * std::pow(0.98, 500)).epsilon(0.01));
+}

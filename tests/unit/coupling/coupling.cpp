@@ -1,0 +1,154 @@
+// Spreading and interpolation: moments of the kernel, adjointness, independence of the workers, escaped nodes.
+#include "core/coupling/coupling.hpp"
+
+#include <catch2/catch.hpp>
+#include <limits>
+
+#include "unit/cell_fixture.hpp"
+
+using namespace rouleau;
+using namespace rouleau::coupling;
+using namespace rouleau::fluid;
+using namespace rouleau::membrane;
+using namespace rouleau::test;
+using namespace rouleau::test;
+
+namespace {
+
+template <class T>
+VectorField<T> field(int nx, int ny) {
+  return {Field<T>(nx, ny), Field<T>(nx, ny)};
+}
+
+template <class T, class Visit>
+void for_all(const Field<T>& f, Visit visit) {
+  for (int y = -2; y < f.ny() + 2; ++y) {
+    for (int x = -2; x < f.nx() + 2; ++x) visit(x, y, f.row(y)[x]);
+  }
+}
+
+Membranes cells_with_forces(std::mt19937& random) {
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  Membranes m = biconcave_cells({{30, 20, 0.3}, {33, 40, 1.2}});
+  deform(m, random, 2, 0.3);
+  for (std::size_t i = 0; i < m.x.size(); ++i) m.force_x[i] = uniform(random), m.force_y[i] = uniform(random);
+  return m;
+}
+
+}  // namespace
+
+TEST_CASE("force and torque on the lattice are those of the nodes") {
+  auto random = generator(72);
+  const Membranes m = cells_with_forces(random);
+  const KernelKind kernel = GENERATE(KernelKind::peskin4, KernelKind::roma3, KernelKind::linear2);
+  Coupling<double> coupling(kernel, 80, 64, false);
+  coupling.reserve(m);
+  coupling.locate({}, m, m.positions());
+  CHECK(coupling.escaped() == -1);
+  auto force = field<double>(80, 64);
+  coupling.spread({}, m.forces(), force);
+  double fx = 0, fy = 0, torque = 0;
+  for_all(force.x, [&](int, int y, double f) { fx += f, torque -= y * f; });
+  for_all(force.y, [&](int x, int, double f) { fy += f, torque += x * f; });
+  const ForceSums sums = force_sums(m);
+  CHECK(std::abs(fx - sums.x) < 1e-14 * sums.size);
+  CHECK(std::abs(fy - sums.y) < 1e-14 * sums.size);
+  CHECK(std::abs(torque - sums.torque) < 1e-14 * sums.lever);
+}
+
+TEMPLATE_TEST_CASE("spreading and interpolation are adjoint, over the periodic border too", "", float, double) {
+  auto random = generator(73);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  Membranes m = cells_with_forces(random);
+  for (double& x : m.x) x -= 300;  // far outside the periodic box, and across its border
+  const bool periodic_y = GENERATE(false, true);
+  const int nx = 70, ny = 64;
+  const KernelKind kernel = GENERATE(KernelKind::peskin4, KernelKind::cosine4, KernelKind::roma3, KernelKind::linear2);
+  Coupling<TestType> coupling(kernel, nx, ny, periodic_y);
+  coupling.reserve(m);
+  coupling.locate({}, m, m.positions());
+  auto force = field<TestType>(nx, ny), velocity = field<TestType>(nx, ny);
+  coupling.spread({}, m.forces(), force);
+  for (auto* f : {&velocity.x, &velocity.y}) {
+    for (int y = -2; y < ny + 2; ++y) {
+      for (int x = -2; x < nx + 2; ++x) f->row(y)[x] = static_cast<TestType>(uniform(random));
+    }
+  }
+  coupling.interpolate({}, m, velocity);
+  double lattice = 0, nodes = 0;
+  for_all(force.x, [&](int x, int y, double f) { lattice += f * velocity.x.row(y)[x]; });
+  for_all(force.y, [&](int x, int y, double f) { lattice += f * velocity.y.row(y)[x]; });
+  for (std::size_t i = 0; i < m.x.size(); ++i) nodes += m.force_x[i] * m.velocity_x[i] + m.force_y[i] * m.velocity_y[i];
+  CHECK(std::abs(lattice - nodes) < 100 * std::numeric_limits<TestType>::epsilon());
+}
+
+TEST_CASE("linear velocity is interpolated exactly by every kernel without a first moment") {
+  auto random = generator(74);
+  Membranes m = cells_with_forces(random);
+  const KernelKind kernel = GENERATE(KernelKind::peskin4, KernelKind::roma3, KernelKind::linear2);
+  Coupling<double> coupling(kernel, 80, 64, false);
+  coupling.reserve(m);
+  coupling.locate({}, m, m.positions());
+  auto velocity = field<double>(80, 64);
+  for (int y = -2; y < 66; ++y) {
+    for (int x = -2; x < 82; ++x) velocity.x.row(y)[x] = 0.1 + 0.02 * y - 0.01 * x, velocity.y.row(y)[x] = 0.03 * x;
+  }
+  coupling.interpolate({}, m, velocity);
+  for (std::size_t i = 0; i < m.x.size(); ++i) {
+    REQUIRE(m.velocity_x[i] == Approx(0.1 + 0.02 * m.y[i] - 0.01 * m.x[i]).margin(1e-13));
+    REQUIRE(m.velocity_y[i] == Approx(0.03 * m.x[i]).margin(1e-13));
+  }
+}
+
+TEMPLATE_TEST_CASE("spread forces are the same to the last bit for any number of workers", "", float, double) {
+  auto random = generator(75);
+  Membranes m = cells_with_forces(random);
+  std::vector<VectorField<TestType>> results;
+  for (const int workers : {1, 2, 3, 7}) {
+    Coupling<TestType> coupling(KernelKind::peskin4, 80, 64, false);
+    coupling.reserve(m);
+    run_pass(workers, [&](Worker worker) { coupling.locate(worker, m, m.positions()); });
+    results.push_back(field<TestType>(80, 64));
+    run_pass(workers, [&](Worker worker) { coupling.spread(worker, m.forces(), results.back()); });
+    run_pass(workers, [&](Worker worker) { coupling.interpolate(worker, m, results.back()); });
+    for_all(results.back().x, [&](int x, int y, TestType f) { REQUIRE(f == results.front().x.row(y)[x]); });
+    for_all(results.back().y, [&](int x, int y, TestType f) { REQUIRE(f == results.front().y.row(y)[x]); });
+  }
+}
+
+TEST_CASE("a node beyond a wall, or nowhere, is reported and touches nothing") {
+  auto random = generator(76);
+  Membranes m = cells_with_forces(random);
+  const double bad = GENERATE(-1.01, 64.0, 1e30, -1e300, std::numeric_limits<double>::infinity(), std::nan(""));
+  m.y[77] = bad;
+  Coupling<double> coupling(KernelKind::peskin4, 80, 64, false);
+  coupling.reserve(m);
+  coupling.locate({}, m, m.positions());
+  CHECK(coupling.escaped() == 77);
+  auto force = field<double>(80, 64);
+  coupling.spread({}, m.forces(), force);
+  double sum = 0, expected = 0;
+  for_all(force.x, [&](int, int, double f) { sum += f; });
+  for (std::size_t i = 0; i < m.x.size(); ++i) expected += i == 77 ? 0 : m.force_x[i];
+  CHECK(sum == Approx(expected).margin(1e-12));
+  coupling.interpolate({}, m, force);
+  CHECK(m.velocity_y[77] == 0);
+}
+
+TEST_CASE("the outermost rows that a node may reach are the last ones of the halo") {
+  Membranes m = biconcave_cells({{30, 30, 0}}, 8);
+  Coupling<double> coupling(KernelKind::peskin4, 80, 64, false);
+  coupling.reserve(m);
+  m.y[0] = -1.0;
+  m.y[1] = 63.999999;
+  m.x[2] = -1e-17;  // the fraction rounds to 1: the column wraps to the last
+  m.x[3] = 80 - 1e-14;
+  coupling.locate({}, m, m.positions());
+  CHECK(coupling.escaped() == -1);
+  std::fill(m.force_x.begin(), m.force_x.end(), 1.0);
+  auto force = field<double>(80, 64);
+  coupling.spread({}, m.forces(), force);
+  double sum = 0;
+  for_all(force.x, [&](int, int, double f) { sum += f; });
+  CHECK(sum == Approx(8));
+}

@@ -1,0 +1,278 @@
+// Coverage of lattice nodes by cells, the relaxation rate made from it, and the marks of active nodes.
+#include "core/coupling/viscosity_field.hpp"
+
+#include <catch2/catch.hpp>
+#include <limits>
+
+#include "core/coupling/area_fraction.hpp"
+#include "core/membrane/geometry.hpp"
+#include "unit/cell_fixture.hpp"
+
+using namespace rouleau;
+using namespace rouleau::coupling;
+using namespace rouleau::fluid;
+using namespace rouleau::membrane;
+using namespace rouleau::test;
+using namespace rouleau::test;
+
+namespace {
+
+Membranes polygon(const std::vector<std::pair<double, double>>& nodes) {
+  Membranes m;
+  for (const auto& [x, y] : nodes) m.x.push_back(x), m.y.push_back(y);
+  m.cells.push_back({0, 0, m.node_count(), 0, 0});
+  for (auto* values : {&m.force_x, &m.force_y, &m.velocity_x, &m.velocity_y}) values->assign(m.x.size(), 0.0);
+  return m;
+}
+
+double value_at(const Coverage& coverage, int x, int y) {
+  const int i = x - coverage.x0, j = y - coverage.y0;
+  if (i < 0 || j < 0 || i >= coverage.width || j >= coverage.height) return 0;
+  return coverage.row(j)[i];
+}
+double total(const Coverage& coverage) {
+  double sum = 0;
+  for (int j = 0; j < coverage.height; ++j) {
+    for (int i = 0; i < coverage.width; ++i) sum += coverage.row(j)[i];
+  }
+  return sum;
+}
+
+/// Length of [a, b] within the unit interval around n.
+double overlap(double a, double b, int n) { return std::max(0.0, std::min(b, n + 0.5) - std::max(a, n - 0.5)); }
+
+/// Area of a polygon within the unit square around (x, y), by clipping (Sutherland and Hodgman, Commun. ACM 17, 1974).
+double clipped_area(std::vector<Eigen::Vector2d> p, int x, int y) {
+  const Eigen::Vector2d corner(x - 0.5, y - 0.5);
+  for (int side = 0; side < 4; ++side) {
+    const auto inside = [&](const Eigen::Vector2d& q) {
+      const double d = side % 2 == 0 ? q.x() - corner.x() : q.y() - corner.y();
+      return side < 2 ? d : 1 - d;
+    };
+    std::vector<Eigen::Vector2d> kept;
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      const Eigen::Vector2d &a = p[i], &b = p[(i + 1) % p.size()];
+      const double da = inside(a), db = inside(b);
+      if (da >= 0) kept.push_back(a);
+      if ((da >= 0) != (db >= 0)) kept.push_back(a + da / (da - db) * (b - a));
+    }
+    p = kept;
+  }
+  double area = 0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const Eigen::Vector2d a = p[i] - corner, b = p[(i + 1) % p.size()] - corner;
+    area += (a.x() * b.y() - a.y() * b.x()) / 2;
+  }
+  return area;
+}
+
+template <class T>
+Field<T> plain_rate(int nx, int ny, double rate) {
+  Field<T> field(nx, ny);
+  field.fill(static_cast<T>(rate));
+  return field;
+}
+
+template <class T>
+void update(Indicator<T>& indicator, const Membranes& m, Field<T>& rate, Activity& activity) {
+  indicator.measure({}, m);
+  REQUIRE(indicator.due());
+  indicator.cover({}, m);
+  indicator.update({}, m, rate, activity);
+  indicator.measure({}, m);
+  REQUIRE_FALSE(indicator.due());
+}
+
+}  // namespace
+
+TEST_CASE("the coverage of a rectangle is exact, on and off the lattice's edges") {
+  const double x0 = GENERATE(3.0, 3.5, 3.2, -7.9), y0 = GENERATE(4.0, 4.5, 4.8, -2.1);
+  const double x1 = x0 + GENERATE(0.3, 1.0, 5.4), y1 = y0 + GENERATE(0.2, 1.0, 3.7);
+  const Membranes m = polygon({{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}});
+  Coverage coverage;
+  cover(m, m.cells[0], coverage);
+  for (int y = -5; y < 15; ++y) {
+    for (int x = -10; x < 15; ++x) {
+      REQUIRE(value_at(coverage, x, y) == Approx(overlap(x0, x1, x) * overlap(y0, y1, y)).margin(1e-14));
+    }
+  }
+}
+
+TEST_CASE("the coverage of triangles is that of clipping them to every node's square") {
+  auto random = generator(81);
+  std::uniform_real_distribution<double> uniform(-10, 10);
+  double worst = 0;
+  for (int trial = 0; trial < 300; ++trial) {
+    std::vector<Eigen::Vector2d> p;
+    for (int k = 0; k < 3; ++k)
+      p.emplace_back(uniform(random), trial % 5 == 0 ? std::round(uniform(random)) + 0.5 : uniform(random));
+    const double turn = (p[1] - p[0]).x() * (p[2] - p[0]).y() - (p[1] - p[0]).y() * (p[2] - p[0]).x();
+    if (turn < 0) std::swap(p[1], p[2]);
+    const Membranes m = polygon({{p[0].x(), p[0].y()}, {p[1].x(), p[1].y()}, {p[2].x(), p[2].y()}});
+    Coverage coverage;
+    cover(m, m.cells[0], coverage);
+    for (int y = -12; y <= 12; ++y) {
+      for (int x = -12; x <= 12; ++x)
+        worst = std::max(worst, std::abs(value_at(coverage, x, y) - clipped_area(p, x, y)));
+    }
+  }
+  CHECK(worst < 1e-12);
+}
+
+TEST_CASE("the coverage adds up to the enclosed area, before and after smoothing") {
+  auto random = generator(82);
+  Membranes m = biconcave_cells({{30.3, 20.1, 0.3}, {-1000.7, 400.2, 1.2}, {3, 4, 2.2}});
+  deform(m, random, 4, 0.2);
+  std::vector<double> scratch;
+  for (const CellRange& cell : m.cells) {
+    Coverage coverage;
+    cover(m, cell, coverage);
+    const double area = enclosed_area(m, cell);
+    CHECK(std::abs(total(coverage) - area) < 1e-12 * area);
+    smooth(coverage, scratch);
+    CHECK(std::abs(total(coverage) - area) < 1e-12 * area);
+    for (int j = 0; j < coverage.height; ++j) {
+      for (int i = 0; i < coverage.width; ++i) {
+        const auto at = static_cast<std::size_t>(j);
+        if (i < coverage.begin[at] || i >= coverage.end[at]) REQUIRE(coverage.row(j)[i] == 0);
+      }
+    }
+  }
+}
+
+TEST_CASE("the relaxation rate follows the arithmetic mean of the viscosities, over periodic borders") {
+  auto random = generator(83);
+  const int nx = 80, ny = 64;
+  const bool periodic_y = GENERATE(false, true);
+  Membranes m = biconcave_cells({{-170.4, 20.1, 0.3}, {30.2, periodic_y ? 60.0 : 40.0, 1.2}, {32.1, 25.0, -0.2}});
+  deform(m, random, 2, 0.1);
+  m.cells[1].type = 1;
+  const double tau = 0.8;
+  Indicator<double> indicator(m, {5.0, 2.0}, ViscosityMean::arithmetic, 0, 1 / tau, nx, ny, periodic_y);
+  auto rate = plain_rate<double>(nx, ny, 1 / tau);
+  Activity activity(nx, ny);
+  for (int round = 0; round < 3; ++round) {
+    update(indicator, m, rate, activity);
+    // Smoothed sum over cells, wrapped, node by node.
+    std::vector<double> excess(static_cast<std::size_t>(nx) * ny, 0.0), scratch;
+    for (const CellRange& cell : m.cells) {
+      Coverage coverage;
+      cover(m, cell, coverage);
+      smooth(coverage, scratch);
+      for (int j = 0; j < coverage.height; ++j) {
+        for (int i = 0; i < coverage.width; ++i) {
+          const int x = ((coverage.x0 + i) % nx + nx) % nx;
+          int y = coverage.y0 + j;
+          if (periodic_y) y = (y % ny + ny) % ny;
+          if (y < 0 || y >= ny) continue;
+          excess[static_cast<std::size_t>(y * nx + x)] += (cell.type == 0 ? 4.0 : 1.0) * coverage.row(j)[i];
+        }
+      }
+    }
+    for (int y = 0; y < ny; ++y) {
+      for (int x = 0; x < nx; ++x) {
+        const double expected = 1 / (0.5 + 0.3 * (1 + excess[static_cast<std::size_t>(y * nx + x)]));
+        REQUIRE(rate.row(y)[x] == Approx(expected).epsilon(1e-13));
+        if (rate.row(y)[x] != 1 / tau) REQUIRE(activity.active(x, y));
+      }
+    }
+    for (std::size_t i = 0; i < m.x.size(); ++i) m.x[i] += 13.7, m.y[i] += periodic_y ? 20.3 : -0.3;
+  }
+}
+
+TEST_CASE("every node that a membrane can reach before the next update is marked") {
+  auto random = generator(84);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const int nx = 160, ny = 64;
+  const double ratio = GENERATE(1.0, 5.0);
+  Membranes m = biconcave_cells({{-170.4, 20.1, 0.3}, {30.2, 40, 1.2}});
+  deform(m, random, 2, 0.1);
+  Indicator<float> indicator(m, {ratio}, ViscosityMean::arithmetic, 0, 1.0, nx, ny, false);
+  CHECK(indicator.varies() == (ratio != 1));
+  auto rate = plain_rate<float>(nx, ny, 1.0);
+  Activity activity(nx, ny);
+  update(indicator, m, rate, activity);
+  CHECK(activity.active_fraction() < 0.6);
+  CHECK(activity.active_fraction() > 0.1);
+  for (int trial = 0; trial < 20; ++trial) {
+    for (std::size_t i = 0; i < m.x.size(); ++i) {
+      const int x = static_cast<int>(std::floor(m.x[i] + 0.99 * uniform(random)));
+      const int y = static_cast<int>(std::floor(m.y[i] + 0.99 * uniform(random)));
+      for (int dy = -1; dy <= 2; ++dy) {
+        for (int dx = -1; dx <= 2; ++dx) {
+          if (y + dy < 0 || y + dy >= ny) continue;
+          REQUIRE(activity.active(((x + dx) % nx + nx) % nx, y + dy));
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("an update is due once a node has moved by a tenth of a spacing, and for positions that are not numbers") {
+  Membranes m = biconcave_cells({{30, 20, 0}, {30, 40, 0}});
+  Indicator<double> indicator(m, {5.0}, ViscosityMean::arithmetic, 0, 1.0, 80, 64, false);
+  auto rate = plain_rate<double>(80, 64, 1.0);
+  Activity activity(80, 64);
+  update(indicator, m, rate, activity);
+  m.x[150] += 0.099;
+  indicator.measure({}, m);
+  CHECK_FALSE(indicator.due());
+  m.y[150] += 0.03;
+  run_pass(2, [&](Worker worker) { indicator.measure(worker, m); });
+  CHECK(indicator.due());
+  const auto update_by_two = [&] {
+    run_pass(2, [&](Worker worker) { indicator.cover(worker, m); });
+    run_pass(2, [&](Worker worker) { indicator.update(worker, m, rate, activity); });
+  };
+  update_by_two();
+  m.x[3] = std::nan("");
+  m.y[160] = 1e300;
+  indicator.measure({}, m);
+  CHECK(indicator.due());
+  update_by_two();
+}
+
+TEST_CASE("where no cell is any more, the plain rate is back to the last bit") {
+  Membranes m = biconcave_cells({{30, 20, 0}});
+  Indicator<float> indicator(m, {5.0}, ViscosityMean::arithmetic, 0, 1 / 0.7, 160, 64, false);
+  auto rate = plain_rate<float>(160, 64, 1 / 0.7);
+  Activity activity(160, 64);
+  update(indicator, m, rate, activity);
+  CHECK(rate.row(20)[30] != static_cast<float>(1 / 0.7));
+  for (double& x : m.x) x += 80;
+  update(indicator, m, rate, activity);
+  for (int y = 0; y < 64; ++y) {
+    for (int x = 0; x < 80; ++x) REQUIRE(rate.row(y)[x] == static_cast<float>(1 / 0.7));
+  }
+  CHECK_FALSE(activity.active(16, 20));
+}
+
+TEST_CASE("an update after some cells have moved gives what all cells anew would give, to the last bit") {
+  auto random = generator(85);
+  const int nx = 80, ny = 64;
+  const bool periodic_y = GENERATE(false, true);
+  Membranes m = biconcave_cells({{-170.4, 20.1, 0.3}, {30.2, 40, 1.2}, {32.1, 25.0, -0.2}, {60.0, 33.0, 0.9}});
+  deform(m, random, 2, 0.1);
+  Indicator<double> kept(m, {5.0}, ViscosityMean::arithmetic, 0, 1.25, nx, ny, periodic_y);
+  auto rate = plain_rate<double>(nx, ny, 1.25);
+  Activity activity(nx, ny);
+  update(kept, m, rate, activity);
+  for (int round = 0; round < 6; ++round) {
+    const CellRange& cell = m.cells[static_cast<std::size_t>(round % 4)];
+    for (int i = cell.first; i < cell.end(); ++i) {
+      m.x[static_cast<std::size_t>(i)] += 3.3 * round;
+      m.y[static_cast<std::size_t>(i)] -= 0.4;
+    }
+    update(kept, m, rate, activity);
+    Indicator<double> fresh(m, {5.0}, ViscosityMean::arithmetic, 0, 1.25, nx, ny, periodic_y);
+    auto fresh_rate = plain_rate<double>(nx, ny, 1.25);
+    Activity fresh_activity(nx, ny);
+    update(fresh, m, fresh_rate, fresh_activity);
+    for (int y = 0; y < ny; ++y) {
+      for (int x = 0; x < nx; ++x) {
+        REQUIRE(rate.row(y)[x] == fresh_rate.row(y)[x]);
+        REQUIRE(activity.active(x, y) == fresh_activity.active(x, y));
+      }
+    }
+  }
+}

@@ -1,0 +1,91 @@
+// The semi-implicit step's filter against the matrix it inverts.
+#include "core/membrane/semi_implicit_filter.hpp"
+
+#include <Eigen/Dense>
+#include <catch2/catch.hpp>
+
+#include "core/membrane/membrane_forces.hpp"
+#include "unit/cell_fixture.hpp"
+
+using namespace rouleau::membrane;
+using namespace rouleau::test;
+using namespace rouleau::test;
+
+TEST_CASE("the filter is the inverse of the cyclic matrix of stretching and bending") {
+  auto random = generator(201);
+  std::normal_distribution<double> normal(0, 1);
+  const int n = GENERATE(8, 9, 33, 100);
+  const auto [length, stretching, bending] =
+      GENERATE(table<double, double, double>({{1, 0, 0}, {0.7, 3, 0}, {1.3, 0, 5}, {0.9, 60, 900}, {0.9, 6e4, 9e5}}));
+  Eigen::MatrixXd difference = Eigen::MatrixXd::Zero(n, n);
+  for (int i = 0; i < n; ++i) {
+    difference(i, i) = 2;
+    difference(i, (i + 1) % n) = difference((i + 1) % n, i) = -1;
+  }
+  const Eigen::MatrixXd matrix =
+      Eigen::MatrixXd::Identity(n, n) +
+      0.5 / length * (stretching / length * difference + bending / std::pow(length, 3) * difference * difference);
+  Eigen::VectorXd x(n), y(n);
+  for (int i = 0; i < n; ++i) x(i) = normal(random), y(i) = normal(random);
+  const double eigenvalue = 0.5 / length * (4 * stretching / length + 16 * bending / std::pow(length, 3));
+  const double share = 1 / (1 + 8 * eigenvalue);  // of the first force that the mean takes in
+  const Eigen::VectorXd force = x, force_y = y;
+  const Eigen::VectorXd exact_x = share * x + (1 - share) * matrix.partialPivLu().solve(x),
+                        exact_y = share * y + (1 - share) * matrix.partialPivLu().solve(y);
+  const double sum = x.sum();
+  std::vector<double> held_x(static_cast<std::size_t>(n)), held_y = held_x;
+  const ForceFilter filter(n, length, 1, 1.0 / 6, stretching, bending);
+  filter.apply(x.data(), y.data(), held_x.data(), held_y.data());
+  // Rounding, times the condition number of at most 1 + 16 m k.
+  const double tolerance = 1e-15 * matrix.norm() + 1e-14;
+  CHECK((x - exact_x).norm() < tolerance * exact_x.norm() + tolerance);
+  CHECK((y - exact_y).norm() < tolerance * exact_y.norm() + tolerance);
+  CHECK(std::abs(x.sum() - sum) < tolerance * n);
+
+  // Of a force that lasts nothing is held back.
+  if (share < 1e-4) return;
+  for (int step = 0; step < 40 / share; ++step) {
+    x = force, y = force_y;
+    filter.apply(x.data(), y.data(), held_x.data(), held_y.data());
+  }
+  CHECK((x - force).norm() < 1e-12 * force.norm());
+  CHECK((y - force_y).norm() < 1e-12 * force_y.norm());
+}
+
+TEST_CASE("semi-implicit forces sum to zero and are the explicit ones where nothing is stiff") {
+  auto random = generator(202);
+  Membranes m = biconcave_cells({{100, 60, 0.4}, {160, 70, 2}});
+  deform(m, random, 4, 0.1);
+  Membranes soft = m, stiff = m;
+  MembraneForces without(m, {{neo_hookean(1e-9), bending(1e-9)}}), with(m, {{neo_hookean(1e-9), bending(1e-9)}}),
+      strong(m, {{neo_hookean(20), bending(60)}});
+  with.make_semi_implicit(m, 1.0 / 6);
+  strong.make_semi_implicit(m, 1.0 / 6);
+  with.keep_state(soft);
+  strong.keep_state(stiff);
+  without.run({}, m);
+  with.run({}, soft);
+  strong.run({}, stiff);
+  const ForceSums sums = force_sums(stiff);
+  CHECK(std::abs(sums.x) < 1e-12 * sums.size);
+  CHECK(std::abs(sums.y) < 1e-12 * sums.size);
+  for (std::size_t i = 0; i < m.x.size(); ++i) REQUIRE(soft.force_x[i] == Approx(m.force_x[i]).margin(1e-17));
+}
+
+TEST_CASE("a semi-implicit step looks one step ahead") {
+  auto random = generator(203);
+  Membranes m = biconcave_cells({{100, 60, 0.4}});
+  deform(m, random, 4, 0.1);
+  for (std::size_t i = 0; i < m.x.size(); ++i) m.velocity_x[i] = 0.01 * m.y[i], m.velocity_y[i] = -0.02;
+  Membranes moved = m;
+  for (std::size_t i = 0; i < m.x.size(); ++i) moved.x[i] += m.velocity_x[i], moved.y[i] += m.velocity_y[i];
+  moved.velocity_x.assign(m.x.size(), 0), moved.velocity_y.assign(m.x.size(), 0);
+  MembraneForces forces(m, {{neo_hookean(2), bending(3)}});
+  forces.make_semi_implicit(m, 1.0 / 6);
+  forces.keep_state(m);
+  forces.keep_state(moved);
+  forces.run({}, m);
+  forces.run({}, moved);
+  CHECK(m.force_x == moved.force_x);
+  CHECK(m.force_y == moved.force_y);
+}

@@ -1,0 +1,94 @@
+// Contacts over periodic images, clusters, and when outputs are due.
+#include "observe/aggregates.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "plan/schedule.hpp"
+
+using namespace rouleau::membrane;
+using namespace rouleau::observe;
+using namespace rouleau::plan;
+
+namespace {
+
+/// Circles of radius 5 with 60 nodes at the given centres.
+Membranes circles(const std::vector<std::array<double, 2>>& centres) {
+  constexpr int n = 60;
+  Membranes m;
+  for (const auto& c : centres) {
+    m.cells.push_back({0, m.node_count(), n, 0, 0});
+    for (int i = 0; i < n; ++i) {
+      const double angle = 2 * std::numbers::pi * i / n;
+      m.x.push_back(c[0] + 5 * std::cos(angle));
+      m.y.push_back(c[1] + 5 * std::sin(angle));
+      m.rest_weight.push_back(10 * std::sin(std::numbers::pi / n));
+    }
+  }
+  return m;
+}
+
+}  // namespace
+
+TEST_CASE("two circles are in contact exactly when their gap is below the reach") {
+  const Membranes m = circles({{20, 20}, {32, 20}});
+  CHECK(find_contacts(m, {100, 0}, 1.9).empty());
+  const auto contacts = find_contacts(m, {100, 0}, 2.1);
+  REQUIRE(contacts.size() == 1);
+  CHECK(contacts[0].gap == Approx(2).epsilon(1e-12));
+  CHECK(contacts[0].image == ImageShift{0, 0});
+  CHECK(contacts[0].contact_length > 0);
+}
+
+TEST_CASE("a contact across the periodic border is found and flagged, however far the cells have drifted") {
+  const double drift = GENERATE(0.0, 300.0, -700.0);
+  const Membranes m = circles({{4 + drift, 20}, {95, 20}, {50, 20}});
+  const auto contacts = find_contacts(m, {100, 0}, 1.0);
+  REQUIRE(contacts.size() == 1);
+  const Aggregates a = find_aggregates(3, contacts);
+  CHECK(a.count == 2);
+  CHECK(a.label == std::vector<int>{0, 0, 2});
+  CHECK(a.through_image == std::vector<bool>{true, true, false});
+}
+
+TEST_CASE("a cell can touch its own image in a small box, and is then one aggregate") {
+  const Membranes m = circles({{4, 20}});
+  const auto contacts = find_contacts(m, {10.5, 0}, 1.0);
+  REQUIRE(contacts.size() == 1);
+  CHECK(contacts[0].cell_a == contacts[0].cell_b);
+  CHECK(find_aggregates(1, contacts).count == 1);
+}
+
+TEST_CASE("an aggregate is a connected chain of contacts, labelled by its smallest cell") {
+  const auto contact = [](int a, int b) { return CellContact{a, b, {0, 0}, 0.1, 1}; };
+  const Aggregates a = find_aggregates(6, {contact(4, 5), contact(3, 4), contact(1, 3)});
+  CHECK(a.label == std::vector<int>{0, 1, 2, 1, 1, 1});
+  CHECK(a.count == 3);
+}
+
+TEST_CASE("an output is due at the steps nearest to multiples of its interval") {
+  StageSetting setting{};
+  setting.shear_rate = 0.003;
+  setting.units = {1e-7, 1e-5, 1};
+  setting.max_steps = 100000;
+  const Schedule schedule({0.25, std::nullopt}, setting, true);
+  long count = 0;
+  for (long step = 0; step <= 8333; ++step) count += schedule.due(step) ? 1 : 0;
+  CHECK(count == 101);  // strain 0 to 25 in steps of a quarter
+  CHECK(schedule.due(83));
+  CHECK_FALSE(schedule.due(84));
+  CHECK(schedule.due(167));
+  const Schedule never({}, setting, true);
+  CHECK_FALSE(never.due(0));
+}
+
+TEST_CASE("a stage at rest writes forty rows where only a strain is asked for") {
+  StageSetting setting{};
+  setting.units = {1e-7, 1e-5, 1};
+  setting.max_steps = 4000;
+  const Schedule schedule({0.25, std::nullopt}, setting, true);
+  long count = 0;
+  for (long step = 0; step <= 4000; ++step) count += schedule.due(step) ? 1 : 0;
+  CHECK(count == 41);
+}

@@ -1,0 +1,147 @@
+// Observables of blood rheology on states whose answers are known.
+#include "observe/rheology.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "observe/rheology_history.hpp"
+
+using namespace rouleau::membrane;
+using namespace rouleau::observe;
+
+namespace {
+
+/// Closed polygons through the given corners.
+Membranes polygons(const std::vector<std::vector<std::array<double, 2>>>& cells) {
+  Membranes m;
+  for (const auto& corners : cells) {
+    m.cells.push_back({0, m.node_count(), static_cast<int>(corners.size()), 0, 0});
+    for (const auto& corner : corners) {
+      m.x.push_back(corner[0]);
+      m.y.push_back(corner[1]);
+    }
+  }
+  return m;
+}
+
+/// A snapshot of as many cells as there are labels.
+Snapshot at(int stage, double strain, double time, const std::vector<int>& label) {
+  Snapshot s;
+  s.stage = stage;
+  s.stage_name = "stage " + std::to_string(stage);
+  s.strain = strain;
+  s.time = time;
+  s.aggregate_sizes = aggregate_sizes(label);
+  s.aggregate_size_number_mean = number_mean(s.aggregate_sizes);
+  s.aggregate_size_weight_mean = weight_mean(s.aggregate_sizes);
+  for (const int l : label) {
+    CellSnapshot cell{};
+    cell.cell = static_cast<int>(s.cells.size());
+    cell.aggregate = l;
+    s.cells.push_back(cell);
+  }
+  return s;
+}
+
+}  // namespace
+
+TEST_CASE("the layer without cells is the mean distance from the wall to the nearest membrane of each column") {
+  // Walls at -0.5 and 39.5. A box over columns 2 ... 11 between y = 5 and 12, another over 6 ... 8 from 3.25 to 4.
+  const Membranes m =
+      polygons({{{1.5, 5}, {11.5, 5}, {11.5, 12}, {1.5, 12}}, {{5.5, 3.25}, {8.5, 3.25}, {8.5, 4}, {5.5, 4}}});
+  const CellFreeLayer layer = cell_free_layer(m, 20, 40);
+  // 10 columns without a cell count half the height, 7 meet the first box, 3 the second.
+  CHECK(layer.lower == Approx((10 * 20 + 7 * 5.5 + 3 * 3.75) / 20).epsilon(1e-14));
+  CHECK(layer.upper == Approx(20).epsilon(1e-14));
+}
+
+TEST_CASE("the layer without cells does not depend on where the box is cut") {
+  const double shift = GENERATE(0.0, 7.0, -20.0, 333.0);
+  const Membranes m = polygons({{{3.2 + shift, 5}, {12.7 + shift, 9}, {9.1 + shift, 31}}});
+  const CellFreeLayer layer = cell_free_layer(m, 20, 40);
+  const CellFreeLayer same = cell_free_layer(polygons({{{3.2, 5}, {12.7, 9}, {9.1, 31}}}), 20, 40);
+  CHECK(layer.lower == Approx(same.lower).epsilon(1e-12));
+  CHECK(layer.upper == Approx(same.upper).epsilon(1e-12));
+  // Mirrored at the middle of the channel (y = 19.5) the two layers change places.
+  const CellFreeLayer mirrored = cell_free_layer(polygons({{{3.2, 34}, {12.7, 30}, {9.1, 8}}}), 20, 40);
+  CHECK(mirrored.lower == Approx(same.upper).epsilon(1e-12));
+  CHECK(mirrored.upper == Approx(same.lower).epsilon(1e-12));
+}
+
+TEST_CASE("a wavy membrane's layer converges to the mean of its lower side") {
+  // Lower side y = 10 + 3 cos(2 pi x / 60) over the whole period: mean 10, and the wall is half a spacing below 0.
+  std::vector<std::array<double, 2>> corners;
+  for (int i = 0; i <= 600; ++i) corners.push_back({i * 0.1, 10 + 3 * std::cos(2 * std::numbers::pi * i / 600)});
+  for (int i = 600; i >= 0; --i) corners.push_back({i * 0.1, 20});
+  CHECK(cell_free_layer(polygons({corners}), 60, 80).lower == Approx(10.5).epsilon(1e-12));
+}
+
+TEST_CASE("aggregates are counted by size, with the two means") {
+  const auto sizes = aggregate_sizes({0, 0, 2, 3, 3, 3, 6, 7});
+  CHECK(sizes == std::map<int, int>{{1, 3}, {2, 1}, {3, 1}});
+  CHECK(number_mean(sizes) == 8.0 / 5);
+  CHECK(weight_mean(sizes) == (3.0 + 4 + 9) / 8);
+  CHECK(std::isnan(number_mean({})));
+  CHECK(std::isnan(weight_mean({})));
+}
+
+TEST_CASE("an aggregate has come apart where its members are never together again") {
+  RheologyHistory history;
+  history.follow(at(0, 0, 0, {0, 1, 2, 3, 4}));
+  history.follow(at(0, 0, 7, {0, 0, 0, 3, 3}));  // the end of the first stage: a rouleau of three and a pair
+  history.follow(at(1, 1, 7.1, {0, 0, 0, 3, 3}));
+  history.follow(at(1, 2, 7.2, {0, 1, 1, 3, 4}));  // both have come apart ...
+  history.follow(at(1, 3, 7.3, {0, 0, 0, 3, 4}));  // ... but the rouleau meets again
+  history.follow(at(1, 4, 7.4, {0, 0, 2, 3, 4}));
+  history.follow(at(1, 5, 7.5, {0, 1, 2, 3, 4}));
+  const auto stages = history.stages();
+  REQUIRE(stages.size() == 2);
+  CHECK(stages[0]["dissociation"].empty());
+  const auto& dissociation = stages[1]["dissociation"];
+  REQUIRE(dissociation.size() == 2);
+  CHECK(dissociation[0]["members"] == std::vector<int>{0, 1, 2});
+  CHECK(dissociation[0]["parted"]["strain"] == 4.0);
+  CHECK(dissociation[0]["parted"]["strain_before"] == 3.0);
+  CHECK(dissociation[0]["parted"]["time_s"].get<double>() == Approx(0.4));
+  CHECK(dissociation[0]["separate"]["strain"] == 5.0);
+  CHECK(dissociation[1]["parted"]["strain"] == 2.0);
+  CHECK(dissociation[1]["parted"] == dissociation[1]["separate"]);
+
+  history.follow(at(1, 6, 7.6, {0, 1, 2, 3, 3}));
+  CHECK(history.stages()[1]["dissociation"][1]["parted"].is_null());
+}
+
+TEST_CASE("rates of tank treading and tumbling are those of the last whole turns of the outline") {
+  RheologyHistory history;
+  // Cell 0 treads with -0.4 rad per strain at a swinging inclination, 1 tumbles like a rigid body, 2 hardly moves.
+  for (int k = 0; k <= 400; ++k) {
+    const double strain = 0.25 * k, time = strain / 20;
+    Snapshot s = at(0, strain, time, {0, 1, 2});
+    s.cells[0].tank_treading_angle = 1 - 0.4 * strain + 0.2 * std::sin(0.4 * strain);
+    s.cells[0].angle = 0.5;
+    s.cells[1].tank_treading_angle = -0.5 * strain;
+    s.cells[1].angle = -0.5 * strain + 1;
+    s.cells[2].tank_treading_angle = 1e-3 * strain;
+    s.cells[2].angle = std::nan("");
+    s.relative_viscosity = k % 2 == 0 ? 1.5 : 1.7;
+    history.follow(s);
+  }
+  const auto stage = history.stages()[0];
+  const auto& rotation = stage["rotation"];
+  // Strain 50 to 100 is 20 rad: 3 whole turns, in which the swing cancels out but for the lines between outputs.
+  CHECK(rotation[0]["turns"] == 3);
+  CHECK(rotation[0]["tank_treading_rad_per_strain"].get<double>() == Approx(-0.4).epsilon(1e-4));
+  CHECK(rotation[0]["tank_treading_rad_per_s"].get<double>() == Approx(-8).epsilon(1e-4));
+  CHECK(rotation[0]["tumbling_rad_per_strain"] == 0.0);
+  CHECK(rotation[1]["tumbling_rad_per_strain"].get<double>() == Approx(-0.5).epsilon(1e-12));
+  CHECK(rotation[1]["tank_treading_rad_per_strain"].get<double>() == Approx(0).margin(1e-12));
+  CHECK(rotation[2]["turns"] == 0);
+  CHECK(rotation[2]["tank_treading_rad_per_strain"].get<double>() == Approx(1e-3).epsilon(1e-9));
+
+  const auto& means = stage["means"];
+  CHECK(means["outputs"] == 201);
+  CHECK(means["relative_viscosity"]["mean"].get<double>() == Approx((101 * 1.5 + 100 * 1.7) / 201).epsilon(1e-12));
+  CHECK(means["relative_viscosity"]["deviation"].get<double>() == Approx(0.1).epsilon(0.01));
+  CHECK(means["aggregate_size_number_mean"]["mean"] == 1.0);
+}

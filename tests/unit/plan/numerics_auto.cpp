@@ -1,0 +1,130 @@
+// What "numerics": "auto" chooses: pins hold, errors that are asked for decide, limits of the plan prevail.
+#include "plan/numerics_auto_limits.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+
+#include "json/document.hpp"
+#include "plan/plan.hpp"
+
+using namespace rouleau::plan;
+using namespace rouleau::plugin;
+using namespace rouleau::scene;
+using Catch::Matchers::Contains;
+
+namespace {
+
+const std::string auto_scenes = ROULEAU_PHYSICS_SCENES;
+
+Catalog shipped_plugins(const Scene& /*unused*/) {
+  return Catalog(std::vector<std::filesystem::path>{ROULEAU_PLUGINS});
+}
+
+Scene chosen_scene(const std::vector<std::string>& overrides, const std::string& scene = "/auto-capsule.json") {
+  return read_within_limits(auto_scenes + scene, overrides, shipped_plugins);
+}
+
+double estimated_cost(const Scene& scene) {
+  const Catalog catalog = shipped_plugins(scene);
+  return make_plan(scene, catalog).estimate.wall_s;
+}
+
+}  // namespace
+
+TEST_CASE("a smaller target error costs more, and the error that is expected is below it") {
+  double before = 0;
+  for (const char* target : {"0.05", "0.02", "0.01", "0.005"}) {
+    const Scene scene = chosen_scene({std::string("/numerics/auto/error=") + target}, "/auto-capsule.json");
+    REQUIRE(scene.numerics_choice);
+    CHECK(scene.numerics_choice->expected.total() <= std::stod(target));
+    CHECK(scene.numerics_choice->doubt.empty());
+    CHECK(estimated_cost(scene) >= before);
+    before = estimated_cost(scene);
+  }
+  CHECK(estimated_cost(chosen_scene({"/numerics/auto/error=0.005"})) >
+        2 * estimated_cost(chosen_scene({"/numerics/auto/error=0.05"})));
+}
+
+TEST_CASE("what a scene gives is not chosen") {
+  const Scene scene = chosen_scene({"/numerics/tau=0.8", "/numerics/density_factor=1000", "/domain/nodes=[160,80]",
+                                    "/cell_types/capsule/segments=90", "/numerics/slip_correction=false"});
+  CHECK(scene.numerics.tau == 0.8);
+  CHECK(scene.numerics.density_factor == 1000);
+  CHECK(scene.domain.nodes == std::array<int, 2>{160, 80});
+  CHECK(scene.cell_types[0].segments == 90);
+  CHECK_FALSE(scene.numerics.slip_correction);
+  CHECK(scene.numerics.area_correction);
+  CHECK(scene.numerics.coupling == "auto");
+  CHECK(scene.numerics_choice->values.size() == 2);
+  // The plain scheme at 12.5 spacings a radius is further than 1 % from the truth, and says so.
+  CHECK_THAT(scene.numerics_choice->doubt, Contains("more than the target of 1 %"));
+}
+
+TEST_CASE("a lattice that leaves next to nothing of the target is told what it costs") {
+  const std::string target = "/numerics={\"auto\": {\"error\": 0.01}}";
+  const Scene open = chosen_scene({target}, "/auto-biconcave.json");
+  CHECK(open.numerics_choice->doubt.empty());
+  const Scene named = chosen_scene({target, "/domain/nodes=[208,104]"}, "/auto-biconcave.json");
+  CHECK_THAT(named.numerics_choice->doubt, Contains("leave domain.nodes out, or allow a larger error"));
+  CHECK(estimated_cost(named) > 2 * estimated_cost(open));
+}
+
+TEST_CASE("auto's own slip correction is not warned of") {
+  const std::string scene = std::string(ROULEAU_SCENES) + "/four-cells-shear.json";
+  const auto warned = [&](const std::vector<std::string>& overrides) {
+    const Scene read = read_within_limits(scene, overrides, shipped_plugins);
+    REQUIRE(read.numerics.slip_correction);
+    const Catalog catalog = shipped_plugins(read);
+    const std::vector<std::string> warnings = make_plan(read, catalog).warnings;
+    return std::any_of(warnings.begin(), warnings.end(), [](const std::string& warning) {
+      return warning.starts_with("numerics.slip_correction with attracting cells");
+    });
+  };
+  CHECK(warned({"/numerics/slip_correction=true"}));
+  CHECK_FALSE(warned({"/numerics={\"auto\": {\"error\": 0.05}}"}));
+}
+
+TEST_CASE("the chosen scene read again is the same scene") {
+  const Scene scene = chosen_scene({});
+  const Scene again = chosen_scene({"/numerics=" + scene.document->root()["numerics"].dump(),
+                                    "/domain=" + scene.document->root()["domain"].dump(),
+                                    "/cell_types=" + scene.document->root()["cell_types"].dump()});
+  CHECK(again.document->root() == scene.document->root());
+  CHECK(again.numerics_choice->values.empty());
+}
+
+TEST_CASE("limits of the plan bound the choice") {
+  const auto worst_margin = [](const Scene& scene) {
+    const Catalog catalog = shipped_plugins(scene);
+    double least = 1e300;
+    for (const Limit& limit : make_plan(scene, catalog).limits) {
+      if (limit.remedied_by != RemediedBy::nothing) least = std::min(least, limit.margin);
+    }
+    return least;
+  };
+  // A membrane a thousand times stiffer.
+  const std::vector<std::string> stiff{"/cell_types/capsule/membrane/0/parameters/shear_modulus=1.92e-3"};
+  CHECK(chosen_scene(stiff).numerics.density_factor < chosen_scene({}).numerics.density_factor / 3);
+  CHECK(worst_margin(chosen_scene(stiff)) >= 1);
+  // Membranes that meet at a gap of half a micrometre want two spacings there.
+  const std::vector<std::string> sticky{
+      R"(/interactions=[{"between": ["capsule", "capsule"], "model": "morse", "parameters": {"depth": "5.2e-8 J/m2", )"
+      R"("decay": "3.84 1/um", "zero_force_distance": "0.2 um", "cutoff": "2 um"}}])"};
+  const Scene attracted = chosen_scene(sticky);
+  CHECK(attracted.domain.size.x() / attracted.domain.nodes[0] <= 0.1e-6 * (1 + 1e-9));
+  CHECK(attracted.numerics.slip_correction);
+  const std::string deep = "/interactions/0/parameters/depth=\"1.3e-6 J/m2\"";
+  CHECK_FALSE(chosen_scene({sticky[0], deep}).numerics.slip_correction);
+}
+
+TEST_CASE("auto needs a lattice, and without it a scene needs its own") {
+  CHECK_THROWS_WITH(chosen_scene({"/domain/size=[\"50 um\", \"17.3456789123 um\"]"}),
+                    Contains("no lattice with the same spacing along both can be chosen"));
+  CHECK_THROWS_WITH(chosen_scene({"/numerics={}"}), Contains("\"nodes\" is missing"));
+}
+
+TEST_CASE("a flow without cells keeps its own inertia") {
+  const Scene scene = chosen_scene({"/cells=[]"});
+  CHECK(scene.numerics.density_factor == 1);
+  CHECK(scene.domain.nodes[1] >= 16);
+}

@@ -1,0 +1,29 @@
+// The limits that a plan compares a scene with.
+#include <catch2/catch.hpp>
+
+#include "plan/plan.hpp"
+#include "plugin/catalog.hpp"
+
+using namespace rouleau::plan;
+using namespace rouleau::plugin;
+using namespace rouleau::scene;
+
+TEST_CASE("each stiffness is that of the cell type which is nearest to its limit") {
+  const Catalog catalog({ROULEAU_PLUGINS});
+  const auto margin = [&](const std::vector<std::string>& overrides, const std::string& begin) {
+    const Scene scene = read_scene(std::string(ROULEAU_SCENES) + "/four-cells-shear.json", overrides);
+    double least = 1e300;
+    for (const Limit& limit : make_plan(scene, catalog).limits) {
+      if (limit.name.starts_with(begin)) least = std::min(least, limit.margin);
+    }
+    return least;
+  };
+  // One type whose bending is beyond its limit, another whose stretching is further beyond.
+  const std::vector<std::string> bends{R"(/cell_types/rbc/membrane/1/parameters/modulus="3.6e-17 J")"};
+  std::vector<std::string> both = bends;
+  both.emplace_back(R"(/cell_types/taut={"shape": {"circle": {"radius": "3 um"}}, "segments": 96, "membrane": [)"
+                    R"({"model": "hooke", "parameters": {"stretching_modulus": "1 N/m"}}]})");
+  CHECK(margin(bends, "bending stiffness") < 1);
+  CHECK(margin(both, "bending stiffness") == margin(bends, "bending stiffness"));
+  CHECK(margin(both, "stretching stiffness") < margin(bends, "stretching stiffness") / 100);
+}

@@ -1,0 +1,40 @@
+#include "run/progress.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <string>
+
+using namespace rouleau::run;
+
+namespace {
+const ProgressState state{123456, 0.42, "tumbling and separation", 12.345, 0.00123, 4.5e-4, 12};
+bool shows(const std::string& line, const char* words) { return line.find(words) != std::string::npos; }
+}  // namespace
+
+TEST_CASE("a line of progress fits its terminal, and says what matters most longest") {
+  for (std::size_t width = 1; width <= 300; ++width) {
+    const std::string line = progress_line(state, 98765, 3.6e8, width);
+    INFO(line);
+    CHECK(line.size() <= width);
+    if (width >= 50) CHECK((shows(line, " 42% ") && shows(line, " ETA 100000:00 h")));
+    // No number is cut: each stands with its word, or not at all.
+    if (width >= 50)
+      CHECK((line.ends_with("strain 12.35") || line.ends_with("12 aggregates") || line.ends_with("12 aggr.") ||
+             line.ends_with(" h")));
+    if (shows(line, " Ma")) CHECK((shows(line, "drift") && shows(line, "steps/s") && shows(line, "12 aggr")));
+    if (shows(line, "drift")) CHECK((shows(line, "steps/s") && shows(line, "12 aggr")));
+    if (shows(line, "[")) CHECK((shows(line, "Mach 0.0012") && shows(line, "]")));
+  }
+  ProgressState usual = state;
+  usual.stage = "shear";
+  CHECK(progress_line(usual, 12345, 65, 79) ==  // of 80 columns, the last stays free
+        "shear 42% ETA 1:05 min strain 12.35 12345 steps/s Ma 0.001 drift 4e-04 12 aggr.");
+}
+
+TEST_CASE("what is not known yet does not spoil a line of progress") {
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  const std::string line = progress_line({0, none, "shear", 0, none, none, 1}, 0, none, 120);
+  CHECK(line.starts_with("shear [          "));
+  CHECK(shows(line, "  0%  ETA ?  strain 0.00  0 steps/s  Mach nan  area drift nan  1 aggregate"));
+}

@@ -1,0 +1,84 @@
+// What the tests of a run's output share: a small scene and snapshots of it.
+#pragma once
+
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <numbers>
+#include <string>
+
+#include "files/run_directory.hpp"
+#include "observe/snapshot.hpp"
+#include "scene/scene.hpp"
+#include "scratch_folder.hpp"
+
+namespace rouleau::test {
+
+using namespace observe;
+using namespace run;
+using namespace scene;
+
+using test::ScratchFolder;
+
+inline Scene small_scene(const std::string& title = "two cells") {
+  Scene scene;
+  scene.title = title;
+  scene.domain.size = {20e-6, 10e-6};
+  scene.domain.nodes = {8, 4};
+  return scene;
+}
+
+/// Two round cells in contact, the second with `second_nodes` nodes; fields when asked for.
+inline Snapshot small_snapshot(long step, bool with_fields = false, int second_nodes = 32) {
+  Snapshot snapshot;
+  snapshot.step = step;
+  snapshot.time = 0.1 * static_cast<double>(step);
+  snapshot.strain = static_cast<double>(step) / 3;
+  snapshot.stage_name = "shear";
+  snapshot.aggregate_count = 1;
+  snapshot.relative_viscosity = step == 0 ? std::numeric_limits<double>::quiet_NaN() : 1.25;
+  snapshot.outlines.first.push_back(0);
+  for (int cell = 0; cell < 2; ++cell) {
+    const int nodes = cell == 0 ? 32 : second_nodes;
+    const double x = 8e-6 + 4.5e-6 * cell;
+    for (int i = 0; i < nodes; ++i) {
+      const double angle = 2 * std::numbers::pi * i / nodes;
+      snapshot.outlines.x.push_back(x + 2e-6 * std::cos(angle));
+      snapshot.outlines.y.push_back(5e-6 + 2e-6 * std::sin(angle));
+      snapshot.outlines.tension.push_back(1e-6 * i);
+    }
+    snapshot.outlines.first.push_back(snapshot.outlines.first.back() + nodes);
+    CellSnapshot state{};
+    state.cell = cell;
+    state.type = "rbc, \"old\"";
+    state.x = x;
+    state.y = 5e-6;
+    state.angle = std::numbers::pi / 3;
+    state.area = 1.0 / 3 * 1e-11;
+    state.min_gap = cell == 0 ? 0.5e-6 : std::numeric_limits<double>::infinity();
+    snapshot.cells.push_back(state);
+  }
+  snapshot.contacts.push_back({0, 1, {-1, 0}, 0.5e-6, 1.5e-6});
+  if (with_fields) {
+    auto& fields = snapshot.fields;
+    fields.nx = 8;
+    fields.ny = 4;
+    for (int i = 0; i < 32; ++i) {
+      fields.velocity_x.push_back(static_cast<float>(i));
+      fields.velocity_y.push_back(static_cast<float>(-i));
+      fields.viscosity.push_back(1.2e-3f);
+    }
+  }
+  return snapshot;
+}
+
+inline Summary small_summary() {
+  Summary summary;
+  summary.status = "completed";
+  summary.title = "two cells";
+  summary.precision = "f64";
+  summary.dimensionless = {{"reynolds_physical", 2.5e-4}, {"capillary", std::nan("")}};
+  return summary;
+}
+
+}  // namespace rouleau::test

@@ -1,0 +1,144 @@
+#include "stability/judgement.hpp"
+
+#include <unistd.h>
+#include <catch2/catch.hpp>
+#include <fstream>
+
+#include "files/hdf5_file.hpp"
+#include "stability/limits_run.hpp"
+
+using namespace rouleau::files;
+using namespace rouleau::stability;
+using namespace rouleau::trial;
+using Json = nlohmann::json;
+
+namespace {
+
+/// A run's directory as far as judgements look into it.
+struct RunToJudge {
+  std::filesystem::path folder;
+  TrialResult result;
+
+  RunToJudge() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "rouleau-XXXXXX").string();
+    folder = ::mkdtemp(pattern.data());
+    cells("0.5");
+    result.end = TrialEnd::completed;
+    result.summary = {
+        {"status", "completed"},
+        {"conservation", {{"area_drift_max", 1e-4}, {"area_leakage_max", nullptr}, {"mass_drift", 1e-12}}},
+        {"energy", {{"largest_growth_at_rest_relative", 0}}},
+        {"stretch", {{"min", 0.9}, {"max", 1.1}}}};
+  }
+  ~RunToJudge() { std::filesystem::remove_all(folder); }
+  RunToJudge(const RunToJudge&) = delete;
+  RunToJudge& operator=(const RunToJudge&) = delete;
+
+  void cells(const std::string& last) const {
+    std::ofstream(folder / "cells.csv")
+        << "step,cell,x_m,angle_rad,deformation\n0,0,1e-6,nan,0.1\n0,1,1e-6,nan,0.2\n9,0,1e-6,nan," << last
+        << "\n9,1,1e-6,nan,0.7\n";
+  }
+  [[nodiscard]] Judgement judged() const { return judge(result, folder, Soundness()); }
+  [[nodiscard]] std::string reason() const { return judged().failure.is_null() ? "" : judged().failure["reason"]; }
+};
+
+}  // namespace
+
+TEST_CASE("a run that kept everything is sound", "[judgement]") {
+  const RunToJudge run;
+  CHECK(run.judged().sound);
+  CHECK(run.judged().failure.is_null());
+}
+
+TEST_CASE("a run that ends in silence with something lost has failed", "[judgement]") {
+  struct Case {
+    const char* pointer;
+    double value;
+    const char* reason;
+  };
+  const auto [pointer, value, expected] = GENERATE(
+      Case{"/conservation/area_drift_max", 0.03, "area_loss"},
+      Case{"/conservation/area_leakage_max", 0.03, "area_loss"}, Case{"/conservation/mass_drift", 0.01, "mass_loss"},
+      Case{"/energy/largest_growth_at_rest_relative", 0.1, "energy_growth"}, Case{"/stretch/max", 3.5, "uneven_nodes"},
+      Case{"/stretch/min", 0.2, "uneven_nodes"});
+  RunToJudge run;
+  run.result.summary[Json::json_pointer(pointer)] = value;
+  CHECK(run.reason() == expected);
+  CHECK_FALSE(run.judged().sound);
+  CHECK(run.judged().end == "completed");
+}
+
+TEST_CASE("a shape that is no number has been written, an angle may be none", "[judgement]") {
+  const RunToJudge run;
+  run.cells("nan");
+  CHECK(run.reason() == "no_number_written");
+  CHECK(run.judged().failure["message"].get<std::string>().find("deformation in row 3") != std::string::npos);
+}
+
+TEST_CASE("what is no number in a frame has been written, also where the run was then stopped", "[judgement]") {
+  RunToJudge run;
+  const auto frame = [&](double last) {
+    Hdf5File file(run.folder / "frames.h5", Hdf5File::Mode::create);
+    for (const char* group : {"/frames", "/frames/000000", "/frames/000000/fields"}) file.make_group(group);
+    file.write("/frames/000000/fields/density", std::vector<double>{1, 2, last}, "kg/m3");
+    file.close();
+  };
+  frame(3);
+  CHECK(run.judged().sound);
+  frame(std::nan(""));
+  run.result.end = GENERATE(TrialEnd::completed, TrialEnd::diverged);
+  run.result.summary["failure"] = {{"reason", "mach"}, {"step", 17}};
+  CHECK(run.reason() == "no_number_written");
+  CHECK(run.judged().failure["message"] ==
+        "/frames/000000/fields/density of frames.h5 holds a value that is no number");
+  // An extreme case may stop, but not like this.
+  CHECK(judge_case(ExtremeCase{"a case", "either", {}, 0, {}}, run.judged(), run.folder).verdict == "WRONG");
+}
+
+TEST_CASE("what the run tells of its failure is passed on, and a mode that is none is none", "[judgement]") {
+  RunToJudge run;
+  run.result.end = TrialEnd::diverged;
+  run.result.summary["failure"] = {{"reason", "node_step"}, {"step", 17},
+                                   {"mode", "tangential"},  {"wavelength_segments", 7.5},
+                                   {"message", "too fast"}, {"remedy", "slower"}};
+  const Json expected = {{"reason", "node_step"}, {"step", 17},        {"mode", "tangential"}, {"wavelength", 7.5},
+                         {"message", "too fast"}, {"remedy", "slower"}};
+  CHECK(run.judged().failure == expected);
+  run.result.summary["failure"]["mode"] = "none";
+  CHECK(run.judged().failure["mode"].is_null());
+}
+
+TEST_CASE("a hang, a crash and a refusal are failures with the words there are", "[judgement]") {
+  const TrialEnd end = GENERATE(TrialEnd::timed_out, TrialEnd::crashed, TrialEnd::refused);
+  RunToJudge run;
+  run.result.end = end;
+  run.result.summary = nullptr;
+  run.result.message = "words";
+  CHECK(run.reason() == to_string(end));
+  CHECK(run.judged().failure["message"] == "words");
+  ExtremeCase extreme{"a case", "either", {}, 0, {}};
+  const CaseResult result = judge_case(extreme, run.judged(), run.folder);
+  CHECK(result.verdict == (end == TrialEnd::refused ? "stopped with a reason" : "WRONG"));
+  CHECK(result.as_expected == (end == TrialEnd::refused));
+}
+
+TEST_CASE("a right answer is compared with the last row of its cell", "[judgement]") {
+  const RunToJudge run;
+  const auto verdict = [&run](const RightAnswer& answer, const char* expect = "right") {
+    const ExtremeCase extreme{"a case", expect, {}, 0, answer};
+    return judge_case(extreme, run.judged(), run.folder).verdict;
+  };
+  CHECK(verdict({"cells", "deformation", "", 0, 0.5, 1e-6}) == "right answer");
+  CHECK(verdict({"cells", "deformation", "", 1, 0.7, 1e-6}) == "right answer");
+  CHECK(verdict({"cells", "deformation", "", 0, 0.7, 0.1}) == "WRONG");
+  CHECK(verdict({"cells", "angle_rad", "", 0, 0, 1}) == "WRONG");
+  CHECK(verdict({"cells", "no_such", "", 0, 0, 1}) == "WRONG");
+}
+
+TEST_CASE("a case that ends otherwise than expected is not as expected", "[judgement]") {
+  const RunToJudge run;
+  const ExtremeCase stops{"a case", "stops", {}, 0, {}}, right{"another", "right", {}, 0, {}};
+  CHECK_FALSE(judge_case(stops, run.judged(), run.folder).as_expected);
+  CHECK(judge_case(right, run.judged(), run.folder).as_expected);
+}
