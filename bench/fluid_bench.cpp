@@ -13,6 +13,7 @@
 #include "core/fluid/fluid.hpp"
 #include "measure.hpp"
 #include "plugin/catalog.hpp"
+#include "plugin/handles.hpp"
 
 namespace rouleau::bench {
 
@@ -21,11 +22,10 @@ namespace {
 constexpr double relaxation_rate = 1.0, magic = 0.1875;
 constexpr fluid::WallVelocity walls{-0.01, 0.01};
 
-std::shared_ptr<const plugin::ModelInstance> trt() {
+model::CollisionOperator trt() {
   static const plugin::Catalog catalog({ROULEAU_PLUGINS});
-  return std::make_shared<const plugin::ModelInstance>(catalog.find(plugin::ModelKind::collision, "trt", {}),
-                                                       std::vector<double>{magic},
-                                                       plugin::ModelSetting{{1, 1, 1}, relaxation_rate, false});
+  return plugin::make_collision_operator(catalog.find(plugin::ModelKind::collision, "trt", {}), {magic},
+                                         plugin::ModelSetting{{1, 1, 1}, relaxation_rate, false});
 }
 
 /// The fluid of the program, with the trt plugin.

@@ -4,6 +4,7 @@
 #include "command_line.hpp"
 #include "commands.hpp"
 #include "core/membrane/membranes.hpp"
+#include "plan/placed_cells.hpp"
 #include "plan/plan.hpp"
 #include "scene_options.hpp"
 
@@ -37,7 +38,7 @@ int plan_command(const std::vector<std::string>& arguments) {
   const plugin::Catalog catalog = scene_options.catalog(scene);
   const plan::Plan plan = plan::make_plan(scene, catalog);
   // Placing the cells finds overlaps before a run does.
-  if (plan.has_cells) membrane::make_membranes(scene, plan::lattice_spacing(scene));
+  if (plan.has_cells) plan::make_membranes(scene, plan::lattice_spacing(scene));
   if (json) {
     // Names of folders need not be UTF-8.
     std::cout << plan::to_json(plan).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";

@@ -9,6 +9,7 @@
 #include "core/membrane/membranes.hpp"
 #include "files/checkpoint_file.hpp"
 #include "interruption.hpp"
+#include "plan/placed_cells.hpp"
 #include "report/report.hpp"
 #include "run/simulation.hpp"
 #include "scene_options.hpp"
@@ -88,7 +89,7 @@ int run_command(const std::vector<std::string>& arguments) {
   const plugin::Catalog catalog = scene_options.catalog(scene);
   const plan::Plan plan = plan::make_plan(scene, catalog);
   // Placing the cells finds overlaps before a directory is made.
-  if (plan.has_cells) membrane::make_membranes(scene, plan::lattice_spacing(scene));
+  if (plan.has_cells) plan::make_membranes(scene, plan::lattice_spacing(scene));
   for (const std::string& warning : plan.warnings) std::cerr << "warning: " << warning << "\n";
 
   run.interrupted = &listen_for_interruption();

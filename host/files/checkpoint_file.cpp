@@ -20,7 +20,7 @@ namespace rouleau::files {
 namespace {
 
 constexpr std::size_t head_bytes = 512;  // the smallest that HDF5 allows
-constexpr std::string_view checkpoint_format = "rouleau checkpoint 1";
+constexpr std::string_view checkpoint_format = "rouleau checkpoint 2";
 
 std::string head(std::uintmax_t bytes, const std::string& checksum) {
   std::string text = std::string(checkpoint_format) + "\nbytes " + std::to_string(bytes) + "\nxxh3 " + checksum +

@@ -17,8 +17,8 @@ double given_away(const membrane::Membranes& m) {
 }  // namespace
 
 template <class T>
-EnergySnapshot observe_energy(solver::Solver<T>& solver, const membrane::Membranes& membranes) {
-  const units::LatticeUnits& units = solver.setting().units;
+EnergySnapshot observe_energy(solver::Solver<T>& solver, const membrane::Membranes& membranes,
+                              const units::LatticeUnits& units) {
   const double joule = units.to_si(1, units::dimension::energy_per_depth),
                watt = units.to_si(1, units::dimension::power_per_depth);
   const fluid::FluidSetting& setting = solver.fluid().setting();
@@ -56,8 +56,8 @@ EnergySnapshot observe_energy(solver::Solver<T>& solver, const membrane::Membran
   return energy;
 }
 
-template EnergySnapshot observe_energy(solver::Solver<float>&, const membrane::Membranes&);
-template EnergySnapshot observe_energy(solver::Solver<double>&, const membrane::Membranes&);
+template EnergySnapshot observe_energy(solver::Solver<float>&, const membrane::Membranes&, const units::LatticeUnits&);
+template EnergySnapshot observe_energy(solver::Solver<double>&, const membrane::Membranes&, const units::LatticeUnits&);
 
 void EnergyHistory::follow(const Snapshot& snapshot, bool driven, double floor) {
   const EnergySnapshot& energy = snapshot.energy;

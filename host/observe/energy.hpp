@@ -7,12 +7,14 @@
 
 #include "core/solver/solver.hpp"
 #include "snapshot.hpp"
+#include "units/lattice_units.hpp"
 
 namespace rouleau::observe {
 
 /// State before the next step of `solver`, whose forces have been computed and whose fluid is settled.
 template <class T>
-EnergySnapshot observe_energy(solver::Solver<T>& solver, const membrane::Membranes& membranes);
+EnergySnapshot observe_energy(solver::Solver<T>& solver, const membrane::Membranes& membranes,
+                              const units::LatticeUnits& units);
 
 /// Follows the total energy through the stages at rest, where it may only fall.
 class EnergyHistory {

@@ -171,8 +171,9 @@ std::optional<monitor::Failure> Observer::check_stretch(const membrane::Membrane
 }
 
 template <class T>
-std::optional<monitor::Failure> Observer::check(solver::Solver<T>& solver, const membrane::Membranes& membranes) {
-  const units::LatticeUnits& units = solver.setting().units;
+std::optional<monitor::Failure> Observer::check(solver::Solver<T>& solver, const plan::StageSetting& setting,
+                                                const membrane::Membranes& membranes) {
+  const units::LatticeUnits& units = setting.units;
   const auto place = [&](double x, double y) {
     return std::array<double, 2>{(x + 0.5) * units.length, (y + 0.5) * units.length};
   };
@@ -267,8 +268,8 @@ void Observer::observe_cells(const membrane::Membranes& membranes, const units::
 }
 
 template <class T>
-Snapshot Observer::observe(solver::Solver<T>& solver, const membrane::Membranes& membranes, bool with_fields) {
-  const plan::StageSetting& setting = solver.setting();
+Snapshot Observer::observe(solver::Solver<T>& solver, const plan::StageSetting& setting,
+                           const membrane::Membranes& membranes, bool with_fields) {
   const units::LatticeUnits& units = setting.units;
   Snapshot snapshot;
   snapshot.stage = setting.index;
@@ -310,16 +311,20 @@ Snapshot Observer::observe(solver::Solver<T>& solver, const membrane::Membranes&
       outlines.tension.push_back(tension[i] * tension_unit);
     }
   }
-  snapshot.energy = observe_energy(solver, membranes);
+  snapshot.energy = observe_energy(solver, membranes, units);
   if (with_fields) snapshot.fields = observe_fields(solver.fluid(), *scene_, units);
   return snapshot;
 }
 
 void Observer::start_stage() { initial_mass_ = std::nan(""); }
 
-template Snapshot Observer::observe(solver::Solver<float>&, const membrane::Membranes&, bool);
-template Snapshot Observer::observe(solver::Solver<double>&, const membrane::Membranes&, bool);
-template std::optional<monitor::Failure> Observer::check(solver::Solver<float>&, const membrane::Membranes&);
-template std::optional<monitor::Failure> Observer::check(solver::Solver<double>&, const membrane::Membranes&);
+template Snapshot Observer::observe(solver::Solver<float>&, const plan::StageSetting&, const membrane::Membranes&,
+                                    bool);
+template Snapshot Observer::observe(solver::Solver<double>&, const plan::StageSetting&, const membrane::Membranes&,
+                                    bool);
+template std::optional<monitor::Failure> Observer::check(solver::Solver<float>&, const plan::StageSetting&,
+                                                         const membrane::Membranes&);
+template std::optional<monitor::Failure> Observer::check(solver::Solver<double>&, const plan::StageSetting&,
+                                                         const membrane::Membranes&);
 
 }  // namespace rouleau::observe

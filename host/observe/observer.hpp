@@ -10,8 +10,13 @@
 #include "core/membrane/geometry.hpp"
 #include "core/solver/solver.hpp"
 #include "monitor/failure.hpp"
+#include "plan/stage_scales.hpp"
 #include "rotation.hpp"
 #include "snapshot.hpp"
+
+namespace rouleau::membrane {
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(StretchRange, least, most)
+}  // namespace rouleau::membrane
 
 namespace rouleau::observe {
 
@@ -25,11 +30,13 @@ class Observer {
 
   /// State before the next step of `solver`, whose forces must have been computed. `with_fields`: fields are due.
   template <class T>
-  Snapshot observe(solver::Solver<T>& solver, const membrane::Membranes& membranes, bool with_fields);
+  Snapshot observe(solver::Solver<T>& solver, const plan::StageSetting& setting, const membrane::Membranes& membranes,
+                   bool with_fields);
 
   /// Checks everything that costs a scan: finite fields, Mach number, area, crossings.
   template <class T>
-  std::optional<monitor::Failure> check(solver::Solver<T>& solver, const membrane::Membranes& membranes);
+  std::optional<monitor::Failure> check(solver::Solver<T>& solver, const plan::StageSetting& setting,
+                                        const membrane::Membranes& membranes);
 
   /// Largest relative change of a cell's area so far, at the present positions; `cell`: whose.
   double area_drift(const membrane::Membranes& membranes, int* cell = nullptr) const;

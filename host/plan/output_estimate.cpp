@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "schedule.hpp"
+#include "output_schedule.hpp"
 
 namespace rouleau::plan {
 
@@ -24,7 +24,7 @@ struct Counts {
 };
 
 Counts count_outputs(const scene::Scene& scene, const StageSetting& stage) {
-  const Schedule cells(scene.output.cells, stage, true), fields(scene.output.fields, stage, false);
+  const OutputSchedule cells(scene.output.cells, stage, true), fields(scene.output.fields, stage, false);
   constexpr int most = 20000;
   Counts counts;
   long step = 0;
@@ -54,7 +54,7 @@ OutputEstimate estimate_output(const scene::Scene& scene, const std::vector<Stag
     estimate.field_outputs += counts.fields;
   }
   ++estimate.outputs;  // the first state
-  if (!stages.empty() && Schedule(scene.output.fields, stages.front(), false).due(0)) ++estimate.field_outputs;
+  if (!stages.empty() && OutputSchedule(scene.output.fields, stages.front(), false).due(0)) ++estimate.field_outputs;
 
   const auto cells = static_cast<double>(scene.cells.size());
   double membrane_nodes = 0;

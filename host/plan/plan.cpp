@@ -9,6 +9,7 @@
 #include "core/coupling/kernel_kind.hpp"
 #include "json/document.hpp"
 #include "json/number_or_null.hpp"
+#include "kernel_facts.hpp"
 #include "plan_models.hpp"
 #include "scene/driving_flow.hpp"
 #include "shape/outline.hpp"
@@ -349,8 +350,7 @@ Plan make_plan(const scene::Scene& scene, const plugin::Catalog& catalog) {
                             " m/s every second for as long as the stage lasts; give domain.y walls, or leave out "
                             "fluid.body_force and pressure_gradient");
   }
-  if (const coupling::KernelFacts& kernel = coupling::kernel_named(scene.numerics.kernel);
-      plan.has_cells && *kernel.defect != 0) {
+  if (const KernelFacts& kernel = kernel_named(scene.numerics.kernel); plan.has_cells && *kernel.defect != 0) {
     plan.warnings.push_back(std::string("kernel ") + kernel.name + ": " + kernel.defect);
   }
   // Where auto has chosen it, it has looked at how strong the attraction is.

@@ -6,8 +6,11 @@
 
 #include "core/coupling/kernel_kind.hpp"
 #include "core/coupling/slip_constants.hpp"
+#include "core/membrane/node_mobility.hpp"
 #include "core/membrane/stiffness.hpp"
+#include "kernel_facts.hpp"
 #include "plan.hpp"
+#include "plugin/handles.hpp"
 #include "potential_shape.hpp"
 #include "scene/driving_flow.hpp"
 #include "shape/outline.hpp"
@@ -80,7 +83,7 @@ double segment_length(const scene::CellType& type) { return shape::shape_perimet
 /// Of all cell types in a stage, the stretching and the bending stiffness that are nearest to their limits.
 Stiffness membrane_stiffness(const Plan& plan, const plugin::ModelSetting& setting) {
   const scene::Scene& scene = *plan.scene;
-  const coupling::KernelFacts& kernel = coupling::kernel_named(scene.numerics.kernel);
+  const KernelFacts& kernel = kernel_named(scene.numerics.kernel);
   const double tau = scene.numerics.tau;
   Stiffness nearest;
   for (std::size_t t = 0; t < plan.membranes.size(); ++t) {
@@ -88,13 +91,13 @@ Stiffness membrane_stiffness(const Plan& plan, const plugin::ModelSetting& setti
     const double ratio = cell.interior_viscosity / scene.fluid.viscosity;
     double factor = 1;
     if (scene.numerics.slip_correction) {
-      factor = coupling::stiffening(coupling::slip_constants(kernel.kind, ratio).shift,
+      factor = membrane::stiffening(coupling::slip_constants(kernel.kind, ratio).shift,
                                     segment_length(cell) / setting.units.length);
     }
     double stretching = 0, bending = 0;
     for (const PlannedModel& law : plan.membranes[t]) {
       if (!law.active()) continue;
-      const plugin::ModelInstance instance(*law.manifest, law.parameters.values, setting);
+      const model::MembraneLaw instance = plugin::make_membrane_law(*law.manifest, law.parameters.values, setting);
       stretching += membrane::stretching_stiffness(instance);
       bending += membrane::bending_stiffness(instance);
     }
@@ -114,8 +117,8 @@ double prestress_compression(const Plan& plan, const StageSetting& stage) {
     double tension = 0;
     for (const PlannedModel& law : plan.membranes[type]) {
       if (!law.active()) continue;
-      const plugin::ModelInstance instance(*law.manifest, law.parameters.values,
-                                           stage.model_setting(plan.scene->fluid.inertia));
+      const model::MembraneLaw instance = plugin::make_membrane_law(*law.manifest, law.parameters.values,
+                                                                    stage.model_setting(plan.scene->fluid.inertia));
       tension += membrane::tension_at(instance, circle->prestretch);
     }
     most = std::max(most, 3 * std::abs(tension) * stage.units.length / circle->radius);

@@ -35,20 +35,4 @@ StageSetting make_stage_setting(const scene::Scene& scene, int index) {
   return setting;
 }
 
-fluid::FluidSetting StageSetting::fluid_setting(const scene::Scene& scene, bool membranes,
-                                                bool viscosity_contrast) const {
-  fluid::FluidSetting setting{};
-  setting.nx = scene.domain.nodes[0];
-  setting.ny = scene.domain.nodes[1];
-  setting.periodic_y = scene.domain.periodic_y;
-  setting.relaxation_rate = 1 / tau;
-  setting.inertia = scene.fluid.inertia;
-  setting.walls = {-wall_speed, wall_speed};
-  setting.body_force_x = body_force_x;
-  setting.body_force_y = body_force_y;
-  setting.membranes = membranes;
-  setting.viscosity_contrast = viscosity_contrast;
-  return setting;
-}
-
 }  // namespace rouleau::plan

@@ -1,7 +1,6 @@
 // One stage in lattice units: the conversions that a stage's density factor decides.
 #pragma once
 
-#include "core/fluid/fluid.hpp"
 #include "plugin/model.hpp"
 #include "scene/scene.hpp"
 #include "units/lattice_units.hpp"
@@ -19,8 +18,6 @@ struct StageSetting {
   long max_steps;                     ///< of duration or strain, whichever is shorter
 
   [[nodiscard]] plugin::ModelSetting model_setting(bool inertia) const { return {units, 1 / tau, inertia}; }
-  [[nodiscard]] fluid::FluidSetting fluid_setting(const scene::Scene& scene, bool membranes,
-                                                  bool viscosity_contrast) const;
   /// Walls or a force put energy in.
   [[nodiscard]] bool is_driven() const { return shear_rate != 0 || body_force_x != 0 || body_force_y != 0; }
   /// Steps from one output to the next for a time interval in seconds (at least one).

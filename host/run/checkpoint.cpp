@@ -29,21 +29,20 @@ void read(const files::CheckpointReader& reader, const std::string& path, std::v
 }
 
 Json described(const membrane::ElementState& s) {
-  return {{"cell_type", s.cell_type}, {"law", s.law},   {"model", s.model},
-          {"name", s.name},           {"unit", s.unit}, {"dimension", s.dimension.exponent}};
+  return {{"cell_type", s.cell_type}, {"law", s.law}, {"model", s.model}, {"name", s.name}, {"unit_si", s.unit}};
 }
 
 membrane::ElementState element_state(const Json& d) {
-  return {d.at("cell_type"), d.at("law"), d.at("model"), d.at("name"), d.at("unit"), {d.at("dimension")}, {}};
+  return {d.at("cell_type"), d.at("law"), d.at("model"), d.at("name"), d.at("unit_si"), {}};
 }
 
 Json described(const membrane::ContactVariable& v) {
-  return {{"potential", v.potential}, {"model", v.model},     {"name", v.name},
-          {"unit", v.unit},           {"initial", v.initial}, {"dimension", v.dimension.exponent}};
+  return {
+      {"potential", v.potential}, {"model", v.model}, {"name", v.name}, {"unit_si", v.unit}, {"initial", v.initial}};
 }
 
 membrane::ContactVariable contact_variable(const Json& d) {
-  return {d.at("potential"), d.at("model"), d.at("name"), d.at("unit"), {d.at("dimension")}, d.at("initial")};
+  return {d.at("potential"), d.at("model"), d.at("name"), d.at("unit_si"), d.at("initial")};
 }
 
 /// What interactions remember: which pairs of cells, and for each of them the next so many values of one array.

@@ -11,6 +11,7 @@
 #include "observe/observer.hpp"
 #include "observe/rheology_history.hpp"
 #include "pass_costs.hpp"
+#include "plan/plan.hpp"
 #include "summary.hpp"
 
 namespace rouleau::run {

@@ -20,7 +20,9 @@
 #include "monitor/energy_check.hpp"
 #include "monitor/failure_mode.hpp"
 #include "monitor/node_checks.hpp"
-#include "plan/schedule.hpp"
+#include "plan/output_schedule.hpp"
+#include "plan/placed_cells.hpp"
+#include "plan/solver_setup.hpp"
 #include "progress.hpp"
 #include "provenance.hpp"
 #include "run_state.hpp"
@@ -40,7 +42,7 @@ class Simulation {
         scene_(*plan.scene),
         options_(options),
         directory_(directory),
-        membranes_(plan.has_cells ? membrane::make_membranes(scene_, plan::lattice_spacing(scene_))
+        membranes_(plan.has_cells ? plan::make_membranes(scene_, plan::lattice_spacing(scene_))
                                   : membrane::Membranes{}),
         state_(observe::Observer(scene_, membranes_)),
         progress_(options.quiet),
@@ -69,6 +71,9 @@ class Simulation {
   }
 
  private:
+  /// Of the present stage.
+  [[nodiscard]] const plan::StageSetting& setting() const { return plan_.stages[state_.stage]; }
+
   enum class Ending { none, duration, strain, at_rest, max_steps, interrupted, failed };
   static const char* name(Ending ending) {
     constexpr const char* names[] = {"", "duration", "strain", "at_rest", "max_steps", "interrupted", "failed"};
@@ -106,29 +111,22 @@ class Simulation {
   void run_stages(const files::CheckpointReader* checkpoint) {
     std::unique_ptr<solver::Solver<T>> solver;
     for (; state_.stage < static_cast<int>(plan_.stages.size()) && !stopped_; ++state_.stage) {
-      if (solver) {
-        const units::LatticeUnits& from = solver->setting().units;
-        const units::LatticeUnits& to = plan_.stages[static_cast<std::size_t>(state_.stage)].units;
-        membrane::change_units(membranes_.state, from, to);
-        membrane::change_units(membranes_.contacts, from, to);
-      }
-      const std::vector<double> steps_taken = membranes_.largest_step;
-      auto next = std::make_unique<solver::Solver<T>>(plan_, state_.stage, membranes_);
+      auto next = std::make_unique<solver::Solver<T>>(plan::make_solver_setup(plan_, state_.stage), membranes_);
       if (checkpoint != nullptr) {
-        membranes_.largest_step = steps_taken;
         restore(*checkpoint, saved_, *next);
         checkpoint = nullptr;
         saved_.clear();
       } else {
         next->start(solver.get());
-        start_stage(next->setting());
+        start_stage();
       }
       solver = std::move(next);
       run_stage(*solver);
     }
   }
 
-  void start_stage(const plan::StageSetting& setting) {
+  void start_stage() {
+    const plan::StageSetting& setting = this->setting();
     directory_.log(
         "stage",
         {{"name", setting.stage->name}, {"time_step_s", setting.units.time}, {"most_steps", setting.max_steps}});
@@ -142,9 +140,9 @@ class Simulation {
 
   template <class T>
   void run_stage(solver::Solver<T>& solver) {
-    const plan::StageSetting& setting = solver.setting();
+    const plan::StageSetting& setting = this->setting();
     ending_ = Ending::none;
-    const plan::Schedule cells(scene_.output.cells, setting, true), fields(scene_.output.fields, setting, false);
+    const plan::OutputSchedule cells(scene_.output.cells, setting, true), fields(scene_.output.fields, setting, false);
     next_attention_ = state_.stage_step;
     clock_ = Clock::now();
     step_loop(solver, cells, fields);
@@ -168,7 +166,7 @@ class Simulation {
   /// The steps of a stage. All workers run the same passes; what needs one of them alone happens before or after the
   /// forces of a step, and only when something is due.
   template <class T>
-  void step_loop(solver::Solver<T>& solver, const plan::Schedule& cells, const plan::Schedule& fields) {
+  void step_loop(solver::Solver<T>& solver, const plan::OutputSchedule& cells, const plan::OutputSchedule& fields) {
     std::exception_ptr trouble;
     std::atomic<long> attend_at{std::numeric_limits<long>::max()};
     std::optional<solver::Barrier> barrier;
@@ -248,7 +246,7 @@ class Simulation {
   /// One thread, before the forces of a step: whether the stage ends here, and the checkpoint.
   template <class T>
   void before_forces(solver::Solver<T>& solver, long step) {
-    const plan::StageSetting& setting = solver.setting();
+    const plan::StageSetting& setting = this->setting();
     state_.stage_step = step;
     state_.steps = state_.steps_before + step;
     due_ending_ = next_ending(setting);
@@ -267,9 +265,10 @@ class Simulation {
 
   /// One thread, forces computed: outputs, checks, and whether the stage ends here.
   template <class T>
-  void after_forces(solver::Solver<T>& solver, long step, const plan::Schedule& cells, const plan::Schedule& fields) {
+  void after_forces(solver::Solver<T>& solver, long step, const plan::OutputSchedule& cells,
+                    const plan::OutputSchedule& fields) {
     const auto start = Clock::now();
-    const plan::StageSetting& setting = solver.setting();
+    const plan::StageSetting& setting = this->setting();
     state_.stage_step = step;
     state_.steps = state_.steps_before + step;
     if (auto failure =
@@ -280,7 +279,7 @@ class Simulation {
     if (membrane::largest_step(membranes_) > state_.growth.level()) state_.growth.note(state_.steps, membranes_);
     if (checkpoints_.pending()) {
       observe::Observer look = state_.observer;  // one that leaves no trace
-      checkpoints_.settle(!look.check(solver, membranes_));
+      checkpoints_.settle(!look.check(solver, setting, membranes_));
     }
     // The end of a stage has been written; the beginning of the next is the same instant.
     const bool written = step == 0 && state_.steps > 0;
@@ -289,7 +288,7 @@ class Simulation {
     const bool check_due = step % scene_.checks.every_steps == 0;
     const bool last = due_ending_ != Ending::none;
     if (cells_due || fields_due || check_due || last) {
-      if (auto failure = state_.observer.check(solver, membranes_)) {
+      if (auto failure = state_.observer.check(solver, setting, membranes_)) {
         fail(std::move(*failure), solver);
         return;
       }
@@ -343,7 +342,7 @@ class Simulation {
 
   template <class T>
   void fail(monitor::Failure failure, solver::Solver<T>& solver) {
-    const plan::StageSetting& setting = solver.setting();
+    const plan::StageSetting& setting = this->setting();
     failure.step = state_.steps;
     failure.time = state_.time_at(setting);
     failure.strain = state_.strain_at(setting);
@@ -356,7 +355,7 @@ class Simulation {
   /// What the failure looks like, and what to do about that.
   template <class T>
   void tell_mode(monitor::Failure& failure, solver::Solver<T>& solver) {
-    const double spacing = solver.setting().units.length;
+    const double spacing = setting().units.length;
     const std::array<double, 2> place{failure.place[0] / spacing - 0.5, failure.place[1] / spacing - 0.5};
     double oscillation = 0;
     if (std::isfinite(place[0]) && std::isfinite(place[1])) {
@@ -377,12 +376,12 @@ class Simulation {
   /// Writes the present state, unless it has gained energy that nothing gave it: that failure is returned.
   template <class T>
   std::optional<monitor::Failure> write(solver::Solver<T>& solver, bool with_fields) {
-    observe::Snapshot snapshot = state_.observer.observe(solver, membranes_, with_fields);
+    observe::Snapshot snapshot = state_.observer.observe(solver, setting(), membranes_, with_fields);
     snapshot.step = state_.steps;
-    snapshot.time = state_.time_at(solver.setting());
-    snapshot.strain = state_.strain_at(solver.setting());
-    const units::LatticeUnits& units = solver.setting().units;
-    state_.energy.follow(snapshot, solver.setting().is_driven(),
+    snapshot.time = state_.time_at(setting());
+    snapshot.strain = state_.strain_at(setting());
+    const units::LatticeUnits& units = setting().units;
+    state_.energy.follow(snapshot, setting().is_driven(),
                          units.to_si(solver.slight_energy(), units::dimension::energy_per_depth));
     if (auto failure = monitor::check_energy(state_.energy, membranes_, plan_, units.length)) return failure;
     state_.history.follow(snapshot);

@@ -5,6 +5,7 @@
 
 #include "core/membrane/membranes.hpp"
 #include "json/schema.hpp"
+#include "plan/placed_cells.hpp"
 #include "plan/plan.hpp"
 #include "scene/scene.hpp"
 #include "target.hpp"
@@ -37,7 +38,7 @@ inline void plan_scene(const std::filesystem::path& file, const std::vector<std:
     if (!is_small(scene)) return;
     scene::pack_cells(scene);
     const auto plan = plan::make_plan(scene, shipped_catalog());
-    if (plan.has_cells) membrane::make_membranes(scene, plan::lattice_spacing(scene));
+    if (plan.has_cells) plan::make_membranes(scene, plan::lattice_spacing(scene));
     require_printable(plan::to_text(plan));
     plan::to_json(plan).dump();
   });

@@ -34,8 +34,9 @@ TEST_CASE("cells without laws and with the fluid's viscosity do not change a dri
   overrides.emplace_back("/cell_types/ring/membrane=[]");
   SolverBench bench(scenes + "/ring.json", overrides);
   bench.start();
-  const StageSetting& stage = bench.plan.stages[0];
-  Fluid<double> alone(stage.fluid_setting(bench.scene, false, false), make_collision("trt", {0.1875}, 1.0, false));
+  FluidSetting setting = bench.solver->fluid().setting();
+  setting.membranes = false;
+  Fluid<double> alone(setting, make_collision("trt", {0.1875}, 1.0, false));
   bench.step(500);
   bench.forces();
   advance(alone, 500);

@@ -26,7 +26,7 @@ namespace {
 /// With the forces of the next step, which laws that remember must not be asked for twice.
 EnergySnapshot ledger_now(SolverBench& bench) {
   bench.solver->fluid().settle();
-  return observe_energy(*bench.solver, bench.membranes);
+  return observe_energy(*bench.solver, bench.membranes, bench.plan.stages[0].units);
 }
 EnergySnapshot ledger(SolverBench& bench) {
   bench.forces();
@@ -338,10 +338,10 @@ TEST_CASE("a law that acts and tells no energy leaves the total unknown, and say
   const Catalog catalog({copy.path() / "plugins"});
   const Plan plan = make_plan(scene, catalog);
   Membranes membranes = make_membranes(scene, lattice_spacing(scene));
-  Solver<double> solver(plan, 0, membranes);
+  Solver<double> solver(make_solver_setup(plan, 0), membranes);
   for (const Pass& pass : solver.forces()) pass.run(Worker{});
   solver.fluid().settle();
-  const EnergySnapshot e = observe_energy(solver, membranes);
+  const EnergySnapshot e = observe_energy(solver, membranes, plan.stages[0].units);
   CHECK(std::isnan(e.total));
   CHECK(e.unknown == law + " tells no energy");
   CHECK(std::isfinite(e.kinetic));

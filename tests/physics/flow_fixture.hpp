@@ -7,6 +7,7 @@
 
 #include "core/fluid/fluid.hpp"
 #include "plugin/catalog.hpp"
+#include "plugin/handles.hpp"
 
 namespace rouleau::test {
 
@@ -19,10 +20,10 @@ inline const Catalog& plugins() {
 }
 
 /// Collision model in lattice units; `values` in the manifest's order.
-inline std::shared_ptr<const ModelInstance> make_collision(const std::string& id, std::vector<double> values,
-                                                           double tau, bool inertia) {
-  return std::make_shared<const ModelInstance>(plugins().find(ModelKind::collision, id, {}), values,
-                                               ModelSetting{{1, 1, 1}, 1 / tau, inertia});
+inline model::CollisionOperator make_collision(const std::string& id, const std::vector<double>& values, double tau,
+                                               bool inertia) {
+  return make_collision_operator(plugins().find(ModelKind::collision, id, {}), values,
+                                 ModelSetting{{1, 1, 1}, 1 / tau, inertia});
 }
 
 template <class T>

@@ -3,6 +3,8 @@
 
 #include "core/solver/solver.hpp"
 #include "flow_fixture.hpp"
+#include "plan/placed_cells.hpp"
+#include "plan/solver_setup.hpp"
 
 namespace rouleau::test {
 
@@ -18,7 +20,7 @@ struct SolverBench {
         membranes(make_membranes(scene, lattice_spacing(scene))) {}
 
   /// To be called once the membranes are as they should start.
-  void start() { solver = std::make_unique<Solver<double>>(plan, 0, membranes); }
+  void start() { solver = std::make_unique<Solver<double>>(make_solver_setup(plan, 0), membranes); }
   void step(long steps) {
     for (long i = 0; i < steps; ++i) {
       forces();

@@ -10,8 +10,9 @@
 #include "base/worker.hpp"
 #include "core/membrane/membranes.hpp"
 #include "core/membrane/periodic_box.hpp"
+#include "plan/placed_cells.hpp"
 #include "plugin/catalog.hpp"
-#include "plugin/model.hpp"
+#include "plugin/handles.hpp"
 
 namespace rouleau::test {
 
@@ -25,18 +26,21 @@ inline std::mt19937 generator(unsigned seed) {
   return std::mt19937(seed);
 }
 
-inline std::shared_ptr<const ModelInstance> model(ModelKind kind, const char* id, const std::vector<double>& values) {
+inline const Manifest& shipped(ModelKind kind, const char* id) {
   static const Catalog catalog({ROULEAU_PLUGINS});
-  return std::make_shared<ModelInstance>(catalog.find(kind, id, {}), values, ModelSetting{{1, 1, 1}, 1.0, false});
+  return catalog.find(kind, id, {});
 }
-inline std::shared_ptr<const ModelInstance> neo_hookean(double modulus) {
-  return model(ModelKind::membrane, "neo-hookean", {modulus, 0});
+inline model::MembraneLaw law(const char* id, const std::vector<double>& values,
+                              const units::LatticeUnits& units = {1, 1, 1}) {
+  return make_membrane_law(shipped(ModelKind::membrane, id), values, ModelSetting{units, 1.0, false});
 }
-inline std::shared_ptr<const ModelInstance> bending(double modulus) {
-  return model(ModelKind::membrane, "bending", {modulus, 0, 0});
+inline model::Potential potential(const char* id, const std::vector<double>& values) {
+  return make_potential(shipped(ModelKind::interaction, id), values, ModelSetting{{1, 1, 1}, 1.0, false});
 }
-inline std::shared_ptr<const ModelInstance> morse(double depth, double decay, double distance, double cutoff) {
-  return model(ModelKind::interaction, "morse", {depth, decay, distance, cutoff});
+inline model::MembraneLaw neo_hookean(double modulus) { return law("neo-hookean", {modulus, 0}); }
+inline model::MembraneLaw bending(double modulus) { return law("bending", {modulus, 0, 0}); }
+inline model::Potential morse(double depth, double decay, double distance, double cutoff) {
+  return potential("morse", {depth, decay, distance, cutoff});
 }
 
 struct Placed {
@@ -61,7 +65,7 @@ inline Membranes biconcave_cells(const std::vector<Placed>& places, int segments
   const PeriodicBox far{1e6};
   Membranes all;
   for (const Placed& place : places) {
-    const Membranes one = make_membranes(biconcave_scene({{0, 1000, 0}}, far, 2000, segments), 1.0);
+    const Membranes one = plan::make_membranes(biconcave_scene({{0, 1000, 0}}, far, 2000, segments), 1.0);
     CellRange range = one.cells[0];
     range.first = all.node_count();
     all.cells.push_back(range);

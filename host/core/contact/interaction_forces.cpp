@@ -2,63 +2,60 @@
 
 #include <algorithm>
 #include <limits>
-#include <stdexcept>
 #include <string>
 
 namespace rouleau::contact {
 
 namespace {
 
-std::vector<double> cutoffs_of(const std::vector<Potential>& potentials) {
+std::vector<double> cutoffs_of(const std::vector<Interaction>& interactions) {
   std::vector<double> cutoffs;
-  cutoffs.reserve(potentials.size());
-  for (const Potential& potential : potentials) {
-    cutoffs.push_back(potential.model->interaction().cutoff(potential.model->self()));
+  cutoffs.reserve(interactions.size());
+  for (const Interaction& interaction : interactions) {
+    cutoffs.push_back(interaction.potential.table->cutoff(interaction.potential.self.get()));
   }
   return cutoffs;
 }
 
-Cutoffs pair_cutoffs(const membrane::Membranes& membranes, const std::vector<Potential>& potentials,
+Cutoffs pair_cutoffs(const membrane::Membranes& membranes, const std::vector<Interaction>& interactions,
                      const std::vector<double>& cutoffs) {
   int types = 1;
   for (const membrane::CellRange& cell : membranes.cells) types = std::max(types, cell.type + 1);
-  for (const Potential& potential : potentials)
-    types = std::max({types, potential.between[0] + 1, potential.between[1] + 1});
+  for (const Interaction& interaction : interactions)
+    types = std::max({types, interaction.between[0] + 1, interaction.between[1] + 1});
   Cutoffs result(types);
-  for (std::size_t p = 0; p < potentials.size(); ++p) {
-    result.raise(potentials[p].between[0], potentials[p].between[1], cutoffs[p]);
+  for (std::size_t p = 0; p < interactions.size(); ++p) {
+    result.raise(interactions[p].between[0], interactions[p].between[1], cutoffs[p]);
   }
   return result;
 }
 
-bool acts_between(const Potential& potential, int a, int b) {
-  return (potential.between[0] == a && potential.between[1] == b) ||
-         (potential.between[0] == b && potential.between[1] == a);
+bool acts_between(const Interaction& interaction, int a, int b) {
+  return (interaction.between[0] == a && interaction.between[1] == b) ||
+         (interaction.between[0] == b && interaction.between[1] == a);
 }
 
 }  // namespace
 
-InteractionForces::InteractionForces(const membrane::Membranes& membranes, std::vector<Potential> potentials,
+InteractionForces::InteractionForces(membrane::Membranes& membranes, std::vector<Interaction> interactions,
                                      membrane::PeriodicBox box)
-    : potentials_(std::move(potentials)),
-      cutoffs_(cutoffs_of(potentials_)),
-      contacts_(membranes, pair_cutoffs(membranes, potentials_, cutoffs_), box),
+    : interactions_(std::move(interactions)),
+      cutoffs_(cutoffs_of(interactions_)),
+      contacts_(membranes, pair_cutoffs(membranes, interactions_, cutoffs_), box),
       scratch_(membranes.cells.size()),
-      variables_(potentials_.size()) {
-  for (const Potential& potential : potentials_) {
-    const plugin::Manifest& manifest = potential.model->manifest();
-    has_state_ = has_state_ || !manifest.state.empty();
+      variables_(interactions_.size()) {
+  for (const Interaction& interaction : interactions_) {
+    const model::Potential& potential = interaction.potential;
+    has_state_ = has_state_ || !potential.state.empty();
     needs_velocities_ =
-        needs_velocities_ || manifest.needs_input("normal_velocity") || manifest.needs_input("tangential_velocity");
-    traits_.push_back({manifest.needs_input("normal_velocity"), manifest.needs_input("tangential_velocity"),
-                       manifest.gives_output("energy")});
+        needs_velocities_ || potential.reads("normal_velocity") || potential.reads("tangential_velocity");
+    traits_.push_back(
+        {potential.reads("normal_velocity"), potential.reads("tangential_velocity"), potential.writes("energy")});
   }
+  keep_state(membranes);
 }
 
 void InteractionForces::run(Worker worker, int phase, membrane::Membranes& membranes) {
-  if (has_state_ && membranes.contacts.of_cell.empty()) {
-    throw std::logic_error("potentials with state: keep_state() comes before run()");
-  }
   const Range cells = worker.share(static_cast<int>(membranes.cells.size()));
   switch (phase) {
     case 0:
@@ -92,9 +89,9 @@ InteractionForces::TypeRange InteractionForces::next_range(int cell, const membr
 /// Adds (or, if it is the first, sets) one potential's force or energy at the contacts to `result`.
 void InteractionForces::apply(std::size_t potential, const ContactList& list, Range contacts, double* result,
                               bool energy, bool first, Scratch& scratch) const {
-  const plugin::ModelInstance& model = *potentials_[potential].model;
+  const model::Potential& model = interactions_[potential].potential;
   const double cutoff = cutoffs_[potential];
-  const int own_type = potentials_[potential].between[0], other_type = potentials_[potential].between[1];
+  const int own_type = interactions_[potential].between[0], other_type = interactions_[potential].between[1];
   const bool all = !(cutoff < contacts_.neighbours().cutoffs()(own_type, other_type));
   int count = contacts.end - contacts.begin;
   const double* distance = list.distance.data() + contacts.begin;
@@ -118,7 +115,7 @@ void InteractionForces::apply(std::size_t potential, const ContactList& list, Ra
   block.distance = distance;
   give_velocities(potential, contacts.begin, count, all, scratch, block);
   (energy ? block.energy : block.force) = direct ? result + contacts.begin : scratch.law.data();
-  model.interaction().compute(model.self(), &block);
+  model.table->compute(model.self.get(), &block);
   if (direct) return;
   for (int i = 0; i < count; ++i) {
     result[all ? contacts.begin + i : scratch.contact[static_cast<std::size_t>(i)]] +=
@@ -169,8 +166,8 @@ void InteractionForces::compute_forces(int cell, membrane::Membranes& membranes)
     const std::size_t first_pair = pair;
     const TypeRange range = next_range(cell, membranes, pair);
     bool first = true;
-    for (std::size_t p = 0; p < potentials_.size(); ++p) {
-      if (!acts_between(potentials_[p], type, range.type)) continue;
+    for (std::size_t p = 0; p < interactions_.size(); ++p) {
+      if (!acts_between(interactions_[p], type, range.type)) continue;
       if (variables_[p].empty()) {
         apply(p, list, range.contacts, scratch.force.data(), false, first, scratch);
       } else {
@@ -253,8 +250,8 @@ double InteractionForces::energy(const membrane::Membranes& membranes) const {
     for (std::size_t pair = 0; pair < list.ranges.size();) {
       const std::size_t first_pair = pair;
       const TypeRange range = next_range(cell, membranes, pair);
-      for (std::size_t p = 0; p < potentials_.size(); ++p) {
-        if (!traits_[p].energy || !acts_between(potentials_[p], type, range.type)) continue;
+      for (std::size_t p = 0; p < interactions_.size(); ++p) {
+        if (!traits_[p].energy || !acts_between(interactions_[p], type, range.type)) continue;
         if (variables_[p].empty()) apply(p, list, range.contacts, energy.data(), true, false, scratch);
         for (std::size_t q = first_pair; q < pair && !variables_[p].empty(); ++q) {
           apply_with_state(p, cell, q, membranes, energy.data(), true, nullptr, scratch);
@@ -270,8 +267,8 @@ double InteractionForces::energy(const membrane::Membranes& membranes) const {
 }
 
 std::string InteractionForces::without_energy() const {
-  for (std::size_t p = 0; p < potentials_.size(); ++p)
-    if (!traits_[p].energy) return potentials_[p].model->manifest().id;
+  for (std::size_t p = 0; p < interactions_.size(); ++p)
+    if (!traits_[p].energy) return interactions_[p].potential.id;
   return {};
 }
 

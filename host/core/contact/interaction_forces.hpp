@@ -11,14 +11,14 @@
 #include "contact_velocity.hpp"
 #include "core/membrane/membranes.hpp"
 #include "core/membrane/periodic_box.hpp"
-#include "plugin/model.hpp"
+#include "core/model/model.hpp"
 
 namespace rouleau::contact {
 
 /// A potential between cells of two types (unordered; equal: between different cells of one type and own images).
-struct Potential {
+struct Interaction {
   std::array<int, 2> between;
-  std::shared_ptr<const plugin::ModelInstance> model;
+  model::Potential potential;
 };
 
 /// Node i with rest weight Lb at distance r of its closest point on another cell: energy Lb/2 phi(r), force Lb/2 f(r)
@@ -26,18 +26,15 @@ struct Potential {
 /// gradient of the energy, with neither net force nor net torque (Derjaguin; docs: physics, interaction).
 class InteractionForces {
  public:
-  InteractionForces(const membrane::Membranes& membranes, std::vector<Potential> potentials, membrane::PeriodicBox box);
-
-  /// To be called before run() and by one thread: makes room for what potentials remember in `membranes.contacts`, as
-  /// far as it is not there from an earlier stage. Nothing to do for potentials without state.
-  void keep_state(membrane::Membranes& membranes);
+  /// Adds what potentials remember to `membranes.contacts`, as far as it is not there from an earlier stage.
+  InteractionForces(membrane::Membranes& membranes, std::vector<Interaction> interactions, membrane::PeriodicBox box);
 
   static constexpr int phases = 3;
   /// Pass over cells: phases 0, 1, 2 with a barrier after each. Adds to force_x and force_y and advances the state of
   /// the contacts by one step.
   void run(Worker worker, int phase, membrane::Membranes& membranes);
   /// True if there is nothing to do: run() may be left out.
-  [[nodiscard]] bool empty() const { return potentials_.empty(); }
+  [[nodiscard]] bool empty() const { return interactions_.empty(); }
 
   /// Energy of the contacts found by the last run() in their present state. Not a pass.
   [[nodiscard]] double energy(const membrane::Membranes& membranes) const;
@@ -48,6 +45,7 @@ class InteractionForces {
   [[nodiscard]] const Contacts& contacts() const { return contacts_; }
 
  private:
+  void keep_state(membrane::Membranes& membranes);
   struct Scratch {                               // of one cell's contacts
     std::vector<double> force;                   // sum of f over the potentials
     std::vector<double> law;                     // of one potential
@@ -90,7 +88,7 @@ class InteractionForces {
   void give_velocities(std::size_t potential, int first, int count, bool all, Scratch& scratch,
                        rouleau_interaction_block& block) const;
 
-  std::vector<Potential> potentials_;
+  std::vector<Interaction> interactions_;
   std::vector<double> cutoffs_;  // of the potentials
   std::vector<Traits> traits_;   // of the potentials
   Contacts contacts_;

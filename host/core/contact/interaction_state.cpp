@@ -9,19 +9,20 @@ void InteractionForces::keep_state(membrane::Membranes& membranes) {
   if (!has_state_) return;
   membrane::ContactMemory& memory = membranes.contacts;
   memory.of_cell.resize(membranes.cells.size());
-  for (std::size_t p = 0; p < potentials_.size(); ++p) {
-    const plugin::ModelInstance& model = *potentials_[p].model;
-    variables_[p].clear();
-    for (std::size_t k = 0; k < model.manifest().state.size(); ++k) {
-      const plugin::StateVariable& declared = model.manifest().state[k];
-      const auto found =
-          std::find_if(memory.variables.begin(), memory.variables.end(), [&](const membrane::ContactVariable& v) {
-            return v.potential == static_cast<int>(p) && v.name == declared.name;
-          });
-      variables_[p].push_back(static_cast<std::size_t>(found - memory.variables.begin()));
-      if (found != memory.variables.end()) continue;
-      memory.variables.push_back({static_cast<int>(p), model.manifest().id, declared.name, declared.unit,
-                                  declared.dimension, model.initial_state()[k]});
+  for (std::size_t p = 0; p < interactions_.size(); ++p) {
+    const model::Potential& potential = interactions_[p].potential;
+    for (const model::StateVariable& declared : potential.state) {
+      const int place = static_cast<int>(p);
+      const auto found = std::find_if(
+          memory.variables.begin(), memory.variables.end(),
+          [&](const membrane::ContactVariable& v) { return v.potential == place && v.name == declared.name; });
+      const auto variable = static_cast<std::size_t>(found - memory.variables.begin());
+      variables_[p].push_back(variable);
+      if (found == memory.variables.end()) {
+        memory.variables.push_back({place, potential.id, declared.name, declared.unit, declared.initial});
+      } else {
+        memory.change_unit(variable, declared.unit);
+      }
     }
   }
 }
@@ -74,8 +75,8 @@ void InteractionForces::apply_with_state(std::size_t potential, int cell, std::s
   (energy ? block.energy : block.force) = scratch.law.data();
   block.state = state.data();
   if (next != nullptr) block.new_state = new_state.data();
-  const plugin::ModelInstance& model = *potentials_[potential].model;
-  model.interaction().compute(model.self(), &block);
+  const model::Potential& model = interactions_[potential].potential;
+  model.table->compute(model.self.get(), &block);
   for (std::size_t k = 0; k < count; ++k) result[scratch.contact[k]] += scratch.law[k];
   if (next == nullptr) return;
 

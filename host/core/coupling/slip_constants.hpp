@@ -16,10 +16,6 @@ struct SlipConstants {
   double slip;   ///< velocity per tangential force per length, times the viscosity outside; lattice spacings
 };
 
-/// How many times stiffer a membrane with segments of this length (spacings) is to the fluid where its forces act at
-/// the distance `shift`: the couples of the shift and their adjoint both gain sin(q) shift/length at q a segment.
-inline double stiffening(double shift, double length) { return 1 + (shift / length) * (shift / length); }
-
 /// `viscosity_ratio`: inside over outside; the mean of viscosities must be the harmonic one.
 SlipConstants slip_constants(KernelKind kernel, double viscosity_ratio);
 

@@ -176,10 +176,10 @@ void SlipCorrection::run(Worker worker, const membrane::Membranes& membranes, do
   }
 }
 
-std::vector<SlipConstants> SlipCorrection::constants() const {
-  std::vector<SlipConstants> constants;
-  for (const Type& type : types_) constants.push_back({type.constants.shift, type.constants.slip / viscosity_});
-  return constants;
+std::vector<membrane::NodeMobility> SlipCorrection::mobility() const {
+  std::vector<membrane::NodeMobility> mobility;
+  for (const Type& type : types_) mobility.push_back({type.constants.shift, type.constants.slip / viscosity_});
+  return mobility;
 }
 
 double SlipCorrection::largest_shift() const {

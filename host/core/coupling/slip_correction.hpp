@@ -5,6 +5,7 @@
 
 #include "base/worker.hpp"
 #include "core/membrane/membranes.hpp"
+#include "core/membrane/node_mobility.hpp"
 #include "slip_constants.hpp"
 
 namespace rouleau::coupling {
@@ -34,8 +35,8 @@ class SlipCorrection {
   /// Pass over cells: turns velocities interpolated at the touching points into those of the membrane.
   void correct(Worker worker, membrane::Membranes& membranes);
 
-  /// Of each cell type, with the slip as velocity per tangential force per length, lattice units.
-  [[nodiscard]] std::vector<SlipConstants> constants() const;
+  /// Of each cell type.
+  [[nodiscard]] std::vector<membrane::NodeMobility> mobility() const;
   /// Largest |d| of the types, spacings.
   [[nodiscard]] double largest_shift() const;
   [[nodiscard]] membrane::NodeVectors positions() const { return {touch_x_.data(), touch_y_.data()}; }

@@ -13,15 +13,15 @@ namespace rouleau::fluid {
 namespace d2q9 = rouleau::d2q9;
 
 template <class T>
-Fluid<T>::Fluid(const FluidSetting& setting, std::shared_ptr<const plugin::ModelInstance> collision)
+Fluid<T>::Fluid(const FluidSetting& setting, model::CollisionOperator collision)
     : setting_(setting),
       collision_(std::move(collision)),
       lattice_(setting.nx, setting.ny, setting.periodic_y),
       activity_(setting.nx, setting.ny) {
   if constexpr (std::is_same_v<T, double>) {
-    collide_ = collision_->collision().collide_f64;
+    collide_ = collision_.table->collide_f64;
   } else {
-    collide_ = collision_->collision().collide_f32;
+    collide_ = collision_.table->collide_f32;
   }
   if (setting.membranes) force_ = {Field<T>(setting.nx, setting.ny), Field<T>(setting.nx, setting.ny)};
   if (setting.viscosity_contrast) {
@@ -76,7 +76,7 @@ void Fluid<T>::fold_force(Worker worker) {
 
 template <class T>
 void Fluid<T>::collide_row(int y, const T* (&in)[9], T* (&out)[9]) {
-  const void* const self = collision_->self();
+  const void* const self = collision_.self.get();
   const T* body_force[2] = {body_force_row_[0].data(), body_force_row_[1].data()};
   const T* const* const background = body_force_row_[0].empty() ? nullptr : body_force;
   const T* force[2];

@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "base/worker.hpp"
+#include "core/model/model.hpp"
 #include "exchange.hpp"
 #include "field.hpp"
 #include "lattice.hpp"
 #include "node_mask.hpp"
-#include "plugin/model.hpp"
 
 namespace rouleau::fluid {
 
@@ -36,11 +36,14 @@ struct Moments {
 template <class T>
 class Fluid {
  public:
-  Fluid(const FluidSetting& setting, std::shared_ptr<const plugin::ModelInstance> collision);
+  Fluid(const FluidSetting& setting, model::CollisionOperator collision);
 
   [[nodiscard]] const FluidSetting& setting() const { return setting_; }
   [[nodiscard]] Activity& activity() { return activity_; }
-  [[nodiscard]] VectorField<T>& force() { return force_; }  ///< before step(); velocity after it
+  /// Force density: what the next step() acts with. It writes velocity() over it, in the same memory.
+  [[nodiscard]] VectorField<T>& force() { return force_; }
+  /// Velocity in active nodes, halo included: what the last step() has left.
+  [[nodiscard]] const VectorField<T>& velocity() const { return force_; }
   [[nodiscard]] Field<T>& relaxation_rate() { return relaxation_rate_; }
   [[nodiscard]] std::size_t bytes() const;
 
@@ -114,7 +117,7 @@ class Fluid {
 
   using Block = std::conditional_t<std::is_same_v<T, double>, rouleau_collision_block_f64, rouleau_collision_block_f32>;
   FluidSetting setting_;
-  std::shared_ptr<const plugin::ModelInstance> collision_;
+  model::CollisionOperator collision_;
   void (*collide_)(const void* self, const Block* block);  ///< of the collision model
   Lattice<T> lattice_;
   Parity parity_ = Parity::even;

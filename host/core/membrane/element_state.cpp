@@ -9,7 +9,14 @@ std::size_t keep_state(std::vector<ElementState>& states, ElementState variable,
     return other.cell_type == variable.cell_type && other.law == variable.law && other.model == variable.model &&
            other.name == variable.name;
   });
-  if (found != states.end()) return static_cast<std::size_t>(found - states.begin());
+  if (found != states.end()) {
+    if (found->unit != variable.unit) {
+      const double ratio = found->unit / variable.unit;
+      for (double& value : found->value) value *= ratio;
+      found->unit = variable.unit;
+    }
+    return static_cast<std::size_t>(found - states.begin());
+  }
   variable.value.assign(count, initial);
   states.push_back(std::move(variable));
   return states.size() - 1;
@@ -22,23 +29,18 @@ const ElementState* find_state(const std::vector<ElementState>& states, int cell
   return found != states.end() ? &*found : nullptr;
 }
 
-void change_units(std::vector<ElementState>& states, const units::LatticeUnits& from, const units::LatticeUnits& to) {
-  for (ElementState& state : states) {
-    const double ratio = from.unit(state.dimension) / to.unit(state.dimension);
-    for (double& value : state.value) value *= ratio;
-  }
-}
-
-void change_units(ContactMemory& memory, const units::LatticeUnits& from, const units::LatticeUnits& to) {
-  const auto ratio = [&](const ContactVariable& variable) {
-    return from.unit(variable.dimension) / to.unit(variable.dimension);
-  };
-  for (std::vector<ContactState>& states : memory.of_cell) {
+void ContactMemory::change_unit(std::size_t variable, double unit) {
+  ContactVariable& changed = variables[variable];
+  if (changed.unit == unit) return;
+  const double ratio = changed.unit / unit;
+  changed.unit = unit;
+  changed.initial *= ratio;
+  for (std::vector<ContactState>& states : of_cell) {
     for (ContactState& state : states) {
-      for (double& value : state.value) value *= ratio(memory.variables[state.variable]);
+      if (state.variable != variable) continue;
+      for (double& value : state.value) value *= ratio;
     }
   }
-  for (ContactVariable& variable : memory.variables) variable.initial *= ratio(variable);
 }
 
 }  // namespace rouleau::membrane

@@ -5,8 +5,6 @@
 #include <vector>
 
 #include "periodic_box.hpp"
-#include "plugin/manifest.hpp"
-#include "units/lattice_units.hpp"
 
 namespace rouleau::membrane {
 
@@ -15,22 +13,27 @@ namespace rouleau::membrane {
 /// other types are never used.
 struct ElementState {
   int cell_type;
-  int law;            ///< place among the active laws of the type; -1: kept by the method
-  std::string model;  ///< id of the law; empty: the method
+  /// Place among the active laws of the type; -1: kept by the method.
+  int law;
+  /// Id of the law; empty: the method.
+  std::string model;
   std::string name;
-  std::string unit;
-  units::Dimension dimension;
+  /// SI size of the lattice unit that the values are in.
+  double unit;
   std::vector<double> value;
 };
 
 /// One state variable of one interaction.
 struct ContactVariable {
-  int potential;      ///< place among the active interactions
-  std::string model;  ///< id of the interaction
+  /// Place among the active interactions.
+  int potential;
+  /// Id of the interaction.
+  std::string model;
   std::string name;
-  std::string unit;
-  units::Dimension dimension;
-  double initial;  ///< lattice units: of a node that has just come within the cutoff
+  /// SI size of the lattice unit that the values are in.
+  double unit;
+  /// Lattice units: of a node that has just come within the cutoff.
+  double initial;
 };
 
 /// Values of one variable for the nodes of one cell against another cell moved by `shift` periods, in lattice units;
@@ -46,16 +49,17 @@ struct ContactState {
 struct ContactMemory {
   std::vector<ContactVariable> variables;
   std::vector<std::vector<ContactState>> of_cell;  ///< empty where no interaction remembers anything
+
+  /// Expresses all values of a variable in lattice units of another size: a stage with another time step goes on with
+  /// the same state.
+  void change_unit(std::size_t variable, double unit);
 };
 
-/// Index of the variable with this owner and name; adds it, all at `initial`, where there is none yet.
+/// Index of the variable with this owner and name, in lattice units of this size from now on; adds it, all at
+/// `initial`, where there is none yet. `variable.value` is not used.
 std::size_t keep_state(std::vector<ElementState>& states, ElementState variable, double initial, std::size_t count);
 
 /// The variable of this name and type; null: none. For tests and outputs.
 const ElementState* find_state(const std::vector<ElementState>& states, int cell_type, const std::string& name);
-
-/// Expresses all values in other units: a stage with another time step goes on with the same state.
-void change_units(std::vector<ElementState>& states, const units::LatticeUnits& from, const units::LatticeUnits& to);
-void change_units(ContactMemory& memory, const units::LatticeUnits& from, const units::LatticeUnits& to);
 
 }  // namespace rouleau::membrane

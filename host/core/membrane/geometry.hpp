@@ -18,7 +18,6 @@ double perimeter(const Membranes& membranes, const CellRange& cell);
 /// Smallest and largest stretch of a segment: length over rest length.
 struct StretchRange {
   double least = std::numeric_limits<double>::infinity(), most = 0;
-  NLOHMANN_DEFINE_TYPE_INTRUSIVE(StretchRange, least, most)
 };
 StretchRange stretch_range(const Membranes& membranes, const CellRange& cell);
 /// Centroid of the enclosed area.

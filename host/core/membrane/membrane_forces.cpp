@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <rouleau/dispatch.hpp>
-#include <stdexcept>
 
 #include "geometry.hpp"
 #include "membrane_kernels.hpp"
@@ -34,12 +33,7 @@ double weighted_sum(const double* values, const double* weights, int count) {
 
 }  // namespace
 
-void MembraneForces::set_slip(const std::vector<coupling::SlipConstants>& of_type) {
-  for (std::size_t t = 0; t < types_.size(); ++t) types_[t].slip = of_type[t];
-}
-
 void MembraneForces::run(Worker worker, Membranes& membranes) {
-  if (has_state_ && !state_kept_) throw std::logic_error("laws with state: keep_state() comes before run()");
   const Range cells = worker.share(membranes.cell_count());
   for (int cell = cells.begin; cell < cells.end; ++cell) {
     const std::size_t at = offset(cells.begin);
@@ -148,7 +142,7 @@ void MembraneForces::apply_law(const Law& law, const Membranes& membranes, int c
     block.state = state.data();
     if (next != nullptr) block.new_state = new_state.data();
   }
-  law.model->membrane().compute(law.model->self(), &block);
+  law.model.table->compute(law.model.self.get(), &block);
 
   const auto add = [&](const std::vector<double>& from, std::vector<double>& sum) {
     for (std::size_t i = at; i < at + static_cast<std::size_t>(range.count); ++i) sum[i] += from[i];
@@ -223,10 +217,10 @@ double MembraneForces::relaxed_energy(const Law& law, const Membranes& membranes
   block.state = state.data();
   block.new_state = new_state.data();
   block.time_step = 1;
-  law.model->membrane().compute(law.model->self(), &block);
+  law.model.table->compute(law.model.self.get(), &block);
   block.new_state = nullptr;
   block.time_step = 0;
-  law.model->membrane().compute(law.model->self(), &block);
+  law.model.table->compute(law.model.self.get(), &block);
   return integrated(law, membranes, range, energy.data());
 }
 
@@ -242,7 +236,7 @@ void MembraneForces::add_energy(const Law& law, const Membranes& membranes, int 
       const double viscous = by_rate * scratch_.rate[at + static_cast<std::size_t>(k)];
       stores = std::abs(tension[k] - viscous) > 1e-12 * std::abs(viscous);
     }
-    if (stores) energy.unknown = law.model->manifest().id;
+    if (stores) energy.unknown = law.model.id;
     return;
   }
   const double present = integrated(law, membranes, range, &scratch_.energy[at]);
@@ -266,7 +260,7 @@ void MembraneForces::add_rate_tension(const Membranes& membranes, int cell, std:
            &rest_.inverse_length[offset(cell)],
            &s.rate[at],
            &s.by_rate[at],
-           rate_mobility(length) + type.slip.slip / length,
+           rate_mobility(length) + type.mobility.slip / length,
            &(*next)[variable].value[first],
            {&s.law[at], &s.law_by_rate[at], &s.segment_force_x[at], &s.segment_force_y[at]}});
   }

@@ -7,16 +7,16 @@
 #include <vector>
 
 #include "base/worker.hpp"
-#include "core/coupling/slip_constants.hpp"
+#include "core/model/model.hpp"
 #include "membranes.hpp"
-#include "plugin/model.hpp"
+#include "node_mobility.hpp"
 #include "semi_implicit_filter.hpp"
 #include "tension_rate.hpp"
 
 namespace rouleau::membrane {
 
 /// Laws of one cell type; they add up.
-using MembraneLaws = std::vector<std::shared_ptr<const plugin::ModelInstance>>;
+using MembraneLaws = std::vector<model::MembraneLaw>;
 
 /// Energies stored in the membranes, in lattice units.
 struct MembraneEnergy {
@@ -30,23 +30,26 @@ struct MembraneEnergy {
   [[nodiscard]] double total() const { return tension + bending + cell; }
 };
 
+/// How a step treats membranes.
+struct MembraneForcesSetup {
+  /// Of each cell type.
+  std::vector<MembraneLaws> laws = {};
+  /// What the slip correction adds, of each cell type; empty: no correction.
+  std::vector<NodeMobility> mobility = {};
+  /// The semi-implicit step of stiff membranes (ForceFilter), with the laws' own stiffness.
+  bool semi_implicit = false;
+  /// Kinematic, of the suspending fluid; lattice units. Only for the semi-implicit step.
+  double viscosity = 1.0 / 6;
+  /// SI size of the lattice unit of tension, for what is kept from one stage to the next.
+  double tension_unit = 1;
+};
+
 /// Turns tensions, moments, pressures and perimeter tensions into nodal forces whose sum and torque vanish
 /// (docs: physics, membranes). Only the inputs that some law of a type needs are computed.
 class MembraneForces {
  public:
-  /// `laws[t]` are the laws of cell type t. Throws Error(plugin_refused) if a law needs what this host does not give.
-  MembraneForces(const Membranes& membranes, std::vector<MembraneLaws> laws);
-
-  /// From now on run() takes the semi-implicit step of stiff membranes (ForceFilter) with the laws' own stiffness. To
-  /// be called before keep_state(), for the filter remembers, too.
-  void make_semi_implicit(const Membranes& membranes, double viscosity);
-  /// Tells how the slip correction makes the nodes of each cell type give way to forces, which implicit steps must know
-  /// (`slip` here is velocity per force per length, lattice units). To be called before make_semi_implicit().
-  void set_slip(const std::vector<coupling::SlipConstants>& of_type);
-
-  /// To be called before run() and by one thread: adds what the laws remember to `membranes.state`, as far as it is not
-  /// there from an earlier stage. Nothing to do for laws without state.
-  void keep_state(Membranes& membranes);
+  /// Adds what the laws remember to `membranes.state`, as far as it is not there from an earlier stage.
+  MembraneForces(Membranes& membranes, const MembraneForcesSetup& setup);
 
   /// Pass over cells: sets force_x and force_y and advances the state of the laws by one step. The stretch rate is that
   /// of velocity_x, velocity_y.
@@ -62,7 +65,7 @@ class MembraneForces {
  private:
   /// What the table of one law is asked for in every step; looked up in its manifest once.
   struct Law {
-    std::shared_ptr<const plugin::ModelInstance> model;
+    model::MembraneLaw model;
     bool stretch, stretch_rate, curvature, rest_curvature, area, rest_area, perimeter, rest_perimeter;  // its inputs
     bool tension, moment, pressure, perimeter_tension, energy, tension_by_rate;                         // its outputs
     std::vector<std::size_t> state;  // in Membranes::state, once kept
@@ -71,8 +74,8 @@ class MembraneForces {
     std::vector<Law> laws;
     bool rate = false, tension = false, moment = false, cell = false;  // what the laws need or give, all together
     bool tension_by_rate = false;
-    std::size_t rate_tension = 0;        // in Membranes::state, if there is a tension by rate
-    coupling::SlipConstants slip{0, 0};  // what the slip correction adds; slip: velocity per force per length
+    std::size_t rate_tension = 0;  // in Membranes::state, if there is a tension by rate
+    NodeMobility mobility;
     std::optional<ForceFilter> filter;   // of a semi-implicit step
     std::size_t held_force[2] = {0, 0};  // of the filter, x and y: in Membranes::state
   };
@@ -93,8 +96,10 @@ class MembraneForces {
     double area = 0, perimeter = 0, pressure = 0, perimeter_tension = 0;
   };
 
-  static Law describe(std::shared_ptr<const plugin::ModelInstance> model);
+  static Law describe(const model::MembraneLaw& model);
   void allocate(const Membranes& membranes);
+  void make_filters(const Membranes& membranes, double viscosity);
+  void keep_state(Membranes& membranes, double tension_unit);
   [[nodiscard]] std::size_t offset(int cell) const { return offset_[static_cast<std::size_t>(cell)]; }
   // `at`: where the working arrays begin.
   // `ahead`: where the nodes will be after another step like the last one.
@@ -118,7 +123,6 @@ class MembraneForces {
   void soften(Membranes& membranes, int cell) const;
 
   std::vector<Type> types_;
-  bool has_state_ = false, state_kept_ = false;
   std::vector<std::size_t> offset_;  // of each cell's node 0
   Rest rest_;
   Scratch scratch_;

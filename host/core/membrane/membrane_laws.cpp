@@ -1,6 +1,5 @@
 // What the membrane laws of each cell type need, give and remember, found out before the first step.
 #include <algorithm>
-#include <array>
 #include <string>
 
 #include "membrane_forces.hpp"
@@ -14,38 +13,41 @@ constexpr int pack_margin = 8;  // doubles in the widest pack
 
 }  // namespace
 
-MembraneForces::Law MembraneForces::describe(std::shared_ptr<const plugin::ModelInstance> model) {
-  const plugin::Manifest& manifest = model->manifest();
-  static constexpr std::array known = {"stretch", "stretch_rate", "curvature", "rest_curvature",
-                                       "area",    "rest_area",    "perimeter", "rest_perimeter"};
-  for (const std::string& need : manifest.needs) {
-    if (std::find(known.begin(), known.end(), need) == known.end()) {
-      throw Error(ExitCode::plugin_refused, Place{manifest.file.string(), "/needs"},
-                  "membrane law \"" + manifest.id + "\" needs \"" + need + "\", which this program does not give.");
-    }
-  }
-  const auto needs = [&](const char* input) { return manifest.needs_input(input); };
-  const auto gives = [&](const char* output) { return manifest.gives_output(output); };
-  return {std::move(model),           needs("stretch"), needs("stretch_rate"),    needs("curvature"),
-          needs("rest_curvature"),    needs("area"),    needs("rest_area"),       needs("perimeter"),
-          needs("rest_perimeter"),    gives("tension"), gives("moment"),          gives("pressure"),
-          gives("perimeter_tension"), gives("energy"),  gives("tension_by_rate"), {}};
+MembraneForces::Law MembraneForces::describe(const model::MembraneLaw& model) {
+  return {.model = model,
+          .stretch = model.reads("stretch"),
+          .stretch_rate = model.reads("stretch_rate"),
+          .curvature = model.reads("curvature"),
+          .rest_curvature = model.reads("rest_curvature"),
+          .area = model.reads("area"),
+          .rest_area = model.reads("rest_area"),
+          .perimeter = model.reads("perimeter"),
+          .rest_perimeter = model.reads("rest_perimeter"),
+          .tension = model.writes("tension"),
+          .moment = model.writes("moment"),
+          .pressure = model.writes("pressure"),
+          .perimeter_tension = model.writes("perimeter_tension"),
+          .energy = model.writes("energy"),
+          .tension_by_rate = model.writes("tension_by_rate"),
+          .state = {}};
 }
 
-MembraneForces::MembraneForces(const Membranes& membranes, std::vector<MembraneLaws> laws) {
-  for (MembraneLaws& list : laws) {
+MembraneForces::MembraneForces(Membranes& membranes, const MembraneForcesSetup& setup) {
+  for (const MembraneLaws& laws : setup.laws) {
     Type& type = types_.emplace_back();
-    for (auto& model : list) {
-      const Law& law = type.laws.emplace_back(describe(std::move(model)));
+    if (!setup.mobility.empty()) type.mobility = setup.mobility[types_.size() - 1];
+    for (const model::MembraneLaw& model : laws) {
+      const Law& law = type.laws.emplace_back(describe(model));
       type.rate |= law.stretch_rate || law.tension_by_rate;
       type.tension_by_rate |= law.tension_by_rate;
-      has_state_ = has_state_ || law.tension_by_rate || !law.model->manifest().state.empty();
       type.tension |= law.tension;
       type.moment |= law.moment || law.curvature;
       type.cell |= law.pressure || law.perimeter_tension;
     }
   }
   allocate(membranes);
+  if (setup.semi_implicit) make_filters(membranes, setup.viscosity);
+  keep_state(membranes, setup.tension_unit);
 }
 
 void MembraneForces::allocate(const Membranes& membranes) {
@@ -74,46 +76,38 @@ void MembraneForces::allocate(const Membranes& membranes) {
   }
 }
 
-void MembraneForces::make_semi_implicit(const Membranes& membranes, double viscosity) {
+void MembraneForces::make_filters(const Membranes& membranes, double viscosity) {
   for (const CellRange& cell : membranes.cells) {
     Type& type = types_[static_cast<std::size_t>(cell.type)];
     if (type.filter) continue;
     double stretching = 0, bending = 0;
     for (const Law& law : type.laws) {
-      stretching += stretching_stiffness(*law.model);
-      bending += bending_stiffness(*law.model);
+      stretching += stretching_stiffness(law.model);
+      bending += bending_stiffness(law.model);
     }
     const double length = cell.rest_perimeter / cell.count;
-    type.filter.emplace(cell.count, length, coupling::stiffening(type.slip.shift, length), viscosity, stretching,
-                        bending);
-    has_state_ = true;
+    type.filter.emplace(cell.count, length, stiffening(type.mobility.shift, length), viscosity, stretching, bending);
   }
 }
 
-void MembraneForces::keep_state(Membranes& membranes) {
+void MembraneForces::keep_state(Membranes& membranes, double tension_unit) {
   for (std::size_t t = 0; t < types_.size(); ++t) {
     Type& type = types_[t];
-    const auto keep = [&](int law, const std::string& model, const plugin::StateVariable& variable, double initial) {
-      return membrane::keep_state(
-          membranes.state, {static_cast<int>(t), law, model, variable.name, variable.unit, variable.dimension, {}},
-          initial, membranes.x.size());
+    const auto keep = [&](int law, const std::string& id, const model::StateVariable& variable) {
+      return membrane::keep_state(membranes.state, {static_cast<int>(t), law, id, variable.name, variable.unit, {}},
+                                  variable.initial, membranes.x.size());
     };
     for (std::size_t l = 0; l < type.laws.size(); ++l) {
       Law& law = type.laws[l];
-      const plugin::Manifest& manifest = law.model->manifest();
-      law.state.clear();
-      for (std::size_t k = 0; k < manifest.state.size(); ++k) {
-        law.state.push_back(keep(static_cast<int>(l), manifest.id, manifest.state[k], law.model->initial_state()[k]));
+      for (const model::StateVariable& variable : law.model.state) {
+        law.state.push_back(keep(static_cast<int>(l), law.model.id, variable));
       }
     }
-    if (type.tension_by_rate)
-      type.rate_tension = keep(-1, "", {"rate_tension", "N/m", units::dimension::tension, 0}, 0);
+    if (type.tension_by_rate) type.rate_tension = keep(-1, "", {"rate_tension", 0, tension_unit});
     for (int k = 0; k < 2 && type.filter; ++k) {
-      type.held_force[k] =
-          keep(-1, "", {k == 0 ? "held_force_x" : "held_force_y", "N/m", units::dimension::tension, 0}, 0);
+      type.held_force[k] = keep(-1, "", {k == 0 ? "held_force_x" : "held_force_y", 0, tension_unit});
     }
   }
-  state_kept_ = true;
 }
 
 }  // namespace rouleau::membrane

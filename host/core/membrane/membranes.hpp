@@ -5,13 +5,12 @@
 
 #include "base/worker.hpp"
 #include "element_state.hpp"
-#include "scene/scene.hpp"
 
 namespace rouleau::membrane {
 
 /// One cell's place in the arrays of Membranes.
 struct CellRange {
-  int type;               ///< index into Scene::cell_types
+  int type;               ///< index into the setup's cell types
   int first;              ///< its first node
   int count;              ///< nodes and segments
   double rest_area;       ///< enclosed area as created: the fluid inside cannot leave
@@ -57,9 +56,17 @@ struct Membranes {
   }
 };
 
-/// Membranes of a scene's cells on a lattice of the given spacing (m). Throws Error(bad_input) with the place of the
-/// entry in the scene when a cell crosses itself, sticks through a wall or overlaps another cell (over periodic
-/// images).
-Membranes make_membranes(const scene::Scene& scene, double spacing);
+/// A closed polygon and its state of rest, which the cells of a type share. Lattice units, around the origin.
+struct RestShape {
+  std::vector<double> x, y;
+  std::vector<double> rest_length, rest_weight, rest_curvature;  ///< as in Membranes
+  double rest_area = 0, rest_perimeter = 0;
+};
+
+/// Nodes counter-clockwise, at least three; `prestretch`: length as given over rest length.
+RestShape make_rest_shape(std::vector<double> x, std::vector<double> y, double prestretch = 1);
+
+/// Adds a cell that rests, its shape's origin at (x, y), turned counter-clockwise by `angle`.
+void add_cell(Membranes& membranes, int type, const RestShape& shape, double x, double y, double angle);
 
 }  // namespace rouleau::membrane

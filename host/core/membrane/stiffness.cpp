@@ -12,15 +12,15 @@ namespace {
 /// What one law gives for a few elements, which differ in one input only; the others are those of a membrane at rest.
 class Probe {
  public:
-  Probe(const plugin::ModelInstance& law, std::vector<double> arguments)
+  Probe(const model::MembraneLaw& law, std::vector<double> arguments)
       : law_(law),
         arguments_(std::move(arguments)),
         zero_(arguments_.size(), 0.0),
         result_(arguments_.size(), 0.0),
-        first_state_(law.initial_state().size()) {
+        first_state_(law.state.size()) {
     block_.struct_size = sizeof block_;
     block_.count = static_cast<std::uint32_t>(arguments_.size());
-    for (const double initial : law.initial_state()) state_.emplace_back(arguments_.size(), initial);
+    for (const model::StateVariable& variable : law.state) state_.emplace_back(arguments_.size(), variable.initial);
     for (std::size_t k = 0; k < state_.size(); ++k) first_state_[k] = state_[k].data();
     if (!state_.empty()) block_.state = first_state_.data();
   }
@@ -29,23 +29,23 @@ class Probe {
   std::vector<double> tension() { return segments(&rouleau_membrane_block::tension); }
   std::vector<double> moment_by_curvature() {
     block_.curvature = arguments_.data();
-    if (law_.manifest().needs_input("rest_curvature")) block_.rest_curvature = zero_.data();
+    if (law_.reads("rest_curvature")) block_.rest_curvature = zero_.data();
     return compute(&rouleau_membrane_block::moment_by_curvature);
   }
 
  private:
   std::vector<double> segments(double* rouleau_membrane_block::*output) {
-    if (law_.manifest().needs_input("stretch")) block_.stretch = arguments_.data();
-    if (law_.manifest().needs_input("stretch_rate")) block_.stretch_rate = zero_.data();
+    if (law_.reads("stretch")) block_.stretch = arguments_.data();
+    if (law_.reads("stretch_rate")) block_.stretch_rate = zero_.data();
     return compute(output);
   }
   std::vector<double> compute(double* rouleau_membrane_block::*output) {
     block_.*output = result_.data();
-    law_.membrane().compute(law_.self(), &block_);
+    law_.table->compute(law_.self.get(), &block_);
     return result_;
   }
 
-  const plugin::ModelInstance& law_;
+  const model::MembraneLaw& law_;
   std::vector<double> arguments_, zero_, result_;
   std::vector<std::vector<double>> state_;
   std::vector<const double*> first_state_;
@@ -60,9 +60,9 @@ double largest(const std::vector<double>& values) {
 
 }  // namespace
 
-double stretching_stiffness(const plugin::ModelInstance& law, const std::vector<double>& stretches) {
-  if (law.manifest().gives_output("tension_by_stretch")) return largest(Probe(law, stretches).tension_by_stretch());
-  if (!law.manifest().gives_output("tension")) return 0;
+double stretching_stiffness(const model::MembraneLaw& law, const std::vector<double>& stretches) {
+  if (law.writes("tension_by_stretch")) return largest(Probe(law, stretches).tension_by_stretch());
+  if (!law.writes("tension")) return 0;
   constexpr double h = 1e-5;
   std::vector<double> below, above;
   for (const double stretch : stretches) {
@@ -75,12 +75,12 @@ double stretching_stiffness(const plugin::ModelInstance& law, const std::vector<
   return largest(difference);
 }
 
-double tension_at(const plugin::ModelInstance& law, double stretch) {
-  return law.manifest().gives_output("tension") ? Probe(law, {stretch}).tension().front() : 0;
+double tension_at(const model::MembraneLaw& law, double stretch) {
+  return law.writes("tension") ? Probe(law, {stretch}).tension().front() : 0;
 }
 
-double bending_stiffness(const plugin::ModelInstance& law) {
-  if (!law.manifest().gives_output("moment_by_curvature")) return 0;
+double bending_stiffness(const model::MembraneLaw& law) {
+  if (!law.writes("moment_by_curvature")) return 0;
   return largest(Probe(law, {0.0}).moment_by_curvature());
 }
 

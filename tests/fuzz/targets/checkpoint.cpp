@@ -3,6 +3,8 @@
 #include "run/checkpoint.hpp"
 
 #include "json/parser.hpp"
+#include "plan/placed_cells.hpp"
+#include "plan/solver_setup.hpp"
 #include "plan_scene.hpp"
 #include "run/checkpoint_match.hpp"
 #include "scratch_folder.hpp"
@@ -17,7 +19,7 @@ struct Run {
       : scene(scene::read_scene(ROULEAU_FUZZ_SCENES "/checkpoint.json")),
         plan(plan::make_plan(scene, fuzz::shipped_catalog())) {}
   [[nodiscard]] membrane::Membranes membranes() const {
-    return membrane::make_membranes(scene, plan::lattice_spacing(scene));
+    return plan::make_membranes(scene, plan::lattice_spacing(scene));
   }
 
   scene::Scene scene;
@@ -46,7 +48,7 @@ void resume(const std::filesystem::path& directory) {
   membrane::Membranes membranes = run.membranes();
   run::RunState state{observe::Observer(run.scene, membranes)};
   run::restore(*resumption.checkpoint, saved, run.plan, state, membranes);
-  solver::Solver<double> solver(run.plan, state.stage, membranes);
+  solver::Solver<double> solver(plan::make_solver_setup(run.plan, state.stage), membranes);
   run::restore(*resumption.checkpoint, saved, solver);
   run::Summary summary;
   state.report(summary);

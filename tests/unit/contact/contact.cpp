@@ -13,7 +13,6 @@ using namespace rouleau;
 using namespace rouleau::contact;
 using namespace rouleau::membrane;
 using namespace rouleau::test;
-using namespace rouleau::test;
 
 namespace {
 

@@ -9,7 +9,6 @@
 using namespace rouleau::contact;
 using namespace rouleau::membrane;
 using namespace rouleau::test;
-using namespace rouleau::test;
 
 namespace {
 

@@ -12,13 +12,12 @@ using namespace rouleau;
 using namespace rouleau::contact;
 using namespace rouleau::membrane;
 using namespace rouleau::test;
-using namespace rouleau::test;
 
 namespace {
 
 const std::vector<Placed> rouleau_of_three = {{0, -18, 0.05}, {2, 0, 0.0}, {-1, 18, -0.08}};
 
-MembraneForces membrane_forces(const Membranes& m, MembraneLaws laws) { return {m, {std::move(laws)}}; }
+MembraneForces membrane_forces(Membranes& m, MembraneLaws laws) { return {m, {.laws = {std::move(laws)}}}; }
 
 void run(InteractionForces& forces, Membranes& m, int workers = 1) {
   for (int phase = 0; phase < InteractionForces::phases; ++phase) {
@@ -106,7 +105,7 @@ TEST_CASE("cells feel the laws of their own type alone, in any order") {
   }
   const std::vector<int> order = GENERATE(std::vector<int>{0, 1, 2, 3}, std::vector<int>{0, 3, 2, 1});
   for (std::size_t c = 0; c < order.size(); ++c) m.cells[c].type = order[c];
-  MembraneForces(m, laws).run({}, m);
+  MembraneForces(m, {.laws = laws}).run({}, m);
   for (const CellRange& cell : m.cells) {
     const Membranes& expected = alone[static_cast<std::size_t>(cell.type)];
     for (auto i = static_cast<std::size_t>(cell.first); i < static_cast<std::size_t>(cell.end()); ++i) {

@@ -13,17 +13,15 @@ using namespace rouleau::test;
 
 namespace {
 
-std::shared_ptr<const ModelInstance> viscous(double viscosity) {
-  return model(ModelKind::membrane, "viscous", {viscosity});
+rouleau::model::MembraneLaw viscous(double viscosity, const LatticeUnits& units = {1, 1, 1}) {
+  return law("viscous", {viscosity}, units);
 }
-std::shared_ptr<const ModelInstance> maxwell(double modulus, double relaxation_time) {
-  return model(ModelKind::membrane, "standard-linear-solid", {modulus, relaxation_time});
+rouleau::model::MembraneLaw maxwell(double modulus, double relaxation_time, const LatticeUnits& units = {1, 1, 1}) {
+  return law("standard-linear-solid", {modulus, relaxation_time}, units);
 }
 
-MembraneForces forces_with(Membranes& m, MembraneLaws laws) {
-  MembraneForces forces(m, {std::move(laws)});
-  forces.keep_state(m);
-  return forces;
+MembraneForces forces_with(Membranes& m, MembraneLaws laws, double tension_unit = 1) {
+  return {m, {.laws = {std::move(laws)}, .tension_unit = tension_unit}};
 }
 
 /// d length / dt of every segment.
@@ -227,8 +225,7 @@ TEST_CASE("who looks at energies and tensions does not make time pass") {
 TEST_CASE("two branches of one type and the same law of another type each remember for themselves") {
   Membranes m = biconcave_cells({{100, 60, 0.4}, {160, 70, 2}});
   m.cells[1].type = 1;
-  MembraneForces forces(m, {{maxwell(0.2, 5), maxwell(0.3, 50)}, {maxwell(0.2, 500)}});
-  forces.keep_state(m);
+  MembraneForces forces(m, {.laws = {{maxwell(0.2, 5), maxwell(0.3, 50)}, {maxwell(0.2, 500)}}});
   REQUIRE(m.state.size() == 3);
   scale(m, 1.1);
   for (int step = 0; step < 4; ++step) forces.run({}, m);
@@ -240,7 +237,7 @@ TEST_CASE("two branches of one type and the same law of another type each rememb
 
 TEST_CASE("state goes on in a stage with another time step") {
   // One unit of time is 1 s first and 0.25 s then; tensions, in kg/s2, count 16 times less.
-  const LatticeUnits before{1, 1, 1}, after{1, 0.25, 1};
+  const LatticeUnits after{1, 0.25, 1};
   Membranes m = biconcave_cells({{100, 60, 0.4}});
   MembraneForces first = forces_with(m, {maxwell(0.2, 5), viscous(3)});
   scale(m, 1.1);
@@ -248,12 +245,7 @@ TEST_CASE("state goes on in a stage with another time step") {
   for (ElementState& variable : m.state) {
     if (variable.name == "rate_tension") variable.value.assign(m.x.size(), 0.32);
   }
-  change_units(m.state, before, after);
-  const auto maxwell_after = std::make_shared<ModelInstance>(maxwell(1, 1)->manifest(), std::vector<double>{0.2, 5},
-                                                             ModelSetting{after, 1.0, false});
-  const auto viscous_after =
-      std::make_shared<ModelInstance>(viscous(1)->manifest(), std::vector<double>{3}, ModelSetting{after, 1.0, false});
-  MembraneForces second = forces_with(m, {maxwell_after, viscous_after});
+  MembraneForces second = forces_with(m, {maxwell(0.2, 5, after), viscous(3, after)}, after.unit(dimension::tension));
   REQUIRE(m.state.size() == 2);
   CHECK(state(m, "rate_tension")[5] == Approx(0.02));
   m.state[1].value.assign(m.x.size(), 0.0);
@@ -285,13 +277,4 @@ TEST_CASE("forces and state are the same to the last bit for one, two and three 
     CHECK(results[k].force_y == results[0].force_y);
     for (std::size_t v = 0; v < 2; ++v) CHECK(results[k].state[v].value == results[0].state[v].value);
   }
-}
-
-TEST_CASE("laws with state refuse to run before their state is kept") {
-  Membranes m = biconcave_cells({{100, 60, 0.4}});
-  MembraneForces forces(m, {{viscous(1)}});
-  CHECK_THROWS_AS(forces.run({}, m), std::logic_error);
-  MembraneForces without(m, {{neo_hookean(1)}});
-  without.keep_state(m);
-  CHECK(m.state.empty());
 }

@@ -11,7 +11,6 @@
 using namespace rouleau::coupling;
 using namespace rouleau::membrane;
 using namespace rouleau::test;
-using namespace rouleau::test;
 
 namespace {
 

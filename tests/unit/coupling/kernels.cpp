@@ -5,12 +5,13 @@
 #include "core/coupling/coupling.hpp"
 #include "core/coupling/kernel.hpp"
 #include "core/fluid/exchange.hpp"
+#include "plan/kernel_facts.hpp"
 #include "unit/cell_fixture.hpp"
 
 using namespace rouleau::coupling;
+using rouleau::plan::kernel_facts;
 using namespace rouleau::fluid;
 using namespace rouleau::membrane;
-using namespace rouleau::test;
 using namespace rouleau::test;
 
 namespace {

@@ -13,7 +13,6 @@ using namespace rouleau::coupling;
 using namespace rouleau::fluid;
 using namespace rouleau::membrane;
 using namespace rouleau::test;
-using namespace rouleau::test;
 
 namespace {
 

@@ -19,7 +19,7 @@ struct TwoArrayFluid {
   int nx, ny;
   bool periodic_y;
   WallVelocity walls;
-  std::shared_ptr<const ModelInstance> collision;
+  rouleau::model::CollisionOperator collision;
   std::vector<double> f;  // [y][x][q]
 
   double& at(std::vector<double>& a, int q, int x, int y) const {
@@ -37,7 +37,7 @@ struct TwoArrayFluid {
         block.count = 1;
         block.in = in;
         block.out = out;
-        collision->collision().collide_f64(collision->self(), &block);
+        collision.table->collide_f64(collision.self.get(), &block);
       }
     }
     for (int y = 0; y < ny; ++y) {

@@ -12,7 +12,6 @@ using namespace rouleau::contact;
 using namespace rouleau::membrane;
 using namespace rouleau::plugin;
 using namespace rouleau::test;
-using namespace rouleau::test;
 
 namespace {
 
@@ -23,9 +22,6 @@ struct NamedLaws {
 };
 
 std::vector<NamedLaws> shipped_laws() {
-  const auto law = [](const char* id, const std::vector<double>& values) {
-    return model(ModelKind::membrane, id, values);
-  };
   return {{"neo-hookean, clamped", {law("neo-hookean", {0.1, 1})}, true},
           {"skalak, free", {law("skalak", {0.1, 2, 0})}, true},
           {"skalak, clamped", {law("skalak", {0.1, 2, 1})}, true},
@@ -118,7 +114,7 @@ TEST_CASE("forces of every shipped law are minus the gradient of its energy, wit
   deform(m, random, 4, 0.1);
   for (NamedLaws& entry : shipped_laws()) {
     CAPTURE(entry.name);
-    MembraneForces forces(m, {entry.laws});
+    MembraneForces forces(m, {.laws = {entry.laws}});
     forces.run({}, m);
     // Central differences: truncation 1e-4^2, rounding 1e-16 E / (1e-4 F).
     CHECK(gradient_error(
@@ -138,7 +134,7 @@ TEST_CASE("a cell that is turned and moved as a whole stores no energy and feels
     Membranes m = biconcave_cells({{10, 6, 0.4}});
     const Membranes before = m;
     turn_and_move(m, 2.1, 30, -12);
-    MembraneForces forces(m, {entry.laws});
+    MembraneForces forces(m, {.laws = {entry.laws}});
     forces.run({}, m);
     // Stretches are 1 to a few epsilon of the positions, 1e-14; moduli are at most 2.
     CHECK(largest_force(m) < 1e-12);
@@ -154,7 +150,7 @@ TEST_CASE("rigid motion of a deformed cell turns its forces with it and costs no
     CAPTURE(entry.name);
     Membranes a = start, b = start;
     turn_and_move(b, 2.1, 30, -12);
-    MembraneForces forces(a, {entry.laws});
+    MembraneForces forces(a, {.laws = {entry.laws}});
     forces.run({}, a);
     forces.run({}, b);
     CHECK(forces.energy(b) == Approx(forces.energy(a)).epsilon(1e-12));
@@ -171,7 +167,7 @@ TEST_CASE("a constant rest curvature changes the energy by a constant and no for
   auto random = generator(63);
   Membranes m = biconcave_cells({{10, 6, 0.4}}), other = m;
   const auto forces_of = [](Membranes& membranes, const std::vector<double>& values) {
-    MembraneForces forces(membranes, {{model(ModelKind::membrane, "bending", values)}});
+    MembraneForces forces(membranes, {.laws = {{law("bending", values)}}});
     forces.run({}, membranes);
     return forces.energy(membranes);
   };
@@ -212,16 +208,13 @@ TEST_CASE("the stretch of a cell's segments is read off its outline") {
 
 TEST_CASE(
     "every shipped potential acts between cells as minus the gradient of its energy, without net force or torque") {
-  const auto potential = [](const char* id, const std::vector<double>& values) {
-    return model(ModelKind::interaction, id, values);
-  };
-  const std::vector<std::shared_ptr<const ModelInstance>> potentials = {
-      potential("lennard-jones-shifted", {0.2, 2.5, 12}), potential("repulsion", {0.2, 7})};
+  const std::vector<rouleau::model::Potential> potentials = {potential("lennard-jones-shifted", {0.2, 2.5, 12}),
+                                                             potential("repulsion", {0.2, 7})};
   auto random = generator(64);
   Membranes m = biconcave_cells({{0, -18, 0.05}, {2, 0, 0.0}, {-1, 18, -0.08}});
   deform(m, random, 2, 0.02);
   for (const auto& acting : potentials) {
-    CAPTURE(acting->manifest().id);
+    CAPTURE(acting.id);
     InteractionForces forces(m, {{{0, 0}, acting}}, {1e4});
     const auto run = [&] {
       std::fill(m.force_x.begin(), m.force_x.end(), 0.0);

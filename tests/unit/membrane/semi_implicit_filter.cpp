@@ -9,7 +9,6 @@
 
 using namespace rouleau::membrane;
 using namespace rouleau::test;
-using namespace rouleau::test;
 
 TEST_CASE("the filter is the inverse of the cyclic matrix of stretching and bending") {
   auto random = generator(201);
@@ -57,12 +56,9 @@ TEST_CASE("semi-implicit forces sum to zero and are the explicit ones where noth
   Membranes m = biconcave_cells({{100, 60, 0.4}, {160, 70, 2}});
   deform(m, random, 4, 0.1);
   Membranes soft = m, stiff = m;
-  MembraneForces without(m, {{neo_hookean(1e-9), bending(1e-9)}}), with(m, {{neo_hookean(1e-9), bending(1e-9)}}),
-      strong(m, {{neo_hookean(20), bending(60)}});
-  with.make_semi_implicit(m, 1.0 / 6);
-  strong.make_semi_implicit(m, 1.0 / 6);
-  with.keep_state(soft);
-  strong.keep_state(stiff);
+  const MembraneLaws weak_laws = {neo_hookean(1e-9), bending(1e-9)}, strong_laws = {neo_hookean(20), bending(60)};
+  MembraneForces without(m, {.laws = {weak_laws}}), with(soft, {.laws = {weak_laws}, .semi_implicit = true}),
+      strong(stiff, {.laws = {strong_laws}, .semi_implicit = true});
   without.run({}, m);
   with.run({}, soft);
   strong.run({}, stiff);
@@ -80,10 +76,8 @@ TEST_CASE("a semi-implicit step looks one step ahead") {
   Membranes moved = m;
   for (std::size_t i = 0; i < m.x.size(); ++i) moved.x[i] += m.velocity_x[i], moved.y[i] += m.velocity_y[i];
   moved.velocity_x.assign(m.x.size(), 0), moved.velocity_y.assign(m.x.size(), 0);
-  MembraneForces forces(m, {{neo_hookean(2), bending(3)}});
-  forces.make_semi_implicit(m, 1.0 / 6);
-  forces.keep_state(m);
-  forces.keep_state(moved);
+  MembraneForces forces(m, {.laws = {{neo_hookean(2), bending(3)}}, .semi_implicit = true});
+  moved.state = m.state;
   forces.run({}, m);
   forces.run({}, moved);
   CHECK(m.force_x == moved.force_x);

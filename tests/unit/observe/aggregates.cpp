@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "plan/schedule.hpp"
+#include "plan/output_schedule.hpp"
 
 using namespace rouleau::membrane;
 using namespace rouleau::observe;
@@ -72,14 +72,14 @@ TEST_CASE("an output is due at the steps nearest to multiples of its interval") 
   setting.shear_rate = 0.003;
   setting.units = {1e-7, 1e-5, 1};
   setting.max_steps = 100000;
-  const Schedule schedule({0.25, std::nullopt}, setting, true);
+  const OutputSchedule schedule({0.25, std::nullopt}, setting, true);
   long count = 0;
   for (long step = 0; step <= 8333; ++step) count += schedule.due(step) ? 1 : 0;
   CHECK(count == 101);  // strain 0 to 25 in steps of a quarter
   CHECK(schedule.due(83));
   CHECK_FALSE(schedule.due(84));
   CHECK(schedule.due(167));
-  const Schedule never({}, setting, true);
+  const OutputSchedule never({}, setting, true);
   CHECK_FALSE(never.due(0));
 }
 
@@ -87,7 +87,7 @@ TEST_CASE("a stage at rest writes forty rows where only a strain is asked for") 
   StageSetting setting{};
   setting.units = {1e-7, 1e-5, 1};
   setting.max_steps = 4000;
-  const Schedule schedule({0.25, std::nullopt}, setting, true);
+  const OutputSchedule schedule({0.25, std::nullopt}, setting, true);
   long count = 0;
   for (long step = 0; step <= 4000; ++step) count += schedule.due(step) ? 1 : 0;
   CHECK(count == 41);

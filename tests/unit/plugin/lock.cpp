@@ -10,7 +10,6 @@ using rouleau::ExitCode;
 using rouleau::Place;
 using namespace rouleau::plugin;
 using namespace rouleau::test;
-using namespace rouleau::test;
 using Catch::Matchers::Contains;
 using Json = nlohmann::json;
 namespace fs = std::filesystem;

@@ -9,7 +9,6 @@
 using namespace rouleau;
 using namespace rouleau::plugin;
 using namespace rouleau::test;
-using namespace rouleau::test;
 using Catch::Matchers::Contains;
 namespace fs = std::filesystem;
 

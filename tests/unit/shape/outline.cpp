@@ -8,9 +8,9 @@
 
 using namespace rouleau;
 using namespace rouleau::membrane;
+using namespace rouleau::plan;
 using namespace rouleau::scene;
 using namespace rouleau::shape;
-using namespace rouleau::test;
 using namespace rouleau::test;
 
 namespace {

@@ -10,9 +10,11 @@
 #include <numbers>
 
 #include "core/membrane/membranes.hpp"
+#include "plan/placed_cells.hpp"
 #include "shape/outline.hpp"
 
 using namespace rouleau::membrane;
+using namespace rouleau::plan;
 using namespace rouleau::scene;
 using namespace rouleau::shape;
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/solver/barrier.hpp"
-#include "plan/schedule.hpp"
+#include "plan/output_schedule.hpp"
 
 using namespace rouleau::plan;
 using namespace rouleau::scene;
@@ -19,7 +19,7 @@ TEST_CASE("the next step of a schedule is the first one that is due") {
   const double interval = GENERATE(1.0, 1.4, 1.5, 2.5, 7.3, 100.0);
   cadence.seconds = interval;
   if (interval == 7.3) cadence.strain = 4.9;
-  const Schedule schedule(cadence, setting, true);
+  const OutputSchedule schedule(cadence, setting, true);
   long next = schedule.next(0);
   for (long step = 1; step < 1000; ++step) {
     CAPTURE(interval, step);
@@ -31,7 +31,7 @@ TEST_CASE("the next step of a schedule is the first one that is due") {
 TEST_CASE("a schedule without an interval is never due again") {
   StageSetting setting{};
   setting.max_steps = 1000;
-  CHECK(Schedule(Cadence{}, setting, true).next(0) == std::numeric_limits<long>::max());
+  CHECK(OutputSchedule(Cadence{}, setting, true).next(0) == std::numeric_limits<long>::max());
 }
 
 TEST_CASE("nobody leaves a barrier before all have come") {

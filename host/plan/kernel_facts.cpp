@@ -1,20 +1,20 @@
-#include "kernel_kind.hpp"
+#include "kernel_facts.hpp"
 
 #include <array>
 #include <stdexcept>
 
-namespace rouleau::coupling {
+namespace rouleau::plan {
 
 namespace {
 
 constexpr std::array<KernelFacts, 4> kernels{{
-    {KernelKind::peskin4, "peskin4", 0, 1, 1, ""},
-    {KernelKind::cosine4, "cosine4", 0.0211, 1, 1,
+    {coupling::KernelKind::peskin4, "peskin4", 0, 1, 1, ""},
+    {coupling::KernelKind::cosine4, "cosine4", 0.0211, 1, 1,
      "its first moment reaches 0.021 spacings: with bending and segments shorter than a spacing it puts a false torque "
      "into the fluid (11 degrees off at strain 1 for a biconcave cell of half a spacing per segment); take peskin4"},
-    {KernelKind::roma3, "roma3", 0, 0.095, 0.057,
+    {coupling::KernelKind::roma3, "roma3", 0, 0.095, 0.057,
      "it lets ten times less stiffness pass than peskin4 before nodes zigzag, and leaks twice the area"},
-    {KernelKind::linear2, "linear2", 0, 0.013, 0.0066,
+    {coupling::KernelKind::linear2, "linear2", 0, 0.013, 0.0066,
      "it lets seventy times less stiffness pass than peskin4, and cells leak silently beyond that limit; it is here "
      "for "
      "comparison"},
@@ -22,7 +22,7 @@ constexpr std::array<KernelFacts, 4> kernels{{
 
 }  // namespace
 
-const KernelFacts& kernel_facts(KernelKind kind) {
+const KernelFacts& kernel_facts(coupling::KernelKind kind) {
   for (const KernelFacts& facts : kernels) {
     if (facts.kind == kind) return facts;
   }
@@ -36,4 +36,4 @@ const KernelFacts& kernel_named(const std::string& name) {
   throw std::logic_error("no kernel is called " + name);
 }
 
-}  // namespace rouleau::coupling
+}  // namespace rouleau::plan

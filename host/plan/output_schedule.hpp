@@ -11,9 +11,9 @@
 namespace rouleau::plan {
 
 /// Says at which steps of a stage an output is due: the steps nearest to multiples of an interval, and the first.
-class Schedule {
+class OutputSchedule {
  public:
-  Schedule(const scene::Cadence& cadence, const StageSetting& setting, bool always_some) {
+  OutputSchedule(const scene::Cadence& cadence, const StageSetting& setting, bool always_some) {
     if (cadence.strain && setting.shear_rate != 0) intervals_.push_back(*cadence.strain / std::abs(setting.shear_rate));
     if (cadence.seconds) intervals_.push_back(setting.steps_of(*cadence.seconds));
     // A stage at rest has no strain to count by; forty rows show how it went.

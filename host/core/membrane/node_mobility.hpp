@@ -1,0 +1,18 @@
+// How the nodes of a membrane give way to forces beyond what the fluid on the lattice does.
+#pragma once
+
+namespace rouleau::membrane {
+
+/// What the slip correction adds to the motion of a cell type's nodes; zero without it. Lattice units.
+struct NodeMobility {
+  /// Distance inside the membrane at which forces act and velocities are read.
+  double shift = 0;
+  /// Velocity per tangential force per length.
+  double slip = 0;
+};
+
+/// How many times stiffer a membrane with segments of this length (spacings) is to the fluid where its forces act at
+/// the distance `shift`: the couples of the shift and their adjoint both gain sin(q) shift/length at q a segment.
+inline double stiffening(double shift, double length) { return 1 + (shift / length) * (shift / length); }
+
+}  // namespace rouleau::membrane

@@ -1,0 +1,55 @@
+// One time step as a list: the algorithm of the simulator, in its order.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pass.hpp"
+
+namespace rouleau::solver {
+
+/// What a time step may do. A pass over cells gives each worker cells, one over rows gives it rows of the lattice.
+enum class Task {
+  find_contacts,       ///< cells: the closest point of other outlines to each node
+  membrane_forces,     ///< cells: F = -dE/dX of the membrane laws, and the couples of the slip correction
+  interaction_forces,  ///< cells: F = -dE/dX of the potentials, on own nodes
+  take_reactions,      ///< cells: what other cells' nodes do to this one's
+  complete_forces,     ///< cells: the slip, made of all forces on a node
+  find_nodes,          ///< cells: the area fraction of lattice nodes, and which nodes feel a membrane
+  set_viscosity,       ///< rows: the relaxation rate in and around the cells that have moved
+  clear_force,         ///< rows
+  spread,              ///< rows: forces to the lattice (Peskin, Acta Numerica 11, 2002)
+  fold_force,          ///< rows: what was spread beyond a border comes home
+  collide_and_stream,  ///< rows: lattice Boltzmann with the force of Guo, Zheng and Shi, Phys. Rev. E 65, 2002
+  end_step,            ///< one worker: the lattice's parity
+  interpolate,         ///< cells: velocities of the nodes, with the kernel that has spread their forces
+  correct_velocities,  ///< cells: neither slip nor leaks
+  move                 ///< cells: X(t + 1) = X(t) + U
+};
+
+/// A task and what happens between the workers after it.
+struct Step {
+  Task task;
+  /// In summary.json and plan; tasks of one name are phases of one pass.
+  const char* name;
+  Meeting meeting;
+};
+
+/// What decides which tasks a step has.
+struct StepFeatures {
+  bool cells = false;
+  bool interactions = false;
+  bool viscosity_contrast = false;
+  bool slip_correction = false;
+  bool area_correction = false;
+  bool periodic_y = false;
+};
+
+/// A step's two halves: after the first and a barrier, forces and velocities belong to the present positions and the
+/// state may be observed.
+struct Schedule {
+  std::vector<Step> forces, advance;
+};
+Schedule make_schedule(const StepFeatures& features);
+
+}  // namespace rouleau::solver

@@ -1,0 +1,57 @@
+// All that a simulation is made of, as plain values in lattice units.
+#pragma once
+
+#include <vector>
+
+#include "core/contact/interaction_forces.hpp"
+#include "core/coupling/kernel_kind.hpp"
+#include "core/fluid/exchange.hpp"
+#include "core/membrane/membrane_forces.hpp"
+#include "core/model/model.hpp"
+
+namespace rouleau::solver {
+
+struct CellType {
+  /// They add up.
+  membrane::MembraneLaws laws;
+  /// Inside over the suspending fluid's.
+  double viscosity_ratio = 1;
+};
+
+/// Lattice units: spacing, time step and density of the fluid are 1. Node (0, 0) lies at (0, 0), walls half a spacing
+/// outside the first and the last row; x is periodic.
+struct SolverSetup {
+  int nx = 0, ny = 0;
+  /// Without walls.
+  bool periodic_y = false;
+  /// Relaxation time of the suspending fluid in time steps; its kinematic viscosity is (tau - 1/2)/3.
+  double tau = 1;
+  /// Quadratic equilibrium; false: linear, for creeping flow.
+  bool inertia = false;
+  fluid::WallVelocity walls = {};
+  /// Force density everywhere.
+  double body_force_x = 0, body_force_y = 0;
+  /// Begin with the developed flow of the walls and the body force; false: with a fluid at rest, or the one before.
+  bool developed = false;
+  model::CollisionOperator collision = {};
+
+  coupling::KernelKind kernel = coupling::KernelKind::peskin4;
+  /// What Membranes::cells name as their types.
+  std::vector<CellType> cell_types = {};
+  std::vector<contact::Interaction> interactions = {};
+  /// The step of stiff membranes (membrane::ForceFilter).
+  bool semi_implicit = false;
+  /// Takes the tangential slip of the immersed boundary out.
+  bool slip_correction = false;
+  /// Keeps the cells' areas.
+  bool area_correction = false;
+
+  /// Time step in any unit that all setups of a run share: velocities carried from one to the next scale with it.
+  double time_step = 1;
+  /// SI size of the lattice unit of tension, for state that is carried from one setup to the next.
+  double tension_unit = 1;
+
+  [[nodiscard]] double viscosity() const { return (tau - 0.5) / 3; }
+};
+
+}  // namespace rouleau::solver

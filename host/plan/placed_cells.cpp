@@ -1,0 +1,129 @@
+#include "placed_cells.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <string>
+
+#include "core/contact/crossing.hpp"
+#include "core/membrane/geometry.hpp"
+#include "shape/outline.hpp"
+
+namespace rouleau::plan {
+
+namespace {
+
+membrane::RestShape rest_shape(const scene::CellType& type, double spacing) {
+  std::vector<double> x, y;
+  for (const Eigen::Vector2d& node : shape::make_outline(type.shape, type.segments).nodes) {
+    x.push_back(node.x() / spacing);
+    y.push_back(node.y() / spacing);
+  }
+  const auto* circle = std::get_if<scene::Circle>(&type.shape);
+  return membrane::make_rest_shape(std::move(x), std::move(y), circle != nullptr ? circle->prestretch : 1.0);
+}
+
+/// Everything that a message about a place in the scene needs.
+class Checker {
+ public:
+  Checker(const scene::Scene& scene, const membrane::Membranes& membranes, double spacing)
+      : scene_(scene),
+        membranes_(membranes),
+        spacing_(spacing),
+        box_{static_cast<double>(scene.domain.nodes[0]), scene.domain.periodic_y ? scene.domain.nodes[1] : 0.0} {}
+
+  void check() const {
+    for (std::size_t i = 0; i < membranes_.cells.size(); ++i) check_fits(i);
+    if (const auto crossing = contact::find_crossing(membranes_, box_)) report(*crossing);
+  }
+
+ private:
+  [[noreturn]] void refuse(std::size_t cell, const std::string& problem) const {
+    const std::string& pointer = scene_.cells[cell].pointer;
+    const Place place = scene_.document ? scene_.place(pointer) : Place{"", pointer};
+    throw Error(ExitCode::bad_input, place, problem);
+  }
+  [[nodiscard]] std::string micrometres(double spacings) const {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g um", spacings * spacing_ * 1e6);
+    return text;
+  }
+  [[nodiscard]] std::string name(int cell) const {
+    return "cell " + std::to_string(cell) + " (" + scene_.cells[static_cast<std::size_t>(cell)].pointer + ")";
+  }
+
+  void check_fits(std::size_t cell) const {
+    const membrane::Bounds extent = membrane::bounds(membranes_, membranes_.cells[cell]);
+    const std::string who = name(static_cast<int>(cell));
+    const double width = extent.x_max - extent.x_min, height = extent.y_max - extent.y_min;
+    if (!(width < box_.nx)) {
+      refuse(cell, who + " is " + micrometres(width) + " wide, more than the periodic length of the domain, " +
+                       micrometres(box_.nx) + "; make the domain longer.");
+    }
+    if (box_.periodic_y()) {
+      if (!(height < box_.ny)) {
+        refuse(cell, who + " is " + micrometres(height) + " high, more than the periodic height of the domain, " +
+                         micrometres(box_.ny) + "; make the domain higher.");
+      }
+      return;
+    }
+    const double below = -0.5 - extent.y_min, above = extent.y_max - (scene_.domain.nodes[1] - 0.5);
+    if (!(below < 0)) stick_out(cell, "lower", below);
+    if (!(above < 0)) stick_out(cell, "upper", above);
+  }
+  [[noreturn]] void stick_out(std::size_t cell, const char* wall, double amount) const {
+    refuse(cell, name(static_cast<int>(cell)) + " sticks through the " + wall + " wall by " + micrometres(amount) +
+                     "; move it away from the wall.");
+  }
+
+  [[noreturn]] void report(const contact::Crossing& crossing) const {
+    const auto cell = static_cast<std::size_t>(crossing.cell);
+    const bool own = crossing.cell == crossing.other;
+    if (own && crossing.shift == membrane::ImageShift{})
+      refuse(cell, name(crossing.cell) + " crosses itself; change its shape.");
+    const double depth = overlap(crossing);
+    const std::string amount = depth > 0 ? "overlap by " + micrometres(depth) : "cross";
+    if (own) {
+      refuse(cell, name(crossing.cell) + " and its own periodic image " + amount + "; make the domain longer.");
+    }
+    const bool image = !(crossing.shift == membrane::ImageShift{});
+    refuse(cell, name(crossing.cell) + " and " + (image ? "a periodic image of " : "") + name(crossing.other) + " " +
+                     amount + "; move them apart.");
+  }
+  /// Largest depth of a node of one cell inside the other.
+  [[nodiscard]] double overlap(const contact::Crossing& crossing) const {
+    const membrane::CellRange& a = membranes_.cells[static_cast<std::size_t>(crossing.cell)];
+    const membrane::CellRange& b = membranes_.cells[static_cast<std::size_t>(crossing.other)];
+    const Eigen::Vector2d move(crossing.shift.x * box_.nx, crossing.shift.y * box_.ny);
+    double depth = 0;
+    for (int i = a.first; i < a.end(); ++i)
+      depth = std::max(depth, membrane::depth_inside(membranes_, b, node(i) - move));
+    for (int i = b.first; i < b.end(); ++i)
+      depth = std::max(depth, membrane::depth_inside(membranes_, a, node(i) + move));
+    return depth;
+  }
+  [[nodiscard]] Eigen::Vector2d node(int i) const {
+    return {membranes_.x[static_cast<std::size_t>(i)], membranes_.y[static_cast<std::size_t>(i)]};
+  }
+
+  const scene::Scene& scene_;
+  const membrane::Membranes& membranes_;
+  double spacing_;
+  membrane::PeriodicBox box_;
+};
+
+}  // namespace
+
+membrane::Membranes make_membranes(const scene::Scene& scene, double spacing) {
+  std::vector<membrane::RestShape> shapes;
+  for (const scene::CellType& type : scene.cell_types) shapes.push_back(rest_shape(type, spacing));
+  membrane::Membranes membranes;
+  for (const scene::CellPlacement& cell : scene.cells) {
+    // Lattice nodes are centres of unit squares, so the first lies half a spacing from the domain's edges.
+    membrane::add_cell(membranes, cell.type, shapes[cell.type], cell.center.x() / spacing - 0.5,
+                       cell.center.y() / spacing - 0.5, cell.angle);
+  }
+  Checker(scene, membranes, spacing).check();
+  return membranes;
+}
+
+}  // namespace rouleau::plan

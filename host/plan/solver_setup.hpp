@@ -1,0 +1,13 @@
+// What a stage of a plan is to the solver.
+#pragma once
+
+#include "core/solver/solver_setup.hpp"
+#include "plan.hpp"
+
+namespace rouleau::plan {
+
+/// All of stage `index` in lattice units, with instances of its active models. Throws Error(plugin_refused) for a model
+/// that cannot be made.
+solver::SolverSetup make_solver_setup(const Plan& plan, int index);
+
+}  // namespace rouleau::plan
