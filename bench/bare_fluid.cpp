@@ -85,13 +85,13 @@ RowFunction<T> pick(Kernel kernel) {
 }  // namespace
 
 template <class T>
-BareFluid<T>::BareFluid(Kernel kernel, int nx, int ny, double relaxation_rate, double magic, fluid::WallVelocity walls)
+BareFluid<T>::BareFluid(Kernel kernel, int nx, int ny, double relaxation_rate, double magic, core::WallVelocity walls)
     : kernel_(kernel),
       relaxation_rate_(static_cast<T>(relaxation_rate)),
       magic_(static_cast<T>(magic)),
       walls_(walls),
       lattice_(nx, ny, false) {
-  if (kernel == Kernel::forced) force_ = {fluid::Field<T>(nx, ny), fluid::Field<T>(nx, ny)};
+  if (kernel == Kernel::forced) force_ = {core::Field<T>(nx, ny), core::Field<T>(nx, ny)};
 }
 
 template <class T>
@@ -120,13 +120,13 @@ void BareFluid<T>::step(rouleau::Worker worker) {
   task.relaxation_rate = relaxation_rate_;
   task.magic = magic_;
   for (int i = 0; i < rows.end - rows.begin; ++i) {
-    const int y = parity_ == fluid::Parity::even ? rows.begin + i : rows.end - 1 - i;
-    if (parity_ == fluid::Parity::even) receive_row(lattice_, y);
+    const int y = parity_ == core::Parity::even ? rows.begin + i : rows.end - 1 - i;
+    if (parity_ == core::Parity::even) receive_row(lattice_, y);
     lattice_.row_pointers(parity_, y, task.in, task.out);
     if (force_.x.allocated()) task.force_x = force_.x.row(y), task.force_y = force_.y.row(y);
     row(&task);
     add_wall_momentum(lattice_, y, walls_);
-    if (parity_ == fluid::Parity::even) send_row(lattice_, y);
+    if (parity_ == core::Parity::even) send_row(lattice_, y);
     if (force_.x.allocated()) fill_velocity_halo(force_, y, false, walls_);
   }
 }

@@ -21,24 +21,24 @@ enum class Kernel {
 template <class T>
 class BareFluid {
  public:
-  BareFluid(Kernel kernel, int nx, int ny, double relaxation_rate, double magic, fluid::WallVelocity walls);
+  BareFluid(Kernel kernel, int nx, int ny, double relaxation_rate, double magic, core::WallVelocity walls);
 
   /// Sets populations, deviations from rest, before the first step.
   void set(const std::function<double(int q, int x, int y)>& population);
   /// The same state as other's, which must be between an even number of steps.
   [[nodiscard]] double population(int q, int x, int y) const;
-  [[nodiscard]] fluid::VectorField<T>& force() { return force_; }
+  [[nodiscard]] core::VectorField<T>& force() { return force_; }
 
   void step(rouleau::Worker worker);
-  void end_step() { parity_ = fluid::next(parity_); }
+  void end_step() { parity_ = core::next(parity_); }
 
  private:
   Kernel kernel_;
   T relaxation_rate_, magic_;
-  fluid::WallVelocity walls_;
-  fluid::Lattice<T> lattice_;
-  fluid::VectorField<T> force_;
-  fluid::Parity parity_ = fluid::Parity::even;
+  core::WallVelocity walls_;
+  core::Lattice<T> lattice_;
+  core::VectorField<T> force_;
+  core::Parity parity_ = core::Parity::even;
 };
 
 extern template class BareFluid<float>;

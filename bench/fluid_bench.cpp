@@ -20,9 +20,9 @@ namespace rouleau::bench {
 namespace {
 
 constexpr double relaxation_rate = 1.0, magic = 0.1875;
-constexpr fluid::WallVelocity walls{-0.01, 0.01};
+constexpr core::WallVelocity walls{-0.01, 0.01};
 
-model::CollisionOperator trt() {
+core::CollisionOperator trt() {
   static const plugin::Catalog catalog({ROULEAU_PLUGINS});
   return plugin::make_collision_operator(catalog.find(plugin::ModelKind::collision, "trt", {}), {magic},
                                          plugin::ModelSetting{{1, 1, 1}, relaxation_rate, false});
@@ -30,14 +30,14 @@ model::CollisionOperator trt() {
 
 /// The fluid of the program, with the trt plugin.
 template <class T>
-std::unique_ptr<fluid::Fluid<T>> plugin_fluid(int nx, int ny, bool forced, fluid::WallVelocity wall) {
-  fluid::FluidSetting setting{};
+std::unique_ptr<core::Fluid<T>> plugin_fluid(int nx, int ny, bool forced, core::WallVelocity wall) {
+  core::FluidSetting setting{};
   setting.nx = nx;
   setting.ny = ny;
   setting.relaxation_rate = relaxation_rate;
   setting.walls = wall;
   setting.membranes = forced;
-  auto fluid = std::make_unique<fluid::Fluid<T>>(setting, trt());
+  auto fluid = std::make_unique<core::Fluid<T>>(setting, trt());
   if (forced) {
     for (int y = 0; y < ny; ++y) fluid->activity().mark(y, 0, nx);
   }
@@ -45,15 +45,15 @@ std::unique_ptr<fluid::Fluid<T>> plugin_fluid(int nx, int ny, bool forced, fluid
 }
 
 template <class T>
-void start_couette(fluid::Fluid<T>& fluid) {
+void start_couette(core::Fluid<T>& fluid) {
   const int ny = fluid.setting().ny;
   const double rate = (walls.upper - walls.lower) / ny;
   fluid.set_profile([=](double y) { return walls.lower + rate * (y + 0.5); }, [=](double) { return rate; });
 }
 
 template <class T>
-BareFluid<T> bare_fluid(Kernel kernel, fluid::Fluid<T>& like) {
-  const fluid::FluidSetting& setting = like.setting();
+BareFluid<T> bare_fluid(Kernel kernel, core::Fluid<T>& like) {
+  const core::FluidSetting& setting = like.setting();
   BareFluid<T> bare(kernel, setting.nx, setting.ny, relaxation_rate, magic, setting.walls);
   bare.set([&](int q, int x, int y) { return like.population(q, x, y); });
   return bare;
@@ -80,7 +80,7 @@ void require(bool right, const std::string& what, double found) {
 }
 
 template <class T>
-void clear(fluid::VectorField<T>& force, rouleau::Worker worker) {
+void clear(core::VectorField<T>& force, rouleau::Worker worker) {
   const rouleau::Range rows = worker.share(force.x.ny());
   for (int y = rows.begin; y < rows.end; ++y) {
     std::fill_n(force.x.row(y), force.x.nx(), T(0));
@@ -158,7 +158,7 @@ void check_precision(const char* name) {
   BareFluid<T> bare_forced = bare_fluid(Kernel::forced, *forced);
   double worst = 0;
   for (long i = 0; i < steps; ++i) {
-    for (fluid::VectorField<T>* field : {&forced->force(), &bare_forced.force()}) {
+    for (core::VectorField<T>* field : {&forced->force(), &bare_forced.force()}) {
       for (int y = 0; y < ny; ++y) {
         for (int x = 0; x < nx; ++x) {
           field->x.row(y)[x] = static_cast<T>(1e-6 * std::sin(0.3 * x + 0.2 * y));

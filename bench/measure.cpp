@@ -19,7 +19,7 @@ constexpr int rounds = 9;
 /// Mean time of a step.
 double time_steps(const Candidate& candidate, int threads, long steps) {
   double total = 0;
-  std::optional<solver::Barrier> barrier;
+  std::optional<core::Barrier> barrier;
 #pragma omp parallel num_threads(threads)
   {
 #pragma omp single

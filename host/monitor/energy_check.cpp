@@ -7,7 +7,7 @@
 
 namespace rouleau::monitor {
 
-std::optional<Failure> check_energy(const observe::EnergyHistory& energy, const membrane::Membranes& membranes,
+std::optional<Failure> check_energy(const observe::EnergyHistory& energy, const core::Membranes& membranes,
                                     const plan::Plan& plan, double spacing) {
   const double growth = energy.relative_growth(), limit = plan.scene->checks.energy_growth;
   if (growth <= limit) return std::nullopt;
@@ -25,7 +25,7 @@ std::optional<Failure> check_energy(const observe::EnergyHistory& energy, const 
       "lower numerics.density_factor, or take numerics.coupling \"explicit\" within its limits (rouleau plan prints "
       "the "
       "margins), or raise checks.energy_growth if this error is acceptable";
-  const int fastest = membrane::farthest_node(membranes).node;
+  const int fastest = core::farthest_node(membranes).node;
   if (fastest >= 0) locate_failure(failure, membranes, fastest, spacing);
   return failure;
 }

@@ -12,7 +12,7 @@ namespace rouleau::monitor {
 
 /// The failure, at the fastest node, if energy in the present stage has grown by more than checks.energy_growth. Not
 /// looked at where an interaction has a state: bonds that form bring energy of their own. `spacing` in m.
-std::optional<Failure> check_energy(const observe::EnergyHistory& energy, const membrane::Membranes& membranes,
+std::optional<Failure> check_energy(const observe::EnergyHistory& energy, const core::Membranes& membranes,
                                     const plan::Plan& plan, double spacing);
 
 }  // namespace rouleau::monitor

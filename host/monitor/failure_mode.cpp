@@ -13,8 +13,8 @@ namespace {
 constexpr int oscillation_window = 8;  // nodes each way
 
 /// Distance from a place to the nearest node of a cell, over all images; infinite without finite nodes.
-double distance_to(const membrane::Membranes& m, const membrane::CellRange& cell, const std::array<double, 2>& place,
-                   const membrane::PeriodicBox& box) {
+double distance_to(const core::Membranes& m, const core::CellRange& cell, const std::array<double, 2>& place,
+                   const core::PeriodicBox& box) {
   double nearest = std::numeric_limits<double>::infinity();
   for (int i = cell.first; i < cell.end(); ++i) {
     const auto k = static_cast<std::size_t>(i);
@@ -31,8 +31,8 @@ struct Surroundings {
   bool contact = false;
 };
 
-Surroundings find_surroundings(int cell, const membrane::Membranes& m, const std::array<double, 2>& place,
-                               const membrane::PeriodicBox& box) {
+Surroundings find_surroundings(int cell, const core::Membranes& m, const std::array<double, 2>& place,
+                               const core::PeriodicBox& box) {
   Surroundings found{cell, false};
   double nearest = membrane_neighbourhood;
   int near = 0;
@@ -46,7 +46,7 @@ Surroundings find_surroundings(int cell, const membrane::Membranes& m, const std
 }
 
 /// The first prominent wave of the cell, from what was noted of its growth or from its last step.
-FailureMode wave_of(int cell, const membrane::Membranes& m, const GrowthWatch& growth, long step) {
+FailureMode wave_of(int cell, const core::Membranes& m, const GrowthWatch& growth, long step) {
   FailureMode mode;
   const auto read = [&mode](const MembraneWave& wave, long at) {
     if (!(wave.prominence >= prominent)) return false;
@@ -60,7 +60,7 @@ FailureMode wave_of(int cell, const membrane::Membranes& m, const GrowthWatch& g
   for (const Excursion& e : growth.excursions()) {
     if (e.cell == cell && read(find_wave(e.x, e.y, e.velocity_x, e.velocity_y), e.step)) return mode;
   }
-  const membrane::CellRange& range = m.cells[static_cast<std::size_t>(cell)];
+  const core::CellRange& range = m.cells[static_cast<std::size_t>(cell)];
   const auto part = [&range](const std::vector<double>& values) {
     return std::span(values).subspan(static_cast<std::size_t>(range.first), static_cast<std::size_t>(range.count));
   };
@@ -101,25 +101,25 @@ double lattice_oscillation(int x, int y, const std::function<FluidSample(int x, 
 }
 
 template <class T>
-double lattice_oscillation(const fluid::Fluid<T>& fluid, int x, int y) {
-  const fluid::FluidSetting& setting = fluid.setting();
-  std::vector<std::vector<fluid::Moments>> rows(static_cast<std::size_t>(setting.ny));
+double lattice_oscillation(const core::Fluid<T>& fluid, int x, int y) {
+  const core::FluidSetting& setting = fluid.setting();
+  std::vector<std::vector<core::Moments>> rows(static_cast<std::size_t>(setting.ny));
   return lattice_oscillation(x, y, [&](int i, int j) -> FluidSample {
     const int nx = setting.nx, ny = setting.ny;
     if (setting.periodic_y) j = (j % ny + ny) % ny;
     if (j < 0 || j >= ny) return {std::nan(""), std::nan(""), std::nan("")};
     auto& row = rows[static_cast<std::size_t>(j)];
     if (row.empty()) fluid.moments(j, row);
-    const fluid::Moments& m = row[static_cast<std::size_t>((i % nx + nx) % nx)];
+    const core::Moments& m = row[static_cast<std::size_t>((i % nx + nx) % nx)];
     return {m.ux, m.uy, m.density / std::sqrt(3.0)};
   });
 }
 
-template double lattice_oscillation(const fluid::Fluid<float>&, int, int);
-template double lattice_oscillation(const fluid::Fluid<double>&, int, int);
+template double lattice_oscillation(const core::Fluid<float>&, int, int);
+template double lattice_oscillation(const core::Fluid<double>&, int, int);
 
-void find_mode(monitor::Failure& failure, const membrane::Membranes& membranes, const GrowthWatch& growth,
-               const membrane::PeriodicBox& box, std::array<double, 2> place, double oscillation, long step) {
+void find_mode(monitor::Failure& failure, const core::Membranes& membranes, const GrowthWatch& growth,
+               const core::PeriodicBox& box, std::array<double, 2> place, double oscillation, long step) {
   const Surroundings around = find_surroundings(failure.cell, membranes, place, box);
   FailureMode mode;
   if (around.cell >= 0) mode = wave_of(around.cell, membranes, growth, step);

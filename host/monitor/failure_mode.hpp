@@ -35,12 +35,12 @@ double lattice_oscillation(int x, int y, const std::function<FluidSample(int x, 
 
 /// The same of a fluid that has settled.
 template <class T>
-double lattice_oscillation(const fluid::Fluid<T>& fluid, int x, int y);
+double lattice_oscillation(const core::Fluid<T>& fluid, int x, int y);
 
 /// Sets the mode of a failure whose reason and cell are known. `place` in lattice units; `oscillation`:
 /// lattice_oscillation there; `step`: the last one.
-void find_mode(Failure& failure, const membrane::Membranes& membranes, const GrowthWatch& growth,
-               const membrane::PeriodicBox& box, std::array<double, 2> place, double oscillation, long step);
+void find_mode(Failure& failure, const core::Membranes& membranes, const GrowthWatch& growth,
+               const core::PeriodicBox& box, std::array<double, 2> place, double oscillation, long step);
 
 /// What the mode adds to the failure's message, and what to do about it first; empty where the mode says no more than
 /// the reason does.

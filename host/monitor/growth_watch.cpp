@@ -7,15 +7,15 @@
 
 namespace rouleau::monitor {
 
-void GrowthWatch::note(long step, const membrane::Membranes& membranes) {
-  const double speed = membrane::largest_step(membranes);
+void GrowthWatch::note(long step, const core::Membranes& membranes) {
+  const double speed = core::largest_step(membranes);
   if (!std::isfinite(speed)) return;
   const auto fastest = std::max_element(membranes.largest_step.begin(), membranes.largest_step.end());
   Excursion excursion;
   excursion.step = step;
   excursion.cell = static_cast<int>(fastest - membranes.largest_step.begin());
   excursion.speed = speed;
-  const membrane::CellRange& cell = membranes.cells[static_cast<std::size_t>(excursion.cell)];
+  const core::CellRange& cell = membranes.cells[static_cast<std::size_t>(excursion.cell)];
   const auto part = [&cell](const std::vector<double>& values) {
     return std::vector<double>(values.begin() + cell.first, values.begin() + cell.end());
   };
@@ -27,9 +27,9 @@ void GrowthWatch::note(long step, const membrane::Membranes& membranes) {
   level_ = 2 * speed;
 }
 
-void GrowthWatch::check(long step, const membrane::Membranes& membranes) {
+void GrowthWatch::check(long step, const core::Membranes& membranes) {
   if (membranes.largest_step.empty()) return;
-  speeds_.push_back(membrane::largest_step(membranes));
+  speeds_.push_back(core::largest_step(membranes));
   steps_.push_back(step);
   if (speeds_.size() > checks_kept) {
     speeds_.erase(speeds_.begin());
@@ -41,7 +41,7 @@ void GrowthWatch::check(long step, const membrane::Membranes& membranes) {
   level_ = std::max({least_level, calm, noted});
 }
 
-bool GrowthWatch::fits(const membrane::Membranes& membranes) const {
+bool GrowthWatch::fits(const core::Membranes& membranes) const {
   const auto of_a_cell = [&](const Excursion& e) {
     if (e.cell < 0 || e.cell >= static_cast<int>(membranes.cells.size())) return false;
     const auto nodes = static_cast<std::size_t>(membranes.cells[static_cast<std::size_t>(e.cell)].count);

@@ -6,7 +6,7 @@
 
 namespace rouleau::monitor {
 
-void locate_failure(Failure& f, const membrane::Membranes& membranes, int node, double spacing) {
+void locate_failure(Failure& f, const core::Membranes& membranes, int node, double spacing) {
   const auto k = static_cast<std::size_t>(node);
   f.place = {(membranes.x[k] - membranes.velocity_x[k] + 0.5) * spacing,
              (membranes.y[k] - membranes.velocity_y[k] + 0.5) * spacing};
@@ -15,11 +15,11 @@ void locate_failure(Failure& f, const membrane::Membranes& membranes, int node, 
   }
 }
 
-std::optional<Failure> check_nodes(const membrane::Membranes& membranes, double limit, int escaped, double spacing) {
+std::optional<Failure> check_nodes(const core::Membranes& membranes, double limit, int escaped, double spacing) {
   if (membranes.cells.empty()) return std::nullopt;
   Failure f;
-  if (!(membrane::largest_step(membranes) <= limit)) {
-    const membrane::FarthestNode farthest = membrane::farthest_node(membranes);
+  if (!(core::largest_step(membranes) <= limit)) {
+    const core::FarthestNode farthest = core::farthest_node(membranes);
     const bool finite = std::isfinite(farthest.step);
     f.reason = finite ? "node_step" : "non_finite";
     f.value = farthest.step;

@@ -14,10 +14,10 @@ inline constexpr const char* blown_up_remedy =
     "rouleau plan prints";
 
 /// Sets cell and place (before its last step) of a failure to those of a node. `spacing` in m.
-void locate_failure(Failure& failure, const membrane::Membranes& membranes, int node, double spacing);
+void locate_failure(Failure& failure, const core::Membranes& membranes, int node, double spacing);
 
 /// The first check that the last step failed, without its time: a node that moved further than `limit` lattice
 /// spacings, is nowhere, or (`escaped`, -1: none) has left the domain. `spacing` in m.
-std::optional<Failure> check_nodes(const membrane::Membranes& membranes, double limit, int escaped, double spacing);
+std::optional<Failure> check_nodes(const core::Membranes& membranes, double limit, int escaped, double spacing);
 
 }  // namespace rouleau::monitor

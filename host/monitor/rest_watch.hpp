@@ -13,7 +13,7 @@ namespace rouleau::monitor {
 class RestWatch {
  public:
   /// A window begins.
-  void start(long step, const membrane::Membranes& membranes) {
+  void start(long step, const core::Membranes& membranes) {
     step_ = step;
     x_ = membranes.x;
     y_ = membranes.y;
@@ -21,10 +21,10 @@ class RestWatch {
   /// First step at which a window of so many steps has ended.
   [[nodiscard]] long end(long window) const { return step_ + window; }
   /// Largest distance that a node has moved since the window began, spacings.
-  [[nodiscard]] double moved(const membrane::Membranes& membranes) const {
-    return membrane::largest_displacement(membranes.x, membranes.y, x_, y_, {0, membranes.node_count()});
+  [[nodiscard]] double moved(const core::Membranes& membranes) const {
+    return core::largest_displacement(membranes.x, membranes.y, x_, y_, {0, membranes.node_count()});
   }
-  [[nodiscard]] bool fits(const membrane::Membranes& membranes) const {
+  [[nodiscard]] bool fits(const core::Membranes& membranes) const {
     return step_ >= 0 && x_.size() == membranes.x.size() && y_.size() == membranes.x.size();
   }
   NLOHMANN_DEFINE_TYPE_INTRUSIVE(RestWatch, step_, x_, y_)

@@ -7,23 +7,22 @@
 
 namespace rouleau::observe {
 
-std::vector<CellContact> find_contacts(const membrane::Membranes& m, const membrane::PeriodicBox& box, double reach) {
+std::vector<CellContact> find_contacts(const core::Membranes& m, const core::PeriodicBox& box, double reach) {
   std::vector<CellContact> contacts;
   const int cells = static_cast<int>(m.cells.size());
-  std::vector<membrane::Bounds> boxes;
-  for (const membrane::CellRange& cell : m.cells) boxes.push_back(membrane::bounds(m, cell));
+  std::vector<core::Bounds> boxes;
+  for (const core::CellRange& cell : m.cells) boxes.push_back(core::bounds(m, cell));
   for (int a = 0; a < cells; ++a) {
     for (int b = a; b < cells; ++b) {
-      const membrane::CellRange &cell = m.cells[static_cast<std::size_t>(a)],
-                                &other = m.cells[static_cast<std::size_t>(b)];
-      membrane::for_each_image(
+      const core::CellRange &cell = m.cells[static_cast<std::size_t>(a)], &other = m.cells[static_cast<std::size_t>(b)];
+      core::for_each_image(
           boxes[static_cast<std::size_t>(a)], boxes[static_cast<std::size_t>(b)], reach, box,
-          [&](membrane::ImageShift shift) {
+          [&](core::ImageShift shift) {
             // A cell and its own image are one contact, seen from both sides.
             if (a == b && (shift.y < 0 || (shift.y == 0 && shift.x <= 0))) return;
-            const double gap = membrane::outline_distance(m, cell, other, shift, box, reach);
+            const double gap = core::outline_distance(m, cell, other, shift, box, reach);
             if (gap < reach) {
-              contacts.push_back({a, b, shift, gap, membrane::facing_length(m, cell, other, shift, box, reach)});
+              contacts.push_back({a, b, shift, gap, core::facing_length(m, cell, other, shift, box, reach)});
             }
           });
     }
@@ -47,7 +46,7 @@ Aggregates find_aggregates(int cells, const std::vector<CellContact>& contacts) 
   }
   std::vector<bool> crossed(static_cast<std::size_t>(cells), false);
   for (const CellContact& c : contacts) {
-    if (!(c.image == membrane::ImageShift{}))
+    if (!(c.image == core::ImageShift{}))
       crossed[static_cast<std::size_t>(result.label[static_cast<std::size_t>(c.cell_a)])] = true;
   }
   result.through_image.resize(static_cast<std::size_t>(cells));

@@ -10,15 +10,14 @@
 namespace rouleau::observe {
 
 struct CellContact {
-  int cell_a, cell_b;          ///< cell_a < cell_b, or equal for a cell and its own image
-  membrane::ImageShift image;  ///< of b
-  double gap;                  ///< smallest distance between the two polygons, lattice units
-  double contact_length;       ///< rest length of a's nodes nearer to b than `reach`
+  int cell_a, cell_b;      ///< cell_a < cell_b, or equal for a cell and its own image
+  core::ImageShift image;  ///< of b
+  double gap;              ///< smallest distance between the two polygons, lattice units
+  double contact_length;   ///< rest length of a's nodes nearer to b than `reach`
 };
 
 /// All pairs nearer than `reach` (lattice units).
-std::vector<CellContact> find_contacts(const membrane::Membranes& membranes, const membrane::PeriodicBox& box,
-                                       double reach);
+std::vector<CellContact> find_contacts(const core::Membranes& membranes, const core::PeriodicBox& box, double reach);
 
 struct Aggregates {
   int count = 0;

@@ -8,7 +8,7 @@ namespace rouleau::observe {
 namespace {
 
 /// Power that the membranes give away, at the velocities of their last step.
-double given_away(const membrane::Membranes& m) {
+double given_away(const core::Membranes& m) {
   double power = 0;
   for (std::size_t i = 0; i < m.x.size(); ++i) power += m.force_x[i] * m.velocity_x[i] + m.force_y[i] * m.velocity_y[i];
   return power;
@@ -17,11 +17,11 @@ double given_away(const membrane::Membranes& m) {
 }  // namespace
 
 template <class T>
-EnergySnapshot observe_energy(solver::Solver<T>& solver, const membrane::Membranes& membranes,
+EnergySnapshot observe_energy(core::Solver<T>& solver, const core::Membranes& membranes,
                               const units::LatticeUnits& units) {
   const double joule = units.to_si(1, units::dimension::energy_per_depth),
                watt = units.to_si(1, units::dimension::power_per_depth);
-  const fluid::FluidSetting& setting = solver.fluid().setting();
+  const core::FluidSetting& setting = solver.fluid().setting();
   EnergySnapshot energy;
   const auto fluid = solver.fluid().energetics();
   energy.kinetic = fluid.kinetic * joule;
@@ -35,8 +35,8 @@ EnergySnapshot observe_energy(solver::Solver<T>& solver, const membrane::Membran
     energy.body_force_power =
         (setting.body_force_x * fluid.velocity_x + setting.body_force_y * fluid.velocity_y) * watt;
   }
-  if (membrane::MembraneForces* forces = solver.membrane_forces()) {
-    const membrane::MembraneEnergy membrane = forces->energies(membranes);
+  if (core::MembraneForces* forces = solver.membrane_forces()) {
+    const core::MembraneEnergy membrane = forces->energies(membranes);
     energy.elastic = (membrane.tension + membrane.cell) * joule;
     energy.bending = membrane.bending * joule;
     energy.membrane_dissipation = membrane.dissipation * watt;
@@ -46,7 +46,7 @@ EnergySnapshot observe_energy(solver::Solver<T>& solver, const membrane::Membran
     if (solver.corrects_motion()) energy.viscous_dissipation += (given_away(membranes) - fluid.membrane_power) * watt;
     if (!membrane.unknown.empty()) energy.unknown = "membrane law " + membrane.unknown + " tells no energy";
   }
-  if (const contact::InteractionForces* forces = solver.interaction_forces()) {
+  if (const core::InteractionForces* forces = solver.interaction_forces()) {
     energy.interaction = forces->energy(membranes) * joule;
     energy.total += energy.interaction;
     const std::string silent = forces->without_energy();
@@ -56,8 +56,8 @@ EnergySnapshot observe_energy(solver::Solver<T>& solver, const membrane::Membran
   return energy;
 }
 
-template EnergySnapshot observe_energy(solver::Solver<float>&, const membrane::Membranes&, const units::LatticeUnits&);
-template EnergySnapshot observe_energy(solver::Solver<double>&, const membrane::Membranes&, const units::LatticeUnits&);
+template EnergySnapshot observe_energy(core::Solver<float>&, const core::Membranes&, const units::LatticeUnits&);
+template EnergySnapshot observe_energy(core::Solver<double>&, const core::Membranes&, const units::LatticeUnits&);
 
 void EnergyHistory::follow(const Snapshot& snapshot, bool driven, double floor) {
   const EnergySnapshot& energy = snapshot.energy;

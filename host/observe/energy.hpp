@@ -13,7 +13,7 @@ namespace rouleau::observe {
 
 /// State before the next step of `solver`, whose forces have been computed and whose fluid is settled.
 template <class T>
-EnergySnapshot observe_energy(solver::Solver<T>& solver, const membrane::Membranes& membranes,
+EnergySnapshot observe_energy(core::Solver<T>& solver, const core::Membranes& membranes,
                               const units::LatticeUnits& units);
 
 /// Follows the total energy through the stages at rest, where it may only fall.

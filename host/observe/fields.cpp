@@ -6,7 +6,7 @@
 namespace rouleau::observe {
 
 template <class T>
-FieldSnapshot observe_fields(fluid::Fluid<T>& fluid, const scene::Scene& scene, const units::LatticeUnits& units) {
+FieldSnapshot observe_fields(core::Fluid<T>& fluid, const scene::Scene& scene, const units::LatticeUnits& units) {
   const auto wanted = [&](const char* name) {
     const auto& q = scene.output.quantities;
     return std::find(q.begin(), q.end(), name) != q.end();
@@ -21,18 +21,18 @@ FieldSnapshot observe_fields(fluid::Fluid<T>& fluid, const scene::Scene& scene, 
   const double speed = units.to_si(1, units::dimension::velocity), rate = units.to_si(1, units::dimension::rate);
   const double viscosity_unit = units.to_si(1, units::dimension::viscosity);
   const auto nodes = static_cast<std::size_t>(f.nx) * static_cast<std::size_t>(f.ny);
-  std::vector<std::vector<fluid::Moments>> rows(static_cast<std::size_t>(ny));
+  std::vector<std::vector<core::Moments>> rows(static_cast<std::size_t>(ny));
   for (int y = 0; y < ny; ++y) fluid.moments(y, rows[static_cast<std::size_t>(y)]);
   for (auto [want, values] :
        {std::pair{velocity, &f.velocity_x}, std::pair{velocity, &f.velocity_y}, std::pair{density, &f.density},
         std::pair{viscosity, &f.viscosity}, std::pair{vorticity, &f.vorticity}}) {
     if (want) values->reserve(nodes);
   }
-  const fluid::WallVelocity& walls = fluid.setting().walls;
+  const core::WallVelocity& walls = fluid.setting().walls;
   for (int row = 0; row < f.ny; ++row) {
     for (int column = 0; column < f.nx; ++column) {
       const int x = storage.first[0] + column * storage.stride, y = storage.first[1] + row * storage.stride;
-      const fluid::Moments& m = rows[static_cast<std::size_t>(y)][static_cast<std::size_t>(x)];
+      const core::Moments& m = rows[static_cast<std::size_t>(y)][static_cast<std::size_t>(x)];
       if (velocity) {
         f.velocity_x.push_back(m.ux * speed);
         f.velocity_y.push_back(m.uy * speed);
@@ -46,7 +46,7 @@ FieldSnapshot observe_fields(fluid::Fluid<T>& fluid, const scene::Scene& scene, 
         f.viscosity.push_back((1 / relaxation - 0.5) / 3 * viscosity_unit);
       }
       if (vorticity) {
-        const auto at = [&](int i, int j) -> const fluid::Moments& {
+        const auto at = [&](int i, int j) -> const core::Moments& {
           return rows[static_cast<std::size_t>(j)][static_cast<std::size_t>((i + nx) % nx)];
         };
         const auto ux = [&](int j) {
@@ -63,7 +63,7 @@ FieldSnapshot observe_fields(fluid::Fluid<T>& fluid, const scene::Scene& scene, 
   return f;
 }
 
-template FieldSnapshot observe_fields(fluid::Fluid<float>&, const scene::Scene&, const units::LatticeUnits&);
-template FieldSnapshot observe_fields(fluid::Fluid<double>&, const scene::Scene&, const units::LatticeUnits&);
+template FieldSnapshot observe_fields(core::Fluid<float>&, const scene::Scene&, const units::LatticeUnits&);
+template FieldSnapshot observe_fields(core::Fluid<double>&, const scene::Scene&, const units::LatticeUnits&);
 
 }  // namespace rouleau::observe

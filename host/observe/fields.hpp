@@ -10,6 +10,6 @@ namespace rouleau::observe {
 
 /// The quantities that the scene asks for, before the next step of a settled fluid whose force has been folded.
 template <class T>
-FieldSnapshot observe_fields(fluid::Fluid<T>& fluid, const scene::Scene& scene, const units::LatticeUnits& units);
+FieldSnapshot observe_fields(core::Fluid<T>& fluid, const scene::Scene& scene, const units::LatticeUnits& units);
 
 }  // namespace rouleau::observe

@@ -54,10 +54,10 @@ std::string leak_remedy(double segment) {
 }
 
 /// Smallest gap of a cell to any other or to an image, looked for in growing neighbourhoods up to the size of the box.
-double gap_to_others(const membrane::Membranes& membranes, int cell, const membrane::PeriodicBox& box) {
+double gap_to_others(const core::Membranes& membranes, int cell, const core::PeriodicBox& box) {
   const double most = 2 * std::max(box.nx, box.ny);
   for (double limit = box.nx / 16; limit < most; limit *= 2) {
-    const double gap = membrane::smallest_gap(membranes, cell, box, limit);
+    const double gap = core::smallest_gap(membranes, cell, box, limit);
     if (std::isfinite(gap)) return gap;
   }
   return std::numeric_limits<double>::infinity();
@@ -65,20 +65,19 @@ double gap_to_others(const membrane::Membranes& membranes, int cell, const membr
 
 }  // namespace
 
-Observer::Observer(const scene::Scene& scene, const membrane::Membranes& membranes)
+Observer::Observer(const scene::Scene& scene, const core::Membranes& membranes)
     : scene_(&scene),
       box_{static_cast<double>(scene.domain.nodes[0]),
            scene.domain.periodic_y ? static_cast<double>(scene.domain.nodes[1]) : 0.0} {
-  for (const membrane::CellRange& cell : membranes.cells)
-    initial_area_.push_back(membrane::enclosed_area(membranes, cell));
+  for (const core::CellRange& cell : membranes.cells) initial_area_.push_back(core::enclosed_area(membranes, cell));
   for (const scene::CellPlacement& cell : scene.cells) angle_.push_back(cell.angle);
   tank_treading_angle_.assign(membranes.cells.size(), 0.0);
 }
 
-double Observer::area_drift(const membrane::Membranes& membranes, int* whose) const {
+double Observer::area_drift(const core::Membranes& membranes, int* whose) const {
   double most = 0;
   for (std::size_t k = 0; k < membranes.cells.size(); ++k) {
-    const double drift = std::abs(membrane::enclosed_area(membranes, membranes.cells[k]) / initial_area_[k] - 1);
+    const double drift = std::abs(core::enclosed_area(membranes, membranes.cells[k]) / initial_area_[k] - 1);
     if (drift > most || !std::isfinite(drift)) {
       most = drift;
       if (whose != nullptr) *whose = static_cast<int>(k);
@@ -87,7 +86,7 @@ double Observer::area_drift(const membrane::Membranes& membranes, int* whose) co
   return most;
 }
 
-double Observer::area_leakage(const membrane::Membranes& membranes, int* whose) {
+double Observer::area_leakage(const core::Membranes& membranes, int* whose) {
   if (membranes.area_leakage.empty()) return std::nan("");
   double most = 0;
   for (std::size_t k = 0; k < membranes.area_leakage.size(); ++k) {
@@ -100,7 +99,7 @@ double Observer::area_leakage(const membrane::Membranes& membranes, int* whose) 
   return most;
 }
 
-double Observer::momentum_residual(const membrane::Membranes& m) {
+double Observer::momentum_residual(const core::Membranes& m) {
   double net_x = 0, net_y = 0, magnitudes = 0;
   for (std::size_t i = 0; i < m.x.size(); ++i) {
     net_x += m.force_x[i];
@@ -111,7 +110,7 @@ double Observer::momentum_residual(const membrane::Membranes& m) {
 }
 
 template <class T>
-double Observer::follow_fluid(fluid::Fluid<T>& fluid) {
+double Observer::follow_fluid(core::Fluid<T>& fluid) {
   fluid.settle();
   const auto [mass, speed] = fluid.extremes();
   if (std::isnan(initial_mass_)) initial_mass_ = mass;
@@ -126,14 +125,14 @@ namespace {
 
 /// Node with the first value that is no number, else the one with the largest speed.
 template <class T>
-std::array<double, 2> extreme_node(const fluid::Fluid<T>& fluid) {
+std::array<double, 2> extreme_node(const core::Fluid<T>& fluid) {
   std::array<double, 2> place{0, 0};
   double fastest = -1;
-  std::vector<fluid::Moments> row;
+  std::vector<core::Moments> row;
   for (int y = 0; y < fluid.setting().ny; ++y) {
     fluid.moments(y, row);
     for (int x = 0; x < fluid.setting().nx; ++x) {
-      const fluid::Moments& m = row[static_cast<std::size_t>(x)];
+      const core::Moments& m = row[static_cast<std::size_t>(x)];
       const double square = m.ux * m.ux + m.uy * m.uy;
       const bool finite = std::isfinite(square) && std::isfinite(m.density);
       if (!finite || square > fastest) place = {static_cast<double>(x), static_cast<double>(y)};
@@ -146,11 +145,11 @@ std::array<double, 2> extreme_node(const fluid::Fluid<T>& fluid) {
 
 }  // namespace
 
-std::optional<monitor::Failure> Observer::check_stretch(const membrane::Membranes& membranes,
+std::optional<monitor::Failure> Observer::check_stretch(const core::Membranes& membranes,
                                                         const units::LatticeUnits& units) const {
   const double limit = scene_->checks.stretch;
   for (std::size_t k = 0; k < membranes.cells.size(); ++k) {
-    const membrane::CellRange& cell = membranes.cells[k];
+    const core::CellRange& cell = membranes.cells[k];
     const auto* circle = std::get_if<scene::Circle>(&scene_->cell_types[static_cast<std::size_t>(cell.type)].shape);
     const double placed = circle != nullptr ? circle->prestretch : 1.0;
     for (int i = cell.first; i < cell.end(); ++i) {
@@ -171,8 +170,8 @@ std::optional<monitor::Failure> Observer::check_stretch(const membrane::Membrane
 }
 
 template <class T>
-std::optional<monitor::Failure> Observer::check(solver::Solver<T>& solver, const plan::StageSetting& setting,
-                                                const membrane::Membranes& membranes) {
+std::optional<monitor::Failure> Observer::check(core::Solver<T>& solver, const plan::StageSetting& setting,
+                                                const core::Membranes& membranes) {
   const units::LatticeUnits& units = setting.units;
   const auto place = [&](double x, double y) {
     return std::array<double, 2>{(x + 0.5) * units.length, (y + 0.5) * units.length};
@@ -196,20 +195,20 @@ std::optional<monitor::Failure> Observer::check(solver::Solver<T>& solver, const
   const double leakage = area_leakage(membranes, &leaking);
   if (leakage > drift) drift = leakage, cell = leaking;
   if (!(drift <= scene_->checks.area_drift)) {
-    const membrane::CellRange& drifting = membranes.cells[static_cast<std::size_t>(cell)];
-    const Eigen::Vector2d c = membrane::centroid(membranes, drifting);
+    const core::CellRange& drifting = membranes.cells[static_cast<std::size_t>(cell)];
+    const Eigen::Vector2d c = core::centroid(membranes, drifting);
     return failure(
         "area_drift", place(c.x(), c.y()), cell, drift, scene_->checks.area_drift,
         std::string("a cell ") +
             (drift == leakage ? "would have changed its area by more than the limit without numerics.area_correction"
                               : "has changed its area by more than the limit") +
             ": fluid leaks through its membrane or is compressed",
-        leak_remedy(membrane::perimeter(membranes, drifting) / drifting.count) +
+        leak_remedy(core::perimeter(membranes, drifting) / drifting.count) +
             "lower numerics.density_factor, raise the resolution, or raise checks.area_drift if this error is "
             "acceptable");
   }
   if (auto uneven = check_stretch(membranes, units)) return uneven;
-  if (const auto crossing = contact::find_crossing(membranes, box_)) {
+  if (const auto crossing = core::find_crossing(membranes, box_)) {
     return failure("crossing", place(crossing->place.x(), crossing->place.y()), crossing->cell, 0, 0,
                    crossing->cell == crossing->other ? "the membrane of a cell crosses itself"
                                                      : "the membranes of cells " + std::to_string(crossing->cell) +
@@ -220,8 +219,7 @@ std::optional<monitor::Failure> Observer::check(solver::Solver<T>& solver, const
   return std::nullopt;
 }
 
-void Observer::observe_cells(const membrane::Membranes& membranes, const units::LatticeUnits& units,
-                             Snapshot& snapshot) {
+void Observer::observe_cells(const core::Membranes& membranes, const units::LatticeUnits& units, Snapshot& snapshot) {
   const double length = units.length;
   const auto contacts = find_contacts(membranes, box_, scene_->output.aggregate_gap / length);
   const Aggregates aggregates = find_aggregates(static_cast<int>(membranes.cells.size()), contacts);
@@ -235,11 +233,11 @@ void Observer::observe_cells(const membrane::Membranes& membranes, const units::
   }
   std::vector<Eigen::Vector2d> centers;
   for (std::size_t k = 0; k < membranes.cells.size(); ++k) {
-    const membrane::CellRange& cell = membranes.cells[k];
-    const Eigen::Vector2d c = membrane::centroid(membranes, cell);
+    const core::CellRange& cell = membranes.cells[k];
+    const Eigen::Vector2d c = core::centroid(membranes, cell);
     centers.push_back(c);
-    const membrane::InertiaEllipse ellipse = membrane::inertia_ellipse(membranes, cell);
-    const double marker = membrane::marker_angle(membranes, cell);
+    const core::InertiaEllipse ellipse = core::inertia_ellipse(membranes, cell);
+    const double marker = core::marker_angle(membranes, cell);
     const bool round = !(ellipse.deformation > roundest);
     if (!round) angle_[k] = continued(ellipse.angle, angle_[k], std::numbers::pi);
     tank_treading_angle_[k] = started_ ? continued(marker, tank_treading_angle_[k], 2 * std::numbers::pi) : marker;
@@ -250,13 +248,13 @@ void Observer::observe_cells(const membrane::Membranes& membranes, const units::
     s.y = (c.y() + 0.5) * length;
     s.angle = round ? std::nan("") : angle_[k];
     s.deformation = ellipse.deformation;
-    s.area = membrane::enclosed_area(membranes, cell) * length * length;
-    s.perimeter = membrane::perimeter(membranes, cell) * length;
+    s.area = core::enclosed_area(membranes, cell) * length * length;
+    s.perimeter = core::perimeter(membranes, cell) * length;
     s.tank_treading_angle = tank_treading_angle_[k];
     s.min_gap = gap_to_others(membranes, static_cast<int>(k), box_) * length;
     s.aggregate = aggregates.label[k];
     s.through_image = aggregates.through_image[k];
-    const membrane::StretchRange stretch = membrane::stretch_range(membranes, cell);
+    const core::StretchRange stretch = core::stretch_range(membranes, cell);
     s.stretch_min = stretch.least;
     s.stretch_max = stretch.most;
     stretch_.least = std::min(stretch_.least, stretch.least);
@@ -268,8 +266,8 @@ void Observer::observe_cells(const membrane::Membranes& membranes, const units::
 }
 
 template <class T>
-Snapshot Observer::observe(solver::Solver<T>& solver, const plan::StageSetting& setting,
-                           const membrane::Membranes& membranes, bool with_fields) {
+Snapshot Observer::observe(core::Solver<T>& solver, const plan::StageSetting& setting, const core::Membranes& membranes,
+                           bool with_fields) {
   const units::LatticeUnits& units = setting.units;
   Snapshot snapshot;
   snapshot.stage = setting.index;
@@ -303,7 +301,7 @@ Snapshot Observer::observe(solver::Solver<T>& solver, const plan::StageSetting& 
     solver.tensions(tension);
     const double tension_unit = units.to_si(1, units::dimension::tension);
     OutlineSnapshot& outlines = snapshot.outlines;
-    for (const membrane::CellRange& cell : membranes.cells) outlines.first.push_back(cell.first);
+    for (const core::CellRange& cell : membranes.cells) outlines.first.push_back(cell.first);
     outlines.first.push_back(membranes.node_count());
     for (std::size_t i = 0; i < membranes.x.size(); ++i) {
       outlines.x.push_back((membranes.x[i] + 0.5) * units.length);
@@ -318,13 +316,11 @@ Snapshot Observer::observe(solver::Solver<T>& solver, const plan::StageSetting& 
 
 void Observer::start_stage() { initial_mass_ = std::nan(""); }
 
-template Snapshot Observer::observe(solver::Solver<float>&, const plan::StageSetting&, const membrane::Membranes&,
-                                    bool);
-template Snapshot Observer::observe(solver::Solver<double>&, const plan::StageSetting&, const membrane::Membranes&,
-                                    bool);
-template std::optional<monitor::Failure> Observer::check(solver::Solver<float>&, const plan::StageSetting&,
-                                                         const membrane::Membranes&);
-template std::optional<monitor::Failure> Observer::check(solver::Solver<double>&, const plan::StageSetting&,
-                                                         const membrane::Membranes&);
+template Snapshot Observer::observe(core::Solver<float>&, const plan::StageSetting&, const core::Membranes&, bool);
+template Snapshot Observer::observe(core::Solver<double>&, const plan::StageSetting&, const core::Membranes&, bool);
+template std::optional<monitor::Failure> Observer::check(core::Solver<float>&, const plan::StageSetting&,
+                                                         const core::Membranes&);
+template std::optional<monitor::Failure> Observer::check(core::Solver<double>&, const plan::StageSetting&,
+                                                         const core::Membranes&);
 
 }  // namespace rouleau::observe

@@ -14,46 +14,46 @@
 #include "rotation.hpp"
 #include "snapshot.hpp"
 
-namespace rouleau::membrane {
+namespace rouleau::core {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(StretchRange, least, most)
-}  // namespace rouleau::membrane
+}  // namespace rouleau::core
 
 namespace rouleau::observe {
 
 /// Follows angles over turns, and remembers what drifts are measured against; lives for the whole run.
 class Observer {
  public:
-  Observer(const scene::Scene& scene, const membrane::Membranes& membranes);
+  Observer(const scene::Scene& scene, const core::Membranes& membranes);
 
   /// Mass is compared within a stage: a new density factor rescales the populations.
   void start_stage();
 
   /// State before the next step of `solver`, whose forces must have been computed. `with_fields`: fields are due.
   template <class T>
-  Snapshot observe(solver::Solver<T>& solver, const plan::StageSetting& setting, const membrane::Membranes& membranes,
+  Snapshot observe(core::Solver<T>& solver, const plan::StageSetting& setting, const core::Membranes& membranes,
                    bool with_fields);
 
   /// Checks everything that costs a scan: finite fields, Mach number, area, crossings.
   template <class T>
-  std::optional<monitor::Failure> check(solver::Solver<T>& solver, const plan::StageSetting& setting,
-                                        const membrane::Membranes& membranes);
+  std::optional<monitor::Failure> check(core::Solver<T>& solver, const plan::StageSetting& setting,
+                                        const core::Membranes& membranes);
 
   /// Largest relative change of a cell's area so far, at the present positions; `cell`: whose.
-  double area_drift(const membrane::Membranes& membranes, int* cell = nullptr) const;
+  double area_drift(const core::Membranes& membranes, int* cell = nullptr) const;
   /// Largest area that the area correction has kept from leaking out of (or into) a cell so far, over its rest area;
   /// `cell`: whose. NaN without that correction.
-  static double area_leakage(const membrane::Membranes& membranes, int* cell = nullptr);
+  static double area_leakage(const core::Membranes& membranes, int* cell = nullptr);
   /// Sum of nodal forces over the sum of their magnitudes: rounding only, or an internal force is unbalanced.
-  static double momentum_residual(const membrane::Membranes& membranes);
+  static double momentum_residual(const core::Membranes& membranes);
 
-  [[nodiscard]] const membrane::PeriodicBox& box() const { return box_; }
+  [[nodiscard]] const core::PeriodicBox& box() const { return box_; }
   [[nodiscard]] double mach_max() const { return mach_max_; }
   [[nodiscard]] double area_drift_max() const { return area_drift_max_; }
   [[nodiscard]] double mass_drift() const { return mass_drift_; }
   /// Of any segment at any output so far.
-  [[nodiscard]] const membrane::StretchRange& stretch() const { return stretch_; }
+  [[nodiscard]] const core::StretchRange& stretch() const { return stretch_; }
   /// Whether what it remembers is about so many cells.
-  [[nodiscard]] bool fits(const membrane::Membranes& membranes) const {
+  [[nodiscard]] bool fits(const core::Membranes& membranes) const {
     const std::size_t cells = membranes.cells.size();
     return initial_area_.size() == cells && angle_.size() == cells && tank_treading_angle_.size() == cells;
   }
@@ -63,20 +63,20 @@ class Observer {
  private:
   /// Follows mass and Mach number; returns the latter, which is NaN if the fluid holds a value that is no number.
   template <class T>
-  double follow_fluid(fluid::Fluid<T>& fluid);
-  [[nodiscard]] std::optional<monitor::Failure> check_stretch(const membrane::Membranes& membranes,
+  double follow_fluid(core::Fluid<T>& fluid);
+  [[nodiscard]] std::optional<monitor::Failure> check_stretch(const core::Membranes& membranes,
                                                               const units::LatticeUnits& units) const;
-  void observe_cells(const membrane::Membranes& membranes, const units::LatticeUnits& units, Snapshot& snapshot);
+  void observe_cells(const core::Membranes& membranes, const units::LatticeUnits& units, Snapshot& snapshot);
 
   const scene::Scene* scene_;
-  membrane::PeriodicBox box_;
+  core::PeriodicBox box_;
   std::vector<double> initial_area_;
   std::vector<double> angle_, tank_treading_angle_;  ///< last values, continuous
   Rotation rotation_;
   bool started_ = false;
   double mach_max_ = 0, area_drift_max_ = 0, mass_drift_ = 0;
   double initial_mass_ = std::numeric_limits<double>::quiet_NaN();  ///< none yet
-  membrane::StretchRange stretch_;
+  core::StretchRange stretch_;
 };
 
 }  // namespace rouleau::observe

@@ -4,10 +4,10 @@
 
 namespace rouleau::observe {
 
-double particle_stress(const membrane::Membranes& m, const scene::Scene& scene, double viscosity) {
+double particle_stress(const core::Membranes& m, const scene::Scene& scene, double viscosity) {
   double stress = 0;
-  for (const membrane::CellRange& cell : m.cells) {
-    const Eigen::Vector2d c = membrane::centroid(m, cell);
+  for (const core::CellRange& cell : m.cells) {
+    const Eigen::Vector2d c = core::centroid(m, cell);
     const double ratio =
         scene.cell_types[static_cast<std::size_t>(cell.type)].interior_viscosity / scene.fluid.viscosity;
     for (int i = cell.first; i < cell.end(); ++i) {

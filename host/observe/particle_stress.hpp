@@ -9,6 +9,6 @@ namespace rouleau::observe {
 /// Stress that the cells add to the suspension, xy component per area of the domain, lattice units: membrane forces and
 /// viscosity contrast (Batchelor, J. Fluid Mech. 41, 1970; surface integral of u n + n u over the outline). `viscosity`
 /// is that of the suspending fluid; forces and velocities must be those of the present step.
-double particle_stress(const membrane::Membranes& membranes, const scene::Scene& scene, double viscosity);
+double particle_stress(const core::Membranes& membranes, const scene::Scene& scene, double viscosity);
 
 }  // namespace rouleau::observe

@@ -12,10 +12,10 @@ bool is_driven_channel(const plan::StageSetting& setting, const scene::Scene& sc
 }
 
 template <class T>
-double flow_rate(const fluid::Fluid<T>& fluid) {
-  const fluid::FluidSetting& setting = fluid.setting();
+double flow_rate(const core::Fluid<T>& fluid) {
+  const core::FluidSetting& setting = fluid.setting();
   std::vector<double> mean(static_cast<std::size_t>(setting.ny));
-  std::vector<fluid::Moments> row;
+  std::vector<core::Moments> row;
   double sum = 0;
   for (int y = 0; y < setting.ny; ++y) {
     fluid.moments(y, row);
@@ -33,8 +33,8 @@ double flow_rate(const fluid::Fluid<T>& fluid) {
   return sum + (upper - lower) / 24;
 }
 
-template double flow_rate(const fluid::Fluid<float>&);
-template double flow_rate(const fluid::Fluid<double>&);
+template double flow_rate(const core::Fluid<float>&);
+template double flow_rate(const core::Fluid<double>&);
 
 double apparent_viscosity(double flow_rate, const plan::StageSetting& setting, int height) {
   const double viscosity = (setting.tau - 0.5) / 3;
@@ -42,10 +42,10 @@ double apparent_viscosity(double flow_rate, const plan::StageSetting& setting, i
   return flow_rate != 0 ? alone / flow_rate : std::nan("");
 }
 
-CellFreeLayer cell_free_layer(const membrane::Membranes& membranes, int nx, int ny) {
+CellFreeLayer cell_free_layer(const core::Membranes& membranes, int nx, int ny) {
   const double half = ny / 2.0, lower_wall = -0.5, upper_wall = ny - 0.5;
   std::vector<double> lower(static_cast<std::size_t>(nx), half), upper(static_cast<std::size_t>(nx), half);
-  for (const membrane::CellRange& cell : membranes.cells) {
+  for (const core::CellRange& cell : membranes.cells) {
     for (int i = cell.first; i < cell.end(); ++i) {
       const auto from = static_cast<std::size_t>(i), to = static_cast<std::size_t>(cell.next(i));
       const double x0 = membranes.x[from], x1 = membranes.x[to], y0 = membranes.y[from], y1 = membranes.y[to];
@@ -54,7 +54,7 @@ CellFreeLayer cell_free_layer(const membrane::Membranes& membranes, int nx, int 
       if (!(right - left < nx && std::abs(left) < 1e9)) continue;
       for (double x = std::ceil(left); x <= right; ++x) {
         const double y = x1 != x0 ? y0 + (y1 - y0) * (x - x0) / (x1 - x0) : y0;
-        const auto column = static_cast<std::size_t>(membrane::wrapped(static_cast<int>(x), nx));
+        const auto column = static_cast<std::size_t>(core::wrapped(static_cast<int>(x), nx));
         lower[column] = std::min(lower[column], std::min(y, x1 != x0 ? y : y1) - lower_wall);
         upper[column] = std::min(upper[column], upper_wall - std::max(y, x1 != x0 ? y : y1));
       }

@@ -18,7 +18,7 @@ bool is_driven_channel(const plan::StageSetting& setting, const scene::Scene& sc
 /// are parabolas in y (midpoint rule with its end correction; the walls' velocity counts as a value). The fluid must be
 /// settled, between steps.
 template <class T>
-double flow_rate(const fluid::Fluid<T>& fluid);
+double flow_rate(const core::Fluid<T>& fluid);
 
 /// Flow rate of the suspending fluid alone, G H^3 / (12 mu) of plane Poiseuille flow, over `flow_rate` (lattice): the
 /// relative apparent viscosity of a driven suspension. Not a number where nothing flows.
@@ -30,7 +30,7 @@ double apparent_viscosity(double flow_rate, const plan::StageSetting& setting, i
 struct CellFreeLayer {
   double lower, upper;
 };
-CellFreeLayer cell_free_layer(const membrane::Membranes& membranes, int nx, int ny);
+CellFreeLayer cell_free_layer(const core::Membranes& membranes, int nx, int ny);
 
 /// Number of aggregates by their number of cells, from a label for each cell.
 std::map<int, int> aggregate_sizes(const std::vector<int>& label);

@@ -9,7 +9,7 @@ namespace {
 
 /// Shift of every cell that brings it beside its neighbours in the aggregate; the cell with the smallest index stays.
 struct Unwrapping {
-  std::vector<membrane::ImageShift> shift;
+  std::vector<core::ImageShift> shift;
   std::vector<bool> endless;  ///< by label: some way along the contacts leads back to an image of where it began
 };
 
@@ -17,7 +17,7 @@ Unwrapping unwrap(const std::vector<CellContact>& contacts, const Aggregates& ag
   const std::size_t cells = aggregates.label.size();
   struct Step {
     std::size_t to;
-    membrane::ImageShift image;
+    core::ImageShift image;
   };
   std::vector<std::vector<Step>> steps(cells);
   for (const CellContact& c : contacts) {
@@ -25,7 +25,7 @@ Unwrapping unwrap(const std::vector<CellContact>& contacts, const Aggregates& ag
     steps[a].push_back({b, c.image});
     steps[b].push_back({a, -c.image});
   }
-  Unwrapping result{std::vector<membrane::ImageShift>(cells), std::vector<bool>(cells, false)};
+  Unwrapping result{std::vector<core::ImageShift>(cells), std::vector<bool>(cells, false)};
   std::vector<bool> reached(cells, false);
   for (std::size_t root = 0; root < cells; ++root) {
     if (reached[root]) continue;
@@ -34,7 +34,7 @@ Unwrapping unwrap(const std::vector<CellContact>& contacts, const Aggregates& ag
       const std::size_t cell = open.back();
       open.pop_back();
       for (const Step& step : steps[cell]) {
-        const membrane::ImageShift own = result.shift[cell], there{own.x + step.image.x, own.y + step.image.y};
+        const core::ImageShift own = result.shift[cell], there{own.x + step.image.x, own.y + step.image.y};
         if (!reached[step.to]) {
           reached[step.to] = true;
           result.shift[step.to] = there;
@@ -65,7 +65,7 @@ double angle_of_longest(const std::vector<Eigen::Vector2d>& points) {
 }  // namespace
 
 std::map<int, double> Rotation::follow(const std::vector<CellContact>& contacts, const Aggregates& aggregates,
-                                       const std::vector<Eigen::Vector2d>& centers, const membrane::PeriodicBox& box) {
+                                       const std::vector<Eigen::Vector2d>& centers, const core::PeriodicBox& box) {
   const Unwrapping unwrapped = unwrap(contacts, aggregates);
   std::map<int, std::vector<int>> members;
   for (std::size_t i = 0; i < aggregates.label.size(); ++i) members[aggregates.label[i]].push_back(static_cast<int>(i));

@@ -8,13 +8,13 @@ namespace rouleau::plan {
 namespace {
 
 constexpr std::array<KernelFacts, 4> kernels{{
-    {coupling::KernelKind::peskin4, "peskin4", 0, 1, 1, ""},
-    {coupling::KernelKind::cosine4, "cosine4", 0.0211, 1, 1,
+    {core::KernelKind::peskin4, "peskin4", 0, 1, 1, ""},
+    {core::KernelKind::cosine4, "cosine4", 0.0211, 1, 1,
      "its first moment reaches 0.021 spacings: with bending and segments shorter than a spacing it puts a false torque "
      "into the fluid (11 degrees off at strain 1 for a biconcave cell of half a spacing per segment); take peskin4"},
-    {coupling::KernelKind::roma3, "roma3", 0, 0.095, 0.057,
+    {core::KernelKind::roma3, "roma3", 0, 0.095, 0.057,
      "it lets ten times less stiffness pass than peskin4 before nodes zigzag, and leaks twice the area"},
-    {coupling::KernelKind::linear2, "linear2", 0, 0.013, 0.0066,
+    {core::KernelKind::linear2, "linear2", 0, 0.013, 0.0066,
      "it lets seventy times less stiffness pass than peskin4, and cells leak silently beyond that limit; it is here "
      "for "
      "comparison"},
@@ -22,7 +22,7 @@ constexpr std::array<KernelFacts, 4> kernels{{
 
 }  // namespace
 
-const KernelFacts& kernel_facts(coupling::KernelKind kind) {
+const KernelFacts& kernel_facts(core::KernelKind kind) {
   for (const KernelFacts& facts : kernels) {
     if (facts.kind == kind) return facts;
   }

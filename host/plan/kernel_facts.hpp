@@ -8,7 +8,7 @@
 namespace rouleau::plan {
 
 struct KernelFacts {
-  coupling::KernelKind kind;
+  core::KernelKind kind;
   const char* name;
   double first_moment;   ///< largest |sum w (x - X)|, spacings
   double stretch_limit;  ///< largest stretching stiffness with explicit coupling over that of peskin4
@@ -17,7 +17,7 @@ struct KernelFacts {
 };
 
 /// Facts of a kernel. The limits were measured with one cell at rest, 20 spacings a radius, tau 1.
-const KernelFacts& kernel_facts(coupling::KernelKind kind);
+const KernelFacts& kernel_facts(core::KernelKind kind);
 /// The kernel of this name, which the schema has checked.
 const KernelFacts& kernel_named(const std::string& name);
 

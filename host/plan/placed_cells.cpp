@@ -12,20 +12,20 @@ namespace rouleau::plan {
 
 namespace {
 
-membrane::RestShape rest_shape(const scene::CellType& type, double spacing) {
+core::RestShape rest_shape(const scene::CellType& type, double spacing) {
   std::vector<double> x, y;
   for (const Eigen::Vector2d& node : shape::make_outline(type.shape, type.segments).nodes) {
     x.push_back(node.x() / spacing);
     y.push_back(node.y() / spacing);
   }
   const auto* circle = std::get_if<scene::Circle>(&type.shape);
-  return membrane::make_rest_shape(std::move(x), std::move(y), circle != nullptr ? circle->prestretch : 1.0);
+  return core::make_rest_shape(std::move(x), std::move(y), circle != nullptr ? circle->prestretch : 1.0);
 }
 
 /// Everything that a message about a place in the scene needs.
 class Checker {
  public:
-  Checker(const scene::Scene& scene, const membrane::Membranes& membranes, double spacing)
+  Checker(const scene::Scene& scene, const core::Membranes& membranes, double spacing)
       : scene_(scene),
         membranes_(membranes),
         spacing_(spacing),
@@ -33,7 +33,7 @@ class Checker {
 
   void check() const {
     for (std::size_t i = 0; i < membranes_.cells.size(); ++i) check_fits(i);
-    if (const auto crossing = contact::find_crossing(membranes_, box_)) report(*crossing);
+    if (const auto crossing = core::find_crossing(membranes_, box_)) report(*crossing);
   }
 
  private:
@@ -52,7 +52,7 @@ class Checker {
   }
 
   void check_fits(std::size_t cell) const {
-    const membrane::Bounds extent = membrane::bounds(membranes_, membranes_.cells[cell]);
+    const core::Bounds extent = core::bounds(membranes_, membranes_.cells[cell]);
     const std::string who = name(static_cast<int>(cell));
     const double width = extent.x_max - extent.x_min, height = extent.y_max - extent.y_min;
     if (!(width < box_.nx)) {
@@ -75,30 +75,28 @@ class Checker {
                      "; move it away from the wall.");
   }
 
-  [[noreturn]] void report(const contact::Crossing& crossing) const {
+  [[noreturn]] void report(const core::Crossing& crossing) const {
     const auto cell = static_cast<std::size_t>(crossing.cell);
     const bool own = crossing.cell == crossing.other;
-    if (own && crossing.shift == membrane::ImageShift{})
+    if (own && crossing.shift == core::ImageShift{})
       refuse(cell, name(crossing.cell) + " crosses itself; change its shape.");
     const double depth = overlap(crossing);
     const std::string amount = depth > 0 ? "overlap by " + micrometres(depth) : "cross";
     if (own) {
       refuse(cell, name(crossing.cell) + " and its own periodic image " + amount + "; make the domain longer.");
     }
-    const bool image = !(crossing.shift == membrane::ImageShift{});
+    const bool image = !(crossing.shift == core::ImageShift{});
     refuse(cell, name(crossing.cell) + " and " + (image ? "a periodic image of " : "") + name(crossing.other) + " " +
                      amount + "; move them apart.");
   }
   /// Largest depth of a node of one cell inside the other.
-  [[nodiscard]] double overlap(const contact::Crossing& crossing) const {
-    const membrane::CellRange& a = membranes_.cells[static_cast<std::size_t>(crossing.cell)];
-    const membrane::CellRange& b = membranes_.cells[static_cast<std::size_t>(crossing.other)];
+  [[nodiscard]] double overlap(const core::Crossing& crossing) const {
+    const core::CellRange& a = membranes_.cells[static_cast<std::size_t>(crossing.cell)];
+    const core::CellRange& b = membranes_.cells[static_cast<std::size_t>(crossing.other)];
     const Eigen::Vector2d move(crossing.shift.x * box_.nx, crossing.shift.y * box_.ny);
     double depth = 0;
-    for (int i = a.first; i < a.end(); ++i)
-      depth = std::max(depth, membrane::depth_inside(membranes_, b, node(i) - move));
-    for (int i = b.first; i < b.end(); ++i)
-      depth = std::max(depth, membrane::depth_inside(membranes_, a, node(i) + move));
+    for (int i = a.first; i < a.end(); ++i) depth = std::max(depth, core::depth_inside(membranes_, b, node(i) - move));
+    for (int i = b.first; i < b.end(); ++i) depth = std::max(depth, core::depth_inside(membranes_, a, node(i) + move));
     return depth;
   }
   [[nodiscard]] Eigen::Vector2d node(int i) const {
@@ -106,21 +104,21 @@ class Checker {
   }
 
   const scene::Scene& scene_;
-  const membrane::Membranes& membranes_;
+  const core::Membranes& membranes_;
   double spacing_;
-  membrane::PeriodicBox box_;
+  core::PeriodicBox box_;
 };
 
 }  // namespace
 
-membrane::Membranes make_membranes(const scene::Scene& scene, double spacing) {
-  std::vector<membrane::RestShape> shapes;
+core::Membranes make_membranes(const scene::Scene& scene, double spacing) {
+  std::vector<core::RestShape> shapes;
   for (const scene::CellType& type : scene.cell_types) shapes.push_back(rest_shape(type, spacing));
-  membrane::Membranes membranes;
+  core::Membranes membranes;
   for (const scene::CellPlacement& cell : scene.cells) {
     // Lattice nodes are centres of unit squares, so the first lies half a spacing from the domain's edges.
-    membrane::add_cell(membranes, cell.type, shapes[cell.type], cell.center.x() / spacing - 0.5,
-                       cell.center.y() / spacing - 0.5, cell.angle);
+    core::add_cell(membranes, cell.type, shapes[cell.type], cell.center.x() / spacing - 0.5,
+                   cell.center.y() / spacing - 0.5, cell.angle);
   }
   Checker(scene, membranes, spacing).check();
   return membranes;

@@ -90,9 +90,9 @@ double stretching_modulus(const Plan& plan) {
     double sum = 0;
     for (const PlannedModel& law : laws) {
       if (!law.active() || !law.manifest->gives_output("tension_by_stretch")) continue;
-      sum += membrane::stretching_stiffness(plugin::make_membrane_law(*law.manifest, law.parameters.values,
-                                                                      stage.model_setting(plan.scene->fluid.inertia)),
-                                            {1.0});
+      sum += core::stretching_stiffness(plugin::make_membrane_law(*law.manifest, law.parameters.values,
+                                                                  stage.model_setting(plan.scene->fluid.inertia)),
+                                        {1.0});
     }
     if (sum > 0 && !(sum >= least)) least = stage.units.to_si(sum, units::dimension::tension);
   }

@@ -5,13 +5,13 @@
 
 namespace rouleau::plan {
 
-solver::SolverSetup make_solver_setup(const Plan& plan, int index) {
+core::SolverSetup make_solver_setup(const Plan& plan, int index) {
   const scene::Scene& scene = *plan.scene;
   const StageSetting& stage = plan.stages[index];
   const plugin::ModelSetting setting = stage.model_setting(scene.fluid.inertia);
   const auto values = [](const PlannedModel& model) -> const std::vector<double>& { return model.parameters.values; };
 
-  solver::SolverSetup setup{
+  core::SolverSetup setup{
       .nx = scene.domain.nodes[0],
       .ny = scene.domain.nodes[1],
       .periodic_y = scene.domain.periodic_y,
@@ -30,7 +30,7 @@ solver::SolverSetup make_solver_setup(const Plan& plan, int index) {
       .tension_unit = stage.units.unit(units::dimension::tension)};
   if (!plan.has_cells) return setup;
   for (std::size_t t = 0; t < scene.cell_types.size(); ++t) {
-    solver::CellType& type = setup.cell_types.emplace_back();
+    core::CellType& type = setup.cell_types.emplace_back();
     type.viscosity_ratio = scene.cell_types[t].interior_viscosity / scene.fluid.viscosity;
     for (const PlannedModel& law : plan.membranes[t]) {
       if (law.active()) type.laws.push_back(plugin::make_membrane_law(*law.manifest, values(law), setting));

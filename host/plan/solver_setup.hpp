@@ -8,6 +8,6 @@ namespace rouleau::plan {
 
 /// All of stage `index` in lattice units, with instances of its active models. Throws Error(plugin_refused) for a model
 /// that cannot be made.
-solver::SolverSetup make_solver_setup(const Plan& plan, int index);
+core::SolverSetup make_solver_setup(const Plan& plan, int index);
 
 }  // namespace rouleau::plan

@@ -91,15 +91,15 @@ Stiffness membrane_stiffness(const Plan& plan, const plugin::ModelSetting& setti
     const double ratio = cell.interior_viscosity / scene.fluid.viscosity;
     double factor = 1;
     if (scene.numerics.slip_correction) {
-      factor = membrane::stiffening(coupling::slip_constants(kernel.kind, ratio).shift,
-                                    segment_length(cell) / setting.units.length);
+      factor =
+          core::stiffening(core::slip_constants(kernel.kind, ratio).shift, segment_length(cell) / setting.units.length);
     }
     double stretching = 0, bending = 0;
     for (const PlannedModel& law : plan.membranes[t]) {
       if (!law.active()) continue;
-      const model::MembraneLaw instance = plugin::make_membrane_law(*law.manifest, law.parameters.values, setting);
-      stretching += membrane::stretching_stiffness(instance);
-      bending += membrane::bending_stiffness(instance);
+      const core::MembraneLaw instance = plugin::make_membrane_law(*law.manifest, law.parameters.values, setting);
+      stretching += core::stretching_stiffness(instance);
+      bending += core::bending_stiffness(instance);
     }
     nearest.stretching.narrow({factor * stretching, kernel.stretch_limit * limit_between(stretch_limit, tau, ratio)});
     nearest.bending.narrow({factor * bending, kernel.bending_limit * limit_between(bending_limit, tau, ratio)});
@@ -117,9 +117,9 @@ double prestress_compression(const Plan& plan, const StageSetting& stage) {
     double tension = 0;
     for (const PlannedModel& law : plan.membranes[type]) {
       if (!law.active()) continue;
-      const model::MembraneLaw instance = plugin::make_membrane_law(*law.manifest, law.parameters.values,
-                                                                    stage.model_setting(plan.scene->fluid.inertia));
-      tension += membrane::tension_at(instance, circle->prestretch);
+      const core::MembraneLaw instance = plugin::make_membrane_law(*law.manifest, law.parameters.values,
+                                                                   stage.model_setting(plan.scene->fluid.inertia));
+      tension += core::tension_at(instance, circle->prestretch);
     }
     most = std::max(most, 3 * std::abs(tension) * stage.units.length / circle->radius);
   }

@@ -10,15 +10,15 @@ namespace rouleau::plugin {
 namespace {
 
 template <class Table>
-model::Model<Table> make_model(const Manifest& manifest, const std::vector<double>& values, const ModelSetting& setting,
-                               const Table& (ModelInstance::*table)() const) {
+core::Model<Table> make_model(const Manifest& manifest, const std::vector<double>& values, const ModelSetting& setting,
+                              const Table& (ModelInstance::*table)() const) {
   const auto instance = std::make_shared<const ModelInstance>(manifest, values, setting);
-  model::Model<Table> made{.id = manifest.id,
-                           .table = &(instance.get()->*table)(),
-                           .self = std::shared_ptr<const void>(instance, instance->self()),
-                           .needs = manifest.needs,
-                           .gives = manifest.gives,
-                           .state = {}};
+  core::Model<Table> made{.id = manifest.id,
+                          .table = &(instance.get()->*table)(),
+                          .self = std::shared_ptr<const void>(instance, instance->self()),
+                          .needs = manifest.needs,
+                          .gives = manifest.gives,
+                          .state = {}};
   for (std::size_t k = 0; k < manifest.state.size(); ++k) {
     const StateVariable& variable = manifest.state[k];
     made.state.push_back({variable.name, instance->initial_state()[k], setting.units.unit(variable.dimension)});
@@ -28,13 +28,13 @@ model::Model<Table> make_model(const Manifest& manifest, const std::vector<doubl
 
 }  // namespace
 
-model::CollisionOperator make_collision_operator(const Manifest& manifest, const std::vector<double>& values,
-                                                 const ModelSetting& setting) {
+core::CollisionOperator make_collision_operator(const Manifest& manifest, const std::vector<double>& values,
+                                                const ModelSetting& setting) {
   return make_model(manifest, values, setting, &ModelInstance::collision);
 }
 
-model::MembraneLaw make_membrane_law(const Manifest& manifest, const std::vector<double>& values,
-                                     const ModelSetting& setting) {
+core::MembraneLaw make_membrane_law(const Manifest& manifest, const std::vector<double>& values,
+                                    const ModelSetting& setting) {
   static constexpr std::array known = {"stretch", "stretch_rate", "curvature", "rest_curvature",
                                        "area",    "rest_area",    "perimeter", "rest_perimeter"};
   for (const std::string& need : manifest.needs) {
@@ -46,8 +46,8 @@ model::MembraneLaw make_membrane_law(const Manifest& manifest, const std::vector
   return make_model(manifest, values, setting, &ModelInstance::membrane);
 }
 
-model::Potential make_potential(const Manifest& manifest, const std::vector<double>& values,
-                                const ModelSetting& setting) {
+core::Potential make_potential(const Manifest& manifest, const std::vector<double>& values,
+                               const ModelSetting& setting) {
   return make_model(manifest, values, setting, &ModelInstance::interaction);
 }
 

@@ -1,7 +1,8 @@
 #include "model_setup.hpp"
 
-#include <rouleau/d2q9.hpp>
 #include <stdexcept>
+
+#include "core/model/lattice_setup.hpp"
 
 namespace rouleau::plugin {
 
@@ -30,24 +31,13 @@ ModelSetup::ModelSetup(const Manifest& manifest, const std::vector<double>& valu
   }
   for (const Parameter& parameter : manifest.parameters) names_.push_back(parameter.name.c_str());
   values_ = lattice_values(manifest, values, setting.units);
-  for (std::size_t q = 0; q < 9; ++q) {
-    for (std::size_t k = 0; k < 2; ++k) velocities_[2 * q + k] = d2q9::velocity[q][k];
-  }
-  setup_.struct_size = sizeof setup_;
-  setup_.host_minor = ROULEAU_ABI_MINOR;
+  setup_ = core::lattice_setup(setting.relaxation_rate, setting.inertia);
   setup_.parameter_count = static_cast<std::uint32_t>(values_.size());
   setup_.parameter_names = names_.data();
   setup_.parameter_values = values_.data();
   setup_.length_unit = setting.units.length;
   setup_.time_unit = setting.units.time;
   setup_.mass_unit = setting.units.mass;
-  setup_.dimension = 2;
-  setup_.velocity_count = d2q9::velocity_count;
-  setup_.velocities = velocities_.data();
-  setup_.weights = d2q9::weight;
-  setup_.sound_speed_squared = d2q9::sound_speed_squared;
-  setup_.relaxation_rate = setting.relaxation_rate;
-  setup_.inertia = setting.inertia ? 1 : 0;
 }
 
 }  // namespace rouleau::plugin

@@ -3,7 +3,6 @@
 
 #include <rouleau/plugin.h>
 
-#include <array>
 #include <vector>
 
 #include "manifest.hpp"
@@ -33,7 +32,6 @@ class ModelSetup {
  private:
   std::vector<const char*> names_;
   std::vector<double> values_;
-  std::array<double, 18> velocities_{};
   rouleau_setup setup_{};
 };
 

@@ -28,30 +28,30 @@ void read(const files::CheckpointReader& reader, const std::string& path, std::v
   reader.array(path, values.size(), values.data());
 }
 
-Json described(const membrane::ElementState& s) {
+Json described(const core::ElementState& s) {
   return {{"cell_type", s.cell_type}, {"law", s.law}, {"model", s.model}, {"name", s.name}, {"unit_si", s.unit}};
 }
 
-membrane::ElementState element_state(const Json& d) {
+core::ElementState element_state(const Json& d) {
   return {d.at("cell_type"), d.at("law"), d.at("model"), d.at("name"), d.at("unit_si"), {}};
 }
 
-Json described(const membrane::ContactVariable& v) {
+Json described(const core::ContactVariable& v) {
   return {
       {"potential", v.potential}, {"model", v.model}, {"name", v.name}, {"unit_si", v.unit}, {"initial", v.initial}};
 }
 
-membrane::ContactVariable contact_variable(const Json& d) {
+core::ContactVariable contact_variable(const Json& d) {
   return {d.at("potential"), d.at("model"), d.at("name"), d.at("unit_si"), d.at("initial")};
 }
 
 /// What interactions remember: which pairs of cells, and for each of them the next so many values of one array.
-Json save_contacts(files::CheckpointWriter& writer, const membrane::ContactMemory& memory) {
+Json save_contacts(files::CheckpointWriter& writer, const core::ContactMemory& memory) {
   Json variables = Json::array(), pairs = Json::array();
-  for (const membrane::ContactVariable& variable : memory.variables) variables.push_back(described(variable));
+  for (const core::ContactVariable& variable : memory.variables) variables.push_back(described(variable));
   std::vector<double> values;
   for (std::size_t cell = 0; cell < memory.of_cell.size(); ++cell) {
-    for (const membrane::ContactState& s : memory.of_cell[cell]) {
+    for (const core::ContactState& s : memory.of_cell[cell]) {
       pairs.push_back({cell, s.variable, s.other, s.shift.x, s.shift.y, s.value.size()});
       values.insert(values.end(), s.value.begin(), s.value.end());
     }
@@ -65,8 +65,8 @@ void require(bool fits, const files::CheckpointReader& reader, const char* what)
   if (!fits) reader.refuse(what);
 }
 
-void restore_contacts(const files::CheckpointReader& reader, const Json& saved, membrane::Membranes& membranes) {
-  membrane::ContactMemory& memory = membranes.contacts;
+void restore_contacts(const files::CheckpointReader& reader, const Json& saved, core::Membranes& membranes) {
+  core::ContactMemory& memory = membranes.contacts;
   memory.variables.clear();
   for (const Json& variable : saved.at("variables")) memory.variables.push_back(contact_variable(variable));
   const Json& cells = saved.at("cells");
@@ -88,7 +88,7 @@ void restore_contacts(const files::CheckpointReader& reader, const Json& saved, 
 }
 
 /// Writes the arrays, and returns what belongs into the file's /state.
-Json save(files::CheckpointWriter& writer, const membrane::Membranes& m) {
+Json save(files::CheckpointWriter& writer, const core::Membranes& m) {
   for (const auto& [path, values] : arrays(m)) writer.array(path, *values);
   writer.array("/membranes/area_leakage", m.area_leakage);
   Json states = Json::array();
@@ -100,8 +100,8 @@ Json save(files::CheckpointWriter& writer, const membrane::Membranes& m) {
 }
 
 template <class T>
-Json save(files::CheckpointWriter& writer, solver::Solver<T>& solver) {
-  fluid::Fluid<T>& fluid = solver.fluid();
+Json save(files::CheckpointWriter& writer, core::Solver<T>& solver) {
+  core::Fluid<T>& fluid = solver.fluid();
   fluid.settle();
   std::vector<T> values;
   const auto nx = static_cast<std::size_t>(fluid.setting().nx), ny = static_cast<std::size_t>(fluid.setting().ny);
@@ -110,7 +110,7 @@ Json save(files::CheckpointWriter& writer, solver::Solver<T>& solver) {
     writer.array(population_name(q), ny, nx, values.data());
   }
   if (solver.indicator() != nullptr) {
-    const membrane::DisplacementWatch::Memory& memory = solver.indicator()->memory();
+    const core::DisplacementWatch::Memory& memory = solver.indicator()->memory();
     writer.array("/indicator/x", memory.x);
     writer.array("/indicator/y", memory.y);
     writer.array("/indicator/limit", memory.limit);
@@ -119,7 +119,7 @@ Json save(files::CheckpointWriter& writer, solver::Solver<T>& solver) {
   return {{"walls_have_acted", fluid.walls_have_acted()}};
 }
 
-void restore_membranes(const files::CheckpointReader& reader, const Json& saved, membrane::Membranes& m) {
+void restore_membranes(const files::CheckpointReader& reader, const Json& saved, core::Membranes& m) {
   m.largest_step.resize(m.cells.size());
   for (const auto& [path, values] : arrays(m)) read(reader, path, *values);
   const Json& leakage = saved.at("leakage");
@@ -138,8 +138,8 @@ void restore_membranes(const files::CheckpointReader& reader, const Json& saved,
 }  // namespace
 
 template <class T>
-void Checkpoints::write(const plan::Plan& plan, int threads, const RunState& state,
-                        const membrane::Membranes& membranes, solver::Solver<T>& solver) {
+void Checkpoints::write(const plan::Plan& plan, int threads, const RunState& state, const core::Membranes& membranes,
+                        core::Solver<T>& solver) {
   writer_ = std::make_unique<files::CheckpointWriter>(to_.path());
   step_ = state.steps;
   Json saved_membranes = save(*writer_, membranes), saved_solver = save(*writer_, solver);
@@ -162,7 +162,7 @@ void Checkpoints::settle(bool sound) {
 }
 
 files::DirectoryMark restore(const files::CheckpointReader& reader, const Json& saved, const plan::Plan& plan,
-                             RunState& state, membrane::Membranes& membranes) {
+                             RunState& state, core::Membranes& membranes) {
   try {
     saved.at("run").get_to(state);
     require(state.fits(plan, membranes), reader, "counts of another scene");
@@ -174,8 +174,8 @@ files::DirectoryMark restore(const files::CheckpointReader& reader, const Json& 
 }
 
 template <class T>
-void restore(const files::CheckpointReader& reader, const Json& saved, solver::Solver<T>& solver) {
-  fluid::Fluid<T>& fluid = solver.fluid();
+void restore(const files::CheckpointReader& reader, const Json& saved, core::Solver<T>& solver) {
+  core::Fluid<T>& fluid = solver.fluid();
   std::vector<T> values(static_cast<std::size_t>(fluid.setting().nx) * static_cast<std::size_t>(fluid.setting().ny));
   try {
     fluid.restore(
@@ -188,7 +188,7 @@ void restore(const files::CheckpointReader& reader, const Json& saved, solver::S
     reader.refuse(error.what());
   }
   if (solver.indicator() == nullptr) return;
-  membrane::DisplacementWatch::Memory memory = solver.indicator()->memory();
+  core::DisplacementWatch::Memory memory = solver.indicator()->memory();
   read(reader, "/indicator/x", memory.x);
   read(reader, "/indicator/y", memory.y);
   read(reader, "/indicator/limit", memory.limit);
@@ -196,11 +196,10 @@ void restore(const files::CheckpointReader& reader, const Json& saved, solver::S
   solver.restore_indicator(memory);
 }
 
-template void Checkpoints::write(const plan::Plan&, int, const RunState&, const membrane::Membranes&,
-                                 solver::Solver<float>&);
-template void Checkpoints::write(const plan::Plan&, int, const RunState&, const membrane::Membranes&,
-                                 solver::Solver<double>&);
-template void restore(const files::CheckpointReader&, const Json&, solver::Solver<float>&);
-template void restore(const files::CheckpointReader&, const Json&, solver::Solver<double>&);
+template void Checkpoints::write(const plan::Plan&, int, const RunState&, const core::Membranes&, core::Solver<float>&);
+template void Checkpoints::write(const plan::Plan&, int, const RunState&, const core::Membranes&,
+                                 core::Solver<double>&);
+template void restore(const files::CheckpointReader&, const Json&, core::Solver<float>&);
+template void restore(const files::CheckpointReader&, const Json&, core::Solver<double>&);
 
 }  // namespace rouleau::run

@@ -30,8 +30,8 @@ class Checkpoints {
   }
   /// Writes the file, beside the last one.
   template <class T>
-  void write(const plan::Plan& plan, int threads, const RunState& state, const membrane::Membranes& membranes,
-             solver::Solver<T>& solver);
+  void write(const plan::Plan& plan, int threads, const RunState& state, const core::Membranes& membranes,
+             core::Solver<T>& solver);
   [[nodiscard]] bool pending() const { return writer_ != nullptr; }
   /// The file takes its place if the state has been found sound. One that is not is left to the next regular check:
   /// when checkpoints are written must not change what becomes of a run.
@@ -55,9 +55,9 @@ class Checkpoints {
 /// Returns how far the files of the directory had come.
 /// Both functions throw Error(input_output) where the checkpoint does not fit.
 files::DirectoryMark restore(const files::CheckpointReader& reader, const nlohmann::json& saved, const plan::Plan& plan,
-                             RunState& state, membrane::Membranes& membranes);
+                             RunState& state, core::Membranes& membranes);
 /// Into a new solver of the same stage.
 template <class T>
-void restore(const files::CheckpointReader& reader, const nlohmann::json& saved, solver::Solver<T>& solver);
+void restore(const files::CheckpointReader& reader, const nlohmann::json& saved, core::Solver<T>& solver);
 
 }  // namespace rouleau::run

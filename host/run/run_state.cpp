@@ -24,7 +24,7 @@ void RunState::report(Summary& s) const {
   s.resumed = resumed;
 }
 
-bool RunState::fits(const plan::Plan& plan, const membrane::Membranes& membranes) const {
+bool RunState::fits(const plan::Plan& plan, const core::Membranes& membranes) const {
   return stage >= 0 && stage < static_cast<int>(plan.stages.size()) && stage_step >= 0 && steps_before >= 0 &&
          steps >= stage_step && observer.fits(membranes) && growth.fits(membranes) && rest_watch.fits(membranes);
 }

@@ -42,8 +42,7 @@ class Simulation {
         scene_(*plan.scene),
         options_(options),
         directory_(directory),
-        membranes_(plan.has_cells ? plan::make_membranes(scene_, plan::lattice_spacing(scene_))
-                                  : membrane::Membranes{}),
+        membranes_(plan.has_cells ? plan::make_membranes(scene_, plan::lattice_spacing(scene_)) : core::Membranes{}),
         state_(observe::Observer(scene_, membranes_)),
         progress_(options.quiet),
         checkpoints_(scene_, directory) {}
@@ -109,9 +108,9 @@ class Simulation {
 
   template <class T>
   void run_stages(const files::CheckpointReader* checkpoint) {
-    std::unique_ptr<solver::Solver<T>> solver;
+    std::unique_ptr<core::Solver<T>> solver;
     for (; state_.stage < static_cast<int>(plan_.stages.size()) && !stopped_; ++state_.stage) {
-      auto next = std::make_unique<solver::Solver<T>>(plan::make_solver_setup(plan_, state_.stage), membranes_);
+      auto next = std::make_unique<core::Solver<T>>(plan::make_solver_setup(plan_, state_.stage), membranes_);
       if (checkpoint != nullptr) {
         restore(*checkpoint, saved_, *next);
         checkpoint = nullptr;
@@ -139,7 +138,7 @@ class Simulation {
   }
 
   template <class T>
-  void run_stage(solver::Solver<T>& solver) {
+  void run_stage(core::Solver<T>& solver) {
     const plan::StageSetting& setting = this->setting();
     ending_ = Ending::none;
     const plan::OutputSchedule cells(scene_.output.cells, setting, true), fields(scene_.output.fields, setting, false);
@@ -166,18 +165,18 @@ class Simulation {
   /// The steps of a stage. All workers run the same passes; what needs one of them alone happens before or after the
   /// forces of a step, and only when something is due.
   template <class T>
-  void step_loop(solver::Solver<T>& solver, const plan::OutputSchedule& cells, const plan::OutputSchedule& fields) {
+  void step_loop(core::Solver<T>& solver, const plan::OutputSchedule& cells, const plan::OutputSchedule& fields) {
     std::exception_ptr trouble;
     std::atomic<long> attend_at{std::numeric_limits<long>::max()};
-    std::optional<solver::Barrier> barrier;
+    std::optional<core::Barrier> barrier;
 #pragma omp parallel num_threads(options_.threads)
     {
       // The system may grant fewer threads than were asked for.
 #pragma omp single
       barrier.emplace(omp_get_num_threads());
       const Worker worker{omp_get_thread_num(), omp_get_num_threads()};
-      const std::vector<solver::Pass>&forces = solver.forces(), &advance = solver.advance();
-      solver::PassClock clock(forces.size() + advance.size());
+      const std::vector<core::Pass>&forces = solver.forces(), &advance = solver.advance();
+      core::PassClock clock(forces.size() + advance.size());
       long counted = state_.stage_step;  // steps whose costs are in the state
       const auto count_costs = [&](long step) {
         add_costs(solver, clock, step - counted);
@@ -223,11 +222,11 @@ class Simulation {
   }
 
   template <class T>
-  void add_costs(const solver::Solver<T>& solver, solver::PassClock& clock, long steps) {
+  void add_costs(const core::Solver<T>& solver, core::PassClock& clock, long steps) {
     std::size_t at = 0;
     std::set<std::string> counted;
-    for (const std::vector<solver::Pass>* passes : {&solver.forces(), &solver.advance()}) {
-      for (const solver::Pass& pass : *passes) {
+    for (const std::vector<core::Pass>* passes : {&solver.forces(), &solver.advance()}) {
+      for (const core::Pass& pass : *passes) {
         state_.costs.add(pass.name, clock.take(at++), counted.insert(pass.name).second ? steps : 0);
       }
     }
@@ -238,14 +237,14 @@ class Simulation {
   /// Whether the last step must not be followed by another, or was faster than any before; all workers come to the same
   /// answer.
   template <class T>
-  [[nodiscard]] bool wants_a_look(const solver::Solver<T>& solver) const {
-    return !(membrane::largest_step(membranes_) <= std::min(scene_.checks.node_step, state_.growth.level())) ||
+  [[nodiscard]] bool wants_a_look(const core::Solver<T>& solver) const {
+    return !(core::largest_step(membranes_) <= std::min(scene_.checks.node_step, state_.growth.level())) ||
            solver.escaped();
   }
 
   /// One thread, before the forces of a step: whether the stage ends here, and the checkpoint.
   template <class T>
-  void before_forces(solver::Solver<T>& solver, long step) {
+  void before_forces(core::Solver<T>& solver, long step) {
     const plan::StageSetting& setting = this->setting();
     state_.stage_step = step;
     state_.steps = state_.steps_before + step;
@@ -265,7 +264,7 @@ class Simulation {
 
   /// One thread, forces computed: outputs, checks, and whether the stage ends here.
   template <class T>
-  void after_forces(solver::Solver<T>& solver, long step, const plan::OutputSchedule& cells,
+  void after_forces(core::Solver<T>& solver, long step, const plan::OutputSchedule& cells,
                     const plan::OutputSchedule& fields) {
     const auto start = Clock::now();
     const plan::StageSetting& setting = this->setting();
@@ -276,7 +275,7 @@ class Simulation {
       fail(std::move(*failure), solver);
       return;
     }
-    if (membrane::largest_step(membranes_) > state_.growth.level()) state_.growth.note(state_.steps, membranes_);
+    if (core::largest_step(membranes_) > state_.growth.level()) state_.growth.note(state_.steps, membranes_);
     if (checkpoints_.pending()) {
       observe::Observer look = state_.observer;  // one that leaves no trace
       checkpoints_.settle(!look.check(solver, setting, membranes_));
@@ -341,7 +340,7 @@ class Simulation {
   }
 
   template <class T>
-  void fail(monitor::Failure failure, solver::Solver<T>& solver) {
+  void fail(monitor::Failure failure, core::Solver<T>& solver) {
     const plan::StageSetting& setting = this->setting();
     failure.step = state_.steps;
     failure.time = state_.time_at(setting);
@@ -354,7 +353,7 @@ class Simulation {
 
   /// What the failure looks like, and what to do about that.
   template <class T>
-  void tell_mode(monitor::Failure& failure, solver::Solver<T>& solver) {
+  void tell_mode(monitor::Failure& failure, core::Solver<T>& solver) {
     const double spacing = setting().units.length;
     const std::array<double, 2> place{failure.place[0] / spacing - 0.5, failure.place[1] / spacing - 0.5};
     double oscillation = 0;
@@ -375,7 +374,7 @@ class Simulation {
 
   /// Writes the present state, unless it has gained energy that nothing gave it: that failure is returned.
   template <class T>
-  std::optional<monitor::Failure> write(solver::Solver<T>& solver, bool with_fields) {
+  std::optional<monitor::Failure> write(core::Solver<T>& solver, bool with_fields) {
     observe::Snapshot snapshot = state_.observer.observe(solver, setting(), membranes_, with_fields);
     snapshot.step = state_.steps;
     snapshot.time = state_.time_at(setting());
@@ -425,7 +424,7 @@ class Simulation {
   const scene::Scene& scene_;
   const RunOptions& options_;
   files::RunDirectory& directory_;
-  membrane::Membranes membranes_;
+  core::Membranes membranes_;
   RunState state_;
   Progress progress_;
 

@@ -8,7 +8,7 @@
 #include "flow_fixture.hpp"
 
 using namespace rouleau;
-using namespace rouleau::fluid;
+using namespace rouleau::core;
 using namespace rouleau::test;
 
 namespace {

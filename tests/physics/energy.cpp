@@ -12,13 +12,11 @@
 #include "solver_fixture.hpp"
 
 using namespace rouleau;
-using namespace rouleau::fluid;
-using namespace rouleau::membrane;
+using namespace rouleau::core;
 using namespace rouleau::observe;
 using namespace rouleau::plan;
 using namespace rouleau::plugin;
 using namespace rouleau::scene;
-using namespace rouleau::solver;
 using namespace rouleau::test;
 
 namespace {

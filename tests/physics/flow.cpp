@@ -7,7 +7,7 @@
 #include "flow_fixture.hpp"
 #include "study/exact_flow.hpp"
 
-using namespace rouleau::fluid;
+using namespace rouleau::core;
 using namespace rouleau::study;
 using namespace rouleau::test;
 

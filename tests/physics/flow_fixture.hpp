@@ -11,7 +11,7 @@
 
 namespace rouleau::test {
 
-using namespace fluid;
+using namespace core;
 using namespace plugin;
 
 inline const Catalog& plugins() {
@@ -20,8 +20,8 @@ inline const Catalog& plugins() {
 }
 
 /// Collision model in lattice units; `values` in the manifest's order.
-inline model::CollisionOperator make_collision(const std::string& id, const std::vector<double>& values, double tau,
-                                               bool inertia) {
+inline core::CollisionOperator make_collision(const std::string& id, const std::vector<double>& values, double tau,
+                                              bool inertia) {
   return make_collision_operator(plugins().find(ModelKind::collision, id, {}), values,
                                  ModelSetting{{1, 1, 1}, 1 / tau, inertia});
 }

@@ -9,7 +9,7 @@
 #include "scene_run.hpp"
 #include "solver_fixture.hpp"
 
-using namespace rouleau::fluid;
+using namespace rouleau::core;
 using namespace rouleau::observe;
 using namespace rouleau::plan;
 using namespace rouleau::test;

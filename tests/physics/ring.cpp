@@ -9,8 +9,7 @@
 #include "scene_run.hpp"
 #include "solver_fixture.hpp"
 
-using namespace rouleau::fluid;
-using namespace rouleau::membrane;
+using namespace rouleau::core;
 using namespace rouleau::test;
 using namespace rouleau::units;
 

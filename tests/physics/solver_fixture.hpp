@@ -8,10 +8,9 @@
 
 namespace rouleau::test {
 
-using namespace membrane;
+using namespace core;
 using namespace plan;
 using namespace scene;
-using namespace solver;
 
 struct SolverBench {
   explicit SolverBench(const std::string& file, const std::vector<std::string>& overrides = {})

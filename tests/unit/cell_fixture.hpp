@@ -16,7 +16,7 @@
 
 namespace rouleau::test {
 
-using namespace membrane;
+using namespace core;
 using namespace plugin;
 using namespace scene;
 
@@ -30,16 +30,16 @@ inline const Manifest& shipped(ModelKind kind, const char* id) {
   static const Catalog catalog({ROULEAU_PLUGINS});
   return catalog.find(kind, id, {});
 }
-inline model::MembraneLaw law(const char* id, const std::vector<double>& values,
-                              const units::LatticeUnits& units = {1, 1, 1}) {
+inline core::MembraneLaw law(const char* id, const std::vector<double>& values,
+                             const units::LatticeUnits& units = {1, 1, 1}) {
   return make_membrane_law(shipped(ModelKind::membrane, id), values, ModelSetting{units, 1.0, false});
 }
-inline model::Potential potential(const char* id, const std::vector<double>& values) {
+inline core::Potential potential(const char* id, const std::vector<double>& values) {
   return make_potential(shipped(ModelKind::interaction, id), values, ModelSetting{{1, 1, 1}, 1.0, false});
 }
-inline model::MembraneLaw neo_hookean(double modulus) { return law("neo-hookean", {modulus, 0}); }
-inline model::MembraneLaw bending(double modulus) { return law("bending", {modulus, 0, 0}); }
-inline model::Potential morse(double depth, double decay, double distance, double cutoff) {
+inline core::MembraneLaw neo_hookean(double modulus) { return law("neo-hookean", {modulus, 0}); }
+inline core::MembraneLaw bending(double modulus) { return law("bending", {modulus, 0, 0}); }
+inline core::Potential morse(double depth, double decay, double distance, double cutoff) {
   return potential("morse", {depth, decay, distance, cutoff});
 }
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace rouleau::contact {
+namespace rouleau::core {
 
 namespace {
 
@@ -47,12 +47,11 @@ void Bins::for_around(const Axis& axis, int bin, Function function) {
   }
 }
 
-Bins::Bins(const std::vector<membrane::Bounds>& bounds, double reach, const membrane::PeriodicBox& box)
-    : bin_(bounds.size(), -1) {
+Bins::Bins(const std::vector<Bounds>& bounds, double reach, const PeriodicBox& box) : bin_(bounds.size(), -1) {
   const double far = std::numeric_limits<double>::infinity();
-  membrane::Bounds middles{far, -far, far, -far};
+  Bounds middles{far, -far, far, -far};
   double width = 0, height = 0;
-  for (const membrane::Bounds& b : bounds) {
+  for (const Bounds& b : bounds) {
     if (!b.usable()) continue;
     const double x = middle(b.x_min, b.x_max), y = middle(b.y_min, b.y_max);
     middles = {std::min(middles.x_min, x), std::max(middles.x_max, x), std::min(middles.y_min, y),
@@ -67,7 +66,7 @@ Bins::Bins(const std::vector<membrane::Bounds>& bounds, double reach, const memb
 
   begin_.assign(static_cast<std::size_t>(x_.count) * y_.count + 1, 0);
   for (std::size_t c = 0; c < bounds.size(); ++c) {
-    const membrane::Bounds& b = bounds[c];
+    const Bounds& b = bounds[c];
     if (!b.usable()) continue;
     bin_[c] = y_.bin(middle(b.y_min, b.y_max)) * x_.count + x_.bin(middle(b.x_min, b.x_max));
     ++begin_[static_cast<std::size_t>(bin_[c]) + 1];
@@ -92,4 +91,4 @@ void Bins::find(int cell, std::vector<int>& near) const {
   });
 }
 
-}  // namespace rouleau::contact
+}  // namespace rouleau::core

@@ -5,7 +5,7 @@
 
 #include "core/membrane/periodic_box.hpp"
 
-namespace rouleau::contact {
+namespace rouleau::core {
 
 /// Cells sorted into bins by the middle of their bounds. A bin is as large as the largest cell and the reach together,
 /// so that whatever is within reach of a cell lies in its own bin or in one of the eight around it, over periodic
@@ -13,7 +13,7 @@ namespace rouleau::contact {
 class Bins {
  public:
   /// Bounds that are not usable() are near nothing.
-  Bins(const std::vector<membrane::Bounds>& bounds, double reach, const membrane::PeriodicBox& box);
+  Bins(const std::vector<Bounds>& bounds, double reach, const PeriodicBox& box);
 
   /// Sets `near` to the cells in the bins around that of `cell`, itself included, each once, in no particular order.
   void find(int cell, std::vector<int>& near) const;
@@ -36,4 +36,4 @@ class Bins {
   std::vector<int> cells_;  // bin by bin
 };
 
-}  // namespace rouleau::contact
+}  // namespace rouleau::core

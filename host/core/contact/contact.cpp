@@ -5,7 +5,7 @@
 #include <cstring>
 #include <rouleau/dispatch.hpp>
 
-namespace rouleau::contact {
+namespace rouleau::core {
 
 namespace {
 
@@ -133,10 +133,10 @@ struct Search {
 
 }  // namespace
 
-Contacts::Contacts(const membrane::Membranes& membranes, Cutoffs cutoffs, membrane::PeriodicBox box)
+Contacts::Contacts(const Membranes& membranes, Cutoffs cutoffs, PeriodicBox box)
     : neighbours_(membranes, std::move(cutoffs), box), segments_(membranes), lists_(membranes.cells.size()) {}
 
-void Contacts::run(Worker worker, int phase, const membrane::Membranes& membranes) {
+void Contacts::run(Worker worker, int phase, const Membranes& membranes) {
   if (phase == 0) {
     neighbours_.measure(worker, membranes);
     segments_.update(worker, membranes);
@@ -161,11 +161,11 @@ void Contacts::reserve(int cell) {
   for (auto* values : {&list.along, &list.distance, &list.direction_x, &list.direction_y}) values->resize(room);
 }
 
-void Contacts::search(const membrane::Membranes& membranes, int cell) {
+void Contacts::search(const Membranes& membranes, int cell) {
   static const auto function = Dispatch<Search, SearchTask*>::pick();
   ContactList& list = lists_[static_cast<std::size_t>(cell)];
   const Neighbours::CellList& candidates = neighbours_.list(cell);
-  const membrane::CellRange& own = membranes.cells[static_cast<std::size_t>(cell)];
+  const CellRange& own = membranes.cells[static_cast<std::size_t>(cell)];
   SearchTask task{};
   task.x = segments_.x.data(), task.y = segments_.y.data();
   task.along_x = segments_.along_x.data(), task.along_y = segments_.along_y.data();
@@ -177,7 +177,7 @@ void Contacts::search(const membrane::Membranes& membranes, int cell) {
   task.direction_x = list.direction_x.data(), task.direction_y = list.direction_y.data();
   for (std::size_t p = 0; p < candidates.pairs.size(); ++p) {
     const Neighbours::Pair& pair = candidates.pairs[p];
-    const membrane::CellRange& other = membranes.cells[static_cast<std::size_t>(pair.other)];
+    const CellRange& other = membranes.cells[static_cast<std::size_t>(pair.other)];
     const double cutoff = neighbours_.cutoffs()(own.type, other.type);
     const int before = task.count;
     if (pair.group_begin != pair.group_end) {
@@ -193,4 +193,4 @@ void Contacts::search(const membrane::Membranes& membranes, int cell) {
   list.count = task.count;
 }
 
-}  // namespace rouleau::contact
+}  // namespace rouleau::core

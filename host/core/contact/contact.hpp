@@ -8,7 +8,7 @@
 #include "neighbour_list.hpp"
 #include "segment_cache.hpp"
 
-namespace rouleau::contact {
+namespace rouleau::core {
 
 /// Contacts of the nodes of one cell in structure of arrays; entries [begin, end) of `ranges[p]` belong to its pair p.
 /// Node X of the cell, closest point P = (1 - along) X_j + along X_j+1 on segment j of the other cell's image.
@@ -28,11 +28,11 @@ struct ContactList {
 /// Exact closest points of all pairs within the cutoffs.
 class Contacts {
  public:
-  Contacts(const membrane::Membranes& membranes, Cutoffs cutoffs, membrane::PeriodicBox box);
+  Contacts(const Membranes& membranes, Cutoffs cutoffs, PeriodicBox box);
 
   static constexpr int phases = 2;
   /// Phases 0 and 1, a barrier after each; then contacts of this worker's cells are in list(cell).
-  void run(Worker worker, int phase, const membrane::Membranes& membranes);
+  void run(Worker worker, int phase, const Membranes& membranes);
 
   [[nodiscard]] const ContactList& list(int cell) const { return lists_[static_cast<std::size_t>(cell)]; }
   [[nodiscard]] Neighbours& neighbours() { return neighbours_; }
@@ -40,11 +40,11 @@ class Contacts {
 
  private:
   void reserve(int cell);
-  void search(const membrane::Membranes& membranes, int cell);
+  void search(const Membranes& membranes, int cell);
 
   Neighbours neighbours_;
   SegmentTable segments_;
   std::vector<ContactList> lists_;
 };
 
-}  // namespace rouleau::contact
+}  // namespace rouleau::core

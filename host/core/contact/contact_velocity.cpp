@@ -1,15 +1,15 @@
 #include "contact_velocity.hpp"
 
-namespace rouleau::contact {
+namespace rouleau::core {
 
 void ContactVelocities::measure(const ContactList& list, const std::vector<Neighbours::Pair>& pairs,
-                                const membrane::Membranes& membranes) {
+                                const Membranes& membranes) {
   const auto count = static_cast<std::size_t>(list.count);
   normal.resize(count);
   tangential.resize(count);
   const std::vector<double>&u = membranes.velocity_x, &v = membranes.velocity_y;
   for (std::size_t p = 0; p < pairs.size(); ++p) {
-    const membrane::CellRange& other = membranes.cells[static_cast<std::size_t>(pairs[p].other)];
+    const CellRange& other = membranes.cells[static_cast<std::size_t>(pairs[p].other)];
     for (auto i = static_cast<std::size_t>(list.ranges[p].begin); i < static_cast<std::size_t>(list.ranges[p].end);
          ++i) {
       const auto node = static_cast<std::size_t>(list.node[i]), begin = static_cast<std::size_t>(list.segment[i]);
@@ -24,4 +24,4 @@ void ContactVelocities::measure(const ContactList& list, const std::vector<Neigh
   }
 }
 
-}  // namespace rouleau::contact
+}  // namespace rouleau::core

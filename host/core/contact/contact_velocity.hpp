@@ -4,7 +4,7 @@
 #include "contact.hpp"
 #include "core/membrane/membranes.hpp"
 
-namespace rouleau::contact {
+namespace rouleau::core {
 
 /// Velocities of the node against the facing point P of the other outline, for the contacts of one cell (in the order
 /// of the list), by the nodes' velocities in the last step.
@@ -12,8 +12,7 @@ struct ContactVelocities {
   std::vector<double> normal;      ///< d distance / dt
   std::vector<double> tangential;  ///< positive where the node runs counter-clockwise along its own cell
 
-  void measure(const ContactList& list, const std::vector<Neighbours::Pair>& pairs,
-               const membrane::Membranes& membranes);
+  void measure(const ContactList& list, const std::vector<Neighbours::Pair>& pairs, const Membranes& membranes);
 };
 
-}  // namespace rouleau::contact
+}  // namespace rouleau::core

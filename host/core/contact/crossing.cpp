@@ -6,7 +6,7 @@
 #include "cell_grid.hpp"
 #include "core/membrane/geometry.hpp"
 
-namespace rouleau::contact {
+namespace rouleau::core {
 
 namespace {
 
@@ -18,8 +18,8 @@ struct Segment {
 };
 
 /// Segments of a cell, moved, that touch a box; in order of their left ends.
-void collect(const membrane::Membranes& membranes, const membrane::CellRange& cell, const Eigen::Vector2d& move,
-             const membrane::Bounds& box, std::vector<Segment>& segments) {
+void collect(const Membranes& membranes, const CellRange& cell, const Eigen::Vector2d& move, const Bounds& box,
+             std::vector<Segment>& segments) {
   segments.clear();
   const auto node = [&](int i) -> Eigen::Vector2d {
     return Eigen::Vector2d(membranes.x[static_cast<std::size_t>(i)], membranes.y[static_cast<std::size_t>(i)]) + move;
@@ -41,9 +41,9 @@ void collect(const membrane::Membranes& membranes, const membrane::CellRange& ce
 /// only touch from outside do not cross, and a crossing through a node is still found once.
 std::optional<Eigen::Vector2d> intersection(const Segment& a, const Segment& b) {
   const Eigen::Vector2d u = a.to - a.from, v = b.to - b.from;
-  const double b_from = membrane::cross(u, b.from - a.from), b_to = membrane::cross(u, b.to - a.from);
+  const double b_from = core::cross(u, b.from - a.from), b_to = core::cross(u, b.to - a.from);
   if ((b_from > 0) == (b_to > 0)) return std::nullopt;
-  const double a_from = membrane::cross(v, a.from - b.from), a_to = membrane::cross(v, a.to - b.from);
+  const double a_from = core::cross(v, a.from - b.from), a_to = core::cross(v, a.to - b.from);
   if ((a_from > 0) == (a_to > 0)) return std::nullopt;
   return Eigen::Vector2d(a.from + a_from / (a_from - a_to) * u);
 }
@@ -69,7 +69,7 @@ std::optional<Found> sweep(const std::vector<Segment>& as, const std::vector<Seg
   return std::nullopt;
 }
 
-bool contains(const membrane::Bounds& outer, const membrane::Bounds& inner) {
+bool contains(const Bounds& outer, const Bounds& inner) {
   return outer.x_min <= inner.x_min && inner.x_max <= outer.x_max && outer.y_min <= inner.y_min &&
          inner.y_max <= outer.y_max;
 }
@@ -77,19 +77,18 @@ bool contains(const membrane::Bounds& outer, const membrane::Bounds& inner) {
 /// Looks at one pair of cells and one image of the second.
 class PairCheck {
  public:
-  PairCheck(const membrane::Membranes& membranes, const membrane::PeriodicBox& box)
-      : membranes_(membranes), box_(box) {}
+  PairCheck(const Membranes& membranes, const PeriodicBox& box) : membranes_(membranes), box_(box) {}
 
-  std::optional<Crossing> operator()(int a, int b, membrane::ImageShift shift) {
-    const membrane::CellRange& cell = membranes_.cells[static_cast<std::size_t>(a)];
-    const membrane::CellRange& other = membranes_.cells[static_cast<std::size_t>(b)];
+  std::optional<Crossing> operator()(int a, int b, ImageShift shift) {
+    const CellRange& cell = membranes_.cells[static_cast<std::size_t>(a)];
+    const CellRange& other = membranes_.cells[static_cast<std::size_t>(b)];
     const Eigen::Vector2d move(shift.x * box_.nx, shift.y * box_.ny);
-    const membrane::Bounds own = membrane::bounds(membranes_, cell);
-    membrane::Bounds moved = membrane::bounds(membranes_, other);
+    const Bounds own = core::bounds(membranes_, cell);
+    Bounds moved = core::bounds(membranes_, other);
     moved = {moved.x_min + move.x(), moved.x_max + move.x(), moved.y_min + move.y(), moved.y_max + move.y()};
-    const membrane::Bounds common{std::max(own.x_min, moved.x_min), std::min(own.x_max, moved.x_max),
-                                  std::max(own.y_min, moved.y_min), std::min(own.y_max, moved.y_max)};
-    const bool same = a == b && shift == membrane::ImageShift{};
+    const Bounds common{std::max(own.x_min, moved.x_min), std::min(own.x_max, moved.x_max),
+                        std::max(own.y_min, moved.y_min), std::min(own.y_max, moved.y_max)};
+    const bool same = a == b && shift == ImageShift{};
     collect(membranes_, cell, Eigen::Vector2d::Zero(), common, own_);
     if (!same) collect(membranes_, other, move, common, other_);
     if (const auto found = sweep(own_, same ? own_ : other_, same)) {
@@ -98,31 +97,29 @@ class PairCheck {
     if (same) return std::nullopt;
     if (contains(moved, own)) {
       const Eigen::Vector2d node = first_node(cell);
-      if (membrane::depth_inside(membranes_, other, node - move) > 0)
-        return Crossing{a, b, shift, cell.first, node, true};
+      if (core::depth_inside(membranes_, other, node - move) > 0) return Crossing{a, b, shift, cell.first, node, true};
     }
     if (contains(own, moved)) {
       const Eigen::Vector2d node = first_node(other);
-      if (membrane::depth_inside(membranes_, cell, node + move) > 0)
-        return Crossing{b, a, -shift, other.first, node, true};
+      if (core::depth_inside(membranes_, cell, node + move) > 0) return Crossing{b, a, -shift, other.first, node, true};
     }
     return std::nullopt;
   }
 
  private:
-  [[nodiscard]] Eigen::Vector2d first_node(const membrane::CellRange& cell) const {
+  [[nodiscard]] Eigen::Vector2d first_node(const CellRange& cell) const {
     return {membranes_.x[static_cast<std::size_t>(cell.first)], membranes_.y[static_cast<std::size_t>(cell.first)]};
   }
-  const membrane::Membranes& membranes_;
-  const membrane::PeriodicBox& box_;
+  const Membranes& membranes_;
+  const PeriodicBox& box_;
   std::vector<Segment> own_, other_;
 };
 
 }  // namespace
 
-std::optional<Crossing> find_crossing(const membrane::Membranes& membranes, const membrane::PeriodicBox& box) {
-  std::vector<membrane::Bounds> extent;
-  for (const membrane::CellRange& cell : membranes.cells) extent.push_back(membrane::bounds(membranes, cell));
+std::optional<Crossing> find_crossing(const Membranes& membranes, const PeriodicBox& box) {
+  std::vector<Bounds> extent;
+  for (const CellRange& cell : membranes.cells) extent.push_back(core::bounds(membranes, cell));
   PairCheck check(membranes, box);
   std::optional<Crossing> found;
   const Bins bins(extent, 0.0, box);
@@ -133,15 +130,15 @@ std::optional<Crossing> find_crossing(const membrane::Membranes& membranes, cons
     std::sort(near.begin(), near.end());  // the crossing that is found first does not depend on the bins
     for (const int b : near) {
       if (b < a || found) continue;
-      membrane::for_each_image(extent[static_cast<std::size_t>(a)], extent[static_cast<std::size_t>(b)], 0.0, box,
-                               [&](membrane::ImageShift shift) {
-                                 // Of a cell's own images, one of two opposite ones is enough.
-                                 if (found || (a == b && (shift.x < 0 || (shift.x == 0 && shift.y < 0)))) return;
-                                 found = check(a, b, shift);
-                               });
+      core::for_each_image(extent[static_cast<std::size_t>(a)], extent[static_cast<std::size_t>(b)], 0.0, box,
+                           [&](ImageShift shift) {
+                             // Of a cell's own images, one of two opposite ones is enough.
+                             if (found || (a == b && (shift.x < 0 || (shift.x == 0 && shift.y < 0)))) return;
+                             found = check(a, b, shift);
+                           });
     }
   }
   return found;
 }
 
-}  // namespace rouleau::contact
+}  // namespace rouleau::core

@@ -7,17 +7,17 @@
 #include "core/membrane/membranes.hpp"
 #include "core/membrane/periodic_box.hpp"
 
-namespace rouleau::contact {
+namespace rouleau::core {
 
 struct Crossing {
-  int cell, other;             ///< indices into Membranes::cells; equal: with itself or its own image
-  membrane::ImageShift shift;  ///< of `other`
-  int node;                    ///< index in Membranes: first node of the crossing segment of `cell`, or the node inside
-  Eigen::Vector2d place;       ///< where, in lattice units near `cell`
-  bool inside;                 ///< the outlines do not cross, but `cell` lies inside `other`
+  int cell, other;        ///< indices into Membranes::cells; equal: with itself or its own image
+  ImageShift shift;       ///< of `other`
+  int node;               ///< index in Membranes: first node of the crossing segment of `cell`, or the node inside
+  Eigen::Vector2d place;  ///< where, in lattice units near `cell`
+  bool inside;            ///< the outlines do not cross, but `cell` lies inside `other`
 };
 
 /// The first crossing in order of cells, or none. Outlines that only touch do not cross.
-std::optional<Crossing> find_crossing(const membrane::Membranes& membranes, const membrane::PeriodicBox& box);
+std::optional<Crossing> find_crossing(const Membranes& membranes, const PeriodicBox& box);
 
-}  // namespace rouleau::contact
+}  // namespace rouleau::core

@@ -4,7 +4,7 @@
 #include <limits>
 #include <string>
 
-namespace rouleau::contact {
+namespace rouleau::core {
 
 namespace {
 
@@ -17,10 +17,10 @@ std::vector<double> cutoffs_of(const std::vector<Interaction>& interactions) {
   return cutoffs;
 }
 
-Cutoffs pair_cutoffs(const membrane::Membranes& membranes, const std::vector<Interaction>& interactions,
+Cutoffs pair_cutoffs(const Membranes& membranes, const std::vector<Interaction>& interactions,
                      const std::vector<double>& cutoffs) {
   int types = 1;
-  for (const membrane::CellRange& cell : membranes.cells) types = std::max(types, cell.type + 1);
+  for (const CellRange& cell : membranes.cells) types = std::max(types, cell.type + 1);
   for (const Interaction& interaction : interactions)
     types = std::max({types, interaction.between[0] + 1, interaction.between[1] + 1});
   Cutoffs result(types);
@@ -37,15 +37,14 @@ bool acts_between(const Interaction& interaction, int a, int b) {
 
 }  // namespace
 
-InteractionForces::InteractionForces(membrane::Membranes& membranes, std::vector<Interaction> interactions,
-                                     membrane::PeriodicBox box)
+InteractionForces::InteractionForces(Membranes& membranes, std::vector<Interaction> interactions, PeriodicBox box)
     : interactions_(std::move(interactions)),
       cutoffs_(cutoffs_of(interactions_)),
       contacts_(membranes, pair_cutoffs(membranes, interactions_, cutoffs_), box),
       scratch_(membranes.cells.size()),
       variables_(interactions_.size()) {
   for (const Interaction& interaction : interactions_) {
-    const model::Potential& potential = interaction.potential;
+    const Potential& potential = interaction.potential;
     has_state_ = has_state_ || !potential.state.empty();
     needs_velocities_ =
         needs_velocities_ || potential.reads("normal_velocity") || potential.reads("tangential_velocity");
@@ -55,7 +54,7 @@ InteractionForces::InteractionForces(membrane::Membranes& membranes, std::vector
   keep_state(membranes);
 }
 
-void InteractionForces::run(Worker worker, int phase, membrane::Membranes& membranes) {
+void InteractionForces::run(Worker worker, int phase, Membranes& membranes) {
   const Range cells = worker.share(static_cast<int>(membranes.cells.size()));
   switch (phase) {
     case 0:
@@ -76,7 +75,7 @@ void InteractionForces::run(Worker worker, int phase, membrane::Membranes& membr
 }
 
 // Pairs are listed by type of the other cell, so that a potential gets its distances in one piece.
-InteractionForces::TypeRange InteractionForces::next_range(int cell, const membrane::Membranes& membranes,
+InteractionForces::TypeRange InteractionForces::next_range(int cell, const Membranes& membranes,
                                                            std::size_t& pair) const {
   const std::vector<Neighbours::Pair>& pairs = contacts_.neighbours().list(cell).pairs;
   const std::vector<Range>& ranges = contacts_.list(cell).ranges;
@@ -89,7 +88,7 @@ InteractionForces::TypeRange InteractionForces::next_range(int cell, const membr
 /// Adds (or, if it is the first, sets) one potential's force or energy at the contacts to `result`.
 void InteractionForces::apply(std::size_t potential, const ContactList& list, Range contacts, double* result,
                               bool energy, bool first, Scratch& scratch) const {
-  const model::Potential& model = interactions_[potential].potential;
+  const Potential& model = interactions_[potential].potential;
   const double cutoff = cutoffs_[potential];
   const int own_type = interactions_[potential].between[0], other_type = interactions_[potential].between[1];
   const bool all = !(cutoff < contacts_.neighbours().cutoffs()(own_type, other_type));
@@ -140,7 +139,7 @@ void InteractionForces::give_velocities(std::size_t potential, int first, int co
        block.tangential_velocity);
 }
 
-void InteractionForces::prepare(int cell, const membrane::Membranes& membranes, Scratch& scratch) const {
+void InteractionForces::prepare(int cell, const Membranes& membranes, Scratch& scratch) const {
   const ContactList& list = contacts_.list(cell);
   if (scratch.law.size() < list.node.size()) {  // only after the candidates were listed anew
     for (auto* values : {&scratch.force, &scratch.law, &scratch.distance}) values->resize(list.node.size());
@@ -152,7 +151,7 @@ void InteractionForces::prepare(int cell, const membrane::Membranes& membranes, 
   }
 }
 
-void InteractionForces::compute_forces(int cell, membrane::Membranes& membranes) {
+void InteractionForces::compute_forces(int cell, Membranes& membranes) {
   const ContactList& list = contacts_.list(cell);
   Scratch& scratch = scratch_[static_cast<std::size_t>(cell)];
   prepare(cell, membranes, scratch);
@@ -160,7 +159,7 @@ void InteractionForces::compute_forces(int cell, membrane::Membranes& membranes)
   scratch.reaction_x.assign(touched, 0.0);
   scratch.reaction_y.assign(touched, 0.0);
   const int type = membranes.cells[static_cast<std::size_t>(cell)].type;
-  std::vector<membrane::ContactState> none;
+  std::vector<ContactState> none;
   NextState next{has_state_ ? membranes.contacts.of_cell[static_cast<std::size_t>(cell)] : none};
   for (std::size_t pair = 0; pair < list.ranges.size();) {
     const std::size_t first_pair = pair;
@@ -184,7 +183,7 @@ void InteractionForces::compute_forces(int cell, membrane::Membranes& membranes)
   next.states.resize(next.kept);  // pairs that do not touch any more
 }
 
-void InteractionForces::act(int cell, membrane::Membranes& membranes) {
+void InteractionForces::act(int cell, Membranes& membranes) {
   const ContactList& list = contacts_.list(cell);
   const std::vector<Neighbours::Pair>& pairs = contacts_.neighbours().list(cell).pairs;
   Scratch& scratch = scratch_[static_cast<std::size_t>(cell)];
@@ -218,8 +217,8 @@ void InteractionForces::act(int cell, membrane::Membranes& membranes) {
   }
 }
 
-void InteractionForces::take_reactions(int cell, membrane::Membranes& membranes) const {
-  const membrane::CellRange& own = membranes.cells[static_cast<std::size_t>(cell)];
+void InteractionForces::take_reactions(int cell, Membranes& membranes) const {
+  const CellRange& own = membranes.cells[static_cast<std::size_t>(cell)];
   for (const Neighbours::Pair& pair : contacts_.neighbours().list(cell).pairs) {
     const Neighbours::Pair& opposite =
         contacts_.neighbours().list(pair.other).pairs[static_cast<std::size_t>(pair.reverse)];
@@ -239,7 +238,7 @@ void InteractionForces::take_reactions(int cell, membrane::Membranes& membranes)
   }
 }
 
-double InteractionForces::energy(const membrane::Membranes& membranes) const {
+double InteractionForces::energy(const Membranes& membranes) const {
   double sum = 0;
   for (int cell = 0; cell < static_cast<int>(membranes.cells.size()); ++cell) {
     const ContactList& list = contacts_.list(cell);
@@ -279,4 +278,4 @@ double InteractionForces::closest_contact(int cell) const {
   return closest;
 }
 
-}  // namespace rouleau::contact
+}  // namespace rouleau::core

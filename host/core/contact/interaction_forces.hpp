@@ -13,12 +13,12 @@
 #include "core/membrane/periodic_box.hpp"
 #include "core/model/model.hpp"
 
-namespace rouleau::contact {
+namespace rouleau::core {
 
 /// A potential between cells of two types (unordered; equal: between different cells of one type and own images).
 struct Interaction {
   std::array<int, 2> between;
-  model::Potential potential;
+  Potential potential;
 };
 
 /// Node i with rest weight Lb at distance r of its closest point on another cell: energy Lb/2 phi(r), force Lb/2 f(r)
@@ -27,17 +27,17 @@ struct Interaction {
 class InteractionForces {
  public:
   /// Adds what potentials remember to `membranes.contacts`, as far as it is not there from an earlier stage.
-  InteractionForces(membrane::Membranes& membranes, std::vector<Interaction> interactions, membrane::PeriodicBox box);
+  InteractionForces(Membranes& membranes, std::vector<Interaction> interactions, PeriodicBox box);
 
   static constexpr int phases = 3;
   /// Pass over cells: phases 0, 1, 2 with a barrier after each. Adds to force_x and force_y and advances the state of
   /// the contacts by one step.
-  void run(Worker worker, int phase, membrane::Membranes& membranes);
+  void run(Worker worker, int phase, Membranes& membranes);
   /// True if there is nothing to do: run() may be left out.
   [[nodiscard]] bool empty() const { return interactions_.empty(); }
 
   /// Energy of the contacts found by the last run() in their present state. Not a pass.
-  [[nodiscard]] double energy(const membrane::Membranes& membranes) const;
+  [[nodiscard]] double energy(const Membranes& membranes) const;
   /// A potential that acts but tells no energy; empty: none.
   [[nodiscard]] std::string without_energy() const;
   /// Smallest distance of a node of this cell to another cell in the last run(); infinity if beyond every cutoff.
@@ -45,7 +45,7 @@ class InteractionForces {
   [[nodiscard]] const Contacts& contacts() const { return contacts_; }
 
  private:
-  void keep_state(membrane::Membranes& membranes);
+  void keep_state(Membranes& membranes);
   struct Scratch {                               // of one cell's contacts
     std::vector<double> force;                   // sum of f over the potentials
     std::vector<double> law;                     // of one potential
@@ -61,23 +61,23 @@ class InteractionForces {
     int type;
     Range contacts;
   };
-  [[nodiscard]] TypeRange next_range(int cell, const membrane::Membranes& membranes, std::size_t& pair) const;
+  [[nodiscard]] TypeRange next_range(int cell, const Membranes& membranes, std::size_t& pair) const;
   /// Makes room for a cell's contacts and measures what the potentials need of them besides the distance.
-  void prepare(int cell, const membrane::Membranes& membranes, Scratch& scratch) const;
-  void compute_forces(int cell, membrane::Membranes& membranes);
+  void prepare(int cell, const Membranes& membranes, Scratch& scratch) const;
+  void compute_forces(int cell, Membranes& membranes);
   void apply(std::size_t potential, const ContactList& list, Range contacts, double* result, bool energy, bool first,
              Scratch& scratch) const;
   /// The same for a potential that remembers, at the contacts of one pair. `next`: takes the state after the step, and
   /// keeps the arrays of the pairs that still touch at its front; null: someone looks, and there is no step.
   struct NextState {
-    std::vector<membrane::ContactState>& states;
+    std::vector<ContactState>& states;
     std::size_t kept = 0;
   };
-  void apply_with_state(std::size_t potential, int cell, std::size_t pair, const membrane::Membranes& membranes,
-                        double* result, bool energy, NextState* next, Scratch& scratch) const;
+  void apply_with_state(std::size_t potential, int cell, std::size_t pair, const Membranes& membranes, double* result,
+                        bool energy, NextState* next, Scratch& scratch) const;
   /// Forces on the cell's own nodes; those on others are left for their workers.
-  void act(int cell, membrane::Membranes& membranes);
-  void take_reactions(int cell, membrane::Membranes& membranes) const;
+  void act(int cell, Membranes& membranes);
+  void take_reactions(int cell, Membranes& membranes) const;
 
   /// What a potential is given besides distances, and whether it has an energy; looked up in its manifest once.
   struct Traits {
@@ -97,4 +97,4 @@ class InteractionForces {
   bool has_state_ = false, needs_velocities_ = false;
 };
 
-}  // namespace rouleau::contact
+}  // namespace rouleau::core

@@ -3,19 +3,19 @@
 
 #include "interaction_forces.hpp"
 
-namespace rouleau::contact {
+namespace rouleau::core {
 
-void InteractionForces::keep_state(membrane::Membranes& membranes) {
+void InteractionForces::keep_state(Membranes& membranes) {
   if (!has_state_) return;
-  membrane::ContactMemory& memory = membranes.contacts;
+  ContactMemory& memory = membranes.contacts;
   memory.of_cell.resize(membranes.cells.size());
   for (std::size_t p = 0; p < interactions_.size(); ++p) {
-    const model::Potential& potential = interactions_[p].potential;
-    for (const model::StateVariable& declared : potential.state) {
+    const Potential& potential = interactions_[p].potential;
+    for (const StateVariable& declared : potential.state) {
       const int place = static_cast<int>(p);
-      const auto found = std::find_if(
-          memory.variables.begin(), memory.variables.end(),
-          [&](const membrane::ContactVariable& v) { return v.potential == place && v.name == declared.name; });
+      const auto found = std::find_if(memory.variables.begin(), memory.variables.end(), [&](const ContactVariable& v) {
+        return v.potential == place && v.name == declared.name;
+      });
       const auto variable = static_cast<std::size_t>(found - memory.variables.begin());
       variables_[p].push_back(variable);
       if (found == memory.variables.end()) {
@@ -28,13 +28,12 @@ void InteractionForces::keep_state(membrane::Membranes& membranes) {
 }
 
 // A node's value is found by the other cell and its image, for the closest place moves along that cell as it likes.
-void InteractionForces::apply_with_state(std::size_t potential, int cell, std::size_t pair,
-                                         const membrane::Membranes& membranes, double* result, bool energy,
-                                         NextState* next, Scratch& scratch) const {
+void InteractionForces::apply_with_state(std::size_t potential, int cell, std::size_t pair, const Membranes& membranes,
+                                         double* result, bool energy, NextState* next, Scratch& scratch) const {
   const ContactList& list = contacts_.list(cell);
   const Neighbours::Pair& other = contacts_.neighbours().list(cell).pairs[pair];
-  const membrane::CellRange& own = membranes.cells[static_cast<std::size_t>(cell)];
-  const membrane::ContactMemory& memory = membranes.contacts;
+  const CellRange& own = membranes.cells[static_cast<std::size_t>(cell)];
+  const ContactMemory& memory = membranes.contacts;
   std::size_t count = 0;
   for (int i = list.ranges[pair].begin; i < list.ranges[pair].end; ++i) {
     const double distance = list.distance[static_cast<std::size_t>(i)];
@@ -47,7 +46,7 @@ void InteractionForces::apply_with_state(std::size_t potential, int cell, std::s
     return static_cast<std::size_t>(list.node[static_cast<std::size_t>(scratch.contact[k])] - own.first);
   };
   const std::vector<std::size_t>& variables = variables_[potential];
-  const std::vector<membrane::ContactState>& known = memory.of_cell[static_cast<std::size_t>(cell)];
+  const std::vector<ContactState>& known = memory.of_cell[static_cast<std::size_t>(cell)];
   const auto find = [&](std::size_t variable, std::size_t from) {
     const auto found = std::find_if(known.begin() + static_cast<std::ptrdiff_t>(from), known.end(), [&](const auto& s) {
       return s.variable == variable && s.other == other.other && s.shift == other.shift;
@@ -75,7 +74,7 @@ void InteractionForces::apply_with_state(std::size_t potential, int cell, std::s
   (energy ? block.energy : block.force) = scratch.law.data();
   block.state = state.data();
   if (next != nullptr) block.new_state = new_state.data();
-  const model::Potential& model = interactions_[potential].potential;
+  const Potential& model = interactions_[potential].potential;
   model.table->compute(model.self.get(), &block);
   for (std::size_t k = 0; k < count; ++k) result[scratch.contact[k]] += scratch.law[k];
   if (next == nullptr) return;
@@ -90,4 +89,4 @@ void InteractionForces::apply_with_state(std::size_t potential, int cell, std::s
   }
 }
 
-}  // namespace rouleau::contact
+}  // namespace rouleau::core

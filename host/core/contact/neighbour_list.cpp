@@ -6,7 +6,7 @@
 #include <numeric>
 #include <rouleau/dispatch.hpp>
 
-namespace rouleau::contact {
+namespace rouleau::core {
 
 namespace {
 
@@ -58,7 +58,7 @@ struct Candidates {
 };
 
 /// Skin for lists that are made now.
-double suitable_skin(const membrane::Membranes& membranes) {
+double suitable_skin(const Membranes& membranes) {
   if (membranes.largest_step.empty()) return usual_skin;  // nobody keeps account of the steps
   double skin = thinnest_skin;  // also where a step is no number: the run's own checks will tell
   for (const double step : membranes.largest_step) skin = std::max(skin, lifetime * step);
@@ -66,7 +66,7 @@ double suitable_skin(const membrane::Membranes& membranes) {
 }
 
 /// Distance between two boxes, the second moved.
-double distance(const membrane::Bounds& a, const membrane::Bounds& b, double move_x, double move_y) {
+double distance(const Bounds& a, const Bounds& b, double move_x, double move_y) {
   const double dx = std::max({0.0, b.x_min + move_x - a.x_max, a.x_min - b.x_max - move_x});
   const double dy = std::max({0.0, b.y_min + move_y - a.y_max, a.y_min - b.y_max - move_y});
   return std::hypot(dx, dy);
@@ -82,7 +82,7 @@ void Cutoffs::raise(int a, int b, double cutoff) {
 
 double Cutoffs::largest() const { return *std::max_element(cutoff_.begin(), cutoff_.end()); }
 
-Neighbours::Neighbours(const membrane::Membranes& membranes, Cutoffs cutoffs, membrane::PeriodicBox box)
+Neighbours::Neighbours(const Membranes& membranes, Cutoffs cutoffs, PeriodicBox box)
     : cutoffs_(std::move(cutoffs)),
       box_(box),
       watch_(membranes),
@@ -95,7 +95,7 @@ Neighbours::Neighbours(const membrane::Membranes& membranes, Cutoffs cutoffs, me
   });
   for (std::size_t k = 0; k < order.size(); ++k) rank_[static_cast<std::size_t>(order[k])] = static_cast<int>(k);
   int most = 0;
-  for (const membrane::CellRange& cell : membranes.cells) most = std::max(most, cell.count);
+  for (const CellRange& cell : membranes.cells) most = std::max(most, cell.count);
   const auto stride = static_cast<std::size_t>(most + SegmentTable::margin);
   for (CellList& list : lists_) {
     list.square.resize(stride * group);
@@ -103,7 +103,7 @@ Neighbours::Neighbours(const membrane::Membranes& membranes, Cutoffs cutoffs, me
   }
 }
 
-void Neighbours::refresh(Worker worker, const membrane::Membranes& membranes, const SegmentTable& segments) {
+void Neighbours::refresh(Worker worker, const Membranes& membranes, const SegmentTable& segments) {
   if (!renewed()) return;
   const Range cells = worker.share(membranes.cell_count());
   const double skin = suitable_skin(membranes);
@@ -122,31 +122,31 @@ void Neighbours::refresh(Worker worker, const membrane::Membranes& membranes, co
   if (worker.first()) ++renewals_;
 }
 
-void Neighbours::list_pairs(const membrane::Membranes& membranes, int cell, const Bins& bins,
-                            const SegmentTable& segments, double skin) {
+void Neighbours::list_pairs(const Membranes& membranes, int cell, const Bins& bins, const SegmentTable& segments,
+                            double skin) {
   CellList& list = lists_[static_cast<std::size_t>(cell)];
   const int type = membranes.cells[static_cast<std::size_t>(cell)].type;
-  const membrane::Bounds& own = segments.bounds[static_cast<std::size_t>(cell)];
+  const Bounds& own = segments.bounds[static_cast<std::size_t>(cell)];
   bins.find(cell, list.near);
   std::sort(list.near.begin(), list.near.end(),
             [&](int a, int b) { return rank_[static_cast<std::size_t>(a)] < rank_[static_cast<std::size_t>(b)]; });
   for (const int other : list.near) {
     const double cutoff = cutoffs_(type, membranes.cells[static_cast<std::size_t>(other)].type);
     if (!(cutoff > 0)) continue;
-    membrane::for_each_image(own, segments.bounds[static_cast<std::size_t>(other)], cutoff + 2 * skin, box_,
-                             [&](membrane::ImageShift shift) {
-                               if (other != cell || !(shift == membrane::ImageShift{}))
-                                 list.pairs.push_back({{other, shift}, 0, 0, {0, 0}, 0, -1});
-                             });
+    core::for_each_image(own, segments.bounds[static_cast<std::size_t>(other)], cutoff + 2 * skin, box_,
+                         [&](ImageShift shift) {
+                           if (other != cell || !(shift == ImageShift{}))
+                             list.pairs.push_back({{other, shift}, 0, 0, {0, 0}, 0, -1});
+                         });
   }
 }
 
-void Neighbours::list_candidates(const membrane::Membranes& membranes, int cell, Pair& pair,
-                                 const SegmentTable& segments, double skin) {
+void Neighbours::list_candidates(const Membranes& membranes, int cell, Pair& pair, const SegmentTable& segments,
+                                 double skin) {
   static const auto candidates = Dispatch<Candidates, const CandidateTask*>::pick();
   CellList& list = lists_[static_cast<std::size_t>(cell)];
-  const membrane::CellRange& own = membranes.cells[static_cast<std::size_t>(cell)];
-  const membrane::CellRange& other = membranes.cells[static_cast<std::size_t>(pair.other)];
+  const CellRange& own = membranes.cells[static_cast<std::size_t>(cell)];
+  const CellRange& other = membranes.cells[static_cast<std::size_t>(pair.other)];
   const double move_x = pair.shift.x * box_.nx, move_y = pair.shift.y * box_.ny;
   const double cutoff = cutoffs_(own.type, other.type);
   double x[group], y[group];
@@ -166,7 +166,7 @@ void Neighbours::list_candidates(const membrane::Membranes& membranes, int cell,
   pair.group_begin = static_cast<int>(list.groups.size());
   const std::size_t first_run = list.runs.size();
   for (int first = own.first; first < own.end(); first += group) {
-    membrane::Bounds bounds{segments.x[first], segments.x[first], segments.y[first], segments.y[first]};
+    Bounds bounds{segments.x[first], segments.x[first], segments.y[first], segments.y[first]};
     for (int k = 0; k < group; ++k) {
       const int i = std::min(first + k, own.end() - 1);
       x[k] = segments.x[i] - move_x;
@@ -200,7 +200,7 @@ void Neighbours::list_candidates(const membrane::Membranes& membranes, int cell,
   list.touched += pair.touched.end - pair.touched.begin;
 }
 
-void Neighbours::link(Worker worker, const membrane::Membranes& membranes) {
+void Neighbours::link(Worker worker, const Membranes& membranes) {
   if (!renewed()) return;
   const Range cells = worker.share(static_cast<int>(membranes.cells.size()));
   for (int cell = cells.begin; cell < cells.end; ++cell) {
@@ -214,4 +214,4 @@ void Neighbours::link(Worker worker, const membrane::Membranes& membranes) {
   }
 }
 
-}  // namespace rouleau::contact
+}  // namespace rouleau::core

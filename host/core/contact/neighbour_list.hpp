@@ -10,7 +10,7 @@
 #include "core/membrane/periodic_box.hpp"
 #include "segment_cache.hpp"
 
-namespace rouleau::contact {
+namespace rouleau::core {
 
 /// Largest distance at which cells of two types interact, symmetric; 0: they do not.
 class Cutoffs {
@@ -28,7 +28,7 @@ class Cutoffs {
 /// Ordered pair: nodes of a cell against the outline of `other` moved by `shift` periods.
 struct CellPair {
   int other;
-  membrane::ImageShift shift;
+  ImageShift shift;
 };
 
 /// Lists of candidate segments that stay complete while no node has moved further than `skin`.
@@ -71,35 +71,33 @@ class Neighbours {
     std::vector<double> excess;  ///< while the list is made: how far each segment is from being a candidate
   };
 
-  Neighbours(const membrane::Membranes& membranes, Cutoffs cutoffs, membrane::PeriodicBox box);
+  Neighbours(const Membranes& membranes, Cutoffs cutoffs, PeriodicBox box);
 
   /// Pass 1: has a node moved too far?
-  void measure(Worker worker, const membrane::Membranes& membranes) { watch_.measure(worker, membranes); }
+  void measure(Worker worker, const Membranes& membranes) { watch_.measure(worker, membranes); }
   /// Pass 2: if one has, makes the lists of this worker's cells anew. `segments` are those of the present positions.
-  void refresh(Worker worker, const membrane::Membranes& membranes, const SegmentTable& segments);
+  void refresh(Worker worker, const Membranes& membranes, const SegmentTable& segments);
   /// Pass 3: if the lists are new, finds the opposite pairs of this worker's cells.
-  void link(Worker worker, const membrane::Membranes& membranes);
+  void link(Worker worker, const Membranes& membranes);
   /// Whether the lists are new in this step; the same for all workers from pass 2 on.
   [[nodiscard]] bool renewed() const { return watch_.exceeded(); }
 
   [[nodiscard]] const CellList& list(int cell) const { return lists_[static_cast<std::size_t>(cell)]; }
   [[nodiscard]] const Cutoffs& cutoffs() const { return cutoffs_; }
-  [[nodiscard]] const membrane::PeriodicBox& box() const { return box_; }
+  [[nodiscard]] const PeriodicBox& box() const { return box_; }
   /// How often the lists were made.
   [[nodiscard]] long renewals() const { return renewals_; }
 
  private:
-  void list_pairs(const membrane::Membranes& membranes, int cell, const Bins& bins, const SegmentTable& segments,
-                  double skin);
-  void list_candidates(const membrane::Membranes& membranes, int cell, Pair& pair, const SegmentTable& segments,
-                       double skin);
+  void list_pairs(const Membranes& membranes, int cell, const Bins& bins, const SegmentTable& segments, double skin);
+  void list_candidates(const Membranes& membranes, int cell, Pair& pair, const SegmentTable& segments, double skin);
 
   Cutoffs cutoffs_;
-  membrane::PeriodicBox box_;
-  membrane::DisplacementWatch watch_;
+  PeriodicBox box_;
+  DisplacementWatch watch_;
   std::vector<int> rank_;  // of each cell: its place when they are ordered by type, then by number
   std::vector<CellList> lists_;
   long renewals_ = 0;
 };
 
-}  // namespace rouleau::contact
+}  // namespace rouleau::core

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <rouleau/dispatch.hpp>
 
-namespace rouleau::contact {
+namespace rouleau::core {
 
 namespace {
 
@@ -11,7 +11,7 @@ struct UpdateTask {
   const double *from_x, *from_y;
   double *x, *y, *along_x, *along_y, *inverse_square;
   int first, end;
-  membrane::Bounds bounds;
+  Bounds bounds;
 };
 
 struct Update {
@@ -31,7 +31,7 @@ struct Update {
       dy.store(t.along_y + i);
       select(square > S(0.0), 1.0 / square, S(0.0)).store(t.inverse_square + i);
     }
-    membrane::Bounds b{least(x_min), largest(x_max), least(y_min), largest(y_max)};
+    Bounds b{least(x_min), largest(x_max), least(y_min), largest(y_max)};
     for (; i < t.end; ++i) {
       const double x = t.from_x[i], y = t.from_y[i];
       b = {min(b.x_min, x), max(b.x_max, x), min(b.y_min, y), max(b.y_max, y)};
@@ -49,21 +49,21 @@ struct Update {
 
 }  // namespace
 
-SegmentTable::SegmentTable(const membrane::Membranes& membranes) : bounds(membranes.cells.size(), membrane::Bounds{}) {
+SegmentTable::SegmentTable(const Membranes& membranes) : bounds(membranes.cells.size(), Bounds{}) {
   const std::size_t size = membranes.x.size() + margin;
   for (auto* values : {&x, &y, &along_x, &along_y, &inverse_square}) values->assign(size, 0.0);
 }
 
-void SegmentTable::update(Worker worker, const membrane::Membranes& membranes) {
+void SegmentTable::update(Worker worker, const Membranes& membranes) {
   static const auto function = Dispatch<Update, UpdateTask*>::pick();
   const Range cells = worker.share(static_cast<int>(membranes.cells.size()));
   for (int c = cells.begin; c < cells.end; ++c) {
-    const membrane::CellRange& cell = membranes.cells[static_cast<std::size_t>(c)];
+    const CellRange& cell = membranes.cells[static_cast<std::size_t>(c)];
     UpdateTask task{membranes.x.data(), membranes.y.data(),    x.data(),   y.data(),   along_x.data(),
-                    along_y.data(),     inverse_square.data(), cell.first, cell.end(), membrane::Bounds{}};
+                    along_y.data(),     inverse_square.data(), cell.first, cell.end(), Bounds{}};
     function(&task);
     bounds[static_cast<std::size_t>(c)] = task.bounds;
   }
 }
 
-}  // namespace rouleau::contact
+}  // namespace rouleau::core

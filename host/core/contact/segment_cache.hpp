@@ -8,21 +8,21 @@
 #include "core/membrane/membranes.hpp"
 #include "core/membrane/periodic_box.hpp"
 
-namespace rouleau::contact {
+namespace rouleau::core {
 
 /// Index i is node i, and segment i that begins there. Arrays are readable `margin` elements beyond the last node.
 class SegmentTable {
  public:
   static constexpr int margin = 8;
 
-  explicit SegmentTable(const membrane::Membranes& membranes);
+  explicit SegmentTable(const Membranes& membranes);
   /// Pass over cells.
-  void update(Worker worker, const membrane::Membranes& membranes);
+  void update(Worker worker, const Membranes& membranes);
 
   std::vector<double> x, y;              ///< positions of the nodes
   std::vector<double> along_x, along_y;  ///< from the node to the next one
   std::vector<double> inverse_square;    ///< 1 / length^2 of the segment; 0 if it has no length
-  std::vector<membrane::Bounds> bounds;  ///< of the cells
+  std::vector<Bounds> bounds;            ///< of the cells
 };
 
 /// From the closest point of a segment to a node; `along` is the segment's coordinate of that point in [0, 1].
@@ -39,4 +39,4 @@ struct Approach {
   }
 };
 
-}  // namespace rouleau::contact
+}  // namespace rouleau::core

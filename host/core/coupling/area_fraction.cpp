@@ -5,7 +5,7 @@
 #include "core/membrane/geometry.hpp"
 #include "core/membrane/rounding.hpp"
 
-namespace rouleau::coupling {
+namespace rouleau::core {
 
 namespace {
 
@@ -15,7 +15,7 @@ constexpr int window_margin = 2;
 /// row, `rise` its signed height there. After a sum along the row, an element holds the area right of the edge.
 void add_piece(double* row, int& begin, int& end, double a, double b, double rise) {
   const double left = std::min(a, b), right = std::max(a, b);
-  const int first = membrane::floor_int(left), last = membrane::floor_int(right);
+  const int first = core::floor_int(left), last = core::floor_int(right);
   begin = std::min(begin, first);
   end = std::max(end, last + 1);
   if (first == last) {
@@ -39,15 +39,15 @@ void add_piece(double* row, int& begin, int& end, double a, double b, double ris
 
 }  // namespace
 
-void cover(const membrane::Membranes& membranes, const membrane::CellRange& cell, Coverage& coverage) {
-  const membrane::Bounds box = membrane::bounds(membranes, cell);
+void cover(const Membranes& membranes, const CellRange& cell, Coverage& coverage) {
+  const Bounds box = core::bounds(membranes, cell);
   coverage.width = coverage.height = 0;
   if (!box.usable()) return;
   // Node n's unit square is [n - 1/2, n + 1/2]: half a spacing later, it is the cell between two integers.
-  coverage.x0 = membrane::floor_int(box.x_min + 0.5) - window_margin;
-  coverage.y0 = membrane::floor_int(box.y_min + 0.5) - window_margin;
-  const int width = membrane::floor_int(box.x_max + 0.5) - coverage.x0 + 1 + window_margin;
-  const int height = membrane::floor_int(box.y_max + 0.5) - coverage.y0 + 1 + window_margin;
+  coverage.x0 = core::floor_int(box.x_min + 0.5) - window_margin;
+  coverage.y0 = core::floor_int(box.y_min + 0.5) - window_margin;
+  const int width = core::floor_int(box.x_max + 0.5) - coverage.x0 + 1 + window_margin;
+  const int height = core::floor_int(box.y_max + 0.5) - coverage.y0 + 1 + window_margin;
   if (static_cast<double>(width) * height > 1e8) return;  // blown up, see Bounds::usable
   coverage.width = width;
   coverage.height = height;
@@ -71,7 +71,7 @@ void cover(const membrane::Membranes& membranes, const membrane::CellRange& cell
     const double slope = (x1 - x0) / (y1 - y0);
     const double left = std::min(x0, x1), right = std::max(x0, x1);
     double x = x0, y = y0;
-    for (int r = membrane::floor_int(y0); y < y1; ++r) {
+    for (int r = core::floor_int(y0); y < y1; ++r) {
       const double next_y = std::min(r + 1.0, y1);
       // Rounding must not leave the box.
       const double next_x = next_y < y1 ? std::clamp(x0 + (next_y - y0) * slope, left, right) : x1;
@@ -131,4 +131,4 @@ void smooth(Coverage& coverage, std::vector<double>& scratch) {
   }
 }
 
-}  // namespace rouleau::coupling
+}  // namespace rouleau::core

@@ -5,7 +5,7 @@
 
 #include "core/membrane/membranes.hpp"
 
-namespace rouleau::coupling {
+namespace rouleau::core {
 
 /// Values on the box around one cell, not wrapped into the lattice. Two nodes on every side are zero before smoothing.
 struct Coverage {
@@ -20,9 +20,9 @@ struct Coverage {
 
 /// Exact coverage, as the sum of signed areas to the right of the edges: 1 inside, and where an outline overlaps itself
 /// twice, 2. The sum of all values is the enclosed area.
-void cover(const membrane::Membranes& membranes, const membrane::CellRange& cell, Coverage& coverage);
+void cover(const Membranes& membranes, const CellRange& cell, Coverage& coverage);
 
 /// One pass of (1 2 1)/4 along x and along y; keeps the sum.
 void smooth(Coverage& coverage, std::vector<double>& scratch);
 
-}  // namespace rouleau::coupling
+}  // namespace rouleau::core

@@ -6,7 +6,7 @@
 
 #include "kernel.hpp"
 
-namespace rouleau::coupling {
+namespace rouleau::core {
 
 namespace {
 
@@ -242,7 +242,7 @@ struct Interpolate {
 };
 
 template <class T>
-std::ptrdiff_t row_stride(const fluid::Field<T>& field) {
+std::ptrdiff_t row_stride(const Field<T>& field) {
   return field.row(1) - field.row(0);
 }
 
@@ -282,7 +282,7 @@ Coupling<T>::Coupling(KernelKind kernel, int nx, int ny, bool periodic_y)
     : loops_(Loops::of(kernel)), nx_(nx), ny_(ny), periodic_y_(periodic_y) {}
 
 template <class T>
-void Coupling<T>::reserve(const membrane::Membranes& membranes) {
+void Coupling<T>::reserve(const Membranes& membranes) {
   const auto nodes = static_cast<std::size_t>(membranes.node_count());
   column_.assign(nodes, 0);
   row_.assign(nodes, outside);
@@ -291,10 +291,10 @@ void Coupling<T>::reserve(const membrane::Membranes& membranes) {
 }
 
 template <class T>
-void Coupling<T>::locate(Worker worker, const membrane::Membranes& membranes, membrane::NodeVectors position) {
+void Coupling<T>::locate(Worker worker, const Membranes& membranes, NodeVectors position) {
   const Range cells = worker.share(membranes.cell_count());
   for (int c = cells.begin; c < cells.end; ++c) {
-    const membrane::CellRange& cell = membranes.cells[static_cast<std::size_t>(c)];
+    const CellRange& cell = membranes.cells[static_cast<std::size_t>(c)];
     LocateTask<T> task{{column_.data(), row_.data(), p_x_.data(), q_x_.data(), p_y_.data(), q_y_.data()},
                        position.x,
                        position.y,
@@ -310,9 +310,9 @@ void Coupling<T>::locate(Worker worker, const membrane::Membranes& membranes, me
 }
 
 template <class T>
-void Coupling<T>::spread(Worker worker, membrane::NodeVectors node_force, fluid::VectorField<T>& force) const {
+void Coupling<T>::spread(Worker worker, NodeVectors node_force, VectorField<T>& force) const {
   const Range rows = worker.share(ny_);
-  const int halo = fluid::Field<T>::halo;
+  const int halo = Field<T>::halo;
   const SpreadTask<T> task{{column_.data(), row_.data(), p_x_.data(), q_x_.data(), p_y_.data(), q_y_.data()},
                            node_force.x,
                            node_force.y,
@@ -326,8 +326,7 @@ void Coupling<T>::spread(Worker worker, membrane::NodeVectors node_force, fluid:
 }
 
 template <class T>
-void Coupling<T>::interpolate(Worker worker, membrane::Membranes& membranes,
-                              const fluid::VectorField<T>& velocity) const {
+void Coupling<T>::interpolate(Worker worker, Membranes& membranes, const VectorField<T>& velocity) const {
   const Range nodes = membranes.node_share(worker);
   const InterpolateTask<T> task{{column_.data(), row_.data(), p_x_.data(), q_x_.data(), p_y_.data(), q_y_.data()},
                                 membranes.velocity_x.data(),
@@ -354,4 +353,4 @@ int Coupling<T>::escaped() const {
 template class Coupling<float>;
 template class Coupling<double>;
 
-}  // namespace rouleau::coupling
+}  // namespace rouleau::core

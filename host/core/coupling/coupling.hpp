@@ -9,7 +9,7 @@
 #include "core/membrane/membranes.hpp"
 #include "kernel_kind.hpp"
 
-namespace rouleau::coupling {
+namespace rouleau::core {
 
 /// Immersed-boundary coupling. Columns are taken periodically: a node's stencil may reach
 /// two columns into the halo, which others fold or fill (fluid/exchange.hpp); so may rows.
@@ -19,15 +19,15 @@ class Coupling {
   Coupling(KernelKind kernel, int nx, int ny, bool periodic_y);
 
   /// Makes room for these nodes; to be called once, before the first locate().
-  void reserve(const membrane::Membranes& membranes);
+  void reserve(const Membranes& membranes);
 
   /// Pass over cells: weights for these positions, the membranes' own or where a correction puts their forces.
-  void locate(Worker worker, const membrane::Membranes& membranes, membrane::NodeVectors position);
+  void locate(Worker worker, const Membranes& membranes, NodeVectors position);
   /// Pass over rows: adds the forces of all nodes to this worker's rows worker.share(ny) of the force density; the
   /// first worker owns the lower halo rows too, the last one the upper. The sums do not depend on the workers.
-  void spread(Worker worker, membrane::NodeVectors node_force, fluid::VectorField<T>& force) const;
+  void spread(Worker worker, NodeVectors node_force, VectorField<T>& force) const;
   /// Pass over cells: sets velocity_x and velocity_y.
-  void interpolate(Worker worker, membrane::Membranes& membranes, const fluid::VectorField<T>& velocity) const;
+  void interpolate(Worker worker, Membranes& membranes, const VectorField<T>& velocity) const;
 
   /// First node whose stencil left the lattice or whose position is not a number at the last locate(); -1: none.
   /// Such a node neither spreads nor is moved.
@@ -47,4 +47,4 @@ class Coupling {
 extern template class Coupling<float>;
 extern template class Coupling<double>;
 
-}  // namespace rouleau::coupling
+}  // namespace rouleau::core

@@ -3,7 +3,7 @@
 
 #include <rouleau/pack.hpp>
 
-namespace rouleau::coupling {
+namespace rouleau::core {
 
 /// A kernel is a type with
 ///   shift                   the base node of a coordinate X is floor(X + shift), its fraction X + shift - base
@@ -103,4 +103,4 @@ struct SpreadWeights {
   }
 };
 
-}  // namespace rouleau::coupling
+}  // namespace rouleau::core

@@ -1,8 +1,8 @@
 // The kernels that couple membranes and lattice.
 #pragma once
 
-namespace rouleau::coupling {
+namespace rouleau::core {
 
 enum class KernelKind { peskin4, cosine4, roma3, linear2 };
 
-}  // namespace rouleau::coupling
+}  // namespace rouleau::core

@@ -6,7 +6,7 @@
 
 #include "kernel.hpp"
 
-namespace rouleau::coupling {
+namespace rouleau::core {
 
 namespace {
 
@@ -110,4 +110,4 @@ SlipConstants slip_constants(KernelKind kernel, double viscosity_ratio) {
   return {d, inside * m + difference * (all - two)};
 }
 
-}  // namespace rouleau::coupling
+}  // namespace rouleau::core

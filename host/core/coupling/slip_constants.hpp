@@ -3,7 +3,7 @@
 
 #include "kernel_kind.hpp"
 
-namespace rouleau::coupling {
+namespace rouleau::core {
 
 /// A plane membrane with tangential force f per length between fluidities b_o = 1 outside and b_i = 1/ratio inside
 /// (in units of 1/viscosity outside; Db = b_o - b_i). Y, Y', Y'' are distributed as the kernel, Z as the smoothed
@@ -19,4 +19,4 @@ struct SlipConstants {
 /// `viscosity_ratio`: inside over outside; the mean of viscosities must be the harmonic one.
 SlipConstants slip_constants(KernelKind kernel, double viscosity_ratio);
 
-}  // namespace rouleau::coupling
+}  // namespace rouleau::core

@@ -6,7 +6,7 @@
 
 #include "core/membrane/closed_outline.hpp"
 
-namespace rouleau::coupling {
+namespace rouleau::core {
 
 namespace {
 
@@ -31,7 +31,7 @@ struct Measure {
   template <int register_bytes>
   ROULEAU_ALWAYS_INLINE static void run(const SlipTask* task) {
     const SlipTask t = *task;
-    membrane::for_closed_outline<register_bytes>(t.begin, t.end, [&](auto tag, int i, int before, int after) {
+    core::for_closed_outline<register_bytes>(t.begin, t.end, [&](auto tag, int i, int before, int after) {
       using S = decltype(tag);
       const S dx = load<S>(t.x, after) - load<S>(t.x, before), dy = load<S>(t.y, after) - load<S>(t.y, before);
       const S chord = sqrt(dx * dx + dy * dy);
@@ -52,14 +52,14 @@ struct Slip {
     const SlipTask t = *task;
     double *slip = t.slip, *other = t.scratch_x;
     if (t.smoothings % 2 != 0) std::swap(slip, other);  // so that the last smoothing ends in t.slip
-    membrane::for_closed_outline<register_bytes>(t.begin, t.end, [&](auto tag, int i, int, int) {
+    core::for_closed_outline<register_bytes>(t.begin, t.end, [&](auto tag, int i, int, int) {
       using S = decltype(tag);
       const S tx = load<S>(t.tangent_x, i), ty = load<S>(t.tangent_y, i);
       const S along = load<S>(t.node_force_x, i) * tx + load<S>(t.node_force_y, i) * ty;
       (2.0 * t.mobility * along * load<S>(t.inverse_chord, i)).store(slip + i);
     });
     for (int k = 0; k < t.smoothings; ++k) {
-      membrane::for_closed_outline<register_bytes>(t.begin, t.end, [&](auto tag, int i, int before, int after) {
+      core::for_closed_outline<register_bytes>(t.begin, t.end, [&](auto tag, int i, int before, int after) {
         using S = decltype(tag);
         (0.25 * (load<S>(slip, before) + load<S>(slip, after)) + 0.5 * load<S>(slip, i)).store(other + i);
       });
@@ -73,7 +73,7 @@ struct Couple {
   ROULEAU_ALWAYS_INLINE static void run(const SlipTask* task) {
     const SlipTask t = *task;
     // The couple of every node: to the node after it, and its reverse to the node before.
-    membrane::for_closed_outline<register_bytes>(t.begin, t.end, [&](auto tag, int i, int, int) {
+    core::for_closed_outline<register_bytes>(t.begin, t.end, [&](auto tag, int i, int, int) {
       using S = decltype(tag);
       const S tx = load<S>(t.tangent_x, i), ty = load<S>(t.tangent_y, i);
       const S fx = load<S>(t.node_force_x, i), fy = load<S>(t.node_force_y, i);
@@ -82,7 +82,7 @@ struct Couple {
       (-lever * (along * ty + outward * tx)).store(t.scratch_x + i);
       (-lever * (outward * ty - along * tx)).store(t.scratch_y + i);
     });
-    membrane::for_closed_outline<register_bytes>(t.begin, t.end, [&](auto tag, int i, int before, int after) {
+    core::for_closed_outline<register_bytes>(t.begin, t.end, [&](auto tag, int i, int before, int after) {
       using S = decltype(tag);
       (load<S>(t.scratch_x, before) - load<S>(t.scratch_x, after)).store(t.force_x + i);
       (load<S>(t.scratch_y, before) - load<S>(t.scratch_y, after)).store(t.force_y + i);
@@ -96,7 +96,7 @@ struct Correct {
     const SlipTask t = *task;
     std::copy(t.velocity_x + t.begin, t.velocity_x + t.end, t.scratch_x + t.begin);
     std::copy(t.velocity_y + t.begin, t.velocity_y + t.end, t.scratch_y + t.begin);
-    membrane::for_closed_outline<register_bytes>(t.begin, t.end, [&](auto tag, int i, int before, int after) {
+    core::for_closed_outline<register_bytes>(t.begin, t.end, [&](auto tag, int i, int before, int after) {
       using S = decltype(tag);
       const S tx = load<S>(t.tangent_x, i), ty = load<S>(t.tangent_y, i);
       const S lever = t.shift * load<S>(t.inverse_chord, i);
@@ -126,9 +126,9 @@ int smoothings_of(double length, double mobility, double stiffness) {
 
 }  // namespace
 
-SlipCorrection::SlipCorrection(const membrane::Membranes& membranes, std::vector<Type> types, double viscosity)
+SlipCorrection::SlipCorrection(const Membranes& membranes, std::vector<Type> types, double viscosity)
     : types_(std::move(types)), viscosity_(viscosity) {
-  for (const membrane::CellRange& cell : membranes.cells) {
+  for (const CellRange& cell : membranes.cells) {
     const Type& type = types_[static_cast<std::size_t>(cell.type)];
     // Sliding along a curved membrane changes its curvature too, by curvature x d slide / d length.
     double curvature = 0;
@@ -145,11 +145,11 @@ SlipCorrection::SlipCorrection(const membrane::Membranes& membranes, std::vector
 }
 
 template <class Loop>
-void SlipCorrection::run(Worker worker, const membrane::Membranes& membranes, double* velocity_x, double* velocity_y) {
+void SlipCorrection::run(Worker worker, const Membranes& membranes, double* velocity_x, double* velocity_y) {
   static const auto function = Dispatch<Loop, const SlipTask*>::pick();
   const Range cells = worker.share(membranes.cell_count());
   for (int c = cells.begin; c < cells.end; ++c) {
-    const membrane::CellRange& cell = membranes.cells[static_cast<std::size_t>(c)];
+    const CellRange& cell = membranes.cells[static_cast<std::size_t>(c)];
     const SlipConstants& constants = types_[static_cast<std::size_t>(cell.type)].constants;
     const SlipTask task{cell.first,
                         cell.end(),
@@ -176,8 +176,8 @@ void SlipCorrection::run(Worker worker, const membrane::Membranes& membranes, do
   }
 }
 
-std::vector<membrane::NodeMobility> SlipCorrection::mobility() const {
-  std::vector<membrane::NodeMobility> mobility;
+std::vector<NodeMobility> SlipCorrection::mobility() const {
+  std::vector<NodeMobility> mobility;
   for (const Type& type : types_) mobility.push_back({type.constants.shift, type.constants.slip / viscosity_});
   return mobility;
 }
@@ -188,15 +188,15 @@ double SlipCorrection::largest_shift() const {
   return largest;
 }
 
-void SlipCorrection::measure(Worker worker, const membrane::Membranes& membranes) {
+void SlipCorrection::measure(Worker worker, const Membranes& membranes) {
   run<Measure>(worker, membranes, nullptr, nullptr);
 }
 
-void SlipCorrection::couple(Worker worker, const membrane::Membranes& membranes) {
+void SlipCorrection::couple(Worker worker, const Membranes& membranes) {
   run<Couple>(worker, membranes, nullptr, nullptr);
 }
 
-void SlipCorrection::complete(Worker worker, const membrane::Membranes& membranes) {
+void SlipCorrection::complete(Worker worker, const Membranes& membranes) {
   run<Slip>(worker, membranes, nullptr, nullptr);
   const Range nodes = membranes.node_share(worker);
   for (auto i = static_cast<std::size_t>(nodes.begin); i < static_cast<std::size_t>(nodes.end); ++i) {
@@ -205,8 +205,8 @@ void SlipCorrection::complete(Worker worker, const membrane::Membranes& membrane
   }
 }
 
-void SlipCorrection::correct(Worker worker, membrane::Membranes& membranes) {
+void SlipCorrection::correct(Worker worker, Membranes& membranes) {
   run<Correct>(worker, membranes, membranes.velocity_x.data(), membranes.velocity_y.data());
 }
 
-}  // namespace rouleau::coupling
+}  // namespace rouleau::core

@@ -8,7 +8,7 @@
 #include "core/membrane/node_mobility.hpp"
 #include "slip_constants.hpp"
 
-namespace rouleau::coupling {
+namespace rouleau::core {
 
 /// Forces act and velocities are read at X - d n (n outward); the couple that this takes away is given back by forces
 /// on both neighbours, and the velocities are turned by the adjoint of that. A node then gains the slip
@@ -22,29 +22,29 @@ class SlipCorrection {
     double bending_stiffness;     ///< d moment / d curvature
   };
   /// `viscosity`: of the suspending fluid, lattice units.
-  SlipCorrection(const membrane::Membranes& membranes, std::vector<Type> types, double viscosity);
+  SlipCorrection(const Membranes& membranes, std::vector<Type> types, double viscosity);
 
   /// Pass over cells: directions at the present positions, and where the nodes touch the lattice.
-  void measure(Worker worker, const membrane::Membranes& membranes);
+  void measure(Worker worker, const Membranes& membranes);
   /// Pass over cells, while their forces are still those of the membranes alone, of which the couples are made; those
   /// of what cells do to each other would break strongly attracting cells.
-  void couple(Worker worker, const membrane::Membranes& membranes);
+  void couple(Worker worker, const Membranes& membranes);
   /// Pass over cells, once the forces on them are complete: the slip, which must vanish where all forces are in
   /// balance, and what is to be spread, forces().
-  void complete(Worker worker, const membrane::Membranes& membranes);
+  void complete(Worker worker, const Membranes& membranes);
   /// Pass over cells: turns velocities interpolated at the touching points into those of the membrane.
-  void correct(Worker worker, membrane::Membranes& membranes);
+  void correct(Worker worker, Membranes& membranes);
 
   /// Of each cell type.
-  [[nodiscard]] std::vector<membrane::NodeMobility> mobility() const;
+  [[nodiscard]] std::vector<NodeMobility> mobility() const;
   /// Largest |d| of the types, spacings.
   [[nodiscard]] double largest_shift() const;
-  [[nodiscard]] membrane::NodeVectors positions() const { return {touch_x_.data(), touch_y_.data()}; }
-  [[nodiscard]] membrane::NodeVectors forces() const { return {force_x_.data(), force_y_.data()}; }
+  [[nodiscard]] NodeVectors positions() const { return {touch_x_.data(), touch_y_.data()}; }
+  [[nodiscard]] NodeVectors forces() const { return {force_x_.data(), force_y_.data()}; }
 
  private:
   template <class Loop>
-  void run(Worker worker, const membrane::Membranes& membranes, double* velocity_x, double* velocity_y);
+  void run(Worker worker, const Membranes& membranes, double* velocity_x, double* velocity_y);
 
   std::vector<Type> types_;
   double viscosity_;
@@ -57,4 +57,4 @@ class SlipCorrection {
   std::vector<double> scratch_x_, scratch_y_;
 };
 
-}  // namespace rouleau::coupling
+}  // namespace rouleau::core

@@ -6,7 +6,7 @@
 #include "core/membrane/geometry.hpp"
 #include "core/membrane/rounding.hpp"
 
-namespace rouleau::coupling {
+namespace rouleau::core {
 
 namespace {
 
@@ -16,7 +16,7 @@ constexpr double displacement_limit = 0.1;
 }  // namespace
 
 template <class T>
-Indicator<T>::Indicator(const membrane::Membranes& membranes, std::vector<double> viscosity_ratio, ViscosityMean mean,
+Indicator<T>::Indicator(const Membranes& membranes, std::vector<double> viscosity_ratio, ViscosityMean mean,
                         double reach_beyond, double relaxation_rate, int nx, int ny, bool periodic_y)
     : ratio_(std::move(viscosity_ratio)),
       mean_(mean),
@@ -28,12 +28,12 @@ Indicator<T>::Indicator(const membrane::Membranes& membranes, std::vector<double
       watch_(membranes),
       cells_(membranes.cells.size()),
       changed_(static_cast<std::size_t>(ny)) {
-  for (const membrane::CellRange& cell : membranes.cells) varies_ |= ratio_[static_cast<std::size_t>(cell.type)] != 1;
+  for (const CellRange& cell : membranes.cells) varies_ |= ratio_[static_cast<std::size_t>(cell.type)] != 1;
 }
 
 template <class T>
 int Indicator<T>::lattice_row(int y) const {
-  if (periodic_y_) return membrane::wrapped(y, ny_);
+  if (periodic_y_) return core::wrapped(y, ny_);
   return y >= 0 && y < ny_ ? y : -1;
 }
 
@@ -50,7 +50,7 @@ template <class T>
 template <class Function>
 void Indicator<T>::for_pieces(Interval columns, Function function) const {
   for (int begin = columns.begin; begin < columns.end;) {
-    const int x = membrane::wrapped(begin, nx_);
+    const int x = core::wrapped(begin, nx_);
     const int end = std::min(columns.end, begin + nx_ - x);
     function(x, begin, end);
     begin = end;
@@ -58,18 +58,18 @@ void Indicator<T>::for_pieces(Interval columns, Function function) const {
 }
 
 template <class T>
-void Indicator<T>::cover(Worker worker, const membrane::Membranes& membranes) {
+void Indicator<T>::cover(Worker worker, const Membranes& membranes) {
   const Range cells = worker.share(membranes.cell_count());
   std::vector<double> scratch;
   for (int c = cells.begin; c < cells.end; ++c) {
     if (!watch_.moved(c)) continue;
-    const membrane::CellRange& cell = membranes.cells[static_cast<std::size_t>(c)];
+    const CellRange& cell = membranes.cells[static_cast<std::size_t>(c)];
     Reach& reach = cells_[static_cast<std::size_t>(c)];
     std::swap(reach.covered, reach.covered_before);
     reach.covered.columns.clear();
     if (ratio_[static_cast<std::size_t>(cell.type)] != 1) {
       Coverage& coverage = reach.coverage;
-      coupling::cover(membranes, cell, coverage);
+      core::cover(membranes, cell, coverage);
       smooth(coverage, scratch);
       reach.covered.first = coverage.y0;
       for (int j = 0; j < coverage.height; ++j) {
@@ -85,14 +85,13 @@ void Indicator<T>::cover(Worker worker, const membrane::Membranes& membranes) {
 // A node at (X, Y) reaches columns floor(X) - 1 ... floor(X) + 2 and the same rows; one more each for its motion, and
 // the margin.
 template <class T>
-void Indicator<T>::find_reach(const membrane::Membranes& membranes, const membrane::CellRange& cell,
-                              Reach& reach) const {
+void Indicator<T>::find_reach(const Membranes& membranes, const CellRange& cell, Reach& reach) const {
   Rows& reached = reach.reached;
   reached.columns.clear();
-  const membrane::Bounds box = membrane::bounds(membranes, cell);
+  const Bounds box = core::bounds(membranes, cell);
   if (!box.usable()) return;
   const Rows& covered = reach.covered;
-  int first = membrane::floor_int(box.y_min) - 2 - margin_, last = membrane::floor_int(box.y_max) + 3 + margin_;
+  int first = core::floor_int(box.y_min) - 2 - margin_, last = core::floor_int(box.y_max) + 3 + margin_;
   if (!covered.columns.empty()) {
     first = std::min(first, covered.first);
     last = std::max(last, covered.first + static_cast<int>(covered.columns.size()) - 1);
@@ -104,8 +103,8 @@ void Indicator<T>::find_reach(const membrane::Membranes& membranes, const membra
   };
   std::vector<Interval> columns(rows, none);  // of the nodes between this row and the next
   for (int i = cell.first; i < cell.end(); ++i) {
-    const int x = membrane::floor_int(membranes.x[static_cast<std::size_t>(i)]);
-    const int y = membrane::floor_int(membranes.y[static_cast<std::size_t>(i)]);
+    const int x = core::floor_int(membranes.x[static_cast<std::size_t>(i)]);
+    const int y = core::floor_int(membranes.y[static_cast<std::size_t>(i)]);
     include(columns[static_cast<std::size_t>(y - first)], x - 2 - margin_, x + 4 + margin_);
   }
   reached.first = first;
@@ -124,8 +123,7 @@ void Indicator<T>::find_reach(const membrane::Membranes& membranes, const membra
 }
 
 template <class T>
-void Indicator<T>::update(Worker worker, const membrane::Membranes& membranes, fluid::Field<T>& relaxation_rate,
-                          fluid::Activity& activity) {
+void Indicator<T>::update(Worker worker, const Membranes& membranes, Field<T>& relaxation_rate, Activity& activity) {
   const Range own = worker.share(ny_);
   if (varies_) {
     collect_changes(own);
@@ -138,11 +136,11 @@ void Indicator<T>::update(Worker worker, const membrane::Membranes& membranes, f
 }
 
 template <class T>
-void Indicator<T>::restore(const membrane::DisplacementWatch::Memory& memory, const membrane::Membranes& membranes,
-                           fluid::Field<T>& relaxation_rate, fluid::Activity& activity) {
+void Indicator<T>::restore(const DisplacementWatch::Memory& memory, const Membranes& membranes,
+                           Field<T>& relaxation_rate, Activity& activity) {
   const bool updated = !memory.x.empty() && !std::isnan(memory.x.front());
   if (updated) {
-    membrane::Membranes at_update = membranes;
+    Membranes at_update = membranes;
     at_update.x = memory.x;
     at_update.y = memory.y;
     cover(Worker{}, at_update);
@@ -180,7 +178,7 @@ void Indicator<T>::collect_changes(Range own) {
 }
 
 template <class T>
-void Indicator<T>::set_rates(const membrane::Membranes& membranes, Range own, fluid::Field<T>& rate) {
+void Indicator<T>::set_rates(const Membranes& membranes, Range own, Field<T>& rate) {
   const auto for_changed = [&](auto function) {
     for (int y = own.begin; y < own.end; ++y) {
       T* row = rate.row(y);
@@ -221,4 +219,4 @@ void Indicator<T>::set_rates(const membrane::Membranes& membranes, Range own, fl
 template class Indicator<float>;
 template class Indicator<double>;
 
-}  // namespace rouleau::coupling
+}  // namespace rouleau::core

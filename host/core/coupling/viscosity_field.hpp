@@ -10,7 +10,7 @@
 #include "core/membrane/displacement_watch.hpp"
 #include "core/membrane/membranes.hpp"
 
-namespace rouleau::coupling {
+namespace rouleau::core {
 
 /// How viscosities inside and outside are averaged where a membrane cuts a node's square, I of which lies inside:
 /// arithmetic: mu_outside (1 + sum over cells (ratio - 1) I); harmonic: mu_outside / (1 + sum (1/ratio - 1) I).
@@ -23,30 +23,29 @@ class Indicator {
  public:
   /// `viscosity_ratio[t]`: interior over suspending viscosity of cell type t. `reach_beyond`: how far from a node its
   /// force may act besides the kernel's own reach, spacings. `ny` also if not periodic.
-  Indicator(const membrane::Membranes& membranes, std::vector<double> viscosity_ratio, ViscosityMean mean,
-            double reach_beyond, double relaxation_rate, int nx, int ny, bool periodic_y);
+  Indicator(const Membranes& membranes, std::vector<double> viscosity_ratio, ViscosityMean mean, double reach_beyond,
+            double relaxation_rate, int nx, int ny, bool periodic_y);
 
   /// Whether a relaxation rate that varies in space is needed; if not, the passes only mark.
   [[nodiscard]] bool varies() const { return varies_; }
 
   /// Pass over cells: compares positions with those of the last update. After a barrier, due() is the same for all
   /// workers.
-  void measure(Worker worker, const membrane::Membranes& membranes) { watch_.measure(worker, membranes); }
+  void measure(Worker worker, const Membranes& membranes) { watch_.measure(worker, membranes); }
   [[nodiscard]] bool due() const { return watch_.exceeded(); }
 
   /// Pass over cells, when due: what the cells that have moved cover and reach.
-  void cover(Worker worker, const membrane::Membranes& membranes);
+  void cover(Worker worker, const Membranes& membranes);
   /// Pass over rows, when due, a barrier after cover(): sets the relaxation rate in and around the cells that have
   /// moved, restores it where they were, and marks the nodes that the membranes touch until they have moved by 1.
   /// The field must hold the plain rate before the first call; it is not touched unless varies().
-  void update(Worker worker, const membrane::Membranes& membranes, fluid::Field<T>& relaxation_rate,
-              fluid::Activity& activity);
+  void update(Worker worker, const Membranes& membranes, Field<T>& relaxation_rate, Activity& activity);
 
   /// What relaxation rate and activity were made from, for checkpoints.
-  [[nodiscard]] const membrane::DisplacementWatch::Memory& memory() const { return watch_.memory(); }
+  [[nodiscard]] const DisplacementWatch::Memory& memory() const { return watch_.memory(); }
   /// Not a pass: makes them again as they were, in place of those of a new stage.
-  void restore(const membrane::DisplacementWatch::Memory& memory, const membrane::Membranes& membranes,
-               fluid::Field<T>& relaxation_rate, fluid::Activity& activity);
+  void restore(const DisplacementWatch::Memory& memory, const Membranes& membranes, Field<T>& relaxation_rate,
+               Activity& activity);
 
  private:
   struct Interval {
@@ -71,9 +70,9 @@ class Indicator {
   /// Calls function(x, begin, end) for pieces [begin, end) of the plane that begin at lattice column x and do not wrap.
   template <class Function>
   void for_pieces(Interval columns, Function function) const;
-  void find_reach(const membrane::Membranes& membranes, const membrane::CellRange& cell, Reach& reach) const;
+  void find_reach(const Membranes& membranes, const CellRange& cell, Reach& reach) const;
   void collect_changes(Range own);
-  void set_rates(const membrane::Membranes& membranes, Range own, fluid::Field<T>& rate);
+  void set_rates(const Membranes& membranes, Range own, Field<T>& rate);
 
   std::vector<double> ratio_;
   ViscosityMean mean_;
@@ -81,7 +80,7 @@ class Indicator {
   double plain_rate_;
   int nx_, ny_;
   bool periodic_y_, varies_ = false;
-  membrane::DisplacementWatch watch_;
+  DisplacementWatch watch_;
   std::vector<Reach> cells_;
   std::vector<std::vector<Interval>> changed_;  // of each lattice row: disjoint, where rates are computed again
 };
@@ -89,4 +88,4 @@ class Indicator {
 extern template class Indicator<float>;
 extern template class Indicator<double>;
 
-}  // namespace rouleau::coupling
+}  // namespace rouleau::core

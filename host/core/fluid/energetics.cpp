@@ -3,7 +3,7 @@
 
 #include "fluid.hpp"
 
-namespace rouleau::fluid {
+namespace rouleau::core {
 
 namespace {
 
@@ -77,4 +77,4 @@ typename Fluid<T>::Energetics Fluid<T>::energetics() const {
 template Fluid<float>::Energetics Fluid<float>::energetics() const;
 template Fluid<double>::Energetics Fluid<double>::energetics() const;
 
-}  // namespace rouleau::fluid
+}  // namespace rouleau::core

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace rouleau::fluid {
+namespace rouleau::core {
 
 namespace d2q9 = rouleau::d2q9;
 
@@ -183,4 +183,4 @@ ROULEAU_INSTANTIATE(float)
 ROULEAU_INSTANTIATE(double)
 #undef ROULEAU_INSTANTIATE
 
-}  // namespace rouleau::fluid
+}  // namespace rouleau::core

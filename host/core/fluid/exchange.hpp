@@ -8,7 +8,7 @@
 #include "field.hpp"
 #include "lattice.hpp"
 
-namespace rouleau::fluid {
+namespace rouleau::core {
 
 /// Velocity of the walls along x, lattice units. Not used when y is periodic.
 struct WallVelocity {
@@ -47,4 +47,4 @@ void fold_force_row(VectorField<T>& force, int y, bool periodic_y);
 template <class T>
 void fill_velocity_halo(VectorField<T>& velocity, int y, bool periodic_y, const WallVelocity& walls);
 
-}  // namespace rouleau::fluid
+}  // namespace rouleau::core

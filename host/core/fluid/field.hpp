@@ -6,7 +6,7 @@
 
 #include "storage.hpp"
 
-namespace rouleau::fluid {
+namespace rouleau::core {
 
 /// nx x ny values and a halo of `halo` nodes on every side. Rows start on 64-byte boundaries at x = 0.
 template <class T>
@@ -48,4 +48,4 @@ struct VectorField {
   Field<T> x, y;
 };
 
-}  // namespace rouleau::fluid
+}  // namespace rouleau::core

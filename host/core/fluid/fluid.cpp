@@ -8,12 +8,12 @@
 
 #include "max_speed.hpp"
 
-namespace rouleau::fluid {
+namespace rouleau::core {
 
 namespace d2q9 = rouleau::d2q9;
 
 template <class T>
-Fluid<T>::Fluid(const FluidSetting& setting, model::CollisionOperator collision)
+Fluid<T>::Fluid(const FluidSetting& setting, CollisionOperator collision)
     : setting_(setting),
       collision_(std::move(collision)),
       lattice_(setting.nx, setting.ny, setting.periodic_y),
@@ -317,4 +317,4 @@ void Fluid<T>::restore(const std::function<const std::vector<T>&(int)>& populati
 template class Fluid<float>;
 template class Fluid<double>;
 
-}  // namespace rouleau::fluid
+}  // namespace rouleau::core

@@ -13,7 +13,7 @@
 #include "lattice.hpp"
 #include "node_mask.hpp"
 
-namespace rouleau::fluid {
+namespace rouleau::core {
 
 /// What a fluid is made of. Lattice units.
 struct FluidSetting {
@@ -36,7 +36,7 @@ struct Moments {
 template <class T>
 class Fluid {
  public:
-  Fluid(const FluidSetting& setting, model::CollisionOperator collision);
+  Fluid(const FluidSetting& setting, CollisionOperator collision);
 
   [[nodiscard]] const FluidSetting& setting() const { return setting_; }
   [[nodiscard]] Activity& activity() { return activity_; }
@@ -117,7 +117,7 @@ class Fluid {
 
   using Block = std::conditional_t<std::is_same_v<T, double>, rouleau_collision_block_f64, rouleau_collision_block_f32>;
   FluidSetting setting_;
-  model::CollisionOperator collision_;
+  CollisionOperator collision_;
   void (*collide_)(const void* self, const Block* block);  ///< of the collision model
   Lattice<T> lattice_;
   Parity parity_ = Parity::even;
@@ -131,4 +131,4 @@ class Fluid {
 extern template class Fluid<float>;
 extern template class Fluid<double>;
 
-}  // namespace rouleau::fluid
+}  // namespace rouleau::core

@@ -1,6 +1,6 @@
 #include "lattice.hpp"
 
-namespace rouleau::fluid {
+namespace rouleau::core {
 
 template <class T>
 Lattice<T>::Lattice(int nx, int ny, bool periodic_y) : nx_(nx), ny_(ny), periodic_y_(periodic_y) {
@@ -18,4 +18,4 @@ Lattice<T>::Lattice(int nx, int ny, bool periodic_y) : nx_(nx), ny_(ny), periodi
 template class Lattice<float>;
 template class Lattice<double>;
 
-}  // namespace rouleau::fluid
+}  // namespace rouleau::core

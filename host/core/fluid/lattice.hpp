@@ -12,7 +12,7 @@
 
 #include "storage.hpp"
 
-namespace rouleau::fluid {
+namespace rouleau::core {
 
 namespace d2q9 = rouleau::d2q9;
 
@@ -97,4 +97,4 @@ inline void Lattice<T>::next_row_pointers(Parity parity, int from, int y, const 
 extern template class Lattice<float>;
 extern template class Lattice<double>;
 
-}  // namespace rouleau::fluid
+}  // namespace rouleau::core

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <rouleau/collision.hpp>
 
-namespace rouleau::fluid {
+namespace rouleau::core {
 
 /// Nodes of one run of a row, and what was found.
 template <class T>
@@ -57,4 +57,4 @@ struct FindExtremes {
   }
 };
 
-}  // namespace rouleau::fluid
+}  // namespace rouleau::core

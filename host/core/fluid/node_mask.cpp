@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace rouleau::fluid {
+namespace rouleau::core {
 
 Activity::Activity(int nx, int ny)
     : nx_(nx),
@@ -58,4 +58,4 @@ double Activity::active_fraction() const {
   return static_cast<double>(count) / (static_cast<double>(nx_) * ny_);
 }
 
-}  // namespace rouleau::fluid
+}  // namespace rouleau::core

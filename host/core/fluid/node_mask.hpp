@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace rouleau::fluid {
+namespace rouleau::core {
 
 /// Consecutive nodes [begin, end) of a row that are all active or all not.
 struct Run {
@@ -65,4 +65,4 @@ class Activity {
   std::vector<std::vector<Run>> runs_;  ///< of each row: read several times a step, changed when a membrane has moved
 };
 
-}  // namespace rouleau::fluid
+}  // namespace rouleau::core

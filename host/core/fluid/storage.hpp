@@ -10,7 +10,7 @@
 #include <sys/mman.h>
 #endif
 
-namespace rouleau::fluid {
+namespace rouleau::core {
 
 /// `count` values of T, all zero. An array of at least half a huge page begins on one, so that a step over a lattice
 /// that has left the cache does not miss the page tables too.
@@ -40,4 +40,4 @@ class Storage {
   std::unique_ptr<T[], Free> data_;
 };
 
-}  // namespace rouleau::fluid
+}  // namespace rouleau::core

@@ -4,7 +4,7 @@
 
 #include "closed_outline.hpp"
 
-namespace rouleau::membrane {
+namespace rouleau::core {
 
 namespace {
 
@@ -72,4 +72,4 @@ void keep_areas(Worker worker, Membranes& membranes) {
   }
 }
 
-}  // namespace rouleau::membrane
+}  // namespace rouleau::core

@@ -4,7 +4,7 @@
 #include "base/worker.hpp"
 #include "membranes.hpp"
 
-namespace rouleau::membrane {
+namespace rouleau::core {
 
 /// Pass over cells, once the velocities are complete. With A_i = dA/dX_i, every node of a cell gains c A_i, where c
 /// makes the sum of V_i . A_i bring the area back to its rest value within 50 steps. What the velocities alone would
@@ -12,4 +12,4 @@ namespace rouleau::membrane {
 /// have one value for each cell.
 void keep_areas(Worker worker, Membranes& membranes);
 
-}  // namespace rouleau::membrane
+}  // namespace rouleau::core

@@ -3,7 +3,7 @@
 
 #include <rouleau/pack.hpp>
 
-namespace rouleau::membrane {
+namespace rouleau::core {
 
 /// Calls body(S, i, before, after) for packs of nodes of the outline [begin, end): S is a pack that tells how many
 /// nodes from i on are meant; `before` and `after` are the neighbours of the first of them.
@@ -18,4 +18,4 @@ ROULEAU_ALWAYS_INLINE void for_closed_outline(int begin, int end, Body body) {
   body(One(0.0), end - 1, end - 2, begin);
 }
 
-}  // namespace rouleau::membrane
+}  // namespace rouleau::core

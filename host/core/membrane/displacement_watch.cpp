@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace rouleau::membrane {
+namespace rouleau::core {
 
 double largest_displacement(const std::vector<double>& x, const std::vector<double>& y,
                             const std::vector<double>& old_x, const std::vector<double>& old_y, Range nodes) {
@@ -50,4 +50,4 @@ void DisplacementWatch::remember(int cell, const Membranes& membranes, double li
   memory_.bound[static_cast<std::size_t>(cell)] = 0;
 }
 
-}  // namespace rouleau::membrane
+}  // namespace rouleau::core

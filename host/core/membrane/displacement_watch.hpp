@@ -8,7 +8,7 @@
 #include "base/worker.hpp"
 #include "membranes.hpp"
 
-namespace rouleau::membrane {
+namespace rouleau::core {
 
 /// Largest distance between corresponding nodes [nodes.begin, nodes.end) of two sets of positions; NaN if a position is
 /// no number.
@@ -48,4 +48,4 @@ class DisplacementWatch {
   std::vector<std::uint8_t> moved_;  // one per cell, so that the answer does not depend on the workers
 };
 
-}  // namespace rouleau::membrane
+}  // namespace rouleau::core

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace rouleau::membrane {
+namespace rouleau::core {
 
 std::size_t keep_state(std::vector<ElementState>& states, ElementState variable, double initial, std::size_t count) {
   const auto found = std::find_if(states.begin(), states.end(), [&](const ElementState& other) {
@@ -43,4 +43,4 @@ void ContactMemory::change_unit(std::size_t variable, double unit) {
   }
 }
 
-}  // namespace rouleau::membrane
+}  // namespace rouleau::core

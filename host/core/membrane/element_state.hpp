@@ -6,7 +6,7 @@
 
 #include "periodic_box.hpp"
 
-namespace rouleau::membrane {
+namespace rouleau::core {
 
 /// One state variable of one law of a cell type; without a law: of the method itself. Values are in lattice units, one
 /// for each node of all membranes (segment i belongs to node i, a whole cell to its first node); those of cells of
@@ -62,4 +62,4 @@ std::size_t keep_state(std::vector<ElementState>& states, ElementState variable,
 /// The variable of this name and type; null: none. For tests and outputs.
 const ElementState* find_state(const std::vector<ElementState>& states, int cell_type, const std::string& name);
 
-}  // namespace rouleau::membrane
+}  // namespace rouleau::core

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace rouleau::membrane {
+namespace rouleau::core {
 
 namespace {
 
@@ -182,4 +182,4 @@ double depth_inside(const Membranes& membranes, const CellRange& cell, const Eig
   return winding != 0 ? std::sqrt(square) : -std::sqrt(square);
 }
 
-}  // namespace rouleau::membrane
+}  // namespace rouleau::core

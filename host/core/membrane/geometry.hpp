@@ -7,7 +7,7 @@
 #include "membranes.hpp"
 #include "periodic_box.hpp"
 
-namespace rouleau::membrane {
+namespace rouleau::core {
 
 /// z component of the cross product: positive where b lies counter-clockwise of a.
 inline double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
@@ -55,4 +55,4 @@ double smallest_gap(const Membranes& membranes, int a, const PeriodicBox& box, d
 /// Depth to which a point lies inside a cell moved by `shift`: distance to its outline; negative outside.
 double depth_inside(const Membranes& membranes, const CellRange& cell, const Eigen::Vector2d& point);
 
-}  // namespace rouleau::membrane
+}  // namespace rouleau::core

@@ -8,7 +8,7 @@
 #include "geometry.hpp"
 #include "membrane_kernels.hpp"
 
-namespace rouleau::membrane {
+namespace rouleau::core {
 
 namespace {
 
@@ -298,4 +298,4 @@ void MembraneForces::soften(Membranes& membranes, int cell) const {
   type.filter->apply(&membranes.force_x[first], &membranes.force_y[first], held(0), held(1));
 }
 
-}  // namespace rouleau::membrane
+}  // namespace rouleau::core

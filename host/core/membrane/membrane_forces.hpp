@@ -13,10 +13,10 @@
 #include "semi_implicit_filter.hpp"
 #include "tension_rate.hpp"
 
-namespace rouleau::membrane {
+namespace rouleau::core {
 
 /// Laws of one cell type; they add up.
-using MembraneLaws = std::vector<model::MembraneLaw>;
+using MembraneLaws = std::vector<MembraneLaw>;
 
 /// Energies stored in the membranes, in lattice units.
 struct MembraneEnergy {
@@ -65,7 +65,7 @@ class MembraneForces {
  private:
   /// What the table of one law is asked for in every step; looked up in its manifest once.
   struct Law {
-    model::MembraneLaw model;
+    MembraneLaw model;
     bool stretch, stretch_rate, curvature, rest_curvature, area, rest_area, perimeter, rest_perimeter;  // its inputs
     bool tension, moment, pressure, perimeter_tension, energy, tension_by_rate;                         // its outputs
     std::vector<std::size_t> state;  // in Membranes::state, once kept
@@ -96,7 +96,7 @@ class MembraneForces {
     double area = 0, perimeter = 0, pressure = 0, perimeter_tension = 0;
   };
 
-  static Law describe(const model::MembraneLaw& model);
+  static Law describe(const MembraneLaw& model);
   void allocate(const Membranes& membranes);
   void make_filters(const Membranes& membranes, double viscosity);
   void keep_state(Membranes& membranes, double tension_unit);
@@ -128,4 +128,4 @@ class MembraneForces {
   Scratch scratch_;
 };
 
-}  // namespace rouleau::membrane
+}  // namespace rouleau::core

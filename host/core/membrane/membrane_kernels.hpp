@@ -5,7 +5,7 @@
 
 #include "turning_angle.hpp"
 
-namespace rouleau::membrane {
+namespace rouleau::core {
 
 /// One cell's arrays, each pointing at its node 0.
 struct CellArrays {
@@ -94,4 +94,4 @@ struct ActOnCell {
   }
 };
 
-}  // namespace rouleau::membrane
+}  // namespace rouleau::core

@@ -5,7 +5,7 @@
 #include "membrane_forces.hpp"
 #include "stiffness.hpp"
 
-namespace rouleau::membrane {
+namespace rouleau::core {
 
 namespace {
 
@@ -13,7 +13,7 @@ constexpr int pack_margin = 8;  // doubles in the widest pack
 
 }  // namespace
 
-MembraneForces::Law MembraneForces::describe(const model::MembraneLaw& model) {
+MembraneForces::Law MembraneForces::describe(const MembraneLaw& model) {
   return {.model = model,
           .stretch = model.reads("stretch"),
           .stretch_rate = model.reads("stretch_rate"),
@@ -36,7 +36,7 @@ MembraneForces::MembraneForces(Membranes& membranes, const MembraneForcesSetup& 
   for (const MembraneLaws& laws : setup.laws) {
     Type& type = types_.emplace_back();
     if (!setup.mobility.empty()) type.mobility = setup.mobility[types_.size() - 1];
-    for (const model::MembraneLaw& model : laws) {
+    for (const MembraneLaw& model : laws) {
       const Law& law = type.laws.emplace_back(describe(model));
       type.rate |= law.stretch_rate || law.tension_by_rate;
       type.tension_by_rate |= law.tension_by_rate;
@@ -93,13 +93,13 @@ void MembraneForces::make_filters(const Membranes& membranes, double viscosity) 
 void MembraneForces::keep_state(Membranes& membranes, double tension_unit) {
   for (std::size_t t = 0; t < types_.size(); ++t) {
     Type& type = types_[t];
-    const auto keep = [&](int law, const std::string& id, const model::StateVariable& variable) {
-      return membrane::keep_state(membranes.state, {static_cast<int>(t), law, id, variable.name, variable.unit, {}},
-                                  variable.initial, membranes.x.size());
+    const auto keep = [&](int law, const std::string& id, const StateVariable& variable) {
+      return core::keep_state(membranes.state, {static_cast<int>(t), law, id, variable.name, variable.unit, {}},
+                              variable.initial, membranes.x.size());
     };
     for (std::size_t l = 0; l < type.laws.size(); ++l) {
       Law& law = type.laws[l];
-      for (const model::StateVariable& variable : law.model.state) {
+      for (const StateVariable& variable : law.model.state) {
         law.state.push_back(keep(static_cast<int>(l), law.model.id, variable));
       }
     }
@@ -110,4 +110,4 @@ void MembraneForces::keep_state(Membranes& membranes, double tension_unit) {
   }
 }
 
-}  // namespace rouleau::membrane
+}  // namespace rouleau::core

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace rouleau::membrane {
+namespace rouleau::core {
 
 namespace {
 
@@ -51,4 +51,4 @@ void add_cell(Membranes& membranes, int type, const RestShape& shape, double x, 
   }
 }
 
-}  // namespace rouleau::membrane
+}  // namespace rouleau::core

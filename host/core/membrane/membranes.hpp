@@ -6,7 +6,7 @@
 #include "base/worker.hpp"
 #include "element_state.hpp"
 
-namespace rouleau::membrane {
+namespace rouleau::core {
 
 /// One cell's place in the arrays of Membranes.
 struct CellRange {
@@ -69,4 +69,4 @@ RestShape make_rest_shape(std::vector<double> x, std::vector<double> y, double p
 /// Adds a cell that rests, its shape's origin at (x, y), turned counter-clockwise by `angle`.
 void add_cell(Membranes& membranes, int type, const RestShape& shape, double x, double y, double angle);
 
-}  // namespace rouleau::membrane
+}  // namespace rouleau::core

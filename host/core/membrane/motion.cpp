@@ -3,7 +3,7 @@
 #include <cmath>
 #include <rouleau/dispatch.hpp>
 
-namespace rouleau::membrane {
+namespace rouleau::core {
 
 namespace {
 
@@ -79,4 +79,4 @@ double largest_step(const Membranes& membranes) {
   return largest;
 }
 
-}  // namespace rouleau::membrane
+}  // namespace rouleau::core

@@ -4,7 +4,7 @@
 #include "base/worker.hpp"
 #include "membranes.hpp"
 
-namespace rouleau::membrane {
+namespace rouleau::core {
 
 /// Pass over cells: adds the velocity to the positions of this worker's cells (explicit Euler) and sets largest_step,
 /// which must have one value for each cell; NaN where a velocity is no number.
@@ -20,4 +20,4 @@ FarthestNode farthest_node(const Membranes& membranes);
 /// Largest of all steps; NaN if any is.
 double largest_step(const Membranes& membranes);
 
-}  // namespace rouleau::membrane
+}  // namespace rouleau::core

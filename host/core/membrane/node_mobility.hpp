@@ -1,7 +1,7 @@
 // How the nodes of a membrane give way to forces beyond what the fluid on the lattice does.
 #pragma once
 
-namespace rouleau::membrane {
+namespace rouleau::core {
 
 /// What the slip correction adds to the motion of a cell type's nodes; zero without it. Lattice units.
 struct NodeMobility {
@@ -15,4 +15,4 @@ struct NodeMobility {
 /// the distance `shift`: the couples of the shift and their adjoint both gain sin(q) shift/length at q a segment.
 inline double stiffening(double shift, double length) { return 1 + (shift / length) * (shift / length); }
 
-}  // namespace rouleau::membrane
+}  // namespace rouleau::core

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace rouleau::membrane {
+namespace rouleau::core {
 
 /// Period of the lattice in spacings: always periodic along x, along y only if `ny` is not 0.
 struct PeriodicBox {
@@ -56,4 +56,4 @@ void for_each_image(const Bounds& a, const Bounds& b, double reach, const Period
   }
 }
 
-}  // namespace rouleau::membrane
+}  // namespace rouleau::core

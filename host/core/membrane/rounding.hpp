@@ -1,7 +1,7 @@
 // From positions to lattice indices, without the library calls that std::floor is on plain x86-64.
 #pragma once
 
-namespace rouleau::membrane {
+namespace rouleau::core {
 
 /// Largest integer not above `value`, which must fit an int.
 inline int floor_int(double value) {
@@ -15,4 +15,4 @@ inline int wrapped(int i, int period) {
   return rest < 0 ? rest + period : rest;
 }
 
-}  // namespace rouleau::membrane
+}  // namespace rouleau::core

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace rouleau::membrane {
+namespace rouleau::core {
 
 namespace {
 
@@ -104,4 +104,4 @@ void ForceFilter::apply(double* force_x, double* force_y, double* held_x, double
   }
 }
 
-}  // namespace rouleau::membrane
+}  // namespace rouleau::core

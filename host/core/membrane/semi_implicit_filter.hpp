@@ -3,7 +3,7 @@
 
 #include <vector>
 
-namespace rouleau::membrane {
+namespace rouleau::core {
 
 /// With forces F(X) of a membrane whose stiffness is about K = k_s/l D2 + k_b/l^3 D4 (D2, D4: second and fourth
 /// differences around the cell, both positive), and m the velocity that a node gains in a step from a force of 1,
@@ -43,4 +43,4 @@ class ForceFilter {
   double corner_[3];                                 ///< inverse of the 2 x 2 matrix that is left: 00, 01 = 10, 11
 };
 
-}  // namespace rouleau::membrane
+}  // namespace rouleau::core

@@ -5,14 +5,14 @@
 #include <cmath>
 #include <vector>
 
-namespace rouleau::membrane {
+namespace rouleau::core {
 
 namespace {
 
 /// What one law gives for a few elements, which differ in one input only; the others are those of a membrane at rest.
 class Probe {
  public:
-  Probe(const model::MembraneLaw& law, std::vector<double> arguments)
+  Probe(const MembraneLaw& law, std::vector<double> arguments)
       : law_(law),
         arguments_(std::move(arguments)),
         zero_(arguments_.size(), 0.0),
@@ -20,7 +20,7 @@ class Probe {
         first_state_(law.state.size()) {
     block_.struct_size = sizeof block_;
     block_.count = static_cast<std::uint32_t>(arguments_.size());
-    for (const model::StateVariable& variable : law.state) state_.emplace_back(arguments_.size(), variable.initial);
+    for (const StateVariable& variable : law.state) state_.emplace_back(arguments_.size(), variable.initial);
     for (std::size_t k = 0; k < state_.size(); ++k) first_state_[k] = state_[k].data();
     if (!state_.empty()) block_.state = first_state_.data();
   }
@@ -45,7 +45,7 @@ class Probe {
     return result_;
   }
 
-  const model::MembraneLaw& law_;
+  const MembraneLaw& law_;
   std::vector<double> arguments_, zero_, result_;
   std::vector<std::vector<double>> state_;
   std::vector<const double*> first_state_;
@@ -60,7 +60,7 @@ double largest(const std::vector<double>& values) {
 
 }  // namespace
 
-double stretching_stiffness(const model::MembraneLaw& law, const std::vector<double>& stretches) {
+double stretching_stiffness(const MembraneLaw& law, const std::vector<double>& stretches) {
   if (law.writes("tension_by_stretch")) return largest(Probe(law, stretches).tension_by_stretch());
   if (!law.writes("tension")) return 0;
   constexpr double h = 1e-5;
@@ -75,13 +75,13 @@ double stretching_stiffness(const model::MembraneLaw& law, const std::vector<dou
   return largest(difference);
 }
 
-double tension_at(const model::MembraneLaw& law, double stretch) {
+double tension_at(const MembraneLaw& law, double stretch) {
   return law.writes("tension") ? Probe(law, {stretch}).tension().front() : 0;
 }
 
-double bending_stiffness(const model::MembraneLaw& law) {
+double bending_stiffness(const MembraneLaw& law) {
   if (!law.writes("moment_by_curvature")) return 0;
   return largest(Probe(law, {0.0}).moment_by_curvature());
 }
 
-}  // namespace rouleau::membrane
+}  // namespace rouleau::core

@@ -5,17 +5,17 @@
 
 #include "core/model/model.hpp"
 
-namespace rouleau::membrane {
+namespace rouleau::core {
 
 /// Largest d tension / d stretch of a law of segments at these stretches, without rate and with its initial state; by
 /// differences of the tension where the law gives no derivative. 0 for other laws. Lattice units.
-double stretching_stiffness(const model::MembraneLaw& law, const std::vector<double>& stretches = {0.95, 1.0, 1.1});
+double stretching_stiffness(const MembraneLaw& law, const std::vector<double>& stretches = {0.95, 1.0, 1.1});
 
 /// Tension of a law of segments at a stretch, at once; 0 for other laws.
-double tension_at(const model::MembraneLaw& law, double stretch);
+double tension_at(const MembraneLaw& law, double stretch);
 
 /// d moment / d curvature of a law of nodes, as much of it as the law gives, for a shape that is flat at rest. 0 for
 /// other laws. Lattice units.
-double bending_stiffness(const model::MembraneLaw& law);
+double bending_stiffness(const MembraneLaw& law);
 
-}  // namespace rouleau::membrane
+}  // namespace rouleau::core

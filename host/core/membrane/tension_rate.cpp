@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace rouleau::membrane {
+namespace rouleau::core {
 
 double rate_mobility(double mean_rest_length) { return 4 * std::max(1.0, 1 / mean_rest_length); }
 
@@ -50,4 +50,4 @@ void solve(const TensionRateStep& step) {
   for (std::size_t i = 0; i < n; ++i) tension[i] = x[i] - factor * z[i];
 }
 
-}  // namespace rouleau::membrane
+}  // namespace rouleau::core

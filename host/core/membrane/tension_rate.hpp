@@ -1,7 +1,7 @@
 // The part of a membrane's tension that grows with the stretch rate, by a step that is stable at any viscosity.
 #pragma once
 
-namespace rouleau::membrane {
+namespace rouleau::core {
 
 /// One cell's segments. A tension T = eta r, r = g/L the stretch rate, is felt by the nodes at both ends, so that it
 /// changes the rate of length g at once; explicit steps therefore fail from eta near 1 lattice unit on. With D the
@@ -31,4 +31,4 @@ void solve(const TensionRateStep& step);
 /// same fluid together.
 double rate_mobility(double mean_rest_length);
 
-}  // namespace rouleau::membrane
+}  // namespace rouleau::core

@@ -3,7 +3,7 @@
 
 #include <rouleau/pack.hpp>
 
-namespace rouleau::membrane {
+namespace rouleau::core {
 
 /// atan2(cross, dot) of the sine and cosine of an angle, to about 4 units in the last place; 0 if both are 0; +-pi is
 /// reached from either side.
@@ -32,4 +32,4 @@ ROULEAU_ALWAYS_INLINE S turning_angle(const S& cross, const S& dot) {
   return select(dot < S(0.0), straight - folded, folded);
 }
 
-}  // namespace rouleau::membrane
+}  // namespace rouleau::core

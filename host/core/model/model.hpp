@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-namespace rouleau::model {
+namespace rouleau::core {
 
 /// What a model remembers of each element from step to step.
 struct StateVariable {
@@ -46,4 +46,4 @@ using CollisionOperator = Model<rouleau_collision>;
 using MembraneLaw = Model<rouleau_membrane>;
 using Potential = Model<rouleau_interaction>;
 
-}  // namespace rouleau::model
+}  // namespace rouleau::core

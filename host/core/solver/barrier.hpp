@@ -8,7 +8,7 @@
 #include <immintrin.h>
 #endif
 
-namespace rouleau::solver {
+namespace rouleau::core {
 
 /// Barrier for a handful of threads that meet every few microseconds. It spins, since sleeping and waking takes longer
 /// than most passes (OpenMP's barrier enters the kernel even for one thread), and lets others run when it has spun in
@@ -58,4 +58,4 @@ class Barrier {
   alignas(64) std::atomic<unsigned> round_{0};
 };
 
-}  // namespace rouleau::solver
+}  // namespace rouleau::core

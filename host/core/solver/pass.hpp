@@ -11,7 +11,7 @@
 #include "barrier.hpp"
 #include "base/worker.hpp"
 
-namespace rouleau::solver {
+namespace rouleau::core {
 
 /// What happens between the workers when one of them has ended a pass.
 enum class Meeting {
@@ -72,4 +72,4 @@ inline void run_passes(const std::vector<Pass>& passes, Worker worker, Barrier& 
   }
 }
 
-}  // namespace rouleau::solver
+}  // namespace rouleau::core

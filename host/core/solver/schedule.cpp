@@ -1,6 +1,6 @@
 #include "schedule.hpp"
 
-namespace rouleau::solver {
+namespace rouleau::core {
 
 Schedule make_schedule(const StepFeatures& has) {
   const Step collide{Task::collide_and_stream, "fluid", Meeting::all};
@@ -41,4 +41,4 @@ Schedule make_schedule(const StepFeatures& has) {
   return schedule;
 }
 
-}  // namespace rouleau::solver
+}  // namespace rouleau::core

@@ -6,7 +6,7 @@
 
 #include "pass.hpp"
 
-namespace rouleau::solver {
+namespace rouleau::core {
 
 /// What a time step may do. A pass over cells gives each worker cells, one over rows gives it rows of the lattice.
 enum class Task {
@@ -52,4 +52,4 @@ struct Schedule {
 };
 Schedule make_schedule(const StepFeatures& features);
 
-}  // namespace rouleau::solver
+}  // namespace rouleau::core

@@ -8,16 +8,16 @@
 #include "core/membrane/motion.hpp"
 #include "core/membrane/stiffness.hpp"
 
-namespace rouleau::solver {
+namespace rouleau::core {
 
 namespace {
 
-bool has_contrast(const SolverSetup& setup, const membrane::Membranes& membranes) {
+bool has_contrast(const SolverSetup& setup, const Membranes& membranes) {
   return std::any_of(membranes.cells.begin(), membranes.cells.end(),
-                     [&](const membrane::CellRange& cell) { return setup.cell_types[cell.type].viscosity_ratio != 1; });
+                     [&](const CellRange& cell) { return setup.cell_types[cell.type].viscosity_ratio != 1; });
 }
 
-fluid::FluidSetting fluid_setting(const SolverSetup& setup, const membrane::Membranes& membranes) {
+FluidSetting fluid_setting(const SolverSetup& setup, const Membranes& membranes) {
   if (setup.nx < 1 || setup.ny < 1) throw std::invalid_argument("a lattice needs at least one node along x and y");
   if (setup.collision.table == nullptr) throw std::invalid_argument("a fluid needs a collision operator");
   return {.nx = setup.nx,
@@ -35,22 +35,22 @@ fluid::FluidSetting fluid_setting(const SolverSetup& setup, const membrane::Memb
 struct Stiffness {
   double stretching = 0, bending = 0;
 };
-Stiffness stiffness_of(const membrane::MembraneLaws& laws) {
+Stiffness stiffness_of(const MembraneLaws& laws) {
   Stiffness sum;
-  for (const model::MembraneLaw& law : laws) {
-    sum.stretching += membrane::stretching_stiffness(law);
-    sum.bending += membrane::bending_stiffness(law);
+  for (const MembraneLaw& law : laws) {
+    sum.stretching += core::stretching_stiffness(law);
+    sum.bending += core::bending_stiffness(law);
   }
   return sum;
 }
 
 /// What it takes to stretch all membranes by 0.1 %, and to bend them by as much.
-double slight_energy_of(const std::vector<CellType>& types, const membrane::Membranes& membranes) {
+double slight_energy_of(const std::vector<CellType>& types, const Membranes& membranes) {
   constexpr double strain = 1e-3;
   std::vector<Stiffness> of_type;
   for (const CellType& type : types) of_type.push_back(stiffness_of(type.laws));
   double energy = 0;
-  for (const membrane::CellRange& cell : membranes.cells) {
+  for (const CellRange& cell : membranes.cells) {
     const double curvature = strain * 2 * std::numbers::pi / cell.rest_perimeter;  // of a circle
     const Stiffness& stiffness = of_type[cell.type];
     energy +=
@@ -62,7 +62,7 @@ double slight_energy_of(const std::vector<CellType>& types, const membrane::Memb
 }  // namespace
 
 template <class T>
-Solver<T>::Solver(SolverSetup setup, membrane::Membranes& membranes)
+Solver<T>::Solver(SolverSetup setup, Membranes& membranes)
     : setup_(std::move(setup)), membranes_(membranes), fluid_(fluid_setting(setup_, membranes), setup_.collision) {
   if (!membranes.cells.empty()) make_cells();
   const Schedule schedule = make_schedule(features());
@@ -122,10 +122,10 @@ void Solver<T>::run(Task task, Worker worker) {
       return coupling_->interpolate(worker, membranes_, fluid_.velocity());
     case Task::correct_velocities:
       if (slip_correction_) slip_correction_->correct(worker, membranes_);
-      if (setup_.area_correction) membrane::keep_areas(worker, membranes_);
+      if (setup_.area_correction) core::keep_areas(worker, membranes_);
       return;
     case Task::move:
-      membrane::move_nodes(worker, membranes_);
+      core::move_nodes(worker, membranes_);
       return locate(worker);
   }
 }
@@ -136,7 +136,7 @@ void Solver<T>::make_cells() {
   membranes_.largest_step.resize(membranes_.cells.size(), 0.0);
   if (setup_.area_correction) membranes_.area_leakage.resize(membranes_.cells.size(), 0.0);  // earlier leakage stays
 
-  membrane::MembraneForcesSetup membrane_setup{
+  MembraneForcesSetup membrane_setup{
       .semi_implicit = setup_.semi_implicit, .viscosity = setup_.viscosity(), .tension_unit = setup_.tension_unit};
   std::vector<double> viscosity_ratio;
   for (const CellType& type : setup_.cell_types) {
@@ -144,31 +144,30 @@ void Solver<T>::make_cells() {
     viscosity_ratio.push_back(type.viscosity_ratio);
   }
   if (slip_correction_) membrane_setup.mobility = slip_correction_->mobility();
-  membrane_forces_ = std::make_unique<membrane::MembraneForces>(membranes_, membrane_setup);
+  membrane_forces_ = std::make_unique<MembraneForces>(membranes_, membrane_setup);
   slight_energy_ = slight_energy_of(setup_.cell_types, membranes_);
   if (!setup_.interactions.empty()) {
-    const membrane::PeriodicBox box{1.0 * setup_.nx, setup_.periodic_y ? 1.0 * setup_.ny : 0.0};
-    interaction_forces_ = std::make_unique<contact::InteractionForces>(membranes_, setup_.interactions, box);
+    const PeriodicBox box{1.0 * setup_.nx, setup_.periodic_y ? 1.0 * setup_.ny : 0.0};
+    interaction_forces_ = std::make_unique<InteractionForces>(membranes_, setup_.interactions, box);
   }
-  indicator_ = std::make_unique<coupling::Indicator<T>>(
-      membranes_, std::move(viscosity_ratio),
-      slip_correction_ ? coupling::ViscosityMean::harmonic : coupling::ViscosityMean::arithmetic,
-      slip_correction_ ? slip_correction_->largest_shift() : 0.0, 1 / setup_.tau, setup_.nx, setup_.ny,
-      setup_.periodic_y);
-  coupling_ = std::make_unique<coupling::Coupling<T>>(setup_.kernel, setup_.nx, setup_.ny, setup_.periodic_y);
+  indicator_ = std::make_unique<Indicator<T>>(membranes_, std::move(viscosity_ratio),
+                                              slip_correction_ ? ViscosityMean::harmonic : ViscosityMean::arithmetic,
+                                              slip_correction_ ? slip_correction_->largest_shift() : 0.0,
+                                              1 / setup_.tau, setup_.nx, setup_.ny, setup_.periodic_y);
+  coupling_ = std::make_unique<Coupling<T>>(setup_.kernel, setup_.nx, setup_.ny, setup_.periodic_y);
   coupling_->reserve(membranes_);
   locate(Worker{});
 }
 
 template <class T>
 void Solver<T>::make_slip_correction() {
-  std::vector<coupling::SlipCorrection::Type> types;
+  std::vector<SlipCorrection::Type> types;
   for (const CellType& type : setup_.cell_types) {
     const Stiffness stiffness = stiffness_of(type.laws);
     types.push_back(
-        {coupling::slip_constants(setup_.kernel, type.viscosity_ratio), stiffness.stretching, stiffness.bending});
+        {core::slip_constants(setup_.kernel, type.viscosity_ratio), stiffness.stretching, stiffness.bending});
   }
-  slip_correction_ = std::make_unique<coupling::SlipCorrection>(membranes_, std::move(types), setup_.viscosity());
+  slip_correction_ = std::make_unique<SlipCorrection>(membranes_, std::move(types), setup_.viscosity());
 }
 
 template <class T>
@@ -220,4 +219,4 @@ void Solver<T>::tensions(std::vector<double>& tension) const {
 template class Solver<float>;
 template class Solver<double>;
 
-}  // namespace rouleau::solver
+}  // namespace rouleau::core

@@ -13,7 +13,7 @@
 #include "schedule.hpp"
 #include "solver_setup.hpp"
 
-namespace rouleau::solver {
+namespace rouleau::core {
 
 /// Everything that one setup computes with. Membranes belong to the caller and outlive it: the next setup of a run goes
 /// on with them.
@@ -22,7 +22,7 @@ class Solver {
  public:
   /// The fluid is at rest until start() or a restore; `membranes` must outlive the solver. Throws
   /// std::invalid_argument for a setup without nodes or collision operator.
-  Solver(SolverSetup setup, membrane::Membranes& membranes);
+  Solver(SolverSetup setup, Membranes& membranes);
 
   /// The fluid that the setup asks for: developed, or what `former` left (null: there was none), rescaled with the time
   /// step: velocities and density deviations of the same flow scale like it. The nodes' velocities with it.
@@ -32,12 +32,12 @@ class Solver {
   void step(long count = 1);
 
   [[nodiscard]] const SolverSetup& setup() const { return setup_; }
-  [[nodiscard]] fluid::Fluid<T>& fluid() { return fluid_; }
-  [[nodiscard]] const membrane::Membranes& membranes() const { return membranes_; }
+  [[nodiscard]] Fluid<T>& fluid() { return fluid_; }
+  [[nodiscard]] const Membranes& membranes() const { return membranes_; }
   /// Null without cells.
-  [[nodiscard]] const coupling::Indicator<T>* indicator() const { return indicator_.get(); }
+  [[nodiscard]] const Indicator<T>* indicator() const { return indicator_.get(); }
   /// Relaxation rate and activity as they were at a checkpoint, between two steps; nothing to do without cells.
-  void restore_indicator(const membrane::DisplacementWatch::Memory& memory) {
+  void restore_indicator(const DisplacementWatch::Memory& memory) {
     if (indicator_) indicator_->restore(memory, membranes_, fluid_.relaxation_rate(), fluid_.activity());
   }
   /// Force and spreading at the present positions; after them and a barrier the state may be observed.
@@ -52,11 +52,11 @@ class Solver {
   /// Nodes move otherwise than the lattice's fluid at their places does.
   [[nodiscard]] bool corrects_motion() const { return slip_correction_ || setup_.area_correction; }
   /// Null without cells.
-  [[nodiscard]] membrane::MembraneForces* membrane_forces() { return membrane_forces_.get(); }
+  [[nodiscard]] MembraneForces* membrane_forces() { return membrane_forces_.get(); }
   /// What it takes to stretch all membranes by 0.1 %: energies far below this are rounding. Lattice units.
   [[nodiscard]] double slight_energy() const { return slight_energy_; }
   /// Null without cells or interactions.
-  [[nodiscard]] const contact::InteractionForces* interaction_forces() const { return interaction_forces_.get(); }
+  [[nodiscard]] const InteractionForces* interaction_forces() const { return interaction_forces_.get(); }
 
  private:
   [[nodiscard]] StepFeatures features() const;
@@ -66,13 +66,13 @@ class Solver {
   void locate(Worker worker);
 
   SolverSetup setup_;
-  membrane::Membranes& membranes_;
-  fluid::Fluid<T> fluid_;
-  std::unique_ptr<coupling::SlipCorrection> slip_correction_;
-  std::unique_ptr<membrane::MembraneForces> membrane_forces_;
-  std::unique_ptr<contact::InteractionForces> interaction_forces_;
-  std::unique_ptr<coupling::Indicator<T>> indicator_;
-  std::unique_ptr<coupling::Coupling<T>> coupling_;
+  Membranes& membranes_;
+  Fluid<T> fluid_;
+  std::unique_ptr<SlipCorrection> slip_correction_;
+  std::unique_ptr<MembraneForces> membrane_forces_;
+  std::unique_ptr<InteractionForces> interaction_forces_;
+  std::unique_ptr<Indicator<T>> indicator_;
+  std::unique_ptr<Coupling<T>> coupling_;
   double slight_energy_ = 0;
   std::vector<Pass> forces_, advance_;
 };
@@ -80,4 +80,4 @@ class Solver {
 extern template class Solver<float>;
 extern template class Solver<double>;
 
-}  // namespace rouleau::solver
+}  // namespace rouleau::core

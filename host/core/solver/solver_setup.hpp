@@ -9,11 +9,11 @@
 #include "core/membrane/membrane_forces.hpp"
 #include "core/model/model.hpp"
 
-namespace rouleau::solver {
+namespace rouleau::core {
 
 struct CellType {
   /// They add up.
-  membrane::MembraneLaws laws;
+  MembraneLaws laws;
   /// Inside over the suspending fluid's.
   double viscosity_ratio = 1;
 };
@@ -28,18 +28,18 @@ struct SolverSetup {
   double tau = 1;
   /// Quadratic equilibrium; false: linear, for creeping flow.
   bool inertia = false;
-  fluid::WallVelocity walls = {};
+  WallVelocity walls = {};
   /// Force density everywhere.
   double body_force_x = 0, body_force_y = 0;
   /// Begin with the developed flow of the walls and the body force; false: with a fluid at rest, or the one before.
   bool developed = false;
-  model::CollisionOperator collision = {};
+  CollisionOperator collision = {};
 
-  coupling::KernelKind kernel = coupling::KernelKind::peskin4;
+  KernelKind kernel = KernelKind::peskin4;
   /// What Membranes::cells name as their types.
   std::vector<CellType> cell_types = {};
-  std::vector<contact::Interaction> interactions = {};
-  /// The step of stiff membranes (membrane::ForceFilter).
+  std::vector<Interaction> interactions = {};
+  /// The step of stiff membranes (ForceFilter).
   bool semi_implicit = false;
   /// Takes the tangential slip of the immersed boundary out.
   bool slip_correction = false;
@@ -54,4 +54,4 @@ struct SolverSetup {
   [[nodiscard]] double viscosity() const { return (tau - 0.5) / 3; }
 };
 
-}  // namespace rouleau::solver
+}  // namespace rouleau::core

@@ -18,9 +18,7 @@ struct Run {
   Run()
       : scene(scene::read_scene(ROULEAU_FUZZ_SCENES "/checkpoint.json")),
         plan(plan::make_plan(scene, fuzz::shipped_catalog())) {}
-  [[nodiscard]] membrane::Membranes membranes() const {
-    return plan::make_membranes(scene, plan::lattice_spacing(scene));
-  }
+  [[nodiscard]] core::Membranes membranes() const { return plan::make_membranes(scene, plan::lattice_spacing(scene)); }
 
   scene::Scene scene;
   plan::Plan plan;
@@ -45,10 +43,10 @@ void resume(const std::filesystem::path& directory) {
   const Run& run = the_run();
   const auto resumption = run::open_checkpoint(directory, run.plan, true);
   const Json saved = resumption.checkpoint->state();
-  membrane::Membranes membranes = run.membranes();
+  core::Membranes membranes = run.membranes();
   run::RunState state{observe::Observer(run.scene, membranes)};
   run::restore(*resumption.checkpoint, saved, run.plan, state, membranes);
-  solver::Solver<double> solver(plan::make_solver_setup(run.plan, state.stage), membranes);
+  core::Solver<double> solver(plan::make_solver_setup(run.plan, state.stage), membranes);
   run::restore(*resumption.checkpoint, saved, solver);
   run::Summary summary;
   state.report(summary);

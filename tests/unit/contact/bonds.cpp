@@ -5,8 +5,7 @@
 #include "unit/cell_fixture.hpp"
 
 using namespace rouleau;
-using namespace rouleau::contact;
-using namespace rouleau::membrane;
+using namespace rouleau::core;
 using namespace rouleau::plugin;
 using namespace rouleau::test;
 
@@ -15,11 +14,11 @@ namespace {
 constexpr double sites = 0.7, stiffness = 0.3, bond_length = 2.5, on = 0.02, off = 0.03, forward_share = 0.4,
                  thermal = 0.9;
 
-rouleau::model::Potential bridging(double on_rate = on, double off_rate = off, double cutoff = 8) {
+rouleau::core::Potential bridging(double on_rate = on, double off_rate = off, double cutoff = 8) {
   return potential("bridging", {sites, stiffness, bond_length, on_rate, off_rate, forward_share, thermal, cutoff});
 }
 
-InteractionForces bonds_between(Membranes& m, rouleau::model::Potential bond, PeriodicBox box = {1e4}) {
+InteractionForces bonds_between(Membranes& m, rouleau::core::Potential bond, PeriodicBox box = {1e4}) {
   return {m, {{{0, 0}, std::move(bond)}}, box};
 }
 

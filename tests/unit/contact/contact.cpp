@@ -10,8 +10,7 @@
 #include "unit/cell_fixture.hpp"
 
 using namespace rouleau;
-using namespace rouleau::contact;
-using namespace rouleau::membrane;
+using namespace rouleau::core;
 using namespace rouleau::test;
 
 namespace {

@@ -6,8 +6,7 @@
 
 #include "unit/cell_fixture.hpp"
 
-using namespace rouleau::contact;
-using namespace rouleau::membrane;
+using namespace rouleau::core;
 using namespace rouleau::test;
 
 namespace {

@@ -7,8 +7,7 @@
 #include "core/membrane/geometry.hpp"
 #include "unit/cell_fixture.hpp"
 
-using namespace rouleau::contact;
-using namespace rouleau::membrane;
+using namespace rouleau::core;
 using namespace rouleau::test;
 
 namespace {

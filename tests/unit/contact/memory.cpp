@@ -5,7 +5,7 @@
 #include "unit/cell_fixture.hpp"
 
 using namespace rouleau;
-using namespace rouleau::membrane;
+using namespace rouleau::core;
 using namespace rouleau::plugin;
 using namespace rouleau::test;
 using namespace rouleau::units;
@@ -13,10 +13,10 @@ using namespace rouleau::test;
 
 namespace {
 
-rouleau::model::MembraneLaw viscous(double viscosity, const LatticeUnits& units = {1, 1, 1}) {
+rouleau::core::MembraneLaw viscous(double viscosity, const LatticeUnits& units = {1, 1, 1}) {
   return law("viscous", {viscosity}, units);
 }
-rouleau::model::MembraneLaw maxwell(double modulus, double relaxation_time, const LatticeUnits& units = {1, 1, 1}) {
+rouleau::core::MembraneLaw maxwell(double modulus, double relaxation_time, const LatticeUnits& units = {1, 1, 1}) {
   return law("standard-linear-solid", {modulus, relaxation_time}, units);
 }
 

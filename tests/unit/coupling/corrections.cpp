@@ -8,8 +8,7 @@
 #include "core/membrane/geometry.hpp"
 #include "unit/cell_fixture.hpp"
 
-using namespace rouleau::coupling;
-using namespace rouleau::membrane;
+using namespace rouleau::core;
 using namespace rouleau::test;
 
 namespace {

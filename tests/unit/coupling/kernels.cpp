@@ -8,10 +8,8 @@
 #include "plan/kernel_facts.hpp"
 #include "unit/cell_fixture.hpp"
 
-using namespace rouleau::coupling;
+using namespace rouleau::core;
 using rouleau::plan::kernel_facts;
-using namespace rouleau::fluid;
-using namespace rouleau::membrane;
 using namespace rouleau::test;
 
 namespace {

@@ -9,9 +9,7 @@
 #include "unit/cell_fixture.hpp"
 
 using namespace rouleau;
-using namespace rouleau::coupling;
-using namespace rouleau::fluid;
-using namespace rouleau::membrane;
+using namespace rouleau::core;
 using namespace rouleau::test;
 
 namespace {

@@ -7,7 +7,7 @@
 #include "flow_fixture.hpp"
 
 using namespace rouleau;
-using namespace rouleau::fluid;
+using namespace rouleau::core;
 using namespace rouleau::plugin;
 using namespace rouleau::test;
 namespace d2q9 = rouleau::d2q9;
@@ -19,7 +19,7 @@ struct TwoArrayFluid {
   int nx, ny;
   bool periodic_y;
   WallVelocity walls;
-  rouleau::model::CollisionOperator collision;
+  rouleau::core::CollisionOperator collision;
   std::vector<double> f;  // [y][x][q]
 
   double& at(std::vector<double>& a, int q, int x, int y) const {

@@ -8,8 +8,7 @@
 #include "core/membrane/membrane_forces.hpp"
 #include "unit/cell_fixture.hpp"
 
-using namespace rouleau::contact;
-using namespace rouleau::membrane;
+using namespace rouleau::core;
 using namespace rouleau::plugin;
 using namespace rouleau::test;
 
@@ -208,8 +207,8 @@ TEST_CASE("the stretch of a cell's segments is read off its outline") {
 
 TEST_CASE(
     "every shipped potential acts between cells as minus the gradient of its energy, without net force or torque") {
-  const std::vector<rouleau::model::Potential> potentials = {potential("lennard-jones-shifted", {0.2, 2.5, 12}),
-                                                             potential("repulsion", {0.2, 7})};
+  const std::vector<rouleau::core::Potential> potentials = {potential("lennard-jones-shifted", {0.2, 2.5, 12}),
+                                                            potential("repulsion", {0.2, 7})};
   auto random = generator(64);
   Membranes m = biconcave_cells({{0, -18, 0.05}, {2, 0, 0.0}, {-1, 18, -0.08}});
   deform(m, random, 2, 0.02);

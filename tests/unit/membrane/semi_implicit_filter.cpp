@@ -7,7 +7,7 @@
 #include "core/membrane/membrane_forces.hpp"
 #include "unit/cell_fixture.hpp"
 
-using namespace rouleau::membrane;
+using namespace rouleau::core;
 using namespace rouleau::test;
 
 TEST_CASE("the filter is the inverse of the cyclic matrix of stretching and bending") {

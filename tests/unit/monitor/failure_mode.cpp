@@ -7,7 +7,7 @@
 
 #include "monitor/membrane_wave.hpp"
 
-using namespace rouleau::membrane;
+using namespace rouleau::core;
 using namespace rouleau::monitor;
 
 namespace {

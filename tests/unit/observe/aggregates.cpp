@@ -7,7 +7,7 @@
 
 #include "plan/output_schedule.hpp"
 
-using namespace rouleau::membrane;
+using namespace rouleau::core;
 using namespace rouleau::observe;
 using namespace rouleau::plan;
 

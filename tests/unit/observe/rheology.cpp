@@ -7,7 +7,7 @@
 
 #include "observe/rheology_history.hpp"
 
-using namespace rouleau::membrane;
+using namespace rouleau::core;
 using namespace rouleau::observe;
 
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-using namespace rouleau::membrane;
+using namespace rouleau::core;
 using namespace rouleau::observe;
 
 namespace {

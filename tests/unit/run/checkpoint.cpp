@@ -6,7 +6,7 @@
 #include "json/document.hpp"
 #include "run/checkpoint_match.hpp"
 
-using namespace rouleau::membrane;
+using namespace rouleau::core;
 using namespace rouleau::observe;
 using namespace rouleau::plan;
 using namespace rouleau::plugin;

@@ -7,7 +7,7 @@
 #include "unit/cell_fixture.hpp"
 
 using namespace rouleau;
-using namespace rouleau::membrane;
+using namespace rouleau::core;
 using namespace rouleau::plan;
 using namespace rouleau::scene;
 using namespace rouleau::shape;

@@ -13,7 +13,7 @@
 #include "plan/placed_cells.hpp"
 #include "shape/outline.hpp"
 
-using namespace rouleau::membrane;
+using namespace rouleau::core;
 using namespace rouleau::plan;
 using namespace rouleau::scene;
 using namespace rouleau::shape;

@@ -8,7 +8,7 @@
 
 using namespace rouleau::plan;
 using namespace rouleau::scene;
-using namespace rouleau::solver;
+using namespace rouleau::core;
 
 TEST_CASE("the next step of a schedule is the first one that is due") {
   StageSetting setting{};
