@@ -15,7 +15,6 @@
 #include <cstring>
 #include <limits>
 
-#include "conform/report_line.hpp"
 #include "error.hpp"
 
 extern char** environ;
@@ -66,8 +65,8 @@ void become(const char* program, char* const* words, int finding, int output, pi
   if (getppid() != parent) raise(SIGKILL);  // the parent died before it could be watched
   const int input = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
   if (input < 0 || dup2(input, STDIN_FILENO) < 0 || dup2(output, STDOUT_FILENO) < 0 ||
-      dup2(output, STDERR_FILENO) < 0 || dup2(finding, conform::finding_descriptor) < 0 ||
-      fcntl(conform::finding_descriptor, F_SETFD, 0) < 0)
+      dup2(output, STDERR_FILENO) < 0 || dup2(finding, finding_descriptor) < 0 ||
+      fcntl(finding_descriptor, F_SETFD, 0) < 0)
     return;
   execve(program, words, environ);
 }
@@ -84,7 +83,7 @@ pid_t start(const std::filesystem::path& program, const std::vector<std::string>
   if (process < 0) fail(program.string() + " could not be started", errno);
   if (process == 0) {
     // Not where the finding goes.
-    const int told = fcntl(failure.to.get(), F_DUPFD_CLOEXEC, conform::finding_descriptor + 1);
+    const int told = fcntl(failure.to.get(), F_DUPFD_CLOEXEC, finding_descriptor + 1);
     become(program.c_str(), pointers.data(), finding, output, parent);
     const int error = errno;
     if (write(told, &error, sizeof error) < 0) _exit(126);

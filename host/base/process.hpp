@@ -8,6 +8,9 @@
 
 namespace rouleau {
 
+/// The descriptor that a child writes its finding to; standard output belongs to whatever it prints.
+inline constexpr int finding_descriptor = 3;
+
 /// When a process is ended, and how much of it is kept.
 struct ProcessLimits {
   double time_s;
@@ -21,7 +24,7 @@ struct ProcessEnd {
   bool stopped = false;  ///< by ProcessLimits::stop
   int exit_code = 0;     ///< when it ended by itself
   int signal = 0;        ///< that ended it, or 0
-  std::string finding;   ///< what it wrote to descriptor 3
+  std::string finding;   ///< what it wrote to finding_descriptor
   std::string output;    ///< the beginning of what it wrote to standard output and standard error
   double wall_s = 0;
   double cpu_s = 0;         ///< of all its threads, in user and system mode

@@ -1,4 +1,5 @@
 #include "report_line.hpp"
+#include "base/process.hpp"
 
 #include <unistd.h>
 

@@ -7,9 +7,6 @@
 
 namespace rouleau::conform {
 
-/// The descriptor that the child writes its finding to; standard output belongs to whatever the plugin prints.
-inline constexpr int finding_descriptor = 3;
-
 nlohmann::json to_json(const Finding& finding);
 Finding finding_from(const nlohmann::json& json);
 

@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdio>
 
+#include "base/process.hpp"
 #include "report_line.hpp"
 
 namespace rouleau::conform {

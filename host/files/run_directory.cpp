@@ -174,15 +174,14 @@ void RunDirectory::log(const std::string& event, const nlohmann::json& details) 
   files_->log.write(event, details);
 }
 
-void RunDirectory::finish(const run::Summary& summary) {
+void RunDirectory::finish(const nlohmann::json& summary) {
   if (!files_) throw std::logic_error("RunDirectory::finish called twice");
   const auto files = std::move(files_);
   files->tables->close();
   files->frames->close();
   write_file(directory_ / "frames.xmf", files->frames->xdmf());
   // Last: who finds a summary finds everything else complete.
-  write_file(directory_ / "summary.json",
-             run::to_json(summary).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  write_file(directory_ / "summary.json", summary.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
   files->log.close();
 }
 

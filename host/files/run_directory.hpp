@@ -10,7 +10,6 @@
 #include "base/error.hpp"
 #include "frame_segments.hpp"
 #include "observe/snapshot.hpp"
-#include "run/summary.hpp"
 #include "scene/scene.hpp"
 #include "tables.hpp"
 
@@ -63,8 +62,8 @@ class RunDirectory {
   void write(const observe::Snapshot& snapshot);
   /// One line of log.jsonl: {"wall_s":..., "event":..., ...details}.
   void log(const std::string& event, const nlohmann::json& details = nlohmann::json::object());
-  /// Closes the data files, writes frames.xmf and summary.json. Nothing may be written after it.
-  void finish(const run::Summary& summary);
+  /// Closes the data files, writes frames.xmf and, last, summary.json. Nothing may be written after it.
+  void finish(const nlohmann::json& summary);
 
   [[nodiscard]] const std::filesystem::path& path() const { return directory_; }
 

@@ -65,7 +65,7 @@ class Simulation {
     progress_.finish();
     Summary summary = summarise();
     directory_.log("finished", {{"status", summary.status}, {"steps", summary.steps}});
-    directory_.finish(summary);
+    directory_.finish(to_json(summary));
     return summary;
   }
 

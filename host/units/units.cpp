@@ -10,7 +10,6 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "dimension_names.hpp"
-#include "json/schema.hpp"
 #include "unit_grammar.hpp"
 
 namespace rouleau::units {

@@ -117,7 +117,7 @@ TEST_CASE("a disk that fills up during a run ends it with an error and no crash"
     CHECK(with_file_limit(bytes, [&] {
             RunDirectory run(directory, scene);
             for (long step = 0; step < 1000; ++step) run.write(small_snapshot(step, true));
-            run.finish(small_summary());
+            run.finish(to_json(small_summary()));
           }) == 0);
   }
 }
@@ -130,7 +130,7 @@ TEST_CASE("a run's outputs replace a former run's when they are told to, a check
     RunDirectory run(directory, scene, FormerRun::replace);
     run.log("started");
     run.write(small_snapshot(0));
-    run.finish(small_summary());
+    run.finish(to_json(small_summary()));
     if (i == 0) write_file(directory / "checkpoint.h5", "of the former run");
   }
   CHECK_FALSE(std::filesystem::exists(directory / "checkpoint.h5"));
@@ -153,7 +153,7 @@ TEST_CASE("a second run in the same directory is refused while the first one wri
   RunDirectory first(folder.path(), scene);
   first.write(small_snapshot(0));
   CHECK_THROWS_WITH(RunDirectory(folder.path(), scene), Contains("another run"));
-  first.finish(small_summary());
+  first.finish(to_json(small_summary()));
   CHECK(std::filesystem::exists(folder.path() / "frames.xmf"));
   CHECK_NOTHROW(RunDirectory(folder.path(), scene, FormerRun::replace));
 }
@@ -166,7 +166,7 @@ TEST_CASE("a former run is kept unless it is to be replaced, one that was killed
     RunDirectory run(folder.path(), scene);
     run.log("started");
     run.write(small_snapshot(0));
-    if (!killed) run.finish(small_summary());
+    if (!killed) run.finish(to_json(small_summary()));
   }
   const std::string rows = read_text(folder.path() / "cells.csv"), log = read_text(folder.path() / "log.jsonl");
   try {

@@ -40,7 +40,7 @@ void write_run(const std::filesystem::path& directory) {
   RunDirectory run(directory, scene);
   run.write(small_snapshot(0));
   run.write(small_snapshot(5, true, 40));
-  run.finish(small_summary());
+  run.finish(to_json(small_summary()));
 }
 
 /// Every element is closed by its own name: enough for a text without comments, and no parser is needed for it.

@@ -26,7 +26,7 @@ std::filesystem::path finished_run(const std::filesystem::path& directory, const
   for (long step = 0; step < 5; ++step) run.write(small_snapshot(step));
   Summary summary = small_summary();
   summary.title = title;
-  run.finish(summary);
+  run.finish(to_json(summary));
   return write_report(directory);
 }
 
@@ -224,9 +224,9 @@ TEST_CASE("a report without frames says why, and one without cells or outputs is
   fluid_only.contacts.clear();
   fluid_only.outlines = {};
   run.write(fluid_only);
-  run.finish(small_summary());
+  run.finish(to_json(small_summary()));
   CHECK(report_data(folder.path() / "b")["cells"].is_null());
-  RunDirectory(folder.path() / "c", scene).finish(small_summary());
+  RunDirectory(folder.path() / "c", scene).finish(to_json(small_summary()));
   CHECK(report_data(folder.path() / "c")["step"].empty());
 }
 

@@ -20,7 +20,7 @@ namespace {
 void make_run(const std::filesystem::path& directory, const Summary& summary, const std::string& scene_text) {
   RunDirectory run(directory, small_scene(summary.title));
   for (long step = 0; step < 3; ++step) run.write(small_snapshot(step));
-  run.finish(summary);
+  run.finish(to_json(summary));
   write_file(directory / "scene.json", scene_text);
 }
 

@@ -143,7 +143,7 @@ TEST_CASE("a report carries the flow of the outputs that have one") {
       snapshot.fields.vorticity.clear();
       run.write(snapshot);
     }
-    run.finish(small_summary());
+    run.finish(to_json(small_summary()));
   }
   CHECK(field_outputs(folder.path() / "frames.h5", 10) == std::vector<std::size_t>{1, 3, 5});
   CHECK(field_outputs(folder.path() / "frames.h5", 2) == std::vector<std::size_t>{1, 5});

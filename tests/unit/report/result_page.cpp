@@ -78,7 +78,7 @@ TEST_CASE("the pages that are made are those of what a directory holds") {
   {
     RunDirectory run(folder.path(), scene);
     run.write(small_snapshot(0));
-    run.finish(small_summary());
+    run.finish(to_json(small_summary()));
   }
   using Files = std::vector<std::filesystem::path>;
   CHECK(write_pages(folder.path()) == Files{folder.path() / "report.html"});

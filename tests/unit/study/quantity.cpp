@@ -74,7 +74,7 @@ class WrittenRun {
     const Scene read = read_scene(folder_.path() / "scene.json");
     RunDirectory run(directory(), read);
     for (const Snapshot& snapshot : snapshots) run.write(snapshot);
-    run.finish(summary);
+    run.finish(to_json(summary));
   }
   [[nodiscard]] std::filesystem::path directory() const { return folder_.path() / "run"; }
   [[nodiscard]] Measured measured(const Json& written) const { return measure(quantity_of(written), directory()); }
