@@ -51,6 +51,7 @@ Json describe(const plugin::Parameter& parameter, const units::Units& units) {
   add("exclusiveMinimum", parameter.exclusive_minimum);
   add("maximum", parameter.maximum);
   add("exclusiveMaximum", parameter.exclusive_maximum);
+  if (parameter.role) entry["role"] = plugin::facts_of(*parameter.role).name;
   if (parameter.usual) {
     const auto [low, high] = *parameter.usual;
     entry["usual"] = Json::array({written(low, parameter, units), written(high, parameter, units)});
@@ -111,7 +112,9 @@ void print(const plugin::Parameter& parameter, const units::Units& units) {
   } else {
     std::cout << (parameter.unit == "1" ? ", a number" : " in " + printable(parameter.unit));
   }
-  std::cout << (entry.contains("default") ? ", default " + value_text(entry["default"]) : ", must be given") << '\n';
+  std::cout << (entry.contains("default") ? ", default " + value_text(entry["default"]) : ", must be given");
+  if (parameter.role) std::cout << ", role " << plugin::facts_of(*parameter.role).name;
+  std::cout << '\n';
   if (const std::string limits = limits_text(entry); !limits.empty()) std::cout << "        " << limits << '\n';
   if (!parameter.doc.empty()) std::cout << "        " << printable(parameter.doc) << '\n';
 }

@@ -66,8 +66,9 @@ std::vector<Check> foundations_first(std::vector<Check> checks) {
 const std::vector<Check>& all_checks() {
   static const std::vector<Check> checks = [] {
     std::vector<Check> all;
-    for (auto& part : {interface_checks(), collision_checks(), membrane_checks(), interaction_checks(),
-                       physics_checks(), block_checks(), input_checks(), process_checks(), speed_checks()}) {
+    for (auto& part :
+         {interface_checks(), collision_checks(), membrane_checks(), interaction_checks(), physics_checks(),
+          role_checks(), block_checks(), input_checks(), process_checks(), speed_checks()}) {
       all.insert(all.end(), part.begin(), part.end());
     }
     return foundations_first(std::move(all));

@@ -53,6 +53,7 @@ std::vector<Check> input_checks();
 std::vector<Check> block_checks();
 std::vector<Check> process_checks();
 std::vector<Check> physics_checks();
+std::vector<Check> role_checks();
 std::vector<Check> collision_checks();
 std::vector<Check> membrane_checks();
 std::vector<Check> interaction_checks();

@@ -37,7 +37,7 @@ Surroundings find_surroundings(int cell, const core::Membranes& m, const std::ar
   double nearest = membrane_neighbourhood;
   int near = 0;
   for (int c = 0; c < m.cell_count(); ++c) {
-    const double distance = distance_to(m, m.cells[static_cast<std::size_t>(c)], place, box);
+    const double distance = distance_to(m, m.cells[c], place, box);
     near += distance < contact_neighbourhood && c != cell ? 1 : 0;
     if (cell < 0 && distance < nearest) nearest = distance, found.cell = c;
   }
@@ -60,7 +60,7 @@ FailureMode wave_of(int cell, const core::Membranes& m, const GrowthWatch& growt
   for (const Excursion& e : growth.excursions()) {
     if (e.cell == cell && read(find_wave(e.x, e.y, e.velocity_x, e.velocity_y), e.step)) return mode;
   }
-  const core::CellRange& range = m.cells[static_cast<std::size_t>(cell)];
+  const core::CellRange& range = m.cells[cell];
   const auto part = [&range](const std::vector<double>& values) {
     return std::span(values).subspan(static_cast<std::size_t>(range.first), static_cast<std::size_t>(range.count));
   };
@@ -108,9 +108,9 @@ double lattice_oscillation(const core::Fluid<T>& fluid, int x, int y) {
     const int nx = setting.nx, ny = setting.ny;
     if (setting.periodic_y) j = (j % ny + ny) % ny;
     if (j < 0 || j >= ny) return {std::nan(""), std::nan(""), std::nan("")};
-    auto& row = rows[static_cast<std::size_t>(j)];
+    auto& row = rows[j];
     if (row.empty()) fluid.moments(j, row);
-    const core::Moments& m = row[static_cast<std::size_t>((i % nx + nx) % nx)];
+    const core::Moments& m = row[(i % nx + nx) % nx];
     return {m.ux, m.uy, m.density / std::sqrt(3.0)};
   });
 }

@@ -15,7 +15,7 @@ void GrowthWatch::note(long step, const core::Membranes& membranes) {
   excursion.step = step;
   excursion.cell = static_cast<int>(fastest - membranes.largest_step.begin());
   excursion.speed = speed;
-  const core::CellRange& cell = membranes.cells[static_cast<std::size_t>(excursion.cell)];
+  const core::CellRange& cell = membranes.cells[excursion.cell];
   const auto part = [&cell](const std::vector<double>& values) {
     return std::vector<double>(values.begin() + cell.first, values.begin() + cell.end());
   };
@@ -44,7 +44,7 @@ void GrowthWatch::check(long step, const core::Membranes& membranes) {
 bool GrowthWatch::fits(const core::Membranes& membranes) const {
   const auto of_a_cell = [&](const Excursion& e) {
     if (e.cell < 0 || e.cell >= static_cast<int>(membranes.cells.size())) return false;
-    const auto nodes = static_cast<std::size_t>(membranes.cells[static_cast<std::size_t>(e.cell)].count);
+    const auto nodes = static_cast<std::size_t>(membranes.cells[e.cell].count);
     return e.x.size() == nodes && e.y.size() == nodes && e.velocity_x.size() == nodes && e.velocity_y.size() == nodes;
   };
   return steps_.size() == speeds_.size() && std::all_of(excursions_.begin(), excursions_.end(), of_a_cell);

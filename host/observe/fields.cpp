@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/fluid/relaxation.hpp"
+
 namespace rouleau::observe {
 
 template <class T>
@@ -43,7 +45,7 @@ FieldSnapshot observe_fields(core::Fluid<T>& fluid, const scene::Scene& scene, c
         if (fluid.setting().viscosity_contrast && fluid.activity().active(x, y)) {
           relaxation = static_cast<double>(fluid.relaxation_rate().row(y)[x]);
         }
-        f.viscosity.push_back((1 / relaxation - 0.5) / 3 * viscosity_unit);
+        f.viscosity.push_back(core::viscosity_of(1 / relaxation) * viscosity_unit);
       }
       if (vorticity) {
         const auto at = [&](int i, int j) -> const core::Moments& {

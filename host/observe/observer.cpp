@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "core/contact/crossing.hpp"
+#include "core/fluid/relaxation.hpp"
 #include "core/membrane/geometry.hpp"
 #include "energy.hpp"
 #include "fields.hpp"
@@ -274,7 +275,7 @@ Snapshot Observer::observe(core::Solver<T>& solver, const plan::StageSetting& se
   snapshot.stage_name = setting.stage->name;
   snapshot.mach_max = follow_fluid(solver.fluid());
   snapshot.mass_drift = mass_drift_;
-  const double viscosity = (setting.tau - 0.5) / 3;
+  const double viscosity = core::viscosity_of(setting.tau);
   snapshot.relative_viscosity = snapshot.flow_rate = snapshot.area_leakage_max = std::nan("");
   snapshot.cell_free_layer_lower = snapshot.cell_free_layer_upper = std::nan("");
   snapshot.aggregate_size_number_mean = snapshot.aggregate_size_weight_mean = std::nan("");

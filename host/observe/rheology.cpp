@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/fluid/relaxation.hpp"
 #include "core/membrane/rounding.hpp"
 
 namespace rouleau::observe {
@@ -37,7 +38,7 @@ template double flow_rate(const core::Fluid<float>&);
 template double flow_rate(const core::Fluid<double>&);
 
 double apparent_viscosity(double flow_rate, const plan::StageSetting& setting, int height) {
-  const double viscosity = (setting.tau - 0.5) / 3;
+  const double viscosity = core::viscosity_of(setting.tau);
   const double alone = setting.body_force_x * std::pow(height, 3) / (12 * viscosity);
   return flow_rate != 0 ? alone / flow_rate : std::nan("");
 }

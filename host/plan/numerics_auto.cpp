@@ -7,13 +7,13 @@
 #include <optional>
 
 #include "base/text.hpp"
+#include "core/fluid/relaxation.hpp"
 #include "json/document.hpp"
 #include "json/json_pointer.hpp"
 #include "scene/driving_flow.hpp"
 #include "scene/scene_reader.hpp"
 #include "shape/outline.hpp"
 #include "step_cost.hpp"
-#include "units/lattice_units.hpp"
 
 namespace rouleau::plan {
 namespace {
@@ -201,8 +201,7 @@ Problem::Trial Problem::tried(const std::array<int, 2>& nodes, double tau) const
   Trial trial{nodes, tau, 1, 0, {}};
   const double spacing = scene_.domain.size.y() / nodes[1];
   trial.error.resolution = resolution_error(spacing, tau);
-  const double true_step =
-      units::time_step(tau, spacing, scene_.fluid.viscosity / scene_.fluid.density);  // of factor 1
+  const double true_step = core::time_step(tau, spacing, scene_.fluid.viscosity / scene_.fluid.density);  // of factor 1
   if (const Json factor = pinned("density_factor"); !factor.is_null()) {
     trial.density_factor = factor.get<double>();
   } else if (shear_rate_ == 0) {
@@ -339,8 +338,7 @@ void put_draft_numerics(json::Document& document) {
   }
   const Json types = root.value("cell_types", Json::object());
   for (const auto& [name, type] : types.items()) {
-    if (!type.contains("segments"))
-      document.put(json::child_pointer("/cell_types", name) + "/segments", 64, origin);
+    if (!type.contains("segments")) document.put(json::child_pointer("/cell_types", name) + "/segments", 64, origin);
   }
 }
 

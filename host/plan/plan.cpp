@@ -28,16 +28,6 @@ PlannedModel plan_model(plugin::ModelKind kind, const scene::ModelChoice& choice
   return model;
 }
 
-/// SI value of the parameter with this name in the first model that has it; NaN when none does.
-double parameter_named(const std::vector<const PlannedModel*>& models, const std::string& name) {
-  for (const PlannedModel* model : models) {
-    for (std::size_t i = 0; i < model->manifest->parameters.size(); ++i) {
-      if (model->manifest->parameters[i].name == name) return model->parameters.values[i];
-    }
-  }
-  return std::nan("");
-}
-
 /// A force on a fluid that is periodic along both axes meets no wall that could balance it.
 bool accelerates_for_ever(const StageSetting& stage, const scene::Scene& scene) {
   return scene.domain.periodic_y && scene::driving_force(*stage.stage, scene) != Eigen::Vector2d::Zero();
@@ -65,11 +55,6 @@ nlohmann::json dimensionless_numbers(const Plan& plan) {
   const double stress = scene.fluid.viscosity * shear_rate;
   const double reynolds = scene.fluid.density * shear_rate * radius * radius / scene.fluid.viscosity;
   const double unsteady = reynolds * factor;
-  std::vector<const PlannedModel*> laws, potentials;
-  for (const auto& type : plan.membranes) {
-    for (const PlannedModel& law : type) laws.push_back(&law);
-  }
-  for (const PlannedModel& potential : plan.interactions) potentials.push_back(&potential);
   double ratio = 1;
   for (const scene::CellType& type : scene.cell_types)
     ratio = std::max(ratio, type.interior_viscosity / scene.fluid.viscosity);
@@ -77,14 +62,11 @@ nlohmann::json dimensionless_numbers(const Plan& plan) {
   nlohmann::json numbers;
   numbers["reynolds_physical"] = json::number_or_null(reynolds);
   numbers["reynolds_simulated"] = json::number_or_null(unsteady);
-  numbers["capillary"] = json::number_or_null(stress * radius / parameter_named(laws, "shear_modulus"));
+  numbers["capillary"] = json::number_or_null(stress * radius / shear_modulus(plan));
   numbers["membrane_strain"] =
       json::number_or_null(plan.has_cells ? stress * radius / stretching_modulus(plan) : std::nan(""));
-  double depth = parameter_named(potentials, "depth");
-  for (const auto& well : plan.wells) {
-    if (std::isnan(depth) && well["depth_J_m2"].is_number()) depth = well["depth_J_m2"];
-  }
-  numbers["adhesion_number"] = stress > 0 ? json::number_or_null(depth / (stress * radius)) : nlohmann::json();
+  numbers["adhesion_number"] =
+      stress > 0 ? json::number_or_null(deepest_well(plan) / (stress * radius)) : nlohmann::json();
   numbers["viscosity_ratio"] = plan.has_cells ? json::number_or_null(ratio) : nlohmann::json();
   numbers["hematocrit"] = hematocrit(scene);
   numbers["mach_wall"] = wall_mach;

@@ -83,6 +83,27 @@ Json describe_wells(const Plan& plan) {
   return wells;
 }
 
+double deepest_well(const Plan& plan) {
+  double deepest = std::nan("");
+  for (const PlannedModel& model : plan.interactions) {
+    if (plan.has_cells && model.manifest->state.empty()) deepest = 0;
+  }
+  for (const Json& well : plan.wells) {
+    if (well["depth_J_m2"].is_number()) deepest = std::max(deepest, well["depth_J_m2"].get<double>());
+  }
+  return deepest;
+}
+
+double shear_modulus(const Plan& plan) {
+  if (!plan.has_cells) return std::nan("");
+  double sum = 0;
+  for (const PlannedModel& law : plan.membranes[plan.scene->cells.front().type]) {
+    const auto parameter = law.manifest->parameter_with(plugin::Role::shear_modulus);
+    if (parameter && law.active()) sum += law.parameters.values[*parameter];
+  }
+  return sum > 0 ? sum : std::nan("");
+}
+
 double stretching_modulus(const Plan& plan) {
   const StageSetting& stage = plan.stages.front();
   double least = std::nan("");

@@ -6,6 +6,7 @@
 
 #include "core/coupling/kernel_kind.hpp"
 #include "core/coupling/slip_constants.hpp"
+#include "core/fluid/relaxation.hpp"
 #include "core/membrane/node_mobility.hpp"
 #include "core/membrane/stiffness.hpp"
 #include "kernel_facts.hpp"
@@ -61,7 +62,8 @@ constexpr double bending_gain = 10, least_semi_implicit_tau = 0.6;
 /// tau 1 and ratio 5: 0.83 and 0.63 of the limits at ratio 1, by this rule 0.83 and 0.63.
 template <std::size_t n>
 double limit_between(const std::array<TableEntry, n>& table, double tau, double viscosity_ratio) {
-  return std::sqrt(interpolate(table, tau) * interpolate(table, 0.5 + viscosity_ratio * (tau - 0.5)));
+  const double inside = core::relaxation_time_of(viscosity_ratio * core::viscosity_of(tau));
+  return std::sqrt(interpolate(table, tau) * interpolate(table, inside));
 }
 
 /// A stiffness as the fluid feels it, and its limit with explicit coupling.
@@ -174,7 +176,7 @@ std::vector<Limit> find_limits(const Plan& plan) {
     }
     if (stage.body_force_x != 0 && !scene.domain.periodic_y) {
       const double height = scene.domain.nodes[1];
-      const double speed = std::abs(stage.body_force_x) * height * height / (8 * (tau - 0.5) / 3);
+      const double speed = std::abs(stage.body_force_x) * height * height / (8 * core::viscosity_of(tau));
       add("Mach number of the driven flow" + where, speed * std::sqrt(3.0), 0.1, true,
           "lower density_factor or the driving force, or raise the resolution", density);
     }
@@ -182,7 +184,7 @@ std::vector<Limit> find_limits(const Plan& plan) {
     if (stage.body_force_x != 0 && !scene.domain.periodic_y && !scene.fluid.inertia) {
       // Without u.grad u the unsteady term is not the same for a fluid that moves as a whole: a cell that travels with
       // it leaves a wake and migrates wrongly, in proportion to this number (docs/rheology.md).
-      const double height = scene.domain.nodes[1], viscosity = (tau - 0.5) / 3;
+      const double height = scene.domain.nodes[1], viscosity = core::viscosity_of(tau);
       const double speed = std::abs(stage.body_force_x) * height * height / (12 * viscosity);
       double radius = 0;
       for (const scene::CellPlacement& cell : scene.cells) {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/fluid/relaxation.hpp"
+
 namespace rouleau::plan {
 
 double lattice_spacing(const scene::Scene& scene) { return scene.domain.size.x() / scene.domain.nodes[0]; }
@@ -18,7 +20,7 @@ StageSetting make_stage_setting(const scene::Scene& scene, int index) {
   setting.stage = &stage;
   setting.index = index;
   setting.units.length = spacing;
-  setting.units.time = units::time_step(tau, spacing, scene.fluid.viscosity / density);
+  setting.units.time = core::time_step(tau, spacing, scene.fluid.viscosity / density);
   setting.units.mass = density * spacing * spacing * spacing;
   setting.tau = tau;
   setting.shear_rate = setting.units.to_lattice(stage.shear_rate, units::dimension::rate);

@@ -51,6 +51,13 @@ bool Manifest::gives_output(const std::string& name) const {
   return std::find(gives.begin(), gives.end(), name) != gives.end();
 }
 
+std::optional<std::size_t> Manifest::parameter_with(Role role) const {
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    if (parameters[i].role == role) return i;
+  }
+  return std::nullopt;
+}
+
 json::Document read_manifest_document(const fs::path& file) {
   const Place place{file.string(), {}, 0, 0};
   std::error_code error;
@@ -96,6 +103,7 @@ Manifest read_manifest(const json::Document& document, const fs::path& file, con
   manifest.stands_for = without_own_keys(root.value("stands_for", Json()));
   manifest.claims = without_own_keys(root.value("claims", Json::object()));
   manifest.checks = root.value("checks", Json::array());
+  check_roles(document, manifest);
   check_quantities(document, manifest);
   check_parameter_values(document, manifest, "inactive_when", manifest.inactive_when, units);
   check_parameter_values(document, manifest, "stands_for", manifest.stands_for, units);

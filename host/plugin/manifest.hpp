@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "role.hpp"
 #include "units/units.hpp"
 
 namespace rouleau::json {
@@ -27,6 +28,7 @@ struct Parameter {
   std::optional<double> default_value;  ///< absent: the scene must give it
   std::optional<double> minimum, exclusive_minimum, maximum, exclusive_maximum;  ///< outside: refused
   std::optional<std::array<double, 2>> usual;                                    ///< outside: a warning
+  std::optional<Role> role;  ///< what it is in the field's terms, if the manifest says so
   std::string doc;
 };
 
@@ -63,6 +65,8 @@ struct Manifest {
 
   [[nodiscard]] bool needs_input(const std::string& name) const;
   [[nodiscard]] bool gives_output(const std::string& name) const;
+  /// Place of the parameter with this role in `parameters`; nothing when none has it.
+  [[nodiscard]] std::optional<std::size_t> parameter_with(Role role) const;
 };
 
 /// Text of a manifest as JSON with places. Throws Error(plugin_refused) when it cannot be read or is no JSON.

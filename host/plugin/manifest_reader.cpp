@@ -160,6 +160,7 @@ std::vector<Parameter> read_parameters(const json::Document& document, const uni
     Parameter parameter =
         list[i].contains("choices") ? read_choice(document, at, list[i]) : read_number(document, at, list[i], units);
     parameter.name = list[i]["name"];
+    parameter.role = role_named(list[i].value("role", std::string()));
     parameter.doc = list[i].value("doc", std::string());
     if (!seen.insert(parameter.name).second) {
       refuse(document, at + "/name", "two parameters are called \"" + parameter.name + '"');
@@ -196,6 +197,30 @@ std::vector<StateVariable> read_state(const json::Document& document, const unit
     variables.push_back(std::move(variable));
   }
   return variables;
+}
+
+void check_roles(const json::Document& document, const Manifest& manifest) {
+  std::set<Role> seen;
+  for (std::size_t i = 0; i < manifest.parameters.size(); ++i) {
+    const Parameter& parameter = manifest.parameters[i];
+    if (!parameter.role) continue;
+    const RoleFacts& role = facts_of(*parameter.role);
+    const std::string at = "/parameters/" + std::to_string(i) + "/role", name = in_quotes(role.name);
+    if (role.kind != manifest.kind) {
+      refuse(document, at,
+             name + " is a role in a " + to_string(role.kind) + " model, and this is a " + to_string(manifest.kind) +
+                 " model; leave \"role\" out");
+    }
+    if (!parameter.choices.empty() || parameter.dimension != role.dimension) {
+      refuse(document, at,
+             in_quotes(parameter.name) + (parameter.choices.empty() ? " in " + parameter.unit : ", a choice,") +
+                 " cannot be the model's " + role.name + ", which is in " + role.unit +
+                 "; give it such a unit, or leave \"role\" out");
+    }
+    if (!seen.insert(*parameter.role).second) {
+      refuse(document, at, "two parameters have the role " + name + "; leave it to the one that the model has it by");
+    }
+  }
 }
 
 void check_quantities(const json::Document& document, const Manifest& manifest) {
@@ -239,8 +264,7 @@ void check_parameter_values(const json::Document& document, const Manifest& mani
       refuse(document, at, json::shown(value) + " must be a plain number, in the unit of " + name);
     }
     const std::string wanted = violated_limit(value.get<double>() * units.scale(parameter.unit), parameter, units);
-    if (!wanted.empty())
-      refuse(document, at, name + " can never be " + json::shown(value) + ": it must be " + wanted);
+    if (!wanted.empty()) refuse(document, at, name + " can never be " + json::shown(value) + ": it must be " + wanted);
   }
 }
 

@@ -17,6 +17,9 @@ std::vector<Parameter> read_parameters(const json::Document& document, const uni
 /// The state variables, with initial values in SI. Units must parse and have a size on the lattice; names be unique.
 std::vector<StateVariable> read_state(const json::Document& document, const units::Units& units);
 
+/// A role fits the manifest's kind and the parameter's unit, and is that of one parameter only.
+void check_roles(const json::Document& document, const Manifest& manifest);
+
 /// "needs" and "gives" hold names of the manifest's kind only, and what every model of this kind must have; a membrane
 /// law keeps to one element.
 void check_quantities(const json::Document& document, const Manifest& manifest);

@@ -21,11 +21,6 @@ struct LatticeUnits {
   [[nodiscard]] double to_si(double lattice, const Dimension& d) const { return lattice * unit(d); }
 };
 
-/// Seconds of one step: the lattice's viscosity (tau - 1/2)/3 in spacings^2 per step is the fluid's, m2/s.
-inline double time_step(double tau, double spacing, double kinematic_viscosity) {
-  return (tau - 0.5) / 3 * spacing * spacing / kinematic_viscosity;
-}
-
 /// Dimensions that the host itself converts.
 namespace dimension {
 inline constexpr Dimension number{};

@@ -36,7 +36,8 @@ def parameter_row(parameter):
     usual = " to ".join(number(value) for value in parameter.get("usual", []))
     default = number(parameter["default"]) if "default" in parameter else "must be given"
     unit = parameter.get("unit", "")
-    return [f"`{parameter['name']}`", unit, default, limits(parameter), usual, parameter.get("doc", "")]
+    role = f"`{parameter['role']}`" if "role" in parameter else ""
+    return [f"`{parameter['name']}`", role, unit, default, limits(parameter), usual, parameter.get("doc", "")]
 
 
 def names(words):
@@ -53,7 +54,7 @@ def claims(manifest):
 def section(manifest, path):
     text = f"\n### {manifest['id']}\n\n{manifest['title']}. Version {manifest['version']}.\n\n"
     if manifest.get("parameters"):
-        text += "| parameter | unit | default | limits | usual | meaning |\n|---|---|---|---|---|---|\n"
+        text += "| parameter | role | unit | default | limits | usual | meaning |\n|---|---|---|---|---|---|---|\n"
         text += "".join(f"| {' | '.join(parameter_row(p))} |\n" for p in manifest["parameters"])
     else:
         text += "No parameters.\n"

@@ -63,6 +63,8 @@ EXPECTED = {
     "state-restored/ages-while-looked-at": ("fail", "a time step of 0 changes state.0"),
     # physics of every kind
     "units/lattice-length": ("fail", "on one lattice"),
+    "roles/twice-the-modulus": ("fail", "has the role stretching_modulus"),
+    "roles/reaches-half-way": ("fail", "has the role cutoff"),
     "reference/another-number": ("fail", "the manifest's check 0 says"),
     # physics of interactions
     "gradient/wrong-derivative": ("fail", "-denergy/ddistance is"),

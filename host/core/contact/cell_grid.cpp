@@ -75,13 +75,13 @@ Bins::Bins(const std::vector<Bounds>& bounds, double reach, const PeriodicBox& b
   cells_.resize(static_cast<std::size_t>(begin_.back()));
   std::vector<int> next(begin_.begin(), begin_.end() - 1);
   for (std::size_t c = 0; c < bounds.size(); ++c) {
-    if (bin_[c] >= 0) cells_[static_cast<std::size_t>(next[static_cast<std::size_t>(bin_[c])]++)] = static_cast<int>(c);
+    if (bin_[c] >= 0) cells_[next[bin_[c]]++] = static_cast<int>(c);
   }
 }
 
 void Bins::find(int cell, std::vector<int>& near) const {
   near.clear();
-  const int own = bin_[static_cast<std::size_t>(cell)];
+  const int own = bin_[cell];
   if (own < 0) return;
   for_around(y_, own / x_.count, [&](int y) {
     for_around(x_, own % x_.count, [&](int x) {

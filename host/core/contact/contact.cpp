@@ -152,7 +152,7 @@ void Contacts::run(Worker worker, int phase, const Membranes& membranes) {
 }
 
 void Contacts::reserve(int cell) {
-  ContactList& list = lists_[static_cast<std::size_t>(cell)];
+  ContactList& list = lists_[cell];
   const Neighbours::CellList& candidates = neighbours_.list(cell);
   list.ranges.resize(candidates.pairs.size());
   const std::size_t room = candidates.groups.size() * Neighbours::group + SegmentTable::margin;
@@ -163,9 +163,9 @@ void Contacts::reserve(int cell) {
 
 void Contacts::search(const Membranes& membranes, int cell) {
   static const auto function = Dispatch<Search, SearchTask*>::pick();
-  ContactList& list = lists_[static_cast<std::size_t>(cell)];
+  ContactList& list = lists_[cell];
   const Neighbours::CellList& candidates = neighbours_.list(cell);
-  const CellRange& own = membranes.cells[static_cast<std::size_t>(cell)];
+  const CellRange& own = membranes.cells[cell];
   SearchTask task{};
   task.x = segments_.x.data(), task.y = segments_.y.data();
   task.along_x = segments_.along_x.data(), task.along_y = segments_.along_y.data();
@@ -177,7 +177,7 @@ void Contacts::search(const Membranes& membranes, int cell) {
   task.direction_x = list.direction_x.data(), task.direction_y = list.direction_y.data();
   for (std::size_t p = 0; p < candidates.pairs.size(); ++p) {
     const Neighbours::Pair& pair = candidates.pairs[p];
-    const CellRange& other = membranes.cells[static_cast<std::size_t>(pair.other)];
+    const CellRange& other = membranes.cells[pair.other];
     const double cutoff = neighbours_.cutoffs()(own.type, other.type);
     const int before = task.count;
     if (pair.group_begin != pair.group_end) {

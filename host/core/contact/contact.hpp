@@ -34,7 +34,7 @@ class Contacts {
   /// Phases 0 and 1, a barrier after each; then contacts of this worker's cells are in list(cell).
   void run(Worker worker, int phase, const Membranes& membranes);
 
-  [[nodiscard]] const ContactList& list(int cell) const { return lists_[static_cast<std::size_t>(cell)]; }
+  [[nodiscard]] const ContactList& list(int cell) const { return lists_[cell]; }
   [[nodiscard]] Neighbours& neighbours() { return neighbours_; }
   [[nodiscard]] const Neighbours& neighbours() const { return neighbours_; }
 

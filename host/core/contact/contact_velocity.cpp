@@ -9,7 +9,7 @@ void ContactVelocities::measure(const ContactList& list, const std::vector<Neigh
   tangential.resize(count);
   const std::vector<double>&u = membranes.velocity_x, &v = membranes.velocity_y;
   for (std::size_t p = 0; p < pairs.size(); ++p) {
-    const CellRange& other = membranes.cells[static_cast<std::size_t>(pairs[p].other)];
+    const CellRange& other = membranes.cells[pairs[p].other];
     for (auto i = static_cast<std::size_t>(list.ranges[p].begin); i < static_cast<std::size_t>(list.ranges[p].end);
          ++i) {
       const auto node = static_cast<std::size_t>(list.node[i]), begin = static_cast<std::size_t>(list.segment[i]);

@@ -21,9 +21,7 @@ struct Segment {
 void collect(const Membranes& membranes, const CellRange& cell, const Eigen::Vector2d& move, const Bounds& box,
              std::vector<Segment>& segments) {
   segments.clear();
-  const auto node = [&](int i) -> Eigen::Vector2d {
-    return Eigen::Vector2d(membranes.x[static_cast<std::size_t>(i)], membranes.y[static_cast<std::size_t>(i)]) + move;
-  };
+  const auto node = [&](int i) -> Eigen::Vector2d { return Eigen::Vector2d(membranes.x[i], membranes.y[i]) + move; };
   for (int i = cell.first; i < cell.end(); ++i) {
     const int next = cell.next(i);
     const Segment segment{i, next, node(i), node(next)};
@@ -80,8 +78,8 @@ class PairCheck {
   PairCheck(const Membranes& membranes, const PeriodicBox& box) : membranes_(membranes), box_(box) {}
 
   std::optional<Crossing> operator()(int a, int b, ImageShift shift) {
-    const CellRange& cell = membranes_.cells[static_cast<std::size_t>(a)];
-    const CellRange& other = membranes_.cells[static_cast<std::size_t>(b)];
+    const CellRange& cell = membranes_.cells[a];
+    const CellRange& other = membranes_.cells[b];
     const Eigen::Vector2d move(shift.x * box_.nx, shift.y * box_.ny);
     const Bounds own = core::bounds(membranes_, cell);
     Bounds moved = core::bounds(membranes_, other);
@@ -108,7 +106,7 @@ class PairCheck {
 
  private:
   [[nodiscard]] Eigen::Vector2d first_node(const CellRange& cell) const {
-    return {membranes_.x[static_cast<std::size_t>(cell.first)], membranes_.y[static_cast<std::size_t>(cell.first)]};
+    return {membranes_.x[cell.first], membranes_.y[cell.first]};
   }
   const Membranes& membranes_;
   const PeriodicBox& box_;
@@ -130,12 +128,11 @@ std::optional<Crossing> find_crossing(const Membranes& membranes, const Periodic
     std::sort(near.begin(), near.end());  // the crossing that is found first does not depend on the bins
     for (const int b : near) {
       if (b < a || found) continue;
-      core::for_each_image(extent[static_cast<std::size_t>(a)], extent[static_cast<std::size_t>(b)], 0.0, box,
-                           [&](ImageShift shift) {
-                             // Of a cell's own images, one of two opposite ones is enough.
-                             if (found || (a == b && (shift.x < 0 || (shift.x == 0 && shift.y < 0)))) return;
-                             found = check(a, b, shift);
-                           });
+      core::for_each_image(extent[a], extent[b], 0.0, box, [&](ImageShift shift) {
+        // Of a cell's own images, one of two opposite ones is enough.
+        if (found || (a == b && (shift.x < 0 || (shift.x == 0 && shift.y < 0)))) return;
+        found = check(a, b, shift);
+      });
     }
   }
   return found;

@@ -32,21 +32,19 @@ void InteractionForces::apply_with_state(std::size_t potential, int cell, std::s
                                          double* result, bool energy, NextState* next, Scratch& scratch) const {
   const ContactList& list = contacts_.list(cell);
   const Neighbours::Pair& other = contacts_.neighbours().list(cell).pairs[pair];
-  const CellRange& own = membranes.cells[static_cast<std::size_t>(cell)];
+  const CellRange& own = membranes.cells[cell];
   const ContactMemory& memory = membranes.contacts;
   std::size_t count = 0;
   for (int i = list.ranges[pair].begin; i < list.ranges[pair].end; ++i) {
-    const double distance = list.distance[static_cast<std::size_t>(i)];
+    const double distance = list.distance[i];
     if (distance > cutoffs_[potential]) continue;
     scratch.distance[count] = distance;
     scratch.contact[count++] = i;
   }
   if (count == 0) return;
-  const auto node = [&](std::size_t k) {
-    return static_cast<std::size_t>(list.node[static_cast<std::size_t>(scratch.contact[k])] - own.first);
-  };
+  const auto node = [&](std::size_t k) { return static_cast<std::size_t>(list.node[scratch.contact[k]] - own.first); };
   const std::vector<std::size_t>& variables = variables_[potential];
-  const std::vector<ContactState>& known = memory.of_cell[static_cast<std::size_t>(cell)];
+  const std::vector<ContactState>& known = memory.of_cell[cell];
   const auto find = [&](std::size_t variable, std::size_t from) {
     const auto found = std::find_if(known.begin() + static_cast<std::ptrdiff_t>(from), known.end(), [&](const auto& s) {
       return s.variable == variable && s.other == other.other && s.shift == other.shift;

@@ -90,10 +90,9 @@ Neighbours::Neighbours(const Membranes& membranes, Cutoffs cutoffs, PeriodicBox 
       lists_(membranes.cells.size()) {
   std::vector<int> order(membranes.cells.size());
   std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
-    return membranes.cells[static_cast<std::size_t>(a)].type < membranes.cells[static_cast<std::size_t>(b)].type;
-  });
-  for (std::size_t k = 0; k < order.size(); ++k) rank_[static_cast<std::size_t>(order[k])] = static_cast<int>(k);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int a, int b) { return membranes.cells[a].type < membranes.cells[b].type; });
+  for (std::size_t k = 0; k < order.size(); ++k) rank_[order[k]] = static_cast<int>(k);
   int most = 0;
   for (const CellRange& cell : membranes.cells) most = std::max(most, cell.count);
   const auto stride = static_cast<std::size_t>(most + SegmentTable::margin);
@@ -110,7 +109,7 @@ void Neighbours::refresh(Worker worker, const Membranes& membranes, const Segmen
   // Every worker sorts all cells: that is quicker than to wait for one who does.
   const Bins bins(segments.bounds, cutoffs_.largest() + 2 * skin, box_);
   for (int cell = cells.begin; cell < cells.end; ++cell) {
-    CellList& list = lists_[static_cast<std::size_t>(cell)];
+    CellList& list = lists_[cell];
     list.pairs.clear();
     list.groups.clear();
     list.runs.clear();
@@ -124,29 +123,26 @@ void Neighbours::refresh(Worker worker, const Membranes& membranes, const Segmen
 
 void Neighbours::list_pairs(const Membranes& membranes, int cell, const Bins& bins, const SegmentTable& segments,
                             double skin) {
-  CellList& list = lists_[static_cast<std::size_t>(cell)];
-  const int type = membranes.cells[static_cast<std::size_t>(cell)].type;
-  const Bounds& own = segments.bounds[static_cast<std::size_t>(cell)];
+  CellList& list = lists_[cell];
+  const int type = membranes.cells[cell].type;
+  const Bounds& own = segments.bounds[cell];
   bins.find(cell, list.near);
-  std::sort(list.near.begin(), list.near.end(),
-            [&](int a, int b) { return rank_[static_cast<std::size_t>(a)] < rank_[static_cast<std::size_t>(b)]; });
+  std::sort(list.near.begin(), list.near.end(), [&](int a, int b) { return rank_[a] < rank_[b]; });
   for (const int other : list.near) {
-    const double cutoff = cutoffs_(type, membranes.cells[static_cast<std::size_t>(other)].type);
+    const double cutoff = cutoffs_(type, membranes.cells[other].type);
     if (!(cutoff > 0)) continue;
-    core::for_each_image(own, segments.bounds[static_cast<std::size_t>(other)], cutoff + 2 * skin, box_,
-                         [&](ImageShift shift) {
-                           if (other != cell || !(shift == ImageShift{}))
-                             list.pairs.push_back({{other, shift}, 0, 0, {0, 0}, 0, -1});
-                         });
+    core::for_each_image(own, segments.bounds[other], cutoff + 2 * skin, box_, [&](ImageShift shift) {
+      if (other != cell || !(shift == ImageShift{})) list.pairs.push_back({{other, shift}, 0, 0, {0, 0}, 0, -1});
+    });
   }
 }
 
 void Neighbours::list_candidates(const Membranes& membranes, int cell, Pair& pair, const SegmentTable& segments,
                                  double skin) {
   static const auto candidates = Dispatch<Candidates, const CandidateTask*>::pick();
-  CellList& list = lists_[static_cast<std::size_t>(cell)];
-  const CellRange& own = membranes.cells[static_cast<std::size_t>(cell)];
-  const CellRange& other = membranes.cells[static_cast<std::size_t>(pair.other)];
+  CellList& list = lists_[cell];
+  const CellRange& own = membranes.cells[cell];
+  const CellRange& other = membranes.cells[pair.other];
   const double move_x = pair.shift.x * box_.nx, move_y = pair.shift.y * box_.ny;
   const double cutoff = cutoffs_(own.type, other.type);
   double x[group], y[group];
@@ -175,11 +171,11 @@ void Neighbours::list_candidates(const Membranes& membranes, int cell, Pair& pai
       bounds.y_min = std::min(bounds.y_min, segments.y[i]), bounds.y_max = std::max(bounds.y_max, segments.y[i]);
     }
     const double reach = cutoff + 2 * skin + 1e-9;
-    if (distance(bounds, segments.bounds[static_cast<std::size_t>(pair.other)], move_x, move_y) > reach) continue;
+    if (distance(bounds, segments.bounds[pair.other], move_x, move_y) > reach) continue;
     candidates(&task);
     const auto run_begin = static_cast<int>(list.runs.size());
     for (int k = 0; k < other.count; ++k) {
-      if (!(list.excess[static_cast<std::size_t>(k)] <= 0)) continue;
+      if (!(list.excess[k] <= 0)) continue;
       // Few long runs cost less than many short ones.
       if (static_cast<int>(list.runs.size()) > run_begin && k - list.runs.back().end < bridged) {
         list.runs.back().end = k + 1;
@@ -204,8 +200,8 @@ void Neighbours::link(Worker worker, const Membranes& membranes) {
   if (!renewed()) return;
   const Range cells = worker.share(static_cast<int>(membranes.cells.size()));
   for (int cell = cells.begin; cell < cells.end; ++cell) {
-    for (Pair& pair : lists_[static_cast<std::size_t>(cell)].pairs) {
-      const std::vector<Pair>& others = lists_[static_cast<std::size_t>(pair.other)].pairs;
+    for (Pair& pair : lists_[cell].pairs) {
+      const std::vector<Pair>& others = lists_[pair.other].pairs;
       const auto opposite = std::find_if(others.begin(), others.end(), [&](const Pair& candidate) {
         return candidate.other == cell && candidate.shift == -pair.shift;
       });

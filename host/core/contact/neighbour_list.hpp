@@ -82,7 +82,7 @@ class Neighbours {
   /// Whether the lists are new in this step; the same for all workers from pass 2 on.
   [[nodiscard]] bool renewed() const { return watch_.exceeded(); }
 
-  [[nodiscard]] const CellList& list(int cell) const { return lists_[static_cast<std::size_t>(cell)]; }
+  [[nodiscard]] const CellList& list(int cell) const { return lists_[cell]; }
   [[nodiscard]] const Cutoffs& cutoffs() const { return cutoffs_; }
   [[nodiscard]] const PeriodicBox& box() const { return box_; }
   /// How often the lists were made.

@@ -58,11 +58,11 @@ void SegmentTable::update(Worker worker, const Membranes& membranes) {
   static const auto function = Dispatch<Update, UpdateTask*>::pick();
   const Range cells = worker.share(static_cast<int>(membranes.cells.size()));
   for (int c = cells.begin; c < cells.end; ++c) {
-    const CellRange& cell = membranes.cells[static_cast<std::size_t>(c)];
+    const CellRange& cell = membranes.cells[c];
     UpdateTask task{membranes.x.data(), membranes.y.data(),    x.data(),   y.data(),   along_x.data(),
                     along_y.data(),     inverse_square.data(), cell.first, cell.end(), Bounds{}};
     function(&task);
-    bounds[static_cast<std::size_t>(c)] = task.bounds;
+    bounds[c] = task.bounds;
   }
 }
 

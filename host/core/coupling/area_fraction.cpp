@@ -75,16 +75,15 @@ void cover(const Membranes& membranes, const CellRange& cell, Coverage& coverage
       const double next_y = std::min(r + 1.0, y1);
       // Rounding must not leave the box.
       const double next_x = next_y < y1 ? std::clamp(x0 + (next_y - y0) * slope, left, right) : x1;
-      add_piece(coverage.row(r), coverage.begin[static_cast<std::size_t>(r)], coverage.end[static_cast<std::size_t>(r)],
-                x, next_x, sign * (next_y - y));
+      add_piece(coverage.row(r), coverage.begin[r], coverage.end[r], x, next_x, sign * (next_y - y));
       x = next_x;
       y = next_y;
     }
   }
   for (int r = 0; r < height; ++r) {
-    const int begin = coverage.begin[static_cast<std::size_t>(r)], end = coverage.end[static_cast<std::size_t>(r)];
+    const int begin = coverage.begin[r], end = coverage.end[r];
     if (begin >= end) {
-      coverage.begin[static_cast<std::size_t>(r)] = coverage.end[static_cast<std::size_t>(r)] = 0;
+      coverage.begin[r] = coverage.end[r] = 0;
       continue;
     }
     double* row = coverage.row(r);

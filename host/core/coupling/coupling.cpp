@@ -294,7 +294,7 @@ template <class T>
 void Coupling<T>::locate(Worker worker, const Membranes& membranes, NodeVectors position) {
   const Range cells = worker.share(membranes.cell_count());
   for (int c = cells.begin; c < cells.end; ++c) {
-    const CellRange& cell = membranes.cells[static_cast<std::size_t>(c)];
+    const CellRange& cell = membranes.cells[c];
     LocateTask<T> task{{column_.data(), row_.data(), p_x_.data(), q_x_.data(), p_y_.data(), q_y_.data()},
                        position.x,
                        position.y,
@@ -305,7 +305,7 @@ void Coupling<T>::locate(Worker worker, const Membranes& membranes, NodeVectors 
                        periodic_y_,
                        false};
     loops_->locate(&task);
-    escaped_[static_cast<std::size_t>(c)] = task.escaped ? 1 : 0;
+    escaped_[c] = task.escaped ? 1 : 0;
   }
 }
 

@@ -24,7 +24,7 @@ class Distribution {
     for (int i = 0; i < points; ++i) {
       const double before = sum;
       sum += density(place(i));
-      values_[static_cast<std::size_t>(i)] = (before + sum) / 2;
+      values_[i] = (before + sum) / 2;
     }
     for (double& value : values_) value /= sum;
   }

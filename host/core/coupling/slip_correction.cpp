@@ -129,11 +129,11 @@ int smoothings_of(double length, double mobility, double stiffness) {
 SlipCorrection::SlipCorrection(const Membranes& membranes, std::vector<Type> types, double viscosity)
     : types_(std::move(types)), viscosity_(viscosity) {
   for (const CellRange& cell : membranes.cells) {
-    const Type& type = types_[static_cast<std::size_t>(cell.type)];
+    const Type& type = types_[cell.type];
     // Sliding along a curved membrane changes its curvature too, by curvature x d slide / d length.
     double curvature = 0;
     for (int k = cell.first; k < cell.end(); ++k) {
-      curvature = std::max(curvature, std::abs(membranes.rest_curvature[static_cast<std::size_t>(k)]));
+      curvature = std::max(curvature, std::abs(membranes.rest_curvature[k]));
     }
     const double stiffness = type.stretching_stiffness + type.bending_stiffness * curvature * curvature;
     smoothings_.push_back(smoothings_of(cell.rest_perimeter / cell.count, type.constants.slip / viscosity, stiffness));
@@ -149,13 +149,13 @@ void SlipCorrection::run(Worker worker, const Membranes& membranes, double* velo
   static const auto function = Dispatch<Loop, const SlipTask*>::pick();
   const Range cells = worker.share(membranes.cell_count());
   for (int c = cells.begin; c < cells.end; ++c) {
-    const CellRange& cell = membranes.cells[static_cast<std::size_t>(c)];
-    const SlipConstants& constants = types_[static_cast<std::size_t>(cell.type)].constants;
+    const CellRange& cell = membranes.cells[c];
+    const SlipConstants& constants = types_[cell.type].constants;
     const SlipTask task{cell.first,
                         cell.end(),
                         constants.shift,
                         constants.slip / viscosity_,
-                        smoothings_[static_cast<std::size_t>(c)],
+                        smoothings_[c],
                         membranes.x.data(),
                         membranes.y.data(),
                         membranes.force_x.data(),

@@ -28,7 +28,7 @@ Indicator<T>::Indicator(const Membranes& membranes, std::vector<double> viscosit
       watch_(membranes),
       cells_(membranes.cells.size()),
       changed_(static_cast<std::size_t>(ny)) {
-  for (const CellRange& cell : membranes.cells) varies_ |= ratio_[static_cast<std::size_t>(cell.type)] != 1;
+  for (const CellRange& cell : membranes.cells) varies_ |= ratio_[cell.type] != 1;
 }
 
 template <class T>
@@ -63,11 +63,11 @@ void Indicator<T>::cover(Worker worker, const Membranes& membranes) {
   std::vector<double> scratch;
   for (int c = cells.begin; c < cells.end; ++c) {
     if (!watch_.moved(c)) continue;
-    const CellRange& cell = membranes.cells[static_cast<std::size_t>(c)];
-    Reach& reach = cells_[static_cast<std::size_t>(c)];
+    const CellRange& cell = membranes.cells[c];
+    Reach& reach = cells_[c];
     std::swap(reach.covered, reach.covered_before);
     reach.covered.columns.clear();
-    if (ratio_[static_cast<std::size_t>(cell.type)] != 1) {
+    if (ratio_[cell.type] != 1) {
       Coverage& coverage = reach.coverage;
       core::cover(membranes, cell, coverage);
       smooth(coverage, scratch);
@@ -103,16 +103,16 @@ void Indicator<T>::find_reach(const Membranes& membranes, const CellRange& cell,
   };
   std::vector<Interval> columns(rows, none);  // of the nodes between this row and the next
   for (int i = cell.first; i < cell.end(); ++i) {
-    const int x = core::floor_int(membranes.x[static_cast<std::size_t>(i)]);
-    const int y = core::floor_int(membranes.y[static_cast<std::size_t>(i)]);
-    include(columns[static_cast<std::size_t>(y - first)], x - 2 - margin_, x + 4 + margin_);
+    const int x = core::floor_int(membranes.x[i]);
+    const int y = core::floor_int(membranes.y[i]);
+    include(columns[y - first], x - 2 - margin_, x + 4 + margin_);
   }
   reached.first = first;
   reached.columns.assign(rows, none);
   for (int r = 0; r < static_cast<int>(rows); ++r) {
-    Interval& to = reached.columns[static_cast<std::size_t>(r)];
+    Interval& to = reached.columns[r];
     for (int k = std::max(0, r - 3 - margin_); k <= std::min(static_cast<int>(rows) - 1, r + 2 + margin_); ++k) {
-      include(to, columns[static_cast<std::size_t>(k)].begin, columns[static_cast<std::size_t>(k)].end);
+      include(to, columns[k].begin, columns[k].end);
     }
   }
   for (std::size_t j = 0; j < covered.columns.size(); ++j) {
@@ -151,13 +151,13 @@ void Indicator<T>::restore(const DisplacementWatch::Memory& memory, const Membra
 
 template <class T>
 void Indicator<T>::collect_changes(Range own) {
-  for (int y = own.begin; y < own.end; ++y) changed_[static_cast<std::size_t>(y)].clear();
+  for (int y = own.begin; y < own.end; ++y) changed_[y].clear();
   const auto include = [&](int y, Interval columns, int) {
     columns.end = std::min(columns.end, columns.begin + nx_);
     for_pieces(columns, [&](int x, int begin, int end) {
       // Intervals of a row stay disjoint, since what is done to them is not to be done twice.
       Interval added{x, x + end - begin};
-      std::vector<Interval>& row = changed_[static_cast<std::size_t>(y)];
+      std::vector<Interval>& row = changed_[y];
       for (std::size_t k = 0; k < row.size();) {
         if (row[k].end < added.begin || added.end < row[k].begin) {
           ++k;
@@ -182,7 +182,7 @@ void Indicator<T>::set_rates(const Membranes& membranes, Range own, Field<T>& ra
   const auto for_changed = [&](auto function) {
     for (int y = own.begin; y < own.end; ++y) {
       T* row = rate.row(y);
-      for (const Interval& interval : changed_[static_cast<std::size_t>(y)]) {
+      for (const Interval& interval : changed_[y]) {
         for (int x = interval.begin; x < interval.end; ++x) function(row[x]);
       }
     }
@@ -191,16 +191,16 @@ void Indicator<T>::set_rates(const Membranes& membranes, Range own, Field<T>& ra
   // The field holds the sum over cells of (ratio - 1) I, or (1/ratio - 1) I, until every cell has been added.
   for_changed([](T& value) { value = 0; });
   for (std::size_t c = 0; c < cells_.size(); ++c) {
-    const double ratio = ratio_[static_cast<std::size_t>(membranes.cells[c].type)];
+    const double ratio = ratio_[membranes.cells[c].type];
     const double excess = (harmonic ? 1 / ratio : ratio) - 1;
     if (excess == 0) continue;
     const Coverage& coverage = cells_[c].coverage;
     for_rows(cells_[c].covered, own, [&](int y, Interval columns, int place) {
-      if (changed_[static_cast<std::size_t>(y)].empty()) return;
+      if (changed_[y].empty()) return;
       const double* from = coverage.row(place);
       T* row = rate.row(y);
       for_pieces(columns, [&](int x, int begin, int end) {
-        for (const Interval& interval : changed_[static_cast<std::size_t>(y)]) {
+        for (const Interval& interval : changed_[y]) {
           const int first = std::max(x, interval.begin), last = std::min(x + end - begin, interval.end);
           const double* value = from + (begin - coverage.x0) - x;
           for (int k = first; k < last; ++k) row[k] += static_cast<T>(excess * value[k]);

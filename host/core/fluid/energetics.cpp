@@ -39,7 +39,7 @@ typename Fluid<T>::Energetics Fluid<T>::energetics() const {
     moments(y, row);
     double *ux = at(velocity_x, y), *uy = at(velocity_y, y);
     for (int x = 0; x < nx; ++x) {
-      const Moments& m = row[static_cast<std::size_t>(x)];
+      const Moments& m = row[x];
       ux[x] = m.ux;
       uy[x] = m.uy;
       sum.kinetic += 0.5 * (m.ux * m.ux + m.uy * m.uy);

@@ -155,7 +155,7 @@ void Fluid<T>::moments(int y, std::vector<Moments>& row) const {
   row.assign(static_cast<std::size_t>(setting_.nx), Moments{});
   activity_.for_runs(y, [&](const Run& run) {
     for (int x = run.begin; x < run.end; ++x) {
-      Moments& m = row[static_cast<std::size_t>(x)];
+      Moments& m = row[x];
       for (int q = 0; q < 9; ++q) {
         const double f = static_cast<double>(in[q][x]);
         m.density += f;

@@ -14,7 +14,7 @@ Activity::Activity(int nx, int ny)
 void Activity::clear(int first_row, int end_row) {
   std::fill(bits_.begin() + static_cast<std::ptrdiff_t>(words_) * first_row,
             bits_.begin() + static_cast<std::ptrdiff_t>(words_) * end_row, 0);
-  for (int y = first_row; y < end_row; ++y) runs_[static_cast<std::size_t>(y)].assign(1, {0, nx_, false});
+  for (int y = first_row; y < end_row; ++y) runs_[y].assign(1, {0, nx_, false});
 }
 
 void Activity::mark(int y, int begin, int end) {
@@ -39,7 +39,7 @@ void Activity::mark(int y, int begin, int end) {
 
 void Activity::list_runs(int y) {
   const std::uint64_t* row = bits_.data() + static_cast<std::size_t>(words_) * y;
-  std::vector<Run>& runs = runs_[static_cast<std::size_t>(y)];
+  std::vector<Run>& runs = runs_[y];
   runs.clear();
   for (int x = 0; x < nx_;) {
     const int bit = x / nodes_per_bit;

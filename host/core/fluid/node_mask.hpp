@@ -30,16 +30,16 @@ class Activity {
   /// Calls function(Run) for the runs of row y, left to right, covering [0, nx) exactly.
   template <class Function>
   void for_runs(int y, Function function) const {
-    for (const Run& run : runs_[static_cast<std::size_t>(y)]) function(run);
+    for (const Run& run : runs_[y]) function(run);
   }
   [[nodiscard]] bool active(int x, int y) const {
     const int bit = x / nodes_per_bit;
     return (bits_[static_cast<std::size_t>(words_) * y + bit / bits_per_word] >> (bit % bits_per_word) & 1) != 0;
   }
   /// Whether any node of row y is active; whether the first or the last one is.
-  [[nodiscard]] bool any(int y) const { return runs_[static_cast<std::size_t>(y)].size() > 1 || at_side(y); }
+  [[nodiscard]] bool any(int y) const { return runs_[y].size() > 1 || at_side(y); }
   [[nodiscard]] bool at_side(int y) const {
-    const std::vector<Run>& runs = runs_[static_cast<std::size_t>(y)];
+    const std::vector<Run>& runs = runs_[y];
     return runs.front().active || runs.back().active;
   }
   [[nodiscard]] double active_fraction() const;

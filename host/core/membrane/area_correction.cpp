@@ -58,7 +58,7 @@ void keep_areas(Worker worker, Membranes& membranes) {
   static const auto function = Dispatch<KeepArea, AreaTask*>::pick();
   const Range cells = worker.share(membranes.cell_count());
   for (int c = cells.begin; c < cells.end; ++c) {
-    const CellRange& cell = membranes.cells[static_cast<std::size_t>(c)];
+    const CellRange& cell = membranes.cells[c];
     AreaTask task{cell.first,
                   cell.end(),
                   membranes.x.data(),
@@ -68,7 +68,7 @@ void keep_areas(Worker worker, Membranes& membranes) {
                   cell.rest_area,
                   0};
     function(&task);
-    membranes.area_leakage[static_cast<std::size_t>(c)] -= task.gain / cell.rest_area;
+    membranes.area_leakage[c] -= task.gain / cell.rest_area;
   }
 }
 

@@ -43,11 +43,11 @@ bool DisplacementWatch::exceeded() const {
 }
 
 void DisplacementWatch::remember(int cell, const Membranes& membranes, double limit) {
-  const CellRange& range = membranes.cells[static_cast<std::size_t>(cell)];
+  const CellRange& range = membranes.cells[cell];
   std::copy(membranes.x.begin() + range.first, membranes.x.begin() + range.end(), memory_.x.begin() + range.first);
   std::copy(membranes.y.begin() + range.first, membranes.y.begin() + range.end(), memory_.y.begin() + range.first);
-  memory_.limit[static_cast<std::size_t>(cell)] = limit;
-  memory_.bound[static_cast<std::size_t>(cell)] = 0;
+  memory_.limit[cell] = limit;
+  memory_.bound[cell] = 0;
 }
 
 }  // namespace rouleau::core

@@ -27,7 +27,7 @@ class DisplacementWatch {
   /// Pass over cells, once a step. A barrier must lie between it and the next two.
   void measure(Worker worker, const Membranes& membranes);
   /// True if a node of the cell had moved further than its limit (or is not a number) at the last measure().
-  [[nodiscard]] bool moved(int cell) const { return moved_[static_cast<std::size_t>(cell)] != 0; }
+  [[nodiscard]] bool moved(int cell) const { return moved_[cell] != 0; }
   /// True if any cell has moved.
   [[nodiscard]] bool exceeded() const;
   /// Remembers the present positions of a cell and how far its nodes may move from there. Does not change moved().

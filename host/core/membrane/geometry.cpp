@@ -8,9 +8,7 @@ namespace rouleau::core {
 
 namespace {
 
-Eigen::Vector2d node(const Membranes& membranes, int i) {
-  return {membranes.x[static_cast<std::size_t>(i)], membranes.y[static_cast<std::size_t>(i)]};
-}
+Eigen::Vector2d node(const Membranes& membranes, int i) { return {membranes.x[i], membranes.y[i]}; }
 
 /// Square of the distance from a point to the segment p ... q.
 double square_distance(const Eigen::Vector2d& point, const Eigen::Vector2d& p, const Eigen::Vector2d& q) {
@@ -62,7 +60,7 @@ StretchRange stretch_range(const Membranes& membranes, const CellRange& cell) {
   StretchRange range;
   for (int i = cell.first; i < cell.end(); ++i) {
     const double length = (node(membranes, cell.next(i)) - node(membranes, i)).norm();
-    const double stretch = length / membranes.rest_length[static_cast<std::size_t>(i)];
+    const double stretch = length / membranes.rest_length[i];
     range.least = std::min(range.least, stretch);
     range.most = std::max(range.most, stretch);
   }
@@ -145,14 +143,14 @@ double facing_length(const Membranes& membranes, const CellRange& a, const CellR
   double length = 0;
   for (int i = a.first; i < a.end(); ++i) {
     const bool near = nearest(membranes, b, bounds_b, node(membranes, i) - move, reach * reach) < reach * reach;
-    if (near) length += membranes.rest_weight[static_cast<std::size_t>(i)];
+    if (near) length += membranes.rest_weight[i];
   }
   return length;
 }
 
 double smallest_gap(const Membranes& membranes, int a, int b, const PeriodicBox& box, double limit) {
-  const CellRange& cell = membranes.cells[static_cast<std::size_t>(a)];
-  const CellRange& other = membranes.cells[static_cast<std::size_t>(b)];
+  const CellRange& cell = membranes.cells[a];
+  const CellRange& other = membranes.cells[b];
   double gap = std::numeric_limits<double>::infinity();
   for_each_image(bounds(membranes, cell), bounds(membranes, other), limit, box, [&](ImageShift shift) {
     if (a == b && shift == ImageShift{}) return;

@@ -78,7 +78,7 @@ void MembraneForces::allocate(const Membranes& membranes) {
 
 void MembraneForces::make_filters(const Membranes& membranes, double viscosity) {
   for (const CellRange& cell : membranes.cells) {
-    Type& type = types_[static_cast<std::size_t>(cell.type)];
+    Type& type = types_[cell.type];
     if (type.filter) continue;
     double stretching = 0, bending = 0;
     for (const Law& law : type.laws) {

@@ -46,7 +46,7 @@ void move_nodes(Worker worker, Membranes& membranes) {
   static const auto function = Dispatch<Move, MoveTask*>::pick();
   const Range cells = worker.share(membranes.cell_count());
   for (int c = cells.begin; c < cells.end; ++c) {
-    const CellRange& cell = membranes.cells[static_cast<std::size_t>(c)];
+    const CellRange& cell = membranes.cells[c];
     MoveTask task{membranes.x.data(),
                   membranes.y.data(),
                   membranes.velocity_x.data(),
@@ -55,7 +55,7 @@ void move_nodes(Worker worker, Membranes& membranes) {
                   cell.end(),
                   0};
     function(&task);
-    membranes.largest_step[static_cast<std::size_t>(c)] = std::sqrt(task.largest_square);
+    membranes.largest_step[c] = std::sqrt(task.largest_square);
   }
 }
 

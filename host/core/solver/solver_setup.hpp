@@ -6,6 +6,7 @@
 #include "core/contact/interaction_forces.hpp"
 #include "core/coupling/kernel_kind.hpp"
 #include "core/fluid/exchange.hpp"
+#include "core/fluid/relaxation.hpp"
 #include "core/membrane/membrane_forces.hpp"
 #include "core/model/model.hpp"
 
@@ -51,7 +52,7 @@ struct SolverSetup {
   /// SI size of the lattice unit of tension, for state that is carried from one setup to the next.
   double tension_unit = 1;
 
-  [[nodiscard]] double viscosity() const { return (tau - 0.5) / 3; }
+  [[nodiscard]] double viscosity() const { return viscosity_of(tau); }
 };
 
 }  // namespace rouleau::core

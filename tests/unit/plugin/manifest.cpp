@@ -2,6 +2,7 @@
 #include "plugin/manifest.hpp"
 
 #include "json/document.hpp"
+#include "json/schema.hpp"
 #include "plugin/quantities.hpp"
 #include "plugin_folder.hpp"
 
@@ -61,6 +62,21 @@ const std::vector<Fault> faults = {
      "/parameters/3/default",
      {"smoth", "sharp, smooth"}},
     {R"([{"op": "add", "path": "/parameters/3/minimum", "value": 0}])", "/parameters/3/minimum", {"choices"}},
+    {R"([{"op": "add", "path": "/parameters/0/role", "value": "dept"}])", "/parameters/0/role", {"dept", "depth"}},
+    {R"([{"op": "add", "path": "/parameters/1/role", "value": "depth"}])",
+     "/parameters/1/role",
+     {"decay", "1/um", "depth", "in J/m2", "leave \"role\" out"}},
+    {R"([{"op": "add", "path": "/parameters/3/role", "value": "cutoff"}])",
+     "/parameters/3/role",
+     {"form", "a choice", "cutoff", "in m"}},
+    {R"([{"op": "add", "path": "/parameters/0/role", "value": "shear_modulus"}])",
+     "/parameters/0/role",
+     {"shear_modulus", "membrane", "interaction", "leave \"role\" out"}},
+    {R"([{"op": "add", "path": "/parameters/0/role", "value": "depth"},
+         {"op": "replace", "path": "/parameters/1/unit", "value": "N/m"},
+         {"op": "add", "path": "/parameters/1/role", "value": "depth"}])",
+     "/parameters/1/role",
+     {"two", "depth"}},
     {R"([{"op": "replace", "path": "/needs/0", "value": "distanse"}])",
      "/needs/0",
      {"distanse", "did you mean \"distance\"?", "normal_velocity"}},
@@ -129,6 +145,31 @@ TEST_CASE("a manifest's numbers become SI and its order of parameters is kept") 
   CHECK(manifest.needs_input("distance"));
   CHECK_FALSE(manifest.needs_input("normal_velocity"));
   CHECK(manifest.gives_output("energy"));
+}
+
+TEST_CASE("the host knows every role of the schema, and a unit of each role's own dimension") {
+  const Json& words =
+      rouleau::json::manifest_schema()["properties"]["parameters"]["items"]["properties"]["role"]["enum"];
+  REQUIRE(words.size() >= 8);
+  const Units units;
+  for (const std::string name : words) {
+    INFO(name);
+    const auto role = role_named(name);
+    REQUIRE(role);
+    CHECK(facts_of(*role).name == name);
+    CHECK(facts_of(*role).role == *role);
+    CHECK(facts_of(*role).dimension == units.dimension(facts_of(*role).unit));
+  }
+  CHECK_FALSE(role_named("modulus"));
+}
+
+TEST_CASE("a parameter is found by its role in any unit of the role's dimension") {
+  Json well = good_manifest();
+  well["parameters"][0]["role"] = "depth";
+  const PluginFolder folder;
+  const Manifest manifest = read_manifest(folder.write("good.json", well), Units());
+  CHECK(manifest.parameter_with(Role::depth) == std::optional<std::size_t>(0));
+  CHECK_FALSE(manifest.parameter_with(Role::cutoff));
 }
 
 TEST_CASE("state variables begin with their initial value in SI, or with zero") {
