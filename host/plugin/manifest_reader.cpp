@@ -15,8 +15,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-[[noreturn]] void refuse(const json::Document& document, const std::string& pointer,
-                         const std::string& problem) {
+[[noreturn]] void refuse(const json::Document& document, const std::string& pointer, const std::string& problem) {
   throw Error(ExitCode::plugin_refused, document.place(pointer), problem);
 }
 
@@ -111,8 +110,7 @@ Parameter read_number(const json::Document& document, const std::string& at, con
     number("default", parameter.default_value);
     const std::string wanted = violated_limit(*parameter.default_value, parameter, units);
     if (!wanted.empty()) {
-      refuse(document, at + "/default",
-             "the default is " + json::shown(entry["default"]) + "; it must be " + wanted);
+      refuse(document, at + "/default", "the default is " + json::shown(entry["default"]) + "; it must be " + wanted);
     }
   }
   return parameter;

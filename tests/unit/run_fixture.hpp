@@ -9,6 +9,7 @@
 
 #include "files/run_directory.hpp"
 #include "observe/snapshot.hpp"
+#include "run/summary.hpp"
 #include "scene/scene.hpp"
 #include "scratch_folder.hpp"
 
