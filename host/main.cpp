@@ -12,6 +12,7 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "command/commands.hpp"
+#include "observe/observables.hpp"
 
 namespace {
 
@@ -64,6 +65,10 @@ int dispatch(const std::vector<std::string>& arguments) {
   }
   if (word == "--version") {
     std::cout << "rouleau " ROULEAU_VERSION "\n";
+    return static_cast<int>(ExitCode::done);
+  }
+  if (word == "columns") {  // for scripts/docs, not for users
+    std::cout << observe::columns_json() << '\n';
     return static_cast<int>(ExitCode::done);
   }
   std::vector<std::string> names;

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "base/error.hpp"
+#include "units/lattice_units.hpp"
 
 namespace rouleau::files {
 
@@ -166,7 +167,7 @@ FieldGrid FrameWriter::field_grid() const {
   for (const std::size_t axis : {std::size_t{0}, std::size_t{1}}) {
     const double spacing = size_[axis] / nodes_[axis];
     grid.nodes[axis] = storage_.count(static_cast<int>(axis), nodes_[axis]);
-    grid.origin[axis] = (storage_.first[axis] + 0.5) * spacing;
+    grid.origin[axis] = units::coordinate(storage_.first[axis], spacing);
     grid.spacing[axis] = storage_.stride * spacing;
   }
   grid.bytes = storage_.precision == scene::Precision::f64 ? 8 : 4;

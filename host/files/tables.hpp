@@ -1,15 +1,7 @@
-// The tables of a run: cells.csv, aggregates.csv, aggregate_sizes.csv and series.csv, a block of rows per output time.
-//
-// cells.csv       one row per output time and cell
-// aggregates.csv  one row per output time and contact, with the aggregate both cells belong to; an aggregate without
-//                 any contact (a lone cell) has one row whose contact columns are empty. So
-//                 drop_duplicates(["step", "aggregate"]) lists the aggregates and dropna(subset=["gap_m"]) the
-//                 contacts. image_x, image_y: periodic shift of cell_b in boxes. members: cells joined by "+".
-//                 rotation_rad: angle against x of the line through the aggregate's two outermost cells (Snapshot);
-//                 empty for lone cells.
-// series.csv      one row per output time: what belongs to the whole suspension; rotation_rad is that of the largest
-//                 aggregate
-// aggregate_sizes.csv  one row per output time and size that occurs: how many aggregates have so many cells
+// The tables of a run: cells.csv, aggregates.csv, series.csv and aggregate_sizes.csv, a block of rows per output time.
+// observe/observables.hpp says what their columns hold. aggregates.csv has one row per contact, with the aggregate both
+// cells belong to; an aggregate without any contact (a lone cell) has one row whose contact columns are empty. So
+// drop_duplicates(["step", "aggregate"]) lists the aggregates and dropna(subset=["gap_m"]) the contacts.
 //
 // Units stand in the column names. Numbers have the fewest digits that read back as the same double, whatever the
 // locale; infinite and undefined ones are inf and nan. Text is quoted as in RFC 4180 where it must be.
@@ -31,12 +23,9 @@ std::string to_text(double value);
 /// Text as an entry of a CSV table: in quotes where it must be (RFC 4180).
 std::string csv_text(const std::string& text);
 
-/// Names of the columns of "cells.csv", "aggregates.csv", "series.csv" or "aggregate_sizes.csv".
-std::vector<std::string> column_names(const std::string& table);
-
 class Tables {
  public:
-  /// How much of each of the files there is, in the order of their declaration.
+  /// How much of each of the files there is, in the order of observe::tables().
   using Mark = std::array<FileMark, 4>;
 
   /// Throws Error(input_output) unless the files begin with what they held at the mark.
@@ -52,13 +41,7 @@ class Tables {
   void close();
 
  private:
-  void write_cells(const observe::Snapshot& snapshot);
-  void write_aggregates(const observe::Snapshot& snapshot);
-  void write_series(const observe::Snapshot& snapshot);
-
-  [[nodiscard]] std::array<AppendFile*, 4> files() { return {&cells_, &aggregates_, &series_, &sizes_}; }
-
-  AppendFile cells_, aggregates_, series_, sizes_;
+  std::vector<AppendFile> files_;
 };
 
 }  // namespace rouleau::files

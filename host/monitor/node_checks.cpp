@@ -3,13 +3,14 @@
 #include <cmath>
 
 #include "core/membrane/motion.hpp"
+#include "units/lattice_units.hpp"
 
 namespace rouleau::monitor {
 
 void locate_failure(Failure& f, const core::Membranes& membranes, int node, double spacing) {
   const auto k = static_cast<std::size_t>(node);
-  f.place = {(membranes.x[k] - membranes.velocity_x[k] + 0.5) * spacing,
-             (membranes.y[k] - membranes.velocity_y[k] + 0.5) * spacing};
+  f.place = {units::coordinate(membranes.x[k] - membranes.velocity_x[k], spacing),
+             units::coordinate(membranes.y[k] - membranes.velocity_y[k], spacing)};
   for (std::size_t c = 0; c < membranes.cells.size(); ++c) {
     if (node >= membranes.cells[c].first && node < membranes.cells[c].end()) f.cell = static_cast<int>(c);
   }

@@ -1,33 +1,81 @@
 #include "aggregates.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numeric>
 
+#include "core/contact/cell_grid.hpp"
 #include "core/membrane/geometry.hpp"
 
 namespace rouleau::observe {
 
-std::vector<CellContact> find_contacts(const core::Membranes& m, const core::PeriodicBox& box, double reach) {
-  std::vector<CellContact> contacts;
-  const int cells = static_cast<int>(m.cells.size());
+namespace {
+
+std::vector<core::Bounds> all_bounds(const core::Membranes& m) {
   std::vector<core::Bounds> boxes;
   for (const core::CellRange& cell : m.cells) boxes.push_back(core::bounds(m, cell));
-  for (int a = 0; a < cells; ++a) {
-    for (int b = a; b < cells; ++b) {
-      const core::CellRange &cell = m.cells[static_cast<std::size_t>(a)], &other = m.cells[static_cast<std::size_t>(b)];
-      core::for_each_image(
-          boxes[static_cast<std::size_t>(a)], boxes[static_cast<std::size_t>(b)], reach, box,
-          [&](core::ImageShift shift) {
-            // A cell and its own image are one contact, seen from both sides.
-            if (a == b && (shift.y < 0 || (shift.y == 0 && shift.x <= 0))) return;
-            const double gap = core::outline_distance(m, cell, other, shift, box, reach);
-            if (gap < reach) {
-              contacts.push_back({a, b, shift, gap, core::facing_length(m, cell, other, shift, box, reach)});
-            }
-          });
-    }
+  return boxes;
+}
+
+/// Calls visit(a, cells) for each of `cells` with those that may come within `reach` of it, in ascending order: what is
+/// found must not depend on the bins.
+template <class Visit>
+void for_each_near(const std::vector<core::Bounds>& boxes, const std::vector<int>& cells, double reach,
+                   const core::PeriodicBox& box, Visit visit) {
+  const core::Bins bins(boxes, reach, box);
+  std::vector<int> near;
+  for (const int cell : cells) {
+    bins.find(cell, near);
+    std::sort(near.begin(), near.end());
+    visit(cell, near);
   }
+}
+
+std::vector<int> numbered(std::size_t cells) {
+  std::vector<int> numbers(cells);
+  std::iota(numbers.begin(), numbers.end(), 0);
+  return numbers;
+}
+
+}  // namespace
+
+std::vector<CellContact> find_contacts(const core::Membranes& m, const core::PeriodicBox& box, double reach) {
+  std::vector<CellContact> contacts;
+  const std::vector<core::Bounds> boxes = all_bounds(m);
+  for_each_near(boxes, numbered(boxes.size()), reach, box, [&](int a, const std::vector<int>& near) {
+    for (const int b : near) {
+      if (b < a) continue;
+      const core::CellRange &cell = m.cells[a], &other = m.cells[b];
+      core::for_each_image(boxes[a], boxes[b], reach, box, [&](core::ImageShift shift) {
+        // A cell and its own image are one contact, seen from both sides.
+        if (a == b && (shift.y < 0 || (shift.y == 0 && shift.x <= 0))) return;
+        const double gap = core::outline_distance(m, cell, other, shift, box, reach);
+        if (gap < reach) {
+          contacts.push_back({a, b, shift, gap, core::facing_length(m, cell, other, shift, box, reach)});
+        }
+      });
+    }
+  });
   return contacts;
+}
+
+std::vector<double> smallest_gaps(const core::Membranes& m, const core::PeriodicBox& box) {
+  std::vector<double> gaps(m.cells.size(), std::numeric_limits<double>::infinity());
+  const std::vector<core::Bounds> boxes = all_bounds(m);
+  std::vector<int> open = numbered(boxes.size());
+  double first = 1;  // about the size of a cell, and not much of the box
+  for (const core::Bounds& b : boxes)
+    if (b.usable()) first = std::max({first, b.x_max - b.x_min, b.y_max - b.y_min});
+  const double most = 2 * std::max(box.nx, box.ny);
+  for (double reach = std::min(first, box.nx / 16); reach < most && !open.empty(); reach *= 2) {
+    for_each_near(boxes, open, reach, box, [&](int a, const std::vector<int>& near) {
+      double& gap = gaps[a];
+      for (const int b : near) gap = std::min(gap, core::smallest_gap(m, a, b, box, std::min(gap, reach)));
+    });
+    std::erase_if(open, [&](int a) { return std::isfinite(gaps[a]); });
+  }
+  return gaps;
 }
 
 Aggregates find_aggregates(int cells, const std::vector<CellContact>& contacts) {

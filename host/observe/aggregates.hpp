@@ -19,6 +19,10 @@ struct CellContact {
 /// All pairs nearer than `reach` (lattice units).
 std::vector<CellContact> find_contacts(const core::Membranes& membranes, const core::PeriodicBox& box, double reach);
 
+/// Of each cell the smallest gap to any other or to an image (spacings), looked for in growing neighbourhoods up to the
+/// size of the box; infinite when there is none.
+std::vector<double> smallest_gaps(const core::Membranes& membranes, const core::PeriodicBox& box);
+
 struct Aggregates {
   int count = 0;
   std::vector<int> label;           ///< of each cell: smallest index in its aggregate

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/fluid/relaxation.hpp"
+#include "vorticity.hpp"
 
 namespace rouleau::observe {
 
@@ -30,7 +31,18 @@ FieldSnapshot observe_fields(core::Fluid<T>& fluid, const scene::Scene& scene, c
         std::pair{viscosity, &f.viscosity}, std::pair{vorticity, &f.vorticity}}) {
     if (want) values->reserve(nodes);
   }
+  // Beyond a wall lies a row of nodes whose velocities have the wall's as mean with those of the row before it.
   const core::WallVelocity& walls = fluid.setting().walls;
+  const bool periodic_y = fluid.setting().periodic_y;
+  const std::size_t below = periodic_y ? 0 : 1;
+  const VelocityGrid grid{
+      static_cast<std::size_t>(nx), static_cast<std::size_t>(ny) + 2 * below, {1, 1}, {true, periodic_y}};
+  const auto u = [&](std::size_t i, std::size_t j) {
+    if (!periodic_y && j == 0) return 2 * walls.lower - rows.front()[i].ux;
+    if (!periodic_y && j + 1 == grid.ny) return 2 * walls.upper - rows.back()[i].ux;
+    return rows[j - below][i].ux;
+  };
+  const auto v = [&](std::size_t i, std::size_t j) { return rows[j - below][i].uy; };
   for (int row = 0; row < f.ny; ++row) {
     for (int column = 0; column < f.nx; ++column) {
       const int x = storage.first[0] + column * storage.stride, y = storage.first[1] + row * storage.stride;
@@ -48,17 +60,8 @@ FieldSnapshot observe_fields(core::Fluid<T>& fluid, const scene::Scene& scene, c
         f.viscosity.push_back(core::viscosity_of(1 / relaxation) * viscosity_unit);
       }
       if (vorticity) {
-        const auto at = [&](int i, int j) -> const core::Moments& {
-          return rows[static_cast<std::size_t>(j)][static_cast<std::size_t>((i + nx) % nx)];
-        };
-        const auto ux = [&](int j) {
-          if (fluid.setting().periodic_y) return at(x, (j + ny) % ny).ux;
-          if (j < 0) return 2 * walls.lower - m.ux;
-          if (j >= ny) return 2 * walls.upper - m.ux;
-          return at(x, j).ux;
-        };
-        const double curl = (at(x + 1, y).uy - at(x - 1, y).uy) / 2 - (ux(y + 1) - ux(y - 1)) / 2;
-        f.vorticity.push_back(curl * rate);
+        f.vorticity.push_back(grid.vorticity(static_cast<std::size_t>(x), static_cast<std::size_t>(y) + below, u, v) *
+                              rate);
       }
     }
   }

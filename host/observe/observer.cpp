@@ -54,16 +54,6 @@ std::string leak_remedy(double segment) {
   return text.data();
 }
 
-/// Smallest gap of a cell to any other or to an image, looked for in growing neighbourhoods up to the size of the box.
-double gap_to_others(const core::Membranes& membranes, int cell, const core::PeriodicBox& box) {
-  const double most = 2 * std::max(box.nx, box.ny);
-  for (double limit = box.nx / 16; limit < most; limit *= 2) {
-    const double gap = core::smallest_gap(membranes, cell, box, limit);
-    if (std::isfinite(gap)) return gap;
-  }
-  return std::numeric_limits<double>::infinity();
-}
-
 }  // namespace
 
 Observer::Observer(const scene::Scene& scene, const core::Membranes& membranes)
@@ -117,7 +107,7 @@ double Observer::follow_fluid(core::Fluid<T>& fluid) {
   if (std::isnan(initial_mass_)) initial_mass_ = mass;
   const double nodes = static_cast<double>(fluid.setting().nx) * fluid.setting().ny;
   mass_drift_ = std::max(mass_drift_, std::abs(mass - initial_mass_) / nodes);
-  const double mach = std::sqrt(3.0) * speed;
+  const double mach = units::mach_number(speed);
   mach_max_ = std::max(mach_max_, mach);
   return mach;
 }
@@ -158,8 +148,8 @@ std::optional<monitor::Failure> Observer::check_stretch(const core::Membranes& m
       const double dx = membranes.x[to] - membranes.x[from], dy = membranes.y[to] - membranes.y[from];
       const double stretch = std::hypot(dx, dy) / (placed * membranes.rest_length[from]);
       if (stretch <= limit && stretch * limit >= 1) continue;
-      const std::array<double, 2> place{(membranes.x[from] + 0.5) * units.length,
-                                        (membranes.y[from] + 0.5) * units.length};
+      const std::array<double, 2> place{units::coordinate(membranes.x[from], units.length),
+                                        units::coordinate(membranes.y[from], units.length)};
       return failure("uneven_nodes", place, static_cast<int>(k), stretch, stretch < 1 ? 1 / limit : limit,
                      stretch < 1 ? "a segment of a membrane has become too short against the length it was placed with"
                                  : "a segment of a membrane has become too long against the length it was placed with",
@@ -175,7 +165,7 @@ std::optional<monitor::Failure> Observer::check(core::Solver<T>& solver, const p
                                                 const core::Membranes& membranes) {
   const units::LatticeUnits& units = setting.units;
   const auto place = [&](double x, double y) {
-    return std::array<double, 2>{(x + 0.5) * units.length, (y + 0.5) * units.length};
+    return std::array<double, 2>{units::coordinate(x, units.length), units::coordinate(y, units.length)};
   };
   const double mach = follow_fluid(solver.fluid());
   if (!(mach <= scene_->checks.mach)) {
@@ -232,6 +222,7 @@ void Observer::observe_cells(const core::Membranes& membranes, const units::Latt
     snapshot.contacts.push_back(
         {c.cell_a, c.cell_b, {c.image.x, c.image.y}, c.gap * length, c.contact_length * length});
   }
+  const std::vector<double> gaps = smallest_gaps(membranes, box_);
   std::vector<Eigen::Vector2d> centers;
   for (std::size_t k = 0; k < membranes.cells.size(); ++k) {
     const core::CellRange& cell = membranes.cells[k];
@@ -245,14 +236,14 @@ void Observer::observe_cells(const core::Membranes& membranes, const units::Latt
     CellSnapshot s;
     s.cell = static_cast<int>(k);
     s.type = scene_->cell_types[static_cast<std::size_t>(cell.type)].name;
-    s.x = (c.x() + 0.5) * length;
-    s.y = (c.y() + 0.5) * length;
+    s.x = units::coordinate(c.x(), length);
+    s.y = units::coordinate(c.y(), length);
     s.angle = round ? std::nan("") : angle_[k];
     s.deformation = ellipse.deformation;
     s.area = core::enclosed_area(membranes, cell) * length * length;
     s.perimeter = core::perimeter(membranes, cell) * length;
     s.tank_treading_angle = tank_treading_angle_[k];
-    s.min_gap = gap_to_others(membranes, static_cast<int>(k), box_) * length;
+    s.min_gap = gaps[k] * length;
     s.aggregate = aggregates.label[k];
     s.through_image = aggregates.through_image[k];
     const core::StretchRange stretch = core::stretch_range(membranes, cell);
@@ -305,8 +296,8 @@ Snapshot Observer::observe(core::Solver<T>& solver, const plan::StageSetting& se
     for (const core::CellRange& cell : membranes.cells) outlines.first.push_back(cell.first);
     outlines.first.push_back(membranes.node_count());
     for (std::size_t i = 0; i < membranes.x.size(); ++i) {
-      outlines.x.push_back((membranes.x[i] + 0.5) * units.length);
-      outlines.y.push_back((membranes.y[i] + 0.5) * units.length);
+      outlines.x.push_back(units::coordinate(membranes.x[i], units.length));
+      outlines.y.push_back(units::coordinate(membranes.y[i], units.length));
       outlines.tension.push_back(tension[i] * tension_unit);
     }
   }

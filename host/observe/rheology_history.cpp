@@ -1,13 +1,13 @@
 #include "rheology_history.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
 #include <set>
 
 #include "json/number_or_null.hpp"
+#include "observables.hpp"
 
 namespace rouleau::observe {
 
@@ -15,9 +15,16 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::array<const char*, 6> value_names{"relative_viscosity",         "flow_rate_m2_per_s",
-                                                 "cell_free_layer_lower_m",    "cell_free_layer_upper_m",
-                                                 "aggregate_size_number_mean", "aggregate_size_weight_mean"};
+/// The observables whose means are wanted.
+const std::vector<Observable>& averaged() {
+  static const std::vector<Observable> list = [] {
+    std::vector<Observable> wanted;
+    for (const Observable& observable : table("series").observables)
+      if (observable.has_means) wanted.push_back(observable);
+    return wanted;
+  }();
+  return list;
+}
 
 /// First instant of the second half of a history, by time.
 template <class Instants>
@@ -51,19 +58,14 @@ void RheologyHistory::follow(const Snapshot& snapshot) {
       start_strain_ += instant.strain;
       start_time_ += instant.time;
       instant.strain = instant.time = 0;
-      std::fill(std::begin(instant.values), std::end(instant.values), std::nan(""));
+      std::fill(instant.values.begin(), instant.values.end(), std::nan(""));
     }
     stages_.push_back({snapshot.stage_name, std::move(first)});
     stage_ = snapshot.stage;
   }
-  Instant now{
-      snapshot.strain - start_strain_,
-      snapshot.time - start_time_,
-      {snapshot.relative_viscosity, snapshot.flow_rate, snapshot.cell_free_layer_lower, snapshot.cell_free_layer_upper,
-       snapshot.aggregate_size_number_mean, snapshot.aggregate_size_weight_mean},
-      {},
-      {},
-      {}};
+  Instant now{snapshot.strain - start_strain_, snapshot.time - start_time_, {}, {}, {}, {}};
+  for (const Observable& observable : averaged())
+    now.values.push_back(std::get<double>(observable.value({.output = snapshot})));
   for (const CellSnapshot& cell : snapshot.cells) {
     now.label.push_back(cell.aggregate);
     now.marker.push_back(cell.tank_treading_angle);
@@ -75,7 +77,8 @@ void RheologyHistory::follow(const Snapshot& snapshot) {
 Json RheologyHistory::means(const StageHistory& stage) {
   const std::size_t first = second_half(stage.instants);
   Json result{{"from_s", stage.instants[first].time}, {"outputs", stage.instants.size() - first}};
-  for (std::size_t k = 0; k < value_names.size(); ++k) {
+  for (std::size_t k = 0; k < averaged().size(); ++k) {
+    const std::string name = averaged()[k].column();
     double sum = 0, count = 0, squares = 0;
     for (std::size_t i = first; i < stage.instants.size(); ++i) {
       const double value = stage.instants[i].values[k];
@@ -89,10 +92,9 @@ Json RheologyHistory::means(const StageHistory& stage) {
       if (std::isfinite(value)) squares += (value - mean) * (value - mean);
     }
     if (count > 0) {
-      result[value_names[k]] = {{"mean", mean},
-                                {"deviation", count > 1 ? Json(std::sqrt(squares / (count - 1))) : Json()}};
+      result[name] = {{"mean", mean}, {"deviation", count > 1 ? Json(std::sqrt(squares / (count - 1))) : Json()}};
     } else {
-      result[value_names[k]] = nullptr;
+      result[name] = nullptr;
     }
   }
   return result;
@@ -157,6 +159,13 @@ Json RheologyHistory::rotation(const StageHistory& stage) {
                       {"tumbling_rad_per_s", json::number_or_null(tumbling / time)}});
   }
   return result;
+}
+
+bool RheologyHistory::fits() const {
+  const auto fitting = [](const Instant& instant) { return instant.values.size() == averaged().size(); };
+  return std::all_of(stages_.begin(), stages_.end(), [&](const StageHistory& stage) {
+    return std::all_of(stage.instants.begin(), stage.instants.end(), fitting);
+  });
 }
 
 Json RheologyHistory::stages() const {

@@ -1,7 +1,6 @@
 // What a run says about the rheology of its suspension over time: means, break-up of aggregates, tank treading.
 #pragma once
 
-#include <array>
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -16,10 +15,9 @@ class RheologyHistory {
 
   /// One object for each stage that has been seen, in order:
   ///   stage              its name
-  ///   means              over the outputs of the stage's second half, {from_s, outputs, and for each of
-  ///                      relative_viscosity, flow_rate_m2_per_s, cell_free_layer_lower_m, cell_free_layer_upper_m,
-  ///                      aggregate_size_number_mean, aggregate_size_weight_mean: {mean, deviation}}: standard
-  ///                      deviation of the outputs; null where no output has a value
+  ///   means              over the outputs of the stage's second half, {from_s, outputs, and for each column of
+  ///                      series.csv that has_means (observables.hpp) {mean, deviation}}: standard deviation of the
+  ///                      outputs; null where no output has a value
   ///   dissociation       of each aggregate of two or more cells at the stage's start, {members, parted, separate};
   ///                      each of the two {strain, strain_before, time_s} from the start of the stage, or null: at
   ///                      `strain` the output after which its members never again were all in one aggregate (parted),
@@ -29,12 +27,14 @@ class RheologyHistory {
   ///                      to the long axis, and of the long axis, over the last whole turns of the outline (as many as
   ///                      fit into the second half, one if there is one at all; turns 0: over the second half)
   [[nodiscard]] nlohmann::json stages() const;
+  /// Whether what it remembers has a value for each column that has means: one of another version may not.
+  [[nodiscard]] bool fits() const;
   NLOHMANN_DEFINE_TYPE_INTRUSIVE(RheologyHistory, stages_, stage_, start_strain_, start_time_)
 
  private:
   struct Instant {
-    double strain, time;  ///< since the start of the stage
-    std::array<double, 6> values;
+    double strain, time;         ///< since the start of the stage
+    std::vector<double> values;  ///< of the observables that have means
     std::vector<int> label;
     std::vector<double> marker, axis;  ///< rad, of each cell, continuous
     NLOHMANN_DEFINE_TYPE_INTRUSIVE(Instant, strain, time, values, label, marker, axis)

@@ -91,4 +91,17 @@ std::map<int, double> Rotation::follow(const std::vector<CellContact>& contacts,
   return angles;
 }
 
+double largest_rotation(const Snapshot& snapshot) {
+  std::map<int, int> sizes;
+  for (const CellSnapshot& cell : snapshot.cells) ++sizes[cell.aggregate];
+  int most = 0, largest = -1;
+  for (const auto& [label, size] : sizes) {
+    if (size <= most) continue;
+    most = size;
+    largest = label;
+  }
+  const auto found = snapshot.rotation.find(largest);
+  return found != snapshot.rotation.end() ? found->second : std::nan("");
+}
+
 }  // namespace rouleau::observe

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "aggregates.hpp"
+#include "snapshot.hpp"
 
 namespace rouleau::observe {
 
@@ -24,5 +25,8 @@ class Rotation {
  private:
   std::map<std::vector<int>, double> last_;  ///< by members
 };
+
+/// Rotation of the aggregate with the most cells (of equal ones the first), rad; NaN when it has none.
+double largest_rotation(const Snapshot& snapshot);
 
 }  // namespace rouleau::observe

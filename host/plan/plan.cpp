@@ -38,7 +38,7 @@ nlohmann::json dimensionless_numbers(const Plan& plan) {
   double shear_rate = 0, factor = scene.numerics.density_factor, wall_mach = 0;
   bool unbounded = false;
   for (const StageSetting& stage : plan.stages) {
-    wall_mach = std::max(wall_mach, std::abs(stage.wall_speed) * std::sqrt(3.0));
+    wall_mach = std::max(wall_mach, units::mach_number(std::abs(stage.wall_speed)));
     unbounded = unbounded || accelerates_for_ever(stage, scene);
     const double rate = scene::mean_shear_rate(*stage.stage, scene);
     if (rate > shear_rate) {

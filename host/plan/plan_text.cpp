@@ -5,6 +5,7 @@
 
 #include "json/number_or_null.hpp"
 #include "plan.hpp"
+#include "units/lattice_units.hpp"
 
 namespace rouleau::plan {
 
@@ -81,10 +82,10 @@ void write_output(std::ostringstream& out, const Plan& plan) {
   for (const int axis : {0, 1}) {
     const auto a = static_cast<std::size_t>(axis);
     const int count = storage.count(axis, plan.scene->domain.nodes[a]);
-    out << (axis == 0 ? " x = " : ", y = ") << formatted((storage.first[a] + 0.5) * spacing) << " um";
+    out << (axis == 0 ? " x = " : ", y = ") << formatted(units::coordinate(storage.first[a], spacing)) << " um";
     if (count > 1)
-      out << " to " << formatted((storage.first[a] + (count - 1) * storage.stride + 0.5) * spacing) << " um (" << count
-          << " nodes)";
+      out << " to " << formatted(units::coordinate(storage.first[a] + (count - 1) * storage.stride, spacing)) << " um ("
+          << count << " nodes)";
   }
   out << ", " << formatted(storage.stride * spacing) << " um apart: lattice nodes inside the region"
       << (storage.stride > 1 ? " from its lower left corner" : "") << "\n";

@@ -170,14 +170,14 @@ std::vector<Limit> find_limits(const Plan& plan) {
     const std::string where = " (stage " + stage.stage->name + ")";
     const plugin::ModelSetting setting = stage.model_setting(scene.fluid.inertia);
     if (stage.wall_speed != 0) {
-      add("Mach number of the walls" + where, std::abs(stage.wall_speed) * std::sqrt(3.0),
+      add("Mach number of the walls" + where, units::mach_number(std::abs(stage.wall_speed)),
           scene::largest_wall_mach(scene.fluid.inertia), true,
           "lower density_factor or shear_rate, or raise the resolution", density);
     }
     if (stage.body_force_x != 0 && !scene.domain.periodic_y) {
       const double height = scene.domain.nodes[1];
       const double speed = std::abs(stage.body_force_x) * height * height / (8 * core::viscosity_of(tau));
-      add("Mach number of the driven flow" + where, speed * std::sqrt(3.0), 0.1, true,
+      add("Mach number of the driven flow" + where, units::mach_number(speed), 0.1, true,
           "lower density_factor or the driving force, or raise the resolution", density);
     }
     if (!plan.has_cells) continue;

@@ -8,12 +8,13 @@
 #include <numbers>
 #include <optional>
 #include <set>
-#include <string_view>
+#include <string>
 
 #include "files/csv_reader.hpp"
 #include "files/file.hpp"
 #include "files/frames.hpp"
 #include "json/document.hpp"
+#include "observe/observables.hpp"
 #include "report_fields.hpp"
 #include "report_outlines.hpp"
 
@@ -77,6 +78,38 @@ Json lines(const std::vector<double>& column, std::size_t count, const Selection
   return Json::array({smallest, mean, largest});
 }
 
+/// How a page shows an observable: lengths in micrometres, angles in degrees.
+struct Shown {
+  std::string name, unit;
+  double factor;
+};
+
+Shown shown(const observe::Observable& observable) {
+  const std::string name(observable.name);
+  if (observable.unit == "m") return {name + "_um", "µm", micro};
+  if (observable.unit == "rad") return {name + "_deg", "°", 180 / std::numbers::pi};
+  return {observable.column(), std::string(observable.unit), 1};
+}
+
+/// What charts there are and which lines each has, in the order of the columns.
+Json charts() {
+  Json list = Json::array();
+  for (const char* table : {"cells", "series"}) {
+    for (const observe::Observable& observable : observe::table(table).observables) {
+      if (observable.chart.empty()) continue;
+      const Shown as = shown(observable);
+      auto chart =
+          std::find_if(list.begin(), list.end(), [&](const Json& c) { return c["title"] == observable.chart; });
+      if (chart == list.end()) {
+        list.push_back({{"title", observable.chart}, {"unit", as.unit}, {"table", table}, {"lines", Json::array()}});
+        chart = list.end() - 1;
+      }
+      (*chart)["lines"].push_back({{"name", as.name}, {"label", observable.line}, {"doc", observable.doc}});
+    }
+  }
+  return list;
+}
+
 Json cell_data(const files::StoredTable& table, std::size_t count, const Selection& selection) {
   Json cells{{"labels", Json::array()}, {"aggregate", Json::array()}};
   const auto types = table.texts("type");
@@ -91,26 +124,22 @@ Json cell_data(const files::StoredTable& table, std::size_t count, const Selecti
     for (std::size_t cell = 0; cell < count; ++cell) labels.push_back(std::lround(aggregate[output * count + cell]));
     cells["aggregate"].push_back(std::move(labels));
   }
-  cells["deformation"] = lines(table.numbers("deformation"), count, selection, 1);
-  cells["angle_deg"] = lines(table.numbers("angle_rad"), count, selection, 180 / std::numbers::pi);
-  cells["min_gap_um"] = lines(table.numbers("min_gap_m"), count, selection, micro);
+  for (const observe::Observable& observable : observe::table("cells").observables) {
+    if (observable.chart.empty()) continue;
+    const Shown as = shown(observable);
+    cells[as.name] = lines(table.numbers(observable.column()), count, selection, as.factor);
+  }
   return cells;
 }
 
 Json series_data(const files::StoredTable& series, const Selection& selection) {
   Json data;
-  for (const char* name : {"aggregate_count", "aggregate_size_weight_mean", "relative_viscosity", "particle_stress_Pa",
-                           "mach_max", "area_drift_max", "area_leakage_max", "mass_drift"})
-    data[name] = picked(series.numbers(name), selection);
-  for (const auto& [name, column] : {std::pair{"cell_free_layer_lower_um", "cell_free_layer_lower_m"},
-                                     std::pair{"cell_free_layer_upper_um", "cell_free_layer_upper_m"}}) {
-    data[name] = picked(series.numbers(column), selection, micro);
+  for (const observe::Observable& observable : observe::table("series").observables) {
+    // Runs of earlier versions do not have all columns.
+    if (observable.chart.empty() || !series.has(observable.column())) continue;
+    const Shown as = shown(observable);
+    data[as.name] = picked(series.numbers(observable.column()), selection, as.factor);
   }
-  // The ledger of energies, which runs of earlier versions do not have.
-  for (const char* name : {"kinetic_energy_J_per_m", "elastic_energy_J_per_m", "bending_energy_J_per_m",
-                           "interaction_energy_J_per_m", "total_energy_J_per_m", "viscous_dissipation_W_per_m",
-                           "membrane_dissipation_W_per_m", "wall_power_W_per_m", "body_force_power_W_per_m"})
-    if (series.has(name)) data[name] = picked(series.numbers(name), selection);
   return data;
 }
 
@@ -220,6 +249,7 @@ Json report_data(const std::filesystem::path& directory) {
     data["step"].push_back(std::llround(steps[i]));
     data["stage"].push_back(stages[i]);
   }
+  data["charts"] = charts();
   data["series"] = series_data(series, selection);
   data["cells"] = count > 0 && outputs > 0 ? cell_data(cells, count, selection) : Json(nullptr);
   data["outlines"] = data["fields"] = nullptr;

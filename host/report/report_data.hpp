@@ -15,10 +15,11 @@ bool has_run(const std::filesystem::path& directory);
 ///   shown     {outputs, of, node_stride, note, damage}: what was thinned, why there is no animation, and sentences on
 ///             the files of an ended run that are damaged
 ///   step, time_s, strain, stage   one entry per shown output
-///   series    name -> values per shown output; names of the energy ledger only where the run wrote them
-///   cells     {labels, aggregate, deformation, angle_deg, min_gap_um}: aggregate by output and cell, the others
-///             name -> lines of values per shown output (a line per cell; of more than 12 cells smallest, mean,
-///             largest)
+///   charts    [{title, unit, table: series | cells, lines: [{name, label, doc}]}]: what is drawn, of the columns that
+///             have a chart (observe/observables.hpp), lengths in um and angles in degrees
+///   series    name -> values per shown output; only those that the run wrote
+///   cells     {labels, aggregate, and name -> lines of values per shown output (a line per cell; of more than 12 cells
+///             smallest, mean, largest)}: aggregate by output and cell
 ///   domain    {size_um, periodic_y}; absent without frames
 ///   outlines  outline_data() of the shown outputs (report_outlines.hpp), or null
 ///   fields    field_data() of the shown outputs (report_fields.hpp), or null

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "files/frames.hpp"
+#include "observe/vorticity.hpp"
 #include "report_outlines.hpp"
 
 namespace rouleau::report {
@@ -78,14 +79,6 @@ struct Grid {
   std::array<bool, 2> periodic{};
 };
 
-/// What a quantity rises over two spacings around node `i` of `n`.
-template <class Value>
-double rise(std::size_t i, std::size_t n, bool periodic, const Value& value) {
-  if (periodic || (i > 0 && i + 1 < n)) return value((i + 1) % n) - value((i + n - 1) % n);
-  if (n < 3) return 0;
-  return i == 0 ? 4 * value(1) - 3 * value(0) - value(2) : 3 * value(i) - 4 * value(i - 1) + value(i - 2);
-}
-
 ScalarField speed(const std::vector<double>& velocity, std::size_t nx, std::size_t ny) {
   ScalarField field{nx, ny, std::vector<double>(nx * ny)};
   for (std::size_t i = 0; i < nx * ny; ++i) field.values[i] = std::hypot(velocity[3 * i], velocity[3 * i + 1]);
@@ -153,13 +146,9 @@ ScalarField vorticity(const std::vector<double>& velocity, std::size_t nx, std::
   ScalarField field{nx, ny, std::vector<double>(nx * ny)};
   const auto u = [&](std::size_t x, std::size_t y) { return velocity[3 * (y * nx + x)]; };
   const auto v = [&](std::size_t x, std::size_t y) { return velocity[3 * (y * nx + x) + 1]; };
-  for (std::size_t y = 0; y < ny; ++y) {
-    for (std::size_t x = 0; x < nx; ++x) {
-      const double dv_dx = rise(x, nx, periodic[0], [&](std::size_t i) { return v(i, y); }) / (2 * spacing[0]);
-      const double du_dy = rise(y, ny, periodic[1], [&](std::size_t j) { return u(x, j); }) / (2 * spacing[1]);
-      field.values[y * nx + x] = dv_dx - du_dy;
-    }
-  }
+  const observe::VelocityGrid grid{nx, ny, spacing, periodic};
+  for (std::size_t y = 0; y < ny; ++y)
+    for (std::size_t x = 0; x < nx; ++x) field.values[y * nx + x] = grid.vorticity(x, y, u, v);
   return field;
 }
 

@@ -355,7 +355,8 @@ class Simulation {
   template <class T>
   void tell_mode(monitor::Failure& failure, core::Solver<T>& solver) {
     const double spacing = setting().units.length;
-    const std::array<double, 2> place{failure.place[0] / spacing - 0.5, failure.place[1] / spacing - 0.5};
+    const std::array<double, 2> place{units::place_on_lattice(failure.place[0], spacing),
+                                      units::place_on_lattice(failure.place[1], spacing)};
     double oscillation = 0;
     if (std::isfinite(place[0]) && std::isfinite(place[1])) {
       solver.fluid().settle();

@@ -4,6 +4,7 @@
 #include "base/text.hpp"
 #include "json/json_pointer.hpp"
 #include "scene_reader.hpp"
+#include "units/lattice_units.hpp"
 
 namespace rouleau::scene {
 
@@ -27,12 +28,12 @@ std::array<int, 2> nodes_within(const SceneFields& fields, const Domain& domain,
   if (!(from < to))
     fields.refuse(end, "the region ends at " + micrometres(to) + along + " and begins at " + micrometres(from) +
                            "; \"from\" is the lower left corner and \"to\" the upper right one");
-  const int first = static_cast<int>(std::ceil(from / spacing - 0.5 - rounding));
-  const int last = static_cast<int>(std::floor(to / spacing - 0.5 + rounding));
+  const int first = static_cast<int>(std::ceil(units::place_on_lattice(from, spacing) - rounding));
+  const int last = static_cast<int>(std::floor(units::place_on_lattice(to, spacing) + rounding));
   if (first > last)
     fields.refuse(pointer, "no lattice node lies between " + micrometres(from) + " and " + micrometres(to) + along +
                                ": they lie " + micrometres(spacing) + " apart, the nearest at " +
-                               micrometres((last + 0.5) * spacing) + "; make the region larger");
+                               micrometres(units::coordinate(last, spacing)) + "; make the region larger");
   return {first, last};
 }
 

@@ -4,8 +4,8 @@
 #include <array>
 #include <numbers>
 
-#include "files/tables.hpp"
 #include "json/document.hpp"
+#include "observe/observables.hpp"
 #include "study_fields.hpp"
 
 namespace rouleau::study {
@@ -55,32 +55,19 @@ When read_when(const StudyFields& fields, const std::string& pointer) {
   return {When::Kind::mean_from_strain, fields.number(pointer + "/mean_from_strain")};
 }
 
-/// The unit that a column's name ends with.
-std::string unit_of_column(const std::string& name) {
-  constexpr std::array<std::array<const char*, 2>, 8> endings{{{"_J_per_m", "J/m"},
-                                                               {"_W_per_m", "W/m"},
-                                                               {"_m2_per_s", "m2/s"},
-                                                               {"_Pa", "Pa"},
-                                                               {"_rad", "rad"},
-                                                               {"_m2", "m2"},
-                                                               {"_m", "m"},
-                                                               {"_s", "s"}}};
-  for (const auto& [ending, unit] : endings)
-    if (name.ends_with(ending)) return unit;
-  return "";
-}
-
 void read_column(const StudyFields& fields, const std::string& pointer, Quantity& quantity) {
   quantity.table =
       std::array<const char*, 2>{"cells", "series"}[fields.choice(pointer + "/table", {"cells", "series"})];
   quantity.column = fields.text(pointer + "/column");
-  const auto columns = files::column_names(quantity.table + ".csv");
-  if (std::find(columns.begin(), columns.end(), quantity.column) == columns.end()) {
+  const observe::Table& table = observe::table(quantity.table);
+  const auto columns = table.columns();
+  const auto found = std::find(columns.begin(), columns.end(), quantity.column);
+  if (found == columns.end()) {
     fields.scene_fields().refuse(pointer + "/column",
                                  quantity.table + ".csv has no column " + in_quotes(quantity.column) +
                                      did_you_mean(quantity.column, columns) + "\nit has " + listed(columns));
   }
-  quantity.unit = unit_of_column(quantity.column);
+  quantity.unit = table.observables[found - columns.begin()].unit;
 }
 
 /// Keys of one kind or a few.

@@ -21,6 +21,15 @@ struct LatticeUnits {
   [[nodiscard]] double to_si(double lattice, const Dimension& d) const { return lattice * unit(d); }
 };
 
+/// Where the lattice's node `place` lies along an axis, in the spacing's unit from the domain's border: nodes are the
+/// centres of squares, so the first lies half a spacing inside. Places between nodes, too.
+inline double coordinate(double place, double spacing) { return (place + 0.5) * spacing; }
+/// The other way round.
+inline double place_on_lattice(double coordinate, double spacing) { return coordinate / spacing - 0.5; }
+
+/// Mach number of a speed in lattice units, where that of sound is 1/sqrt(3).
+inline double mach_number(double speed) { return speed * std::sqrt(3.0); }
+
 /// Dimensions that the host itself converts.
 namespace dimension {
 inline constexpr Dimension number{};

@@ -159,14 +159,6 @@ double smallest_gap(const Membranes& membranes, int a, int b, const PeriodicBox&
   return gap;
 }
 
-double smallest_gap(const Membranes& membranes, int a, const PeriodicBox& box, double limit) {
-  double gap = std::numeric_limits<double>::infinity();
-  for (int b = 0; b < static_cast<int>(membranes.cells.size()); ++b) {
-    gap = std::min(gap, smallest_gap(membranes, a, b, box, std::min(gap, limit)));
-  }
-  return gap;
-}
-
 double depth_inside(const Membranes& membranes, const CellRange& cell, const Eigen::Vector2d& point) {
   double square = std::numeric_limits<double>::infinity();
   int winding = 0;

@@ -49,8 +49,6 @@ double facing_length(const Membranes& membranes, const CellRange& a, const CellR
 /// Smallest gap of two cells over all periodic images (of cell a to its own images if a == b); infinity above `limit`.
 /// `limit` must be finite: it bounds the images that are looked at.
 double smallest_gap(const Membranes& membranes, int a, int b, const PeriodicBox& box, double limit);
-/// Smallest gap of a cell to any other cell and to its own images; infinity above `limit`.
-double smallest_gap(const Membranes& membranes, int a, const PeriodicBox& box, double limit);
 
 /// Depth to which a point lies inside a cell moved by `shift`: distance to its outline; negative outside.
 double depth_inside(const Membranes& membranes, const CellRange& cell, const Eigen::Vector2d& point);

@@ -42,13 +42,13 @@ function verticalRange({whole, zero}) {
 /// A line is {label, values (of its run's outputs), run, tone, dashed, band (values of a lower edge; `values` is the
 /// upper one and the space between is tinted)}.
 class Chart {
-  constructor(parent, timeline, {title, unit = "", lines, height = 180, wide = false, steps = false, whole = false, zero = false}) {
+  constructor(parent, timeline, {title, about = "", unit = "", lines, height = 180, wide = false, steps = false, whole = false, zero = false}) {
     Object.assign(this, {timeline, lines, height, wide, steps, range: verticalRange({whole, zero}), whole});
     this.plot = element("div", {class: "plot"});
     this.instant = element("span", {class: "instant"});
     this.keys = lines.map((line, i) => this.key(line, i));
     parent.append(element("div", {class: "card chart", role: "group", "aria-label": title},
-      element("h3", {}, title + (unit ? `, ${unit}` : "")),
+      element("h3", {title: about}, title + (unit ? `, ${unit}` : "")),
       element("div", {class: "legend"}, this.instant, ...this.keys.map(key => key.button)), this.plot));
     new ResizeObserver(() => this.resize()).observe(this.plot);
     timeline.listeners.push(() => this.follow());

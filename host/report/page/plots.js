@@ -2,27 +2,31 @@
 const cellTones = ["--c0", "--c1", "--c2", "--c3", "--c4", "--c5", "--c6", "--c7", "--c0", "--c1", "--c2", "--c3"];
 const runTones = ["--c0", "--c1"], runNames = ["A", "B"];
 
-/// Chart of the page: `names` are of series, `cells` of the cells' quantities.
-const quantities = [
-  {title: "Aggregates (lone cells count)", names: {aggregate_count: ""}, steps: true, whole: true, zero: true, needsCells: true, first: true},
-  {title: "Smallest gap to another cell", unit: "µm", cells: "min_gap_um", zero: true},
-  {title: "Deformation (L − B)/(L + B)", cells: "deformation"},
-  {title: "Angle of the long axis", unit: "°", cells: "angle_deg"},
-  {title: "Relative viscosity", names: {relative_viscosity: ""}},
-  {title: "Largest relative area drift", names: {area_drift_max: ""}, zero: true, needsCells: true},
+/// Order and looks of the charts that the run's data lists; what is not named here comes last, as it is.
+const looks = {
+  "Aggregates (lone cells count)": {steps: true, whole: true, zero: true, needsCells: true, first: true},
+  "Smallest gap to another cell": {zero: true},
+  "Deformation (L − B)/(L + B)": {},
+  "Angle of the long axis": {},
+  "Relative viscosity": {},
+  "Largest relative area drift": {zero: true, needsCells: true},
   // The fluid's kinetic energy is often a hundred times that of the cells, and would hide it.
-  {title: "Energy of the cells", unit: "J/m", names: {elastic_energy_J_per_m: "elastic", bending_energy_J_per_m: "bending",
-    interaction_energy_J_per_m: "interaction"}, needsCells: true, optional: true},
-  {title: "Energy in all", unit: "J/m", names: {total_energy_J_per_m: "total", kinetic_energy_J_per_m: "kinetic"}, optional: true},
-  {title: "Power", unit: "W/m", names: {viscous_dissipation_W_per_m: "dissipation in the fluid", membrane_dissipation_W_per_m: "in membranes",
-    wall_power_W_per_m: "from the walls", body_force_power_W_per_m: "from the body force"}, optional: true},
-  {title: "Layers without cells", unit: "µm", names: {cell_free_layer_lower_um: "lower wall", cell_free_layer_upper_um: "upper wall"}, zero: true, needsCells: true, optional: true},
-  {title: "Aggregate size, mean over cells", names: {aggregate_size_weight_mean: ""}, steps: true, zero: true, needsCells: true},
-  {title: "Particle stress xy", unit: "Pa", names: {particle_stress_Pa: ""}, needsCells: true},
-  {title: "Largest Mach number", names: {mach_max: ""}, zero: true},
-  {title: "Largest area kept from leaking, relative", names: {area_leakage_max: ""}, zero: true, needsCells: true, optional: true},
-  {title: "Relative mass drift", names: {mass_drift: ""}, zero: true},
-];
+  "Energy of the cells": {needsCells: true, optional: true},
+  "Energy in all": {optional: true},
+  "Power": {optional: true},
+  "Layers without cells": {zero: true, needsCells: true, optional: true},
+  "Aggregate size, mean over cells": {steps: true, zero: true, needsCells: true},
+  "Particle stress xy": {needsCells: true},
+  "Largest Mach number": {zero: true},
+  "Largest area kept from leaking, relative": {zero: true, needsCells: true, optional: true},
+  "Relative mass drift": {zero: true},
+};
+
+/// The charts of a page, each {title, unit, table, lines: [{name, label, doc}], and its looks}.
+function quantitiesOf(data) {
+  const titles = Object.keys(looks), place = chart => { const i = titles.indexOf(chart.title); return i < 0 ? titles.length : i; };
+  return data.charts.map(chart => ({...chart, ...looks[chart.title]})).sort((a, b) => place(a) - place(b));
+}
 
 function smallestMeanLargest(run, name) {
   const lines = run.cells[name];
@@ -39,20 +43,21 @@ function linesOf(quantity, runs) {
   const two = runs.length > 1;
   return runs.flatMap((run, r) => {
     const prefix = two ? `${runNames[r]} ` : "";
-    if (quantity.cells) {
+    if (quantity.table === "cells") {
+      const [{name}] = quantity.lines;
       if (!run.cells) return [];
       if (two) {
-        const [low, mean, high] = smallestMeanLargest(run, quantity.cells);
+        const [low, mean, high] = smallestMeanLargest(run, name);
         return [{label: `${prefix}mean`, values: mean, run: r, tone: runTones[r], dashed: r === 1},
                 {label: `${prefix}range`, values: high, band: low, run: r, tone: runTones[r]}];
       }
       const summed = run.cells.labels[0] === "smallest";
-      return run.cells[quantity.cells].map((values, i) => ({values, run: r, tone: summed ? ["--c5", "--c0", "--c1"][i] : cellTones[i],
+      return run.cells[name].map((values, i) => ({values, run: r, tone: summed ? ["--c5", "--c0", "--c1"][i] : cellTones[i],
         label: run.cells.labels[i].replace(/ \(.*/, "")}));
     }
-    const names = Object.entries(quantity.names).filter(([name]) => run.series[name]);
-    return names.map(([name, label], i) => ({values: run.series[name], run: r, dashed: r === 1,
-      label: (prefix + label).trim(), tone: two && names.length === 1 ? runTones[r] : cellTones[i]}));
+    const there = quantity.lines.filter(({name}) => run.series[name]);
+    return there.map(({name, label}, i) => ({values: run.series[name], run: r, dashed: r === 1,
+      label: (prefix + label).trim(), tone: two && there.length === 1 ? runTones[r] : cellTones[i]}));
   }).filter(line => line.values.some(v => v !== null));
 }
 
@@ -69,15 +74,16 @@ const multiplied = (values, factor) => factor === 1 || !values ? values : values
 /// Draws all charts that have something to show; returns why the others are missing, in sentences.
 function plots(timeline, first, grid) {
   const missing = [], zero = [];
-  for (const quantity of quantities) {
+  for (const quantity of quantitiesOf(timeline.runs[0])) {
     const lines = linesOf(quantity, timeline.runs), parent = quantity.first ? first : grid;
-    if (!lines.length) { if (!quantity.optional && !(quantity.needsCells || quantity.cells) || (!quantity.optional && timeline.runs.some(run => run.cells))) missing.push(quantity.title); continue; }
+    if (!lines.length) { if (!quantity.optional && !(quantity.needsCells || quantity.table === "cells") || (!quantity.optional && timeline.runs.some(run => run.cells))) missing.push(quantity.title); continue; }
     // An axis up to 1 would speak of a size that is not there.
     if (!quantity.whole && lines.every(line => line.values.every(v => !v))) { zero.push(quantity.title); continue; }
-    const {unit, factor} = readable(quantity.unit || "", lines);
+    const {unit, factor} = readable(quantity.unit, lines);
     for (const line of lines) { line.values = multiplied(line.values, factor); if (line.band) line.band = multiplied(line.band, factor); }
     const beside = quantity.first && timeline.runs.length === 1;  // the animation
-    new Chart(parent, timeline, {...quantity, unit, lines, wide: beside, height: beside && innerWidth > 800 ? 290 : 180});
+    const about = quantity.lines.map(({label, doc}) => `${label ? `${label}: ` : ""}${doc.replaceAll("`", "")}`).join("\n");
+    new Chart(parent, timeline, {...quantity, about, unit, lines, wide: beside, height: beside && innerWidth > 800 ? 290 : 180});
   }
   const listed = list => list.join(", ").toLowerCase().replace(/\bmach\b/g, "Mach");
   const notes = [];

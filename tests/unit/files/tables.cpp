@@ -2,10 +2,12 @@
 #include <charconv>
 #include <clocale>
 #include <random>
+#include <sstream>
 
 #include "files/csv_reader.hpp"
 #include "files/file.hpp"
 #include "files/tables.hpp"
+#include "observe/observables.hpp"
 #include "unit/run_fixture.hpp"
 
 using namespace rouleau;
@@ -67,6 +69,29 @@ TEST_CASE("the tables hold what the snapshots say") {
   CHECK(aggregates.texts("members")[0] == "0+1");
   CHECK(aggregates.numbers("image_x")[0] == -1);
   CHECK(aggregates.numbers("gap_m")[0] == 0.5e-6);
+}
+
+TEST_CASE("every table has a header with the names of its observables, and as many entries in every row") {
+  const ScratchFolder folder;
+  Tables tables(folder.path());
+  auto snapshot = small_snapshot(0);
+  for (CellSnapshot& cell : snapshot.cells) cell.type = "rbc";
+  snapshot.aggregate_sizes = {{1, 2}, {3, 1}};
+  tables.write(snapshot);
+  snapshot.contacts.clear();
+  tables.write(snapshot);
+  tables.close();
+  for (const Table& table : observe::tables()) {
+    std::istringstream lines(read_text(folder.path() / (std::string(table.name) + ".csv")));
+    std::string header, row, expected;
+    std::getline(lines, header);
+    for (const std::string& column : table.columns()) expected += (expected.empty() ? "" : ",") + column;
+    CHECK(header == expected);
+    int rows = 0;
+    for (; std::getline(lines, row); ++rows)
+      CHECK(std::count(row.begin(), row.end(), ',') == std::count(header.begin(), header.end(), ','));
+    CHECK(rows >= 2);
+  }
 }
 
 TEST_CASE("an aggregate without contact has a row of its own with empty contact columns") {

@@ -4,7 +4,9 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
+#include <random>
 
+#include "core/membrane/geometry.hpp"
 #include "plan/output_schedule.hpp"
 
 using namespace rouleau::core;
@@ -58,6 +60,48 @@ TEST_CASE("a cell can touch its own image in a small box, and is then one aggreg
   REQUIRE(contacts.size() == 1);
   CHECK(contacts[0].cell_a == contacts[0].cell_b);
   CHECK(find_aggregates(1, contacts).count == 1);
+}
+
+TEST_CASE(
+    "contacts and smallest gaps of many cells are those of a search through all pairs, to the bit and in its order") {
+  const unsigned seed = std::random_device{}();
+  INFO("seed " << seed);
+  std::mt19937 random(seed);
+  for (const PeriodicBox& box : {PeriodicBox{400, 0}, PeriodicBox{400, 300}, PeriodicBox{64, 40}}) {
+    std::uniform_real_distribution<double> x(-box.nx, 2 * box.nx), y(0, 300);
+    std::vector<std::array<double, 2>> centres;
+    for (int cell = 0; cell < (box.nx > 64 ? 240 : 2); ++cell) centres.push_back({x(random), y(random)});
+    const Membranes m = circles(centres);
+    constexpr double reach = 3;
+    const int cells = static_cast<int>(m.cells.size());
+    std::vector<CellContact> expected;
+    std::vector<double> gaps;
+    for (int a = 0; a < cells; ++a) {
+      double gap = std::numeric_limits<double>::infinity();
+      for (int b = 0; b < cells; ++b) {
+        const CellRange &cell = m.cells[a], &other = m.cells[b];
+        gap = std::min(gap, smallest_gap(m, a, b, box, 800));
+        if (b < a) continue;
+        for_each_image(bounds(m, cell), bounds(m, other), reach, box, [&](ImageShift shift) {
+          if (a == b && (shift.y < 0 || (shift.y == 0 && shift.x <= 0))) return;
+          const double distance = outline_distance(m, cell, other, shift, box, reach);
+          if (distance < reach)
+            expected.push_back({a, b, shift, distance, facing_length(m, cell, other, shift, box, reach)});
+        });
+      }
+      gaps.push_back(gap);
+    }
+    const auto contacts = find_contacts(m, box, reach);
+    REQUIRE(contacts.size() == expected.size());
+    if (box.nx > 64) CHECK(contacts.size() > 50);
+    for (std::size_t k = 0; k < contacts.size(); ++k) {
+      const CellContact &c = contacts[k], &e = expected[k];
+      CHECK((c.cell_a == e.cell_a && c.cell_b == e.cell_b && c.image == e.image));
+      CHECK((c.gap == e.gap && c.contact_length == e.contact_length));
+    }
+    CHECK(smallest_gaps(m, box) == gaps);
+  }
+  CHECK(smallest_gaps(circles({}), {100, 0}).empty());
 }
 
 TEST_CASE("an aggregate is a connected chain of contacts, labelled by its smallest cell") {

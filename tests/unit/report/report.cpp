@@ -127,6 +127,24 @@ TEST_CASE("the report is one file without anything to fetch, with the run's data
   CHECK(data["outlines"]["origin_um"][0][0].get<double>() == Approx(8).margin(0.01));
 }
 
+TEST_CASE("the report has the values, the unit and a sentence for every line of every chart") {
+  const ScratchFolder folder;
+  finished_run(folder.path(), "two cells");
+  const Json data = report_data(folder.path());
+  std::map<std::string, std::string> units;
+  for (const Json& chart : data["charts"]) {
+    CAPTURE(chart["title"].get<std::string>());
+    CHECK(units.emplace(chart["title"], chart["unit"]).second);
+    for (const Json& line : chart["lines"]) {
+      CHECK(data[chart["table"].get<std::string>()].contains(line["name"].get<std::string>()));
+      CHECK_FALSE(line["doc"].get<std::string>().empty());
+    }
+  }
+  CHECK(units.at("Smallest gap to another cell") == "µm");
+  CHECK(units.at("Angle of the long axis") == "°");
+  CHECK(units.at("Energy in all") == "J/m");
+}
+
 TEST_CASE("text from the scene cannot end the report's data or become markup") {
   const ScratchFolder folder;
   const std::string title = "</script><script>alert(1)</script><!-- \"'& \xff";

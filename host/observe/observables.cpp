@@ -1,0 +1,382 @@
+#include "observables.hpp"
+
+#include <algorithm>
+#include <initializer_list>
+#include <map>
+#include <stdexcept>
+
+#include "rotation.hpp"
+
+namespace rouleau::observe {
+
+namespace {
+
+template <auto member>
+Value output(const Row& row) {
+  return row.output.*member;
+}
+template <auto member>
+Value energy(const Row& row) {
+  return row.output.energy.*member;
+}
+template <auto member>
+Value cell(const Row& row) {
+  return row.cell->*member;
+}
+template <auto member>
+Value aggregate(const Row& row) {
+  return row.aggregate->*member;
+}
+template <auto member>
+Value contact(const Row& row) {
+  return row.contact != nullptr ? Value(row.contact->*member) : Value();
+}
+template <std::size_t axis>
+Value image(const Row& row) {
+  return row.contact != nullptr ? Value(row.contact->image[axis]) : Value();
+}
+
+Value rotation_of_aggregate(const Row& row) {
+  const auto found = row.output.rotation.find(row.aggregate->label);
+  return found != row.output.rotation.end() ? Value(found->second) : Value();
+}
+
+void for_output(const Snapshot& output, const std::function<void(const Row&)>& visit) { visit({.output = output}); }
+
+void for_each_cell(const Snapshot& output, const std::function<void(const Row&)>& visit) {
+  for (const CellSnapshot& cell : output.cells) visit({.output = output, .cell = &cell});
+}
+
+void for_each_contact(const Snapshot& output, const std::function<void(const Row&)>& visit) {
+  std::map<int, AggregateMembers> aggregates;
+  std::map<int, int> label_of;
+  for (const CellSnapshot& cell : output.cells) {
+    AggregateMembers& aggregate = aggregates.try_emplace(cell.aggregate).first->second;
+    aggregate.label = cell.aggregate;
+    aggregate.members += (aggregate.members.empty() ? "" : "+") + std::to_string(cell.cell);
+    aggregate.through_image = aggregate.through_image || cell.through_image;
+    label_of[cell.cell] = cell.aggregate;
+  }
+  for (const ContactSnapshot& contact : output.contacts)
+    aggregates.at(label_of.at(contact.cell_a)).contacts.push_back(&contact);
+  for (const auto& [label, aggregate] : aggregates) {
+    if (aggregate.contacts.empty()) visit({.output = output, .aggregate = &aggregate});
+    for (const ContactSnapshot* contact : aggregate.contacts)
+      visit({.output = output, .aggregate = &aggregate, .contact = contact});
+  }
+}
+
+void for_each_size(const Snapshot& output, const std::function<void(const Row&)>& visit) {
+  for (const auto& [size, count] : output.aggregate_sizes)
+    visit({.output = output, .size = size, .aggregates_of_size = count});
+}
+
+/// A table's own columns behind those that all begin with.
+std::vector<Observable> with_instant(std::initializer_list<Observable> own) {
+  std::vector<Observable> all{
+      {.name = "step", .unit = "", .doc = "number of the step, over all stages", .value = output<&Snapshot::step>},
+      {.name = "time",
+       .unit = "s",
+       .doc = "simulated time since the first stage began",
+       .value = output<&Snapshot::time>},
+      {.name = "strain", .unit = "", .doc = "summed over the stages", .value = output<&Snapshot::strain>},
+  };
+  all.insert(all.end(), own);
+  return all;
+}
+
+Table cells_table() {
+  return {
+      "cells",
+      with_instant({
+          {.name = "cell",
+           .unit = "",
+           .doc = "number of the cell, from 0 in the scene's order",
+           .value = cell<&CellSnapshot::cell>},
+          {.name = "type", .unit = "", .doc = "its type", .value = cell<&CellSnapshot::type>},
+          {.name = "x",
+           .unit = "m",
+           .doc = "centroid of the enclosed area; not wrapped into the periodic box",
+           .value = cell<&CellSnapshot::x>},
+          {.name = "y", .unit = "m", .doc = "likewise", .value = cell<&CellSnapshot::y>},
+          {.name = "angle",
+           .unit = "rad",
+           .doc = "of the long axis of the inertia ellipse against x, counter-clockwise, followed over turns; `nan` "
+                  "for a circle (deformation below 1e-6), which has none",
+           .value = cell<&CellSnapshot::angle>,
+           .chart = "Angle of the long axis"},
+          {.name = "deformation",
+           .unit = "",
+           .doc = "(L - B)/(L + B) with the axes L > B of the ellipse that has the enclosed area's second moments",
+           .value = cell<&CellSnapshot::deformation>,
+           .chart = "Deformation (L − B)/(L + B)"},
+          {.name = "area", .unit = "m2", .doc = "that the outline encloses", .value = cell<&CellSnapshot::area>},
+          {.name = "perimeter", .unit = "m", .doc = "of the outline", .value = cell<&CellSnapshot::perimeter>},
+          {.name = "min_gap",
+           .unit = "m",
+           .doc = "to the nearest outline of another cell or of any periodic image; `inf` where there is none",
+           .value = cell<&CellSnapshot::min_gap>,
+           .chart = "Smallest gap to another cell"},
+          {.name = "aggregate",
+           .unit = "",
+           .doc = "label of the cell's aggregate: the smallest number of its cells",
+           .value = cell<&CellSnapshot::aggregate>},
+          {.name = "tank_treading_angle",
+           .unit = "rad",
+           .doc = "of the outline's first node about the centroid, followed over turns",
+           .value = cell<&CellSnapshot::tank_treading_angle>},
+          {.name = "through_image",
+           .unit = "",
+           .doc = "1 where the aggregate is held together through the periodic border",
+           .value = cell<&CellSnapshot::through_image>},
+          {.name = "stretch_min",
+           .unit = "",
+           .doc = "smallest stretch of a segment of the cell, length over rest length",
+           .value = cell<&CellSnapshot::stretch_min>},
+          {.name = "stretch_max",
+           .unit = "",
+           .doc = "largest stretch of a segment of the cell",
+           .value = cell<&CellSnapshot::stretch_max>},
+      }),
+      for_each_cell};
+}
+
+Table aggregates_table() {
+  return {
+      "aggregates",
+      with_instant({
+          {.name = "aggregate_count",
+           .unit = "",
+           .doc = "number of aggregates; lone cells count",
+           .value = output<&Snapshot::aggregate_count>},
+          {.name = "aggregate",
+           .unit = "",
+           .doc = "label: the smallest number of its cells",
+           .value = aggregate<&AggregateMembers::label>},
+          {.name = "members",
+           .unit = "",
+           .doc = "its cells, joined by `+`",
+           .value = aggregate<&AggregateMembers::members>},
+          {.name = "through_image",
+           .unit = "",
+           .doc = "1 where it is held together through the periodic border",
+           .value = aggregate<&AggregateMembers::through_image>},
+          {.name = "rotation",
+           .unit = "rad",
+           .doc = "angle of the line through its two outermost cells",
+           .value = rotation_of_aggregate},
+          {.name = "cell_a", .unit = "", .doc = "one cell of a contact", .value = contact<&ContactSnapshot::cell_a>},
+          {.name = "cell_b",
+           .unit = "",
+           .doc = "the other; the same where a cell touches its own image",
+           .value = contact<&ContactSnapshot::cell_b>},
+          {.name = "image_x", .unit = "", .doc = "periodic shift of `cell_b` along x, in boxes", .value = image<0>},
+          {.name = "image_y", .unit = "", .doc = "along y", .value = image<1>},
+          {.name = "gap", .unit = "m", .doc = "smallest gap between the two", .value = contact<&ContactSnapshot::gap>},
+          {.name = "contact_length",
+           .unit = "m",
+           .doc = "rest length of `cell_a`'s membrane that is nearer to `cell_b` than `aggregate_gap`",
+           .value = contact<&ContactSnapshot::contact_length>},
+      }),
+      for_each_contact};
+}
+
+Table series_table() {
+  return {
+      "series",
+      with_instant({
+          {.name = "stage", .unit = "", .doc = "number of the stage, from 0", .value = output<&Snapshot::stage>},
+          {.name = "stage_name", .unit = "", .doc = "its name", .value = output<&Snapshot::stage_name>},
+          {.name = "aggregate_count",
+           .unit = "",
+           .doc = "number of aggregates; lone cells count",
+           .value = output<&Snapshot::aggregate_count>,
+           .chart = "Aggregates (lone cells count)"},
+          {.name = "rotation",
+           .unit = "rad",
+           .doc = "that of the largest aggregate in aggregates.csv (of equal ones the first); `nan` where it has none",
+           .value = [](const Row& row) -> Value { return largest_rotation(row.output); }},
+          {.name = "relative_viscosity",
+           .unit = "",
+           .doc =
+               "where the walls move: mean wall shear stress over viscosity times shear rate (`nan` before they have "
+               "acted); where a force along x drives the flow between walls at rest: flow rate of the suspending "
+               "fluid alone, G H^3/(12 mu), over `flow_rate_m2_per_s`; else `nan`. Both are values of the instant: "
+               "those of a suspension want a steady state and a mean",
+           .value = output<&Snapshot::relative_viscosity>,
+           .chart = "Relative viscosity",
+           .has_means = true},
+          {.name = "particle_stress",
+           .unit = "Pa",
+           .doc = "xy stress that the cells add: membrane forces and viscosity contrast, per area of the domain",
+           .value = output<&Snapshot::particle_stress>,
+           .chart = "Particle stress xy"},
+          {.name = "mach_max",
+           .unit = "",
+           .doc = "largest Mach number of the lattice flow at this instant",
+           .value = output<&Snapshot::mach_max>,
+           .chart = "Largest Mach number"},
+          {.name = "area_drift_max",
+           .unit = "",
+           .doc = "largest relative change of a cell's area since the start, of all cells, at this instant",
+           .value = output<&Snapshot::area_drift_max>,
+           .chart = "Largest relative area drift"},
+          {.name = "mass_drift",
+           .unit = "",
+           .doc = "largest relative change of the fluid's mass within a stage, so far",
+           .value = output<&Snapshot::mass_drift>,
+           .chart = "Relative mass drift"},
+          {.name = "area_leakage_max",
+           .unit = "",
+           .doc = "of all cells, the largest change of area that `numerics.area_correction` has prevented so far, over "
+                  "the area; `nan` without it",
+           .value = output<&Snapshot::area_leakage_max>,
+           .chart = "Largest area kept from leaking, relative"},
+          {.name = "flow_rate",
+           .unit = "m2/s",
+           .doc = "of a driven channel, per depth: integral of the velocity over the height; `nan` elsewhere",
+           .value = output<&Snapshot::flow_rate>,
+           .has_means = true},
+          {.name = "cell_free_layer_lower",
+           .unit = "m",
+           .doc =
+               "mean over the lattice's columns of the distance from the lower wall to the nearest membrane; half the "
+               "height counts in a column where none is nearer, so that few cells give a large value. `nan` without "
+               "walls or cells",
+           .value = output<&Snapshot::cell_free_layer_lower>,
+           .chart = "Layers without cells",
+           .line = "lower wall",
+           .has_means = true},
+          {.name = "cell_free_layer_upper",
+           .unit = "m",
+           .doc = "likewise, from the upper wall",
+           .value = output<&Snapshot::cell_free_layer_upper>,
+           .chart = "Layers without cells",
+           .line = "upper wall",
+           .has_means = true},
+          {.name = "aggregate_size_number_mean",
+           .unit = "",
+           .doc = "cells over aggregates; lone cells are aggregates of one",
+           .value = output<&Snapshot::aggregate_size_number_mean>,
+           .has_means = true},
+          {.name = "aggregate_size_weight_mean",
+           .unit = "",
+           .doc = "size of the aggregate a cell finds itself in, averaged over the cells: sum n^2 / sum n",
+           .value = output<&Snapshot::aggregate_size_weight_mean>,
+           .chart = "Aggregate size, mean over cells",
+           .has_means = true},
+          {.name = "kinetic_energy",
+           .unit = "J/m",
+           .doc = "of the fluid as it is simulated, `density_factor` times denser than it is; docs/physics.md, "
+                  "\"Energy\", for this and all below, which are per depth",
+           .value = energy<&EnergySnapshot::kinetic>,
+           .chart = "Energy in all",
+           .line = "kinetic"},
+          {.name = "elastic_energy",
+           .unit = "J/m",
+           .doc = "in the membranes: laws of segments and of whole cells; `nan` without cells",
+           .value = energy<&EnergySnapshot::elastic>,
+           .chart = "Energy of the cells",
+           .line = "elastic"},
+          {.name = "bending_energy",
+           .unit = "J/m",
+           .doc = "in the membranes: laws of curvature; `nan` without cells",
+           .value = energy<&EnergySnapshot::bending>,
+           .chart = "Energy of the cells",
+           .line = "bending"},
+          {.name = "interaction_energy",
+           .unit = "J/m",
+           .doc = "of the active potentials between cells; `nan` where there is none",
+           .value = energy<&EnergySnapshot::interaction>,
+           .chart = "Energy of the cells",
+           .line = "interaction"},
+          {.name = "total_energy",
+           .unit = "J/m",
+           .doc =
+               "the sum of those that there are; `nan` where a law acts whose energy is not known (summary.json says "
+               "which)",
+           .value = energy<&EnergySnapshot::total>,
+           .chart = "Energy in all",
+           .line = "total"},
+          {.name = "viscous_dissipation",
+           .unit = "W/m",
+           .doc = "what the fluid's viscosity takes",
+           .value = energy<&EnergySnapshot::viscous_dissipation>,
+           .chart = "Power",
+           .line = "dissipation in the fluid"},
+          {.name = "membrane_dissipation",
+           .unit = "W/m",
+           .doc = "what viscous membranes and those with a memory take; `nan` without cells",
+           .value = energy<&EnergySnapshot::membrane_dissipation>,
+           .chart = "Power",
+           .line = "in membranes"},
+          {.name = "wall_power",
+           .unit = "W/m",
+           .doc =
+               "what both walls together put in; 0 for walls at rest, `nan` without walls and before they have acted",
+           .value = energy<&EnergySnapshot::wall_power>,
+           .chart = "Power",
+           .line = "from the walls"},
+          {.name = "body_force_power",
+           .unit = "W/m",
+           .doc = "what `fluid.body_force` and `pressure_gradient` put in; `nan` where neither acts",
+           .value = energy<&EnergySnapshot::body_force_power>,
+           .chart = "Power",
+           .line = "from the body force"},
+      }),
+      for_output};
+}
+
+Table aggregate_sizes_table() {
+  return {"aggregate_sizes",
+          with_instant({
+              {.name = "cells",
+               .unit = "",
+               .doc = "the size: cells of an aggregate",
+               .value = [](const Row& row) -> Value { return row.size; }},
+              {.name = "aggregates",
+               .unit = "",
+               .doc = "how many aggregates have it",
+               .value = [](const Row& row) -> Value { return row.aggregates_of_size; }},
+          }),
+          for_each_size};
+}
+
+}  // namespace
+
+std::string Observable::column() const {
+  std::string text(name);
+  if (!unit.empty()) text += '_';
+  for (const char c : unit) text += c == '/' ? std::string("_per_") : std::string(1, c == ' ' ? '_' : c);
+  return text;
+}
+
+std::vector<std::string> Table::columns() const {
+  std::vector<std::string> names;
+  for (const Observable& observable : observables) names.push_back(observable.column());
+  return names;
+}
+
+const std::array<Table, 4>& tables() {
+  static const std::array<Table, 4> all{cells_table(), aggregates_table(), series_table(), aggregate_sizes_table()};
+  return all;
+}
+
+const Table& table(std::string_view name) {
+  for (const Table& table : tables())
+    if (table.name == name) return table;
+  throw std::out_of_range("there is no table " + std::string(name));
+}
+
+nlohmann::json columns_json() {
+  auto list = nlohmann::json::array();
+  for (const Table& table : tables()) {
+    auto columns = nlohmann::json::array();
+    for (const Observable& o : table.observables)
+      columns.push_back({{"column", o.column()}, {"unit", o.unit}, {"doc", o.doc}, {"has_means", o.has_means}});
+    list.push_back({{"name", table.name}, {"columns", std::move(columns)}});
+  }
+  return list;
+}
+
+}  // namespace rouleau::observe
