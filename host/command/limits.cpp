@@ -35,7 +35,7 @@ Exit codes: 0 done, 1 an extreme case ended neither right nor with a reason, or 
 int limits_command(const std::vector<std::string>& arguments) {
   namespace options = boost::program_options;
   std::string file, out;
-  stability::LimitsOptions chosen;
+  trial::CampaignOptions chosen;
   options::options_description description("options");
   options::positional_options_description positional;
   description.add_options()("limits", options::value(&file)->required(), "LIMITS file (JSON)")(

@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-Json told_failure(const Json& failure) {
+Json failure_in_summary(const Json& failure) {
   const auto value = [&](const char* key) { return failure.contains(key) ? failure[key] : Json(); };
   const Json mode = value("mode");
   return {{"reason", value("reason")},
@@ -65,20 +65,20 @@ Json garbage_written(const fs::path& directory) {
   return found ? failure_json(no_number_written, *found) : Json();
 }
 
-/// What a run that came to its end did not tell.
-Json silent_failure(const Json& summary, const Soundness& soundness) {
+/// What a run that came to its end did not report.
+Json silent_failure(const Json& summary, const HealthCriteria& criteria) {
   if (!summary.is_object()) return failure_json("no_summary", "the run has left no summary.json");
   struct Bound {
     const char *reason, *pointer, *words;
     double most;
   };
   const std::array bounds{
-      Bound{"area_loss", "/conservation/area_drift_max", "a cell has changed its area by", soundness.area_drift},
-      Bound{"area_loss", "/conservation/area_leakage_max", "area_correction has kept back", soundness.area_drift},
+      Bound{"area_loss", "/conservation/area_drift_max", "a cell has changed its area by", criteria.area_drift},
+      Bound{"area_loss", "/conservation/area_leakage_max", "area_correction has kept back", criteria.area_drift},
       Bound{"energy_growth", "/energy/largest_growth_at_rest_relative", "energy at rest has grown by",
-            soundness.energy_growth},
-      Bound{"uneven_nodes", "/stretch/max", "a segment has been stretched to", soundness.stretch},
-      Bound{"mass_loss", "/conservation/mass_drift", "the fluid's mass has changed by", soundness.mass_drift}};
+            criteria.energy_growth},
+      Bound{"uneven_nodes", "/stretch/max", "a segment has been stretched to", criteria.stretch},
+      Bound{"mass_loss", "/conservation/mass_drift", "the fluid's mass has changed by", criteria.mass_drift}};
   for (const Bound& bound : bounds) {
     const double value = number_at(summary, bound.pointer);
     if (value > bound.most)
@@ -86,9 +86,9 @@ Json silent_failure(const Json& summary, const Soundness& soundness) {
                                             number(bound.most, 3) + ", and nothing stopped the run");
   }
   const double least = number_at(summary, "/stretch/min");
-  if (least < 1 / soundness.stretch)
+  if (least < 1 / criteria.stretch)
     return failure_json("uneven_nodes", "a segment has shrunk to " + number(least, 3) +
-                                            " of its length at rest, less than " + number(1 / soundness.stretch, 3) +
+                                            " of its length at rest, less than " + number(1 / criteria.stretch, 3) +
                                             ", and nothing stopped the run");
   return nullptr;
 }
@@ -108,23 +108,23 @@ std::string failure_text(const Json& failure) {
   return text;
 }
 
-Judgement judge(const trial::TrialResult& result, const fs::path& directory, const Soundness& soundness) {
+Judgement judge(const trial::TrialResult& result, const fs::path& directory, const HealthCriteria& criteria) {
   Judgement judgement;
   judgement.end = trial::to_string(result.end);
   const bool ended = result.end == trial::TrialEnd::completed || result.end == trial::TrialEnd::diverged;
   if (Json garbage = ended ? garbage_written(directory) : Json(); !garbage.is_null()) {
     judgement.failure = std::move(garbage);
   } else if (result.end == trial::TrialEnd::completed) {
-    judgement.failure = silent_failure(result.summary, soundness);
+    judgement.failure = silent_failure(result.summary, criteria);
   } else if (result.end == trial::TrialEnd::diverged && result.summary.is_object() &&
              result.summary.contains("failure")) {
-    judgement.failure = told_failure(result.summary["failure"]);
+    judgement.failure = failure_in_summary(result.summary["failure"]);
   } else {
     judgement.failure = failure_json(trial::to_string(result.end), result.message);
     if (result.summary.is_object() && result.summary.contains("steps"))
       judgement.failure["step"] = result.summary["steps"];
   }
-  judgement.sound = judgement.failure.is_null();
+  judgement.healthy = judgement.failure.is_null();
   return judgement;
 }
 

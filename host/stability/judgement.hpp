@@ -1,4 +1,4 @@
-// What a trial came to: sound, a failure that the run told, or one that it did not.
+// What a trial came to: healthy, a failure that the run reported, or one that it did not.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +11,7 @@
 namespace rouleau::stability {
 
 /// Beyond these a run that came to its end has failed in silence.
-struct Soundness {
+struct HealthCriteria {
   double area_drift = 0.02;     ///< relative change of a cell's area, corrected leakage included
   double energy_growth = 0.01;  ///< at rest, over the energies there are (summary.json, energy)
   double stretch = 3;           ///< of any segment, and its inverse
@@ -19,7 +19,7 @@ struct Soundness {
 };
 
 struct Judgement {
-  bool sound = false;
+  bool healthy = false;
   std::string end;         ///< of the trial: completed, diverged ...
   nlohmann::json failure;  ///< null: none; {reason, step, mode, wavelength, message, remedy}, unknown ones null
 };
@@ -33,6 +33,7 @@ nlohmann::json failure_json(const std::string& reason, const std::string& messag
 std::string failure_text(const nlohmann::json& failure);
 
 /// `directory`: of the trial's run, whose tables must hold no place or shape that is no number, and its frames nothing.
-Judgement judge(const trial::TrialResult& result, const std::filesystem::path& directory, const Soundness& soundness);
+Judgement judge(const trial::TrialResult& result, const std::filesystem::path& directory,
+                const HealthCriteria& criteria);
 
 }  // namespace rouleau::stability

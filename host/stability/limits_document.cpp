@@ -10,8 +10,6 @@
 #include "json/json_pointer.hpp"
 #include "json/put_value.hpp"
 #include "json/schema.hpp"
-#include "scene/scene.hpp"
-#include "trial/shared_keys.hpp"
 #include "units/units.hpp"
 
 namespace rouleau::stability {
@@ -20,21 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
-
-/// The scene with the changes of "set", found right as far as that can be said without plugins.
-Json read_limits_scene(const json::Document& document, const fs::path& scene_file) {
-  const Json& given = document.root()["scene"];
-  Json scene = trial::read_changed_scene(document, scene_file, "limits file's");
-  try {
-    json::validate(json::Document::parse(scene.dump(2), scene_file.string()),
-                            json::scene_schema());
-  } catch (const Error& error) {
-    const std::string what = error.what();
-    throw Error(ExitCode::bad_input, document.place(given.is_string() ? "/set" : "/scene"),
-                "the scene, " + error.place().pointer + what.substr(std::min(what.find('\n'), what.size())));
-  }
-  return scene;
-}
 
 struct NumberWithUnit {
   double value = 0;
@@ -108,9 +91,7 @@ LimitsParameter read_parameter(const json::Document& document, const Json& scene
     try {
       for (const std::string& pointer : parameter.pointers)
         (void)json::put_value(tried, pointer, parameter.written(end));
-      if (end == range.from)
-        json::validate(json::Document::parse(tried.dump(2), "the scene"),
-                                json::scene_schema());
+      if (end == range.from) trial::check_scene(tried, "the scene");
     } catch (const json::PutError& error) {
       refuse(given.contains("pointer") ? "/parameter/pointer" : "/parameter/pointers", error.what());
     } catch (const Error& error) {
@@ -166,13 +147,13 @@ std::vector<fs::path> read_scene_list(const json::Document& document, const fs::
   return scenes;
 }
 
-Soundness read_soundness(const Json& given) {
-  Soundness sound;
-  sound.area_drift = given.value("area_drift", sound.area_drift);
-  sound.energy_growth = given.value("energy_growth", sound.energy_growth);
-  sound.stretch = given.value("stretch", sound.stretch);
-  sound.mass_drift = given.value("mass_drift", sound.mass_drift);
-  return sound;
+HealthCriteria read_criteria(const Json& given) {
+  HealthCriteria criteria;
+  criteria.area_drift = given.value("area_drift", criteria.area_drift);
+  criteria.energy_growth = given.value("energy_growth", criteria.energy_growth);
+  criteria.stretch = given.value("stretch", criteria.stretch);
+  criteria.mass_drift = given.value("mass_drift", criteria.mass_drift);
+  return criteria;
 }
 
 }  // namespace
@@ -186,26 +167,19 @@ Json LimitsParameter::written(double value) const {
 
 LimitsFile read_limits(const fs::path& file) {
   LimitsFile limits;
-  limits.document = std::make_shared<const json::Document>(json::Document::read(file));
+  static_cast<trial::CampaignFile&>(limits) = trial::read_campaign_file(trial::limits_kind, file, limits_schema());
   const json::Document& document = *limits.document;
-  json::validate(document, limits_schema());
   const Json& root = document.root();
   if (!root.contains("parameter") && !root.contains("cases"))
     throw Error(ExitCode::bad_input, document.place(""),
                 "has neither \"parameter\", whose edge of stability is looked for, nor \"cases\"; write one of them");
-  limits.title = root.value("title", file.stem().string());
-  limits.file = file;
-  limits.scene_file = trial::scene_file_of(document, file);
-  limits.scene = read_limits_scene(document, limits.scene_file);
   limits.steps = root.value("steps", 0L);
-  if (root.contains("matrix")) limits.axes = trial::read_axes(document, "/matrix", limits.scene);
   if (root.contains("parameter")) limits.parameter = read_parameter(document, limits.scene);
   if (root.contains("cases")) {
     for (std::size_t i = 0; i < root["cases"].size(); ++i) limits.cases.push_back(read_case(document, i, limits));
   }
-  if (root.contains("sound")) limits.soundness = read_soundness(root["sound"]);
+  if (root.contains("sound")) limits.criteria = read_criteria(root["sound"]);
   if (root.contains("scenes")) limits.scenes = read_scene_list(document, file.parent_path());
-  if (root.contains("time_limit")) limits.time_limit_s = trial::read_time_limit(document, "2 min");
   return limits;
 }
 

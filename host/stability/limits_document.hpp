@@ -2,16 +2,14 @@
 #pragma once
 
 #include <filesystem>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "bisection.hpp"
-#include "json/document.hpp"
 #include "judgement.hpp"
-#include "trial/matrix.hpp"
+#include "trial/campaign_file.hpp"
 
 namespace rouleau::stability {
 
@@ -37,19 +35,12 @@ struct ExtremeCase {
   std::optional<RightAnswer> answer;
 };
 
-struct LimitsFile {
-  std::shared_ptr<const json::Document> document;
-  std::string title;
-  std::filesystem::path file;
-  std::filesystem::path scene_file;  ///< the limits file itself where it holds the scene
-  nlohmann::json scene;              ///< with the changes of "set"
-  std::vector<trial::Axis> axes;
+struct LimitsFile : trial::CampaignFile {
   std::optional<LimitsParameter> parameter;
   std::vector<ExtremeCase> cases;
-  std::vector<std::filesystem::path> scenes;  ///< whose margins are told
+  std::vector<std::filesystem::path> scenes;  ///< whose margins are computed
   long steps = 0;                             ///< of a trial; 0: all of the scene's
-  Soundness soundness;
-  double time_limit_s = 120;
+  HealthCriteria criteria;
 };
 
 /// Throws Error(bad_input) with the place of the first fault, in the file or in its scene; Error(input_output) for one

@@ -5,14 +5,9 @@
 
 #include "base/text.hpp"
 #include "files/csv_reader.hpp"
-#include "files/file.hpp"
-#include "files/run_directory.hpp"
-#include "files/tables.hpp"
 #include "report/result_page.hpp"
-#include "run/provenance.hpp"
 #include "scene_margins.hpp"
-#include "trial/fingerprint.hpp"
-#include "trial/result_directory.hpp"
+#include "trial/campaign.hpp"
 
 namespace rouleau::stability {
 
@@ -46,7 +41,7 @@ Json edge_json(const LimitsState& state, const CombinationResult& combination, s
   Json failure, trials = Json::array();
   for (const LimitsTrial& trial : combination.trials) {
     if (edge.unstable_from && trial.value == *edge.unstable_from) failure = trial.judgement.failure;
-    // Two edges share the trials of their search; they are told with the first.
+    // Two edges share the trials of their search; they are listed with the first.
     if (index == 0) trials.push_back(trial_json(trial));
   }
   return {{"labels", trial::labels_of(state.limits->axes, combination.point)},
@@ -72,7 +67,7 @@ Json limits_warnings(const LimitsState& state) {
     for (const double value : combination.search.out_of_order) {
       values += (values.empty() ? "" : ", ") + number(value);
       for (const LimitsTrial& trial : combination.trials) {
-        if (trial.value == value) values += trial.judgement.sound ? " (stable)" : " (unstable)";
+        if (trial.value == value) values += trial.judgement.healthy ? " (stable)" : " (unstable)";
       }
     }
     warnings.push_back(trial::name_of(state.limits->axes, combination.point) +
@@ -81,18 +76,8 @@ Json limits_warnings(const LimitsState& state) {
   return warnings;
 }
 
-std::string cell(const Json& value) {
-  if (value.is_null()) return "";
-  if (value.is_number_float()) return number(value.get<double>());
-  if (!value.is_string()) return value.dump();
-  return files::csv_text(value.get<std::string>());
-}
-
-std::string row_of(const Json& fields) {
-  std::string line;
-  for (std::size_t i = 0; i < fields.size(); ++i) line += (i == 0 ? "" : ",") + cell(fields[i]);
-  return line + '\n';
-}
+/// Six digits, as values are tried with.
+Json rounded(const Json& value) { return value.is_number_float() ? Json(number(value.get<double>())) : value; }
 
 std::string labels_text(const Json& labels) {
   std::string text;
@@ -127,28 +112,19 @@ Json limits_json(const LimitsState& state) {
     for (std::size_t i = 0; i < combination.search.edges.size(); ++i) edges.push_back(edge_json(state, combination, i));
   }
   for (const CaseResult& result : state.cases) cases.push_back(case_json(result));
-  return {{"rouleau_limits_result", 1},
-          {"title", limits.title},
-          {"limits_file", limits.file.string()},
-          {"scene_file", limits.scene_file.string()},
-          {"program", run::program_version()},
-          {"program_sha256", trial::program_sha256()},
-          {"machine", trial::machine_json()},
-          {"started", state.started},
-          {"finished", state.finished.empty() ? Json() : Json(state.finished)},
-          {"complete", complete},
-          {"sound",
-           {{"area_drift", limits.soundness.area_drift},
-            {"energy_growth", limits.soundness.energy_growth},
-            {"stretch", limits.soundness.stretch},
-            {"mass_drift", limits.soundness.mass_drift}}},
-          {"steps", limits.steps > 0 ? Json(limits.steps) : Json()},
-          {"axes", trial::axes_json(limits.axes)},
-          {"parameter", limits.parameter ? parameter_json(*limits.parameter) : Json()},
-          {"edges", edges},
-          {"cases", cases},
-          {"scenes", scene_margins(state)},
-          {"warnings", limits_warnings(state)}};
+  Json result = trial::result_head(trial::limits_kind, limits, state.started, state.finished, complete);
+  result.update({{"sound",
+                  {{"area_drift", limits.criteria.area_drift},
+                   {"energy_growth", limits.criteria.energy_growth},
+                   {"stretch", limits.criteria.stretch},
+                   {"mass_drift", limits.criteria.mass_drift}}},
+                 {"steps", limits.steps > 0 ? Json(limits.steps) : Json()},
+                 {"parameter", limits.parameter ? parameter_json(*limits.parameter) : Json()},
+                 {"edges", edges},
+                 {"cases", cases},
+                 {"scenes", scene_margins(state)},
+                 {"warnings", limits_warnings(state)}});
+  return result;
 }
 
 std::string limits_csv(const Json& limits) {
@@ -157,20 +133,20 @@ std::string limits_csv(const Json& limits) {
   for (const char* name : {"direction", "stable_up_to", "unstable_from", "unit", "expect", "verdict", "reason", "step",
                            "mode", "wavelength_segments"})
     head.push_back(name);
-  std::string table = row_of(head);
+  std::string table = trial::csv_line(head);
   const auto add_failure = [](Json& row, const Json& failure) {
     for (const char* key : {"reason", "step", "mode", "wavelength"})
-      row.push_back(failure.is_object() ? failure[key] : Json());
+      row.push_back(failure.is_object() ? rounded(failure[key]) : Json());
   };
   for (const Json& edge : limits["edges"]) {
     Json row = {"edge", limits["parameter"]["name"]};
     for (const Json& axis : limits["axes"]) row.push_back(edge["labels"][axis["name"].get<std::string>()]);
-    for (const char* key : {"direction", "stable_up_to", "unstable_from"}) row.push_back(edge[key]);
+    for (const char* key : {"direction", "stable_up_to", "unstable_from"}) row.push_back(rounded(edge[key]));
     row.push_back(limits["parameter"]["unit"]);
     row.push_back(nullptr);
     row.push_back(nullptr);
     add_failure(row, edge["failure"]);
-    table += row_of(row);
+    table += trial::csv_line(row);
   }
   for (const Json& extreme : limits["cases"]) {
     Json row = {"case", extreme["name"]};
@@ -178,7 +154,7 @@ std::string limits_csv(const Json& limits) {
     row.push_back(extreme["expect"]);
     row.push_back(extreme["verdict"]);
     add_failure(row, extreme["failure"]);
-    table += row_of(row);
+    table += trial::csv_line(row);
   }
   return table;
 }
@@ -220,8 +196,7 @@ std::string limits_text(const Json& limits) {
 
 void write_limits_files(const LimitsState& state, const fs::path& directory) {
   const Json limits = limits_json(state);
-  files::write_file(directory / "limits.csv", limits_csv(limits));
-  files::write_file(directory / "limits.json", limits.dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
+  trial::write_result(trial::limits_kind, directory, limits, limits_csv(limits));
   report::write_limits_page(directory);
 }
 

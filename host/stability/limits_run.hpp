@@ -1,7 +1,6 @@
 // Runs the trials of a limits file, remembers what each came to, and keeps limits.json true to what is known.
 #pragma once
 
-#include <atomic>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -9,16 +8,9 @@
 #include <vector>
 
 #include "limits_document.hpp"
-#include "trial/file_lock.hpp"
+#include "trial/campaign.hpp"
 
 namespace rouleau::stability {
-
-struct LimitsOptions {
-  std::filesystem::path directory;
-  bool quiet = false;
-  std::filesystem::path program = "/proc/self/exe";
-  const std::atomic<bool>* interrupted = nullptr;
-};
 
 struct LimitsTrial {
   double value;
@@ -58,7 +50,7 @@ class LimitsRun {
  public:
   /// Makes the directory, or goes on in the one that the same command has left. Throws Error(bad_input) for a directory
   /// with other files or that another program is writing into.
-  LimitsRun(const LimitsFile& limits, LimitsOptions options);
+  LimitsRun(const LimitsFile& limits, trial::CampaignOptions options);
 
   /// Tries what has not been tried. False when interrupted.
   bool run();
@@ -70,18 +62,15 @@ class LimitsRun {
   /// Nothing when interrupted.
   std::optional<JudgedRun> try_scene(const nlohmann::json& scene, long steps);
   void write() const;
-  void say(const std::string& line) const;
-  [[nodiscard]] bool interrupted() const { return options_.interrupted != nullptr && *options_.interrupted; }
 
   const LimitsFile& limits_;
-  LimitsOptions options_;
-  std::filesystem::path points_folder_;
+  std::filesystem::path directory_;
+  trial::Campaign campaign_;
   LimitsState state_;
-  std::optional<trial::FileLock> directory_lock_;
 };
 
 /// "right answer" where a case came to its end soundly, and to the answer where one is given; "stopped with a reason"
-/// where the program told why; "WRONG" else. `directory`: of its run.
+/// where the program gave the reason; "WRONG" else. `directory`: of its run.
 CaseResult judge_case(const ExtremeCase& extreme, Judgement judgement, const std::filesystem::path& directory);
 
 }  // namespace rouleau::stability

@@ -126,7 +126,7 @@ std::string limit_in_words(const StudyData& study, const MethodLimit& method, co
 
 }  // namespace
 
-double told_error(const PointError& error) {
+double resolved_error(const PointError& error) {
   return std::isfinite(error.uncertainty) ? std::max(error.error, error.uncertainty) : error.error;
 }
 
@@ -209,14 +209,14 @@ QuantityAnalysis analyse(const StudyData& study, std::size_t quantity) {
   result.by_method = limits_of_methods(study, quantity);
   result.reference = resolve_reference(study, quantity, result.by_method);
   const Quantity& measured = study.quantities[quantity];
-  std::vector<double> time, told;
+  std::vector<double> time, error;
   for (const StudyPoint& point : study.points) {
     result.errors.push_back(error_of(measured, result.reference, point, quantity));
     time.push_back(point.wall_s);
-    told.push_back(told_error(result.errors.back()));
+    error.push_back(resolved_error(result.errors.back()));
   }
-  result.front = pareto_front(time, told);
-  result.knobs = knobs_of(study, result.errors);
+  result.front = pareto_front(time, error);
+  result.sensitivities = sensitivities_of(study, result.errors);
   double widest = 0;
   for (const auto& [i, j] : disagreements(result.by_method)) {
     const MethodLimit &a = result.by_method[i], &b = result.by_method[j];

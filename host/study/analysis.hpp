@@ -1,4 +1,4 @@
-// A study's conclusions from its data: references, errors, Pareto fronts, which knob buys most, in words. No files.
+// A study's conclusions from its data: references, errors, Pareto fronts, sensitivities, in words. No files.
 #pragma once
 
 #include <array>
@@ -65,11 +65,11 @@ struct PointError {
   double uncertainty;  ///< of the error: the reference's and the value's own; NaN: not known
   std::string why_not;
 };
-/// What the error can be told to be at least: one below its uncertainty counts as that.
-double told_error(const PointError& error);
+/// The error, but not below its own uncertainty.
+double resolved_error(const PointError& error);
 
 /// One setting of an axis against another, all else equal; `to` has the smaller error.
-struct Knob {
+struct Sensitivity {
   std::size_t axis;
   std::size_t from, to;  ///< points
   double error_factor;   ///< the error of `from` over that of `to`, at least 1
@@ -86,10 +86,10 @@ struct StudySentence {
 struct QuantityAnalysis {
   ResolvedReference reference;
   std::vector<MethodLimit> by_method;
-  std::string disagreement;        ///< methods that tend to different limits, in one sentence; empty: none
-  std::vector<PointError> errors;  ///< for each point
-  std::vector<std::size_t> front;  ///< points that no other is both cheaper and better than; cheapest first
-  std::vector<Knob> knobs;         ///< most gain first
+  std::string disagreement;                ///< methods that tend to different limits, in one sentence; empty: none
+  std::vector<PointError> errors;          ///< for each point
+  std::vector<std::size_t> front;          ///< points that no other is both cheaper and better than; cheapest first
+  std::vector<Sensitivity> sensitivities;  ///< most gain first
   std::vector<StudySentence> sentences;
 };
 
@@ -106,7 +106,7 @@ std::vector<std::pair<std::size_t, std::size_t>> disagreements(const std::vector
 /// Indices of the points that are not dominated: none is as good in both and better in one. Sorted by time; of several
 /// that are equal in both the first stays. Points that are not finite in both are left out.
 std::vector<std::size_t> pareto_front(const std::vector<double>& time, const std::vector<double>& error);
-std::vector<Knob> knobs_of(const StudyData& study, const std::vector<PointError>& errors);
+std::vector<Sensitivity> sensitivities_of(const StudyData& study, const std::vector<PointError>& errors);
 
 std::vector<StudySentence> sentences_of(const StudyData& study, std::size_t quantity, const QuantityAnalysis& analysis);
 /// "resolution 20, scheme plain"; axes with index -1 are left out.

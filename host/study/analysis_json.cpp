@@ -45,22 +45,23 @@ Json quantity_json(const StudyData& study, const Quantity& quantity, const Quant
           {"by_method", std::move(methods)}, {"disagreement", said(analysis.disagreement)}};
 }
 
-Json knobs_json(const StudyData& study, const std::vector<Knob>& knobs) {
+Json sensitivities_json(const StudyData& study, const std::vector<Sensitivity>& sensitivities) {
   Json result = Json::array();
-  for (const Knob& knob : knobs) {
-    std::vector<int> fixed = study.points[knob.from].setting;
+  for (const Sensitivity& sensitivity : sensitivities) {
+    std::vector<int> fixed = study.points[sensitivity.from].setting;
     const auto label = [&](std::size_t point) {
-      return study.axes[knob.axis].labels[static_cast<std::size_t>(study.points[point].setting[knob.axis])];
+      return study.axes[sensitivity.axis]
+          .labels[static_cast<std::size_t>(study.points[point].setting[sensitivity.axis])];
     };
-    fixed[knob.axis] = -1;
-    result.push_back({{"axis", study.axes[knob.axis].name},
-                      {"from", label(knob.from)},
-                      {"to", label(knob.to)},
+    fixed[sensitivity.axis] = -1;
+    result.push_back({{"axis", study.axes[sensitivity.axis].name},
+                      {"from", label(sensitivity.from)},
+                      {"to", label(sensitivity.to)},
                       {"fixed", labels_json(study, fixed)},
-                      {"error_factor", knob.error_factor},
-                      {"time_factor", knob.time_factor},
-                      {"gain", json::number_or_null(knob.gain)},
-                      {"free", std::isinf(knob.gain)}});
+                      {"error_factor", sensitivity.error_factor},
+                      {"time_factor", sensitivity.time_factor},
+                      {"gain", json::number_or_null(sensitivity.gain)},
+                      {"free", std::isinf(sensitivity.gain)}});
   }
   return result;
 }
@@ -68,12 +69,12 @@ Json knobs_json(const StudyData& study, const std::vector<Knob>& knobs) {
 }  // namespace
 
 void add_analysis(Json& result, const StudyData& study, const std::vector<QuantityAnalysis>& analyses) {
-  Json quantities = Json::array(), fronts = Json::object(), knobs = Json::object(), sentences = Json::array();
+  Json quantities = Json::array(), fronts = Json::object(), sensitivities = Json::object(), sentences = Json::array();
   for (std::size_t q = 0; q < analyses.size(); ++q) {
     const Quantity& quantity = study.quantities[q];
     quantities.push_back(quantity_json(study, quantity, analyses[q]));
     fronts[quantity.name] = analyses[q].front;
-    knobs[quantity.name] = knobs_json(study, analyses[q].knobs);
+    sensitivities[quantity.name] = sensitivities_json(study, analyses[q].sensitivities);
     for (const StudySentence& sentence : analyses[q].sentences) {
       sentences.push_back({{"quantity", quantity.name},
                            {"text", sentence.text},
@@ -82,17 +83,16 @@ void add_analysis(Json& result, const StudyData& study, const std::vector<Quanti
     }
     for (std::size_t i = 0; i < study.points.size(); ++i) {
       const PointError& error = analyses[q].errors[i];
-      result["points"][i]["results"][quantity.name] = {
-          {"value", json::number_or_null(error.value)},
-          {"error", json::number_or_null(error.error)},
-          {"deviation", json::number_or_null(error.deviation)},
-          {"uncertainty", json::number_or_null(error.uncertainty)},
-          {"why_not", said(error.why_not)}};
+      result["points"][i]["results"][quantity.name] = {{"value", json::number_or_null(error.value)},
+                                                       {"error", json::number_or_null(error.error)},
+                                                       {"deviation", json::number_or_null(error.deviation)},
+                                                       {"uncertainty", json::number_or_null(error.uncertainty)},
+                                                       {"why_not", said(error.why_not)}};
     }
   }
   result["quantities"] = std::move(quantities);
   result["fronts"] = std::move(fronts);
-  result["knobs"] = std::move(knobs);
+  result["knobs"] = std::move(sensitivities);
   result["sentences"] = std::move(sentences);
 }
 

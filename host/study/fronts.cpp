@@ -30,8 +30,8 @@ std::vector<std::size_t> pareto_front(const std::vector<double>& time, const std
   return front;
 }
 
-std::vector<Knob> knobs_of(const StudyData& study, const std::vector<PointError>& errors) {
-  std::vector<Knob> knobs;
+std::vector<Sensitivity> sensitivities_of(const StudyData& study, const std::vector<PointError>& errors) {
+  std::vector<Sensitivity> sensitivities;
   for (std::size_t axis = 0; axis < study.axes.size(); ++axis) {
     for (std::size_t i = 0; i < study.points.size(); ++i) {
       const auto label = static_cast<std::size_t>(study.points[i].setting[axis]);
@@ -42,26 +42,31 @@ std::vector<Knob> knobs_of(const StudyData& study, const std::vector<PointError>
         setting[axis] = static_cast<int>(other);
         const auto j = find_point(study, setting);
         if (!j) continue;
-        Knob knob{
-            axis, i, *j, told_error(errors[i]) / told_error(errors[*j]), time_factor(study.points[i], study.points[*j]),
-            0};
-        if (knob.error_factor < 1) {
-          std::swap(knob.from, knob.to);
-          knob.error_factor = 1 / knob.error_factor;
-          knob.time_factor = 1 / knob.time_factor;
+        Sensitivity sensitivity{axis,
+                                i,
+                                *j,
+                                resolved_error(errors[i]) / resolved_error(errors[*j]),
+                                time_factor(study.points[i], study.points[*j]),
+                                0};
+        if (sensitivity.error_factor < 1) {
+          std::swap(sensitivity.from, sensitivity.to);
+          sensitivity.error_factor = 1 / sensitivity.error_factor;
+          sensitivity.time_factor = 1 / sensitivity.time_factor;
         }
-        if (!std::isfinite(knob.error_factor) || !std::isfinite(knob.time_factor)) continue;
-        const bool free = knob.time_factor <= 1 && knob.error_factor > 1;
-        knob.gain = free ? std::numeric_limits<double>::infinity()
-                         : (knob.error_factor == 1 ? 0 : std::log(knob.error_factor) / std::log(knob.time_factor));
-        knobs.push_back(knob);
+        if (!std::isfinite(sensitivity.error_factor) || !std::isfinite(sensitivity.time_factor)) continue;
+        const bool free = sensitivity.time_factor <= 1 && sensitivity.error_factor > 1;
+        sensitivity.gain = free ? std::numeric_limits<double>::infinity()
+                                : (sensitivity.error_factor == 1
+                                       ? 0
+                                       : std::log(sensitivity.error_factor) / std::log(sensitivity.time_factor));
+        sensitivities.push_back(sensitivity);
       }
     }
   }
-  std::stable_sort(knobs.begin(), knobs.end(), [](const Knob& a, const Knob& b) {
+  std::stable_sort(sensitivities.begin(), sensitivities.end(), [](const Sensitivity& a, const Sensitivity& b) {
     return a.gain != b.gain ? a.gain > b.gain : a.error_factor > b.error_factor;
   });
-  return knobs;
+  return sensitivities;
 }
 
 }  // namespace rouleau::study

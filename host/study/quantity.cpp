@@ -6,7 +6,7 @@
 
 #include "json/document.hpp"
 #include "observe/observables.hpp"
-#include "study_fields.hpp"
+#include "study_reader.hpp"
 
 namespace rouleau::study {
 
@@ -41,29 +41,29 @@ const std::array<KindTraits, 12>& kinds() {
   return table;
 }
 
-When read_when(const StudyFields& fields, const std::string& pointer) {
-  if (fields.scene_fields().at(pointer).is_string()) {
-    fields.choice(pointer, {"end"});
+When read_when(const StudyReader& reader, const std::string& pointer) {
+  if (reader.scene_fields().at(pointer).is_string()) {
+    reader.choice(pointer, {"end"});
     return {};
   }
-  fields.only(pointer, {"strain", "time", "mean_from_strain"}, "\"at\"");
-  if (fields.scene_fields().at(pointer).size() != 1)
-    fields.scene_fields().refuse(pointer, "\"at\" is \"end\", or an object with one of strain, time, mean_from_strain");
-  if (fields.has(pointer + "/time"))
-    return {When::Kind::time, fields.scene_fields().quantity(pointer + "/time", "s", {0, scene::range::time.most})};
-  if (fields.has(pointer + "/strain")) return {When::Kind::strain, fields.number(pointer + "/strain")};
-  return {When::Kind::mean_from_strain, fields.number(pointer + "/mean_from_strain")};
+  reader.only(pointer, {"strain", "time", "mean_from_strain"}, "\"at\"");
+  if (reader.scene_fields().at(pointer).size() != 1)
+    reader.scene_fields().refuse(pointer, "\"at\" is \"end\", or an object with one of strain, time, mean_from_strain");
+  if (reader.has(pointer + "/time"))
+    return {When::Kind::time, reader.scene_fields().quantity(pointer + "/time", "s", {0, scene::range::time.most})};
+  if (reader.has(pointer + "/strain")) return {When::Kind::strain, reader.number(pointer + "/strain")};
+  return {When::Kind::mean_from_strain, reader.number(pointer + "/mean_from_strain")};
 }
 
-void read_column(const StudyFields& fields, const std::string& pointer, Quantity& quantity) {
+void read_column(const StudyReader& reader, const std::string& pointer, Quantity& quantity) {
   quantity.table =
-      std::array<const char*, 2>{"cells", "series"}[fields.choice(pointer + "/table", {"cells", "series"})];
-  quantity.column = fields.text(pointer + "/column");
+      std::array<const char*, 2>{"cells", "series"}[reader.choice(pointer + "/table", {"cells", "series"})];
+  quantity.column = reader.text(pointer + "/column");
   const observe::Table& table = observe::table(quantity.table);
   const auto columns = table.columns();
   const auto found = std::find(columns.begin(), columns.end(), quantity.column);
   if (found == columns.end()) {
-    fields.scene_fields().refuse(pointer + "/column",
+    reader.scene_fields().refuse(pointer + "/column",
                                  quantity.table + ".csv has no column " + in_quotes(quantity.column) +
                                      did_you_mean(quantity.column, columns) + "\nit has " + listed(columns));
   }
@@ -71,25 +71,25 @@ void read_column(const StudyFields& fields, const std::string& pointer, Quantity
 }
 
 /// Keys of one kind or a few.
-void read_own_keys(const StudyFields& fields, const std::string& pointer, Quantity& quantity) {
-  if (fields.has(pointer + "/cell"))
-    quantity.cell = fields.count(pointer + "/cell", 0);
+void read_own_keys(const StudyReader& reader, const std::string& pointer, Quantity& quantity) {
+  if (reader.has(pointer + "/cell"))
+    quantity.cell = reader.count(pointer + "/cell", 0);
   else if (quantity.kind == QuantityKind::gap)
     quantity.cell = -1;
-  if (fields.has(pointer + "/at")) quantity.at = read_when(fields, pointer + "/at");
-  if (fields.has(pointer + "/angle"))
-    quantity.passed_angle = fields.scene_fields().quantity(pointer + "/angle", "rad", scene::range::angle);
-  if (fields.has(pointer + "/of"))
-    quantity.of_long_axis = fields.choice(pointer + "/of", {"tank_treading", "rotation"}) == 1;
-  if (fields.has(pointer + "/turns")) quantity.turns = fields.positive(pointer + "/turns");
-  if (fields.has(pointer + "/from_strain")) quantity.from_strain = fields.number(pointer + "/from_strain");
-  if (fields.has(pointer + "/count")) quantity.count = fields.count(pointer + "/count", 1);
-  if (fields.has(pointer + "/for_good")) quantity.for_good = fields.yes(pointer + "/for_good");
-  if (fields.has(pointer + "/intrinsic")) quantity.intrinsic = fields.yes(pointer + "/intrinsic");
-  if (fields.has(pointer + "/flow"))
-    quantity.poiseuille = fields.choice(pointer + "/flow", {"couette", "poiseuille"}) == 1;
-  if (fields.has(pointer + "/steady")) quantity.steady = fields.yes(pointer + "/steady");
-  if (quantity.kind == QuantityKind::column) read_column(fields, pointer, quantity);
+  if (reader.has(pointer + "/at")) quantity.at = read_when(reader, pointer + "/at");
+  if (reader.has(pointer + "/angle"))
+    quantity.passed_angle = reader.scene_fields().quantity(pointer + "/angle", "rad", scene::range::angle);
+  if (reader.has(pointer + "/of"))
+    quantity.of_long_axis = reader.choice(pointer + "/of", {"tank_treading", "rotation"}) == 1;
+  if (reader.has(pointer + "/turns")) quantity.turns = reader.positive(pointer + "/turns");
+  if (reader.has(pointer + "/from_strain")) quantity.from_strain = reader.number(pointer + "/from_strain");
+  if (reader.has(pointer + "/count")) quantity.count = reader.count(pointer + "/count", 1);
+  if (reader.has(pointer + "/for_good")) quantity.for_good = reader.yes(pointer + "/for_good");
+  if (reader.has(pointer + "/intrinsic")) quantity.intrinsic = reader.yes(pointer + "/intrinsic");
+  if (reader.has(pointer + "/flow"))
+    quantity.poiseuille = reader.choice(pointer + "/flow", {"couette", "poiseuille"}) == 1;
+  if (reader.has(pointer + "/steady")) quantity.steady = reader.yes(pointer + "/steady");
+  if (quantity.kind == QuantityKind::column) read_column(reader, pointer, quantity);
 }
 
 }  // namespace
@@ -98,43 +98,43 @@ const char* name_of(QuantityKind kind) { return kinds()[static_cast<std::size_t>
 
 Quantity read_quantity(const json::Document& document, const std::string& pointer) {
   const scene::SceneFields scene_fields(document);
-  const StudyFields fields(scene_fields);
+  const StudyReader reader(scene_fields);
   if (!scene_fields.at(pointer).is_object())
     scene_fields.refuse(pointer, "a quantity is an object {\"name\", \"kind\", ...}");
-  for (const char* key : {"name", "kind"}) fields.needs(pointer, key, "a quantity");
+  for (const char* key : {"name", "kind"}) reader.needs(pointer, key, "a quantity");
   std::vector<std::string> names;
   for (const KindTraits& traits : kinds()) names.emplace_back(traits.name);
-  const std::size_t index = fields.choice(pointer + "/kind", names);
+  const std::size_t index = reader.choice(pointer + "/kind", names);
   const KindTraits& traits = kinds()[index];
 
   std::vector<std::string> keys{"name", "kind", "target", "reference", "error"};
   keys.insert(keys.end(), traits.needed.begin(), traits.needed.end());
   keys.insert(keys.end(), traits.optional.begin(), traits.optional.end());
   const std::string whose = std::string("a quantity of kind ") + traits.name;
-  fields.only(pointer, keys, whose);
-  for (const std::string& key : traits.needed) fields.needs(pointer, key, whose);
+  reader.only(pointer, keys, whose);
+  for (const std::string& key : traits.needed) reader.needs(pointer, key, whose);
 
   Quantity quantity;
-  quantity.name = fields.text(pointer + "/name");
+  quantity.name = reader.text(pointer + "/name");
   quantity.kind = static_cast<QuantityKind>(index);
   quantity.unit = traits.unit;
   quantity.error = traits.error;
-  if (fields.has(pointer + "/error"))
+  if (reader.has(pointer + "/error"))
     quantity.error =
-        fields.choice(pointer + "/error", {"relative", "absolute"}) == 0 ? ErrorKind::relative : ErrorKind::absolute;
-  quantity.target = fields.has(pointer + "/target") ? fields.positive(pointer + "/target") : traits.target;
-  read_own_keys(fields, pointer, quantity);
-  if (fields.has(pointer + "/reference"))
+        reader.choice(pointer + "/error", {"relative", "absolute"}) == 0 ? ErrorKind::relative : ErrorKind::absolute;
+  quantity.target = reader.has(pointer + "/target") ? reader.positive(pointer + "/target") : traits.target;
+  read_own_keys(reader, pointer, quantity);
+  if (reader.has(pointer + "/reference"))
     quantity.reference = read_reference(scene_fields, document, pointer + "/reference");
   if (traits.exactly_zero) {
-    if (fields.has(pointer + "/reference") && quantity.reference.kind != ReferenceKind::analytic)
+    if (reader.has(pointer + "/reference") && quantity.reference.kind != ReferenceKind::analytic)
       scene_fields.refuse(pointer + "/reference",
                           std::string(traits.name) + " should be exactly 0: leave the reference out");
     quantity.reference = {ReferenceKind::analytic, 0, 0, "exactly zero", {}};
     if (quantity.kind == QuantityKind::velocity_l2) quantity.reference.source = "the exact flow";
   }
   if (quantity.error == ErrorKind::relative && quantity.reference.value == 0) {
-    scene_fields.refuse(fields.has(pointer + "/error") ? pointer + "/error" : pointer,
+    scene_fields.refuse(reader.has(pointer + "/error") ? pointer + "/error" : pointer,
                         "there is no error relative to a reference of 0: say \"error\": \"absolute\"");
   }
   return quantity;

@@ -4,18 +4,18 @@
 
 #include "json/document.hpp"
 #include "json/shown.hpp"
-#include "study_fields.hpp"
+#include "study_reader.hpp"
 
 namespace rouleau::study {
 
 namespace {
 
 /// The number at a JSON pointer of a file that the study names.
-double number_of_file(const StudyFields& fields, const json::Document& file, const std::string& pointer) {
-  const std::string inside = fields.text(pointer);
+double number_of_file(const StudyReader& reader, const json::Document& file, const std::string& pointer) {
+  const std::string inside = reader.text(pointer);
   const auto tokens = json::split_pointer(inside);
   if (!tokens) {
-    fields.scene_fields().refuse(pointer, in_quotes(inside) + " is no JSON pointer (for example \"/0/steady/D\")");
+    reader.scene_fields().refuse(pointer, in_quotes(inside) + " is no JSON pointer (for example \"/0/steady/D\")");
   }
   const nlohmann::json* at = &file.root();
   std::string reached;
@@ -28,7 +28,7 @@ double number_of_file(const StudyFields& fields, const json::Document& file, con
       std::vector<std::string> names;
       if (at->is_object())
         for (const auto& [name, value] : at->items()) names.push_back(name);
-      fields.scene_fields().refuse(
+      reader.scene_fields().refuse(
           pointer, file.file() + " has nothing at " + in_quotes(inside) + ": " +
                        (reached.empty() ? "the document" : in_quotes(reached)) +
                        (at->is_array() ? " has the entries 0 to " + std::to_string(static_cast<long>(at->size()) - 1)
@@ -39,72 +39,72 @@ double number_of_file(const StudyFields& fields, const json::Document& file, con
     reached = json::child_pointer(reached, token);
   }
   if (!at->is_number())
-    fields.scene_fields().refuse(
+    reader.scene_fields().refuse(
         pointer, file.file() + " has " + json::shown(*at) + " at " + in_quotes(inside) + ", which is not a number");
   return at->get<double>();
 }
 
-Reference reference_of_file(const StudyFields& fields, const json::Document& document, const std::string& pointer) {
+Reference reference_of_file(const StudyReader& reader, const json::Document& document, const std::string& pointer) {
   const std::string whose = "a reference with \"file\"";
-  fields.only(pointer, {"file", "pointer", "uncertainty", "factor", "offset", "source"}, whose);
-  fields.needs(pointer, "pointer", whose);
-  const std::string name = fields.text(pointer + "/file");
+  reader.only(pointer, {"file", "pointer", "uncertainty", "factor", "offset", "source"}, whose);
+  reader.needs(pointer, "pointer", whose);
+  const std::string name = reader.text(pointer + "/file");
   const json::Document file = json::Document::read(std::filesystem::path(document.file()).parent_path() / name);
-  const double factor = fields.has(pointer + "/factor") ? fields.number(pointer + "/factor") : 1.0;
-  const double offset = fields.has(pointer + "/offset") ? fields.number(pointer + "/offset") : 0.0;
+  const double factor = reader.has(pointer + "/factor") ? reader.number(pointer + "/factor") : 1.0;
+  const double offset = reader.has(pointer + "/offset") ? reader.number(pointer + "/offset") : 0.0;
   Reference result;
   result.kind = ReferenceKind::file;
-  result.value = factor * number_of_file(fields, file, pointer + "/pointer") + offset;
-  if (fields.has(pointer + "/uncertainty")) {
-    result.uncertainty = fields.is_text(pointer + "/uncertainty")
-                             ? std::abs(factor * number_of_file(fields, file, pointer + "/uncertainty"))
-                             : fields.number(pointer + "/uncertainty");
+  result.value = factor * number_of_file(reader, file, pointer + "/pointer") + offset;
+  if (reader.has(pointer + "/uncertainty")) {
+    result.uncertainty = reader.is_text(pointer + "/uncertainty")
+                             ? std::abs(factor * number_of_file(reader, file, pointer + "/uncertainty"))
+                             : reader.number(pointer + "/uncertainty");
   }
-  result.source = fields.has(pointer + "/source") ? fields.text(pointer + "/source")
-                                                  : name + " " + fields.text(pointer + "/pointer");
+  result.source = reader.has(pointer + "/source") ? reader.text(pointer + "/source")
+                                                  : name + " " + reader.text(pointer + "/pointer");
   return result;
 }
 
-Reference reference_of_value(const StudyFields& fields, const std::string& pointer) {
-  fields.only(pointer, {"value", "uncertainty", "source"}, "a reference with \"value\"");
+Reference reference_of_value(const StudyReader& reader, const std::string& pointer) {
+  reader.only(pointer, {"value", "uncertainty", "source"}, "a reference with \"value\"");
   Reference result;
   result.kind = ReferenceKind::value;
-  result.value = fields.number(pointer + "/value");
-  if (fields.has(pointer + "/uncertainty")) result.uncertainty = fields.number(pointer + "/uncertainty");
-  result.source = fields.has(pointer + "/source") ? fields.text(pointer + "/source") : "given in the study";
+  result.value = reader.number(pointer + "/value");
+  if (reader.has(pointer + "/uncertainty")) result.uncertainty = reader.number(pointer + "/uncertainty");
+  result.source = reader.has(pointer + "/source") ? reader.text(pointer + "/source") : "given in the study";
   return result;
 }
 
-Reference reference_of_any_kind(const StudyFields& fields, const json::Document& document, const std::string& pointer) {
-  const scene::SceneFields& scene = fields.scene_fields();
+Reference reference_of_any_kind(const StudyReader& reader, const json::Document& document, const std::string& pointer) {
+  const scene::SceneFields& scene = reader.scene_fields();
   Reference result;
   if (scene.at(pointer).is_string()) {
-    fields.choice(pointer, {"richardson"});
+    reader.choice(pointer, {"richardson"});
     return result;
   }
   if (!scene.at(pointer).is_object()) {
     scene.refuse(pointer,
                  "a reference is \"richardson\", or an object with one of value, file, analytic, richardson, point");
   }
-  if (fields.has(pointer + "/value")) return reference_of_value(fields, pointer);
-  if (fields.has(pointer + "/file")) return reference_of_file(fields, document, pointer);
-  if (fields.has(pointer + "/analytic")) {
-    fields.only(pointer, {"analytic"}, "a reference with \"analytic\"");
-    fields.choice(pointer + "/analytic", {"zero"});
+  if (reader.has(pointer + "/value")) return reference_of_value(reader, pointer);
+  if (reader.has(pointer + "/file")) return reference_of_file(reader, document, pointer);
+  if (reader.has(pointer + "/analytic")) {
+    reader.only(pointer, {"analytic"}, "a reference with \"analytic\"");
+    reader.choice(pointer + "/analytic", {"zero"});
     result.kind = ReferenceKind::analytic;
     result.value = 0;
     result.source = "exactly zero";
     return result;
   }
-  if (fields.has(pointer + "/point")) {
-    fields.only(pointer, {"point"}, "a reference with \"point\"");
+  if (reader.has(pointer + "/point")) {
+    reader.only(pointer, {"point"}, "a reference with \"point\"");
     result.kind = ReferenceKind::point;
-    result.labels = fields.labels(pointer + "/point");
+    result.labels = reader.labels(pointer + "/point");
     return result;
   }
-  fields.only(pointer, {"richardson"}, "a reference");
-  fields.needs(pointer, "richardson", "a reference that is an object");
-  result.labels = fields.labels(pointer + "/richardson");
+  reader.only(pointer, {"richardson"}, "a reference");
+  reader.needs(pointer, "richardson", "a reference that is an object");
+  result.labels = reader.labels(pointer + "/richardson");
   return result;
 }
 
@@ -112,7 +112,7 @@ Reference reference_of_any_kind(const StudyFields& fields, const json::Document&
 
 Reference read_reference(const scene::SceneFields& scene_fields, const json::Document& document,
                          const std::string& pointer) {
-  Reference result = reference_of_any_kind(StudyFields(scene_fields), document, pointer);
+  Reference result = reference_of_any_kind(StudyReader(scene_fields), document, pointer);
   if (result.uncertainty < 0) scene_fields.refuse(pointer + "/uncertainty", "an uncertainty must not be below 0");
   return result;
 }

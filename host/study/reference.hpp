@@ -24,7 +24,7 @@ enum class ReferenceKind {
 struct Reference {
   ReferenceKind kind = ReferenceKind::richardson;
   double value = std::numeric_limits<double>::quiet_NaN();  ///< in the quantity's unit; NaN until the study has run
-  double uncertainty = 0;                                   ///< of `value`; 0 where nobody told one
+  double uncertainty = 0;                                   ///< of `value`; 0 where none is known
   std::string source;                                       ///< in the user's words, or the file and pointer
   /// Of `point`: the point. Of `richardson`: the method whose limit is the reference; empty: the surest one.
   std::map<std::string, std::string> labels;

@@ -58,21 +58,22 @@ StudySentence cheapest_below(const StudyData& study, const Quantity& quantity, c
   return {"no setting is shown to be below " + target + "; nearest: " + described(*nearest), quantity.target, nearest};
 }
 
-StudySentence best_knob(const StudyData& study, const Knob& knob) {
-  std::vector<int> rest = study.points[knob.to].setting;
-  rest[knob.axis] = -1;
-  const StudyAxis& axis = study.axes[knob.axis];
+StudySentence largest_sensitivity(const StudyData& study, const Sensitivity& sensitivity) {
+  std::vector<int> rest = study.points[sensitivity.to].setting;
+  rest[sensitivity.axis] = -1;
+  const StudyAxis& axis = study.axes[sensitivity.axis];
   const auto label = [&](std::size_t point) {
-    return axis.labels[static_cast<std::size_t>(study.points[point].setting[knob.axis])];
+    return axis.labels[static_cast<std::size_t>(study.points[point].setting[sensitivity.axis])];
   };
   const std::string elsewhere = name_of(study, rest);
-  const std::string price = knob.time_factor == 1  ? "for the same time"
-                            : knob.time_factor > 1 ? "for " + number(knob.time_factor, 3) + " times the time"
-                                                   : "and takes " + number(knob.time_factor, 3) + " times the time";
-  return {"buys most error per second: " + axis.name + " " + label(knob.to) + " instead of " + label(knob.from) +
-              (elsewhere.empty() ? "" : " (" + elsewhere + ")") + " divides the error by " +
-              number(knob.error_factor, 2) + " " + price,
-          of_no_target, knob.to};
+  const std::string price = sensitivity.time_factor == 1 ? "for the same time"
+                            : sensitivity.time_factor > 1
+                                ? "for " + number(sensitivity.time_factor, 3) + " times the time"
+                                : "and takes " + number(sensitivity.time_factor, 3) + " times the time";
+  return {"buys most error per second: " + axis.name + " " + label(sensitivity.to) + " instead of " +
+              label(sensitivity.from) + (elsewhere.empty() ? "" : " (" + elsewhere + ")") + " divides the error by " +
+              number(sensitivity.error_factor, 2) + " " + price,
+          of_no_target, sensitivity.to};
 }
 
 }  // namespace
@@ -80,11 +81,12 @@ StudySentence best_knob(const StudyData& study, const Knob& knob) {
 std::vector<StudySentence> sentences_of(const StudyData& study, std::size_t quantity,
                                         const QuantityAnalysis& analysis) {
   std::vector<StudySentence> sentences{cheapest_below(study, study.quantities[quantity], analysis)};
-  // A knob that changes the error by less than this is lost in the noise of the clock.
+  // A change of the error by less than this is lost in the noise of the clock.
   constexpr double worth_telling = 1.2;
-  const auto best = std::find_if(analysis.knobs.begin(), analysis.knobs.end(),
-                                 [](const Knob& knob) { return knob.error_factor >= worth_telling; });
-  if (best != analysis.knobs.end()) sentences.push_back(best_knob(study, *best));
+  const auto best =
+      std::find_if(analysis.sensitivities.begin(), analysis.sensitivities.end(),
+                   [](const Sensitivity& sensitivity) { return sensitivity.error_factor >= worth_telling; });
+  if (best != analysis.sensitivities.end()) sentences.push_back(largest_sensitivity(study, *best));
   if (!analysis.disagreement.empty()) sentences.push_back({analysis.disagreement, of_no_target, std::nullopt});
   return sentences;
 }

@@ -7,8 +7,6 @@
 #include "embedded_schemas.hpp"
 #include "json/json_pointer.hpp"
 #include "json/schema.hpp"
-#include "scene/scene.hpp"
-#include "trial/shared_keys.hpp"
 
 namespace rouleau::study {
 
@@ -16,23 +14,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
-
-/// The scene with the changes of "set", found right as far as that can be said without plugins.
-Json read_base_scene(const json::Document& document, const fs::path& scene_file) {
-  const Json& given = document.root()["scene"];
-  Json scene = trial::read_changed_scene(document, scene_file, "study's");
-  try {
-    json::validate(json::Document::parse(scene.dump(2), scene_file.string()),
-                            json::scene_schema());
-  } catch (const Error& error) {
-    // The changed scene has no lines of its own: those of the study, or of its "set".
-    const std::string what = error.what(), problem = what.substr(std::min(what.find('\n') + 3, what.size()));
-    if (!given.is_string()) throw Error(ExitCode::bad_input, document.place("/scene" + error.place().pointer), problem);
-    throw Error(ExitCode::bad_input, document.place("/set"),
-                "the scene with these changes is wrong, " + error.place().pointer + ": " + problem);
-  }
-  return scene;
-}
 
 /// An axis is a fault of the study, and not a result, where no setting of it fits the scene's schema.
 void refuse_useless_axes(const Study& study) {
@@ -43,9 +24,7 @@ void refuse_useless_axes(const Study& study) {
       trial::Point point = study.default_point;
       point.setting[a] = static_cast<int>(i);
       try {
-        json::validate(
-            json::Document::parse(trial::scene_of(study.scene, study.axes, point).dump(2), "the scene"),
-            json::scene_schema());
+        trial::check_scene(trial::scene_of(study.scene, study.axes, point), "the scene");
         any = true;
       } catch (const Error& error) {
         if (first.empty())
@@ -124,23 +103,15 @@ std::vector<Quantity> read_quantities(const json::Document& document) {
 
 Study read_study(const fs::path& file) {
   Study study;
-  study.document = std::make_shared<const json::Document>(json::Document::read(file));
-  const json::Document& document = *study.document;
-  json::validate(document, study_schema());
-  const Json& root = document.root();
-  study.title = root.value("title", file.stem().string());
-  study.file = file;
-  study.scene_file = trial::scene_file_of(document, file);
-  study.scene = read_base_scene(document, study.scene_file);
-  study.axes = trial::read_axes(document, "/matrix", study.scene);
+  static_cast<trial::CampaignFile&>(study) = trial::read_campaign_file(trial::study_kind, file, study_schema());
+  const Json& root = study.document->root();
   study.default_point = read_default(study);
   study.line = read_line(study);
   refuse_useless_axes(study);
-  study.quantities = read_quantities(document);
+  study.quantities = read_quantities(*study.document);
   study.threads = root.value("threads", study.threads);
   study.repeats = root.value("repeats", study.repeats);
   study.warm_up = root.value("warm_up", study.warm_up);
-  if (root.contains("time_limit")) study.time_limit_s = trial::read_time_limit(document, "10 min");
   return study;
 }
 

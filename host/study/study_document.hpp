@@ -2,30 +2,20 @@
 #pragma once
 
 #include <filesystem>
-#include <memory>
 #include <nlohmann/json.hpp>
-#include <string>
 #include <vector>
 
-#include "json/document.hpp"
 #include "quantity.hpp"
-#include "trial/matrix.hpp"
+#include "trial/campaign_file.hpp"
 
 namespace rouleau::study {
 
-struct Study {
-  std::shared_ptr<const json::Document> document;
-  std::string title;
-  std::filesystem::path file;
-  std::filesystem::path scene_file;  ///< the study's own file where it holds the scene
-  nlohmann::json scene;              ///< with the changes of "set"
-  std::vector<trial::Axis> axes;
+struct Study : trial::CampaignFile {
   int line = -1;  ///< index of an axis; -1 without axes
   trial::Point default_point;
   std::vector<Quantity> quantities;
   int threads = 1, repeats = 3;
   bool warm_up = true;
-  double time_limit_s = 3600;
 };
 
 /// Throws Error(bad_input) with the place of the first fault, in the study or in its scene, Error(input_output) for a

@@ -4,16 +4,11 @@
 #include <cmath>
 
 #include "analysis_json.hpp"
-#include "files/file.hpp"
-#include "files/run_directory.hpp"
-#include "files/tables.hpp"
 #include "json/number_or_null.hpp"
 #include "report/result_page.hpp"
-#include "run/provenance.hpp"
-#include "run/summary.hpp"
+#include "trial/campaign.hpp"
 #include "trial/fingerprint.hpp"
 #include "trial/median_range.hpp"
-#include "trial/result_directory.hpp"
 
 namespace rouleau::study {
 
@@ -23,11 +18,11 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 /// Median, range and all of what the repeats took.
-Json spread_json(const std::vector<double>& values) {
-  const trial::Spread spread = trial::spread_of(values);
-  return {{"median", json::number_or_null(spread.median)},
-          {"least", json::number_or_null(spread.least)},
-          {"most", json::number_or_null(spread.most)},
+Json median_range_json(const std::vector<double>& values) {
+  const trial::MedianRange range = trial::median_range(values);
+  return {{"median", json::number_or_null(range.median)},
+          {"least", json::number_or_null(range.least)},
+          {"most", json::number_or_null(range.most)},
           {"all", values}};
 }
 
@@ -54,24 +49,13 @@ Json point_json(const Study& study, const MatrixPoint& point) {
           {"status", trial::to_string(record.end)},
           {"failure", record.failure},
           {"not_deterministic", record.difference.empty() ? Json(nullptr) : Json(record.difference)},
-          {"wall_s", spread_json(wall)},
-          {"cpu_s", spread_json(cpu)},
+          {"wall_s", median_range_json(wall)},
+          {"cpu_s", median_range_json(cpu)},
           {"steps", record.steps},
           {"peak_rss_bytes", record.peak_rss_bytes},
           {"threads", point.threads},
           {"passes", median_passes(record.runs)},
           {"results", Json::object()}};
-}
-
-std::string csv_field(const Json& value) {
-  if (value.is_null()) return "";
-  return value.is_string() ? files::csv_text(value.get<std::string>()) : value.dump();
-}
-
-std::string csv_line(const Json& fields) {
-  std::string line;
-  for (const Json& field : fields) line += (&field == &fields.front() ? "" : ",") + csv_field(field);
-  return line + '\n';
 }
 
 }  // namespace
@@ -86,22 +70,12 @@ Json study_json(const StudyState& state) {
                           {"why", point.left_out},
                           {"estimated_s", json::number_or_null(point.estimated_s)}});
   }
-  Json result = {{"rouleau_study_result", 1},
-                 {"title", study.title},
-                 {"study_file", study.file.string()},
-                 {"scene_file", study.scene_file.string()},
-                 {"program", run::program_version()},
-                 {"program_sha256", trial::program_sha256()},
-                 {"machine", trial::machine_json()},
-                 {"started", state.started},
-                 {"finished", state.finished.empty() ? Json(nullptr) : Json(state.finished)},
-                 {"complete", state.complete()},
-                 {"left_out", left_out},
-                 {"axes", trial::axes_json(study.axes)},
+  Json result = trial::result_head(trial::study_kind, study, state.started, state.finished, state.complete());
+  result.update({{"left_out", left_out},
                  {"line", study.line < 0 ? Json(nullptr) : Json(study.axes[static_cast<std::size_t>(study.line)].name)},
                  {"default", trial::labels_of(study.axes, study.default_point)},
                  {"points", points},
-                 {"target", state.target}};
+                 {"target", state.target}});
   const StudyData data = study_data(state);
   add_analysis(result, data, analyse(data));
   for (const MatrixPoint& point : state.points) {
@@ -121,7 +95,7 @@ std::string study_csv(const Json& study) {
     const std::string name = quantity["name"];
     for (const char* what : {"", " error", " uncertainty"}) head.push_back(name + what);
   }
-  std::string table = csv_line(head);
+  std::string table = trial::csv_line(head);
   for (const Json& point : study["points"]) {
     Json row = {point["id"]};
     for (const Json& axis : study["axes"]) row.push_back(point["labels"][axis["name"].get<std::string>()]);
@@ -137,15 +111,14 @@ std::string study_csv(const Json& study) {
       const Json result = point["results"].value(quantity["name"].get<std::string>(), Json::object());
       for (const char* what : {"value", "error", "uncertainty"}) row.push_back(result.value(what, Json()));
     }
-    table += csv_line(row);
+    table += trial::csv_line(row);
   }
   return table;
 }
 
 void write_study_files(const StudyState& state, const fs::path& directory) {
   const Json study = study_json(state);
-  files::write_file(directory / "study.csv", study_csv(study));
-  files::write_file(directory / "study.json", study.dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
+  trial::write_result(trial::study_kind, directory, study, study_csv(study));
   report::write_study_page(directory);
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iostream>
 #include <set>
 
 #include "analysis_json.hpp"
@@ -12,13 +11,11 @@
 #include "study_files.hpp"
 #include "target.hpp"
 #include "trial/fingerprint.hpp"
-#include "trial/result_directory.hpp"
 
 namespace rouleau::study {
 
 namespace {
 
-namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 /// A warm-up fills the caches of the system and lets the processor find its frequency; it need not go to the end.
@@ -53,17 +50,10 @@ std::string duration_text(double seconds) {
 StudyRun::StudyRun(const Study& study, StudyOptions options)
     : study_(study),
       options_(std::move(options)),
-      points_folder_(options_.directory / "points"),
+      campaign_(trial::study_kind, study, options_),
       timing_lock_(trial::timing_lock_file()) {
-  trial::take_result_directory(options_.directory, {"study.json", "study", "study"}, directory_lock_);
   state_.study = &study_;
   state_.started = run::present_time();
-}
-
-bool StudyRun::interrupted() const { return options_.interrupted != nullptr && *options_.interrupted; }
-
-fs::path StudyRun::directory_of(const MatrixPoint& point) const {
-  return points_folder_ / trial::directory_name(point.fingerprint);
 }
 
 void StudyRun::prepare() {
@@ -74,30 +64,23 @@ void StudyRun::prepare() {
     prepare_point(state_.points.back());
   }
   for (MatrixPoint& point : state_.points) {
-    if (runs_missing(point) > 0 && !interrupted()) plan_point(point);
+    if (runs_missing(point) > 0 && !campaign_.interrupted()) plan_point(point);
   }
 }
 
 void StudyRun::prepare_point(MatrixPoint& point) {
   point.fingerprint = trial::fingerprint(point.scene, study_.scene_file,
                                          {"threads " + std::to_string(point.threads), run::machine_description()});
-  point.record = trial::read_record(points_folder_, point.fingerprint);
-  // What did not end in time may with more of it.
-  if (point.record && point.record->end == trial::TrialEnd::timed_out &&
-      point.record->time_limit_s < study_.time_limit_s)
-    point.record.reset();
+  point.record = campaign_.find(point.fingerprint);
   if (point.record) {
-    measure_point(study_, point, directory_of(point));
+    measure_point(study_, point, campaign_.directory_of(point.fingerprint));
   } else {
     point.left_out = "not yet run";
   }
 }
 
 void StudyRun::plan_point(MatrixPoint& point) {
-  trial::Trial trial{point.scene, study_.scene_file, directory_of(point)};
-  trial.program = options_.program;
-  trial.interrupted = options_.interrupted;
-  const Json plan = trial::plan_trial(trial);
+  const Json plan = trial::plan_trial(campaign_.trial_of(point.scene, point.fingerprint));
   point.estimated_s = plan.is_object() ? plan["estimate"].value("wall_s", NAN) : NAN;
   point.steps_at_most = plan.is_object() ? plan["estimate"].value("steps_at_most", 0.0) : 0;
 }
@@ -130,18 +113,19 @@ std::vector<MatrixPoint*> StudyRun::missing_points() {
 bool StudyRun::run() {
   prepare();
   const std::size_t missing = missing_points().size(), all = state_.points.size();
-  if (missing < all) say(std::to_string(all - missing) + " of " + std::to_string(all) + " points have been run before");
+  if (missing < all)
+    campaign_.say(std::to_string(all - missing) + " of " + std::to_string(all) + " points have been run before");
   write();
   options_.target ? run_for_target() : run_all();
-  if (!interrupted()) state_.finished = run::present_time();
+  if (!campaign_.interrupted()) state_.finished = run::present_time();
   write();
-  return !interrupted();
+  return !campaign_.interrupted();
 }
 
 /// What is learnt from one point may change which is the cheapest of the others.
 void StudyRun::run_all() {
   std::set<int> passed;  // by the budget
-  while (!interrupted()) {
+  while (!campaign_.interrupted()) {
     std::vector<MatrixPoint*> missing = missing_points();
     std::erase_if(missing, [&](const MatrixPoint* point) { return passed.count(point->id) != 0; });
     if (missing.empty()) return;
@@ -156,9 +140,9 @@ void StudyRun::run_all() {
     }
     double all = 0;
     for (const MatrixPoint* other : missing) all += expected_s(*other);
-    say(trial::name_of(study_.axes, point.point) + ": expected " + duration_text(expected) + "; " +
-        std::to_string(missing.size()) + " of " + std::to_string(state_.points.size()) + " points left, " +
-        duration_text(std::min(all, left)));
+    campaign_.say(trial::name_of(study_.axes, point.point) + ": expected " + duration_text(expected) + "; " +
+                  std::to_string(missing.size()) + " of " + std::to_string(state_.points.size()) + " points left, " +
+                  duration_text(std::min(all, left)));
     if (take_turn(point) != PointEnd::done) passed.insert(point.id);
   }
 }
@@ -166,7 +150,7 @@ void StudyRun::run_all() {
 void StudyRun::run_for_target() {
   const StudyTarget& target = *options_.target;
   bool in_budget = true;
-  while (!interrupted()) {
+  while (!campaign_.interrupted()) {
     // One run of a point stands for all of its repeats.
     const double left = in_budget ? (options_.budget_s - spent_s_) / (study_.repeats + 1) : 0;
     const StudyData data = study_data(state_);
@@ -176,28 +160,28 @@ void StudyRun::run_for_target() {
       break;
     }
     MatrixPoint& point = state_.points[*decision.next];
-    say(trial::name_of(study_.axes, point.point) + ": expected " + duration_text(expected_s(point)));
+    campaign_.say(trial::name_of(study_.axes, point.point) + ": expected " + duration_text(expected_s(point)));
     in_budget = take_turn(point) == PointEnd::done;
   }
-  if (interrupted()) return;
+  if (campaign_.interrupted()) return;
   for (MatrixPoint& point : state_.points) {
     if (!point.record) point.left_out = "not needed to find what meets the target, or beyond the budget";
   }
 }
 
 StudyRun::PointEnd StudyRun::take_turn(MatrixPoint& point) {
-  const auto waits = [&] { say("  waiting: another study on this machine is taking times"); };
-  if (!timing_lock_.wait(waits, options_.interrupted)) return PointEnd::interrupted;
+  if (!campaign_.wait_for(timing_lock_, "  waiting: another study on this machine is taking times"))
+    return PointEnd::interrupted;
   // Another point may have had the same scene.
-  if (!point.record) point.record = trial::read_record(points_folder_, point.fingerprint);
+  if (!point.record) point.record = campaign_.find(point.fingerprint);
   const PointEnd end = run_point(point);
   timing_lock_.release();
   if (end == PointEnd::out_of_budget && !point.record) point.left_out = "stopped when the budget was used up";
   if (end != PointEnd::interrupted && point.record) {
     point.left_out.clear();
-    measure_point(study_, point, directory_of(point));
-    say("  " + words_of(point));
-    if (!point.record->difference.empty()) say("  NOT DETERMINISTIC: " + point.record->difference);
+    measure_point(study_, point, campaign_.directory_of(point.fingerprint));
+    campaign_.say("  " + words_of(point));
+    if (!point.record->difference.empty()) campaign_.say("  NOT DETERMINISTIC: " + point.record->difference);
     write();
   }
   return end;
@@ -219,46 +203,26 @@ StudyRun::PointEnd StudyRun::run_point(MatrixPoint& point) {
   return PointEnd::done;
 }
 
-/// In a directory of its own, which takes its name when the run is whole.
 trial::TrialResult StudyRun::run_once(const MatrixPoint& point, bool warm_up) {
-  const fs::path directory = directory_of(point).string() + ".running";
-  fs::remove_all(directory);
-  trial::Trial trial{point.scene, study_.scene_file, directory, point.threads,
-                     std::min(study_.time_limit_s, options_.budget_s - spent_s_)};
-  trial.program = options_.program;
-  trial.interrupted = options_.interrupted;
-  trial.written_scene = directory_of(point).string() + ".scene.json";
+  trial::Trial trial = campaign_.trial_of(point.scene, point.fingerprint);
+  trial.threads = point.threads;
+  trial.time_limit_s = std::min(study_.time_limit_s, options_.budget_s - spent_s_);
   if (warm_up) {
     const long steps = std::max(1L, std::lround(warm_up_part * point.steps_at_most));
     trial.options = {"--max-steps", std::to_string(steps)};
   }
-  trial::TrialResult result = trial::run_trial(trial);
-  const bool by_study = result.end == trial::TrialEnd::timed_out && trial.time_limit_s < study_.time_limit_s;
-  if (result.end == trial::TrialEnd::interrupted || by_study || warm_up) fs::remove_all(directory);
+  trial::TrialResult result = campaign_.run(trial);
+  const bool by_budget = result.end == trial::TrialEnd::timed_out && trial.time_limit_s < study_.time_limit_s;
+  if (by_budget || warm_up) campaign_.discard(point.fingerprint);
   return result;
 }
 
 void StudyRun::keep(MatrixPoint& point, const trial::TrialResult& result) {
-  const fs::path whole = directory_of(point), ran = whole.string() + ".running";
-  trial::PointRecord record = point.record.value_or(trial::PointRecord{});
-  record.fingerprint = point.fingerprint;
-  record.machine = run::machine_description();
-  record.time_limit_s = study_.time_limit_s;
-  trial::add_run(record, result, ran);
-  const bool first = record.runs.size() == 1 || result.end != trial::TrialEnd::completed;
-  if (first) fs::remove_all(whole);
-  if (first && fs::exists(ran)) fs::rename(ran, whole);
-  fs::remove_all(ran);
-  trial::write_record(points_folder_, record);
+  campaign_.keep(point.record, point.fingerprint, result);
   if (result.end == trial::TrialEnd::completed && result.summary.is_object())
     cost_.learn(point.point, point.estimated_s, result.summary.value("wall_s", result.wall_s), result.wall_s);
-  point.record = std::move(record);
 }
 
 void StudyRun::write() const { write_study_files(state_, options_.directory); }
-
-void StudyRun::say(const std::string& line) const {
-  if (!options_.quiet) std::cerr << line << std::endl;
-}
 
 }  // namespace rouleau::study

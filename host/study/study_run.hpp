@@ -1,7 +1,6 @@
 // Runs the points of a study, one after the other, and keeps study.json true to what is there.
 #pragma once
 
-#include <atomic>
 #include <filesystem>
 #include <limits>
 #include <optional>
@@ -10,18 +9,14 @@
 
 #include "study_state.hpp"
 #include "study_target.hpp"
-#include "trial/file_lock.hpp"
+#include "trial/campaign.hpp"
 #include "trial/run_cost.hpp"
 
 namespace rouleau::study {
 
-struct StudyOptions {
-  std::filesystem::path directory;
+struct StudyOptions : trial::CampaignOptions {
   double budget_s = std::numeric_limits<double>::infinity();  ///< wall time of all runs of this call
   std::optional<StudyTarget> target = {};  ///< only what it takes to find the cheapest point that meets it is run
-  bool quiet = false;
-  std::filesystem::path program = "/proc/self/exe";
-  const std::atomic<bool>* interrupted = nullptr;
 };
 
 class StudyRun {
@@ -43,8 +38,6 @@ class StudyRun {
   void plan_point(MatrixPoint& point);
   void run_all();
   void run_for_target();
-  [[nodiscard]] bool interrupted() const;
-  [[nodiscard]] std::filesystem::path directory_of(const MatrixPoint& point) const;
   [[nodiscard]] int runs_missing(const MatrixPoint& point) const;
   [[nodiscard]] double expected_s(const MatrixPoint& point) const;
   [[nodiscard]] std::vector<MatrixPoint*> missing_points();
@@ -54,16 +47,14 @@ class StudyRun {
   trial::TrialResult run_once(const MatrixPoint& point, bool warm_up);
   void keep(MatrixPoint& point, const trial::TrialResult& result);
   void write() const;
-  void say(const std::string& line) const;
 
   const Study& study_;
   StudyOptions options_;
-  std::filesystem::path points_folder_;
+  trial::Campaign campaign_;
   StudyState state_;
   trial::RunCost cost_;
   double spent_s_ = 0;
   trial::FileLock timing_lock_;
-  std::optional<trial::FileLock> directory_lock_;
 };
 
 /// "3.2 s", "12 min", "2.1 h"

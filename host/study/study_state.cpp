@@ -50,7 +50,7 @@ StudyData study_data(const StudyState& state) {
     if (tried && point.record->end == trial::TrialEnd::completed) {
       for (const trial::TimedRun& run : point.record->runs) times.push_back(run.wall_s);
     }
-    const trial::Spread wall = trial::spread_of(times);
+    const trial::MedianRange wall = trial::median_range(times);
     data.points.push_back(
         {point.point.setting, tried, wall.median, point.estimated_s, point.results, {wall.least, wall.most}});
   }

@@ -106,8 +106,7 @@ class AxisReader {
       Json tried = scene_;
       for (std::size_t k = 0; k < pointers.size(); ++k) {
         setting.set.emplace_back(pointers[k], zipped ? value[k] : value);
-        const std::string from =
-            zipped ? json::child_pointer(pointer_ + "/pointers", k) : pointer_ + "/pointer";
+        const std::string from = zipped ? json::child_pointer(pointer_ + "/pointers", k) : pointer_ + "/pointer";
         put(tried, pointers[k], setting.set.back().second, document_.place(from));
       }
       settings.push_back(std::move(setting));
@@ -172,8 +171,7 @@ class AxisReader {
 
 }  // namespace
 
-std::vector<Axis> read_axes(const json::Document& document, const std::string& pointer,
-                            const Json& base_scene) {
+std::vector<Axis> read_axes(const json::Document& document, const std::string& pointer, const Json& base_scene) {
   constexpr std::size_t most_points = 10'000;
   std::size_t points = 1;
   std::vector<Axis> axes;

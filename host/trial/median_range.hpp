@@ -8,11 +8,11 @@
 namespace rouleau::trial {
 
 /// NaN where nothing was measured.
-struct Spread {
+struct MedianRange {
   double median = std::numeric_limits<double>::quiet_NaN(), least = median, most = median;
 };
 
-inline Spread spread_of(std::vector<double> values) {
+inline MedianRange median_range(std::vector<double> values) {
   if (values.empty()) return {};
   std::sort(values.begin(), values.end());
   const std::size_t middle = values.size() / 2;

@@ -69,6 +69,14 @@ void add_run(PointRecord& record, const TrialResult& result, const fs::path& dir
         "run " + std::to_string(record.runs.size()) + " wrote other tables than run 1 of the same scene";
 }
 
+TrialResult result_of(const PointRecord& record, const fs::path& directory) {
+  TrialResult result;
+  result.end = record.end;
+  result.summary = read_summary(directory);
+  if (record.failure.is_object() && record.failure["message"].is_string()) result.message = record.failure["message"];
+  return result;
+}
+
 void write_record(const fs::path& points, const PointRecord& record) {
   Json runs = Json::array();
   for (const TimedRun& run : record.runs) {
@@ -98,6 +106,7 @@ std::optional<PointRecord> read_record(const fs::path& points, const std::string
     record.fingerprint = whole.at("fingerprint");
     record.machine = whole.at("machine");
     record.end = trial_end_named(whole.at("end")).value_or(TrialEnd::interrupted);
+    if (record.end == TrialEnd::interrupted) return std::nullopt;
     record.failure = whole.at("failure");
     for (const Json& run : whole.at("runs")) {
       record.runs.push_back({run.at("wall_s"), run.at("cpu_s"), run.at("process_s"), run.at("passes")});
@@ -108,7 +117,8 @@ std::optional<PointRecord> read_record(const fs::path& points, const std::string
     record.peak_rss_bytes = whole.at("peak_rss_bytes");
     record.time_limit_s = whole.at("time_limit_s");
     const bool run_is_there = fs::exists(points / directory_name(fingerprint) / "summary.json");
-    if (record.fingerprint != fingerprint || (record.end == TrialEnd::completed && !run_is_there)) return std::nullopt;
+    const bool must_be_there = record.end == TrialEnd::completed || record.end == TrialEnd::diverged;
+    if (record.fingerprint != fingerprint || (must_be_there && !run_is_there)) return std::nullopt;
     return record;
   } catch (const Json::exception&) {
     return std::nullopt;  // damaged: the point is run again

@@ -1,4 +1,4 @@
-// What is kept of a point of a study beside its run, so that the same command goes on where it was ended.
+// What is kept of a point of a campaign beside its run, so that the same command goes on where it was ended.
 #pragma once
 
 #include <filesystem>
@@ -31,13 +31,16 @@ struct PointRecord {
   double time_limit_s = 0;     ///< that the runs had
 };
 
-/// The record of that fingerprint in a study's folder points/, where it and the run that it tells of are whole.
+/// The record of that fingerprint in a campaign's folder points/, where it and the run that it describes are whole.
 std::optional<PointRecord> read_record(const std::filesystem::path& points, const std::string& fingerprint);
 /// Whole or not at all. Throws Error(input_output).
 void write_record(const std::filesystem::path& points, const PointRecord& record);
 
 /// Adds a run to a record; the first one decides what the others' tables are compared with.
 void add_run(PointRecord& record, const TrialResult& result, const std::filesystem::path& directory);
+
+/// What the last run came to, with the summary in the directory where it is kept; its costs are left out.
+TrialResult result_of(const PointRecord& record, const std::filesystem::path& directory);
 
 /// SHA-256 over the run's tables (*.csv) and their names.
 std::string tables_sha256(const std::filesystem::path& directory);

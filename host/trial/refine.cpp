@@ -1,5 +1,6 @@
 // Settings that make a scene's lattice and membranes finer or coarser together.
 #include <cmath>
+#include <numeric>
 
 #include "base/text.hpp"
 #include "json/json_pointer.hpp"
@@ -35,9 +36,6 @@ double radius_in_spacings(const Json& scene) {
   return length_of(length) / spacing;
 }
 
-/// Denominator of the smallest step between factors that keep both numbers of nodes whole.
-long common_divisor(long a, long b) { return b == 0 ? a : common_divisor(b, a % b); }
-
 class Refinement {
  public:
   Refinement(const json::Document& document, const Json& scene)
@@ -52,8 +50,7 @@ class Refinement {
     const Json types = scene_.value("cell_types", Json::object());
     for (const auto& [name, type] : types.items()) {
       const long segments = std::lround(type.at("segments").get<double>() * factor);
-      setting.set.emplace_back(
-          json::child_pointer(json::child_pointer("/cell_types", name), "segments"), segments);
+      setting.set.emplace_back(json::child_pointer(json::child_pointer("/cell_types", name), "segments"), segments);
     }
     setting.position = std::isnan(radius_) ? nodes[1].get<double>() : radius_ * factor;
     setting.label = number(setting.position, 3);
@@ -69,7 +66,8 @@ class Refinement {
     const long rounded = std::lround(nodes);
     if (rounded > 0 && std::abs(nodes - static_cast<double>(rounded)) < 1e-9 * nodes) return rounded;
     const Json& all = scene_["domain"]["nodes"];
-    const long step = common_divisor(all[0].get<long>(), all[1].get<long>());
+    // Multiples of 1/step keep both numbers of nodes whole.
+    const long step = std::gcd(all[0].get<long>(), all[1].get<long>());
     const auto steps = static_cast<double>(step);
     throw Error(ExitCode::bad_input, document_.place(pointer),
                 "a factor of " + number(factor) + " makes " + number(nodes, 9) + " of the scene's " +

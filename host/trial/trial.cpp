@@ -111,11 +111,6 @@ std::string message_of(TrialEnd end, const ProcessEnd& process, double time_limi
   return words.empty() ? how : how + "\n" + words;
 }
 
-nlohmann::json read_summary(const fs::path& directory) {
-  const fs::path file = directory / "summary.json";
-  return fs::exists(file) ? json::Document::read(file).root() : nlohmann::json();
-}
-
 }  // namespace
 
 std::string to_string(TrialEnd end) {
@@ -146,7 +141,7 @@ std::optional<TrialEnd> trial_end_named(const std::string& name) {
 
 TrialResult run_trial(const Trial& trial) {
   write_scene(trial);
-  // A child that ends before it comes to the directory must not be told by the run before it.
+  // A child that ends before it comes to the directory must not be given the summary of the run before it.
   std::error_code ignored;
   fs::remove(trial.directory / "summary.json", ignored);
   std::vector<std::string> arguments = scene_arguments("run", trial);
@@ -165,6 +160,11 @@ TrialResult run_trial(const Trial& trial) {
   result.peak_rss_bytes = result.summary.is_object() ? result.summary.value("peak_rss_bytes", process.peak_rss_bytes)
                                                      : process.peak_rss_bytes;
   return result;
+}
+
+nlohmann::json read_summary(const fs::path& directory) {
+  const fs::path file = directory / "summary.json";
+  return fs::exists(file) ? json::Document::read(file).root() : nlohmann::json();
 }
 
 nlohmann::json plan_trial(const Trial& trial) {

@@ -44,6 +44,9 @@ struct TrialResult {
 /// not. Throws Error(input_output) where the scene cannot be written or the program cannot be started.
 TrialResult run_trial(const Trial& trial);
 
+/// summary.json of a run's directory; null where there is none. Throws Error(bad_input) for a damaged one.
+nlohmann::json read_summary(const std::filesystem::path& directory);
+
 /// What `rouleau plan --json` says about the trial, as another child; null where it refuses. Opens no run directory.
 nlohmann::json plan_trial(const Trial& trial);
 

@@ -39,7 +39,7 @@ struct RunToJudge {
         << "step,cell,x_m,angle_rad,deformation\n0,0,1e-6,nan,0.1\n0,1,1e-6,nan,0.2\n9,0,1e-6,nan," << last
         << "\n9,1,1e-6,nan,0.7\n";
   }
-  [[nodiscard]] Judgement judged() const { return judge(result, folder, Soundness()); }
+  [[nodiscard]] Judgement judged() const { return judge(result, folder, HealthCriteria()); }
   [[nodiscard]] std::string reason() const { return judged().failure.is_null() ? "" : judged().failure["reason"]; }
 };
 
@@ -47,7 +47,7 @@ struct RunToJudge {
 
 TEST_CASE("a run that kept everything is sound", "[judgement]") {
   const RunToJudge run;
-  CHECK(run.judged().sound);
+  CHECK(run.judged().healthy);
   CHECK(run.judged().failure.is_null());
 }
 
@@ -65,7 +65,7 @@ TEST_CASE("a run that ends in silence with something lost has failed", "[judgeme
   RunToJudge run;
   run.result.summary[Json::json_pointer(pointer)] = value;
   CHECK(run.reason() == expected);
-  CHECK_FALSE(run.judged().sound);
+  CHECK_FALSE(run.judged().healthy);
   CHECK(run.judged().end == "completed");
 }
 
@@ -85,7 +85,7 @@ TEST_CASE("what is no number in a frame has been written, also where the run was
     file.close();
   };
   frame(3);
-  CHECK(run.judged().sound);
+  CHECK(run.judged().healthy);
   frame(std::nan(""));
   run.result.end = GENERATE(TrialEnd::completed, TrialEnd::diverged);
   run.result.summary["failure"] = {{"reason", "mach"}, {"step", 17}};

@@ -1,4 +1,4 @@
-// References, errors, fronts, knobs and sentences of studies whose answers are known.
+// References, errors, fronts, sensitivities and sentences of studies whose answers are known.
 #include "study/analysis.hpp"
 
 #include <catch2/catch.hpp>
@@ -73,7 +73,7 @@ TEST_CASE("a reference that is given is used, with its uncertainty", "[analysis]
   const QuantityAnalysis a = analyse(study.data(), 0);
   CHECK(a.errors[5].error == Approx(0.0).margin(1e-12));
   CHECK(a.errors[5].uncertainty == Approx(0.01 / 1.99));
-  CHECK(told_error(a.errors[5]) == Approx(0.01 / 1.99));
+  CHECK(resolved_error(a.errors[5]) == Approx(0.01 / 1.99));
 }
 
 TEST_CASE("another point as reference is as uncertain as its distance from its own line's limit", "[analysis]") {
@@ -97,7 +97,7 @@ TEST_CASE("points without a value have no error but a reason, and the rest is ju
   CHECK(a.errors[9].why_not == "the run diverged");
   CHECK(a.reference.value == Approx(2));
   CHECK(std::find(a.front.begin(), a.front.end(), 9) == a.front.end());
-  for (const Knob& knob : a.knobs) CHECK((knob.from != 9 && knob.to != 9));
+  for (const Sensitivity& sensitivity : a.sensitivities) CHECK((sensitivity.from != 9 && sensitivity.to != 9));
 }
 
 TEST_CASE("a study that cannot be extrapolated says why", "[analysis]") {
@@ -140,26 +140,28 @@ TEST_CASE("the front is what a comparison of all pairs leaves, sorted by time", 
   }
 }
 
-TEST_CASE("a knob is an axis turned by one step, and gains the ratio of the logarithms", "[analysis]") {
+TEST_CASE("a sensitivity is of one axis moved by one step, and gains the ratio of the logarithms", "[analysis]") {
   MadeUpStudy study = two_schemes();
   study.reference = {ReferenceKind::value, 2, 0, "made up", {}};
   const QuantityAnalysis a = analyse(study.data(), 0);
   // 4 steps of 2 schemes, and 5 changes of scheme.
-  REQUIRE(a.knobs.size() == 13);
-  for (std::size_t i = 1; i < a.knobs.size(); ++i) CHECK(a.knobs[i - 1].gain >= a.knobs[i].gain);
-  for (const Knob& knob : a.knobs) {
-    CHECK(knob.error_factor >= 1);
-    if (knob.axis == 0) CHECK(knob.gain == Approx(knob.to % 2 == 0 ? 1.0 / 4 : 2.0 / 4));  // order over four
-    if (knob.axis == 1) CHECK(knob.time_factor == Approx(1.1));
+  REQUIRE(a.sensitivities.size() == 13);
+  for (std::size_t i = 1; i < a.sensitivities.size(); ++i)
+    CHECK(a.sensitivities[i - 1].gain >= a.sensitivities[i].gain);
+  for (const Sensitivity& sensitivity : a.sensitivities) {
+    CHECK(sensitivity.error_factor >= 1);
+    if (sensitivity.axis == 0)
+      CHECK(sensitivity.gain == Approx(sensitivity.to % 2 == 0 ? 1.0 / 4 : 2.0 / 4));  // order over four
+    if (sensitivity.axis == 1) CHECK(sensitivity.time_factor == Approx(1.1));
   }
   // Corrected at 40: an error of 0.00125 for 0.01 and 1.1 times the time.
-  CHECK(a.knobs[0].axis == 1);
-  CHECK(a.knobs[0].from == 8);
-  CHECK(a.knobs[0].to == 9);
-  CHECK(a.knobs[0].gain == Approx(std::log(8) / std::log(1.1)));
+  CHECK(a.sensitivities[0].axis == 1);
+  CHECK(a.sensitivities[0].from == 8);
+  CHECK(a.sensitivities[0].to == 9);
+  CHECK(a.sensitivities[0].gain == Approx(std::log(8) / std::log(1.1)));
 }
 
-TEST_CASE("a knob costs nothing where the repeats' times overlap", "[analysis]") {
+TEST_CASE("a sensitivity costs nothing where the repeats' times overlap", "[analysis]") {
   MadeUpStudy made_up;
   made_up.resolutions = {10, 20};
   made_up.value = [](double radius, int scheme) { return 1 + (scheme == 0 ? 1 : 0.1) / (radius * radius); };
@@ -168,10 +170,10 @@ TEST_CASE("a knob costs nothing where the repeats' times overlap", "[analysis]")
   made_up.reference.value = 1;
   StudyData study = made_up.data();
   const auto of_scheme = [&] {
-    for (const Knob& knob : analyse(study, 0).knobs) {
-      if (knob.axis == 1 && knob.to == 1) return knob;
+    for (const Sensitivity& sensitivity : analyse(study, 0).sensitivities) {
+      if (sensitivity.axis == 1 && sensitivity.to == 1) return sensitivity;
     }
-    return Knob{};
+    return Sensitivity{};
   };
   CHECK(of_scheme().time_factor == Approx(1.02));
   study.points[0].wall_range = {0.95, 1.01};
@@ -187,9 +189,9 @@ TEST_CASE("what makes the error smaller and the run shorter is free, and comes f
   study.reference = {ReferenceKind::value, 2, 0, "made up", {}};
   study.time = [](double a, int scheme) { return a * a * (scheme == 0 ? 1 : 0.5); };
   const QuantityAnalysis a = analyse(study.data(), 0);
-  CHECK(std::isinf(a.knobs[0].gain));
-  CHECK(a.knobs[0].time_factor == Approx(0.5));
-  CHECK(a.knobs[0].error_factor == Approx(8));
+  CHECK(std::isinf(a.sensitivities[0].gain));
+  CHECK(a.sensitivities[0].time_factor == Approx(0.5));
+  CHECK(a.sensitivities[0].error_factor == Approx(8));
 }
 
 TEST_CASE("one sentence names the cheapest setting below the target and what it saves", "[analysis]") {

@@ -15,9 +15,9 @@
 namespace rouleau::study {
 
 /// Values at JSON pointers of a study. Every member throws Error(bad_input) at the place of a value of another type.
-class StudyFields {
+class StudyReader {
  public:
-  explicit StudyFields(const scene::SceneFields& fields) : fields_(fields) {}
+  explicit StudyReader(const scene::SceneFields& fields) : fields_(fields) {}
 
   [[nodiscard]] const scene::SceneFields& scene_fields() const { return fields_; }
   [[nodiscard]] bool has(const std::string& pointer) const { return fields_.has(pointer); }

@@ -1,0 +1,152 @@
+#include "campaign.hpp"
+
+#include <iostream>
+
+#include "base/error.hpp"
+#include "files/file.hpp"
+#include "files/run_directory.hpp"
+#include "files/tables.hpp"
+#include "fingerprint.hpp"
+#include "json/number_or_null.hpp"
+#include "run/provenance.hpp"
+#include "run/summary.hpp"
+
+namespace rouleau::trial {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+/// A directory of the command holds its file, or its points, before anything else.
+void require_own(const fs::path& directory, const CampaignKind& kind) {
+  if (!fs::exists(directory)) return;
+  if (!fs::is_directory(directory))
+    throw Error(ExitCode::bad_input, directory.string() + " is no directory; choose another with --out");
+  if (fs::is_empty(directory) || fs::exists(directory / (std::string(kind.name) + ".json")) ||
+      fs::exists(directory / "points"))
+    return;
+  throw Error(ExitCode::bad_input, directory.string() + " holds files that no " + kind.command +
+                                       " wrote; choose another directory with --out");
+}
+
+fs::path running(const fs::path& directory) { return directory.string() + ".running"; }
+
+Json axes_json(const std::vector<Axis>& axes) {
+  Json all = Json::array();
+  for (const Axis& axis : axes) {
+    Json labels = Json::array(), positions = Json::array();
+    for (const Setting& setting : axis.settings) {
+      labels.push_back(setting.label);
+      positions.push_back(json::number_or_null(setting.position));
+    }
+    all.push_back({{"name", axis.name}, {"labels", labels}, {"positions", positions}});
+  }
+  return all;
+}
+
+}  // namespace
+
+Campaign::Campaign(const CampaignKind& kind, const CampaignFile& file, CampaignOptions options)
+    : kind_(kind), file_(file), options_(std::move(options)) {
+  require_own(options_.directory, kind_);
+  fs::create_directories(options_.directory / "points");
+  lock_.emplace(options_.directory);
+  if (!lock_->take())
+    throw Error(ExitCode::bad_input, std::string("another ") + kind_.program + " is writing into " +
+                                         options_.directory.string() +
+                                         "; wait for it, or choose another directory with --out");
+}
+
+fs::path Campaign::directory_of(const std::string& fingerprint) const {
+  return options_.directory / "points" / directory_name(fingerprint);
+}
+
+Trial Campaign::trial_of(const Json& scene, const std::string& fingerprint) const {
+  Trial trial{scene, file_.scene_file, directory_of(fingerprint)};
+  trial.written_scene = trial.directory.string() + ".scene.json";
+  trial.time_limit_s = file_.time_limit_s;
+  trial.program = options_.program;
+  trial.interrupted = options_.interrupted;
+  return trial;
+}
+
+std::optional<PointRecord> Campaign::find(const std::string& fingerprint) const {
+  std::optional<PointRecord> record = read_record(options_.directory / "points", fingerprint);
+  if (record && record->end == TrialEnd::timed_out && record->time_limit_s < file_.time_limit_s) record.reset();
+  return record;
+}
+
+TrialResult Campaign::run(Trial trial) const {
+  trial.directory = running(trial.directory);
+  fs::remove_all(trial.directory);
+  TrialResult result = run_trial(trial);
+  if (result.end == TrialEnd::interrupted) fs::remove_all(trial.directory);
+  return result;
+}
+
+void Campaign::keep(std::optional<PointRecord>& record, const std::string& fingerprint,
+                    const TrialResult& result) const {
+  const fs::path kept = directory_of(fingerprint), ran = running(kept);
+  PointRecord whole = record.value_or(PointRecord{});
+  whole.fingerprint = fingerprint;
+  whole.machine = run::machine_description();
+  whole.time_limit_s = file_.time_limit_s;
+  add_run(whole, result, ran);
+  const bool first = whole.runs.size() == 1 || result.end != TrialEnd::completed;
+  if (first) fs::remove_all(kept);
+  if (first && fs::exists(ran)) fs::rename(ran, kept);
+  fs::remove_all(ran);
+  write_record(options_.directory / "points", whole);
+  record = std::move(whole);
+}
+
+void Campaign::discard(const std::string& fingerprint) const { fs::remove_all(running(directory_of(fingerprint))); }
+
+void Campaign::say(const std::string& line) const {
+  if (!options_.quiet) std::cerr << line << std::endl;
+}
+
+bool Campaign::wait_for(FileLock& lock, const std::string& waiting) const {
+  return lock.wait([&] { say(waiting); }, options_.interrupted);
+}
+
+Json result_head(const CampaignKind& kind, const CampaignFile& file, const std::string& started,
+                 const std::string& finished, bool complete) {
+  const std::string name = kind.name;
+  const run::Machine machine = run::this_machine();
+  return {{"rouleau_" + name + "_result", 1},
+          {"title", file.title},
+          {name + "_file", file.file.string()},
+          {"scene_file", file.scene_file.string()},
+          {"program", run::program_version()},
+          {"program_sha256", program_sha256()},
+          {"machine",
+           {{"cpu", machine.processor},
+            {"cores", machine.processors},
+            {"memory_bytes", machine.memory_bytes},
+            {"system", machine.system},
+            {"compiler", machine.compiler}}},
+          {"started", started},
+          {"finished", finished.empty() ? Json() : Json(finished)},
+          {"complete", complete},
+          {"axes", axes_json(file.axes)}};
+}
+
+std::string csv_line(const Json& fields) {
+  std::string line;
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    const Json& field = fields[i];
+    if (i > 0) line += ',';
+    if (!field.is_null()) line += field.is_string() ? files::csv_text(field.get<std::string>()) : field.dump();
+  }
+  return line + '\n';
+}
+
+void write_result(const CampaignKind& kind, const fs::path& directory, const Json& result, const std::string& csv) {
+  const std::string name = kind.name;
+  files::write_file(directory / (name + ".csv"), csv);
+  files::write_file(directory / (name + ".json"), result.dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
+}
+
+}  // namespace rouleau::trial

@@ -1,0 +1,69 @@
+// A campaign: a directory full of runs of one file's scenes, each run once and kept under its fingerprint, so that the
+// same command goes on where it was ended. Studies and limits are campaigns.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "campaign_file.hpp"
+#include "file_lock.hpp"
+#include "point_record.hpp"
+#include "trial.hpp"
+
+namespace rouleau::trial {
+
+struct CampaignOptions {
+  std::filesystem::path directory;
+  bool quiet = false;
+  std::filesystem::path program = "/proc/self/exe";
+  const std::atomic<bool>* interrupted = nullptr;
+};
+
+class Campaign {
+ public:
+  /// Makes the directory with its folder points/, or takes the one that the same command has left, and locks it. Throws
+  /// Error(bad_input) for a directory with other files, or that another process has locked. `file` must outlive this.
+  Campaign(const CampaignKind& kind, const CampaignFile& file, CampaignOptions options);
+
+  /// Where the run of that fingerprint is kept, once it is whole.
+  [[nodiscard]] std::filesystem::path directory_of(const std::string& fingerprint) const;
+  /// A run of a changed scene, in the directory where it is kept.
+  [[nodiscard]] Trial trial_of(const nlohmann::json& scene, const std::string& fingerprint) const;
+  /// What is known of that fingerprint; nothing where it must be run, also where it did not end in less time than the
+  /// file now allows.
+  [[nodiscard]] std::optional<PointRecord> find(const std::string& fingerprint) const;
+  /// Runs it in a directory of its own beside that of the trial, which is removed when it was interrupted.
+  [[nodiscard]] TrialResult run(Trial trial) const;
+  /// Adds what run() has left to the record, and writes it. The first run, or the failed one, takes the place that it
+  /// is kept at.
+  void keep(std::optional<PointRecord>& record, const std::string& fingerprint, const TrialResult& result) const;
+  /// Removes what run() has left.
+  void discard(const std::string& fingerprint) const;
+
+  [[nodiscard]] bool interrupted() const { return options_.interrupted != nullptr && *options_.interrupted; }
+  /// A line on standard error, unless it should be quiet.
+  void say(const std::string& line) const;
+  /// Waits for `lock`. False when interrupted meanwhile.
+  [[nodiscard]] bool wait_for(FileLock& lock, const std::string& waiting) const;
+
+ private:
+  const CampaignKind& kind_;
+  const CampaignFile& file_;
+  CampaignOptions options_;
+  std::optional<FileLock> lock_;
+};
+
+/// What NAME.json says of every campaign: its file, the program, the machine, when it ran. `finished`: empty while it
+/// runs.
+nlohmann::json result_head(const CampaignKind& kind, const CampaignFile& file, const std::string& started,
+                           const std::string& finished, bool complete);
+/// One line of NAME.csv: null is an empty field.
+std::string csv_line(const nlohmann::json& fields);
+/// Writes NAME.csv and NAME.json, each whole or not at all. Throws Error(input_output).
+void write_result(const CampaignKind& kind, const std::filesystem::path& directory, const nlohmann::json& result,
+                  const std::string& csv);
+
+}  // namespace rouleau::trial
