@@ -114,7 +114,7 @@ TEST_CASE("every operator's viscosity is (tau - 1/2)/3 with an error of second o
   }
 }
 
-TEST_CASE("a flow along the wave changes no viscosity; one across it changes it by -3 V^2 but for central moments",
+TEST_CASE("a flow along the wave changes no viscosity, and one across changes it by -3 V^2 but for central moments",
           "[collision]") {
   // The third moment xyy of an equilibrium of second order lacks u V^2, whose gradient is a stress -3 V^2 mu du/dy.
   constexpr double tau = 0.8, v = 0.1;

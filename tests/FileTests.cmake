@@ -1,0 +1,18 @@
+# After a Catch2 program is linked: asks it for the files that its cases stand in (Catch2's tags of file names) and writes
+# one CTest test for each. Definitions: NAME, PROGRAM, SPEC, PROPERTIES, OUT.
+execute_process(COMMAND ${PROGRAM} --filenames-as-tags --list-tags "${SPEC}~[.]" OUTPUT_VARIABLE tags RESULT_VARIABLE many)
+string(REGEX MATCHALL "\\[#[^]]+\\]" tags "${tags}")
+if(NOT tags)
+  message(FATAL_ERROR "${PROGRAM} lists no tests (${many})")
+endif()
+string(REPLACE ";" " " properties "${PROPERTIES}")
+set(script "")
+string(REGEX REPLACE "\\]\\[|\\]|;|\\[#" " " files "${tags}")
+string(REGEX MATCHALL "[^ ]+" files "${files}")
+foreach(file ${files})
+  string(APPEND script "add_test(${NAME}.${file} ${PROGRAM} --filenames-as-tags --warn NoTests [==[[#${file}]${SPEC}~[.]]==])\n")
+  if(properties)
+    string(APPEND script "set_tests_properties(${NAME}.${file} PROPERTIES ${properties})\n")
+  endif()
+endforeach()
+file(WRITE ${OUT} "${script}")
