@@ -23,8 +23,8 @@ reason, step, mode and wavelength of each failure.
 What was tried is not tried again: after Ctrl-C the same command goes on in the same directory.
 
 Example:
-  rouleau limits limits/explicit-stiffness.json
-  rouleau limits limits/stretching.json --out runs/extreme
+  rouleau limits limits/stretching.json
+  rouleau limits limits/shear-rate.json --out runs/shear-rate
 
 Exit codes: 0 done, 1 an extreme case ended neither right nor with a reason, or otherwise than expected, 2 bad input,
 4 input/output, 130 interrupted
