@@ -8,6 +8,6 @@ CHAPTERS = {
     "Trust the numbers": ["docs/physics.md", "docs/accuracy.md", "docs/study.md", "docs/stability.md", "docs/paper.md",
                           "docs/performance.md"],
     "Extend": ["sdk/README.md", "docs/conformance.md", "docs/compatibility.md", "docs/trust.md", "docs/architecture.md",
-               "docs/testing.md"],
+               "docs/testing.md", "CONTRIBUTING.md"],
 }
 PAGES = [page for pages in CHAPTERS.values() for page in pages]
