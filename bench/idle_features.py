@@ -86,7 +86,7 @@ def main() -> int:
     often["output"]["fields"]["strain"] = often["output"]["cells"]["strain"] = 0.005
     # Every run writes its first and its last state, and reads them for its report; how well they compress depends on
     # the state.
-    due = ("*Observer::observe<*", "*RunDirectory::write(*", "*RunDirectory::finish(*", "*host::write_report(*")
+    due = ("*Observer::observe<*", "*RunDirectory::write(*", "*RunDirectory::finish(*", "*report::write_report(*")
 
     with (tempfile.TemporaryDirectory() as folder,
           concurrent.futures.ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool):

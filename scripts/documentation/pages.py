@@ -7,6 +7,7 @@ CHAPTERS = {
     "Reference": ["docs/reference/scene.md", "docs/reference/models.md"],
     "Trust the numbers": ["docs/physics.md", "docs/accuracy.md", "docs/study.md", "docs/stability.md", "docs/paper.md",
                           "docs/performance.md"],
-    "Extend": ["sdk/README.md", "docs/conformance.md", "docs/compatibility.md", "docs/trust.md", "docs/testing.md"],
+    "Extend": ["sdk/README.md", "docs/conformance.md", "docs/compatibility.md", "docs/trust.md", "docs/architecture.md",
+               "docs/testing.md", "CONTRIBUTING.md"],
 }
 PAGES = [page for pages in CHAPTERS.values() for page in pages]
