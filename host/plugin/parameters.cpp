@@ -87,8 +87,8 @@ class Resolver {
     const std::string word = written.is_string() ? written.get<std::string>() : "";
     const auto found = std::find(words.begin(), words.end(), word);
     if (!written.is_string() || found == words.end()) {
-      refuse(pointer_of(parameter.name), parameter.name + " is " + json::shown(written) +
-                                             did_you_mean(word, words) + "\n  it must be one of: " + listed(words));
+      refuse(pointer_of(parameter.name), parameter.name + " is " + json::shown(written) + did_you_mean(word, words) +
+                                             "\n  it must be one of: " + listed(words));
     }
     return static_cast<double>(found - words.begin());
   }
@@ -110,8 +110,7 @@ class Resolver {
                  (parameter.unit == "1" ? "a number"
                                         : "a quantity such as \"1 " + parameter.unit + "\", or a plain number in SI"));
     }
-    if (!std::isfinite(value))
-      refuse(pointer, parameter.name + " is " + json::shown(written) + "; it must be finite");
+    if (!std::isfinite(value)) refuse(pointer, parameter.name + " is " + json::shown(written) + "; it must be finite");
     return value;
   }
 

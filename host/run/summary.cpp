@@ -9,21 +9,20 @@ namespace {
 using Json = nlohmann::json;
 
 Json to_json(const monitor::Failure& failure) {
-  return {
-      {"reason", failure.reason},
-      {"step", failure.step},
-      {"time_s", json::number_or_null(failure.time)},
-      {"strain", json::number_or_null(failure.strain)},
-      {"place_m", {json::number_or_null(failure.place[0]), json::number_or_null(failure.place[1])}},
-      {"cell", failure.cell < 0 ? Json(nullptr) : Json(failure.cell)},
-      {"value", json::number_or_null(failure.value)},
-      {"limit", json::number_or_null(failure.limit)},
-      {"message", failure.message},
-      {"remedy", failure.remedy},
-      {"mode", failure.mode.name},
-      {"wavelength_segments", json::number_or_null(failure.mode.wavelength)},
-      {"tangential_share", json::number_or_null(failure.mode.tangential_share)},
-      {"mode_step", failure.mode.step < 0 ? Json(nullptr) : Json(failure.mode.step)}};
+  return {{"reason", failure.reason},
+          {"step", failure.step},
+          {"time_s", json::number_or_null(failure.time)},
+          {"strain", json::number_or_null(failure.strain)},
+          {"place_m", {json::number_or_null(failure.place[0]), json::number_or_null(failure.place[1])}},
+          {"cell", failure.cell < 0 ? Json(nullptr) : Json(failure.cell)},
+          {"value", json::number_or_null(failure.value)},
+          {"limit", json::number_or_null(failure.limit)},
+          {"message", failure.message},
+          {"remedy", failure.remedy},
+          {"mode", failure.mode.name},
+          {"wavelength_segments", json::number_or_null(failure.mode.wavelength)},
+          {"tangential_share", json::number_or_null(failure.mode.tangential_share)},
+          {"mode_step", failure.mode.step < 0 ? Json(nullptr) : Json(failure.mode.step)}};
 }
 
 Json written(const observe::AggregateEvent& event) {
@@ -113,9 +112,9 @@ Json to_json(const Summary& summary) {
                             {"area_leakage_max", json::number_or_null(summary.area_leakage_max)},
                             {"momentum_residual", json::number_or_null(summary.momentum_residual)}};
   const bool cells = summary.stretch[1] > 0;
-  result["stretch"] = cells ? Json{{"min", json::number_or_null(summary.stretch[0])},
-                                   {"max", json::number_or_null(summary.stretch[1])}}
-                            : Json();
+  result["stretch"] =
+      cells ? Json{{"min", json::number_or_null(summary.stretch[0])}, {"max", json::number_or_null(summary.stretch[1])}}
+            : Json();
   result["aggregates_final"] = summary.aggregates_final;
   result["aggregate_history"] = Json::array();
   for (const auto& event : summary.aggregate_history) result["aggregate_history"].push_back(written(event));
