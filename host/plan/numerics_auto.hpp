@@ -8,10 +8,10 @@
 
 namespace rouleau::json {
 class Document;
-}
+}  // namespace rouleau::json
 namespace rouleau::scene {
 struct Scene;
-}
+}  // namespace rouleau::scene
 namespace rouleau::plan {
 
 /// Parts of the error that is expected of a result, relative.

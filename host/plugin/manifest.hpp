@@ -13,7 +13,7 @@
 
 namespace rouleau::json {
 class Document;
-}
+}  // namespace rouleau::json
 namespace rouleau::plugin {
 
 enum class ModelKind { collision = 1, membrane = 2, interaction = 3 };

@@ -7,7 +7,7 @@
 
 namespace rouleau::plan {
 struct Plan;
-}
+}  // namespace rouleau::plan
 namespace rouleau::run {
 
 /// Version and, in a checkout, commit that the program was built from.

@@ -17,7 +17,7 @@
 
 namespace rouleau::json {
 class Document;
-}
+}  // namespace rouleau::json
 namespace rouleau::scene {
 
 /// A plugin named by the scene. Its parameters stay as written (JSON) until a manifest gives them unit and meaning.

@@ -7,10 +7,10 @@
 
 namespace rouleau::json {
 class Document;
-}
+}  // namespace rouleau::json
 namespace rouleau::scene {
 class SceneFields;
-}
+}  // namespace rouleau::scene
 namespace rouleau::study {
 
 enum class ReferenceKind {
