@@ -57,8 +57,8 @@ double depth(const Subject& subject, const Trial& trial, double cutoff) {
   constexpr int samples = 1001, last = samples - 1;
   double low = 1e-4 * cutoff, high = cutoff, least = 0;
   for (int round = 0; round < 4; ++round) {
-    std::vector<double> distances;
-    for (int i = 0; i < samples; ++i) distances.push_back(low * std::pow(high / low, static_cast<double>(i) / last));
+    std::vector<double> distances(samples);
+    for (int i = 0; i < samples; ++i) distances[i] = low * std::pow(high / low, static_cast<double>(i) / last);
     const auto energy = along(subject, trial, "energy", distances);
     const auto bottom = static_cast<int>(std::min_element(energy.begin(), energy.end()) - energy.begin());
     if (round == 0 && bottom == last) return std::nan("");

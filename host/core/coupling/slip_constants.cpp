@@ -10,11 +10,11 @@ namespace rouleau::core {
 
 namespace {
 
-constexpr double reach = 6;  // spacings; all distributions lie well within
+constexpr double farthest = 6;  // spacings; all distributions lie well within
 constexpr int steps_per_unit = 512;
-constexpr int points = static_cast<int>(2 * reach) * steps_per_unit + 1;
+constexpr int points = static_cast<int>(2 * farthest) * steps_per_unit + 1;
 
-/// Distribution function of a random distance at -reach ... reach.
+/// Distribution function of a random distance at -farthest ... farthest.
 class Distribution {
  public:
   /// From a density, which is normalised here.
@@ -28,10 +28,10 @@ class Distribution {
     }
     for (double& value : values_) value /= sum;
   }
-  static double place(int i) { return -reach + static_cast<double>(i) / steps_per_unit; }
+  static double place(int i) { return -farthest + static_cast<double>(i) / steps_per_unit; }
   /// Probability of a distance up to x.
   [[nodiscard]] double operator()(double x) const {
-    const double at = (x + reach) * steps_per_unit;
+    const double at = (x + farthest) * steps_per_unit;
     if (at <= 0) return 0;
     if (at >= points - 1) return 1;
     const auto i = static_cast<std::size_t>(at);
@@ -50,7 +50,7 @@ double expected_largest(Product product) {
     const double weight = i == 0 || i == points - 1 ? 0.5 : 1;
     integral += weight * product(Distribution::place(i));
   }
-  return reach - integral / steps_per_unit;
+  return farthest - integral / steps_per_unit;
 }
 
 /// Density of the distance of a lattice node from a point, weighted as the kernel does, averaged over the point's
