@@ -48,7 +48,7 @@ constexpr std::array<Named, 31> named{{
     {{{0, -2, 1, 0, 0, 1}}, "C/m2", "a charge per area", "0.036 C/m2", ""},
 }};
 
-constexpr std::array<std::string_view, 64> symbols{
+constexpr std::array<std::string_view, 64> usual_symbols{
     "m",  "cm",  "mm",  "um",  "nm", "pm",  "s",   "ms", "us",  "ns",  "min",  "h",    "kg", "g",    "mg",   "ug",
     "pg", "N",   "mN",  "uN",  "nN", "pN",  "dyn", "Pa", "mPa", "kPa", "MPa",  "bar",  "J",  "mJ",   "uJ",   "nJ",
     "pJ", "fJ",  "aJ",  "erg", "eV", "P",   "cP",  "mP", "K",   "mol", "mmol", "umol", "A",  "V",    "mV",   "C",
@@ -85,7 +85,7 @@ std::string wanted_unit(std::string_view unit, const Dimension& dimension) {
   return wanted + " (for example \"" + std::string(best->example) + '"' + other + ')';
 }
 
-std::span<const std::string_view> usual_units() { return symbols; }
+std::span<const std::string_view> usual_units() { return usual_symbols; }
 
 std::span<const std::string_view> usual_compounds() { return compounds; }
 

@@ -48,6 +48,7 @@ Stiffness stiffness_of(const MembraneLaws& laws) {
 double slight_energy_of(const std::vector<CellType>& types, const Membranes& membranes) {
   constexpr double strain = 1e-3;
   std::vector<Stiffness> of_type;
+  of_type.reserve(types.size());
   for (const CellType& type : types) of_type.push_back(stiffness_of(type.laws));
   double energy = 0;
   for (const CellRange& cell : membranes.cells) {
