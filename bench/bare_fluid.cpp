@@ -90,7 +90,7 @@ BareFluid<T>::BareFluid(Kernel kernel, int nx, int ny, double relaxation_rate, d
       relaxation_rate_(static_cast<T>(relaxation_rate)),
       magic_(static_cast<T>(magic)),
       walls_(walls),
-      lattice_(nx, ny, false) {
+      lattice_({{nx, ny}, {true, false}}) {
   if (kernel == Kernel::forced) force_ = {core::Field<T>(nx, ny), core::Field<T>(nx, ny)};
 }
 
@@ -101,7 +101,7 @@ void BareFluid<T>::set(const std::function<double(int, int, int)>& population) {
       for (int x = 0; x < lattice_.nx(); ++x) lattice_.slot(q, y)[x] = static_cast<T>(population(q, x, y));
     }
   }
-  begin_exchange(lattice_);
+  begin_halo(lattice_);
 }
 
 template <class T>
@@ -112,9 +112,8 @@ double BareFluid<T>::population(int q, int x, int y) const {
 }
 
 template <class T>
-void BareFluid<T>::step(rouleau::Worker worker) {
+void BareFluid<T>::step(rouleau::Range rows) {
   const RowFunction<T> row = pick<T>(kernel_);
-  const rouleau::Range rows = worker.share(lattice_.ny());
   RowTask<T> task{};
   task.count = lattice_.nx();
   task.relaxation_rate = relaxation_rate_;
@@ -127,7 +126,7 @@ void BareFluid<T>::step(rouleau::Worker worker) {
     row(&task);
     add_wall_momentum(lattice_, y, walls_);
     if (parity_ == core::Parity::even) send_row(lattice_, y);
-    if (force_.x.allocated()) fill_velocity_halo(force_, y, false, walls_);
+    if (force_.x.allocated()) fill_velocity_halo(force_, y, lattice_.domain(), walls_);
   }
 }
 

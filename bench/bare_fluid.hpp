@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "base/worker.hpp"
-#include "core/fluid/exchange.hpp"
+#include "core/fluid/halo.hpp"
 #include "core/fluid/field.hpp"
 #include "core/fluid/lattice.hpp"
 
@@ -29,7 +29,8 @@ class BareFluid {
   [[nodiscard]] double population(int q, int x, int y) const;
   [[nodiscard]] core::VectorField<T>& force() { return force_; }
 
-  void step(rouleau::Worker worker);
+  [[nodiscard]] rouleau::Range rows() const { return {0, lattice_.ny()}; }
+  void step(rouleau::Range rows);
   void end_step() { parity_ = core::next(parity_); }
 
  private:

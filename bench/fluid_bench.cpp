@@ -32,8 +32,7 @@ core::CollisionOperator trt() {
 template <class T>
 std::unique_ptr<core::Fluid<T>> plugin_fluid(int nx, int ny, bool forced, core::WallVelocity wall) {
   core::FluidSetting setting{};
-  setting.nx = nx;
-  setting.ny = ny;
+  setting.domain = {{nx, ny}, {true, false}};
   setting.relaxation_rate = relaxation_rate;
   setting.walls = wall;
   setting.membranes = forced;
@@ -46,7 +45,7 @@ std::unique_ptr<core::Fluid<T>> plugin_fluid(int nx, int ny, bool forced, core::
 
 template <class T>
 void start_couette(core::Fluid<T>& fluid) {
-  const int ny = fluid.setting().ny;
+  const int ny = fluid.setting().domain.size[1];
   const double rate = (walls.upper - walls.lower) / ny;
   fluid.set_profile([=](double y) { return walls.lower + rate * (y + 0.5); }, [=](double) { return rate; });
 }
@@ -54,7 +53,7 @@ void start_couette(core::Fluid<T>& fluid) {
 template <class T>
 BareFluid<T> bare_fluid(Kernel kernel, core::Fluid<T>& like) {
   const core::FluidSetting& setting = like.setting();
-  BareFluid<T> bare(kernel, setting.nx, setting.ny, relaxation_rate, magic, setting.walls);
+  BareFluid<T> bare(kernel, setting.domain.size[0], setting.domain.size[1], relaxation_rate, magic, setting.walls);
   bare.set([&](int q, int x, int y) { return like.population(q, x, y); });
   return bare;
 }
@@ -90,7 +89,7 @@ void clear(core::VectorField<T>& force, rouleau::Worker worker) {
 
 template <class Fluid>
 Candidate candidate(const char* name, Fluid& fluid) {
-  return {name, [&fluid](rouleau::Worker worker) { fluid.step(worker); },
+  return {name, [&fluid](rouleau::Worker worker) { fluid.step(worker.share(fluid.rows().end)); },
           [&fluid](rouleau::Worker worker) {
             if (worker.first()) fluid.end_step();
             if (fluid.force().x.allocated()) clear(fluid.force(), worker);
@@ -131,9 +130,9 @@ void check_precision(const char* name) {
                       [=](double y) { return 1e-3 * wave * std::cos(wave * (y + 0.5)); });
   BareFluid<T> bare = bare_fluid(Kernel::plain, *plugin);
   for (long i = 0; i < steps; ++i) {
-    plugin->step({});
+    plugin->step(plugin->rows());
     plugin->end_step();
-    bare.step({});
+    bare.step(bare.rows());
     bare.end_step();
   }
   plugin->settle();
@@ -166,9 +165,9 @@ void check_precision(const char* name) {
         }
       }
     }
-    forced->step({});
+    forced->step(forced->rows());
     forced->end_step();
-    bare_forced.step({});
+    bare_forced.step(bare_forced.rows());
     bare_forced.end_step();
     for (int y = 0; y < ny; ++y) {
       for (int x = 0; x < nx; ++x) {

@@ -34,7 +34,7 @@ struct Hooke {  // tension Es (stretch - 1)
 int main() {
   namespace core = rouleau::core;
   rouleau::SolverSetup setup;
-  setup.nx = 128, setup.ny = 64;
+  setup.domain = {{128, 64}, {true, false}};
   setup.walls = {-0.01, 0.01};
   setup.developed = true;
   setup.collision = core::collision_operator(rouleau::collision<Bgk>("bgk", "1"), setup.tau);

@@ -14,13 +14,13 @@ constexpr int oscillation_window = 8;  // nodes each way
 
 /// Distance from a place to the nearest node of a cell, over all images; infinite without finite nodes.
 double distance_to(const core::Membranes& m, const core::CellRange& cell, const std::array<double, 2>& place,
-                   const core::PeriodicBox& box) {
+                   const core::Domain<2>& domain) {
   double nearest = std::numeric_limits<double>::infinity();
   for (int i = cell.first; i < cell.end(); ++i) {
     const auto k = static_cast<std::size_t>(i);
     double dx = m.x[k] - place[0], dy = m.y[k] - place[1];
-    dx -= box.nx * std::round(dx / box.nx);
-    if (box.periodic_y()) dy -= box.ny * std::round(dy / box.ny);
+    dx -= domain.period(0) * std::round(dx / domain.period(0));
+    if (domain.periodic[1]) dy -= domain.period(1) * std::round(dy / domain.period(1));
     nearest = std::fmin(nearest, std::hypot(dx, dy));  // a NaN is farther than anything
   }
   return nearest;
@@ -32,12 +32,12 @@ struct Surroundings {
 };
 
 Surroundings find_surroundings(int cell, const core::Membranes& m, const std::array<double, 2>& place,
-                               const core::PeriodicBox& box) {
+                               const core::Domain<2>& domain) {
   Surroundings found{cell, false};
   double nearest = membrane_neighbourhood;
   int near = 0;
   for (int c = 0; c < m.cell_count(); ++c) {
-    const double distance = distance_to(m, m.cells[c], place, box);
+    const double distance = distance_to(m, m.cells[c], place, domain);
     near += distance < contact_neighbourhood && c != cell ? 1 : 0;
     if (cell < 0 && distance < nearest) nearest = distance, found.cell = c;
   }
@@ -103,14 +103,13 @@ double lattice_oscillation(int x, int y, const std::function<FluidSample(int x, 
 template <class T>
 double lattice_oscillation(const core::Fluid<T>& fluid, int x, int y) {
   const core::FluidSetting& setting = fluid.setting();
-  std::vector<std::vector<core::Moments>> rows(static_cast<std::size_t>(setting.ny));
+  std::vector<std::vector<core::Moments>> rows(static_cast<std::size_t>(setting.domain.size[1]));
   return lattice_oscillation(x, y, [&](int i, int j) -> FluidSample {
-    const int nx = setting.nx, ny = setting.ny;
-    if (setting.periodic_y) j = (j % ny + ny) % ny;
-    if (j < 0 || j >= ny) return {std::nan(""), std::nan(""), std::nan("")};
+    j = setting.domain.wrapped(1, j);
+    if (j < 0) return {std::nan(""), std::nan(""), std::nan("")};
     auto& row = rows[j];
     if (row.empty()) fluid.moments(j, row);
-    const core::Moments& m = row[(i % nx + nx) % nx];
+    const core::Moments& m = row[setting.domain.wrapped(0, i)];
     return {m.ux, m.uy, m.density / std::sqrt(3.0)};
   });
 }
@@ -119,8 +118,8 @@ template double lattice_oscillation(const core::Fluid<float>&, int, int);
 template double lattice_oscillation(const core::Fluid<double>&, int, int);
 
 void find_mode(monitor::Failure& failure, const core::Membranes& membranes, const GrowthWatch& growth,
-               const core::PeriodicBox& box, std::array<double, 2> place, double oscillation, long step) {
-  const Surroundings around = find_surroundings(failure.cell, membranes, place, box);
+               const core::Domain<2>& domain, std::array<double, 2> place, double oscillation, long step) {
+  const Surroundings around = find_surroundings(failure.cell, membranes, place, domain);
   FailureMode mode;
   if (around.cell >= 0) mode = wave_of(around.cell, membranes, growth, step);
   const bool waves = mode.name != "none";

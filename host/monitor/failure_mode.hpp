@@ -7,7 +7,7 @@
 
 #include "core/fluid/fluid.hpp"
 #include "core/membrane/membranes.hpp"
-#include "core/membrane/periodic_box.hpp"
+#include "core/domain/images.hpp"
 #include "failure.hpp"
 #include "growth_watch.hpp"
 
@@ -40,7 +40,7 @@ double lattice_oscillation(const core::Fluid<T>& fluid, int x, int y);
 /// Sets the mode of a failure whose reason and cell are known. `place` in lattice units; `oscillation`:
 /// lattice_oscillation there; `step`: the last one.
 void find_mode(Failure& failure, const core::Membranes& membranes, const GrowthWatch& growth,
-               const core::PeriodicBox& box, std::array<double, 2> place, double oscillation, long step);
+               const core::Domain<2>& domain, std::array<double, 2> place, double oscillation, long step);
 
 /// What the mode adds to the failure's message, and what to do about it first; empty where the mode says no more than
 /// the reason does.

@@ -22,8 +22,8 @@ std::vector<core::Bounds> all_bounds(const core::Membranes& m) {
 /// found must not depend on the bins.
 template <class Visit>
 void for_each_near(const std::vector<core::Bounds>& boxes, const std::vector<int>& cells, double reach,
-                   const core::PeriodicBox& box, Visit visit) {
-  const core::Bins bins(boxes, reach, box);
+                   const core::Domain<2>& domain, Visit visit) {
+  const core::Bins bins(boxes, reach, domain);
   std::vector<int> near;
   for (const int cell : cells) {
     bins.find(cell, near);
@@ -40,19 +40,19 @@ std::vector<int> numbered(std::size_t cells) {
 
 }  // namespace
 
-std::vector<CellContact> find_contacts(const core::Membranes& m, const core::PeriodicBox& box, double reach) {
+std::vector<CellContact> find_contacts(const core::Membranes& m, const core::Domain<2>& domain, double reach) {
   std::vector<CellContact> contacts;
   const std::vector<core::Bounds> boxes = all_bounds(m);
-  for_each_near(boxes, numbered(boxes.size()), reach, box, [&](int a, const std::vector<int>& near) {
+  for_each_near(boxes, numbered(boxes.size()), reach, domain, [&](int a, const std::vector<int>& near) {
     for (const int b : near) {
       if (b < a) continue;
       const core::CellRange &cell = m.cells[a], &other = m.cells[b];
-      core::for_each_image(boxes[a], boxes[b], reach, box, [&](core::ImageShift shift) {
+      core::for_each_image(boxes[a], boxes[b], reach, domain, [&](core::ImageShift shift) {
         // A cell and its own image are one contact, seen from both sides.
         if (a == b && (shift.y < 0 || (shift.y == 0 && shift.x <= 0))) return;
-        const double gap = core::outline_distance(m, cell, other, shift, box, reach);
+        const double gap = core::outline_distance(m, cell, other, shift, domain, reach);
         if (gap < reach) {
-          contacts.push_back({a, b, shift, gap, core::facing_length(m, cell, other, shift, box, reach)});
+          contacts.push_back({a, b, shift, gap, core::facing_length(m, cell, other, shift, domain, reach)});
         }
       });
     }
@@ -60,18 +60,18 @@ std::vector<CellContact> find_contacts(const core::Membranes& m, const core::Per
   return contacts;
 }
 
-std::vector<double> smallest_gaps(const core::Membranes& m, const core::PeriodicBox& box) {
+std::vector<double> smallest_gaps(const core::Membranes& m, const core::Domain<2>& domain) {
   std::vector<double> gaps(m.cells.size(), std::numeric_limits<double>::infinity());
   const std::vector<core::Bounds> boxes = all_bounds(m);
   std::vector<int> open = numbered(boxes.size());
   double first = 1;  // about the size of a cell, and not much of the box
   for (const core::Bounds& b : boxes)
     if (b.usable()) first = std::max({first, b.x_max - b.x_min, b.y_max - b.y_min});
-  const double most = 2 * std::max(box.nx, box.ny);
-  for (double reach = std::min(first, box.nx / 16); reach < most && !open.empty(); reach *= 2) {
-    for_each_near(boxes, open, reach, box, [&](int a, const std::vector<int>& near) {
+  const double most = 2 * std::max(domain.period(0), domain.period(1));
+  for (double reach = std::min(first, domain.period(0) / 16); reach < most && !open.empty(); reach *= 2) {
+    for_each_near(boxes, open, reach, domain, [&](int a, const std::vector<int>& near) {
       double& gap = gaps[a];
-      for (const int b : near) gap = std::min(gap, core::smallest_gap(m, a, b, box, std::min(gap, reach)));
+      for (const int b : near) gap = std::min(gap, core::smallest_gap(m, a, b, domain, std::min(gap, reach)));
     });
     std::erase_if(open, [&](int a) { return std::isfinite(gaps[a]); });
   }

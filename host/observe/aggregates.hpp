@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/membrane/membranes.hpp"
-#include "core/membrane/periodic_box.hpp"
+#include "core/domain/images.hpp"
 
 namespace rouleau::observe {
 
@@ -17,11 +17,11 @@ struct CellContact {
 };
 
 /// All pairs nearer than `reach` (lattice units).
-std::vector<CellContact> find_contacts(const core::Membranes& membranes, const core::PeriodicBox& box, double reach);
+std::vector<CellContact> find_contacts(const core::Membranes& membranes, const core::Domain<2>& domain, double reach);
 
 /// Of each cell the smallest gap to any other or to an image (spacings), looked for in growing neighbourhoods up to the
 /// size of the box; infinite when there is none.
-std::vector<double> smallest_gaps(const core::Membranes& membranes, const core::PeriodicBox& box);
+std::vector<double> smallest_gaps(const core::Membranes& membranes, const core::Domain<2>& domain);
 
 struct Aggregates {
   int count = 0;

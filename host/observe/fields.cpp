@@ -14,7 +14,7 @@ FieldSnapshot observe_fields(core::Fluid<T>& fluid, const scene::Scene& scene, c
     const auto& q = scene.output.quantities;
     return std::find(q.begin(), q.end(), name) != q.end();
   };
-  const int nx = fluid.setting().nx, ny = fluid.setting().ny;
+  const int nx = fluid.setting().domain.size[0], ny = fluid.setting().domain.size[1];
   const scene::FieldStorage& storage = scene.output.field_storage;
   FieldSnapshot f;
   f.nx = storage.count(0, nx);
@@ -33,7 +33,7 @@ FieldSnapshot observe_fields(core::Fluid<T>& fluid, const scene::Scene& scene, c
   }
   // Beyond a wall lies a row of nodes whose velocities have the wall's as mean with those of the row before it.
   const core::WallVelocity& walls = fluid.setting().walls;
-  const bool periodic_y = fluid.setting().periodic_y;
+  const bool periodic_y = fluid.setting().domain.periodic[1];
   const std::size_t below = periodic_y ? 0 : 1;
   const VelocityGrid grid{
       static_cast<std::size_t>(nx), static_cast<std::size_t>(ny) + 2 * below, {1, 1}, {true, periodic_y}};

@@ -14,6 +14,7 @@
 #include "fields.hpp"
 #include "monitor/node_checks.hpp"
 #include "particle_stress.hpp"
+#include "plan/solver_setup.hpp"
 #include "plan/stability_limits.hpp"
 #include "rheology.hpp"
 
@@ -58,8 +59,7 @@ std::string leak_remedy(double segment) {
 
 Observer::Observer(const scene::Scene& scene, const core::Membranes& membranes)
     : scene_(&scene),
-      box_{static_cast<double>(scene.domain.nodes[0]),
-           scene.domain.periodic_y ? static_cast<double>(scene.domain.nodes[1]) : 0.0} {
+      domain_(plan::lattice_domain(scene)) {
   for (const core::CellRange& cell : membranes.cells) initial_area_.push_back(core::enclosed_area(membranes, cell));
   for (const scene::CellPlacement& cell : scene.cells) angle_.push_back(cell.angle);
   tank_treading_angle_.assign(membranes.cells.size(), 0.0);
@@ -105,7 +105,7 @@ double Observer::follow_fluid(core::Fluid<T>& fluid) {
   fluid.settle();
   const auto [mass, speed] = fluid.extremes();
   if (std::isnan(initial_mass_)) initial_mass_ = mass;
-  const double nodes = static_cast<double>(fluid.setting().nx) * fluid.setting().ny;
+  const double nodes = static_cast<double>(fluid.setting().domain.size[0]) * fluid.setting().domain.size[1];
   mass_drift_ = std::max(mass_drift_, std::abs(mass - initial_mass_) / nodes);
   const double mach = units::mach_number(speed);
   mach_max_ = std::max(mach_max_, mach);
@@ -120,9 +120,9 @@ std::array<double, 2> extreme_node(const core::Fluid<T>& fluid) {
   std::array<double, 2> place{0, 0};
   double fastest = -1;
   std::vector<core::Moments> row;
-  for (int y = 0; y < fluid.setting().ny; ++y) {
+  for (int y = 0; y < fluid.setting().domain.size[1]; ++y) {
     fluid.moments(y, row);
-    for (int x = 0; x < fluid.setting().nx; ++x) {
+    for (int x = 0; x < fluid.setting().domain.size[0]; ++x) {
       const core::Moments& m = row[static_cast<std::size_t>(x)];
       const double square = m.ux * m.ux + m.uy * m.uy;
       const bool finite = std::isfinite(square) && std::isfinite(m.density);
@@ -199,7 +199,7 @@ std::optional<monitor::Failure> Observer::check(core::Solver<T>& solver, const p
             "acceptable");
   }
   if (auto uneven = check_stretch(membranes, units)) return uneven;
-  if (const auto crossing = core::find_crossing(membranes, box_)) {
+  if (const auto crossing = core::find_crossing(membranes, domain_)) {
     return failure("crossing", place(crossing->place.x(), crossing->place.y()), crossing->cell, 0, 0,
                    crossing->cell == crossing->other ? "the membrane of a cell crosses itself"
                                                      : "the membranes of cells " + std::to_string(crossing->cell) +
@@ -212,7 +212,7 @@ std::optional<monitor::Failure> Observer::check(core::Solver<T>& solver, const p
 
 void Observer::observe_cells(const core::Membranes& membranes, const units::LatticeUnits& units, Snapshot& snapshot) {
   const double length = units.length;
-  const auto contacts = find_contacts(membranes, box_, scene_->output.aggregate_gap / length);
+  const auto contacts = find_contacts(membranes, domain_, scene_->output.aggregate_gap / length);
   const Aggregates aggregates = find_aggregates(static_cast<int>(membranes.cells.size()), contacts);
   snapshot.aggregate_count = aggregates.count;
   snapshot.aggregate_sizes = aggregate_sizes(aggregates.label);
@@ -222,7 +222,7 @@ void Observer::observe_cells(const core::Membranes& membranes, const units::Latt
     snapshot.contacts.push_back(
         {c.cell_a, c.cell_b, {c.image.x, c.image.y}, c.gap * length, c.contact_length * length});
   }
-  const std::vector<double> gaps = smallest_gaps(membranes, box_);
+  const std::vector<double> gaps = smallest_gaps(membranes, domain_);
   std::vector<Eigen::Vector2d> centers;
   for (std::size_t k = 0; k < membranes.cells.size(); ++k) {
     const core::CellRange& cell = membranes.cells[k];
@@ -253,7 +253,7 @@ void Observer::observe_cells(const core::Membranes& membranes, const units::Latt
     stretch_.most = std::max(stretch_.most, stretch.most);
     snapshot.cells.push_back(std::move(s));
   }
-  snapshot.rotation = rotation_.follow(contacts, aggregates, centers, box_);
+  snapshot.rotation = rotation_.follow(contacts, aggregates, centers, domain_);
   started_ = true;
 }
 
@@ -280,7 +280,7 @@ Snapshot Observer::observe(core::Solver<T>& solver, const plan::StageSetting& se
   }
   if (!membranes.cells.empty()) {
     if (!scene_->domain.periodic_y) {
-      const auto layer = cell_free_layer(membranes, scene_->domain.nodes[0], scene_->domain.nodes[1]);
+      const auto layer = cell_free_layer(membranes, domain_);
       snapshot.cell_free_layer_lower = layer.lower * units.length;
       snapshot.cell_free_layer_upper = layer.upper * units.length;
     }

@@ -46,7 +46,7 @@ class Observer {
   /// Sum of nodal forces over the sum of their magnitudes: rounding only, or an internal force is unbalanced.
   static double momentum_residual(const core::Membranes& membranes);
 
-  [[nodiscard]] const core::PeriodicBox& box() const { return box_; }
+  [[nodiscard]] const core::Domain<2>& domain() const { return domain_; }
   [[nodiscard]] double mach_max() const { return mach_max_; }
   [[nodiscard]] double area_drift_max() const { return area_drift_max_; }
   [[nodiscard]] double mass_drift() const { return mass_drift_; }
@@ -69,7 +69,7 @@ class Observer {
   void observe_cells(const core::Membranes& membranes, const units::LatticeUnits& units, Snapshot& snapshot);
 
   const scene::Scene* scene_;
-  core::PeriodicBox box_;
+  core::Domain<2> domain_;
   std::vector<double> initial_area_;
   std::vector<double> angle_, tank_treading_angle_;  ///< last values, continuous
   Rotation rotation_;

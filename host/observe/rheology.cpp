@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "core/fluid/relaxation.hpp"
-#include "core/membrane/rounding.hpp"
 
 namespace rouleau::observe {
 
@@ -15,17 +14,17 @@ bool is_driven_channel(const plan::StageSetting& setting, const scene::Scene& sc
 template <class T>
 double flow_rate(const core::Fluid<T>& fluid) {
   const core::FluidSetting& setting = fluid.setting();
-  std::vector<double> mean(static_cast<std::size_t>(setting.ny));
+  std::vector<double> mean(static_cast<std::size_t>(setting.domain.size[1]));
   std::vector<core::Moments> row;
   double sum = 0;
-  for (int y = 0; y < setting.ny; ++y) {
+  for (int y = 0; y < setting.domain.size[1]; ++y) {
     fluid.moments(y, row);
     double& value = mean[static_cast<std::size_t>(y)];
-    for (int x = 0; x < setting.nx; ++x) value += row[static_cast<std::size_t>(x)].ux;
-    value /= setting.nx;
+    for (int x = 0; x < setting.domain.size[0]; ++x) value += row[static_cast<std::size_t>(x)].ux;
+    value /= setting.domain.size[0];
     sum += value;
   }
-  if (setting.periodic_y) return sum;
+  if (setting.domain.periodic[1]) return sum;
   // Slopes at the walls of parabolas through the wall and the two rows nearest to it, rows at 1/2 and 3/2.
   const auto slope = [](double wall, double first, double second) { return -8 * wall / 3 + 3 * first - second / 3; };
   const std::size_t last = mean.size() - 1;
@@ -43,7 +42,8 @@ double apparent_viscosity(double flow_rate, const plan::StageSetting& setting, i
   return flow_rate != 0 ? alone / flow_rate : std::nan("");
 }
 
-CellFreeLayer cell_free_layer(const core::Membranes& membranes, int nx, int ny) {
+CellFreeLayer cell_free_layer(const core::Membranes& membranes, const core::Domain<2>& domain) {
+  const int nx = domain.size[0], ny = domain.size[1];
   const double half = ny / 2.0, lower_wall = -0.5, upper_wall = ny - 0.5;
   std::vector<double> lower(static_cast<std::size_t>(nx), half), upper(static_cast<std::size_t>(nx), half);
   for (const core::CellRange& cell : membranes.cells) {
@@ -55,7 +55,7 @@ CellFreeLayer cell_free_layer(const core::Membranes& membranes, int nx, int ny) 
       if (!(right - left < nx && std::abs(left) < 1e9)) continue;
       for (double x = std::ceil(left); x <= right; ++x) {
         const double y = x1 != x0 ? y0 + (y1 - y0) * (x - x0) / (x1 - x0) : y0;
-        const auto column = static_cast<std::size_t>(core::wrapped(static_cast<int>(x), nx));
+        const auto column = static_cast<std::size_t>(domain.wrapped(0, static_cast<int>(x)));
         lower[column] = std::min(lower[column], std::min(y, x1 != x0 ? y : y1) - lower_wall);
         upper[column] = std::min(upper[column], upper_wall - std::max(y, x1 != x0 ? y : y1));
       }

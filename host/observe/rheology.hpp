@@ -30,7 +30,7 @@ double apparent_viscosity(double flow_rate, const plan::StageSetting& setting, i
 struct CellFreeLayer {
   double lower, upper;
 };
-CellFreeLayer cell_free_layer(const core::Membranes& membranes, int nx, int ny);
+CellFreeLayer cell_free_layer(const core::Membranes& membranes, const core::Domain<2>& domain);
 
 /// Number of aggregates by their number of cells, from a label for each cell.
 std::map<int, int> aggregate_sizes(const std::vector<int>& label);

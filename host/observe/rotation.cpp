@@ -65,7 +65,7 @@ double angle_of_longest(const std::vector<Eigen::Vector2d>& points) {
 }  // namespace
 
 std::map<int, double> Rotation::follow(const std::vector<CellContact>& contacts, const Aggregates& aggregates,
-                                       const std::vector<Eigen::Vector2d>& centers, const core::PeriodicBox& box) {
+                                       const std::vector<Eigen::Vector2d>& centers, const core::Domain<2>& domain) {
   const Unwrapping unwrapped = unwrap(contacts, aggregates);
   std::map<int, std::vector<int>> members;
   for (std::size_t i = 0; i < aggregates.label.size(); ++i) members[aggregates.label[i]].push_back(static_cast<int>(i));
@@ -76,7 +76,7 @@ std::map<int, double> Rotation::follow(const std::vector<CellContact>& contacts,
     std::vector<Eigen::Vector2d> points;
     for (const int cell : cells) {
       const auto k = static_cast<std::size_t>(cell);
-      const Eigen::Vector2d shift(unwrapped.shift[k].x * box.nx, unwrapped.shift[k].y * box.ny);
+      const Eigen::Vector2d shift(unwrapped.shift[k].x * domain.period(0), unwrapped.shift[k].y * domain.period(1));
       points.emplace_back(centers[k] + shift);
     }
     double angle = angle_of_longest(points);

@@ -19,7 +19,7 @@ class Rotation {
   /// is new, and is then continued by whole half turns as long as it has the same members. Lone cells have none, nor
   /// has an aggregate that is closed to a ring through the periodic border: it has no ends.
   std::map<int, double> follow(const std::vector<CellContact>& contacts, const Aggregates& aggregates,
-                               const std::vector<Eigen::Vector2d>& centers, const core::PeriodicBox& box);
+                               const std::vector<Eigen::Vector2d>& centers, const core::Domain<2>& domain);
   NLOHMANN_DEFINE_TYPE_INTRUSIVE(Rotation, last_)
 
  private:

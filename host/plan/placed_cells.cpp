@@ -7,6 +7,7 @@
 #include "core/contact/crossing.hpp"
 #include "core/membrane/geometry.hpp"
 #include "shape/outline.hpp"
+#include "solver_setup.hpp"
 
 namespace rouleau::plan {
 
@@ -29,11 +30,11 @@ class Checker {
       : scene_(scene),
         membranes_(membranes),
         spacing_(spacing),
-        box_{static_cast<double>(scene.domain.nodes[0]), scene.domain.periodic_y ? scene.domain.nodes[1] : 0.0} {}
+        domain_(lattice_domain(scene)) {}
 
   void check() const {
     for (std::size_t i = 0; i < membranes_.cells.size(); ++i) check_fits(i);
-    if (const auto crossing = core::find_crossing(membranes_, box_)) report(*crossing);
+    if (const auto crossing = core::find_crossing(membranes_, domain_)) report(*crossing);
   }
 
  private:
@@ -55,14 +56,14 @@ class Checker {
     const core::Bounds extent = core::bounds(membranes_, membranes_.cells[cell]);
     const std::string who = name(static_cast<int>(cell));
     const double width = extent.x_max - extent.x_min, height = extent.y_max - extent.y_min;
-    if (!(width < box_.nx)) {
+    if (!(width < domain_.period(0))) {
       refuse(cell, who + " is " + micrometres(width) + " wide, more than the periodic length of the domain, " +
-                       micrometres(box_.nx) + "; make the domain longer.");
+                       micrometres(domain_.period(0)) + "; make the domain longer.");
     }
-    if (box_.periodic_y()) {
-      if (!(height < box_.ny)) {
+    if (domain_.periodic[1]) {
+      if (!(height < domain_.period(1))) {
         refuse(cell, who + " is " + micrometres(height) + " high, more than the periodic height of the domain, " +
-                         micrometres(box_.ny) + "; make the domain higher.");
+                         micrometres(domain_.period(1)) + "; make the domain higher.");
       }
       return;
     }
@@ -93,7 +94,7 @@ class Checker {
   [[nodiscard]] double overlap(const core::Crossing& crossing) const {
     const core::CellRange& a = membranes_.cells[static_cast<std::size_t>(crossing.cell)];
     const core::CellRange& b = membranes_.cells[static_cast<std::size_t>(crossing.other)];
-    const Eigen::Vector2d move(crossing.shift.x * box_.nx, crossing.shift.y * box_.ny);
+    const Eigen::Vector2d move(crossing.shift.x * domain_.period(0), crossing.shift.y * domain_.period(1));
     double depth = 0;
     for (int i = a.first; i < a.end(); ++i) depth = std::max(depth, core::depth_inside(membranes_, b, node(i) - move));
     for (int i = b.first; i < b.end(); ++i) depth = std::max(depth, core::depth_inside(membranes_, a, node(i) + move));
@@ -106,7 +107,7 @@ class Checker {
   const scene::Scene& scene_;
   const core::Membranes& membranes_;
   double spacing_;
-  core::PeriodicBox box_;
+  core::Domain<2> domain_;
 };
 
 }  // namespace

@@ -5,6 +5,10 @@
 
 namespace rouleau::plan {
 
+core::Domain<2> lattice_domain(const scene::Scene& scene) {
+  return {{scene.domain.nodes[0], scene.domain.nodes[1]}, {true, scene.domain.periodic_y}};
+}
+
 core::SolverSetup make_solver_setup(const Plan& plan, int index) {
   const scene::Scene& scene = *plan.scene;
   const StageSetting& stage = plan.stages[index];
@@ -12,9 +16,7 @@ core::SolverSetup make_solver_setup(const Plan& plan, int index) {
   const auto values = [](const PlannedModel& model) -> const std::vector<double>& { return model.parameters.values; };
 
   core::SolverSetup setup{
-      .nx = scene.domain.nodes[0],
-      .ny = scene.domain.nodes[1],
-      .periodic_y = scene.domain.periodic_y,
+      .domain = lattice_domain(scene),
       .tau = stage.tau,
       .inertia = scene.fluid.inertia,
       .walls = {-stage.wall_speed, stage.wall_speed},

@@ -175,8 +175,9 @@ class Simulation {
 #pragma omp single
       barrier.emplace(omp_get_num_threads());
       const Worker worker{omp_get_thread_num(), omp_get_num_threads()};
-      const std::vector<core::Pass>&forces = solver.forces(), &advance = solver.advance();
-      core::PassClock clock(forces.size() + advance.size());
+      const std::vector<core::Pass>& passes = solver.passes();
+      const std::size_t rows = solver.rows_pass(), observable = solver.observable_pass();
+      core::PassClock clock(passes.size());
       long counted = state_.stage_step;  // steps whose costs are in the state
       const auto count_costs = [&](long step) {
         add_costs(solver, clock, step - counted);
@@ -205,12 +206,18 @@ class Simulation {
           });
           if (ending_ == Ending::failed) break;
         }
-        run_passes(forces, worker, *barrier, clock, 0);
+        const auto run = [&](std::size_t from, std::size_t to) {
+          run_passes(passes, from, to, solver.bands(), worker, *barrier, &clock);
+        };
+        run(0, rows);
         if (attend || wants_a_look(solver)) {
+          run(rows, observable);
           alone([&] { after_forces(solver, step, cells, fields); });
           if (ending_ != Ending::none) break;
+          run(observable, passes.size());
+        } else {
+          run(rows, passes.size());
         }
-        run_passes(advance, worker, *barrier, clock, forces.size());
         // A request counts two steps later, when every worker has passed a barrier since.
         if (worker.first() && (interrupted() || checkpoints_.due()) && attend_at.load() > step + 2) {
           attend_at.store(step + 2, std::memory_order_relaxed);
@@ -225,10 +232,8 @@ class Simulation {
   void add_costs(const core::Solver<T>& solver, core::PassClock& clock, long steps) {
     std::size_t at = 0;
     std::set<std::string> counted;
-    for (const std::vector<core::Pass>* passes : {&solver.forces(), &solver.advance()}) {
-      for (const core::Pass& pass : *passes) {
-        state_.costs.add(pass.name, clock.take(at++), counted.insert(pass.name).second ? steps : 0);
-      }
+    for (const core::Pass& pass : solver.passes()) {
+      state_.costs.add(pass.name, clock.take(at++), counted.insert(pass.name).second ? steps : 0);
     }
   }
 
@@ -366,7 +371,7 @@ class Simulation {
       oscillation = monitor::lattice_oscillation(solver.fluid(), nearest(place[0], scene_.domain.nodes[0]),
                                                  nearest(place[1], scene_.domain.nodes[1]));
     }
-    monitor::find_mode(failure, membranes_, state_.growth, state_.observer.box(), place, oscillation, failure.step);
+    monitor::find_mode(failure, membranes_, state_.growth, state_.observer.domain(), place, oscillation, failure.step);
     const std::string sentence = monitor::mode_sentence(failure),
                       remedy = monitor::mode_remedy(failure, plan_.semi_implicit);
     if (!sentence.empty()) failure.message += "; " + sentence;

@@ -51,7 +51,7 @@ std::vector<Operator> operators_of_other_magic() {
 /// the fluid moves with (drift, crossing).
 double viscosity_error(const Operator& op, double tau, bool inertia, int n, double drift = 0, double crossing = 0) {
   const double nu = (tau - 0.5) / 3, k = 2 * pi / n, speed = 1e-4;
-  FluidSetting setting{.nx = 8, .ny = n, .periodic_y = true, .relaxation_rate = 1 / tau, .inertia = inertia};
+  FluidSetting setting{.domain = {{8, n}, {true, true}}, .relaxation_rate = 1 / tau, .inertia = inertia};
   Fluid<double> fluid(setting, make_collision(op.id, op.parameters, tau, inertia));
   fluid.set_state([&](int, int y) {
     return Fluid<double>::State{0, drift + speed * std::sin(k * y), crossing, {0, speed * k * std::cos(k * y), 0, 0}};
@@ -79,7 +79,7 @@ Slip poiseuille_slip(const Operator& op, double tau, bool inertia, int n, double
   const double nu = (tau - 0.5) / 3, force = 8 * nu * maximum / n / n;
   const auto parabola = [&](double y) { return 4 * (y + 0.5) / n * (1 - (y + 0.5) / n); };
   FluidSetting setting{
-      .nx = 8, .ny = n, .periodic_y = false, .relaxation_rate = 1 / tau, .inertia = inertia, .body_force_x = force};
+      .domain = {{8, n}, {true, false}}, .relaxation_rate = 1 / tau, .inertia = inertia, .body_force_x = force};
   Fluid<double> fluid(setting, make_collision(op.id, op.parameters, tau, inertia));
   fluid.set_profile([&](double y) { return maximum * parabola(y); },
                     [&](double y) { return maximum * 4 / n * (1 - 2 * (y + 0.5) / n); });
@@ -171,9 +171,7 @@ TEST_CASE("Couette flow of two layers, viscosity ratio 5, is the exact broken li
   // Equal stress: the shear rates are as 1 : 5, and add up to the speed of the upper wall.
   const double slow = speed / (layer + 5 * (n - layer));
   for (const Operator& op : shipped_operators()) {
-    FluidSetting setting{.nx = 16,
-                         .ny = n,
-                         .periodic_y = false,
+    FluidSetting setting{.domain = {{16, n}, {true, false}},
                          .relaxation_rate = 1 / tau,
                          .inertia = inertia,
                          .walls = {0, speed},
@@ -186,15 +184,13 @@ TEST_CASE("Couette flow of two layers, viscosity ratio 5, is the exact broken li
     }
     fluid.set_profile([](double) { return 0.0; }, [](double) { return 0.0; });
     for (long i = 0; i < std::lround(4 * n * n / nu); ++i) {
-      fluid.clear_force(Worker{});
-      fluid.fold_force(Worker{});
-      fluid.step(Worker{});
+      fluid.clear_force(fluid.rows());
+      fluid.step(fluid.rows());
       fluid.end_step();
     }
     double error = 0;
     int y = 0;
-    fluid.clear_force(Worker{});
-    fluid.fold_force(Worker{});
+    fluid.clear_force(fluid.rows());
     for (const Moments& m : column(fluid, 5)) {
       const double height = y++ + 0.5;
       const double exact = height < layer ? slow * height : slow * layer + 5 * slow * (height - layer);

@@ -59,7 +59,7 @@ Closure close_balance(SolverBench& bench, double begin, double end, long every) 
   Closure closure{};
   for (long step = 0; step < steps; step += every) {
     for (long i = 0; i < every; ++i) {
-      for (const Pass& pass : bench.solver->advance()) pass.run(Worker{});
+      bench.solver->advance();
       bench.forces();
     }
     const EnergySnapshot now = ledger_now(bench);
@@ -68,7 +68,7 @@ Closure close_balance(SolverBench& bench, double begin, double end, long every) 
     closure.lost += lost / 2 * static_cast<double>(every) * bench.plan.stages[0].units.time;
     before = now;
   }
-  for (const Pass& pass : bench.solver->advance()) pass.run(Worker{});
+  bench.solver->advance();
   closure.dropped = first - before.total;
   return closure;
 }
@@ -287,7 +287,7 @@ TEST_CASE("a decaying vortex between periodic sides loses what viscosity takes",
   const int n = GENERATE(32, 64);
   for (const double tau : {0.6, 1.0, 2.0}) {
     const double k = 2 * std::numbers::pi / n, speed = 1e-3, nu = (tau - 0.5) / 3;
-    FluidSetting setting{n, n, true, 1 / tau};
+    FluidSetting setting{.domain = {{n, n}, {true, true}}, .relaxation_rate = 1 / tau};
     Fluid<double> fluid(setting, make_collision("trt", {3.0 / 16}, tau, false));
     fluid.set_state([&](int x, int y) -> Fluid<double>::State {
       const double sx = std::sin(k * x), cx = std::cos(k * x), sy = std::sin(k * y), cy = std::cos(k * y);
@@ -337,7 +337,7 @@ TEST_CASE("a law that acts and tells no energy leaves the total unknown, and say
   const Plan plan = make_plan(scene, catalog);
   Membranes membranes = make_membranes(scene, lattice_spacing(scene));
   Solver<double> solver(make_solver_setup(plan, 0), membranes);
-  for (const Pass& pass : solver.forces()) pass.run(Worker{});
+  solver.compute_forces();
   solver.fluid().settle();
   const EnergySnapshot e = observe_energy(solver, membranes, plan.stages[0].units);
   CHECK(std::isnan(e.total));

@@ -33,7 +33,7 @@ TEST_CASE("start-up Couette flow converges to its series with second order", "[f
   std::vector<double> errors;
   for (int n : {16, 32, 64}) {
     const double speed = 0.8 / n, nu = (tau - 0.5) / 3, t = 0.06;
-    FluidSetting setting{.nx = 8, .ny = n, .periodic_y = false, .relaxation_rate = 1 / tau, .walls = {-speed, speed}};
+    FluidSetting setting{.domain = {{8, n}, {true, false}}, .relaxation_rate = 1 / tau, .walls = {-speed, speed}};
     Fluid<double> fluid(setting, make_collision("trt", {0.1875}, tau, false));
     const long steps = std::lround(t * n * n / nu);
     advance(fluid, steps);
@@ -54,7 +54,7 @@ TEST_CASE("start-up Poiseuille flow converges to its series with second order", 
   std::vector<double> errors;
   for (int n : {16, 32, 64}) {
     const double nu = (tau - 0.5) / 3, maximum = 0.8 / n, force = 8 * nu * maximum / n / n, t = 0.06;
-    FluidSetting setting{.nx = 8, .ny = n, .periodic_y = false, .relaxation_rate = 1 / tau, .body_force_x = force};
+    FluidSetting setting{.domain = {{8, n}, {true, false}}, .relaxation_rate = 1 / tau, .body_force_x = force};
     Fluid<double> fluid(setting, make_collision("trt", {0.1875}, tau, false));
     const long steps = std::lround(t * n * n / nu);
     fluid.set_profile([](double) { return 0.0; }, [](double) { return 0.0; });
@@ -77,7 +77,7 @@ TEST_CASE("steady Poiseuille flow with TRT does not depend on tau and is exact a
   int k = 0;
   for (double tau : {0.7, 1.0, 2.0}) {
     const double nu = (tau - 0.5) / 3, maximum = 0.01, force = 8 * nu * maximum / n / n;
-    FluidSetting setting{.nx = 8, .ny = n, .periodic_y = false, .relaxation_rate = 1 / tau, .body_force_x = force};
+    FluidSetting setting{.domain = {{8, n}, {true, false}}, .relaxation_rate = 1 / tau, .body_force_x = force};
     Fluid<double> fluid(setting, make_collision("trt", {0.1875}, tau, false));
     fluid.set_profile([](double) { return 0.0; }, [](double) { return 0.0; });
     advance(fluid, std::lround(4 * n * n / nu));
@@ -100,7 +100,7 @@ TEST_CASE("steady Poiseuille flow with TRT does not depend on tau and is exact a
 /// Relative error of Taylor-Green vortices on n x n nodes after their velocity has halved or so.
 double taylor_green_error(const std::string& collision, std::vector<double> parameters, bool inertia, int n) {
   const double tau = 0.8, nu = (tau - 0.5) / 3, k = 2 * pi / n, speed = 0.32 / n;
-  FluidSetting setting{.nx = n, .ny = n, .periodic_y = true, .relaxation_rate = 1 / tau, .inertia = inertia};
+  FluidSetting setting{.domain = {{n, n}, {true, true}}, .relaxation_rate = 1 / tau, .inertia = inertia};
   Fluid<double> fluid(setting, make_collision(collision, std::move(parameters), tau, inertia));
   fluid.set_state([&](int x, int y) {
     const double sx = std::sin(k * x), cx = std::cos(k * x), sy = std::sin(k * y), cy = std::cos(k * y);
@@ -155,7 +155,7 @@ TEST_CASE("developed Couette flow stays as it was started, and its wall stress i
   constexpr int n = 20;
   const double middle = (n - 1) / 2.0, viscosity = (tau - 0.5) / 3;
   FluidSetting setting{
-      .nx = 12, .ny = n, .periodic_y = false, .relaxation_rate = 1 / tau, .walls = {-rate * n / 2, rate * n / 2}};
+      .domain = {{12, n}, {true, false}}, .relaxation_rate = 1 / tau, .walls = {-rate * n / 2, rate * n / 2}};
   Fluid<double> fluid(setting, make_collision("trt", {0.1875}, tau, false));
   fluid.set_profile([&](double y) { return rate * (y - middle); }, [&](double) { return rate; });
   for (int steps : {0, 1, 2, 501}) {
@@ -172,7 +172,7 @@ TEST_CASE("developed Couette flow stays as it was started, and its wall stress i
 TEST_CASE("a fluid taken over with a new density factor goes on at the scaled velocity", "[flow]") {
   const double tau = 0.9;
   constexpr int n = 24;
-  FluidSetting setting{.nx = 16, .ny = n, .periodic_y = false, .relaxation_rate = 1 / tau, .walls = {-0.01, 0.01}};
+  FluidSetting setting{.domain = {{16, n}, {true, false}}, .relaxation_rate = 1 / tau, .walls = {-0.01, 0.01}};
   Fluid<double> fluid(setting, make_collision("trt", {0.1875}, tau, false));
   const int before = GENERATE(300, 301);
   advance(fluid, before);

@@ -29,7 +29,7 @@ inline core::CollisionOperator make_collision(const std::string& id, const std::
 template <class T>
 void advance(Fluid<T>& fluid, long steps) {
   for (long i = 0; i < steps; ++i) {
-    fluid.step(Worker{});
+    fluid.step(fluid.rows());
     fluid.end_step();
   }
 }
@@ -38,7 +38,7 @@ template <class T>
 std::vector<Moments> column(Fluid<T>& fluid, int x) {
   fluid.settle();
   std::vector<Moments> result, row;
-  for (int y = 0; y < fluid.setting().ny; ++y) {
+  for (int y = 0; y < fluid.setting().domain.size[1]; ++y) {
     fluid.moments(y, row);
     result.push_back(row[static_cast<std::size_t>(x)]);
   }

@@ -23,9 +23,9 @@ double mean_density(SolverBench& bench, double from, double to) {
   double sum = 0;
   int count = 0;
   std::vector<Moments> row;
-  for (int y = 0; y < fluid.setting().ny; ++y) {
+  for (int y = 0; y < fluid.setting().domain.size[1]; ++y) {
     fluid.moments(y, row);
-    for (int x = 0; x < fluid.setting().nx; ++x) {
+    for (int x = 0; x < fluid.setting().domain.size[0]; ++x) {
       const double r = std::hypot(x - c.x(), y - c.y());
       if (r >= from && r < to) sum += row[static_cast<std::size_t>(x)].density, ++count;
     }

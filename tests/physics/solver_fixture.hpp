@@ -20,15 +20,8 @@ struct SolverBench {
 
   /// To be called once the membranes are as they should start.
   void start() { solver = std::make_unique<Solver<double>>(make_solver_setup(plan, 0), membranes); }
-  void step(long steps) {
-    for (long i = 0; i < steps; ++i) {
-      forces();
-      for (const Pass& pass : solver->advance()) pass.run(Worker{});
-    }
-  }
-  void forces() {
-    for (const Pass& pass : solver->forces()) pass.run(Worker{});
-  }
+  void step(long steps) { solver->step(steps); }
+  void forces() { solver->compute_forces(); }
 
   Scene scene;
   Plan plan;

@@ -9,10 +9,11 @@
 
 #include "base/worker.hpp"
 #include "core/membrane/membranes.hpp"
-#include "core/membrane/periodic_box.hpp"
+#include "core/domain/images.hpp"
 #include "plan/placed_cells.hpp"
 #include "plugin/catalog.hpp"
 #include "plugin/handles.hpp"
+#include "unit/periodic_box.hpp"
 
 namespace rouleau::test {
 
@@ -48,11 +49,11 @@ struct Placed {
 };
 
 /// Scene of biconcave cells of one type (radius 20, spacing 1) in lattice coordinates.
-inline Scene biconcave_scene(const std::vector<Placed>& places, PeriodicBox box, int height, int segments = 100) {
+inline Scene biconcave_scene(const std::vector<Placed>& places, core::Domain<2> domain, int height, int segments = 100) {
   Scene scene{};
-  scene.domain.nodes = {static_cast<int>(box.nx), box.periodic_y() ? static_cast<int>(box.ny) : height};
-  scene.domain.size = {box.nx, static_cast<double>(scene.domain.nodes[1])};
-  scene.domain.periodic_y = box.periodic_y();
+  scene.domain.nodes = {static_cast<int>(domain.period(0)), domain.periodic[1] ? static_cast<int>(domain.period(1)) : height};
+  scene.domain.size = {domain.period(0), static_cast<double>(scene.domain.nodes[1])};
+  scene.domain.periodic_y = domain.periodic[1];
   scene.cell_types.push_back({"red", Biconcave{20.0}, segments, 1.0, {}});
   for (std::size_t i = 0; i < places.size(); ++i) {
     scene.cells.push_back({0, {places[i].x + 0.5, places[i].y + 0.5}, places[i].angle, "/cells/" + std::to_string(i)});
@@ -62,7 +63,7 @@ inline Scene biconcave_scene(const std::vector<Placed>& places, PeriodicBox box,
 
 /// The same cells, wherever they are and whatever they cross.
 inline Membranes biconcave_cells(const std::vector<Placed>& places, int segments = 100) {
-  const PeriodicBox far{1e6};
+  const core::Domain<2> far = periodic_box(1000000);
   Membranes all;
   for (const Placed& place : places) {
     const Membranes one = plan::make_membranes(biconcave_scene({{0, 1000, 0}}, far, 2000, segments), 1.0);

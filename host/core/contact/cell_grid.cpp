@@ -47,7 +47,7 @@ void Bins::for_around(const Axis& axis, int bin, Function function) {
   }
 }
 
-Bins::Bins(const std::vector<Bounds>& bounds, double reach, const PeriodicBox& box) : bin_(bounds.size(), -1) {
+Bins::Bins(const std::vector<Bounds>& bounds, double reach, const Domain<2>& domain) : bin_(bounds.size(), -1) {
   const double far = std::numeric_limits<double>::infinity();
   Bounds middles{far, -far, far, -far};
   double width = 0, height = 0;
@@ -61,8 +61,8 @@ Bins::Bins(const std::vector<Bounds>& bounds, double reach, const PeriodicBox& b
   }
   // Room for rounding: a pair at exactly the reach must not fall between two bins.
   const double room = reach * (1 + 1e-9) + 1e-6;
-  x_ = make_axis(middles.x_min, middles.x_max, width + room, box.nx);
-  y_ = make_axis(middles.y_min, middles.y_max, height + room, box.ny);
+  x_ = make_axis(middles.x_min, middles.x_max, width + room, domain.period(0));
+  y_ = make_axis(middles.y_min, middles.y_max, height + room, domain.period(1));
 
   begin_.assign(static_cast<std::size_t>(x_.count) * y_.count + 1, 0);
   for (std::size_t c = 0; c < bounds.size(); ++c) {

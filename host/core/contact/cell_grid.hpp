@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "core/membrane/periodic_box.hpp"
+#include "core/domain/images.hpp"
 
 namespace rouleau::core {
 
@@ -13,7 +13,7 @@ namespace rouleau::core {
 class Bins {
  public:
   /// Bounds that are not usable() are near nothing.
-  Bins(const std::vector<Bounds>& bounds, double reach, const PeriodicBox& box);
+  Bins(const std::vector<Bounds>& bounds, double reach, const Domain<2>& domain);
 
   /// Sets `near` to the cells in the bins around that of `cell`, itself included, each once, in no particular order.
   void find(int cell, std::vector<int>& near) const;

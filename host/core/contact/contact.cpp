@@ -133,8 +133,8 @@ struct Search {
 
 }  // namespace
 
-Contacts::Contacts(const Membranes& membranes, Cutoffs cutoffs, PeriodicBox box)
-    : neighbours_(membranes, std::move(cutoffs), box), segments_(membranes), lists_(membranes.cells.size()) {}
+Contacts::Contacts(const Membranes& membranes, Cutoffs cutoffs, Domain<2> domain)
+    : neighbours_(membranes, std::move(cutoffs), domain), segments_(membranes), lists_(membranes.cells.size()) {}
 
 void Contacts::run(Worker worker, int phase, const Membranes& membranes) {
   if (phase == 0) {
@@ -183,7 +183,7 @@ void Contacts::search(const Membranes& membranes, int cell) {
     if (pair.group_begin != pair.group_end) {
       task.groups = candidates.groups.data() + pair.group_begin;
       task.groups_end = candidates.groups.data() + pair.group_end;
-      task.move_x = pair.shift.x * neighbours_.box().nx, task.move_y = pair.shift.y * neighbours_.box().ny;
+      task.move_x = pair.shift.x * neighbours_.domain().period(0), task.move_y = pair.shift.y * neighbours_.domain().period(1);
       task.other_first = other.first;
       task.cutoff = cutoff;
       function(&task);

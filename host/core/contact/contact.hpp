@@ -28,7 +28,7 @@ struct ContactList {
 /// Exact closest points of all pairs within the cutoffs.
 class Contacts {
  public:
-  Contacts(const Membranes& membranes, Cutoffs cutoffs, PeriodicBox box);
+  Contacts(const Membranes& membranes, Cutoffs cutoffs, Domain<2> domain);
 
   static constexpr int phases = 2;
   /// Phases 0 and 1, a barrier after each; then contacts of this worker's cells are in list(cell).

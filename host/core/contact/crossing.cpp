@@ -75,12 +75,12 @@ bool contains(const Bounds& outer, const Bounds& inner) {
 /// Looks at one pair of cells and one image of the second.
 class PairCheck {
  public:
-  PairCheck(const Membranes& membranes, const PeriodicBox& box) : membranes_(membranes), box_(box) {}
+  PairCheck(const Membranes& membranes, const Domain<2>& domain) : membranes_(membranes), domain_(domain) {}
 
   std::optional<Crossing> operator()(int a, int b, ImageShift shift) {
     const CellRange& cell = membranes_.cells[a];
     const CellRange& other = membranes_.cells[b];
-    const Eigen::Vector2d move(shift.x * box_.nx, shift.y * box_.ny);
+    const Eigen::Vector2d move(shift.x * domain_.period(0), shift.y * domain_.period(1));
     const Bounds own = core::bounds(membranes_, cell);
     Bounds moved = core::bounds(membranes_, other);
     moved = {moved.x_min + move.x(), moved.x_max + move.x(), moved.y_min + move.y(), moved.y_max + move.y()};
@@ -109,18 +109,18 @@ class PairCheck {
     return {membranes_.x[cell.first], membranes_.y[cell.first]};
   }
   const Membranes& membranes_;
-  const PeriodicBox& box_;
+  const Domain<2>& domain_;
   std::vector<Segment> own_, other_;
 };
 
 }  // namespace
 
-std::optional<Crossing> find_crossing(const Membranes& membranes, const PeriodicBox& box) {
+std::optional<Crossing> find_crossing(const Membranes& membranes, const Domain<2>& domain) {
   std::vector<Bounds> extent;
   for (const CellRange& cell : membranes.cells) extent.push_back(core::bounds(membranes, cell));
-  PairCheck check(membranes, box);
+  PairCheck check(membranes, domain);
   std::optional<Crossing> found;
-  const Bins bins(extent, 0.0, box);
+  const Bins bins(extent, 0.0, domain);
   const int count = static_cast<int>(membranes.cells.size());
   std::vector<int> near;
   for (int a = 0; a < count && !found; ++a) {
@@ -128,7 +128,7 @@ std::optional<Crossing> find_crossing(const Membranes& membranes, const Periodic
     std::sort(near.begin(), near.end());  // the crossing that is found first does not depend on the bins
     for (const int b : near) {
       if (b < a || found) continue;
-      core::for_each_image(extent[a], extent[b], 0.0, box, [&](ImageShift shift) {
+      core::for_each_image(extent[a], extent[b], 0.0, domain, [&](ImageShift shift) {
         // Of a cell's own images, one of two opposite ones is enough.
         if (found || (a == b && (shift.x < 0 || (shift.x == 0 && shift.y < 0)))) return;
         found = check(a, b, shift);

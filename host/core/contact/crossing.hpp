@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "core/membrane/membranes.hpp"
-#include "core/membrane/periodic_box.hpp"
+#include "core/domain/images.hpp"
 
 namespace rouleau::core {
 
@@ -18,6 +18,6 @@ struct Crossing {
 };
 
 /// The first crossing in order of cells, or none. Outlines that only touch do not cross.
-std::optional<Crossing> find_crossing(const Membranes& membranes, const PeriodicBox& box);
+std::optional<Crossing> find_crossing(const Membranes& membranes, const Domain<2>& domain);
 
 }  // namespace rouleau::core

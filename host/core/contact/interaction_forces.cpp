@@ -37,10 +37,10 @@ bool acts_between(const Interaction& interaction, int a, int b) {
 
 }  // namespace
 
-InteractionForces::InteractionForces(Membranes& membranes, std::vector<Interaction> interactions, PeriodicBox box)
+InteractionForces::InteractionForces(Membranes& membranes, std::vector<Interaction> interactions, Domain<2> domain)
     : interactions_(std::move(interactions)),
       cutoffs_(cutoffs_of(interactions_)),
-      contacts_(membranes, pair_cutoffs(membranes, interactions_, cutoffs_), box),
+      contacts_(membranes, pair_cutoffs(membranes, interactions_, cutoffs_), domain),
       scratch_(membranes.cells.size()),
       variables_(interactions_.size()) {
   for (const Interaction& interaction : interactions_) {

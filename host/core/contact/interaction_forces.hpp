@@ -10,7 +10,7 @@
 #include "contact.hpp"
 #include "contact_velocity.hpp"
 #include "core/membrane/membranes.hpp"
-#include "core/membrane/periodic_box.hpp"
+#include "core/domain/images.hpp"
 #include "core/model/model.hpp"
 
 namespace rouleau::core {
@@ -27,7 +27,7 @@ struct Interaction {
 class InteractionForces {
  public:
   /// Adds what potentials remember to `membranes.contacts`, as far as it is not there from an earlier stage.
-  InteractionForces(Membranes& membranes, std::vector<Interaction> interactions, PeriodicBox box);
+  InteractionForces(Membranes& membranes, std::vector<Interaction> interactions, Domain<2> domain);
 
   static constexpr int phases = 3;
   /// Pass over cells: phases 0, 1, 2 with a barrier after each. Adds to force_x and force_y and advances the state of

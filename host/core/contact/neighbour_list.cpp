@@ -82,9 +82,9 @@ void Cutoffs::raise(int a, int b, double cutoff) {
 
 double Cutoffs::largest() const { return *std::max_element(cutoff_.begin(), cutoff_.end()); }
 
-Neighbours::Neighbours(const Membranes& membranes, Cutoffs cutoffs, PeriodicBox box)
+Neighbours::Neighbours(const Membranes& membranes, Cutoffs cutoffs, Domain<2> domain)
     : cutoffs_(std::move(cutoffs)),
-      box_(box),
+      domain_(domain),
       watch_(membranes),
       rank_(membranes.cells.size()),
       lists_(membranes.cells.size()) {
@@ -107,7 +107,7 @@ void Neighbours::refresh(Worker worker, const Membranes& membranes, const Segmen
   const Range cells = worker.share(membranes.cell_count());
   const double skin = suitable_skin(membranes);
   // Every worker sorts all cells: that is quicker than to wait for one who does.
-  const Bins bins(segments.bounds, cutoffs_.largest() + 2 * skin, box_);
+  const Bins bins(segments.bounds, cutoffs_.largest() + 2 * skin, domain_);
   for (int cell = cells.begin; cell < cells.end; ++cell) {
     CellList& list = lists_[cell];
     list.pairs.clear();
@@ -131,7 +131,7 @@ void Neighbours::list_pairs(const Membranes& membranes, int cell, const Bins& bi
   for (const int other : list.near) {
     const double cutoff = cutoffs_(type, membranes.cells[other].type);
     if (!(cutoff > 0)) continue;
-    core::for_each_image(own, segments.bounds[other], cutoff + 2 * skin, box_, [&](ImageShift shift) {
+    core::for_each_image(own, segments.bounds[other], cutoff + 2 * skin, domain_, [&](ImageShift shift) {
       if (other != cell || !(shift == ImageShift{})) list.pairs.push_back({{other, shift}, 0, 0, {0, 0}, 0, -1});
     });
   }
@@ -143,7 +143,7 @@ void Neighbours::list_candidates(const Membranes& membranes, int cell, Pair& pai
   CellList& list = lists_[cell];
   const CellRange& own = membranes.cells[cell];
   const CellRange& other = membranes.cells[pair.other];
-  const double move_x = pair.shift.x * box_.nx, move_y = pair.shift.y * box_.ny;
+  const double move_x = pair.shift.x * domain_.period(0), move_y = pair.shift.y * domain_.period(1);
   const double cutoff = cutoffs_(own.type, other.type);
   double x[group], y[group];
   const CandidateTask task{segments.x.data() + other.first,

@@ -7,7 +7,7 @@
 #include "cell_grid.hpp"
 #include "core/membrane/displacement_watch.hpp"
 #include "core/membrane/membranes.hpp"
-#include "core/membrane/periodic_box.hpp"
+#include "core/domain/images.hpp"
 #include "segment_cache.hpp"
 
 namespace rouleau::core {
@@ -71,7 +71,7 @@ class Neighbours {
     std::vector<double> excess;  ///< while the list is made: how far each segment is from being a candidate
   };
 
-  Neighbours(const Membranes& membranes, Cutoffs cutoffs, PeriodicBox box);
+  Neighbours(const Membranes& membranes, Cutoffs cutoffs, Domain<2> domain);
 
   /// Pass 1: has a node moved too far?
   void measure(Worker worker, const Membranes& membranes) { watch_.measure(worker, membranes); }
@@ -84,7 +84,7 @@ class Neighbours {
 
   [[nodiscard]] const CellList& list(int cell) const { return lists_[cell]; }
   [[nodiscard]] const Cutoffs& cutoffs() const { return cutoffs_; }
-  [[nodiscard]] const PeriodicBox& box() const { return box_; }
+  [[nodiscard]] const Domain<2>& domain() const { return domain_; }
   /// How often the lists were made.
   [[nodiscard]] long renewals() const { return renewals_; }
 
@@ -93,7 +93,7 @@ class Neighbours {
   void list_candidates(const Membranes& membranes, int cell, Pair& pair, const SegmentTable& segments, double skin);
 
   Cutoffs cutoffs_;
-  PeriodicBox box_;
+  Domain<2> domain_;
   DisplacementWatch watch_;
   std::vector<int> rank_;  // of each cell: its place when they are ordered by type, then by number
   std::vector<CellList> lists_;

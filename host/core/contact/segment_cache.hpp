@@ -6,7 +6,7 @@
 
 #include "base/worker.hpp"
 #include "core/membrane/membranes.hpp"
-#include "core/membrane/periodic_box.hpp"
+#include "core/domain/images.hpp"
 
 namespace rouleau::core {
 

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <rouleau/dispatch.hpp>
 
+#include "core/fluid/walls.hpp"
 #include "kernel.hpp"
 
 namespace rouleau::core {
@@ -27,9 +28,9 @@ struct LocateTask {
   Stencils<int, T> to;
   const double *x, *y;
   int begin, end;
-  int nx, ny;
+  double width, height;  // of the whole lattice
   bool periodic_y;
-  bool escaped;  // set when a node's stencil is not on the lattice
+  double lowest, highest;  // set to the least and the largest base row; `outside` for a stencil that is not on the lattice
 };
 
 /// Base nodes and what is kept of the weights, which is computed in double precision before it is rounded to T.
@@ -39,19 +40,25 @@ struct Locate {
   ROULEAU_ALWAYS_INLINE static void run(LocateTask<T>* task) {
     using S = Pack<double, register_bytes / 8>;
     const LocateTask<T> t = *task;
-    S lowest = 0.0;
+    S lowest = t.height, highest = outside;
     for (int first = t.begin; first < t.end; first += S::size) {
       const int valid = std::min(S::size, t.end - first);
       if (valid == S::size) {
-        lowest = min(group<S>(t, S::load(t.x + first), S::load(t.y + first), first, valid), lowest);
+        const S base = group<S>(t, S::load(t.x + first), S::load(t.y + first), first, valid);
+        lowest = min(base, lowest), highest = max(base, highest);
       } else {
-        double x[S::size] = {}, y[S::size] = {};
-        std::copy_n(t.x + first, valid, x);
-        std::copy_n(t.y + first, valid, y);
-        lowest = min(group<S>(t, S::load(x), S::load(y), first, valid), lowest);
+        // The last node stands for those that are missing.
+        double x[S::size], y[S::size];
+        for (int k = 0; k < S::size; ++k) {
+          x[k] = t.x[first + std::min(k, valid - 1)];
+          y[k] = t.y[first + std::min(k, valid - 1)];
+        }
+        const S base = group<S>(t, S::load(x), S::load(y), first, valid);
+        lowest = min(base, lowest), highest = max(base, highest);
       }
     }
-    task->escaped = least(lowest) == outside;
+    task->lowest = least(lowest);
+    task->highest = largest(highest);
   }
 
  private:
@@ -75,15 +82,15 @@ struct Locate {
     S p_x, q_x, p_y, q_y;
     Kernel::keep(shifted_x - base_x, p_x, q_x);
     Kernel::keep(shifted_y - base_y, p_y, q_y);
-    base_x = wrap(base_x, t.nx);
+    base_x = wrap(base_x, t.width);
     // Beyond 1e9, and for NaN, the conversion to int below would be undefined. One comparison a line: g++ 12 takes
     // combined masks apart element by element.
     const S last = 1e9, none = outside;
     if (t.periodic_y) {
-      base_y = select(abs(y) < last, wrap(base_y, t.ny), none);
+      base_y = select(abs(y) < last, wrap(base_y, t.height), none);
     } else {
       base_y = select(base_y >= S(-1.0), base_y, none);
-      base_y = select(base_y < S(t.ny), base_y, none);
+      base_y = select(base_y < S(t.height), base_y, none);
     }
     base_y = select(abs(x) < last, base_y, none);
     base_x = select(base_y > S(outside + 1.0), base_x, S(0.0));
@@ -112,41 +119,54 @@ template <class T>
 struct SpreadTask {
   KnownStencils<T> at;
   const double *force_x, *force_y;
-  int nodes;
-  int row_begin, row_end;  // rows of this worker
-  T *origin_x, *origin_y;  // of the fields' row 0
+  int begin, end;          // nodes of one cell
+  const Domain<2>* domain;
+  int row_begin, row_end;  // the rows of the lattice that are added to
+  T *origin_x, *origin_y;  // where node (0, 0) of the lattice lies, or would lie if it belonged to the block
   std::ptrdiff_t stride;   // from one row to the next, the same in both
 };
 
+// Each number of the lattice gets its terms in an order that does not depend on blocks, bands and workers: cell by cell,
+// in a cell as spread() visits its nodes, of a node by rows. What lies beyond a border is added to the node that it is an
+// image of, at once, never summed apart.
 template <class T, class Kernel>
 struct Spread {
   template <int register_bytes>
   ROULEAU_ALWAYS_INLINE static void run(const SpreadTask<T>* task) {
     const SpreadTask<T> t = *task;
+    const Box<2>& block = t.domain->block;
+    const Inside inside{std::max(t.row_begin, 0), std::min(t.row_end, t.domain->size[1]), block.begin[0], block.end[0],
+                        t.domain->size[1]};
     // Neighbouring nodes add to the same places, and a sum that is still on its way to memory stalls the next one:
-    // nodes from four parts of the list take turns.
+    // nodes from four parts of the cell take turns.
     constexpr int parts = 4;
-    const int length = t.nodes / parts;
-    for (int i = 0; i < length; ++i) {
-      for (int part = 0; part < parts; ++part) spread(t, part * length + i);
+    const int length = (t.end - t.begin) / parts;
+    for (int i = t.begin; i < t.begin + length; ++i) {
+      for (int part = 0; part < parts; ++part) spread(t, inside, i + part * length);
     }
-    for (int i = parts * length; i < t.nodes; ++i) spread(t, i);
+    for (int i = t.begin + parts * length; i < t.end; ++i) spread(t, inside, i);
   }
 
  private:
   using Four = Pack<T, 4>;
-  ROULEAU_ALWAYS_INLINE static void spread(const SpreadTask<T>& t, int i) {
-    const int first = t.at.row[i] - 1;
-    if (first + 4 <= t.row_begin || first >= t.row_end) return;
+  /// What a stencil has to lie in to be added without a thought.
+  struct Inside {
+    int row_begin, row_end, column_begin, column_end, height;
+  };
+  ROULEAU_ALWAYS_INLINE static void spread(const SpreadTask<T>& t, const Inside& inside, int i) {
+    const int row = t.at.row[i] - 1, column = t.at.column[i] - 1;
+    const bool whole = row >= 0 && row + 4 <= inside.height;
+    if (whole && (row + 4 <= inside.row_begin || row >= inside.row_end)) return;
+    if (column < inside.column_begin || column + 4 > inside.column_end || !whole) return spread_at_border(t, i);
     const Four wx = KernelWeights<Kernel, T>(t.at.p_x[i], t.at.q_x[i]).weight;
     const SpreadWeights<Kernel, T> wy(t.at.p_y[i], t.at.q_y[i]);
     const Four fx = wx * Four(t.force_x[i]), fy = wx * Four(t.force_y[i]);
-    const std::ptrdiff_t at = first * t.stride + t.at.column[i] - 1;
-    if (first >= t.row_begin && first + 4 <= t.row_end) {
+    const std::ptrdiff_t at = row * t.stride + column;
+    if (row >= inside.row_begin && row + 4 <= inside.row_end) {
       for (int k = 0; k < 4; ++k) add(t, fx, fy, wy.weight[k], at + k * t.stride);
     } else {
       for (int k = 0; k < 4; ++k) {
-        if (first + k >= t.row_begin && first + k < t.row_end) add(t, fx, fy, wy.weight[k], at + k * t.stride);
+        if (row + k >= inside.row_begin && row + k < inside.row_end) add(t, fx, fy, wy.weight[k], at + k * t.stride);
       }
     }
   }
@@ -154,6 +174,31 @@ struct Spread {
                                         std::ptrdiff_t at) {
     (Four::load(t.origin_x + at) + fx * weight).store(t.origin_x + at);
     (Four::load(t.origin_y + at) + fy * weight).store(t.origin_y + at);
+  }
+
+  /// The same sums, number by number: of a stencil that reaches over the border of the lattice or of the block.
+  [[gnu::noinline, gnu::cold]] static void spread_at_border(const SpreadTask<T>& t, int i) {
+    if (t.at.row[i] == outside) return;
+    const Domain<2>& domain = *t.domain;
+    const Four wx = KernelWeights<Kernel, T>(t.at.p_x[i], t.at.q_x[i]).weight;
+    const SpreadWeights<Kernel, T> wy(t.at.p_y[i], t.at.q_y[i]);
+    const Four fx = wx * Four(t.force_x[i]), fy = wx * Four(t.force_y[i]);
+    for (int k = 0; k < 4; ++k) {
+      int row = domain.wrapped(1, t.at.row[i] - 1 + k);
+      Four weight = wy.weight[k];
+      if (row < 0) {  // beyond a wall
+        row = mirrored(t.at.row[i] - 1 + k, domain.size[1]);
+        weight = -weight;
+      }
+      if (row < t.row_begin || row >= t.row_end) continue;
+      for (int l = 0; l < 4; ++l) {
+        const int column = domain.wrapped(0, t.at.column[i] - 1 + l);
+        if (column < domain.block.begin[0] || column >= domain.block.end[0]) continue;
+        const std::ptrdiff_t at = row * t.stride + column;
+        t.origin_x[at] = (Four(t.origin_x[at]) + fx * weight).vector[l];
+        t.origin_y[at] = (Four(t.origin_y[at]) + fy * weight).vector[l];
+      }
+    }
   }
 };
 
@@ -278,8 +323,7 @@ struct Coupling<T>::Loops {
 };
 
 template <class T>
-Coupling<T>::Coupling(KernelKind kernel, int nx, int ny, bool periodic_y)
-    : loops_(Loops::of(kernel)), nx_(nx), ny_(ny), periodic_y_(periodic_y) {}
+Coupling<T>::Coupling(KernelKind kernel, const Domain<2>& domain) : loops_(Loops::of(kernel)), domain_(domain) {}
 
 template <class T>
 void Coupling<T>::reserve(const Membranes& membranes) {
@@ -287,7 +331,7 @@ void Coupling<T>::reserve(const Membranes& membranes) {
   column_.assign(nodes, 0);
   row_.assign(nodes, outside);
   for (auto* values : {&p_x_, &q_x_, &p_y_, &q_y_}) values->assign(nodes, T(0));
-  escaped_.assign(membranes.cells.size(), 0);
+  rows_.assign(membranes.cells.size(), {outside, outside});
 }
 
 template <class T>
@@ -295,54 +339,65 @@ void Coupling<T>::locate(Worker worker, const Membranes& membranes, NodeVectors 
   const Range cells = worker.share(membranes.cell_count());
   for (int c = cells.begin; c < cells.end; ++c) {
     const CellRange& cell = membranes.cells[c];
-    LocateTask<T> task{{column_.data(), row_.data(), p_x_.data(), q_x_.data(), p_y_.data(), q_y_.data()},
-                       position.x,
-                       position.y,
-                       cell.first,
-                       cell.end(),
-                       nx_,
-                       ny_,
-                       periodic_y_,
-                       false};
+    LocateTask<T> task{.to = {column_.data(), row_.data(), p_x_.data(), q_x_.data(), p_y_.data(), q_y_.data()},
+                       .x = position.x,
+                       .y = position.y,
+                       .begin = cell.first,
+                       .end = cell.end(),
+                       .width = 1.0 * domain_.size[0],
+                       .height = 1.0 * domain_.size[1],
+                       .periodic_y = domain_.periodic[1],
+                       .lowest = 0,
+                       .highest = 0};
     loops_->locate(&task);
-    escaped_[c] = task.escaped ? 1 : 0;
+    rows_[c] = {static_cast<int>(task.lowest), static_cast<int>(task.highest)};
   }
 }
 
 template <class T>
-void Coupling<T>::spread(Worker worker, NodeVectors node_force, VectorField<T>& force) const {
-  const Range rows = worker.share(ny_);
-  const int halo = Field<T>::halo;
-  const SpreadTask<T> task{{column_.data(), row_.data(), p_x_.data(), q_x_.data(), p_y_.data(), q_y_.data()},
-                           node_force.x,
-                           node_force.y,
-                           static_cast<int>(column_.size()),
-                           worker.first() ? -halo : rows.begin,
-                           worker.last() ? ny_ + halo : rows.end,
-                           force.x.row(0),
-                           force.y.row(0),
-                           row_stride(force.x)};
-  loops_->spread(&task);
+void Coupling<T>::spread(Range rows, const Membranes& membranes, NodeVectors node_force, VectorField<T>& force) const {
+  const std::ptrdiff_t stride = row_stride(force.x);
+  const std::ptrdiff_t first = domain_.block.begin[1] * stride + domain_.block.begin[0];
+  SpreadTask<T> task{.at = {column_.data(), row_.data(), p_x_.data(), q_x_.data(), p_y_.data(), q_y_.data()},
+                     .force_x = node_force.x,
+                     .force_y = node_force.y,
+                     .begin = 0,
+                     .end = 0,
+                     .domain = &domain_,
+                     .row_begin = domain_.block.begin[1] + rows.begin,
+                     .row_end = domain_.block.begin[1] + rows.end,
+                     .origin_x = force.x.row(0) - first,
+                     .origin_y = force.y.row(0) - first,
+                     .stride = stride};
+  for (std::size_t c = 0; c < rows_.size(); ++c) {
+    const BaseRows& base = rows_[c];
+    const bool whole = base.lowest >= 1 && base.highest + 3 <= domain_.size[1];  // no stencil reaches over a border
+    if (whole && (base.highest + 3 <= task.row_begin || base.lowest - 1 >= task.row_end)) continue;
+    task.begin = membranes.cells[c].first, task.end = membranes.cells[c].end();
+    loops_->spread(&task);
+  }
 }
 
 template <class T>
 void Coupling<T>::interpolate(Worker worker, Membranes& membranes, const VectorField<T>& velocity) const {
   const Range nodes = membranes.node_share(worker);
+  const std::ptrdiff_t stride = row_stride(velocity.x);
+  const std::ptrdiff_t first = domain_.block.begin[1] * stride + domain_.block.begin[0];
   const InterpolateTask<T> task{{column_.data(), row_.data(), p_x_.data(), q_x_.data(), p_y_.data(), q_y_.data()},
                                 membranes.velocity_x.data(),
                                 membranes.velocity_y.data(),
                                 nodes.begin,
                                 nodes.end,
-                                velocity.x.row(0),
-                                velocity.y.row(0),
-                                row_stride(velocity.x),
+                                velocity.x.row(0) - first,
+                                velocity.y.row(0) - first,
+                                stride,
                                 velocity.x.bytes() > large_field};
   loops_->interpolate(&task);
 }
 
 template <class T>
 bool Coupling<T>::any_escaped() const {
-  return std::any_of(escaped_.begin(), escaped_.end(), [](std::uint8_t escaped) { return escaped != 0; });
+  return std::any_of(rows_.begin(), rows_.end(), [](const BaseRows& rows) { return rows.lowest == outside; });
 }
 
 template <class T>

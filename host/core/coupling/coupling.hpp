@@ -1,31 +1,31 @@
 // Carries membrane forces to the lattice and the lattice's velocity to the membranes, with the same weights.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "base/worker.hpp"
+#include "core/domain/domain.hpp"
 #include "core/fluid/field.hpp"
 #include "core/membrane/membranes.hpp"
 #include "kernel_kind.hpp"
 
 namespace rouleau::core {
 
-/// Immersed-boundary coupling. Columns are taken periodically: a node's stencil may reach
-/// two columns into the halo, which others fold or fill (fluid/exchange.hpp); so may rows.
+/// Immersed-boundary coupling. Forces go to the nodes of the lattice that a stencil's are images of; velocities are read
+/// from the halo, too, two nodes wide, which others fill (fluid/halo.hpp).
 template <class T>
 class Coupling {
  public:
-  Coupling(KernelKind kernel, int nx, int ny, bool periodic_y);
+  Coupling(KernelKind kernel, const Domain<2>& domain);
 
   /// Makes room for these nodes; to be called once, before the first locate().
   void reserve(const Membranes& membranes);
 
   /// Pass over cells: weights for these positions, the membranes' own or where a correction puts their forces.
   void locate(Worker worker, const Membranes& membranes, NodeVectors position);
-  /// Pass over rows: adds the forces of all nodes to this worker's rows worker.share(ny) of the force density; the
-  /// first worker owns the lower halo rows too, the last one the upper. The sums do not depend on the workers.
-  void spread(Worker worker, NodeVectors node_force, VectorField<T>& force) const;
+  /// Pass over rows of the block: adds the forces of all nodes to the force density there. The sums do not depend on how
+  /// rows are shared out, nor on the block.
+  void spread(Range rows, const Membranes& membranes, NodeVectors node_force, VectorField<T>& force) const;
   /// Pass over cells: sets velocity_x and velocity_y.
   void interpolate(Worker worker, Membranes& membranes, const VectorField<T>& velocity) const;
 
@@ -37,11 +37,13 @@ class Coupling {
  private:
   struct Loops;
   const Loops* loops_;
-  int nx_, ny_;
-  bool periodic_y_;
-  std::vector<int> column_, row_;         // base node, wrapped; row outside_ for an escaped node
+  Domain<2> domain_;
+  std::vector<int> column_, row_;         // base node of the lattice; row `outside` for an escaped node
   std::vector<T> p_x_, q_x_, p_y_, q_y_;  // what is kept of the weights (kernel.hpp)
-  std::vector<std::uint8_t> escaped_;     // of each cell: whether it has an escaped node
+  struct BaseRows {
+    int lowest, highest;
+  };
+  std::vector<BaseRows> rows_;  // of each cell's nodes; the lowest is `outside` if one has escaped
 };
 
 extern template class Coupling<float>;

@@ -17,31 +17,23 @@ constexpr double displacement_limit = 0.1;
 
 template <class T>
 Indicator<T>::Indicator(const Membranes& membranes, std::vector<double> viscosity_ratio, ViscosityMean mean,
-                        double reach_beyond, double relaxation_rate, int nx, int ny, bool periodic_y)
+                        double reach_beyond, double relaxation_rate, const Domain<2>& domain)
     : ratio_(std::move(viscosity_ratio)),
       mean_(mean),
       margin_(static_cast<int>(std::ceil(reach_beyond))),
       plain_rate_(relaxation_rate),
-      nx_(nx),
-      ny_(ny),
-      periodic_y_(periodic_y),
+      domain_(domain),
       watch_(membranes),
       cells_(membranes.cells.size()),
-      changed_(static_cast<std::size_t>(ny)) {
+      changed_(static_cast<std::size_t>(domain.block.size(1))) {
   for (const CellRange& cell : membranes.cells) varies_ |= ratio_[cell.type] != 1;
-}
-
-template <class T>
-int Indicator<T>::lattice_row(int y) const {
-  if (periodic_y_) return core::wrapped(y, ny_);
-  return y >= 0 && y < ny_ ? y : -1;
 }
 
 template <class T>
 template <class Function>
 void Indicator<T>::for_rows(const Rows& rows, Range own, Function function) const {
   for (std::size_t k = 0; k < rows.columns.size(); ++k) {
-    const int y = lattice_row(rows.first + static_cast<int>(k));
+    const int y = domain_.wrapped(1, rows.first + static_cast<int>(k));
     if (y >= own.begin && y < own.end) function(y, rows.columns[k], static_cast<int>(k));
   }
 }
@@ -50,8 +42,8 @@ template <class T>
 template <class Function>
 void Indicator<T>::for_pieces(Interval columns, Function function) const {
   for (int begin = columns.begin; begin < columns.end;) {
-    const int x = core::wrapped(begin, nx_);
-    const int end = std::min(columns.end, begin + nx_ - x);
+    const int x = domain_.wrapped(0, begin);
+    const int end = std::min(columns.end, begin + domain_.size[0] - x);
     function(x, begin, end);
     begin = end;
   }
@@ -124,7 +116,7 @@ void Indicator<T>::find_reach(const Membranes& membranes, const CellRange& cell,
 
 template <class T>
 void Indicator<T>::update(Worker worker, const Membranes& membranes, Field<T>& relaxation_rate, Activity& activity) {
-  const Range own = worker.share(ny_);
+  const Range own = worker.share(domain_.block.size(1));
   if (varies_) {
     collect_changes(own);
     set_rates(membranes, own, relaxation_rate);
@@ -153,7 +145,7 @@ template <class T>
 void Indicator<T>::collect_changes(Range own) {
   for (int y = own.begin; y < own.end; ++y) changed_[y].clear();
   const auto include = [&](int y, Interval columns, int) {
-    columns.end = std::min(columns.end, columns.begin + nx_);
+    columns.end = std::min(columns.end, columns.begin + domain_.size[0]);
     for_pieces(columns, [&](int x, int begin, int end) {
       // Intervals of a row stay disjoint, since what is done to them is not to be done twice.
       Interval added{x, x + end - begin};

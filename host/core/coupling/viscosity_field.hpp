@@ -22,9 +22,9 @@ template <class T>
 class Indicator {
  public:
   /// `viscosity_ratio[t]`: interior over suspending viscosity of cell type t. `reach_beyond`: how far from a node its
-  /// force may act besides the kernel's own reach, spacings. `ny` also if not periodic.
+  /// force may act besides the kernel's own reach, spacings.
   Indicator(const Membranes& membranes, std::vector<double> viscosity_ratio, ViscosityMean mean, double reach_beyond,
-            double relaxation_rate, int nx, int ny, bool periodic_y);
+            double relaxation_rate, const Domain<2>& domain);
 
   /// Whether a relaxation rate that varies in space is needed; if not, the passes only mark.
   [[nodiscard]] bool varies() const { return varies_; }
@@ -62,8 +62,6 @@ class Indicator {
     Rows reached;                  // where its nodes may spread or interpolate, and what it covers
   };
 
-  /// Lattice row that a row of the plane falls on; -1: beyond a wall.
-  [[nodiscard]] int lattice_row(int y) const;
   /// Calls function(y, columns, place) for those of the rows, counted by `place`, that fall on this worker's rows.
   template <class Function>
   void for_rows(const Rows& rows, Range own, Function function) const;
@@ -78,8 +76,8 @@ class Indicator {
   ViscosityMean mean_;
   int margin_;  // nodes, for what reaches beyond the kernel
   double plain_rate_;
-  int nx_, ny_;
-  bool periodic_y_, varies_ = false;
+  Domain<2> domain_;
+  bool varies_ = false;
   DisplacementWatch watch_;
   std::vector<Reach> cells_;
   std::vector<std::vector<Interval>> changed_;  // of each lattice row: disjoint, where rates are computed again

@@ -28,7 +28,7 @@ double change_along(const T* f, int nx, double cx, double cy, const double* ux, 
 // 2 mu S:S. Unlike that it is right on the scale of the lattice, too, on which the membranes' forces are spread.
 template <class T>
 typename Fluid<T>::Energetics Fluid<T>::energetics() const {
-  const int nx = setting_.nx, ny = setting_.ny;
+  const int nx = this->nx(), ny = this->ny();
   // Velocities with a copy of the last node before the first and of the first behind the last.
   const auto width = static_cast<std::size_t>(nx) + 2;
   std::vector<double> velocity_x(width * static_cast<std::size_t>(ny)), velocity_y(velocity_x.size());
@@ -58,13 +58,14 @@ typename Fluid<T>::Energetics Fluid<T>::energetics() const {
     const T* in[9];
     lattice_.row_pointers(parity_, y, in);
     for (int q = 1; q < 9; ++q) {
-      const int cx = d2q9::velocity[q][0], cy = d2q9::velocity[q][1], from = y - cy;
-      if (setting_.periodic_y || (from >= 0 && from < ny)) {
+      const int cx = d2q9::velocity[q][0], cy = d2q9::velocity[q][1];
+      const int from = setting_.domain.wrapped(1, y - cy);
+      if (from >= 0) {
         sum.dissipation -= change_along(in[q], nx, cx, cy, at(velocity_x, y), at(velocity_y, y),
-                                        at(velocity_x, (from + ny) % ny) - cx, at(velocity_y, (from + ny) % ny) - cx);
+                                        at(velocity_x, from) - cx, at(velocity_y, from) - cx);
         continue;
       }
-      const double speed = from < 0 ? setting_.walls.lower : setting_.walls.upper;
+      const double speed = y < cy ? setting_.walls.lower : setting_.walls.upper;
       const double moved = 6 * d2q9::weight[q] * cx * speed;  // as in wall_stress()
       for (int x = 0; x < nx; ++x)
         sum.dissipation -= (2 * static_cast<double>(in[q][x]) - moved) *

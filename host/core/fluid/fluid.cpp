@@ -16,21 +16,21 @@ template <class T>
 Fluid<T>::Fluid(const FluidSetting& setting, CollisionOperator collision)
     : setting_(setting),
       collision_(std::move(collision)),
-      lattice_(setting.nx, setting.ny, setting.periodic_y),
-      activity_(setting.nx, setting.ny) {
+      lattice_(setting.domain),
+      activity_(setting.domain) {
   if constexpr (std::is_same_v<T, double>) {
     collide_ = collision_.table->collide_f64;
   } else {
     collide_ = collision_.table->collide_f32;
   }
-  if (setting.membranes) force_ = {Field<T>(setting.nx, setting.ny), Field<T>(setting.nx, setting.ny)};
+  if (setting.membranes) force_ = {Field<T>(nx(), ny()), Field<T>(nx(), ny())};
   if (setting.viscosity_contrast) {
-    relaxation_rate_ = Field<T>(setting.nx, setting.ny);
+    relaxation_rate_ = Field<T>(nx(), ny());
     relaxation_rate_.fill(static_cast<T>(setting.relaxation_rate));
   }
   if (setting.body_force_x != 0 || setting.body_force_y != 0) {
-    body_force_row_[0].assign(static_cast<std::size_t>(setting.nx), static_cast<T>(setting.body_force_x));
-    body_force_row_[1].assign(static_cast<std::size_t>(setting.nx), static_cast<T>(setting.body_force_y));
+    body_force_row_[0].assign(static_cast<std::size_t>(nx()), static_cast<T>(setting.body_force_x));
+    body_force_row_[1].assign(static_cast<std::size_t>(nx()), static_cast<T>(setting.body_force_y));
   }
 }
 
@@ -42,12 +42,11 @@ std::size_t Fluid<T>::bytes() const {
 template <class T>
 inline bool Fluid<T>::reaches_border(int y) const {
   constexpr int width = Field<T>::halo;
-  return activity_.at_side(y) || ((y < width || y >= setting_.ny - width) && activity_.any(y));
+  return activity_.at_side(y) || ((y < width || y >= ny() - width) && activity_.any(y));
 }
 
 template <class T>
-void Fluid<T>::clear_force(Worker worker) {
-  const Range rows = worker.share(setting_.ny);
+void Fluid<T>::clear_force(Range rows) {
   const auto set = [](T* row, const Run& run, T value) {
     if (value == T(0)) {
       std::memset(row + run.begin, 0, sizeof(T) * static_cast<std::size_t>(run.end - run.begin));
@@ -62,15 +61,6 @@ void Fluid<T>::clear_force(Worker worker) {
       set(force_.x.row(y), run, body_force_x);
       set(force_.y.row(y), run, body_force_y);
     });
-    if (reaches_border(y)) clear_force_halo(force_, y, setting_.periodic_y);
-  }
-}
-
-template <class T>
-void Fluid<T>::fold_force(Worker worker) {
-  const Range rows = worker.share(setting_.ny);
-  for (int y = rows.begin; y < rows.end; ++y) {
-    if (reaches_border(y)) fold_force_row(force_, y, setting_.periodic_y);
   }
 }
 
@@ -111,12 +101,10 @@ void Fluid<T>::collide_row(int y, const T* (&in)[9], T* (&out)[9]) {
 }
 
 template <class T>
-void Fluid<T>::step(Worker worker) {
-  const Range rows = worker.share(setting_.ny);
+void Fluid<T>::step(Range rows) {
   const bool even = parity_ == Parity::even;
   const T* in[9];
   T* out[9];
-  // Up and down in turns: what a step has touched last, the next one finds in the cache.
   const int first = even ? rows.begin : rows.end - 1, way = even ? 1 : -1;
   for (int i = 0; i < rows.end - rows.begin; ++i) {
     const int y = first + way * i;
@@ -130,7 +118,7 @@ void Fluid<T>::step(Worker worker) {
     add_wall_momentum(lattice_, y, setting_.walls);
     if (even) send_row(lattice_, y);
     if (setting_.membranes && reaches_border(y)) {
-      fill_velocity_halo(force_, y, setting_.periodic_y, setting_.walls);
+      fill_velocity_halo(force_, y, setting_.domain, setting_.walls);
     }
   }
 }
@@ -138,7 +126,7 @@ void Fluid<T>::step(Worker worker) {
 template <class T>
 void Fluid<T>::settle() {
   if (parity_ != Parity::even) return;
-  for (int y = 0; y < setting_.ny; ++y) receive_row(lattice_, y);
+  for (int y = 0; y < ny(); ++y) receive_row(lattice_, y);
 }
 
 template <class T>
@@ -152,7 +140,7 @@ template <class T>
 void Fluid<T>::moments(int y, std::vector<Moments>& row) const {
   const T* in[9];
   lattice_.row_pointers(parity_, y, in);
-  row.assign(static_cast<std::size_t>(setting_.nx), Moments{});
+  row.assign(static_cast<std::size_t>(nx()), Moments{});
   activity_.for_runs(y, [&](const Run& run) {
     for (int x = run.begin; x < run.end; ++x) {
       Moments& m = row[x];
@@ -172,11 +160,11 @@ void Fluid<T>::moments(int y, std::vector<Moments>& row) const {
 template <class T>
 double Fluid<T>::mass() const {
   double mass = 0;
-  for (int y = 0; y < setting_.ny; ++y) {
+  for (int y = 0; y < ny(); ++y) {
     const T* in[9];
     lattice_.row_pointers(parity_, y, in);
     for (const T* population : in) {
-      for (int x = 0; x < setting_.nx; ++x) mass += static_cast<double>(population[x]);
+      for (int x = 0; x < nx(); ++x) mass += static_cast<double>(population[x]);
     }
   }
   return mass;
@@ -187,7 +175,7 @@ typename Fluid<T>::Extremes Fluid<T>::extremes() const {
   static const auto function = Dispatch<FindExtremes, ExtremesTask<T>*>::pick();
   Extremes result{0, 0};
   double speed_square = 0, zero = 0;
-  for (int y = 0; y < setting_.ny; ++y) {
+  for (int y = 0; y < ny(); ++y) {
     const T* in[9];
     lattice_.row_pointers(parity_, y, in);
     double row_mass = 0;
@@ -227,11 +215,11 @@ typename Fluid<T>::WallStress Fluid<T>::wall_stress() const {
       if (d2q9::velocity[q][1] != outward || cx == 0) continue;
       const T* returned = in[d2q9::opposite[q]];
       const double moved = 6 * d2q9::weight[q] * cx * speed;
-      for (int x = 0; x < setting_.nx; ++x) sum += cx * (2 * static_cast<double>(returned[x]) + moved);
+      for (int x = 0; x < nx(); ++x) sum += cx * (2 * static_cast<double>(returned[x]) + moved);
     }
-    return sum / setting_.nx;
+    return sum / nx();
   };
-  return {stress(0, -1, setting_.walls.lower), stress(setting_.ny - 1, +1, setting_.walls.upper)};
+  return {stress(0, -1, setting_.walls.lower), stress(ny() - 1, +1, setting_.walls.upper)};
 }
 
 template <class T>
@@ -246,8 +234,8 @@ void Fluid<T>::set_state(const std::function<State(int, int)>& state) {
   parity_ = Parity::even;
   walls_have_acted_ = true;  // a state that is given is one that goes with these walls
   const double tau = 1 / setting_.relaxation_rate;
-  for (int y = 0; y < setting_.ny; ++y) {
-    for (int x = 0; x < setting_.nx; ++x) {
+  for (int y = 0; y < ny(); ++y) {
+    for (int x = 0; x < nx(); ++x) {
       const State s = state(x, y);
       // Populations hold the momentum without the half force that the velocity includes.
       const double jx = s.ux - 0.5 * setting_.body_force_x, jy = s.uy - 0.5 * setting_.body_force_y;
@@ -259,7 +247,7 @@ void Fluid<T>::set_state(const std::function<State(int, int)>& state) {
       }
     }
   }
-  begin_exchange(lattice_);
+  begin_halo(lattice_);
 }
 
 template <class T>
@@ -272,10 +260,10 @@ template <class T>
 void Fluid<T>::take_over(Fluid& other, double factor) {
   other.settle();
   parity_ = Parity::even;
-  for (int y = 0; y < setting_.ny; ++y) {
+  for (int y = 0; y < ny(); ++y) {
     const T* in[9];
     other.lattice_.row_pointers(other.parity_, y, in);
-    for (int x = 0; x < setting_.nx; ++x) {
+    for (int x = 0; x < nx(); ++x) {
       double density = 0, jx = 0, jy = 0;
       for (int q = 0; q < 9; ++q) {
         const double f = static_cast<double>(in[q][x]);
@@ -290,16 +278,16 @@ void Fluid<T>::take_over(Fluid& other, double factor) {
       }
     }
   }
-  begin_exchange(lattice_);
+  begin_halo(lattice_);
 }
 
 template <class T>
 void Fluid<T>::copy_populations(int q, std::vector<T>& values) const {
   values.clear();
-  for (int y = 0; y < setting_.ny; ++y) {
+  for (int y = 0; y < ny(); ++y) {
     const T* in[9];
     lattice_.row_pointers(parity_, y, in);
-    values.insert(values.end(), in[q], in[q] + setting_.nx);
+    values.insert(values.end(), in[q], in[q] + nx());
   }
 }
 
@@ -309,9 +297,9 @@ void Fluid<T>::restore(const std::function<const std::vector<T>&(int)>& populati
   walls_have_acted_ = walls_have_acted;
   for (int q = 0; q < 9; ++q) {
     const T* from = populations(q).data();
-    for (int y = 0; y < setting_.ny; ++y, from += setting_.nx) std::copy_n(from, setting_.nx, lattice_.slot(q, y));
+    for (int y = 0; y < ny(); ++y, from += nx()) std::copy_n(from, nx(), lattice_.slot(q, y));
   }
-  begin_exchange(lattice_);
+  begin_halo(lattice_);
 }
 
 template class Fluid<float>;

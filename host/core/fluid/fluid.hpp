@@ -7,18 +7,19 @@
 #include <vector>
 
 #include "base/worker.hpp"
+#include "core/domain/domain.hpp"
 #include "core/model/model.hpp"
-#include "exchange.hpp"
 #include "field.hpp"
+#include "halo.hpp"
 #include "lattice.hpp"
 #include "node_mask.hpp"
+#include "walls.hpp"
 
 namespace rouleau::core {
 
 /// What a fluid is made of. Lattice units.
 struct FluidSetting {
-  int nx, ny;
-  bool periodic_y;
+  Domain<2> domain;  ///< periodic along x
   double relaxation_rate;  ///< 1/tau of the suspending fluid
   bool inertia = false;    ///< initial states include the quadratic terms of the equilibrium
   WallVelocity walls = {};
@@ -39,6 +40,8 @@ class Fluid {
   Fluid(const FluidSetting& setting, CollisionOperator collision);
 
   [[nodiscard]] const FluidSetting& setting() const { return setting_; }
+  /// All rows of the block.
+  [[nodiscard]] Range rows() const { return {0, ny()}; }
   [[nodiscard]] Activity& activity() { return activity_; }
   /// Force density: what the next step() acts with. It writes velocity() over it, in the same memory.
   [[nodiscard]] VectorField<T>& force() { return force_; }
@@ -59,23 +62,24 @@ class Fluid {
   /// rule.
   void take_over(Fluid& other, double factor);
 
-  // Passes, in the order of a step. A worker handles its share of rows; a barrier must follow each.
-  /// Sets the force in active nodes to the body force, and in the halo nodes that belong to their rows to zero.
-  void clear_force(Worker worker);
-  /// Brings home what was spread onto halo nodes.
-  void fold_force(Worker worker);
+  // Passes over rows of the block, in the order of a step.
+  /// Sets the force in active nodes to the body force.
+  void clear_force(Range rows);
   /// Collision and streaming; leaves the velocity of active nodes in force(), halo included.
-  void step(Worker worker);
-  /// Ends the step; one worker only.
+  void step(Range rows);
+  /// In which order step() takes rows, and bands of rows are best taken: what the last step has touched last is still
+  /// in the cache.
+  [[nodiscard]] bool sweeps_up() const { return parity_ == Parity::even; }
+  /// Ends the step, once all rows have been stepped.
   void end_step() {
     parity_ = next(parity_);
     walls_have_acted_ = true;
   }
 
   // Observers; between steps, one thread.
-  /// Completes the exchange so that moments() may be called.
+  /// Completes the halo so that moments() may be called.
   void settle();
-  /// Moments of row y, x = 0..nx-1, of the state before the next step. The force of that step must have been folded.
+  /// Moments of row y, x = 0..nx-1, of the state before the next step. The force of that step must have been spread.
   void moments(int y, std::vector<Moments>& row) const;
   /// Sum of density deviations over all nodes.
   [[nodiscard]] double mass() const;
@@ -109,6 +113,9 @@ class Fluid {
   void restore(const std::function<const std::vector<T>&(int q)>& populations, bool walls_have_acted);
 
  private:
+  /// Nodes of the block along x, and its rows.
+  [[nodiscard]] int nx() const { return setting_.domain.block.size(0); }
+  [[nodiscard]] int ny() const { return setting_.domain.block.size(1); }
   [[nodiscard]] double equilibrium(int q, double density, double ux, double uy) const;
   /// Whether membranes may reach the halo that belongs to row y.
   [[nodiscard]] bool reaches_border(int y) const;

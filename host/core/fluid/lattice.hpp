@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <rouleau/d2q9.hpp>
 
+#include "core/domain/domain.hpp"
 #include "storage.hpp"
 
 namespace rouleau::core {
@@ -23,12 +24,12 @@ constexpr Parity next(Parity parity) { return parity == Parity::even ? Parity::o
 template <class T>
 class Lattice {
  public:
-  /// Fluid at rest.
-  Lattice(int nx, int ny, bool periodic_y);
+  /// The domain's block, fluid at rest.
+  explicit Lattice(const Domain<2>& domain);
 
   [[nodiscard]] int nx() const { return nx_; }
   [[nodiscard]] int ny() const { return ny_; }
-  [[nodiscard]] bool periodic_y() const { return periodic_y_; }
+  [[nodiscard]] const Domain<2>& domain() const { return domain_; }
   [[nodiscard]] std::size_t bytes() const { return storage_.bytes(); }
 
   /// Row y of slot q; x in [-1, nx], y in [-1, ny].
@@ -41,17 +42,18 @@ class Lattice {
   void row_pointers(Parity parity, int y, const T* (&in)[9], T* (&out)[9]);
   /// The same given those of the row before, `from`, one above or below: quicker, row after row.
   void next_row_pointers(Parity parity, int from, int y, const T* (&in)[9], T* (&out)[9]);
-  /// The populations alone, for observers; exchange must be complete (Fluid::settle).
+  /// The populations alone, for observers; the halo must be complete (Fluid::settle).
   void row_pointers(Parity parity, int y, const T* (&in)[9]) const;
 
  private:
-  [[nodiscard]] bool outside(int y) const { return !periodic_y_ && (y < 0 || y >= ny_); }
+  [[nodiscard]] bool outside(int y) const { return (y < 0 && wall_below_) || (y >= ny_ && wall_above_); }
   /// Calls function(q, in, out) with the pointers of every population.
   template <class Function>
   void for_slots(Parity parity, int y, Function function) const;
 
+  Domain<2> domain_;
   int nx_, ny_, stride_;
-  bool periodic_y_;
+  bool wall_below_, wall_above_;
   Storage<T> storage_;
   T* origin_[9];
 };

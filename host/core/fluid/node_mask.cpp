@@ -4,12 +4,13 @@
 
 namespace rouleau::core {
 
-Activity::Activity(int nx, int ny)
-    : nx_(nx),
-      ny_(ny),
-      words_((nx + nodes_per_bit * bits_per_word - 1) / (nodes_per_bit * bits_per_word)),
-      bits_(static_cast<std::size_t>(words_) * ny, 0),
-      runs_(static_cast<std::size_t>(ny), {Run{0, nx, false}}) {}
+Activity::Activity(const Domain<2>& domain)
+    : domain_(domain),
+      nx_(domain.block.size(0)),
+      ny_(domain.block.size(1)),
+      words_((nx_ + nodes_per_bit * bits_per_word - 1) / (nodes_per_bit * bits_per_word)),
+      bits_(static_cast<std::size_t>(words_) * ny_, 0),
+      runs_(static_cast<std::size_t>(ny_), {Run{0, nx_, false}}) {}
 
 void Activity::clear(int first_row, int end_row) {
   std::fill(bits_.begin() + static_cast<std::ptrdiff_t>(words_) * first_row,
@@ -23,7 +24,7 @@ void Activity::mark(int y, int begin, int end) {
     begin = 0;
     end = nx_;
   }
-  const int shift = (begin % nx_ + nx_) % nx_ - begin;
+  const int shift = domain_.wrapped(0, begin) - begin;
   begin += shift;
   end += shift;
   if (end > nx_) {

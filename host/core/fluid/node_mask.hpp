@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/domain/domain.hpp"
+
 namespace rouleau::core {
 
 /// Consecutive nodes [begin, end) of a row that are all active or all not.
@@ -20,7 +22,7 @@ class Activity {
 
   Activity() = default;
   /// Nothing is active.
-  Activity(int nx, int ny);
+  explicit Activity(const Domain<2>& domain);
 
   /// Takes the marks of rows [first_row, end_row) away.
   void clear(int first_row, int end_row);
@@ -60,6 +62,7 @@ class Activity {
   /// Lists the runs of row y anew from its bits.
   void list_runs(int y);
 
+  Domain<2> domain_;
   int nx_ = 0, ny_ = 0, words_ = 0;
   std::vector<std::uint64_t> bits_;
   std::vector<std::vector<Run>> runs_;  ///< of each row: read several times a step, changed when a membrane has moved

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "periodic_box.hpp"
+#include "core/domain/images.hpp"
 
 namespace rouleau::core {
 

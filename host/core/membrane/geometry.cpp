@@ -127,8 +127,8 @@ double nearest_node(const Membranes& membranes, const CellRange& a, const CellRa
 }  // namespace
 
 double outline_distance(const Membranes& membranes, const CellRange& a, const CellRange& b, ImageShift shift,
-                        const PeriodicBox& box, double limit) {
-  const Eigen::Vector2d move(shift.x * box.nx, shift.y * box.ny);
+                        const Domain<2>& domain, double limit) {
+  const Eigen::Vector2d move(shift.x * domain.period(0), shift.y * domain.period(1));
   const double outside = limit * limit;
   double best = std::nextafter(outside, std::numeric_limits<double>::infinity());
   best = nearest_node(membranes, a, b, -move, best);
@@ -137,8 +137,8 @@ double outline_distance(const Membranes& membranes, const CellRange& a, const Ce
 }
 
 double facing_length(const Membranes& membranes, const CellRange& a, const CellRange& b, ImageShift shift,
-                     const PeriodicBox& box, double reach) {
-  const Eigen::Vector2d move(shift.x * box.nx, shift.y * box.ny);
+                     const Domain<2>& domain, double reach) {
+  const Eigen::Vector2d move(shift.x * domain.period(0), shift.y * domain.period(1));
   const Bounds bounds_b = bounds(membranes, b);
   double length = 0;
   for (int i = a.first; i < a.end(); ++i) {
@@ -148,13 +148,13 @@ double facing_length(const Membranes& membranes, const CellRange& a, const CellR
   return length;
 }
 
-double smallest_gap(const Membranes& membranes, int a, int b, const PeriodicBox& box, double limit) {
+double smallest_gap(const Membranes& membranes, int a, int b, const Domain<2>& domain, double limit) {
   const CellRange& cell = membranes.cells[a];
   const CellRange& other = membranes.cells[b];
   double gap = std::numeric_limits<double>::infinity();
-  for_each_image(bounds(membranes, cell), bounds(membranes, other), limit, box, [&](ImageShift shift) {
+  for_each_image(bounds(membranes, cell), bounds(membranes, other), limit, domain, [&](ImageShift shift) {
     if (a == b && shift == ImageShift{}) return;
-    gap = std::min(gap, outline_distance(membranes, cell, other, shift, box, std::min(gap, limit)));
+    gap = std::min(gap, outline_distance(membranes, cell, other, shift, domain, std::min(gap, limit)));
   });
   return gap;
 }

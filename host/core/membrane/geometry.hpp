@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "membranes.hpp"
-#include "periodic_box.hpp"
+#include "core/domain/images.hpp"
 
 namespace rouleau::core {
 
@@ -40,15 +40,15 @@ double marker_angle(const Membranes& membranes, const CellRange& cell);
 /// Smallest distance between the outlines of cell a and of cell b moved by `shift` periods, exact for two polygons that
 /// do not cross. Returns infinity when it is above `limit`.
 double outline_distance(const Membranes& membranes, const CellRange& a, const CellRange& b, ImageShift shift,
-                        const PeriodicBox& box, double limit = std::numeric_limits<double>::infinity());
+                        const Domain<2>& domain, double limit = std::numeric_limits<double>::infinity());
 
 /// Rest length of cell a's membrane that lies nearer than `reach` to the outline of cell b moved by `shift` periods.
 double facing_length(const Membranes& membranes, const CellRange& a, const CellRange& b, ImageShift shift,
-                     const PeriodicBox& box, double reach);
+                     const Domain<2>& domain, double reach);
 
 /// Smallest gap of two cells over all periodic images (of cell a to its own images if a == b); infinity above `limit`.
 /// `limit` must be finite: it bounds the images that are looked at.
-double smallest_gap(const Membranes& membranes, int a, int b, const PeriodicBox& box, double limit);
+double smallest_gap(const Membranes& membranes, int a, int b, const Domain<2>& domain, double limit);
 
 /// Depth to which a point lies inside a cell moved by `shift`: distance to its outline; negative outside.
 double depth_inside(const Membranes& membranes, const CellRange& cell, const Eigen::Vector2d& point);

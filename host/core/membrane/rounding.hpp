@@ -9,10 +9,4 @@ inline int floor_int(double value) {
   return truncated - (value < truncated ? 1 : 0);
 }
 
-/// i modulo period, in [0, period).
-inline int wrapped(int i, int period) {
-  const int rest = i % period;
-  return rest < 0 ? rest + period : rest;
-}
-
 }  // namespace rouleau::core

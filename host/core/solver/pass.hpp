@@ -1,6 +1,7 @@
 // One pass of a time step, how the workers run several, and the clock that tells what each pass costs.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <functional>
@@ -25,7 +26,28 @@ enum class Meeting {
 struct Pass {
   std::string name;  ///< passes under one name are phases of one
   std::function<void(Worker)> run;
+  /// Instead of `run`, of a pass over rows: any rows of the block. Such passes one after another, with no meeting
+  /// between them, are run band by band, so that a band is still in the cache when the next pass wants it.
+  std::function<void(Range rows)> run_rows = {};
   Meeting meeting = Meeting::all;
+};
+
+/// How rows are cut into bands.
+struct RowBands {
+  int rows = 0;         ///< of the block
+  int height = 1;       ///< rows of a band
+  bool upwards = true;  ///< the order in which a worker takes its bands
+
+  /// Calls function(rows) for the bands of a worker.
+  template <class Function>
+  void for_each(Worker worker, Function function) const {
+    const Range share = worker.share(rows);
+    const int count = (share.end - share.begin + height - 1) / height;
+    for (int i = 0; i < count; ++i) {
+      const int begin = share.begin + (upwards ? i : count - 1 - i) * height;
+      function(Range{begin, std::min(begin + height, share.end)});
+    }
+  }
 };
 
 /// Wall-clock time of the passes of a step as one worker sees it, waiting for others included.
@@ -49,13 +71,28 @@ class PassClock {
   Clock::time_point last_ = Clock::now();
 };
 
-/// What each worker does with the passes, in their order. The first worker's clock counts them from `first` on.
-inline void run_passes(const std::vector<Pass>& passes, Worker worker, Barrier& barrier, PassClock& clock,
-                       std::size_t first) {
+/// What each worker does with the passes [first, last), in their order. The clock, if any, is the first worker's.
+inline void run_passes(const std::vector<Pass>& passes, std::size_t first, std::size_t last, const RowBands& bands,
+                       Worker worker, Barrier& barrier, PassClock* clock) {
   unsigned announced = 0;
-  for (std::size_t i = 0; i < passes.size(); ++i) {
-    passes[i].run(worker);
-    switch (passes[i].meeting) {
+  const auto lap = [&](std::size_t pass) {
+    if (clock != nullptr && worker.first()) clock->lap(pass);
+  };
+  const auto over_rows = [&](std::size_t pass) { return static_cast<bool>(passes[pass].run_rows); };
+  for (std::size_t i = first; i < last;) {
+    std::size_t end = i + 1;
+    if (over_rows(i)) {
+      while (end < last && over_rows(end) && passes[end - 1].meeting == Meeting::none) ++end;
+      bands.for_each(worker, [&](Range rows) {
+        for (std::size_t k = i; k < end; ++k) {
+          passes[k].run_rows(rows);
+          lap(k);
+        }
+      });
+    } else {
+      passes[i].run(worker);
+    }
+    switch (passes[end - 1].meeting) {
       case Meeting::all:
         barrier.arrive_and_wait();
         break;
@@ -68,7 +105,8 @@ inline void run_passes(const std::vector<Pass>& passes, Worker worker, Barrier& 
       case Meeting::none:
         break;
     }
-    if (worker.first()) clock.lap(first + i);
+    lap(end - 1);
+    i = end;
   }
 }
 

@@ -19,7 +19,6 @@ enum class Task {
   set_viscosity,       ///< rows: the relaxation rate in and around the cells that have moved
   clear_force,         ///< rows
   spread,              ///< rows: forces to the lattice (Peskin, Acta Numerica 11, 2002)
-  fold_force,          ///< rows: what was spread beyond a border comes home
   collide_and_stream,  ///< rows: lattice Boltzmann with the force of Guo, Zheng and Shi, Phys. Rev. E 65, 2002
   end_step,            ///< one worker: the lattice's parity
   interpolate,         ///< cells: velocities of the nodes, with the kernel that has spread their forces
@@ -42,13 +41,16 @@ struct StepFeatures {
   bool viscosity_contrast = false;
   bool slip_correction = false;
   bool area_correction = false;
-  bool periodic_y = false;
 };
 
-/// A step's two halves: after the first and a barrier, forces and velocities belong to the present positions and the
-/// state may be observed.
+/// Whether a task is one over rows of the lattice.
+bool over_rows(Task task);
+
+/// A step. Before step [observable] (and after a barrier) forces and velocities belong to the present positions, and the
+/// state may be observed; from step [rows] on, one may go on to the end of the step without a look at it.
 struct Schedule {
-  std::vector<Step> forces, advance;
+  std::vector<Step> steps;
+  std::size_t rows = 0, observable = 0;
 };
 Schedule make_schedule(const StepFeatures& features);
 

@@ -18,11 +18,12 @@ bool has_contrast(const SolverSetup& setup, const Membranes& membranes) {
 }
 
 FluidSetting fluid_setting(const SolverSetup& setup, const Membranes& membranes) {
-  if (setup.nx < 1 || setup.ny < 1) throw std::invalid_argument("a lattice needs at least one node along x and y");
+  for (const int nodes : setup.domain.size) {
+    if (nodes < 1) throw std::invalid_argument("a lattice needs at least one node along x and y");
+  }
+  if (!setup.domain.periodic[0]) throw std::invalid_argument("a lattice without walls along y is periodic along x");
   if (setup.collision.table == nullptr) throw std::invalid_argument("a fluid needs a collision operator");
-  return {.nx = setup.nx,
-          .ny = setup.ny,
-          .periodic_y = setup.periodic_y,
+  return {.domain = setup.domain,
           .relaxation_rate = 1 / setup.tau,
           .inertia = setup.inertia,
           .walls = setup.walls,
@@ -67,13 +68,16 @@ Solver<T>::Solver(SolverSetup setup, Membranes& membranes)
     : setup_(std::move(setup)), membranes_(membranes), fluid_(fluid_setting(setup_, membranes), setup_.collision) {
   if (!membranes.cells.empty()) make_cells();
   const Schedule schedule = make_schedule(features());
-  const auto passes = [this](const std::vector<Step>& steps, std::vector<Pass>& to) {
-    for (const Step& step : steps) {
-      to.push_back({step.name, [this, task = step.task](Worker worker) { run(task, worker); }, step.meeting});
+  for (const Step& step : schedule.steps) {
+    Pass& pass = passes_.emplace_back(Pass{.name = step.name, .run = {}, .meeting = step.meeting});
+    if (over_rows(step.task)) {
+      pass.run_rows = [this, task = step.task](Range rows) { run_rows(task, rows); };
+    } else {
+      pass.run = [this, task = step.task](Worker worker) { run(task, worker); };
     }
-  };
-  passes(schedule.forces, forces_);
-  passes(schedule.advance, advance_);
+  }
+  rows_pass_ = schedule.rows;
+  observable_pass_ = schedule.observable;
 }
 
 template <class T>
@@ -82,8 +86,7 @@ StepFeatures Solver<T>::features() const {
           .interactions = interaction_forces_ != nullptr,
           .viscosity_contrast = fluid_.setting().viscosity_contrast,
           .slip_correction = slip_correction_ != nullptr,
-          .area_correction = setup_.area_correction,
-          .periodic_y = setup_.periodic_y};
+          .area_correction = setup_.area_correction};
 }
 
 template <class T>
@@ -107,15 +110,6 @@ void Solver<T>::run(Task task, Worker worker) {
     case Task::set_viscosity:
       if (indicator_->due()) indicator_->update(worker, membranes_, fluid_.relaxation_rate(), fluid_.activity());
       return;
-    case Task::clear_force:
-      return fluid_.clear_force(worker);
-    case Task::spread:
-      return coupling_->spread(worker, slip_correction_ ? slip_correction_->forces() : membranes_.forces(),
-                               fluid_.force());
-    case Task::fold_force:
-      return fluid_.fold_force(worker);
-    case Task::collide_and_stream:
-      return fluid_.step(worker);
     case Task::end_step:
       if (worker.first()) fluid_.end_step();
       return;
@@ -128,7 +122,33 @@ void Solver<T>::run(Task task, Worker worker) {
     case Task::move:
       core::move_nodes(worker, membranes_);
       return locate(worker);
+    case Task::clear_force:
+    case Task::spread:
+    case Task::collide_and_stream:
+      break;  // over rows
   }
+}
+
+template <class T>
+void Solver<T>::run_rows(Task task, Range rows) {
+  if (task == Task::clear_force) {
+    fluid_.clear_force(rows);
+  } else if (task == Task::spread) {
+    coupling_->spread(rows, membranes_, slip_correction_ ? slip_correction_->forces() : membranes_.forces(),
+                      fluid_.force());
+  } else {
+    fluid_.step(rows);
+  }
+}
+
+template <class T>
+RowBands Solver<T>::bands() const {
+  // Force and velocity of a band's active nodes should stay in a cache of this size until they have been used.
+  constexpr std::size_t cache = std::size_t{1} << 20;
+  const std::size_t row = 2 * sizeof(T) * setup_.domain.block.size(0);
+  const int rows = setup_.domain.block.size(1);
+  const int height = membranes_.cells.empty() ? rows : std::max<int>(8, static_cast<int>(cache / row));
+  return {.rows = rows, .height = height, .upwards = fluid_.sweeps_up()};
 }
 
 template <class T>
@@ -148,14 +168,13 @@ void Solver<T>::make_cells() {
   membrane_forces_ = std::make_unique<MembraneForces>(membranes_, membrane_setup);
   slight_energy_ = slight_energy_of(setup_.cell_types, membranes_);
   if (!setup_.interactions.empty()) {
-    const PeriodicBox box{1.0 * setup_.nx, setup_.periodic_y ? 1.0 * setup_.ny : 0.0};
-    interaction_forces_ = std::make_unique<InteractionForces>(membranes_, setup_.interactions, box);
+    interaction_forces_ = std::make_unique<InteractionForces>(membranes_, setup_.interactions, setup_.domain);
   }
   indicator_ = std::make_unique<Indicator<T>>(membranes_, std::move(viscosity_ratio),
                                               slip_correction_ ? ViscosityMean::harmonic : ViscosityMean::arithmetic,
                                               slip_correction_ ? slip_correction_->largest_shift() : 0.0,
-                                              1 / setup_.tau, setup_.nx, setup_.ny, setup_.periodic_y);
-  coupling_ = std::make_unique<Coupling<T>>(setup_.kernel, setup_.nx, setup_.ny, setup_.periodic_y);
+                                              1 / setup_.tau, setup_.domain);
+  coupling_ = std::make_unique<Coupling<T>>(setup_.kernel, setup_.domain);
   coupling_->reserve(membranes_);
   locate(Worker{});
 }
@@ -176,8 +195,9 @@ void Solver<T>::start(Solver* former) {
   double faster = 0;  // what the membranes' last displacement is worth in the new time step
   if (setup_.developed) {
     // Couette and Poiseuille flow, y from the middle of the channel.
-    const double half_height = setup_.ny / 2.0, middle = half_height - 0.5;
-    const double rate = (setup_.walls.upper - setup_.walls.lower) / setup_.ny;
+    const int height = setup_.domain.size[1];
+    const double half_height = height / 2.0, middle = half_height - 0.5;
+    const double rate = (setup_.walls.upper - setup_.walls.lower) / height;
     const double mean = (setup_.walls.upper + setup_.walls.lower) / 2;
     const double curvature = setup_.body_force_x / setup_.viscosity();
     fluid_.set_profile(
@@ -198,11 +218,23 @@ void Solver<T>::start(Solver* former) {
 
 template <class T>
 void Solver<T>::step(long count) {
-  for (; count > 0; --count) {
-    for (const std::vector<Pass>* passes : {&forces_, &advance_}) {
-      for (const Pass& pass : *passes) pass.run(Worker{});
-    }
-  }
+  for (; count > 0; --count) run_alone(0, passes_.size());
+}
+
+template <class T>
+void Solver<T>::compute_forces() {
+  run_alone(0, observable_pass_);
+}
+
+template <class T>
+void Solver<T>::advance() {
+  run_alone(observable_pass_, passes_.size());
+}
+
+template <class T>
+void Solver<T>::run_alone(std::size_t first, std::size_t last) {
+  Barrier nobody(1);
+  run_passes(passes_, first, last, bands(), Worker{}, nobody, nullptr);
 }
 
 /// Pass over cells: where the nodes touch the lattice.

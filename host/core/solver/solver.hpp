@@ -30,6 +30,10 @@ class Solver {
 
   /// Takes time steps with one worker. Between steps nodes are where the last step has moved them to.
   void step(long count = 1);
+  /// The two halves of a step, with one worker: forces at the present positions, after which the state may be observed;
+  /// then fluid, interpolation and motion.
+  void compute_forces();
+  void advance();
 
   [[nodiscard]] const SolverSetup& setup() const { return setup_; }
   [[nodiscard]] Fluid<T>& fluid() { return fluid_; }
@@ -40,10 +44,13 @@ class Solver {
   void restore_indicator(const DisplacementWatch::Memory& memory) {
     if (indicator_) indicator_->restore(memory, membranes_, fluid_.relaxation_rate(), fluid_.activity());
   }
-  /// Force and spreading at the present positions; after them and a barrier the state may be observed.
-  [[nodiscard]] const std::vector<Pass>& forces() const { return forces_; }
-  /// Fluid, interpolation, motion: from one step to the next.
-  [[nodiscard]] const std::vector<Pass>& advance() const { return advance_; }
+  /// A step, for several workers. Before pass [observable_pass()], after a barrier, the state may be observed; who does
+  /// not want to runs the passes from rows_pass() on without a stop.
+  [[nodiscard]] const std::vector<Pass>& passes() const { return passes_; }
+  [[nodiscard]] std::size_t rows_pass() const { return rows_pass_; }
+  [[nodiscard]] std::size_t observable_pass() const { return observable_pass_; }
+  /// How this step cuts rows.
+  [[nodiscard]] RowBands bands() const;
   /// Whether a node has left the domain, and which; -1: none.
   [[nodiscard]] bool escaped() const { return coupling_ && coupling_->any_escaped(); }
   [[nodiscard]] int escaped_node() const { return coupling_ ? coupling_->escaped() : -1; }
@@ -63,6 +70,8 @@ class Solver {
   void make_cells();
   void make_slip_correction();
   void run(Task task, Worker worker);
+  void run_rows(Task task, Range rows);
+  void run_alone(std::size_t first, std::size_t last);
   void locate(Worker worker);
 
   SolverSetup setup_;
@@ -74,7 +83,8 @@ class Solver {
   std::unique_ptr<Indicator<T>> indicator_;
   std::unique_ptr<Coupling<T>> coupling_;
   double slight_energy_ = 0;
-  std::vector<Pass> forces_, advance_;
+  std::vector<Pass> passes_;
+  std::size_t rows_pass_ = 0, observable_pass_ = 0;
 };
 
 extern template class Solver<float>;

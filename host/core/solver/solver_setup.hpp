@@ -5,8 +5,9 @@
 
 #include "core/contact/interaction_forces.hpp"
 #include "core/coupling/kernel_kind.hpp"
-#include "core/fluid/exchange.hpp"
+#include "core/domain/domain.hpp"
 #include "core/fluid/relaxation.hpp"
+#include "core/fluid/walls.hpp"
 #include "core/membrane/membrane_forces.hpp"
 #include "core/model/model.hpp"
 
@@ -19,12 +20,10 @@ struct CellType {
   double viscosity_ratio = 1;
 };
 
-/// Lattice units: spacing, time step and density of the fluid are 1. Node (0, 0) lies at (0, 0), walls half a spacing
-/// outside the first and the last row; x is periodic.
+/// Lattice units: spacing, time step and density of the fluid are 1.
 struct SolverSetup {
-  int nx = 0, ny = 0;
-  /// Without walls.
-  bool periodic_y = false;
+  /// Periodic along x; along y periodic, or between walls.
+  Domain<2> domain = {};
   /// Relaxation time of the suspending fluid in time steps; its kinematic viscosity is (tau - 1/2)/3.
   double tau = 1;
   /// Quadratic equilibrium; false: linear, for creeping flow.

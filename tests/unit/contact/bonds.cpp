@@ -18,8 +18,8 @@ rouleau::core::Potential bridging(double on_rate = on, double off_rate = off, do
   return potential("bridging", {sites, stiffness, bond_length, on_rate, off_rate, forward_share, thermal, cutoff});
 }
 
-InteractionForces bonds_between(Membranes& m, rouleau::core::Potential bond, PeriodicBox box = {1e4}) {
-  return {m, {{{0, 0}, std::move(bond)}}, box};
+InteractionForces bonds_between(Membranes& m, rouleau::core::Potential bond, core::Domain<2> domain = periodic_box(10000)) {
+  return {m, {{{0, 0}, std::move(bond)}}, domain};
 }
 
 void run_cleared(InteractionForces& forces, Membranes& m, int workers = 1) {
@@ -132,7 +132,7 @@ TEST_CASE("bonds stay with a node while the other surface slides past, and are l
 
 TEST_CASE("a cell between two others has bonds with each of them, and with its own image") {
   Membranes m = biconcave_cells({{0, -18, 0}, {0, 0, 0}, {0, 18, 0}});
-  InteractionForces forces = bonds_between(m, bridging(), {44.0});
+  InteractionForces forces = bonds_between(m, bridging(), periodic_box(44));
   for (int step = 0; step < 5; ++step) run_cleared(forces, m);
   std::vector<int> others;
   for (const ContactState& state : m.contacts.of_cell[1]) {
@@ -178,9 +178,9 @@ TEST_CASE("bonds pull without net force and torque, whatever their history") {
 TEST_CASE("bonds add to other potentials, with a cutoff of their own") {
   Membranes m = biconcave_cells({{0, 0, 0}, {1, 18, 0.03}});
   Membranes both = m, one = m, other = m;
-  InteractionForces together(both, {{{0, 0}, morse(0.2, 0.3, 2.5, 18)}, {{0, 0}, bridging()}}, {1e4});
-  InteractionForces first(one, {{{0, 0}, morse(0.2, 0.3, 2.5, 18)}}, {1e4}),
-      second(other, {{{0, 0}, bridging()}}, {1e4});
+  InteractionForces together(both, {{{0, 0}, morse(0.2, 0.3, 2.5, 18)}, {{0, 0}, bridging()}}, periodic_box(10000));
+  InteractionForces first(one, {{{0, 0}, morse(0.2, 0.3, 2.5, 18)}}, periodic_box(10000)),
+      second(other, {{{0, 0}, bridging()}}, periodic_box(10000));
   for (int step = 0; step < 5; ++step) run_cleared(together, both), run_cleared(first, one), run_cleared(second, other);
   CHECK(one.contacts.of_cell.empty());
   double size = 0;
@@ -199,7 +199,7 @@ TEST_CASE("bonds are the same to the last bit for one, two and three workers, an
   std::vector<Membranes> results;
   for (const int workers : {1, 2, 3}) {
     Membranes m = start;
-    InteractionForces forces = bonds_between(m, bridging(), {60.0, 90.0});
+    InteractionForces forces = bonds_between(m, bridging(), periodic_box(60, 90));
     for (int step = 0; step < 30; ++step) {
       run_cleared(forces, m, workers);
       if (workers == 2) (void)forces.energy(m);

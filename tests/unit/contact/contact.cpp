@@ -55,7 +55,7 @@ struct Tally {
 };
 
 /// Every node against every cell and every image near enough.
-void compare(const Contacts& contacts, const Membranes& m, const PeriodicBox& box, Tally& tally) {
+void compare(const Contacts& contacts, const Membranes& m, const core::Domain<2>& domain, Tally& tally) {
   for (int c = 0; c < static_cast<int>(m.cells.size()); ++c) {
     const CellRange& cell = m.cells[static_cast<std::size_t>(c)];
     const ContactList& list = contacts.list(c);
@@ -68,7 +68,7 @@ void compare(const Contacts& contacts, const Membranes& m, const PeriodicBox& bo
       }
     }
     tally.contacts += static_cast<long>(found.size());
-    const int far_y = box.periodic_y() ? 3 : 0;
+    const int far_y = domain.periodic[1] ? 3 : 0;
     long expected = 0;
     for (int b = 0; b < static_cast<int>(m.cells.size()); ++b) {
       const CellRange& other = m.cells[static_cast<std::size_t>(b)];
@@ -76,7 +76,7 @@ void compare(const Contacts& contacts, const Membranes& m, const PeriodicBox& bo
       for (int sx = -3; sx <= 3; ++sx) {
         for (int sy = -far_y; sy <= far_y; ++sy) {
           if (b == c && sx == 0 && sy == 0) continue;
-          const double dx = sx * box.nx, dy = sy * box.ny;
+          const double dx = sx * domain.period(0), dy = sy * domain.period(1);
           for (int i = cell.first; i < cell.end(); ++i) {
             const auto node = static_cast<std::size_t>(i);
             if (around.distance(m.x[node] - dx, m.y[node] - dy) > cutoff + 1e-9) continue;
@@ -100,7 +100,7 @@ void compare(const Contacts& contacts, const Membranes& m, const PeriodicBox& bo
 }  // namespace
 
 TEST_CASE("closest points are those of brute force on moving, turning, deforming and overlapping cells") {
-  const PeriodicBox box = GENERATE(PeriodicBox{90.0}, PeriodicBox{90.0, 70.0}, PeriodicBox{45.0});
+  const core::Domain<2> domain = GENERATE(periodic_box(90), periodic_box(90, 70), periodic_box(45));
   // Lists are made for the speed of the nodes where that is known, and for any speed where it is not.
   const bool known = GENERATE(false, true);
   const double speed = known ? GENERATE(0.02, 0.2) : 1.0;
@@ -116,10 +116,10 @@ TEST_CASE("closest points are those of brute force on moving, turning, deforming
     Cutoffs cutoffs(1);
     cutoffs.raise(0, 0, cutoff);
     if (known) m.largest_step.assign(m.cells.size(), 0.001 * speed);
-    Contacts contacts(m, cutoffs, box);
+    Contacts contacts(m, cutoffs, domain);
     for (int step = 0; step < 12; ++step) {
       run(contacts, m, 1 + step % 3);
-      compare(contacts, m, box, tally);
+      compare(contacts, m, domain, tally);
       // Move by up to the skin since the lists were made, by rigid motion and by single nodes.
       const std::vector<double> old_x = m.x, old_y = m.y;
       for (const CellRange& cell : m.cells) {
@@ -155,7 +155,7 @@ TEST_CASE("a node that is nowhere makes no contact and spoils no other, over per
     m.largest_step[broken] = std::nan("");
     Cutoffs cutoffs(1);
     cutoffs.raise(0, 0, cutoff);
-    Contacts contacts(m, cutoffs, {90.0, 70.0});
+    Contacts contacts(m, cutoffs, periodic_box(90, 70));
     run(contacts, m);
     for (int c = 0; c < 3; ++c) {
       const ContactList& list = contacts.list(c);
@@ -173,15 +173,16 @@ TEST_CASE("bins find every cell and image within reach, in boxes of any size, ov
   std::uniform_real_distribution<double> uniform(0, 1);
   long found = 0, pairs = 0;
   for (int trial = 0; trial < 200; ++trial) {
-    const PeriodicBox box{30 + 400 * uniform(random), trial % 2 == 0 ? 0.0 : 30 + 300 * uniform(random)};
+    const auto length = [&](int most) { return 30 + static_cast<int>(most * uniform(random)); };
+    const core::Domain<2> domain = trial % 2 == 0 ? periodic_box(length(400)) : periodic_box(length(400), length(300));
     const double reach = 1 + 20 * uniform(random), largest = 5 + 50 * uniform(random);
     std::vector<Bounds> bounds;
     for (int c = 0; c < 60; ++c) {
-      const double x = (3 * uniform(random) - 1) * box.nx, y = (3 * uniform(random) - 1) * 200;
+      const double x = (3 * uniform(random) - 1) * domain.period(0), y = (3 * uniform(random) - 1) * 200;
       bounds.push_back({x, x + largest * uniform(random), y, y + largest * uniform(random)});
     }
     bounds[17].x_min = std::nan("");
-    const Bins bins(bounds, reach, box);
+    const Bins bins(bounds, reach, domain);
     std::vector<int> near;
     for (int a = 0; a < 60; ++a) {
       bins.find(a, near);
@@ -190,7 +191,7 @@ TEST_CASE("bins find every cell and image within reach, in boxes of any size, ov
       found += static_cast<long>(near.size());
       for (int b = 0; b < 60; ++b) {
         bool images = false;
-        for_each_image(bounds[static_cast<std::size_t>(a)], bounds[static_cast<std::size_t>(b)], reach, box,
+        for_each_image(bounds[static_cast<std::size_t>(a)], bounds[static_cast<std::size_t>(b)], reach, domain,
                        [&](ImageShift) { images = true; });
         if (images) REQUIRE(std::binary_search(near.begin(), near.end(), b));
         pairs += images ? 1 : 0;
@@ -207,7 +208,7 @@ TEST_CASE("a remembered direction and place belong to the distance") {
   deform(m, random, 2, 0.1);
   Cutoffs cutoffs(1);
   cutoffs.raise(0, 0, cutoff);
-  Contacts contacts(m, cutoffs, {1e4});
+  Contacts contacts(m, cutoffs, periodic_box(10000));
   run(contacts, m);
   for (int c = 0; c < 2; ++c) {
     const ContactList& list = contacts.list(c);
@@ -235,10 +236,10 @@ TEST_CASE("every image is visited from both cells") {
     const Bounds a{ax, ax + 40, ay, ay + 13}, b{bx, bx + 13, by, by + 40};
     // Bounds that touch exactly, too: the reach is a difference of coordinates.
     const double reach = trial % 2 == 0 ? 19 : std::abs(b.x_min - a.x_max);
-    const PeriodicBox box{60.0 + trial % 7 / 3.0, trial % 3 == 0 ? 0.0 : 77.0};
+    const core::Domain<2> domain = periodic_box(60 + trial % 7, trial % 3 == 0 ? 0 : 77);
     std::vector<ImageShift> there, back;
-    for_each_image(a, b, reach, box, [&](ImageShift shift) { there.push_back(shift); });
-    for_each_image(b, a, reach, box, [&](ImageShift shift) { back.push_back(-shift); });
+    for_each_image(a, b, reach, domain, [&](ImageShift shift) { there.push_back(shift); });
+    for_each_image(b, a, reach, domain, [&](ImageShift shift) { back.push_back(-shift); });
     REQUIRE(there.size() == back.size());
     REQUIRE(std::is_permutation(there.begin(), there.end(), back.begin()));
     visits += static_cast<long>(there.size());

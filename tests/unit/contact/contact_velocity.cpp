@@ -21,7 +21,7 @@ struct Found {
 Found search(const Membranes& m) {
   Cutoffs cutoffs(1);
   cutoffs.raise(0, 0, reach);
-  Contacts contacts(m, cutoffs, PeriodicBox{120});
+  Contacts contacts(m, cutoffs, periodic_box(120));
   for (int phase = 0; phase < Contacts::phases; ++phase) contacts.run({}, phase, m);
   Found found;
   for (int cell = 0; cell < m.cell_count(); ++cell) {

@@ -21,7 +21,7 @@ Membranes polygons(const std::vector<std::vector<std::pair<double, double>>>& ou
   return m;
 }
 
-constexpr PeriodicBox wide{1000};
+const auto wide = periodic_box(1000);
 
 }  // namespace
 
@@ -45,17 +45,17 @@ TEST_CASE("two overlapping cells cross, and the place is on both outlines") {
 TEST_CASE("a cell that crosses a periodic image of another, or its own, is found") {
   const Membranes pair = biconcave_cells({{0, 0, 0.0}, {300 - 35, 1, 0.1}});
   CHECK_FALSE(find_crossing(pair, wide));
-  const auto crossing = find_crossing(pair, {100});
+  const auto crossing = find_crossing(pair, periodic_box(100));
   REQUIRE(crossing);
   CHECK(crossing->shift == ImageShift{-3, 0});
   const Membranes one = biconcave_cells({{0, 0, 0.0}});
-  CHECK_FALSE(find_crossing(one, {41}));
-  const auto own = find_crossing(one, {39});
+  CHECK_FALSE(find_crossing(one, periodic_box(41)));
+  const auto own = find_crossing(one, periodic_box(39));
   REQUIRE(own);
   CHECK(own->other == 0);
   CHECK_FALSE(own->shift == ImageShift{});
-  CHECK_FALSE(find_crossing(one, {1000, 14}));
-  CHECK(find_crossing(one, {1000, 12}));
+  CHECK_FALSE(find_crossing(one, periodic_box(1000, 14)));
+  CHECK(find_crossing(one, periodic_box(1000, 12)));
 }
 
 TEST_CASE("a cell that crosses itself is found, and a fold that only touches is not") {
@@ -109,7 +109,7 @@ TEST_CASE("crossings are found as by testing every pair of segments") {
         brute |= side(i, next(i), j) != side(i, next(i), next(j)) && side(j, next(j), i) != side(j, next(j), next(i));
       }
     }
-    REQUIRE(find_crossing(m, {1e5}).has_value() == brute);
+    REQUIRE(find_crossing(m, periodic_box(100000)).has_value() == brute);
     crossing_scenes += brute ? 1 : 0;
   }
   CHECK(crossing_scenes > 50);
@@ -120,7 +120,7 @@ TEST_CASE("positions that are not numbers are no crossing and no crash") {
   Membranes m = biconcave_cells({{0, 0, 0.0}, {0, 20, 0.1}});
   m.x[5] = std::nan("");
   m.y[150] = std::numeric_limits<double>::infinity();
-  CHECK_FALSE(find_crossing(m, {50, 50}));
+  CHECK_FALSE(find_crossing(m, periodic_box(50, 50)));
 }
 
 TEST_CASE("of several crossings the one of the first cells is found, wherever they lie among thousands") {
@@ -131,11 +131,11 @@ TEST_CASE("of several crossings the one of the first cells is found, wherever th
       squares.push_back({{x, y}, {x + 4, y}, {x + 4, y + 4}, {x, y + 4}});
     }
   }
-  CHECK_FALSE(find_crossing(polygons(squares), {600, 600}));
+  CHECK_FALSE(find_crossing(polygons(squares), periodic_box(600, 600)));
   for (const std::size_t moved : {9876, 4321, 1234}) {
     for (auto& [x, y] : squares[moved]) x += 3;
   }
-  const auto crossing = find_crossing(polygons(squares), {600, 600});
+  const auto crossing = find_crossing(polygons(squares), periodic_box(600, 600));
   REQUIRE(crossing);
   CHECK(crossing->cell == 1234);
   CHECK(crossing->other == 1235);

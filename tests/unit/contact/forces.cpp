@@ -127,11 +127,11 @@ TEST_CASE("a cell at rest feels no force, and a law that does nothing leaves non
 TEST_CASE("interaction forces are minus the gradient of the energy") {
   const unsigned seed = GENERATE(21u, 22u);
   auto random = generator(seed);
-  const PeriodicBox box = GENERATE(PeriodicBox{1e4}, PeriodicBox{47.0}, PeriodicBox{47.0, 54.0});
+  const core::Domain<2> domain = GENERATE(periodic_box(10000), periodic_box(47), periodic_box(47, 54));
   Membranes m = biconcave_cells(rouleau_of_three);
   deform(m, random, 2, 0.02);
   // A deep cutoff: at 18 the Morse energy is e^-11 of its depth, so that nodes that come and go do not show.
-  InteractionForces forces(m, {{{0, 0}, morse(0.2, 0.75, 2.5, 18)}}, box);
+  InteractionForces forces(m, {{{0, 0}, morse(0.2, 0.75, 2.5, 18)}}, domain);
   run(forces, m);
   const auto energy = [&] {
     run(forces, m);
@@ -145,7 +145,7 @@ TEST_CASE("interaction forces have no net force and no net torque") {
   auto random = generator(31);
   Membranes m = biconcave_cells(rouleau_of_three);
   deform(m, random, 3, 0.1);
-  InteractionForces forces(m, {{{0, 0}, morse(0.2, 0.75, 2.5, 18)}}, {1e4});
+  InteractionForces forces(m, {{{0, 0}, morse(0.2, 0.75, 2.5, 18)}}, periodic_box(10000));
   run(forces, m);
   const ForceSums sums = force_sums(m);
   REQUIRE(sums.size > 0);
@@ -156,8 +156,8 @@ TEST_CASE("interaction forces have no net force and no net torque") {
 
 TEST_CASE("periodic images pull as other cells at the same places would") {
   Membranes one = biconcave_cells({{0, 0, 0}}), row = biconcave_cells({{-46, 0, 0}, {0, 0, 0}, {46, 0, 0}});
-  InteractionForces periodic(one, {{{0, 0}, morse(0.2, 0.4, 2.5, 18)}}, {46.0});
-  InteractionForces open(row, {{{0, 0}, morse(0.2, 0.4, 2.5, 18)}}, {1e5});
+  InteractionForces periodic(one, {{{0, 0}, morse(0.2, 0.4, 2.5, 18)}}, periodic_box(46));
+  InteractionForces open(row, {{{0, 0}, morse(0.2, 0.4, 2.5, 18)}}, periodic_box(100000));
   run(periodic, one);
   run(open, row);
   double size = 0;
@@ -177,8 +177,8 @@ TEST_CASE("several potentials between two types add up, each within its own cuto
   m.cells[1].type = 1;
   const auto far = morse(0.2, 0.3, 2.5, 18), near = morse(0.1, 0.5, 3, 6);
   Membranes both = m, first = m, second = m, other = m;
-  InteractionForces sum(m, {{{0, 1}, far}, {{1, 0}, near}}, {1e4}), a(m, {{{0, 1}, far}}, {1e4}),
-      b(m, {{{0, 1}, near}}, {1e4}), c(m, {{{1, 1}, far}}, {1e4});
+  InteractionForces sum(m, {{{0, 1}, far}, {{1, 0}, near}}, periodic_box(10000)), a(m, {{{0, 1}, far}}, periodic_box(10000)),
+      b(m, {{{0, 1}, near}}, periodic_box(10000)), c(m, {{{1, 1}, far}}, periodic_box(10000));
   run(sum, both), run(a, first), run(b, second), run(c, other);
   double size = 0;
   for (std::size_t i = 0; i < m.x.size(); ++i) {
@@ -198,7 +198,7 @@ TEST_CASE("forces are the same to the last bit for one, two and three workers") 
   for (const int workers : {1, 2, 3}) {
     Membranes m = start;
     MembraneForces membrane = membrane_forces(m, {neo_hookean(0.1), bending(0.4)});
-    InteractionForces interaction(m, {{{0, 0}, morse(0.2, 0.3, 2.5, 18)}}, {60.0, 90.0});
+    InteractionForces interaction(m, {{{0, 0}, morse(0.2, 0.3, 2.5, 18)}}, periodic_box(60, 90));
     for (int step = 0; step < 30; ++step) {
       run_pass(workers, [&](Worker worker) { membrane.run(worker, m); });
       run(interaction, m, workers);
@@ -225,7 +225,7 @@ TEST_CASE("coincident nodes and nodes on another outline give no NaN") {
   membrane_forces(m, {bending(0.4)}).run({}, m);
   for (const double force : m.force_x) REQUIRE(std::isfinite(force));
   clear(m);
-  InteractionForces interaction(m, {{{0, 0}, morse(0.2, 0.3, 2.5, 18)}}, {1e4});
+  InteractionForces interaction(m, {{{0, 0}, morse(0.2, 0.3, 2.5, 18)}}, periodic_box(10000));
   run(interaction, m);
   for (std::size_t i = 0; i < m.x.size(); ++i) {
     REQUIRE(std::isfinite(m.force_x[i]));
@@ -237,7 +237,7 @@ TEST_CASE("coincident nodes and nodes on another outline give no NaN") {
 
 TEST_CASE("positions that are not numbers end no pass and cross no bound") {
   Membranes m = biconcave_cells({{0, 0, 0}, {0, 18, 0}});
-  InteractionForces interaction(m, {{{0, 0}, morse(0.2, 0.3, 2.5, 18)}}, {60.0, 60.0});
+  InteractionForces interaction(m, {{{0, 0}, morse(0.2, 0.3, 2.5, 18)}}, periodic_box(60, 60));
   run(interaction, m);
   for (const double bad : {std::nan(""), 1e300, std::numeric_limits<double>::infinity()}) {
     Membranes broken = m;

@@ -4,7 +4,7 @@
 
 #include "core/coupling/coupling.hpp"
 #include "core/coupling/kernel.hpp"
-#include "core/fluid/exchange.hpp"
+#include "core/fluid/halo.hpp"
 #include "plan/kernel_facts.hpp"
 #include "unit/cell_fixture.hpp"
 
@@ -106,7 +106,7 @@ TEST_CASE("beside a moving wall linear flow is interpolated exactly, by every ke
   for (int y = 0; y < ny; ++y) {
     for (int x = 0; x < nx; ++x) velocity.x.row(y)[x] = lower + rate * (y + 0.5);
   }
-  for (int y = 0; y < ny; ++y) fill_velocity_halo(velocity, y, false, {lower, lower + rate * ny});
+  for (int y = 0; y < ny; ++y) fill_velocity_halo(velocity, y, {{nx, ny}, {true, false}}, {lower, lower + rate * ny});
   Membranes m = biconcave_cells({{12, 8, 0}}, 64);
   auto random = generator(77);
   std::uniform_real_distribution<double> along(0, nx), gap(0, 2);
@@ -114,7 +114,7 @@ TEST_CASE("beside a moving wall linear flow is interpolated exactly, by every ke
     m.x[i] = along(random);
     m.y[i] = i % 2 == 0 ? -0.5 + gap(random) : ny - 0.5 - gap(random);
   }
-  Coupling<double> coupling(kernel, nx, ny, false);
+  Coupling<double> coupling(kernel, {{nx, ny}, {true, false}});
   coupling.reserve(m);
   coupling.locate({}, m, m.positions());
   REQUIRE(coupling.escaped() == -1);

@@ -145,9 +145,9 @@ TEST_CASE("the relaxation rate follows the arithmetic mean of the viscosities, o
   deform(m, random, 2, 0.1);
   m.cells[1].type = 1;
   const double tau = 0.8;
-  Indicator<double> indicator(m, {5.0, 2.0}, ViscosityMean::arithmetic, 0, 1 / tau, nx, ny, periodic_y);
+  Indicator<double> indicator(m, {5.0, 2.0}, ViscosityMean::arithmetic, 0, 1 / tau, {{nx, ny}, {true, periodic_y}});
   auto rate = plain_rate<double>(nx, ny, 1 / tau);
-  Activity activity(nx, ny);
+  Activity activity({{nx, ny}, {true, false}});
   for (int round = 0; round < 3; ++round) {
     update(indicator, m, rate, activity);
     // Smoothed sum over cells, wrapped, node by node.
@@ -184,10 +184,10 @@ TEST_CASE("every node that a membrane can reach before the next update is marked
   const double ratio = GENERATE(1.0, 5.0);
   Membranes m = biconcave_cells({{-170.4, 20.1, 0.3}, {30.2, 40, 1.2}});
   deform(m, random, 2, 0.1);
-  Indicator<float> indicator(m, {ratio}, ViscosityMean::arithmetic, 0, 1.0, nx, ny, false);
+  Indicator<float> indicator(m, {ratio}, ViscosityMean::arithmetic, 0, 1.0, {{nx, ny}, {true, false}});
   CHECK(indicator.varies() == (ratio != 1));
   auto rate = plain_rate<float>(nx, ny, 1.0);
-  Activity activity(nx, ny);
+  Activity activity({{nx, ny}, {true, false}});
   update(indicator, m, rate, activity);
   CHECK(activity.active_fraction() < 0.6);
   CHECK(activity.active_fraction() > 0.1);
@@ -207,9 +207,9 @@ TEST_CASE("every node that a membrane can reach before the next update is marked
 
 TEST_CASE("an update is due once a node has moved by a tenth of a spacing, and for positions that are not numbers") {
   Membranes m = biconcave_cells({{30, 20, 0}, {30, 40, 0}});
-  Indicator<double> indicator(m, {5.0}, ViscosityMean::arithmetic, 0, 1.0, 80, 64, false);
+  Indicator<double> indicator(m, {5.0}, ViscosityMean::arithmetic, 0, 1.0, {{80, 64}, {true, false}});
   auto rate = plain_rate<double>(80, 64, 1.0);
-  Activity activity(80, 64);
+  Activity activity({{80, 64}, {true, false}});
   update(indicator, m, rate, activity);
   m.x[150] += 0.099;
   indicator.measure({}, m);
@@ -231,9 +231,9 @@ TEST_CASE("an update is due once a node has moved by a tenth of a spacing, and f
 
 TEST_CASE("where no cell is any more, the plain rate is back to the last bit") {
   Membranes m = biconcave_cells({{30, 20, 0}});
-  Indicator<float> indicator(m, {5.0}, ViscosityMean::arithmetic, 0, 1 / 0.7, 160, 64, false);
+  Indicator<float> indicator(m, {5.0}, ViscosityMean::arithmetic, 0, 1 / 0.7, {{160, 64}, {true, false}});
   auto rate = plain_rate<float>(160, 64, 1 / 0.7);
-  Activity activity(160, 64);
+  Activity activity({{160, 64}, {true, false}});
   update(indicator, m, rate, activity);
   CHECK(rate.row(20)[30] != static_cast<float>(1 / 0.7));
   for (double& x : m.x) x += 80;
@@ -250,9 +250,9 @@ TEST_CASE("an update after some cells have moved gives what all cells anew would
   const bool periodic_y = GENERATE(false, true);
   Membranes m = biconcave_cells({{-170.4, 20.1, 0.3}, {30.2, 40, 1.2}, {32.1, 25.0, -0.2}, {60.0, 33.0, 0.9}});
   deform(m, random, 2, 0.1);
-  Indicator<double> kept(m, {5.0}, ViscosityMean::arithmetic, 0, 1.25, nx, ny, periodic_y);
+  Indicator<double> kept(m, {5.0}, ViscosityMean::arithmetic, 0, 1.25, {{nx, ny}, {true, periodic_y}});
   auto rate = plain_rate<double>(nx, ny, 1.25);
-  Activity activity(nx, ny);
+  Activity activity({{nx, ny}, {true, false}});
   update(kept, m, rate, activity);
   for (int round = 0; round < 6; ++round) {
     const CellRange& cell = m.cells[static_cast<std::size_t>(round % 4)];
@@ -261,9 +261,9 @@ TEST_CASE("an update after some cells have moved gives what all cells anew would
       m.y[static_cast<std::size_t>(i)] -= 0.4;
     }
     update(kept, m, rate, activity);
-    Indicator<double> fresh(m, {5.0}, ViscosityMean::arithmetic, 0, 1.25, nx, ny, periodic_y);
+    Indicator<double> fresh(m, {5.0}, ViscosityMean::arithmetic, 0, 1.25, {{nx, ny}, {true, periodic_y}});
     auto fresh_rate = plain_rate<double>(nx, ny, 1.25);
-    Activity fresh_activity(nx, ny);
+    Activity fresh_activity({{nx, ny}, {true, false}});
     update(fresh, m, fresh_rate, fresh_activity);
     for (int y = 0; y < ny; ++y) {
       for (int x = 0; x < nx; ++x) {

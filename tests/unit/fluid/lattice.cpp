@@ -71,9 +71,7 @@ TEST_CASE("in-place streaming gives the same populations as two arrays, with wal
   std::mt19937 random(1);
   std::uniform_real_distribution<double> uniform(-0.01, 0.01);
   const auto collision = make_collision("trt", {0.1875}, tau, inertia);
-  FluidSetting setting{.nx = nx,
-                       .ny = ny,
-                       .periodic_y = periodic_y,
+  FluidSetting setting{.domain = {{nx, ny}, {true, periodic_y}},
                        .relaxation_rate = 1 / tau,
                        .inertia = inertia,
                        .walls = {-0.01, 0.02}};
@@ -94,7 +92,7 @@ TEST_CASE("in-place streaming gives the same populations as two arrays, with wal
   };
   each([&](int q, int x, int y) { plain.at(plain.f, q, x, y) = fluid.population(q, x, y); });
   for (int step = 0; step < 9; ++step) {
-    for (int w = workers - 1; w >= 0; --w) fluid.step(Worker{w, workers});
+    for (int w = workers - 1; w >= 0; --w) fluid.step(Worker{w, workers}.share(ny));
     fluid.end_step();
     plain.step();
     fluid.settle();
@@ -109,13 +107,13 @@ TEST_CASE("in-place streaming gives the same populations as two arrays, with wal
 
 TEST_CASE("the number of workers does not change a bit") {
   const auto run = [](int workers) {
-    FluidSetting setting{.nx = 40, .ny = 23, .periodic_y = false, .relaxation_rate = 1.1, .walls = {-0.02, 0.02}};
+    FluidSetting setting{.domain = {{40, 23}, {true, false}}, .relaxation_rate = 1.1, .walls = {-0.02, 0.02}};
     Fluid<float> fluid(setting, make_collision("trt", {0.1875}, 1 / 1.1, true));
     fluid.set_state([](int x, int y) {
       return Fluid<float>::State{0, 1e-3 * ((x * 7 + y * 3) % 11), 1e-3 * ((x * 5 + y) % 7), {}};
     });
     for (int step = 0; step < 51; ++step) {
-      for (int w = 0; w < workers; ++w) fluid.step(Worker{w, workers});
+      for (int w = 0; w < workers; ++w) fluid.step(Worker{w, workers}.share(23));
       fluid.end_step();
     }
     fluid.settle();
@@ -135,7 +133,7 @@ TEST_CASE("the number of workers does not change a bit") {
 TEST_CASE("mass does not drift between walls or in a periodic box") {
   const bool periodic_y = GENERATE(false, true);
   FluidSetting setting{
-      .nx = 32, .ny = 16, .periodic_y = periodic_y, .relaxation_rate = 0.9, .inertia = true, .walls = {-0.05, 0.05}};
+      .domain = {{32, 16}, {true, periodic_y}}, .relaxation_rate = 0.9, .inertia = true, .walls = {-0.05, 0.05}};
   if (periodic_y) setting.walls = {};
   Fluid<double> fluid(setting, make_collision("bgk", {}, 1 / 0.9, true));
   fluid.set_state([](int x, int y) {
@@ -154,7 +152,7 @@ TEMPLATE_TEST_CASE("mass and largest speed are those of the moments, and a value
   std::uniform_real_distribution<double> uniform(-0.01, 0.01);
   const int nx = 37, ny = 11;
   const FluidSetting setting{
-      .nx = nx, .ny = ny, .periodic_y = false, .relaxation_rate = 1.0, .body_force_x = 1e-3, .body_force_y = -2e-3};
+      .domain = {{nx, ny}, {true, false}}, .relaxation_rate = 1.0, .body_force_x = 1e-3, .body_force_y = -2e-3};
   Fluid<TestType> fluid(setting, make_collision("trt", {0.1875}, 1, false));
   const int bad = GENERATE(-1, 0, 20, 36);
   fluid.set_state([&](int x, int y) {
@@ -179,34 +177,8 @@ TEMPLATE_TEST_CASE("mass and largest speed are those of the moments, and a value
   }
 }
 
-TEST_CASE("folding the force is the adjoint of filling the velocity halo, with walls at rest and periodic") {
-  const bool periodic_y = GENERATE(false, true);
-  constexpr int nx = 12, ny = 9, halo = Field<double>::halo;
-  std::mt19937 random(3);
-  std::uniform_real_distribution<double> uniform(-1, 1);
-  VectorField<double> force{Field<double>(nx, ny), Field<double>(nx, ny)},
-      velocity{Field<double>(nx, ny), Field<double>(nx, ny)};
-  VectorField<double> original{Field<double>(nx, ny), Field<double>(nx, ny)};
-  for (int y = -halo; y < ny + halo; ++y) {
-    for (int x = -halo; x < nx + halo; ++x) {
-      force.x.row(y)[x] = original.x.row(y)[x] = uniform(random);
-      velocity.x.row(y)[x] = uniform(random);
-    }
-  }
-  for (int y = 0; y < ny; ++y) fill_velocity_halo(velocity, y, periodic_y, {});
-  for (int y = 0; y < ny; ++y) fold_force_row(force, y, periodic_y);
-  double with_halo = 0, folded = 0;
-  for (int y = -halo; y < ny + halo; ++y) {
-    for (int x = -halo; x < nx + halo; ++x) {
-      with_halo += original.x.row(y)[x] * velocity.x.row(y)[x];
-      if (x >= 0 && x < nx && y >= 0 && y < ny) folded += force.x.row(y)[x] * velocity.x.row(y)[x];
-    }
-  }
-  CHECK(folded == Approx(with_halo).epsilon(1e-13));
-}
-
 TEST_CASE("runs cover every row once and follow the marks, periodic along x") {
-  Activity activity(100, 4);
+  Activity activity({{100, 4}, {true, false}});
   activity.mark(1, 90, 105);
   activity.mark(2, -3, 2);
   activity.mark(7, 0, 5);

@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "monitor/membrane_wave.hpp"
+#include "unit/periodic_box.hpp"
 
+using namespace rouleau;
 using namespace rouleau::core;
 using namespace rouleau::monitor;
 
@@ -67,7 +69,7 @@ Failure failed(const std::string& reason, int cell) {
   return f;
 }
 
-const PeriodicBox box{128, 0};
+const Domain<2> domain = test::periodic_box(128);
 
 }  // namespace
 
@@ -116,7 +118,7 @@ TEST_CASE("a prominent wave names the mode of a failure by its direction and len
                Case{25, 1, 0, "node-scale"}, Case{50, 0.2, 1, "node-scale"});
   const Membranes m = membranes_of(Ring(100).wave(periods, 0.4 * along, 0.4 * across).flow(0.05, 0, 0, 0, 0, 0));
   Failure f = failed("node_step", 0);
-  find_mode(f, m, GrowthWatch(), box, {36, 30}, 0, 77);
+  find_mode(f, m, GrowthWatch(), domain, {36, 30}, 0, 77);
   CHECK(f.mode.name == mode);
   CHECK(f.mode.wavelength == Approx(100.0 / periods));
   CHECK(f.mode.tangential_share == Approx(along * along / (along * along + across * across)).epsilon(1e-9));
@@ -134,7 +136,7 @@ TEST_CASE("the mode is read where the wave first stood out, not from the crumple
   growth.note(40, membranes_of(Ring(100).wave(40, 0.2, 0.2)));
   const Membranes end = membranes_of(Ring(100).wave(50, 0, 1));
   Failure f = failed("node_step", 0);
-  find_mode(f, end, growth, box, {36, 30}, 0, 50);
+  find_mode(f, end, growth, domain, {36, 30}, 0, 50);
   CHECK(f.mode.name == "tangential");
   CHECK(f.mode.wavelength == Approx(100.0 / 13));
   CHECK(f.mode.step == 30);
@@ -157,7 +159,7 @@ TEST_CASE("without a wave the reason and the surroundings name the mode", "[fail
   const auto mode = [](const Membranes& m, const char* reason, int cell, std::array<double, 2> place,
                        double oscillation) {
     Failure f = failed(reason, cell);
-    find_mode(f, m, GrowthWatch(), box, place, oscillation, 1);
+    find_mode(f, m, GrowthWatch(), domain, place, oscillation, 1);
     CHECK(std::isnan(f.mode.wavelength));
     return f.mode.name;
   };

@@ -8,7 +8,9 @@
 
 #include "core/membrane/geometry.hpp"
 #include "plan/output_schedule.hpp"
+#include "unit/periodic_box.hpp"
 
+using namespace rouleau;
 using namespace rouleau::core;
 using namespace rouleau::observe;
 using namespace rouleau::plan;
@@ -35,8 +37,8 @@ Membranes circles(const std::vector<std::array<double, 2>>& centres) {
 
 TEST_CASE("two circles are in contact exactly when their gap is below the reach") {
   const Membranes m = circles({{20, 20}, {32, 20}});
-  CHECK(find_contacts(m, {100, 0}, 1.9).empty());
-  const auto contacts = find_contacts(m, {100, 0}, 2.1);
+  CHECK(find_contacts(m, test::periodic_box(100), 1.9).empty());
+  const auto contacts = find_contacts(m, test::periodic_box(100), 2.1);
   REQUIRE(contacts.size() == 1);
   CHECK(contacts[0].gap == Approx(2).epsilon(1e-12));
   CHECK(contacts[0].image == ImageShift{0, 0});
@@ -46,7 +48,7 @@ TEST_CASE("two circles are in contact exactly when their gap is below the reach"
 TEST_CASE("a contact across the periodic border is found and flagged, however far the cells have drifted") {
   const double drift = GENERATE(0.0, 300.0, -700.0);
   const Membranes m = circles({{4 + drift, 20}, {95, 20}, {50, 20}});
-  const auto contacts = find_contacts(m, {100, 0}, 1.0);
+  const auto contacts = find_contacts(m, test::periodic_box(100), 1.0);
   REQUIRE(contacts.size() == 1);
   const Aggregates a = find_aggregates(3, contacts);
   CHECK(a.count == 2);
@@ -56,7 +58,7 @@ TEST_CASE("a contact across the periodic border is found and flagged, however fa
 
 TEST_CASE("a cell can touch its own image in a small box, and is then one aggregate") {
   const Membranes m = circles({{4, 20}});
-  const auto contacts = find_contacts(m, {10.5, 0}, 1.0);
+  const auto contacts = find_contacts(m, test::periodic_box(11), 1.5);
   REQUIRE(contacts.size() == 1);
   CHECK(contacts[0].cell_a == contacts[0].cell_b);
   CHECK(find_aggregates(1, contacts).count == 1);
@@ -67,10 +69,10 @@ TEST_CASE(
   const unsigned seed = std::random_device{}();
   INFO("seed " << seed);
   std::mt19937 random(seed);
-  for (const PeriodicBox& box : {PeriodicBox{400, 0}, PeriodicBox{400, 300}, PeriodicBox{64, 40}}) {
-    std::uniform_real_distribution<double> x(-box.nx, 2 * box.nx), y(0, 300);
+  for (const Domain<2>& domain : {test::periodic_box(400), test::periodic_box(400, 300), test::periodic_box(64, 40)}) {
+    std::uniform_real_distribution<double> x(-domain.period(0), 2 * domain.period(0)), y(0, 300);
     std::vector<std::array<double, 2>> centres;
-    for (int cell = 0; cell < (box.nx > 64 ? 240 : 2); ++cell) centres.push_back({x(random), y(random)});
+    for (int cell = 0; cell < (domain.period(0) > 64 ? 240 : 2); ++cell) centres.push_back({x(random), y(random)});
     const Membranes m = circles(centres);
     constexpr double reach = 3;
     const int cells = static_cast<int>(m.cells.size());
@@ -80,28 +82,28 @@ TEST_CASE(
       double gap = std::numeric_limits<double>::infinity();
       for (int b = 0; b < cells; ++b) {
         const CellRange &cell = m.cells[a], &other = m.cells[b];
-        gap = std::min(gap, smallest_gap(m, a, b, box, 800));
+        gap = std::min(gap, smallest_gap(m, a, b, domain, 800));
         if (b < a) continue;
-        for_each_image(bounds(m, cell), bounds(m, other), reach, box, [&](ImageShift shift) {
+        for_each_image(bounds(m, cell), bounds(m, other), reach, domain, [&](ImageShift shift) {
           if (a == b && (shift.y < 0 || (shift.y == 0 && shift.x <= 0))) return;
-          const double distance = outline_distance(m, cell, other, shift, box, reach);
+          const double distance = outline_distance(m, cell, other, shift, domain, reach);
           if (distance < reach)
-            expected.push_back({a, b, shift, distance, facing_length(m, cell, other, shift, box, reach)});
+            expected.push_back({a, b, shift, distance, facing_length(m, cell, other, shift, domain, reach)});
         });
       }
       gaps.push_back(gap);
     }
-    const auto contacts = find_contacts(m, box, reach);
+    const auto contacts = find_contacts(m, domain, reach);
     REQUIRE(contacts.size() == expected.size());
-    if (box.nx > 64) CHECK(contacts.size() > 50);
+    if (domain.period(0) > 64) CHECK(contacts.size() > 50);
     for (std::size_t k = 0; k < contacts.size(); ++k) {
       const CellContact &c = contacts[k], &e = expected[k];
       CHECK((c.cell_a == e.cell_a && c.cell_b == e.cell_b && c.image == e.image));
       CHECK((c.gap == e.gap && c.contact_length == e.contact_length));
     }
-    CHECK(smallest_gaps(m, box) == gaps);
+    CHECK(smallest_gaps(m, domain) == gaps);
   }
-  CHECK(smallest_gaps(circles({}), {100, 0}).empty());
+  CHECK(smallest_gaps(circles({}), test::periodic_box(100)).empty());
 }
 
 TEST_CASE("an aggregate is a connected chain of contacts, labelled by its smallest cell") {

@@ -1,17 +1,19 @@
 // The angle of aggregates: outermost cells, images, and continuation over turns.
 #include "observe/rotation.hpp"
+#include "unit/periodic_box.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
+using namespace rouleau;
 using namespace rouleau::core;
 using namespace rouleau::observe;
 
 namespace {
 
 using std::numbers::pi;
-const PeriodicBox hundred{100, 0};
+const Domain<2> hundred = test::periodic_box(100);
 
 CellContact contact(int a, int b, ImageShift image = {}) { return {a, b, image, 0.1, 1}; }
 

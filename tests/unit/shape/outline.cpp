@@ -75,17 +75,17 @@ TEST_CASE("two biconcave cells 3.52 um apart have a rim gap of 0.95503 um") {
       m.y.push_back(node.y() + y);
     }
   }
-  CHECK(smallest_gap(m, 0, 1, {1000.0}, 2.0) == Approx(0.95503).margin(1e-5));
-  CHECK(std::isinf(smallest_gap(m, 0, 1, {1000.0}, 0.95)));
+  CHECK(smallest_gap(m, 0, 1, periodic_box(1000), 2.0) == Approx(0.95503).margin(1e-5));
+  CHECK(std::isinf(smallest_gap(m, 0, 1, periodic_box(1000), 0.95)));
 }
 
 TEST_CASE("the gap of two cells is that of the nearest periodic images") {
   const Membranes m = biconcave_cells({{10, 0, 0.3}, {10 + 3 * 128 - 60, 5, -0.4}});
   const Membranes near = biconcave_cells({{10, 0, 0.3}, {10 - 60, 5, -0.4}});
-  CHECK(smallest_gap(m, 0, 1, {128.0}, 40) == Approx(smallest_gap(near, 0, 1, {1e6}, 40)).epsilon(1e-12));
+  CHECK(smallest_gap(m, 0, 1, periodic_box(128), 40) == Approx(smallest_gap(near, 0, 1, periodic_box(1000000), 40)).epsilon(1e-12));
   // A cell's own images in a box that is hardly longer than the cell.
   const Membranes one = biconcave_cells({{0, 0, 0}});
-  CHECK(smallest_gap(one, 0, 0, {42.0}, 10) == Approx(2.0).epsilon(1e-12));
+  CHECK(smallest_gap(one, 0, 0, periodic_box(42), 10) == Approx(2.0).epsilon(1e-12));
 }
 
 TEST_CASE("the inertia ellipse of an elliptic outline is the ellipse") {
@@ -129,24 +129,24 @@ TEST_CASE("cells that cannot be placed are refused with both places and the amou
     }
     return std::string("accepted");
   };
-  const auto scene_of = [](const std::vector<Placed>& places, PeriodicBox box, int height) {
-    Scene scene = biconcave_scene(places, box, height);
+  const auto scene_of = [](const std::vector<Placed>& places, core::Domain<2> domain, int height) {
+    Scene scene = biconcave_scene(places, domain, height);
     scene.cell_types[0].shape = Circle{20e-6, 1.0};
     for (CellPlacement& cell : scene.cells) cell.center *= 1e-6;
     return scene;
   };
   using Catch::Contains;
-  CHECK(refused(scene_of({{50, 50}, {95, 50}}, {256}, 100)) == "accepted");
-  CHECK_THAT(refused(scene_of({{50, 50}, {85, 50}}, {256}, 100)),
+  CHECK(refused(scene_of({{50, 50}, {95, 50}}, periodic_box(256), 100)) == "accepted");
+  CHECK_THAT(refused(scene_of({{50, 50}, {85, 50}}, periodic_box(256), 100)),
              Contains("/cells/0") && Contains("/cells/1") && Contains("overlap by 5 um"));
-  CHECK_THAT(refused(scene_of({{10, 50}, {241, 50}}, {256}, 100)), Contains("periodic image") && Contains("um"));
-  CHECK_THAT(refused(scene_of({{50, 17}}, {256}, 100)), Contains("lower wall by 2.5 um"));
-  CHECK_THAT(refused(scene_of({{50, 82}}, {256}, 100)), Contains("upper wall by 2.5 um"));
-  CHECK(refused(scene_of({{50, 17}}, {256, 100}, 100)) == "accepted");
-  CHECK_THAT(refused(scene_of({{50, 10}, {50, 85}}, {256, 100}, 100)), Contains("periodic image"));
-  CHECK_THAT(refused(scene_of({{50, 50}}, {39}, 100)), Contains("periodic length"));
-  CHECK_THAT(refused(scene_of({{50, 50}}, {256, 39}, 39)), Contains("periodic height"));
-  Scene inside = scene_of({{50, 50}, {50, 50}}, {256}, 100);
+  CHECK_THAT(refused(scene_of({{10, 50}, {241, 50}}, periodic_box(256), 100)), Contains("periodic image") && Contains("um"));
+  CHECK_THAT(refused(scene_of({{50, 17}}, periodic_box(256), 100)), Contains("lower wall by 2.5 um"));
+  CHECK_THAT(refused(scene_of({{50, 82}}, periodic_box(256), 100)), Contains("upper wall by 2.5 um"));
+  CHECK(refused(scene_of({{50, 17}}, periodic_box(256, 100), 100)) == "accepted");
+  CHECK_THAT(refused(scene_of({{50, 10}, {50, 85}}, periodic_box(256, 100), 100)), Contains("periodic image"));
+  CHECK_THAT(refused(scene_of({{50, 50}}, periodic_box(39), 100)), Contains("periodic length"));
+  CHECK_THAT(refused(scene_of({{50, 50}}, periodic_box(256, 39), 39)), Contains("periodic height"));
+  Scene inside = scene_of({{50, 50}, {50, 50}}, periodic_box(256), 100);
   inside.cell_types.push_back({"small", Circle{5e-6, 1.0}, 30, 1.0, {}});
   inside.cells[0].type = 1;
   CHECK_THAT(refused(inside), Contains("overlap by"));

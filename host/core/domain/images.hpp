@@ -1,16 +1,11 @@
-// The box whose periodic images of a cell count as neighbours.
+// Which periodic images of two boxes come near each other.
 #pragma once
 
 #include <cmath>
 
-namespace rouleau::core {
+#include "domain.hpp"
 
-/// Period of the lattice in spacings: always periodic along x, along y only if `ny` is not 0.
-struct PeriodicBox {
-  double nx;
-  double ny = 0;
-  [[nodiscard]] bool periodic_y() const { return ny > 0; }
-};
+namespace rouleau::core {
 
 /// Bounding box of a set of points.
 struct Bounds {
@@ -35,7 +30,7 @@ struct ImageShift {
 /// order. Bounds that are not usable() have no images. If it visits a shift for (a, b), it visits the opposite one for
 /// (b, a), whatever the rounding: IEEE subtraction and division are symmetric under change of sign.
 template <class Visit>
-void for_each_image(const Bounds& a, const Bounds& b, double reach, const PeriodicBox& box, Visit visit) {
+void for_each_image(const Bounds& a, const Bounds& b, double reach, const Domain<2>& domain, Visit visit) {
   if (!a.usable() || !b.usable()) return;
   const auto first = [&](double a_min, double b_max, double period) {
     return static_cast<int>(std::ceil((a_min - b_max - reach) / period));
@@ -44,13 +39,13 @@ void for_each_image(const Bounds& a, const Bounds& b, double reach, const Period
     return static_cast<int>(std::floor((a_max - b_min + reach) / period));
   };
   int y_first = 0, y_last = 0;
-  if (box.periodic_y()) {
-    y_first = first(a.y_min, b.y_max, box.ny);
-    y_last = last(a.y_max, b.y_min, box.ny);
+  if (domain.periodic[1]) {
+    y_first = first(a.y_min, b.y_max, domain.period(1));
+    y_last = last(a.y_max, b.y_min, domain.period(1));
   } else if (!(a.y_max - b.y_min + reach >= 0 && a.y_min - b.y_max - reach <= 0)) {
     return;
   }
-  const int x_first = first(a.x_min, b.x_max, box.nx), x_last = last(a.x_max, b.x_min, box.nx);
+  const int x_first = first(a.x_min, b.x_max, domain.period(0)), x_last = last(a.x_max, b.x_min, domain.period(0));
   for (int y = y_first; y <= y_last; ++y) {
     for (int x = x_first; x <= x_last; ++x) visit(ImageShift{x, y});
   }

@@ -1,0 +1,63 @@
+// The box of lattice nodes that a simulation fills, and the block of it that is computed here.
+#pragma once
+
+#include <array>
+
+namespace rouleau::core {
+
+/// Nodes [begin[k], end[k]) along every axis k.
+template <int D>
+struct Box {
+  std::array<int, D> begin{}, end{};
+
+  [[nodiscard]] int size(int axis) const { return end[axis] - begin[axis]; }
+  [[nodiscard]] bool contains(const std::array<int, D>& node) const {
+    for (int k = 0; k < D; ++k) {
+      if (node[k] < begin[k] || node[k] >= end[k]) return false;
+    }
+    return true;
+  }
+  friend bool operator==(const Box&, const Box&) = default;
+};
+
+/// Node i along an axis lies at coordinate i, in spacings. Along a periodic axis node i + size is an image of node i;
+/// along any other there are walls half a spacing outside the first and the last node, at -1/2 and size - 1/2.
+template <int D>
+struct Domain {
+  std::array<int, D> size{};       ///< nodes of the whole lattice
+  std::array<bool, D> periodic{};  ///< of each axis
+  Box<D> block{};                  ///< the nodes that are computed here
+
+  Domain() = default;
+  /// One block holds the whole lattice.
+  Domain(const std::array<int, D>& nodes, const std::array<bool, D>& is_periodic)
+      : Domain(nodes, is_periodic, {{}, nodes}) {}
+  Domain(const std::array<int, D>& nodes, const std::array<bool, D>& is_periodic, const Box<D>& mine)
+      : size(nodes), periodic(is_periodic), block(mine) {}
+
+  /// After how many spacings everything comes again along an axis; 0: never.
+  [[nodiscard]] double period(int axis) const { return periodic[axis] ? size[axis] : 0.0; }
+  /// Whether there are walls across an axis.
+  [[nodiscard]] bool walled(int axis) const { return !periodic[axis]; }
+  /// The node in [0, size) that node i is an image of; -1: it lies beyond a wall.
+  [[nodiscard]] int wrapped(int axis, int i) const {
+    const int n = size[axis];
+    if (i >= 0 && i < n) return i;
+    if (!periodic[axis]) return -1;
+    const int rest = i % n;
+    return rest < 0 ? rest + n : rest;
+  }
+  /// Whether the block is its own neighbour across both ends of an axis.
+  [[nodiscard]] bool wraps(int axis) const { return periodic[axis] && block.size(axis) == size[axis]; }
+  /// Whether a wall bounds the block at the lower or the upper end of an axis.
+  [[nodiscard]] bool wall_below(int axis) const { return !periodic[axis] && block.begin[axis] == 0; }
+  [[nodiscard]] bool wall_above(int axis) const { return !periodic[axis] && block.end[axis] == size[axis]; }
+  /// Number of nodes of the whole lattice.
+  [[nodiscard]] long nodes() const {
+    long product = 1;
+    for (const int n : size) product *= n;
+    return product;
+  }
+};
+
+}  // namespace rouleau::core
