@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/domain/exact_sum.hpp"
 #include "core/fluid/relaxation.hpp"
 
 namespace rouleau::observe {
@@ -19,10 +20,10 @@ double flow_rate(const core::Fluid<T>& fluid) {
   double sum = 0;
   for (int y = 0; y < setting.domain.size[1]; ++y) {
     fluid.moments(y, row);
-    double& value = mean[static_cast<std::size_t>(y)];
-    for (int x = 0; x < setting.domain.size[0]; ++x) value += row[static_cast<std::size_t>(x)].ux;
-    value /= setting.domain.size[0];
-    sum += value;
+    core::ExactSum along;
+    for (const core::Moments& m : row) along.add(m.ux);
+    mean[static_cast<std::size_t>(y)] = along.value() / setting.domain.size[0];
+    sum += mean[static_cast<std::size_t>(y)];
   }
   if (setting.domain.periodic[1]) return sum;
   // Slopes at the walls of parabolas through the wall and the two rows nearest to it, rows at 1/2 and 3/2.

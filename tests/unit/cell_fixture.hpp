@@ -2,9 +2,7 @@
 #pragma once
 
 #include <cmath>
-#include <iostream>
 #include <memory>
-#include <random>
 #include <vector>
 
 #include "base/worker.hpp"
@@ -14,18 +12,13 @@
 #include "plugin/catalog.hpp"
 #include "plugin/handles.hpp"
 #include "unit/periodic_box.hpp"
+#include "unit/random.hpp"
 
 namespace rouleau::test {
 
 using namespace core;
 using namespace plugin;
 using namespace scene;
-
-/// Seed of a test's random numbers, shown when the test fails.
-inline std::mt19937 generator(unsigned seed) {
-  std::cout << "seed " << seed << '\n';
-  return std::mt19937(seed);
-}
 
 inline const Manifest& shipped(ModelKind kind, const char* id) {
   static const Catalog catalog({ROULEAU_PLUGINS});

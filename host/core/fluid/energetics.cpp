@@ -1,21 +1,26 @@
 // Kinetic energy and viscous dissipation of the fluid, for the energy ledger.
 #include <rouleau/d2q9.hpp>
 
+#include "core/domain/exact_sum.hpp"
 #include "fluid.hpp"
 
 namespace rouleau::core {
 
 namespace {
 
-/// Sum over a row of f c . (u - u at the link's origin).
-template <class T>
-double change_along(const T* f, int nx, double cx, double cy, const double* ux, const double* uy,
-                    const double* origin_x, const double* origin_y) {
-  double sum = 0;
-  for (int x = 0; x < nx; ++x)
-    sum += static_cast<double>(f[x]) * (cx * (ux[x] - origin_x[x]) + cy * (uy[x] - origin_y[x]));
-  return sum;
-}
+/// Terms of a row, then added to a sum at once.
+class RowTerms {
+ public:
+  explicit RowTerms(int nx) : terms_(static_cast<std::size_t>(nx)) {}
+  template <class Term>
+  void add_to(ExactSum& sum, int begin, int end, Term term) {
+    for (int x = begin; x < end; ++x) terms_[x] = term(x);
+    sum.add(terms_.data() + begin, static_cast<std::size_t>(end - begin));
+  }
+
+ private:
+  std::vector<double> terms_;
+};
 
 }  // namespace
 
@@ -33,25 +38,28 @@ typename Fluid<T>::Energetics Fluid<T>::energetics() const {
   const auto width = static_cast<std::size_t>(nx) + 2;
   std::vector<double> velocity_x(width * static_cast<std::size_t>(ny)), velocity_y(velocity_x.size());
   const auto at = [width](auto& values, int y) { return values.data() + width * static_cast<std::size_t>(y) + 1; };
-  Energetics sum{};
+  ExactSum kinetic, sum_x, sum_y, membrane_power, dissipation;
+  RowTerms terms(nx);
   std::vector<Moments> row;
   for (int y = 0; y < ny; ++y) {
     moments(y, row);
     double *ux = at(velocity_x, y), *uy = at(velocity_y, y);
     for (int x = 0; x < nx; ++x) {
-      const Moments& m = row[x];
-      ux[x] = m.ux;
-      uy[x] = m.uy;
-      sum.kinetic += 0.5 * (m.ux * m.ux + m.uy * m.uy);
-      sum.velocity_x += m.ux;
-      sum.velocity_y += m.uy;
+      ux[x] = row[x].ux;
+      uy[x] = row[x].uy;
     }
+    sum_x.add(ux, static_cast<std::size_t>(nx));
+    sum_y.add(uy, static_cast<std::size_t>(nx));
+    terms.add_to(kinetic, 0, nx, [&](int x) { return 0.5 * (ux[x] * ux[x] + uy[x] * uy[x]); });
     for (double* u : {ux, uy}) u[-1] = u[nx - 1], u[nx] = u[0];
     if (!setting_.membranes) continue;
     activity_.for_runs(y, [&](const Run& run) {
-      for (int x = run.begin; x < run.end && run.active; ++x)
-        sum.membrane_power += (static_cast<double>(force_.x.row(y)[x]) - setting_.body_force_x) * ux[x] +
-                              (static_cast<double>(force_.y.row(y)[x]) - setting_.body_force_y) * uy[x];
+      if (!run.active) return;
+      const T *fx = force_.x.row(y), *fy = force_.y.row(y);
+      terms.add_to(membrane_power, run.begin, run.end, [&](int x) {
+        return (static_cast<double>(fx[x]) - setting_.body_force_x) * ux[x] +
+               (static_cast<double>(fy[x]) - setting_.body_force_y) * uy[x];
+      });
     });
   }
   for (int y = 0; y < ny; ++y) {
@@ -60,19 +68,27 @@ typename Fluid<T>::Energetics Fluid<T>::energetics() const {
     for (int q = 1; q < 9; ++q) {
       const int cx = d2q9::velocity[q][0], cy = d2q9::velocity[q][1];
       const int from = setting_.domain.wrapped(1, y - cy);
+      const T* f = in[q];
+      const double *ux = at(velocity_x, y), *uy = at(velocity_y, y);
       if (from >= 0) {
-        sum.dissipation -= change_along(in[q], nx, cx, cy, at(velocity_x, y), at(velocity_y, y),
-                                        at(velocity_x, from) - cx, at(velocity_y, from) - cx);
+        const double *origin_x = at(velocity_x, from) - cx, *origin_y = at(velocity_y, from) - cx;
+        terms.add_to(dissipation, 0, nx, [&](int x) {
+          return -static_cast<double>(f[x]) * (cx * (ux[x] - origin_x[x]) + cy * (uy[x] - origin_y[x]));
+        });
         continue;
       }
       const double speed = y < cy ? setting_.walls.lower : setting_.walls.upper;
       const double moved = 6 * d2q9::weight[q] * cx * speed;  // as in wall_stress()
-      for (int x = 0; x < nx; ++x)
-        sum.dissipation -= (2 * static_cast<double>(in[q][x]) - moved) *
-                           (cx * (at(velocity_x, y)[x] - speed) + cy * at(velocity_y, y)[x]);
+      terms.add_to(dissipation, 0, nx, [&](int x) {
+        return -(2 * static_cast<double>(f[x]) - moved) * (cx * (ux[x] - speed) + cy * uy[x]);
+      });
     }
   }
-  return sum;
+  return {.kinetic = kinetic.value(),
+          .dissipation = dissipation.value(),
+          .velocity_x = sum_x.value(),
+          .velocity_y = sum_y.value(),
+          .membrane_power = membrane_power.value()};
 }
 
 template Fluid<float>::Energetics Fluid<float>::energetics() const;

@@ -6,6 +6,7 @@
 #include <rouleau/dispatch.hpp>
 #include <type_traits>
 
+#include "core/domain/exact_sum.hpp"
 #include "max_speed.hpp"
 
 namespace rouleau::core {
@@ -159,26 +160,17 @@ void Fluid<T>::moments(int y, std::vector<Moments>& row) const {
 
 template <class T>
 double Fluid<T>::mass() const {
-  double mass = 0;
-  for (int y = 0; y < ny(); ++y) {
-    const T* in[9];
-    lattice_.row_pointers(parity_, y, in);
-    for (const T* population : in) {
-      for (int x = 0; x < nx(); ++x) mass += static_cast<double>(population[x]);
-    }
-  }
-  return mass;
+  return extremes().mass;
 }
 
 template <class T>
 typename Fluid<T>::Extremes Fluid<T>::extremes() const {
   static const auto function = Dispatch<FindExtremes, ExtremesTask<T>*>::pick();
-  Extremes result{0, 0};
+  ExactSum mass;
   double speed_square = 0, zero = 0;
   for (int y = 0; y < ny(); ++y) {
     const T* in[9];
     lattice_.row_pointers(parity_, y, in);
-    double row_mass = 0;
     activity_.for_runs(y, [&](const Run& run) {
       ExtremesTask<T> task{};
       d2q9::for_each_velocity([&](auto q) { task.in[q] = in[q] + run.begin; });
@@ -190,15 +182,12 @@ typename Fluid<T>::Extremes Fluid<T>::extremes() const {
       task.body_force[1] = static_cast<T>(setting_.body_force_y);
       task.count = run.end - run.begin;
       function(&task);
-      row_mass += task.mass;
+      mass.add_parts(task.mass[0], task.mass[1]);
       speed_square = std::max(speed_square, task.speed_square);
       zero += task.zero;
     });
-    result.mass += row_mass;
   }
-  result.mass += zero;
-  result.speed = std::sqrt(speed_square) + zero;
-  return result;
+  return {mass.value() + zero, std::sqrt(speed_square) + zero};
 }
 
 template <class T>
@@ -209,15 +198,15 @@ typename Fluid<T>::WallStress Fluid<T>::wall_stress() const {
   const auto stress = [&](int y, int outward, double speed) {
     const T* in[9];
     lattice_.row_pointers(parity_, y, in);
-    double sum = 0;
+    ExactSum sum;
     for (int q = 1; q < 9; ++q) {
       const int cx = d2q9::velocity[q][0];
       if (d2q9::velocity[q][1] != outward || cx == 0) continue;
       const T* returned = in[d2q9::opposite[q]];
       const double moved = 6 * d2q9::weight[q] * cx * speed;
-      for (int x = 0; x < nx(); ++x) sum += cx * (2 * static_cast<double>(returned[x]) + moved);
+      for (int x = 0; x < nx(); ++x) sum.add(cx * (2 * static_cast<double>(returned[x]) + moved));
     }
-    return sum / nx();
+    return sum.value() / setting_.domain.size[0];
   };
   return {stress(0, -1, setting_.walls.lower), stress(ny() - 1, +1, setting_.walls.upper)};
 }

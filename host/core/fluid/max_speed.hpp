@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <rouleau/collision.hpp>
 
+#include "core/domain/exact_sum.hpp"
+
 namespace rouleau::core {
 
 /// Nodes of one run of a row, and what was found.
@@ -13,7 +15,8 @@ struct ExtremesTask {
   const T* force[2];  // per node, or null
   T body_force[2];
   int count;
-  double mass, speed_square, zero;
+  double mass[2];  // parts of an exact sum of the densities (ExactSum)
+  double speed_square, zero;
 };
 
 /// Sum of the densities, largest speed; `zero` becomes NaN with the first value that is not finite.
@@ -38,19 +41,25 @@ struct FindExtremes {
   }
   template <class S, class T>
   ROULEAU_ALWAYS_INLINE static void sweep(const ExtremesTask<T>& t, int begin, int end, ExtremesTask<T>& result) {
-    S mass = 0, fastest = 0, zero = 0;
+    using Wide = typename Pack<double, S::size>::Vector;
+    Wide mass_high{}, mass_low{};
+    S fastest = 0, zero = 0;
     for (int x = begin; x < end; x += S::size) {
       Node<S, true, false> node;
       d2q9::for_each_velocity([&](auto q) { node.f[q] = S::load(t.in[q] + x); });
       for (int k = 0; k < 2; ++k) node.force[k] = t.force[k] != nullptr ? S::load(t.force[k] + x) : S(t.body_force[k]);
       node.compute_moments();
       const S square = node.velocity[0] * node.velocity[0] + node.velocity[1] * node.velocity[1];
-      mass += node.density;
+      const Wide density = __builtin_convertvector(node.density.vector, Wide);
+      const Wide part = ExactSum::high_part(density);
+      mass_high += part;
+      mass_low += ExactSum::low_part(Wide(density - part));
       fastest = max(square, fastest);
       zero += (square - square) + (node.density - node.density);
     }
     for (int k = 0; k < S::size; ++k) {
-      result.mass += static_cast<double>(mass.vector[k]);
+      result.mass[0] += mass_high[k];
+      result.mass[1] += mass_low[k];
       result.speed_square = std::max(result.speed_square, static_cast<double>(fastest.vector[k]));
       result.zero += static_cast<double>(zero.vector[k]);
     }
