@@ -101,7 +101,7 @@ void BareFluid<T>::set(const std::function<double(int, int, int)>& population) {
       for (int x = 0; x < lattice_.nx(); ++x) lattice_.slot(q, y)[x] = static_cast<T>(population(q, x, y));
     }
   }
-  begin_halo(lattice_);
+  fill_population_halo(lattice_);
 }
 
 template <class T>

@@ -5,9 +5,9 @@
 #include <functional>
 
 #include "base/worker.hpp"
-#include "core/fluid/halo.hpp"
 #include "core/fluid/field.hpp"
 #include "core/fluid/lattice.hpp"
+#include "core/fluid/periodic.hpp"
 
 namespace rouleau::bench {
 

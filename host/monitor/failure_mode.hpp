@@ -5,9 +5,9 @@
 #include <functional>
 #include <string>
 
+#include "core/domain/images.hpp"
 #include "core/fluid/fluid.hpp"
 #include "core/membrane/membranes.hpp"
-#include "core/domain/images.hpp"
 #include "failure.hpp"
 #include "growth_watch.hpp"
 

@@ -4,8 +4,8 @@
 #include <array>
 #include <vector>
 
-#include "core/membrane/membranes.hpp"
 #include "core/domain/images.hpp"
+#include "core/membrane/membranes.hpp"
 
 namespace rouleau::observe {
 

@@ -58,8 +58,7 @@ std::string leak_remedy(double segment) {
 }  // namespace
 
 Observer::Observer(const scene::Scene& scene, const core::Membranes& membranes)
-    : scene_(&scene),
-      domain_(plan::lattice_domain(scene)) {
+    : scene_(&scene), domain_(plan::lattice_domain(scene)) {
   for (const core::CellRange& cell : membranes.cells) initial_area_.push_back(core::enclosed_area(membranes, cell));
   for (const scene::CellPlacement& cell : scene.cells) angle_.push_back(cell.angle);
   tank_treading_angle_.assign(membranes.cells.size(), 0.0);

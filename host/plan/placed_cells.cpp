@@ -27,10 +27,7 @@ core::RestShape rest_shape(const scene::CellType& type, double spacing) {
 class Checker {
  public:
   Checker(const scene::Scene& scene, const core::Membranes& membranes, double spacing)
-      : scene_(scene),
-        membranes_(membranes),
-        spacing_(spacing),
-        domain_(lattice_domain(scene)) {}
+      : scene_(scene), membranes_(membranes), spacing_(spacing), domain_(lattice_domain(scene)) {}
 
   void check() const {
     for (std::size_t i = 0; i < membranes_.cells.size(); ++i) check_fits(i);

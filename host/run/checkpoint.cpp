@@ -104,7 +104,8 @@ Json save(files::CheckpointWriter& writer, core::Solver<T>& solver) {
   core::Fluid<T>& fluid = solver.fluid();
   fluid.settle();
   std::vector<T> values;
-  const auto nx = static_cast<std::size_t>(fluid.setting().domain.size[0]), ny = static_cast<std::size_t>(fluid.setting().domain.size[1]);
+  const auto nx = static_cast<std::size_t>(fluid.setting().domain.size[0]),
+             ny = static_cast<std::size_t>(fluid.setting().domain.size[1]);
   for (int q = 0; q < 9; ++q) {
     fluid.copy_populations(q, values);
     writer.array(population_name(q), ny, nx, values.data());
@@ -176,7 +177,8 @@ files::DirectoryMark restore(const files::CheckpointReader& reader, const Json& 
 template <class T>
 void restore(const files::CheckpointReader& reader, const Json& saved, core::Solver<T>& solver) {
   core::Fluid<T>& fluid = solver.fluid();
-  std::vector<T> values(static_cast<std::size_t>(fluid.setting().domain.size[0]) * static_cast<std::size_t>(fluid.setting().domain.size[1]));
+  std::vector<T> values(static_cast<std::size_t>(fluid.setting().domain.size[0]) *
+                        static_cast<std::size_t>(fluid.setting().domain.size[1]));
   try {
     fluid.restore(
         [&](int q) -> const std::vector<T>& {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "base/worker.hpp"
-#include "core/membrane/membranes.hpp"
 #include "core/domain/images.hpp"
+#include "core/membrane/membranes.hpp"
 #include "plan/placed_cells.hpp"
 #include "plugin/catalog.hpp"
 #include "plugin/handles.hpp"
@@ -42,9 +42,11 @@ struct Placed {
 };
 
 /// Scene of biconcave cells of one type (radius 20, spacing 1) in lattice coordinates.
-inline Scene biconcave_scene(const std::vector<Placed>& places, core::Domain<2> domain, int height, int segments = 100) {
+inline Scene biconcave_scene(const std::vector<Placed>& places, core::Domain<2> domain, int height,
+                             int segments = 100) {
   Scene scene{};
-  scene.domain.nodes = {static_cast<int>(domain.period(0)), domain.periodic[1] ? static_cast<int>(domain.period(1)) : height};
+  scene.domain.nodes = {static_cast<int>(domain.period(0)),
+                        domain.periodic[1] ? static_cast<int>(domain.period(1)) : height};
   scene.domain.size = {domain.period(0), static_cast<double>(scene.domain.nodes[1])};
   scene.domain.periodic_y = domain.periodic[1];
   scene.cell_types.push_back({"red", Biconcave{20.0}, segments, 1.0, {}});

@@ -183,7 +183,8 @@ void Contacts::search(const Membranes& membranes, int cell) {
     if (pair.group_begin != pair.group_end) {
       task.groups = candidates.groups.data() + pair.group_begin;
       task.groups_end = candidates.groups.data() + pair.group_end;
-      task.move_x = pair.shift.x * neighbours_.domain().period(0), task.move_y = pair.shift.y * neighbours_.domain().period(1);
+      task.move_x = pair.shift.x * neighbours_.domain().period(0),
+      task.move_y = pair.shift.y * neighbours_.domain().period(1);
       task.other_first = other.first;
       task.cutoff = cutoff;
       function(&task);

@@ -4,8 +4,8 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "core/membrane/membranes.hpp"
 #include "core/domain/images.hpp"
+#include "core/membrane/membranes.hpp"
 
 namespace rouleau::core {
 

@@ -9,8 +9,8 @@
 #include "base/worker.hpp"
 #include "contact.hpp"
 #include "contact_velocity.hpp"
-#include "core/membrane/membranes.hpp"
 #include "core/domain/images.hpp"
+#include "core/membrane/membranes.hpp"
 #include "core/model/model.hpp"
 
 namespace rouleau::core {

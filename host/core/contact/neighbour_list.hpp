@@ -5,9 +5,9 @@
 
 #include "base/worker.hpp"
 #include "cell_grid.hpp"
+#include "core/domain/images.hpp"
 #include "core/membrane/displacement_watch.hpp"
 #include "core/membrane/membranes.hpp"
-#include "core/domain/images.hpp"
 #include "segment_cache.hpp"
 
 namespace rouleau::core {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "base/worker.hpp"
-#include "core/membrane/membranes.hpp"
 #include "core/domain/images.hpp"
+#include "core/membrane/membranes.hpp"
 
 namespace rouleau::core {
 

@@ -30,7 +30,8 @@ struct LocateTask {
   int begin, end;
   double width, height;  // of the whole lattice
   bool periodic_y;
-  double lowest, highest;  // set to the least and the largest base row; `outside` for a stencil that is not on the lattice
+  double lowest,
+      highest;  // set to the least and the largest base row; `outside` for a stencil that is not on the lattice
 };
 
 /// Base nodes and what is kept of the weights, which is computed in double precision before it is rounded to T.
@@ -119,7 +120,7 @@ template <class T>
 struct SpreadTask {
   KnownStencils<T> at;
   const double *force_x, *force_y;
-  int begin, end;          // nodes of one cell
+  int begin, end;  // nodes of one cell
   const Domain<2>* domain;
   int row_begin, row_end;  // the rows of the lattice that are added to
   T *origin_x, *origin_y;  // where node (0, 0) of the lattice lies, or would lie if it belonged to the block

@@ -12,7 +12,7 @@
 namespace rouleau::core {
 
 /// Immersed-boundary coupling. Forces go to the nodes of the lattice that a stencil's are images of; velocities are read
-/// from the halo, too, two nodes wide, which others fill (fluid/halo.hpp).
+/// from the halo, too, two nodes wide, which the fluid fills.
 template <class T>
 class Coupling {
  public:

@@ -14,11 +14,8 @@ namespace rouleau::core {
 namespace d2q9 = rouleau::d2q9;
 
 template <class T>
-Fluid<T>::Fluid(const FluidSetting& setting, CollisionOperator collision)
-    : setting_(setting),
-      collision_(std::move(collision)),
-      lattice_(setting.domain),
-      activity_(setting.domain) {
+Fluid<T>::Fluid(const FluidSetting& setting, CollisionOperator collision, const Ranks<2>& ranks)
+    : setting_(setting), collision_(std::move(collision)), lattice_(setting.domain), activity_(setting.domain) {
   if constexpr (std::is_same_v<T, double>) {
     collide_ = collision_.table->collide_f64;
   } else {
@@ -33,6 +30,71 @@ Fluid<T>::Fluid(const FluidSetting& setting, CollisionOperator collision)
     body_force_row_[0].assign(static_cast<std::size_t>(nx()), static_cast<T>(setting.body_force_x));
     body_force_row_[1].assign(static_cast<std::size_t>(nx()), static_cast<T>(setting.body_force_y));
   }
+  if (ranks.several()) make_halos(ranks);
+}
+
+namespace {
+
+/// Populations of halo nodes that cross the border of a block: of a node outside, those whose velocity points out of the
+/// block wherever the node lies outside, and whose origin the block holds. An even step sends them out, and what an odd
+/// step has put there goes home.
+std::vector<HaloCopy<2>> population_copies(const Domain<2>& domain) {
+  std::vector<HaloCopy<2>> copies;
+  for_halo_nodes(domain, 1, 1, [&](const std::array<int, 2>& node, const std::array<int, 2>& out) {
+    for (int q = 1; q < 9; ++q) {
+      const int cx = d2q9::velocity[q][0], cy = d2q9::velocity[q][1];
+      const bool leaves = (out[0] == 0 || cx == out[0]) && (out[1] == 0 || cy == out[1]);
+      if (leaves && domain.block.contains({node[0] - cx, node[1] - cy})) copies.push_back({node, q});
+    }
+  });
+  return copies;
+}
+
+/// Velocities that the stencils of nodes above the block's own reach.
+std::vector<HaloCopy<2>> velocity_copies(const Domain<2>& domain) {
+  std::vector<HaloCopy<2>> copies;
+  for_halo_nodes(domain, 1, 2, [&](const std::array<int, 2>& node, const std::array<int, 2>&) {
+    for (int component = 0; component < 2; ++component) copies.push_back({node, component});
+  });
+  return copies;
+}
+
+}  // namespace
+
+template <class T>
+void Fluid<T>::make_halos(const Ranks<2>& ranks) {
+  const std::array<int, 2> begin = setting_.domain.block.begin;
+  population_halo_ =
+      std::make_unique<Halo<T, 2>>(ranks, population_copies, [this, begin](const std::array<int, 2>& node) {
+        return lattice_.offset(node[0] - begin[0], node[1] - begin[1]);
+      });
+  if (!setting_.membranes) return;
+  velocity_halo_ = std::make_unique<Halo<T, 2>>(ranks, velocity_copies, [this, begin](const std::array<int, 2>& node) {
+    return force_.x.row(node[1] - begin[1]) + (node[0] - begin[0]) - force_.x.row(0);
+  });
+}
+
+/// Calls function(halo, way, arrays) for what goes across the border after a step.
+template <class T>
+template <class Function>
+void Fluid<T>::with_arrays(Function function) {
+  if (!population_halo_) return;
+  T* slots[9];
+  for (int q = 0; q < 9; ++q) slots[q] = lattice_.slot(q, 0);
+  function(*population_halo_, parity_ == Parity::odd ? Way::out : Way::home, slots);
+  T* velocity[2] = {force_.x.row(0), force_.y.row(0)};
+  if (velocity_halo_) function(*velocity_halo_, Way::out, velocity);
+}
+
+template <class T>
+void Fluid<T>::begin_halo() {
+  with_arrays([](Halo<T, 2>& halo, Way way, auto& arrays) { halo.begin(way, arrays); });
+}
+
+template <class T>
+void Fluid<T>::end_halo() {
+  with_arrays([](Halo<T, 2>& halo, Way way, auto& arrays) { halo.end(way, arrays); });
+  if (velocity_halo_) mirror_velocity(force_, setting_.domain, setting_.walls);
 }
 
 template <class T>
@@ -225,7 +287,7 @@ void Fluid<T>::set_state(const std::function<State(int, int)>& state) {
   const double tau = 1 / setting_.relaxation_rate;
   for (int y = 0; y < ny(); ++y) {
     for (int x = 0; x < nx(); ++x) {
-      const State s = state(x, y);
+      const State s = state(setting_.domain.block.begin[0] + x, setting_.domain.block.begin[1] + y);
       // Populations hold the momentum without the half force that the velocity includes.
       const double jx = s.ux - 0.5 * setting_.body_force_x, jy = s.uy - 0.5 * setting_.body_force_y;
       for (int q = 0; q < 9; ++q) {
@@ -236,7 +298,7 @@ void Fluid<T>::set_state(const std::function<State(int, int)>& state) {
       }
     }
   }
-  begin_halo(lattice_);
+  fill_population_halo(lattice_);
 }
 
 template <class T>
@@ -267,7 +329,7 @@ void Fluid<T>::take_over(Fluid& other, double factor) {
       }
     }
   }
-  begin_halo(lattice_);
+  fill_population_halo(lattice_);
 }
 
 template <class T>
@@ -288,7 +350,7 @@ void Fluid<T>::restore(const std::function<const std::vector<T>&(int)>& populati
     const T* from = populations(q).data();
     for (int y = 0; y < ny(); ++y, from += nx()) std::copy_n(from, nx(), lattice_.slot(q, y));
   }
-  begin_halo(lattice_);
+  fill_population_halo(lattice_);
 }
 
 template class Fluid<float>;

@@ -8,18 +8,19 @@
 
 #include "base/worker.hpp"
 #include "core/domain/domain.hpp"
+#include "core/domain/halo.hpp"
 #include "core/model/model.hpp"
 #include "field.hpp"
-#include "halo.hpp"
 #include "lattice.hpp"
 #include "node_mask.hpp"
+#include "periodic.hpp"
 #include "walls.hpp"
 
 namespace rouleau::core {
 
 /// What a fluid is made of. Lattice units.
 struct FluidSetting {
-  Domain<2> domain;  ///< periodic along x
+  Domain<2> domain;        ///< periodic along x
   double relaxation_rate;  ///< 1/tau of the suspending fluid
   bool inertia = false;    ///< initial states include the quadratic terms of the equilibrium
   WallVelocity walls = {};
@@ -37,7 +38,8 @@ struct Moments {
 template <class T>
 class Fluid {
  public:
-  Fluid(const FluidSetting& setting, CollisionOperator collision);
+  /// `ranks`: who holds the other blocks, if the domain's block is not the whole lattice; used as long as the fluid lives.
+  Fluid(const FluidSetting& setting, CollisionOperator collision, const Ranks<2>& ranks = {});
 
   [[nodiscard]] const FluidSetting& setting() const { return setting_; }
   /// All rows of the block.
@@ -52,7 +54,7 @@ class Fluid {
 
   /// Sets velocity u(y) with shear rate du/dy along x everywhere, density 1 (equilibrium and first-order part).
   void set_profile(const std::function<double(double y)>& velocity, const std::function<double(double y)>& shear_rate);
-  /// General initial state: deviation of density, velocity and its gradient {du/dx, du/dy, dv/dx, dv/dy} at a node.
+  /// General initial state by node of the lattice: deviation of density, velocity and its gradient {du/dx, du/dy, dv/dx, dv/dy} at a node.
   struct State {
     double density, ux, uy, gradient[4];
   };
@@ -75,6 +77,10 @@ class Fluid {
     parity_ = next(parity_);
     walls_have_acted_ = true;
   }
+  /// One worker, after end_step(): sends what other blocks want of this step. Nothing without other blocks.
+  void begin_halo();
+  /// One worker, before the velocity is read or the next step is taken: takes what they have sent.
+  void end_halo();
 
   // Observers; between steps, one thread.
   /// Completes the halo so that moments() may be called.
@@ -122,6 +128,10 @@ class Fluid {
   /// Pointers to the populations of row y, as Lattice::row_pointers gives them; they come back unchanged.
   void collide_row(int y, const T* (&in)[9], T* (&out)[9]);
 
+  void make_halos(const Ranks<2>& ranks);
+  template <class Function>
+  void with_arrays(Function function);
+
   using Block = std::conditional_t<std::is_same_v<T, double>, rouleau_collision_block_f64, rouleau_collision_block_f32>;
   FluidSetting setting_;
   CollisionOperator collision_;
@@ -132,7 +142,8 @@ class Fluid {
   Activity activity_;
   VectorField<T> force_;
   Field<T> relaxation_rate_;
-  std::vector<T> body_force_row_[2];  ///< constant; empty without a body force
+  std::unique_ptr<Halo<T, 2>> population_halo_, velocity_halo_;  ///< null without other blocks
+  std::vector<T> body_force_row_[2];                             ///< constant; empty without a body force
 };
 
 extern template class Fluid<float>;

@@ -36,6 +36,9 @@ class Lattice {
   [[nodiscard]] T* slot(int q, int y) { return origin_[q] + static_cast<std::ptrdiff_t>(stride_) * y; }
   [[nodiscard]] const T* slot(int q, int y) const { return origin_[q] + static_cast<std::ptrdiff_t>(stride_) * y; }
 
+  /// From slot(q, 0) to the same slot of node (x, y) of the block, halo included.
+  [[nodiscard]] std::ptrdiff_t offset(int x, int y) const { return static_cast<std::ptrdiff_t>(stride_) * y + x; }
+
   /// Pointers to the populations of row y before and after a collision at this parity, from x = 0 on. Rows beside a
   /// wall get half-way bounce-back: what would leave the fluid stays in its node and comes back reversed in the next
   /// step.

@@ -8,7 +8,8 @@ Activity::Activity(const Domain<2>& domain)
     : domain_(domain),
       nx_(domain.block.size(0)),
       ny_(domain.block.size(1)),
-      words_((nx_ + nodes_per_bit * bits_per_word - 1) / (nodes_per_bit * bits_per_word)),
+      first_(domain.block.begin[0] % nodes_per_bit),
+      words_(bit_of(nx_ - 1) / bits_per_word + 1),
       bits_(static_cast<std::size_t>(words_) * ny_, 0),
       runs_(static_cast<std::size_t>(ny_), {Run{0, nx_, false}}) {}
 
@@ -20,22 +21,19 @@ void Activity::clear(int first_row, int end_row) {
 
 void Activity::mark(int y, int begin, int end) {
   if (y < 0 || y >= ny_ || begin >= end) return;
-  if (end - begin >= nx_) {
-    begin = 0;
-    end = nx_;
-  }
-  const int shift = domain_.wrapped(0, begin) - begin;
-  begin += shift;
-  end += shift;
-  if (end > nx_) {
-    mark(y, 0, end - nx_);
-    end = nx_;
-  }
   std::uint64_t* row = bits_.data() + static_cast<std::size_t>(words_) * y;
-  for (int bit = begin / nodes_per_bit; bit <= (end - 1) / nodes_per_bit; ++bit) {
-    row[bit / bits_per_word] |= std::uint64_t{1} << (bit % bits_per_word);
-  }
+  const int size = domain_.size[0];
+  const int first = end - begin < size ? domain_.wrapped(0, begin) : 0, last = first + std::min(end - begin, size);
+  mark_nodes(row, first, std::min(last, size));
+  if (last > size) mark_nodes(row, 0, last - size);
   list_runs(y);
+}
+
+void Activity::mark_nodes(std::uint64_t* row, int begin, int end) {
+  const int before = (domain_.block.begin[0] - first_) / nodes_per_bit;  // bits of the lattice before those kept here
+  const int first = std::max(begin / nodes_per_bit - before, 0);
+  const int last = std::min((end - 1) / nodes_per_bit - before, bit_of(nx_ - 1));
+  for (int bit = first; bit <= last; ++bit) row[bit / bits_per_word] |= std::uint64_t{1} << (bit % bits_per_word);
 }
 
 void Activity::list_runs(int y) {
@@ -43,9 +41,9 @@ void Activity::list_runs(int y) {
   std::vector<Run>& runs = runs_[y];
   runs.clear();
   for (int x = 0; x < nx_;) {
-    const int bit = x / nodes_per_bit;
+    const int bit = bit_of(x);
     const bool on = (row[bit / bits_per_word] >> (bit % bits_per_word) & 1) != 0;
-    const int end = std::min(nx_, next_change(row, bit, on) * nodes_per_bit);
+    const int end = std::min(nx_, next_change(row, bit, on) * nodes_per_bit - first_);
     runs.push_back({x, end, on});
     x = end;
   }

@@ -26,7 +26,8 @@ class Activity {
 
   /// Takes the marks of rows [first_row, end_row) away.
   void clear(int first_row, int end_row);
-  /// Marks the nodes [begin, end) of a row; the columns are taken periodically, rows outside [0, ny) are left out.
+  /// Marks the nodes of row y of the block that are images of columns [begin, end) of the lattice; rows outside the block
+  /// are left out.
   void mark(int y, int begin, int end);
 
   /// Calls function(Run) for the runs of row y, left to right, covering [0, nx) exactly.
@@ -35,7 +36,7 @@ class Activity {
     for (const Run& run : runs_[y]) function(run);
   }
   [[nodiscard]] bool active(int x, int y) const {
-    const int bit = x / nodes_per_bit;
+    const int bit = bit_of(x);
     return (bits_[static_cast<std::size_t>(words_) * y + bit / bits_per_word] >> (bit % bits_per_word) & 1) != 0;
   }
   /// Whether any node of row y is active; whether the first or the last one is.
@@ -59,11 +60,18 @@ class Activity {
     return word * bits_per_word + std::countr_zero(changed);
   }
 
+  /// The bit of node x of the block. Bits stand for the same nodes of the lattice whatever the block, since who computes
+  /// with what is active must come to the same numbers in all blocks.
+  [[nodiscard]] int bit_of(int x) const { return (x + first_) / nodes_per_bit; }
+  /// Nodes [begin, end) of the lattice.
+  void mark_nodes(std::uint64_t* row, int begin, int end);
   /// Lists the runs of row y anew from its bits.
   void list_runs(int y);
 
   Domain<2> domain_;
-  int nx_ = 0, ny_ = 0, words_ = 0;
+  int nx_ = 0, ny_ = 0;
+  int first_ = 0;  ///< nodes before the block that its first bit stands for, too
+  int words_ = 0;
   std::vector<std::uint64_t> bits_;
   std::vector<std::vector<Run>> runs_;  ///< of each row: read several times a step, changed when a membrane has moved
 };

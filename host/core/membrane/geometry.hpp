@@ -4,8 +4,8 @@
 #include <Eigen/Core>
 #include <limits>
 
-#include "membranes.hpp"
 #include "core/domain/images.hpp"
+#include "membranes.hpp"
 
 namespace rouleau::core {
 

@@ -170,10 +170,9 @@ void Solver<T>::make_cells() {
   if (!setup_.interactions.empty()) {
     interaction_forces_ = std::make_unique<InteractionForces>(membranes_, setup_.interactions, setup_.domain);
   }
-  indicator_ = std::make_unique<Indicator<T>>(membranes_, std::move(viscosity_ratio),
-                                              slip_correction_ ? ViscosityMean::harmonic : ViscosityMean::arithmetic,
-                                              slip_correction_ ? slip_correction_->largest_shift() : 0.0,
-                                              1 / setup_.tau, setup_.domain);
+  indicator_ = std::make_unique<Indicator<T>>(
+      membranes_, std::move(viscosity_ratio), slip_correction_ ? ViscosityMean::harmonic : ViscosityMean::arithmetic,
+      slip_correction_ ? slip_correction_->largest_shift() : 0.0, 1 / setup_.tau, setup_.domain);
   coupling_ = std::make_unique<Coupling<T>>(setup_.kernel, setup_.domain);
   coupling_->reserve(membranes_);
   locate(Worker{});

@@ -18,7 +18,8 @@ rouleau::core::Potential bridging(double on_rate = on, double off_rate = off, do
   return potential("bridging", {sites, stiffness, bond_length, on_rate, off_rate, forward_share, thermal, cutoff});
 }
 
-InteractionForces bonds_between(Membranes& m, rouleau::core::Potential bond, core::Domain<2> domain = periodic_box(10000)) {
+InteractionForces bonds_between(Membranes& m, rouleau::core::Potential bond,
+                                core::Domain<2> domain = periodic_box(10000)) {
   return {m, {{{0, 0}, std::move(bond)}}, domain};
 }
 

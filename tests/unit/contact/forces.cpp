@@ -177,8 +177,9 @@ TEST_CASE("several potentials between two types add up, each within its own cuto
   m.cells[1].type = 1;
   const auto far = morse(0.2, 0.3, 2.5, 18), near = morse(0.1, 0.5, 3, 6);
   Membranes both = m, first = m, second = m, other = m;
-  InteractionForces sum(m, {{{0, 1}, far}, {{1, 0}, near}}, periodic_box(10000)), a(m, {{{0, 1}, far}}, periodic_box(10000)),
-      b(m, {{{0, 1}, near}}, periodic_box(10000)), c(m, {{{1, 1}, far}}, periodic_box(10000));
+  InteractionForces sum(m, {{{0, 1}, far}, {{1, 0}, near}}, periodic_box(10000)),
+      a(m, {{{0, 1}, far}}, periodic_box(10000)), b(m, {{{0, 1}, near}}, periodic_box(10000)),
+      c(m, {{{1, 1}, far}}, periodic_box(10000));
   run(sum, both), run(a, first), run(b, second), run(c, other);
   double size = 0;
   for (std::size_t i = 0; i < m.x.size(); ++i) {

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
-#include "core/fluid/halo.hpp"
+#include "core/fluid/periodic.hpp"
 #include "unit/cell_fixture.hpp"
 
 using namespace rouleau;
@@ -60,7 +60,8 @@ namespace {
 
 /// Sum of force times velocity over the lattice, less that over the nodes, for a random velocity with walls at rest.
 template <class T>
-double adjointness_error(const Coupling<T>& coupling, Membranes& m, const core::Domain<2>& domain, std::mt19937& random) {
+double adjointness_error(const Coupling<T>& coupling, Membranes& m, const core::Domain<2>& domain,
+                         std::mt19937& random) {
   std::uniform_real_distribution<double> uniform(-1, 1);
   const int nx = domain.size[0], ny = domain.size[1];
   auto force = field<T>(nx, ny), velocity = field<T>(nx, ny);

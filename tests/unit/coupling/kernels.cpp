@@ -4,7 +4,7 @@
 
 #include "core/coupling/coupling.hpp"
 #include "core/coupling/kernel.hpp"
-#include "core/fluid/halo.hpp"
+#include "core/fluid/periodic.hpp"
 #include "plan/kernel_facts.hpp"
 #include "unit/cell_fixture.hpp"
 

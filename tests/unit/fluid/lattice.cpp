@@ -71,10 +71,8 @@ TEST_CASE("in-place streaming gives the same populations as two arrays, with wal
   std::mt19937 random(1);
   std::uniform_real_distribution<double> uniform(-0.01, 0.01);
   const auto collision = make_collision("trt", {0.1875}, tau, inertia);
-  FluidSetting setting{.domain = {{nx, ny}, {true, periodic_y}},
-                       .relaxation_rate = 1 / tau,
-                       .inertia = inertia,
-                       .walls = {-0.01, 0.02}};
+  FluidSetting setting{
+      .domain = {{nx, ny}, {true, periodic_y}}, .relaxation_rate = 1 / tau, .inertia = inertia, .walls = {-0.01, 0.02}};
   if (periodic_y) setting.walls = {};
   Fluid<double> fluid(setting, collision);
   fluid.set_state([&](int, int) {

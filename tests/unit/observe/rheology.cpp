@@ -64,7 +64,8 @@ TEST_CASE("the layer without cells does not depend on where the box is cut") {
   CHECK(layer.lower == Approx(same.lower).epsilon(1e-12));
   CHECK(layer.upper == Approx(same.upper).epsilon(1e-12));
   // Mirrored at the middle of the channel (y = 19.5) the two layers change places.
-  const CellFreeLayer mirrored = cell_free_layer(polygons({{{3.2, 34}, {12.7, 30}, {9.1, 8}}}), {{20, 40}, {true, false}});
+  const CellFreeLayer mirrored =
+      cell_free_layer(polygons({{{3.2, 34}, {12.7, 30}, {9.1, 8}}}), {{20, 40}, {true, false}});
   CHECK(mirrored.lower == Approx(same.upper).epsilon(1e-12));
   CHECK(mirrored.upper == Approx(same.lower).epsilon(1e-12));
 }

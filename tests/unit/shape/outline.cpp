@@ -82,7 +82,8 @@ TEST_CASE("two biconcave cells 3.52 um apart have a rim gap of 0.95503 um") {
 TEST_CASE("the gap of two cells is that of the nearest periodic images") {
   const Membranes m = biconcave_cells({{10, 0, 0.3}, {10 + 3 * 128 - 60, 5, -0.4}});
   const Membranes near = biconcave_cells({{10, 0, 0.3}, {10 - 60, 5, -0.4}});
-  CHECK(smallest_gap(m, 0, 1, periodic_box(128), 40) == Approx(smallest_gap(near, 0, 1, periodic_box(1000000), 40)).epsilon(1e-12));
+  CHECK(smallest_gap(m, 0, 1, periodic_box(128), 40) ==
+        Approx(smallest_gap(near, 0, 1, periodic_box(1000000), 40)).epsilon(1e-12));
   // A cell's own images in a box that is hardly longer than the cell.
   const Membranes one = biconcave_cells({{0, 0, 0}});
   CHECK(smallest_gap(one, 0, 0, periodic_box(42), 10) == Approx(2.0).epsilon(1e-12));
@@ -139,7 +140,8 @@ TEST_CASE("cells that cannot be placed are refused with both places and the amou
   CHECK(refused(scene_of({{50, 50}, {95, 50}}, periodic_box(256), 100)) == "accepted");
   CHECK_THAT(refused(scene_of({{50, 50}, {85, 50}}, periodic_box(256), 100)),
              Contains("/cells/0") && Contains("/cells/1") && Contains("overlap by 5 um"));
-  CHECK_THAT(refused(scene_of({{10, 50}, {241, 50}}, periodic_box(256), 100)), Contains("periodic image") && Contains("um"));
+  CHECK_THAT(refused(scene_of({{10, 50}, {241, 50}}, periodic_box(256), 100)),
+             Contains("periodic image") && Contains("um"));
   CHECK_THAT(refused(scene_of({{50, 17}}, periodic_box(256), 100)), Contains("lower wall by 2.5 um"));
   CHECK_THAT(refused(scene_of({{50, 82}}, periodic_box(256), 100)), Contains("upper wall by 2.5 um"));
   CHECK(refused(scene_of({{50, 17}}, periodic_box(256, 100), 100)) == "accepted");

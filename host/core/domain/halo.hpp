@@ -1,0 +1,128 @@
+// Numbers that blocks keep for each other, and the only way across the border between two blocks.
+#pragma once
+
+#include <cstring>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "decomposition.hpp"
+#include "transport.hpp"
+
+namespace rouleau::core {
+
+/// How the lattice is cut, and how this rank speaks to the others. Belongs to the caller.
+template <int D>
+struct Ranks {
+  const Decomposition<D>* blocks = nullptr;
+  Transport* transport = nullptr;
+
+  [[nodiscard]] bool several() const { return blocks != nullptr && blocks->ranks() > 1; }
+};
+
+/// A block's copy of a number that another block owns: number `component` of a node outside the block, which lies in
+/// nodes of the lattice, not wrapped.
+template <int D>
+struct HaloCopy {
+  std::array<int, D> node;
+  int component;
+};
+
+/// Which way numbers go: from their owners to the copies, or from the copies home.
+enum class Way { out, home };
+
+/// The copies of one kind of number. Every rank finds out for itself what it has to send, from the blocks of all.
+template <class T, int D>
+class Halo {
+ public:
+  /// `copies(domain)`: those that the block of a domain keeps, in an order of its own; nodes beyond walls have none.
+  /// `offset(node)`: of a node, in or around this block, in the arrays that begin() and end() are given.
+  Halo(const Ranks<D>& ranks, const std::function<std::vector<HaloCopy<D>>(const Domain<D>&)>& copies,
+       const std::function<std::ptrdiff_t(const std::array<int, D>& node)>& offset)
+      : transport_(ranks.transport), peers_(static_cast<std::size_t>(ranks.blocks->ranks())) {
+    const Decomposition<D>& blocks = *ranks.blocks;
+    const int own = transport_->rank();
+    for (int rank = 0; rank < blocks.ranks(); ++rank) {
+      const Domain<D> domain = blocks.domain(rank);
+      for (const HaloCopy<D>& copy : copies(domain)) {
+        std::array<int, D> node = copy.node;
+        for (int k = 0; k < D; ++k) node[k] = domain.wrapped(k, node[k]);
+        const int owner = blocks.owner(node);
+        if (owner == own) peers_[rank].owned.push_back({copy.component, offset(node)});
+        if (rank == own) peers_[owner].copies.push_back({copy.component, offset(copy.node)});
+      }
+    }
+  }
+
+  /// Sends what goes this way. `arrays[c]`: where component c of the node with offset 0 lies.
+  void begin(Way way, std::span<const T* const> arrays) {
+    for (std::size_t rank = 0; rank < peers_.size(); ++rank) {
+      const std::vector<Place>& from = way == Way::out ? peers_[rank].owned : peers_[rank].copies;
+      if (from.empty()) continue;
+      Message message(from.size() * sizeof(T));
+      std::byte* to = message.data();
+      for (const Place& place : from) {
+        std::memcpy(to, arrays[place.component] + place.offset, sizeof(T));
+        to += sizeof(T);
+      }
+      transport_->send(static_cast<int>(rank), std::move(message));
+    }
+  }
+  /// Waits for what goes this way, and puts it where it belongs.
+  void end(Way way, std::span<T* const> arrays) {
+    for (std::size_t rank = 0; rank < peers_.size(); ++rank) {
+      const std::vector<Place>& to = way == Way::out ? peers_[rank].copies : peers_[rank].owned;
+      if (to.empty()) continue;
+      const Message message = transport_->receive(static_cast<int>(rank));
+      const std::byte* from = message.data();
+      for (const Place& place : to) {
+        std::memcpy(arrays[place.component] + place.offset, from, sizeof(T));
+        from += sizeof(T);
+      }
+    }
+  }
+
+  /// How many numbers this rank keeps for others.
+  [[nodiscard]] std::size_t size() const {
+    std::size_t copies = 0;
+    for (const Peer& peer : peers_) copies += peer.copies.size();
+    return copies;
+  }
+
+ private:
+  struct Place {
+    int component;
+    std::ptrdiff_t offset;
+  };
+  struct Peer {
+    std::vector<Place> owned;   // by this rank, of which the peer keeps copies
+    std::vector<Place> copies;  // kept here of what the peer owns
+  };
+  Transport* transport_;
+  std::vector<Peer> peers_;  // of each rank
+};
+
+/// Calls function(node, out) for the nodes around a block, `below` nodes deep on its lower sides and `above` on the upper
+/// ones, that the block does not reach by its own periodic images alone and that do not lie beyond a wall. `out`: -1, 0
+/// or 1 along every axis, by where the node lies outside.
+template <class Function>
+void for_halo_nodes(const Domain<2>& domain, int below, int above, Function function) {
+  const Box<2>& block = domain.block;
+  for (int y = block.begin[1] - below; y < block.end[1] + above; ++y) {
+    const bool beside = y >= block.begin[1] && y < block.end[1];
+    for (int x = block.begin[0] - below; x < block.end[0] + above; ++x) {
+      if (beside && x == block.begin[0]) x = block.end[0];
+      const std::array<int, 2> node{x, y};
+      std::array<int, 2> out{};
+      bool foreign = false, wall = false;
+      for (int k = 0; k < 2; ++k) {
+        out[k] = node[k] < block.begin[k] ? -1 : (node[k] >= block.end[k] ? 1 : 0);
+        foreign = foreign || (out[k] != 0 && !domain.wraps(k));
+        wall = wall || domain.wrapped(k, node[k]) < 0;
+      }
+      if (foreign && !wall) function(node, out);
+    }
+  }
+}
+
+}  // namespace rouleau::core
