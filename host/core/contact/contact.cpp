@@ -147,7 +147,7 @@ void Contacts::run(Worker worker, int phase, const Membranes& membranes) {
   const Range cells = worker.share(membranes.cell_count());
   for (int cell = cells.begin; cell < cells.end; ++cell) {
     if (renewed) reserve(cell);
-    search(membranes, cell);
+    if (membranes.owns(cell)) search(membranes, cell);
   }
 }
 

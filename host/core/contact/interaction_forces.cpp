@@ -63,13 +63,19 @@ void InteractionForces::run(Worker worker, int phase, Membranes& membranes) {
     case 1:
       contacts_.run(worker, 1, membranes);
       for (int cell = cells.begin; cell < cells.end; ++cell) {
+        if (!membranes.owns(cell)) {
+          make_room_for_reactions(cell);
+          continue;
+        }
         compute_forces(cell, membranes);
         act(cell, membranes);
       }
       break;
     default:
       contacts_.neighbours().link(worker, membranes);
-      for (int cell = cells.begin; cell < cells.end; ++cell) take_reactions(cell, membranes);
+      for (int cell = cells.begin; cell < cells.end; ++cell) {
+        if (membranes.owns(cell)) take_reactions(cell, membranes);
+      }
       break;
   }
 }
@@ -155,9 +161,7 @@ void InteractionForces::compute_forces(int cell, Membranes& membranes) {
   const ContactList& list = contacts_.list(cell);
   Scratch& scratch = scratch_[static_cast<std::size_t>(cell)];
   prepare(cell, membranes, scratch);
-  const auto touched = static_cast<std::size_t>(contacts_.neighbours().list(cell).touched);
-  scratch.reaction_x.assign(touched, 0.0);
-  scratch.reaction_y.assign(touched, 0.0);
+  make_room_for_reactions(cell);
   const int type = membranes.cells[static_cast<std::size_t>(cell)].type;
   std::vector<ContactState> none;
   NextState next{has_state_ ? membranes.contacts.of_cell[static_cast<std::size_t>(cell)] : none};
@@ -181,6 +185,12 @@ void InteractionForces::compute_forces(int cell, Membranes& membranes) {
     }
   }
   next.states.resize(next.kept);  // pairs that do not touch any more
+}
+
+void InteractionForces::make_room_for_reactions(int cell) {
+  const auto touched = static_cast<std::size_t>(contacts_.neighbours().list(cell).touched);
+  scratch_[cell].reaction_x.assign(touched, 0.0);
+  scratch_[cell].reaction_y.assign(touched, 0.0);
 }
 
 void InteractionForces::act(int cell, Membranes& membranes) {

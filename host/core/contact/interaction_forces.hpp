@@ -36,6 +36,17 @@ class InteractionForces {
   /// True if there is nothing to do: run() may be left out.
   [[nodiscard]] bool empty() const { return interactions_.empty(); }
 
+  /// After phase 1, calls function(other, x, y, count) for each pair of a cell: where the reactions of its contacts on
+  /// consecutive nodes of `other` stand, of another rank's cell those that are to be put there before phase 2.
+  template <class Function>
+  void for_reactions(int cell, Function function) {
+    Scratch& scratch = scratch_[cell];
+    for (const Neighbours::Pair& pair : contacts_.neighbours().list(cell).pairs) {
+      const auto count = static_cast<std::size_t>(pair.touched.end - pair.touched.begin);
+      function(pair.other, scratch.reaction_x.data() + pair.reaction, scratch.reaction_y.data() + pair.reaction, count);
+    }
+  }
+
   /// Energy of the contacts found by the last run() in their present state. Not a pass.
   [[nodiscard]] double energy(const Membranes& membranes) const;
   /// A potential that acts but tells no energy; empty: none.
@@ -65,6 +76,7 @@ class InteractionForces {
   /// Makes room for a cell's contacts and measures what the potentials need of them besides the distance.
   void prepare(int cell, const Membranes& membranes, Scratch& scratch) const;
   void compute_forces(int cell, Membranes& membranes);
+  void make_room_for_reactions(int cell);
   void apply(std::size_t potential, const ContactList& list, Range contacts, double* result, bool energy, bool first,
              Scratch& scratch) const;
   /// The same for a potential that remembers, at the contacts of one pair. `next`: takes the state after the step, and

@@ -6,23 +6,13 @@
 
 #include "core/fluid/walls.hpp"
 #include "kernel.hpp"
+#include "spread.hpp"
 
 namespace rouleau::core {
 
 namespace {
 
 constexpr std::size_t large_field = 1 << 20;  // bytes; a field that does not stay in the cache
-constexpr int outside = -1000000;             // row of a node whose stencil is not on the lattice
-
-/// Base nodes and what is kept of the weights (kernel.hpp): written by Locate, read by the others.
-template <class Integer, class Number>
-struct Stencils {
-  Integer *column, *row;
-  Number *p_x, *q_x, *p_y, *q_y;
-};
-template <class T>
-using KnownStencils = Stencils<const int, const T>;
-
 template <class T>
 struct LocateTask {
   Stencils<int, T> to;
@@ -117,100 +107,14 @@ struct Locate {
 };
 
 template <class T>
-struct SpreadTask {
-  KnownStencils<T> at;
-  const double *force_x, *force_y;
-  int begin, end;  // nodes of one cell
-  const Domain<2>* domain;
-  int row_begin, row_end;  // the rows of the lattice that are added to
-  T *origin_x, *origin_y;  // where node (0, 0) of the lattice lies, or would lie if it belonged to the block
-  std::ptrdiff_t stride;   // from one row to the next, the same in both
-};
-
-// Each number of the lattice gets its terms in an order that does not depend on blocks, bands and workers: cell by cell,
-// in a cell as spread() visits its nodes, of a node by rows. What lies beyond a border is added to the node that it is an
-// image of, at once, never summed apart.
-template <class T, class Kernel>
-struct Spread {
-  template <int register_bytes>
-  ROULEAU_ALWAYS_INLINE static void run(const SpreadTask<T>* task) {
-    const SpreadTask<T> t = *task;
-    const Box<2>& block = t.domain->block;
-    const Inside inside{std::max(t.row_begin, 0), std::min(t.row_end, t.domain->size[1]), block.begin[0], block.end[0],
-                        t.domain->size[1]};
-    // Neighbouring nodes add to the same places, and a sum that is still on its way to memory stalls the next one:
-    // nodes from four parts of the cell take turns.
-    constexpr int parts = 4;
-    const int length = (t.end - t.begin) / parts;
-    for (int i = t.begin; i < t.begin + length; ++i) {
-      for (int part = 0; part < parts; ++part) spread(t, inside, i + part * length);
-    }
-    for (int i = t.begin + parts * length; i < t.end; ++i) spread(t, inside, i);
-  }
-
- private:
-  using Four = Pack<T, 4>;
-  /// What a stencil has to lie in to be added without a thought.
-  struct Inside {
-    int row_begin, row_end, column_begin, column_end, height;
-  };
-  ROULEAU_ALWAYS_INLINE static void spread(const SpreadTask<T>& t, const Inside& inside, int i) {
-    const int row = t.at.row[i] - 1, column = t.at.column[i] - 1;
-    const bool whole = row >= 0 && row + 4 <= inside.height;
-    if (whole && (row + 4 <= inside.row_begin || row >= inside.row_end)) return;
-    if (column < inside.column_begin || column + 4 > inside.column_end || !whole) return spread_at_border(t, i);
-    const Four wx = KernelWeights<Kernel, T>(t.at.p_x[i], t.at.q_x[i]).weight;
-    const SpreadWeights<Kernel, T> wy(t.at.p_y[i], t.at.q_y[i]);
-    const Four fx = wx * Four(t.force_x[i]), fy = wx * Four(t.force_y[i]);
-    const std::ptrdiff_t at = row * t.stride + column;
-    if (row >= inside.row_begin && row + 4 <= inside.row_end) {
-      for (int k = 0; k < 4; ++k) add(t, fx, fy, wy.weight[k], at + k * t.stride);
-    } else {
-      for (int k = 0; k < 4; ++k) {
-        if (row + k >= inside.row_begin && row + k < inside.row_end) add(t, fx, fy, wy.weight[k], at + k * t.stride);
-      }
-    }
-  }
-  ROULEAU_ALWAYS_INLINE static void add(const SpreadTask<T>& t, const Four& fx, const Four& fy, const Four& weight,
-                                        std::ptrdiff_t at) {
-    (Four::load(t.origin_x + at) + fx * weight).store(t.origin_x + at);
-    (Four::load(t.origin_y + at) + fy * weight).store(t.origin_y + at);
-  }
-
-  /// The same sums, number by number: of a stencil that reaches over the border of the lattice or of the block.
-  [[gnu::noinline, gnu::cold]] static void spread_at_border(const SpreadTask<T>& t, int i) {
-    if (t.at.row[i] == outside) return;
-    const Domain<2>& domain = *t.domain;
-    const Four wx = KernelWeights<Kernel, T>(t.at.p_x[i], t.at.q_x[i]).weight;
-    const SpreadWeights<Kernel, T> wy(t.at.p_y[i], t.at.q_y[i]);
-    const Four fx = wx * Four(t.force_x[i]), fy = wx * Four(t.force_y[i]);
-    for (int k = 0; k < 4; ++k) {
-      int row = domain.wrapped(1, t.at.row[i] - 1 + k);
-      Four weight = wy.weight[k];
-      if (row < 0) {  // beyond a wall
-        row = mirrored(t.at.row[i] - 1 + k, domain.size[1]);
-        weight = -weight;
-      }
-      if (row < t.row_begin || row >= t.row_end) continue;
-      for (int l = 0; l < 4; ++l) {
-        const int column = domain.wrapped(0, t.at.column[i] - 1 + l);
-        if (column < domain.block.begin[0] || column >= domain.block.end[0]) continue;
-        const std::ptrdiff_t at = row * t.stride + column;
-        t.origin_x[at] = (Four(t.origin_x[at]) + fx * weight).vector[l];
-        t.origin_y[at] = (Four(t.origin_y[at]) + fy * weight).vector[l];
-      }
-    }
-  }
-};
-
-template <class T>
 struct InterpolateTask {
   KnownStencils<T> at;
   double *velocity_x, *velocity_y;
   int begin, end;
   const T *origin_x, *origin_y;
   std::ptrdiff_t stride;
-  bool fetch_ahead;  // most of the fields has left the cache since the fluid's step
+  bool fetch_ahead;     // most of the fields has left the cache since the fluid's step
+  const Box<2>* block;  // nodes above others are left alone; null: there are no others
 };
 
 template <class T, class Kernel>
@@ -218,6 +122,7 @@ struct Interpolate {
   template <int register_bytes>
   ROULEAU_ALWAYS_INLINE static void run(const InterpolateTask<T>* task) {
     const InterpolateTask<T> t = *task;
+    if (t.block != nullptr) return run_in_block(t);
     int i = t.begin;
     for (; i + 2 <= t.end; i += 2) {
       if (t.fetch_ahead && i + lead + 2 <= t.end) {
@@ -232,17 +137,23 @@ struct Interpolate {
         t.velocity_y[i + k] = sums.vector[2 + k];
       }
     }
-    if (i < t.end) {
-      Four u, v;
-      weigh(t, i, u, v);
-      const Four sums = sum(u, u, v, v);
-      t.velocity_x[i] = sums.vector[0];
-      t.velocity_y[i] = sums.vector[2];
-    }
+    if (i < t.end) interpolate(t, i);
   }
 
  private:
   using Four = Pack<T, 4>;
+  ROULEAU_ALWAYS_INLINE static void interpolate(const InterpolateTask<T>& t, int i) {
+    Four u, v;
+    weigh(t, i, u, v);
+    const Four sums = sum(u, u, v, v);
+    t.velocity_x[i] = sums.vector[0];
+    t.velocity_y[i] = sums.vector[2];
+  }
+  ROULEAU_ALWAYS_INLINE static void run_in_block(const InterpolateTask<T>& t) {
+    for (int i = t.begin; i < t.end; ++i) {
+      if (t.block->contains({t.at.column[i], std::max(t.at.row[i], 0)})) interpolate(t, i);
+    }
+  }
   static constexpr int lead = 16;  // nodes from the fetched one to the present one
   ROULEAU_ALWAYS_INLINE static void fetch(const InterpolateTask<T>& t, int i) {
     if (t.at.row[i] == outside) return;
@@ -303,8 +214,7 @@ struct Coupling<T>::Loops {
 
   template <class Kernel>
   static const Loops* of() {
-    static const Loops loops{Dispatch<Locate<T, Kernel>, LocateTask<T>*>::pick(),
-                             Dispatch<Spread<T, Kernel>, const SpreadTask<T>*>::pick(),
+    static const Loops loops{Dispatch<Locate<T, Kernel>, LocateTask<T>*>::pick(), pick_spread<Kernel, T>(),
                              Dispatch<Interpolate<T, Kernel>, const InterpolateTask<T>*>::pick()};
     return &loops;
   }
@@ -392,7 +302,8 @@ void Coupling<T>::interpolate(Worker worker, Membranes& membranes, const VectorF
                                 velocity.x.row(0) - first,
                                 velocity.y.row(0) - first,
                                 stride,
-                                velocity.x.bytes() > large_field};
+                                velocity.x.bytes() > large_field,
+                                domain_.whole() ? nullptr : &domain_.block};
   loops_->interpolate(&task);
 }
 

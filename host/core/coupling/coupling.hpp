@@ -1,6 +1,8 @@
 // Carries membrane forces to the lattice and the lattice's velocity to the membranes, with the same weights.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <vector>
 
 #include "base/worker.hpp"
@@ -26,8 +28,11 @@ class Coupling {
   /// Pass over rows of the block: adds the forces of all nodes to the force density there. The sums do not depend on how
   /// rows are shared out, nor on the block.
   void spread(Range rows, const Membranes& membranes, NodeVectors node_force, VectorField<T>& force) const;
-  /// Pass over cells: sets velocity_x and velocity_y.
+  /// Pass over cells: sets velocity_x and velocity_y of the nodes whose base node lies in the block.
   void interpolate(Worker worker, Membranes& membranes, const VectorField<T>& velocity) const;
+
+  /// The node of the lattice below a membrane node: that of the block which computes its velocity.
+  [[nodiscard]] std::array<int, 2> base(int node) const { return {column_[node], std::max(row_[node], 0)}; }
 
   /// First node whose stencil left the lattice or whose position is not a number at the last locate(); -1: none.
   /// Such a node neither spreads nor is moved.

@@ -1,6 +1,7 @@
 // Takes the tangential slip out of the immersed boundary, which the smearing of forces over the kernel leaves behind.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "base/worker.hpp"
@@ -40,6 +41,7 @@ class SlipCorrection {
   /// Largest |d| of the types, spacings.
   [[nodiscard]] double largest_shift() const;
   [[nodiscard]] NodeVectors positions() const { return {touch_x_.data(), touch_y_.data()}; }
+  [[nodiscard]] std::array<double*, 2> forces_of_all() { return {force_x_.data(), force_y_.data()}; }
   [[nodiscard]] NodeVectors forces() const { return {force_x_.data(), force_y_.data()}; }
 
  private:

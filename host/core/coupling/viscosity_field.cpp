@@ -33,8 +33,8 @@ template <class T>
 template <class Function>
 void Indicator<T>::for_rows(const Rows& rows, Range own, Function function) const {
   for (std::size_t k = 0; k < rows.columns.size(); ++k) {
-    const int y = domain_.wrapped(1, rows.first + static_cast<int>(k));
-    if (y >= own.begin && y < own.end) function(y, rows.columns[k], static_cast<int>(k));
+    const int row = domain_.wrapped(1, rows.first + static_cast<int>(k)), y = row - domain_.block.begin[1];
+    if (row >= 0 && y >= own.begin && y < own.end) function(y, rows.columns[k], static_cast<int>(k));
   }
 }
 
@@ -44,7 +44,8 @@ void Indicator<T>::for_pieces(Interval columns, Function function) const {
   for (int begin = columns.begin; begin < columns.end;) {
     const int x = domain_.wrapped(0, begin);
     const int end = std::min(columns.end, begin + domain_.size[0] - x);
-    function(x, begin, end);
+    const int first = std::max(x, domain_.block.begin[0]), last = std::min(x + end - begin, domain_.block.end[0]);
+    if (first < last) function(first - domain_.block.begin[0], begin + first - x, begin + last - x);
     begin = end;
   }
 }

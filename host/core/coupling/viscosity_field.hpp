@@ -62,10 +62,11 @@ class Indicator {
     Rows reached;                  // where its nodes may spread or interpolate, and what it covers
   };
 
-  /// Calls function(y, columns, place) for those of the rows, counted by `place`, that fall on this worker's rows.
+  /// Calls function(y, columns, place) for those of the rows, counted by `place`, that fall on rows `own` of the block.
   template <class Function>
   void for_rows(const Rows& rows, Range own, Function function) const;
-  /// Calls function(x, begin, end) for pieces [begin, end) of the plane that begin at lattice column x and do not wrap.
+  /// Calls function(x, begin, end) for pieces [begin, end) of the plane that lie side by side in the block, from its
+  /// column x on.
   template <class Function>
   void for_pieces(Interval columns, Function function) const;
   void find_reach(const Membranes& membranes, const CellRange& cell, Reach& reach) const;

@@ -47,6 +47,8 @@ struct Domain {
     const int rest = i % n;
     return rest < 0 ? rest + n : rest;
   }
+  /// Whether one block holds the whole lattice.
+  [[nodiscard]] bool whole() const { return block == Box<D>{{}, size}; }
   /// Whether the block is its own neighbour across both ends of an axis.
   [[nodiscard]] bool wraps(int axis) const { return periodic[axis] && block.size(axis) == size[axis]; }
   /// Whether a wall bounds the block at the lower or the upper end of an axis.

@@ -8,7 +8,8 @@ Lattice<T>::Lattice(const Domain<2>& domain)
       nx_(domain.block.size(0)),
       ny_(domain.block.size(1)),
       wall_below_(domain.wall_below(1)),
-      wall_above_(domain.wall_above(1)) {
+      wall_above_(domain.wall_above(1)),
+      wraps_{domain.wraps(0), domain.wraps(1)} {
   constexpr int line = 64 / sizeof(T);
   // Rows begin on a cache line; the halo of a row's right end and of the next row's left end share what lies between.
   stride_ = (nx_ + 2 + line - 1) / line * line;

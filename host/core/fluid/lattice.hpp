@@ -30,6 +30,8 @@ class Lattice {
   [[nodiscard]] int nx() const { return nx_; }
   [[nodiscard]] int ny() const { return ny_; }
   [[nodiscard]] const Domain<2>& domain() const { return domain_; }
+  /// Whether the block is its own neighbour across both ends of an axis.
+  [[nodiscard]] bool wraps(int axis) const { return wraps_[axis]; }
   [[nodiscard]] std::size_t bytes() const { return storage_.bytes(); }
 
   /// Row y of slot q; x in [-1, nx], y in [-1, ny].
@@ -56,7 +58,7 @@ class Lattice {
 
   Domain<2> domain_;
   int nx_, ny_, stride_;
-  bool wall_below_, wall_above_;
+  bool wall_below_, wall_above_, wraps_[2];
   Storage<T> storage_;
   T* origin_[9];
 };

@@ -22,14 +22,14 @@ inline void for_slots(int k, int sign, Function function) {
 template <class T>
 bool crosses_side(const Lattice<T>& lattice, int q, int y) {
   const int from = y - d2q9::velocity[q][1];
-  return lattice.domain().wraps(1) || (from >= 0 && from < lattice.ny());
+  return lattice.wraps(1) || (from >= 0 && from < lattice.ny());
 }
 
 /// Copies a row, with the halo at its ends if it is the block's own, of the slots whose velocity has this sign along y.
 /// What comes from beyond a side that is another block's is not there to be copied.
 template <class T>
 void copy_row(Lattice<T>& lattice, int sign, int from, int to) {
-  const bool wraps = lattice.domain().wraps(0);
+  const bool wraps = lattice.wraps(0);
   for_slots(1, sign, [&](int q) {
     const int along = d2q9::velocity[q][0];
     const int begin = wraps ? -1 : (along > 0 ? 1 : 0), end = lattice.nx() + (wraps ? 1 : (along < 0 ? -1 : 0));
@@ -42,11 +42,11 @@ void copy_row(Lattice<T>& lattice, int sign, int from, int to) {
 template <class T>
 void send_row(Lattice<T>& lattice, int y) {
   const int nx = lattice.nx(), ny = lattice.ny();
-  if (lattice.domain().wraps(0)) {
+  if (lattice.wraps(0)) {
     for_slots(0, +1, [&](int q) { lattice.slot(q, y)[nx] = lattice.slot(q, y)[0]; });
     for_slots(0, -1, [&](int q) { lattice.slot(q, y)[-1] = lattice.slot(q, y)[nx - 1]; });
   }
-  if (!lattice.domain().wraps(1)) return;
+  if (!lattice.wraps(1)) return;
   if (y == 0) copy_row(lattice, +1, 0, ny);
   if (y == ny - 1) copy_row(lattice, -1, ny - 1, -1);
 }
@@ -69,11 +69,11 @@ void fill_population_halo(Lattice<T>& lattice) {
 template <class T>
 void receive_row(Lattice<T>& lattice, int y) {
   const int nx = lattice.nx(), ny = lattice.ny();
-  if (lattice.domain().wraps(1)) {
+  if (lattice.wraps(1)) {
     if (y == 0) copy_row(lattice, +1, ny, 0);
     if (y == ny - 1) copy_row(lattice, -1, -1, ny - 1);
   }
-  if (!lattice.domain().wraps(0)) return;
+  if (!lattice.wraps(0)) return;
   for_slots(0, +1, [&](int q) {
     if (crosses_side(lattice, q, y)) lattice.slot(q, y)[0] = lattice.slot(q, y)[nx];
   });

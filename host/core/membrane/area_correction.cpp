@@ -58,6 +58,7 @@ void keep_areas(Worker worker, Membranes& membranes) {
   static const auto function = Dispatch<KeepArea, AreaTask*>::pick();
   const Range cells = worker.share(membranes.cell_count());
   for (int c = cells.begin; c < cells.end; ++c) {
+    if (!membranes.owns(c)) continue;
     const CellRange& cell = membranes.cells[c];
     AreaTask task{cell.first,
                   cell.end(),

@@ -36,6 +36,7 @@ double weighted_sum(const double* values, const double* weights, int count) {
 void MembraneForces::run(Worker worker, Membranes& membranes) {
   const Range cells = worker.share(membranes.cell_count());
   for (int cell = cells.begin; cell < cells.end; ++cell) {
+    if (!membranes.owns(cell)) continue;
     const std::size_t at = offset(cells.begin);
     const CellRange& range = membranes.cells[static_cast<std::size_t>(cell)];
     const bool semi_implicit = types_[static_cast<std::size_t>(range.type)].filter.has_value();

@@ -1,6 +1,7 @@
 // All membranes of a scene: nodes of all cells in one structure of arrays, in lattice units.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "base/worker.hpp"
@@ -41,10 +42,13 @@ struct Membranes {
   std::vector<double> rest_curvature;          ///< turning angle over rest_weight in the shape it was created with
   std::vector<ElementState> state;             ///< what laws remember; empty where none does
   ContactMemory contacts;                      ///< what interactions remember
+  std::vector<std::uint8_t> owned;             ///< of each cell: whether this rank computes its forces and moves it; of
+                                               ///< others it knows where they are; empty: there are no others
 
   [[nodiscard]] NodeVectors positions() const { return {x.data(), y.data()}; }
   [[nodiscard]] NodeVectors forces() const { return {force_x.data(), force_y.data()}; }
   [[nodiscard]] int node_count() const { return static_cast<int>(x.size()); }
+  [[nodiscard]] bool owns(int cell) const { return owned.empty() || owned[cell] != 0; }
   [[nodiscard]] int cell_count() const { return static_cast<int>(cells.size()); }
   /// The nodes of a worker's cells, worker.share(cell_count()).
   [[nodiscard]] Range node_share(Worker worker) const {

@@ -46,6 +46,7 @@ void move_nodes(Worker worker, Membranes& membranes) {
   static const auto function = Dispatch<Move, MoveTask*>::pick();
   const Range cells = worker.share(membranes.cell_count());
   for (int c = cells.begin; c < cells.end; ++c) {
+    if (!membranes.owns(c)) continue;
     const CellRange& cell = membranes.cells[c];
     MoveTask task{membranes.x.data(),
                   membranes.y.data(),

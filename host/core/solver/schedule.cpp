@@ -11,7 +11,7 @@ Schedule make_schedule(const StepFeatures& has) {
   const auto add = [&](bool wanted, Task task, const char* name, Meeting meeting) {
     if (wanted) schedule.steps.push_back({task, name, meeting});
   };
-  const bool cells = has.cells, touch = has.interactions, slip = has.slip_correction;
+  const bool cells = has.cells, ranks = has.ranks, touch = has.interactions, slip = has.slip_correction;
   const char* const mark = has.viscosity_contrast ? "indicator" : "activity";
   // Where a worker would wait for the others it goes on with its own cells: announce, await.
   const Meeting own_cells = touch ? Meeting::await : Meeting::none;
@@ -21,19 +21,25 @@ Schedule make_schedule(const StepFeatures& has) {
   add(touch, Task::interaction_forces, "interaction", Meeting::announce);
   add(slip && !touch, Task::complete_forces, "corrections", Meeting::none);
   add(cells, Task::find_nodes, mark, touch ? Meeting::await : Meeting::all);
+  add(touch && ranks, Task::share_reactions, "ranks", Meeting::all);
   add(touch, Task::take_reactions, "interaction", slip ? Meeting::none : Meeting::all);
   add(slip && touch, Task::complete_forces, "corrections", Meeting::all);
+  add(cells && ranks, Task::share_forces, "ranks", Meeting::all);
   add(cells, Task::set_viscosity, mark, Meeting::none);
   schedule.rows = schedule.steps.size();
   add(cells, Task::clear_force, "spread", Meeting::none);
   add(cells, Task::spread, "spread", Meeting::none);
   schedule.observable = schedule.steps.size();
   add(true, Task::collide_and_stream, "fluid", Meeting::all);
-  add(true, Task::end_step, "fluid", cells ? Meeting::none : Meeting::all);
+  add(true, Task::end_step, "fluid", cells && !ranks ? Meeting::none : Meeting::all);
+  add(ranks, Task::exchange_halo, "ranks", Meeting::all);
   // The next step begins with the same cells; its first barrier serves these tasks, too.
-  add(cells, Task::interpolate, "interpolate", Meeting::none);
+  add(cells, Task::interpolate, "interpolate", ranks ? Meeting::all : Meeting::none);
+  add(cells && ranks, Task::collect_velocities, "ranks", Meeting::all);
   add(slip || has.area_correction, Task::correct_velocities, "corrections", Meeting::none);
-  add(cells, Task::move, "move", Meeting::none);
+  add(cells, Task::move, "move", ranks ? Meeting::all : Meeting::none);
+  add(cells && ranks, Task::share_positions, "ranks", Meeting::all);
+  add(cells, Task::locate, "move", Meeting::none);
   return schedule;
 }
 

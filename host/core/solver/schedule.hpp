@@ -13,17 +13,23 @@ enum class Task {
   find_contacts,       ///< cells: the closest point of other outlines to each node
   membrane_forces,     ///< cells: F = -dE/dX of the membrane laws, and the couples of the slip correction
   interaction_forces,  ///< cells: F = -dE/dX of the potentials, on own nodes
+  share_reactions,     ///< one worker: what own nodes do to other ranks' cells
   take_reactions,      ///< cells: what other cells' nodes do to this one's
   complete_forces,     ///< cells: the slip, made of all forces on a node
   find_nodes,          ///< cells: the area fraction of lattice nodes, and which nodes feel a membrane
+  share_forces,        ///< one worker: of all nodes, to the ranks that spread them
   set_viscosity,       ///< rows: the relaxation rate in and around the cells that have moved
   clear_force,         ///< rows
   spread,              ///< rows: forces to the lattice (Peskin, Acta Numerica 11, 2002)
   collide_and_stream,  ///< rows: lattice Boltzmann with the force of Guo, Zheng and Shi, Phys. Rev. E 65, 2002
   end_step,            ///< one worker: the lattice's parity
+  exchange_halo,       ///< one worker: populations and velocities between blocks
   interpolate,         ///< cells: velocities of the nodes, with the kernel that has spread their forces
+  collect_velocities,  ///< one worker: of own nodes above other ranks' blocks
   correct_velocities,  ///< cells: neither slip nor leaks
-  move                 ///< cells: X(t + 1) = X(t) + U
+  move,                ///< cells: X(t + 1) = X(t) + U
+  share_positions,     ///< one worker: of all nodes, to all ranks
+  locate               ///< cells: where the nodes touch the lattice
 };
 
 /// A task and what happens between the workers after it.
@@ -41,6 +47,8 @@ struct StepFeatures {
   bool viscosity_contrast = false;
   bool slip_correction = false;
   bool area_correction = false;
+  /// Other ranks hold other blocks and own other cells.
+  bool ranks = false;
 };
 
 /// Whether a task is one over rows of the lattice.

@@ -64,8 +64,16 @@ double slight_energy_of(const std::vector<CellType>& types, const Membranes& mem
 }  // namespace
 
 template <class T>
-Solver<T>::Solver(SolverSetup setup, Membranes& membranes)
-    : setup_(std::move(setup)), membranes_(membranes), fluid_(fluid_setting(setup_, membranes), setup_.collision) {
+Solver<T>::Solver(SolverSetup setup, Membranes& membranes, const Ranks<2>& ranks, std::vector<int> owner)
+    : setup_(std::move(setup)),
+      membranes_(membranes),
+      fluid_(fluid_setting(setup_, membranes), setup_.collision, ranks) {
+  if (ranks.several()) {
+    if (owner.empty()) owner = CellExchange::owners_by_place(membranes, *ranks.blocks);
+    membranes_.owned.clear();
+    for (const int rank : owner) membranes_.owned.push_back(rank == ranks.transport->rank() ? 1 : 0);
+    exchange_ = std::make_unique<CellExchange>(ranks, std::move(owner));
+  }
   if (!membranes.cells.empty()) make_cells();
   const Schedule schedule = make_schedule(features());
   for (const Step& step : schedule.steps) {
@@ -86,7 +94,8 @@ StepFeatures Solver<T>::features() const {
           .interactions = interaction_forces_ != nullptr,
           .viscosity_contrast = fluid_.setting().viscosity_contrast,
           .slip_correction = slip_correction_ != nullptr,
-          .area_correction = setup_.area_correction};
+          .area_correction = setup_.area_correction,
+          .ranks = exchange_ != nullptr};
 }
 
 template <class T>
@@ -120,12 +129,38 @@ void Solver<T>::run(Task task, Worker worker) {
       if (setup_.area_correction) core::keep_areas(worker, membranes_);
       return;
     case Task::move:
-      core::move_nodes(worker, membranes_);
+      return core::move_nodes(worker, membranes_);
+    case Task::locate:
       return locate(worker);
+    case Task::share_reactions:
+    case Task::share_forces:
+    case Task::exchange_halo:
+    case Task::collect_velocities:
+    case Task::share_positions:
+      if (worker.first()) exchange(task);
+      return;
     case Task::clear_force:
     case Task::spread:
     case Task::collide_and_stream:
       break;  // over rows
+  }
+}
+
+template <class T>
+void Solver<T>::exchange(Task task) {
+  if (task == Task::share_reactions) {
+    exchange_->share_reactions(*interaction_forces_);
+  } else if (task == Task::share_forces) {
+    const auto [x, y] = slip_correction_ ? slip_correction_->forces_of_all()
+                                         : std::array{membranes_.force_x.data(), membranes_.force_y.data()};
+    exchange_->share_forces(membranes_, x, y);
+  } else if (task == Task::exchange_halo) {
+    fluid_.begin_halo();
+    fluid_.end_halo();
+  } else if (task == Task::collect_velocities) {
+    exchange_->collect_velocities(membranes_, [this](int node) { return coupling_->base(node); });
+  } else {
+    exchange_->share_positions(membranes_);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "cell_exchange.hpp"
 #include "core/coupling/coupling.hpp"
 #include "core/coupling/slip_correction.hpp"
 #include "core/coupling/viscosity_field.hpp"
@@ -22,7 +23,9 @@ class Solver {
  public:
   /// The fluid is at rest until start() or a restore; `membranes` must outlive the solver. Throws
   /// std::invalid_argument for a setup without nodes or collision operator.
-  Solver(SolverSetup setup, Membranes& membranes);
+  /// `ranks`: who computes the other blocks, if the domain's block is not the whole lattice, and `owner[c]` the rank of
+  /// cell c; none: by place. Every rank is given all cells.
+  Solver(SolverSetup setup, Membranes& membranes, const Ranks<2>& ranks = {}, std::vector<int> owner = {});
 
   /// The fluid that the setup asks for: developed, or what `former` left (null: there was none), rescaled with the time
   /// step: velocities and density deviations of the same flow scale like it. The nodes' velocities with it.
@@ -71,12 +74,14 @@ class Solver {
   void make_slip_correction();
   void run(Task task, Worker worker);
   void run_rows(Task task, Range rows);
+  void exchange(Task task);
   void run_alone(std::size_t first, std::size_t last);
   void locate(Worker worker);
 
   SolverSetup setup_;
   Membranes& membranes_;
   Fluid<T> fluid_;
+  std::unique_ptr<CellExchange> exchange_;  ///< null without other ranks
   std::unique_ptr<SlipCorrection> slip_correction_;
   std::unique_ptr<MembraneForces> membrane_forces_;
   std::unique_ptr<InteractionForces> interaction_forces_;

@@ -1,0 +1,105 @@
+#include "spread.hpp"
+
+#include <algorithm>
+#include <rouleau/dispatch.hpp>
+
+#include "core/fluid/walls.hpp"
+#include "kernel.hpp"
+
+namespace rouleau::core {
+
+namespace {
+
+// Each number of the lattice gets its terms in an order that does not depend on blocks, bands and workers: cell by cell,
+// in a cell as spread() visits its nodes, of a node by rows. What lies beyond a border is added to the node that it is an
+// image of, at once, never summed apart.
+template <class T, class Kernel>
+struct Spread {
+  template <int register_bytes>
+  ROULEAU_ALWAYS_INLINE static void run(const SpreadTask<T>* task) {
+    const SpreadTask<T> t = *task;
+    const Box<2>& block = t.domain->block;
+    const Inside inside{std::max(t.row_begin, 0), std::min(t.row_end, t.domain->size[1]), block.begin[0], block.end[0],
+                        t.domain->size[1]};
+    // Neighbouring nodes add to the same places, and a sum that is still on its way to memory stalls the next one:
+    // nodes from four parts of the cell take turns.
+    constexpr int parts = 4;
+    const int length = (t.end - t.begin) / parts;
+    for (int i = t.begin; i < t.begin + length; ++i) {
+      for (int part = 0; part < parts; ++part) spread(t, inside, i + part * length);
+    }
+    for (int i = t.begin + parts * length; i < t.end; ++i) spread(t, inside, i);
+  }
+
+ private:
+  using Four = Pack<T, 4>;
+  /// What a stencil has to lie in to be added without a thought.
+  struct Inside {
+    int row_begin, row_end, column_begin, column_end, height;
+  };
+  ROULEAU_ALWAYS_INLINE static void spread(const SpreadTask<T>& t, const Inside& inside, int i) {
+    const int row = t.at.row[i] - 1, column = t.at.column[i] - 1;
+    const bool whole = row >= 0 && row + 4 <= inside.height;
+    if (whole && (row + 4 <= inside.row_begin || row >= inside.row_end)) return;
+    if (column < inside.column_begin || column + 4 > inside.column_end || !whole) return spread_at_border(t, i);
+    const Four wx = KernelWeights<Kernel, T>(t.at.p_x[i], t.at.q_x[i]).weight;
+    const SpreadWeights<Kernel, T> wy(t.at.p_y[i], t.at.q_y[i]);
+    const Four fx = wx * Four(t.force_x[i]), fy = wx * Four(t.force_y[i]);
+    const std::ptrdiff_t at = row * t.stride + column;
+    if (row >= inside.row_begin && row + 4 <= inside.row_end) {
+      for (int k = 0; k < 4; ++k) add(t, fx, fy, wy.weight[k], at + k * t.stride);
+    } else {
+      for (int k = 0; k < 4; ++k) {
+        if (row + k >= inside.row_begin && row + k < inside.row_end) add(t, fx, fy, wy.weight[k], at + k * t.stride);
+      }
+    }
+  }
+  ROULEAU_ALWAYS_INLINE static void add(const SpreadTask<T>& t, const Four& fx, const Four& fy, const Four& weight,
+                                        std::ptrdiff_t at) {
+    (Four::load(t.origin_x + at) + fx * weight).store(t.origin_x + at);
+    (Four::load(t.origin_y + at) + fy * weight).store(t.origin_y + at);
+  }
+
+  /// The same sums, number by number: of a stencil that reaches over the border of the lattice or of the block.
+  [[gnu::noinline, gnu::cold]] static void spread_at_border(const SpreadTask<T>& t, int i) {
+    if (t.at.row[i] == outside) return;
+    const Domain<2>& domain = *t.domain;
+    const Four wx = KernelWeights<Kernel, T>(t.at.p_x[i], t.at.q_x[i]).weight;
+    const SpreadWeights<Kernel, T> wy(t.at.p_y[i], t.at.q_y[i]);
+    const Four fx = wx * Four(t.force_x[i]), fy = wx * Four(t.force_y[i]);
+    for (int k = 0; k < 4; ++k) {
+      int row = domain.wrapped(1, t.at.row[i] - 1 + k);
+      Four weight = wy.weight[k];
+      if (row < 0) {  // beyond a wall
+        row = mirrored(t.at.row[i] - 1 + k, domain.size[1]);
+        weight = -weight;
+      }
+      if (row < t.row_begin || row >= t.row_end) continue;
+      for (int l = 0; l < 4; ++l) {
+        const int column = domain.wrapped(0, t.at.column[i] - 1 + l);
+        if (column < domain.block.begin[0] || column >= domain.block.end[0]) continue;
+        const std::ptrdiff_t at = row * t.stride + column;
+        t.origin_x[at] = (Four(t.origin_x[at]) + fx * weight).vector[l];
+        t.origin_y[at] = (Four(t.origin_y[at]) + fy * weight).vector[l];
+      }
+    }
+  }
+};
+
+}  // namespace
+
+template <class Kernel, class T>
+void (*pick_spread())(const SpreadTask<T>*) {
+  return Dispatch<Spread<T, Kernel>, const SpreadTask<T>*>::pick();
+}
+
+#define ROULEAU_INSTANTIATE(Kernel)                                        \
+  template void (*pick_spread<Kernel, float>())(const SpreadTask<float>*); \
+  template void (*pick_spread<Kernel, double>())(const SpreadTask<double>*);
+ROULEAU_INSTANTIATE(Peskin4)
+ROULEAU_INSTANTIATE(Cosine4)
+ROULEAU_INSTANTIATE(Roma3)
+ROULEAU_INSTANTIATE(Linear2)
+#undef ROULEAU_INSTANTIATE
+
+}  // namespace rouleau::core
