@@ -7,11 +7,11 @@
 #include <filesystem>
 #include <iomanip>
 #include <iostream>
-#include <new>
 #include <sstream>
 #include <system_error>
 
 #include "base/error.hpp"
+#include "command/program.hpp"
 #include "files/csv_reader.hpp"
 #include "files/file.hpp"
 #include "files/frames.hpp"
@@ -22,8 +22,8 @@
 
 namespace {
 
+using rouleau::Cause;
 using rouleau::Error;
-using rouleau::ExitCode;
 using rouleau::Place;
 namespace files = rouleau::files;
 namespace report = rouleau::report;
@@ -51,7 +51,7 @@ class Run {
     const auto frames = std::min(series_.rows(), static_cast<std::size_t>(reader_.frames()));  // of a killed run
     times_.strain.resize(frames);
     times_.time_s.resize(frames);
-    if (frames == 0) throw Error(ExitCode::bad_input, Place{directory.string(), "", 0, 0}, "has no outputs to draw");
+    if (frames == 0) throw Error(Cause::bad_input, Place{directory.string()}, "has no outputs to draw");
   }
 
   [[nodiscard]] const report::OutputTimes& times() const { return times_; }
@@ -71,10 +71,10 @@ class Run {
  private:
   static files::StoredTable table(const fs::path& directory) {
     if (!fs::exists(directory / "series.csv"))
-      throw Error(ExitCode::bad_input, Place{directory.string(), "", 0, 0},
+      throw Error(Cause::bad_input, Place{directory.string()},
                   fs::exists(directory) ? "is no run's directory: it has no series.csv" : "does not exist");
     if (!fs::exists(directory / "frames.h5") && !fs::exists(directory / "frames-0001.h5"))
-      throw Error(ExitCode::bad_input, Place{(directory / "frames.h5").string(), "", 0, 0},
+      throw Error(Cause::bad_input, Place{(directory / "frames.h5").string()},
                   "is missing: pictures are drawn from it; bring it back, or run the scene again");
     return files::StoredTable(directory / "series.csv");
   }
@@ -123,31 +123,19 @@ void draw(const fs::path& directory, const fs::path& out, const std::vector<doub
     std::cout << "no video, because there is no ffmpeg (Debian: apt-get install ffmpeg)\n";
 }
 
-int fail(const std::string& message, ExitCode code) {
-  std::cerr << message << '\n';
-  return static_cast<int>(code);
-}
-
 }  // namespace
 
 int main(int count, char** words) {
   if (count < 3) {
     std::cerr << "usage: draw-frames DIR OUT [STRAIN...]\nrouleau report DIR --frames starts this program\n";
-    return static_cast<int>(ExitCode::bad_input);
+    return rouleau::command::exit_code::bad_input;
   }
   const report::Drawing drawing;
-  try {
+  const auto body = [&] {
     std::vector<double> strains;
     for (int i = 3; i < count; ++i) strains.push_back(std::strtod(words[i], nullptr));
     draw(words[1], words[2], strains);
-    std::cout.flush();
-    if (!std::cout) return fail("rouleau: the output could not be written", ExitCode::input_output);
-    return static_cast<int>(ExitCode::done);
-  } catch (const Error& error) {
-    return fail(error.what(), error.code());
-  } catch (const std::bad_alloc&) {
-    return fail("rouleau: there is not enough memory to draw frames", ExitCode::input_output);
-  } catch (const std::exception& error) {
-    return fail(std::string("rouleau: internal error, please report it: ") + error.what(), ExitCode::input_output);
-  }
+    return rouleau::command::exit_code::done;
+  };
+  return rouleau::command::run_program(body, " to draw frames");
 }

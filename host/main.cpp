@@ -1,17 +1,13 @@
-// The program: finds the command, calls it, and turns what it throws into a message and an exit code.
+// The program: finds the command, and calls it.
 #include <array>
 #include <csignal>
-#include <cstring>
-#include <exception>
-#include <filesystem>
 #include <iostream>
-#include <new>
 #include <string>
 #include <vector>
 
-#include "base/error.hpp"
 #include "base/text.hpp"
 #include "command/commands.hpp"
+#include "command/program.hpp"
 #include "observe/observables.hpp"
 
 namespace {
@@ -48,7 +44,7 @@ std::string overview() {
   }
   return text +
          "\n"
-         "  --help        this text; after a command: its own help\n"
+         "  --help, -h    this text; after a command: its own help\n"
          "  --version     the program's version\n\n"
          "Example: rouleau run scenes/four-cells-shear.json\n";
 }
@@ -56,20 +52,20 @@ std::string overview() {
 int dispatch(const std::vector<std::string>& arguments) {
   if (arguments.empty()) {
     std::cerr << overview();
-    return static_cast<int>(ExitCode::bad_input);
+    return exit_code::bad_input;
   }
   const std::string& word = arguments.front();
   if (word == "--help" || word == "-h") {
     std::cout << overview();
-    return static_cast<int>(ExitCode::done);
+    return exit_code::done;
   }
   if (word == "--version") {
     std::cout << "rouleau " ROULEAU_VERSION "\n";
-    return static_cast<int>(ExitCode::done);
+    return exit_code::done;
   }
   if (word == "columns") {  // for scripts/docs, not for users
     std::cout << observe::columns_json() << '\n';
-    return static_cast<int>(ExitCode::done);
+    return exit_code::done;
   }
   std::vector<std::string> names;
   for (const Command& command : commands) {
@@ -78,34 +74,19 @@ int dispatch(const std::vector<std::string>& arguments) {
   }
   const bool is_option = word.starts_with('-');
   if (is_option) names = {"--help", "--version"};
-  throw Error(ExitCode::bad_input, std::string("rouleau has no ") + (is_option ? "option " : "command ") +
-                                       in_quotes(word) + did_you_mean(word, names) +
-                                       "\n  rouleau --help shows what there is");
-}
-
-int report(const std::string& message, ExitCode code) {
-  std::cerr << message << '\n';
-  return static_cast<int>(code);
+  throw Error(Cause::bad_input,
+              std::string("rouleau has no ") + (is_option ? "option " : "command ") + in_quotes(word) +
+                  did_you_mean(word, names),
+              {"rouleau --help shows what there is"});
 }
 
 }  // namespace
 
 int main(int count, char** words) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error like a full disk, with a message
-  try {
-    const int code = dispatch({words + (count > 0 ? 1 : 0), words + count});
-    std::cout.flush();
-    // A full disk or a closed pipe must not look like success to the script that reads the output.
-    if (!std::cout) return report("rouleau: the output could not be written", ExitCode::input_output);
-    return code;
-  } catch (const Error& error) {
-    return report(error.what(), error.code());
-  } catch (const std::bad_alloc&) {
-    return report("rouleau: there is not enough memory; \"rouleau plan\" says how much a scene needs",
-                  ExitCode::input_output);
-  } catch (const std::filesystem::filesystem_error& error) {
-    return report(std::string("rouleau: ") + error.what(), ExitCode::input_output);
-  } catch (const std::exception& error) {
-    return report(std::string("rouleau: internal error, please report it: ") + error.what(), ExitCode::input_output);
-  }
+  return run_program(
+      [&] {
+        return dispatch({words + (count > 0 ? 1 : 0), words + count});
+      },
+      "; \"rouleau plan\" says how much a scene needs");
 }

@@ -1,51 +1,67 @@
-// What can go wrong, said once: exit codes, the place of a fault in a file, and the host's only exception type.
+// What can go wrong, said once: the place of a fault in a file, and the host's only exception type.
 #pragma once
 
 #include <stdexcept>
 #include <string>
-#include <utility>
+#include <vector>
 
 namespace rouleau {
 
-/// Exit codes of the program (fixed: users script against them).
-enum class ExitCode {
-  done = 0,
-  simulation_failed = 1,  ///< the simulation diverged, or a check failed
-  bad_input = 2,          ///< bad usage, or a scene that cannot be right
-  plugin_refused = 3,     ///< a manifest or library was refused
-  input_output = 4,       ///< a file could not be read or written
-  interrupted = 130,      ///< stopped by SIGINT or SIGTERM
+/// What an error is about. command/program.hpp says with which exit code the program ends.
+enum class Cause {
+  bad_input,       ///< bad usage, or a scene that cannot be right
+  plugin_refused,  ///< a manifest or library was refused
+  input_output,    ///< a file could not be read or written
 };
 
 /// Where in the user's input a fault lies. Empty fields are not printed.
 struct Place {
-  std::string file;     ///< path as the user wrote it
-  std::string pointer;  ///< JSON pointer, e.g. "/cells/0/at"
-  int line = 0;         ///< 1-based; 0: unknown
-  int column = 0;       ///< 1-based; 0: unknown
+  std::string file = {};     ///< path as the user wrote it
+  std::string pointer = {};  ///< JSON pointer, e.g. "/cells/0/at"
+  int line = 0;              ///< 1-based; 0: unknown
+  int column = 0;            ///< 1-based; 0: unknown
 };
 
 /// "file:line:column /pointer"; parts that are unknown are left out.
 std::string to_string(const Place& place);
 
-/// A message whose control characters, but for the ends of lines, are escaped: it may quote what a file holds.
-std::string safe_lines(const std::string& message);
+/// What a remedy asks for of whoever calls: the command line has an option for each, a library a parameter.
+enum class Way {
+  elsewhere,  ///< another directory
+  anew,       ///< replace what is there
+  resume,     ///< go on with what is there
+  accept,     ///< go on in spite of the differences
+};
 
-/// A fault that ends the command. what() is the whole message as the user sees it, safe_lines():
+/// What the user can do about an error: words that suit every caller, and the ways they speak of, in their order.
+struct Remedy {
+  std::string words = {};
+  std::vector<Way> ways = {};
+};
+
+/// A fault that ends what was asked for. what() is the whole message, control characters escaped but for the ends of
+/// lines, for it may quote what a file holds:
 ///     file:line:column /pointer
-///       problem, one sentence per line, with the value found and the remedy
+///       problem, one sentence per line, with the value found
+///       remedy
 class Error : public std::runtime_error {
  public:
-  Error(ExitCode code, const std::string& problem) : std::runtime_error(safe_lines(problem)), code_(code) {}
-  Error(ExitCode code, Place place, const std::string& problem)
-      : std::runtime_error(to_string(place) + "\n  " + safe_lines(problem)), code_(code), place_(std::move(place)) {}
+  Error(Cause cause, const Place& place, const std::string& problem, const Remedy& remedy = {});
+  /// Without a place the problem begins the message.
+  Error(Cause cause, const std::string& problem, const Remedy& remedy = {}) : Error(cause, {}, problem, remedy) {}
 
-  [[nodiscard]] ExitCode code() const noexcept { return code_; }
+  [[nodiscard]] Cause cause() const noexcept { return cause_; }
   [[nodiscard]] const Place& place() const noexcept { return place_; }
+  [[nodiscard]] const std::string& problem() const noexcept { return problem_; }
+  [[nodiscard]] const Remedy& remedy() const noexcept { return remedy_; }
+  /// what() without the place: problem and remedy.
+  [[nodiscard]] std::string words() const;
 
  private:
-  ExitCode code_;
+  Cause cause_;
   Place place_;
+  std::string problem_;
+  Remedy remedy_;
 };
 
 }  // namespace rouleau

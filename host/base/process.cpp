@@ -26,7 +26,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 [[noreturn]] void fail(const std::string& what, int error) {
-  throw Error(ExitCode::input_output, what + ": " + std::strerror(error));
+  throw Error(Cause::input_output, what + ": " + std::strerror(error));
 }
 
 /// One end of a pipe.

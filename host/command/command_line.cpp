@@ -37,12 +37,15 @@ bool parse_command_line(const std::string& command, const std::string& help, con
                         options::options_description& description,
                         const options::positional_options_description& positional) {
   description.add_options()("help", "this text");
-  const std::string hint = "\n  rouleau " + command + " --help lists the options";
+  const Remedy hint{"rouleau " + command + " --help lists the options"};
   try {
     options::variables_map values;
     options::store(options::command_line_parser(arguments)
                        .options(description)
                        .positional(positional)
+                       .extra_parser([](const std::string& word) {
+                         return std::pair<std::string, std::string>(word == "-h" ? "help" : "", "");
+                       })
                        .style(options::command_line_style::default_style & ~options::command_line_style::allow_guessing)
                        .run(),
                    values);
@@ -56,20 +59,21 @@ bool parse_command_line(const std::string& command, const std::string& help, con
     std::vector<std::string> names;
     for (const auto& option : description.options()) names.push_back("--" + option->long_name());
     const std::string near = nearest(unknown.get_option_name(), names);
-    throw Error(ExitCode::bad_input, "unknown option " + unknown.get_option_name() +
-                                         (near.empty() ? "" : "; did you mean " + near + "?") + hint);
+    throw Error(Cause::bad_input,
+                "unknown option " + unknown.get_option_name() + (near.empty() ? "" : "; did you mean " + near + "?"),
+                hint);
   } catch (const options::required_option& missing) {
     // Only what is given by place is required, and its users do not know it as an option.
     const auto& option = description.find(missing.get_option_name().substr(2), false);
-    throw Error(ExitCode::bad_input, "a " + option.description() + " is missing" + hint);
+    throw Error(Cause::bad_input, "a " + option.description() + " is missing", hint);
   } catch (const options::error& error) {
-    throw Error(ExitCode::bad_input, std::string(error.what()) + hint);
+    throw Error(Cause::bad_input, error.what(), hint);
   }
 }
 
 std::function<void(const std::string&)> not_empty(const std::string& option) {
   return [option](const std::string& value) {
-    if (value.empty()) throw Error(ExitCode::bad_input, option + " is empty; give a name, or leave the option out");
+    if (value.empty()) throw Error(Cause::bad_input, option + " is empty; give a name, or leave the option out");
   };
 }
 

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "program.hpp"
+
 namespace rouleau::command {
 
 // Each takes the arguments after the command's name, prints its own help for --help, returns the exit code, and throws

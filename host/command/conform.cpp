@@ -111,22 +111,22 @@ conform::Level level_named(const std::string& name) {
     if (name == conform::to_string(level)) return level;
     names.emplace_back(conform::to_string(level));
   }
-  throw Error(ExitCode::bad_input, "rouleau conform --level: there is no level " + in_quotes(name) +
-                                       did_you_mean(name, names) + "\n  levels: " + listed(names));
+  throw Error(Cause::bad_input, "rouleau conform --level: there is no level " + in_quotes(name) +
+                                    did_you_mean(name, names) + "\n  levels: " + listed(names));
 }
 
 std::string check_named(const std::string& name) {
   if (conform::find_check(name) != nullptr) return name;
   std::vector<std::string> names;
   for (const conform::Check& check : conform::all_checks()) names.emplace_back(check.name);
-  throw Error(ExitCode::bad_input, "rouleau conform --only: there is no check " + in_quotes(name) +
-                                       did_you_mean(name, names) + "\n  checks: " + listed(names));
+  throw Error(Cause::bad_input, "rouleau conform --only: there is no check " + in_quotes(name) +
+                                    did_you_mean(name, names) + "\n  checks: " + listed(names));
 }
 
 void require_file(const fs::path& file) {
   std::error_code error;
   if (fs::is_regular_file(file, error)) return;
-  throw Error(ExitCode::bad_input,
+  throw Error(Cause::bad_input,
               "rouleau conform: " + file.string() +
                   (fs::is_directory(file, error) ? " is a folder; give the manifests in it" : " does not exist") +
                   "\n  rouleau plugins lists the manifests that are installed");
@@ -158,7 +158,7 @@ int conform_command(const std::vector<std::string>& arguments) {
   for (const std::string& name : only) chosen.only.insert(check_named(name));
   for (const std::string& name : levels) chosen.levels.insert(level_named(name));
   if (!(chosen.time_limit_s > 0)) {
-    throw Error(ExitCode::bad_input, "rouleau conform --timeout: must be more than 0 seconds");
+    throw Error(Cause::bad_input, "rouleau conform --timeout: must be more than 0 seconds");
   }
   std::vector<fs::path> files;
   for (const std::string& file : manifests) require_file(files.emplace_back(file));
@@ -187,7 +187,7 @@ int conform_command(const std::vector<std::string>& arguments) {
                      2, ' ', false, Json::error_handler_t::replace)
               << '\n';
   }
-  return static_cast<int>(conforms ? ExitCode::done : ExitCode::plugin_refused);
+  return conforms ? exit_code::done : exit_code::plugin_refused;
 }
 
 }  // namespace rouleau::command

@@ -55,12 +55,12 @@ int limits_command(const std::vector<std::string>& arguments) {
             << (chosen.directory / "limits.html").string() << "\n";
   if (!ended) {
     std::cerr << "interrupted; the same command goes on\n";
-    return static_cast<int>(ExitCode::interrupted);
+    return exit_code::interrupted;
   }
   const auto& cases = run.state().cases;
   const bool well =
       std::all_of(cases.begin(), cases.end(), [](const stability::CaseResult& result) { return result.as_expected; });
-  return static_cast<int>(well ? ExitCode::done : ExitCode::simulation_failed);
+  return well ? exit_code::done : exit_code::simulation_failed;
 }
 
 }  // namespace rouleau::command

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iostream>
 
+#include "command_line.hpp"
 #include "files/file.hpp"
 #include "files/run_directory.hpp"
 #include "plugin/catalog.hpp"
@@ -45,6 +46,11 @@ void lock_scene(const std::filesystem::path& scene_file, const std::vector<std::
     std::cout << "  " << plugin.kind << ' ' << plugin.id << ' ' << plugin.version << "  " << plugin.library_sha256
               << '\n';
   }
+}
+
+std::string lock_renewal(const std::filesystem::path& lock, const std::filesystem::path& scene) {
+  return "if this is meant, lock the scene again: rouleau plugins --lock " + in_shell(scene.string()) +
+         (lock == plugin::lock_beside(scene) ? "" : " --out " + in_shell(lock.string()));
 }
 
 }  // namespace rouleau::command

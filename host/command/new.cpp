@@ -52,8 +52,8 @@ const Template& template_of(const std::string& kind) {
     if (kind == entry.kind) return entry;
     kinds.emplace_back(entry.kind);
   }
-  throw Error(ExitCode::bad_input, "rouleau new: there is no kind " + in_quotes(kind) + did_you_mean(kind, kinds) +
-                                       "\n  the kinds of models are: " + listed(kinds));
+  throw Error(Cause::bad_input, "rouleau new: there is no kind " + in_quotes(kind) + did_you_mean(kind, kinds) +
+                                    "\n  the kinds of models are: " + listed(kinds));
 }
 
 /// A model's id, and what its last part becomes in the files.
@@ -65,7 +65,7 @@ struct Name {
 
 Name checked_name(const std::string& id) {
   const auto refuse = [&](const std::string& problem) {
-    throw Error(ExitCode::bad_input, "rouleau new: " + in_quotes(id) + ' ' + problem);
+    throw Error(Cause::bad_input, "rouleau new: " + in_quotes(id) + ' ' + problem);
   };
   // As in the schema of manifests; there a part after the first may begin with a digit, which no C++ type can.
   static const std::regex pattern("[a-z][a-z0-9]*(-[a-z0-9]+)*(\\.[a-z0-9]+(-[a-z0-9]+)*)*");
@@ -109,7 +109,7 @@ std::string filled(std::string_view text, const Name& name) {
 
 [[noreturn]] void fail(const fs::path& path, const std::string& what, int error) {
   throw Error(
-      ExitCode::input_output, Place{path.string(), {}, 0, 0},
+      Cause::input_output, Place{path.string()},
       what + ": " + std::strerror(error) + "\n  choose a folder that exists and that you may write to with --dir");
 }
 
@@ -117,7 +117,7 @@ std::string filled(std::string_view text, const Name& name) {
 void make_folder(const fs::path& folder, const Template& model, const Name& name) {
   std::error_code error;
   if (fs::exists(fs::symlink_status(folder, error))) {
-    throw Error(ExitCode::bad_input, Place{folder.string(), {}, 0, 0},
+    throw Error(Cause::bad_input, Place{folder.string()},
                 "exists already and is left as it is; choose another name, or another place with --dir");
   }
   const fs::path partial = folder.parent_path() / ("." + name.file + '.' + std::to_string(::getpid()) + ".partial");
@@ -179,7 +179,7 @@ int new_command(const std::vector<std::string>& arguments) {
   const fs::path folder = (fs::path(directory) / name.file).lexically_normal();
   make_folder(folder, model, name);
   print_next_steps(folder, model, name);
-  return static_cast<int>(ExitCode::done);
+  return exit_code::done;
 }
 
 }  // namespace rouleau::command

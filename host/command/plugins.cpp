@@ -188,8 +188,8 @@ const plugin::Manifest& find(const plugin::Catalog& catalog, const std::string& 
   if (std::any_of(refused.begin(), refused.end(), [&](const auto& entry) { return entry.id == id; })) {
     return catalog.find(plugin::ModelKind::collision, id, {"rouleau plugins", {}, 0, 0});
   }
-  throw Error(ExitCode::bad_input, "rouleau plugins: no plugin has the id " + in_quotes(id) + did_you_mean(id, ids) +
-                                       "\n  there are: " + listed(ids));
+  throw Error(Cause::bad_input, "rouleau plugins: no plugin has the id " + in_quotes(id) + did_you_mean(id, ids) +
+                                    "\n  there are: " + listed(ids));
 }
 
 }  // namespace
@@ -212,14 +212,14 @@ int plugins_command(const std::vector<std::string>& arguments) {
 
   if (!scene.empty()) {
     if (!id.empty() || as_json) {
-      throw Error(ExitCode::bad_input, std::string("rouleau plugins --lock SCENE goes with --plugin-dir and --out, not "
-                                                   "with ") +
-                                           (as_json ? "--json" : "the ID of a model"));
+      throw Error(Cause::bad_input, std::string("rouleau plugins --lock SCENE goes with --plugin-dir and --out, not "
+                                                "with ") +
+                                        (as_json ? "--json" : "the ID of a model"));
     }
     lock_scene(scene, {plugin_dirs.begin(), plugin_dirs.end()}, out);
-    return static_cast<int>(ExitCode::done);
+    return exit_code::done;
   }
-  if (!out.empty()) throw Error(ExitCode::bad_input, "rouleau plugins: --out goes with --lock SCENE");
+  if (!out.empty()) throw Error(Cause::bad_input, "rouleau plugins: --out goes with --lock SCENE");
   const plugin::Catalog catalog(plugin::plugin_search_path({plugin_dirs.begin(), plugin_dirs.end()}, {}));
   const units::Units units;
   if (id.empty()) {
@@ -229,7 +229,7 @@ int plugins_command(const std::vector<std::string>& arguments) {
     } else {
       print(catalog);
     }
-    return static_cast<int>(ExitCode::done);
+    return exit_code::done;
   }
   const plugin::Manifest& manifest = find(catalog, id);
   if (as_json) {
@@ -237,7 +237,7 @@ int plugins_command(const std::vector<std::string>& arguments) {
   } else {
     print(manifest, units);
   }
-  return static_cast<int>(ExitCode::done);
+  return exit_code::done;
 }
 
 }  // namespace rouleau::command

@@ -61,8 +61,8 @@ std::vector<std::string> strains_of(const std::vector<std::string>& lists) {
       double value = 0;
       const auto [last, error] = std::from_chars(entry.data(), entry.data() + entry.size(), value);
       if (error != std::errc() || last != entry.data() + entry.size() || !(value >= 0))
-        throw Error(ExitCode::bad_input, "rouleau report --strains: " + in_quotes(entry) +
-                                             " is no strain; it wants numbers from 0 with commas, for example 0,5,10");
+        throw Error(Cause::bad_input, "rouleau report --strains: " + in_quotes(entry) +
+                                          " is no strain; it wants numbers from 0 with commas, for example 0,5,10");
       strains.push_back(entry);
       begin = end + 1;
     }
@@ -76,7 +76,7 @@ std::vector<std::string> strains_of(const std::vector<std::string>& lists) {
   const fs::path program = fs::read_symlink("/proc/self/exe").parent_path().parent_path() / ROULEAU_LIBEXEC_FOLDER /
                            "rouleau" / "draw-frames";
   if (!fs::exists(program))
-    throw Error(ExitCode::input_output, Place{program.string(), "", 0, 0},
+    throw Error(Cause::input_output, Place{program.string()},
                 "is not there: this rouleau was built without cairo; install libcairo2-dev and build it again");
   const std::string out =
       chosen.out.empty() ? (directory / "").lexically_normal().parent_path().string() + "-frames" : chosen.out;
@@ -89,11 +89,11 @@ std::vector<std::string> strains_of(const std::vector<std::string>& lists) {
   pointers.push_back(nullptr);
   std::cout.flush();
   ::execv(program.c_str(), pointers.data());
-  throw Error(ExitCode::input_output, program.string() + " could not be started: " + std::strerror(errno));
+  throw Error(Cause::input_output, program.string() + " could not be started: " + std::strerror(errno));
 }
 
 void check(const Options& chosen) {
-  const auto refuse = [](const std::string& words) { throw Error(ExitCode::bad_input, "rouleau report: " + words); };
+  const auto refuse = [](const std::string& words) { throw Error(Cause::bad_input, "rouleau report: " + words); };
   const std::size_t count = chosen.directories.size();
   if (chosen.compare && chosen.frames) refuse("--compare and --frames do not go together; give one of them");
   if (chosen.compare && count != 2)
@@ -136,7 +136,7 @@ int report_command(const std::vector<std::string>& arguments) {
   } else {
     for (const fs::path& page : report::write_pages(chosen.directories[0])) std::cout << page.string() << "\n";
   }
-  return static_cast<int>(ExitCode::done);
+  return exit_code::done;
 }
 
 }  // namespace rouleau::command

@@ -45,8 +45,8 @@ std::string last_words(const run::Summary& summary) {
 
 void check_max_steps(long steps) {
   if (steps >= 0) return;
-  throw Error(ExitCode::bad_input, "--max-steps " + std::to_string(steps) +
-                                       ": wants a number of steps, zero or more; leave it out for a run without limit");
+  throw Error(Cause::bad_input, "--max-steps " + std::to_string(steps) +
+                                    ": wants a number of steps, zero or more; leave it out for a run without limit");
 }
 
 }  // namespace
@@ -75,14 +75,14 @@ int run_command(const std::vector<std::string>& arguments) {
   std::signal(SIGPIPE, SIG_IGN);  // when who reads the progress has gone the run goes on
 
   if (resume && overwrite) {
-    throw Error(ExitCode::bad_input, "--resume and --overwrite: a run either goes on or is replaced; give one of them");
+    throw Error(Cause::bad_input, "--resume and --overwrite: a run either goes on or is replaced; give one of them");
   }
-  if (run.force && !resume) throw Error(ExitCode::bad_input, "--force: only together with --resume");
+  if (run.force && !resume) throw Error(Cause::bad_input, "--force: only together with --resume");
   const int processors = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   if (run.threads < 1 || run.threads > 1024) {
-    throw Error(ExitCode::bad_input, "--threads " + std::to_string(run.threads) +
-                                         ": wants a number from 1 to 1024 (this machine has " +
-                                         std::to_string(processors) + " processors)");
+    throw Error(Cause::bad_input, "--threads " + std::to_string(run.threads) +
+                                      ": wants a number from 1 to 1024 (this machine has " +
+                                      std::to_string(processors) + " processors)");
   }
   const scene::Scene scene = scene_options.read();
   run.threads = std::min(run.threads, std::max(1, scene.domain.nodes[1] / 4));
@@ -111,11 +111,13 @@ int run_command(const std::vector<std::string>& arguments) {
     try {
       summary = run::simulate(plan, run, directory);
     } catch (const Error& error) {
-      if (error.code() != ExitCode::input_output || !directory.is_open()) throw;
+      if (error.cause() != Cause::input_output || !directory.is_open()) throw;
       const std::string next = std::filesystem::exists(files::checkpoint_file(folder))
                                    ? "what was computed up to the last checkpoint is kept; to go on from there: "
                                    : "no checkpoint was written yet; to begin again: ";
-      throw Error(error.code(), std::string(error.what()) + "\n  " + next + again);
+      const std::string remedy = in_options(error.remedy());
+      throw Error(error.cause(), error.place(), error.problem(),
+                  {remedy + (remedy.empty() ? "" : "\n  ") + next + again});
     }
   }
   const std::filesystem::path report = report::write_report(folder);
@@ -127,14 +129,14 @@ int run_command(const std::vector<std::string>& arguments) {
     std::cerr << ", place (" << f.place[0] * 1e6 << ", " << f.place[1] * 1e6 << ") um\n  " << f.message << "\n  found "
               << f.value << ", limit " << f.limit << "\n  " << f.remedy << "\n";
   }
-  if (summary.failure) return static_cast<int>(ExitCode::simulation_failed);
+  if (summary.failure) return exit_code::simulation_failed;
   if (summary.status == "interrupted" && summary.checkpoint_step) {
     std::cerr << "to go on: " << again << "\n";
   } else if (summary.status == "interrupted") {
     std::cerr << "no checkpoint was kept (output.checkpoint of the scene): the run can only begin again, with "
                  "--overwrite\n";
   }
-  return static_cast<int>(summary.status == "interrupted" ? ExitCode::interrupted : ExitCode::done);
+  return summary.status == "interrupted" ? exit_code::interrupted : exit_code::done;
 }
 
 }  // namespace rouleau::command

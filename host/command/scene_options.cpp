@@ -1,6 +1,7 @@
 #include "scene_options.hpp"
 
 #include "command_line.hpp"
+#include "lock_scene.hpp"
 #include "plan/numerics_auto_limits.hpp"
 
 namespace rouleau::command {
@@ -38,7 +39,7 @@ plugin::Catalog SceneOptions::catalog(const scene::Scene& read) const {
   // A link that leads nowhere is a lock that cannot be read, not a scene without one.
   std::error_code ignored;
   if (!lock.empty() || std::filesystem::exists(std::filesystem::symlink_status(file, ignored))) {
-    catalog.set_lock(plugin::read_lock(file, scene));
+    catalog.set_lock(plugin::read_lock(file, lock_renewal(file, scene)));
   }
   return catalog;
 }

@@ -42,10 +42,10 @@ double budget_in_seconds(const std::string& text) {
   try {
     seconds = units::Units().to_si(number_text + ' ' + unit, "s", "--budget");
   } catch (const units::UnitError& error) {
-    throw Error(ExitCode::bad_input, "--budget " + in_quotes(text) + ": " + error.what());
+    throw Error(Cause::bad_input, "--budget " + in_quotes(text) + ": " + error.what());
   }
   if (seconds > 0) return seconds;
-  throw Error(ExitCode::bad_input, "--budget " + in_quotes(text) + ": wants a time above zero, for example 5min");
+  throw Error(Cause::bad_input, "--budget " + in_quotes(text) + ": wants a time above zero, for example 5min");
 }
 
 /// What was left out, what was found; false where a repeated run gave other results.
@@ -87,7 +87,7 @@ int study_command(const std::vector<std::string>& arguments) {
 
   study::Study study = study::read_study(file);
   if (repeats < 0 || repeats > 100)
-    throw Error(ExitCode::bad_input, "--repeats " + std::to_string(repeats) + ": wants a number from 1 to 100");
+    throw Error(Cause::bad_input, "--repeats " + std::to_string(repeats) + ": wants a number from 1 to 100");
   if (repeats > 0) study.repeats = repeats;
   if (!budget.empty()) chosen.budget_s = budget_in_seconds(budget);
   if (!target.empty()) chosen.target = study::read_target(target, study.quantities);
@@ -100,9 +100,9 @@ int study_command(const std::vector<std::string>& arguments) {
   std::cout << (chosen.directory / "study.html").string() << "\n";
   if (!ended) {
     std::cerr << "interrupted; the same command goes on\n";
-    return static_cast<int>(ExitCode::interrupted);
+    return exit_code::interrupted;
   }
-  return static_cast<int>(tell_end(run.state()) ? ExitCode::done : ExitCode::simulation_failed);
+  return tell_end(run.state()) ? exit_code::done : exit_code::simulation_failed;
 }
 
 }  // namespace rouleau::command

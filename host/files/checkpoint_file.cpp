@@ -30,7 +30,7 @@ std::string head(std::uintmax_t bytes, const std::string& checksum) {
 }
 
 [[noreturn]] void damaged(const std::filesystem::path& file, const std::string& how) {
-  throw Error(ExitCode::input_output, Place{file.string(), "", 0, 0}, "is damaged: " + how);
+  throw Error(Cause::input_output, Place{file.string()}, "is damaged: " + how);
 }
 
 std::uintmax_t size_of(const std::filesystem::path& file) {
@@ -53,9 +53,10 @@ void verify(const std::filesystem::path& file) {
   std::getline(lines, first);
   if (first != checkpoint_format) {
     if (first.starts_with("rouleau checkpoint "))
-      throw Error(ExitCode::bad_input, Place{file.string(), "", 0, 0},
+      throw Error(Cause::bad_input, Place{file.string()},
                   "was written by another version of the program (\"" + first + "\"; this one reads \"" +
-                      std::string(checkpoint_format) + "\"): go on with that version, or begin anew with --overwrite");
+                      std::string(checkpoint_format) + "\")",
+                  {"go on with that version, or begin anew", {Way::anew}});
     damaged(file, "it does not begin like a checkpoint");
   }
   lines >> word >> bytes >> name >> checksum;
@@ -170,9 +171,9 @@ nlohmann::json CheckpointReader::state() const {
 }
 
 void CheckpointReader::refuse(const std::string& what) const {
-  throw Error(ExitCode::input_output, Place{path_.string(), "", 0, 0},
-              "does not hold what this program keeps in a checkpoint: " + what +
-                  "\n  go on with the program that wrote it, or begin anew with --overwrite");
+  throw Error(Cause::input_output, Place{path_.string()},
+              "does not hold what this program keeps in a checkpoint: " + what,
+              {"go on with the program that wrote it, or begin anew", {Way::anew}});
 }
 
 bool CheckpointReader::has(const std::string& path) const { return file_->hdf5.has(path); }

@@ -46,8 +46,7 @@ bool StoredTable::has(const std::string& column) const {
 
 std::size_t StoredTable::index(const std::string& column) const {
   const auto found = std::find(header_.begin(), header_.end(), column);
-  if (found == header_.end())
-    throw Error(ExitCode::bad_input, Place{file_.string(), "", 0, 0}, "has no column \"" + column + "\"");
+  if (found == header_.end()) throw Error(Cause::bad_input, Place{file_.string()}, "has no column \"" + column + "\"");
   return static_cast<std::size_t>(found - header_.begin());
 }
 
@@ -69,7 +68,7 @@ std::size_t StoredTable::count_of(const std::string& column) const {
   for (std::size_t row = 0; row < values.size(); ++row) {
     // Numbered things stand in a row each, so that a number beyond the rows is a damaged one; NaN fails as well.
     if (!(values[row] >= 0 && values[row] < static_cast<double>(values.size()))) {
-      throw Error(ExitCode::bad_input, Place{file_.string(), "", 0, 0},
+      throw Error(Cause::bad_input, Place{file_.string()},
                   "row " + std::to_string(row + 1) + " has " + in_quotes(rows_[row][index(column)]) +
                       " in the column \"" + column + "\", which counts from 0 and has " +
                       std::to_string(values.size()) +

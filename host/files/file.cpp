@@ -16,25 +16,26 @@ namespace rouleau::files {
 
 namespace {
 
-std::string remedy(int error) {
+Remedy remedy(int error) {
   switch (error) {
     case ENOSPC:
     case EDQUOT:
-      return "free some space there, or write to another disk with --out";
+      return {"free some space there, or write to another disk", {Way::elsewhere}};
     case EFBIG:
-      return "raise the file size limit (ulimit -f), or write fewer outputs";
+      return {"raise the file size limit (ulimit -f), or write fewer outputs"};
     case EACCES:
     case EPERM:
     case EROFS:
-      return "choose a directory you may write to with --out (to go on with a run, copy its directory there first)";
+      return {"choose a directory you may write to; a run that is to go on must be copied there first",
+              {Way::elsewhere}};
     case ENOENT:
     case ENOTDIR:
-      return "check that every part of the path before the last is a directory";
+      return {"check that every part of the path before the last is a directory"};
     case EMFILE:
     case ENFILE:
-      return "close other files, or raise the limit (ulimit -n)";
+      return {"close other files, or raise the limit (ulimit -n)"};
     default:
-      return "check the disk, or write to another one with --out";
+      return {"check the disk, or write to another one", {Way::elsewhere}};
   }
 }
 
@@ -69,16 +70,15 @@ bool write_all(int descriptor, std::string_view text) {
 }  // namespace
 
 void fail_file(const std::filesystem::path& file, const std::string& what, int error) {
-  throw Error(ExitCode::input_output, Place{file.string(), "", 0, 0},
-              what + ": " + std::generic_category().message(error) + "\n  " + remedy(error));
+  throw Error(Cause::input_output, Place{file.string()}, what + ": " + std::generic_category().message(error),
+              remedy(error));
 }
 
 void fail_reading(const std::filesystem::path& file, int error) {
-  throw Error(ExitCode::input_output, Place{file.string(), "", 0, 0},
-              "cannot be read: " + std::generic_category().message(error) +
-                  (error == ENOENT   ? "\n  bring the file back, or check the path"
-                   : error == EACCES ? "\n  see to it that you may read it (ls -l)"
-                                     : ""));
+  throw Error(Cause::input_output, Place{file.string()}, "cannot be read: " + std::generic_category().message(error),
+              {error == ENOENT   ? "bring the file back, or check the path"
+               : error == EACCES ? "see to it that you may read it (ls -l)"
+                                 : ""});
 }
 
 std::string read_text(const std::filesystem::path& file) {
@@ -134,20 +134,22 @@ void move_into_place(const std::filesystem::path& from, const std::filesystem::p
 }
 
 Checksum require(const std::filesystem::path& file, const FileMark& mark) {
-  const std::string remedy =
-      ", and a run cannot go on from there\n  bring back the file as it was, or begin anew with --overwrite";
+  const std::string lost = ", and a run cannot go on from there";
+  const Remedy remedy{"bring back the file as it was, or begin anew", {Way::anew}};
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(file, error);
   if (error) fail_reading(file, error.value());
   if (size < mark.bytes)
-    throw Error(ExitCode::input_output, Place{file.string(), "", 0, 0},
+    throw Error(Cause::input_output, Place{file.string()},
                 "is shorter than when the checkpoint was written, " + std::to_string(size) + " bytes instead of " +
-                    std::to_string(mark.bytes) + remedy);
+                    std::to_string(mark.bytes) + lost,
+                remedy);
   Checksum checksum = checksum_of(file, 0, mark.bytes);
   if (checksum.value() != mark.checksum)
-    throw Error(ExitCode::input_output, Place{file.string(), "", 0, 0},
+    throw Error(Cause::input_output, Place{file.string()},
                 "was changed since the checkpoint was written (the checksum of its first " +
-                    std::to_string(mark.bytes) + " bytes differs)" + remedy);
+                    std::to_string(mark.bytes) + " bytes differs)" + lost,
+                remedy);
   return checksum;
 }
 
@@ -156,8 +158,8 @@ AppendFile::AppendFile(std::filesystem::path file, Access access) : file_(std::m
   if (output.number() < 0) fail_file(file_, "cannot be created", errno);
   // File systems without locks answer with another error; then two runs in one directory are the user's affair.
   if (access == Access::exclusive && ::flock(output.number(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
-    throw Error(ExitCode::bad_input, Place{file_.string(), "", 0, 0},
-                "another run is writing into this directory; wait for it, or choose another one with --out");
+    throw Error(Cause::bad_input, Place{file_.string()}, "another run is writing into this directory",
+                {"wait for it, or choose another one", {Way::elsewhere}});
   const int number = ::fcntl(output.number(), F_DUPFD_CLOEXEC, 0);  // shares the lock
   if (number < 0) fail_file(file_, "cannot be created", errno);
   stream_.reset(::fdopen(number, "a"));

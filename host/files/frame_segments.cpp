@@ -75,11 +75,10 @@ std::vector<std::uint64_t> segments_in(const std::filesystem::path& file) {
   return segments;
 }
 
-constexpr const char* put_back =
-    "\n  put back the file as the run left it, or begin anew: with --overwrite, or in another directory (--out)";
-
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& problem) {
-  throw Error(ExitCode::input_output, Place{file.string(), "", 0, 0}, problem + put_back);
+  throw Error(Cause::input_output, Place{file.string()}, problem,
+              {"put back the file as the run left it, or begin anew, here or in another directory",
+               {Way::anew, Way::elsewhere}});
 }
 
 void verify(const std::filesystem::path& frames, std::size_t number, const FrameSegment& segment) {

@@ -215,7 +215,7 @@ observe::OutlineSnapshot FrameReader::outlines(int frame) const {
   for (const double first : file_.read(group + "/first")) {
     const bool begins = before >= 0 || first == 0;
     if (!(begins && first > before && first <= nodes)) {
-      throw Error(ExitCode::input_output, Place{file_.path().string(), "", 0, 0},
+      throw Error(Cause::input_output, Place{file_.path().string()},
                   group + "/first does not fit " + group + "/points: the file is damaged; repeat the run");
     }
     outlines.first.push_back(static_cast<int>(before = first));

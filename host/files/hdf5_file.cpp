@@ -75,15 +75,15 @@ void Hdf5File::fail(const std::string& path) const {
       std::string(path.empty() ? "" : path + " ") + (mode_ == Mode::create ? "cannot be written" : "cannot be read");
   if (innermost.error != 0 && mode_ == Mode::create) fail_file(file_, what, innermost.error);
   if (innermost.error == EAGAIN)  // HDF5's lock
-    throw Error(ExitCode::input_output, Place{file_.string(), "", 0, 0},
+    throw Error(Cause::input_output, Place{file_.string()},
                 "is being written by a run: its frames can be read after the run's next checkpoint (every ten minutes "
                 "unless output.checkpoint of the scene says otherwise), or at its end");
   if (innermost.error != 0)
-    throw Error(ExitCode::input_output, Place{file_.string(), "", 0, 0},
+    throw Error(Cause::input_output, Place{file_.string()},
                 what + ": " + std::generic_category().message(innermost.error));
-  throw Error(ExitCode::input_output, Place{file_.string(), "", 0, 0},
-              what + ": HDF5 says \"" + (innermost.words.empty() ? "unknown error" : innermost.words) + "\"" +
-                  (mode_ == Mode::read ? "\n  the file is damaged: bring it back, or run the scene again" : ""));
+  throw Error(Cause::input_output, Place{file_.string()},
+              what + ": HDF5 says \"" + (innermost.words.empty() ? "unknown error" : innermost.words) + "\"",
+              {mode_ == Mode::read ? "the file is damaged: bring it back, or run the scene again" : ""});
 }
 
 Hdf5Handle Hdf5File::make_group(const std::string& path) {
@@ -164,7 +164,7 @@ std::size_t Hdf5File::elements_of(const Hdf5Handle& dataset, const std::string& 
   check(H5Fget_filesize(file.id(), &bytes), path);
   // A damaged extent must not use up the memory: deflate, at its best, makes one byte of 1032.
   if (static_cast<double>(count) > 1032.0 * static_cast<double>(bytes)) {
-    throw Error(ExitCode::input_output, Place{file_.string(), "", 0, 0},
+    throw Error(Cause::input_output, Place{file_.string()},
                 path + " has " + std::to_string(count) + " numbers, more than the file can hold: it is damaged");
   }
   return static_cast<std::size_t>(count);

@@ -50,17 +50,17 @@ std::filesystem::path prepared(std::filesystem::path directory, FormerRun former
   std::filesystem::create_directories(directory, error);
   std::error_code ignored;
   if (std::filesystem::exists(directory, ignored) && !std::filesystem::is_directory(directory, ignored))
-    throw Error(ExitCode::input_output, Place{directory.string(), "", 0, 0},
-                "is a file and not a directory; choose another place with --out");
+    throw Error(Cause::input_output, Place{directory.string()}, "is a file and not a directory",
+                {"choose another place", {Way::elsewhere}});
   if (error) fail_file(directory, "cannot be made", error.value());
   std::filesystem::directory_iterator entries(directory, error);
   if (error) fail_file(directory, "cannot be listed", error.value());
   if (former != FormerRun::keep && holds_run(directory)) return directory;
   for (const auto& entry : entries)
     if (!written_by_a_run(entry.path().filename().string()))
-      throw Error(ExitCode::bad_input, Place{directory.string(), "", 0, 0},
-                  "holds \"" + entry.path().filename().string() +
-                      "\", which no run wrote; choose another directory with --out, or move that file away");
+      throw Error(Cause::bad_input, Place{directory.string()},
+                  "holds \"" + entry.path().filename().string() + "\", which no run wrote",
+                  {"choose another directory, or move that file away", {Way::elsewhere}});
   return directory;
 }
 
@@ -125,16 +125,16 @@ RunDirectory::RunDirectory(std::filesystem::path directory, const scene::Scene& 
   // The log before anything is removed: another run may be writing here.
   files_ = std::make_unique<Files>(Log(directory_ / "log.jsonl"));
   if (former == FormerRun::keep && holds_run(directory_)) {
-    throw Error(ExitCode::bad_input, Place{directory_.string(), "", 0, 0},
-                "holds a run already, which would be lost; choose another directory with --out, go on with that run "
-                "with --resume, or replace it with --overwrite");
+    throw Error(
+        Cause::bad_input, Place{directory_.string()}, "holds a run already, which would be lost",
+        {"choose another directory, go on with that run, or replace it", {Way::elsewhere, Way::resume, Way::anew}});
   }
   if (former == FormerRun::resume) {
     resumes_ = holds_checkpoint(directory_);
     if (resumes_) return;
     if (std::filesystem::exists(directory_ / "summary.json")) {
-      throw Error(ExitCode::bad_input, Place{directory_.string(), "", 0, 0},
-                  "holds a run that has ended and left no checkpoint to go on from; replace it with --overwrite");
+      throw Error(Cause::bad_input, Place{directory_.string()},
+                  "holds a run that has ended and left no checkpoint to go on from", {"replace it", {Way::anew}});
     }
   }
   remove_files(directory_, [](const std::string& name) {

@@ -38,7 +38,7 @@ struct DirectoryMark {
 void to_json(nlohmann::json& json, const DirectoryMark& mark);
 void from_json(const nlohmann::json& json, DirectoryMark& mark);
 
-/// Writes the run directory of PRODUCT.md section 4. Every member throws Error(input_output) with path and reason.
+/// Writes the run directory of docs/output.md. Every member throws Error(input_output) with path and reason.
 class RunDirectory {
  public:
   /// Makes the directory (and parents). Refuses one that holds files which no run wrote, one that another run is

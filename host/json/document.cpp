@@ -15,7 +15,7 @@ namespace {
 
 std::string read_text(const std::filesystem::path& path) {
   const auto refuse = [&](const std::string& reason) {
-    return Error(ExitCode::input_output, Place{path.string(), "", 0, 0}, "this file cannot be read: " + reason);
+    return Error(Cause::input_output, Place{path.string()}, "this file cannot be read: " + reason);
   };
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) throw refuse("it is a directory");
@@ -36,7 +36,7 @@ std::string read_text(const std::filesystem::path& path) {
 
 Document Document::read(const std::filesystem::path& file) { return parse(read_text(file), file.string()); }
 
-Document Document::parse(std::string_view text, std::string file, ExitCode code) {
+Document Document::parse(std::string_view text, std::string file, Cause cause) {
   constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
   if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
   Document document;
@@ -48,7 +48,7 @@ Document Document::parse(std::string_view text, std::string file, ExitCode code)
     document.tree_ = std::move(parsed.tree);
   } catch (const TextFault& fault) {
     const auto [line, column] = position(text, fault.offset);
-    throw Error(code, Place{document.file_, fault.pointer, line, column}, fault.what());
+    throw Error(cause, Place{document.file_, fault.pointer, line, column}, fault.what());
   }
   return document;
 }

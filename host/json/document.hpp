@@ -19,8 +19,8 @@ class Document {
   /// Reads a file; throws Error(input_output) when it cannot be read, Error(bad_input) with line and column when
   /// malformed.
   static Document read(const std::filesystem::path& file);
-  /// Parses text; `file` is only for messages. `code` is the exit code of the errors it throws.
-  static Document parse(std::string_view text, std::string file, ExitCode code = ExitCode::bad_input);
+  /// Parses text; `file` is only for messages. `cause` is that of the errors it throws.
+  static Document parse(std::string_view text, std::string file, Cause cause = Cause::bad_input);
 
   [[nodiscard]] const nlohmann::json& root() const { return root_; }
   [[nodiscard]] const std::string& file() const { return file_; }

@@ -31,11 +31,11 @@ std::string pointer_of(const std::vector<std::string>& context) {
 
 }  // namespace
 
-void validate(const Document& document, const nlohmann::json& schema, ExitCode code) {
+void validate(const Document& document, const nlohmann::json& schema, Cause cause) {
   // First our own words, which also keep texts away from valijson that its patterns could not stand; then its
   // judgement.
   if (const auto fault = explain_first_fault(document, schema)) {
-    throw Error(code, fault->at_key ? document.key_place(fault->pointer) : document.place(fault->pointer),
+    throw Error(cause, fault->at_key ? document.key_place(fault->pointer) : document.place(fault->pointer),
                 indented(fault->problem));
   }
   valijson::Schema rules;
@@ -51,7 +51,7 @@ void validate(const Document& document, const nlohmann::json& schema, ExitCode c
   for (const auto& error : results) {
     if (deepest.description.empty() || error.context.size() > deepest.context.size()) deepest = error;
   }
-  throw Error(code, document.place(pointer_of(deepest.context)),
+  throw Error(cause, document.place(pointer_of(deepest.context)),
               "this does not fit the schema: " + deepest.description);
 }
 

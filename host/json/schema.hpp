@@ -8,9 +8,9 @@
 
 namespace rouleau::json {
 
-/// Validates; throws Error(code) for the first fault in the order of the text, naming place, value found, what is
+/// Validates; throws Error(cause) for the first fault in the order of the text, naming place, value found, what is
 /// allowed and, for an unknown key or word, the nearest valid one.
-void validate(const Document& document, const nlohmann::json& schema, ExitCode code = ExitCode::bad_input);
+void validate(const Document& document, const nlohmann::json& schema, Cause cause = Cause::bad_input);
 
 /// The shipped schemas, compiled into the program and installed beside it.
 const nlohmann::json& scene_schema();

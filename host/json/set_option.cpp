@@ -38,9 +38,7 @@ class Assignment {
   }
 
  private:
-  [[noreturn]] void refuse(const std::string& problem) const {
-    throw Error(ExitCode::bad_input, Place{option_, "", 0, 0}, problem);
-  }
+  [[noreturn]] void refuse(const std::string& problem) const { throw Error(Cause::bad_input, Place{option_}, problem); }
 
   /// Any JSON value; a bare word is a string. What begins like an object, array or string must be one.
   [[nodiscard]] nlohmann::json parse_value(const std::string& text) const {

@@ -22,9 +22,8 @@ std::optional<Failure> check_energy(const observe::EnergyHistory& energy, const 
   failure.message =
       "cells and fluid at rest have gained energy (as a share of what there is), which they can only lose";
   failure.remedy =
-      "lower numerics.density_factor, or take numerics.coupling \"explicit\" within its limits (rouleau plan prints "
-      "the "
-      "margins), or raise checks.energy_growth if this error is acceptable";
+      "lower numerics.density_factor, or take numerics.coupling \"explicit\" within its limits (the plan has "
+      "the margins), or raise checks.energy_growth if this error is acceptable";
   const int fastest = core::farthest_node(membranes).node;
   if (fastest >= 0) locate_failure(failure, membranes, fastest, spacing);
   return failure;

@@ -10,8 +10,8 @@ namespace rouleau::monitor {
 
 /// What to do when a run has blown up for no narrower reason.
 inline constexpr const char* blown_up_remedy =
-    "lower numerics.density_factor (it divides every lattice stiffness and speed), or see the margins that "
-    "rouleau plan prints";
+    "lower numerics.density_factor (it divides every lattice stiffness and speed), or see the margins in the "
+    "scene's plan";
 
 /// Sets cell and place (before its last step) of a failure to those of a node. `spacing` in m.
 void locate_failure(Failure& failure, const core::Membranes& membranes, int node, double spacing);

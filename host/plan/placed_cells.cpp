@@ -38,7 +38,7 @@ class Checker {
   [[noreturn]] void refuse(std::size_t cell, const std::string& problem) const {
     const std::string& pointer = scene_.cells[cell].pointer;
     const Place place = scene_.document ? scene_.place(pointer) : Place{"", pointer};
-    throw Error(ExitCode::bad_input, place, problem);
+    throw Error(Cause::bad_input, place, problem);
   }
   [[nodiscard]] std::string micrometres(double spacings) const {
     char text[32];

@@ -211,7 +211,7 @@ void check_models_of_stages(const scene::Scene& scene) {
   std::size_t models = 1 + scene.interactions.size();
   for (const scene::CellType& type : scene.cell_types) models += type.membrane.size();
   if (models * scene.stages.size() <= most) return;
-  throw Error(ExitCode::bad_input, scene.place("/stages"),
+  throw Error(Cause::bad_input, scene.place("/stages"),
               std::to_string(scene.stages.size()) + " stages with " + std::to_string(models) + " models each make " +
                   std::to_string(models * scene.stages.size()) + " models; at most " + std::to_string(most) +
                   " can be computed: use fewer stages, cell types, laws or interactions");
@@ -318,7 +318,7 @@ Plan make_plan(const scene::Scene& scene, const plugin::Catalog& catalog) {
   for (const StageSetting& stage : plan.stages) {
     if (stage.stage->start == scene::WallStart::developed && scene.domain.periodic_y && stage.body_force_x != 0) {
       throw Error(
-          ExitCode::bad_input, scene.place(stage.stage->pointer + "/start"),
+          Cause::bad_input, scene.place(stage.stage->pointer + "/start"),
           "\"developed\" wants walls: a driven flow that is periodic along y never becomes steady; leave start out");
     }
   }

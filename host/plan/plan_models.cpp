@@ -48,8 +48,8 @@ void try_models(const Plan& plan) {
     try {
       const plugin::ModelInstance instance(*model->manifest, model->parameters.values, setting);
     } catch (const plugin::ModelRefused& refused) {
-      throw Error(ExitCode::bad_input, plan.scene->place(model->pointer),
-                  in_quotes(model->manifest->id) + " cannot be made with these parameters: " + refused.problem() +
+      throw Error(Cause::bad_input, plan.scene->place(model->pointer),
+                  in_quotes(model->manifest->id) + " cannot be made with these parameters: " + refused.reason() +
                       "\n  its manifest: " + model->manifest->file.string());
     }
   }

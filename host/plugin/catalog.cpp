@@ -24,8 +24,8 @@ bool is_folder(const fs::path& path) {
 void require_folder(const fs::path& folder, const char* origin) {
   if (is_folder(folder)) return;
   std::error_code ignored;
-  throw Error(ExitCode::bad_input, std::string(origin) + ": " + folder.string() +
-                                       (fs::exists(folder, ignored) ? " is not a folder" : " does not exist"));
+  throw Error(Cause::bad_input, std::string(origin) + ": " + folder.string() +
+                                    (fs::exists(folder, ignored) ? " is not a folder" : " does not exist"));
 }
 
 /// Folders of ROULEAU_PLUGIN_PATH. secure_getenv: a program with raised privileges does not trust its environment.
@@ -39,8 +39,8 @@ std::vector<fs::path> environment_folders() {
     rest.erase(0, std::min(end + 1, rest.size()));
     if (folder.empty()) continue;  // not the working directory, which an empty entry means in PATH
     if (folder.is_relative()) {
-      throw Error(ExitCode::bad_input, "ROULEAU_PLUGIN_PATH holds the relative folder " + in_quotes(folder.string()) +
-                                           "; its folders must be absolute, separated by ':'");
+      throw Error(Cause::bad_input, "ROULEAU_PLUGIN_PATH holds the relative folder " + in_quotes(folder.string()) +
+                                        "; its folders must be absolute, separated by ':'");
     }
     folders.push_back(folder);
   }
@@ -67,7 +67,7 @@ void require_trust(const fs::path& manifest, const fs::path& open_folder, const 
                             ? open_folder
                             : open_to_others({manifest, true_folder(manifest), library, true_folder(library)});
   if (open.empty()) return;
-  throw Error(ExitCode::plugin_refused, Place{manifest.string(), {}, 0, 0}, why_not_trusted(open));
+  throw Error(Cause::plugin_refused, Place{manifest.string()}, why_not_trusted(open));
 }
 
 std::string names_of(const std::vector<fs::path>& files) {
@@ -78,11 +78,10 @@ std::string names_of(const std::vector<fs::path>& files) {
 
 }  // namespace
 
-std::vector<fs::path> plugin_search_path(const std::vector<fs::path>& command_line,
-                                         const std::vector<fs::path>& scene) {
+std::vector<fs::path> plugin_search_path(const std::vector<fs::path>& given, const std::vector<fs::path>& scene) {
   std::vector<fs::path> path;
-  for (const auto& folder : command_line) {
-    require_folder(folder, "--plugin-dir");
+  for (const auto& folder : given) {
+    require_folder(folder, "folder of plugins");
     path.push_back(folder);
   }
   for (const auto& folder : scene) {
@@ -150,7 +149,7 @@ const Manifest& Catalog::find(ModelKind kind, const std::string& id, const Place
       if (lock_) require_locked(*lock_, manifest, place);
       return manifest;
     }
-    throw Error(ExitCode::bad_input, place,
+    throw Error(Cause::bad_input, place,
                 in_quotes(id) + " is a plugin of the kind " + to_string(manifest.kind) + "; here one of the kind " +
                     to_string(kind) + " is wanted: " + listed(ids(kind)));
   }
@@ -160,7 +159,7 @@ const Manifest& Catalog::find(ModelKind kind, const std::string& id, const Place
     if (refused.id == id && reasons.find(refused.reason) == std::string::npos) reasons += "\n" + refused.reason;
   }
   if (!reasons.empty()) {
-    throw Error(ExitCode::plugin_refused, place, "the plugin " + in_quotes(id) + " was refused:" + reasons);
+    throw Error(Cause::plugin_refused, place, "the plugin " + in_quotes(id) + " was refused:" + reasons);
   }
   throw_unknown(kind, id, place);
 }
@@ -174,13 +173,13 @@ void Catalog::throw_unknown(ModelKind kind, const std::string& id, const Place& 
     if (refused.id.empty()) nameless.push_back(refused.file);
   }
   if (!nameless.empty()) problem += "\n  could not be read:" + names_of(nameless);
-  throw Error(ExitCode::bad_input, place, problem);
+  throw Error(Cause::bad_input, place, problem);
 }
 
 void Catalog::set_lock(Lock lock) {
   for (Manifest& manifest : manifests_) {
     const LockedPlugin* locked = lock.find(manifest.id);
-    if (locked != nullptr) manifest.locked = {lock.file.string(), lock.scene.string(), locked->library_sha256};
+    if (locked != nullptr) manifest.locked = {lock.file.string(), lock.renewal, locked->library_sha256};
   }
   lock_ = std::move(lock);
 }

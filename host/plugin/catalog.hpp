@@ -12,10 +12,10 @@
 
 namespace rouleau::plugin {
 
-/// Folders to search, first to last: --plugin-dir, the scene's plugin_dirs, ROULEAU_PLUGIN_PATH (secure_getenv, ':'
+/// Folders to search, first to last: those given, the scene's plugin_dirs, ROULEAU_PLUGIN_PATH (secure_getenv, ':'
 /// separated), the installation beside the program. Never the working directory. Entries that do not exist are left
-/// out, except those of the command line and the scene: they must exist (Error bad_input).
-std::vector<std::filesystem::path> plugin_search_path(const std::vector<std::filesystem::path>& command_line,
+/// out, except those given and those of the scene: they must exist (Error bad_input).
+std::vector<std::filesystem::path> plugin_search_path(const std::vector<std::filesystem::path>& given,
                                                       const std::vector<std::filesystem::path>& scene);
 
 class Catalog {

@@ -39,7 +39,7 @@ core::MembraneLaw make_membrane_law(const Manifest& manifest, const std::vector<
                                        "area",    "rest_area",    "perimeter", "rest_perimeter"};
   for (const std::string& need : manifest.needs) {
     if (std::find(known.begin(), known.end(), need) == known.end()) {
-      throw Error(ExitCode::plugin_refused, Place{manifest.file.string(), "/needs"},
+      throw Error(Cause::plugin_refused, Place{manifest.file.string(), "/needs"},
                   "membrane law \"" + manifest.id + "\" needs \"" + need + "\", which this program does not give.");
     }
   }

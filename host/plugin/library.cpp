@@ -24,9 +24,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void refuse(const Manifest& manifest, const std::string& problem) {
-  throw Error(ExitCode::plugin_refused, Place{manifest.file.string(), {}, 0, 0},
-              "the library " + manifest.library.string() + ' ' + problem);
+[[noreturn]] void refuse(const Manifest& manifest, const std::string& problem, const Remedy& remedy = {}) {
+  throw Error(Cause::plugin_refused, Place{manifest.file.string()},
+              "the library " + manifest.library.string() + ' ' + problem, remedy);
 }
 
 /// What the dynamic loader says of a file that is not there.
@@ -78,9 +78,10 @@ fs::path checked_library(const Manifest& manifest) {
   if (manifest.locked) {
     const std::string found = sha256(file);
     if (found != manifest.locked->sha256) {
-      refuse(manifest, "is not the one that is locked\n  expected SHA-256 " + manifest.locked->sha256 +
-                           ", by the lock " + manifest.locked->lock + "\n  found SHA-256 " + found + "\n  " +
-                           lock_remedy(manifest.locked->lock, manifest.locked->scene));
+      refuse(manifest,
+             "is not the one that is locked\n  expected SHA-256 " + manifest.locked->sha256 + ", by the lock " +
+                 manifest.locked->lock + "\n  found SHA-256 " + found,
+             {manifest.locked->renewal});
     }
   }
   if (const std::string reason = reason_not_loadable(file, ROULEAU_OPEN_SYMBOL); !reason.empty()) {
@@ -112,8 +113,7 @@ std::string sha256(const fs::path& file) {
   char digest[SHA256_DIGEST_STRING_LENGTH] = {};
   errno = 0;
   if (SHA256File(file.c_str(), digest) == nullptr) {
-    throw Error(ExitCode::input_output, Place{file.string(), {}, 0, 0},
-                std::string("cannot be read: ") + std::strerror(errno));
+    throw Error(Cause::input_output, Place{file.string()}, std::string("cannot be read: ") + std::strerror(errno));
   }
   return digest;
 }

@@ -42,17 +42,17 @@ std::string lock_text(std::vector<LockedPlugin> plugins) {
   return lock.dump(2) + '\n';
 }
 
-Lock read_lock(const fs::path& file, const fs::path& scene) {
+Lock read_lock(const fs::path& file, const std::string& renewal) {
   const json::Document document = json::Document::read(file);
   json::validate(document, json::lock_schema());
-  Lock lock{file, scene, sha256(file), {}};
+  Lock lock{file, renewal, sha256(file), {}};
   std::set<std::string> seen;
   const auto& plugins = document.root()["plugins"];
   for (std::size_t i = 0; i < plugins.size(); ++i) {
     const auto& entry = plugins[i];
     if (!seen.insert(entry["id"]).second) {
-      throw Error(ExitCode::bad_input, document.place("/plugins/" + std::to_string(i) + "/id"),
-                  "the lock holds " + json::shown(entry["id"]) + " twice; " + lock_remedy(file, scene));
+      throw Error(Cause::bad_input, document.place("/plugins/" + std::to_string(i) + "/id"),
+                  "the lock holds " + json::shown(entry["id"]) + " twice", {renewal});
     }
     lock.plugins.push_back(
         {entry["id"], entry["kind"], entry["version"], entry["library_sha256"], entry["manifest_sha256"]});
@@ -62,7 +62,7 @@ Lock read_lock(const fs::path& file, const fs::path& scene) {
 
 void require_locked(const Lock& lock, const Manifest& manifest, const Place& place) {
   const auto refuse = [&](const std::string& problem) {
-    throw Error(ExitCode::plugin_refused, place, problem + "\n  " + lock_remedy(lock.file, lock.scene));
+    throw Error(Cause::plugin_refused, place, problem, {lock.renewal});
   };
   const std::string name = "the plugin " + in_quotes(manifest.id), file = lock.file.string();
   const LockedPlugin* locked = lock.find(manifest.id);
@@ -70,8 +70,9 @@ void require_locked(const Lock& lock, const Manifest& manifest, const Place& pla
     std::vector<std::string> ids;
     for (const LockedPlugin& plugin : lock.plugins) ids.push_back(plugin.id);
     refuse(name + " is not in the lock " + file + ", which holds: " + listed(ids) +
-           (place.file == "--set" ? "\n  a lock binds --set, too: write the model into the scene before you lock it"
-                                  : ""));
+           (place.line == 0 && !place.pointer.empty()  // it has no place in the text
+                ? "\n  a lock binds a changed scene, too: write the model into the scene before you lock it"
+                : ""));
     return;
   }
   const auto differs = [&](const char* what, const std::string& expected, const std::string& found) {
@@ -82,11 +83,6 @@ void require_locked(const Lock& lock, const Manifest& manifest, const Place& pla
   differs("kind", locked->kind, to_string(manifest.kind));
   differs("version", locked->version, manifest.version);
   differs("SHA-256 of the manifest", locked->manifest_sha256, sha256(manifest.file));
-}
-
-std::string lock_remedy(const fs::path& lock, const fs::path& scene) {
-  return "if this is meant, lock the scene again: rouleau plugins --lock " + scene.string() +
-         (lock == lock_beside(scene) ? "" : " --out " + lock.string());
 }
 
 }  // namespace rouleau::plugin

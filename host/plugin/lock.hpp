@@ -16,9 +16,9 @@ struct LockedPlugin {
 };
 
 struct Lock {
-  std::filesystem::path file;   ///< the lock itself
-  std::filesystem::path scene;  ///< the scene it is used for
-  std::string sha256;           ///< of the lock
+  std::filesystem::path file;  ///< the lock itself
+  std::string renewal;         ///< how the user makes it anew: a remedy's words
+  std::string sha256;          ///< of the lock
   std::vector<LockedPlugin> plugins;
 
   /// Null for a plugin that the lock does not hold.
@@ -39,13 +39,11 @@ LockedPlugin lock_plugin(const Manifest& manifest);
 std::string lock_text(std::vector<LockedPlugin> plugins);
 
 /// Throws Error(input_output) for a lock that cannot be read, Error(bad_input) with its place for a damaged one.
-Lock read_lock(const std::filesystem::path& file, const std::filesystem::path& scene);
+/// `renewal`: what to do when a plugin is meant to differ from it.
+Lock read_lock(const std::filesystem::path& file, const std::string& renewal);
 
 /// Throws Error(plugin_refused) at `place` of the scene for a plugin that the lock does not hold or whose kind, version
 /// or manifest differ from it. Its library is compared when it is opened.
 void require_locked(const Lock& lock, const Manifest& manifest, const Place& place);
-
-/// What to do when a plugin is meant to differ from the lock.
-std::string lock_remedy(const std::filesystem::path& lock, const std::filesystem::path& scene);
 
 }  // namespace rouleau::plugin

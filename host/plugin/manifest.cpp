@@ -62,13 +62,13 @@ json::Document read_manifest_document(const fs::path& file) {
   const Place place{file.string(), {}, 0, 0};
   std::error_code error;
   if (!fs::is_regular_file(file, error)) {
-    throw Error(ExitCode::plugin_refused, place,
+    throw Error(Cause::plugin_refused, place,
                 "cannot be read: " + (error ? error.message() : std::string("not a regular file")));
   }
   // Folders of plugins may hold data as well; reading all of it to find out that it is no manifest would take for ever.
   constexpr std::uintmax_t largest = 1 << 20;
   if (fs::file_size(file, error) > largest || error) {
-    throw Error(ExitCode::plugin_refused, place,
+    throw Error(Cause::plugin_refused, place,
                 error ? "cannot be read: " + error.message() : "is larger than 1 MiB, which no manifest is");
   }
   errno = 0;
@@ -76,13 +76,13 @@ json::Document read_manifest_document(const fs::path& file) {
   std::ostringstream text;
   if (stream) text << stream.rdbuf();
   if (!stream || stream.bad()) {
-    throw Error(ExitCode::plugin_refused, place, std::string("cannot be read: ") + std::strerror(errno));
+    throw Error(Cause::plugin_refused, place, std::string("cannot be read: ") + std::strerror(errno));
   }
-  return json::Document::parse(text.str(), file.string(), ExitCode::plugin_refused);
+  return json::Document::parse(text.str(), file.string(), Cause::plugin_refused);
 }
 
 Manifest read_manifest(const json::Document& document, const fs::path& file, const units::Units& units) {
-  json::validate(document, json::manifest_schema(), ExitCode::plugin_refused);
+  json::validate(document, json::manifest_schema(), Cause::plugin_refused);
   const Json& root = document.root();
 
   Manifest manifest;

@@ -42,7 +42,7 @@ struct StateVariable {
 
 /// What a lock says of a plugin's library.
 struct LibraryLock {
-  std::string lock, scene;  ///< files
+  std::string lock, renewal;  ///< file; how it is made anew
   std::string sha256;
 };
 

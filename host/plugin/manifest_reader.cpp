@@ -16,7 +16,7 @@ namespace {
 using Json = nlohmann::json;
 
 [[noreturn]] void refuse(const json::Document& document, const std::string& pointer, const std::string& problem) {
-  throw Error(ExitCode::plugin_refused, document.place(pointer), problem);
+  throw Error(Cause::plugin_refused, document.place(pointer), problem);
 }
 
 bool holds(const std::vector<std::string>& names, const std::string& name) {
@@ -247,7 +247,7 @@ void check_parameter_values(const json::Document& document, const Manifest& mani
     const std::string at = json::child_pointer(std::string("/") + key, name);
     const auto found = std::find(names.begin(), names.end(), name);
     if (found == names.end()) {
-      throw Error(ExitCode::plugin_refused, document.key_place(at),
+      throw Error(Cause::plugin_refused, document.key_place(at),
                   in_quotes(name) + " is no parameter of this model" + did_you_mean(name, names) +
                       "\n  its parameters: " + listed(names));
     }
@@ -274,7 +274,7 @@ void check_reference_numbers(const json::Document& document, const Manifest& man
     const Json members = entry.value(key, Json::object());
     for (const auto& [name, value] : members.items()) {
       if (name.starts_with("x-") || holds(known, name)) continue;
-      throw Error(ExitCode::plugin_refused, document.key_place(json::child_pointer(at + '/' + key, name)),
+      throw Error(Cause::plugin_refused, document.key_place(json::child_pointer(at + '/' + key, name)),
                   in_quotes(name) + " is not among this model's " + what + did_you_mean(name, known) + "\n  " + what +
                       ": " + listed(known));
     }

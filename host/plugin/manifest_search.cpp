@@ -27,7 +27,7 @@ class Search {
   void folder(const fs::path& path, const fs::path& open_above) {
     if (!is_new(path)) return;
     if (++folders_ > most_folders) {
-      throw Error(ExitCode::bad_input, Place{searched_.string(), {}, 0, 0},
+      throw Error(Cause::bad_input, Place{searched_.string()},
                   "more than " + std::to_string(most_folders) +
                       " folders lie under this one, where plugins are looked for; name the folder that holds them");
     }

@@ -18,9 +18,9 @@ std::string name_of(const Manifest& manifest) {
 
 }  // namespace
 
-ModelRefused::ModelRefused(const Manifest& manifest, const std::string& problem)
-    : Error(ExitCode::plugin_refused, place_of(manifest), name_of(manifest) + " could not be made: " + problem),
-      problem_(problem) {}
+ModelRefused::ModelRefused(const Manifest& manifest, const std::string& reason)
+    : Error(Cause::plugin_refused, place_of(manifest), name_of(manifest) + " could not be made: " + reason),
+      reason_(reason) {}
 
 ModelInstance::ModelInstance(const Manifest& manifest, const std::vector<double>& values, const ModelSetting& setting)
     : manifest_(&manifest), model_(&open_model(manifest)), self_(nullptr, model_->destroy) {
@@ -39,7 +39,7 @@ ModelInstance::ModelInstance(const Manifest& manifest, const std::vector<double>
     const double cutoff = interaction().cutoff(self);
     if (!std::isfinite(cutoff) || cutoff < 0) {
       throw Error(
-          ExitCode::plugin_refused, place_of(manifest),
+          Cause::plugin_refused, place_of(manifest),
           name_of(manifest) + " has the cutoff " + std::to_string(cutoff) + "; it must be finite and not negative");
     }
   }

@@ -16,12 +16,12 @@ namespace rouleau::plugin {
 /// A model's create function has reported an error: as a rule these parameters do not go together.
 class ModelRefused : public Error {
  public:
-  ModelRefused(const Manifest& manifest, const std::string& problem);
+  ModelRefused(const Manifest& manifest, const std::string& reason);
   /// What is wrong, as the model says.
-  [[nodiscard]] const std::string& problem() const { return problem_; }
+  [[nodiscard]] const std::string& reason() const { return reason_; }
 
  private:
-  std::string problem_;
+  std::string reason_;
 };
 
 /// One instance, usable from many threads at once. Creating it opens the model's library.

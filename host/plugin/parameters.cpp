@@ -41,7 +41,7 @@ class Resolver {
 
  private:
   [[noreturn]] void refuse(const std::string& below, const std::string& problem) const {
-    throw Error(ExitCode::bad_input, scene_.place(choice_.pointer + below), problem);
+    throw Error(Cause::bad_input, scene_.place(choice_.pointer + below), problem);
   }
   [[nodiscard]] static std::string pointer_of(const std::string& name) {
     return json::child_pointer("/parameters", name);
@@ -53,7 +53,7 @@ class Resolver {
     for (const auto& [name, value] : choice_.parameters.items()) {
       if (std::find(names.begin(), names.end(), name) != names.end()) continue;
       const std::string pointer = choice_.pointer + pointer_of(name);
-      throw Error(ExitCode::bad_input, scene_.document ? scene_.document->key_place(pointer) : scene_.place(pointer),
+      throw Error(Cause::bad_input, scene_.document ? scene_.document->key_place(pointer) : scene_.place(pointer),
                   in_quotes(manifest_.id) + " has no parameter " + in_quotes(name) + did_you_mean(name, names) +
                       "\n  its parameters: " + listed(names));
     }

@@ -85,10 +85,9 @@ const Json* named(const Named& all, const std::string& name) {
 
 Json ended_run(const std::filesystem::path& directory) {
   if (!std::filesystem::is_directory(directory))
-    throw Error(ExitCode::bad_input, Place{directory.string(), "", 0, 0},
-                "is no directory; rouleau report --compare wants the directories of two runs");
+    throw Error(Cause::bad_input, Place{directory.string()}, "is no directory", {"name the directories of two runs"});
   if (!std::filesystem::exists(directory / "summary.json"))
-    throw Error(ExitCode::bad_input, Place{directory.string(), "", 0, 0},
+    throw Error(Cause::bad_input, Place{directory.string()},
                 "has no summary.json: it is no run's directory, or its run has not ended");
   Json data = report_data(directory);
   data["directory"] = directory.string();

@@ -191,7 +191,7 @@ bool has_run(const std::filesystem::path& directory) {
 
 Json report_data(const std::filesystem::path& directory) {
   if (!has_run(directory))
-    throw Error(ExitCode::bad_input, Place{directory.string(), "", 0, 0},
+    throw Error(Cause::bad_input, Place{directory.string()},
                 "is no run's directory: it has neither summary.json nor series.csv");
   const bool ended = std::filesystem::exists(directory / "summary.json");
   Json data;

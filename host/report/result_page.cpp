@@ -30,11 +30,11 @@ fs::path write_result_page(const fs::path& directory, const ResultPage& kind) {
   const auto& root = document.root();
   const auto remedy = std::string("\n  repeat the command rouleau ") + kind.command + " that made the directory";
   if (!root.is_object() || !root.contains(kind.key))
-    throw Error(ExitCode::bad_input, document.place(""),
+    throw Error(Cause::bad_input, document.place(""),
                 "is no result of rouleau " + std::string(kind.command) + ": it has no \"" + kind.key + "\"" + remedy);
   const std::string pointer = std::string("/") + kind.key;
   if (root[kind.key] != 1)
-    throw Error(ExitCode::bad_input, document.place(pointer),
+    throw Error(Cause::bad_input, document.place(pointer),
                 "is " + json::shown(root[kind.key]) + ", and this rouleau knows version 1 only" + remedy);
   fs::path page = directory / kind.page;
   files::write_file(page, page_with(kind.page_template, root));
@@ -59,10 +59,10 @@ std::vector<fs::path> write_pages(const fs::path& directory) {
   if (has("limits.json")) pages.push_back(write_limits_page(directory));
   if (has_run(directory)) pages.push_back(write_report(directory));
   if (pages.empty() && !fs::exists(directory))
-    throw Error(ExitCode::bad_input, Place{directory.string(), "", 0, 0}, "does not exist");
+    throw Error(Cause::bad_input, Place{directory.string()}, "does not exist");
   if (pages.empty())
     throw Error(
-        ExitCode::bad_input, Place{directory.string(), "", 0, 0},
+        Cause::bad_input, Place{directory.string()},
         "is the directory of no run, study or limits: it has neither summary.json nor series.csv, study.json or "
         "limits.json");
   return pages;

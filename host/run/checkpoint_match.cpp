@@ -77,19 +77,20 @@ void compare_plugins(const Json& then, const plan::Plan& plan, std::vector<Diffe
   }
 }
 
-std::string message(const std::filesystem::path& file, const Json& facts, const std::vector<Difference>& differences,
-                    bool harmless) {
+Error refusal(const std::filesystem::path& file, const Json& facts, const std::vector<Difference>& differences,
+              bool harmless) {
   std::string text = "belongs to a run that differs from this one (step " +
                      std::to_string(facts.at("step").get<long>()) + ", written " +
                      facts.at("written").get<std::string>() + "):";
   for (const Difference& difference : differences) {
     text += "\n    " + difference.what + (harmless || difference.harmless ? "" : "   [changes what the state means]");
   }
-  if (harmless) return text + "\n  none of this changes what the state means: --force goes on all the same";
-  return text + "\n  go on with what the checkpoint was made with (its scene is " +
-         (file.parent_path() / "scene.json").string() +
-         "), choose another directory with --out, or begin anew with "
-         "--overwrite";
+  Remedy remedy{"none of this changes what the state means: the run can go on all the same", {Way::accept}};
+  if (!harmless)
+    remedy = {"go on with what the checkpoint was made with (its scene is " +
+                  (file.parent_path() / "scene.json").string() + "), choose another directory, or begin anew",
+              {Way::elsewhere, Way::anew}};
+  return {Cause::bad_input, Place{file.string()}, text, remedy};
 }
 
 }  // namespace
@@ -130,8 +131,7 @@ void accept_differences(Resumption& resumption, const plan::Plan& plan, bool for
   const std::vector<Difference> found = differences(facts, plan, facts.at("stage"));
   const bool harmless = std::all_of(found.begin(), found.end(), [](const Difference& d) { return d.harmless; });
   if (!found.empty() && !(harmless && force)) {
-    throw Error(ExitCode::bad_input, Place{checkpoint.path().string(), "", 0, 0},
-                message(checkpoint.path(), facts, found, harmless));
+    throw refusal(checkpoint.path(), facts, found, harmless);
   }
   for (const Difference& difference : found) resumption.accepted.push_back(difference.what);
 }
@@ -140,21 +140,22 @@ void accept_differences(Resumption& resumption, const plan::Plan& plan, bool for
 
 Resumption open_checkpoint(const std::filesystem::path& directory, const plan::Plan& plan, bool force) {
   Resumption resumption;
+  const Remedy begin_anew{"begin anew", {Way::anew}};
   const auto last = files::checkpoint_file(directory), previous = files::previous_checkpoint_file(directory);
   try {
     resumption.checkpoint = std::make_unique<files::CheckpointReader>(last);
   } catch (const Error& error) {
-    if (error.code() != ExitCode::input_output) throw;
+    if (error.cause() != Cause::input_output) throw;
     resumption.damage = error.what();
     if (!std::filesystem::exists(previous)) {
-      throw Error(ExitCode::input_output,
-                  resumption.damage + "\n  and there is none before it to go on from; begin anew with --overwrite");
+      throw Error(error.cause(), error.place(), error.words() + "\n  and there is none before it to go on from",
+                  begin_anew);
     }
     try {
       resumption.checkpoint = std::make_unique<files::CheckpointReader>(previous);
     } catch (const Error& second) {
-      throw Error(ExitCode::input_output, resumption.damage + "\n" + second.what() +
-                                              "\n  no checkpoint can be used; begin anew with --overwrite");
+      throw Error(error.cause(), error.place(), error.words() + "\n" + second.what() + "\n  no checkpoint can be used",
+                  begin_anew);
     }
   }
   try {

@@ -102,7 +102,7 @@ class Simulation {
       std::cerr << "going on from " << step << "\n";
     }
     if (options_.max_steps >= 0 && state_.steps > options_.max_steps) {
-      std::cerr << "warning: " << step << " lies beyond --max-steps " << options_.max_steps << "\n";
+      std::cerr << "warning: " << step << " lies beyond the limit of " << options_.max_steps << " steps\n";
     }
   }
 

@@ -53,7 +53,7 @@ bool cut_short(const Json& stages) {
 std::string outcome(const Summary& summary) {
   const std::string steps = std::to_string(summary.steps);
   if (summary.status == "completed" && cut_short(summary.stages)) {
-    return "cut short by --max-steps at step " + steps + " of at most " + std::to_string(summary.steps_at_most);
+    return "cut short by the limit of steps at step " + steps + " of at most " + std::to_string(summary.steps_at_most);
   }
   return summary.status + " after " + steps + (summary.steps == 1 ? " step" : " steps");
 }

@@ -55,7 +55,7 @@ struct Summary {
 
 nlohmann::json to_json(const Summary& summary);
 
-/// How the run ended, in a few words: "completed after 120 steps"; also where --max-steps cut it short, which the
+/// How the run ended, in a few words: "completed after 120 steps"; also where the limit of steps cut it short, which the
 /// status does not tell.
 std::string outcome(const Summary& summary);
 

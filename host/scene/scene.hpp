@@ -180,7 +180,7 @@ struct Scene {
 
 /// Reads, validates against the shipped schema and converts a scene.
 /// `overrides` are "POINTER=VALUE" as given to --set; VALUE is any JSON value, or a bare word taken as a string.
-/// `bounds` are for a scene that leaves its numerics open. Throws Error with ExitCode::bad_input (or input_output when
+/// `bounds` are for a scene that leaves its numerics open. Throws Error with Cause::bad_input (or input_output when
 /// the file cannot be read).
 Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {},
                  const plan::NumericsBounds& bounds = {});

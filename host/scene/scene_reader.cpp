@@ -92,11 +92,11 @@ void SceneFields::require(const std::string& pointer, const std::string& key, co
 }
 
 void SceneFields::refuse(const std::string& pointer, const std::string& problem) const {
-  throw Error(ExitCode::bad_input, document_.place(pointer), indented(problem));
+  throw Error(Cause::bad_input, document_.place(pointer), indented(problem));
 }
 
 void SceneFields::refuse_key(const std::string& pointer, const std::string& problem) const {
-  throw Error(ExitCode::bad_input, document_.key_place(pointer), indented(problem));
+  throw Error(Cause::bad_input, document_.key_place(pointer), indented(problem));
 }
 
 }  // namespace rouleau::scene

@@ -39,7 +39,7 @@ NumberWithUnit read_value(const json::Document& document, const std::string& poi
     if (!read.unit.empty()) (void)units::Units().dimension(read.unit);
   } catch (const units::UnitError& error) {
     throw Error(
-        ExitCode::bad_input, document.place(pointer),
+        Cause::bad_input, document.place(pointer),
         in_quotes(text) + " is no value with a unit: " + error.what() + "; write for example \"6e-6 N/m\" or 6");
   }
   return read;
@@ -49,7 +49,7 @@ std::vector<std::string> read_pointers(const json::Document& document) {
   const Json& given = document.root()["parameter"];
   const bool one = given.contains("pointer"), several = given.contains("pointers");
   if (one == several)
-    throw Error(ExitCode::bad_input, document.place("/parameter"),
+    throw Error(Cause::bad_input, document.place("/parameter"),
                 one ? "has both pointer and pointers; leave one of them out"
                     : "wants \"pointer\", the place of the parameter in the scene, for example "
                       "\"/numerics/density_factor\"");
@@ -60,7 +60,7 @@ std::vector<std::string> read_pointers(const json::Document& document) {
 LimitsParameter read_parameter(const json::Document& document, const Json& scene) {
   const Json& given = document.root()["parameter"];
   const auto refuse = [&document](const std::string& pointer, const std::string& problem) {
-    throw Error(ExitCode::bad_input, document.place(pointer), problem);
+    throw Error(Cause::bad_input, document.place(pointer), problem);
   };
   LimitsParameter parameter;
   parameter.name = given["name"];
@@ -95,9 +95,7 @@ LimitsParameter read_parameter(const json::Document& document, const Json& scene
     } catch (const json::PutError& error) {
       refuse(given.contains("pointer") ? "/parameter/pointer" : "/parameter/pointers", error.what());
     } catch (const Error& error) {
-      const std::string what = error.what();
-      refuse("/parameter/from", "the scene with this value, " + error.place().pointer +
-                                    what.substr(std::min(what.find('\n'), what.size())));
+      refuse("/parameter/from", "the scene with this value, " + error.place().pointer + "\n  " + error.words());
     }
   }
   return parameter;
@@ -118,7 +116,7 @@ ExtremeCase read_case(const json::Document& document, std::size_t index, const L
   }
   for (const ExtremeCase& other : limits.cases) {
     if (other.name == extreme.name)
-      throw Error(ExitCode::bad_input, document.place(at + "/name"),
+      throw Error(Cause::bad_input, document.place(at + "/name"),
                   in_quotes(extreme.name) + " is the name of another case, too; give each its own");
   }
   return extreme;
@@ -131,7 +129,7 @@ std::vector<fs::path> read_scene_list(const json::Document& document, const fs::
   for (std::size_t i = 0; i < given.size(); ++i) {
     const fs::path named = folder / given[i].get<std::string>();
     if (!fs::exists(named))
-      throw Error(ExitCode::bad_input, document.place(json::child_pointer("/scenes", i)),
+      throw Error(Cause::bad_input, document.place(json::child_pointer("/scenes", i)),
                   "there is no " + named.string() + "; the path begins with the limits file's folder");
     if (!fs::is_directory(named)) {
       scenes.push_back(named);
@@ -171,7 +169,7 @@ LimitsFile read_limits(const fs::path& file) {
   const json::Document& document = *limits.document;
   const Json& root = document.root();
   if (!root.contains("parameter") && !root.contains("cases"))
-    throw Error(ExitCode::bad_input, document.place(""),
+    throw Error(Cause::bad_input, document.place(""),
                 "has neither \"parameter\", whose edge of stability is looked for, nor \"cases\"; write one of them");
   limits.steps = root.value("steps", 0L);
   if (root.contains("parameter")) limits.parameter = read_parameter(document, limits.scene);

@@ -93,7 +93,7 @@ std::optional<JudgedRun> LimitsRun::try_scene(const Json& scene, long steps) {
   std::optional<trial::PointRecord> record = campaign_.find(whole);
   if (!record) {
     trial::Trial trial = campaign_.trial_of(scene, whole);
-    if (steps > 0) trial.options = {"--max-steps", std::to_string(steps)};
+    trial.max_steps = steps;
     const trial::TrialResult result = campaign_.run(trial);
     if (result.end == trial::TrialEnd::interrupted) return std::nullopt;
     campaign_.keep(record, whole, result);

@@ -27,12 +27,11 @@ void refuse_useless_axes(const Study& study) {
         trial::check_scene(trial::scene_of(study.scene, study.axes, point), "the scene");
         any = true;
       } catch (const Error& error) {
-        if (first.empty())
-          first = error.place().pointer + std::string(error.what()).substr(to_string(error.place()).size());
+        if (first.empty()) first = error.place().pointer + "\n  " + error.words();
       }
     }
     if (!any)
-      throw Error(ExitCode::bad_input, study.document->place(json::child_pointer("/matrix", a)),
+      throw Error(Cause::bad_input, study.document->place(json::child_pointer("/matrix", a)),
                   "no setting of this axis makes a scene that can be run; the first: " + first);
   }
 }
@@ -47,7 +46,7 @@ int index_of(const std::vector<std::string>& words, const std::string& word, con
              const std::string& what) {
   const auto found = std::find(words.begin(), words.end(), word);
   if (found == words.end())
-    throw Error(ExitCode::bad_input, place,
+    throw Error(Cause::bad_input, place,
                 in_quotes(word) + " is no " + what + did_you_mean(word, words) + "; there are: " + listed(words));
   return static_cast<int>(found - words.begin());
 }
@@ -93,7 +92,7 @@ std::vector<Quantity> read_quantities(const json::Document& document) {
     const std::string pointer = json::child_pointer("/quantities", i);
     quantities.push_back(read_quantity(document, pointer));
     if (!names.insert(quantities.back().name).second)
-      throw Error(ExitCode::bad_input, document.place(pointer + "/name"),
+      throw Error(Cause::bad_input, document.place(pointer + "/name"),
                   "two quantities are called " + in_quotes(quantities.back().name) + "; give each its own name");
   }
   return quantities;

@@ -207,10 +207,7 @@ trial::TrialResult StudyRun::run_once(const MatrixPoint& point, bool warm_up) {
   trial::Trial trial = campaign_.trial_of(point.scene, point.fingerprint);
   trial.threads = point.threads;
   trial.time_limit_s = std::min(study_.time_limit_s, options_.budget_s - spent_s_);
-  if (warm_up) {
-    const long steps = std::max(1L, std::lround(warm_up_part * point.steps_at_most));
-    trial.options = {"--max-steps", std::to_string(steps)};
-  }
+  if (warm_up) trial.max_steps = std::max(1L, std::lround(warm_up_part * point.steps_at_most));
   trial::TrialResult result = campaign_.run(trial);
   const bool by_budget = result.end == trial::TrialEnd::timed_out && trial.time_limit_s < study_.time_limit_s;
   if (by_budget || warm_up) campaign_.discard(point.fingerprint);

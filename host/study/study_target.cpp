@@ -9,14 +9,14 @@
 
 namespace rouleau::study {
 
-StudyTarget read_target(const std::string& option, const std::vector<Quantity>& quantities) {
+StudyTarget read_target(const std::string& text, const std::vector<Quantity>& quantities) {
   const auto refuse = [&](const std::string& problem) {
-    throw Error(ExitCode::bad_input, "--target " + in_quotes(option) + ": " + problem);
+    throw Error(Cause::bad_input, "the target " + in_quotes(text) + ": " + problem);
   };
   // A name may hold an '=', a number does not.
-  const std::size_t equals = option.rfind('=');
-  if (equals == std::string::npos) refuse("wants NAME=VALUE, for example --target deformation=1%");
-  const std::string name = option.substr(0, equals);
+  const std::size_t equals = text.rfind('=');
+  if (equals == std::string::npos) refuse("wants NAME=VALUE, for example deformation=1%");
+  const std::string name = text.substr(0, equals);
   std::vector<std::string> names;
   names.reserve(quantities.size());
   for (const Quantity& quantity : quantities) names.push_back(quantity.name);
@@ -27,7 +27,7 @@ StudyTarget read_target(const std::string& option, const std::vector<Quantity>& 
   const Quantity& quantity = quantities[index];
 
   double error = NAN;
-  const char *begin = option.data() + equals + 1, *end = option.data() + option.size();
+  const char *begin = text.data() + equals + 1, *end = text.data() + text.size();
   const auto [rest, fault] = std::from_chars(begin, end, error);
   const std::string unit(std::find_if(rest, end, [](char c) { return c != ' '; }), end);
   const bool relative = quantity.error == ErrorKind::relative;

@@ -1,4 +1,4 @@
-// --target NAME=VALUE: the error that a study is to find the cheapest setting for.
+// NAME=VALUE: the error that a study is to find the cheapest setting for.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ struct StudyTarget {
   double error;          ///< relative, or in the quantity's unit
 };
 
-/// "deformation=1%", "angle=0.5 deg", "area_drift=1e-4". Throws Error(bad_input) naming the option.
-StudyTarget read_target(const std::string& option, const std::vector<Quantity>& quantities);
+/// "deformation=1%", "angle=0.5 deg", "area_drift=1e-4". Throws Error(bad_input) that quotes the text.
+StudyTarget read_target(const std::string& text, const std::vector<Quantity>& quantities);
 
 }  // namespace rouleau::study

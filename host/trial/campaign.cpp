@@ -22,12 +22,13 @@ using Json = nlohmann::json;
 void require_own(const fs::path& directory, const CampaignKind& kind) {
   if (!fs::exists(directory)) return;
   if (!fs::is_directory(directory))
-    throw Error(ExitCode::bad_input, directory.string() + " is no directory; choose another with --out");
+    throw Error(Cause::bad_input, Place{directory.string()}, "is no directory", {"choose another", {Way::elsewhere}});
   if (fs::is_empty(directory) || fs::exists(directory / (std::string(kind.name) + ".json")) ||
       fs::exists(directory / "points"))
     return;
-  throw Error(ExitCode::bad_input, directory.string() + " holds files that no " + kind.command +
-                                       " wrote; choose another directory with --out");
+  throw Error(Cause::bad_input, Place{directory.string()},
+              std::string("holds files that no ") + kind.command + " wrote",
+              {"choose another directory", {Way::elsewhere}});
 }
 
 fs::path running(const fs::path& directory) { return directory.string() + ".running"; }
@@ -53,9 +54,9 @@ Campaign::Campaign(const CampaignKind& kind, const CampaignFile& file, CampaignO
   fs::create_directories(options_.directory / "points");
   lock_.emplace(options_.directory);
   if (!lock_->take())
-    throw Error(ExitCode::bad_input, std::string("another ") + kind_.program + " is writing into " +
-                                         options_.directory.string() +
-                                         "; wait for it, or choose another directory with --out");
+    throw Error(Cause::bad_input, Place{options_.directory.string()},
+                std::string("another ") + kind_.program + " is writing into this directory",
+                {"wait for it, or choose another directory", {Way::elsewhere}});
 }
 
 fs::path Campaign::directory_of(const std::string& fingerprint) const {

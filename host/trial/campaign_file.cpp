@@ -23,7 +23,7 @@ Json read_changed_scene(const CampaignKind& kind, const CampaignFile& campaign) 
   if (elsewhere) {
     if (!fs::exists(campaign.scene_file))
       throw Error(
-          ExitCode::bad_input, document.place("/scene"),
+          Cause::bad_input, document.place("/scene"),
           "there is no scene " + campaign.scene_file.string() + "; the path begins with the " + kind.whose + " folder");
     (void)scene::read_unpacked_scene(campaign.scene_file);
     scene = json::Document::read(campaign.scene_file).root();
@@ -33,10 +33,10 @@ Json read_changed_scene(const CampaignKind& kind, const CampaignFile& campaign) 
     check_scene(scene, campaign.scene_file.string());
   } catch (const Error& error) {
     // The changed scene has no lines of its own: those of the file, or of its "set".
-    const std::string what = error.what(), problem = what.substr(std::min(what.find('\n') + 3, what.size()));
-    if (!elsewhere) throw Error(ExitCode::bad_input, document.place("/scene" + error.place().pointer), problem);
-    throw Error(ExitCode::bad_input, document.place("/set"),
-                "the scene with these changes is wrong, " + error.place().pointer + ": " + problem);
+    const std::string& pointer = error.place().pointer;
+    if (!elsewhere) throw Error(error.cause(), document.place("/scene" + pointer), error.problem(), error.remedy());
+    throw Error(Cause::bad_input, document.place("/set"),
+                "the scene with these changes is wrong, " + pointer + ": " + error.problem(), error.remedy());
   }
   return scene;
 }
@@ -49,11 +49,11 @@ double read_time_limit(const CampaignKind& kind, const json::Document& document)
     seconds =
         given.is_number() ? given.get<double>() : units::Units().to_si(given.get<std::string>(), "s", "time_limit");
   } catch (const units::UnitError& error) {
-    throw Error(ExitCode::bad_input, document.place("/time_limit"), error.what());
+    throw Error(Cause::bad_input, document.place("/time_limit"), error.what());
   }
   if (!(seconds >= 0.001 && seconds <= 1e8))
     throw Error(
-        ExitCode::bad_input, document.place("/time_limit"),
+        Cause::bad_input, document.place("/time_limit"),
         number(seconds) + " s is out of range; write 1 ms to 1e8 s, for example " + in_quotes(kind.time_limit_example));
   return seconds;
 }

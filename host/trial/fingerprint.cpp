@@ -53,7 +53,7 @@ std::vector<UsedPlugin> plugins_named(const Json& scene, const fs::path& scene_f
     try {
       if (found != offered.end()) plugin = {id, plugin::library_sha256(*found), plugin::sha256(found->file)};
     } catch (const Error& error) {
-      if (error.code() != ExitCode::plugin_refused) throw;
+      if (error.cause() != Cause::plugin_refused) throw;
     }
     used.push_back(plugin);
   }

@@ -66,7 +66,7 @@ void put(Json& scene, const std::string& pointer, const Json& value, const Place
   try {
     json::put_value(scene, pointer, value);
   } catch (const json::PutError& error) {
-    throw Error(ExitCode::bad_input, place, "of the scene: " + std::string(error.what()));
+    throw Error(Cause::bad_input, place, "of the scene: " + std::string(error.what()));
   }
 }
 
@@ -88,7 +88,7 @@ class AxisReader {
 
  private:
   [[noreturn]] void refuse(const std::string& pointer, const std::string& problem) const {
-    throw Error(ExitCode::bad_input, document_.place(pointer), problem);
+    throw Error(Cause::bad_input, document_.place(pointer), problem);
   }
 
   [[nodiscard]] std::vector<Setting> values() const {
@@ -180,11 +180,11 @@ std::vector<Axis> read_axes(const json::Document& document, const std::string& p
     const std::string place = json::child_pointer(pointer, i);
     axes.push_back(AxisReader(document, place, base_scene).read());
     if (!names.insert(axes.back().name).second)
-      throw Error(ExitCode::bad_input, document.place(place + "/name"),
+      throw Error(Cause::bad_input, document.place(place + "/name"),
                   "two axes are called " + in_quotes(axes.back().name) + "; give each its own name");
     points *= axes.back().settings.size();
     if (points > most_points)
-      throw Error(ExitCode::bad_input, document.place(place),
+      throw Error(Cause::bad_input, document.place(place),
                   "with this axis the matrix has " + std::to_string(points) + " points; at most " +
                       std::to_string(most_points) + " can be run: take fewer axes or values");
   }

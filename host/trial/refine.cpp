@@ -69,7 +69,7 @@ class Refinement {
     // Multiples of 1/step keep both numbers of nodes whole.
     const long step = std::gcd(all[0].get<long>(), all[1].get<long>());
     const auto steps = static_cast<double>(step);
-    throw Error(ExitCode::bad_input, document_.place(pointer),
+    throw Error(Cause::bad_input, document_.place(pointer),
                 "a factor of " + number(factor) + " makes " + number(nodes, 9) + " of the scene's " +
                     std::to_string(base) + " nodes, which is not whole; write a multiple of 1/" + std::to_string(step) +
                     ", for example " + number(std::max(1.0, std::round(factor * steps)) / steps, 12));
@@ -92,11 +92,11 @@ std::vector<Setting> refined_settings(const json::Document& document, const std:
       settings.push_back(refinement.setting(json::child_pointer(pointer, i)));
     return settings;
   } catch (const units::UnitError& error) {
-    throw Error(ExitCode::bad_input, document.place("/scene"),
+    throw Error(Cause::bad_input, document.place("/scene"),
                 "the scene cannot be refined: " + std::string(error.what()));
   } catch (const Json::exception&) {
     throw Error(
-        ExitCode::bad_input, document.place(pointer),
+        Cause::bad_input, document.place(pointer),
         "the scene cannot be refined: that wants domain.nodes and the segments of every cell type, and cells of "
         "types that there are");
   }

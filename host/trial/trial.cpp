@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "base/process.hpp"
 #include "base/text.hpp"
+#include "exit_code.hpp"
 #include "files/file.hpp"
 #include "files/run_directory.hpp"
 #include "json/document.hpp"
@@ -27,10 +28,9 @@ fs::path program_of(const Trial& trial) {
   if (!fs::is_symlink(trial.program)) return trial.program;
   const std::string file = fs::read_symlink(trial.program).string(), gone = " (deleted)";  // what Linux adds
   if (!file.ends_with(gone)) return file;
-  throw Error(ExitCode::input_output,
-              "the program " + file.substr(0, file.size() - gone.size()) +
-                  " was replaced or removed meanwhile; call the same command again (what the old program measured is "
-                  "then measured anew)");
+  throw Error(Cause::input_output,
+              "the program " + file.substr(0, file.size() - gone.size()) + " was replaced or removed meanwhile",
+              {"call the same command again (what the old program measured is then measured anew)"});
 }
 
 fs::path scene_file_of(const Trial& trial) {
@@ -71,14 +71,14 @@ TrialEnd end_of(const ProcessEnd& process) {
   if (process.timed_out) return TrialEnd::timed_out;
   if (process.signal != 0) return TrialEnd::crashed;
   switch (process.exit_code) {
-    case static_cast<int>(ExitCode::done):
+    case exit_code::done:
       return TrialEnd::completed;
-    case static_cast<int>(ExitCode::simulation_failed):
+    case exit_code::simulation_failed:
       return TrialEnd::diverged;
-    case static_cast<int>(ExitCode::bad_input):
-    case static_cast<int>(ExitCode::plugin_refused):
+    case exit_code::bad_input:
+    case exit_code::plugin_refused:
       return TrialEnd::refused;
-    case static_cast<int>(ExitCode::interrupted):
+    case exit_code::interrupted:
       return TrialEnd::interrupted;  // by somebody else's signal
     default:
       return TrialEnd::crashed;
@@ -147,7 +147,7 @@ TrialResult run_trial(const Trial& trial) {
   std::vector<std::string> arguments = scene_arguments("run", trial);
   arguments.insert(arguments.end(), {"--out", trial.directory.string(), "--overwrite", "--quiet", "--threads",
                                      std::to_string(trial.threads)});
-  arguments.insert(arguments.end(), trial.options.begin(), trial.options.end());
+  if (trial.max_steps > 0) arguments.insert(arguments.end(), {"--max-steps", std::to_string(trial.max_steps)});
   const ProcessEnd process = run_process(
       program_of(trial), arguments, ProcessLimits{trial.time_limit_s, trial.grace_s, trial.interrupted, longest_words});
 

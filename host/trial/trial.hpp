@@ -19,7 +19,7 @@ struct Trial {
   double time_limit_s = 3600;
   double grace_s = 20;  ///< between being asked to end and being killed: the rest of a step, a checkpoint, the report
   std::filesystem::path written_scene = {};  ///< where the complete scene is written; empty: DIRECTORY.scene.json
-  std::vector<std::string> options = {};     ///< more options of `rouleau run`, as --max-steps 1000
+  long max_steps = 0;                        ///< over all stages; 0: all that the scene wants
   std::filesystem::path program = "/proc/self/exe";  ///< that is run: this very one, but in its unit tests
   const std::atomic<bool>* interrupted = nullptr;    ///< set by a signal handler: ends the trial
 };

@@ -168,7 +168,7 @@ std::shared_ptr<const Units::System> Units::System::read() {
   read->system.reset(ut_read_xml(nullptr));
   if (!read->system) {
     throw Error(
-        ExitCode::input_output,
+        Cause::input_output,
         "the database of units of UDUNITS-2 cannot be read (Debian: package libudunits2-data; see UDUNITS2_XML_PATH)");
   }
   read->define("dyn", "dyne");

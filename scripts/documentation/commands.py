@@ -8,6 +8,12 @@ import subprocess
 USAGE = re.compile(r"^  (\w+) (.*?)  +(.*)$", re.MULTILINE)
 OPTION = re.compile(r"^  (--[a-z-]+)(?: (.*?))?(?:  +(.*))?$")
 FILES = {"SCENE", "FILE", "DIR", "MANIFEST"}
+ENVIRONMENT = {
+    "ROULEAU_PLUGIN_PATH": "folders with plugins, absolute, separated by colons",
+    "ROULEAU_TIMING_LOCK": "the file that rouleau study locks while it takes times, so that two studies do not disturb each other",
+    "XDG_RUNTIME_DIR": "the folder of that file, rouleau-timing.lock, where the variable above is not set; else /tmp",
+    "UDUNITS2_XML_PATH": "the database of units, for UDUNITS-2",
+}
 
 
 def said(program, *arguments):
@@ -151,7 +157,7 @@ def man(program, commands):
     text += f".SH DESCRIPTION\n{roff(first)} Each command has its own \\-\\-help, which stands here too.\n"
     for name, _, _, help_text in commands:
         text += f".SH ROULEAU {name.upper()}\n.nf\n{roff(help_text.strip())}\n.fi\n"
-    text += ".SH ENVIRONMENT\n.TP\nROULEAU_PLUGIN_PATH\nfolders with plugins, absolute, separated by colons\n"
+    text += ".SH ENVIRONMENT\n" + "".join(f".TP\n{name}\n{roff(words)}\n" for name, words in ENVIRONMENT.items())
     text += ".SH FILES\nA run's directory and its files, the scene's keys and all models are explained in share/doc/Rouleau/docs.\n"
     return text
 

@@ -247,6 +247,6 @@ TEST_CASE("a plugin of the first release that misses a parameter says so in the 
     const ModelInstance model(other, {3e15, 310, 4e-8, 0}, setting());
     FAIL("it was made");
   } catch (const ModelRefused& refused) {
-    CHECK(refused.problem() == "a parameter is missing");
+    CHECK(refused.reason() == "a parameter is missing");
   }
 }

@@ -235,7 +235,9 @@ class Commands_do_what_they_say(Case):
             result = self.rouleau.run(command, "--help")
             self.assertEqual(result.returncode, 0, result.stderr)
             self.assertIn("xample", result.stdout)
-        self.assertEqual(self.rouleau.run("--help").returncode, 0)
+            short = self.rouleau.run(command, "-h")
+            self.assertEqual((short.returncode, short.stdout), (0, result.stdout), short.stderr)
+        self.assertEqual(self.rouleau.run("--help").stdout, self.rouleau.run("-h").stdout)
 
     def test_plan_prints_json_with_what_is_left_out_and_why(self):
         result = self.rouleau.run("plan", SCENE, "--json")
@@ -489,7 +491,7 @@ class Commands_do_what_they_say(Case):
         self.assertEqual(result.returncode, 0, result.stderr)
         summary = json.loads((out / "summary.json").read_text())
         self.assertEqual(summary["status"], "completed")
-        words = f"cut short by --max-steps at step 20 of at most {summary['steps_at_most']}"
+        words = f"cut short by the limit of steps at step 20 of at most {summary['steps_at_most']}"
         self.assertGreater(summary["steps_at_most"], 10000)
         self.assertEqual(summary["outcome"], words)
         self.assertTrue(result.stdout.splitlines()[-1].startswith(words), result.stdout)

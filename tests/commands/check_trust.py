@@ -167,7 +167,7 @@ class A_lock_binds_a_scene_to_its_plugins(TrustCase):
     def test_a_model_swapped_by_set_is_refused_with_that_reason(self):
         self.write_lock()
         result = self.rouleau.run("plan", self.file, "--set", '/fluid/collision={"model": "bgk"}')
-        self.assert_stops(result, 3, '"bgk" is not in the lock', str(self.lock), "binds --set")
+        self.assert_stops(result, 3, '"bgk" is not in the lock', str(self.lock), "binds a changed scene")
         # Values may change: they are no plugins.
         self.assertEqual(self.rouleau.run("plan", self.file, "--set", "/numerics/tau=0.9").returncode, 0)
 

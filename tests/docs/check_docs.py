@@ -142,13 +142,28 @@ class Documentation(unittest.TestCase):
 
     def test_every_file_that_is_named_exists(self):
         folders = "|".join(p.name for p in SOURCE.iterdir() if p.is_dir() and p.name not in ("build", "runs", ".git"))
-        for page, text in TEXTS.items():
+        helps = helps_of_rouleau()
+        self.assertIn("scenes/four-cells-shear.json", helps["run"])
+        spoken = {f"rouleau {name} --help": text for name, text in {"": help_of(str(PROGRAM)), **helps}.items()}
+        for page, text in {**TEXTS, **spoken}.items():
             for name in re.findall(rf"(?<![\w/.-])((?:{folders})/[\w./-]*\w)", text):
                 if re.search(r"\b[A-Z]{2,}\b", name.replace("README", "")):
                     continue  # a placeholder, such as plugins/KIND/NAME
                 below = (SOURCE / page).parent / name  # sdk/README.md names files of its own folder
                 there = (SOURCE / name).exists() or below.exists() or any(SOURCE.glob(name + "*"))
                 self.assertTrue(there, f"{page} names {name}")
+
+    def test_every_page_that_the_source_names_exists(self):
+        named = 0
+        for folder in ("host", "sdk", "plugins", "bench", "tests", "scripts", "examples"):
+            for path in (SOURCE / folder).rglob("*"):
+                if path.suffix not in (".cpp", ".hpp", ".h", ".c", ".py", ".txt", ".cmake"):
+                    continue
+                for name in re.findall(r"(?<![\w/$.{-])([A-Za-z][\w/.-]*\.md)\b", path.read_text()):
+                    named += 1
+                    there = [p for p in (SOURCE, SOURCE / "docs", path.parent) if (p / name).exists()]
+                    self.assertTrue(there, f"{path.relative_to(SOURCE)} names {name}")
+        self.assertGreater(named, 20)
 
     def test_every_link_leads_somewhere(self):
         anchors = {page: {slug(re.sub(r"[`*]|\]\([^)]*\)|\[", "", title)) for title in re.findall(r"^#+ (.*)$", text, re.MULTILINE)}

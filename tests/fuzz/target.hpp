@@ -72,7 +72,7 @@ void may_refuse(Work work) {
     const std::string message = error.what();
     if (message.empty()) broken_promise("an error without words", message);
     require_printable(message);
-    if (error.code() == rouleau::ExitCode::bad_input && error.place().file.empty()) {
+    if (error.cause() == rouleau::Cause::bad_input && error.place().file.empty()) {
       broken_promise("bad input, but no place", message);
     }
   }

@@ -19,6 +19,8 @@ ORDER = ["base", "json", "units", "core", "scene", "shape", "plugin", "plan", "o
 # Below what may include them all the same, until they are mended. An entry that no include needs any more must go.
 KNOWN = {("scene", "plan"), ("scene", "shape"), ("observe", "monitor")}
 MOST_UNITS = 20
+# Outside command/ nobody speaks of the command line, but for these files.
+SPEAK = {"trial/trial.cpp": "gives a child its options", "json/set_option.cpp": "reads the text of --set"}
 
 
 def sources():
@@ -90,6 +92,23 @@ class Includes_run_down(unittest.TestCase):
         for folder in {p.parent for p in sources()}:
             units = {p.stem for p in folder.iterdir() if p.suffix in (".cpp", ".hpp")}
             self.assertLessEqual(len(units), MOST_UNITS, folder)
+
+
+class The_command_line_stays_in_command(unittest.TestCase):
+    def test_no_message_below_names_an_option_or_a_command(self):
+        found = set()
+        for path in sources():
+            code = re.sub(r"^\s*//.*$|  //.*$", "", path.read_text().replace("'\"'", ""), flags=re.M)
+            words = "\n".join(re.findall(r'"((?:[^"\\\n]|\\.)*)"', code))
+            option_or_command = r"(?<![\w-])--[a-z]|\brouleau (run|plan|plugins|conform|new|study|limits|report)\b"
+            if room(path) != "command" and re.search(option_or_command, words):
+                found.add(str(path.relative_to(HOST)))
+        self.assertEqual(found, set(SPEAK))
+
+    def test_exit_codes_are_known_to_the_commands_and_to_trials(self):
+        for path in sources():
+            if re.search(r"\bexit_code::", path.read_text()):
+                self.assertIn(room(path), ("command", "trial"), path)
 
 
 class A_type_has_one_definition(unittest.TestCase):

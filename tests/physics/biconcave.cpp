@@ -27,7 +27,7 @@ TEST_CASE("the biconcave cell at 20/s first passes -90 degrees at the reference'
 }
 
 TEST_CASE("the number of nodes does not change how the biconcave cell turns", "[biconcave]") {
-  // A kernel with a first moment would turn the cell with 198 nodes 11 degrees less (PHYSICS: kernel).
+  // A kernel with a first moment would turn the cell with 198 nodes 11 degrees less (docs/physics.md, kernels).
   const std::vector<std::string> coarse{"/stages/0/strain=1"},
       fine{"/stages/0/strain=1", "/cell_types/rbc/segments=198"};
   const std::string scene = scenes + "/biconcave.json";

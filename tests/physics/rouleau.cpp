@@ -19,7 +19,7 @@ void report(const std::string& what, const SceneRun& run) {
   }
 }
 
-/// Number of aggregates just before cells can meet periodic images of each other (strain 15; PHYSICS section 4).
+/// Number of aggregates just before cells can meet periodic images of each other (strain 15).
 int aggregates_at(const SceneRun& run, double strain) {
   int count = 0;
   for (const auto& event : run.summary["aggregate_history"]) {

@@ -233,7 +233,7 @@ class Other_runs(Case):
         result = run(directory, "--resume", "--set", "/fluid/viscosity=1.3 cP", "--set", "/stages/0/duration=2 s")
         self.assert_stops(result, 2, "checkpoint.h5", '/fluid/viscosity: "1.2 cP" in the checkpoint, "1.3 cP" now',
                           '/stages/0/duration: "0.8 s" in the checkpoint, "2 s" now', "scene.json")
-        self.assertNotIn("--force goes on", result.stderr)
+        self.assertNotIn("(--force)", result.stderr)
         result = run(directory, "--resume", "--force", "--set", "/fluid/viscosity=1.3 cP")
         self.assert_stops(result, 2, "[changes what the state means]")
         self.assertEqual(content(directory), before)
@@ -243,7 +243,7 @@ class Other_runs(Case):
         directory, long_run = self.path / "run", self.path / "long"
         shutil.copytree(LEFT_ALONE, directory)
         self.assert_stops(run(directory, "--resume", *longer), 2, "/stages/1/strain: 3 in the checkpoint, 4 now",
-                          "--force goes on all the same")
+                          "the run can go on all the same (--force)")
         for result in (run(directory, "--resume", "--force", *longer), run(long_run, *longer)):
             self.assertEqual(result.returncode, 0, result.stderr)
         for name in TABLES:
@@ -256,7 +256,7 @@ class Other_runs(Case):
         program, plugins = installation(self.path)
         with open(plugins / "interaction" / "morse" / "libmorse.so", "ab") as library:
             library.write(b"\0")  # the same code with another hash
-        self.assert_stops(run(directory, "--resume", program=program), 2, "plugin morse: 1.", "--force goes on all the same")
+        self.assert_stops(run(directory, "--resume", program=program), 2, "plugin morse: 1.", "the run can go on all the same (--force)")
         result = run(directory, "--resume", "--force", program=program)
         self.assertEqual(result.returncode, 0, result.stderr)
         for name in TABLES:

@@ -5,21 +5,21 @@
 #include <string>
 #include <vector>
 
+#include "command/program.hpp"
 #include "scene/scene.hpp"
 
 int main(int count, char** arguments) {
+  using namespace rouleau::command;
   if (count < 3 || std::string(arguments[1]) != "plan") {
     std::fputs("usage: read_scene plan SCENE [--set POINTER=VALUE]...\n", stderr);
-    return static_cast<int>(rouleau::ExitCode::bad_input);
+    return exit_code::bad_input;
   }
   std::vector<std::string> overrides;
   for (int i = 4; i < count; i += 2) overrides.emplace_back(arguments[i]);
-  try {
+  const auto body = [&] {
     const auto scene = rouleau::scene::read_scene(arguments[2], overrides);
     std::printf("%zu cells, %zu stages\n", scene.cells.size(), scene.stages.size());
-    return static_cast<int>(rouleau::ExitCode::done);
-  } catch (const rouleau::Error& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return static_cast<int>(error.code());
-  }
+    return exit_code::done;
+  };
+  return run_program(body, "");
 }

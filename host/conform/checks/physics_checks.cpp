@@ -151,7 +151,7 @@ std::vector<double> parameters_of(const Subject& subject, const nlohmann::json& 
   for (const plugin::Parameter& parameter : subject.manifest().parameters) {
     if (!given.contains(parameter.name)) {
       if (!parameter.default_value) {
-        throw Error(ExitCode::plugin_refused, at + " gives no value for " + parameter.name + ", which has no default");
+        throw Error(Cause::plugin_refused, at + " gives no value for " + parameter.name + ", which has no default");
       }
       values.push_back(*parameter.default_value);
     } else if (parameter.choices.empty() && given[parameter.name].is_number()) {
@@ -160,7 +160,7 @@ std::vector<double> parameters_of(const Subject& subject, const nlohmann::json& 
       const auto& words = parameter.choices;
       const auto word = std::find(words.begin(), words.end(), given[parameter.name]);
       if (word == words.end()) {
-        throw Error(ExitCode::plugin_refused,
+        throw Error(Cause::plugin_refused,
                     at + ": " + parameter.name + " cannot be " + json::shown(given[parameter.name]));
       }
       values.push_back(static_cast<double>(word - words.begin()));
@@ -182,7 +182,7 @@ Values inputs_of(const Subject& subject, const Trial& trial, const nlohmann::jso
     values[2 + 2 * place] *= 1.1;
   };
   for (const std::string& name : subject.manifest().needs) {
-    if (!given.contains(name)) throw Error(ExitCode::plugin_refused, at + " gives no value for the input " + name);
+    if (!given.contains(name)) throw Error(Cause::plugin_refused, at + " gives no value for the input " + name);
     add(name, given[name], plugin::dimension_of(subject.manifest(), name));
   }
   for (std::size_t k = 0; k < subject.manifest().state.size(); ++k) {

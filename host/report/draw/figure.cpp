@@ -48,7 +48,7 @@ struct Measures {
 
 void check(cairo_status_t status) {
   if (status != CAIRO_STATUS_SUCCESS)
-    throw Error(ExitCode::input_output, std::string("the picture cannot be drawn: ") + cairo_status_to_string(status));
+    throw Error(Cause::input_output, std::string("the picture cannot be drawn: ") + cairo_status_to_string(status));
 }
 
 cairo_status_t append(void* closure, const unsigned char* data, unsigned int length) {

@@ -34,8 +34,8 @@ bool OutputTimes::sheared() const {
 
 std::vector<std::size_t> outputs_at(const OutputTimes& outputs, const std::vector<double>& strains) {
   if (!outputs.sheared())
-    throw Error(ExitCode::bad_input,
-                "--strains: the strain does not grow in this run; without --strains its frames are chosen by time");
+    throw Error(Cause::bad_input, "the strain does not grow in this run",
+                {"let its frames be chosen by time, and name no strain"});
   std::set<std::size_t> chosen;
   for (const double strain : strains) {
     const std::size_t i = nearest(outputs.strain, strain);
@@ -44,8 +44,8 @@ std::vector<std::size_t> outputs_at(const OutputTimes& outputs, const std::vecto
     const bool beyond = strain < outputs.strain.front() - same_strain ||
                         (i + 1 == outputs.strain.size() && strain > outputs.strain[i] + std::max(before, 1e-3) / 2);
     if (beyond)
-      throw Error(ExitCode::bad_input, "--strains: the run has no strain " + text(strain) + "; its strains go from " +
-                                           text(outputs.strain.front()) + " to " + text(outputs.strain.back()));
+      throw Error(Cause::bad_input, "the run has no strain " + text(strain) + "; its strains go from " +
+                                        text(outputs.strain.front()) + " to " + text(outputs.strain.back()));
     chosen.insert(i);
   }
   return {chosen.begin(), chosen.end()};

@@ -44,7 +44,7 @@ bool write_all(int descriptor, std::string_view bytes) {
 bool start(Ffmpeg& ffmpeg, std::vector<std::string> words, int output) {
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0)
-    throw Error(ExitCode::input_output, std::string("no pipe to ffmpeg could be made: ") + std::strerror(errno));
+    throw Error(Cause::input_output, std::string("no pipe to ffmpeg could be made: ") + std::strerror(errno));
   posix_spawn_file_actions_t files;
   posix_spawn_file_actions_init(&files);
   posix_spawn_file_actions_adddup2(&files, ends[0], STDIN_FILENO);
@@ -61,7 +61,7 @@ bool start(Ffmpeg& ffmpeg, std::vector<std::string> words, int output) {
   if (error == 0) return true;
   ::close(ends[1]);
   if (error == ENOENT) return false;
-  throw Error(ExitCode::input_output, std::string("ffmpeg could not be started: ") + std::strerror(error));
+  throw Error(Cause::input_output, std::string("ffmpeg could not be started: ") + std::strerror(error));
 }
 
 std::string words_of(std::FILE* output) {
@@ -87,7 +87,7 @@ bool write_video(const std::filesystem::path& file, int frames_per_second,
   const auto partial =
       file.parent_path() / ("." + file.filename().string() + "." + std::to_string(::getpid()) + ".partial");
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> output(std::tmpfile(), std::fclose);
-  if (!output) throw Error(ExitCode::input_output, std::string("no temporary file: ") + std::strerror(errno));
+  if (!output) throw Error(Cause::input_output, std::string("no temporary file: ") + std::strerror(errno));
   Ffmpeg ffmpeg;
   // The players of browsers and slides want 4:2:0 colours, and the table of contents at the beginning.
   if (!start(ffmpeg,
@@ -124,7 +124,7 @@ bool write_video(const std::filesystem::path& file, int frames_per_second,
   }
   if (status != 0) {
     ::unlink(partial.c_str());
-    throw Error(ExitCode::input_output, Place{file.string(), "", 0, 0},
+    throw Error(Cause::input_output, Place{file.string()},
                 "no video: ffmpeg failed and says\n  " + words_of(output.get()));
   }
   keep(partial, file);

@@ -22,7 +22,7 @@ function statusBox(run) {
   const status = summary.status || "unfinished", last = (summary.stages || []).at(-1);
   const cut = status === "completed" && last && last.ended_by === "max_steps";
   const box = element("div", {class: "card status" + (status === "completed" && !cut ? "" : status === "diverged" ? " bad" : " warn"), role: "status"},
-    element("strong", {}, cut ? (summary.outcome || "cut short by --max-steps").replace(/^./, c => c.toUpperCase()) : words[status] || "Not finished"));
+    element("strong", {}, cut ? (summary.outcome || "cut short by the limit of steps").replace(/^./, c => c.toUpperCase()) : words[status] || "Not finished"));
   if (!run.summary) box.append(element("p", {}, "There is no summary.json: the run is still going on, or was killed. Below is what it had written."));
   if (status === "interrupted") box.append(element("p", {}, howToGoOn(summary)));
   const failure = summary.failure;

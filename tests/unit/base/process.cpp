@@ -68,7 +68,7 @@ TEST_CASE("a program that is not there is trouble of input and output") {
     run_process("/nonexistent/program", {}, 1);
     FAIL("started");
   } catch (const Error& error) {
-    CHECK(error.code() == ExitCode::input_output);
+    CHECK(error.cause() == Cause::input_output);
     CHECK(std::string(error.what()).find("/nonexistent/program could not be started: No such file") !=
           std::string::npos);
   }

@@ -25,7 +25,7 @@ std::string refusal(const OutputTimes& outputs, const std::vector<double>& strai
   try {
     outputs_at(outputs, strains);
   } catch (const Error& error) {
-    CHECK(error.code() == ExitCode::bad_input);
+    CHECK(error.cause() == Cause::bad_input);
     return error.what();
   }
   return "";

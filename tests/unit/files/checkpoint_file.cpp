@@ -47,7 +47,7 @@ std::string refusal(const std::filesystem::path& file) {
   try {
     CheckpointReader reader(file);
   } catch (const Error& error) {
-    CHECK(error.code() == ExitCode::input_output);
+    CHECK(error.cause() == Cause::input_output);
     return error.what();
   }
   return "";

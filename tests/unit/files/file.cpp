@@ -17,6 +17,7 @@ using namespace rouleau::json;
 using namespace rouleau::scene;
 using namespace rouleau::test;
 using Catch::Contains;
+using Catch::EndsWith;
 
 namespace {
 
@@ -29,7 +30,7 @@ std::string input_output_error(const std::function<void()>& action) {
   try {
     action();
   } catch (const Error& error) {
-    CHECK(error.code() == ExitCode::input_output);
+    CHECK(error.cause() == Cause::input_output);
     return error.what();
   }
   return "";
@@ -48,10 +49,10 @@ int with_file_limit(rlim_t bytes, const std::function<void()>& action) {
     try {
       action();
     } catch (const Error& error) {
-      code = error.code() == ExitCode::input_output &&
-                     std::string(error.what()).find("File too large") != std::string::npos
-                 ? 0
-                 : 2;
+      code =
+          error.cause() == Cause::input_output && std::string(error.what()).find("File too large") != std::string::npos
+              ? 0
+              : 2;
     } catch (...) {
       code = 3;
     }
@@ -105,7 +106,8 @@ TEST_CASE("a full disk is an error that says so, at the latest when the file is 
     file.write("step\n");
     file.close();
   });
-  CHECK_THAT(message, Contains("/dev/full") && Contains("No space left on device") && Contains("--out"));
+  CHECK_THAT(message,
+             Contains("/dev/full") && Contains("No space left on device") && Contains("write to another disk"));
 }
 
 TEST_CASE("a disk that fills up during a run ends it with an error and no crash") {
@@ -143,7 +145,7 @@ TEST_CASE("a directory with a file that no run wrote is refused and left alone")
   write_file(folder.path() / "thesis.tex", "years of work");
   write_file(folder.path() / "cells.csv", "mine");
   const Scene scene = small_scene();
-  CHECK_THROWS_WITH(RunDirectory(folder.path(), scene), Contains("thesis.tex") && Contains("--out"));
+  CHECK_THROWS_WITH(RunDirectory(folder.path(), scene), Contains("thesis.tex") && Contains("choose another directory"));
   CHECK(read_text(folder.path() / "cells.csv") == "mine");
 }
 
@@ -173,8 +175,9 @@ TEST_CASE("a former run is kept unless it is to be replaced, one that was killed
     const RunDirectory run(folder.path(), scene);
     FAIL("no error");
   } catch (const Error& error) {
-    CHECK(error.code() == ExitCode::bad_input);
-    CHECK_THAT(error.what(), Contains(folder.path().string()) && Contains("--out") && Contains("--overwrite"));
+    CHECK(error.cause() == Cause::bad_input);
+    CHECK_THAT(error.what(), Contains(folder.path().string()) && Contains("go on with that run, or replace it"));
+    CHECK(error.remedy().ways == std::vector{rouleau::Way::elsewhere, rouleau::Way::resume, rouleau::Way::anew});
   }
   CHECK(read_text(folder.path() / "cells.csv") == rows);
   CHECK(read_text(folder.path() / "log.jsonl") == log);
@@ -198,7 +201,7 @@ TEST_CASE("an output path that is a file is called one") {
   write_file(folder.path() / "file", "");
   const Scene scene = small_scene();
   CHECK_THAT(input_output_error([&] { const RunDirectory run(folder.path() / "file", scene); }),
-             Contains("file\n  is a file and not a directory; choose another place with --out"));
+             Contains("file\n  is a file and not a directory\n  choose another place"));
 }
 
 TEST_CASE("the log has one JSON object a line, there as soon as it is written, whatever bytes it is given") {
@@ -262,7 +265,7 @@ TEST_CASE("a growing file goes back to a mark, and only if what came before is s
   AppendFile table(file);
   write_into(file, "A");
   CHECK_THROWS_WITH(table.go_back(mark),
-                    Contains("table.csv") && Contains("was changed since") && Contains("--overwrite"));
+                    Contains("table.csv") && Contains("was changed since") && EndsWith("or begin anew"));
   CHECK(read_text(file) == "A,b\n1,2\n5,6\n");
   write_file(file, "a,b\n");
   AppendFile shorter(file);

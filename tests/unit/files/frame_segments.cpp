@@ -288,7 +288,7 @@ TEST_CASE("a flipped bit in a sealed segment is found, wherever it is") {
       find_frames(run.file, run.saved.back());
       ++missed;
     } catch (const Error& error) {
-      CHECK(error.code() == ExitCode::input_output);
+      CHECK(error.cause() == Cause::input_output);
     }
   }
   CHECK(missed == 0);

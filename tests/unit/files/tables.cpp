@@ -150,7 +150,7 @@ TEST_CASE("a column that numbers things is counted, and a number that cannot be 
       count("0\n" + std::string(wrong) + "\n");
       FAIL("it was counted");
     } catch (const Error& error) {
-      CHECK(error.code() == ExitCode::bad_input);
+      CHECK(error.cause() == Cause::bad_input);
       CHECK_THAT(error.what(), Catch::Contains("cells.csv") && Catch::Contains("row 2") && Catch::Contains(wrong));
     }
   }

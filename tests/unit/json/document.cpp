@@ -7,8 +7,8 @@
 #include "scratch_folder.hpp"
 
 using Catch::Matchers::Contains;
+using rouleau::Cause;
 using rouleau::Error;
-using rouleau::ExitCode;
 using rouleau::json::Document;
 
 namespace {
@@ -17,7 +17,7 @@ std::string message_of(const std::string& text) {
   try {
     (void)Document::parse(text, "a.json");
   } catch (const Error& error) {
-    CHECK(error.code() == ExitCode::bad_input);
+    CHECK(error.cause() == Cause::bad_input);
     return error.what();
   }
   return "";
@@ -27,7 +27,7 @@ std::string message_of_set(Document document, const std::string& assignment) {
   try {
     document.set(assignment);
   } catch (const Error& error) {
-    CHECK(error.code() == ExitCode::bad_input);
+    CHECK(error.cause() == Cause::bad_input);
     return error.what();
   }
   return "";
@@ -146,28 +146,28 @@ TEST_CASE("what follows a NUL byte is not overlooked") {
 
 TEST_CASE("a file that cannot be read is trouble of input and output, and says why") {
   const rouleau::test::ScratchFolder folder;
-  const auto code_of = [](const std::filesystem::path& path, const std::string& reason) {
+  const auto cause_of = [](const std::filesystem::path& path, const std::string& reason) -> std::optional<Cause> {
     try {
       (void)Document::read(path);
     } catch (const Error& error) {
       CHECK_THAT(error.what(), Contains(path.string() + "\n  this file cannot be read: " + reason));
-      return error.code();
+      return error.cause();
     }
-    return ExitCode::done;
+    return std::nullopt;
   };
-  CHECK(code_of(folder.path() / "absent.json", "No such file") == ExitCode::input_output);
-  CHECK(code_of(folder.path(), "it is a directory") == ExitCode::input_output);
+  CHECK(cause_of(folder.path() / "absent.json", "No such file") == Cause::input_output);
+  CHECK(cause_of(folder.path(), "it is a directory") == Cause::input_output);
   CHECK_THROWS_WITH(Document::read("/dev/zero"), Contains("more than 16 MiB"));
   CHECK_THROWS_WITH(Document::read(folder.write("empty.json", "")), Contains("the file is empty"));
   CHECK(Document::read(folder.write("good.json", "{\"a\": 1}")).root()["a"] == 1);
 }
 
-TEST_CASE("the exit code of a malformed text is the caller's") {
+TEST_CASE("the cause of a malformed text is the caller's") {
   try {
-    (void)Document::parse("{", "m.json", ExitCode::plugin_refused);
+    (void)Document::parse("{", "m.json", Cause::plugin_refused);
     FAIL("it was accepted");
   } catch (const Error& error) {
-    CHECK(error.code() == ExitCode::plugin_refused);
+    CHECK(error.cause() == Cause::plugin_refused);
   }
 }
 

@@ -5,17 +5,17 @@
 
 using Catch::Matchers::Contains;
 using Json = nlohmann::json;
+using rouleau::Cause;
 using rouleau::Error;
-using rouleau::ExitCode;
 using rouleau::json::Document;
 
 namespace {
 
 std::string message_of(const std::string& text, const Json& schema) {
   try {
-    validate(Document::parse(text, "a.json"), schema, ExitCode::plugin_refused);
+    validate(Document::parse(text, "a.json"), schema, Cause::plugin_refused);
   } catch (const Error& error) {
-    CHECK(error.code() == ExitCode::plugin_refused);
+    CHECK(error.cause() == Cause::plugin_refused);
     return error.what();
   }
   return "";

@@ -120,7 +120,7 @@ TEST_CASE("parameters that a model refuses are an error at its place in the scen
     make_plan(scene, plugins());
     FAIL("a well that is not there was regularised");
   } catch (const Error& error) {
-    CHECK(error.code() == ExitCode::bad_input);
+    CHECK(error.cause() == Cause::bad_input);
     CHECK(error.place().pointer == "/interactions/0");
     CHECK(std::string(error.what()).find("no well to regularise; take the model \"repulsion\"") != std::string::npos);
   }

@@ -8,8 +8,8 @@
 
 #include "plugin_folder.hpp"
 
+using rouleau::Cause;
 using rouleau::Error;
-using rouleau::ExitCode;
 using rouleau::Place;
 using namespace rouleau::plugin;
 using namespace rouleau::test;
@@ -74,7 +74,7 @@ TEST_CASE("two manifests with one id are both refused and the error names both f
   CHECK(ids_of(catalog) == std::vector<std::string>{"other"});
   CHECK(catalog.refused().size() == 2);
   const Error error = thrown_by([&] { (void)catalog.find(ModelKind::interaction, "twice", somewhere); });
-  CHECK(error.code() == ExitCode::plugin_refused);
+  CHECK(error.cause() == Cause::plugin_refused);
   CHECK_THAT(error.what(), Contains(one.string()) && Contains(two.string()) && Contains("2 manifests have the id"));
 }
 
@@ -86,7 +86,7 @@ TEST_CASE("a broken manifest is not silently replaced by another one with its id
   const auto two = shipped.write("morse.json", manifest_with_id("morse"));
   const Catalog catalog({mine.path(), shipped.path()});
   const Error error = thrown_by([&] { (void)catalog.find(ModelKind::interaction, "morse", somewhere); });
-  CHECK(error.code() == ExitCode::plugin_refused);
+  CHECK(error.cause() == Cause::plugin_refused);
   CHECK_THAT(error.what(), Contains(one.string()) && Contains(two.string()) && Contains("/parameters/0/unit"));
 }
 
@@ -96,7 +96,7 @@ TEST_CASE("an id that nobody offers is bad input with the nearest name and the f
   const auto unreadable = folder.write("x.json", std::string("{"));
   const Catalog catalog({folder.path()});
   const Error error = thrown_by([&] { (void)catalog.find(ModelKind::interaction, "morze", somewhere); });
-  CHECK(error.code() == ExitCode::bad_input);
+  CHECK(error.cause() == Cause::bad_input);
   CHECK(error.place().line == 3);
   CHECK_THAT(error.what(),
              Contains("did you mean \"morse\"?") && Contains(folder.path().string()) && Contains(unreadable.string()));
@@ -106,7 +106,7 @@ TEST_CASE("a model of another kind is bad input that says which kind is wanted")
   const PluginFolder folder;
   folder.write("morse.json", manifest_with_id("morse"));
   const Error error = thrown_by([&] { (void)Catalog({folder.path()}).find(ModelKind::membrane, "morse", somewhere); });
-  CHECK(error.code() == ExitCode::bad_input);
+  CHECK(error.cause() == Cause::bad_input);
   CHECK_THAT(error.what(), Contains("interaction") && Contains("membrane"));
 }
 
@@ -163,19 +163,19 @@ TEST_CASE("folders that the user named must exist and the environment's must be 
   const auto file = folder.write("file", std::string());
   for (const auto& wrong : {folder.path() / "absent", file}) {
     const Error line = thrown_by([&] { plugin_search_path({wrong}, {}); });
-    CHECK(line.code() == ExitCode::bad_input);
+    CHECK(line.cause() == Cause::bad_input);
     CHECK_THAT(line.what(), Contains(wrong.string()));
-    CHECK(thrown_by([&] { plugin_search_path({}, {wrong}); }).code() == ExitCode::bad_input);
+    CHECK(thrown_by([&] { plugin_search_path({}, {wrong}); }).cause() == Cause::bad_input);
   }
   const PluginPath variable("plugins");
-  CHECK(thrown_by([&] { plugin_search_path({}, {}); }).code() == ExitCode::bad_input);
+  CHECK(thrown_by([&] { plugin_search_path({}, {}); }).cause() == Cause::bad_input);
 }
 
 TEST_CASE("a folder that cannot be one of plugins, for it holds ten thousand others, is refused and not searched") {
   const PluginFolder folder;
   for (int i = 0; i <= 10'000; ++i) std::filesystem::create_directory(folder.path() / std::to_string(i));
   const Error error = thrown_by([&] { Catalog({folder.path()}); });
-  CHECK(error.code() == ExitCode::bad_input);
+  CHECK(error.cause() == Cause::bad_input);
   CHECK(error.place().file == folder.path().string());
   CHECK_THAT(error.what(), Contains("more than 10000 folders") && Contains("name the folder that holds them"));
 }

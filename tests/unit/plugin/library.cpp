@@ -8,8 +8,8 @@
 #include "plugin/model.hpp"
 #include "plugin_folder.hpp"
 
+using rouleau::Cause;
 using rouleau::Error;
-using rouleau::ExitCode;
 using namespace rouleau::plugin;
 using namespace rouleau::test;
 using namespace rouleau::units;
@@ -30,7 +30,7 @@ Manifest manifest_in(const PluginFolder& folder, const std::string& id = "good")
 Error refusal(const Manifest& manifest) {
   const Error error = thrown_by([&] { open_model(manifest); });
   INFO(error.what());
-  CHECK(error.code() == ExitCode::plugin_refused);
+  CHECK(error.cause() == Cause::plugin_refused);
   CHECK_THAT(error.what(), Contains(manifest.file.string()) && Contains(manifest.library.string()));
   return error;
 }
@@ -224,6 +224,6 @@ TEST_CASE("the SHA-256 of a file is the one of the standard") {
         "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
   CHECK(sha256(folder.write("empty", std::string())) ==
         "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
-  CHECK(thrown_by([&] { sha256(folder.path() / "absent"); }).code() == ExitCode::input_output);
-  CHECK(thrown_by([&] { sha256(folder.path()); }).code() == ExitCode::input_output);
+  CHECK(thrown_by([&] { sha256(folder.path() / "absent"); }).cause() == Cause::input_output);
+  CHECK(thrown_by([&] { sha256(folder.path()); }).cause() == Cause::input_output);
 }

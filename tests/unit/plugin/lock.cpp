@@ -5,12 +5,13 @@
 #include "plugin/library.hpp"
 #include "plugin_folder.hpp"
 
+using rouleau::Cause;
 using rouleau::Error;
-using rouleau::ExitCode;
 using rouleau::Place;
 using namespace rouleau::plugin;
 using namespace rouleau::test;
 using Catch::Matchers::Contains;
+using Catch::Matchers::EndsWith;
 using Json = nlohmann::json;
 namespace fs = std::filesystem;
 
@@ -31,14 +32,14 @@ struct LockedFolder : PluginFolder {
   [[nodiscard]] fs::path lock_file() const { return path() / "scene.lock.json"; }
   [[nodiscard]] Catalog locked_catalog() const {
     Catalog catalog({path()});
-    catalog.set_lock(read_lock(lock_file(), scene()));
+    catalog.set_lock(read_lock(lock_file(), "lock it again"));
     return catalog;
   }
   /// The error with the lock changed by a JSON Patch.
   [[nodiscard]] Error damaged_by(const char* patch) const {
     const auto whole = Json::parse(std::ifstream(lock_file()));
     const auto file = write("damaged.json", whole.patch(Json::parse(patch)));
-    return thrown_by([&] { (void)read_lock(file, scene()); });
+    return thrown_by([&] { (void)read_lock(file, "lock it again"); });
   }
 };
 
@@ -52,7 +53,7 @@ TEST_CASE("a lock lies beside its scene") {
 
 TEST_CASE("a lock holds id, kind, version and the hashes of library and manifest") {
   const LockedFolder folder;
-  const Lock lock = read_lock(folder.lock_file(), folder.scene());
+  const Lock lock = read_lock(folder.lock_file(), "lock it again");
   REQUIRE(lock.plugins.size() == 1);
   const LockedPlugin& plugin = *lock.find("good");
   CHECK(plugin.kind == "interaction");
@@ -81,11 +82,10 @@ TEST_CASE("another library than the locked one is not opened, and both hashes ar
   const Catalog catalog = folder.locked_catalog();
   const Manifest& manifest = catalog.find(interaction, "good", somewhere);  // its manifest is the locked one
   const Error error = thrown_by([&] { (void)open_model(manifest); });
-  CHECK(error.code() == ExitCode::plugin_refused);
+  CHECK(error.cause() == Cause::plugin_refused);
   CHECK_THAT(error.what(), Contains("expected SHA-256 " + before) &&
                                Contains("found SHA-256 " + sha256(folder.path() / "libgood.so")) &&
-                               Contains(folder.lock_file().string()) &&
-                               Contains("rouleau plugins --lock " + folder.scene().string()));
+                               Contains(folder.lock_file().string()) && EndsWith("\n  lock it again"));
   // Without the lock the changed library is a good one.
   const Catalog unlocked({folder.path()});
   CHECK_NOTHROW(open_model(unlocked.find(interaction, "good", somewhere)));
@@ -102,12 +102,12 @@ TEST_CASE("another manifest, version or kind than the locked one is not found") 
     folder.write("good.json", manifest);
     const Catalog catalog = folder.locked_catalog();
     const Error error = thrown_by([&] { (void)catalog.find(interaction, "good", somewhere); });
-    CHECK(error.code() == ExitCode::plugin_refused);
+    CHECK(error.cause() == Cause::plugin_refused);
     CHECK(error.place().line == 3);
-    CHECK_THAT(error.what(), Contains(words) && Contains("\n  found ") && Contains("rouleau plugins --lock"));
+    CHECK_THAT(error.what(), Contains(words) && Contains("\n  found ") && EndsWith("\n  lock it again"));
   }
   const LockedFolder folder;
-  Lock lock = read_lock(folder.lock_file(), folder.scene());
+  Lock lock = read_lock(folder.lock_file(), "lock it again");
   lock.plugins[0].kind = "membrane";
   Catalog catalog({folder.path()});
   catalog.set_lock(lock);
@@ -115,18 +115,19 @@ TEST_CASE("another manifest, version or kind than the locked one is not found") 
              Contains("expected kind membrane") && Contains("found kind interaction"));
 }
 
-TEST_CASE("a plugin that the lock does not hold is not found, and --set is no way round") {
+TEST_CASE("a plugin that the lock does not hold is not found, and a change to the scene is no way round") {
   const LockedFolder folder;
   Json other = good_manifest();
   other["id"] = "other";
   folder.write("other.json", other);
   const Catalog catalog = folder.locked_catalog();
   const Error error = thrown_by([&] { (void)catalog.find(interaction, "other", somewhere); });
-  CHECK(error.code() == ExitCode::plugin_refused);
+  CHECK(error.cause() == Cause::plugin_refused);
   CHECK_THAT(error.what(), Contains("\"other\" is not in the lock") && Contains("which holds: good"));
-  CHECK_THAT(error.what(), !Contains("--set"));
+  CHECK_THAT(error.what(), !Contains("changed scene"));
   const Place set{"--set", "/interactions/0/model", 0, 0};
-  CHECK_THAT(thrown_by([&] { (void)catalog.find(interaction, "other", set); }).what(), Contains("binds --set"));
+  CHECK_THAT(thrown_by([&] { (void)catalog.find(interaction, "other", set); }).what(),
+             Contains("binds a changed scene, too"));
 }
 
 TEST_CASE("a damaged lock is bad input with its place, a missing one an input error") {
@@ -142,18 +143,12 @@ TEST_CASE("a damaged lock is bad input with its place, a missing one an input er
   for (const auto& [patch, pointer] : damages) {
     INFO(patch);
     const Error error = folder.damaged_by(patch);
-    CHECK(error.code() == ExitCode::bad_input);
+    CHECK(error.cause() == Cause::bad_input);
     CHECK(error.place().pointer == pointer);
   }
   const auto cut = folder.write("cut.json", std::string(R"({"lock": 1, "plugins": [)"));
-  CHECK(thrown_by([&] { (void)read_lock(cut, folder.scene()); }).code() == ExitCode::bad_input);
-  CHECK(thrown_by([&] { (void)read_lock(folder.path() / "absent", folder.scene()); }).code() == ExitCode::input_output);
-}
-
-TEST_CASE("the remedy names the file when the lock does not lie beside the scene") {
-  CHECK_THAT(lock_remedy("s.lock.json", "s.json"), Catch::Matchers::EndsWith("rouleau plugins --lock s.json"));
-  CHECK_THAT(lock_remedy("team.json", "s.json"),
-             Catch::Matchers::EndsWith("rouleau plugins --lock s.json --out team.json"));
+  CHECK(thrown_by([&] { (void)read_lock(cut, "lock it again"); }).cause() == Cause::bad_input);
+  CHECK(thrown_by([&] { (void)read_lock(folder.path() / "absent", "lock it again"); }).cause() == Cause::input_output);
 }
 
 TEST_CASE("a plugin whose library is missing or leads elsewhere cannot be locked") {
@@ -161,7 +156,7 @@ TEST_CASE("a plugin whose library is missing or leads elsewhere cannot be locked
   const Catalog catalog({folder.path()});
   fs::remove(folder.path() / "libgood.so");
   const Manifest& manifest = catalog.find(interaction, "good", somewhere);
-  CHECK(thrown_by([&] { (void)lock_plugin(manifest); }).code() == ExitCode::plugin_refused);
+  CHECK(thrown_by([&] { (void)lock_plugin(manifest); }).cause() == Cause::plugin_refused);
   fs::create_symlink(TESTED_models, folder.path() / "libgood.so");
   CHECK_THAT(thrown_by([&] { (void)lock_plugin(manifest); }).what(), Contains("leads out of the folder"));
 }

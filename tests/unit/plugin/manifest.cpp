@@ -6,8 +6,8 @@
 #include "plugin/quantities.hpp"
 #include "plugin_folder.hpp"
 
+using rouleau::Cause;
 using rouleau::Error;
-using rouleau::ExitCode;
 using namespace rouleau::plugin;
 using namespace rouleau::test;
 using namespace rouleau::units;
@@ -123,7 +123,7 @@ TEST_CASE("every broken manifest is refused at the place of its fault with words
     INFO(fault.patch);
     const Error error = refusal(good_manifest().patch(Json::parse(fault.patch)));
     INFO(error.what());
-    CHECK(error.code() == ExitCode::plugin_refused);
+    CHECK(error.cause() == Cause::plugin_refused);
     CHECK(error.place().pointer == fault.pointer);
     CHECK(error.place().line > 0);
     for (const auto& word : fault.words) CHECK_THAT(error.what(), Contains(word));
@@ -257,10 +257,10 @@ TEST_CASE("malformed text, folders and oversized files are refused without being
   const PluginFolder folder;
   const Error malformed =
       thrown_by([&] { read_manifest(folder.write("a.json", std::string("{\"manifest\": 1,\n x}")), Units()); });
-  CHECK(malformed.code() == ExitCode::plugin_refused);
+  CHECK(malformed.cause() == Cause::plugin_refused);
   CHECK(malformed.place().line == 2);
   const Error absent = thrown_by([&] { read_manifest(folder.path() / "absent.json", Units()); });
-  CHECK(absent.code() == ExitCode::plugin_refused);
+  CHECK(absent.cause() == Cause::plugin_refused);
   CHECK_THAT(absent.what(), Contains("cannot be read"));
   CHECK_THAT(thrown_by([&] { read_manifest(folder.path(), Units()); }).what(), Contains("not a regular file"));
   const auto large = folder.write("large.json", std::string((1 << 20) + 1, ' '));

@@ -4,8 +4,8 @@
 #include "json/document.hpp"
 #include "plugin_folder.hpp"
 
+using rouleau::Cause;
 using rouleau::Error;
-using rouleau::ExitCode;
 using namespace rouleau::json;
 using namespace rouleau::plugin;
 using namespace rouleau::scene;
@@ -87,7 +87,7 @@ TEST_CASE("a wrong parameter is bad input at its place, with what was found and 
     INFO(fault.parameters);
     const Error error = Case(fault.parameters).error();
     INFO(error.what());
-    CHECK(error.code() == ExitCode::bad_input);
+    CHECK(error.cause() == Cause::bad_input);
     CHECK(error.place().pointer == fault.pointer);
     CHECK(error.place().file == "scene.json");
     CHECK(error.place().line > 0);

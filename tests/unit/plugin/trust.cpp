@@ -25,7 +25,7 @@ std::string refusal(const std::vector<fs::path>& folders) {
     (void)catalog.find(ModelKind::interaction, "good", somewhere);
     return {};
   } catch (const Error& error) {
-    CHECK(error.code() == ExitCode::plugin_refused);
+    CHECK(error.cause() == Cause::plugin_refused);
     CHECK(catalog.refused().size() == 1);
     CHECK(catalog.refused()[0].id == "good");
     return error.what();
@@ -103,7 +103,7 @@ TEST_CASE("a manifest that anybody could have put there is not used in another's
   const Error error = thrown_by([&] {
     (void)Catalog({open.path(), mine.path()}).find(ModelKind::interaction, "good", somewhere);
   });
-  CHECK(error.code() == ExitCode::plugin_refused);
+  CHECK(error.cause() == Cause::plugin_refused);
   CHECK_THAT(error.what(), Contains("(mode 0777)") && Contains("2 manifests have the id"));
 }
 

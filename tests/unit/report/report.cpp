@@ -7,8 +7,8 @@
 #include "report/report_outlines.hpp"
 #include "unit/run_fixture.hpp"
 
+using rouleau::Cause;
 using rouleau::Error;
-using rouleau::ExitCode;
 using namespace rouleau::files;
 using namespace rouleau::monitor;
 using namespace rouleau::report;
@@ -94,7 +94,7 @@ TEST_CASE("a run that --max-steps cut short is completed, and says where it was 
   CHECK(to_json(summary)["steps_at_most"] == 5000);
   summary.stages[1]["ended_by"] = "max_steps";
   CHECK(to_json(summary)["status"] == "completed");
-  CHECK(to_json(summary)["outcome"] == "cut short by --max-steps at step 120 of at most 5000");
+  CHECK(to_json(summary)["outcome"] == "cut short by the limit of steps at step 120 of at most 5000");
 }
 
 TEST_CASE("a diverged run's summary says why, where and what to change") {
@@ -254,7 +254,7 @@ TEST_CASE("a directory that is no run's is bad input") {
     write_report(folder.path());
     FAIL("no error");
   } catch (const Error& error) {
-    CHECK(error.code() == ExitCode::bad_input);
+    CHECK(error.cause() == Cause::bad_input);
     CHECK_THAT(error.what(), Contains("summary.json"));
   }
 }

@@ -5,8 +5,8 @@
 #include "files/file.hpp"
 #include "unit/run_fixture.hpp"
 
+using rouleau::Cause;
 using rouleau::Error;
-using rouleau::ExitCode;
 using namespace rouleau::files;
 using namespace rouleau::monitor;
 using namespace rouleau::report;
@@ -126,7 +126,7 @@ TEST_CASE("what is no run, or has not ended, cannot be compared") {
     try {
       compare_data(folder.path() / "a", folder.path() / b);
     } catch (const Error& error) {
-      CHECK(error.code() == ExitCode::bad_input);
+      CHECK(error.cause() == Cause::bad_input);
       return error.what();
     }
     return "";

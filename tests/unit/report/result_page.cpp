@@ -5,8 +5,8 @@
 #include "files/file.hpp"
 #include "unit/run_fixture.hpp"
 
+using rouleau::Cause;
 using rouleau::Error;
-using rouleau::ExitCode;
 using namespace rouleau::files;
 using namespace rouleau::report;
 using namespace rouleau::scene;
@@ -34,7 +34,7 @@ std::string page_refusal(const std::filesystem::path& directory) {
   try {
     write_pages(directory);
   } catch (const Error& error) {
-    CHECK(error.code() == ExitCode::bad_input);
+    CHECK(error.cause() == Cause::bad_input);
     return error.what();
   }
   FAIL("no error");

@@ -21,7 +21,7 @@ std::string message_of(const std::vector<std::string>& overrides) {
   try {
     (void)read_scene(contract_scene, overrides);
   } catch (const Error& error) {
-    CHECK(error.code() == ExitCode::bad_input);
+    CHECK(error.cause() == Cause::bad_input);
     return error.what();
   }
   return "";

@@ -25,7 +25,8 @@ Membranes membranes_of(const Outline& outline) {
   return m;
 }
 
-constexpr double exact_perimeter = 19.27042, exact_area = 13.62222;  // um, PHYSICS.md section 1, R = 3.91 um
+// Of Evans and Fung's curve (host/shape/outline.cpp) with R = 3.91 um, integrated.
+constexpr double exact_perimeter = 19.27042, exact_area = 13.62222;  // um, um2
 
 }  // namespace
 
@@ -125,7 +126,7 @@ TEST_CASE("cells that cannot be placed are refused with both places and the amou
     try {
       make_membranes(scene, 1e-6);
     } catch (const Error& error) {
-      CHECK(error.code() == ExitCode::bad_input);
+      CHECK(error.cause() == Cause::bad_input);
       return std::string(error.what());
     }
     return std::string("accepted");

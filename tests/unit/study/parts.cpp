@@ -11,8 +11,8 @@
 
 namespace {
 
+using rouleau::Cause;
 using rouleau::Error;
-using rouleau::ExitCode;
 using namespace rouleau::study;
 using namespace rouleau::test;
 using namespace rouleau::trial;
@@ -35,7 +35,7 @@ std::string target_refusal(const std::string& option, const std::vector<Quantity
     read_target(option, quantities);
     return "accepted";
   } catch (const Error& error) {
-    CHECK(error.code() == ExitCode::bad_input);
+    CHECK(error.cause() == Cause::bad_input);
     return error.what();
   }
 }

@@ -9,8 +9,8 @@
 #include "study/exact_flow.hpp"
 #include "unit/run_fixture.hpp"
 
+using rouleau::Cause;
 using rouleau::Error;
-using rouleau::ExitCode;
 using namespace rouleau::files;
 using namespace rouleau::json;
 using namespace rouleau::monitor;
@@ -33,7 +33,7 @@ std::string refusal(const Json& written) {
   try {
     quantity_of(written);
   } catch (const Error& error) {
-    CHECK(error.code() == ExitCode::bad_input);
+    CHECK(error.cause() == Cause::bad_input);
     CHECK(error.place().pointer.find("/quantities/0") == 0);
     CHECK(error.place().line == 1);
     const std::string text = error.what();
@@ -404,6 +404,6 @@ TEST_CASE("a pointer that leads nowhere in a reference's file is refused with wh
     quantity_of(missing, (folder.path() / "study.json").string());
     FAIL("it was read");
   } catch (const Error& error) {
-    CHECK(error.code() == ExitCode::input_output);
+    CHECK(error.cause() == Cause::input_output);
   }
 }

@@ -9,8 +9,8 @@
 
 namespace {
 
+using rouleau::Cause;
 using rouleau::Error;
-using rouleau::ExitCode;
 using namespace rouleau::json;
 using namespace rouleau::test;
 using namespace rouleau::trial;
@@ -33,7 +33,7 @@ std::string refusal(const std::string& matrix, const Json& scene = couette_scene
     axes_of(matrix, scene);
     return "accepted";
   } catch (const Error& error) {
-    CHECK(error.code() == ExitCode::bad_input);
+    CHECK(error.cause() == Cause::bad_input);
     return error.what();
   }
 }

@@ -1,0 +1,24 @@
+// What belongs to the process: exit codes, and errors in the words of the command line.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "base/error.hpp"
+#include "trial/exit_code.hpp"
+
+namespace rouleau::command {
+
+namespace exit_code = trial::exit_code;
+
+/// With which code the program ends for an error.
+int exit_code_of(Cause cause);
+
+/// The remedy, with the options of `rouleau` for its ways: "choose another directory (--out)".
+std::string in_options(const Remedy& remedy);
+
+/// Calls a program's body and returns its exit code. What the body throws becomes a message on standard error, and so
+/// does an output that could not be written. `too_large`: what to do where memory does not suffice.
+int run_program(const std::function<int()>& body, const std::string& too_large);
+
+}  // namespace rouleau::command
