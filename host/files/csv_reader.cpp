@@ -71,8 +71,8 @@ std::size_t StoredTable::count_of(const std::string& column) const {
       throw Error(Cause::bad_input, Place{file_.string()},
                   "row " + std::to_string(row + 1) + " has " + in_quotes(rows_[row][index(column)]) +
                       " in the column \"" + column + "\", which counts from 0 and has " +
-                      std::to_string(values.size()) +
-                      " rows\n  the file is damaged; repeat the run, or take the row out");
+                      std::to_string(values.size()) + " rows",
+                  {"the file is damaged; repeat the run, or take the row out"});
     }
     count = std::max(count, static_cast<std::size_t>(values[row]) + 1);
   }

@@ -19,23 +19,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A result's file, the key that says what it is, and the command that writes it.
+/// A result's file, the key that says what it is, and what it is called.
 struct ResultPage {
-  const char *file, *page, *key, *command;
+  const char *file, *page, *key, *name;
   std::string_view page_template;
 };
 
 fs::path write_result_page(const fs::path& directory, const ResultPage& kind) {
   const json::Document document = json::Document::read(directory / kind.file);
   const auto& root = document.root();
-  const auto remedy = std::string("\n  repeat the command rouleau ") + kind.command + " that made the directory";
+  const Remedy remedy{"make the directory anew"};
   if (!root.is_object() || !root.contains(kind.key))
     throw Error(Cause::bad_input, document.place(""),
-                "is no result of rouleau " + std::string(kind.command) + ": it has no \"" + kind.key + "\"" + remedy);
+                "is no " + std::string(kind.name) + " result: it has no \"" + kind.key + "\"", remedy);
   const std::string pointer = std::string("/") + kind.key;
   if (root[kind.key] != 1)
     throw Error(Cause::bad_input, document.place(pointer),
-                "is " + json::shown(root[kind.key]) + ", and this rouleau knows version 1 only" + remedy);
+                "is " + json::shown(root[kind.key]) + ", and this rouleau knows version 1 only", remedy);
   fs::path page = directory / kind.page;
   files::write_file(page, page_with(kind.page_template, root));
   return page;

@@ -227,7 +227,7 @@ class A_study_goes_on(Case):
         copy.replace(program)
         _, words = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 4, words)
-        self.assertIn(f"the program {program} was replaced or removed meanwhile; call the same command again", words)
+        self.assertIn(f"the program {program} was replaced or removed meanwhile\n  call the same command again", words)
 
     def test_with_more_values_and_more_repeats(self):
         self.run_study(self.study([TAU]))

@@ -95,11 +95,12 @@ TEST_CASE("a directory without a result, and a file that is none, are bad input"
                                               Contains("summary.json") && Contains("series.csv") &&
                                               Contains("study.json") && Contains("limits.json"));
   write_file(folder.path() / "study.json", "[1]");
-  CHECK_THAT(page_refusal(folder.path()), Contains("study.json:1:1") && Contains("is no result of rouleau study") &&
-                                              Contains("\"rouleau_study_result\"") && Contains("repeat the command"));
+  CHECK_THAT(page_refusal(folder.path()), Contains("study.json:1:1") && Contains("is no study result") &&
+                                              Contains("\"rouleau_study_result\"") &&
+                                              Contains("make the directory anew"));
   // The study that was run, rather than what came of it
   write_file(folder.path() / "study.json", R"({"rouleau_study": 1, "scene": "a.json"})");
-  CHECK_THAT(page_refusal(folder.path()), Contains("is no result of rouleau study"));
+  CHECK_THAT(page_refusal(folder.path()), Contains("is no study result"));
   write_file(folder.path() / "study.json", R"({"rouleau_study_result": 2})");
   CHECK_THAT(page_refusal(folder.path()), Contains("study.json:1:") && Contains("/rouleau_study_result") &&
                                               Contains("is 2") && Contains("version 1"));
@@ -107,5 +108,5 @@ TEST_CASE("a directory without a result, and a file that is none, are bad input"
   CHECK_THAT(page_refusal(folder.path()), Contains("study.json:1:"));
   std::filesystem::remove(folder.path() / "study.json");
   write_file(folder.path() / "limits.json", study_result("").dump());
-  CHECK_THAT(page_refusal(folder.path()), Contains("limits.json:1:1") && Contains("is no result of rouleau limits"));
+  CHECK_THAT(page_refusal(folder.path()), Contains("limits.json:1:1") && Contains("is no limits result"));
 }
