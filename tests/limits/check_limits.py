@@ -184,7 +184,7 @@ class BadFiles(Case):
         self.refused(["leave one of them out"], parameter={**STIFFNESS, "pointers": [MODULUS]})
 
     def test_parameter_the_scene_has_not(self):
-        self.refused(["the scene with this value"], parameter={**STIFFNESS, "pointer": "/numerics/tow"})
+        self.refused(["/parameter/from\n  the scene with this value, /numerics/tow\n  unknown key \"tow\""], parameter={**STIFFNESS, "pointer": "/numerics/tow"})
 
     def test_scene_that_is_not_there(self):
         self.refused(["/scene", "there is no scene"], scene="none.json", parameter=STIFFNESS)

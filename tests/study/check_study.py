@@ -306,16 +306,16 @@ class Bad_input_is_refused_at_its_place(Case):
         self.refused("/time_limit", '"10 mm"', time_limit="10 mm")
         self.refused("/matrix/0", "pointers", matrix=[{"name": "a", "values": [1]}])
         self.refused("/matrix/0/refine/0", "not whole", matrix=[{"name": "rows", "refine": [1.03]}])
-        self.refused("/matrix/0", "no setting of this axis", "/numerics/taw",
+        self.refused("/matrix/0\n  no setting of this axis makes a scene that can be run; the first: /numerics/taw\n  unknown key \"taw\"; did",
                      matrix=[{"name": "a", "pointer": "/numerics/taw", "values": [1, 2]}])
 
     def test_in_its_scene(self):
         self.refused("there is no scene", "nowhere.json", scene="nowhere.json")
-        self.refused("/scene/numerics/tau", scene={**SCENE, "numerics": {"tau": 0.1}})
+        self.refused("/scene/numerics/tau\n  0.1 is out of range", scene={**SCENE, "numerics": {"tau": 0.1}})
         (self.path / "scene.json").write_text(json.dumps({**SCENE, "numerics": {"tau": 0.1}}))
         self.refused("scene.json:1:", "/numerics/tau", scene="scene.json")
         (self.path / "scene.json").write_text(json.dumps(SCENE))
-        self.refused("/set", "/numerics/tau", scene="scene.json", set={"/numerics/tau": 0.1})
+        self.refused("/set\n  the scene with these changes is wrong, /numerics/tau: 0.1 is out of range", scene="scene.json", set={"/numerics/tau": 0.1})
 
     def test_in_the_directory(self):
         self.out.mkdir()
