@@ -38,7 +38,7 @@ std::unique_ptr<core::Fluid<T>> plugin_fluid(int nx, int ny, bool forced, core::
   setting.membranes = forced;
   auto fluid = std::make_unique<core::Fluid<T>>(setting, trt());
   if (forced) {
-    for (int y = 0; y < ny; ++y) fluid->activity().mark(y, 0, nx);
+    for (int y = 0; y < ny; ++y) fluid->mask().mark(y, 0, nx);
   }
   return fluid;
 }

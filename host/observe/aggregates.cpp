@@ -19,14 +19,14 @@ std::vector<core::Bounds> all_bounds(const core::Membranes& m) {
 }
 
 /// Calls visit(a, cells) for each of `cells` with those that may come within `reach` of it, in ascending order: what is
-/// found must not depend on the bins.
+/// found must not depend on the grid.
 template <class Visit>
 void for_each_near(const std::vector<core::Bounds>& boxes, const std::vector<int>& cells, double reach,
                    const core::Domain<2>& domain, Visit visit) {
-  const core::Bins bins(boxes, reach, domain);
+  const core::CellGrid grid(boxes, reach, domain);
   std::vector<int> near;
   for (const int cell : cells) {
-    bins.find(cell, near);
+    grid.find(cell, near);
     std::sort(near.begin(), near.end());
     visit(cell, near);
   }

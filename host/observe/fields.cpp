@@ -54,7 +54,7 @@ FieldSnapshot observe_fields(core::Fluid<T>& fluid, const scene::Scene& scene, c
       if (density) f.density.push_back(m.density);
       if (viscosity) {
         double relaxation = fluid.setting().relaxation_rate;
-        if (fluid.setting().viscosity_contrast && fluid.activity().active(x, y)) {
+        if (fluid.setting().viscosity_contrast && fluid.mask().active(x, y)) {
           relaxation = static_cast<double>(fluid.relaxation_rate().row(y)[x]);
         }
         f.viscosity.push_back(core::viscosity_of(1 / relaxation) * viscosity_unit);

@@ -102,7 +102,7 @@ double Observer::momentum_residual(const core::Membranes& m) {
 template <class T>
 double Observer::follow_fluid(core::Fluid<T>& fluid) {
   fluid.settle();
-  const auto [mass, speed] = fluid.extremes();
+  const auto [mass, speed] = fluid.mass_and_speed();
   if (std::isnan(initial_mass_)) initial_mass_ = mass;
   const double nodes = static_cast<double>(fluid.setting().domain.size[0]) * fluid.setting().domain.size[1];
   mass_drift_ = std::max(mass_drift_, std::abs(mass - initial_mass_) / nodes);

@@ -110,8 +110,8 @@ Json save(files::CheckpointWriter& writer, core::Solver<T>& solver) {
     fluid.copy_populations(q, values);
     writer.array(population_name(q), ny, nx, values.data());
   }
-  if (solver.indicator() != nullptr) {
-    const core::DisplacementWatch::Memory& memory = solver.indicator()->memory();
+  if (solver.viscosity_field() != nullptr) {
+    const core::DisplacementWatch::Memory& memory = solver.viscosity_field()->memory();
     writer.array("/indicator/x", memory.x);
     writer.array("/indicator/y", memory.y);
     writer.array("/indicator/limit", memory.limit);
@@ -189,13 +189,13 @@ void restore(const files::CheckpointReader& reader, const Json& saved, core::Sol
   } catch (const Json::exception& error) {
     reader.refuse(error.what());
   }
-  if (solver.indicator() == nullptr) return;
-  core::DisplacementWatch::Memory memory = solver.indicator()->memory();
+  if (solver.viscosity_field() == nullptr) return;
+  core::DisplacementWatch::Memory memory = solver.viscosity_field()->memory();
   read(reader, "/indicator/x", memory.x);
   read(reader, "/indicator/y", memory.y);
   read(reader, "/indicator/limit", memory.limit);
   read(reader, "/indicator/bound", memory.bound);
-  solver.restore_indicator(memory);
+  solver.restore_viscosity_field(memory);
 }
 
 template void Checkpoints::write(const plan::Plan&, int, const RunState&, const core::Membranes&, core::Solver<float>&);

@@ -245,7 +245,7 @@ class The_page_of_a_run(PageCase):
         page = self.open(self.report("--max-steps", "20", "--set", '/interactions/0/parameters/zero_force_distance="0.3 um"'))
         boxes = page.run("[...document.querySelectorAll('.status strong')].map(e => e.textContent)")
         self.assertIn("arning", boxes[0])
-        self.assertIn("Cut short by --max-steps at step 20 of at most", boxes[1])
+        self.assertIn("Cut short by the limit of steps at step 20 of at most", boxes[1])
         self.assert_sound(page)
 
     def test_has_no_heading_for_cells_that_are_not_there_and_no_axis_for_what_is_zero(self):

@@ -179,7 +179,7 @@ TEST_CASE("Couette flow of two layers, viscosity ratio 5, is the exact broken li
                          .viscosity_contrast = true};
     Fluid<double> fluid(setting, make_collision(op.id, op.parameters, tau, inertia));
     for (int y = 0; y < n; ++y) {
-      fluid.activity().mark(y, 0, 16);
+      fluid.mask().mark(y, 0, 16);
       for (int x = 0; x < 16; ++x) fluid.relaxation_rate().row(y)[x] = 1 / (y < layer ? thick : tau);
     }
     fluid.set_profile([](double) { return 0.0; }, [](double) { return 0.0; });

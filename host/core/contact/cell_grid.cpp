@@ -14,7 +14,7 @@ double middle(double least, double most) { return 0.5 * (least + most); }
 
 }  // namespace
 
-Bins::Axis Bins::make_axis(double least, double most, double width, double period) {
+CellGrid::Axis CellGrid::make_axis(double least, double most, double width, double period) {
   Axis axis;
   axis.periodic = period > 0;
   axis.origin = axis.periodic ? 0 : least;
@@ -25,7 +25,7 @@ Bins::Axis Bins::make_axis(double least, double most, double width, double perio
   return axis;
 }
 
-int Bins::Axis::bin(double middle) const {
+int CellGrid::Axis::bin(double middle) const {
   const double place = std::floor((middle - origin) / width);
   if (!periodic) return static_cast<int>(std::clamp(place, 0.0, count - 1.0));
   const int rest = static_cast<int>(std::fmod(place, count));
@@ -33,7 +33,7 @@ int Bins::Axis::bin(double middle) const {
 }
 
 template <class Function>
-void Bins::for_around(const Axis& axis, int bin, Function function) {
+void CellGrid::for_around(const Axis& axis, int bin, Function function) {
   if (axis.count <= 3) {
     for (int k = 0; k < axis.count; ++k) function(k);
     return;
@@ -47,7 +47,7 @@ void Bins::for_around(const Axis& axis, int bin, Function function) {
   }
 }
 
-Bins::Bins(const std::vector<Bounds>& bounds, double reach, const Domain<2>& domain) : bin_(bounds.size(), -1) {
+CellGrid::CellGrid(const std::vector<Bounds>& bounds, double reach, const Domain<2>& domain) : bin_(bounds.size(), -1) {
   const double far = std::numeric_limits<double>::infinity();
   Bounds middles{far, -far, far, -far};
   double width = 0, height = 0;
@@ -79,7 +79,7 @@ Bins::Bins(const std::vector<Bounds>& bounds, double reach, const Domain<2>& dom
   }
 }
 
-void Bins::find(int cell, std::vector<int>& near) const {
+void CellGrid::find(int cell, std::vector<int>& near) const {
   near.clear();
   const int own = bin_[cell];
   if (own < 0) return;

@@ -10,10 +10,10 @@ namespace rouleau::core {
 /// Cells sorted into bins by the middle of their bounds. A bin is as large as the largest cell and the reach together,
 /// so that whatever is within reach of a cell lies in its own bin or in one of the eight around it, over periodic
 /// borders too. Building and asking cost a time proportional to the number of cells.
-class Bins {
+class CellGrid {
  public:
   /// Bounds that are not usable() are near nothing.
-  Bins(const std::vector<Bounds>& bounds, double reach, const Domain<2>& domain);
+  CellGrid(const std::vector<Bounds>& bounds, double reach, const Domain<2>& domain);
 
   /// Sets `near` to the cells in the bins around that of `cell`, itself included, each once, in no particular order.
   void find(int cell, std::vector<int>& near) const;

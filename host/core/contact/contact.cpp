@@ -12,8 +12,8 @@ namespace {
 /// The nodes of one cell against one other cell's image.
 struct SearchTask {
   const double *x, *y, *along_x, *along_y, *inverse_square;
-  const Neighbours::Group *groups, *groups_end;
-  const Neighbours::SegmentRun* runs;
+  const NeighbourList::Group *groups, *groups_end;
+  const NeighbourList::SegmentRun* runs;
   double move_x, move_y;  // of the image
   int nodes_end;          // of the cell
   int other_first;        // of the other cell
@@ -30,14 +30,14 @@ struct Search {
     const SearchTask t = *task;
     int count = t.count;
     const S move_x = t.move_x, move_y = t.move_y;
-    for (const Neighbours::Group* group = t.groups; group != t.groups_end; ++group) {
+    for (const NeighbourList::Group* group = t.groups; group != t.groups_end; ++group) {
       count = append<S>(t, *group, move_x, move_y, count);
     }
     task->count = count;
   }
 
  private:
-  static constexpr int size = Neighbours::group;
+  static constexpr int size = NeighbourList::group;
   static constexpr double no_distance = 1e-150;  // the least whose square has a root and an inverse
   /// The closest segment of each node.
   template <class S>
@@ -48,7 +48,7 @@ struct Search {
   /// Appends the contacts of a group of nodes. The whole group is written, for which the arrays have room, and then
   /// drawn together where nodes lie beyond the cutoff.
   template <class S>
-  ROULEAU_ALWAYS_INLINE static int append(const SearchTask& t, const Neighbours::Group& group, const S& move_x,
+  ROULEAU_ALWAYS_INLINE static int append(const SearchTask& t, const NeighbourList::Group& group, const S& move_x,
                                           const S& move_y, int count) {
     constexpr int packs = size / S::size;
     Closest<S> closest[packs];
@@ -87,7 +87,7 @@ struct Search {
   }
 
   template <class S>
-  ROULEAU_ALWAYS_INLINE static void find(const SearchTask& t, const Neighbours::Group& group, const S& move_x,
+  ROULEAU_ALWAYS_INLINE static void find(const SearchTask& t, const NeighbourList::Group& group, const S& move_x,
                                          const S& move_y, Closest<S>* closest) {
     constexpr int packs = size / S::size;
     S x[packs], y[packs];
@@ -153,9 +153,9 @@ void Contacts::run(Worker worker, int phase, const Membranes& membranes) {
 
 void Contacts::reserve(int cell) {
   ContactList& list = lists_[cell];
-  const Neighbours::CellList& candidates = neighbours_.list(cell);
+  const NeighbourList::CandidateList& candidates = neighbours_.list(cell);
   list.ranges.resize(candidates.pairs.size());
-  const std::size_t room = candidates.groups.size() * Neighbours::group + SegmentTable::margin;
+  const std::size_t room = candidates.groups.size() * NeighbourList::group + SegmentTable::margin;
   if (room <= list.node.size()) return;
   for (auto* values : {&list.node, &list.segment}) values->resize(room);
   for (auto* values : {&list.along, &list.distance, &list.direction_x, &list.direction_y}) values->resize(room);
@@ -164,7 +164,7 @@ void Contacts::reserve(int cell) {
 void Contacts::search(const Membranes& membranes, int cell) {
   static const auto function = Dispatch<Search, SearchTask*>::pick();
   ContactList& list = lists_[cell];
-  const Neighbours::CellList& candidates = neighbours_.list(cell);
+  const NeighbourList::CandidateList& candidates = neighbours_.list(cell);
   const CellRange& own = membranes.cells[cell];
   SearchTask task{};
   task.x = segments_.x.data(), task.y = segments_.y.data();
@@ -176,7 +176,7 @@ void Contacts::search(const Membranes& membranes, int cell) {
   task.along = list.along.data(), task.distance = list.distance.data();
   task.direction_x = list.direction_x.data(), task.direction_y = list.direction_y.data();
   for (std::size_t p = 0; p < candidates.pairs.size(); ++p) {
-    const Neighbours::Pair& pair = candidates.pairs[p];
+    const NeighbourList::Pair& pair = candidates.pairs[p];
     const CellRange& other = membranes.cells[pair.other];
     const double cutoff = neighbours_.cutoffs()(own.type, other.type);
     const int before = task.count;

@@ -35,14 +35,14 @@ class Contacts {
   void run(Worker worker, int phase, const Membranes& membranes);
 
   [[nodiscard]] const ContactList& list(int cell) const { return lists_[cell]; }
-  [[nodiscard]] Neighbours& neighbours() { return neighbours_; }
-  [[nodiscard]] const Neighbours& neighbours() const { return neighbours_; }
+  [[nodiscard]] NeighbourList& neighbours() { return neighbours_; }
+  [[nodiscard]] const NeighbourList& neighbours() const { return neighbours_; }
 
  private:
   void reserve(int cell);
   void search(const Membranes& membranes, int cell);
 
-  Neighbours neighbours_;
+  NeighbourList neighbours_;
   SegmentTable segments_;
   std::vector<ContactList> lists_;
 };

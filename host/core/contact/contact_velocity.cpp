@@ -2,7 +2,7 @@
 
 namespace rouleau::core {
 
-void ContactVelocities::measure(const ContactList& list, const std::vector<Neighbours::Pair>& pairs,
+void ContactVelocities::measure(const ContactList& list, const std::vector<NeighbourList::Pair>& pairs,
                                 const Membranes& membranes) {
   const auto count = static_cast<std::size_t>(list.count);
   normal.resize(count);

@@ -12,7 +12,7 @@ struct ContactVelocities {
   std::vector<double> normal;      ///< d distance / dt
   std::vector<double> tangential;  ///< positive where the node runs counter-clockwise along its own cell
 
-  void measure(const ContactList& list, const std::vector<Neighbours::Pair>& pairs, const Membranes& membranes);
+  void measure(const ContactList& list, const std::vector<NeighbourList::Pair>& pairs, const Membranes& membranes);
 };
 
 }  // namespace rouleau::core

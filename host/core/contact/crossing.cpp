@@ -120,12 +120,12 @@ std::optional<Crossing> find_crossing(const Membranes& membranes, const Domain<2
   for (const CellRange& cell : membranes.cells) extent.push_back(core::bounds(membranes, cell));
   PairCheck check(membranes, domain);
   std::optional<Crossing> found;
-  const Bins bins(extent, 0.0, domain);
+  const CellGrid grid(extent, 0.0, domain);
   const int count = static_cast<int>(membranes.cells.size());
   std::vector<int> near;
   for (int a = 0; a < count && !found; ++a) {
-    bins.find(a, near);
-    std::sort(near.begin(), near.end());  // the crossing that is found first does not depend on the bins
+    grid.find(a, near);
+    std::sort(near.begin(), near.end());  // the crossing that is found first does not depend on the grid
     for (const int b : near) {
       if (b < a || found) continue;
       core::for_each_image(extent[a], extent[b], 0.0, domain, [&](ImageShift shift) {

@@ -83,7 +83,7 @@ void InteractionForces::run(Worker worker, int phase, Membranes& membranes) {
 // Pairs are listed by type of the other cell, so that a potential gets its distances in one piece.
 InteractionForces::TypeRange InteractionForces::next_range(int cell, const Membranes& membranes,
                                                            std::size_t& pair) const {
-  const std::vector<Neighbours::Pair>& pairs = contacts_.neighbours().list(cell).pairs;
+  const std::vector<NeighbourList::Pair>& pairs = contacts_.neighbours().list(cell).pairs;
   const std::vector<Range>& ranges = contacts_.list(cell).ranges;
   const auto type_of = [&](std::size_t p) { return membranes.cells[static_cast<std::size_t>(pairs[p].other)].type; };
   TypeRange result{type_of(pair), ranges[pair]};
@@ -195,14 +195,14 @@ void InteractionForces::make_room_for_reactions(int cell) {
 
 void InteractionForces::act(int cell, Membranes& membranes) {
   const ContactList& list = contacts_.list(cell);
-  const std::vector<Neighbours::Pair>& pairs = contacts_.neighbours().list(cell).pairs;
+  const std::vector<NeighbourList::Pair>& pairs = contacts_.neighbours().list(cell).pairs;
   Scratch& scratch = scratch_[static_cast<std::size_t>(cell)];
   const double *force = scratch.force.data(), *weight = membranes.rest_weight.data(), *along = list.along.data();
   double *force_x = membranes.force_x.data(), *force_y = membranes.force_y.data();
   const int *node = list.node.data(), *segment = list.segment.data();
   const double *direction_x = list.direction_x.data(), *direction_y = list.direction_y.data();
   for (std::size_t p = 0; p < pairs.size(); ++p) {
-    const Neighbours::Pair& pair = pairs[p];
+    const NeighbourList::Pair& pair = pairs[p];
     const int to_touched =
         pair.reaction - pair.touched.begin - membranes.cells[static_cast<std::size_t>(pair.other)].first;
     double *reaction_x = scratch.reaction_x.data(), *reaction_y = scratch.reaction_y.data();
@@ -229,8 +229,8 @@ void InteractionForces::act(int cell, Membranes& membranes) {
 
 void InteractionForces::take_reactions(int cell, Membranes& membranes) const {
   const CellRange& own = membranes.cells[static_cast<std::size_t>(cell)];
-  for (const Neighbours::Pair& pair : contacts_.neighbours().list(cell).pairs) {
-    const Neighbours::Pair& opposite =
+  for (const NeighbourList::Pair& pair : contacts_.neighbours().list(cell).pairs) {
+    const NeighbourList::Pair& opposite =
         contacts_.neighbours().list(pair.other).pairs[static_cast<std::size_t>(pair.reverse)];
     const Scratch& scratch = scratch_[static_cast<std::size_t>(pair.other)];
     const double* reaction_x = scratch.reaction_x.data() + opposite.reaction - opposite.touched.begin;

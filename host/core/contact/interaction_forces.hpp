@@ -41,7 +41,7 @@ class InteractionForces {
   template <class Function>
   void for_reactions(int cell, Function function) {
     Scratch& scratch = scratch_[cell];
-    for (const Neighbours::Pair& pair : contacts_.neighbours().list(cell).pairs) {
+    for (const NeighbourList::Pair& pair : contacts_.neighbours().list(cell).pairs) {
       const auto count = static_cast<std::size_t>(pair.touched.end - pair.touched.begin);
       function(pair.other, scratch.reaction_x.data() + pair.reaction, scratch.reaction_y.data() + pair.reaction, count);
     }

@@ -31,7 +31,7 @@ void InteractionForces::keep_state(Membranes& membranes) {
 void InteractionForces::apply_with_state(std::size_t potential, int cell, std::size_t pair, const Membranes& membranes,
                                          double* result, bool energy, NextState* next, Scratch& scratch) const {
   const ContactList& list = contacts_.list(cell);
-  const Neighbours::Pair& other = contacts_.neighbours().list(cell).pairs[pair];
+  const NeighbourList::Pair& other = contacts_.neighbours().list(cell).pairs[pair];
   const CellRange& own = membranes.cells[cell];
   const ContactMemory& memory = membranes.contacts;
   std::size_t count = 0;

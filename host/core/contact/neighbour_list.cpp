@@ -82,7 +82,7 @@ void Cutoffs::raise(int a, int b, double cutoff) {
 
 double Cutoffs::largest() const { return *std::max_element(cutoff_.begin(), cutoff_.end()); }
 
-Neighbours::Neighbours(const Membranes& membranes, Cutoffs cutoffs, Domain<2> domain)
+NeighbourList::NeighbourList(const Membranes& membranes, Cutoffs cutoffs, Domain<2> domain)
     : cutoffs_(std::move(cutoffs)),
       domain_(domain),
       watch_(membranes),
@@ -96,37 +96,37 @@ Neighbours::Neighbours(const Membranes& membranes, Cutoffs cutoffs, Domain<2> do
   int most = 0;
   for (const CellRange& cell : membranes.cells) most = std::max(most, cell.count);
   const auto stride = static_cast<std::size_t>(most + SegmentTable::margin);
-  for (CellList& list : lists_) {
+  for (CandidateList& list : lists_) {
     list.square.resize(stride * group);
     list.excess.resize(stride);
   }
 }
 
-void Neighbours::refresh(Worker worker, const Membranes& membranes, const SegmentTable& segments) {
+void NeighbourList::refresh(Worker worker, const Membranes& membranes, const SegmentTable& segments) {
   if (!renewed()) return;
   const Range cells = worker.share(membranes.cell_count());
   const double skin = suitable_skin(membranes);
   // Every worker sorts all cells: that is quicker than to wait for one who does.
-  const Bins bins(segments.bounds, cutoffs_.largest() + 2 * skin, domain_);
+  const CellGrid grid(segments.bounds, cutoffs_.largest() + 2 * skin, domain_);
   for (int cell = cells.begin; cell < cells.end; ++cell) {
-    CellList& list = lists_[cell];
+    CandidateList& list = lists_[cell];
     list.pairs.clear();
     list.groups.clear();
     list.runs.clear();
     list.touched = 0;
-    list_pairs(membranes, cell, bins, segments, skin);
+    list_pairs(membranes, cell, grid, segments, skin);
     for (Pair& pair : list.pairs) list_candidates(membranes, cell, pair, segments, skin);
     watch_.remember(cell, membranes, skin);
   }
   if (worker.first()) ++renewals_;
 }
 
-void Neighbours::list_pairs(const Membranes& membranes, int cell, const Bins& bins, const SegmentTable& segments,
-                            double skin) {
-  CellList& list = lists_[cell];
+void NeighbourList::list_pairs(const Membranes& membranes, int cell, const CellGrid& grid, const SegmentTable& segments,
+                               double skin) {
+  CandidateList& list = lists_[cell];
   const int type = membranes.cells[cell].type;
   const Bounds& own = segments.bounds[cell];
-  bins.find(cell, list.near);
+  grid.find(cell, list.near);
   std::sort(list.near.begin(), list.near.end(), [&](int a, int b) { return rank_[a] < rank_[b]; });
   for (const int other : list.near) {
     const double cutoff = cutoffs_(type, membranes.cells[other].type);
@@ -137,10 +137,10 @@ void Neighbours::list_pairs(const Membranes& membranes, int cell, const Bins& bi
   }
 }
 
-void Neighbours::list_candidates(const Membranes& membranes, int cell, Pair& pair, const SegmentTable& segments,
-                                 double skin) {
+void NeighbourList::list_candidates(const Membranes& membranes, int cell, Pair& pair, const SegmentTable& segments,
+                                    double skin) {
   static const auto candidates = Dispatch<Candidates, const CandidateTask*>::pick();
-  CellList& list = lists_[cell];
+  CandidateList& list = lists_[cell];
   const CellRange& own = membranes.cells[cell];
   const CellRange& other = membranes.cells[pair.other];
   const double move_x = pair.shift.x * domain_.period(0), move_y = pair.shift.y * domain_.period(1);
@@ -196,7 +196,7 @@ void Neighbours::list_candidates(const Membranes& membranes, int cell, Pair& pai
   list.touched += pair.touched.end - pair.touched.begin;
 }
 
-void Neighbours::link(Worker worker, const Membranes& membranes) {
+void NeighbourList::link(Worker worker, const Membranes& membranes) {
   if (!renewed()) return;
   const Range cells = worker.share(static_cast<int>(membranes.cells.size()));
   for (int cell = cells.begin; cell < cells.end; ++cell) {

@@ -40,7 +40,7 @@ struct CellPair {
 /// A segment with d_k above min(d_m + 4 skin, cutoff + 2 skin) can therefore be left out.
 ///
 /// A thin skin makes short lists that are soon out of date: each is chosen for the speed at which the nodes move.
-class Neighbours {
+class NeighbourList {
  public:
   static constexpr int group = 8;  ///< consecutive nodes that share one list
 
@@ -61,7 +61,7 @@ class Neighbours {
     int reverse;    ///< index of the opposite pair in the list of `other`
   };
   /// All that belongs to the nodes of one cell.
-  struct CellList {
+  struct CandidateList {
     std::vector<Pair> pairs;  ///< ordered by type of the other cell, then by the other cell, then by shift
     std::vector<Group> groups;
     std::vector<SegmentRun> runs;
@@ -71,7 +71,7 @@ class Neighbours {
     std::vector<double> excess;  ///< while the list is made: how far each segment is from being a candidate
   };
 
-  Neighbours(const Membranes& membranes, Cutoffs cutoffs, Domain<2> domain);
+  NeighbourList(const Membranes& membranes, Cutoffs cutoffs, Domain<2> domain);
 
   /// Pass 1: has a node moved too far?
   void measure(Worker worker, const Membranes& membranes) { watch_.measure(worker, membranes); }
@@ -82,21 +82,22 @@ class Neighbours {
   /// Whether the lists are new in this step; the same for all workers from pass 2 on.
   [[nodiscard]] bool renewed() const { return watch_.exceeded(); }
 
-  [[nodiscard]] const CellList& list(int cell) const { return lists_[cell]; }
+  [[nodiscard]] const CandidateList& list(int cell) const { return lists_[cell]; }
   [[nodiscard]] const Cutoffs& cutoffs() const { return cutoffs_; }
   [[nodiscard]] const Domain<2>& domain() const { return domain_; }
   /// How often the lists were made.
   [[nodiscard]] long renewals() const { return renewals_; }
 
  private:
-  void list_pairs(const Membranes& membranes, int cell, const Bins& bins, const SegmentTable& segments, double skin);
+  void list_pairs(const Membranes& membranes, int cell, const CellGrid& grid, const SegmentTable& segments,
+                  double skin);
   void list_candidates(const Membranes& membranes, int cell, Pair& pair, const SegmentTable& segments, double skin);
 
   Cutoffs cutoffs_;
   Domain<2> domain_;
   DisplacementWatch watch_;
   std::vector<int> rank_;  // of each cell: its place when they are ordered by type, then by number
-  std::vector<CellList> lists_;
+  std::vector<CandidateList> lists_;
   long renewals_ = 0;
 };
 

@@ -39,23 +39,23 @@ void add_piece(double* row, int& begin, int& end, double a, double b, double ris
 
 }  // namespace
 
-void cover(const Membranes& membranes, const CellRange& cell, Coverage& coverage) {
+void cover(const Membranes& membranes, const CellRange& cell, AreaFraction& fraction) {
   const Bounds box = core::bounds(membranes, cell);
-  coverage.width = coverage.height = 0;
+  fraction.width = fraction.height = 0;
   if (!box.usable()) return;
   // Node n's unit square is [n - 1/2, n + 1/2]: half a spacing later, it is the cell between two integers.
-  coverage.x0 = core::floor_int(box.x_min + 0.5) - window_margin;
-  coverage.y0 = core::floor_int(box.y_min + 0.5) - window_margin;
-  const int width = core::floor_int(box.x_max + 0.5) - coverage.x0 + 1 + window_margin;
-  const int height = core::floor_int(box.y_max + 0.5) - coverage.y0 + 1 + window_margin;
+  fraction.x0 = core::floor_int(box.x_min + 0.5) - window_margin;
+  fraction.y0 = core::floor_int(box.y_min + 0.5) - window_margin;
+  const int width = core::floor_int(box.x_max + 0.5) - fraction.x0 + 1 + window_margin;
+  const int height = core::floor_int(box.y_max + 0.5) - fraction.y0 + 1 + window_margin;
   if (static_cast<double>(width) * height > 1e8) return;  // blown up, see Bounds::usable
-  coverage.width = width;
-  coverage.height = height;
-  coverage.value.assign(static_cast<std::size_t>(width) * height, 0.0);
-  coverage.begin.assign(static_cast<std::size_t>(height), width);
-  coverage.end.assign(static_cast<std::size_t>(height), 0);
+  fraction.width = width;
+  fraction.height = height;
+  fraction.value.assign(static_cast<std::size_t>(width) * height, 0.0);
+  fraction.begin.assign(static_cast<std::size_t>(height), width);
+  fraction.end.assign(static_cast<std::size_t>(height), 0);
 
-  const double shift_x = 0.5 - coverage.x0, shift_y = 0.5 - coverage.y0;
+  const double shift_x = 0.5 - fraction.x0, shift_y = 0.5 - fraction.y0;
   const double *xs = membranes.x.data(), *ys = membranes.y.data();
   for (int i = cell.first; i < cell.end(); ++i) {
     const int j = cell.next(i);
@@ -75,42 +75,42 @@ void cover(const Membranes& membranes, const CellRange& cell, Coverage& coverage
       const double next_y = std::min(r + 1.0, y1);
       // Rounding must not leave the box.
       const double next_x = next_y < y1 ? std::clamp(x0 + (next_y - y0) * slope, left, right) : x1;
-      add_piece(coverage.row(r), coverage.begin[r], coverage.end[r], x, next_x, sign * (next_y - y));
+      add_piece(fraction.row(r), fraction.begin[r], fraction.end[r], x, next_x, sign * (next_y - y));
       x = next_x;
       y = next_y;
     }
   }
   for (int r = 0; r < height; ++r) {
-    const int begin = coverage.begin[r], end = coverage.end[r];
+    const int begin = fraction.begin[r], end = fraction.end[r];
     if (begin >= end) {
-      coverage.begin[r] = coverage.end[r] = 0;
+      fraction.begin[r] = fraction.end[r] = 0;
       continue;
     }
-    double* row = coverage.row(r);
+    double* row = fraction.row(r);
     double sum = 0;
     for (int c = begin; c < end; ++c) row[c] = sum += row[c];
     row[end] = 0;  // left and right edges cancel there, up to rounding
   }
 }
 
-void smooth(Coverage& coverage, std::vector<double>& scratch) {
-  const int width = coverage.width, height = coverage.height;
+void smooth(AreaFraction& fraction, std::vector<double>& scratch) {
+  const int width = fraction.width, height = fraction.height;
   if (width == 0) return;
-  scratch.assign(coverage.value.size(), 0.0);
+  scratch.assign(fraction.value.size(), 0.0);
   for (int r = 0; r < height; ++r) {
-    const double* from = coverage.row(r);
+    const double* from = fraction.row(r);
     double* to = scratch.data() + static_cast<std::size_t>(r) * width;
     for (int c = 1; c < width - 1; ++c) to[c] = 0.25 * (from[c - 1] + from[c + 1]) + 0.5 * from[c];
   }
   for (int r = 1; r < height - 1; ++r) {
     const double *below = scratch.data() + static_cast<std::size_t>(r - 1) * width, *here = below + width,
                  *above = here + width;
-    double* to = coverage.row(r);
+    double* to = fraction.row(r);
     for (int c = 0; c < width; ++c) to[c] = 0.25 * (below[c] + above[c]) + 0.5 * here[c];
   }
   // Rows and columns that are not zero grow by one on every side.
-  const std::vector<int>& old_begin = coverage.begin;
-  const std::vector<int>& old_end = coverage.end;
+  const std::vector<int>& old_begin = fraction.begin;
+  const std::vector<int>& old_end = fraction.end;
   int begin_before = 0, end_before = 0;  // of row r - 1, before it was changed
   for (int r = 0; r < height; ++r) {
     int begin = width, end = 0;
@@ -125,8 +125,8 @@ void smooth(Coverage& coverage, std::vector<double>& scratch) {
     if (r + 1 < height) include(old_begin[at + 1], old_end[at + 1]);
     begin_before = old_begin[at];
     end_before = old_end[at];
-    coverage.begin[at] = begin < end ? begin : 0;
-    coverage.end[at] = begin < end ? end : 0;
+    fraction.begin[at] = begin < end ? begin : 0;
+    fraction.end[at] = begin < end ? end : 0;
   }
 }
 

@@ -82,7 +82,7 @@ Distribution kernel_distribution(KernelKind kernel) {
   return Distribution(kernel_density<Peskin4>);
 }
 
-/// The indicator: exact coverage of unit squares, smoothed once by (1/4, 1/2, 1/4).
+/// The area fraction of unit squares, smoothed once by (1/4, 1/2, 1/4).
 double indicator_density(double distance) {
   const double r = std::abs(distance);
   return r < 0.5 ? 0.5 : (r < 1.5 ? 0.25 : 0);

@@ -16,8 +16,8 @@ constexpr double displacement_limit = 0.1;
 }  // namespace
 
 template <class T>
-Indicator<T>::Indicator(const Membranes& membranes, std::vector<double> viscosity_ratio, ViscosityMean mean,
-                        double reach_beyond, double relaxation_rate, const Domain<2>& domain)
+ViscosityField<T>::ViscosityField(const Membranes& membranes, std::vector<double> viscosity_ratio, ViscosityMean mean,
+                                  double reach_beyond, double relaxation_rate, const Domain<2>& domain)
     : ratio_(std::move(viscosity_ratio)),
       mean_(mean),
       margin_(static_cast<int>(std::ceil(reach_beyond))),
@@ -31,7 +31,7 @@ Indicator<T>::Indicator(const Membranes& membranes, std::vector<double> viscosit
 
 template <class T>
 template <class Function>
-void Indicator<T>::for_rows(const Rows& rows, Range own, Function function) const {
+void ViscosityField<T>::for_rows(const Rows& rows, Range own, Function function) const {
   for (std::size_t k = 0; k < rows.columns.size(); ++k) {
     const int row = domain_.wrapped(1, rows.first + static_cast<int>(k)), y = row - domain_.block.begin[1];
     if (row >= 0 && y >= own.begin && y < own.end) function(y, rows.columns[k], static_cast<int>(k));
@@ -40,7 +40,7 @@ void Indicator<T>::for_rows(const Rows& rows, Range own, Function function) cons
 
 template <class T>
 template <class Function>
-void Indicator<T>::for_pieces(Interval columns, Function function) const {
+void ViscosityField<T>::for_pieces(Interval columns, Function function) const {
   for (int begin = columns.begin; begin < columns.end;) {
     const int x = domain_.wrapped(0, begin);
     const int end = std::min(columns.end, begin + domain_.size[0] - x);
@@ -51,7 +51,7 @@ void Indicator<T>::for_pieces(Interval columns, Function function) const {
 }
 
 template <class T>
-void Indicator<T>::cover(Worker worker, const Membranes& membranes) {
+void ViscosityField<T>::cover(Worker worker, const Membranes& membranes) {
   const Range cells = worker.share(membranes.cell_count());
   std::vector<double> scratch;
   for (int c = cells.begin; c < cells.end; ++c) {
@@ -61,13 +61,13 @@ void Indicator<T>::cover(Worker worker, const Membranes& membranes) {
     std::swap(reach.covered, reach.covered_before);
     reach.covered.columns.clear();
     if (ratio_[cell.type] != 1) {
-      Coverage& coverage = reach.coverage;
-      core::cover(membranes, cell, coverage);
-      smooth(coverage, scratch);
-      reach.covered.first = coverage.y0;
-      for (int j = 0; j < coverage.height; ++j) {
+      AreaFraction& fraction = reach.fraction;
+      core::cover(membranes, cell, fraction);
+      smooth(fraction, scratch);
+      reach.covered.first = fraction.y0;
+      for (int j = 0; j < fraction.height; ++j) {
         const auto at = static_cast<std::size_t>(j);
-        reach.covered.columns.push_back({coverage.x0 + coverage.begin[at], coverage.x0 + coverage.end[at]});
+        reach.covered.columns.push_back({fraction.x0 + fraction.begin[at], fraction.x0 + fraction.end[at]});
       }
     }
     find_reach(membranes, cell, reach);
@@ -78,7 +78,7 @@ void Indicator<T>::cover(Worker worker, const Membranes& membranes) {
 // A node at (X, Y) reaches columns floor(X) - 1 ... floor(X) + 2 and the same rows; one more each for its motion, and
 // the margin.
 template <class T>
-void Indicator<T>::find_reach(const Membranes& membranes, const CellRange& cell, Reach& reach) const {
+void ViscosityField<T>::find_reach(const Membranes& membranes, const CellRange& cell, Reach& reach) const {
   Rows& reached = reach.reached;
   reached.columns.clear();
   const Bounds box = core::bounds(membranes, cell);
@@ -116,34 +116,34 @@ void Indicator<T>::find_reach(const Membranes& membranes, const CellRange& cell,
 }
 
 template <class T>
-void Indicator<T>::update(Worker worker, const Membranes& membranes, Field<T>& relaxation_rate, Activity& activity) {
+void ViscosityField<T>::update(Worker worker, const Membranes& membranes, Field<T>& relaxation_rate, NodeMask& mask) {
   const Range own = worker.share(domain_.block.size(1));
   if (varies_) {
     collect_changes(own);
     set_rates(membranes, own, relaxation_rate);
   }
-  activity.clear(own.begin, own.end);
+  mask.clear(own.begin, own.end);
   for (const Reach& reach : cells_) {
-    for_rows(reach.reached, own, [&](int y, Interval columns, int) { activity.mark(y, columns.begin, columns.end); });
+    for_rows(reach.reached, own, [&](int y, Interval columns, int) { mask.mark(y, columns.begin, columns.end); });
   }
 }
 
 template <class T>
-void Indicator<T>::restore(const DisplacementWatch::Memory& memory, const Membranes& membranes,
-                           Field<T>& relaxation_rate, Activity& activity) {
+void ViscosityField<T>::restore(const DisplacementWatch::Memory& memory, const Membranes& membranes,
+                                Field<T>& relaxation_rate, NodeMask& mask) {
   const bool updated = !memory.x.empty() && !std::isnan(memory.x.front());
   if (updated) {
     Membranes at_update = membranes;
     at_update.x = memory.x;
     at_update.y = memory.y;
     cover(Worker{}, at_update);
-    update(Worker{}, at_update, relaxation_rate, activity);
+    update(Worker{}, at_update, relaxation_rate, mask);
   }
   watch_.recall(memory);
 }
 
 template <class T>
-void Indicator<T>::collect_changes(Range own) {
+void ViscosityField<T>::collect_changes(Range own) {
   for (int y = own.begin; y < own.end; ++y) changed_[y].clear();
   const auto include = [&](int y, Interval columns, int) {
     columns.end = std::min(columns.end, columns.begin + domain_.size[0]);
@@ -171,7 +171,7 @@ void Indicator<T>::collect_changes(Range own) {
 }
 
 template <class T>
-void Indicator<T>::set_rates(const Membranes& membranes, Range own, Field<T>& rate) {
+void ViscosityField<T>::set_rates(const Membranes& membranes, Range own, Field<T>& rate) {
   const auto for_changed = [&](auto function) {
     for (int y = own.begin; y < own.end; ++y) {
       T* row = rate.row(y);
@@ -187,15 +187,15 @@ void Indicator<T>::set_rates(const Membranes& membranes, Range own, Field<T>& ra
     const double ratio = ratio_[membranes.cells[c].type];
     const double excess = (harmonic ? 1 / ratio : ratio) - 1;
     if (excess == 0) continue;
-    const Coverage& coverage = cells_[c].coverage;
+    const AreaFraction& fraction = cells_[c].fraction;
     for_rows(cells_[c].covered, own, [&](int y, Interval columns, int place) {
       if (changed_[y].empty()) return;
-      const double* from = coverage.row(place);
+      const double* from = fraction.row(place);
       T* row = rate.row(y);
       for_pieces(columns, [&](int x, int begin, int end) {
         for (const Interval& interval : changed_[y]) {
           const int first = std::max(x, interval.begin), last = std::min(x + end - begin, interval.end);
-          const double* value = from + (begin - coverage.x0) - x;
+          const double* value = from + (begin - fraction.x0) - x;
           for (int k = first; k < last; ++k) row[k] += static_cast<T>(excess * value[k]);
         }
       });
@@ -209,7 +209,7 @@ void Indicator<T>::set_rates(const Membranes& membranes, Range own, Field<T>& ra
   }
 }
 
-template class Indicator<float>;
-template class Indicator<double>;
+template class ViscosityField<float>;
+template class ViscosityField<double>;
 
 }  // namespace rouleau::core

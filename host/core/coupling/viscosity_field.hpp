@@ -19,12 +19,12 @@ enum class ViscosityMean { arithmetic, harmonic };
 /// tau = 1/2 + (tau_outside - 1/2) mu / mu_outside, kept as 1/tau.
 /// Only what cells cover that have moved, or covered before they did, is computed again.
 template <class T>
-class Indicator {
+class ViscosityField {
  public:
   /// `viscosity_ratio[t]`: interior over suspending viscosity of cell type t. `reach_beyond`: how far from a node its
   /// force may act besides the kernel's own reach, spacings.
-  Indicator(const Membranes& membranes, std::vector<double> viscosity_ratio, ViscosityMean mean, double reach_beyond,
-            double relaxation_rate, const Domain<2>& domain);
+  ViscosityField(const Membranes& membranes, std::vector<double> viscosity_ratio, ViscosityMean mean,
+                 double reach_beyond, double relaxation_rate, const Domain<2>& domain);
 
   /// Whether a relaxation rate that varies in space is needed; if not, the passes only mark.
   [[nodiscard]] bool varies() const { return varies_; }
@@ -39,13 +39,13 @@ class Indicator {
   /// Pass over rows, when due, a barrier after cover(): sets the relaxation rate in and around the cells that have
   /// moved, restores it where they were, and marks the nodes that the membranes touch until they have moved by 1.
   /// The field must hold the plain rate before the first call; it is not touched unless varies().
-  void update(Worker worker, const Membranes& membranes, Field<T>& relaxation_rate, Activity& activity);
+  void update(Worker worker, const Membranes& membranes, Field<T>& relaxation_rate, NodeMask& mask);
 
-  /// What relaxation rate and activity were made from, for checkpoints.
+  /// What relaxation rate and mask were made from, for checkpoints.
   [[nodiscard]] const DisplacementWatch::Memory& memory() const { return watch_.memory(); }
   /// Not a pass: makes them again as they were, in place of those of a new stage.
   void restore(const DisplacementWatch::Memory& memory, const Membranes& membranes, Field<T>& relaxation_rate,
-               Activity& activity);
+               NodeMask& mask);
 
  private:
   struct Interval {
@@ -57,8 +57,8 @@ class Indicator {
     std::vector<Interval> columns;
   };
   struct Reach {
-    Coverage coverage;             // empty if the cell's viscosity does not differ
-    Rows covered, covered_before;  // where the coverage is not zero, and was at the update before
+    AreaFraction fraction;         // empty if the cell's viscosity does not differ
+    Rows covered, covered_before;  // where the fraction is not zero, and was at the update before
     Rows reached;                  // where its nodes may spread or interpolate, and what it covers
   };
 
@@ -84,7 +84,7 @@ class Indicator {
   std::vector<std::vector<Interval>> changed_;  // of each lattice row: disjoint, where rates are computed again
 };
 
-extern template class Indicator<float>;
-extern template class Indicator<double>;
+extern template class ViscosityField<float>;
+extern template class ViscosityField<double>;
 
 }  // namespace rouleau::core

@@ -53,7 +53,7 @@ typename Fluid<T>::Energetics Fluid<T>::energetics() const {
     terms.add_to(kinetic, 0, nx, [&](int x) { return 0.5 * (ux[x] * ux[x] + uy[x] * uy[x]); });
     for (double* u : {ux, uy}) u[-1] = u[nx - 1], u[nx] = u[0];
     if (!setting_.membranes) continue;
-    activity_.for_runs(y, [&](const Run& run) {
+    mask_.for_spans(y, [&](const MaskSpan& run) {
       if (!run.active) return;
       const T *fx = force_.x.row(y), *fy = force_.y.row(y);
       terms.add_to(membrane_power, run.begin, run.end, [&](int x) {

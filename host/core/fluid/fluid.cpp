@@ -15,7 +15,7 @@ namespace d2q9 = rouleau::d2q9;
 
 template <class T>
 Fluid<T>::Fluid(const FluidSetting& setting, CollisionOperator collision, const Ranks<2>& ranks)
-    : setting_(setting), collision_(std::move(collision)), lattice_(setting.domain), activity_(setting.domain) {
+    : setting_(setting), collision_(std::move(collision)), lattice_(setting.domain), mask_(setting.domain) {
   if constexpr (std::is_same_v<T, double>) {
     collide_ = collision_.table->collide_f64;
   } else {
@@ -105,12 +105,12 @@ std::size_t Fluid<T>::bytes() const {
 template <class T>
 inline bool Fluid<T>::reaches_border(int y) const {
   constexpr int width = Field<T>::halo;
-  return activity_.at_side(y) || ((y < width || y >= ny() - width) && activity_.any(y));
+  return mask_.at_side(y) || ((y < width || y >= ny() - width) && mask_.any(y));
 }
 
 template <class T>
 void Fluid<T>::clear_force(Range rows) {
-  const auto set = [](T* row, const Run& run, T value) {
+  const auto set = [](T* row, const MaskSpan& run, T value) {
     if (value == T(0)) {
       std::memset(row + run.begin, 0, sizeof(T) * static_cast<std::size_t>(run.end - run.begin));
     } else {
@@ -119,7 +119,7 @@ void Fluid<T>::clear_force(Range rows) {
   };
   const T body_force_x = static_cast<T>(setting_.body_force_x), body_force_y = static_cast<T>(setting_.body_force_y);
   for (int y = rows.begin; y < rows.end; ++y) {
-    activity_.for_runs(y, [&](const Run& run) {
+    mask_.for_spans(y, [&](const MaskSpan& run) {
       if (!run.active) return;
       set(force_.x.row(y), run, body_force_x);
       set(force_.y.row(y), run, body_force_y);
@@ -144,7 +144,7 @@ void Fluid<T>::collide_row(int y, const T* (&in)[9], T* (&out)[9]) {
     d2q9::for_each_velocity([&](auto q) { in[q] += x - at, out[q] += x - at; });
     at = x;
   };
-  activity_.for_runs(y, [&](const Run& run) {
+  mask_.for_spans(y, [&](const MaskSpan& run) {
     move_to(run.begin);
     block.count = static_cast<std::uint32_t>(run.end - run.begin);
     if (run.active && setting_.membranes) {
@@ -204,7 +204,7 @@ void Fluid<T>::moments(int y, std::vector<Moments>& row) const {
   const T* in[9];
   lattice_.row_pointers(parity_, y, in);
   row.assign(static_cast<std::size_t>(nx()), Moments{});
-  activity_.for_runs(y, [&](const Run& run) {
+  mask_.for_spans(y, [&](const MaskSpan& run) {
     for (int x = run.begin; x < run.end; ++x) {
       Moments& m = row[x];
       for (int q = 0; q < 9; ++q) {
@@ -222,19 +222,19 @@ void Fluid<T>::moments(int y, std::vector<Moments>& row) const {
 
 template <class T>
 double Fluid<T>::mass() const {
-  return extremes().mass;
+  return mass_and_speed().mass;
 }
 
 template <class T>
-typename Fluid<T>::Extremes Fluid<T>::extremes() const {
-  static const auto function = Dispatch<FindExtremes, ExtremesTask<T>*>::pick();
+typename Fluid<T>::MassAndSpeed Fluid<T>::mass_and_speed() const {
+  static const auto function = Dispatch<FindMassAndSpeed, MassAndSpeedTask<T>*>::pick();
   ExactSum mass;
   double speed_square = 0, zero = 0;
   for (int y = 0; y < ny(); ++y) {
     const T* in[9];
     lattice_.row_pointers(parity_, y, in);
-    activity_.for_runs(y, [&](const Run& run) {
-      ExtremesTask<T> task{};
+    mask_.for_spans(y, [&](const MaskSpan& run) {
+      MassAndSpeedTask<T> task{};
       d2q9::for_each_velocity([&](auto q) { task.in[q] = in[q] + run.begin; });
       if (run.active && setting_.membranes) {
         task.force[0] = force_.x.row(y) + run.begin;

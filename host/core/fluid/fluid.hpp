@@ -44,7 +44,7 @@ class Fluid {
   [[nodiscard]] const FluidSetting& setting() const { return setting_; }
   /// All rows of the block.
   [[nodiscard]] Range rows() const { return {0, ny()}; }
-  [[nodiscard]] Activity& activity() { return activity_; }
+  [[nodiscard]] NodeMask& mask() { return mask_; }
   /// Force density: what the next step() acts with. It writes velocity() over it, in the same memory.
   [[nodiscard]] VectorField<T>& force() { return force_; }
   /// Velocity in active nodes, halo included: what the last step() has left.
@@ -90,10 +90,10 @@ class Fluid {
   /// Sum of density deviations over all nodes.
   [[nodiscard]] double mass() const;
   /// Mass and largest speed, as moments() would give them, in one sweep.
-  struct Extremes {
+  struct MassAndSpeed {
     double mass, speed;  ///< not a number if any density or velocity is none
   };
-  [[nodiscard]] Extremes extremes() const;
+  [[nodiscard]] MassAndSpeed mass_and_speed() const;
   /// Mean shear stress that the fluid exerts on the lower and the upper wall, along +x, by momentum exchange. NaN
   /// between the start of a fluid at rest (or taken over) and its first step: walls that have just begun to move have
   /// exchanged nothing yet.
@@ -139,7 +139,7 @@ class Fluid {
   Lattice<T> lattice_;
   Parity parity_ = Parity::even;
   bool walls_have_acted_ = false;
-  Activity activity_;
+  NodeMask mask_;
   VectorField<T> force_;
   Field<T> relaxation_rate_;
   std::unique_ptr<Halo<T, 2>> population_halo_, velocity_halo_;  ///< null without other blocks

@@ -10,7 +10,7 @@ namespace rouleau::core {
 
 /// Nodes of one run of a row, and what was found.
 template <class T>
-struct ExtremesTask {
+struct MassAndSpeedTask {
   const T* in[9];
   const T* force[2];  // per node, or null
   T body_force[2];
@@ -20,27 +20,28 @@ struct ExtremesTask {
 };
 
 /// Sum of the densities, largest speed; `zero` becomes NaN with the first value that is not finite.
-struct FindExtremes {
+struct FindMassAndSpeed {
   template <int register_bytes>
-  ROULEAU_ALWAYS_INLINE static void run(ExtremesTask<float>* task) {
+  ROULEAU_ALWAYS_INLINE static void run(MassAndSpeedTask<float>* task) {
     sweep<register_bytes>(*task);
   }
   template <int register_bytes>
-  ROULEAU_ALWAYS_INLINE static void run(ExtremesTask<double>* task) {
+  ROULEAU_ALWAYS_INLINE static void run(MassAndSpeedTask<double>* task) {
     sweep<register_bytes>(*task);
   }
 
  private:
   template <int register_bytes, class T>
-  ROULEAU_ALWAYS_INLINE static void sweep(ExtremesTask<T>& task) {
+  ROULEAU_ALWAYS_INLINE static void sweep(MassAndSpeedTask<T>& task) {
     constexpr int width = register_bytes / sizeof(T);
-    const ExtremesTask<T> t = task;
+    const MassAndSpeedTask<T> t = task;
     const int whole = t.count / width * width;
     sweep<Pack<T, width>>(t, 0, whole, task);
     sweep<Pack<T, 1>>(t, whole, t.count, task);
   }
   template <class S, class T>
-  ROULEAU_ALWAYS_INLINE static void sweep(const ExtremesTask<T>& t, int begin, int end, ExtremesTask<T>& result) {
+  ROULEAU_ALWAYS_INLINE static void sweep(const MassAndSpeedTask<T>& t, int begin, int end,
+                                          MassAndSpeedTask<T>& result) {
     using Wide = typename Pack<double, S::size>::Vector;
     Wide mass_high{}, mass_low{};
     S fastest = 0, zero = 0;

@@ -4,41 +4,41 @@
 
 namespace rouleau::core {
 
-Activity::Activity(const Domain<2>& domain)
+NodeMask::NodeMask(const Domain<2>& domain)
     : domain_(domain),
       nx_(domain.block.size(0)),
       ny_(domain.block.size(1)),
       first_(domain.block.begin[0] % nodes_per_bit),
       words_(bit_of(nx_ - 1) / bits_per_word + 1),
       bits_(static_cast<std::size_t>(words_) * ny_, 0),
-      runs_(static_cast<std::size_t>(ny_), {Run{0, nx_, false}}) {}
+      runs_(static_cast<std::size_t>(ny_), {MaskSpan{0, nx_, false}}) {}
 
-void Activity::clear(int first_row, int end_row) {
+void NodeMask::clear(int first_row, int end_row) {
   std::fill(bits_.begin() + static_cast<std::ptrdiff_t>(words_) * first_row,
             bits_.begin() + static_cast<std::ptrdiff_t>(words_) * end_row, 0);
   for (int y = first_row; y < end_row; ++y) runs_[y].assign(1, {0, nx_, false});
 }
 
-void Activity::mark(int y, int begin, int end) {
+void NodeMask::mark(int y, int begin, int end) {
   if (y < 0 || y >= ny_ || begin >= end) return;
   std::uint64_t* row = bits_.data() + static_cast<std::size_t>(words_) * y;
   const int size = domain_.size[0];
   const int first = end - begin < size ? domain_.wrapped(0, begin) : 0, last = first + std::min(end - begin, size);
   mark_nodes(row, first, std::min(last, size));
   if (last > size) mark_nodes(row, 0, last - size);
-  list_runs(y);
+  list_spans(y);
 }
 
-void Activity::mark_nodes(std::uint64_t* row, int begin, int end) {
+void NodeMask::mark_nodes(std::uint64_t* row, int begin, int end) {
   const int before = (domain_.block.begin[0] - first_) / nodes_per_bit;  // bits of the lattice before those kept here
   const int first = std::max(begin / nodes_per_bit - before, 0);
   const int last = std::min((end - 1) / nodes_per_bit - before, bit_of(nx_ - 1));
   for (int bit = first; bit <= last; ++bit) row[bit / bits_per_word] |= std::uint64_t{1} << (bit % bits_per_word);
 }
 
-void Activity::list_runs(int y) {
+void NodeMask::list_spans(int y) {
   const std::uint64_t* row = bits_.data() + static_cast<std::size_t>(words_) * y;
-  std::vector<Run>& runs = runs_[y];
+  std::vector<MaskSpan>& runs = runs_[y];
   runs.clear();
   for (int x = 0; x < nx_;) {
     const int bit = bit_of(x);
@@ -49,10 +49,10 @@ void Activity::list_runs(int y) {
   }
 }
 
-double Activity::active_fraction() const {
+double NodeMask::active_fraction() const {
   long count = 0;
   for (int y = 0; y < ny_; ++y) {
-    for_runs(y, [&](const Run& run) { count += run.active ? run.end - run.begin : 0; });
+    for_spans(y, [&](const MaskSpan& run) { count += run.active ? run.end - run.begin : 0; });
   }
   return static_cast<double>(count) / (static_cast<double>(nx_) * ny_);
 }

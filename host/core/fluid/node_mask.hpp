@@ -1,4 +1,4 @@
-// Which nodes of the lattice feel a membrane: one bit for 16 nodes, read as runs.
+// Which nodes of the lattice feel a membrane: one bit for 16 nodes, read as spans.
 #pragma once
 
 #include <bit>
@@ -10,19 +10,19 @@
 namespace rouleau::core {
 
 /// Consecutive nodes [begin, end) of a row that are all active or all not.
-struct Run {
+struct MaskSpan {
   int begin, end;
   bool active;
 };
 
 /// Active nodes carry force, velocity and relaxation rate; the others are collided without.
-class Activity {
+class NodeMask {
  public:
   static constexpr int nodes_per_bit = 16;
 
-  Activity() = default;
+  NodeMask() = default;
   /// Nothing is active.
-  explicit Activity(const Domain<2>& domain);
+  explicit NodeMask(const Domain<2>& domain);
 
   /// Takes the marks of rows [first_row, end_row) away.
   void clear(int first_row, int end_row);
@@ -30,10 +30,10 @@ class Activity {
   /// are left out.
   void mark(int y, int begin, int end);
 
-  /// Calls function(Run) for the runs of row y, left to right, covering [0, nx) exactly.
+  /// Calls function(MaskSpan) for the spans of row y, left to right, covering [0, nx) exactly.
   template <class Function>
-  void for_runs(int y, Function function) const {
-    for (const Run& run : runs_[y]) function(run);
+  void for_spans(int y, Function function) const {
+    for (const MaskSpan& run : runs_[y]) function(run);
   }
   [[nodiscard]] bool active(int x, int y) const {
     const int bit = bit_of(x);
@@ -42,7 +42,7 @@ class Activity {
   /// Whether any node of row y is active; whether the first or the last one is.
   [[nodiscard]] bool any(int y) const { return runs_[y].size() > 1 || at_side(y); }
   [[nodiscard]] bool at_side(int y) const {
-    const std::vector<Run>& runs = runs_[y];
+    const std::vector<MaskSpan>& runs = runs_[y];
     return runs.front().active || runs.back().active;
   }
   [[nodiscard]] double active_fraction() const;
@@ -65,15 +65,16 @@ class Activity {
   [[nodiscard]] int bit_of(int x) const { return (x + first_) / nodes_per_bit; }
   /// Nodes [begin, end) of the lattice.
   void mark_nodes(std::uint64_t* row, int begin, int end);
-  /// Lists the runs of row y anew from its bits.
-  void list_runs(int y);
+  /// Lists the spans of row y anew from its bits.
+  void list_spans(int y);
 
   Domain<2> domain_;
   int nx_ = 0, ny_ = 0;
   int first_ = 0;  ///< nodes before the block that its first bit stands for, too
   int words_ = 0;
   std::vector<std::uint64_t> bits_;
-  std::vector<std::vector<Run>> runs_;  ///< of each row: read several times a step, changed when a membrane has moved
+  std::vector<std::vector<MaskSpan>>
+      runs_;  ///< of each row: read several times a step, changed when a membrane has moved
 };
 
 }  // namespace rouleau::core

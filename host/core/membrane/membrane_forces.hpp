@@ -36,7 +36,7 @@ struct MembraneForcesSetup {
   std::vector<MembraneLaws> laws = {};
   /// What the slip correction adds, of each cell type; empty: no correction.
   std::vector<NodeMobility> mobility = {};
-  /// The semi-implicit step of stiff membranes (ForceFilter), with the laws' own stiffness.
+  /// The semi-implicit step of stiff membranes (SemiImplicitFilter), with the laws' own stiffness.
   bool semi_implicit = false;
   /// Kinematic, of the suspending fluid; lattice units. Only for the semi-implicit step.
   double viscosity = 1.0 / 6;
@@ -76,8 +76,8 @@ class MembraneForces {
     bool tension_by_rate = false;
     std::size_t rate_tension = 0;  // in Membranes::state, if there is a tension by rate
     NodeMobility mobility;
-    std::optional<ForceFilter> filter;   // of a semi-implicit step
-    std::size_t held_force[2] = {0, 0};  // of the filter, x and y: in Membranes::state
+    std::optional<SemiImplicitFilter> filter;  // of a semi-implicit step
+    std::size_t held_force[2] = {0, 0};        // of the filter, x and y: in Membranes::state
   };
   /// Constants of every cell: cell c from offset(c) on, with room on both sides for packs that run over its end.
   struct Rest {

@@ -13,7 +13,8 @@ constexpr double steps_held = 8;
 
 }  // namespace
 
-ForceFilter::ForceFilter(int count, double length, double gain, double viscosity, double stretching, double bending)
+SemiImplicitFilter::SemiImplicitFilter(int count, double length, double gain, double viscosity, double stretching,
+                                       double bending)
     : band_(static_cast<std::size_t>(count) - 2) {
   const double mobility = 0.5 * gain / length;
   const double second = mobility * stretching / length, fourth = mobility * bending / (length * length * length);
@@ -55,7 +56,7 @@ ForceFilter::ForceFilter(int count, double length, double gain, double viscosity
   corner_[2] = s00 / determinant;
 }
 
-void ForceFilter::solve_band(double* x, double* y) const {
+void SemiImplicitFilter::solve_band(double* x, double* y) const {
   const std::size_t n = band_;
   x[1] -= lower_[1] * x[0];
   y[1] -= lower_[1] * y[0];
@@ -75,7 +76,7 @@ void ForceFilter::solve_band(double* x, double* y) const {
   }
 }
 
-void ForceFilter::solve(double* x, double* y) const {
+void SemiImplicitFilter::solve(double* x, double* y) const {
   solve_band(x, y);
   const std::size_t n = band_;
   for (double* f : {x, y}) {
@@ -87,7 +88,7 @@ void ForceFilter::solve(double* x, double* y) const {
   }
 }
 
-void ForceFilter::apply(double* force_x, double* force_y, double* held_x, double* held_y) const {
+void SemiImplicitFilter::apply(double* force_x, double* force_y, double* held_x, double* held_y) const {
   const std::size_t count = band_ + 2;
   const auto take_in = [&](double* force, double* held) {
     for (std::size_t i = 0; i < count; ++i) {

@@ -18,12 +18,12 @@ namespace rouleau::core {
 /// stable while the m taken is a little more than the true one (docs/accuracy.md), and fails below relaxation times of
 /// 0.6 whatever it is. K is the same around the cell, so that the sum of the forces stays what it is, zero; their
 /// torque need not (docs: physics, stiff membranes).
-class ForceFilter {
+class SemiImplicitFilter {
  public:
   /// `stretching`: k_s = d tension / d stretch; `bending`: k_b = d moment / d curvature; `length`: l, the mean rest
   /// length of `count` >= 6 segments; `gain`: how many times further a force moves its node than m says; `viscosity`:
   /// kinematic, of the fluid around the cell. Lattice units.
-  ForceFilter(int count, double length, double gain, double viscosity, double stretching, double bending);
+  SemiImplicitFilter(int count, double length, double gain, double viscosity, double stretching, double bending);
 
   /// Replaces both components of a cell's forces F(X + V) by F, after taking them into their means `held_x`, `held_y`.
   void apply(double* force_x, double* force_y, double* held_x, double* held_y) const;

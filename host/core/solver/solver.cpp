@@ -114,10 +114,11 @@ void Solver<T>::run(Task task, Worker worker) {
     case Task::complete_forces:
       return slip_correction_->complete(worker, membranes_);
     case Task::find_nodes:
-      indicator_->measure(worker, membranes_);
-      return indicator_->cover(worker, membranes_);
+      viscosity_field_->measure(worker, membranes_);
+      return viscosity_field_->cover(worker, membranes_);
     case Task::set_viscosity:
-      if (indicator_->due()) indicator_->update(worker, membranes_, fluid_.relaxation_rate(), fluid_.activity());
+      if (viscosity_field_->due())
+        viscosity_field_->update(worker, membranes_, fluid_.relaxation_rate(), fluid_.mask());
       return;
     case Task::end_step:
       if (worker.first()) fluid_.end_step();
@@ -205,7 +206,7 @@ void Solver<T>::make_cells() {
   if (!setup_.interactions.empty()) {
     interaction_forces_ = std::make_unique<InteractionForces>(membranes_, setup_.interactions, setup_.domain);
   }
-  indicator_ = std::make_unique<Indicator<T>>(
+  viscosity_field_ = std::make_unique<ViscosityField<T>>(
       membranes_, std::move(viscosity_ratio), slip_correction_ ? ViscosityMean::harmonic : ViscosityMean::arithmetic,
       slip_correction_ ? slip_correction_->largest_shift() : 0.0, 1 / setup_.tau, setup_.domain);
   coupling_ = std::make_unique<Coupling<T>>(setup_.kernel, setup_.domain);

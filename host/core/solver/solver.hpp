@@ -42,10 +42,10 @@ class Solver {
   [[nodiscard]] Fluid<T>& fluid() { return fluid_; }
   [[nodiscard]] const Membranes& membranes() const { return membranes_; }
   /// Null without cells.
-  [[nodiscard]] const Indicator<T>* indicator() const { return indicator_.get(); }
+  [[nodiscard]] const ViscosityField<T>* viscosity_field() const { return viscosity_field_.get(); }
   /// Relaxation rate and activity as they were at a checkpoint, between two steps; nothing to do without cells.
-  void restore_indicator(const DisplacementWatch::Memory& memory) {
-    if (indicator_) indicator_->restore(memory, membranes_, fluid_.relaxation_rate(), fluid_.activity());
+  void restore_viscosity_field(const DisplacementWatch::Memory& memory) {
+    if (viscosity_field_) viscosity_field_->restore(memory, membranes_, fluid_.relaxation_rate(), fluid_.mask());
   }
   /// A step, for several workers. Before pass [observable_pass()], after a barrier, the state may be observed; who does
   /// not want to runs the passes from rows_pass() on without a stop.
@@ -85,7 +85,7 @@ class Solver {
   std::unique_ptr<SlipCorrection> slip_correction_;
   std::unique_ptr<MembraneForces> membrane_forces_;
   std::unique_ptr<InteractionForces> interaction_forces_;
-  std::unique_ptr<Indicator<T>> indicator_;
+  std::unique_ptr<ViscosityField<T>> viscosity_field_;
   std::unique_ptr<Coupling<T>> coupling_;
   double slight_energy_ = 0;
   std::vector<Pass> passes_;

@@ -39,7 +39,7 @@ struct SolverSetup {
   /// What Membranes::cells name as their types.
   std::vector<CellType> cell_types = {};
   std::vector<Interaction> interactions = {};
-  /// The step of stiff membranes (ForceFilter).
+  /// The step of stiff membranes (SemiImplicitFilter).
   bool semi_implicit = false;
   /// Takes the tangential slip of the immersed boundary out.
   bool slip_correction = false;

@@ -182,10 +182,10 @@ TEST_CASE("bins find every cell and image within reach, in boxes of any size, ov
       bounds.push_back({x, x + largest * uniform(random), y, y + largest * uniform(random)});
     }
     bounds[17].x_min = std::nan("");
-    const Bins bins(bounds, reach, domain);
+    const CellGrid grid(bounds, reach, domain);
     std::vector<int> near;
     for (int a = 0; a < 60; ++a) {
-      bins.find(a, near);
+      grid.find(a, near);
       std::sort(near.begin(), near.end());
       REQUIRE(std::adjacent_find(near.begin(), near.end()) == near.end());
       found += static_cast<long>(near.size());

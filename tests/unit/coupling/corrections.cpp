@@ -29,7 +29,7 @@ double draw(std::mt19937& random) {
   return 2 - (fraction - Kernel::shift);
 }
 
-/// A distance drawn from the smoothed indicator's edge: a unit square, and -1, 0 or 1 with weights 1, 2, 1.
+/// A distance drawn from the smoothed area fraction's edge: a unit square, and -1, 0 or 1 with weights 1, 2, 1.
 double draw_indicator(std::mt19937& random) {
   std::uniform_real_distribution<double> uniform(0, 1);
   std::uniform_int_distribution<int> quarter(0, 3);

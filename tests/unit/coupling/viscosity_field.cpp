@@ -1,4 +1,4 @@
-// Coverage of lattice nodes by cells, the relaxation rate made from it, and the marks of active nodes.
+// AreaFraction of lattice nodes by cells, the relaxation rate made from it, and the marks of active nodes.
 #include "core/coupling/viscosity_field.hpp"
 
 #include <catch2/catch.hpp>
@@ -22,15 +22,15 @@ Membranes polygon(const std::vector<std::pair<double, double>>& nodes) {
   return m;
 }
 
-double value_at(const Coverage& coverage, int x, int y) {
-  const int i = x - coverage.x0, j = y - coverage.y0;
-  if (i < 0 || j < 0 || i >= coverage.width || j >= coverage.height) return 0;
-  return coverage.row(j)[i];
+double value_at(const AreaFraction& fraction, int x, int y) {
+  const int i = x - fraction.x0, j = y - fraction.y0;
+  if (i < 0 || j < 0 || i >= fraction.width || j >= fraction.height) return 0;
+  return fraction.row(j)[i];
 }
-double total(const Coverage& coverage) {
+double total(const AreaFraction& fraction) {
   double sum = 0;
-  for (int j = 0; j < coverage.height; ++j) {
-    for (int i = 0; i < coverage.width; ++i) sum += coverage.row(j)[i];
+  for (int j = 0; j < fraction.height; ++j) {
+    for (int i = 0; i < fraction.width; ++i) sum += fraction.row(j)[i];
   }
   return sum;
 }
@@ -71,31 +71,31 @@ Field<T> plain_rate(int nx, int ny, double rate) {
 }
 
 template <class T>
-void update(Indicator<T>& indicator, const Membranes& m, Field<T>& rate, Activity& activity) {
-  indicator.measure({}, m);
-  REQUIRE(indicator.due());
-  indicator.cover({}, m);
-  indicator.update({}, m, rate, activity);
-  indicator.measure({}, m);
-  REQUIRE_FALSE(indicator.due());
+void update(ViscosityField<T>& viscosity_field, const Membranes& m, Field<T>& rate, NodeMask& mask) {
+  viscosity_field.measure({}, m);
+  REQUIRE(viscosity_field.due());
+  viscosity_field.cover({}, m);
+  viscosity_field.update({}, m, rate, mask);
+  viscosity_field.measure({}, m);
+  REQUIRE_FALSE(viscosity_field.due());
 }
 
 }  // namespace
 
-TEST_CASE("the coverage of a rectangle is exact, on and off the lattice's edges") {
+TEST_CASE("the fraction of a rectangle is exact, on and off the lattice's edges") {
   const double x0 = GENERATE(3.0, 3.5, 3.2, -7.9), y0 = GENERATE(4.0, 4.5, 4.8, -2.1);
   const double x1 = x0 + GENERATE(0.3, 1.0, 5.4), y1 = y0 + GENERATE(0.2, 1.0, 3.7);
   const Membranes m = polygon({{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}});
-  Coverage coverage;
-  cover(m, m.cells[0], coverage);
+  AreaFraction fraction;
+  cover(m, m.cells[0], fraction);
   for (int y = -5; y < 15; ++y) {
     for (int x = -10; x < 15; ++x) {
-      REQUIRE(value_at(coverage, x, y) == Approx(overlap(x0, x1, x) * overlap(y0, y1, y)).margin(1e-14));
+      REQUIRE(value_at(fraction, x, y) == Approx(overlap(x0, x1, x) * overlap(y0, y1, y)).margin(1e-14));
     }
   }
 }
 
-TEST_CASE("the coverage of triangles is that of clipping them to every node's square") {
+TEST_CASE("the fraction of triangles is that of clipping them to every node's square") {
   auto random = generator(81);
   std::uniform_real_distribution<double> uniform(-10, 10);
   double worst = 0;
@@ -106,32 +106,32 @@ TEST_CASE("the coverage of triangles is that of clipping them to every node's sq
     const double turn = (p[1] - p[0]).x() * (p[2] - p[0]).y() - (p[1] - p[0]).y() * (p[2] - p[0]).x();
     if (turn < 0) std::swap(p[1], p[2]);
     const Membranes m = polygon({{p[0].x(), p[0].y()}, {p[1].x(), p[1].y()}, {p[2].x(), p[2].y()}});
-    Coverage coverage;
-    cover(m, m.cells[0], coverage);
+    AreaFraction fraction;
+    cover(m, m.cells[0], fraction);
     for (int y = -12; y <= 12; ++y) {
       for (int x = -12; x <= 12; ++x)
-        worst = std::max(worst, std::abs(value_at(coverage, x, y) - clipped_area(p, x, y)));
+        worst = std::max(worst, std::abs(value_at(fraction, x, y) - clipped_area(p, x, y)));
     }
   }
   CHECK(worst < 1e-12);
 }
 
-TEST_CASE("the coverage adds up to the enclosed area, before and after smoothing") {
+TEST_CASE("the fraction adds up to the enclosed area, before and after smoothing") {
   auto random = generator(82);
   Membranes m = biconcave_cells({{30.3, 20.1, 0.3}, {-1000.7, 400.2, 1.2}, {3, 4, 2.2}});
   deform(m, random, 4, 0.2);
   std::vector<double> scratch;
   for (const CellRange& cell : m.cells) {
-    Coverage coverage;
-    cover(m, cell, coverage);
+    AreaFraction fraction;
+    cover(m, cell, fraction);
     const double area = enclosed_area(m, cell);
-    CHECK(std::abs(total(coverage) - area) < 1e-12 * area);
-    smooth(coverage, scratch);
-    CHECK(std::abs(total(coverage) - area) < 1e-12 * area);
-    for (int j = 0; j < coverage.height; ++j) {
-      for (int i = 0; i < coverage.width; ++i) {
+    CHECK(std::abs(total(fraction) - area) < 1e-12 * area);
+    smooth(fraction, scratch);
+    CHECK(std::abs(total(fraction) - area) < 1e-12 * area);
+    for (int j = 0; j < fraction.height; ++j) {
+      for (int i = 0; i < fraction.width; ++i) {
         const auto at = static_cast<std::size_t>(j);
-        if (i < coverage.begin[at] || i >= coverage.end[at]) REQUIRE(coverage.row(j)[i] == 0);
+        if (i < fraction.begin[at] || i >= fraction.end[at]) REQUIRE(fraction.row(j)[i] == 0);
       }
     }
   }
@@ -145,24 +145,25 @@ TEST_CASE("the relaxation rate follows the arithmetic mean of the viscosities, o
   deform(m, random, 2, 0.1);
   m.cells[1].type = 1;
   const double tau = 0.8;
-  Indicator<double> indicator(m, {5.0, 2.0}, ViscosityMean::arithmetic, 0, 1 / tau, {{nx, ny}, {true, periodic_y}});
+  ViscosityField<double> viscosity_field(m, {5.0, 2.0}, ViscosityMean::arithmetic, 0, 1 / tau,
+                                         {{nx, ny}, {true, periodic_y}});
   auto rate = plain_rate<double>(nx, ny, 1 / tau);
-  Activity activity({{nx, ny}, {true, false}});
+  NodeMask mask({{nx, ny}, {true, false}});
   for (int round = 0; round < 3; ++round) {
-    update(indicator, m, rate, activity);
+    update(viscosity_field, m, rate, mask);
     // Smoothed sum over cells, wrapped, node by node.
     std::vector<double> excess(static_cast<std::size_t>(nx) * ny, 0.0), scratch;
     for (const CellRange& cell : m.cells) {
-      Coverage coverage;
-      cover(m, cell, coverage);
-      smooth(coverage, scratch);
-      for (int j = 0; j < coverage.height; ++j) {
-        for (int i = 0; i < coverage.width; ++i) {
-          const int x = ((coverage.x0 + i) % nx + nx) % nx;
-          int y = coverage.y0 + j;
+      AreaFraction fraction;
+      cover(m, cell, fraction);
+      smooth(fraction, scratch);
+      for (int j = 0; j < fraction.height; ++j) {
+        for (int i = 0; i < fraction.width; ++i) {
+          const int x = ((fraction.x0 + i) % nx + nx) % nx;
+          int y = fraction.y0 + j;
           if (periodic_y) y = (y % ny + ny) % ny;
           if (y < 0 || y >= ny) continue;
-          excess[static_cast<std::size_t>(y * nx + x)] += (cell.type == 0 ? 4.0 : 1.0) * coverage.row(j)[i];
+          excess[static_cast<std::size_t>(y * nx + x)] += (cell.type == 0 ? 4.0 : 1.0) * fraction.row(j)[i];
         }
       }
     }
@@ -170,7 +171,7 @@ TEST_CASE("the relaxation rate follows the arithmetic mean of the viscosities, o
       for (int x = 0; x < nx; ++x) {
         const double expected = 1 / (0.5 + 0.3 * (1 + excess[static_cast<std::size_t>(y * nx + x)]));
         REQUIRE(rate.row(y)[x] == Approx(expected).epsilon(1e-13));
-        if (rate.row(y)[x] != 1 / tau) REQUIRE(activity.active(x, y));
+        if (rate.row(y)[x] != 1 / tau) REQUIRE(mask.active(x, y));
       }
     }
     for (std::size_t i = 0; i < m.x.size(); ++i) m.x[i] += 13.7, m.y[i] += periodic_y ? 20.3 : -0.3;
@@ -184,13 +185,13 @@ TEST_CASE("every node that a membrane can reach before the next update is marked
   const double ratio = GENERATE(1.0, 5.0);
   Membranes m = biconcave_cells({{-170.4, 20.1, 0.3}, {30.2, 40, 1.2}});
   deform(m, random, 2, 0.1);
-  Indicator<float> indicator(m, {ratio}, ViscosityMean::arithmetic, 0, 1.0, {{nx, ny}, {true, false}});
-  CHECK(indicator.varies() == (ratio != 1));
+  ViscosityField<float> viscosity_field(m, {ratio}, ViscosityMean::arithmetic, 0, 1.0, {{nx, ny}, {true, false}});
+  CHECK(viscosity_field.varies() == (ratio != 1));
   auto rate = plain_rate<float>(nx, ny, 1.0);
-  Activity activity({{nx, ny}, {true, false}});
-  update(indicator, m, rate, activity);
-  CHECK(activity.active_fraction() < 0.6);
-  CHECK(activity.active_fraction() > 0.1);
+  NodeMask mask({{nx, ny}, {true, false}});
+  update(viscosity_field, m, rate, mask);
+  CHECK(mask.active_fraction() < 0.6);
+  CHECK(mask.active_fraction() > 0.1);
   for (int trial = 0; trial < 20; ++trial) {
     for (std::size_t i = 0; i < m.x.size(); ++i) {
       const int x = static_cast<int>(std::floor(m.x[i] + 0.99 * uniform(random)));
@@ -198,7 +199,7 @@ TEST_CASE("every node that a membrane can reach before the next update is marked
       for (int dy = -1; dy <= 2; ++dy) {
         for (int dx = -1; dx <= 2; ++dx) {
           if (y + dy < 0 || y + dy >= ny) continue;
-          REQUIRE(activity.active(((x + dx) % nx + nx) % nx, y + dy));
+          REQUIRE(mask.active(((x + dx) % nx + nx) % nx, y + dy));
         }
       }
     }
@@ -207,41 +208,41 @@ TEST_CASE("every node that a membrane can reach before the next update is marked
 
 TEST_CASE("an update is due once a node has moved by a tenth of a spacing, and for positions that are not numbers") {
   Membranes m = biconcave_cells({{30, 20, 0}, {30, 40, 0}});
-  Indicator<double> indicator(m, {5.0}, ViscosityMean::arithmetic, 0, 1.0, {{80, 64}, {true, false}});
+  ViscosityField<double> viscosity_field(m, {5.0}, ViscosityMean::arithmetic, 0, 1.0, {{80, 64}, {true, false}});
   auto rate = plain_rate<double>(80, 64, 1.0);
-  Activity activity({{80, 64}, {true, false}});
-  update(indicator, m, rate, activity);
+  NodeMask mask({{80, 64}, {true, false}});
+  update(viscosity_field, m, rate, mask);
   m.x[150] += 0.099;
-  indicator.measure({}, m);
-  CHECK_FALSE(indicator.due());
+  viscosity_field.measure({}, m);
+  CHECK_FALSE(viscosity_field.due());
   m.y[150] += 0.03;
-  run_pass(2, [&](Worker worker) { indicator.measure(worker, m); });
-  CHECK(indicator.due());
+  run_pass(2, [&](Worker worker) { viscosity_field.measure(worker, m); });
+  CHECK(viscosity_field.due());
   const auto update_by_two = [&] {
-    run_pass(2, [&](Worker worker) { indicator.cover(worker, m); });
-    run_pass(2, [&](Worker worker) { indicator.update(worker, m, rate, activity); });
+    run_pass(2, [&](Worker worker) { viscosity_field.cover(worker, m); });
+    run_pass(2, [&](Worker worker) { viscosity_field.update(worker, m, rate, mask); });
   };
   update_by_two();
   m.x[3] = std::nan("");
   m.y[160] = 1e300;
-  indicator.measure({}, m);
-  CHECK(indicator.due());
+  viscosity_field.measure({}, m);
+  CHECK(viscosity_field.due());
   update_by_two();
 }
 
 TEST_CASE("where no cell is any more, the plain rate is back to the last bit") {
   Membranes m = biconcave_cells({{30, 20, 0}});
-  Indicator<float> indicator(m, {5.0}, ViscosityMean::arithmetic, 0, 1 / 0.7, {{160, 64}, {true, false}});
+  ViscosityField<float> viscosity_field(m, {5.0}, ViscosityMean::arithmetic, 0, 1 / 0.7, {{160, 64}, {true, false}});
   auto rate = plain_rate<float>(160, 64, 1 / 0.7);
-  Activity activity({{160, 64}, {true, false}});
-  update(indicator, m, rate, activity);
+  NodeMask mask({{160, 64}, {true, false}});
+  update(viscosity_field, m, rate, mask);
   CHECK(rate.row(20)[30] != static_cast<float>(1 / 0.7));
   for (double& x : m.x) x += 80;
-  update(indicator, m, rate, activity);
+  update(viscosity_field, m, rate, mask);
   for (int y = 0; y < 64; ++y) {
     for (int x = 0; x < 80; ++x) REQUIRE(rate.row(y)[x] == static_cast<float>(1 / 0.7));
   }
-  CHECK_FALSE(activity.active(16, 20));
+  CHECK_FALSE(mask.active(16, 20));
 }
 
 TEST_CASE("an update after some cells have moved gives what all cells anew would give, to the last bit") {
@@ -250,25 +251,25 @@ TEST_CASE("an update after some cells have moved gives what all cells anew would
   const bool periodic_y = GENERATE(false, true);
   Membranes m = biconcave_cells({{-170.4, 20.1, 0.3}, {30.2, 40, 1.2}, {32.1, 25.0, -0.2}, {60.0, 33.0, 0.9}});
   deform(m, random, 2, 0.1);
-  Indicator<double> kept(m, {5.0}, ViscosityMean::arithmetic, 0, 1.25, {{nx, ny}, {true, periodic_y}});
+  ViscosityField<double> kept(m, {5.0}, ViscosityMean::arithmetic, 0, 1.25, {{nx, ny}, {true, periodic_y}});
   auto rate = plain_rate<double>(nx, ny, 1.25);
-  Activity activity({{nx, ny}, {true, false}});
-  update(kept, m, rate, activity);
+  NodeMask mask({{nx, ny}, {true, false}});
+  update(kept, m, rate, mask);
   for (int round = 0; round < 6; ++round) {
     const CellRange& cell = m.cells[static_cast<std::size_t>(round % 4)];
     for (int i = cell.first; i < cell.end(); ++i) {
       m.x[static_cast<std::size_t>(i)] += 3.3 * round;
       m.y[static_cast<std::size_t>(i)] -= 0.4;
     }
-    update(kept, m, rate, activity);
-    Indicator<double> fresh(m, {5.0}, ViscosityMean::arithmetic, 0, 1.25, {{nx, ny}, {true, periodic_y}});
+    update(kept, m, rate, mask);
+    ViscosityField<double> fresh(m, {5.0}, ViscosityMean::arithmetic, 0, 1.25, {{nx, ny}, {true, periodic_y}});
     auto fresh_rate = plain_rate<double>(nx, ny, 1.25);
-    Activity fresh_activity({{nx, ny}, {true, false}});
+    NodeMask fresh_activity({{nx, ny}, {true, false}});
     update(fresh, m, fresh_rate, fresh_activity);
     for (int y = 0; y < ny; ++y) {
       for (int x = 0; x < nx; ++x) {
         REQUIRE(rate.row(y)[x] == fresh_rate.row(y)[x]);
-        REQUIRE(activity.active(x, y) == fresh_activity.active(x, y));
+        REQUIRE(mask.active(x, y) == fresh_activity.active(x, y));
       }
     }
   }

@@ -63,6 +63,11 @@ TEST_CASE("multiples of 2^-60 are added as the integers that they are") {
   CHECK(sum_of(values) == static_cast<double>(exact) * 0x1p-60);
 }
 
+TEST_CASE("sums of tiny terms are accurate") {
+  CHECK(sum_of(std::vector<double>(4096, 1e-29)) == Approx(4.096e-26).epsilon(1e-6));
+  CHECK(sum_of({1e-25, -3e-32, 0x1p-120}) == Approx(1e-25 - 3e-32).epsilon(1e-10));
+}
+
 TEST_CASE("large terms that cancel leave the small ones") {
   CHECK(sum_of({1e13, 1e-20, -1e13}) == Approx(1e-20).epsilon(1e-3));
   CHECK(sum_of({2047.5, 3e-18, -2047.5, 0x1p20, -0x1p20}) == Approx(3e-18).epsilon(1e-5));

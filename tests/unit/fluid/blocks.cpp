@@ -28,10 +28,10 @@ std::unique_ptr<Fluid<T>> noisy_fluid(FluidSetting setting, const Domain<2>& dom
   });
   for (int y = 0; y < domain.block.size(1) && setting.membranes; ++y) {
     const int row = y + domain.block.begin[1];
-    fluid->activity().mark(y, 5 + row, 30 + row);
+    fluid->mask().mark(y, 5 + row, 30 + row);
     for (int x = 0; x < domain.block.size(0) && setting.viscosity_contrast; ++x) {
       const double rate = setting.relaxation_rate * (1 + 100 * noise(x + domain.block.begin[0], row, 6));
-      if (fluid->activity().active(x, y)) fluid->relaxation_rate().row(y)[x] = static_cast<T>(rate);
+      if (fluid->mask().active(x, y)) fluid->relaxation_rate().row(y)[x] = static_cast<T>(rate);
     }
   }
   return fluid;
@@ -44,7 +44,7 @@ void spread(Fluid<T>& fluid, int step) {
   fluid.clear_force(fluid.rows());
   for (int y = 0; y < domain.block.size(1); ++y) {
     for (int x = 0; x < domain.block.size(0); ++x) {
-      if (!fluid.activity().active(x, y)) continue;
+      if (!fluid.mask().active(x, y)) continue;
       fluid.force().x.row(y)[x] += static_cast<T>(noise(x + domain.block.begin[0], y + domain.block.begin[1], step));
       fluid.force().y.row(y)[x] += static_cast<T>(noise(x + domain.block.begin[0], y + domain.block.begin[1], -step));
     }
@@ -103,14 +103,14 @@ void compare(const FluidSetting& setting, const Decomposition<2>& cut, int steps
         const int column = x + domain.block.begin[0], row = y + domain.block.begin[1];
         for (int q = 0; q < 9; ++q)
           different += block->population(q, x, y) != whole->population(q, column, row) ? 1 : 0;
-        if (!setting.membranes || !whole->activity().active(column, row)) continue;
+        if (!setting.membranes || !whole->mask().active(column, row)) continue;
         // What a stencil with this base node reads, halo and mirror images beyond walls included.
         for (int j = -1; j <= 2; ++j) {
           for (int i = -1; i <= 2; ++i) {
             const int at_x = setting.domain.wrapped(0, column + i), at_y = setting.domain.wrapped(1, row + j);
-            if (at_y >= 0 && !whole->activity().active(at_x, at_y)) continue;
+            if (at_y >= 0 && !whole->mask().active(at_x, at_y)) continue;
             const int mirror = at_y >= 0 ? at_y : mirrored(row + j, setting.domain.size[1]);
-            if (at_y < 0 && !whole->activity().active(at_x, mirror)) continue;
+            if (at_y < 0 && !whole->mask().active(at_x, mirror)) continue;
             const VectorField<T>&a = block->velocity(), &b = whole->velocity();
             const int whole_row = at_y >= 0 ? at_y : row + j;
             different += a.x.row(y + j)[x + i] != b.x.row(whole_row)[at_x] ? 1 : 0;

@@ -1,4 +1,4 @@
-// In-place streaming, exchange across borders, activity: against plain two-array streaming and by conservation.
+// In-place streaming across borders, the node mask: against plain two-array streaming and by conservation.
 #include <array>
 #include <catch2/catch.hpp>
 #include <random>
@@ -164,7 +164,7 @@ TEMPLATE_TEST_CASE("mass and largest speed are those of the moments, and a value
     fluid.moments(y, row);
     for (const Moments& m : row) mass += m.density, square = std::max(square, m.ux * m.ux + m.uy * m.uy);
   }
-  const auto found = fluid.extremes();
+  const auto found = fluid.mass_and_speed();
   if (bad >= 0) {
     CHECK(std::isnan(found.mass));
     CHECK(std::isnan(found.speed));
@@ -176,29 +176,29 @@ TEMPLATE_TEST_CASE("mass and largest speed are those of the moments, and a value
 }
 
 TEST_CASE("runs cover every row once and follow the marks, periodic along x") {
-  Activity activity({{100, 4}, {true, false}});
-  activity.mark(1, 90, 105);
-  activity.mark(2, -3, 2);
-  activity.mark(7, 0, 5);
+  NodeMask mask({{100, 4}, {true, false}});
+  mask.mark(1, 90, 105);
+  mask.mark(2, -3, 2);
+  mask.mark(7, 0, 5);
   int runs_of_first = 0;
-  activity.for_runs(0, [&](const Run&) { ++runs_of_first; });
+  mask.for_spans(0, [&](const MaskSpan&) { ++runs_of_first; });
   CHECK(runs_of_first == 1);
   for (int y = 0; y < 4; ++y) {
     int x = 0;
     bool any = false;
-    activity.for_runs(y, [&](const Run& run) {
+    mask.for_spans(y, [&](const MaskSpan& run) {
       CHECK(run.begin == x);
-      if (x > 0) CHECK(run.active != activity.active(x - 1, y));
+      if (x > 0) CHECK(run.active != mask.active(x - 1, y));
       x = run.end;
       any = any || run.active;
-      for (int i = run.begin; i < run.end; ++i) CHECK(activity.active(i, y) == run.active);
+      for (int i = run.begin; i < run.end; ++i) CHECK(mask.active(i, y) == run.active);
     });
     CHECK(x == 100);
-    CHECK(activity.any(y) == any);
+    CHECK(mask.any(y) == any);
   }
-  for (int x : {0, 4, 90, 99}) CHECK(activity.active(x, 1));
-  CHECK(activity.active(97, 2));
-  CHECK(activity.active(1, 2));
-  CHECK_FALSE(activity.active(50, 2));
-  CHECK_FALSE(activity.active(0, 3));
+  for (int x : {0, 4, 90, 99}) CHECK(mask.active(x, 1));
+  CHECK(mask.active(97, 2));
+  CHECK(mask.active(1, 2));
+  CHECK_FALSE(mask.active(50, 2));
+  CHECK_FALSE(mask.active(0, 3));
 }

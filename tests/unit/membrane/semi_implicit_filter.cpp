@@ -33,7 +33,7 @@ TEST_CASE("the filter is the inverse of the cyclic matrix of stretching and bend
                         exact_y = share * y + (1 - share) * matrix.partialPivLu().solve(y);
   const double sum = x.sum();
   std::vector<double> held_x(static_cast<std::size_t>(n)), held_y = held_x;
-  const ForceFilter filter(n, length, 1, 1.0 / 6, stretching, bending);
+  const SemiImplicitFilter filter(n, length, 1, 1.0 / 6, stretching, bending);
   filter.apply(x.data(), y.data(), held_x.data(), held_y.data());
   // Rounding, times the condition number of at most 1 + 16 m k.
   const double tolerance = 1e-15 * matrix.norm() + 1e-14;

@@ -200,6 +200,10 @@ TEST_CASE("cells over periodic borders give the same bits from any blocks") {
   const std::string driven = R"(/stages=[{"name": "driven", "pressure_gradient": "2e4 Pa/m", "duration": "1 s"}])";
   compare_cuts<double>({"over x", four_cells, {shear, contrast}, 130, 0});
   compare_cuts<double>({"over x and y", four_cells, {driven, no_strain, contrast, "/domain/y=\"periodic\""}, -140, 60});
+  compare_cuts<double>({"its own neighbour",
+                        four_cells,
+                        {shear, contrast, R"(/domain/size=["8.624 um", "25.088 um"])", "/domain/nodes=[44, 128]",
+                         R"(/cells=[{"type": "rbc", "at": ["4 um", "12 um"]}])"}});
   compare_cuts<double>({"driven channel", four_cells, {driven, no_strain}, 100, 10});
 }
 
