@@ -61,10 +61,8 @@ void add_places(std::map<std::string, std::vector<std::string>>& places, const J
   if (rule.contains("items")) add_places(places, schema, rule["items"], pointer + "/N", depth + 1);
   if (rule.contains("additionalProperties"))
     add_places(places, schema, rule["additionalProperties"], pointer + "/NAME", depth + 1);
-  for (const char* choice : {"oneOf", "anyOf", "allOf"}) {
-    if (!rule.contains(choice)) continue;
-    for (const auto& branch : rule[choice]) add_places(places, schema, branch, pointer, depth + 1);
-  }
+  if (!rule.contains("oneOf")) return;
+  for (const auto& branch : rule["oneOf"]) add_places(places, schema, branch, pointer, depth + 1);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "base/text.hpp"
+#include "embedded_schemas.hpp"
 #include "json/document.hpp"
 #include "json/schema.hpp"
 #include "json/shown.hpp"
@@ -42,9 +43,14 @@ std::string lock_text(std::vector<LockedPlugin> plugins) {
   return lock.dump(2) + '\n';
 }
 
+const nlohmann::json& lock_schema() {
+  static const auto schema = nlohmann::json::parse(lock_schema_text);
+  return schema;
+}
+
 Lock read_lock(const fs::path& file, const std::string& renewal) {
   const json::Document document = json::Document::read(file);
-  json::validate(document, json::lock_schema());
+  json::validate(document, lock_schema());
   Lock lock{file, renewal, sha256(file), {}};
   std::set<std::string> seen;
   const auto& plugins = document.root()["plugins"];

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,8 @@ LockedPlugin lock_plugin(const Manifest& manifest);
 /// Text of a lock, by kind and id.
 std::string lock_text(std::vector<LockedPlugin> plugins);
 
+/// The schema of a lock.
+const nlohmann::json& lock_schema();
 /// Throws Error(input_output) for a lock that cannot be read, Error(bad_input) with its place for a damaged one.
 /// `renewal`: what to do when a plugin is meant to differ from it.
 Lock read_lock(const std::filesystem::path& file, const std::string& renewal);

@@ -8,6 +8,7 @@
 #include <limits>
 #include <sstream>
 
+#include "embedded_schemas.hpp"
 #include "json/document.hpp"
 #include "json/schema.hpp"
 #include "manifest_reader.hpp"
@@ -81,8 +82,13 @@ json::Document read_manifest_document(const fs::path& file) {
   return json::Document::parse(text.str(), file.string(), Cause::plugin_refused);
 }
 
+const Json& manifest_schema() {
+  static const auto schema = Json::parse(manifest_schema_text);
+  return schema;
+}
+
 Manifest read_manifest(const json::Document& document, const fs::path& file, const units::Units& units) {
-  json::validate(document, json::manifest_schema(), Cause::plugin_refused);
+  json::validate(document, manifest_schema(), Cause::plugin_refused);
   const Json& root = document.root();
 
   Manifest manifest;

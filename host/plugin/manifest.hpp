@@ -69,6 +69,8 @@ struct Manifest {
   [[nodiscard]] std::optional<std::size_t> parameter_with(Role role) const;
 };
 
+/// The schema of a manifest.
+const nlohmann::json& manifest_schema();
 /// Text of a manifest as JSON with places. Throws Error(plugin_refused) when it cannot be read or is no JSON.
 json::Document read_manifest_document(const std::filesystem::path& file);
 /// Validates a manifest. Throws Error(plugin_refused) with place, problem and remedy.

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "base/text.hpp"
+#include "embedded_schemas.hpp"
 #include "json/document.hpp"
 #include "json/json_pointer.hpp"
 #include "json/schema.hpp"
@@ -161,6 +162,11 @@ plan::NumericsChoice fill_in_numerics(json::Document& document, const std::files
 
 }  // namespace
 
+const nlohmann::json& scene_schema() {
+  static const auto schema = nlohmann::json::parse(scene_schema_text);
+  return schema;
+}
+
 Place Scene::place(const std::string& pointer) const {
   return document ? document->place(pointer) : Place{"", pointer, 0, 0};
 }
@@ -169,7 +175,7 @@ Scene read_unpacked_scene(const std::filesystem::path& file, const std::vector<s
                           const plan::NumericsBounds& bounds) {
   auto document = std::make_shared<json::Document>(json::Document::read(file));
   for (const auto& assignment : overrides) document->set(assignment);
-  json::validate(*document, json::scene_schema());
+  json::validate(*document, scene_schema());
   std::optional<plan::NumericsChoice> choice;
   if (plan::leaves_numerics_open(document->root())) choice = fill_in_numerics(*document, file.parent_path(), bounds);
   Scene scene = read_values(*document, file.parent_path());

@@ -178,6 +178,9 @@ struct Scene {
   [[nodiscard]] Place place(const std::string& pointer) const;
 };
 
+/// The schema of a scene.
+const nlohmann::json& scene_schema();
+
 /// Reads, validates against the shipped schema and converts a scene.
 /// `overrides` are "POINTER=VALUE" as given to --set; VALUE is any JSON value, or a bare word taken as a string.
 /// `bounds` are for a scene that leaves its numerics open. Throws Error with Cause::bad_input (or input_output when

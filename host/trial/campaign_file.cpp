@@ -61,7 +61,7 @@ double read_time_limit(const CampaignKind& kind, const json::Document& document)
 }  // namespace
 
 void check_scene(const Json& scene, const std::string& name) {
-  json::validate(json::Document::parse(scene.dump(2), name), json::scene_schema());
+  json::validate(json::Document::parse(scene.dump(2), name), scene::scene_schema());
 }
 
 CampaignFile read_campaign_file(const CampaignKind& kind, const fs::path& file, const Json& schema) {

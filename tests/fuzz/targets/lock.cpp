@@ -1,7 +1,6 @@
 // Locks: which plugins a scene may use.
 #include "plugin/lock.hpp"
 
-#include "json/schema.hpp"
 #include "target.hpp"
 
 using namespace rouleau;
@@ -24,4 +23,4 @@ void fuzz_target(std::string_view bytes) {
   });
 }
 
-fuzz::Form fuzz_form() { return {&json::lock_schema(), {"trt", "1.0.0"}}; }
+fuzz::Form fuzz_form() { return {&plugin::lock_schema(), {"trt", "1.0.0"}}; }

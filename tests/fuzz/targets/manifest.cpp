@@ -2,7 +2,6 @@
 #include "plugin/manifest.hpp"
 
 #include "json/document.hpp"
-#include "json/schema.hpp"
 #include "plugin/quantities.hpp"
 #include "target.hpp"
 
@@ -21,7 +20,7 @@ void fuzz_target(std::string_view bytes) {
 }
 
 fuzz::Form fuzz_form() {
-  fuzz::Form form{&json::manifest_schema(), {"x-own"}};
+  fuzz::Form form{&plugin::manifest_schema(), {"x-own"}};
   for (const auto kind : {plugin::ModelKind::collision, plugin::ModelKind::membrane, plugin::ModelKind::interaction}) {
     for (const auto& list : {plugin::inputs_of(kind), plugin::outputs_of(kind)}) {
       form.words.insert(form.words.end(), list.begin(), list.end());

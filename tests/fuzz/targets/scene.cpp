@@ -8,4 +8,4 @@ void fuzz_target(std::string_view bytes) {
   fuzz::plan_scene(file.path());
 }
 
-fuzz::Form fuzz_form() { return {&json::scene_schema(), fuzz::plugin_words()}; }
+fuzz::Form fuzz_form() { return {&scene::scene_schema(), fuzz::plugin_words()}; }

@@ -21,14 +21,6 @@ std::string message_of(const std::string& text, const Json& schema) {
   return "";
 }
 
-void walk(const Json& rule, const std::string& pointer,
-          const std::function<void(const Json&, const std::string&)>& visit) {
-  visit(rule, pointer);
-  for (const auto& [key, part] : rule.items()) {
-    if (part.is_structured()) walk(part, pointer + "/" + key, visit);
-  }
-}
-
 }  // namespace
 
 TEST_CASE("the fault that comes first in the text is the one that is told") {
@@ -62,9 +54,17 @@ TEST_CASE("keys made for authors by a pattern are allowed") {
   CHECK_THAT(message_of(R"({"y-mine": [1]})", schema), Contains("unknown key \"y-mine\""));
 }
 
-TEST_CASE("a keyword that we have no words for is told in the validator's") {
-  CHECK_THAT(message_of(R"({"a": 3})", Json::parse(R"({"properties": {"a": {"multipleOf": 2}}})")),
-             Contains("a.json:1:7 /a\n  this does not fit the schema: "));
+TEST_CASE("a value that fits two branches of a oneOf is refused") {
+  const auto schema = Json::parse(R"({"properties": {"a": {"oneOf": [{"type": "number"}, {"type": "integer"}]}}})");
+  CHECK(message_of(R"({"a": 1.5})", schema).empty());
+  CHECK_THAT(message_of(R"({"a": 1})", schema), Contains("a.json:1:7 /a\n  a can be read in 2 ways"));
+}
+
+TEST_CASE("an object with more keys than it may have is refused") {
+  const auto schema = Json::parse(R"({"properties": {"a": {"maxProperties": 1}}})");
+  CHECK(message_of(R"({"a": {"b": 1}})", schema).empty());
+  CHECK_THAT(message_of(R"({"a": {"b": 1, "c": 2}})", schema),
+             Contains("a.json:1:7 /a\n  found 2 keys; a may have at most 1"));
 }
 
 TEST_CASE("a fault in a value that set made names the option") {
@@ -111,22 +111,4 @@ TEST_CASE("the nearest word is the one a user meant") {
   CHECK(nearest("x", {"y"}).empty());
   CHECK(nearest("", {"y"}).empty());
   CHECK(nearest(std::string(100000, 'a'), {"aaaa"}).empty());
-}
-
-TEST_CASE("the shipped schemas are draft 7, close every object and document every key") {
-  for (const auto* schema : {&rouleau::json::scene_schema(), &rouleau::json::manifest_schema()}) {
-    CHECK((*schema)["$schema"] == "http://json-schema.org/draft-07/schema#");
-    CHECK(schema->contains("title"));
-    walk(*schema, "", [&](const Json& rule, const std::string& pointer) {
-      INFO(pointer);
-      if (!rule.is_object() || !rule.contains("properties") || !rule["properties"].is_object()) return;
-      if (rule.contains("type") && rule["type"] == "object") CHECK(rule.contains("additionalProperties"));
-      for (const auto& [key, part] : rule["properties"].items()) {
-        INFO(key);
-        const auto& target =
-            part.contains("$ref") ? schema->at(Json::json_pointer(part["$ref"].get<std::string>().substr(1))) : part;
-        CHECK((part.contains("description") || target.contains("description")));
-      }
-    });
-  }
 }

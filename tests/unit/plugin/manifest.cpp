@@ -149,7 +149,7 @@ TEST_CASE("a manifest's numbers become SI and its order of parameters is kept") 
 
 TEST_CASE("the host knows every role of the schema, and a unit of each role's own dimension") {
   const Json& words =
-      rouleau::json::manifest_schema()["properties"]["parameters"]["items"]["properties"]["role"]["enum"];
+      rouleau::plugin::manifest_schema()["properties"]["parameters"]["items"]["properties"]["role"]["enum"];
   REQUIRE(words.size() >= 8);
   const Units units;
   for (const std::string name : words) {
