@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "files/run_directory.hpp"
+#include "plan/read_scene.hpp"
 #include "run/simulation.hpp"
 
 namespace rouleau::bench {
@@ -28,7 +29,7 @@ class Scratch {
 };
 
 run::Summary run(const std::vector<std::string>& overrides, int threads, long max_steps) {
-  const scene::Scene scene = scene::read_scene(ROULEAU_SCENES "/four-cells-shear.json", overrides);
+  const scene::Scene scene = plan::read_scene(ROULEAU_SCENES "/four-cells-shear.json", overrides);
   const plugin::Catalog catalog({ROULEAU_PLUGINS});
   const plan::Plan plan = plan::make_plan(scene, catalog);
   const Scratch scratch;

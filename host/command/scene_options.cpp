@@ -1,8 +1,7 @@
 #include "scene_options.hpp"
 
 #include "command_line.hpp"
-#include "lock_scene.hpp"
-#include "plan/numerics_auto_limits.hpp"
+#include "plan/read_scene.hpp"
 
 namespace rouleau::command {
 

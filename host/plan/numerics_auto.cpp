@@ -13,6 +13,7 @@
 #include "scene/driving_flow.hpp"
 #include "scene/scene_reader.hpp"
 #include "shape/outline.hpp"
+#include "shape/random_cells.hpp"
 #include "step_cost.hpp"
 
 namespace rouleau::plan {
@@ -90,13 +91,13 @@ Json three_digits_below(double value) {
 class Problem {
  public:
   Problem(const scene::Scene& draft, const Json& written, const NumericsBounds& bounds);
-  [[nodiscard]] NumericsChoice solve() const;
+  [[nodiscard]] scene::NumericsChoice solve() const;
 
  private:
   struct Trial {
     std::array<int, 2> nodes{};
     double tau = 1, density_factor = 1, cost = 0;
-    ErrorShares error;
+    scene::ErrorShares error;
   };
   [[nodiscard]] std::vector<std::array<int, 2>> lattices() const;
   [[nodiscard]] bool meets_target(const Trial& trial) const { return trial.error.total() <= target_ * (1 + 1e-9); }
@@ -110,7 +111,7 @@ class Problem {
     return steady_rate * strain_ / std::sqrt(0.5 + 0.5 * std::max(1.0, viscosity_ratio_));
   }
   [[nodiscard]] std::string why_density_factor(const Trial& best) const;
-  [[nodiscard]] NumericsChoice chosen(const Trial& best) const;
+  [[nodiscard]] scene::NumericsChoice chosen(const Trial& best) const;
   [[nodiscard]] Json pinned(const char* key) const { return numerics_.contains(key) ? numerics_.at(key) : Json(); }
 
   const scene::Scene& scene_;
@@ -183,7 +184,7 @@ bool Problem::better(const Trial& a, const Trial& b) const {
   return meets_target(a) ? a.cost < b.cost : a.error.total() < b.error.total();
 }
 
-NumericsChoice Problem::solve() const {
+scene::NumericsChoice Problem::solve() const {
   std::vector<double> taus(relaxation_times.begin(), relaxation_times.end());
   if (!pinned("tau").is_null()) taus = {pinned("tau").get<double>()};
   std::optional<Trial> best;
@@ -264,8 +265,8 @@ std::string Problem::why_density_factor(const Trial& best) const {
   return why;
 }
 
-NumericsChoice Problem::chosen(const Trial& best) const {
-  NumericsChoice choice{target_, steady_, best.error, {}, {}};
+scene::NumericsChoice Problem::chosen(const Trial& best) const {
+  scene::NumericsChoice choice{target_, steady_, best.error, {}, {}};
   const auto choose = [&](const std::string& pointer, const Json& value, const std::string& why) {
     choice.values.push_back({pointer, value, why});
   };
@@ -314,12 +315,12 @@ NumericsChoice Problem::chosen(const Trial& best) const {
   return choice;
 }
 
-}  // namespace
-
+/// Gives "numerics": "auto" the form of an object.
 void spell_out_numerics(json::Document& document) {
   if (!document.root().at("numerics").is_object()) document.put("/numerics", {{"auto", Json::object()}}, origin);
 }
 
+/// Gives a document values with which it can be read; they mean nothing.
 void put_draft_numerics(json::Document& document) {
   const Json root = document.root();
   const scene::SceneFields fields(document);
@@ -342,18 +343,22 @@ void put_draft_numerics(json::Document& document) {
   }
 }
 
-void put_choice(json::Document& document, const NumericsChoice& choice) {
-  for (const ChosenValue& value : choice.values) document.put(value.pointer, value.value, origin);
-}
-
-NumericsChoice choose_numerics(const scene::Scene& draft, const Json& written, const NumericsBounds& bounds) {
-  return Problem(draft, written, bounds).solve();
-}
-
-bool leaves_numerics_open(const Json& scene) {
-  if (!scene.is_object() || !scene.contains("numerics")) return false;
-  const Json& numerics = scene.at("numerics");
+bool leaves_numerics_open(const Json& numerics) {
   return numerics == "auto" || (numerics.is_object() && numerics.contains("auto"));
+}
+
+}  // namespace
+
+std::optional<scene::NumericsChoice> fill_in_numerics(json::Document& document, const NumericsBounds& bounds) {
+  if (!leaves_numerics_open(document.root().value("numerics", Json()))) return std::nullopt;
+  spell_out_numerics(document);
+  auto draft = std::make_shared<json::Document>(document);
+  put_draft_numerics(*draft);
+  scene::Scene scene = scene::read_scene(std::move(draft));
+  shape::add_random_cells(scene);
+  scene::NumericsChoice choice = Problem(scene, document.root(), bounds).solve();
+  for (const scene::ChosenValue& value : choice.values) document.put(value.pointer, value.value, origin);
+  return choice;
 }
 
 }  // namespace rouleau::plan

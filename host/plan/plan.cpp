@@ -237,9 +237,9 @@ void choose_coupling(Plan& plan) {
                   (stiff && !plan.semi_implicit ? "; at this numerics.tau the semi-implicit step would not help" : "");
 }
 
-nlohmann::json choice_json(const NumericsChoice& choice) {
+nlohmann::json choice_json(const scene::NumericsChoice& choice) {
   nlohmann::json values = nlohmann::json::array();
-  for (const ChosenValue& chosen : choice.values) {
+  for (const scene::ChosenValue& chosen : choice.values) {
     values.push_back({{"pointer", chosen.pointer}, {"value", chosen.value}, {"why", chosen.why}});
   }
   return {{"target_error", choice.target},

@@ -56,10 +56,10 @@ void write_wells(std::ostringstream& out, const nlohmann::json& wells) {
   }
 }
 
-void write_choice(std::ostringstream& out, const NumericsChoice& choice) {
+void write_choice(std::ostringstream& out, const scene::NumericsChoice& choice) {
   out << "\nNumerics, chosen for an error of " << formatted(100 * choice.target) << " % of the "
       << (choice.steady ? "steady state" : "motion") << "\n";
-  for (const ChosenValue& chosen : choice.values) {
+  for (const scene::ChosenValue& chosen : choice.values) {
     out << "  " << padded(chosen.pointer, 28) << padded(chosen.value.dump(), 16) << chosen.why << "\n";
   }
   out << "  expected error " << formatted(100 * choice.expected.total(), "%.2g") << " %: lattice "

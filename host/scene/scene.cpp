@@ -120,18 +120,36 @@ std::vector<std::filesystem::path> read_plugin_dirs(const SceneFields& fields, c
   return folders;
 }
 
-void check_membrane_nodes(const SceneFields& fields, const Scene& scene) {
+}  // namespace
+
+const nlohmann::json& scene_schema() {
+  static const auto schema = nlohmann::json::parse(scene_schema_text);
+  return schema;
+}
+
+Place Scene::place(const std::string& pointer) const {
+  return document ? document->place(pointer) : Place{"", pointer, 0, 0};
+}
+
+void check_membrane_nodes(const Scene& scene) {
   std::int64_t nodes = 0;
   for (const auto& cell : scene.cells) nodes += scene.cell_types[static_cast<std::size_t>(cell.type)].segments;
   if (nodes <= most_membrane_nodes) return;
-  fields.refuse("/cells", "the cells have " + std::to_string(nodes) + " membrane nodes in all; at most " +
-                              std::to_string(most_membrane_nodes) + " can be computed: use fewer cells or segments");
+  SceneFields(*scene.document)
+      .refuse("/cells", "the cells have " + std::to_string(nodes) + " membrane nodes in all; at most " +
+                            std::to_string(most_membrane_nodes) + " can be computed: use fewer cells or segments");
 }
 
-/// Everything but the document itself. `beside` is the folder that relative plugin folders begin with.
-Scene read_values(const json::Document& document, const std::filesystem::path& beside) {
+json::Document read_document(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  auto document = json::Document::read(file);
+  for (const auto& assignment : overrides) document.set(assignment);
+  json::validate(document, scene_schema());
+  return document;
+}
+
+Scene read_scene(std::shared_ptr<const json::Document> document) {
   Scene scene;
-  const SceneFields fields(document);
+  const SceneFields fields(*document);
   if (fields.has("/title")) scene.title = fields.line("/title");
   scene.domain = read_domain(fields);
   scene.fluid = read_fluid(fields);
@@ -144,50 +162,9 @@ Scene read_values(const json::Document& document, const std::filesystem::path& b
   scene.output.field_storage = read_field_storage(fields, scene.domain);
   scene.at_rest = read_at_rest(fields);
   scene.checks = read_checks(fields);
-  scene.plugin_dirs = read_plugin_dirs(fields, beside);
-  check_membrane_nodes(fields, scene);
-  return scene;
-}
-
-/// Puts what is chosen into a document that leaves its numerics open.
-plan::NumericsChoice fill_in_numerics(json::Document& document, const std::filesystem::path& beside,
-                                      const plan::NumericsBounds& bounds) {
-  plan::spell_out_numerics(document);
-  json::Document draft = document;
-  plan::put_draft_numerics(draft);
-  plan::NumericsChoice choice = plan::choose_numerics(read_values(draft, beside), document.root(), bounds);
-  plan::put_choice(document, choice);
-  return choice;
-}
-
-}  // namespace
-
-const nlohmann::json& scene_schema() {
-  static const auto schema = nlohmann::json::parse(scene_schema_text);
-  return schema;
-}
-
-Place Scene::place(const std::string& pointer) const {
-  return document ? document->place(pointer) : Place{"", pointer, 0, 0};
-}
-
-Scene read_unpacked_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides,
-                          const plan::NumericsBounds& bounds) {
-  auto document = std::make_shared<json::Document>(json::Document::read(file));
-  for (const auto& assignment : overrides) document->set(assignment);
-  json::validate(*document, scene_schema());
-  std::optional<plan::NumericsChoice> choice;
-  if (plan::leaves_numerics_open(document->root())) choice = fill_in_numerics(*document, file.parent_path(), bounds);
-  Scene scene = read_values(*document, file.parent_path());
-  scene.numerics_choice = std::move(choice);
+  scene.plugin_dirs = read_plugin_dirs(fields, std::filesystem::path(document->file()).parent_path());
   scene.document = std::move(document);
-  return scene;
-}
-
-Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides,
-                 const plan::NumericsBounds& bounds) {
-  Scene scene = read_unpacked_scene(file, overrides, bounds);
-  pack_cells(scene);  // may take a while: after everything else has been found right
+  check_membrane_nodes(scene);
   return scene;
 }
 

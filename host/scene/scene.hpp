@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "plan/numerics_auto.hpp"
+#include "numerics_choice.hpp"
 
 namespace rouleau::json {
 class Document;
@@ -84,7 +84,7 @@ struct CellPlacement {
 /// Cells that were placed at random.
 struct RandomPacking {
   int type;                          ///< index into Scene::cell_types
-  int first, count;                  ///< its cells are Scene::cells[first] ... [first + count - 1]
+  int first, count;                  ///< its cells are Scene::cells[first] ... [first + count - 1] once they are added
   std::optional<double> hematocrit;  ///< asked for, a share of the region; empty: a number of cells was
   double reached;                    ///< share of the region that the cells fill at rest
   std::uint32_t seed;
@@ -170,9 +170,9 @@ struct Scene {
   Output output;
   AtRest at_rest;
   Checks checks;
-  std::vector<std::filesystem::path> plugin_dirs;       ///< relative ones begin with the scene's folder
-  std::optional<plan::NumericsChoice> numerics_choice;  ///< what was chosen where the scene leaves its numerics open
-  std::shared_ptr<const json::Document> document;       ///< for places in later errors, and for the report
+  std::vector<std::filesystem::path> plugin_dirs;  ///< relative ones begin with the scene's folder
+  std::optional<NumericsChoice> numerics_choice;   ///< what was chosen where the scene leaves its numerics open
+  std::shared_ptr<const json::Document> document;  ///< for places in later errors, and for the report
 
   /// Place of a JSON pointer in the scene file, for an Error.
   [[nodiscard]] Place place(const std::string& pointer) const;
@@ -181,17 +181,14 @@ struct Scene {
 /// The schema of a scene.
 const nlohmann::json& scene_schema();
 
-/// Reads, validates against the shipped schema and converts a scene.
-/// `overrides` are "POINTER=VALUE" as given to --set; VALUE is any JSON value, or a bare word taken as a string.
-/// `bounds` are for a scene that leaves its numerics open. Throws Error with Cause::bad_input (or input_output when
-/// the file cannot be read).
-Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {},
-                 const plan::NumericsBounds& bounds = {});
+/// A scene's text with `overrides` put in, found to fit the schema. They are "POINTER=VALUE" as given to --set; VALUE
+/// is any JSON value, or a bare word taken as a string. Throws Error(bad_input), or Error(input_output) when the file
+/// cannot be read.
+json::Document read_document(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
 
-/// The two halves of read_scene: all but the places of the cells that are placed at random, and these places. Throws
-/// Error(bad_input) where they do not fit.
-Scene read_unpacked_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {},
-                          const plan::NumericsBounds& bounds = {});
-void pack_cells(Scene& scene);
+/// Converts a document that fits the schema, and nothing more: cells that are placed at random are in `packings` alone,
+/// and numerics that the scene leaves open are those that Numerics begins with (plan::read_scene() reads a scene
+/// whole). Relative folders begin with that of the document's file. Throws Error(bad_input).
+Scene read_scene(std::shared_ptr<const json::Document> document);
 
 }  // namespace rouleau::scene

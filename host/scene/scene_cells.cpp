@@ -78,10 +78,8 @@ class Placements {
   }
 
   void read_random(int type, const std::string& entry) {
-    RandomPacking packing = read_packing(fields_, entry, type, types_, domain_);
-    make_room(static_cast<std::size_t>(packing.count), entry + "/random");
+    RandomPacking packing = read_packing(fields_, entry, type, domain_);
     packing.first = static_cast<int>(cells_.size());
-    for (int i = 0; i < packing.count; ++i) cells_.push_back({type, Eigen::Vector2d::Zero(), 0, entry});
     packings_.push_back(std::move(packing));
   }
 
@@ -90,9 +88,7 @@ class Placements {
   }
 
   void make_room(std::size_t count, const std::string& pointer) const {
-    if (count <= std::size_t{most_cells} - cells_.size()) return;
-    fields_.refuse(pointer, "with these there would be " + std::to_string(cells_.size() + count) + " cells; at most " +
-                                std::to_string(most_cells) + " can be computed");
+    fields_.require_room(cells_.size(), count, pointer);
   }
 
   const SceneFields& fields_;

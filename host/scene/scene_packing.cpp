@@ -1,12 +1,9 @@
-// Cells at random: what the scene asks for, and their places.
+// Cells at random: what the scene asks for.
 #include "base/text.hpp"
 #include "scene_reader.hpp"
-#include "shape/packing.hpp"
 
 namespace rouleau::scene {
 namespace {
-
-std::string percent(double share) { return number(100 * share, 4) + " %"; }
 
 /// The region as written; the whole domain without one.
 void read_region(const SceneFields& fields, const std::string& pointer, const Domain& domain, RandomPacking& packing) {
@@ -30,33 +27,10 @@ void read_region(const SceneFields& fields, const std::string& pointer, const Do
   }
 }
 
-/// Refuses what is hopeless before it is tried: pack() takes its time, and looks at every periodic image that is near.
-void check_lengths(const SceneFields& fields, const RandomPacking& packing, const CellType& type) {
-  const double across = (packing.upper - packing.lower).norm(), length = 2 * shape::largest_radius(type.shape);
-  const auto micrometres = [](double metres) { return number(metres * 1e6) + " um"; };
-  const auto room = micrometres(across) + " from corner to corner";
-  if (length > across) {
-    fields.refuse(packing.pointer + "/random", "a cell of the type " + type.name + " is " + micrometres(length) +
-                                                   " long, but its region is " + room +
-                                                   "\ntake a smaller cell or a larger region");
-  }
-  if (packing.gap > across) {
-    fields.refuse(packing.pointer + "/random/gap", "no two cells can be " + micrometres(packing.gap) +
-                                                       " apart in a region that is " + room + "; take a smaller gap");
-  }
-  if (packing.reached > 1) {
-    fields.refuse(packing.pointer + "/random", "these " + std::to_string(packing.count) + " cells would fill " +
-                                                   percent(packing.reached) +
-                                                   " of the region\nask for fewer cells, or a larger region");
-  }
-}
-
 }  // namespace
 
-RandomPacking read_packing(const SceneFields& fields, const std::string& entry, int type,
-                           const std::vector<CellType>& types, const Domain& domain) {
+RandomPacking read_packing(const SceneFields& fields, const std::string& entry, int type, const Domain& domain) {
   const auto pointer = entry + "/random";
-  const CellType& cell_type = types[static_cast<std::size_t>(type)];
   RandomPacking packing{};
   packing.type = type;
   packing.pointer = entry;
@@ -69,48 +43,9 @@ RandomPacking read_packing(const SceneFields& fields, const std::string& entry, 
     fields.refuse(pointer, by_share ? "give hematocrit or count, not both"
                                     : "give hematocrit (such as 0.3) or count (such as 20)");
   }
-  if (by_count) {
-    packing.count = fields.at(pointer + "/count").get<int>();
-  } else {
-    packing.hematocrit = fields.at(pointer + "/hematocrit").get<double>();
-    const double count = shape::cells_for(*packing.hematocrit, cell_type, packing);
-    if (count < 1) {
-      fields.refuse(pointer + "/hematocrit",
-                    "that is less than half a cell in this region; ask for more, for a "
-                    "larger region, or for a count");
-    }
-    if (count > static_cast<double>(most_cells)) {
-      fields.refuse(pointer + "/hematocrit", "that would be " + number(count, 12) + " cells; at most " +
-                                                 std::to_string(most_cells) + " can be computed");
-    }
-    packing.count = static_cast<int>(count);
-  }
-  packing.reached = shape::hematocrit_of(packing, cell_type);
-  check_lengths(fields, packing, cell_type);
+  if (by_share) packing.hematocrit = fields.at(pointer + "/hematocrit").get<double>();
+  if (by_count) packing.count = fields.at(pointer + "/count").get<int>();
   return packing;
-}
-
-void pack_cells(Scene& scene) {
-  if (scene.packings.empty()) return;
-  const double across = scene.domain.size.norm();
-  for (const CellPlacement& cell : scene.cells) {
-    const CellType& type = scene.cell_types[static_cast<std::size_t>(cell.type)];
-    if (2 * shape::largest_radius(type.shape) <= across) continue;
-    SceneFields(*scene.document)
-        .refuse(cell.pointer, "a cell of the type " + type.name + " is " +
-                                  number(2e6 * shape::largest_radius(type.shape)) + " um long, but the domain is " +
-                                  number(across * 1e6) +
-                                  " um from corner to corner\ntake a smaller cell or a larger domain");
-  }
-  const auto shortfall = shape::pack(scene.domain, scene.cell_types, scene.packings, scene.cells);
-  if (!shortfall) return;
-  const RandomPacking& packing = scene.packings[shortfall->packing];
-  SceneFields(*scene.document)
-      .refuse(packing.pointer + "/random",
-              "these " + std::to_string(packing.count) + " cells, " + percent(packing.reached) +
-                  " of the region, do not fit without overlap: moving and turning them came to a standstill at " +
-                  percent(shortfall->hematocrit) + "\nask for fewer cells, a gap smaller than " +
-                  number(packing.gap * 1e6, 3) + " um, or a larger region");
 }
 
 }  // namespace rouleau::scene

@@ -91,6 +91,12 @@ void SceneFields::require(const std::string& pointer, const std::string& key, co
   refuse(pointer, in_quotes(key) + " is missing in " + json::subject(pointer) + "\ngive " + key + ", " + otherwise);
 }
 
+void SceneFields::require_room(std::size_t cells, std::size_t more, const std::string& pointer) const {
+  if (more <= std::size_t{most_cells} - cells) return;
+  refuse(pointer, "with these there would be " + std::to_string(cells + more) + " cells; at most " +
+                      std::to_string(most_cells) + " can be computed");
+}
+
 void SceneFields::refuse(const std::string& pointer, const std::string& problem) const {
   throw Error(Cause::bad_input, document_.place(pointer), indented(problem));
 }

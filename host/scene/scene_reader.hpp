@@ -62,6 +62,9 @@ class SceneFields {
   /// others do.
   void require(const std::string& pointer, const std::string& key, const std::string& otherwise) const;
 
+  /// Refuses `more` cells beside `cells` where there would be more than can be computed.
+  void require_room(std::size_t cells, std::size_t more, const std::string& pointer) const;
+
   /// Ends with Error(bad_input) at a value, or at a key. Lines of the problem after the first are indented here.
   [[noreturn]] void refuse(const std::string& pointer, const std::string& problem) const;
   [[noreturn]] void refuse_key(const std::string& pointer, const std::string& problem) const;
@@ -76,13 +79,15 @@ inline constexpr long most_cells = 1'000'000;
 
 /// The parts of a scene, each in a file of its own.
 std::vector<CellType> read_cell_types(const SceneFields& fields, double fluid_viscosity);
-/// Cells as placed by hand; those placed at random have a type but no place yet. Packings go into `packings`.
+/// Cells as placed by hand. What is wanted at random goes into `packings`.
 std::vector<CellPlacement> read_cells(const SceneFields& fields, const std::vector<CellType>& types,
                                       const Domain& domain, std::vector<RandomPacking>& packings);
-RandomPacking read_packing(const SceneFields& fields, const std::string& entry, int type,
-                           const std::vector<CellType>& types, const Domain& domain);
+/// What the entry asks for; with a hematocrit it has no count yet.
+RandomPacking read_packing(const SceneFields& fields, const std::string& entry, int type, const Domain& domain);
 std::vector<Stage> read_stages(const SceneFields& fields, const Scene& scene);
 Output read_output(const SceneFields& fields, const std::vector<Stage>& stages);
 FieldStorage read_field_storage(const SceneFields& fields, const Domain& domain);
+/// Refuses cells with more membrane nodes than can be computed.
+void check_membrane_nodes(const Scene& scene);
 
 }  // namespace rouleau::scene

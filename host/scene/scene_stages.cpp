@@ -29,7 +29,7 @@ void check_stage(const SceneFields& fields, const Stage& stage, const Scene& sce
   if (stage.until_at_rest && flows) {
     fields.refuse(pointer + "/until", "cells never come to rest in a stage that flows; end it by duration or strain");
   }
-  if (stage.until_at_rest && scene.cells.empty()) {
+  if (stage.until_at_rest && scene.cells.empty() && scene.packings.empty()) {
     fields.refuse(pointer + "/until", "there are no cells that could come to rest; end the stage by duration");
   }
   if (stage.until_at_rest && !stage.duration) {

@@ -291,15 +291,6 @@ class Packer {
 
 }  // namespace
 
-double largest_radius(const scene::Shape& shape) {
-  struct Size {
-    double operator()(const scene::Biconcave& s) const { return s.radius; }
-    double operator()(const scene::Circle& s) const { return s.radius; }
-    double operator()(const scene::Ellipse& s) const { return s.semi_axes.maxCoeff(); }
-  };
-  return std::visit(Size{}, shape);
-}
-
 double cells_for(double hematocrit, const scene::CellType& type, const scene::RandomPacking& packing) {
   return std::round(hematocrit * region_area(packing) / cell_area(type));
 }
@@ -315,7 +306,7 @@ std::optional<PackingShortfall> pack(const scene::Domain& domain, const std::vec
   // Of the types that have cells: one that has none may be so large that rounding would deform the others.
   double unit = 0;
   for (const scene::CellPlacement& cell : cells) {
-    unit = std::max(unit, largest_radius(types[static_cast<std::size_t>(cell.type)].shape));
+    unit = std::max(unit, shape_radius(types[static_cast<std::size_t>(cell.type)].shape));
   }
   return Packer(domain, types, packings, cells, unit).pack();
 }

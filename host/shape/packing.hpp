@@ -14,8 +14,6 @@ struct PackingShortfall {
   double hematocrit;    ///< of its region, by those of its cells and parts of cells that found room
 };
 
-/// Half the longest way through a cell of this shape, m.
-double largest_radius(const scene::Shape& shape);
 /// Cells of this type that fill a share `hematocrit` of the packing's region, to the nearest whole number; of cells
 /// that are tiny in a large region more than any integer holds.
 double cells_for(double hematocrit, const scene::CellType& type, const scene::RandomPacking& packing);

@@ -7,8 +7,8 @@
 
 #include "base/error.hpp"
 #include "json/document.hpp"
+#include "plan/read_scene.hpp"
 #include "plan/stage_scales.hpp"
-#include "scene/scene.hpp"
 #include "units/units.hpp"
 
 namespace rouleau::stability {
@@ -68,7 +68,7 @@ using SearchedScenes = std::map<const CombinationResult*, scene::Scene>;
 const scene::Scene& searched_scene(SearchedScenes& scenes, const CombinationResult& combination) {
   const auto found = scenes.find(&combination);
   if (found != scenes.end()) return found->second;
-  return scenes.emplace(&combination, scene::read_unpacked_scene(combination.scene_file)).first->second;
+  return scenes.emplace(&combination, plan::read_unpacked_scene(combination.scene_file)).first->second;
 }
 
 Json margin_of(const std::filesystem::path& file, const LimitsState& state, SearchedScenes& searched) {
@@ -81,7 +81,7 @@ Json margin_of(const std::filesystem::path& file, const LimitsState& state, Sear
   const std::optional<double> value = value_in(scene, parameter);
   if (!value) return nullptr;
   entry["value"] = *value;
-  const scene::Scene read = scene::read_unpacked_scene(file);
+  const scene::Scene read = plan::read_unpacked_scene(file);
   double least = INFINITY;
   bool matched = false;
   for (const CombinationResult& combination : state.combinations) {

@@ -5,7 +5,7 @@
 
 #include "base/text.hpp"
 #include "json/schema.hpp"
-#include "scene/scene.hpp"
+#include "plan/read_scene.hpp"
 #include "units/units.hpp"
 
 namespace rouleau::trial {
@@ -25,7 +25,7 @@ Json read_changed_scene(const CampaignKind& kind, const CampaignFile& campaign) 
       throw Error(
           Cause::bad_input, document.place("/scene"),
           "there is no scene " + campaign.scene_file.string() + "; the path begins with the " + kind.whose + " folder");
-    (void)scene::read_unpacked_scene(campaign.scene_file);
+    (void)plan::read_unpacked_scene(campaign.scene_file);
     scene = json::Document::read(campaign.scene_file).root();
   }
   if (document.root().contains("set")) put_changes(scene, document, "/set");

@@ -4,10 +4,10 @@
 #include <algorithm>
 
 #include "core/membrane/membranes.hpp"
-#include "json/schema.hpp"
 #include "plan/placed_cells.hpp"
 #include "plan/plan.hpp"
-#include "scene/scene.hpp"
+#include "plan/read_scene.hpp"
+#include "shape/random_cells.hpp"
 #include "target.hpp"
 
 namespace rouleau::fuzz {
@@ -34,9 +34,9 @@ inline bool is_small(const scene::Scene& scene) {
 /// `rouleau plan FILE --set ...`, but for the scene's own plugin_dirs.
 inline void plan_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {}) {
   may_refuse([&] {
-    auto scene = scene::read_unpacked_scene(file, overrides);
+    auto scene = plan::read_unpacked_scene(file, overrides);
     if (!is_small(scene)) return;
-    scene::pack_cells(scene);
+    shape::pack_cells(scene);
     const auto plan = plan::make_plan(scene, shipped_catalog());
     if (plan.has_cells) plan::make_membranes(scene, plan::lattice_spacing(scene));
     require_printable(plan::to_text(plan));

@@ -17,7 +17,7 @@ HOST = SOURCE / "host"
 ORDER = ["base", "json", "units", "core", "scene", "shape", "plugin", "plan", "observe", "monitor", "files", "run",
          "report", "trial", "study", "stability", "conform", "command"]
 # Below what may include them all the same, until they are mended. An entry that no include needs any more must go.
-KNOWN = {("scene", "plan"), ("scene", "shape"), ("observe", "monitor")}
+KNOWN = {("observe", "monitor")}
 MOST_UNITS = 20
 # Outside command/ nobody speaks of the command line, but for these files.
 SPEAK = {"trial/trial.cpp": "gives a child its options", "json/set_option.cpp": "reads the text of --set"}

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "plan/numerics_auto_limits.hpp"
+#include "plan/read_scene.hpp"
 #include "run/simulation.hpp"
 #include "scratch_folder.hpp"
 #include "study/history.hpp"

@@ -16,7 +16,7 @@ namespace {
 /// A scene with everything that remembers: bonds, a law with a memory, leakage, viscosities, two stages.
 struct Run {
   Run()
-      : scene(scene::read_scene(ROULEAU_FUZZ_SCENES "/checkpoint.json")),
+      : scene(plan::read_scene(ROULEAU_FUZZ_SCENES "/checkpoint.json")),
         plan(plan::make_plan(scene, fuzz::shipped_catalog())) {}
   [[nodiscard]] core::Membranes membranes() const { return plan::make_membranes(scene, plan::lattice_spacing(scene)); }
 

@@ -1,11 +1,10 @@
 // What "numerics": "auto" chooses: pins hold, errors that are asked for decide, limits of the plan prevail.
-#include "plan/numerics_auto_limits.hpp"
-
 #include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "json/document.hpp"
 #include "plan/plan.hpp"
+#include "plan/read_scene.hpp"
 
 using namespace rouleau::plan;
 using namespace rouleau::plugin;

@@ -2,7 +2,7 @@
 #include <fstream>
 
 #include "plan/plan.hpp"
-#include "plugin/catalog.hpp"
+#include "plan/read_scene.hpp"
 #include "plugin/plugin_folder.hpp"
 
 using namespace rouleau::plan;

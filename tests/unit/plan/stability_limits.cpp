@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "plan/plan.hpp"
-#include "plugin/catalog.hpp"
+#include "plan/read_scene.hpp"
 
 using namespace rouleau::plan;
 using namespace rouleau::plugin;

@@ -3,8 +3,7 @@
 
 #include "plan/plan.hpp"
 #include "plan/potential_shape.hpp"
-#include "plugin/catalog.hpp"
-#include "scene/scene.hpp"
+#include "plan/read_scene.hpp"
 
 using namespace rouleau;
 using namespace rouleau::plan;

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "json/document.hpp"
+#include "plan/read_scene.hpp"
 #include "run/checkpoint_match.hpp"
 
 using namespace rouleau::core;

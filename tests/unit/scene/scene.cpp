@@ -17,9 +17,13 @@ const std::filesystem::path contract_scene = std::filesystem::path(ROULEAU_SCENE
 /// Conversions multiply a handful of factors, each rounded once.
 Approx about(double value) { return Approx(value).epsilon(16 * std::numeric_limits<double>::epsilon()).scale(0); }
 
+Scene read(const std::filesystem::path& file, const std::vector<std::string>& overrides = {}) {
+  return read_scene(std::make_shared<const Document>(read_document(file, overrides)));
+}
+
 std::string message_of(const std::vector<std::string>& overrides) {
   try {
-    (void)read_scene(contract_scene, overrides);
+    (void)read(contract_scene, overrides);
   } catch (const Error& error) {
     CHECK(error.cause() == Cause::bad_input);
     return error.what();
@@ -30,7 +34,7 @@ std::string message_of(const std::vector<std::string>& overrides) {
 }  // namespace
 
 TEST_CASE("the contract's scene comes out in SI units") {
-  const auto scene = read_scene(contract_scene);
+  const auto scene = read(contract_scene);
   CHECK_FALSE(scene.title.empty());
   CHECK(scene.domain.size.x() == about(50.176e-6));
   CHECK(scene.domain.size.y() == about(25.088e-6));
@@ -92,7 +96,7 @@ TEST_CASE("the contract's scene comes out in SI units") {
 
 TEST_CASE("what a scene leaves out has the documented default") {
   const rouleau::test::ScratchFolder folder;
-  const auto scene = read_scene(folder.write("least.json", R"({"rouleau": 1,
+  const auto scene = read(folder.write("least.json", R"({"rouleau": 1,
     "domain": {"size": [8e-6, 4e-6], "nodes": [8, 4], "y": "periodic"},
     "fluid": {"density": 1000, "viscosity": 1e-3},
     "cell_types": {"drop": {"shape": {"circle": {"radius": "1 um"}}, "segments": 8, "membrane": []}},
@@ -118,7 +122,7 @@ TEST_CASE("everything that a scene may say is read") {
   const std::string drop =
       R"({"shape": {"circle": {"radius": "2 um", "prestretch": 1.05}}, "segments": 64, "membrane": []})";
   const std::string egg = R"({"shape": {"ellipse": {"semi_axes": ["2 um", "1 um"]}}, "segments": 64, "membrane": []})";
-  const auto scene = read_scene(
+  const auto scene = read(
       contract_scene,
       {"/fluid/body_force=[\"10 N/m3\", 0]", "/numerics/precision=f32", "/numerics/tau=0.8", "/cell_types/drop=" + drop,
        "/cell_types/egg=" + egg, "/cells/-={\"type\": \"drop\", \"at\": [\"1 um\", \"2 um\"], \"angle\": \"45 deg\"}",
@@ -159,7 +163,7 @@ TEST_CASE("everything that a scene may say is read") {
 }
 
 TEST_CASE("a model is swapped with its parameters by set") {
-  const auto scene = read_scene(contract_scene, {"/fluid/collision={\"model\": \"bgk\"}"});
+  const auto scene = read(contract_scene, {"/fluid/collision={\"model\": \"bgk\"}"});
   CHECK(scene.fluid.collision.model == "bgk");
   CHECK(scene.fluid.collision.parameters.empty());
 }
@@ -210,4 +214,17 @@ TEST_CASE("no value in the scene can be replaced by one of another kind without 
     }
   }
   SUCCEED();
+}
+
+TEST_CASE("reading neither counts nor places cells that are wanted at random") {
+  const Scene scene = read(contract_scene, {R"(/cells=[{"type": "rbc", "at": ["5 um", "6 um"]},
+                                  {"type": "rbc", "random": {"hematocrit": 0.1, "seed": 1, "gap": "0.3 um"}},
+                                  {"type": "rbc", "at": ["15 um", "6 um"]}])"});
+  CHECK(scene.cells.size() == 2);
+  REQUIRE(scene.packings.size() == 1);
+  CHECK(scene.packings[0].hematocrit == 0.1);
+  CHECK(scene.packings[0].first == 1);
+  CHECK(scene.packings[0].count == 0);
+  CHECK(scene.packings[0].gap == about(0.3e-6));
+  CHECK(scene.packings[0].upper == scene.domain.size);
 }

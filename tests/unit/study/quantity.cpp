@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "json/document.hpp"
+#include "plan/read_scene.hpp"
 #include "study/exact_flow.hpp"
 #include "unit/run_fixture.hpp"
 
@@ -71,7 +72,7 @@ class WrittenRun {
  public:
   WrittenRun(const Json& scene, const std::vector<Snapshot>& snapshots, const Summary& summary = small_summary()) {
     std::ofstream(folder_.path() / "scene.json") << scene;
-    const Scene read = read_scene(folder_.path() / "scene.json");
+    const Scene read = rouleau::plan::read_scene(folder_.path() / "scene.json");
     RunDirectory run(directory(), read);
     for (const Snapshot& snapshot : snapshots) run.write(snapshot);
     run.finish(to_json(summary));

@@ -1,10 +1,12 @@
-#include "numerics_auto_limits.hpp"
+#include "read_scene.hpp"
 
 #include <algorithm>
 
+#include "json/document.hpp"
 #include "plan.hpp"
 #include "plan_models.hpp"
 #include "shape/outline.hpp"
+#include "shape/random_cells.hpp"
 
 namespace rouleau::plan {
 namespace {
@@ -44,18 +46,34 @@ NumericsBounds tightened(NumericsBounds bounds, const Plan& plan) {
 
 }  // namespace
 
+scene::Scene read_unpacked_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides,
+                                 const NumericsBounds& bounds) {
+  auto document = std::make_shared<json::Document>(scene::read_document(file, overrides));
+  std::optional<scene::NumericsChoice> choice = fill_in_numerics(*document, bounds);
+  scene::Scene scene = scene::read_scene(std::move(document));
+  scene.numerics_choice = std::move(choice);
+  shape::add_random_cells(scene);
+  return scene;
+}
+
+scene::Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  scene::Scene scene = read_unpacked_scene(file, overrides);
+  shape::pack_cells(scene);  // may take a while: after everything else has been found right
+  return scene;
+}
+
 scene::Scene read_within_limits(const std::filesystem::path& file, const std::vector<std::string>& overrides,
                                 const std::function<plugin::Catalog(const scene::Scene&)>& catalog_of) {
   NumericsBounds bounds;
-  scene::Scene scene = scene::read_unpacked_scene(file, overrides, bounds);
+  scene::Scene scene = read_unpacked_scene(file, overrides, bounds);
   for (int tries = 0; tries < most_tries && scene.numerics_choice; ++tries) {
     const plugin::Catalog catalog = catalog_of(scene);
     const NumericsBounds tighter = tightened(bounds, make_plan(scene, catalog));
     if (tighter == bounds) break;
     bounds = tighter;
-    scene = scene::read_unpacked_scene(file, overrides, bounds);
+    scene = read_unpacked_scene(file, overrides, bounds);
   }
-  scene::pack_cells(scene);
+  shape::pack_cells(scene);
   return scene;
 }
 

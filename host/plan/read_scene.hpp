@@ -1,0 +1,31 @@
+// Reads a scene whole: scene/ converts what is written, numerics that it leaves open are chosen here, and shape/ places
+// the cells that it wants at random.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "numerics_auto.hpp"
+#include "plugin/catalog.hpp"
+#include "scene/scene.hpp"
+
+namespace rouleau::plan {
+
+/// A scene with all values and cells; those that are placed at random have no place yet, which may take a while to
+/// find. `overrides` are as for scene::read_document(), `bounds` for a scene that leaves its numerics open. Throws
+/// Error(bad_input), or Error(input_output) when the file cannot be read.
+scene::Scene read_unpacked_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {},
+                                 const NumericsBounds& bounds = {});
+
+/// That scene with all cells in their places.
+scene::Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
+
+/// read_scene() with ever tighter bounds until no limit is exceeded that a lower density_factor or a higher resolution
+/// would keep, or the bounds do not change any more. A scene that pins its numerics is read once. `catalog_of` finds
+/// the plugins of a scene that has been read.
+scene::Scene read_within_limits(const std::filesystem::path& file, const std::vector<std::string>& overrides,
+                                const std::function<plugin::Catalog(const scene::Scene&)>& catalog_of);
+
+}  // namespace rouleau::plan

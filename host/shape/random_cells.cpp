@@ -1,0 +1,93 @@
+#include "random_cells.hpp"
+
+#include "base/text.hpp"
+#include "outline.hpp"
+#include "packing.hpp"
+#include "scene/scene_reader.hpp"
+
+namespace rouleau::shape {
+namespace {
+
+std::string percent(double share) { return number(100 * share, 4) + " %"; }
+
+/// How many cells of this type fill the share of the region that is asked for.
+int count_for_share(const scene::SceneFields& fields, const scene::RandomPacking& packing,
+                    const scene::CellType& type) {
+  const auto pointer = packing.pointer + "/random/hematocrit";
+  const double count = cells_for(*packing.hematocrit, type, packing);
+  if (count < 1) {
+    fields.refuse(pointer,
+                  "that is less than half a cell in this region; ask for more, for a "
+                  "larger region, or for a count");
+  }
+  if (count > static_cast<double>(scene::most_cells)) {
+    fields.refuse(pointer, "that would be " + number(count, 12) + " cells; at most " +
+                               std::to_string(scene::most_cells) + " can be computed");
+  }
+  return static_cast<int>(count);
+}
+
+/// Refuses what is hopeless before it is tried: pack() takes its time, and looks at every periodic image that is near.
+void check_lengths(const scene::SceneFields& fields, const scene::RandomPacking& packing, const scene::CellType& type) {
+  const double across = (packing.upper - packing.lower).norm(), length = 2 * shape_radius(type.shape);
+  const auto micrometres = [](double metres) { return number(metres * 1e6) + " um"; };
+  const auto room = micrometres(across) + " from corner to corner";
+  if (length > across) {
+    fields.refuse(packing.pointer + "/random", "a cell of the type " + type.name + " is " + micrometres(length) +
+                                                   " long, but its region is " + room +
+                                                   "\ntake a smaller cell or a larger region");
+  }
+  if (packing.gap > across) {
+    fields.refuse(packing.pointer + "/random/gap", "no two cells can be " + micrometres(packing.gap) +
+                                                       " apart in a region that is " + room + "; take a smaller gap");
+  }
+  if (packing.reached > 1) {
+    fields.refuse(packing.pointer + "/random", "these " + std::to_string(packing.count) + " cells would fill " +
+                                                   percent(packing.reached) +
+                                                   " of the region\nask for fewer cells, or a larger region");
+  }
+}
+
+}  // namespace
+
+void add_random_cells(scene::Scene& scene) {
+  if (scene.packings.empty()) return;
+  const scene::SceneFields fields(*scene.document);
+  int added = 0;
+  for (scene::RandomPacking& packing : scene.packings) {
+    const scene::CellType& type = scene.cell_types[static_cast<std::size_t>(packing.type)];
+    if (packing.hematocrit) packing.count = count_for_share(fields, packing, type);
+    packing.reached = hematocrit_of(packing, type);
+    check_lengths(fields, packing, type);
+    fields.require_room(scene.cells.size(), static_cast<std::size_t>(packing.count), packing.pointer + "/random");
+    packing.first += added;
+    added += packing.count;
+    scene.cells.insert(scene.cells.begin() + packing.first, static_cast<std::size_t>(packing.count),
+                       {packing.type, Eigen::Vector2d::Zero(), 0, packing.pointer});
+  }
+  scene::check_membrane_nodes(scene);
+}
+
+void pack_cells(scene::Scene& scene) {
+  if (scene.packings.empty()) return;
+  const double across = scene.domain.size.norm();
+  for (const scene::CellPlacement& cell : scene.cells) {
+    const scene::CellType& type = scene.cell_types[static_cast<std::size_t>(cell.type)];
+    if (2 * shape_radius(type.shape) <= across) continue;
+    scene::SceneFields(*scene.document)
+        .refuse(cell.pointer, "a cell of the type " + type.name + " is " + number(2e6 * shape_radius(type.shape)) +
+                                  " um long, but the domain is " + number(across * 1e6) +
+                                  " um from corner to corner\ntake a smaller cell or a larger domain");
+  }
+  const auto shortfall = pack(scene.domain, scene.cell_types, scene.packings, scene.cells);
+  if (!shortfall) return;
+  const scene::RandomPacking& packing = scene.packings[shortfall->packing];
+  scene::SceneFields(*scene.document)
+      .refuse(packing.pointer + "/random",
+              "these " + std::to_string(packing.count) + " cells, " + percent(packing.reached) +
+                  " of the region, do not fit without overlap: moving and turning them came to a standstill at " +
+                  percent(shortfall->hematocrit) + "\nask for fewer cells, a gap smaller than " +
+                  number(packing.gap * 1e6, 3) + " um, or a larger region");
+}
+
+}  // namespace rouleau::shape

@@ -1,0 +1,57 @@
+// What reading a whole scene adds to what is written: cells at random stand where their entry does.
+#include "plan/read_scene.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "shape/random_cells.hpp"
+
+using namespace rouleau;
+using Catch::Matchers::Contains;
+
+namespace {
+
+const std::string scene_file = std::string(ROULEAU_SCENES) + "/four-cells-shear.json";
+const std::vector<std::string> mixed_cells{R"(/cells=[{"type": "rbc", "at": ["5 um", "6 um"]},
+    {"type": "rbc", "random": {"hematocrit": 0.1, "seed": 1, "gap": "0.3 um"}},
+    {"type": "rbc", "at": ["15 um", "6 um"]}, {"type": "rbc", "random": {"count": 2, "seed": 2}}])"};
+
+}  // namespace
+
+TEST_CASE("cells at random stand in the order of their entries, by hand placed ones keep their places") {
+  const scene::Scene scene = plan::read_unpacked_scene(scene_file, mixed_cells);
+  REQUIRE(scene.packings.size() == 2);
+  const int by_share = scene.packings[0].count;
+  CHECK(by_share > 0);
+  CHECK(scene.packings[0].first == 1);
+  CHECK(scene.packings[1].first == by_share + 2);
+  CHECK(scene.packings[1].count == 2);
+  REQUIRE(scene.cells.size() == static_cast<std::size_t>(by_share) + 4);
+  for (std::size_t i = 0; i < scene.cells.size(); ++i) {
+    const auto n = static_cast<std::size_t>(by_share);
+    CHECK(scene.cells[i].pointer == (i == 0 ? "/cells/0" : i <= n ? "/cells/1" : i == n + 1 ? "/cells/2" : "/cells/3"));
+  }
+  CHECK(scene.packings[0].reached == Approx(0.1).epsilon(0.5 / by_share));
+
+  scene::Scene packed = scene;
+  shape::pack_cells(packed);
+  const scene::Scene whole = plan::read_scene(scene_file, mixed_cells);
+  for (std::size_t i = 0; i < scene.cells.size(); ++i) {
+    const bool by_hand = i == 0 || i == static_cast<std::size_t>(by_share) + 1;
+    CHECK((packed.cells[i].center == scene.cells[i].center) == by_hand);
+    CHECK(whole.cells[i].center == packed.cells[i].center);
+    CHECK(whole.cells[i].angle == packed.cells[i].angle);
+  }
+}
+
+TEST_CASE("cells at random count where cells or membrane nodes are too many") {
+  const auto cells = [](const std::string& count) {
+    return R"(/cells=[{"type": "rbc", "at": ["5 um", "6 um"]}, {"type": "rbc", "random": {"gap": "1 nm", "seed": 1, "count": )" +
+           count + "}}]";
+  };
+  CHECK_THROWS_WITH(
+      plan::read_unpacked_scene(scene_file, {cells("1000000"), "/cell_types/rbc/shape/biconcave/radius=1 nm"}),
+      Contains("with these there would be 1000001 cells; at most 1000000 can be computed"));
+  CHECK_THROWS_WITH(plan::read_unpacked_scene(scene_file, {cells("1001"), "/cell_types/rbc/segments=100000",
+                                                           "/cell_types/rbc/shape/biconcave/radius=1 nm"}),
+                    Contains("the cells have 100200000 membrane nodes in all"));
+}
