@@ -1,21 +1,15 @@
 #include "observer.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <numbers>
 
-#include "core/contact/crossing.hpp"
 #include "core/fluid/relaxation.hpp"
 #include "core/membrane/geometry.hpp"
 #include "energy.hpp"
 #include "fields.hpp"
-#include "monitor/node_checks.hpp"
 #include "particle_stress.hpp"
-#include "plan/solver_setup.hpp"
-#include "plan/stability_limits.hpp"
 #include "rheology.hpp"
 
 namespace rouleau::observe {
@@ -30,31 +24,6 @@ double continued(double angle, double previous, double period) {
   return angle + period * std::round((previous - angle) / period);
 }
 
-monitor::Failure failure(std::string reason, std::array<double, 2> place, int cell, double value, double limit,
-                         std::string message, std::string remedy) {
-  monitor::Failure f;
-  f.reason = std::move(reason);
-  f.place = place;
-  f.cell = cell;
-  f.value = value;
-  f.limit = limit;
-  f.message = std::move(message);
-  f.remedy = std::move(remedy);
-  return f;
-}
-
-/// What to do first about a cell that leaks, if its segments (mean length in spacings) are the reason.
-std::string leak_remedy(double segment) {
-  if (!(segment > plan::longest_segment)) return "";
-  std::array<char, 200> text{};
-  std::snprintf(
-      text.data(), text.size(),
-      "take more segments (this cell's are %.2g lattice spacings long, and fluid leaks between nodes that lie "
-      "more than %g apart; about one for each spacing is best), ",
-      segment, plan::longest_segment);
-  return text.data();
-}
-
 }  // namespace
 
 Observer::Observer(const scene::Scene& scene, const core::Membranes& membranes)
@@ -64,7 +33,7 @@ Observer::Observer(const scene::Scene& scene, const core::Membranes& membranes)
   tank_treading_angle_.assign(membranes.cells.size(), 0.0);
 }
 
-double Observer::area_drift(const core::Membranes& membranes, int* whose) const {
+double Observer::follow_area(const core::Membranes& membranes, int* whose) {
   double most = 0;
   for (std::size_t k = 0; k < membranes.cells.size(); ++k) {
     const double drift = std::abs(core::enclosed_area(membranes, membranes.cells[k]) / initial_area_[k] - 1);
@@ -73,6 +42,7 @@ double Observer::area_drift(const core::Membranes& membranes, int* whose) const 
       if (whose != nullptr) *whose = static_cast<int>(k);
     }
   }
+  area_drift_max_ = std::max(area_drift_max_, most);
   return most;
 }
 
@@ -109,104 +79,6 @@ double Observer::follow_fluid(core::Fluid<T>& fluid) {
   const double mach = units::mach_number(speed);
   mach_max_ = std::max(mach_max_, mach);
   return mach;
-}
-
-namespace {
-
-/// Node with the first value that is no number, else the one with the largest speed.
-template <class T>
-std::array<double, 2> extreme_node(const core::Fluid<T>& fluid) {
-  std::array<double, 2> place{0, 0};
-  double fastest = -1;
-  std::vector<core::Moments> row;
-  for (int y = 0; y < fluid.setting().domain.size[1]; ++y) {
-    fluid.moments(y, row);
-    for (int x = 0; x < fluid.setting().domain.size[0]; ++x) {
-      const core::Moments& m = row[static_cast<std::size_t>(x)];
-      const double square = m.ux * m.ux + m.uy * m.uy;
-      const bool finite = std::isfinite(square) && std::isfinite(m.density);
-      if (!finite || square > fastest) place = {static_cast<double>(x), static_cast<double>(y)};
-      if (!finite) return place;
-      fastest = std::max(fastest, square);
-    }
-  }
-  return place;
-}
-
-}  // namespace
-
-std::optional<monitor::Failure> Observer::check_stretch(const core::Membranes& membranes,
-                                                        const units::LatticeUnits& units) const {
-  const double limit = scene_->checks.stretch;
-  for (std::size_t k = 0; k < membranes.cells.size(); ++k) {
-    const core::CellRange& cell = membranes.cells[k];
-    const auto* circle = std::get_if<scene::Circle>(&scene_->cell_types[static_cast<std::size_t>(cell.type)].shape);
-    const double placed = circle != nullptr ? circle->prestretch : 1.0;
-    for (int i = cell.first; i < cell.end(); ++i) {
-      const auto from = static_cast<std::size_t>(i), to = static_cast<std::size_t>(cell.next(i));
-      const double dx = membranes.x[to] - membranes.x[from], dy = membranes.y[to] - membranes.y[from];
-      const double stretch = std::hypot(dx, dy) / (placed * membranes.rest_length[from]);
-      if (stretch <= limit && stretch * limit >= 1) continue;
-      const std::array<double, 2> place{units::coordinate(membranes.x[from], units.length),
-                                        units::coordinate(membranes.y[from], units.length)};
-      return failure("uneven_nodes", place, static_cast<int>(k), stretch, stretch < 1 ? 1 / limit : limit,
-                     stretch < 1 ? "a segment of a membrane has become too short against the length it was placed with"
-                                 : "a segment of a membrane has become too long against the length it was placed with",
-                     "lower numerics.density_factor or the load, stiffen the membrane, or raise checks.stretch if it "
-                     "is meant to give way so far");
-    }
-  }
-  return std::nullopt;
-}
-
-template <class T>
-std::optional<monitor::Failure> Observer::check(core::Solver<T>& solver, const plan::StageSetting& setting,
-                                                const core::Membranes& membranes) {
-  const units::LatticeUnits& units = setting.units;
-  const auto place = [&](double x, double y) {
-    return std::array<double, 2>{units::coordinate(x, units.length), units::coordinate(y, units.length)};
-  };
-  const double mach = follow_fluid(solver.fluid());
-  if (!(mach <= scene_->checks.mach)) {
-    const auto [x, y] = extreme_node(solver.fluid());
-    if (!std::isfinite(mach)) {
-      return failure("non_finite", place(x, y), -1, std::nan(""), 0, "the fluid holds a value that is no number",
-                     monitor::blown_up_remedy);
-    }
-    return failure("mach", place(x, y), -1, mach, scene_->checks.mach,
-                   "the flow is too fast for the lattice: Mach number above its limit",
-                   "lower numerics.density_factor, the shear rate or the driving force, or raise the resolution");
-  }
-  if (membranes.cells.empty()) return std::nullopt;
-  int cell = -1, leaking = -1;
-  double drift = area_drift(membranes, &cell);
-  area_drift_max_ = std::max(area_drift_max_, drift);
-  // Where areas are kept, the correction that this took is the leak.
-  const double leakage = area_leakage(membranes, &leaking);
-  if (leakage > drift) drift = leakage, cell = leaking;
-  if (!(drift <= scene_->checks.area_drift)) {
-    const core::CellRange& drifting = membranes.cells[static_cast<std::size_t>(cell)];
-    const Eigen::Vector2d c = core::centroid(membranes, drifting);
-    return failure(
-        "area_drift", place(c.x(), c.y()), cell, drift, scene_->checks.area_drift,
-        std::string("a cell ") +
-            (drift == leakage ? "would have changed its area by more than the limit without numerics.area_correction"
-                              : "has changed its area by more than the limit") +
-            ": fluid leaks through its membrane or is compressed",
-        leak_remedy(core::perimeter(membranes, drifting) / drifting.count) +
-            "lower numerics.density_factor, raise the resolution, or raise checks.area_drift if this error is "
-            "acceptable");
-  }
-  if (auto uneven = check_stretch(membranes, units)) return uneven;
-  if (const auto crossing = core::find_crossing(membranes, domain_)) {
-    return failure("crossing", place(crossing->place.x(), crossing->place.y()), crossing->cell, 0, 0,
-                   crossing->cell == crossing->other ? "the membrane of a cell crosses itself"
-                                                     : "the membranes of cells " + std::to_string(crossing->cell) +
-                                                           " and " + std::to_string(crossing->other) +
-                                                           (crossing->inside ? " lie one inside the other" : " cross"),
-                   "lower numerics.density_factor or the attraction, raise the resolution, or stiffen bending");
-  }
-  return std::nullopt;
 }
 
 void Observer::observe_cells(const core::Membranes& membranes, const units::LatticeUnits& units, Snapshot& snapshot) {
@@ -285,9 +157,8 @@ Snapshot Observer::observe(core::Solver<T>& solver, const plan::StageSetting& se
     }
     snapshot.particle_stress = units.to_si(particle_stress(membranes, *scene_, viscosity), units::dimension::pressure);
     observe_cells(membranes, units, snapshot);
-    snapshot.area_drift_max = area_drift(membranes);
+    snapshot.area_drift_max = follow_area(membranes);
     snapshot.area_leakage_max = area_leakage(membranes);
-    area_drift_max_ = std::max(area_drift_max_, snapshot.area_drift_max);
     std::vector<double> tension;
     solver.tensions(tension);
     const double tension_unit = units.to_si(1, units::dimension::tension);
@@ -309,9 +180,7 @@ void Observer::start_stage() { initial_mass_ = std::nan(""); }
 
 template Snapshot Observer::observe(core::Solver<float>&, const plan::StageSetting&, const core::Membranes&, bool);
 template Snapshot Observer::observe(core::Solver<double>&, const plan::StageSetting&, const core::Membranes&, bool);
-template std::optional<monitor::Failure> Observer::check(core::Solver<float>&, const plan::StageSetting&,
-                                                         const core::Membranes&);
-template std::optional<monitor::Failure> Observer::check(core::Solver<double>&, const plan::StageSetting&,
-                                                         const core::Membranes&);
+template double Observer::follow_fluid(core::Fluid<float>&);
+template double Observer::follow_fluid(core::Fluid<double>&);
 
 }  // namespace rouleau::observe

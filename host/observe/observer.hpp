@@ -1,15 +1,13 @@
-// Turns the state between two steps into a Snapshot in SI units, and checks that the state is sound.
+// Turns the state between two steps into a Snapshot in SI units, and follows what drifts.
 #pragma once
 
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <vector>
 
 #include "aggregates.hpp"
 #include "core/membrane/geometry.hpp"
 #include "core/solver/solver.hpp"
-#include "monitor/failure.hpp"
 #include "plan/stage_scales.hpp"
 #include "rotation.hpp"
 #include "snapshot.hpp"
@@ -33,13 +31,11 @@ class Observer {
   Snapshot observe(core::Solver<T>& solver, const plan::StageSetting& setting, const core::Membranes& membranes,
                    bool with_fields);
 
-  /// Checks everything that costs a scan: finite fields, Mach number, area, crossings.
+  /// Follows mass and Mach number; returns the latter, which is NaN if the fluid holds a value that is no number.
   template <class T>
-  std::optional<monitor::Failure> check(core::Solver<T>& solver, const plan::StageSetting& setting,
-                                        const core::Membranes& membranes);
-
-  /// Largest relative change of a cell's area so far, at the present positions; `cell`: whose.
-  double area_drift(const core::Membranes& membranes, int* cell = nullptr) const;
+  double follow_fluid(core::Fluid<T>& fluid);
+  /// Follows the cells' areas; returns the largest relative change since the start. `cell`: whose.
+  double follow_area(const core::Membranes& membranes, int* cell = nullptr);
   /// Largest area that the area correction has kept from leaking out of (or into) a cell so far, over its rest area;
   /// `cell`: whose. NaN without that correction.
   static double area_leakage(const core::Membranes& membranes, int* cell = nullptr);
@@ -61,11 +57,6 @@ class Observer {
                                  area_drift_max_, mass_drift_, initial_mass_, stretch_)
 
  private:
-  /// Follows mass and Mach number; returns the latter, which is NaN if the fluid holds a value that is no number.
-  template <class T>
-  double follow_fluid(core::Fluid<T>& fluid);
-  [[nodiscard]] std::optional<monitor::Failure> check_stretch(const core::Membranes& membranes,
-                                                              const units::LatticeUnits& units) const;
   void observe_cells(const core::Membranes& membranes, const units::LatticeUnits& units, Snapshot& snapshot);
 
   const scene::Scene* scene_;

@@ -20,6 +20,7 @@
 #include "monitor/energy_check.hpp"
 #include "monitor/failure_mode.hpp"
 #include "monitor/node_checks.hpp"
+#include "monitor/state_checks.hpp"
 #include "plan/output_schedule.hpp"
 #include "plan/placed_cells.hpp"
 #include "plan/solver_setup.hpp"
@@ -283,7 +284,7 @@ class Simulation {
     if (core::largest_step(membranes_) > state_.growth.level()) state_.growth.note(state_.steps, membranes_);
     if (checkpoints_.pending()) {
       observe::Observer look = state_.observer;  // one that leaves no trace
-      checkpoints_.settle(!look.check(solver, setting, membranes_));
+      checkpoints_.settle(!monitor::check_state(look, solver, setting, membranes_, scene_));
     }
     // The end of a stage has been written; the beginning of the next is the same instant.
     const bool written = step == 0 && state_.steps > 0;
@@ -292,7 +293,7 @@ class Simulation {
     const bool check_due = step % scene_.checks.every_steps == 0;
     const bool last = due_ending_ != Ending::none;
     if (cells_due || fields_due || check_due || last) {
-      if (auto failure = state_.observer.check(solver, setting, membranes_)) {
+      if (auto failure = monitor::check_state(state_.observer, solver, setting, membranes_, scene_)) {
         fail(std::move(*failure), solver);
         return;
       }

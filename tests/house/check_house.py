@@ -16,8 +16,6 @@ HOST = SOURCE / "host"
 # A folder may include those before it (docs/architecture.md); core is what everything else stands on.
 ORDER = ["base", "json", "units", "core", "scene", "shape", "plugin", "plan", "observe", "monitor", "files", "run",
          "report", "trial", "study", "stability", "conform", "command"]
-# Below what may include them all the same, until they are mended. An entry that no include needs any more must go.
-KNOWN = {("observe", "monitor")}
 MOST_UNITS = 20
 # Outside command/ nobody speaks of the command line, but for these files.
 SPEAK = {"trial/trial.cpp": "gives a child its options", "json/set_option.cpp": "reads the text of --set"}
@@ -70,8 +68,7 @@ class Includes_run_down(unittest.TestCase):
             for other in includes(path):
                 if ORDER.index(room(other)) > ORDER.index(own):
                     up[own, room(other)].append(f"{path.relative_to(HOST)} includes {other.relative_to(HOST)}")
-        self.assertEqual({k: v for k, v in up.items() if k not in KNOWN}, {})
-        self.assertEqual(KNOWN - set(up), set(), "these arrows are gone: take them off the list")
+        self.assertEqual(dict(up), {})
 
     def test_the_core_includes_base_and_itself_alone(self):
         for path in sources():

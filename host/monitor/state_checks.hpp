@@ -1,0 +1,20 @@
+// Whether the state between two steps is sound, by what costs a scan of it.
+#pragma once
+
+#include <optional>
+
+#include "core/solver/solver.hpp"
+#include "failure.hpp"
+#include "observe/observer.hpp"
+#include "plan/stage_scales.hpp"
+
+namespace rouleau::monitor {
+
+/// The first check of the scene that the state fails, without its time: a value of the fluid that is no number, the Mach
+/// number, a cell's area, the length of a segment, membranes that cross. `observer` follows mass, Mach number and areas.
+template <class T>
+std::optional<Failure> check_state(observe::Observer& observer, core::Solver<T>& solver,
+                                   const plan::StageSetting& setting, const core::Membranes& membranes,
+                                   const scene::Scene& scene);
+
+}  // namespace rouleau::monitor
