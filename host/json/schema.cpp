@@ -13,9 +13,10 @@
 #include "shown.hpp"
 
 namespace rouleau::json {
-namespace {
 
 using Json = nlohmann::json;
+
+namespace {
 
 struct SchemaFault {
   std::string pointer;

@@ -49,10 +49,10 @@ class Placements {
       read_random(type, pointer);
     } else if (fields_.has(pointer + "/list")) {
       const auto count = fields_.at(pointer + "/list").size();
-      make_room(count, pointer + "/list");
+      fields_.require_room(cells_.size(), count, pointer + "/list");
       for (std::size_t i = 0; i < count; ++i) place_one(type, json::child_pointer(pointer + "/list", i));
     } else {
-      make_room(1, pointer);
+      fields_.require_room(cells_.size(), 1, pointer);
       place_one(type, pointer);
     }
   }
@@ -64,7 +64,7 @@ class Placements {
   void read_row(int type, const std::string& entry) {
     const auto pointer = entry + "/row";
     const auto count = fields_.at(pointer + "/count").get<std::size_t>();
-    make_room(count, pointer + "/count");
+    fields_.require_room(cells_.size(), count, pointer + "/count");
     const double spacing = fields_.quantity(pointer + "/spacing", "m", range::length);
     const auto center = fields_.quantities(pointer + "/center", "m", range::place);
     const double turn = angle(pointer);
@@ -85,10 +85,6 @@ class Placements {
 
   [[nodiscard]] double angle(const std::string& pointer) const {
     return fields_.quantity_or(pointer + "/angle", "rad", range::angle, 0.0);
-  }
-
-  void make_room(std::size_t count, const std::string& pointer) const {
-    fields_.require_room(cells_.size(), count, pointer);
   }
 
   const SceneFields& fields_;
