@@ -44,9 +44,9 @@ std::array<double, 2> extreme_node(const core::Fluid<T>& fluid) {
   std::array<double, 2> place{0, 0};
   double fastest = -1;
   std::vector<core::Moments> row;
-  for (int y = 0; y < fluid.setting().ny; ++y) {
+  for (int y = 0; y < fluid.setting().domain.size[1]; ++y) {
     fluid.moments(y, row);
-    for (int x = 0; x < fluid.setting().nx; ++x) {
+    for (int x = 0; x < fluid.setting().domain.size[0]; ++x) {
       const core::Moments& m = row[static_cast<std::size_t>(x)];
       const double square = m.ux * m.ux + m.uy * m.uy;
       const bool finite = std::isfinite(square) && std::isfinite(m.density);
@@ -123,7 +123,7 @@ std::optional<Failure> check_state(observe::Observer& observer, core::Solver<T>&
             "acceptable");
   }
   if (auto uneven = check_stretch(membranes, scene, units)) return uneven;
-  if (const auto crossing = core::find_crossing(membranes, observer.box())) {
+  if (const auto crossing = core::find_crossing(membranes, observer.domain())) {
     return failure("crossing", place(crossing->place.x(), crossing->place.y()), crossing->cell, 0, 0,
                    crossing->cell == crossing->other ? "the membrane of a cell crosses itself"
                                                      : "the membranes of cells " + std::to_string(crossing->cell) +

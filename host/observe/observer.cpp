@@ -10,6 +10,7 @@
 #include "energy.hpp"
 #include "fields.hpp"
 #include "particle_stress.hpp"
+#include "plan/solver_setup.hpp"
 #include "rheology.hpp"
 
 namespace rouleau::observe {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "command/program.hpp"
 #include "plan/read_scene.hpp"
 
 int main(int count, char** arguments) {
@@ -15,7 +16,7 @@ int main(int count, char** arguments) {
   }
   std::vector<std::string> overrides;
   for (int i = 4; i < count; i += 2) overrides.emplace_back(arguments[i]);
-  try {
+  const auto body = [&] {
     const auto scene = rouleau::plan::read_scene(arguments[2], overrides);
     std::printf("%zu cells, %zu stages\n", scene.cells.size(), scene.stages.size());
     return exit_code::done;

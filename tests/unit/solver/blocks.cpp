@@ -5,9 +5,9 @@
 
 #include "core/solver/solver.hpp"
 #include "plan/placed_cells.hpp"
+#include "plan/read_scene.hpp"
 #include "plan/solver_setup.hpp"
 #include "plugin/catalog.hpp"
-#include "scene/scene.hpp"
 #include "unit/random.hpp"
 
 using namespace rouleau;
@@ -34,7 +34,7 @@ const std::string bonds = R"(/interactions=[{"between": ["rbc", "rbc"], "model":
 
 struct Planned {
   explicit Planned(const Case& c)
-      : scene(scene::read_scene(c.file, c.overrides)), plan(plan::make_plan(scene, catalog())) {
+      : scene(plan::read_scene(c.file, c.overrides)), plan(plan::make_plan(scene, catalog())) {
     setup = plan::make_solver_setup(plan, 0);
     membranes = plan::make_membranes(scene, plan::lattice_spacing(scene));
     for (double& x : membranes.x) x += c.move_x;
