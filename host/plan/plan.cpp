@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "base/text.hpp"
 #include "cell_summary.hpp"
 #include "core/coupling/kernel_kind.hpp"
+#include "core/solver/schedule.hpp"
 #include "json/document.hpp"
 #include "json/number_or_null.hpp"
 #include "kernel_facts.hpp"
@@ -128,30 +130,32 @@ nlohmann::json conversion_table(const Plan& plan, const units::Units& units) {
 
 void plan_passes(Plan& plan) {
   const scene::Scene& scene = *plan.scene;
-  const auto pass = [&](const std::string& name, const std::string& why) { plan.passes.push_back({name, why}); };
   const auto omit = [&](const std::string& what, const std::string& why) { plan.left_out.push_back({what, why}); };
 
-  if (plan.has_cells) {
-    pass("membrane", std::to_string(scene.cells.size()) + " cells resist deformation" +
-                         (plan.semi_implicit ? "; semi-implicit step" : ""));
-    if (plan.has_interactions) pass("interaction", "an active potential acts between cells");
-    if (scene.numerics.slip_correction || scene.numerics.area_correction) {
-      pass("corrections",
-           scene.numerics.slip_correction
-               ? (scene.numerics.area_correction ? "membranes neither slip nor leak" : "membranes do not slip")
-               : "cells keep their areas");
-    }
-    pass("spread", "membrane forces act on the fluid");
-    if (plan.viscosity_contrast)
-      pass("indicator", "inside and outside of a cell have different viscosities");
-    else
-      pass("activity", "marks the nodes near membranes, which alone carry force and velocity");
+  const bool slip = scene.numerics.slip_correction, area = scene.numerics.area_correction;
+  const std::map<std::string, std::string> reasons{
+      {"membrane", std::to_string(scene.cells.size()) + " cells resist deformation" +
+                       (plan.semi_implicit ? "; semi-implicit step" : "")},
+      {"interaction", "an active potential acts between cells"},
+      {"corrections",
+       slip ? (area ? "membranes neither slip nor leak" : "membranes do not slip") : "cells keep their areas"},
+      {"indicator", "inside and outside of a cell have different viscosities"},
+      {"activity", "marks the nodes near membranes, which alone carry force and velocity"},
+      {"spread", "membrane forces act on the fluid"},
+      {"fluid", "collision and streaming"},
+      {"interpolate", "membranes move with the fluid"},
+      {"move", "new positions of membrane nodes"}};
+  const core::Schedule schedule = core::make_schedule({.cells = plan.has_cells,
+                                                       .interactions = plan.has_interactions,
+                                                       .viscosity_contrast = plan.viscosity_contrast,
+                                                       .slip_correction = plan.has_cells && slip,
+                                                       .area_correction = plan.has_cells && area});
+  for (const core::Step& step : schedule.steps) {
+    const bool known = std::any_of(plan.passes.begin(), plan.passes.end(),
+                                   [&](const PlannedPass& other) { return other.name == step.name; });
+    if (!known) plan.passes.push_back({step.name, reasons.at(step.name)});
   }
-  pass("fluid", "collision and streaming");
-  if (plan.has_cells) {
-    pass("interpolate", "membranes move with the fluid");
-    pass("move", "new positions of membrane nodes");
-  } else {
+  if (!plan.has_cells) {
     omit("membranes, force and velocity fields, interpolation", "the scene has no cells");
     for (const scene::CellType& type : scene.cell_types)
       omit("cell type " + type.name, "no cell of this type is placed");
