@@ -55,7 +55,7 @@ class Halo {
   }
 
   /// Sends what goes this way. `arrays[c]`: where component c of the node with offset 0 lies.
-  void begin(Way way, std::span<const T* const> arrays) {
+  void begin(Way way, std::span<T* const> arrays) {
     for (std::size_t rank = 0; rank < peers_.size(); ++rank) {
       const std::vector<Place>& from = way == Way::out ? peers_[rank].owned : peers_[rank].copies;
       if (from.empty()) continue;

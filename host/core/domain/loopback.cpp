@@ -55,6 +55,7 @@ class Loopback final : public Transport {
 std::vector<std::unique_ptr<Transport>> make_loopback(int ranks) {
   const auto boxes = std::make_shared<std::vector<Mailbox>>(static_cast<std::size_t>(ranks) * ranks);
   std::vector<std::unique_ptr<Transport>> ends;
+  ends.reserve(static_cast<std::size_t>(ranks));
   for (int rank = 0; rank < ranks; ++rank) ends.push_back(std::make_unique<Loopback>(rank, ranks, boxes));
   return ends;
 }
