@@ -91,14 +91,14 @@ BareFluid<T>::BareFluid(Kernel kernel, int nx, int ny, double relaxation_rate, d
       magic_(static_cast<T>(magic)),
       walls_(walls),
       lattice_({{nx, ny}, {true, false}}) {
-  if (kernel == Kernel::forced) force_ = {core::Field<T>(nx, ny), core::Field<T>(nx, ny)};
+  if (kernel == Kernel::forced) force_ = {core::Field<T, 2>({nx, ny}), core::Field<T, 2>({nx, ny})};
 }
 
 template <class T>
 void BareFluid<T>::set(const std::function<double(int, int, int)>& population) {
   for (int q = 0; q < 9; ++q) {
-    for (int y = 0; y < lattice_.ny(); ++y) {
-      for (int x = 0; x < lattice_.nx(); ++x) lattice_.slot(q, y)[x] = static_cast<T>(population(q, x, y));
+    for (int y = 0; y < lattice_.size(1); ++y) {
+      for (int x = 0; x < lattice_.size(0); ++x) lattice_.slot(q, {y})[x] = static_cast<T>(population(q, x, y));
     }
   }
   fill_population_halo(lattice_);
@@ -107,7 +107,7 @@ void BareFluid<T>::set(const std::function<double(int, int, int)>& population) {
 template <class T>
 double BareFluid<T>::population(int q, int x, int y) const {
   const T* in[9];
-  lattice_.row_pointers(parity_, y, in);
+  lattice_.row_pointers(parity_, {y}, in);
   return static_cast<double>(in[q][x]);
 }
 
@@ -115,18 +115,18 @@ template <class T>
 void BareFluid<T>::step(rouleau::Range rows) {
   const RowFunction<T> row = pick<T>(kernel_);
   RowTask<T> task{};
-  task.count = lattice_.nx();
+  task.count = lattice_.size(0);
   task.relaxation_rate = relaxation_rate_;
   task.magic = magic_;
   for (int i = 0; i < rows.end - rows.begin; ++i) {
     const int y = parity_ == core::Parity::even ? rows.begin + i : rows.end - 1 - i;
     if (parity_ == core::Parity::even) receive_row(lattice_, y);
-    lattice_.row_pointers(parity_, y, task.in, task.out);
-    if (force_.x.allocated()) task.force_x = force_.x.row(y), task.force_y = force_.y.row(y);
+    lattice_.row_pointers(parity_, {y}, task.in, task.out);
+    if (force_[0].allocated()) task.force_x = force_[0].row(y), task.force_y = force_[1].row(y);
     row(&task);
     add_wall_momentum(lattice_, y, walls_);
     if (parity_ == core::Parity::even) send_row(lattice_, y);
-    if (force_.x.allocated()) fill_velocity_halo(force_, y, lattice_.domain(), walls_);
+    if (force_[0].allocated()) fill_velocity_halo(force_, y, lattice_.domain(), walls_);
   }
 }
 

@@ -27,9 +27,9 @@ class BareFluid {
   void set(const std::function<double(int q, int x, int y)>& population);
   /// The same state as other's, which must be between an even number of steps.
   [[nodiscard]] double population(int q, int x, int y) const;
-  [[nodiscard]] core::VectorField<T>& force() { return force_; }
+  [[nodiscard]] core::VectorField<T, 2>& force() { return force_; }
 
-  [[nodiscard]] rouleau::Range rows() const { return {0, lattice_.ny()}; }
+  [[nodiscard]] rouleau::Range rows() const { return {0, lattice_.size(1)}; }
   void step(rouleau::Range rows);
   void end_step() { parity_ = core::next(parity_); }
 
@@ -37,8 +37,8 @@ class BareFluid {
   Kernel kernel_;
   T relaxation_rate_, magic_;
   core::WallVelocity walls_;
-  core::Lattice<T> lattice_;
-  core::VectorField<T> force_;
+  core::Lattice<T, core::D2Q9> lattice_;
+  core::VectorField<T, 2> force_;
   core::Parity parity_ = core::Parity::even;
 };
 

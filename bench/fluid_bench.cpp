@@ -79,11 +79,11 @@ void require(bool right, const std::string& what, double found) {
 }
 
 template <class T>
-void clear(core::VectorField<T>& force, rouleau::Worker worker) {
-  const rouleau::Range rows = worker.share(force.x.ny());
+void clear(core::VectorField<T, 2>& force, rouleau::Worker worker) {
+  const rouleau::Range rows = worker.share(force[0].size(1));
   for (int y = rows.begin; y < rows.end; ++y) {
-    std::fill_n(force.x.row(y), force.x.nx(), T(0));
-    std::fill_n(force.y.row(y), force.y.nx(), T(0));
+    std::fill_n(force[0].row(y), force[0].size(0), T(0));
+    std::fill_n(force[1].row(y), force[1].size(0), T(0));
   }
 }
 
@@ -92,7 +92,7 @@ Candidate candidate(const char* name, Fluid& fluid) {
   return {name, [&fluid](rouleau::Worker worker) { fluid.step(worker.share(fluid.rows().end)); },
           [&fluid](rouleau::Worker worker) {
             if (worker.first()) fluid.end_step();
-            if (fluid.force().x.allocated()) clear(fluid.force(), worker);
+            if (fluid.force()[0].allocated()) clear(fluid.force(), worker);
           }};
 }
 
@@ -157,11 +157,11 @@ void check_precision(const char* name) {
   BareFluid<T> bare_forced = bare_fluid(Kernel::forced, *forced);
   double worst = 0;
   for (long i = 0; i < steps; ++i) {
-    for (core::VectorField<T>* field : {&forced->force(), &bare_forced.force()}) {
+    for (core::VectorField<T, 2>* field : {&forced->force(), &bare_forced.force()}) {
       for (int y = 0; y < ny; ++y) {
         for (int x = 0; x < nx; ++x) {
-          field->x.row(y)[x] = static_cast<T>(1e-6 * std::sin(0.3 * x + 0.2 * y));
-          field->y.row(y)[x] = static_cast<T>(1e-6 * std::cos(0.1 * x - 0.4 * y));
+          (*field)[0].row(y)[x] = static_cast<T>(1e-6 * std::sin(0.3 * x + 0.2 * y));
+          (*field)[1].row(y)[x] = static_cast<T>(1e-6 * std::cos(0.1 * x - 0.4 * y));
         }
       }
     }
@@ -171,8 +171,8 @@ void check_precision(const char* name) {
     bare_forced.end_step();
     for (int y = 0; y < ny; ++y) {
       for (int x = 0; x < nx; ++x) {
-        worst = std::max(worst, std::abs(static_cast<double>(forced->force().x.row(y)[x]) -
-                                         static_cast<double>(bare_forced.force().x.row(y)[x])));
+        worst = std::max(worst, std::abs(static_cast<double>(forced->force()[0].row(y)[x]) -
+                                         static_cast<double>(bare_forced.force()[0].row(y)[x])));
       }
     }
   }

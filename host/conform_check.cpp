@@ -1,6 +1,7 @@
 // The program that runs one conformance check of one plugin; `rouleau conform` starts it, once for every check.
 //
 // usage: conform-check MANIFEST CHECK SEED
+// The check of surroundings adds a WORLD (conform/worlds.hpp), and the program itself one word more when it is there.
 // The finding goes to file descriptor 3 (conform/report_line.hpp). Whatever the plugin does ends with this process.
 #include <sys/prctl.h>
 #include <sys/resource.h>
@@ -17,9 +18,12 @@
 #include "base/error.hpp"
 #include "conform/call.hpp"
 #include "conform/check.hpp"
+#include "conform/frozen_memory.hpp"
 #include "conform/guarded_memory.hpp"
 #include "conform/report_line.hpp"
 #include "conform/subject.hpp"
+#include "conform/syscall_trap.hpp"
+#include "conform/worlds.hpp"
 
 namespace {
 
@@ -34,6 +38,17 @@ bool was_write([[maybe_unused]] const void* context) {
 #endif
 }
 
+/// Whether the processor stopped at an instruction that reads its clock, as those do that ask for the time.
+bool reads_clock([[maybe_unused]] const siginfo_t* info, [[maybe_unused]] const void* context) {
+#if defined(__x86_64__)
+  const auto at = static_cast<const ucontext_t*>(context)->uc_mcontext.gregs[REG_RIP];
+  const auto* code = reinterpret_cast<const unsigned char*>(at);
+  return info->si_code == SI_KERNEL && code[0] == 0x0f && (code[1] == 0x31 || (code[1] == 0x01 && code[2] == 0xf9));
+#else
+  return false;
+#endif
+}
+
 /// Says what the signal was and ends the process. An access to a guarded array is a broken rule, not just a crash.
 void on_signal(int signal, siginfo_t* info, void* context) {
   char where[256], text[400];
@@ -41,11 +56,15 @@ void on_signal(int signal, siginfo_t* info, void* context) {
       conform::GuardedArray::describe(info->si_addr, was_write(context), where, sizeof where)) {
     std::snprintf(text, sizeof text, "the model %s", where);
     conform::send_from_signal(conform::to_string(conform::Verdict::fail), text);
+  } else if (signal == SIGSEGV && conform::FrozenMemory::describe(info->si_addr, text, sizeof text)) {
+    conform::send_from_signal(conform::to_string(conform::Verdict::fail), text);
+  } else if (signal == SIGSEGV && reads_clock(info, context)) {
+    conform::send_from_signal(conform::to_string(conform::Verdict::fail), "compute reads the clock");
   } else {
     std::snprintf(text, sizeof text, "ended by the signal SIG%s", sigabbrev_np(signal));
     conform::send_from_signal(conform::to_string(conform::Verdict::crash), text);
   }
-  _exit(1);
+  conform::end_process(1);
 }
 
 void watch_signals() {
@@ -60,13 +79,18 @@ void watch_signals() {
   for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) sigaction(signal, &action, nullptr);
 }
 
-conform::Finding run(const std::string& name, const std::string& file, std::uint64_t seed) {
+/// `world`: null, or the number of the world that was entered, whose text goes to the parent instead of a finding.
+conform::Finding run(const std::string& name, const std::string& file, std::uint64_t seed, const char* world) {
   try {
     const units::Units units;
     const conform::Subject subject(plugin::read_manifest(file, units), seed);
+    if (world != nullptr) {
+      conform::send(conform::outputs_in_world(subject, static_cast<unsigned>(std::stoul(world))));
+      conform::end_process(0);
+    }
     const conform::Check* check = conform::find_check(name, subject.manifest().kind);
     if (check == nullptr) return conform::Finding::skipped("is for models of another kind");
-    return check->run(subject);
+    return conform::run(*check, subject);
   } catch (const Error& error) {
     return conform::Finding::failed(error.what());
   } catch (const conform::Fault& fault) {
@@ -81,7 +105,7 @@ conform::Finding run(const std::string& name, const std::string& file, std::uint
 }  // namespace
 
 int main(int count, char** words) {
-  if (count != 4) {
+  if (count < 4 || count > 6) {
     std::cerr << "usage: conform-check MANIFEST CHECK SEED\nrouleau conform starts this program; see its --help\n";
     return 2;
   }
@@ -93,7 +117,9 @@ int main(int count, char** words) {
   const rlimit no_core{0, 0};
   setrlimit(RLIMIT_CORE, &no_core);
   watch_signals();
-  conform::send(run(words[2], words[1], std::strtoull(words[3], nullptr, 10)));
+  conform::limit_system_calls(conform::Allowed::all_but_exit);
+  if (count == 5) conform::enter_world(static_cast<unsigned>(std::strtoul(words[4], nullptr, 10)), count, words);
+  conform::send(run(words[2], words[1], std::strtoull(words[3], nullptr, 10), count > 4 ? words[4] : nullptr));
   // Not through static destructors: they are the plugin's, too, and the finding has been sent.
-  _exit(0);
+  conform::end_process(0);
 }

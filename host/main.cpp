@@ -7,7 +7,9 @@
 
 #include "base/text.hpp"
 #include "command/commands.hpp"
+#include "command/faults.hpp"
 #include "command/program.hpp"
+#include "command/terminal.hpp"
 #include "observe/observables.hpp"
 
 namespace {
@@ -30,6 +32,7 @@ constexpr std::array commands{
     Command{"new", "KIND NAME", "source, manifest and build file of a new model", new_command},
     Command{"study", "STUDY", "error against run time over a matrix of settings", study_command},
     Command{"limits", "LIMITS", "where a model breaks, and how", limits_command},
+    Command{"verify", "DIR", "whether a finished run's files are what it wrote", verify_command},
     Command{"report", "DIR", "a run's page again, two runs side by side, or frames as pictures", report_command},
 };
 
@@ -83,10 +86,15 @@ int dispatch(const std::vector<std::string>& arguments) {
 }  // namespace
 
 int main(int count, char** words) {
+  name_culprits();
+  take_terminal();
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error like a full disk, with a message
-  return run_program(
+  const int code = run_program(
       [&] {
+        check_instruction_set();
         return dispatch({words + (count > 0 ? 1 : 0), words + count});
       },
       "; \"rouleau plan\" says how much a scene needs");
+  expect_end();
+  return code;
 }

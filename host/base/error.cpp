@@ -1,27 +1,13 @@
 #include "error.hpp"
 
-#include <algorithm>
-#include <string_view>
-
 #include "text.hpp"
 
 namespace rouleau {
 
 namespace {
 
-/// Escapes control characters but for the ends of lines.
-std::string safe_lines(const std::string& message) {
-  std::string safe;
-  for (std::size_t at = 0; at <= message.size();) {
-    const std::size_t end = std::min(message.find('\n', at), message.size());
-    safe += (at == 0 ? "" : "\n") + printable(std::string_view(message).substr(at, end - at));
-    at = end + 1;
-  }
-  return safe;
-}
-
 std::string words_of(const std::string& problem, const Remedy& remedy) {
-  return safe_lines(remedy.words.empty() ? problem : problem + "\n  " + remedy.words);
+  return printable_lines(remedy.words.empty() ? problem : problem + "\n  " + remedy.words);
 }
 
 std::string message(const Place& place, const std::string& words) {

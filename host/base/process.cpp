@@ -7,13 +7,18 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <csignal>
 #include <cstring>
+#include <fstream>
+#include <iterator>
 #include <limits>
+#include <sstream>
 
 #include "error.hpp"
 
@@ -165,6 +170,56 @@ ProcessEnd run_process(const std::filesystem::path& program, const std::vector<s
   if (WIFSIGNALED(status)) end.signal = WTERMSIG(status);
   if (WIFEXITED(status)) end.exit_code = WEXITSTATUS(status);
   return end;
+}
+
+double available_memory() {
+  constexpr double unknown = std::numeric_limits<double>::infinity();
+  double left = unknown;
+  std::ifstream system("/proc/meminfo");
+  double free = 0;
+  for (std::string name; system >> name;) {
+    double kilobytes = 0;
+    if (name != "MemAvailable:" && name != "SwapFree:") continue;
+    if (system >> kilobytes) left = free += kilobytes * 1024;
+  }
+  rlimit limit{};
+  if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY) {
+    double pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    left = std::min(left, static_cast<double>(limit.rlim_cur) - pages * static_cast<double>(sysconf(_SC_PAGESIZE)));
+  }
+  double most = 0, used = 0;  // of a container; on the machine itself there is no such file, or it says "max"
+  if (std::ifstream("/sys/fs/cgroup/memory.max") >> most && std::ifstream("/sys/fs/cgroup/memory.current") >> used) {
+    left = std::min(left, most - used);
+  }
+  return left;
+}
+
+void adopt_orphans() { prctl(PR_SET_CHILD_SUBREAPER, 1); }
+
+std::vector<std::string> end_children() {
+  std::vector<std::string> names;
+  siginfo_t any{};
+  // Those of a child that ends become this process's own.
+  while (waitid(P_ALL, 0, &any, WEXITED | WNOHANG | WNOWAIT) == 0) {
+    for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
+      if (std::isdigit(static_cast<unsigned char>(entry.path().filename().string().front())) == 0) continue;
+      // "PID (NAME) STATE PARENT ...", and the name may hold anything.
+      std::ifstream file(entry.path() / "stat");
+      const std::string text{std::istreambuf_iterator<char>(file), {}};
+      const auto open = text.find('('), close = text.rfind(')');
+      if (open == std::string::npos || close == std::string::npos) continue;
+      pid_t parent = 0;
+      char state = 0;
+      std::istringstream(text.substr(close + 1)) >> state >> parent;
+      if (parent != getpid()) continue;
+      const pid_t child = static_cast<pid_t>(std::stol(text));
+      names.push_back(text.substr(open + 1, close - open - 1));
+      kill(child, SIGKILL);
+      waitpid(child, nullptr, 0);
+    }
+  }
+  return names;
 }
 
 }  // namespace rouleau

@@ -32,21 +32,56 @@ std::size_t spelling_distance(std::string_view a, std::string_view b) {
   return last[b.size()];
 }
 
+struct Character {
+  unsigned code;     ///< of Unicode; a byte that begins no character stands for itself
+  std::size_t size;  ///< bytes
+};
+
+/// The first character of a text that is not empty, in UTF-8. Only characters of two and three bytes are taken apart:
+/// nothing longer steers a terminal.
+Character next_character(std::string_view text) {
+  const auto byte = [&](std::size_t k) { return k < text.size() ? static_cast<unsigned char>(text[k]) : 0U; };
+  const auto follows = [&](std::size_t k) { return (byte(k) & 0xC0U) == 0x80U; };
+  if ((byte(0) & 0xE0U) == 0xC0U && follows(1)) return {(byte(0) & 0x1FU) << 6 | (byte(1) & 0x3FU), 2};
+  if ((byte(0) & 0xF0U) == 0xE0U && follows(1) && follows(2)) {
+    return {(byte(0) & 0x0FU) << 12 | (byte(1) & 0x3FU) << 6 | (byte(2) & 0x3FU), 3};
+  }
+  if ((byte(0) & 0xF8U) == 0xF0U && follows(1) && follows(2) && follows(3)) return {0x10000, 4};
+  return {byte(0), 1};
+}
+
+/// Control characters of ASCII and of Latin-1, line and paragraph separators, and what changes the direction of writing.
+bool steers(unsigned code) {
+  return code < 0x20 || (code >= 0x7f && code < 0xa0) || code == 0x61c || code == 0x200e || code == 0x200f ||
+         (code >= 0x2028 && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
+}
+
 }  // namespace
 
 std::string printable(std::string_view text) {
   std::string result;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte >= 0x20 && byte != 0x7f) {
-      result += c;
-      continue;
+  for (std::size_t at = 0; at < text.size();) {
+    const auto [code, size] = next_character(text.substr(at));
+    if (steers(code)) {
+      std::array<char, 8> escape{};
+      std::snprintf(escape.data(), escape.size(), "\\u%04x", code);
+      result += escape.data();
+    } else {
+      result += text.substr(at, size);
     }
-    std::array<char, 8> escape{};
-    std::snprintf(escape.data(), escape.size(), "\\u%04x", unsigned{byte});
-    result += escape.data();
+    at += size;
   }
   return result;
+}
+
+std::string printable_lines(std::string_view text) {
+  std::string safe;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    safe += (at == 0 ? "" : "\n") + printable(text.substr(at, end - at));
+    at = end + 1;
+  }
+  return safe;
 }
 
 std::string shortened(std::string text, std::string_view end) {

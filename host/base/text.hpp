@@ -10,8 +10,12 @@ namespace rouleau {
 /// Text in double quotes, control characters escaped, shortened when long.
 std::string in_quotes(std::string_view text);
 
-/// Text without quotes, control characters escaped as in JSON: nothing that steers a terminal.
+/// Text without quotes, what steers a terminal escaped as in JSON: control characters, those of Latin-1 too, and those
+/// that change the direction of writing.
 std::string printable(std::string_view text);
+
+/// The same of several lines, whose ends stay.
+std::string printable_lines(std::string_view text);
 
 /// Cut to eighty bytes, whole characters and "..." with `end` behind them; shorter text as it is.
 std::string shortened(std::string text, std::string_view end = {});

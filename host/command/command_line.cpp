@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <cstring>
 #include <iostream>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "json/schema.hpp"
+#include "units/units.hpp"
 
 namespace rouleau::command {
 
@@ -73,7 +75,7 @@ bool parse_command_line(const std::string& command, const std::string& help, con
 
 std::function<void(const std::string&)> not_empty(const std::string& option) {
   return [option](const std::string& value) {
-    if (value.empty()) throw Error(Cause::bad_input, option + " is empty; give a name, or leave the option out");
+    if (value.empty()) throw Error(Cause::bad_input, option + " is empty; give it a value, or leave the option out");
   };
 }
 
@@ -83,6 +85,21 @@ std::string in_shell(const std::string& word) {
   std::string quoted = "'";
   for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return quoted + '\'';
+}
+
+double seconds_in(const std::string& option, const std::string& text) {
+  // "5min" as well as "5 min"; a plain number is seconds.
+  const std::size_t digits = text.find_first_not_of("0123456789.eE+-");
+  const std::string number_text = text.substr(0, digits);
+  const std::string unit = digits == std::string::npos ? "s" : text.substr(text.find_first_not_of(' ', digits));
+  double seconds = NAN;
+  try {
+    seconds = units::Units().to_si(number_text + ' ' + unit, "s", option);
+  } catch (const units::UnitError& error) {
+    throw Error(Cause::bad_input, option + " " + in_quotes(text) + ": " + error.what());
+  }
+  if (seconds > 0) return seconds;
+  throw Error(Cause::bad_input, option + " " + in_quotes(text) + ": wants a time above zero, for example 5min");
 }
 
 }  // namespace rouleau::command

@@ -19,6 +19,10 @@ bool parse_command_line(const std::string& command, const std::string& help, con
 /// a shell may be that nobody has set.
 std::function<void(const std::string&)> not_empty(const std::string& option);
 
+/// The value of an option that is a time above zero: "5min", "1.5 h", or a plain number of seconds. Throws
+/// Error(bad_input).
+double seconds_in(const std::string& option, const std::string& text);
+
 /// A word as a shell reads it: in quotes where it needs them.
 std::string in_shell(const std::string& word);
 

@@ -18,6 +18,7 @@ int conform_command(const std::vector<std::string>& arguments);
 int new_command(const std::vector<std::string>& arguments);
 int study_command(const std::vector<std::string>& arguments);
 int limits_command(const std::vector<std::string>& arguments);
+int verify_command(const std::vector<std::string>& arguments);
 int report_command(const std::vector<std::string>& arguments);
 
 }  // namespace rouleau::command

@@ -30,8 +30,7 @@ Example:
 
 Checks:
 )";
-  for (const conform::Level level :
-       {conform::Level::interface, conform::Level::physics, conform::Level::robustness, conform::Level::speed}) {
+  for (const conform::Level level : conform::all_levels) {
     text += std::string("  ") + conform::to_string(level) + '\n';
     for (const conform::Check& check : conform::all_checks()) {
       if (check.level != level) continue;
@@ -52,7 +51,10 @@ std::string repeat(const conform::Conformance& plugin, const conform::CheckResul
 /// "3.2e-12, limit 1e-09".
 std::string numbers(const conform::Finding& finding) {
   if (!finding.measured) return {};
-  return ": " + number(*finding.measured, 3) + (finding.limit ? ", limit " + number(*finding.limit, 3) : "");
+  if (!finding.limit) return ": " + number(*finding.measured, 3);
+  int digits = 3;  // enough to tell the two apart
+  while (digits < 17 && number(*finding.measured, digits) == number(*finding.limit, digits)) ++digits;
+  return ": " + number(*finding.measured, digits) + ", limit " + number(*finding.limit, digits);
 }
 
 /// Prints results as they come.
@@ -106,8 +108,7 @@ Json to_json(const conform::Conformance& plugin, std::uint64_t seed) {
 
 conform::Level level_named(const std::string& name) {
   std::vector<std::string> names;
-  for (const conform::Level level :
-       {conform::Level::interface, conform::Level::physics, conform::Level::robustness, conform::Level::speed}) {
+  for (const conform::Level level : conform::all_levels) {
     if (name == conform::to_string(level)) return level;
     names.emplace_back(conform::to_string(level));
   }
@@ -146,7 +147,8 @@ int conform_command(const std::vector<std::string>& arguments) {
   description.add_options()("only", options::value(&only)->composing()->value_name("CHECK"),
                             "this check alone, whatever it builds on (repeatable)");
   description.add_options()("level", options::value(&levels)->composing()->value_name("LEVEL"),
-                            "interface, physics, robustness or speed, with the checks that it builds on (repeatable)");
+                            "interface, physics, robustness or speed, with the checks that it builds on (repeatable);\n"
+                            "publish: all of them, and what is warned of otherwise fails");
   description.add_options()("seed", options::value(&chosen.seed)->value_name("N"),
                             "of the random inputs; without it another one each time");
   description.add_options()("timeout", options::value(&chosen.time_limit_s)->value_name("SECONDS"),

@@ -34,27 +34,28 @@ Exit codes: 0 done, 1 an extreme case ended neither right nor with a reason, or 
 
 int limits_command(const std::vector<std::string>& arguments) {
   namespace options = boost::program_options;
-  std::string file, out;
+  std::string file, out, max_time;
   trial::CampaignOptions chosen;
   options::options_description description("options");
   options::positional_options_description positional;
   description.add_options()("limits", options::value(&file)->required(), "LIMITS file (JSON)")(
       "out", options::value(&out)->value_name("DIR")->notifier(not_empty("--out")),
-      "directory (default: runs/NAME of the file)")("quiet", options::bool_switch(&chosen.quiet),
-                                                    "no lines on what is being tried");
+      "directory (default: runs/NAME of the file)")(
+      "max-time", options::value(&max_time)->value_name("TIME")->notifier(not_empty("--max-time")), TimeLimit::help)(
+      "quiet", options::bool_switch(&chosen.quiet), "no lines on what is being tried");
   positional.add("limits", 1);
   if (!parse_command_line("limits", limits_help, arguments, description, positional)) return 0;
 
   const stability::LimitsFile limits = stability::read_limits(file);
   chosen.directory =
       out.empty() ? std::filesystem::path("runs") / std::filesystem::path(file).stem() : std::filesystem::path(out);
-  chosen.interrupted = &listen_for_interruption();
+  chosen.interrupted = &listen_for_interruption(TimeLimit(max_time));
   stability::LimitsRun run(limits, chosen);
   const bool ended = run.run();
   std::cout << stability::limits_text(stability::limits_json(run.state()))
             << (chosen.directory / "limits.html").string() << "\n";
   if (!ended) {
-    std::cerr << "interrupted; the same command goes on\n";
+    std::cerr << "ended by " << interruption_cause() << "; the same command goes on\n";
     return exit_code::interrupted;
   }
   const auto& cases = run.state().cases;

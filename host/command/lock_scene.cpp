@@ -33,7 +33,7 @@ std::vector<const plugin::Manifest*> named_plugins(const scene::Scene& scene, co
 
 void lock_scene(const std::filesystem::path& scene_file, const std::vector<std::filesystem::path>& plugin_dirs,
                 const std::filesystem::path& out) {
-  const scene::Scene scene = plan::read_unpacked_scene(scene_file);
+  const scene::Scene scene = plan::read_unpacked_scene(scene_file).scene;
   const plugin::Catalog catalog(plugin::plugin_search_path(plugin_dirs, scene.plugin_dirs));
   std::vector<plugin::LockedPlugin> locked;
   for (const plugin::Manifest* manifest : named_plugins(scene, catalog))

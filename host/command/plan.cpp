@@ -4,8 +4,8 @@
 #include "command_line.hpp"
 #include "commands.hpp"
 #include "core/membrane/membranes.hpp"
-#include "plan/placed_cells.hpp"
-#include "plan/plan.hpp"
+#include "plan/plan_report.hpp"
+#include "plan/solver_setup.hpp"
 #include "scene_options.hpp"
 
 namespace rouleau::command {
@@ -15,7 +15,8 @@ namespace {
 constexpr const char* plan_help = R"(usage: rouleau plan SCENE [options]
 
 Prints, without a step: every conversion, dimensionless number and limit (value, limit, margin), what will be
-computed, what is left out and why, and the estimated time, memory and output size.
+computed, what is left out and why, and the estimated time, memory and output size. Plugins that the scene names are
+loaded and made, so their code runs.
 
 Example:
   rouleau plan scenes/four-cells-shear.json
@@ -34,16 +35,17 @@ int plan_command(const std::vector<std::string>& arguments) {
   description.add_options()("json", options::bool_switch(&json), "print JSON for programs");
   if (!parse_command_line("plan", plan_help, arguments, description, positional)) return 0;
 
-  const scene::Scene scene = scene_options.read();
+  const auto [scene, numerics_choice] = scene_options.read();
   const plugin::Catalog catalog = scene_options.catalog(scene);
-  const plan::Plan plan = plan::make_plan(scene, catalog);
+  const plan::Plan plan = plan::make_plan(scene, catalog, numerics_choice);
   // Placing the cells finds overlaps before a run does.
   if (plan.has_cells) plan::make_membranes(scene, plan::lattice_spacing(scene));
+  const plan::PlanReport report = plan::make_report(plan);
   if (json) {
     // Names of folders need not be UTF-8.
-    std::cout << plan::to_json(plan).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
+    std::cout << plan::to_json(plan, report).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
   } else {
-    std::cout << plan::to_text(plan);
+    std::cout << plan::to_text(plan, report);
   }
   return 0;
 }

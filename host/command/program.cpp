@@ -1,9 +1,17 @@
 #include "program.hpp"
 
+#include <algorithm>
+#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <iostream>
 #include <new>
+#include <rouleau/dispatch.hpp>
+#include <string_view>
+#include <vector>
+
+#include "base/foreign_call.hpp"
+#include "base/text.hpp"
 
 namespace rouleau::command {
 
@@ -48,15 +56,32 @@ std::string in_options(const Remedy& remedy) {
   return remedy.words + options + (options.empty() ? "" : ")");
 }
 
+void check_instruction_set() {
+  const char* wanted = std::getenv("ROULEAU_INSTRUCTION_SET");
+  if (wanted == nullptr || *wanted == '\0' || wanted == std::string_view(name_of(instruction_set()))) return;
+  std::vector<std::string> names;
+  for (const InstructionSet set : {InstructionSet::baseline, InstructionSet::avx2, InstructionSet::avx512})
+    names.emplace_back(name_of(set));
+  const bool known = std::find(names.begin(), names.end(), wanted) != names.end();
+  throw Error(Cause::bad_input,
+              "the environment variable ROULEAU_INSTRUCTION_SET is " + in_quotes(wanted) +
+                  (known ? ", which this processor does not have"
+                         : "; it can be one of: " + listed(names) + did_you_mean(wanted, names)),
+              {"unset it, or choose a set that is there"});
+}
+
 int run_program(const std::function<int()>& body, const std::string& too_large) {
   try {
     const int code = body();
     std::cout.flush();
     // A full disk or a closed pipe must not look like success to the script that reads the output.
-    return std::cout ? code : fail("rouleau: the output could not be written", exit_code::input_output);
+    return std::cout || code != 0 ? code : fail("rouleau: the output could not be written", exit_code::input_output);
   } catch (const Error& error) {
     const Error shown(error.cause(), error.place(), error.problem(), {in_options(error.remedy())});
     return fail(shown.what(), exit_code_of(error.cause()));
+  } catch (const ForeignException& exception) {
+    const Error shown(Cause::plugin_refused, exception.what(), {"report it to the plugin's author"});
+    return fail(shown.what(), exit_code::plugin_refused);
   } catch (const std::bad_alloc&) {
     return fail("rouleau: there is not enough memory" + too_large, exit_code::input_output);
   } catch (const std::filesystem::filesystem_error& error) {

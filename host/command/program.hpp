@@ -17,6 +17,9 @@ int exit_code_of(Cause cause);
 /// The remedy, with the options of `rouleau` for its ways: "choose another directory (--out)".
 std::string in_options(const Remedy& remedy);
 
+/// Throws Error(bad_input) for a ROULEAU_INSTRUCTION_SET that there is not, or that this processor does not have.
+void check_instruction_set();
+
 /// Calls a program's body and returns its exit code. What the body throws becomes a message on standard error, and so
 /// does an output that could not be written. `too_large`: what to do where memory does not suffice.
 int run_program(const std::function<int()>& body, const std::string& too_large);

@@ -15,6 +15,7 @@
 #include "commands.hpp"
 #include "report/report_data.hpp"
 #include "report/result_page.hpp"
+#include "terminal.hpp"
 
 namespace rouleau::command {
 
@@ -87,7 +88,7 @@ std::vector<std::string> strains_of(const std::vector<std::string>& lists) {
   pointers.reserve(words.size() + 1);
   for (std::string& word : words) pointers.push_back(word.data());
   pointers.push_back(nullptr);
-  std::cout.flush();
+  give_terminal_back();
   ::execv(program.c_str(), pointers.data());
   throw Error(Cause::input_output, program.string() + " could not be started: " + std::strerror(errno));
 }

@@ -2,14 +2,18 @@
 #include <csignal>
 #include <filesystem>
 #include <iostream>
+#include <latch>
+#include <system_error>
 #include <thread>
+#include <vector>
 
 #include "command_line.hpp"
 #include "commands.hpp"
 #include "core/membrane/membranes.hpp"
 #include "files/checkpoint_file.hpp"
 #include "interruption.hpp"
-#include "plan/placed_cells.hpp"
+#include "plan/estimate.hpp"
+#include "plan/solver_setup.hpp"
 #include "report/report.hpp"
 #include "run/simulation.hpp"
 #include "scene_options.hpp"
@@ -23,9 +27,9 @@ constexpr const char* run_help = R"(usage: rouleau run SCENE [options]
 Simulates a scene and writes a run directory: summary.json, cells.csv, aggregates.csv, aggregate_sizes.csv, series.csv,
 frames.h5 with frames.xmf (ParaView), log.jsonl, checkpoint.h5 and report.html.
 
-Ctrl-C, SIGTERM and a closed terminal end a run after a checkpoint. --resume goes on from the directory's last
-checkpoint, whatever ended the run, to the same results as without the break; without --out in runs/NAME of the scene.
-Where no run has been, or one was killed before its first checkpoint, it begins at the beginning.
+Ctrl-C, SIGTERM, a closed terminal, SIGUSR1, SIGXCPU and --max-time end a run after a checkpoint. --resume goes on from
+the directory's last checkpoint, whatever ended the run, to the same results as without the break; without --out in
+runs/NAME of the scene. Where no run has been, or one was killed before its first checkpoint, it begins at the beginning.
 
 Example:
   rouleau run scenes/four-cells-shear.json --out runs/demo --threads 2
@@ -49,12 +53,28 @@ void check_max_steps(long steps) {
                                     ": wants a number of steps, zero or more; leave it out for a run without limit");
 }
 
+/// Throws where the system refuses so many threads: OpenMP's library would end the program.
+void require_threads(int threads) {
+  std::latch all_asked(1);
+  std::vector<std::jthread> others;
+  try {
+    for (int k = 1; k < threads; ++k) others.emplace_back([&] { all_asked.wait(); });
+  } catch (const std::system_error& error) {
+    all_asked.count_down();
+    throw Error(Cause::input_output,
+                "--threads " + std::to_string(threads) + ": the system grants no more than " +
+                    std::to_string(others.size() + 1) + ": " + error.code().message(),
+                {"take fewer, or raise the limit of processes (ulimit -u) or of memory (ulimit -v)"});
+  }
+  all_asked.count_down();
+}
+
 }  // namespace
 
 int run_command(const std::vector<std::string>& arguments) {
   namespace options = boost::program_options;
   SceneOptions scene_options;
-  std::string out;
+  std::string out, max_time;
   bool overwrite = false, resume = false;
   run::RunOptions run;
   options::options_description description("options");
@@ -70,7 +90,9 @@ int run_command(const std::vector<std::string>& arguments) {
       "threads", options::value(&run.threads)->default_value(1)->value_name("N"),
       "threads; results do not depend on their number")(
       "max-steps", options::value(&run.max_steps)->value_name("N")->notifier(check_max_steps),
-      "stop after N steps over all stages")("quiet", options::bool_switch(&run.quiet), "no progress on the terminal");
+      "stop after N steps over all stages")(
+      "max-time", options::value(&max_time)->value_name("TIME")->notifier(not_empty("--max-time")), TimeLimit::help)(
+      "quiet", options::bool_switch(&run.quiet), "no progress on the terminal");
   if (!parse_command_line("run", run_help, arguments, description, positional)) return 0;
   std::signal(SIGPIPE, SIG_IGN);  // when who reads the progress has gone the run goes on
 
@@ -84,15 +106,19 @@ int run_command(const std::vector<std::string>& arguments) {
                                       ": wants a number from 1 to 1024 (this machine has " +
                                       std::to_string(processors) + " processors)");
   }
-  const scene::Scene scene = scene_options.read();
+  const TimeLimit limit(max_time);
+  const auto [scene, numerics_choice] = scene_options.read();
   run.threads = std::min(run.threads, std::max(1, scene.domain.nodes[1] / 4));
   const plugin::Catalog catalog = scene_options.catalog(scene);
-  const plan::Plan plan = plan::make_plan(scene, catalog);
+  const plan::Plan plan = plan::make_plan(scene, catalog, numerics_choice);
+  const plan::PlanReport report = plan::make_report(plan);
   // Placing the cells finds overlaps before a directory is made.
   if (plan.has_cells) plan::make_membranes(scene, plan::lattice_spacing(scene));
-  for (const std::string& warning : plan.warnings) std::cerr << "warning: " << warning << "\n";
+  plan::require_memory(report.estimate.memory_bytes, "the run");
+  for (const std::string& warning : report.warnings) std::cerr << "warning: " << warning << "\n";
 
-  run.interrupted = &listen_for_interruption();
+  require_threads(run.threads);
+  run.interrupted = &listen_for_interruption(limit);
   const std::filesystem::path named = std::filesystem::path("runs") / std::filesystem::path(scene_options.scene).stem();
   const std::filesystem::path folder = !out.empty()          ? std::filesystem::path(out)
                                        : overwrite || resume ? named
@@ -109,7 +135,7 @@ int run_command(const std::vector<std::string>& arguments) {
       std::cerr << folder.string() << " holds no checkpoint: the run begins at the beginning\n";
     }
     try {
-      summary = run::simulate(plan, run, directory);
+      summary = run::simulate(plan, report, run, &directory);
     } catch (const Error& error) {
       if (error.cause() != Cause::input_output || !directory.is_open()) throw;
       const std::string next = std::filesystem::exists(files::checkpoint_file(folder))
@@ -120,8 +146,8 @@ int run_command(const std::vector<std::string>& arguments) {
                   {remedy + (remedy.empty() ? "" : "\n  ") + next + again});
     }
   }
-  const std::filesystem::path report = report::write_report(folder);
-  std::cout << report.string() << "\n" << last_words(summary) << "\n";
+  const std::filesystem::path page = report::write_report(folder);
+  std::cout << page.string() << "\n" << last_words(summary) << "\n";
   if (summary.failure) {
     const monitor::Failure& f = *summary.failure;
     std::cerr << f.reason << " at step " << f.step << ", strain " << f.strain;
@@ -131,9 +157,10 @@ int run_command(const std::vector<std::string>& arguments) {
   }
   if (summary.failure) return exit_code::simulation_failed;
   if (summary.status == "interrupted" && summary.checkpoint_step) {
-    std::cerr << "to go on: " << again << "\n";
+    std::cerr << "ended by " << interruption_cause() << "\nto go on: " << again << "\n";
   } else if (summary.status == "interrupted") {
-    std::cerr << "no checkpoint was kept (output.checkpoint of the scene): the run can only begin again, with "
+    std::cerr << "ended by " << interruption_cause()
+              << "; no checkpoint was kept (output.checkpoint of the scene): the run can only begin again, with "
                  "--overwrite\n";
   }
   return summary.status == "interrupted" ? exit_code::interrupted : exit_code::done;

@@ -1,7 +1,6 @@
 #include "scene_options.hpp"
 
 #include "command_line.hpp"
-#include "plan/read_scene.hpp"
 
 namespace rouleau::command {
 
@@ -19,7 +18,7 @@ void SceneOptions::add_to(options::options_description& description,
   positional.add("scene", 1);
 }
 
-scene::Scene SceneOptions::read() const {
+plan::ReadScene SceneOptions::read() const {
   return plan::read_within_limits(scene, overrides, [&](const scene::Scene& read) { return catalog(read); });
 }
 

@@ -6,8 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "plugin/catalog.hpp"
-#include "scene/scene.hpp"
+#include "plan/read_scene.hpp"
 
 namespace rouleau::command {
 
@@ -21,7 +20,7 @@ struct SceneOptions {
   /// --set, --plugin-dir, --lock; the scene itself is positional.
   void add_to(boost::program_options::options_description& options,
               boost::program_options::positional_options_description& positional);
-  [[nodiscard]] scene::Scene read() const;
+  [[nodiscard]] plan::ReadScene read() const;
   /// The scene and these options as somebody would type them again.
   [[nodiscard]] std::string in_shell() const;
   /// What the search path offers, bound by the lock.

@@ -1,5 +1,4 @@
 // rouleau study STUDY: error against run time over a matrix of settings.
-#include <cmath>
 #include <iostream>
 
 #include "base/error.hpp"
@@ -9,7 +8,6 @@
 #include "interruption.hpp"
 #include "study/study_files.hpp"
 #include "study/study_run.hpp"
-#include "units/units.hpp"
 
 namespace rouleau::command {
 
@@ -33,21 +31,6 @@ Exit codes: 0 done (also where points failed), 1 a repeated run gave other resul
 130 interrupted
 )";
 
-double budget_in_seconds(const std::string& text) {
-  // "5min" as well as "5 min"; a plain number is seconds.
-  const std::size_t digits = text.find_first_not_of("0123456789.eE+-");
-  const std::string number_text = text.substr(0, digits);
-  const std::string unit = digits == std::string::npos ? "s" : text.substr(text.find_first_not_of(' ', digits));
-  double seconds = NAN;
-  try {
-    seconds = units::Units().to_si(number_text + ' ' + unit, "s", "--budget");
-  } catch (const units::UnitError& error) {
-    throw Error(Cause::bad_input, "--budget " + in_quotes(text) + ": " + error.what());
-  }
-  if (seconds > 0) return seconds;
-  throw Error(Cause::bad_input, "--budget " + in_quotes(text) + ": wants a time above zero, for example 5min");
-}
-
 /// What was left out, what was found; false where a repeated run gave other results.
 bool tell_end(const study::StudyState& state) {
   bool same = true;
@@ -68,7 +51,7 @@ bool tell_end(const study::StudyState& state) {
 
 int study_command(const std::vector<std::string>& arguments) {
   namespace options = boost::program_options;
-  std::string file, out, budget, target;
+  std::string file, out, budget, target, max_time;
   int repeats = 0;
   study::StudyOptions chosen;
   options::options_description description("options");
@@ -81,6 +64,7 @@ int study_command(const std::vector<std::string>& arguments) {
       "target", options::value(&target)->value_name("NAME=ERROR"),
       "runs only what it takes to find the cheapest point whose error is below, as deformation=1%")(
       "repeats", options::value(&repeats)->value_name("N"), "timed runs of each point (default: the study's, or 3)")(
+      "max-time", options::value(&max_time)->value_name("TIME")->notifier(not_empty("--max-time")), TimeLimit::help)(
       "quiet", options::bool_switch(&chosen.quiet), "no lines on what is being run");
   positional.add("study", 1);
   if (!parse_command_line("study", study_help, arguments, description, positional)) return 0;
@@ -89,17 +73,17 @@ int study_command(const std::vector<std::string>& arguments) {
   if (repeats < 0 || repeats > 100)
     throw Error(Cause::bad_input, "--repeats " + std::to_string(repeats) + ": wants a number from 1 to 100");
   if (repeats > 0) study.repeats = repeats;
-  if (!budget.empty()) chosen.budget_s = budget_in_seconds(budget);
+  if (!budget.empty()) chosen.budget_s = seconds_in("--budget", budget);
   if (!target.empty()) chosen.target = study::read_target(target, study.quantities);
   const std::filesystem::path named = std::filesystem::path("runs") / std::filesystem::path(file).stem();
   chosen.directory = out.empty() ? named : std::filesystem::path(out);
-  chosen.interrupted = &listen_for_interruption();
+  chosen.interrupted = &listen_for_interruption(TimeLimit(max_time));
 
   study::StudyRun run(study, chosen);
   const bool ended = run.run();
   std::cout << (chosen.directory / "study.html").string() << "\n";
   if (!ended) {
-    std::cerr << "interrupted; the same command goes on\n";
+    std::cerr << "ended by " << interruption_cause() << "; the same command goes on\n";
     return exit_code::interrupted;
   }
   return tell_end(run.state()) ? exit_code::done : exit_code::simulation_failed;

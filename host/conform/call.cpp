@@ -8,6 +8,7 @@
 #include <cstring>
 #include <memory>
 
+#include "base/foreign_call.hpp"
 #include "base/text.hpp"
 #include "guarded_memory.hpp"
 #include "plugin/quantities.hpp"
@@ -228,8 +229,8 @@ Block element_block(const Tables<double>& tables, const std::array<Member<Block>
 /// Calls with the floating-point environment and exceptions kept from spreading. The block lies where arrays lie, so
 /// that reading past the fields of interface 1.0 hits a guard.
 template <class Block>
-void call_with(Memory& memory, Block block, std::uint32_t count, std::uint32_t appended, CallWatch* watch,
-               void (*function)(const void*, const Block*), const void* self) {
+void call_with(Memory& memory, const std::string& model, Block block, std::uint32_t count, std::uint32_t appended,
+               CallWatch* watch, void (*function)(const void*, const Block*), const void* self) {
   block.struct_size = static_cast<std::uint32_t>(sizeof block) + appended;
   block.count = count;
   std::byte* placed = memory.part_of_block("the block's struct", sizeof block + appended);
@@ -238,6 +239,7 @@ void call_with(Memory& memory, Block block, std::uint32_t count, std::uint32_t a
   std::fenv_t environment;
   std::fegetenv(&environment);
   try {
+    const ForeignCall mark(model.c_str(), "compute");
     if (watch != nullptr) watch->before();
     function(self, reinterpret_cast<const Block*>(placed));
     if (watch != nullptr) watch->after();
@@ -257,17 +259,19 @@ void call_block(Memory& memory, const Subject& subject, const plugin::ModelInsta
   const Tables<T> tables{memory, arrays, first};
   const void* self = instance.self();
   if constexpr (sizeof(T) == 4) {
-    call_with(memory, collision_block<rouleau_collision_block_f32>(tables), count, call.appended_bytes, call.watch,
-              instance.collision().collide_f32, self);
+    call_with(memory, subject.manifest().id, collision_block<rouleau_collision_block_f32>(tables), count,
+              call.appended_bytes, call.watch, instance.collision().collide_f32, self);
   } else if (subject.manifest().kind == plugin::ModelKind::collision) {
-    call_with(memory, collision_block<rouleau_collision_block_f64>(tables), count, call.appended_bytes, call.watch,
-              instance.collision().collide_f64, self);
+    call_with(memory, subject.manifest().id, collision_block<rouleau_collision_block_f64>(tables), count,
+              call.appended_bytes, call.watch, instance.collision().collide_f64, self);
   } else if (subject.manifest().kind == plugin::ModelKind::membrane) {
-    call_with(memory, element_block(tables, membrane_members, subject.manifest().state.size(), call.time_step), count,
+    call_with(memory, subject.manifest().id,
+              element_block(tables, membrane_members, subject.manifest().state.size(), call.time_step), count,
               call.appended_bytes, call.watch, instance.membrane().compute, self);
   } else {
-    call_with(memory, element_block(tables, interaction_members, subject.manifest().state.size(), call.time_step),
-              count, call.appended_bytes, call.watch, instance.interaction().compute, self);
+    call_with(memory, subject.manifest().id,
+              element_block(tables, interaction_members, subject.manifest().state.size(), call.time_step), count,
+              call.appended_bytes, call.watch, instance.interaction().compute, self);
   }
 }
 
@@ -277,11 +281,14 @@ Values compute_as(const Subject& subject, const plugin::ModelInstance& instance,
   const std::size_t count = inputs.begin()->second.size();
   Memory memory(call);
   const Arrays<T> arrays = place<T>(memory, subject, inputs, call, count);
-  const std::size_t size = std::min(call.block, count), blocks = (count + size - 1) / size;
-  for (std::size_t i = 0; i < blocks; ++i) {
-    const std::size_t first = (call.backwards ? blocks - 1 - i : i) * size;
-    call_block(memory, subject, instance, arrays, first, static_cast<std::uint32_t>(std::min(size, count - first)),
-               call);
+  std::vector<std::pair<std::size_t, std::size_t>> blocks;  // first element, size
+  for (std::size_t first = 0; first < count; first += blocks.back().second) {
+    const std::size_t wanted = blocks.size() < call.sizes.size() ? call.sizes[blocks.size()] : call.block;
+    blocks.emplace_back(first, std::min(wanted, count - first));
+  }
+  if (call.backwards) std::reverse(blocks.begin(), blocks.end());
+  for (const auto& [first, size] : blocks) {
+    call_block(memory, subject, instance, arrays, first, static_cast<std::uint32_t>(size), call);
   }
   Values outputs;
   for (const auto& [name, array] : arrays.out) {

@@ -29,6 +29,8 @@ class CallWatch {
 struct Call {
   bool single = false;                                          ///< collision: f32; values are rounded on the way in
   std::size_t block = std::numeric_limits<std::size_t>::max();  ///< elements in one call, at most
+  std::vector<std::size_t>
+      sizes;                     ///< of the blocks, one after another; empty: `block`, and after the last of them, too
   std::size_t offset = 0;        ///< elements between a cache line's start and the arrays
   bool backwards = false;        ///< the last block first
   bool in_place = false;         ///< outputs over inputs where the interface allows it

@@ -2,7 +2,11 @@
 
 #include <algorithm>
 #include <iterator>
+#include <set>
 #include <stdexcept>
+#include <string>
+
+#include "subject.hpp"
 
 namespace rouleau::conform {
 
@@ -16,6 +20,8 @@ const char* to_string(Level level) {
       return "robustness";
     case Level::speed:
       return "speed";
+    case Level::publish:
+      return "publish";
   }
   return "unknown";
 }
@@ -36,6 +42,21 @@ const char* to_string(Verdict verdict) {
       return "skip";
   }
   return "unknown";
+}
+
+Finding run(const Check& check, const Subject& subject) {
+  // Of bits: who does not promise them is not held to them.
+  const std::set<std::string> of_bits = {"blocks",          "bounds",       "aliasing",        "contained",
+                                         "threads",         "struct-size",  "declared-inputs", "outputs-optional",
+                                         "energy-optional", "rigid-motion", "state-restored",  "fluid-independent",
+                                         "surroundings"};
+  if (!subject.manifest().claims.value("reproducible", true)) {
+    if (check.name == std::string("hidden-state")) {
+      return Finding::warned("claims not to be reproducible: runs with it cannot be repeated, resumed or compared");
+    }
+    if (of_bits.contains(check.name)) return Finding::skipped("claims not to be reproducible");
+  }
+  return check.run(subject);
 }
 
 Finding Finding::at_most(double measured, double limit, std::string what) {
@@ -66,9 +87,9 @@ std::vector<Check> foundations_first(std::vector<Check> checks) {
 const std::vector<Check>& all_checks() {
   static const std::vector<Check> checks = [] {
     std::vector<Check> all;
-    for (auto& part :
-         {interface_checks(), collision_checks(), membrane_checks(), interaction_checks(), physics_checks(),
-          role_checks(), block_checks(), input_checks(), process_checks(), speed_checks()}) {
+    for (auto& part : {interface_checks(), collision_checks(), membrane_checks(), interaction_checks(), state_checks(),
+                       physics_checks(), role_checks(), block_checks(), input_checks(), number_checks(),
+                       process_checks(), isolation_checks(), speed_checks(), publish_checks()}) {
       all.insert(all.end(), part.begin(), part.end());
     }
     return foundations_first(std::move(all));

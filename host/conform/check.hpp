@@ -1,6 +1,7 @@
 // A conformance check: what it asserts of a plugin, which checks it builds on, and what it found.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,7 +12,11 @@ namespace rouleau::conform {
 
 class Subject;
 
-enum class Level { interface, physics, robustness, speed };
+/// `publish`: for models that others will trust; all other levels, and their warnings count as failures.
+enum class Level { interface, physics, robustness, speed, publish };
+/// In the order in which they run.
+inline constexpr std::array all_levels = {Level::interface, Level::physics, Level::robustness, Level::speed,
+                                          Level::publish};
 const char* to_string(Level level);
 
 enum class Verdict {
@@ -52,12 +57,19 @@ std::vector<Check> interface_checks();
 std::vector<Check> input_checks();
 std::vector<Check> block_checks();
 std::vector<Check> process_checks();
+std::vector<Check> isolation_checks();
 std::vector<Check> physics_checks();
 std::vector<Check> role_checks();
 std::vector<Check> collision_checks();
 std::vector<Check> membrane_checks();
+std::vector<Check> state_checks();
+std::vector<Check> number_checks();
+std::vector<Check> publish_checks();
 std::vector<Check> interaction_checks();
 std::vector<Check> speed_checks();
+
+/// What a check finds. A model that claims not to be reproducible is not held to bits.
+Finding run(const Check& check, const Subject& subject);
 
 /// Every check, those that others build on first.
 const std::vector<Check>& all_checks();

@@ -21,6 +21,20 @@ fs::path check_program() {
   return program.parent_path().parent_path() / ROULEAU_LIBEXEC_FOLDER / "rouleau" / "conform-check";
 }
 
+/// Ends what outlives a check, wherever it has hidden, and adds it to the finding.
+void end_leftovers(Finding& finding) {
+  std::vector<std::string> names;
+  for (const std::string& name : end_children()) {
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  }
+  if (names.empty()) return;
+  const std::string words = "leaves a process behind (" + listed(names) + ")";
+  if (finding.verdict == Verdict::crash || finding.verdict == Verdict::timeout)
+    finding.what += ", and " + words;
+  else
+    finding = Finding::failed(words);
+}
+
 CheckResult run(const Check& check, const fs::path& manifest, const ConformanceOptions& options) {
   const ProcessEnd end =
       run_process(check_program(), {manifest.string(), check.name, std::to_string(options.seed)}, options.time_limit_s);
@@ -39,7 +53,14 @@ CheckResult run(const Check& check, const fs::path& manifest, const ConformanceO
                       {},
                       {}};
   }
+  end_leftovers(result.finding);
   return result;
+}
+
+/// At level publish warnings are failures, but for what an honest model may be: under stress at rest, or rough.
+bool may_warn(const Check& check) {
+  const std::set<std::string> names = {"rest-state", "gradient", "derivative", "derivatives", "quiet"};
+  return names.contains(check.name);
 }
 
 bool stands(Verdict verdict) { return verdict == Verdict::pass || verdict == Verdict::warn; }
@@ -55,6 +76,9 @@ class Session {
     const std::string blocker = blocked_by(check);
     CheckResult result{&check, Finding::skipped("blocked by " + blocker), blocker, {}, 0};
     if (blocker.empty()) result = run(check, plugin_.file, options_);
+    if (options_.levels.contains(Level::publish) && result.finding.verdict == Verdict::warn && !may_warn(check)) {
+      result.finding.verdict = Verdict::fail;
+    }
     // What one manifest does not know, so that its check's process cannot tell.
     if (std::string(check.name) == "manifest" && stands(result.finding.verdict) && rivals_.size() > 1) {
       std::vector<std::string> files;
@@ -88,7 +112,9 @@ std::vector<const Check*> chosen(const ConformanceOptions& options, const std::s
   std::set<std::string> wanted;
   const auto& all = all_checks();
   for (auto check = all.rbegin(); check != all.rend(); ++check) {
-    const bool of_level = options.levels.empty() || options.levels.contains(check->level);
+    const bool of_level = options.levels.empty()
+                              ? check->level != Level::publish
+                              : options.levels.contains(check->level) || options.levels.contains(Level::publish);
     if (options.only.empty() ? of_level || wanted.contains(check->name) : options.only.contains(check->name)) {
       wanted.insert(check->name);
       if (options.only.empty()) wanted.insert(check->after.begin(), check->after.end());
@@ -115,6 +141,7 @@ bool Conformance::conforms() const {
 
 std::vector<Conformance> check_conformance(const std::vector<fs::path>& manifests, const ConformanceOptions& options,
                                            const std::function<void(const Conformance&, const CheckResult&)>& watch) {
+  adopt_orphans();
   std::vector<Conformance> all;
   std::map<std::string, std::vector<fs::path>> claimants;
   const units::Units units;

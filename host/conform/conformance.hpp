@@ -13,7 +13,7 @@ namespace rouleau::conform {
 
 struct ConformanceOptions {
   std::set<std::string> only;  ///< names of checks; empty: all. These run whatever they build on.
-  std::set<Level> levels;      ///< empty: all. What the checks of a level build on runs, too.
+  std::set<Level> levels;      ///< empty: all but publish. What the checks of a level build on runs, too.
   std::uint64_t seed = 0;
   double time_limit_s = 20;  ///< of one check
 };

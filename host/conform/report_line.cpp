@@ -56,9 +56,10 @@ Finding finding_from(const Json& entry) {
 }
 
 void send(const Finding& finding) {
-  const std::string line = to_json(finding).dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
-  write_all(line.data(), line.size());
+  send(to_json(finding).dump(-1, ' ', false, Json::error_handler_t::replace) + '\n');
 }
+
+void send(const std::string& text) { write_all(text.data(), text.size()); }
 
 void send_from_signal(const char* verdict, const char* text) {
   char line[1024];

@@ -12,7 +12,9 @@ Finding finding_from(const nlohmann::json& json);
 
 /// Writes the finding; for the end of a check.
 void send(const Finding& finding);
-/// The same from a signal handler: no allocation. `text` must hold no quotes, backslashes or control characters.
+/// Writes a text for another check's process.
+void send(const std::string& text);
+/// The same as send(finding) from a signal handler: no allocation. `text` must hold no quotes, backslashes or control characters.
 void send_from_signal(const char* verdict, const char* text);
 
 }  // namespace rouleau::conform

@@ -1,5 +1,7 @@
 #include "subject.hpp"
 
+#include <array>
+#include <bit>
 #include <cmath>
 #include <functional>
 
@@ -35,6 +37,41 @@ void set(Values& values, const std::string& name, std::size_t count, const std::
   auto& array = values[name];
   array.resize(count);
   for (double& value : array) value = draw();
+}
+
+/// A double of any kind: ordinary, tiny, huge, a special value, or any bits at all.
+double any_double(Random& random) {
+  constexpr std::array special = {0.0, -0.0, 1.0, -1.0, 1e-310, 5e-324, 1e-300, 1e300, 1.7976931348623157e308};
+  switch (random() % 5) {
+    case 0:
+      return uniform(random, -2, 2);
+    case 1:
+      return std::pow(10.0, uniform(random, -12, 12)) * (random() % 4 == 0 ? -1 : 1);
+    case 2:
+      return special[random() % special.size()];
+    case 3:
+      return random() % 2 == 0 ? std::nan("") : (random() % 2 == 0 ? 1 : -1) * HUGE_VAL;
+    default:
+      return std::bit_cast<double>(random());
+  }
+}
+
+/// What is met now and then: numbers far from the usual ones, and near to where something ends.
+double rare(const std::string& need, double high, Random& random) {
+  const double power = uniform(random, 0, 1);
+  if (need == "stretch") {
+    return random() % 2 == 0 ? 0.1 * std::pow(50.0, power)
+                             : 1 + std::pow(10.0, -1 - 9 * power) * uniform(random, -1, 1);
+  }
+  if (need == "distance") return high * (1 - std::pow(10.0, -1 - 5 * power));
+  if (need == "relaxation_rate") {
+    constexpr std::array special = {1.0, 1e-3, 0.01, 1.99, 1.9999, 1.999999};
+    return special[random() % special.size()];
+  }
+  const double sign = random() % 2 == 0 ? 1 : -1;
+  if (need.ends_with("area") || need.ends_with("perimeter")) return high * std::pow(2.0, sign * power);
+  if (need == "populations" || need == "force") return uniform(random, -high, high);
+  return sign * high * std::pow(10.0, 1 - 9 * power);  // rates, velocities, curvatures
 }
 
 }  // namespace
@@ -143,7 +180,8 @@ std::vector<std::string> Subject::output_arrays() const {
   return names;
 }
 
-Values Subject::random_inputs(const plugin::ModelInstance& instance, std::size_t count, Random& random) const {
+Values Subject::random_inputs(const plugin::ModelInstance& instance, std::size_t count, Random& random,
+                              int steps) const {
   const double cutoff =
       manifest_.kind == plugin::ModelKind::interaction ? instance.interaction().cutoff(instance.self()) : 0;
   // The ranges of what simulations meet, in lattice units: Mach numbers below 0.1, stretches by a half to two, cells of
@@ -161,14 +199,31 @@ Values Subject::random_inputs(const plugin::ModelInstance& instance, std::size_t
     for (const auto& need : manifest_.needs) {
       const auto [low, high] = ranges.at(need);
       for (const auto& name : arrays_of(manifest_.kind, need)) {
-        set(inputs, name, count, [&, low = low, high = high] { return uniform(random, low, high); });
+        set(inputs, name, count, [&, low = low, high = high] {
+          return random() % 8 == 0 ? rare(need, high, random) : uniform(random, low, high);
+        });
+      }
+    }
+    for (const std::string name : {"curvature", "area", "perimeter"}) {  // near to rest
+      if (!inputs.contains(name) || !inputs.contains("rest_" + name)) continue;
+      for (std::size_t i = 0; i < count; ++i) {
+        if (random() % 8 != 0) continue;
+        inputs[name][i] = inputs["rest_" + name][i] * (1 + std::pow(10.0, -10 * uniform(random, 0, 1)));
+      }
+    }
+    if (manifest_.kind != plugin::ModelKind::collision) return;
+    for (std::size_t i = 0; i < count; ++i) {  // a node's numbers are small or large together
+      if (random() % 8 != 0) continue;
+      const double factor = std::pow(10.0, uniform(random, -10, 1.4));
+      for (auto& [name, values] : inputs) {
+        if (name != "relaxation_rate") values[i] *= factor;
       }
     }
   };
   for (std::size_t k = 0; k < manifest_.state.size(); ++k) {
     inputs["state." + std::to_string(k)].assign(count, instance.initial_state()[k]);
   }
-  for (int step = 0; step < 5 && !manifest_.state.empty(); ++step) {
+  for (int step = 0; step < steps && !manifest_.state.empty(); ++step) {
     draw_all();
     Call call;
     call.time_step = std::pow(10.0, uniform(random, 0, 5));
@@ -181,6 +236,12 @@ Values Subject::random_inputs(const plugin::ModelInstance& instance, std::size_t
     }
   }
   draw_all();
+  return inputs;
+}
+
+Values Subject::any_inputs(std::size_t count, Random& random) const {
+  Values inputs;
+  for (const std::string& name : input_arrays()) set(inputs, name, count, [&] { return any_double(random); });
   return inputs;
 }
 

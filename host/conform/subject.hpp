@@ -1,6 +1,7 @@
 // The plugin under test, as checks see it in their own process: its manifest, instances of it, random inputs for it.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <map>
 #include <random>
@@ -23,12 +24,17 @@ inline constexpr std::size_t ordinary_count = 67;
 using Random = std::mt19937_64;
 /// Evenly distributed between two values.
 double uniform(Random& random, double low, double high);
+/// A number of elements such as hosts have, 64 to 2100.
+inline std::size_t some_count(Random& random) {
+  return static_cast<std::size_t>(64 * std::pow(2100.0 / 64, uniform(random, 0, 1)));
+}
 
 class Subject {
  public:
   Subject(plugin::Manifest manifest, std::uint64_t seed) : manifest_(std::move(manifest)), seed_(seed) {}
 
   [[nodiscard]] const plugin::Manifest& manifest() const { return manifest_; }
+  [[nodiscard]] std::uint64_t seed() const { return seed_; }
   /// A generator that starts anew at each call: a check's inputs depend on the seed alone.
   [[nodiscard]] Random random() const { return Random(seed_); }
 
@@ -62,9 +68,12 @@ class Subject {
   [[nodiscard]] std::vector<std::string> input_arrays() const;
   [[nodiscard]] std::vector<std::string> output_arrays() const;
 
-  /// Inputs as flowing cells and fluids have them, in lattice units. State is what a number of steps with other random
-  /// inputs make of its initial value.
-  [[nodiscard]] Values random_inputs(const plugin::ModelInstance& instance, std::size_t count, Random& random) const;
+  /// Inputs as flowing cells and fluids have them, in lattice units. State is what `steps` with other random inputs make
+  /// of its initial value.
+  [[nodiscard]] Values random_inputs(const plugin::ModelInstance& instance, std::size_t count, Random& random,
+                                     int steps = 5) const;
+  /// Inputs of any kind at all: ordinary, tiny, huge, special values, any bits.
+  [[nodiscard]] Values any_inputs(std::size_t count, Random& random) const;
 
  private:
   plugin::Manifest manifest_;

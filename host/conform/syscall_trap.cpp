@@ -1,8 +1,13 @@
 #include "syscall_trap.hpp"
 
+#include <elf.h>
+#include <fcntl.h>
+#include <link.h>
 #include <linux/audit.h>
 #include <linux/filter.h>
 #include <linux/seccomp.h>
+#include <pthread.h>
+#include <sys/auxv.h>
 #include <sys/prctl.h>
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -10,8 +15,13 @@
 #include <array>
 #include <csignal>
 #include <cstddef>
+#include <cstdint>
 #include <cstdio>
+#include <cstdlib>
+#include <utility>
+#include <vector>
 
+#include "base/foreign_call.hpp"
 #include "base/process.hpp"
 #include "report_line.hpp"
 
@@ -19,69 +29,258 @@ namespace rouleau::conform {
 
 namespace {
 
-struct Named {
-  long number;
-  const char* name;
-};
+/// What only this program's calls have above the eight bits of an exit code.
+constexpr std::uint32_t own_word = 0x00c0ffee;
+
 /// The calls that code in the wrong place is likely to make; others are told by number.
 constexpr std::array named_calls = {
-    Named{SYS_read, "read"},
-    Named{SYS_write, "write"},
-    Named{SYS_writev, "writev"},
-    Named{SYS_openat, "openat"},
-    Named{SYS_close, "close"},
-    Named{SYS_mmap, "mmap"},
-    Named{SYS_munmap, "munmap"},
-    Named{SYS_brk, "brk"},
-    Named{SYS_futex, "futex (a lock)"},
-    Named{SYS_socket, "socket"},
-    Named{SYS_fsync, "fsync"},
-    Named{SYS_clock_nanosleep, "clock_nanosleep (a pause)"},
-    Named{SYS_getpid, "getpid"},
-    Named{SYS_clone3, "clone3 (a thread)"},
-#ifdef SYS_open
-    Named{SYS_open, "open"},
+#define NAMED(call) \
+  std::pair<long, const char*> { SYS_##call, #call }
+    NAMED(read),
+    NAMED(write),
+    NAMED(writev),
+    NAMED(pwrite64),
+    NAMED(pread64),
+    NAMED(openat),
+    NAMED(close),
+    NAMED(lseek),
+    NAMED(newfstatat),
+    NAMED(statx),
+    NAMED(readlinkat),
+    NAMED(faccessat),
+    NAMED(getdents64),
+    NAMED(getcwd),
+    NAMED(chdir),
+    NAMED(fchdir),
+    NAMED(unlinkat),
+    NAMED(renameat2),
+    NAMED(mkdirat),
+    NAMED(ftruncate),
+    NAMED(fsync),
+    NAMED(ioctl),
+    NAMED(fcntl),
+    NAMED(dup),
+    NAMED(dup3),
+    NAMED(pipe2),
+    NAMED(memfd_create),
+    NAMED(mmap),
+    NAMED(munmap),
+    NAMED(mprotect),
+    NAMED(madvise),
+    NAMED(brk),
+    NAMED(futex),
+    NAMED(socket),
+    NAMED(connect),
+    NAMED(sendto),
+    NAMED(clone),
+    NAMED(clone3),
+    NAMED(execve),
+    NAMED(wait4),
+    NAMED(exit),
+    NAMED(exit_group),
+    NAMED(kill),
+    NAMED(tgkill),
+    NAMED(ptrace),
+    NAMED(prctl),
+    NAMED(setsid),
+    NAMED(umask),
+    NAMED(setpriority),
+    NAMED(prlimit64),
+    NAMED(setrlimit),
+    NAMED(rt_sigaction),
+    NAMED(rt_sigprocmask),
+    NAMED(sigaltstack),
+    NAMED(setitimer),
+    NAMED(timer_create),
+    NAMED(clock_gettime),
+    NAMED(clock_nanosleep),
+    NAMED(nanosleep),
+    NAMED(sched_yield),
+    NAMED(sched_setaffinity),
+    NAMED(getrandom),
+    NAMED(getpid),
+    NAMED(gettid),
+    NAMED(getuid),
+    NAMED(uname),
+    NAMED(seccomp),
+    NAMED(personality),
+#ifdef __x86_64__
+    NAMED(open),
+    NAMED(stat),
+    NAMED(access),
+    NAMED(readlink),
+    NAMED(unlink),
+    NAMED(rename),
+    NAMED(mkdir),
+    NAMED(rmdir),
+    NAMED(dup2),
+    NAMED(pipe),
+    NAMED(fork),
+    NAMED(vfork),
+    NAMED(alarm),
+    NAMED(pause),
+    NAMED(time),
+    NAMED(arch_prctl),
 #endif
+#undef NAMED
 };
 
+/// What a model starts is found where it begins, and its end is no finding.
+bool is_child = false;
+
 void on_system_call(int /*signal*/, siginfo_t* info, void* /*context*/) {
-  char text[128];
+  if (is_child) end_process(1);
   const char* name = "of another kind";
-  for (const Named& call : named_calls) {
-    if (call.number == info->si_syscall) name = call.name;
+  for (const auto& [number, known] : named_calls) {
+    if (number == info->si_syscall) name = known;
   }
-  std::snprintf(text, sizeof text, "compute made a system call: %s (number %d)", name, info->si_syscall);
-  send_from_signal(to_string(Verdict::fail), text);
-  _exit(1);
+  const ForeignCall* foreign = ForeignCall::current();
+  const bool ends = info->si_syscall == SYS_exit_group;
+  char text[256];
+  std::snprintf(text, sizeof text, "%s %s (number %d)%s%s",
+                ends ? "ended the process, by the system call" : "made a system call:", name, info->si_syscall,
+                foreign != nullptr ? ", in its function " : "", foreign != nullptr ? foreign->function() : "");
+  send_from_signal(to_string(ends ? Verdict::crash : Verdict::fail), text);
+  end_process(1);
+}
+
+constexpr std::uint32_t offset_of_argument(unsigned argument) {
+  return static_cast<std::uint32_t>(offsetof(seccomp_data, args) + argument * sizeof(std::uint64_t));  // its lower half
+}
+
+/// A program of the kernel's filter that allows some calls and traps all others, or the other way round.
+class Filter {
+ public:
+  Filter() {
+#if defined(__x86_64__)
+    load(offsetof(seccomp_data, arch));
+    jump(BPF_JEQ, AUDIT_ARCH_X86_64, 1, 0);
+    end(SECCOMP_RET_TRAP);  // 32-bit calls have other numbers
+#endif
+    load(offsetof(seccomp_data, nr));
+  }
+
+  void allow(long number) {
+    jump(BPF_JEQ, static_cast<std::uint32_t>(number), 0, 1);
+    end(SECCOMP_RET_ALLOW);
+  }
+  /// ... where the lower half of an argument, shifted to the right, is this value.
+  void allow_if(long number, unsigned argument, std::uint32_t value, std::uint32_t shift = 0) {
+    jump(BPF_JEQ, static_cast<std::uint32_t>(number), 0, 5);
+    load(offset_of_argument(argument));
+    program_.push_back(BPF_STMT(BPF_ALU | BPF_RSH | BPF_K, shift));
+    jump(BPF_JEQ, value, 0, 1);
+    end(SECCOMP_RET_ALLOW);
+    load(offsetof(seccomp_data, nr));
+  }
+  /// Traps a call that is not allowed so far.
+  void trap(long number) {
+    jump(BPF_JEQ, static_cast<std::uint32_t>(number), 0, 1);
+    end(SECCOMP_RET_TRAP);
+  }
+  /// Allows what code between two addresses calls that have their upper half in common.
+  void allow_code(std::uintptr_t begin, std::uintptr_t end_of_code) {
+    if (begin >> 32 != end_of_code >> 32) return;
+    load(offsetof(seccomp_data, instruction_pointer) + sizeof(std::uint32_t));
+    jump(BPF_JEQ, static_cast<std::uint32_t>(begin >> 32), 0, 4);
+    load(offsetof(seccomp_data, instruction_pointer));
+    jump(BPF_JGE, static_cast<std::uint32_t>(begin), 0, 2);
+    jump(BPF_JGE, static_cast<std::uint32_t>(end_of_code), 1, 0);
+    end(SECCOMP_RET_ALLOW);
+    load(offsetof(seccomp_data, nr));
+  }
+  bool install(std::uint32_t otherwise) {
+    end(otherwise);
+    const sock_fprog filter{static_cast<unsigned short>(program_.size()), program_.data()};
+    // With what keeps some kernels from slowing down the thread's arithmetic.
+    return prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 &&
+           syscall(SYS_seccomp, SECCOMP_SET_MODE_FILTER, SECCOMP_FILTER_FLAG_SPEC_ALLOW, &filter) == 0;
+  }
+
+ private:
+  void load(std::size_t offset) {
+    program_.push_back(BPF_STMT(BPF_LD | BPF_W | BPF_ABS, static_cast<std::uint32_t>(offset)));
+  }
+  void jump(std::uint16_t kind, std::uint32_t value, std::uint8_t if_true, std::uint8_t if_false) {
+    program_.push_back({static_cast<std::uint16_t>(BPF_JMP | kind | BPF_K), if_true, if_false, value});
+  }
+  void end(std::uint32_t action) { program_.push_back(BPF_STMT(BPF_RET | BPF_K, action)); }
+
+  std::vector<sock_filter> program_;
+};
+
+/// Where the dynamic loader's own code lies.
+std::pair<std::uintptr_t, std::uintptr_t> code_of_the_loader() {
+  std::pair<std::uintptr_t, std::uintptr_t> code{};
+  dl_iterate_phdr(
+      [](dl_phdr_info* info, std::size_t, void* found) {
+        for (int i = 0; i < info->dlpi_phnum; ++i) {
+          const auto& segment = info->dlpi_phdr[i];
+          if (info->dlpi_addr != getauxval(AT_BASE) || segment.p_type != PT_LOAD || (segment.p_flags & PF_X) == 0)
+            continue;
+          const std::uintptr_t begin = info->dlpi_addr + segment.p_vaddr;
+          *static_cast<std::pair<std::uintptr_t, std::uintptr_t>*>(found) = {begin, begin + segment.p_memsz};
+        }
+        return 0;
+      },
+      &code);
+  return code;
+}
+
+void allow_memory(Filter& filter) {
+  const auto [begin, end] = code_of_the_loader();
+  filter.allow_code(begin, end);
+  for (const long number :
+       {SYS_brk, SYS_mmap, SYS_munmap, SYS_mremap, SYS_mprotect, SYS_madvise, SYS_futex, SYS_sched_yield, SYS_getrandom,
+        SYS_sysinfo, SYS_sched_getaffinity, SYS_clock_gettime, SYS_clock_getres, SYS_gettimeofday, SYS_getpid,
+        SYS_gettid, SYS_rt_sigprocmask, SYS_rseq, SYS_set_robust_list}) {
+    filter.allow(number);
+  }
+  filter.allow_if(SYS_rt_sigaction, 1, 0);  // asking which handler there is
+  filter.allow_if(SYS_prlimit64, 2, 0);     // asking for a limit
+  for (const std::uint32_t output : {STDOUT_FILENO, STDERR_FILENO}) {
+    for (const long number : {SYS_write, SYS_writev, SYS_newfstatat}) filter.allow_if(number, 0, output);
+#ifdef SYS_fstat
+    filter.allow_if(SYS_fstat, 0, output);
+#endif
+  }
 }
 
 }  // namespace
 
-bool forbid_system_calls() {
-  struct sigaction action {};
-  action.sa_sigaction = on_system_call;
-  action.sa_flags = SA_SIGINFO;
-  sigaction(SIGSYS, &action, nullptr);
-  const auto allow_call = [](std::uint32_t number) {
-    return std::array<sock_filter, 2>{sock_filter BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, number, 0, 1),
-                                      sock_filter BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW)};
-  };
-  const auto exit_group = allow_call(SYS_exit_group), sigreturn = allow_call(SYS_rt_sigreturn);
-  std::array program = {
-      sock_filter BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)),
-      exit_group[0],
-      exit_group[1],
-      sigreturn[0],
-      sigreturn[1],
-      // write, to the finding's descriptor only
-      sock_filter BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_write, 0, 3),
-      sock_filter BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, args[0])),
-      sock_filter BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, finding_descriptor, 0, 1),
-      sock_filter BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW),
-      sock_filter BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_TRAP),
-  };
-  const sock_fprog filter{program.size(), program.data()};
-  return prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 && prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &filter) == 0;
+bool limit_system_calls(Allowed allowed) {
+  if (allowed == Allowed::all_but_exit) {
+    is_child = false;
+    pthread_atfork(nullptr, nullptr, [] { is_child = true; });
+    struct sigaction action {};
+    action.sa_sigaction = on_system_call;
+    action.sa_flags = SA_SIGINFO | SA_ONSTACK;
+    sigaction(SIGSYS, &action, nullptr);
+  }
+  Filter filter;
+  filter.allow_if(SYS_exit_group, 0, own_word, 8);
+  if (allowed == Allowed::all_but_exit) {
+    filter.trap(SYS_exit_group);
+    return filter.install(SECCOMP_RET_ALLOW);
+  }
+  filter.allow(SYS_rt_sigreturn);
+  filter.allow_if(SYS_exit, 0, own_word, 8);
+  filter.allow_if(SYS_write, 0, finding_descriptor);
+  if (allowed == Allowed::memory) {
+    filter.allow_if(SYS_exit, 0, 0);  // the end of a thread
+    allow_memory(filter);
+  }
+  return filter.install(SECCOMP_RET_TRAP);
+}
+
+void end_process(int code) {
+  while (true) syscall(SYS_exit_group, own_word << 8 | static_cast<std::uint32_t>(code));
+}
+
+void end_in_order() { std::exit(static_cast<int>(own_word << 8)); }
+
+void end_thread() {
+  while (true) syscall(SYS_exit, own_word << 8);
 }
 
 }  // namespace rouleau::conform

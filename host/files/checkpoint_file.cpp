@@ -140,6 +140,15 @@ struct CheckpointReader::File {
       damaged(file,
               path + " holds " + std::to_string(hdf5.elements(path)) + " values instead of " + std::to_string(count));
   }
+  void read_block(const std::filesystem::path& file, const std::string& path, Pair size, Pair begin, Pair end,
+                  hid_t wanted, void* values) const {
+    const auto rows_first = [](Pair xy) {
+      return std::vector<hsize_t>{static_cast<hsize_t>(xy[1]), static_cast<hsize_t>(xy[0])};
+    };
+    if (hdf5.shape(path) != std::vector<std::size_t>{rows_first(size)[0], rows_first(size)[1]})
+      damaged(file, path + " has another shape than the lattice");
+    hdf5.read(path, wanted, rows_first(begin), rows_first(end), values);
+  }
   Hdf5File hdf5;
 };
 
@@ -185,9 +194,12 @@ void CheckpointReader::array(const std::string& path, std::size_t count, double*
   file_->hdf5.read(path, H5T_NATIVE_DOUBLE, values);
 }
 
-void CheckpointReader::array(const std::string& path, std::size_t count, float* values) const {
-  file_->require(path_, path, count);
-  file_->hdf5.read(path, H5T_NATIVE_FLOAT, values);
+void CheckpointReader::block(const std::string& path, Pair size, Pair begin, Pair end, double* values) const {
+  file_->read_block(path_, path, size, begin, end, H5T_NATIVE_DOUBLE, values);
+}
+
+void CheckpointReader::block(const std::string& path, Pair size, Pair begin, Pair end, float* values) const {
+  file_->read_block(path_, path, size, begin, end, H5T_NATIVE_FLOAT, values);
 }
 
 }  // namespace rouleau::files

@@ -8,6 +8,7 @@
 //   others   arrays, in lattice units
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -71,7 +72,10 @@ class CheckpointReader {
   [[nodiscard]] std::vector<double> array(const std::string& path) const;
   /// An array that must have just so many values.
   void array(const std::string& path, std::size_t count, double* values) const;
-  void array(const std::string& path, std::size_t count, float* values) const;
+  /// Rows [begin[1], end[1]) and columns [begin[0], end[0]) of an array of size[1] times size[0] values.
+  using Pair = std::array<int, 2>;
+  void block(const std::string& path, Pair size, Pair begin, Pair end, double* values) const;
+  void block(const std::string& path, Pair size, Pair begin, Pair end, float* values) const;
 
  private:
   struct File;

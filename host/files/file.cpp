@@ -2,13 +2,12 @@
 #include "base/error.hpp"
 
 #include <fcntl.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <fstream>
-#include <iterator>
 #include <system_error>
 #include <utility>
 
@@ -31,6 +30,8 @@ Remedy remedy(int error) {
     case ENOENT:
     case ENOTDIR:
       return {"check that every part of the path before the last is a directory"};
+    case ELOOP:
+      return {"it is a link, and what it leads to is not this run's to change: remove the link"};
     case EMFILE:
     case ENFILE:
       return {"close other files, or raise the limit (ulimit -n)"};
@@ -84,7 +85,11 @@ void fail_reading(const std::filesystem::path& file, int error) {
 std::string read_text(const std::filesystem::path& file) {
   errno = 0;
   std::ifstream stream(file, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  std::string text;
+  std::array<char, std::size_t{1} << 16> piece{};
+  while (stream.read(piece.data(), piece.size()) || stream.gcount() > 0) {
+    text.append(piece.data(), static_cast<std::size_t>(stream.gcount()));
+  }
   if (!stream.is_open() || stream.bad()) {
     const int error = errno;
     fail_reading(file, error != 0 ? error : EIO);
@@ -153,14 +158,8 @@ Checksum require(const std::filesystem::path& file, const FileMark& mark) {
   return checksum;
 }
 
-AppendFile::AppendFile(std::filesystem::path file, Access access) : file_(std::move(file)) {
-  Descriptor output(::open(file_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666));
-  if (output.number() < 0) fail_file(file_, "cannot be created", errno);
-  // File systems without locks answer with another error; then two runs in one directory are the user's affair.
-  if (access == Access::exclusive && ::flock(output.number(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
-    throw Error(Cause::bad_input, Place{file_.string()}, "another run is writing into this directory",
-                {"wait for it, or choose another one", {Way::elsewhere}});
-  const int number = ::fcntl(output.number(), F_DUPFD_CLOEXEC, 0);  // shares the lock
+AppendFile::AppendFile(std::filesystem::path file) : file_(std::move(file)) {
+  const int number = ::open(file_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_NOFOLLOW | O_CLOEXEC, 0666);
   if (number < 0) fail_file(file_, "cannot be created", errno);
   stream_.reset(::fdopen(number, "a"));
   if (!stream_) {

@@ -45,11 +45,8 @@ Checksum require(const std::filesystem::path& file, const FileMark& mark);
 /// A text file that grows. Every member but the destructor throws Error(input_output).
 class AppendFile {
  public:
-  /// An exclusive file is kept locked while open; another process that has it open makes this throw Error(bad_input).
-  enum class Access { shared, exclusive };
-
-  /// Creates the file, or opens it: then clear() or go_back() says what becomes of its content.
-  explicit AppendFile(std::filesystem::path file, Access access = Access::shared);
+  /// Creates the file, or opens it: then clear() or go_back() says what becomes of its content. No link is followed.
+  explicit AppendFile(std::filesystem::path file);
   void clear();
   /// Drops what was written after the mark. Throws Error(input_output) where what came before is not what it was.
   void go_back(const FileMark& mark);

@@ -1,11 +1,9 @@
-// The files that frames.h5 is made of: sealed segments while a run goes on, one file with their checksums at its end.
+// The files that frames are in: sealed segments, and frames.h5, which leads to them.
 //
 // An HDF5 file that is open when its writer is killed may be damaged. So a run writes frames-0001.h5, and whenever a
 // checkpoint is due that segment is closed, synchronised with the disk and never touched again (sealed); the next frame
-// begins frames-0002.h5. At the end one frames.h5 is made of all of them and takes its place by renaming; only then are
-// the segments removed. A frames.h5 made of several segments carries their checksums and its own behind HDF5's end, in
-// lines of text that HDF5 does not look at: so it can stand in for the segments of a checkpoint that was written
-// before.
+// begins frames-0002.h5. At the end a single segment is renamed to frames.h5. Several stay where they are, beside a
+// small frames.h5 of external links to their frames, so that no frame is ever written twice.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +15,7 @@
 
 namespace rouleau::files {
 
-/// A sealed segment, the k-th of which is frames-000k.h5 until frames.h5 is made.
+/// A sealed segment, the k-th of which is frames-000k.h5 (or frames.h5, when it is the only one of a run that ended).
 struct FrameSegment {
   std::size_t frames = 0;
   std::uintmax_t bytes = 0;
@@ -25,7 +23,7 @@ struct FrameSegment {
   bool operator==(const FrameSegment&) const = default;
 };
 
-/// What a checkpoint keeps of the frames: every segment since the run began, also those that frames.h5 holds by now.
+/// What a checkpoint keeps of the frames: every segment since the run began.
 struct FramesSaved {
   std::vector<FrameSegment> segments;
   [[nodiscard]] std::size_t frames() const;
@@ -42,20 +40,12 @@ std::string segment_name(std::size_t number);
 /// The number in such a name; nothing for any other name.
 std::optional<std::size_t> segment_number(const std::string& name);
 
-/// What of `saved` is on the disk, where.
-struct FramesFound {
-  std::size_t merged = 0;  ///< the first so many segments are in frames.h5
-  bool more = false;       ///< frames.h5 has further frames behind them
-};
+/// Verifies every segment of `saved` against the files beside `frames` (the path of frames.h5), and changes nothing.
+/// Throws Error(input_output) naming the file, what differs and the remedy.
+void require_segments(const std::filesystem::path& frames, const FramesSaved& saved);
 
-/// Verifies every segment of `saved` against the files beside `frames` (the path of frames.h5): as sealed, or in
-/// frames.h5. Throws Error(input_output) naming the file, what differs and the remedy.
-FramesFound find_frames(const std::filesystem::path& frames, const FramesSaved& saved);
-
-/// Removes all segments beside `frames` but those numbered first to last, and what an interrupted merge has left.
-void remove_segments(const std::filesystem::path& frames, std::size_t first, std::size_t last);
-
-/// Writes the checksums behind HDF5's end of a closed file that was made of these segments.
-void append_checksums(const std::filesystem::path& file, const std::vector<FrameSegment>& segments);
+/// Leaves these segments under their names and no other frames, so that a run can go on behind them. They must be
+/// there (require_segments). Throws Error(input_output).
+void take_up_segments(const std::filesystem::path& frames, const FramesSaved& saved);
 
 }  // namespace rouleau::files

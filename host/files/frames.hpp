@@ -47,14 +47,14 @@ struct FieldGrid {
 };
 
 /// Writes frames.h5, in segments (frame_segments.hpp) so that no more than what follows the last checkpoint is lost
-/// when the program is killed. What is in the file does not depend on the number of segments. Every member throws
-/// Error(input_output).
+/// when the program is killed. What a reader finds in frames.h5 does not depend on the number of segments. Every member
+/// throws Error(input_output).
 class FrameWriter {
  public:
   /// Of a new run. `file` is frames.h5, which close() makes.
   FrameWriter(std::filesystem::path file, const scene::Scene& scene);
-  /// Goes on behind the frames that seal() has told of before. They must be there as they were, in their segments or
-  /// in a frames.h5 made of them; whatever was written after them is dropped.
+  /// Goes on behind the frames that seal() has named before. They must be there as they were; whatever was written
+  /// after them is dropped.
   FrameWriter(std::filesystem::path file, const scene::Scene& scene, const FramesSaved& saved);
 
   /// Adds a frame and hands it to the system, so that a crash later on mostly leaves a segment that can be read.
@@ -62,8 +62,10 @@ class FrameWriter {
   /// Closes the segment, synchronises it with the disk, and tells of all segments so far. The next frame begins
   /// another.
   const FramesSaved& seal();
-  /// Makes frames.h5 of all segments and removes them. Nothing may be written after it.
+  /// Makes frames.h5, which is or leads to all segments. Nothing may be written after it.
   void close();
+  /// The files that there are after close().
+  [[nodiscard]] std::vector<std::string> names() const;
   /// The frames.xmf that goes with the file.
   [[nodiscard]] std::string xdmf() const;
 
@@ -78,8 +80,7 @@ class FrameWriter {
   void write_fields(const std::string& frame, const observe::FieldSnapshot& fields, FrameRecord& record);
   [[nodiscard]] FieldGrid field_grid() const;
   void read_back(const std::filesystem::path& source, std::size_t frames);
-  void merge() const;
-  void copy_frames(const std::filesystem::path& source, std::size_t first, std::size_t count, Hdf5File& target) const;
+  void link_segments() const;
 
   std::filesystem::path file_;
   std::string title_;
@@ -88,7 +89,6 @@ class FrameWriter {
   bool periodic_y_;
   scene::FieldStorage storage_;
   FramesSaved saved_;             ///< every sealed segment
-  FramesFound found_;             ///< those of them that frames.h5 holds already
   std::optional<Hdf5File> open_;  ///< the segment that is being written
   std::vector<FrameRecord> frames_;
   std::vector<int> first_;       ///< as in the topology written last
@@ -101,8 +101,7 @@ class FrameWriter {
 /// XDMF text: one temporal collection for the membranes and one for the fields, for frames 0, 1, ... of `h5`.
 std::string xdmf_text(const std::vector<FrameRecord>& frames, const std::string& h5, const FieldGrid& grid);
 
-/// frames.h5 for reading; of a run that is still going on, or was killed, the segments it would be made of, as if they
-/// were one file. Throws Error(input_output).
+/// frames.h5 for reading; of a run that is still going on, or was killed, its segments, as if they were one file. Throws Error(input_output).
 Hdf5File open_frames(const std::filesystem::path& file);
 
 /// Outlines read back from a run's frames. Throws Error(input_output).

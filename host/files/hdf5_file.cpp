@@ -44,6 +44,8 @@ Hdf5File::Hdf5File(std::filesystem::path file, Mode mode, hsize_t user_block) : 
     handle_ = owned(H5Fopen(file_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "");
     return;
   }
+  // What a link leads to is not this run's to change.
+  if (mode == Mode::create && std::filesystem::is_symlink(file_)) fail_file(file_, "cannot be created", ELOOP);
   if (mode == Mode::memory) check(H5Pset_fapl_core(access.id(), std::size_t{1} << 16, false), "");
   const auto creation = untimed(H5P_FILE_CREATE, "");
   check(H5Pset_userblock(creation.id(), user_block), "");
@@ -170,10 +172,6 @@ std::size_t Hdf5File::elements_of(const Hdf5Handle& dataset, const std::string& 
   return static_cast<std::size_t>(count);
 }
 
-void Hdf5File::copy(const Hdf5File& from, const std::string& path) {
-  check(H5Ocopy(from.handle_.id(), path.c_str(), handle_.id(), path.c_str(), H5P_DEFAULT, H5P_DEFAULT), path);
-}
-
 void Hdf5File::copy_attributes(const Hdf5File& from, const std::string& path) {
   const auto source = from.owned(H5Oopen(from.handle_.id(), path.c_str(), H5P_DEFAULT), H5Oclose, path);
   const auto target = owned(H5Oopen(handle_.id(), path.c_str(), H5P_DEFAULT), H5Oclose, path);
@@ -248,6 +246,17 @@ std::vector<double> Hdf5File::read(const std::string& path) const {
 void Hdf5File::read(const std::string& path, hid_t wanted, void* values) const {
   const auto dataset = owned(H5Dopen2(handle_.id(), path.c_str(), H5P_DEFAULT), H5Dclose, path);
   check(H5Dread(dataset.id(), wanted, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), path);
+}
+
+void Hdf5File::read(const std::string& path, hid_t wanted, const std::vector<hsize_t>& begin,
+                    const std::vector<hsize_t>& end, void* values) const {
+  const auto dataset = owned(H5Dopen2(handle_.id(), path.c_str(), H5P_DEFAULT), H5Dclose, path);
+  const auto space = owned(H5Dget_space(dataset.id()), H5Sclose, path);
+  std::vector<hsize_t> count;
+  for (std::size_t k = 0; k < begin.size(); ++k) count.push_back(end[k] - begin[k]);
+  const auto memory = owned(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr), H5Sclose, path);
+  check(H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, begin.data(), nullptr, count.data(), nullptr), path);
+  check(H5Dread(dataset.id(), wanted, memory.id(), space.id(), H5P_DEFAULT, values), path);
 }
 
 std::vector<std::size_t> Hdf5File::shape(const std::string& path) const {

@@ -66,11 +66,9 @@ class Hdf5File {
   [[nodiscard]] haddr_t address(const std::string& path) const;
   /// Elements of a dataset.
   [[nodiscard]] std::size_t elements(const std::string& path) const;
-  /// Copies a dataset or a whole group, with attributes, filters and packed data as they are.
-  void copy(const Hdf5File& from, const std::string& path);
   /// Copies an object's attributes to an object that exists here.
   void copy_attributes(const Hdf5File& from, const std::string& path);
-  /// A name for an object at the same place in another file.
+  /// A name for an object at the same place in another file; a relative path is one from this file's folder.
   void link_to(const std::filesystem::path& file, const std::string& path);
   /// A second name for a dataset.
   void link(const std::string& existing, const std::string& path);
@@ -86,6 +84,9 @@ class Hdf5File {
   [[nodiscard]] std::vector<double> read(const std::string& path) const;
   /// All elements of a dataset, as values of type `wanted`.
   void read(const std::string& path, hid_t wanted, void* values) const;
+  /// The elements [begin[k], end[k]) along every axis k of a dataset, slowest first.
+  void read(const std::string& path, hid_t wanted, const std::vector<hsize_t>& begin, const std::vector<hsize_t>& end,
+            void* values) const;
   /// Sizes of a dataset, slowest index first.
   [[nodiscard]] std::vector<std::size_t> shape(const std::string& path) const;
   [[nodiscard]] bool has_attribute(const std::string& path, const std::string& name) const;

@@ -4,8 +4,6 @@
 
 namespace rouleau::files {
 
-Log::Log(const std::filesystem::path& file) : file_(file, AppendFile::Access::exclusive) {}
-
 void Log::go_on(double elapsed) {
   file_.end_line();
   before_ = elapsed;

@@ -10,13 +10,10 @@
 
 namespace rouleau::files {
 
-/// The log holds the directory's lock: as long as it lives no second run can write there.
 class Log {
  public:
-  /// Throws Error(bad_input) when another run has it open, Error(input_output) when it cannot be made.
-  explicit Log(const std::filesystem::path& file);
-  /// Drops a former run's lines.
-  void clear() { file_.clear(); }
+  /// Throws Error(input_output) when it cannot be made.
+  explicit Log(const std::filesystem::path& file) : file_(file) {}
   /// Keeps a former run's lines but for a last one that was never ended; time goes on from `elapsed` seconds.
   void go_on(double elapsed);
   /// Seconds since the log was opened, and those of the run it goes on from.

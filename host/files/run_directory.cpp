@@ -8,10 +8,12 @@
 
 #include "checkpoint_file.hpp"
 #include "file.hpp"
+#include "file_lock.hpp"
 #include "frames.hpp"
 #include "json/document.hpp"
 #include "log.hpp"
 #include "tables.hpp"
+#include "verify.hpp"
 
 namespace rouleau::files {
 
@@ -114,16 +116,21 @@ std::filesystem::path unused_directory(const std::filesystem::path& wanted) {
 }
 
 struct RunDirectory::Files {
-  explicit Files(Log opened) : log(std::move(opened)) {}
-  Log log;
+  explicit Files(const std::filesystem::path& directory) : lock(directory) {
+    if (!lock.take())
+      throw Error(Cause::bad_input, Place{directory.string()}, "another run is writing into this directory",
+                  {"wait for it, or choose another one", {Way::elsewhere}});
+  }
+  FileLock lock;  ///< of the directory itself
+  std::optional<Log> log;
   std::optional<Tables> tables;
   std::optional<FrameWriter> frames;
 };
 
 RunDirectory::RunDirectory(std::filesystem::path directory, const scene::Scene& scene, FormerRun former)
     : directory_(prepared(std::move(directory), former)), scene_(scene) {
-  // The log before anything is removed: another run may be writing here.
-  files_ = std::make_unique<Files>(Log(directory_ / "log.jsonl"));
+  // The lock before anything is removed: another run may be writing here.
+  files_ = std::make_unique<Files>(directory_);
   if (former == FormerRun::keep && holds_run(directory_)) {
     throw Error(
         Cause::bad_input, Place{directory_.string()}, "holds a run already, which would be lost",
@@ -131,16 +138,17 @@ RunDirectory::RunDirectory(std::filesystem::path directory, const scene::Scene& 
   }
   if (former == FormerRun::resume) {
     resumes_ = holds_checkpoint(directory_);
-    if (resumes_) return;
+    if (resumes_) {
+      files_->log.emplace(directory_ / "log.jsonl");
+      return;
+    }
     if (std::filesystem::exists(directory_ / "summary.json")) {
       throw Error(Cause::bad_input, Place{directory_.string()},
                   "holds a run that has ended and left no checkpoint to go on from", {"replace it", {Way::anew}});
     }
   }
-  remove_files(directory_, [](const std::string& name) {
-    return written_by_a_run(name) && name != "log.jsonl";  // which holds the lock
-  });
-  files_->log.clear();
+  remove_files(directory_, written_by_a_run);
+  files_->log.emplace(directory_ / "log.jsonl");
   files_->tables.emplace(directory_);
   files_->frames.emplace(directory_ / "frames.h5", scene);
   if (scene.document) write_file(directory_ / "scene.json", scene_text(*scene.document));
@@ -155,11 +163,11 @@ void RunDirectory::go_back(const DirectoryMark& mark) {
     return is_partial(name) || name == "summary.json" || name == "report.html" || name == "frames.xmf";
   });
   files_->tables.emplace(directory_, mark.tables);
-  files_->log.go_on(mark.log_s);
+  files_->log->go_on(mark.log_s);
   if (scene_.document) write_file(directory_ / "scene.json", scene_text(*scene_.document));
 }
 
-DirectoryMark RunDirectory::mark() { return {files_->tables->mark(), files_->frames->seal(), files_->log.elapsed()}; }
+DirectoryMark RunDirectory::mark() { return {files_->tables->mark(), files_->frames->seal(), files_->log->elapsed()}; }
 
 RunDirectory::~RunDirectory() = default;
 
@@ -171,7 +179,7 @@ void RunDirectory::write(const observe::Snapshot& snapshot) {
 
 void RunDirectory::log(const std::string& event, const nlohmann::json& details) {
   if (!files_) throw std::logic_error("RunDirectory::log after finish");
-  files_->log.write(event, details);
+  files_->log->write(event, details);
 }
 
 void RunDirectory::finish(const nlohmann::json& summary) {
@@ -180,9 +188,15 @@ void RunDirectory::finish(const nlohmann::json& summary) {
   files->tables->close();
   files->frames->close();
   write_file(directory_ / "frames.xmf", files->frames->xdmf());
+  files->log->close();
+  std::vector<std::string> names = files->frames->names();
+  for (const std::string_view name : run_files) {
+    const bool made_of_others = name == "summary.json" || name == "report.html" || name == "checkpoint-previous.h5";
+    const bool named = name == "frames.h5";
+    if (!made_of_others && !named && std::filesystem::exists(directory_ / name)) names.emplace_back(name);
+  }
   // Last: who finds a summary finds everything else complete.
-  write_file(directory_ / "summary.json", summary.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
-  files->log.close();
+  write_file(directory_ / "summary.json", sealed_summary(summary, directory_, names));
 }
 
 }  // namespace rouleau::files

@@ -8,7 +8,7 @@
 namespace rouleau::monitor {
 
 std::optional<Failure> check_energy(const observe::EnergyHistory& energy, const core::Membranes& membranes,
-                                    const plan::Plan& plan, double spacing) {
+                                    const plan::Plan& plan, const plan::StageSetting& setting) {
   const double growth = energy.relative_growth(), limit = plan.scene->checks.energy_growth;
   if (growth <= limit) return std::nullopt;
   const bool bonds =
@@ -21,11 +21,11 @@ std::optional<Failure> check_energy(const observe::EnergyHistory& energy, const 
   failure.limit = limit;
   failure.message =
       "cells and fluid at rest have gained energy (as a share of what there is), which they can only lose";
-  failure.remedy =
-      "lower numerics.density_factor, or take numerics.coupling \"explicit\" within its limits (the plan has "
-      "the margins), or raise checks.energy_growth if this error is acceptable";
+  failure.remedy = "lower " + setting.stage->density_factor_key +
+                   ", or take numerics.coupling \"explicit\" within its limits (the plan has "
+                   "the margins), or raise checks.energy_growth if this error is acceptable";
   const int fastest = core::farthest_node(membranes).node;
-  if (fastest >= 0) locate_failure(failure, membranes, fastest, spacing);
+  if (fastest >= 0) locate_failure(failure, membranes, fastest, setting.units.length);
   return failure;
 }
 

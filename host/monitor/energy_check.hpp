@@ -11,8 +11,8 @@
 namespace rouleau::monitor {
 
 /// The failure, at the fastest node, if energy in the present stage has grown by more than checks.energy_growth. Not
-/// looked at where an interaction has a state: bonds that form bring energy of their own. `spacing` in m.
+/// looked at where an interaction has a state: bonds that form bring energy of their own.
 std::optional<Failure> check_energy(const observe::EnergyHistory& energy, const core::Membranes& membranes,
-                                    const plan::Plan& plan, double spacing);
+                                    const plan::Plan& plan, const plan::StageSetting& setting);
 
 }  // namespace rouleau::monitor

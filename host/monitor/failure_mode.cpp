@@ -100,22 +100,14 @@ double lattice_oscillation(int x, int y, const std::function<FluidSample(int x, 
   return most;
 }
 
-template <class T>
-double lattice_oscillation(const core::Fluid<T>& fluid, int x, int y) {
-  const core::FluidSetting& setting = fluid.setting();
-  std::vector<std::vector<core::Moments>> rows(static_cast<std::size_t>(setting.domain.size[1]));
+double lattice_oscillation(int x, int y, const std::vector<core::Moments>& moments, const core::Domain<2>& domain) {
   return lattice_oscillation(x, y, [&](int i, int j) -> FluidSample {
-    j = setting.domain.wrapped(1, j);
+    j = domain.wrapped(1, j);
     if (j < 0) return {std::nan(""), std::nan(""), std::nan("")};
-    auto& row = rows[j];
-    if (row.empty()) fluid.moments(j, row);
-    const core::Moments& m = row[setting.domain.wrapped(0, i)];
+    const core::Moments& m = moments[static_cast<std::size_t>(domain.size[0]) * j + domain.wrapped(0, i)];
     return {m.ux, m.uy, m.density / std::sqrt(3.0)};
   });
 }
-
-template double lattice_oscillation(const core::Fluid<float>&, int, int);
-template double lattice_oscillation(const core::Fluid<double>&, int, int);
 
 void find_mode(monitor::Failure& failure, const core::Membranes& membranes, const GrowthWatch& growth,
                const core::Domain<2>& domain, std::array<double, 2> place, double oscillation, long step) {
@@ -147,11 +139,10 @@ std::string mode_sentence(const monitor::Failure& failure) {
   return "";
 }
 
-std::string mode_remedy(const monitor::Failure& failure, bool semi_implicit) {
+std::string mode_remedy(const monitor::Failure& failure, bool semi_implicit, const scene::Stage& stage) {
   const FailureMode& mode = failure.mode;
-  const std::string step = semi_implicit
-                               ? "lower numerics.density_factor"
-                               : "lower numerics.density_factor or set numerics.coupling to \"semi-implicit\"";
+  const std::string lower = "lower " + stage.density_factor_key;
+  const std::string step = semi_implicit ? lower : lower + " or set numerics.coupling to \"semi-implicit\"";
   // These say themselves what to do, whatever moves when they happen.
   for (const char* reason : {"area_drift", "uneven_nodes", "crossing"}) {
     if (failure.reason == reason) return "";
@@ -165,10 +156,10 @@ std::string mode_remedy(const monitor::Failure& failure, bool semi_implicit) {
            " too much for the time step: " + step;
   }
   if (mode.name == "collapse") {
-    return "lower numerics.density_factor or the attraction, raise the resolution, or stiffen bending";
+    return lower + " or the attraction, raise the resolution, or stiffen bending";
   }
   if (mode.name == "sound" && failure.reason != "mach") {
-    return "raise numerics.tau, take the \"trt\" collision, or lower numerics.density_factor";
+    return "raise numerics.tau, take the \"trt\" collision, or " + lower;
   }
   return "";
 }

@@ -10,6 +10,7 @@
 #include "core/membrane/membranes.hpp"
 #include "failure.hpp"
 #include "growth_watch.hpp"
+#include "scene/scene.hpp"
 
 namespace rouleau::monitor {
 
@@ -33,9 +34,8 @@ using FluidSample = std::array<double, 3>;
 /// numbers are left out.
 double lattice_oscillation(int x, int y, const std::function<FluidSample(int x, int y)>& sample);
 
-/// The same of a fluid that has settled.
-template <class T>
-double lattice_oscillation(const core::Fluid<T>& fluid, int x, int y);
+/// The same of the moments of all nodes, row after row.
+double lattice_oscillation(int x, int y, const std::vector<core::Moments>& moments, const core::Domain<2>& domain);
 
 /// Sets the mode of a failure whose reason and cell are known. `place` in lattice units; `oscillation`:
 /// lattice_oscillation there; `step`: the last one.
@@ -45,6 +45,6 @@ void find_mode(Failure& failure, const core::Membranes& membranes, const GrowthW
 /// What the mode adds to the failure's message, and what to do about it first; empty where the mode says no more than
 /// the reason does.
 std::string mode_sentence(const Failure& failure);
-std::string mode_remedy(const Failure& failure, bool semi_implicit);
+std::string mode_remedy(const Failure& failure, bool semi_implicit, const scene::Stage& stage);
 
 }  // namespace rouleau::monitor

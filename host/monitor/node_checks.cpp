@@ -16,7 +16,8 @@ void locate_failure(Failure& f, const core::Membranes& membranes, int node, doub
   }
 }
 
-std::optional<Failure> check_nodes(const core::Membranes& membranes, double limit, int escaped, double spacing) {
+std::optional<Failure> check_nodes(const core::Membranes& membranes, double limit, int escaped,
+                                   const plan::StageSetting& setting) {
   if (membranes.cells.empty()) return std::nullopt;
   Failure f;
   if (!(core::largest_step(membranes) <= limit)) {
@@ -27,15 +28,15 @@ std::optional<Failure> check_nodes(const core::Membranes& membranes, double limi
     f.limit = limit;
     f.message = finite ? "a membrane node moved further in one step than its limit (in lattice spacings)"
                        : "the velocity of a membrane node is no number";
-    locate_failure(f, membranes, farthest.node, spacing);
+    locate_failure(f, membranes, farthest.node, setting.units.length);
   } else if (escaped >= 0) {
     f.reason = "escaped";
     f.message = "a membrane node has left the domain through a wall";
-    locate_failure(f, membranes, escaped, spacing);
+    locate_failure(f, membranes, escaped, setting.units.length);
   } else {
     return std::nullopt;
   }
-  f.remedy = blown_up_remedy;
+  f.remedy = blown_up_remedy(*setting.stage);
   return f;
 }
 

@@ -38,32 +38,32 @@ std::string leak_remedy(double segment) {
   return text.data();
 }
 
-/// Node with the first value that is no number, else the one with the largest speed.
+/// Node with the first value that is no number, else the one with the largest speed; on the first rank, which speaks of
+/// it.
 template <class T>
 std::array<double, 2> extreme_node(const core::Fluid<T>& fluid) {
-  std::array<double, 2> place{0, 0};
+  std::size_t extreme = 0;
   double fastest = -1;
-  std::vector<core::Moments> row;
-  for (int y = 0; y < fluid.setting().domain.size[1]; ++y) {
-    fluid.moments(y, row);
-    for (int x = 0; x < fluid.setting().domain.size[0]; ++x) {
-      const core::Moments& m = row[static_cast<std::size_t>(x)];
-      const double square = m.ux * m.ux + m.uy * m.uy;
-      const bool finite = std::isfinite(square) && std::isfinite(m.density);
-      if (!finite || square > fastest) place = {static_cast<double>(x), static_cast<double>(y)};
-      if (!finite) return place;
-      fastest = std::max(fastest, square);
-    }
+  const std::vector<core::Moments> moments = fluid.all_moments();
+  for (std::size_t i = 0; i < moments.size(); ++i) {
+    const core::Moments& m = moments[i];
+    const double square = m.ux * m.ux + m.uy * m.uy;
+    const bool finite = std::isfinite(square) && std::isfinite(m.density);
+    if (!finite || square > fastest) extreme = i;
+    if (!finite) break;
+    fastest = std::max(fastest, square);
   }
-  return place;
+  const auto width = static_cast<std::size_t>(fluid.setting().domain.size[0]);
+  const std::size_t row = extreme / width;
+  return {static_cast<double>(extreme - row * width), static_cast<double>(row)};
 }
 
 std::optional<Failure> check_stretch(const core::Membranes& membranes, const scene::Scene& scene,
-                                     const units::LatticeUnits& units) {
+                                     const scene::Stage& stage, const units::LatticeUnits& units) {
   const double limit = scene.checks.stretch;
   for (std::size_t k = 0; k < membranes.cells.size(); ++k) {
     const core::CellRange& cell = membranes.cells[k];
-    const auto* circle = std::get_if<scene::Circle>(&scene.cell_types[static_cast<std::size_t>(cell.type)].shape);
+    const auto* circle = std::get_if<scene::Circle>(&scene.cell_types[cell.type].shape);
     const double placed = circle != nullptr ? circle->prestretch : 1.0;
     for (int i = cell.first; i < cell.end(); ++i) {
       const auto from = static_cast<std::size_t>(i), to = static_cast<std::size_t>(cell.next(i));
@@ -75,8 +75,9 @@ std::optional<Failure> check_stretch(const core::Membranes& membranes, const sce
       return failure("uneven_nodes", place, static_cast<int>(k), stretch, stretch < 1 ? 1 / limit : limit,
                      stretch < 1 ? "a segment of a membrane has become too short against the length it was placed with"
                                  : "a segment of a membrane has become too long against the length it was placed with",
-                     "lower numerics.density_factor or the load, stiffen the membrane, or raise checks.stretch if it "
-                     "is meant to give way so far");
+                     "lower " + stage.density_factor_key +
+                         " or the load, stiffen the membrane, or raise checks.stretch if it "
+                         "is meant to give way so far");
     }
   }
   return std::nullopt;
@@ -97,11 +98,12 @@ std::optional<Failure> check_state(observe::Observer& observer, core::Solver<T>&
     const auto [x, y] = extreme_node(solver.fluid());
     if (!std::isfinite(mach)) {
       return failure("non_finite", place(x, y), -1, std::nan(""), 0, "the fluid holds a value that is no number",
-                     blown_up_remedy);
+                     blown_up_remedy(*setting.stage));
     }
     return failure("mach", place(x, y), -1, mach, scene.checks.mach,
                    "the flow is too fast for the lattice: Mach number above its limit",
-                   "lower numerics.density_factor, the shear rate or the driving force, or raise the resolution");
+                   "lower " + setting.stage->density_factor_key +
+                       ", the shear rate or the driving force, or raise the resolution");
   }
   if (membranes.cells.empty()) return std::nullopt;
   int cell = -1, leaking = -1;
@@ -110,7 +112,7 @@ std::optional<Failure> check_state(observe::Observer& observer, core::Solver<T>&
   const double leakage = observe::Observer::area_leakage(membranes, &leaking);
   if (leakage > drift) drift = leakage, cell = leaking;
   if (!(drift <= scene.checks.area_drift)) {
-    const core::CellRange& drifting = membranes.cells[static_cast<std::size_t>(cell)];
+    const core::CellRange& drifting = membranes.cells[cell];
     const Eigen::Vector2d c = core::centroid(membranes, drifting);
     return failure(
         "area_drift", place(c.x(), c.y()), cell, drift, scene.checks.area_drift,
@@ -118,18 +120,20 @@ std::optional<Failure> check_state(observe::Observer& observer, core::Solver<T>&
             (drift == leakage ? "would have changed its area by more than the limit without numerics.area_correction"
                               : "has changed its area by more than the limit") +
             ": fluid leaks through its membrane or is compressed",
-        leak_remedy(core::perimeter(membranes, drifting) / drifting.count) +
-            "lower numerics.density_factor, raise the resolution, or raise checks.area_drift if this error is "
+        leak_remedy(core::perimeter(membranes, drifting) / drifting.count) + "lower " +
+            setting.stage->density_factor_key +
+            ", raise the resolution, or raise checks.area_drift if this error is "
             "acceptable");
   }
-  if (auto uneven = check_stretch(membranes, scene, units)) return uneven;
+  if (auto uneven = check_stretch(membranes, scene, *setting.stage, units)) return uneven;
   if (const auto crossing = core::find_crossing(membranes, observer.domain())) {
-    return failure("crossing", place(crossing->place.x(), crossing->place.y()), crossing->cell, 0, 0,
-                   crossing->cell == crossing->other ? "the membrane of a cell crosses itself"
-                                                     : "the membranes of cells " + std::to_string(crossing->cell) +
-                                                           " and " + std::to_string(crossing->other) +
-                                                           (crossing->inside ? " lie one inside the other" : " cross"),
-                   "lower numerics.density_factor or the attraction, raise the resolution, or stiffen bending");
+    return failure(
+        "crossing", place(crossing->place.x(), crossing->place.y()), crossing->cell, 0, 0,
+        crossing->cell == crossing->other
+            ? "the membrane of a cell crosses itself"
+            : "the membranes of cells " + std::to_string(crossing->cell) + " and " + std::to_string(crossing->other) +
+                  (crossing->inside ? " lie one inside the other" : " cross"),
+        "lower " + setting.stage->density_factor_key + " or the attraction, raise the resolution, or stiffen bending");
   }
   return std::nullopt;
 }

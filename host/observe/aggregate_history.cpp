@@ -7,12 +7,12 @@ void AggregateHistory::follow(const Snapshot& snapshot) {
   AggregateEvent event{snapshot.strain, snapshot.time, snapshot.aggregate_count, {}, false};
   std::vector<int> slot(snapshot.cells.size(), -1);
   for (const CellSnapshot& cell : snapshot.cells) {
-    int& s = slot[static_cast<std::size_t>(cell.aggregate)];
+    int& s = slot[cell.aggregate];
     if (s < 0) {
       s = static_cast<int>(event.members.size());
       event.members.emplace_back();
     }
-    event.members[static_cast<std::size_t>(s)].push_back(cell.cell);
+    event.members[s].push_back(cell.cell);
     event.through_image = event.through_image || cell.through_image;
   }
   const bool changed =

@@ -40,7 +40,7 @@ std::vector<int> numbered(std::size_t cells) {
 
 }  // namespace
 
-std::vector<CellContact> find_contacts(const core::Membranes& m, const core::Domain<2>& domain, double reach) {
+std::vector<CellContact> find_touching_cells(const core::Membranes& m, const core::Domain<2>& domain, double reach) {
   std::vector<CellContact> contacts;
   const std::vector<core::Bounds> boxes = all_bounds(m);
   for_each_near(boxes, numbered(boxes.size()), reach, domain, [&](int a, const std::vector<int>& near) {
@@ -86,7 +86,7 @@ Aggregates find_aggregates(int cells, const std::vector<CellContact>& contacts) 
   for (bool changed = true; changed;) {
     changed = false;
     for (const CellContact& c : contacts) {
-      int &a = result.label[static_cast<std::size_t>(c.cell_a)], &b = result.label[static_cast<std::size_t>(c.cell_b)];
+      int &a = result.label[c.cell_a], &b = result.label[c.cell_b];
       if (a == b) continue;
       a = b = std::min(a, b);
       changed = true;
@@ -94,14 +94,13 @@ Aggregates find_aggregates(int cells, const std::vector<CellContact>& contacts) 
   }
   std::vector<bool> crossed(static_cast<std::size_t>(cells), false);
   for (const CellContact& c : contacts) {
-    if (!(c.image == core::ImageShift{}))
-      crossed[static_cast<std::size_t>(result.label[static_cast<std::size_t>(c.cell_a)])] = true;
+    if (!(c.image == core::ImageShift{})) crossed[result.label[c.cell_a]] = true;
   }
   result.through_image.resize(static_cast<std::size_t>(cells));
   for (int i = 0; i < cells; ++i) {
-    const auto label = static_cast<std::size_t>(result.label[static_cast<std::size_t>(i)]);
-    result.through_image[static_cast<std::size_t>(i)] = crossed[label];
-    if (result.label[static_cast<std::size_t>(i)] == i) ++result.count;
+    const auto label = static_cast<std::size_t>(result.label[i]);
+    result.through_image[i] = crossed[label];
+    if (result.label[i] == i) ++result.count;
   }
   return result;
 }

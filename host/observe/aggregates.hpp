@@ -17,7 +17,8 @@ struct CellContact {
 };
 
 /// All pairs nearer than `reach` (lattice units).
-std::vector<CellContact> find_contacts(const core::Membranes& membranes, const core::Domain<2>& domain, double reach);
+std::vector<CellContact> find_touching_cells(const core::Membranes& membranes, const core::Domain<2>& domain,
+                                             double reach);
 
 /// Of each cell the smallest gap to any other or to an image (spacings), looked for in growing neighbourhoods up to the
 /// size of the box; infinite when there is none.

@@ -48,7 +48,7 @@ EnergySnapshot observe_energy(core::Solver<T>& solver, const core::Membranes& me
     if (!membrane.unknown.empty()) energy.unknown = "membrane law " + membrane.unknown + " tells no energy";
   }
   if (const core::InteractionForces* forces = solver.interaction_forces()) {
-    energy.interaction = forces->energy(membranes) * joule;
+    energy.interaction = forces->energy(membranes, solver.ranks()) * joule;
     energy.total += energy.interaction;
     const std::string silent = forces->without_energy();
     if (!silent.empty()) energy.unknown = "interaction " + silent + " tells no energy";

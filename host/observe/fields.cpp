@@ -16,7 +16,11 @@ FieldSnapshot observe_fields(core::Fluid<T>& fluid, const scene::Scene& scene, c
   };
   const int nx = fluid.setting().domain.size[0], ny = fluid.setting().domain.size[1];
   const scene::FieldStorage& storage = scene.output.field_storage;
+  const std::vector<core::Moments> moments = fluid.all_moments();
+  const std::vector<double> relaxation_rate =
+      wanted("viscosity") ? fluid.all_relaxation_rates() : std::vector<double>{};
   FieldSnapshot f;
+  if (moments.empty()) return f;
   f.nx = storage.count(0, nx);
   f.ny = storage.count(1, ny);
   const bool velocity = wanted("velocity"), density = wanted("density"), viscosity = wanted("viscosity");
@@ -24,8 +28,7 @@ FieldSnapshot observe_fields(core::Fluid<T>& fluid, const scene::Scene& scene, c
   const double speed = units.to_si(1, units::dimension::velocity), rate = units.to_si(1, units::dimension::rate);
   const double viscosity_unit = units.to_si(1, units::dimension::viscosity);
   const auto nodes = static_cast<std::size_t>(f.nx) * static_cast<std::size_t>(f.ny);
-  std::vector<std::vector<core::Moments>> rows(static_cast<std::size_t>(ny));
-  for (int y = 0; y < ny; ++y) fluid.moments(y, rows[static_cast<std::size_t>(y)]);
+  const auto node = [nx](std::size_t x, std::size_t y) { return static_cast<std::size_t>(nx) * y + x; };
   for (auto [want, values] :
        {std::pair{velocity, &f.velocity_x}, std::pair{velocity, &f.velocity_y}, std::pair{density, &f.density},
         std::pair{viscosity, &f.viscosity}, std::pair{vorticity, &f.vorticity}}) {
@@ -38,27 +41,22 @@ FieldSnapshot observe_fields(core::Fluid<T>& fluid, const scene::Scene& scene, c
   const VelocityGrid grid{
       static_cast<std::size_t>(nx), static_cast<std::size_t>(ny) + 2 * below, {1, 1}, {true, periodic_y}};
   const auto u = [&](std::size_t i, std::size_t j) {
-    if (!periodic_y && j == 0) return 2 * walls.lower - rows.front()[i].ux;
-    if (!periodic_y && j + 1 == grid.ny) return 2 * walls.upper - rows.back()[i].ux;
-    return rows[j - below][i].ux;
+    if (!periodic_y && j == 0) return 2 * walls.lower - moments[i].ux;
+    if (!periodic_y && j + 1 == grid.ny) return 2 * walls.upper - moments[node(i, static_cast<std::size_t>(ny) - 1)].ux;
+    return moments[node(i, j - below)].ux;
   };
-  const auto v = [&](std::size_t i, std::size_t j) { return rows[j - below][i].uy; };
+  const auto v = [&](std::size_t i, std::size_t j) { return moments[node(i, j - below)].uy; };
   for (int row = 0; row < f.ny; ++row) {
     for (int column = 0; column < f.nx; ++column) {
       const int x = storage.first[0] + column * storage.stride, y = storage.first[1] + row * storage.stride;
-      const core::Moments& m = rows[static_cast<std::size_t>(y)][static_cast<std::size_t>(x)];
+      const std::size_t at = node(static_cast<std::size_t>(x), static_cast<std::size_t>(y));
+      const core::Moments& m = moments[at];
       if (velocity) {
         f.velocity_x.push_back(m.ux * speed);
         f.velocity_y.push_back(m.uy * speed);
       }
       if (density) f.density.push_back(m.density);
-      if (viscosity) {
-        double relaxation = fluid.setting().relaxation_rate;
-        if (fluid.setting().viscosity_contrast && fluid.mask().active(x, y)) {
-          relaxation = static_cast<double>(fluid.relaxation_rate().row(y)[x]);
-        }
-        f.viscosity.push_back(core::viscosity_of(1 / relaxation) * viscosity_unit);
-      }
+      if (viscosity) f.viscosity.push_back(core::viscosity_of(1 / relaxation_rate[at]) * viscosity_unit);
       if (vorticity) {
         f.vorticity.push_back(grid.vorticity(static_cast<std::size_t>(x), static_cast<std::size_t>(y) + below, u, v) *
                               rate);

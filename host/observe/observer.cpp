@@ -84,7 +84,7 @@ double Observer::follow_fluid(core::Fluid<T>& fluid) {
 
 void Observer::observe_cells(const core::Membranes& membranes, const units::LatticeUnits& units, Snapshot& snapshot) {
   const double length = units.length;
-  const auto contacts = find_contacts(membranes, domain_, scene_->output.aggregate_gap / length);
+  const auto contacts = find_touching_cells(membranes, domain_, scene_->output.aggregate_gap / length);
   const Aggregates aggregates = find_aggregates(static_cast<int>(membranes.cells.size()), contacts);
   snapshot.aggregate_count = aggregates.count;
   snapshot.aggregate_sizes = aggregate_sizes(aggregates.label);
@@ -107,7 +107,7 @@ void Observer::observe_cells(const core::Membranes& membranes, const units::Latt
     tank_treading_angle_[k] = started_ ? continued(marker, tank_treading_angle_[k], 2 * std::numbers::pi) : marker;
     CellSnapshot s;
     s.cell = static_cast<int>(k);
-    s.type = scene_->cell_types[static_cast<std::size_t>(cell.type)].name;
+    s.type = scene_->cell_types[cell.type].name;
     s.x = units::coordinate(c.x(), length);
     s.y = units::coordinate(c.y(), length);
     s.angle = round ? std::nan("") : angle_[k];

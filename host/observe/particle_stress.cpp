@@ -8,8 +8,7 @@ double particle_stress(const core::Membranes& m, const scene::Scene& scene, doub
   double stress = 0;
   for (const core::CellRange& cell : m.cells) {
     const Eigen::Vector2d c = core::centroid(m, cell);
-    const double ratio =
-        scene.cell_types[static_cast<std::size_t>(cell.type)].interior_viscosity / scene.fluid.viscosity;
+    const double ratio = scene.cell_types[cell.type].interior_viscosity / scene.fluid.viscosity;
     for (int i = cell.first; i < cell.end(); ++i) {
       const auto k = static_cast<std::size_t>(i), n = static_cast<std::size_t>(cell.next(i));
       stress -= m.force_x[k] * (m.y[k] - c.y());

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/domain/exact_sum.hpp"
 #include "core/fluid/relaxation.hpp"
 
 namespace rouleau::observe {
@@ -15,16 +14,9 @@ bool is_driven_channel(const plan::StageSetting& setting, const scene::Scene& sc
 template <class T>
 double flow_rate(const core::Fluid<T>& fluid) {
   const core::FluidSetting& setting = fluid.setting();
-  std::vector<double> mean(static_cast<std::size_t>(setting.domain.size[1]));
-  std::vector<core::Moments> row;
+  const std::vector<double> mean = fluid.row_velocities();
   double sum = 0;
-  for (int y = 0; y < setting.domain.size[1]; ++y) {
-    fluid.moments(y, row);
-    core::ExactSum along;
-    for (const core::Moments& m : row) along.add(m.ux);
-    mean[static_cast<std::size_t>(y)] = along.value() / setting.domain.size[0];
-    sum += mean[static_cast<std::size_t>(y)];
-  }
+  for (const double velocity : mean) sum += velocity;
   if (setting.domain.periodic[1]) return sum;
   // Slopes at the walls of parabolas through the wall and the two rows nearest to it, rows at 1/2 and 3/2.
   const auto slope = [](double wall, double first, double second) { return -8 * wall / 3 + 3 * first - second / 3; };

@@ -38,7 +38,7 @@ std::size_t second_half(const Instants& instants) {
 /// Whether all (or, `any`, some two) of these cells share an aggregate.
 bool together(const std::vector<int>& label, const std::vector<int>& members, bool any) {
   std::set<int> labels;
-  for (const int cell : members) labels.insert(label[static_cast<std::size_t>(cell)]);
+  for (const int cell : members) labels.insert(label[cell]);
   return any ? labels.size() < members.size() : labels.size() == 1;
 }
 

@@ -40,7 +40,7 @@ Unwrapping unwrap(const std::vector<CellContact>& contacts, const Aggregates& ag
           result.shift[step.to] = there;
           open.push_back(step.to);
         } else if (!(result.shift[step.to] == there)) {
-          result.endless[static_cast<std::size_t>(aggregates.label[cell])] = true;
+          result.endless[aggregates.label[cell]] = true;
         }
       }
     }
@@ -72,7 +72,7 @@ std::map<int, double> Rotation::follow(const std::vector<CellContact>& contacts,
   std::map<int, double> angles;
   std::map<std::vector<int>, double> now;
   for (auto& [label, cells] : members) {
-    if (cells.size() < 2 || unwrapped.endless[static_cast<std::size_t>(label)]) continue;
+    if (cells.size() < 2 || unwrapped.endless[label]) continue;
     std::vector<Eigen::Vector2d> points;
     for (const int cell : cells) {
       const auto k = static_cast<std::size_t>(cell);

@@ -4,17 +4,19 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <optional>
 
 #include "base/text.hpp"
 #include "core/fluid/relaxation.hpp"
+#include "estimate.hpp"
 #include "json/document.hpp"
 #include "json/json_pointer.hpp"
 #include "scene/driving_flow.hpp"
 #include "scene/scene_reader.hpp"
 #include "shape/outline.hpp"
 #include "shape/random_cells.hpp"
-#include "step_cost.hpp"
+#include "stability_limits.hpp"
 
 namespace rouleau::plan {
 namespace {
@@ -91,13 +93,13 @@ Json three_digits_below(double value) {
 class Problem {
  public:
   Problem(const scene::Scene& draft, const Json& written, const NumericsBounds& bounds);
-  [[nodiscard]] scene::NumericsChoice solve() const;
+  [[nodiscard]] NumericsChoice solve() const;
 
  private:
   struct Trial {
     std::array<int, 2> nodes{};
     double tau = 1, density_factor = 1, cost = 0;
-    scene::ErrorShares error;
+    ErrorShares error;
   };
   [[nodiscard]] std::vector<std::array<int, 2>> lattices() const;
   [[nodiscard]] bool meets_target(const Trial& trial) const { return trial.error.total() <= target_ * (1 + 1e-9); }
@@ -105,13 +107,14 @@ class Problem {
   [[nodiscard]] Trial tried(const std::array<int, 2>& nodes, double tau) const;
   [[nodiscard]] double resolution_error(double spacing, double tau) const;
   [[nodiscard]] double inertia_error(double reynolds) const;
-  /// The largest simulated Reynolds number whose inertia_error() is at most this.
-  [[nodiscard]] double most_reynolds(double error) const;
+  [[nodiscard]] double start_error(double density_factor) const;
+  /// The largest density factor with which inertia and start together leave at most this error.
+  [[nodiscard]] double most_density_factor(double error) const;
   [[nodiscard]] double decay() const {
     return steady_rate * strain_ / std::sqrt(0.5 + 0.5 * std::max(1.0, viscosity_ratio_));
   }
   [[nodiscard]] std::string why_density_factor(const Trial& best) const;
-  [[nodiscard]] scene::NumericsChoice chosen(const Trial& best) const;
+  [[nodiscard]] NumericsChoice chosen(const Trial& best) const;
   [[nodiscard]] Json pinned(const char* key) const { return numerics_.contains(key) ? numerics_.at(key) : Json(); }
 
   const scene::Scene& scene_;
@@ -126,7 +129,12 @@ class Problem {
   double radius_ = 0;           ///< of the smallest cell, m
   double viscosity_ratio_ = 1;  ///< the furthest from 1
   double shear_rate_ = 0, strain_ = 0;
-  double reynolds_ = 0;  ///< of the true fluid, with the cells' radius or, without cells, half the height
+  struct Start {
+    double lag, strain;  ///< for each unit of density factor (scene::start_up_strain), and of the stage
+    bool driven;         ///< by a pressure gradient rather than by walls
+  };
+  std::vector<Start> starts_;  ///< of flows that begin at rest
+  double reynolds_ = 0;        ///< of the true fluid, with the cells' radius or, without cells, half the height
 };
 
 Problem::Problem(const scene::Scene& draft, const Json& written, const NumericsBounds& bounds)
@@ -138,7 +146,7 @@ Problem::Problem(const scene::Scene& draft, const Json& written, const NumericsB
   has_cells_ = !scene_.cells.empty();
   radius_ = shape::smallest_radius(scene_);
   std::vector<int> placed(scene_.cell_types.size());
-  for (const scene::CellPlacement& cell : scene_.cells) ++placed[static_cast<std::size_t>(cell.type)];
+  for (const scene::CellPlacement& cell : scene_.cells) ++placed[cell.type];
   for (std::size_t i = 0; i < placed.size(); ++i) {
     if (placed[i] == 0) continue;
     const scene::CellType& type = scene_.cell_types[i];
@@ -151,7 +159,10 @@ Problem::Problem(const scene::Scene& draft, const Json& written, const NumericsB
     const double rate = scene::mean_shear_rate(stage, scene_);
     if (rate == 0) continue;
     shear_rate_ = std::max(shear_rate_, rate);
-    strain_ = std::max(strain_, stage.strain.value_or(stage.duration.value_or(0) * rate));
+    const double strain = stage.strain.value_or(stage.duration.value_or(0) * rate);
+    strain_ = std::max(strain_, strain);
+    if (const double lag = scene::start_up_strain(stage, scene_); lag > 0)
+      starts_.push_back({lag, strain, stage.shear_rate == 0});
   }
   const double length = has_cells_ ? radius_ : scene_.domain.size.y() / 2;
   reynolds_ = scene_.fluid.density * shear_rate_ * length * length / scene_.fluid.viscosity;
@@ -184,7 +195,7 @@ bool Problem::better(const Trial& a, const Trial& b) const {
   return meets_target(a) ? a.cost < b.cost : a.error.total() < b.error.total();
 }
 
-scene::NumericsChoice Problem::solve() const {
+NumericsChoice Problem::solve() const {
   std::vector<double> taus(relaxation_times.begin(), relaxation_times.end());
   if (!pinned("tau").is_null()) taus = {pinned("tau").get<double>()};
   std::optional<Trial> best;
@@ -210,14 +221,16 @@ Problem::Trial Problem::tried(const std::array<int, 2>& nodes, double tau) const
   } else {
     // Walls at shear_rate x height / 2 in units of the spacing over the time step.
     const double wall_mach = std::sqrt(3.0) * shear_rate_ * scene_.domain.size.y() / 2 / spacing * true_step;
-    const double allowed = most_reynolds(target_ - trial.error.resolution) / reynolds_;
+    const double allowed = most_density_factor(target_ - trial.error.resolution);
     // Without cells what is computed is how the fluid's own inertia lets a flow start.
     const double wanted = has_cells_ ? allowed : 1;
+    const double pressed = has_cells_ ? compression_by_shear(tau, shear_rate_ * true_step) : 0;
     trial.density_factor =
         std::max(1.0, std::min({wanted, nearly * scene::largest_wall_mach(scene_.fluid.inertia) / wall_mach,
-                                bounds_.most_density_factor}));
+                                nearly * largest_compression_by_shear / pressed, bounds_.most_density_factor}));
   }
   trial.error.inertia = inertia_error(reynolds_ * trial.density_factor);
+  trial.error.start = start_error(trial.density_factor);
   trial.cost = step_cost(static_cast<double>(nodes[0]) * nodes[1], perimeters_ / spacing, scene_.numerics.precision) /
                (true_step * trial.density_factor);
   return trial;
@@ -248,12 +261,31 @@ double Problem::inertia_error(double reynolds) const {
   return steady_ ? steady_amplitude * std::exp(-decay() / std::sqrt(reynolds)) : motion_by_reynolds * reynolds;
 }
 
-double Problem::most_reynolds(double error) const {
+/// Of the stage where it is largest. Events of a motion come late by the lag. The steady state misses what the slowest
+/// mode of the start has left: amplitude 2 of the shear rate in the middle and H^2/(4 pi^2 nu) between moving walls,
+/// amplitude 1 and H^2/(pi^2 nu) in a channel.
+double Problem::start_error(double density_factor) const {
+  if (!has_cells_) return 0;
+  double largest = 0;
+  for (const Start& start : starts_) {
+    const double lag = density_factor * start.lag, pi = std::numbers::pi;
+    const double decay = lag * (start.driven ? 10 : 6) / (pi * pi);
+    largest =
+        std::max(largest, steady_ ? (start.driven ? 1 : 2) * std::exp(-start.strain / decay) : lag / start.strain);
+  }
+  return largest;
+}
+
+double Problem::most_density_factor(double error) const {
+  const auto left = [&](double factor) { return inertia_error(reynolds_ * factor) + start_error(factor); };
   if (!(error > 0)) return 0;
-  if (!steady_) return error / motion_by_reynolds;
-  if (error >= steady_amplitude) return std::numeric_limits<double>::infinity();
-  const double root = decay() / std::log(steady_amplitude / error);
-  return root * root;
+  double low = 1e-6, high = 1e12;  // both errors grow with the factor
+  if (left(high) <= error) return high;
+  for (int i = 0; i < 100; ++i) {
+    const double middle = std::sqrt(low * high);
+    (left(middle) <= error ? low : high) = middle;
+  }
+  return low;
 }
 
 std::string Problem::why_density_factor(const Trial& best) const {
@@ -261,12 +293,13 @@ std::string Problem::why_density_factor(const Trial& best) const {
   if (shear_rate_ == 0) return "at rest, as large as the limits of the membranes' stiffness allow";
   std::string why = "simulated Reynolds number " + number(reynolds_ * best.density_factor, 3) + ": " +
                     number(100 * best.error.inertia, 2) + " % of error";
+  if (best.error.start > 0) why += ", and " + number(100 * best.error.start, 2) + " % by the start of the flow";
   if (best.density_factor >= bounds_.most_density_factor * 0.99) why += "; more is beyond a limit of the plan";
   return why;
 }
 
-scene::NumericsChoice Problem::chosen(const Trial& best) const {
-  scene::NumericsChoice choice{target_, steady_, best.error, {}, {}};
+NumericsChoice Problem::chosen(const Trial& best) const {
+  NumericsChoice choice{target_, steady_, best.error, {}, {}};
   const auto choose = [&](const std::string& pointer, const Json& value, const std::string& why) {
     choice.values.push_back({pointer, value, why});
   };
@@ -349,15 +382,23 @@ bool leaves_numerics_open(const Json& numerics) {
 
 }  // namespace
 
-std::optional<scene::NumericsChoice> fill_in_numerics(json::Document& document, const NumericsBounds& bounds) {
+Json to_json(const std::optional<NumericsChoice>& choice) {
+  if (!choice) return {};
+  return {{"target_error", choice->target},
+          {"of", choice->steady ? "steady" : "motion"},
+          {"values", choice->values},
+          {"expected_error", choice->expected}};
+}
+
+std::optional<NumericsChoice> fill_in_numerics(json::Document& document, const NumericsBounds& bounds) {
   if (!leaves_numerics_open(document.root().value("numerics", Json()))) return std::nullopt;
   spell_out_numerics(document);
   auto draft = std::make_shared<json::Document>(document);
   put_draft_numerics(*draft);
   scene::Scene scene = scene::read_scene(std::move(draft));
   shape::add_random_cells(scene);
-  scene::NumericsChoice choice = Problem(scene, document.root(), bounds).solve();
-  for (const scene::ChosenValue& value : choice.values) document.put(value.pointer, value.value, origin);
+  NumericsChoice choice = Problem(scene, document.root(), bounds).solve();
+  for (const ChosenValue& value : choice.values) document.put(value.pointer, value.value, origin);
   return choice;
 }
 

@@ -2,14 +2,43 @@
 #pragma once
 
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <optional>
-
-#include "scene/numerics_choice.hpp"
+#include <string>
+#include <vector>
 
 namespace rouleau::json {
 class Document;
 }  // namespace rouleau::json
 namespace rouleau::plan {
+
+/// Parts of the error that is expected of a result, relative.
+struct ErrorShares {
+  double resolution = 0;  ///< of the lattice
+  double inertia = 0;     ///< of the fluid that is simulated denser than it is
+  double start = 0;       ///< of that fluid's start from rest
+  [[nodiscard]] double total() const { return resolution + inertia + start; }
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE_WITH_DEFAULT(ErrorShares, resolution, inertia, start)
+};
+
+struct ChosenValue {
+  std::string pointer;  ///< into the scene
+  nlohmann::json value;
+  std::string why;
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(ChosenValue, pointer, value, why)
+};
+
+/// What was chosen for a scene that leaves its numerics open, and why.
+struct NumericsChoice {
+  double target;  ///< relative error that was asked for
+  bool steady;    ///< asked for the steady state, not for the motion
+  ErrorShares expected;
+  std::vector<ChosenValue> values;  ///< what the scene leaves open
+  std::string doubt;                ///< why the target may not be met, or only at a price; empty: it should
+};
+
+/// Null where nothing was left open.
+nlohmann::json to_json(const std::optional<NumericsChoice>& choice);
 
 /// What the limits of a plan ask for beyond the target error.
 struct NumericsBounds {
@@ -23,6 +52,6 @@ struct NumericsBounds {
 /// "auto"): the cheapest that keep the target error by what was measured (docs/accuracy.md) and the bounds. What the
 /// scene says of its numerics stays, so that it can be read again. Nothing for a scene that pins its numerics. Throws
 /// Error(bad_input) when no lattice fits the domain, or for a fault of the scene.
-std::optional<scene::NumericsChoice> fill_in_numerics(json::Document& document, const NumericsBounds& bounds = {});
+std::optional<NumericsChoice> fill_in_numerics(json::Document& document, const NumericsBounds& bounds = {});
 
 }  // namespace rouleau::plan

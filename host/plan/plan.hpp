@@ -1,13 +1,11 @@
-// What a scene will compute and why, decided before the first step: models, passes, what is left out, limits, costs.
+// What a scene will compute: models, stages and the step of the membranes, decided before the first step.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "limit.hpp"
-#include "output_estimate.hpp"
+#include "numerics_auto.hpp"
 #include "plugin/catalog.hpp"
 #include "plugin/lock.hpp"
 #include "plugin/parameters.hpp"
@@ -23,19 +21,10 @@ struct PlannedModel {
   [[nodiscard]] bool active() const { return !parameters.inactive; }
 };
 
-struct PlannedPass {
-  std::string name, why;
-};
-
-struct Estimate {
-  double steps = 0;  ///< at most
-  double wall_s = 0;
-  double memory_bytes = 0;
-  OutputEstimate output;
-};
-
+/// All that a run needs. What it will cost, what is left out and what to be wary of is in a PlanReport.
 struct Plan {
   const scene::Scene* scene;
+  std::optional<NumericsChoice> numerics_choice;  ///< none where the scene pins all of its numerics
   PlannedModel collision;
   std::vector<std::vector<PlannedModel>> membranes;  ///< for each cell type
   std::vector<PlannedModel> interactions;            ///< in the order of Scene::interactions
@@ -45,19 +34,7 @@ struct Plan {
   bool has_interactions = false;
   bool semi_implicit = false;  ///< membranes: the step that numerics.coupling names or, if "auto", the limits ask for
   std::string coupling;        ///< which step that is and why, for people
-
   std::optional<plugin::LockUse> lock;  ///< the lock that the plugins were held against
-
-  std::vector<PlannedPass> passes;
-  std::vector<Omission> left_out;
-  std::vector<Limit> limits;
-  std::vector<std::string> warnings;
-  nlohmann::json dimensionless;
-  nlohmann::json conversions;
-  nlohmann::json wells;            ///< of the active interactions, in SI
-  nlohmann::json packings;         ///< packing_table()
-  nlohmann::json numerics_choice;  ///< object: what "numerics": "auto" chose and why; null where the scene pins all
-  Estimate estimate;
 
   /// Models whose libraries the run opens.
   [[nodiscard]] std::vector<const PlannedModel*> active_models() const;
@@ -65,14 +42,10 @@ struct Plan {
   [[nodiscard]] std::string owner_of(const PlannedModel& model) const;
 };
 
-/// Throws Error(bad_input or plugin_refused). The scene and the catalog must outlive the plan.
-Plan make_plan(const scene::Scene& scene, const plugin::Catalog& catalog);
-
-/// Limits of the method for this scene (stability, accuracy), sharpest first. Opens the libraries of active models,
-/// whose own derivatives give the stiffness that explicit coupling must bear.
-std::vector<Limit> find_limits(const Plan& plan);
-
-std::string to_text(const Plan& plan);
-nlohmann::json to_json(const Plan& plan);
+/// Makes every active model once, so that a plan never promises a run that cannot start. Throws Error(bad_input) with
+/// the place in the scene of what cannot be computed or a model refuses, Error(plugin_refused) for a library that is
+/// refused. The scene and the catalog must outlive the plan; `choice` is what read_within_limits() has put into the
+/// scene.
+Plan make_plan(const scene::Scene& scene, const plugin::Catalog& catalog, std::optional<NumericsChoice> choice = {});
 
 }  // namespace rouleau::plan

@@ -16,11 +16,14 @@ using Json = nlohmann::json;
 
 constexpr units::Dimension surface_energy = units::dimension::tension;
 
-Json describe(const std::optional<Well>& well, const units::LatticeUnits& units) {
-  if (!well) return {{"zero_force_distance_m", nullptr}, {"depth_J_m2", nullptr}, {"width_m", nullptr}};
-  return {{"zero_force_distance_m", units.to_si(well->distance, units::dimension::length)},
-          {"depth_J_m2", units.to_si(well->depth, surface_energy)},
-          {"width_m", units.to_si(well->width(), units::dimension::length)}};
+WellInSi in_si(const std::optional<Well>& well, const units::LatticeUnits& units) {
+  if (!well) return {};
+  return {units.to_si(well->distance, units::dimension::length), units.to_si(well->depth, surface_energy),
+          units.to_si(well->width(), units::dimension::length)};
+}
+
+Json well_json(const WellInSi& well) {
+  return {{"zero_force_distance_m", well.distance}, {"depth_J_m2", well.depth}, {"width_m", well.width}};
 }
 
 /// The model's parameters with those exchanged at which it is the potential it stands for.
@@ -42,21 +45,33 @@ std::vector<double> what_it_stands_for(const PlannedModel& model) {
 
 }  // namespace
 
-void try_models(const Plan& plan) {
-  const plugin::ModelSetting setting = plan.stages.front().model_setting(plan.scene->fluid.inertia);
-  for (const PlannedModel* model : plan.active_models()) {
-    try {
-      const plugin::ModelInstance instance(*model->manifest, model->parameters.values, setting);
-    } catch (const plugin::ModelRefused& refused) {
-      throw Error(Cause::bad_input, plan.scene->place(model->pointer),
-                  in_quotes(model->manifest->id) + " cannot be made with these parameters: " + refused.reason() +
-                      "\n  its manifest: " + model->manifest->file.string());
-    }
-  }
+void to_json(Json& json, const InteractionWell& described) {
+  json = well_json(described.well);
+  json["model"] = described.model;
+  json["between"] = described.between;
+  if (described.stands_for) json["stands_for"] = well_json(*described.stands_for);
+  if (described.widened) json["widened"] = *described.widened;
 }
 
-Json describe_wells(const Plan& plan) {
-  Json wells = Json::array();
+namespace {
+
+/// Of an interaction without a well whose depth (a parameter with that role) is not 0; empty for any other.
+std::string why_it_attracts_nowhere(const PlannedModel& model) {
+  const auto value = [&](plugin::Role role) {
+    const auto parameter = model.manifest->parameter_with(role);
+    return parameter ? model.parameters.values[*parameter] : std::nan("");
+  };
+  if (!(value(plugin::Role::depth) > 0)) return "";
+  const double cutoff = value(plugin::Role::cutoff), no_force = value(plugin::Role::zero_force_distance);
+  if (!(cutoff <= no_force)) return "it attracts nowhere, though its depth is not 0";
+  return "it attracts nowhere: its cutoff of " + number(cutoff * 1e6) +
+         " um ends it before its force changes sign at " + number(no_force * 1e6) + " um; put the cutoff farther out";
+}
+
+}  // namespace
+
+std::vector<InteractionWell> describe_wells(const Plan& plan) {
+  std::vector<InteractionWell> wells;
   const StageSetting& stage = plan.stages.front();
   const plugin::ModelSetting setting = stage.model_setting(plan.scene->fluid.inertia);
   for (std::size_t i = 0; i < plan.interactions.size(); ++i) {
@@ -66,30 +81,30 @@ Json describe_wells(const Plan& plan) {
       return find_shape(plugin::ModelInstance(*model.manifest, values, setting));
     };
     const PotentialShape shape = shape_at(model.parameters.values);
-    Json entry = describe(shape.well, stage.units);
-    entry["model"] = model.manifest->id;
-    for (const int type : plan.scene->interactions[i].between) {
-      entry["between"].push_back(plan.scene->cell_types[static_cast<std::size_t>(type)].name);
-    }
+    const auto [a, b] = plan.scene->interactions[i].between;
+    const std::vector<scene::CellType>& types = plan.scene->cell_types;
+    InteractionWell& described = wells.emplace_back();
+    described.model = model.manifest->id;
+    described.between = {types[a].name, types[b].name};
+    described.well = in_si(shape.well, stage.units);
+    if (!shape.well) described.doubt = why_it_attracts_nowhere(model);
     const std::vector<double> meant =
         model.manifest->stands_for.is_object() ? what_it_stands_for(model) : model.parameters.values;
-    if (meant != model.parameters.values) {
-      const PotentialShape original = shape_at(meant);
-      entry["stands_for"] = describe(original.well, stage.units);
-      if (shape.well && original.well) entry["widened"] = shape.well->width() / original.well->width();
-    }
-    wells.push_back(std::move(entry));
+    if (meant == model.parameters.values) continue;
+    const PotentialShape original = shape_at(meant);
+    described.stands_for = in_si(original.well, stage.units);
+    if (shape.well && original.well) described.widened = shape.well->width() / original.well->width();
   }
   return wells;
 }
 
-double deepest_well(const Plan& plan) {
+double deepest_well(const Plan& plan, const std::vector<InteractionWell>& wells) {
   double deepest = std::nan("");
   for (const PlannedModel& model : plan.interactions) {
     if (plan.has_cells && model.manifest->state.empty()) deepest = 0;
   }
-  for (const Json& well : plan.wells) {
-    if (well["depth_J_m2"].is_number()) deepest = std::max(deepest, well["depth_J_m2"].get<double>());
+  for (const InteractionWell& described : wells) {
+    if (described.well.attracts()) deepest = std::max(deepest, described.well.depth);
   }
   return deepest;
 }

@@ -1,21 +1,39 @@
-// What a plan tells of its models in SI units, found with the models' own functions.
+// What the models of a plan amount to in SI units, found with the models' own functions.
 #pragma once
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "plan.hpp"
 
 namespace rouleau::plan {
 
-/// Makes every active model once, so that a plan never promises a run that cannot start. Throws Error(bad_input) with
-/// the model's place in the scene when it refuses its parameters, Error(plugin_refused) when its library is refused.
-void try_models(const Plan& plan);
+/// Where the force changes its sign (m), energy per area (J/m2), depth over strongest attraction (m); NaN without a well.
+struct WellInSi {
+  double distance = std::numeric_limits<double>::quiet_NaN(), depth = distance, width = distance;
+  [[nodiscard]] bool attracts() const { return !std::isnan(depth); }
+};
+struct InteractionWell {
+  std::string model;
+  std::array<std::string, 2> between;  ///< cell types
+  WellInSi well;
+  std::optional<WellInSi> stands_for;  ///< of the potential that this one stands for, where the manifest says which
+  std::optional<double> widened;       ///< width over that of the other
+  std::string doubt;                   ///< why it attracts nowhere in spite of its depth; empty: it does, or has none
+};
+void to_json(nlohmann::json& json, const InteractionWell& described);
 
-/// One entry for each active interaction: place, depth and width of its well (null where it attracts nowhere), and,
-/// where the manifest says what the potential stands for, those of that potential and by how much the well was widened.
-nlohmann::json describe_wells(const Plan& plan);
+/// One entry for each active interaction without a state, on which a well would depend.
+std::vector<InteractionWell> describe_wells(const Plan& plan);
 
-/// Depth of the deepest well in plan.wells, J/m2; 0 where the interactions attract nowhere, NaN without cells and where
-/// there is no interaction or all that there are have a state, on which the well depends.
-double deepest_well(const Plan& plan);
+/// Depth of the deepest of the plan's wells, J/m2; 0 where the interactions attract nowhere, NaN without cells and where
+/// there is no interaction or all that there are have a state.
+double deepest_well(const Plan& plan, const std::vector<InteractionWell>& wells);
 
 /// Sum of the shear moduli of the first cell's laws, N/m; NaN where no parameter has that role. A flow in a plane never
 /// shears a membrane in its own plane, so this is no property that could be measured on the law.

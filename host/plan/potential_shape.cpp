@@ -41,7 +41,7 @@ Curve evaluate(const plugin::ModelInstance& potential, std::vector<double> dista
     curve.stiffness.resize(count);
     block.force_by_distance = curve.stiffness.data();
   }
-  potential.interaction().compute(potential.self(), &block);
+  call_foreign(potential.manifest().id, "compute", [&] { potential.interaction().compute(potential.self(), &block); });
   if (!derivative) curve.stiffness = differences(curve.distance, curve.force);
   return curve;
 }
@@ -51,7 +51,7 @@ std::vector<double> spread(double from, double first, double to, int count) {
   std::vector<double> values(static_cast<std::size_t>(count));
   const double ratio = (to - from) / first;
   for (int i = 0; i < count; ++i) {
-    values[static_cast<std::size_t>(i)] = from + first * std::pow(ratio, i / (count - 1.0));
+    values[i] = from + first * std::pow(ratio, i / (count - 1.0));
   }
   values.back() = to;
   return values;

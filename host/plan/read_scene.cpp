@@ -3,10 +3,10 @@
 #include <algorithm>
 
 #include "json/document.hpp"
-#include "plan.hpp"
 #include "plan_models.hpp"
 #include "shape/outline.hpp"
 #include "shape/random_cells.hpp"
+#include "stability_limits.hpp"
 
 namespace rouleau::plan {
 namespace {
@@ -22,16 +22,15 @@ constexpr double deepest_corrected_well = 0.02;
 
 bool attracts_strongly(const Plan& plan) {
   const double modulus = stretching_modulus(plan);
-  for (const auto& well : plan.wells) {
-    const auto& depth = well.at("depth_J_m2");
-    if (depth.is_number() && !(depth.get<double>() <= deepest_corrected_well * modulus)) return true;
-  }
-  return false;
+  const std::vector<InteractionWell> wells = describe_wells(plan);
+  return std::any_of(wells.begin(), wells.end(), [&](const InteractionWell& described) {
+    return described.well.attracts() && !(described.well.depth <= deepest_corrected_well * modulus);
+  });
 }
 
 NumericsBounds tightened(NumericsBounds bounds, const Plan& plan) {
   if (attracts_strongly(plan)) bounds.slip_correction = false;
-  for (const Limit& limit : plan.limits) {
+  for (const Limit& limit : find_limits(plan)) {
     if (limit.margin >= 1 || !(limit.margin > 0)) continue;
     if (limit.remedied_by == RemediedBy::density_factor) {
       const double kept = plan.scene->numerics.density_factor * limit.margin / to_spare;
@@ -46,35 +45,34 @@ NumericsBounds tightened(NumericsBounds bounds, const Plan& plan) {
 
 }  // namespace
 
-scene::Scene read_unpacked_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides,
-                                 const NumericsBounds& bounds) {
+ReadScene read_unpacked_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides,
+                              const NumericsBounds& bounds) {
   auto document = std::make_shared<json::Document>(scene::read_document(file, overrides));
-  std::optional<scene::NumericsChoice> choice = fill_in_numerics(*document, bounds);
-  scene::Scene scene = scene::read_scene(std::move(document));
-  scene.numerics_choice = std::move(choice);
-  shape::add_random_cells(scene);
-  return scene;
+  std::optional<NumericsChoice> choice = fill_in_numerics(*document, bounds);
+  ReadScene read{scene::read_scene(std::move(document)), std::move(choice)};
+  shape::add_random_cells(read.scene);
+  return read;
 }
 
 scene::Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
-  scene::Scene scene = read_unpacked_scene(file, overrides);
+  scene::Scene scene = read_unpacked_scene(file, overrides).scene;
   shape::pack_cells(scene);  // may take a while: after everything else has been found right
   return scene;
 }
 
-scene::Scene read_within_limits(const std::filesystem::path& file, const std::vector<std::string>& overrides,
-                                const std::function<plugin::Catalog(const scene::Scene&)>& catalog_of) {
+ReadScene read_within_limits(const std::filesystem::path& file, const std::vector<std::string>& overrides,
+                             const std::function<plugin::Catalog(const scene::Scene&)>& catalog_of) {
   NumericsBounds bounds;
-  scene::Scene scene = read_unpacked_scene(file, overrides, bounds);
-  for (int tries = 0; tries < most_tries && scene.numerics_choice; ++tries) {
-    const plugin::Catalog catalog = catalog_of(scene);
-    const NumericsBounds tighter = tightened(bounds, make_plan(scene, catalog));
+  ReadScene read = read_unpacked_scene(file, overrides, bounds);
+  for (int tries = 0; tries < most_tries && read.numerics_choice; ++tries) {
+    const plugin::Catalog catalog = catalog_of(read.scene);
+    const NumericsBounds tighter = tightened(bounds, make_plan(read.scene, catalog));
     if (tighter == bounds) break;
     bounds = tighter;
-    scene = read_unpacked_scene(file, overrides, bounds);
+    read = read_unpacked_scene(file, overrides, bounds);
   }
-  shape::pack_cells(scene);
-  return scene;
+  shape::pack_cells(read.scene);
+  return read;
 }
 
 }  // namespace rouleau::plan

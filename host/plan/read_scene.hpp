@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,11 +14,16 @@
 
 namespace rouleau::plan {
 
+struct ReadScene {
+  scene::Scene scene;
+  std::optional<NumericsChoice> numerics_choice;  ///< what was chosen where the scene leaves its numerics open
+};
+
 /// A scene with all values and cells; those that are placed at random have no place yet, which may take a while to
 /// find. `overrides` are as for scene::read_document(), `bounds` for a scene that leaves its numerics open. Throws
 /// Error(bad_input), or Error(input_output) when the file cannot be read.
-scene::Scene read_unpacked_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {},
-                                 const NumericsBounds& bounds = {});
+ReadScene read_unpacked_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {},
+                              const NumericsBounds& bounds = {});
 
 /// That scene with all cells in their places.
 scene::Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
@@ -25,7 +31,7 @@ scene::Scene read_scene(const std::filesystem::path& file, const std::vector<std
 /// read_scene() with ever tighter bounds until no limit is exceeded that a lower density_factor or a higher resolution
 /// would keep, or the bounds do not change any more. A scene that pins its numerics is read once. `catalog_of` finds
 /// the plugins of a scene that has been read.
-scene::Scene read_within_limits(const std::filesystem::path& file, const std::vector<std::string>& overrides,
-                                const std::function<plugin::Catalog(const scene::Scene&)>& catalog_of);
+ReadScene read_within_limits(const std::filesystem::path& file, const std::vector<std::string>& overrides,
+                             const std::function<plugin::Catalog(const scene::Scene&)>& catalog_of);
 
 }  // namespace rouleau::plan

@@ -1,12 +1,152 @@
 #include "solver_setup.hpp"
 
-#include "kernel_facts.hpp"
+#include <algorithm>
+#include <cstdio>
+#include <string>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "cell_travel.hpp"
+#include "core/contact/crossing.hpp"
+#include "core/membrane/geometry.hpp"
+#include "estimate.hpp"
 #include "plugin/handles.hpp"
+#include "shape/outline.hpp"
+#include "stability_limits.hpp"
 
 namespace rouleau::plan {
+namespace {
+
+core::RestShape rest_shape(const scene::CellType& type, double spacing) {
+  std::vector<double> x, y;
+  for (const Eigen::Vector2d& node : shape::make_outline(type.shape, type.segments).nodes) {
+    x.push_back(node.x() / spacing);
+    y.push_back(node.y() / spacing);
+  }
+  const auto* circle = std::get_if<scene::Circle>(&type.shape);
+  return core::make_rest_shape(std::move(x), std::move(y), circle != nullptr ? circle->prestretch : 1.0);
+}
+
+/// Everything that a message about a place in the scene needs.
+class Checker {
+ public:
+  Checker(const scene::Scene& scene, const core::Membranes& membranes, double spacing)
+      : scene_(scene), membranes_(membranes), spacing_(spacing), domain_(lattice_domain(scene)) {}
+
+  void check() const {
+    for (std::size_t i = 0; i < membranes_.cells.size(); ++i) check_fits(i);
+    if (const auto crossing = core::find_crossing(membranes_, domain_)) report(*crossing);
+  }
+
+ private:
+  [[noreturn]] void refuse(std::size_t cell, const std::string& problem) const {
+    const std::string& pointer = scene_.cells[cell].pointer;
+    const Place place = scene_.document ? scene_.place(pointer) : Place{"", pointer};
+    throw Error(Cause::bad_input, place, problem);
+  }
+  [[nodiscard]] std::string micrometres(double spacings) const {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g um", spacings * spacing_ * 1e6);
+    return text;
+  }
+  [[nodiscard]] std::string name(int cell) const {
+    return "cell " + std::to_string(cell) + " (" + scene_.cells[cell].pointer + ")";
+  }
+
+  void check_fits(std::size_t cell) const {
+    const core::Bounds extent = core::bounds(membranes_, membranes_.cells[cell]);
+    const std::string who = name(static_cast<int>(cell));
+    const double width = extent.x_max - extent.x_min, height = extent.y_max - extent.y_min;
+    if (!(width < domain_.period(0))) {
+      refuse(cell, who + " is " + micrometres(width) + " wide, more than the periodic length of the domain, " +
+                       micrometres(domain_.period(0)) + "; make the domain longer.");
+    }
+    if (domain_.periodic[1]) {
+      if (!(height < domain_.period(1))) {
+        refuse(cell, who + " is " + micrometres(height) + " high, more than the periodic height of the domain, " +
+                         micrometres(domain_.period(1)) + "; make the domain higher.");
+      }
+      return;
+    }
+    const double below = -0.5 - extent.y_min, above = extent.y_max - (scene_.domain.nodes[1] - 0.5);
+    if (!(below < 0)) stick_out(cell, "lower", below);
+    if (!(above < 0)) stick_out(cell, "upper", above);
+  }
+  [[noreturn]] void stick_out(std::size_t cell, const char* wall, double amount) const {
+    refuse(cell, name(static_cast<int>(cell)) + " sticks through the " + wall + " wall by " + micrometres(amount) +
+                     "; move it away from the wall.");
+  }
+
+  [[noreturn]] void report(const core::Crossing& crossing) const {
+    const auto cell = static_cast<std::size_t>(crossing.cell);
+    const bool own = crossing.cell == crossing.other;
+    if (own && crossing.shift == core::ImageShift{})
+      refuse(cell, name(crossing.cell) + " crosses itself; change its shape.");
+    const double depth = overlap(crossing);
+    const std::string amount = depth > 0 ? "overlap by " + micrometres(depth) : "cross";
+    if (own) {
+      refuse(cell, name(crossing.cell) + " and its own periodic image " + amount + "; make the domain longer.");
+    }
+    const bool image = !(crossing.shift == core::ImageShift{});
+    refuse(cell, name(crossing.cell) + " and " + (image ? "a periodic image of " : "") + name(crossing.other) + " " +
+                     amount + "; move them apart.");
+  }
+  /// Largest depth of a node of one cell inside the other.
+  [[nodiscard]] double overlap(const core::Crossing& crossing) const {
+    const core::CellRange& a = membranes_.cells[crossing.cell];
+    const core::CellRange& b = membranes_.cells[crossing.other];
+    const Eigen::Vector2d move(crossing.shift.x * domain_.period(0), crossing.shift.y * domain_.period(1));
+    double depth = 0;
+    for (int i = a.first; i < a.end(); ++i) depth = std::max(depth, core::depth_inside(membranes_, b, node(i) - move));
+    for (int i = b.first; i < b.end(); ++i) depth = std::max(depth, core::depth_inside(membranes_, a, node(i) + move));
+    return depth;
+  }
+  [[nodiscard]] Eigen::Vector2d node(int i) const { return {membranes_.x[i], membranes_.y[i]}; }
+
+  const scene::Scene& scene_;
+  const core::Membranes& membranes_;
+  double spacing_;
+  core::Domain<2> domain_;
+};
+
+}  // namespace
 
 core::Domain<2> lattice_domain(const scene::Scene& scene) {
   return {{scene.domain.nodes[0], scene.domain.nodes[1]}, {true, scene.domain.periodic_y}};
+}
+
+namespace {
+
+/// Cells that cover more than the whole domain overlap, and that is known before any of them is placed.
+void require_room(const scene::Scene& scene) {
+  std::vector<double> area;
+  for (const scene::CellType& type : scene.cell_types)
+    area.push_back(shape::area_of(shape::make_outline(type.shape, type.segments)));
+  double covered = 0;
+  for (const scene::CellPlacement& cell : scene.cells) covered += area[cell.type];
+  const double there = scene.domain.size.prod();
+  if (covered <= there) return;
+  throw Error(Cause::bad_input, scene.place("/cells"),
+              "the " + std::to_string(scene.cells.size()) + " cells cover " + number(covered * 1e12) +
+                  " um2 and so overlap: the domain has " + number(there * 1e12) + " um2",
+              {"take fewer cells, or a larger domain"});
+}
+
+}  // namespace
+
+core::Membranes make_membranes(const scene::Scene& scene, double spacing) {
+  require_room(scene);
+  require_memory(membrane_memory(scene), "placing the cells");
+  std::vector<core::RestShape> shapes;
+  for (const scene::CellType& type : scene.cell_types) shapes.push_back(rest_shape(type, spacing));
+  core::Membranes membranes;
+  for (const scene::CellPlacement& cell : scene.cells) {
+    // Lattice nodes are centres of unit squares, so the first lies half a spacing from the domain's edges.
+    core::add_cell(membranes, cell.type, shapes[cell.type], cell.center.x() / spacing - 0.5,
+                   cell.center.y() / spacing - 0.5, cell.angle);
+  }
+  Checker(scene, membranes, spacing).check();
+  return membranes;
 }
 
 core::SolverSetup make_solver_setup(const Plan& plan, int index) {
@@ -19,6 +159,7 @@ core::SolverSetup make_solver_setup(const Plan& plan, int index) {
       .domain = lattice_domain(scene),
       .tau = stage.tau,
       .inertia = scene.fluid.inertia,
+      .follow_cells = follows_cells(scene, stage),
       .walls = {-stage.wall_speed, stage.wall_speed},
       .body_force_x = stage.body_force_x,
       .body_force_y = stage.body_force_y,

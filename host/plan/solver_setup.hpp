@@ -1,6 +1,7 @@
-// What a stage of a plan is to the solver.
+// What a scene and its plan are to the solver: lattice, membranes, and the setup of each stage.
 #pragma once
 
+#include "core/membrane/membranes.hpp"
 #include "core/solver/solver_setup.hpp"
 #include "plan.hpp"
 
@@ -8,6 +9,11 @@ namespace rouleau::plan {
 
 /// The lattice of a scene, in one block.
 core::Domain<2> lattice_domain(const scene::Scene& scene);
+
+/// Membranes of a scene's cells on a lattice of the given spacing (m). Throws Error(bad_input) with the place of the
+/// entry in the scene when a cell crosses itself, sticks through a wall or overlaps another cell (over periodic
+/// images).
+core::Membranes make_membranes(const scene::Scene& scene, double spacing);
 
 /// All of stage `index` in lattice units, with instances of its active models. Throws Error(plugin_refused) for a model
 /// that cannot be made.

@@ -1,9 +1,51 @@
-// Limits of the method that more than the plan needs to know.
+// Limits of the method (stability, accuracy), with all that was measured of them: by kernel, coupling and stiffness.
 #pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "core/coupling/kernel_kind.hpp"
 
 namespace rouleau::plan {
 
+/// The flow presses on a cell with a few times viscosity times shear rate, and the lattice's fluid gives way to it: by this
+/// share of the cell's area, measured with a capsule at tau 1.5 to 3 (2.6 to 2.9 times (tau - 1/2) times the shear rate;
+/// docs/accuracy.md). Lattice units.
+constexpr double compression_by_shear(double tau, double shear_rate) { return 2.7 * (tau - 0.5) * shear_rate; }
+constexpr double largest_compression_by_shear = 0.01;
+
 struct Plan;
+
+/// The setting that "numerics": "auto" changes where a limit is exceeded.
+enum class RemediedBy { nothing, density_factor, resolution };
+
+/// A limit of the method: the scene's value, where it ends, and limit / value.
+struct Limit {
+  std::string name;
+  double value, limit, margin;
+  std::string remedy;
+  RemediedBy remedied_by = RemediedBy::nothing;
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(Limit, name, value, limit, margin, remedy)
+};
+
+/// Limits for this scene, sharpest first. Opens the libraries of active models, whose own derivatives give the stiffness
+/// that explicit coupling must bear.
+std::vector<Limit> find_limits(const Plan& plan);
+
+/// A kernel that a scene can choose, and what it does badly.
+struct KernelFacts {
+  core::KernelKind kind;
+  const char* name;
+  double first_moment;   ///< largest |sum w (x - X)|, spacings
+  double stretch_limit;  ///< largest stretching stiffness with explicit coupling over that of peskin4
+  double bending_limit;  ///< the same for bending stiffness
+  const char* defect;    ///< what a user has to expect, for `plan`; empty: nothing
+};
+
+/// The kernel of this name, which the schema has checked. The limits were measured with one cell at rest, 20 spacings a
+/// radius, tau 1.
+const KernelFacts& kernel_named(const std::string& name);
 
 /// Limit over value, the smallest over stages, of the stretching and bending stiffness that explicit coupling bears.
 /// Infinite without membrane laws. Opens the libraries of active laws.

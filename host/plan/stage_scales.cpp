@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/error.hpp"
+#include "base/text.hpp"
 #include "core/fluid/relaxation.hpp"
 
 namespace rouleau::plan {
@@ -11,7 +13,7 @@ namespace rouleau::plan {
 double lattice_spacing(const scene::Scene& scene) { return scene.domain.size.x() / scene.domain.nodes[0]; }
 
 StageSetting make_stage_setting(const scene::Scene& scene, int index) {
-  const scene::Stage& stage = scene.stages[static_cast<std::size_t>(index)];
+  const scene::Stage& stage = scene.stages[index];
   const double spacing = lattice_spacing(scene);
   const double density = scene.fluid.density * stage.density_factor;
   const double tau = scene.numerics.tau;
@@ -33,7 +35,14 @@ StageSetting make_stage_setting(const scene::Scene& scene, int index) {
   if (stage.duration) steps = std::min(steps, *stage.duration / setting.units.time);
   if (stage.strain) steps = std::min(steps, *stage.strain / std::abs(setting.shear_rate));
   constexpr double most = 1e15;
-  setting.max_steps = static_cast<long>(std::ceil(std::min(steps, most) - 1e-6));
+  if (!(steps <= most)) {
+    throw Error(
+        Cause::bad_input, scene.place(stage.pointer),
+        "stage " + in_quotes(stage.name) + " would take " + number(steps, 3) + " steps, more than any run can (1e15)",
+        {"shorten its duration or strain, or let the lattice take longer steps: a higher density_factor, a coarser "
+         "lattice"});
+  }
+  setting.max_steps = static_cast<long>(std::ceil(steps - 1e-6));
   return setting;
 }
 

@@ -1,6 +1,7 @@
 // Reads from a shared library's file what it exports, without loading it.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -17,5 +18,14 @@ std::string reason_not_loadable(const std::filesystem::path& file, const std::st
 
 /// Names of all symbols that other modules can see. Throws std::runtime_error for a file that is no library or damaged.
 std::vector<std::string> exported_symbols(const std::filesystem::path& file);
+
+struct LibrarySymbol {
+  std::string name;
+  std::uint64_t address;  ///< in the file; the loader adds where it loads
+  std::uint64_t size;     ///< bytes
+};
+
+/// All variables of a library whose names were not stripped from it. Throws as exported_symbols.
+std::vector<LibrarySymbol> variables(const std::filesystem::path& file);
 
 }  // namespace rouleau::plugin

@@ -3,11 +3,16 @@
 // With the standard's file paths Boost.DLL is header-only and needs no other Boost library.
 #define BOOST_DLL_USE_STD_FS
 #include <dlfcn.h>
+#include <fcntl.h>
 #include <sha2.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
+#include <array>
 #include <boost/dll/shared_library.hpp>
 #include <cerrno>
 #include <cstring>
+#include <fstream>
 #include <map>
 #include <string>
 #include <utility>
@@ -17,6 +22,7 @@
 #include "exported_symbols.hpp"
 #include "lock.hpp"
 #include "table_checks.hpp"
+#include "watched_call.hpp"
 
 namespace rouleau::plugin {
 
@@ -56,6 +62,30 @@ fs::path library_file(const Manifest& manifest) {
   return library;
 }
 
+/// A copy of a file that nobody can change any more, kept until the process ends: what is hashed is what is loaded,
+/// whatever happens to the file. Its name is one that the loader can open.
+fs::path sealed_copy(const Manifest& manifest, const fs::path& file) {
+  static auto& copies = *new std::map<fs::path, fs::path>;
+  if (const auto known = copies.find(file); known != copies.end()) return known->second;
+  const int copy = memfd_create(file.filename().c_str(), MFD_CLOEXEC | MFD_ALLOW_SEALING);
+  std::ifstream from(file, std::ios::binary);
+  std::array<char, 1 << 16> part{};
+  bool whole = copy >= 0 && from.is_open();
+  while (whole && (from.read(part.data(), part.size()), from.gcount() > 0)) {
+    for (std::streamsize done = 0; whole && done < from.gcount();) {
+      const ssize_t written = ::write(copy, part.data() + done, static_cast<std::size_t>(from.gcount() - done));
+      whole = written > 0;
+      done += written;
+    }
+  }
+  if (!whole || from.bad() || fcntl(copy, F_ADD_SEALS, F_SEAL_WRITE | F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL) != 0) {
+    const std::string words = std::strerror(errno);
+    if (copy >= 0) ::close(copy);
+    refuse(manifest, "could not be copied to memory, where nobody can change it: " + words);
+  }
+  return copies.emplace(file, "/proc/self/fd/" + std::to_string(copy)).first->second;
+}
+
 /// Loads for good: code of a plugin may be anywhere on a stack, and its tables live in it. Each file once, though the
 /// models of every stage are made anew.
 boost::dll::shared_library& load(const Manifest& manifest, const fs::path& file) {
@@ -63,7 +93,8 @@ boost::dll::shared_library& load(const Manifest& manifest, const fs::path& file)
   if (const auto known = loaded.find(file); known != loaded.end()) return known->second;
   boost::dll::shared_library library;
   std::error_code error;
-  library.load(file, boost::dll::load_mode::rtld_now | boost::dll::load_mode::rtld_local, error);
+  call_watched(manifest, "that runs when it is loaded",
+               [&] { library.load(file, boost::dll::load_mode::rtld_now | boost::dll::load_mode::rtld_local, error); });
   if (error) {
     const char* words = dlerror();  // Boost's own error says only "bad file descriptor"
     refuse(manifest, "could not be loaded: " + std::string(words != nullptr ? words : error.message().c_str()));
@@ -76,6 +107,7 @@ boost::dll::shared_library& load(const Manifest& manifest, const fs::path& file)
 fs::path checked_library(const Manifest& manifest) {
   fs::path file = library_file(manifest);
   if (manifest.locked) {
+    file = sealed_copy(manifest, file);
     const std::string found = sha256(file);
     if (found != manifest.locked->sha256) {
       refuse(manifest,
@@ -95,7 +127,7 @@ rouleau_open_function load_library(const Manifest& manifest) {
 }
 
 const rouleau_model& model_of(rouleau_open_function open, const Manifest& manifest) {
-  const rouleau_plugin* plugin = open(ROULEAU_ABI_MINOR);
+  const auto* plugin = call_watched(manifest, ROULEAU_OPEN_SYMBOL, [&] { return open(ROULEAU_ABI_MINOR); });
   if (plugin == nullptr) {
     refuse(manifest, "says that it cannot work with this host (interface " + std::to_string(ROULEAU_ABI_MAJOR) + '.' +
                          std::to_string(ROULEAU_ABI_MINOR) + ')');

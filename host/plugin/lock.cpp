@@ -26,7 +26,7 @@ fs::path lock_beside(const fs::path& scene) {
 }
 
 LockedPlugin lock_plugin(const Manifest& manifest) {
-  return {manifest.id, to_string(manifest.kind), manifest.version, library_sha256(manifest), sha256(manifest.file)};
+  return {manifest.id, to_string(manifest.kind), manifest.version, library_sha256(manifest), manifest.sha256};
 }
 
 std::string lock_text(std::vector<LockedPlugin> plugins) {
@@ -51,7 +51,7 @@ const nlohmann::json& lock_schema() {
 Lock read_lock(const fs::path& file, const std::string& renewal) {
   const json::Document document = json::Document::read(file);
   json::validate(document, lock_schema());
-  Lock lock{file, renewal, sha256(file), {}};
+  Lock lock{file, renewal, sha256_of(document.text()), {}};
   std::set<std::string> seen;
   const auto& plugins = document.root()["plugins"];
   for (std::size_t i = 0; i < plugins.size(); ++i) {
@@ -88,7 +88,7 @@ void require_locked(const Lock& lock, const Manifest& manifest, const Place& pla
   };
   differs("kind", locked->kind, to_string(manifest.kind));
   differs("version", locked->version, manifest.version);
-  differs("SHA-256 of the manifest", locked->manifest_sha256, sha256(manifest.file));
+  differs("SHA-256 of the manifest", locked->manifest_sha256, manifest.sha256);
 }
 
 }  // namespace rouleau::plugin

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -29,6 +29,7 @@ struct Lock {
 /// The lock that a run obeyed.
 struct LockUse {
   std::string file, sha256;
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(LockUse, file, sha256)
 };
 
 /// NAME.lock.json beside a scene NAME.json.

@@ -11,6 +11,7 @@
 #include "embedded_schemas.hpp"
 #include "json/document.hpp"
 #include "json/schema.hpp"
+#include "library.hpp"
 #include "manifest_reader.hpp"
 
 namespace rouleau::plugin {
@@ -76,7 +77,7 @@ json::Document read_manifest_document(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::ostringstream text;
   if (stream) text << stream.rdbuf();
-  if (!stream || stream.bad()) {
+  if (!stream || stream.bad() || text.bad()) {
     throw Error(Cause::plugin_refused, place, std::string("cannot be read: ") + std::strerror(errno));
   }
   return json::Document::parse(text.str(), file.string(), Cause::plugin_refused);
@@ -93,6 +94,7 @@ Manifest read_manifest(const json::Document& document, const fs::path& file, con
 
   Manifest manifest;
   manifest.file = file;
+  manifest.sha256 = sha256_of(document.text());
   manifest.library = fs::absolute(file).parent_path() / text_of(root, "library");
   manifest.kind = kind_of(text_of(root, "kind"));
   manifest.id = text_of(root, "id");

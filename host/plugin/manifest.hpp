@@ -48,6 +48,7 @@ struct LibraryLock {
 
 struct Manifest {
   std::filesystem::path file;     ///< the manifest itself
+  std::string sha256;             ///< of its text, as it was read
   std::filesystem::path library;  ///< absolute; checked to lie in the manifest's folder when the library is opened
   ModelKind kind;
   std::string id;

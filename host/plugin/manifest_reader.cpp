@@ -251,7 +251,7 @@ void check_parameter_values(const json::Document& document, const Manifest& mani
                   in_quotes(name) + " is no parameter of this model" + did_you_mean(name, names) +
                       "\n  its parameters: " + listed(names));
     }
-    const Parameter& parameter = manifest.parameters[static_cast<std::size_t>(found - names.begin())];
+    const Parameter& parameter = manifest.parameters[found - names.begin()];
     if (!parameter.choices.empty()) {
       if (!value.is_string() || !holds(parameter.choices, value.get<std::string>())) {
         refuse(document, at, json::shown(value) + " is none of the choices: " + listed(parameter.choices));
@@ -279,13 +279,16 @@ void check_reference_numbers(const json::Document& document, const Manifest& man
                       ": " + listed(known));
     }
   };
-  std::vector<std::string> inputs = manifest.needs;
-  for (const StateVariable& variable : manifest.state) inputs.push_back(variable.name);
+  std::vector<std::string> inputs = manifest.needs, outputs = manifest.gives;
+  for (const StateVariable& variable : manifest.state) {
+    inputs.push_back(variable.name);
+    outputs.push_back(variable.name);
+  }
   for (std::size_t i = 0; i < manifest.checks.size(); ++i) {
     const std::string at = "/checks/" + std::to_string(i);
     check(at, manifest.checks[i], "parameters", parameters, "parameters");
     check(at, manifest.checks[i], "inputs", inputs, manifest.state.empty() ? "\"needs\"" : "\"needs\" and \"state\"");
-    check(at, manifest.checks[i], "outputs", manifest.gives, "\"gives\"");
+    check(at, manifest.checks[i], "outputs", outputs, manifest.state.empty() ? "\"gives\"" : "\"gives\" and \"state\"");
   }
 }
 

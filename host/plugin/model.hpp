@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/foreign_call.hpp"
 #include "manifest.hpp"
 #include "model_setup.hpp"
 
@@ -43,7 +44,15 @@ class ModelInstance {
   const Manifest* manifest_;
   const rouleau_model* model_;
   std::vector<double> initial_state_;
-  std::unique_ptr<void, void (*)(void*)> self_;
+  struct Destroy {
+    std::string id;
+    void (*function)(void*);
+    void operator()(void* self) const {
+      const ForeignCall mark(id.c_str(), "destroy");
+      function(self);
+    }
+  };
+  std::unique_ptr<void, Destroy> self_;
 };
 
 }  // namespace rouleau::plugin

@@ -72,7 +72,32 @@ class Resolver {
       refuse(pointer_of(parameter.name), parameter.name + " is " + json::shown(written) +
                                              in_unit(parameter, written, value) + "; it must be " + wanted);
     }
+    require_plausible(parameter, written, value);
     return value;
+  }
+
+  /// A forgotten unit makes a length of metres; a length of an interaction beyond the box makes no sense with one, either.
+  void require_plausible(const Parameter& parameter, const Json& written, double value) const {
+    constexpr double unit_forgotten = 1e3;
+    constexpr units::Dimension length{{0, 1}};
+    if (written.is_number() && parameter.unit != "1" && parameter.usual &&
+        std::abs(value) > unit_forgotten * std::max(std::abs((*parameter.usual)[0]), std::abs((*parameter.usual)[1]))) {
+      const std::string plain = json::shown(written);
+      refuse(pointer_of(parameter.name), parameter.name + " is " + plain +
+                                             ", which has no unit: as a plain number it is taken in SI, and is then " +
+                                             value_text(value, parameter, units_) + ", far beyond its usual range, " +
+                                             value_text((*parameter.usual)[0], parameter, units_) + " to " +
+                                             value_text((*parameter.usual)[1], parameter, units_) +
+                                             "\n  write it with the unit that is meant, such as \"" + plain + ' ' +
+                                             (parameter.dimension == length ? "um" : parameter.unit) + '"');
+    }
+    const double box = scene_.domain.size.maxCoeff();
+    if (manifest_.kind == ModelKind::interaction && parameter.dimension == length && value > box) {
+      refuse(pointer_of(parameter.name), parameter.name + " is " + json::shown(written) +
+                                             in_unit(parameter, written, value) + ", longer than the box, which is " +
+                                             number(scene_.domain.size.x() * 1e6) + " um x " +
+                                             number(scene_.domain.size.y() * 1e6) + " um");
+    }
   }
 
   [[nodiscard]] std::string missing(const Parameter& parameter) const {

@@ -13,6 +13,7 @@
 #include "files/csv_reader.hpp"
 #include "files/file.hpp"
 #include "files/frames.hpp"
+#include "files/verify.hpp"
 #include "json/document.hpp"
 #include "observe/observables.hpp"
 #include "report_fields.hpp"
@@ -204,6 +205,12 @@ Json report_data(const std::filesystem::path& directory) {
   const std::size_t count = cells.count_of("cell");
   std::size_t outputs = series.rows();
   Json damage = Json::array();
+  if (ended && data["summary"].contains("files")) {
+    const auto shown_here = [](const std::string& name) { return name.ends_with(".csv") || name == "scene.json"; };
+    for (const std::string& difference : files::verify(directory, shown_here).differences) {
+      damage.push_back((directory / "").string() + difference);
+    }
+  }
   // A run that goes on, or was killed, may lack the last rows of a file; one that has ended may not.
   const auto take = [&](const char* file, std::size_t has) {
     if (ended && has < series.rows()) {

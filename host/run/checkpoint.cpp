@@ -99,8 +99,9 @@ Json save(files::CheckpointWriter& writer, const core::Membranes& m) {
   return {{"leakage", m.area_leakage.size()}, {"state", states}, {"contacts", save_contacts(writer, m.contacts)}};
 }
 
+/// `writer`: null on ranks that do not write.
 template <class T>
-Json save(files::CheckpointWriter& writer, core::Solver<T>& solver) {
+Json save(files::CheckpointWriter* writer, core::Solver<T>& solver) {
   core::Fluid<T>& fluid = solver.fluid();
   fluid.settle();
   std::vector<T> values;
@@ -108,14 +109,15 @@ Json save(files::CheckpointWriter& writer, core::Solver<T>& solver) {
              ny = static_cast<std::size_t>(fluid.setting().domain.size[1]);
   for (int q = 0; q < 9; ++q) {
     fluid.copy_populations(q, values);
-    writer.array(population_name(q), ny, nx, values.data());
+    values = core::gather(solver.ranks(), std::move(values));
+    if (writer != nullptr) writer->array(population_name(q), ny, nx, values.data());
   }
-  if (solver.viscosity_field() != nullptr) {
+  if (solver.viscosity_field() != nullptr && writer != nullptr) {
     const core::DisplacementWatch::Memory& memory = solver.viscosity_field()->memory();
-    writer.array("/indicator/x", memory.x);
-    writer.array("/indicator/y", memory.y);
-    writer.array("/indicator/limit", memory.limit);
-    writer.array("/indicator/bound", memory.bound);
+    writer->array("/indicator/x", memory.x);
+    writer->array("/indicator/y", memory.y);
+    writer->array("/indicator/limit", memory.limit);
+    writer->array("/indicator/bound", memory.bound);
   }
   return {{"walls_have_acted", fluid.walls_have_acted()}};
 }
@@ -141,67 +143,70 @@ void restore_membranes(const files::CheckpointReader& reader, const Json& saved,
 template <class T>
 void Checkpoints::write(const plan::Plan& plan, int threads, const RunState& state, const core::Membranes& membranes,
                         core::Solver<T>& solver) {
-  writer_ = std::make_unique<files::CheckpointWriter>(to_.path());
+  pending_ = true;
   step_ = state.steps;
-  Json saved_membranes = save(*writer_, membranes), saved_solver = save(*writer_, solver);
+  if (to_ == nullptr) {
+    save<T>(nullptr, solver);
+    return;
+  }
+  writer_ = std::make_unique<files::CheckpointWriter>(to_->path());
+  Json saved_membranes = save(*writer_, membranes), saved_solver = save(writer_.get(), solver);
   writer_->facts(checkpoint_facts(plan, state, threads));
   writer_->state({{"run", state},
                   {"membranes", std::move(saved_membranes)},
                   {"solver", std::move(saved_solver)},
-                  {"directory", to_.mark()}});
+                  {"directory", to_->mark()}});
   writer_->finish();
 }
 
 void Checkpoints::settle(bool sound) {
-  if (sound) {
+  if (sound && writer_) {
     writer_->take_place();
     kept_ = step_;
-    to_.log("checkpoint", {{"step", step_}, {"bytes", writer_->bytes()}});
+    to_->log("checkpoint", {{"step", step_}, {"bytes", writer_->bytes()}});
   }
   writer_.reset();
+  pending_ = false;
   last_ = Clock::now();
 }
 
-files::DirectoryMark restore(const files::CheckpointReader& reader, const Json& saved, const plan::Plan& plan,
-                             RunState& state, core::Membranes& membranes) {
-  try {
-    saved.at("run").get_to(state);
-    require(state.fits(plan, membranes), reader, "counts of another scene");
-    restore_membranes(reader, saved.at("membranes"), membranes);
-    return saved.at("directory").get<files::DirectoryMark>();
-  } catch (const Json::exception& error) {
-    reader.refuse(error.what());
-  }
-}
-
 template <class T>
-void restore(const files::CheckpointReader& reader, const Json& saved, core::Solver<T>& solver) {
-  core::Fluid<T>& fluid = solver.fluid();
-  std::vector<T> values(static_cast<std::size_t>(fluid.setting().domain.size[0]) *
-                        static_cast<std::size_t>(fluid.setting().domain.size[1]));
+Restored<T> restore(const std::shared_ptr<const files::CheckpointReader>& reader, const plan::Plan& plan,
+                    const core::Box<2>& block, RunState& state, core::Membranes& membranes) {
   try {
-    fluid.restore(
-        [&](int q) -> const std::vector<T>& {
-          reader.array(population_name(q), values.size(), values.data());
-          return values;
-        },
-        saved.at("solver").at("walls_have_acted"));
+    const Json saved = reader->state();
+    saved.at("run").get_to(state);
+    require(state.fits(plan, membranes), *reader, "counts of another scene");
+    restore_membranes(*reader, saved.at("membranes"), membranes);
+    core::SolverState<T> solver{.populations =
+                                    [reader, block, size = plan.scene->domain.nodes](int q) {
+                                      std::vector<T> values(static_cast<std::size_t>(block.size(0)) * block.size(1));
+                                      reader->block(population_name(q), size, block.begin, block.end, values.data());
+                                      return values;
+                                    },
+                                .walls_have_acted = saved.at("solver").at("walls_have_acted"),
+                                .viscosity = {}};
+    if (!membranes.cells.empty()) {
+      core::DisplacementWatch::Memory& memory = solver.viscosity;
+      for (auto* of_nodes : {&memory.x, &memory.y}) of_nodes->resize(membranes.x.size());
+      for (auto* of_cells : {&memory.limit, &memory.bound}) of_cells->resize(membranes.cells.size());
+      read(*reader, "/indicator/x", memory.x);
+      read(*reader, "/indicator/y", memory.y);
+      read(*reader, "/indicator/limit", memory.limit);
+      read(*reader, "/indicator/bound", memory.bound);
+    }
+    return {std::move(solver), saved.at("directory").get<files::DirectoryMark>()};
   } catch (const Json::exception& error) {
-    reader.refuse(error.what());
+    reader->refuse(error.what());
   }
-  if (solver.viscosity_field() == nullptr) return;
-  core::DisplacementWatch::Memory memory = solver.viscosity_field()->memory();
-  read(reader, "/indicator/x", memory.x);
-  read(reader, "/indicator/y", memory.y);
-  read(reader, "/indicator/limit", memory.limit);
-  read(reader, "/indicator/bound", memory.bound);
-  solver.restore_viscosity_field(memory);
 }
 
 template void Checkpoints::write(const plan::Plan&, int, const RunState&, const core::Membranes&, core::Solver<float>&);
 template void Checkpoints::write(const plan::Plan&, int, const RunState&, const core::Membranes&,
                                  core::Solver<double>&);
-template void restore(const files::CheckpointReader&, const Json&, core::Solver<float>&);
-template void restore(const files::CheckpointReader&, const Json&, core::Solver<double>&);
+template Restored<float> restore(const std::shared_ptr<const files::CheckpointReader>&, const plan::Plan&,
+                                 const core::Box<2>&, RunState&, core::Membranes&);
+template Restored<double> restore(const std::shared_ptr<const files::CheckpointReader>&, const plan::Plan&,
+                                  const core::Box<2>&, RunState&, core::Membranes&);
 
 }  // namespace rouleau::run

@@ -19,7 +19,8 @@ namespace rouleau::run {
 /// The checkpoints of a run: when one is due, and the two steps in which it is made.
 class Checkpoints {
  public:
-  Checkpoints(const scene::Scene& scene, files::RunDirectory& directory)
+  /// `directory`: null on ranks that do not write, which take part in everything else.
+  Checkpoints(const scene::Scene& scene, files::RunDirectory* directory)
       : seconds_(scene.output.checkpoint_seconds), to_(directory) {}
 
   /// Whether the scene wants any.
@@ -28,11 +29,11 @@ class Checkpoints {
   [[nodiscard]] bool due() const {
     return wanted() && std::chrono::duration<double>(Clock::now() - last_).count() >= *seconds_;
   }
-  /// Writes the file, beside the last one.
+  /// Writes the file, beside the last one. All ranks together; the solver's state has been shared.
   template <class T>
   void write(const plan::Plan& plan, int threads, const RunState& state, const core::Membranes& membranes,
              core::Solver<T>& solver);
-  [[nodiscard]] bool pending() const { return writer_ != nullptr; }
+  [[nodiscard]] bool pending() const { return pending_; }
   /// The file takes its place if the state has been found sound. One that is not is left to the next regular check:
   /// when checkpoints are written must not change what becomes of a run.
   void settle(bool sound);
@@ -44,20 +45,24 @@ class Checkpoints {
  private:
   using Clock = std::chrono::steady_clock;
   std::optional<double> seconds_;
-  files::RunDirectory& to_;
+  files::RunDirectory* to_;
+  bool pending_ = false;
   std::unique_ptr<files::CheckpointWriter> writer_;
   long step_ = 0;  ///< of the pending one
   std::optional<long> kept_;
   Clock::time_point last_ = Clock::now();
 };
 
-/// Into the state and the membranes of the same scene, before a solver is made for them. `saved`: the reader's state().
-/// Returns how far the files of the directory had come.
-/// Both functions throw Error(input_output) where the checkpoint does not fit.
-files::DirectoryMark restore(const files::CheckpointReader& reader, const nlohmann::json& saved, const plan::Plan& plan,
-                             RunState& state, core::Membranes& membranes);
-/// Into a new solver of the same stage.
+/// What a checkpoint holds beside the run's state and the membranes.
 template <class T>
-void restore(const files::CheckpointReader& reader, const nlohmann::json& saved, core::Solver<T>& solver);
+struct Restored {
+  core::SolverState<T> solver;     ///< which keeps the file open
+  files::DirectoryMark directory;  ///< how far the files of the directory had come
+};
+/// Into the state and the membranes of the same scene; `block`: of the lattice, that the solver will compute. Throws
+/// Error(input_output) where the checkpoint does not fit.
+template <class T>
+Restored<T> restore(const std::shared_ptr<const files::CheckpointReader>& reader, const plan::Plan& plan,
+                    const core::Box<2>& block, RunState& state, core::Membranes& membranes);
 
 }  // namespace rouleau::run

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <rouleau/dispatch.hpp>
 
 #include "json/document.hpp"
 #include "plugin/library.hpp"
@@ -96,12 +97,13 @@ Error refusal(const std::filesystem::path& file, const Json& facts, const std::v
 }  // namespace
 
 Json checkpoint_facts(const plan::Plan& plan, const RunState& state, int threads) {
-  const plan::StageSetting& setting = plan.stages[static_cast<std::size_t>(state.stage)];
+  const plan::StageSetting& setting = plan.stages[state.stage];
   Json plugins = Json::array();
   for (const plan::PlannedModel* model : plan.active_models()) plugins.push_back(plugin_facts(*model->manifest));
   return {{"program", program_version()},
           {"written", present_time()},
           {"threads", threads},
+          {"instruction_set", name_of(instruction_set())},
           {"stage", state.stage},
           {"stage_name", setting.stage->name},
           {"step", state.steps},
@@ -117,6 +119,10 @@ std::vector<Difference> differences(const Json& facts, const plan::Plan& plan, i
   const std::string program = facts.at("program");
   if (program != program_version()) {
     found.push_back({"program: " + program + " in the checkpoint, " + program_version() + " now", true});
+  }
+  const std::string present = name_of(instruction_set()), set = facts.value("instruction_set", present);
+  if (set != present) {
+    found.push_back({"instruction set: " + set + " in the checkpoint, " + present + " now: last digits differ", true});
   }
   compare_plugins(facts.at("plugins"), plan, found);
   return found;

@@ -7,11 +7,11 @@
 #include <chrono>
 #include <ctime>
 #include <fstream>
+#include <rouleau/dispatch.hpp>
 #include <thread>
 
 #include "files/run_directory.hpp"
 #include "json/document.hpp"
-#include "plan/plan.hpp"
 #include "plugin/library.hpp"
 
 namespace rouleau::run {
@@ -58,7 +58,7 @@ long peak_memory_bytes() {
   return usage.ru_maxrss * 1024L;
 }
 
-Summary describe(const plan::Plan& plan, int threads) {
+Summary describe(const plan::Plan& plan, const plan::PlanReport& report, int threads) {
   const scene::Scene& scene = *plan.scene;
   Summary s;
   s.title = scene.title;
@@ -70,20 +70,14 @@ Summary describe(const plan::Plan& plan, int threads) {
   s.threads = threads;
   for (const plan::StageSetting& stage : plan.stages) s.steps_at_most += stage.max_steps;
   s.precision = scene.numerics.precision == scene::Precision::f64 ? "f64" : "f32";
+  s.instruction_set = name_of(instruction_set());
   for (const plan::PlannedModel* model : plan.active_models()) {
     const plugin::Manifest& m = *model->manifest;
     s.plugins.push_back({m.id, m.version, plugin::to_string(m.kind), m.library.string(), plugin::sha256(m.library)});
   }
   s.lock = plan.lock;
-  s.left_out = plan.left_out;
-  s.dimensionless = plan.dimensionless;
-  s.limits = plan.limits;
-  s.wells = plan.wells;
   s.numerics_choice = plan.numerics_choice;
-  s.warnings = plan.warnings;
-  s.conversions = plan.conversions;
-  s.packings = plan.packings;
-  s.output_estimate = plan::to_json(plan.estimate.output);
+  s.plan = report;
   return s;
 }
 

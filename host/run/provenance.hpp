@@ -5,9 +5,6 @@
 
 #include "summary.hpp"
 
-namespace rouleau::plan {
-struct Plan;
-}  // namespace rouleau::plan
 namespace rouleau::run {
 
 /// Version and, in a checkout, commit that the program was built from.
@@ -28,6 +25,6 @@ std::string present_time();
 long peak_memory_bytes();
 
 /// The part of a summary that is known before the first step: scene, models with their hashes, plan, machine.
-Summary describe(const plan::Plan& plan, int threads);
+Summary describe(const plan::Plan& plan, const plan::PlanReport& report, int threads);
 
 }  // namespace rouleau::run

@@ -11,7 +11,7 @@ void RunState::report(Summary& s) const {
   s.wall_s = wall;
   s.steps_per_s = wall > 0 ? static_cast<double>(steps) / wall : 0;
   s.passes = costs.passes();
-  s.dimensionless["mach_max"] = observer.mach_max();
+  s.mach_max = observer.mach_max();
   s.mass_drift = observer.mass_drift();
   s.area_drift_max = observer.area_drift_max();
   s.stretch = {observer.stretch().least, observer.stretch().most};

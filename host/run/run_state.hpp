@@ -1,8 +1,10 @@
 // All that a run knows from one step to the next besides the fluid and the membranes; a checkpoint keeps it.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <algorithm>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "monitor/growth_watch.hpp"
 #include "monitor/rest_watch.hpp"
@@ -10,11 +12,28 @@
 #include "observe/energy.hpp"
 #include "observe/observer.hpp"
 #include "observe/rheology_history.hpp"
-#include "pass_costs.hpp"
 #include "plan/plan.hpp"
 #include "summary.hpp"
 
 namespace rouleau::run {
+
+/// Where the time of a run goes, pass by pass.
+class PassCosts {
+ public:
+  /// Adds wall-clock time and calls to a pass.
+  void add(const std::string& pass, double wall_s, long calls) {
+    auto found = std::find_if(passes_.begin(), passes_.end(), [&](const PassCost& cost) { return cost.name == pass; });
+    if (found == passes_.end()) found = passes_.insert(found, PassCost{pass, 0, 0});
+    found->wall_s += wall_s;
+    found->calls += calls;
+  }
+  /// In the order in which they were first added.
+  [[nodiscard]] const std::vector<PassCost>& passes() const { return passes_; }
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(PassCosts, passes_)
+
+ private:
+  std::vector<PassCost> passes_;
+};
 
 struct RunState {
   explicit RunState(observe::Observer made) : observer(std::move(made)) {}
@@ -32,8 +51,8 @@ struct RunState {
   monitor::GrowthWatch growth;
   PassCosts costs;
   monitor::RestWatch rest_watch;
-  nlohmann::json stages = nlohmann::json::array();   ///< how each stage ended
-  nlohmann::json resumed = nlohmann::json::array();  ///< where the run went on from a checkpoint
+  std::vector<StageEnd> stages;  ///< those that are over
+  std::vector<Continuation> resumed;
 
   [[nodiscard]] double time_at(const plan::StageSetting& setting) const {
     return time + static_cast<double>(stage_step) * setting.units.time;
@@ -42,11 +61,10 @@ struct RunState {
     return strain + std::abs(setting.shear_rate) * static_cast<double>(stage_step);
   }
   /// The stage is over: what it took is added up.
-  void end_stage(const plan::StageSetting& setting, const char* ended_by) {
+  void end_stage(const plan::StageSetting& setting, Ending ended_by) {
     time = time_at(setting);
     strain = strain_at(setting);
-    stages.push_back(
-        {{"name", setting.stage->name}, {"steps", stage_step}, {"ended_by", ended_by}, {"wall_s", stage_wall}});
+    stages.push_back({setting.stage->name, stage_step, ended_by, stage_wall});
   }
   /// Puts what happened into a summary.
   void report(Summary& summary) const;

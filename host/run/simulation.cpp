@@ -14,6 +14,7 @@
 #include <set>
 #include <string>
 
+#include "base/signal_stack.hpp"
 #include "checkpoint.hpp"
 #include "checkpoint_match.hpp"
 #include "core/membrane/motion.hpp"
@@ -22,7 +23,6 @@
 #include "monitor/node_checks.hpp"
 #include "monitor/state_checks.hpp"
 #include "plan/output_schedule.hpp"
-#include "plan/placed_cells.hpp"
 #include "plan/solver_setup.hpp"
 #include "progress.hpp"
 #include "provenance.hpp"
@@ -35,63 +35,73 @@ namespace {
 using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-/// The stages of a run one after another, and the steps of each.
+/// How many steps ranks take from one time that they ask each other whether somebody wants them to attend to the next.
+constexpr long steps_between_questions = 16;
+
+/// The stages of a run one after another, and the steps of each: what one rank does of it. All ranks know the same of
+/// the whole and decide the same; what one of them alone sees, its clock and its signals, they tell each other first.
+/// T: of the populations.
+template <class T>
 class Simulation {
  public:
-  Simulation(const plan::Plan& plan, const RunOptions& options, files::RunDirectory& directory)
+  Simulation(const plan::Plan& plan, const plan::PlanReport& report, const RunOptions& options,
+             files::RunDirectory* directory, const core::Ranks<2>& ranks, const std::vector<int>& owner)
       : plan_(plan),
         scene_(*plan.scene),
         options_(options),
         directory_(directory),
+        ranks_(ranks),
+        owner_(owner),
         membranes_(plan.has_cells ? plan::make_membranes(scene_, plan::lattice_spacing(scene_)) : core::Membranes{}),
         state_(observe::Observer(scene_, membranes_)),
-        progress_(options.quiet),
-        checkpoints_(scene_, directory) {}
+        progress_(options.quiet || directory == nullptr),
+        checkpoints_(scene_, directory),
+        summary_(describe(plan, report, options.threads)) {}
 
   Summary run() {
-    described_ = describe(plan_, options_.threads);
-    Resumption resumption;
-    if (directory_.resumes()) {
-      resumption = open_checkpoint(directory_.path(), plan_, options_.force);
-      go_on_from(resumption);
-    } else {
-      directory_.log("started", {{"title", scene_.title}, {"threads", options_.threads}});
-    }
-    for (const std::string& warning : plan_.warnings) directory_.log("warning", {{"message", warning}});
-    if (scene_.numerics.precision == scene::Precision::f64) {
-      run_stages<double>(resumption.checkpoint.get());
-    } else {
-      run_stages<float>(resumption.checkpoint.get());
-    }
+    std::optional<core::SolverState<T>> former = go_on();
+    if (!former) log("started", {{"title", scene_.title}, {"threads", options_.threads}});
+    for (const std::string& warning : summary_.plan.warnings) log("warning", {{"message", warning}});
+    run_stages(std::move(former));
     progress_.finish();
-    Summary summary = summarise();
-    directory_.log("finished", {{"status", summary.status}, {"steps", summary.steps}});
-    directory_.finish(to_json(summary));
-    return summary;
+    summarise();
+    log("finished", {{"status", summary_.status}, {"steps", summary_.steps}});
+    if (directory_ != nullptr) directory_->finish(to_json(summary_));
+    return std::move(summary_);
   }
 
  private:
+  void log(const char* event, const nlohmann::json& details) {
+    if (directory_ != nullptr) directory_->log(event, details);
+  }
+
   /// Of the present stage.
   [[nodiscard]] const plan::StageSetting& setting() const { return plan_.stages[state_.stage]; }
 
-  enum class Ending { none, duration, strain, at_rest, max_steps, interrupted, failed };
-  static const char* name(Ending ending) {
-    constexpr const char* names[] = {"", "duration", "strain", "at_rest", "max_steps", "interrupted", "failed"};
-    return names[static_cast<int>(ending)];
-  }
-
-  /// Takes over what a checkpoint says of everything but the fluid.
-  void go_on_from(const Resumption& resumption) {
-    const files::CheckpointReader& reader = *resumption.checkpoint;
-    saved_ = reader.state();
-    directory_.go_back(restore(reader, saved_, plan_, state_, membranes_));
-    reader.take_place(directory_.path());
-    nlohmann::json resumed{{"step", state_.steps}, {"threads", options_.threads}, {"accepted", resumption.accepted}};
-    if (!resumption.damage.empty()) resumed["damaged_checkpoint"] = resumption.damage;
-    state_.resumed.push_back(resumed);
-    directory_.log("resumed", resumed);
-    checkpoints_.go_on_from(state_.steps);
-    say_where_it_goes_on(resumption.damage);
+  /// Takes over what the directory's checkpoint says, if the run goes on from one. The rank that has the directory goes
+  /// first, and tells the others which file it is.
+  std::optional<core::SolverState<T>> go_on() {
+    std::optional<Restored<T>> restored;
+    std::string file;
+    if (directory_ != nullptr && directory_->resumes()) {
+      Resumption resumption = open_checkpoint(directory_->path(), plan_, options_.force);
+      const std::shared_ptr<const files::CheckpointReader> reader = std::move(resumption.checkpoint);
+      restored = restore<T>(reader, plan_, domain().block, state_, membranes_);
+      directory_->go_back(restored->directory);
+      reader->take_place(directory_->path());
+      file = files::checkpoint_file(directory_->path()).string();
+      log("resumed", state_.resumed.emplace_back(
+                         Continuation{state_.steps, options_.threads, resumption.accepted, resumption.damage}));
+      checkpoints_.go_on_from(state_.steps);
+      say_where_it_goes_on(resumption.damage);
+    }
+    file = core::text_of_first(ranks_, file);
+    if (!restored && !file.empty()) {
+      const auto reader = std::make_shared<const files::CheckpointReader>(file);
+      restored = restore<T>(reader, plan_, domain().block, state_, membranes_);
+    }
+    if (!restored) return std::nullopt;
+    return std::move(restored->solver);
   }
 
   /// On the terminal, where what was lost is said even to whom wants no progress.
@@ -107,28 +117,30 @@ class Simulation {
     }
   }
 
-  template <class T>
-  void run_stages(const files::CheckpointReader* checkpoint) {
-    std::unique_ptr<core::Solver<T>> solver;
+  /// What this rank computes of the lattice.
+  [[nodiscard]] core::Domain<2> domain() const {
+    return ranks_.several() ? ranks_.blocks->domain(ranks_.transport->rank()) : plan::lattice_domain(scene_);
+  }
+
+  void run_stages(std::optional<core::SolverState<T>> former) {
     for (; state_.stage < static_cast<int>(plan_.stages.size()) && !stopped_; ++state_.stage) {
-      auto next = std::make_unique<core::Solver<T>>(plan::make_solver_setup(plan_, state_.stage), membranes_);
-      if (checkpoint != nullptr) {
-        restore(*checkpoint, saved_, *next);
-        checkpoint = nullptr;
-        saved_.clear();
+      core::SolverSetup setup = plan::make_solver_setup(plan_, state_.stage);
+      setup.domain = domain();
+      auto next = std::make_unique<core::Solver<T>>(std::move(setup), membranes_, ranks_, owner_);
+      if (former) {
+        next->start(*std::exchange(former, std::nullopt));
       } else {
-        next->start(solver.get());
+        next->start(solver_.get());
         start_stage();
       }
-      solver = std::move(next);
-      run_stage(*solver);
+      solver_ = std::move(next);
+      run_stage();
     }
   }
 
   void start_stage() {
     const plan::StageSetting& setting = this->setting();
-    directory_.log(
-        "stage",
+    log("stage",
         {{"name", setting.stage->name}, {"time_step_s", setting.units.time}, {"most_steps", setting.max_steps}});
     state_.observer.start_stage();
     state_.growth.start_stage();
@@ -138,20 +150,19 @@ class Simulation {
     state_.rest_watch.start(0, membranes_);
   }
 
-  template <class T>
-  void run_stage(core::Solver<T>& solver) {
+  void run_stage() {
     const plan::StageSetting& setting = this->setting();
     ending_ = Ending::none;
     const plan::OutputSchedule cells(scene_.output.cells, setting, true), fields(scene_.output.fields, setting, false);
     next_attention_ = state_.stage_step;
     clock_ = Clock::now();
-    step_loop(solver, cells, fields);
+    step_loop(cells, fields);
     take_time();
-    state_.end_stage(setting, name(ending_));
-    nlohmann::json ended = state_.stages.back();
-    ended["stage_wall_s"] = ended["wall_s"];
-    ended.erase("wall_s");
-    directory_.log("stage_ended", ended);
+    state_.end_stage(setting, ending_);
+    log("stage_ended", {{"name", setting.stage->name},
+                        {"steps", state_.stage_step},
+                        {"ended_by", ending_},
+                        {"stage_wall_s", state_.stage_wall}});
     stopped_ = ending_ == Ending::max_steps || ending_ == Ending::interrupted || ending_ == Ending::failed;
   }
 
@@ -163,94 +174,99 @@ class Simulation {
     state_.stage_wall += passed;
   }
 
-  /// The steps of a stage. All workers run the same passes; what needs one of them alone happens before or after the
-  /// forces of a step, and only when something is due.
-  template <class T>
-  void step_loop(core::Solver<T>& solver, const plan::OutputSchedule& cells, const plan::OutputSchedule& fields) {
+  /// The steps of a stage, by all workers of this rank.
+  void step_loop(const plan::OutputSchedule& cells, const plan::OutputSchedule& fields) {
     std::exception_ptr trouble;
-    std::atomic<long> attend_at{std::numeric_limits<long>::max()};
     std::optional<core::Barrier> barrier;
+    attend_at_ = never;
 #pragma omp parallel num_threads(options_.threads)
     {
       // The system may grant fewer threads than were asked for.
 #pragma omp single
       barrier.emplace(omp_get_num_threads());
-      const Worker worker{omp_get_thread_num(), omp_get_num_threads()};
-      const std::vector<core::Pass>& passes = solver.passes();
-      const std::size_t rows = solver.rows_pass(), observable = solver.observable_pass();
-      core::PassClock clock(passes.size());
-      long counted = state_.stage_step;  // steps whose costs are in the state
-      const auto count_costs = [&](long step) {
-        add_costs(solver, clock, step - counted);
-        counted = step;
-      };
-      const auto alone = [&](auto&& action) {
-        barrier->arrive_and_wait();
-        if (worker.first()) {
-          try {
-            action();
-          } catch (...) {
-            trouble = std::current_exception();
-            ending_ = Ending::failed;
-          }
-        }
-        barrier->arrive_and_wait();
-        clock.resume();
-      };
-      for (long step = state_.stage_step;; ++step) {
-        const bool attend = step >= next_attention_ || step >= attend_at.load(std::memory_order_relaxed);
-        if (attend) {
-          alone([&] {
-            count_costs(step);
-            attend_at.store(std::numeric_limits<long>::max(), std::memory_order_relaxed);
-            before_forces(solver, step);
-          });
-          if (ending_ == Ending::failed) break;
-        }
-        const auto run = [&](std::size_t from, std::size_t to) {
-          run_passes(passes, from, to, solver.bands(), worker, *barrier, &clock);
-        };
-        run(0, rows);
-        if (attend || wants_a_look(solver)) {
-          run(rows, observable);
-          alone([&] { after_forces(solver, step, cells, fields); });
-          if (ending_ != Ending::none) break;
-          run(observable, passes.size());
-        } else {
-          run(rows, passes.size());
-        }
-        // A request counts two steps later, when every worker has passed a barrier since.
-        if (worker.first() && (interrupted() || checkpoints_.due()) && attend_at.load() > step + 2) {
-          attend_at.store(step + 2, std::memory_order_relaxed);
-        }
+      const SignalStack stack;
+      try {
+        take_steps({omp_get_thread_num(), omp_get_num_threads()}, *barrier, cells, fields);
+      } catch (const core::Barrier::Abandoned&) {
+        // The worker that has given up says why.
+      } catch (...) {
+        if (barrier->abandon()) trouble = std::current_exception();
       }
-      if (worker.first()) count_costs(state_.stage_step);
     }
     if (trouble) std::rethrow_exception(trouble);
   }
 
-  template <class T>
-  void add_costs(const core::Solver<T>& solver, core::PassClock& clock, long steps) {
+  /// All workers run the same passes; what needs one of them alone happens before or after the forces of a step, and only
+  /// when something is due.
+  void take_steps(Worker worker, core::Barrier& barrier, const plan::OutputSchedule& cells,
+                  const plan::OutputSchedule& fields) {
+    const std::vector<core::Pass>& passes = solver_->passes();
+    const std::size_t rows = solver_->rows_pass(), observable = solver_->observable_pass();
+    core::PassClock clock(passes.size());
+    long counted = state_.stage_step;  // steps whose costs are in the state
+    const auto count_costs = [&](long step) {
+      add_costs(clock, step - counted);
+      counted = step;
+    };
+    const auto alone = [&](auto&& action) {
+      barrier.arrive_and_wait();
+      if (worker.first()) action();
+      barrier.arrive_and_wait();
+      clock.resume();
+    };
+    const auto run = [&](std::size_t from, std::size_t to) {
+      run_passes(passes, from, to, solver_->bands(), worker, barrier, &clock);
+    };
+    for (long step = state_.stage_step;; ++step) {
+      const bool attend = step >= next_attention_ || step >= attend_at_.load(std::memory_order_relaxed);
+      if (attend) {
+        alone([&] {
+          count_costs(step);
+          attend_at_.store(never, std::memory_order_relaxed);
+          before_forces(step);
+        });
+      }
+      run(0, rows);
+      if (attend || wants_a_look()) {
+        run(rows, observable);
+        alone([&] { after_forces(step, cells, fields); });
+        if (ending_ != Ending::none) break;
+        run(observable, passes.size());
+      } else {
+        run(rows, passes.size());
+      }
+      if (worker.first() && step + 2 < attend_at_.load() && wants_attention(step)) {
+        attend_at_.store(step + 2, std::memory_order_relaxed);  // when every worker has passed a barrier since
+      }
+    }
+    if (worker.first()) count_costs(state_.stage_step);
+  }
+
+  void add_costs(core::PassClock& clock, long steps) {
     std::size_t at = 0;
     std::set<std::string> counted;
-    for (const core::Pass& pass : solver.passes()) {
+    for (const core::Pass& pass : solver_->passes()) {
       state_.costs.add(pass.name, clock.take(at++), counted.insert(pass.name).second ? steps : 0);
     }
+  }
+
+  /// Whether a signal or a clock wants the loop to attend to a step soon.
+  [[nodiscard]] bool wants_attention(long step) const {
+    if (ranks_.several() && step % steps_between_questions != 0) return false;
+    return core::any(ranks_, interrupted() || checkpoints_.due());
   }
 
   [[nodiscard]] bool interrupted() const { return options_.interrupted != nullptr && options_.interrupted->load(); }
 
   /// Whether the last step must not be followed by another, or was faster than any before; all workers come to the same
   /// answer.
-  template <class T>
-  [[nodiscard]] bool wants_a_look(const core::Solver<T>& solver) const {
+  [[nodiscard]] bool wants_a_look() const {
     return !(core::largest_step(membranes_) <= std::min(scene_.checks.node_step, state_.growth.level())) ||
-           solver.escaped();
+           solver_->escaped();
   }
 
   /// One thread, before the forces of a step: whether the stage ends here, and the checkpoint.
-  template <class T>
-  void before_forces(core::Solver<T>& solver, long step) {
+  void before_forces(long step) {
     const plan::StageSetting& setting = this->setting();
     state_.stage_step = step;
     state_.steps = state_.steps_before + step;
@@ -258,10 +274,11 @@ class Simulation {
     const bool last_stage = setting.index + 1 == static_cast<int>(plan_.stages.size());
     const bool stops = due_ending_ == Ending::interrupted || due_ending_ == Ending::max_steps;
     const bool ends = due_ending_ != Ending::none && (last_stage || stops);
-    if (checkpoints_.due() || (checkpoints_.wanted() && ends)) {
+    if (core::any(ranks_, checkpoints_.due()) || (checkpoints_.wanted() && ends)) {
       take_time();
       const auto start = Clock::now();
-      checkpoints_.write(plan_, options_.threads, state_, membranes_, solver);
+      solver_->share_state();
+      checkpoints_.write(plan_, options_.threads, state_, membranes_, *solver_);
       state_.costs.add("checkpoint", seconds_since(start), 1);
     }
     const bool window_over = step >= state_.rest_watch.end(rest_window(setting));
@@ -269,22 +286,20 @@ class Simulation {
   }
 
   /// One thread, forces computed: outputs, checks, and whether the stage ends here.
-  template <class T>
-  void after_forces(core::Solver<T>& solver, long step, const plan::OutputSchedule& cells,
-                    const plan::OutputSchedule& fields) {
+  void after_forces(long step, const plan::OutputSchedule& cells, const plan::OutputSchedule& fields) {
     const auto start = Clock::now();
     const plan::StageSetting& setting = this->setting();
     state_.stage_step = step;
     state_.steps = state_.steps_before + step;
-    if (auto failure =
-            monitor::check_nodes(membranes_, scene_.checks.node_step, solver.escaped_node(), setting.units.length)) {
-      fail(std::move(*failure), solver);
+    solver_->share_state();
+    if (auto failure = monitor::check_nodes(membranes_, scene_.checks.node_step, solver_->escaped_node(), setting)) {
+      fail(std::move(*failure));
       return;
     }
     if (core::largest_step(membranes_) > state_.growth.level()) state_.growth.note(state_.steps, membranes_);
     if (checkpoints_.pending()) {
       observe::Observer look = state_.observer;  // one that leaves no trace
-      checkpoints_.settle(!monitor::check_state(look, solver, setting, membranes_, scene_));
+      checkpoints_.settle(!monitor::check_state(look, *solver_, setting, membranes_, scene_));
     }
     // The end of a stage has been written; the beginning of the next is the same instant.
     const bool written = step == 0 && state_.steps > 0;
@@ -293,15 +308,15 @@ class Simulation {
     const bool check_due = step % scene_.checks.every_steps == 0;
     const bool last = due_ending_ != Ending::none;
     if (cells_due || fields_due || check_due || last) {
-      if (auto failure = monitor::check_state(state_.observer, solver, setting, membranes_, scene_)) {
-        fail(std::move(*failure), solver);
+      if (auto failure = monitor::check_state(state_.observer, *solver_, setting, membranes_, scene_)) {
+        fail(std::move(*failure));
         return;
       }
       if (check_due) state_.growth.check(state_.steps, membranes_);
       if (cells_due || fields_due || last) {
         const bool with_fields = fields_due || (last && !scene_.output.fields.never());
-        if (auto failure = write(solver, with_fields)) {
-          fail(std::move(*failure), solver);
+        if (auto failure = write(with_fields)) {
+          fail(std::move(*failure));
           return;
         }
       }
@@ -325,7 +340,7 @@ class Simulation {
 
   [[nodiscard]] Ending next_ending(const plan::StageSetting& setting) const {
     const scene::Stage& stage = *setting.stage;
-    if (interrupted()) return Ending::interrupted;
+    if (core::any(ranks_, interrupted())) return Ending::interrupted;
     if (stage.until_at_rest && at_rest(setting)) return Ending::at_rest;
     if (state_.stage_step >= setting.max_steps) {
       const bool by_strain =
@@ -345,54 +360,53 @@ class Simulation {
            state_.rest_watch.moved(membranes_) < scene_.at_rest.displacement / setting.units.length;
   }
 
-  template <class T>
-  void fail(monitor::Failure failure, core::Solver<T>& solver) {
+  void fail(monitor::Failure failure) {
     const plan::StageSetting& setting = this->setting();
     failure.step = state_.steps;
     failure.time = state_.time_at(setting);
     failure.strain = state_.strain_at(setting);
-    tell_mode(failure, solver);
-    directory_.log("diverged", {{"reason", failure.reason}, {"step", failure.step}, {"message", failure.message}});
+    tell_mode(failure);
+    log("diverged", {{"reason", failure.reason}, {"step", failure.step}, {"message", failure.message}});
     failure_ = std::move(failure);
     ending_ = Ending::failed;
   }
 
   /// What the failure looks like, and what to do about that.
-  template <class T>
-  void tell_mode(monitor::Failure& failure, core::Solver<T>& solver) {
+  void tell_mode(monitor::Failure& failure) {
     const double spacing = setting().units.length;
     const std::array<double, 2> place{units::place_on_lattice(failure.place[0], spacing),
                                       units::place_on_lattice(failure.place[1], spacing)};
     double oscillation = 0;
-    if (std::isfinite(place[0]) && std::isfinite(place[1])) {
-      solver.fluid().settle();
+    solver_->fluid().settle();
+    const std::vector<core::Moments> moments = solver_->fluid().all_moments();
+    if (!moments.empty() && std::isfinite(place[0]) && std::isfinite(place[1])) {
       const auto nearest = [](double coordinate, int nodes) {
         return static_cast<int>(std::lround(std::clamp(coordinate, -1.0 * nodes, 2.0 * nodes)));
       };
-      oscillation = monitor::lattice_oscillation(solver.fluid(), nearest(place[0], scene_.domain.nodes[0]),
-                                                 nearest(place[1], scene_.domain.nodes[1]));
+      oscillation =
+          monitor::lattice_oscillation(nearest(place[0], scene_.domain.nodes[0]),
+                                       nearest(place[1], scene_.domain.nodes[1]), moments, state_.observer.domain());
     }
     monitor::find_mode(failure, membranes_, state_.growth, state_.observer.domain(), place, oscillation, failure.step);
     const std::string sentence = monitor::mode_sentence(failure),
-                      remedy = monitor::mode_remedy(failure, plan_.semi_implicit);
+                      remedy = monitor::mode_remedy(failure, plan_.semi_implicit, *setting().stage);
     if (!sentence.empty()) failure.message += "; " + sentence;
     if (!remedy.empty()) failure.remedy = remedy;
   }
 
   /// Writes the present state, unless it has gained energy that nothing gave it: that failure is returned.
-  template <class T>
-  std::optional<monitor::Failure> write(core::Solver<T>& solver, bool with_fields) {
-    observe::Snapshot snapshot = state_.observer.observe(solver, setting(), membranes_, with_fields);
+  std::optional<monitor::Failure> write(bool with_fields) {
+    observe::Snapshot snapshot = state_.observer.observe(*solver_, setting(), membranes_, with_fields);
     snapshot.step = state_.steps;
     snapshot.time = state_.time_at(setting());
     snapshot.strain = state_.strain_at(setting());
     const units::LatticeUnits& units = setting().units;
     state_.energy.follow(snapshot, setting().is_driven(),
-                         units.to_si(solver.slight_energy(), units::dimension::energy_per_depth));
-    if (auto failure = monitor::check_energy(state_.energy, membranes_, plan_, units.length)) return failure;
+                         units.to_si(solver_->slight_energy(), units::dimension::energy_per_depth));
+    if (auto failure = monitor::check_energy(state_.energy, membranes_, plan_, setting())) return failure;
     state_.history.follow(snapshot);
     state_.rheology.follow(snapshot);
-    directory_.write(snapshot);
+    if (directory_ != nullptr) directory_->write(snapshot);
     return std::nullopt;
   }
 
@@ -415,8 +429,9 @@ class Simulation {
             state_.history.count()};
   }
 
-  Summary summarise() {
-    Summary s = described_;
+  /// Adds to the summary what is known behind the last step.
+  void summarise() {
+    Summary& s = summary_;
     s.status = failure_ ? "diverged" : (ending_ == Ending::interrupted ? "interrupted" : "completed");
     s.failure = failure_;
     state_.report(s);
@@ -424,31 +439,43 @@ class Simulation {
     s.peak_rss_bytes = peak_memory_bytes();
     s.checkpoint_step = checkpoints_.kept();
     s.area_leakage_max = observe::Observer::area_leakage(membranes_);
-    return s;
   }
 
   const plan::Plan& plan_;
   const scene::Scene& scene_;
   const RunOptions& options_;
-  files::RunDirectory& directory_;
+  files::RunDirectory* directory_;  ///< null on all ranks but one
+  core::Ranks<2> ranks_;
+  const std::vector<int>& owner_;
   core::Membranes membranes_;
+  std::unique_ptr<core::Solver<T>> solver_;  ///< of the present stage
   RunState state_;
   Progress progress_;
 
-  long next_attention_ = 0;  ///< step of the stage before which nothing is due
+  static constexpr long never = std::numeric_limits<long>::max();
+  long next_attention_ = 0;             ///< step of the stage before which nothing is due
+  std::atomic<long> attend_at_{never};  ///< step that somebody has asked for
   Ending due_ending_ = Ending::none, ending_ = Ending::none;
   bool stopped_ = false;
   std::optional<monitor::Failure> failure_;
   Clock::time_point clock_;
   Checkpoints checkpoints_;
-  nlohmann::json saved_;  ///< state of the checkpoint that the run goes on from
-  Summary described_;     ///< what is known before the first step
+  Summary summary_;
 };
 
 }  // namespace
 
-Summary simulate(const plan::Plan& plan, const RunOptions& options, files::RunDirectory& directory) {
-  return Simulation(plan, options, directory).run();
+Summary simulate(const plan::Plan& plan, const plan::PlanReport& report, const RunOptions& options,
+                 files::RunDirectory* directory, const core::Ranks<2>& ranks, const std::vector<int>& owner) {
+  try {
+    if (plan.scene->numerics.precision == scene::Precision::f64) {
+      return Simulation<double>(plan, report, options, directory, ranks, owner).run();
+    }
+    return Simulation<float>(plan, report, options, directory, ranks, owner).run();
+  } catch (...) {
+    if (ranks.several()) ranks.transport->abandon();
+    throw;
+  }
 }
 
 }  // namespace rouleau::run

@@ -2,9 +2,10 @@
 #pragma once
 
 #include <atomic>
+#include <vector>
 
+#include "core/domain/ranks.hpp"
 #include "files/run_directory.hpp"
-#include "plan/plan.hpp"
 #include "summary.hpp"
 
 namespace rouleau::run {
@@ -18,7 +19,13 @@ struct RunOptions {
 };
 
 /// Runs a plan and writes into `directory`, going on from its checkpoint if it resumes; the summary has been written
-/// when it returns. Throws Error(input_output), and Error(bad_input) where the checkpoint belongs to another run.
-Summary simulate(const plan::Plan& plan, const RunOptions& options, files::RunDirectory& directory);
+/// when it returns, with the plan's report in it: an empty one will do where nobody reads that. Throws
+/// Error(input_output), and Error(bad_input) where the checkpoint belongs to another run.
+///
+/// With ranks it is one rank's part in a run that is cut into blocks. All ranks call it with the same plan, options and
+/// owners of cells (core::Solver), and come to the same end; the first one has the directory, null is given to the
+/// others, who only read its checkpoint. Where one of them throws the others throw core::RankLost.
+Summary simulate(const plan::Plan& plan, const plan::PlanReport& report, const RunOptions& options,
+                 files::RunDirectory* directory, const core::Ranks<2>& ranks = {}, const std::vector<int>& owner = {});
 
 }  // namespace rouleau::run

@@ -2,23 +2,59 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "json/number_or_null.hpp"
 #include "monitor/failure.hpp"
 #include "observe/aggregate_event.hpp"
-#include "pass_costs.hpp"
-#include "plan/limit.hpp"
+#include "plan/plan_report.hpp"
 #include "plugin/lock.hpp"
 
 namespace rouleau::run {
 
+/// What ended a stage; none: it goes on.
+enum class Ending { none, duration, strain, at_rest, max_steps, interrupted, failed };
+NLOHMANN_JSON_SERIALIZE_ENUM(Ending, {{Ending::none, ""},
+                                      {Ending::duration, "duration"},
+                                      {Ending::strain, "strain"},
+                                      {Ending::at_rest, "at_rest"},
+                                      {Ending::max_steps, "max_steps"},
+                                      {Ending::interrupted, "interrupted"},
+                                      {Ending::failed, "failed"}})
+struct StageEnd {
+  std::string name;
+  long steps = 0;
+  Ending ended_by = Ending::none;
+  double wall_s = 0;
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(StageEnd, name, steps, ended_by, wall_s)
+};
+
+/// Where a run went on from a checkpoint.
+struct Continuation {
+  long step = 0;
+  int threads = 1;
+  std::vector<std::string> accepted;  ///< differences from the run before, which --force let pass
+  std::string damaged_checkpoint;     ///< why it was not the last one; empty: it was
+};
+void to_json(nlohmann::json& json, const Continuation& continuation);
+void from_json(const nlohmann::json& json, Continuation& continuation);
+
+/// What a pass of the steps has taken so far.
+struct PassCost {
+  std::string name;
+  double wall_s = 0;
+  long calls = 0;
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(PassCost, name, wall_s, calls)
+};
+
 struct PluginUse {
   std::string id, version, kind, library, sha256;
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(PluginUse, id, version, kind, library, sha256)
 };
+
 struct Summary {
   std::string status;  ///< completed, diverged, interrupted
   std::optional<monitor::Failure> failure;
@@ -29,30 +65,25 @@ struct Summary {
   long peak_rss_bytes = 0;
   std::optional<long> checkpoint_step;  ///< from which --resume goes on
   int threads = 1;
-  std::string precision;
+  std::string precision, instruction_set;
   std::vector<PluginUse> plugins;
   std::optional<plugin::LockUse> lock;
+  std::optional<plan::NumericsChoice> numerics_choice;
+  plan::PlanReport plan;  ///< whose passes are not written: those of the run are
   std::vector<PassCost> passes;
-  std::vector<plan::Omission> left_out;
-  nlohmann::json dimensionless;  ///< object: name -> number (null: undefined)
-  std::vector<plan::Limit> limits;
-  nlohmann::json wells;  ///< array: the wells of the interactions, in SI
+  double mach_max = std::numeric_limits<double>::quiet_NaN();
   double mass_drift = 0, area_drift_max = 0, momentum_residual = 0;
   std::array<double, 2> stretch{};  ///< smallest and largest of any segment at any output
   double area_leakage_max = 0;      ///< NaN without area correction
   int aggregates_final = 0;
   std::vector<observe::AggregateEvent> aggregate_history;  ///< one entry at each change
-  std::vector<std::string> warnings;
-  nlohmann::json conversions;      ///< array: {quantity, of, si, unit, lattice} for each stage
-  nlohmann::json output_estimate;  ///< object: what the run was expected to write
-  nlohmann::json numerics_choice;  ///< object: what "numerics": "auto" chose and why; null where the scene pins all
-  nlohmann::json packings;         ///< array: cells that were placed at random
-  nlohmann::json energy;           ///< object: growth of the total energy in stages at rest
-  nlohmann::json rheology;         ///< array: means, break-up and rotation in each stage
-  nlohmann::json stages;           ///< array: how each stage ended
-  nlohmann::json resumed;          ///< array: where the run went on from a checkpoint
+  nlohmann::json energy;                                   ///< object: observe::EnergyHistory::summary()
+  nlohmann::json rheology = nlohmann::json::array();       ///< observe::RheologyHistory::stages()
+  std::vector<StageEnd> stages;
+  std::vector<Continuation> resumed;
 };
 
+/// Numbers that are not finite are null once it is written.
 nlohmann::json to_json(const Summary& summary);
 
 /// How the run ended, in a few words: "completed after 120 steps"; also where the limit of steps cut it short, which the

@@ -14,4 +14,10 @@ double mean_shear_rate(const Stage& stage, const Scene& scene) {
   return std::abs(driving_force(stage, scene).x()) * scene.domain.size.y() / (4 * scene.fluid.viscosity);
 }
 
+double start_up_strain(const Stage& stage, const Scene& scene) {
+  if (stage.start == WallStart::developed || scene.domain.periodic_y) return 0;
+  const double height = scene.domain.size.y(), nu = scene.fluid.viscosity / scene.fluid.density;
+  return mean_shear_rate(stage, scene) * height * height / nu / (stage.shear_rate != 0 ? 24 : 10);
+}
+
 }  // namespace rouleau::scene

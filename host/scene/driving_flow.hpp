@@ -13,6 +13,12 @@ Eigen::Vector2d driving_force(const Stage& stage, const Scene& scene);
 /// height. 0 at rest, and where no wall holds a flow that is driven.
 double mean_shear_rate(const Stage& stage, const Scene& scene);
 
+/// Strain that a flow from a start at rest is late by, for good, for each unit of density_factor; 0 where it starts
+/// developed, and where no wall holds it. The error u(y) - u(y, t) of a start-up obeys the diffusion equation; its
+/// integral over time gives the lag, which is H^2/(24 nu) for the shear rate in the middle between moving walls, and
+/// H^2/(10 nu) for the flow rate of a driven channel, nu the kinematic viscosity.
+double start_up_strain(const Stage& stage, const Scene& scene);
+
 /// Largest Mach number of moving walls without a warning. Without convective inertia the fluid's equations are linear
 /// in the velocity, and what is left is the membranes' step in time: a capsule's deformation changes by 2e-4 from 0.03
 /// to 0.2 (docs/accuracy.md).

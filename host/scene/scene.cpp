@@ -133,7 +133,7 @@ Place Scene::place(const std::string& pointer) const {
 
 void check_membrane_nodes(const Scene& scene) {
   std::int64_t nodes = 0;
-  for (const auto& cell : scene.cells) nodes += scene.cell_types[static_cast<std::size_t>(cell.type)].segments;
+  for (const auto& cell : scene.cells) nodes += scene.cell_types[cell.type].segments;
   if (nodes <= most_membrane_nodes) return;
   SceneFields(*scene.document)
       .refuse("/cells", "the cells have " + std::to_string(nodes) + " membrane nodes in all; at most " +
@@ -149,9 +149,10 @@ json::Document read_document(const std::filesystem::path& file, const std::vecto
 
 Scene read_scene(std::shared_ptr<const json::Document> document) {
   Scene scene;
-  const SceneFields fields(*document);
+  SceneFields fields(*document);
   if (fields.has("/title")) scene.title = fields.line("/title");
   scene.domain = read_domain(fields);
+  fields.bound_lengths(scene.domain.size);
   scene.fluid = read_fluid(fields);
   scene.numerics = read_numerics(fields);
   scene.cell_types = read_cell_types(fields, scene.fluid.viscosity);

@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "numerics_choice.hpp"
 
 namespace rouleau::json {
 class Document;
@@ -110,6 +109,7 @@ struct Stage {
   Eigen::Vector2d pressure_gradient =
       Eigen::Vector2d::Zero();  ///< force per volume that drives the flow, Pa/m, along x
   double density_factor;        ///< Numerics::density_factor unless the stage has its own
+  std::string density_factor_key = "numerics.density_factor";  ///< what to change for another one
   std::string pointer;
 };
 
@@ -171,7 +171,6 @@ struct Scene {
   AtRest at_rest;
   Checks checks;
   std::vector<std::filesystem::path> plugin_dirs;  ///< relative ones begin with the scene's folder
-  std::optional<NumericsChoice> numerics_choice;   ///< what was chosen where the scene leaves its numerics open
   std::shared_ptr<const json::Document> document;  ///< for places in later errors, and for the report
 
   /// Place of a JSON pointer in the scene file, for an Error.

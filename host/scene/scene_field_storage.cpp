@@ -16,7 +16,7 @@ std::string micrometres(double length) { return number(length * 1e6, 6) + " um";
 std::array<int, 2> nodes_within(const SceneFields& fields, const Domain& domain, int axis, double from, double to) {
   const std::string pointer = "/output/fields/region", along = axis == 0 ? " along x" : " along y";
   const std::string end = json::child_pointer(pointer + "/to", static_cast<std::size_t>(axis));
-  const int nodes = domain.nodes[static_cast<std::size_t>(axis)];
+  const int nodes = domain.nodes[axis];
   const double size = domain.size[axis], spacing = size / nodes;
   constexpr double rounding = 1e-9;  // a border that is meant to lie on a node shall include it
   if (from < -rounding * size)

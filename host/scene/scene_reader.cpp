@@ -39,7 +39,20 @@ double SceneFields::quantity(const std::string& pointer, std::string_view unit, 
       refuse(pointer, error.what());
     }
   }
-  if (si >= range.least && si <= range.most) return si;
+  if (si >= range.least && si <= range.most) {
+    if (value.is_number() && si != 0 && !(si >= range.plain_least && si <= range.plain_most)) {
+      refuse(pointer, json::shown(value) + " has no unit, and as " + with_unit(si, unit) +
+                          " it is far from any usual " + name + "\nwrite it with the unit that is meant: \"" +
+                          with_unit(si, range.common_unit) + "\", or \"" + with_unit(si, unit) + '"');
+    }
+    // A length, that is: a place may lie in another image of the box.
+    if (box_ && unit == "m" && range.least > 0 && si > box_->maxCoeff()) {
+      refuse(pointer, json::shown(value) + (value.is_number() ? " (a plain number is taken in m)" : "") +
+                          " is longer than the box, which is " + number(box_->x() * 1e6) + " um x " +
+                          number(box_->y() * 1e6) + " um; " + name + " must fit into it");
+    }
+    return si;
+  }
   // A plain number that ought to have had a unit is the likeliest reason for a value out of range.
   const auto as_si = value.is_number() ? " (a plain number is taken in " + std::string(unit) + ')' : "";
   if (!(si > 0.0) && range.least > 0.0)

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,26 +15,33 @@
 namespace rouleau::scene {
 
 /// Where a quantity may lie, in SI: from `least` to `most`, both included. The ranges are far wider than any sensible
-/// scene; they are there so that no later product overflows and no quotient divides by nothing.
+/// scene; they are there so that no later product overflows and no quotient divides by nothing. A plain number has a
+/// range of its own: beyond it the likeliest reason is a unit that was forgotten.
 struct AllowedRange {
   double least;
   double most;
+  double plain_least = least;
+  double plain_most = most;
+  const char* common_unit = "";  ///< in which such a quantity is mostly given
 };
 
 namespace range {
-inline constexpr AllowedRange length{1e-12, 1.0};          ///< m
-inline constexpr AllowedRange place{-1.0, 1.0};            ///< m
-inline constexpr AllowedRange time{1e-12, 1e9};            ///< s
-inline constexpr AllowedRange density{1e-3, 1e6};          ///< kg/m3
-inline constexpr AllowedRange viscosity{1e-9, 1e6};        ///< Pa s
-inline constexpr AllowedRange shear_rate{0.0, 1e9};        ///< 1/s
-inline constexpr AllowedRange force_density{-1e15, 1e15};  ///< N/m3
-inline constexpr AllowedRange angle{-1e3, 1e3};            ///< rad
+inline constexpr AllowedRange length{1e-12, 1.0, 1e-9, 1e-2, "um"};             ///< m
+inline constexpr AllowedRange place{-1.0, 1.0, -1e-2, 1e-2, "um"};              ///< m
+inline constexpr AllowedRange time{1e-12, 1e9, 1e-9, 1e6, "s"};                 ///< s
+inline constexpr AllowedRange density{1e-3, 1e6, 10.0, 1e5, "g/cm3"};           ///< kg/m3
+inline constexpr AllowedRange viscosity{1e-9, 1e6, 1e-5, 0.5, "cP"};            ///< Pa s
+inline constexpr AllowedRange shear_rate{0.0, 1e9, 0.0, 1e7, "1/s"};            ///< 1/s
+inline constexpr AllowedRange force_density{-1e15, 1e15, -1e12, 1e12, "N/m3"};  ///< N/m3
+inline constexpr AllowedRange angle{-1e3, 1e3, -7.0, 7.0, "deg"};               ///< rad; 7: just above a turn
 }  // namespace range
 
 class SceneFields {
  public:
   explicit SceneFields(const json::Document& document) : document_(document) {}
+
+  /// From here no length may be longer than the box, whose size in m this is.
+  void bound_lengths(const Eigen::Vector2d& box) { box_ = box; }
 
   [[nodiscard]] const nlohmann::json& at(const std::string& pointer) const;
   [[nodiscard]] bool has(const std::string& pointer) const;
@@ -72,6 +80,7 @@ class SceneFields {
  private:
   const json::Document& document_;
   units::Units units_;
+  std::optional<Eigen::Vector2d> box_;
 };
 
 /// More cannot be computed.

@@ -55,6 +55,7 @@ Stage read_stage(const SceneFields& fields, const std::string& pointer, const Sc
                                                                                              : WallStart::impulsive;
   stage.pressure_gradient.x() = fields.quantity_or(pointer + "/pressure_gradient", "Pa/m", range::force_density, 0.0);
   stage.density_factor = fields.value_or(pointer + "/density_factor", scene.numerics.density_factor);
+  if (fields.has(pointer + "/density_factor")) stage.density_factor_key = pointer + "/density_factor";
   check_stage(fields, stage, scene);
   return stage;
 }

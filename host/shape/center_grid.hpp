@@ -42,7 +42,7 @@ class CenterGrid {
       for (int di = x_.first(); di <= x_.last(); ++di) {
         const int column = x_.neighbour(i + di), row = y_.neighbour(j + dj);
         if (column < 0 || row < 0) continue;
-        const auto& list = cells_[static_cast<std::size_t>(row * x_.count + column)];
+        const auto& list = cells_[row * x_.count + column];
         if (!std::all_of(list.begin(), list.end(), test)) return false;
       }
     }

@@ -106,11 +106,11 @@ Outline make_outline(const scene::Shape& shape, int segments) {
 
   // What is left of the gap would all fall on the last segment: share it.
   const double gap = angles.back() - full_turn;
-  for (int i = 0; i < segments; ++i) angles[static_cast<std::size_t>(i)] -= gap * i / segments;
+  for (int i = 0; i < segments; ++i) angles[i] -= gap * i / segments;
 
   Outline outline;
   outline.nodes.reserve(static_cast<std::size_t>(segments));
-  for (int i = 0; i < segments; ++i) outline.nodes.push_back(curve(angles[static_cast<std::size_t>(i)]).place);
+  for (int i = 0; i < segments; ++i) outline.nodes.push_back(curve(angles[i]).place);
   return outline;
 }
 
@@ -123,7 +123,7 @@ double shape_radius(const scene::Shape& shape) {
 double smallest_radius(const scene::Scene& scene) {
   double least = 0;
   for (const scene::CellPlacement& cell : scene.cells) {
-    const double radius = shape_radius(scene.cell_types[static_cast<std::size_t>(cell.type)].shape);
+    const double radius = shape_radius(scene.cell_types[cell.type].shape);
     least = least == 0 ? radius : std::min(least, radius);
   }
   return least;

@@ -55,7 +55,7 @@ class Packer {
     box_x_ = {0, domain.size.x() / unit, true};
     box_y_ = {0, domain.size.y() / unit, domain.periodic_y};
     for (const scene::CellPlacement& cell : cells) {
-      const scene::CellType& type = types[static_cast<std::size_t>(cell.type)];
+      const scene::CellType& type = types[cell.type];
       const auto [outline, is_new] = outlines_.try_emplace(cell.type, type.shape, type.segments, unit);
       if (!is_new) continue;
       allowance_ = std::max(allowance_, outline->second.allowance());
@@ -69,8 +69,7 @@ class Packer {
     grid_.emplace(box_x_, box_y_, 2 * largest_ + gap);
     owner_.assign(cells.size(), obstacle);
     for (std::size_t k = 0; k < packings.size(); ++k) {
-      for (int i = 0; i < packings[k].count; ++i)
-        owner_[static_cast<std::size_t>(packings[k].first + i)] = static_cast<int>(k);
+      for (int i = 0; i < packings[k].count; ++i) owner_[packings[k].first + i] = static_cast<int>(k);
     }
     bodies_.resize(cells.size());
     angle_.assign(cells.size(), 0);
@@ -128,7 +127,7 @@ class Packer {
 
   /// Draws places for a new cell, smaller and smaller, until one is free.
   bool insert(std::size_t i) {
-    const Territory& own = territories_[static_cast<std::size_t>(owner_[i])];
+    const Territory& own = territories_[owner_[i]];
     RigidBody body{&outlines_.at(cells_[i].type), {}, {}, 1};
     for (; body.scale > smallest_scale; body.scale *= shrinking) {
       for (int trial = 0; trial < tries_at_a_size; ++trial) {
@@ -178,7 +177,7 @@ class Packer {
   }
 
   bool move(std::size_t i) {
-    const Territory& own = territories_[static_cast<std::size_t>(owner_[i])];
+    const Territory& own = territories_[owner_[i]];
     RigidBody body = bodies_[i];
     body.center = {own.x.wrapped(body.center.x + numbers_.either_side(stride_)),
                    own.y.wrapped(body.center.y + numbers_.either_side(stride_))};
@@ -195,13 +194,13 @@ class Packer {
   }
 
   [[nodiscard]] bool is_free(std::size_t i, const RigidBody& body) const {
-    const Territory& own = territories_[static_cast<std::size_t>(owner_[i])];
+    const Territory& own = territories_[owner_[i]];
     if (!within(body, own)) return false;
     if (!images_keep_apart(body, body, true, own.gap)) return false;
     return grid_->all_near(body.center, [&](std::size_t j) {
       if (j == i) return true;
       double gap = own.gap;
-      if (owner_[j] != obstacle) gap = std::max(gap, territories_[static_cast<std::size_t>(owner_[j])].gap);
+      if (owner_[j] != obstacle) gap = std::max(gap, territories_[owner_[j]].gap);
       return images_keep_apart(body, bodies_[j], false, gap);
     });
   }
@@ -306,7 +305,7 @@ std::optional<PackingShortfall> pack(const scene::Domain& domain, const std::vec
   // Of the types that have cells: one that has none may be so large that rounding would deform the others.
   double unit = 0;
   for (const scene::CellPlacement& cell : cells) {
-    unit = std::max(unit, shape_radius(types[static_cast<std::size_t>(cell.type)].shape));
+    unit = std::max(unit, shape_radius(types[cell.type].shape));
   }
   return Packer(domain, types, packings, cells, unit).pack();
 }

@@ -55,7 +55,7 @@ void add_random_cells(scene::Scene& scene) {
   const scene::SceneFields fields(*scene.document);
   int added = 0;
   for (scene::RandomPacking& packing : scene.packings) {
-    const scene::CellType& type = scene.cell_types[static_cast<std::size_t>(packing.type)];
+    const scene::CellType& type = scene.cell_types[packing.type];
     if (packing.hematocrit) packing.count = count_for_share(fields, packing, type);
     packing.reached = hematocrit_of(packing, type);
     check_lengths(fields, packing, type);
@@ -72,7 +72,7 @@ void pack_cells(scene::Scene& scene) {
   if (scene.packings.empty()) return;
   const double across = scene.domain.size.norm();
   for (const scene::CellPlacement& cell : scene.cells) {
-    const scene::CellType& type = scene.cell_types[static_cast<std::size_t>(cell.type)];
+    const scene::CellType& type = scene.cell_types[cell.type];
     if (2 * shape_radius(type.shape) <= across) continue;
     scene::SceneFields(*scene.document)
         .refuse(cell.pointer, "a cell of the type " + type.name + " is " + number(2e6 * shape_radius(type.shape)) +

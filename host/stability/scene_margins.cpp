@@ -54,7 +54,7 @@ bool contradicts_value(const Json& in_scene, const Json& setting) {
 bool contradicts(const Json& scene, const LimitsState& state, const trial::Point& point) {
   for (std::size_t a = 0; a < point.setting.size(); ++a) {
     const trial::Axis& axis = state.limits->axes[a];
-    for (const auto& [pointer, value] : axis.settings[static_cast<std::size_t>(point.setting[a])].set) {
+    for (const auto& [pointer, value] : axis.settings[point.setting[a]].set) {
       const Json::json_pointer at(pointer);
       if (scene.contains(at) && contradicts_value(scene[at], value)) return true;
     }
@@ -68,7 +68,7 @@ using SearchedScenes = std::map<const CombinationResult*, scene::Scene>;
 const scene::Scene& searched_scene(SearchedScenes& scenes, const CombinationResult& combination) {
   const auto found = scenes.find(&combination);
   if (found != scenes.end()) return found->second;
-  return scenes.emplace(&combination, plan::read_unpacked_scene(combination.scene_file)).first->second;
+  return scenes.emplace(&combination, plan::read_unpacked_scene(combination.scene_file).scene).first->second;
 }
 
 Json margin_of(const std::filesystem::path& file, const LimitsState& state, SearchedScenes& searched) {
@@ -81,7 +81,7 @@ Json margin_of(const std::filesystem::path& file, const LimitsState& state, Sear
   const std::optional<double> value = value_in(scene, parameter);
   if (!value) return nullptr;
   entry["value"] = *value;
-  const scene::Scene read = plan::read_unpacked_scene(file);
+  const scene::Scene read = plan::read_unpacked_scene(file).scene;
   double least = INFINITY;
   bool matched = false;
   for (const CombinationResult& combination : state.combinations) {

@@ -34,7 +34,7 @@ std::vector<int> settings_named(const StudyData& study, const std::map<std::stri
       why_not = "the axis " + in_quotes(name) + " has no " + in_quotes(label) + ": it has " + listed(axis->labels);
       return {};
     }
-    setting[static_cast<std::size_t>(axis - study.axes.begin())] = static_cast<int>(found - axis->labels.begin());
+    setting[axis - study.axes.begin()] = static_cast<int>(found - axis->labels.begin());
   }
   return setting;
 }
@@ -55,7 +55,7 @@ void resolve_richardson(const StudyData& study, const Reference& asked, const st
     if (!result.method || e.uncertainty < by_method[*result.method].extrapolation.uncertainty) result.method = i;
   }
   if (!result.method) {
-    const bool refines = study.line >= 0 && !study.axes[static_cast<std::size_t>(study.line)].spacing.empty();
+    const bool refines = study.line >= 0 && !study.axes[study.line].spacing.empty();
     result.why_not = refines
                          ? "no method has three grids whose values converge"
                          : "no axis along the line refines the lattice: give a reference, or an axis with \"refine\"";
@@ -141,9 +141,7 @@ std::vector<MethodLimit> limits_of_methods(const StudyData& study, std::size_t q
   if (study.line < 0) return methods;
   const auto line = static_cast<std::size_t>(study.line);
   const std::vector<double>& spacing = study.axes[line].spacing;
-  const auto spacing_of = [&](std::size_t point) {
-    return spacing[static_cast<std::size_t>(study.points[point].setting[line])];
-  };
+  const auto spacing_of = [&](std::size_t point) { return spacing[study.points[point].setting[line]]; };
   for (std::size_t i = 0; i < study.points.size(); ++i) {
     std::vector<int> setting = study.points[i].setting;
     setting[line] = -1;

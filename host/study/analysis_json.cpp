@@ -14,7 +14,7 @@ Json said(const std::string& text) { return text.empty() ? Json() : Json(text); 
 Json labels_json(const StudyData& study, const std::vector<int>& setting) {
   Json labels = Json::object();
   for (std::size_t i = 0; i < setting.size(); ++i)
-    if (setting[i] >= 0) labels[study.axes[i].name] = study.axes[i].labels[static_cast<std::size_t>(setting[i])];
+    if (setting[i] >= 0) labels[study.axes[i].name] = study.axes[i].labels[setting[i]];
   return labels;
 }
 
@@ -50,8 +50,7 @@ Json sensitivities_json(const StudyData& study, const std::vector<Sensitivity>& 
   for (const Sensitivity& sensitivity : sensitivities) {
     std::vector<int> fixed = study.points[sensitivity.from].setting;
     const auto label = [&](std::size_t point) {
-      return study.axes[sensitivity.axis]
-          .labels[static_cast<std::size_t>(study.points[point].setting[sensitivity.axis])];
+      return study.axes[sensitivity.axis].labels[study.points[point].setting[sensitivity.axis]];
     };
     fixed[sensitivity.axis] = -1;
     result.push_back({{"axis", study.axes[sensitivity.axis].name},

@@ -129,7 +129,7 @@ Measured of_series(const Quantity& quantity, const std::filesystem::path& direct
   double covered = 0;
   for (std::size_t i = 0; i < area.size() && step[i] == step[0]; ++i) covered += area[i];
   if (!(covered > 0)) return undefined_because("the run has no cells that could thicken the fluid");
-  const scene::Scene scene = plan::read_unpacked_scene(directory / "scene.json");
+  const scene::Scene scene = plan::read_unpacked_scene(directory / "scene.json").scene;
   result.value = (result.value - 1) / (covered / scene.domain.size.prod());
   return result;
 }

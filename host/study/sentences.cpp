@@ -62,9 +62,7 @@ StudySentence largest_sensitivity(const StudyData& study, const Sensitivity& sen
   std::vector<int> rest = study.points[sensitivity.to].setting;
   rest[sensitivity.axis] = -1;
   const StudyAxis& axis = study.axes[sensitivity.axis];
-  const auto label = [&](std::size_t point) {
-    return axis.labels[static_cast<std::size_t>(study.points[point].setting[sensitivity.axis])];
-  };
+  const auto label = [&](std::size_t point) { return axis.labels[study.points[point].setting[sensitivity.axis]]; };
   const std::string elsewhere = name_of(study, rest);
   const std::string price = sensitivity.time_factor == 1 ? "for the same time"
                             : sensitivity.time_factor > 1
@@ -95,8 +93,7 @@ std::string name_of(const StudyData& study, const std::vector<int>& setting) {
   std::string name;
   for (std::size_t i = 0; i < setting.size(); ++i) {
     if (setting[i] < 0) continue;
-    name += (name.empty() ? "" : ", ") + study.axes[i].name + " " +
-            study.axes[i].labels[static_cast<std::size_t>(setting[i])];
+    name += (name.empty() ? "" : ", ") + study.axes[i].name + " " + study.axes[i].labels[setting[i]];
   }
   return name;
 }

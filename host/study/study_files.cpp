@@ -72,14 +72,14 @@ Json study_json(const StudyState& state) {
   }
   Json result = trial::result_head(trial::study_kind, study, state.started, state.finished, state.complete());
   result.update({{"left_out", left_out},
-                 {"line", study.line < 0 ? Json(nullptr) : Json(study.axes[static_cast<std::size_t>(study.line)].name)},
+                 {"line", study.line < 0 ? Json(nullptr) : Json(study.axes[study.line].name)},
                  {"default", trial::labels_of(study.axes, study.default_point)},
                  {"points", points},
                  {"target", state.target}});
   const StudyData data = study_data(state);
   add_analysis(result, data, analyse(data));
   for (const MatrixPoint& point : state.points) {
-    if (point.record) tried.push_back(result["points"][static_cast<std::size_t>(point.id)]);
+    if (point.record) tried.push_back(result["points"][point.id]);
   }
   result["points"] = tried;
   return result;

@@ -51,7 +51,7 @@ StudyRun::StudyRun(const Study& study, StudyOptions options)
     : study_(study),
       options_(std::move(options)),
       campaign_(trial::study_kind, study, options_),
-      timing_lock_(trial::timing_lock_file()) {
+      timing_lock_(files::timing_lock_file()) {
   state_.study = &study_;
   state_.started = run::present_time();
 }

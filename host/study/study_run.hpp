@@ -54,7 +54,7 @@ class StudyRun {
   StudyState state_;
   trial::RunCost cost_;
   double spent_s_ = 0;
-  trial::FileLock timing_lock_;
+  files::FileLock timing_lock_;
 };
 
 /// "3.2 s", "12 min", "2.1 h"

@@ -27,15 +27,14 @@ std::vector<std::size_t> line_through(const StudyData& study, std::size_t point)
     if (setting == study.points[point].setting) result.push_back(i);
   }
   std::stable_sort(result.begin(), result.end(), [&](std::size_t a, std::size_t b) {
-    return spacing[static_cast<std::size_t>(study.points[a].setting[line])] <
-           spacing[static_cast<std::size_t>(study.points[b].setting[line])];
+    return spacing[study.points[a].setting[line]] < spacing[study.points[b].setting[line]];
   });
   return result;
 }
 
 double spacing_at(const StudyData& study, std::size_t point) {
   const auto line = static_cast<std::size_t>(study.line);
-  return study.axes[line].spacing[static_cast<std::size_t>(study.points[point].setting[line])];
+  return study.axes[line].spacing[study.points[point].setting[line]];
 }
 
 const MethodLimit* method_of(const StudyData& study, const QuantityAnalysis& analysis, std::size_t point) {

@@ -42,7 +42,7 @@ std::string why_no_exact_flow(const Quantity& quantity, const scene::Scene& scen
 }  // namespace
 
 Measured velocity_error(const Quantity& quantity, const std::filesystem::path& run_directory) {
-  const scene::Scene scene = plan::read_unpacked_scene(run_directory / "scene.json");
+  const scene::Scene scene = plan::read_unpacked_scene(run_directory / "scene.json").scene;
   if (const std::string why_not = why_no_exact_flow(scene); !why_not.empty()) return no_velocity_error(why_not);
   const auto field = files::last_velocity(run_directory / "frames.h5");
   if (!field) return no_velocity_error("frames.h5 has no velocity: ask for it in output.fields");

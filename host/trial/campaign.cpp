@@ -108,7 +108,7 @@ void Campaign::say(const std::string& line) const {
   if (!options_.quiet) std::cerr << line << std::endl;
 }
 
-bool Campaign::wait_for(FileLock& lock, const std::string& waiting) const {
+bool Campaign::wait_for(files::FileLock& lock, const std::string& waiting) const {
   return lock.wait([&] { say(waiting); }, options_.interrupted);
 }
 

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "campaign_file.hpp"
-#include "file_lock.hpp"
+#include "files/file_lock.hpp"
 #include "point_record.hpp"
 #include "trial.hpp"
 
@@ -47,13 +47,13 @@ class Campaign {
   /// A line on standard error, unless it should be quiet.
   void say(const std::string& line) const;
   /// Waits for `lock`. False when interrupted meanwhile.
-  [[nodiscard]] bool wait_for(FileLock& lock, const std::string& waiting) const;
+  [[nodiscard]] bool wait_for(files::FileLock& lock, const std::string& waiting) const;
 
  private:
   const CampaignKind& kind_;
   const CampaignFile& file_;
   CampaignOptions options_;
-  std::optional<FileLock> lock_;
+  std::optional<files::FileLock> lock_;
 };
 
 /// What NAME.json says of every campaign: its file, the program, the machine, when it ran. `finished`: empty while it

@@ -51,7 +51,7 @@ std::vector<UsedPlugin> plugins_named(const Json& scene, const fs::path& scene_f
         std::find_if(offered.begin(), offered.end(), [&](const plugin::Manifest& m) { return m.id == id; });
     UsedPlugin plugin{id, {}, {}};
     try {
-      if (found != offered.end()) plugin = {id, plugin::library_sha256(*found), plugin::sha256(found->file)};
+      if (found != offered.end()) plugin = {id, plugin::library_sha256(*found), found->sha256};
     } catch (const Error& error) {
       if (error.cause() != Cause::plugin_refused) throw;
     }

@@ -209,7 +209,7 @@ std::vector<Point> cross(const std::vector<Axis>& axes) {
 namespace {
 
 const Setting& setting_of(const Axis& axis, const Point& point, std::size_t index) {
-  return axis.settings[static_cast<std::size_t>(point.setting[index])];
+  return axis.settings[point.setting[index]];
 }
 
 }  // namespace

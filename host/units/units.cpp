@@ -2,9 +2,11 @@
 
 #include <udunits2.h>
 
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
+#include <new>
 #include <vector>
 
 #include "base/error.hpp"
@@ -76,27 +78,40 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
+/// What a call of UDUNITS-2 returns, which takes a unit for unknown where it was refused memory: that is an exception
+/// here.
+template <class Call>
+auto with_memory(Call&& call) {
+  errno = 0;
+  auto result = call();
+  if (errno == ENOMEM) throw std::bad_alloc();
+  return result;
+}
+
+using UnitSystem = std::unique_ptr<ut_system, decltype(&ut_free_system)>;
+
 }  // namespace
 
 struct Units::System {
-  std::unique_ptr<ut_system, decltype(&ut_free_system)> system{nullptr, &ut_free_system};
+  UnitSystem system{nullptr, &ut_free_system};
 
   static std::shared_ptr<const System> read();
 
   [[nodiscard]] Unit parse(const std::string& text) const {
-    return {ut_parse(system.get(), text.c_str(), UT_UTF8), &ut_free};
+    return with_memory([&] { return Unit(ut_parse(system.get(), text.c_str(), UT_UTF8), &ut_free); });
   }
 
   /// Gives a symbol the meaning of `definition`, unless the database has the symbol already.
   void define(const char* symbol, const char* definition) const {
     if (parse(symbol)) return;
     const auto unit = parse(definition);
-    if (unit) ut_map_symbol_to_unit(symbol, UT_ASCII, unit.get());
+    if (unit) with_memory([&] { return ut_map_symbol_to_unit(symbol, UT_ASCII, unit.get()); });
   }
 
   static Parts parts_of(const Unit& unit) {
     Parts parts;
-    if (ut_accept_visitor(unit.get(), &visitor, &parts) != UT_SUCCESS) parts.refused = "its meaning is unknown";
+    const auto status = with_memory([&] { return ut_accept_visitor(unit.get(), &visitor, &parts); });
+    if (status != UT_SUCCESS) parts.refused = "its meaning is unknown";
     return parts;
   }
 
@@ -165,7 +180,7 @@ struct Units::System {
 std::shared_ptr<const Units::System> Units::System::read() {
   auto read = std::make_shared<System>();
   ut_set_error_message_handler(ut_ignore);
-  read->system.reset(ut_read_xml(nullptr));
+  read->system = with_memory([] { return UnitSystem(ut_read_xml(nullptr), &ut_free_system); });
   if (!read->system) {
     throw Error(
         Cause::input_output,

@@ -4,9 +4,9 @@
 #include <algorithm>
 
 #include "core/membrane/membranes.hpp"
-#include "plan/placed_cells.hpp"
-#include "plan/plan.hpp"
+#include "plan/plan_report.hpp"
 #include "plan/read_scene.hpp"
+#include "plan/solver_setup.hpp"
 #include "shape/random_cells.hpp"
 #include "target.hpp"
 
@@ -34,13 +34,14 @@ inline bool is_small(const scene::Scene& scene) {
 /// `rouleau plan FILE --set ...`, but for the scene's own plugin_dirs.
 inline void plan_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {}) {
   may_refuse([&] {
-    auto scene = plan::read_unpacked_scene(file, overrides);
+    auto [scene, numerics_choice] = plan::read_unpacked_scene(file, overrides);
     if (!is_small(scene)) return;
     shape::pack_cells(scene);
-    const auto plan = plan::make_plan(scene, shipped_catalog());
+    const auto plan = plan::make_plan(scene, shipped_catalog(), numerics_choice);
     if (plan.has_cells) plan::make_membranes(scene, plan::lattice_spacing(scene));
-    require_printable(plan::to_text(plan));
-    plan::to_json(plan).dump();
+    const auto report = plan::make_report(plan);
+    require_printable(plan::to_text(plan, report));
+    plan::to_json(plan, report).dump();
   });
 }
 

@@ -43,6 +43,9 @@ SCENES = {
     "equal cells, no fields":
         CHANNEL | CELLS | {"cells": [{"type": "rbc", "at": [x, "8 um"], "angle": "90 deg"} for x in ("6 um", "16 um")],
                            "output": {"cells": {"strain": 0.1}}},
+    "frames in several files, one for each checkpoint":
+        CHANNEL | CELLS | {"output": {"cells": {"strain": 0.05}, "fields": {"strain": 0.1, "quantities": ALL},
+                                      "checkpoint": {"seconds": "0.001 s"}}},
     "a region with a stride in double precision, not compressed":
         CHANNEL | CELLS | {"output": {"fields": {"strain": 0.1, "quantities": ALL, "precision": "f64", "compression": 0}
                                       | REGION}},
@@ -168,10 +171,8 @@ def main() -> int:
                 check_run(directory, scene)
                 if name == "fluid alone":
                     check_names_in_calculator(directory)
-                    # The checksums that a resumed run leaves behind HDF5's end disturb neither reader.
-                    with open(directory / "frames.h5", "a") as h5:
-                        h5.write("segment 0123456789abcdef\n" * 3)
-                    check_run(directory, scene)
+                if name.startswith("frames in several files"):
+                    check(len(list(directory.glob("frames-*.h5"))) > 2, "several files")
             except AssertionError as problem:
                 print(f"{name}: {problem}")
                 return 1

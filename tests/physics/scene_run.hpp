@@ -66,16 +66,16 @@ inline std::map<std::string, std::vector<std::string>> read_table(const std::fil
 inline SceneRun run_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {},
                           int threads = 1) {
   const auto catalog_of = [](const Scene&) { return Catalog({ROULEAU_PLUGINS}); };
-  const Scene scene = read_within_limits(file, overrides, catalog_of);
+  const auto [scene, numerics_choice] = read_within_limits(file, overrides, catalog_of);
   const Catalog catalog = catalog_of(scene);
-  const Plan plan = make_plan(scene, catalog);
+  const Plan plan = make_plan(scene, catalog, numerics_choice);
   const test::ScratchFolder folder;
   RunOptions options;
   options.threads = threads;
   options.quiet = true;
   {
     RunDirectory directory(folder.path() / "run", scene);
-    simulate(plan, options, directory);
+    simulate(plan, make_report(plan), options, &directory);
   }
   SceneRun run;
   std::ifstream(folder.path() / "run" / "scene.json") >> run.scene;

@@ -3,7 +3,6 @@
 
 #include "core/solver/solver.hpp"
 #include "flow_fixture.hpp"
-#include "plan/placed_cells.hpp"
 #include "plan/read_scene.hpp"
 #include "plan/solver_setup.hpp"
 

@@ -327,6 +327,34 @@ class Terminals_and_clocks(Case):
         self.assertEqual(json.loads((directory / "scene.json").read_text())["fluid"]["viscosity"], "1.3 cP")
         self.assertEqual(len(json.loads((directory / "summary.json").read_text())["resumed"]), 1)
 
+    def test_signals_of_batch_systems_and_a_time_limit_end_a_run_in_good_order_however_often_they_come(self):
+        for kind in (signal.SIGUSR1, signal.SIGXCPU):
+            directory = self.path / kind.name
+            process = subprocess.Popen(command(directory), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+            while not (directory / "checkpoint.h5").exists():
+                time.sleep(0.002)
+            while process.poll() is None:
+                process.send_signal(kind)
+                time.sleep(0.002)
+            said = process.communicate()[1]
+            self.assertEqual(process.returncode, 130, said)
+            self.assertIn(f"ended by {kind.name}\n", said)
+            self.assert_goes_on(directory)
+        directory = self.path / "limited"
+        result = run(directory, "--max-time", "0.2 s")
+        self.assert_stops(result, 130, "ended by --max-time\n", "to go on: rouleau run")
+        self.assert_goes_on(directory, "--max-time", "1h")
+        for wrong, words in (("5parsecs", "is a length"), ("0", "a time above zero"), ("-1h", "a time above zero"), ("", "empty")):
+            self.assert_stops(run(self.path / "none", "--max-time", wrong), 2, "--max-time", words)
+
+    def test_threads_that_the_system_refuses_are_no_secret_of_a_library(self):
+        def no_room_for_stacks():
+            resource.setrlimit(resource.RLIMIT_STACK, (1 << 28, 1 << 28))  # of each thread
+            resource.setrlimit(resource.RLIMIT_AS, (1 << 30, 1 << 30))
+        result = run(self.path / "run", "--threads", "16", preexec_fn=no_room_for_stacks)
+        self.assert_stops(result, 4, "--threads 16", "grants no more than", "take fewer")
+        self.assertFalse((self.path / "run").exists())
+
     def test_a_second_signal_does_not_wait(self):
         directory = self.path / "run"
         process = subprocess.Popen(command(directory), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)

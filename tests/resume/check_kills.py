@@ -26,7 +26,8 @@ except ImportError:
     h5py = None
 
 TABLES = ["cells.csv", "aggregates.csv", "series.csv", "aggregate_sizes.csv"]
-MEASURED = ["wall_s", "steps_per_s", "mlups", "peak_rss_bytes", "threads", "started", "resumed"]
+MEASURED = ["wall_s", "steps_per_s", "mlups", "peak_rss_bytes", "threads", "started", "resumed", "files",
+            "summary_xxh3"]
 INTERRUPTED = 130
 
 
@@ -65,8 +66,9 @@ def differences(left_alone, disturbed):
     if h5py is not None:
         expected, got = frames(left_alone), frames(disturbed)
         found += [f"frames.h5 {key}" for key in sorted(expected.keys() | got.keys()) if expected.get(key) != got.get(key)]
+    written = json.loads((disturbed / "summary.json").read_text())["files"]
     left_over = [entry.name for entry in disturbed.iterdir()
-                 if entry.name.endswith(".partial") or entry.name.startswith("frames-")]
+                 if entry.name.endswith(".partial") or entry.name.startswith("frames-") and entry.name not in written]
     return found + [f"{name} is left over" for name in left_over]
 
 

@@ -4,6 +4,7 @@ plugin of the same formula gives.
 usage: check_examples.py SOURCE BUILD CMAKE
 """
 
+import json
 import shlex
 import shutil
 import unittest
@@ -46,6 +47,24 @@ class Examples(Case):
 
     def test_morse_in_plain_c_gives_the_cells_of_the_shipped_morse(self):
         self.check("morse-in-c", "morse")
+
+    def test_a_law_made_of_its_energy_alone_is_a_spring_near_rest(self):
+        """Twice as stiff springs strain half as much, and conformance finds tension and stiffness in order."""
+        prefix = self.install(self.path / "rouleau", "sdk", "program", "plugins")
+        build = self.build(prefix / "share/rouleau/sdk/examples/logarithmic-spring", prefix)
+        self.check_conformance(build)
+
+        def strain(modulus):
+            law = {"model": "org.example.logarithmic-spring", "parameters": {"stretching_modulus": f"{modulus} N/m"}}
+            out = self.path / str(modulus)
+            rows = self.cells(prefix / "bin/rouleau", out, "--plugin-dir", build, *STEPS, "--set",
+                              "/cell_types/rbc/membrane/0=" + json.dumps(law))
+            self.assertIn(law["model"], self.plugin_of(out))
+            return max(abs(row["perimeter_m"] / rows[0]["perimeter_m"] - 1) for row in rows)
+
+        soft, stiff = strain(1e-5), strain(2e-5)
+        self.assertGreater(soft, 1.2 * stiff)
+        self.assertGreater(stiff, 0)
 
     @unittest.skipUnless(shutil.which("rustc"), "there is no rustc; scripts/install-dependencies --full installs it")
     def test_lennard_jones_in_rust_gives_the_cells_of_the_shipped_lennard_jones(self):

@@ -8,7 +8,7 @@
 #include "base/worker.hpp"
 #include "core/domain/images.hpp"
 #include "core/membrane/membranes.hpp"
-#include "plan/placed_cells.hpp"
+#include "plan/solver_setup.hpp"
 #include "plugin/catalog.hpp"
 #include "plugin/handles.hpp"
 #include "unit/periodic_box.hpp"
@@ -77,6 +77,25 @@ inline Membranes biconcave_cells(const std::vector<Placed>& places, int segments
   }
   for (auto* values : {&all.force_x, &all.force_y, &all.velocity_x, &all.velocity_y}) values->assign(all.x.size(), 0.0);
   return all;
+}
+
+/// Two circles of `radius` and radius + gap about one centre, the inner one turned; both with as many segments.
+inline Membranes mating_circles(double radius, double gap, int segments, double angle) {
+  Membranes m;
+  for (const double r : {radius, radius + gap}) {
+    const double turn = 2 * 3.141592653589793 / segments, length = 2 * r * std::sin(turn / 2);
+    m.cells.push_back({{m.node_count(), segments}, 0, 3.141592653589793 * r * r, segments * length});
+    for (int i = 0; i < segments; ++i) {
+      const double at = i * turn + (r == radius ? angle : 0);
+      m.x.push_back(r * std::cos(at));
+      m.y.push_back(r * std::sin(at));
+      m.rest_length.push_back(length);
+      m.rest_weight.push_back(length);
+      m.rest_curvature.push_back(turn / length);
+    }
+  }
+  for (auto* values : {&m.force_x, &m.force_y, &m.velocity_x, &m.velocity_y}) values->assign(m.x.size(), 0.0);
+  return m;
 }
 
 /// Moves every node by smooth waves along the outline of up to `amplitude`, and by up to `noise` on its own.

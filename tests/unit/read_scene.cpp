@@ -1,6 +1,6 @@
 // Reads a scene as `rouleau plan` does, up to and not including its plugins: `read_scene plan SCENE [--set
 // POINTER=VALUE]...` prints the message of the first fault and returns its exit code. For
-// tests/scenes/run_bad_scenes.py and for fuzzing.
+// tests/scenes/check_bad_scenes.py and for fuzzing.
 #include <cstdio>
 #include <string>
 #include <vector>

@@ -78,7 +78,7 @@ inline Summary small_summary() {
   summary.status = "completed";
   summary.title = "two cells";
   summary.precision = "f64";
-  summary.dimensionless = {{"reynolds_physical", 2.5e-4}, {"capillary", std::nan("")}};
+  summary.plan.dimensionless = {{"reynolds_physical", 2.5e-4}, {"capillary", std::nan("")}};
   return summary;
 }
 

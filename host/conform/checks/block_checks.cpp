@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numeric>
 #include <thread>
 
@@ -16,14 +17,16 @@ namespace rouleau::conform {
 
 namespace {
 
-/// Calls test(instance, inputs, call) for each choice and precision until it finds something.
+/// Calls test(instance, inputs, call) for each choice and precision until it finds something; with `count` elements, or
+/// with as many as chance will have it.
 template <class Test>
-std::string first_fault(const Subject& subject, std::size_t count, const Test& test) {
+std::string first_fault(const Subject& subject, std::optional<std::size_t> wanted, const Test& test) {
   Random random = subject.random();
   for (const plugin::ModelInstance& instance : subject.make_each_choice()) {
     for (const bool single : subject.precisions()) {
       Call call;
       call.single = single;
+      const std::size_t count = wanted.value_or(some_count(random));
       std::string fault = test(instance, subject.random_inputs(instance, count, random), call);
       if (!fault.empty()) return fault;
     }
@@ -33,8 +36,8 @@ std::string first_fault(const Subject& subject, std::size_t count, const Test& t
 
 Finding hidden_state(const Subject& subject) {
   Random random = subject.random();
-  const std::string fault = first_fault(
-      subject, ordinary_count, [&](const plugin::ModelInstance& instance, const Values& inputs, const Call& call) {
+  const std::string fault =
+      first_fault(subject, {}, [&](const plugin::ModelInstance& instance, const Values& inputs, const Call& call) {
         const Values first = compute(subject, instance, inputs, call);
         std::string difference = first_difference(first, compute(subject, instance, inputs, call));
         if (!difference.empty()) return "the same call twice: " + difference;
@@ -45,10 +48,15 @@ Finding hidden_state(const Subject& subject) {
         return difference.empty() ? difference : "after other calls: " + difference;
       });
   if (!fault.empty()) return Finding::failed(fault);
-  const plugin::ModelInstance one = subject.make(), another = subject.make();
-  const Values inputs = subject.random_inputs(one, ordinary_count, random);
-  const auto difference = first_difference(compute(subject, one, inputs), compute(subject, another, inputs));
+  auto one = std::make_unique<plugin::ModelInstance>(subject.make());
+  const plugin::ModelInstance another = subject.make();
+  const Values inputs = subject.random_inputs(*one, ordinary_count, random);
+  const Values expected = compute(subject, *one, inputs);
+  auto difference = first_difference(expected, compute(subject, another, inputs));
   if (!difference.empty()) return Finding::failed("two instances with the same parameters: " + difference);
+  one.reset();
+  difference = first_difference(expected, compute(subject, another, inputs));
+  if (!difference.empty()) return Finding::failed("after the end of another instance: " + difference);
   return Finding::passed("the same bits again, after other calls, and from another instance");
 }
 
@@ -61,22 +69,54 @@ Values permuted(const Values& values, const std::vector<std::size_t>& order) {
   return result;
 }
 
+/// Sizes of blocks that add up to `count`: all small ones, those around powers of two, and random ones up to all of it.
+std::vector<std::size_t> random_sizes(std::size_t count, Random& random) {
+  std::vector<std::size_t> sizes;
+  for (std::size_t size = 1; size <= 80; ++size) sizes.push_back(size);
+  for (std::size_t power = 96; power <= 2048; power = power % 3 == 0 ? power / 3 * 4 : power / 2 * 3) {
+    for (const std::size_t size : {power - 1, power, power + 1}) sizes.push_back(size);
+  }
+  for (std::size_t sum = std::accumulate(sizes.begin(), sizes.end(), std::size_t{0}); sum < count;
+       sum += sizes.back()) {
+    sizes.push_back(static_cast<std::size_t>(std::exp(uniform(random, 0, std::log(2100.0)))));
+  }
+  std::shuffle(sizes.begin(), sizes.end(), random);
+  return sizes;
+}
+
+/// Every result beside that of its element alone.
 Finding blocks(const Subject& subject) {
+  constexpr std::size_t count = 5000;  // hosts call with up to some thousands
   Random random = subject.random();
   const std::string fault =
-      first_fault(subject, ordinary_count, [&](const plugin::ModelInstance& instance, const Values& inputs, Call call) {
+      first_fault(subject, count, [&](const plugin::ModelInstance& instance, const Values& inputs, Call call) {
+        call.block = 1;
         const Values expected = compute(subject, instance, inputs, call);
-        for (std::size_t size = 1; size <= 37; ++size) {
-          call.block = size;
-          call.offset = size % 8;
-          call.backwards = size % 2 == 0;
+        const auto differs = [&](const std::string& how) {
           const auto difference = first_difference(expected, compute(subject, instance, inputs, call));
-          if (!difference.empty()) {
-            return "cut into blocks of " + std::to_string(size) + ", " + std::to_string(call.offset) +
-                   " elements from a cache line: " + difference;
+          return difference.empty() ? difference
+                                    : how + ", " + std::to_string(call.offset) +
+                                          " elements from a cache line, and each element by itself: " + difference;
+        };
+        for (call.offset = 0; call.offset < 16; ++call.offset) {
+          // All at once; then one cut of each kind at each alignment.
+          call.sizes.clear();
+          call.block = count;
+          if (auto difference = differs("all at once"); !difference.empty()) return difference;
+          call.block = 1 + random() % 130;
+          call.backwards = random() % 2 == 0;
+          if (auto difference = differs("cut into blocks of " + std::to_string(call.block)); !difference.empty()) {
+            return difference;
           }
+          call.sizes = {static_cast<std::size_t>(std::exp(uniform(random, std::log(130.0), std::log(double(count)))))};
+          call.block = call.sizes[0];
+          if (auto difference = differs("cut into blocks of " + std::to_string(call.block)); !difference.empty()) {
+            return difference;
+          }
+          call.sizes = random_sizes(count, random);
+          if (auto difference = differs("cut into blocks of random sizes"); !difference.empty()) return difference;
         }
-        std::vector<std::size_t> order(ordinary_count);
+        std::vector<std::size_t> order(count);
         std::iota(order.begin(), order.end(), 0);
         std::shuffle(order.begin(), order.end(), random);
         Call whole;
@@ -86,7 +126,7 @@ Finding blocks(const Subject& subject) {
         return difference.empty() ? difference : "in another order: " + difference;
       });
   if (!fault.empty()) return Finding::failed(fault);
-  return Finding::passed("blocks of 1 to 37 elements, any alignment and order, the same bits");
+  return Finding::passed("blocks of 1 to 5000 elements, any alignment and order, the bits of each element by itself");
 }
 
 Finding aliasing(const Subject& subject) {
@@ -94,7 +134,7 @@ Finding aliasing(const Subject& subject) {
     return Finding::skipped("no output of this model may lie over an input");
   }
   const std::string fault =
-      first_fault(subject, ordinary_count, [&](const plugin::ModelInstance& instance, const Values& inputs, Call call) {
+      first_fault(subject, {}, [&](const plugin::ModelInstance& instance, const Values& inputs, Call call) {
         const Values expected = compute(subject, instance, inputs, call);
         call.in_place = true;
         return first_difference(expected, compute(subject, instance, inputs, call));

@@ -19,14 +19,17 @@ namespace {
 /// Rounding of a sum of some fifty products and sums of a node's numbers, in units of epsilon times their sizes.
 constexpr double rounding = 64 * epsilon;
 
+/// How many nodes each trial has.
+constexpr std::size_t nodes = 203;
+
 /// Calls a function with every node of every trial, before and after.
 void for_each_collision(const Subject& subject,
                         const std::function<void(const Trial&, const CollisionNode&, const CollisionNode&)>& see) {
   Random random = subject.random();
   for (const Trial& trial : collision_trials(subject, random)) {
-    const Values inputs = subject.random_inputs(trial.instance, 101, random);
+    const Values inputs = subject.random_inputs(trial.instance, nodes, random);
     const Values outputs = compute(subject, trial.instance, inputs);
-    for (std::size_t i = 0; i < 101; ++i) see(trial, node_of(inputs, i, trial), node_of(outputs, i, trial));
+    for (std::size_t i = 0; i < nodes; ++i) see(trial, node_of(inputs, i, trial), node_of(outputs, i, trial));
   }
 }
 
@@ -76,8 +79,8 @@ Finding velocity(const Subject& subject) {
 /// Equilibria of random densities and velocities of the given size.
 Values equilibria(const Subject& subject, const Trial& trial, double size) {
   Random random = subject.random();
-  Values inputs = subject.random_inputs(trial.instance, 101, random);
-  for (std::size_t i = 0; i < 101; ++i) {
+  Values inputs = subject.random_inputs(trial.instance, nodes, random);
+  for (std::size_t i = 0; i < nodes; ++i) {
     CollisionNode node;
     const double density = size * uniform(random, -1, 1);
     node.set_equilibrium(density, {size * uniform(random, -1, 1), size * uniform(random, -1, 1)},
@@ -94,7 +97,7 @@ double change_of_equilibria(const Subject& subject, const Trial& trial, double s
   call.absent = {"force"};
   const Values outputs = compute(subject, trial.instance, inputs, call);
   double most = 0;
-  for (std::size_t i = 0; i < 101; ++i) {
+  for (std::size_t i = 0; i < nodes; ++i) {
     const CollisionNode before = node_of(inputs, i, trial), after = node_of(outputs, i, trial);
     for (std::size_t q = 0; q < 9; ++q) {
       const double change = std::abs(after.f[q] - before.f[q]);
@@ -140,11 +143,11 @@ Finding stress_relaxation(const Subject& subject) {
   for (const Trial& trial : collision_trials(subject, random)) {
     for (const std::set<std::string>& absent :
          {std::set<std::string>{}, {"force"}, {"relaxation_rate"}, {"force", "relaxation_rate"}}) {
-      const Values inputs = subject.random_inputs(trial.instance, 101, random);
+      const Values inputs = subject.random_inputs(trial.instance, nodes, random);
       Call call;
       call.absent = absent;
       const Values outputs = compute(subject, trial.instance, inputs, call);
-      for (std::size_t i = 0; i < 101; ++i) {
+      for (std::size_t i = 0; i < nodes; ++i) {
         CollisionNode before = node_of(inputs, i, trial);
         if (absent.contains("force")) before.force = {};
         if (absent.contains("relaxation_rate")) before.relaxation_rate = trial.setting.relaxation_rate;
@@ -198,14 +201,14 @@ Finding symmetry(const Subject& subject) {
   Random random = subject.random();
   Worst worst;
   for (const Trial& trial : collision_trials(subject, random)) {
-    const Values inputs = subject.random_inputs(trial.instance, 101, random);
+    const Values inputs = subject.random_inputs(trial.instance, nodes, random);
     const Values outputs = compute(subject, trial.instance, inputs);
     for (int k = 1; k < 8; ++k) {
       const SquareSymmetry image{k % 4, k >= 4};
       Values turned = inputs;
-      for (std::size_t i = 0; i < 101; ++i) image(node_of(inputs, i, trial)).store(turned, i);
+      for (std::size_t i = 0; i < nodes; ++i) image(node_of(inputs, i, trial)).store(turned, i);
       const Values results = compute(subject, trial.instance, turned);
-      for (std::size_t i = 0; i < 101; ++i) {
+      for (std::size_t i = 0; i < nodes; ++i) {
         const CollisionNode expected = image(node_of(outputs, i, trial)), found = node_of(results, i, trial);
         const double limit = rounding * (expected.size() + node_of(inputs, i, trial).size());
         worst.add(found.distance(expected), limit,
@@ -230,10 +233,10 @@ Finding reductions(const Subject& subject) {
   Random random = subject.random();
   Worst worst;
   for (const Trial& trial : collision_trials(subject, random)) {
-    Values inputs = subject.random_inputs(trial.instance, 101, random);
+    Values inputs = subject.random_inputs(trial.instance, nodes, random);
     if (subject.manifest().needs_input("relaxation_rate")) {
       Values even = inputs;
-      even["relaxation_rate"].assign(101, trial.setting.relaxation_rate);
+      even["relaxation_rate"].assign(nodes, trial.setting.relaxation_rate);
       Call call;
       call.absent = {"relaxation_rate"};
       compare(worst, trial, inputs, compute(subject, trial.instance, inputs, call),
@@ -241,7 +244,7 @@ Finding reductions(const Subject& subject) {
               "without relaxation rates and with that of the setup everywhere");
     }
     if (subject.manifest().needs_input("force")) {
-      for (const char* name : {"force.0", "force.1"}) inputs[name].assign(101, 0);
+      for (const char* name : {"force.0", "force.1"}) inputs[name].assign(nodes, 0);
       Call call;
       call.absent = {"force"};
       compare(worst, trial, inputs, compute(subject, trial.instance, inputs, call),
@@ -249,7 +252,7 @@ Finding reductions(const Subject& subject) {
     }
     if (!trial.setting.inertia) continue;
     // The momentum is taken away: what is left of the velocity is rounding.
-    for (std::size_t i = 0; i < 101; ++i) {
+    for (std::size_t i = 0; i < nodes; ++i) {
       CollisionNode node = node_of(inputs, i, trial);
       node.remove_momentum();
       node.store(inputs, i);
@@ -271,7 +274,7 @@ Finding precision(const Subject& subject) {
   Random random = subject.random();
   Worst worst;
   for (const Trial& trial : collision_trials(subject, random)) {
-    Values inputs = subject.random_inputs(trial.instance, 101, random);
+    Values inputs = subject.random_inputs(trial.instance, nodes, random);
     for (auto& [name, values] : inputs) {
       for (double& value : values) value = static_cast<float>(value);
     }

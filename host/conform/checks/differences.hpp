@@ -27,6 +27,11 @@ struct Decided {
 void compare_derivative(Worst& worst, Decided& decided, const Subject& subject, const Trial& trial,
                         const Values& inputs, const DerivativeClaim& claim);
 
+/// Holds it against the work over small steps all along a range: no jump of the function, and no stretch of it where
+/// something else holds, escapes between the places that compare_derivative looks at.
+void compare_work(Worst& worst, const Subject& subject, const Trial& trial, const Values& element,
+                  const DerivativeClaim& claim, double low, double high);
+
 /// The slope at each element, from the step with the smallest error bound.
 std::vector<Slope> slopes(const Subject& subject, const Trial& trial, const Values& inputs, const std::string& function,
                           const std::string& variable);

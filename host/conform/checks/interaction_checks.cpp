@@ -18,7 +18,13 @@ Finding compare(const Subject& subject, const DerivativeClaim& claim) {
   Worst worst;
   Decided decided;
   for (const Trial& trial : trials(subject, random, Subject::typical_setting())) {
-    compare_derivative(worst, decided, subject, trial, subject.random_inputs(trial.instance, 64, random), claim);
+    compare_derivative(worst, decided, subject, trial, subject.random_inputs(trial.instance, 256, random), claim);
+    if (claim.function != "energy" || !subject.manifest().state.empty()) continue;
+    const double cutoff = trial.instance.interaction().cutoff(trial.instance.self());
+    for (const auto& [low, high] : {std::pair{0.02, 0.2}, {0.2, 1.0}, {0.99, 1.0}}) {
+      compare_work(worst, subject, trial, subject.random_inputs(trial.instance, 1, random), claim, low * cutoff,
+                   high * cutoff);
+    }
   }
   if (decided.yes < decided.no && worst.passes()) {
     return Finding::warned(claim.function + " is too rough for differences to tell at " + std::to_string(decided.no) +

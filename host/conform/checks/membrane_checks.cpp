@@ -19,10 +19,19 @@ Finding compare(const Subject& subject, const std::vector<DerivativeClaim>& clai
   Worst worst;
   Decided decided;
   for (const Trial& trial : trials(subject, random, Subject::typical_setting())) {
-    const Values inputs = subject.random_inputs(trial.instance, 64, random);
+    const Values inputs = subject.random_inputs(trial.instance, 256, random);
     for (const DerivativeClaim& claim : claims) {
       if (inputs.contains(claim.variable)) {
         compare_derivative(worst, decided, subject, trial, inputs, claim);
+        if (claim.function != "energy" || !subject.manifest().state.empty()) continue;
+        const double usual = claim.variable == "curvature" ? 0.5 : inputs.at(claim.variable)[0];
+        const auto [low, high] = claim.variable == "stretch"     ? std::pair{0.25, 4.0}
+                                 : claim.variable == "curvature" ? std::pair{-usual, usual}
+                                                                 : std::pair{0.25 * usual, 2 * usual};
+        const double middle = low + uniform(random, 0.1, 0.9) * (high - low);
+        for (const auto& [from, to] : {std::pair{low, middle}, {middle, high}}) {
+          compare_work(worst, subject, trial, subject.random_inputs(trial.instance, 1, random), claim, from, to);
+        }
         continue;
       }
       // It cannot depend on what it is not given.

@@ -1,6 +1,7 @@
 #include "trials.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "base/text.hpp"
 #include "plugin/quantities.hpp"
@@ -21,7 +22,7 @@ std::string differences(const Subject& subject, const std::vector<double>& value
       words.push_back(parameter.name + ' ' + parameter.choices[static_cast<std::size_t>(values[i])]);
     } else {
       const std::string unit = parameter.unit == "1" ? "" : ' ' + parameter.unit;
-      words.push_back(parameter.name + ' ' + number(values[i] / units.scale(parameter.unit), 3) + unit);
+      words.push_back(parameter.name + ' ' + number(values[i] / units.scale(parameter.unit), 10) + unit);
     }
   }
   return words.empty() ? "" : " with " + listed(words);
@@ -49,13 +50,15 @@ std::vector<Trial> trials(const Subject& subject, Random& random, const plugin::
   return all;
 }
 
-std::vector<Trial> collision_trials(const Subject& subject, Random& random) {
+std::vector<Trial> collision_trials(const Subject& subject, Random& random, int draws) {
   std::vector<Trial> all;
-  for (const bool inertia : {false, true}) {
+  const std::array<double, 3> rates = {uniform(random, 0.1, 1.95), 1, random() % 2 == 0 ? 1.999999 : 0.01};
+  for (int i = 0; i < 6; ++i) {
+    const bool inertia = i % 2 == 1;
     plugin::ModelSetting setting = Subject::typical_setting();
     setting.inertia = inertia;
-    setting.relaxation_rate = uniform(random, 0.1, 1.95);
-    for (Trial& trial : trials(subject, random, setting)) {
+    setting.relaxation_rate = rates[i / 2];
+    for (Trial& trial : trials(subject, random, setting, i < 2 ? draws : 0)) {
       trial.words = (inertia ? " (inertia on)" : " (inertia off)") + trial.words;
       all.push_back(std::move(trial));
     }
@@ -68,10 +71,10 @@ units::Dimension dimension_of_array(const Subject& subject, const std::string& a
   return plugin::dimension_of(subject.manifest(), array);
 }
 
-std::string in_si(const Subject& subject, const plugin::ModelSetting& setting, const std::string& name,
-                  double lattice) {
+std::string in_si(const Subject& subject, const plugin::ModelSetting& setting, const std::string& name, double lattice,
+                  int digits) {
   const std::string unit = plugin::unit_of(subject.manifest(), name);
-  return number(setting.units.to_si(lattice, plugin::dimension_of(subject.manifest(), name)), 4) +
+  return number(setting.units.to_si(lattice, plugin::dimension_of(subject.manifest(), name)), digits) +
          (unit.empty() ? "" : ' ' + unit);
 }
 
@@ -79,12 +82,14 @@ std::string place(const Subject& subject, const plugin::ModelSetting& setting, c
                   std::size_t element) {
   std::vector<std::string> words;
   for (const std::string& name : subject.manifest().needs) {
-    words.push_back(name + ' ' + in_si(subject, setting, name, inputs.at(name)[element]));
+    for (const std::string& array : arrays_of(subject.manifest().kind, name)) {
+      words.push_back(array + ' ' + in_si(subject, setting, name, inputs.at(array)[element], 10));
+    }
   }
   for (std::size_t k = 0; k < subject.manifest().state.size(); ++k) {
     const plugin::StateVariable& variable = subject.manifest().state[k];
     const double value = inputs.at("state." + std::to_string(k))[element];
-    words.push_back(variable.name + ' ' + number(setting.units.to_si(value, variable.dimension), 4));
+    words.push_back(variable.name + ' ' + number(setting.units.to_si(value, variable.dimension), 10));
   }
   return listed(words);
 }

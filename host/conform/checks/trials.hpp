@@ -19,11 +19,13 @@ struct Trial {
 /// out.
 std::vector<Trial> trials(const Subject& subject, Random& random, const plugin::ModelSetting& setting, int draws = 4);
 
-/// A collision operator's trials without and with inertia, each at a random relaxation rate of the setup.
-std::vector<Trial> collision_trials(const Subject& subject, Random& random);
+/// A collision operator's trials without and with inertia, each at a random relaxation rate of the setup: one, one near
+/// its limits, or 1, where much cancels.
+std::vector<Trial> collision_trials(const Subject& subject, Random& random, int draws = 4);
 
 /// A number of a trial's lattice in SI with its unit, "1.2e-05 N/m"; `name` is of "needs" or "gives".
-std::string in_si(const Subject& subject, const plugin::ModelSetting& setting, const std::string& name, double lattice);
+std::string in_si(const Subject& subject, const plugin::ModelSetting& setting, const std::string& name, double lattice,
+                  int digits = 4);
 
 /// All inputs of one element, "stretch 1.2, stretch_rate 3 1/s". State is named as in the manifest.
 std::string place(const Subject& subject, const plugin::ModelSetting& setting, const Values& inputs,

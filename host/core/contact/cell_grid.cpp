@@ -59,7 +59,7 @@ CellGrid::CellGrid(const std::vector<Bounds>& bounds, double reach, const Domain
     width = std::max(width, b.x_max - b.x_min);
     height = std::max(height, b.y_max - b.y_min);
   }
-  // Room for rounding: a pair at exactly the reach must not fall between two grid.
+  // Room for rounding: a pair at exactly the reach must not fall between two bins.
   const double room = reach * (1 + 1e-9) + 1e-6;
   x_ = make_axis(middles.x_min, middles.x_max, width + room, domain.period(0));
   y_ = make_axis(middles.y_min, middles.y_max, height + room, domain.period(1));

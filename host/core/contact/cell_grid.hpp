@@ -7,7 +7,7 @@
 
 namespace rouleau::core {
 
-/// Cells sorted into grid by the middle of their bounds. A bin is as large as the largest cell and the reach together,
+/// Cells sorted into bins by the middle of their bounds. A bin is as large as the largest cell and the reach together,
 /// so that whatever is within reach of a cell lies in its own bin or in one of the eight around it, over periodic
 /// borders too. Building and asking cost a time proportional to the number of cells.
 class CellGrid {
@@ -15,7 +15,7 @@ class CellGrid {
   /// Bounds that are not usable() are near nothing.
   CellGrid(const std::vector<Bounds>& bounds, double reach, const Domain<2>& domain);
 
-  /// Sets `near` to the cells in the grid around that of `cell`, itself included, each once, in no particular order.
+  /// Sets `near` to the cells in the bins around that of `cell`, itself included, each once, in no particular order.
   void find(int cell, std::vector<int>& near) const;
 
  private:
@@ -26,7 +26,7 @@ class CellGrid {
     [[nodiscard]] int bin(double middle) const;
   };
   static Axis make_axis(double least, double most, double width, double period);
-  /// Calls function(bin) for the grid around `bin` along an axis, each once.
+  /// Calls function(bin) for the bins around `bin` along an axis, each once.
   template <class Function>
   static void for_around(const Axis& axis, int bin, Function function);
 

@@ -57,9 +57,9 @@ struct Search {
     for (int p = 0; p < packs; ++p) {
       const Closest<S>& c = closest[p];
       const int at = count + p * S::size;
-      const SquareRoot<S> distance = sqrt_and_inverse(max(c.square, S(no_distance * no_distance)));
-      nearest = min(distance.root, nearest);
-      farthest = max(distance.root, farthest);
+      const SquareRoot<S> distance = sqrt_and_inverse(max(S(no_distance * no_distance), c.square));
+      nearest = min(nearest, distance.root);
+      farthest = max(farthest, distance.root);
       c.along.store(t.along + at);
       distance.root.store(t.distance + at);
       (c.x * distance.inverse).store(t.direction_x + at);
@@ -133,38 +133,27 @@ struct Search {
 
 }  // namespace
 
+void ContactList::make_room(std::size_t pairs, std::size_t contacts) {
+  ranges.resize(pairs);
+  if (contacts <= node.size()) return;
+  for (auto* values : {&node, &segment}) values->resize(contacts);
+  for (auto* values : {&along, &distance, &direction_x, &direction_y}) values->resize(contacts);
+}
+
 Contacts::Contacts(const Membranes& membranes, Cutoffs cutoffs, Domain<2> domain)
-    : neighbours_(membranes, std::move(cutoffs), domain), segments_(membranes), lists_(membranes.cells.size()) {}
+    : neighbours_(membranes, std::move(cutoffs), domain), segments_(membranes) {}
 
-void Contacts::run(Worker worker, int phase, const Membranes& membranes) {
-  if (phase == 0) {
-    neighbours_.measure(worker, membranes);
-    segments_.update(worker, membranes);
-    return;
-  }
-  neighbours_.refresh(worker, membranes, segments_);
-  const bool renewed = neighbours_.renewed();
-  const Range cells = worker.share(membranes.cell_count());
-  for (int cell = cells.begin; cell < cells.end; ++cell) {
-    if (renewed) reserve(cell);
-    if (membranes.owns(cell)) search(membranes, cell);
-  }
+void Contacts::measure(Worker worker, const Membranes& membranes) {
+  neighbours_.measure(worker, membranes);
+  segments_.update(worker, membranes);
 }
 
-void Contacts::reserve(int cell) {
-  ContactList& list = lists_[cell];
-  const NeighbourList::CandidateList& candidates = neighbours_.list(cell);
-  list.ranges.resize(candidates.pairs.size());
-  const std::size_t room = candidates.groups.size() * NeighbourList::group + SegmentTable::margin;
-  if (room <= list.node.size()) return;
-  for (auto* values : {&list.node, &list.segment}) values->resize(room);
-  for (auto* values : {&list.along, &list.distance, &list.direction_x, &list.direction_y}) values->resize(room);
-}
+void Contacts::refresh(Worker worker, const Membranes& membranes) { neighbours_.refresh(worker, membranes, segments_); }
 
-void Contacts::search(const Membranes& membranes, int cell) {
+void Contacts::find(int cell, const Membranes& membranes, ContactList& list) const {
   static const auto function = Dispatch<Search, SearchTask*>::pick();
-  ContactList& list = lists_[cell];
   const NeighbourList::CandidateList& candidates = neighbours_.list(cell);
+  list.make_room(candidates.pairs.size(), candidates.groups.size() * NeighbourList::group + SegmentTable::margin);
   const CellRange& own = membranes.cells[cell];
   SearchTask task{};
   task.x = segments_.x.data(), task.y = segments_.y.data();

@@ -19,7 +19,9 @@ struct ContactList {
   std::vector<double> distance;                  ///< |X - P|, at least `least_distance`
   std::vector<double> direction_x, direction_y;  ///< (X - P) / |X - P|; outward normal of the segment where X = P
   std::vector<Range> ranges;
-  int count = 0;
+  int count = 0;  ///< arrays may be longer
+
+  void make_room(std::size_t pairs, std::size_t contacts);
 
   /// Potentials are promised a positive distance.
   static constexpr double least_distance = 1e-12;
@@ -30,21 +32,20 @@ class Contacts {
  public:
   Contacts(const Membranes& membranes, Cutoffs cutoffs, Domain<2> domain);
 
-  static constexpr int phases = 2;
-  /// Phases 0 and 1, a barrier after each; then contacts of this worker's cells are in list(cell).
-  void run(Worker worker, int phase, const Membranes& membranes);
+  /// Pass over cells: their segments, and whether a node has moved too far for the neighbour lists.
+  void measure(Worker worker, const Membranes& membranes);
+  /// Pass over cells, after a barrier: their neighbour lists, if they have to be made anew.
+  void refresh(Worker worker, const Membranes& membranes);
+  /// Then: sets `list` to the contacts of a cell. One list serves a worker for cell after cell: kept for all of them
+  /// they would leave the cache before they are read.
+  void find(int cell, const Membranes& membranes, ContactList& list) const;
 
-  [[nodiscard]] const ContactList& list(int cell) const { return lists_[cell]; }
   [[nodiscard]] NeighbourList& neighbours() { return neighbours_; }
   [[nodiscard]] const NeighbourList& neighbours() const { return neighbours_; }
 
  private:
-  void reserve(int cell);
-  void search(const Membranes& membranes, int cell);
-
   NeighbourList neighbours_;
   SegmentTable segments_;
-  std::vector<ContactList> lists_;
 };
 
 }  // namespace rouleau::core

@@ -12,16 +12,16 @@ namespace {
 
 struct Segment {
   int node, next;  // indices in Membranes
-  Eigen::Vector2d from, to;
+  Vec<2> from, to;
   [[nodiscard]] double x_min() const { return std::min(from.x(), to.x()); }
   [[nodiscard]] double x_max() const { return std::max(from.x(), to.x()); }
 };
 
 /// Segments of a cell, moved, that touch a box; in order of their left ends.
-void collect(const Membranes& membranes, const CellRange& cell, const Eigen::Vector2d& move, const Bounds& box,
+void collect(const Membranes& membranes, const CellRange& cell, const Vec<2>& move, const Bounds& box,
              std::vector<Segment>& segments) {
   segments.clear();
-  const auto node = [&](int i) -> Eigen::Vector2d { return Eigen::Vector2d(membranes.x[i], membranes.y[i]) + move; };
+  const auto node = [&](int i) -> Vec<2> { return Vec<2>(membranes.x[i], membranes.y[i]) + move; };
   for (int i = cell.first; i < cell.end(); ++i) {
     const int next = cell.next(i);
     const Segment segment{i, next, node(i), node(next)};
@@ -37,18 +37,18 @@ void collect(const Membranes& membranes, const CellRange& cell, const Eigen::Vec
 
 /// Where two segments cross. A point exactly on the other segment's line counts as outside of it, so that outlines that
 /// only touch from outside do not cross, and a crossing through a node is still found once.
-std::optional<Eigen::Vector2d> intersection(const Segment& a, const Segment& b) {
-  const Eigen::Vector2d u = a.to - a.from, v = b.to - b.from;
+std::optional<Vec<2>> intersection(const Segment& a, const Segment& b) {
+  const Vec<2> u = a.to - a.from, v = b.to - b.from;
   const double b_from = core::cross(u, b.from - a.from), b_to = core::cross(u, b.to - a.from);
   if ((b_from > 0) == (b_to > 0)) return std::nullopt;
   const double a_from = core::cross(v, a.from - b.from), a_to = core::cross(v, a.to - b.from);
   if ((a_from > 0) == (a_to > 0)) return std::nullopt;
-  return Eigen::Vector2d(a.from + a_from / (a_from - a_to) * u);
+  return Vec<2>(a.from + a_from / (a_from - a_to) * u);
 }
 
 struct Found {
   int node;
-  Eigen::Vector2d place;
+  Vec<2> place;
 };
 
 /// First crossing between two lists sorted by their left ends; `same`: both are the same list of one cell.
@@ -80,32 +80,32 @@ class PairCheck {
   std::optional<Crossing> operator()(int a, int b, ImageShift shift) {
     const CellRange& cell = membranes_.cells[a];
     const CellRange& other = membranes_.cells[b];
-    const Eigen::Vector2d move(shift.x * domain_.period(0), shift.y * domain_.period(1));
+    const Vec<2> move(shift.x * domain_.period(0), shift.y * domain_.period(1));
     const Bounds own = core::bounds(membranes_, cell);
     Bounds moved = core::bounds(membranes_, other);
     moved = {moved.x_min + move.x(), moved.x_max + move.x(), moved.y_min + move.y(), moved.y_max + move.y()};
     const Bounds common{std::max(own.x_min, moved.x_min), std::min(own.x_max, moved.x_max),
                         std::max(own.y_min, moved.y_min), std::min(own.y_max, moved.y_max)};
     const bool same = a == b && shift == ImageShift{};
-    collect(membranes_, cell, Eigen::Vector2d::Zero(), common, own_);
+    collect(membranes_, cell, Vec<2>::Zero(), common, own_);
     if (!same) collect(membranes_, other, move, common, other_);
     if (const auto found = sweep(own_, same ? own_ : other_, same)) {
       return Crossing{a, b, shift, found->node, found->place, false};
     }
     if (same) return std::nullopt;
     if (contains(moved, own)) {
-      const Eigen::Vector2d node = first_node(cell);
+      const Vec<2> node = first_node(cell);
       if (core::depth_inside(membranes_, other, node - move) > 0) return Crossing{a, b, shift, cell.first, node, true};
     }
     if (contains(own, moved)) {
-      const Eigen::Vector2d node = first_node(other);
+      const Vec<2> node = first_node(other);
       if (core::depth_inside(membranes_, cell, node + move) > 0) return Crossing{b, a, -shift, other.first, node, true};
     }
     return std::nullopt;
   }
 
  private:
-  [[nodiscard]] Eigen::Vector2d first_node(const CellRange& cell) const {
+  [[nodiscard]] Vec<2> first_node(const CellRange& cell) const {
     return {membranes_.x[cell.first], membranes_.y[cell.first]};
   }
   const Membranes& membranes_;

@@ -1,20 +1,20 @@
 // Finds membranes that cross: a cell through itself, through another, or inside another.
 #pragma once
 
-#include <Eigen/Core>
 #include <optional>
 
 #include "core/domain/images.hpp"
+#include "core/domain/vec.hpp"
 #include "core/membrane/membranes.hpp"
 
 namespace rouleau::core {
 
 struct Crossing {
-  int cell, other;        ///< indices into Membranes::cells; equal: with itself or its own image
-  ImageShift shift;       ///< of `other`
-  int node;               ///< index in Membranes: first node of the crossing segment of `cell`, or the node inside
-  Eigen::Vector2d place;  ///< where, in lattice units near `cell`
-  bool inside;            ///< the outlines do not cross, but `cell` lies inside `other`
+  int cell, other;   ///< indices into Membranes::cells; equal: with itself or its own image
+  ImageShift shift;  ///< of `other`
+  int node;          ///< index in Membranes: first node of the crossing segment of `cell`, or the node inside
+  Vec<2> place;      ///< where, in lattice units near `cell`
+  bool inside;       ///< the outlines do not cross, but `cell` lies inside `other`
 };
 
 /// The first crossing in order of cells, or none. Outlines that only touch do not cross.

@@ -1,7 +1,6 @@
 #include "interaction_forces.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <string>
 
 namespace rouleau::core {
@@ -12,7 +11,9 @@ std::vector<double> cutoffs_of(const std::vector<Interaction>& interactions) {
   std::vector<double> cutoffs;
   cutoffs.reserve(interactions.size());
   for (const Interaction& interaction : interactions) {
-    cutoffs.push_back(interaction.potential.table->cutoff(interaction.potential.self.get()));
+    const Potential& potential = interaction.potential;
+    cutoffs.push_back(
+        call_foreign(potential.id, "cutoff", [&] { return potential.table->cutoff(potential.self.get()); }));
   }
   return cutoffs;
 }
@@ -42,6 +43,7 @@ InteractionForces::InteractionForces(Membranes& membranes, std::vector<Interacti
       cutoffs_(cutoffs_of(interactions_)),
       contacts_(membranes, pair_cutoffs(membranes, interactions_, cutoffs_), domain),
       scratch_(membranes.cells.size()),
+      reactions_(membranes.cells.size()),
       variables_(interactions_.size()) {
   for (const Interaction& interaction : interactions_) {
     const Potential& potential = interaction.potential;
@@ -58,17 +60,17 @@ void InteractionForces::run(Worker worker, int phase, Membranes& membranes) {
   const Range cells = worker.share(static_cast<int>(membranes.cells.size()));
   switch (phase) {
     case 0:
-      contacts_.run(worker, 0, membranes);
+      contacts_.measure(worker, membranes);
       break;
     case 1:
-      contacts_.run(worker, 1, membranes);
+      contacts_.refresh(worker, membranes);
       for (int cell = cells.begin; cell < cells.end; ++cell) {
         if (!membranes.owns(cell)) {
           make_room_for_reactions(cell);
           continue;
         }
-        compute_forces(cell, membranes);
-        act(cell, membranes);
+        compute_forces(cell, membranes, scratch_[cells.begin]);
+        act(cell, membranes, scratch_[cells.begin]);
       }
       break;
     default:
@@ -81,19 +83,19 @@ void InteractionForces::run(Worker worker, int phase, Membranes& membranes) {
 }
 
 // Pairs are listed by type of the other cell, so that a potential gets its distances in one piece.
-InteractionForces::TypeRange InteractionForces::next_range(int cell, const Membranes& membranes,
-                                                           std::size_t& pair) const {
+InteractionForces::TypeRange InteractionForces::next_range(int cell, const std::vector<Range>& ranges,
+                                                           const Membranes& membranes, std::size_t& pair) const {
   const std::vector<NeighbourList::Pair>& pairs = contacts_.neighbours().list(cell).pairs;
-  const std::vector<Range>& ranges = contacts_.list(cell).ranges;
-  const auto type_of = [&](std::size_t p) { return membranes.cells[static_cast<std::size_t>(pairs[p].other)].type; };
+  const auto type_of = [&](std::size_t p) { return membranes.cells[pairs[p].other].type; };
   TypeRange result{type_of(pair), ranges[pair]};
   for (++pair; pair < pairs.size() && type_of(pair) == result.type; ++pair) result.contacts.end = ranges[pair].end;
   return result;
 }
 
 /// Adds (or, if it is the first, sets) one potential's force or energy at the contacts to `result`.
-void InteractionForces::apply(std::size_t potential, const ContactList& list, Range contacts, double* result,
-                              bool energy, bool first, Scratch& scratch) const {
+void InteractionForces::apply(std::size_t potential, Range contacts, double* result, bool energy, bool first,
+                              Scratch& scratch) const {
+  const ContactList& list = scratch.contacts;
   const Potential& model = interactions_[potential].potential;
   const double cutoff = cutoffs_[potential];
   const int own_type = interactions_[potential].between[0], other_type = interactions_[potential].between[1];
@@ -103,9 +105,9 @@ void InteractionForces::apply(std::size_t potential, const ContactList& list, Ra
   if (!all) {
     count = 0;
     for (int i = contacts.begin; i < contacts.end; ++i) {
-      scratch.distance[static_cast<std::size_t>(count)] = list.distance[static_cast<std::size_t>(i)];
-      scratch.contact[static_cast<std::size_t>(count)] = i;
-      count += list.distance[static_cast<std::size_t>(i)] <= cutoff ? 1 : 0;
+      scratch.distance[count] = list.distance[i];
+      scratch.contact[count] = i;
+      count += list.distance[i] <= cutoff ? 1 : 0;
     }
     distance = scratch.distance.data();
   }
@@ -120,11 +122,10 @@ void InteractionForces::apply(std::size_t potential, const ContactList& list, Ra
   block.distance = distance;
   give_velocities(potential, contacts.begin, count, all, scratch, block);
   (energy ? block.energy : block.force) = direct ? result + contacts.begin : scratch.law.data();
-  model.table->compute(model.self.get(), &block);
+  model.compute(&block);
   if (direct) return;
   for (int i = 0; i < count; ++i) {
-    result[all ? contacts.begin + i : scratch.contact[static_cast<std::size_t>(i)]] +=
-        scratch.law[static_cast<std::size_t>(i)];
+    result[all ? contacts.begin + i : scratch.contact[i]] += scratch.law[i];
   }
 }
 
@@ -135,9 +136,7 @@ void InteractionForces::give_velocities(std::size_t potential, int first, int co
     if (!needed) return;
     to = values.data() + first;
     if (all) return;
-    for (auto k = std::size_t{0}; k < static_cast<std::size_t>(count); ++k) {
-      chosen[k] = values[static_cast<std::size_t>(scratch.contact[k])];
-    }
+    for (int k = 0; k < count; ++k) chosen[k] = values[scratch.contact[k]];
     to = chosen.data();
   };
   give(traits_[potential].normal_velocity, scratch.velocities.normal, scratch.normal, block.normal_velocity);
@@ -145,9 +144,10 @@ void InteractionForces::give_velocities(std::size_t potential, int first, int co
        block.tangential_velocity);
 }
 
-void InteractionForces::prepare(int cell, const Membranes& membranes, Scratch& scratch) const {
-  const ContactList& list = contacts_.list(cell);
-  if (scratch.law.size() < list.node.size()) {  // only after the candidates were listed anew
+void InteractionForces::find_contacts(int cell, const Membranes& membranes, Scratch& scratch) const {
+  const ContactList& list = scratch.contacts;
+  contacts_.find(cell, membranes, scratch.contacts);
+  if (scratch.law.size() < list.node.size()) {
     for (auto* values : {&scratch.force, &scratch.law, &scratch.distance}) values->resize(list.node.size());
     for (auto* values : {&scratch.normal, &scratch.tangential}) values->resize(list.node.size());
     scratch.contact.resize(list.node.size());
@@ -157,22 +157,21 @@ void InteractionForces::prepare(int cell, const Membranes& membranes, Scratch& s
   }
 }
 
-void InteractionForces::compute_forces(int cell, Membranes& membranes) {
-  const ContactList& list = contacts_.list(cell);
-  Scratch& scratch = scratch_[static_cast<std::size_t>(cell)];
-  prepare(cell, membranes, scratch);
+void InteractionForces::compute_forces(int cell, Membranes& membranes, Scratch& scratch) {
+  const ContactList& list = scratch.contacts;
+  find_contacts(cell, membranes, scratch);
   make_room_for_reactions(cell);
-  const int type = membranes.cells[static_cast<std::size_t>(cell)].type;
+  const int type = membranes.cells[cell].type;
   std::vector<ContactState> none;
-  NextState next{has_state_ ? membranes.contacts.of_cell[static_cast<std::size_t>(cell)] : none};
+  NextState next{has_state_ ? membranes.contacts.of_cell[cell] : none};
   for (std::size_t pair = 0; pair < list.ranges.size();) {
     const std::size_t first_pair = pair;
-    const TypeRange range = next_range(cell, membranes, pair);
+    const TypeRange range = next_range(cell, list.ranges, membranes, pair);
     bool first = true;
     for (std::size_t p = 0; p < interactions_.size(); ++p) {
       if (!acts_between(interactions_[p], type, range.type)) continue;
       if (variables_[p].empty()) {
-        apply(p, list, range.contacts, scratch.force.data(), false, first, scratch);
+        apply(p, range.contacts, scratch.force.data(), false, first, scratch);
       } else {
         if (first) {
           std::fill(scratch.force.data() + range.contacts.begin, scratch.force.data() + range.contacts.end, 0.0);
@@ -189,23 +188,21 @@ void InteractionForces::compute_forces(int cell, Membranes& membranes) {
 
 void InteractionForces::make_room_for_reactions(int cell) {
   const auto touched = static_cast<std::size_t>(contacts_.neighbours().list(cell).touched);
-  scratch_[cell].reaction_x.assign(touched, 0.0);
-  scratch_[cell].reaction_y.assign(touched, 0.0);
+  reactions_[cell].x.assign(touched, 0.0);
+  reactions_[cell].y.assign(touched, 0.0);
 }
 
-void InteractionForces::act(int cell, Membranes& membranes) {
-  const ContactList& list = contacts_.list(cell);
+void InteractionForces::act(int cell, Membranes& membranes, const Scratch& scratch) {
+  const ContactList& list = scratch.contacts;
   const std::vector<NeighbourList::Pair>& pairs = contacts_.neighbours().list(cell).pairs;
-  Scratch& scratch = scratch_[static_cast<std::size_t>(cell)];
   const double *force = scratch.force.data(), *weight = membranes.rest_weight.data(), *along = list.along.data();
   double *force_x = membranes.force_x.data(), *force_y = membranes.force_y.data();
   const int *node = list.node.data(), *segment = list.segment.data();
   const double *direction_x = list.direction_x.data(), *direction_y = list.direction_y.data();
   for (std::size_t p = 0; p < pairs.size(); ++p) {
     const NeighbourList::Pair& pair = pairs[p];
-    const int to_touched =
-        pair.reaction - pair.touched.begin - membranes.cells[static_cast<std::size_t>(pair.other)].first;
-    double *reaction_x = scratch.reaction_x.data(), *reaction_y = scratch.reaction_y.data();
+    const int to_touched = pair.reaction - pair.touched.begin - membranes.cells[pair.other].first;
+    double *reaction_x = reactions_[cell].x.data(), *reaction_y = reactions_[cell].y.data();
     const auto act_at = [&](int i) {
       const double f = 0.5 * weight[node[i]] * force[i], fx = f * direction_x[i], fy = f * direction_y[i];
       const int begin = segment[i] + to_touched;
@@ -228,13 +225,12 @@ void InteractionForces::act(int cell, Membranes& membranes) {
 }
 
 void InteractionForces::take_reactions(int cell, Membranes& membranes) const {
-  const CellRange& own = membranes.cells[static_cast<std::size_t>(cell)];
+  const CellRange& own = membranes.cells[cell];
   for (const NeighbourList::Pair& pair : contacts_.neighbours().list(cell).pairs) {
-    const NeighbourList::Pair& opposite =
-        contacts_.neighbours().list(pair.other).pairs[static_cast<std::size_t>(pair.reverse)];
-    const Scratch& scratch = scratch_[static_cast<std::size_t>(pair.other)];
-    const double* reaction_x = scratch.reaction_x.data() + opposite.reaction - opposite.touched.begin;
-    const double* reaction_y = scratch.reaction_y.data() + opposite.reaction - opposite.touched.begin;
+    const NeighbourList::Pair& opposite = contacts_.neighbours().list(pair.other).pairs[pair.reverse];
+    const int first = opposite.reaction - opposite.touched.begin;
+    const double *reaction_x = reactions_[pair.other].x.data() + first,
+                 *reaction_y = reactions_[pair.other].y.data() + first;
     double *force_x = membranes.force_x.data() + own.first, *force_y = membranes.force_y.data() + own.first;
     const int last = std::min(opposite.touched.end, own.count);
     for (int k = opposite.touched.begin; k < last; ++k) {
@@ -248,44 +244,36 @@ void InteractionForces::take_reactions(int cell, Membranes& membranes) const {
   }
 }
 
-double InteractionForces::energy(const Membranes& membranes) const {
-  double sum = 0;
-  for (int cell = 0; cell < static_cast<int>(membranes.cells.size()); ++cell) {
-    const ContactList& list = contacts_.list(cell);
-    Scratch scratch;
-    prepare(cell, membranes, scratch);
+double InteractionForces::energy(const Membranes& membranes, const Ranks<2>& ranks) const {
+  std::vector<ExactSum> sum(1);
+  Scratch scratch;
+  for (int cell = 0; cell < membranes.cell_count(); ++cell) {
+    if (!membranes.owns(cell)) continue;
+    const ContactList& list = scratch.contacts;
+    find_contacts(cell, membranes, scratch);
     std::vector<double> energy(list.node.size(), 0.0);
-    const int type = membranes.cells[static_cast<std::size_t>(cell)].type;
+    const int type = membranes.cells[cell].type;
     for (std::size_t pair = 0; pair < list.ranges.size();) {
       const std::size_t first_pair = pair;
-      const TypeRange range = next_range(cell, membranes, pair);
+      const TypeRange range = next_range(cell, list.ranges, membranes, pair);
       for (std::size_t p = 0; p < interactions_.size(); ++p) {
         if (!traits_[p].energy || !acts_between(interactions_[p], type, range.type)) continue;
-        if (variables_[p].empty()) apply(p, list, range.contacts, energy.data(), true, false, scratch);
+        if (variables_[p].empty()) apply(p, range.contacts, energy.data(), true, false, scratch);
         for (std::size_t q = first_pair; q < pair && !variables_[p].empty(); ++q) {
           apply_with_state(p, cell, q, membranes, energy.data(), true, nullptr, scratch);
         }
       }
     }
-    for (int i = 0; i < list.count; ++i) {
-      const auto at = static_cast<std::size_t>(i);
-      sum += 0.5 * membranes.rest_weight[static_cast<std::size_t>(list.node[at])] * energy[at];
-    }
+    for (int i = 0; i < list.count; ++i) sum.front().add(0.5 * membranes.rest_weight[list.node[i]] * energy[i]);
   }
-  return sum;
+  add_up(ranks, sum);
+  return sum.front().value();
 }
 
 std::string InteractionForces::without_energy() const {
   for (std::size_t p = 0; p < interactions_.size(); ++p)
     if (!traits_[p].energy) return interactions_[p].potential.id;
   return {};
-}
-
-double InteractionForces::closest_contact(int cell) const {
-  const ContactList& list = contacts_.list(cell);
-  double closest = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < list.count; ++i) closest = std::min(closest, list.distance[static_cast<std::size_t>(i)]);
-  return closest;
 }
 
 }  // namespace rouleau::core

@@ -10,6 +10,7 @@
 #include "contact.hpp"
 #include "contact_velocity.hpp"
 #include "core/domain/images.hpp"
+#include "core/domain/ranks.hpp"
 #include "core/membrane/membranes.hpp"
 #include "core/model/model.hpp"
 
@@ -40,45 +41,47 @@ class InteractionForces {
   /// consecutive nodes of `other` stand, of another rank's cell those that are to be put there before phase 2.
   template <class Function>
   void for_reactions(int cell, Function function) {
-    Scratch& scratch = scratch_[cell];
     for (const NeighbourList::Pair& pair : contacts_.neighbours().list(cell).pairs) {
       const auto count = static_cast<std::size_t>(pair.touched.end - pair.touched.begin);
-      function(pair.other, scratch.reaction_x.data() + pair.reaction, scratch.reaction_y.data() + pair.reaction, count);
+      function(pair.other, reactions_[cell].x.data() + pair.reaction, reactions_[cell].y.data() + pair.reaction, count);
     }
   }
 
-  /// Energy of the contacts found by the last run() in their present state. Not a pass.
-  [[nodiscard]] double energy(const Membranes& membranes) const;
+  /// Energy of the contacts found by the last run() in their present state, of all ranks' cells. Not a pass.
+  [[nodiscard]] double energy(const Membranes& membranes, const Ranks<2>& ranks = {}) const;
   /// A potential that acts but tells no energy; empty: none.
   [[nodiscard]] std::string without_energy() const;
-  /// Smallest distance of a node of this cell to another cell in the last run(); infinity if beyond every cutoff.
-  [[nodiscard]] double closest_contact(int cell) const;
   [[nodiscard]] const Contacts& contacts() const { return contacts_; }
 
  private:
   void keep_state(Membranes& membranes);
-  struct Scratch {                               // of one cell's contacts
-    std::vector<double> force;                   // sum of f over the potentials
-    std::vector<double> law;                     // of one potential
-    ContactVelocities velocities;                // only if a potential needs them
-    std::vector<double> distance;                // those within a cutoff shorter than that of the pair
-    std::vector<double> normal, tangential;      // velocities there
-    std::vector<int> contact;                    // to which these belong
-    std::vector<double> reaction_x, reaction_y;  // on the nodes of other cells that its pairs touch
-    std::vector<double> state, fresh;            // of one pair's contacts, all variables; of the cell's nodes
+  /// The contacts of the cell that a worker is at, and what is computed of them.
+  struct Scratch {
+    ContactList contacts;
+    std::vector<double> force;               // sum of f over the potentials
+    std::vector<double> law;                 // of one potential
+    ContactVelocities velocities;            // only if a potential needs them
+    std::vector<double> distance;            // those within a cutoff shorter than that of the pair
+    std::vector<double> normal, tangential;  // velocities there
+    std::vector<int> contact;                // to which these belong
+    std::vector<double> state, fresh;        // of one pair's contacts, all variables; of the cell's nodes
+  };
+  /// On the nodes of other cells that a cell's pairs touch.
+  struct Reactions {
+    std::vector<double> x, y;
   };
   /// Consecutive contacts of a cell with all cells of one type.
   struct TypeRange {
     int type;
     Range contacts;
   };
-  [[nodiscard]] TypeRange next_range(int cell, const Membranes& membranes, std::size_t& pair) const;
-  /// Makes room for a cell's contacts and measures what the potentials need of them besides the distance.
-  void prepare(int cell, const Membranes& membranes, Scratch& scratch) const;
-  void compute_forces(int cell, Membranes& membranes);
+  [[nodiscard]] TypeRange next_range(int cell, const std::vector<Range>& ranges, const Membranes& membranes,
+                                     std::size_t& pair) const;
+  /// Finds a cell's contacts and measures what the potentials need of them besides the distance.
+  void find_contacts(int cell, const Membranes& membranes, Scratch& scratch) const;
+  void compute_forces(int cell, Membranes& membranes, Scratch& scratch);
   void make_room_for_reactions(int cell);
-  void apply(std::size_t potential, const ContactList& list, Range contacts, double* result, bool energy, bool first,
-             Scratch& scratch) const;
+  void apply(std::size_t potential, Range contacts, double* result, bool energy, bool first, Scratch& scratch) const;
   /// The same for a potential that remembers, at the contacts of one pair. `next`: takes the state after the step, and
   /// keeps the arrays of the pairs that still touch at its front; null: someone looks, and there is no step.
   struct NextState {
@@ -88,7 +91,7 @@ class InteractionForces {
   void apply_with_state(std::size_t potential, int cell, std::size_t pair, const Membranes& membranes, double* result,
                         bool energy, NextState* next, Scratch& scratch) const;
   /// Forces on the cell's own nodes; those on others are left for their workers.
-  void act(int cell, Membranes& membranes);
+  void act(int cell, Membranes& membranes, const Scratch& scratch);
   void take_reactions(int cell, Membranes& membranes) const;
 
   /// What a potential is given besides distances, and whether it has an energy; looked up in its manifest once.
@@ -104,7 +107,8 @@ class InteractionForces {
   std::vector<double> cutoffs_;  // of the potentials
   std::vector<Traits> traits_;   // of the potentials
   Contacts contacts_;
-  std::vector<Scratch> scratch_;
+  std::vector<Scratch> scratch_;                     // of the workers, each at the place of its first cell
+  std::vector<Reactions> reactions_;                 // of the cells
   std::vector<std::vector<std::size_t>> variables_;  // of the potentials, in ContactMemory::variables once kept
   bool has_state_ = false, needs_velocities_ = false;
 };

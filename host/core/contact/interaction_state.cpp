@@ -30,7 +30,7 @@ void InteractionForces::keep_state(Membranes& membranes) {
 // A node's value is found by the other cell and its image, for the closest place moves along that cell as it likes.
 void InteractionForces::apply_with_state(std::size_t potential, int cell, std::size_t pair, const Membranes& membranes,
                                          double* result, bool energy, NextState* next, Scratch& scratch) const {
-  const ContactList& list = contacts_.list(cell);
+  const ContactList& list = scratch.contacts;
   const NeighbourList::Pair& other = contacts_.neighbours().list(cell).pairs[pair];
   const CellRange& own = membranes.cells[cell];
   const ContactMemory& memory = membranes.contacts;
@@ -73,7 +73,7 @@ void InteractionForces::apply_with_state(std::size_t potential, int cell, std::s
   block.state = state.data();
   if (next != nullptr) block.new_state = new_state.data();
   const Potential& model = interactions_[potential].potential;
-  model.table->compute(model.self.get(), &block);
+  model.compute(&block);
   for (std::size_t k = 0; k < count; ++k) result[scratch.contact[k]] += scratch.law[k];
   if (next == nullptr) return;
 

@@ -45,13 +45,13 @@ struct Candidates {
         approach.square.store(square + k);
         // The lanes beyond the last segment hold those of the next cell.
         const S own = select(lane < left, approach.square, S(std::numeric_limits<double>::infinity()));
-        nearest = min(own, nearest);
+        nearest = min(nearest, own);
         left -= S(S::size);
       }
       const double limit = min(std::sqrt(least(nearest)) + 4 * t.skin, t.cutoff + 2 * t.skin);
       const S limit_square = limit * limit * (1 + 1e-12);  // room for rounding
       for (int k = 0; k < t.segments; k += S::size) {
-        min(S::load(square + k) - limit_square, S::load(t.excess + k)).store(t.excess + k);
+        min(S::load(t.excess + k), S::load(square + k) - limit_square).store(t.excess + k);
       }
     }
   }

@@ -23,7 +23,7 @@ struct Update {
     S x_min = t.from_x[i], x_max = x_min, y_min = t.from_y[i], y_max = y_min;
     for (; i + S::size < t.end; i += S::size) {
       const S x = S::load(t.from_x + i), y = S::load(t.from_y + i);
-      x_min = min(x, x_min), x_max = max(x, x_max), y_min = min(y, y_min), y_max = max(y, y_max);
+      x_min = min(x_min, x), x_max = max(x_max, x), y_min = min(y_min, y), y_max = max(y_max, y);
       const S dx = S::load(t.from_x + i + 1) - x, dy = S::load(t.from_y + i + 1) - y, square = dx * dx + dy * dy;
       x.store(t.x + i);
       y.store(t.y + i);

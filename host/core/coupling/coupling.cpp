@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cstring>
 #include <rouleau/dispatch.hpp>
+#include <type_traits>
 
+#include "core/domain/wrapped.hpp"
 #include "core/fluid/walls.hpp"
 #include "kernel.hpp"
 #include "spread.hpp"
@@ -13,15 +15,15 @@ namespace rouleau::core {
 namespace {
 
 constexpr std::size_t large_field = 1 << 20;  // bytes; a field that does not stay in the cache
+constexpr int many_nodes = 4000;              // whose forces and weights do not stay there, either
 template <class T>
 struct LocateTask {
   Stencils<int, T> to;
   const double *x, *y;
   int begin, end;
-  double width, height;  // of the whole lattice
-  bool periodic_y;
-  double lowest,
-      highest;  // set to the least and the largest base row; `outside` for a stencil that is not on the lattice
+  double width, height;    // of the whole lattice
+  bool walls;              // below and above
+  double lowest, highest;  // set to the least and the largest base row; `outside` for a stencil off the lattice
 };
 
 /// Base nodes and what is kept of the weights, which is computed in double precision before it is rounded to T.
@@ -36,7 +38,7 @@ struct Locate {
       const int valid = std::min(S::size, t.end - first);
       if (valid == S::size) {
         const S base = group<S>(t, S::load(t.x + first), S::load(t.y + first), first, valid);
-        lowest = min(base, lowest), highest = max(base, highest);
+        lowest = min(lowest, base), highest = max(highest, base);
       } else {
         // The last node stands for those that are missing.
         double x[S::size], y[S::size];
@@ -45,7 +47,7 @@ struct Locate {
           y[k] = t.y[first + std::min(k, valid - 1)];
         }
         const S base = group<S>(t, S::load(x), S::load(y), first, valid);
-        lowest = min(base, lowest), highest = max(base, highest);
+        lowest = min(lowest, base), highest = max(highest, base);
       }
     }
     task->lowest = least(lowest);
@@ -53,18 +55,6 @@ struct Locate {
   }
 
  private:
-  /// Largest integer not above x, for |x| < 2^51.
-  template <class S>
-  ROULEAU_ALWAYS_INLINE static S floor(const S& x) {
-    const S shift = 6755399441055744.0, rounded = (x + shift) - shift;
-    return select(rounded > x, rounded - 1.0, rounded);
-  }
-  template <class S>
-  ROULEAU_ALWAYS_INLINE static S wrap(const S& base, double period) {
-    const S inside = base - period * floor(base * (1.0 / period));
-    const S raised = select(inside < S(0.0), inside + period, inside);  // the quotient may be rounded across an integer
-    return select(raised >= S(period), raised - period, raised);
-  }
   /// Returns the base rows.
   template <class S>
   ROULEAU_ALWAYS_INLINE static S group(const LocateTask<T>& t, const S& x, const S& y, int first, int valid) {
@@ -73,15 +63,15 @@ struct Locate {
     S p_x, q_x, p_y, q_y;
     Kernel::keep(shifted_x - base_x, p_x, q_x);
     Kernel::keep(shifted_y - base_y, p_y, q_y);
-    base_x = wrap(base_x, t.width);
+    base_x = wrapped(base_x, t.width);
     // Beyond 1e9, and for NaN, the conversion to int below would be undefined. One comparison a line: g++ 12 takes
     // combined masks apart element by element.
     const S last = 1e9, none = outside;
-    if (t.periodic_y) {
-      base_y = select(abs(y) < last, wrap(base_y, t.height), none);
-    } else {
+    if (t.walls) {
       base_y = select(base_y >= S(-1.0), base_y, none);
       base_y = select(base_y < S(t.height), base_y, none);
+    } else {
+      base_y = select(abs(y) < last, wrapped(base_y, t.height), none);
     }
     base_y = select(abs(x) < last, base_y, none);
     base_x = select(base_y > S(outside + 1.0), base_x, S(0.0));
@@ -198,11 +188,6 @@ struct Interpolate {
   }
 };
 
-template <class T>
-std::ptrdiff_t row_stride(const Field<T>& field) {
-  return field.row(1) - field.row(0);
-}
-
 }  // namespace
 
 /// The loops for one kernel.
@@ -257,7 +242,7 @@ void Coupling<T>::locate(Worker worker, const Membranes& membranes, NodeVectors 
                        .end = cell.end(),
                        .width = 1.0 * domain_.size[0],
                        .height = 1.0 * domain_.size[1],
-                       .periodic_y = domain_.periodic[1],
+                       .walls = domain_.walled(1),
                        .lowest = 0,
                        .highest = 0};
     loops_->locate(&task);
@@ -266,8 +251,9 @@ void Coupling<T>::locate(Worker worker, const Membranes& membranes, NodeVectors 
 }
 
 template <class T>
-void Coupling<T>::spread(Range rows, const Membranes& membranes, NodeVectors node_force, VectorField<T>& force) const {
-  const std::ptrdiff_t stride = row_stride(force.x);
+void Coupling<T>::spread(Range rows, const Membranes& membranes, NodeVectors node_force,
+                         VectorField<T, 2>& force) const {
+  const std::ptrdiff_t stride = force[0].stride(1);
   const std::ptrdiff_t first = domain_.block.begin[1] * stride + domain_.block.begin[0];
   SpreadTask<T> task{.at = {column_.data(), row_.data(), p_x_.data(), q_x_.data(), p_y_.data(), q_y_.data()},
                      .force_x = node_force.x,
@@ -277,32 +263,49 @@ void Coupling<T>::spread(Range rows, const Membranes& membranes, NodeVectors nod
                      .domain = &domain_,
                      .row_begin = domain_.block.begin[1] + rows.begin,
                      .row_end = domain_.block.begin[1] + rows.end,
-                     .origin_x = force.x.row(0) - first,
-                     .origin_y = force.y.row(0) - first,
+                     .origin_x = force[0].row(0) - first,
+                     .origin_y = force[1].row(0) - first,
                      .stride = stride};
-  for (std::size_t c = 0; c < rows_.size(); ++c) {
-    const BaseRows& base = rows_[c];
-    const bool whole = base.lowest >= 1 && base.highest + 3 <= domain_.size[1];  // no stencil reaches over a border
-    if (whole && (base.highest + 3 <= task.row_begin || base.lowest - 1 >= task.row_end)) continue;
-    task.begin = membranes.cells[c].first, task.end = membranes.cells[c].end();
+  const auto for_cells = [&](auto function) {
+    for (std::size_t c = 0; c < rows_.size(); ++c) {
+      const BaseRows& base = rows_[c];
+      const bool whole = base.lowest >= 1 && base.highest + 3 <= domain_.size[1];  // no stencil reaches over a border
+      if (!whole || (base.highest + 3 > task.row_begin && base.lowest - 1 < task.row_end)) function(membranes.cells[c]);
+    }
+  };
+  if (membranes.node_count() > many_nodes) for_cells([&](const CellRange& cell) { warm(cell, node_force); });
+  for_cells([&](const CellRange& cell) {
+    task.begin = cell.first, task.end = cell.end();
     loops_->spread(&task);
+  });
+}
+
+// Spreading stops and goes, and visits a cell's nodes from four sides: no prefetcher follows it, while it follows this.
+template <class T>
+void Coupling<T>::warm(const CellRange& cell, NodeVectors vectors) const {
+  const auto touch = [](const auto* values, int i) {
+    static_cast<void>(*static_cast<const volatile std::remove_cvref_t<decltype(*values)>*>(values + i));
+  };
+  for (int i = cell.first; i < cell.end(); i += 64 / static_cast<int>(sizeof(double))) {
+    touch(vectors.x, i), touch(vectors.y, i), touch(column_.data(), i), touch(row_.data(), i);
+    for (const auto* values : {&p_x_, &q_x_, &p_y_, &q_y_}) touch(values->data(), i);
   }
 }
 
 template <class T>
-void Coupling<T>::interpolate(Worker worker, Membranes& membranes, const VectorField<T>& velocity) const {
+void Coupling<T>::interpolate(Worker worker, Membranes& membranes, const VectorField<T, 2>& velocity) const {
   const Range nodes = membranes.node_share(worker);
-  const std::ptrdiff_t stride = row_stride(velocity.x);
+  const std::ptrdiff_t stride = velocity[0].stride(1);
   const std::ptrdiff_t first = domain_.block.begin[1] * stride + domain_.block.begin[0];
   const InterpolateTask<T> task{{column_.data(), row_.data(), p_x_.data(), q_x_.data(), p_y_.data(), q_y_.data()},
                                 membranes.velocity_x.data(),
                                 membranes.velocity_y.data(),
                                 nodes.begin,
                                 nodes.end,
-                                velocity.x.row(0) - first,
-                                velocity.y.row(0) - first,
+                                velocity[0].row(0) - first,
+                                velocity[1].row(0) - first,
                                 stride,
-                                velocity.x.bytes() > large_field,
+                                velocity[0].bytes() > large_field,
                                 domain_.whole() ? nullptr : &domain_.block};
   loops_->interpolate(&task);
 }

@@ -27,9 +27,9 @@ class Coupling {
   void locate(Worker worker, const Membranes& membranes, NodeVectors position);
   /// Pass over rows of the block: adds the forces of all nodes to the force density there. The sums do not depend on how
   /// rows are shared out, nor on the block.
-  void spread(Range rows, const Membranes& membranes, NodeVectors node_force, VectorField<T>& force) const;
+  void spread(Range rows, const Membranes& membranes, NodeVectors node_force, VectorField<T, 2>& force) const;
   /// Pass over cells: sets velocity_x and velocity_y of the nodes whose base node lies in the block.
-  void interpolate(Worker worker, Membranes& membranes, const VectorField<T>& velocity) const;
+  void interpolate(Worker worker, Membranes& membranes, const VectorField<T, 2>& velocity) const;
 
   /// The node of the lattice below a membrane node: that of the block which computes its velocity.
   [[nodiscard]] std::array<int, 2> base(int node) const { return {column_[node], std::max(row_[node], 0)}; }
@@ -41,6 +41,9 @@ class Coupling {
 
  private:
   struct Loops;
+  /// Reads what spreading will read of a cell.
+  void warm(const CellRange& cell, NodeVectors vectors) const;
+
   const Loops* loops_;
   Domain<2> domain_;
   std::vector<int> column_, row_;         // base node of the lattice; row `outside` for an escaped node

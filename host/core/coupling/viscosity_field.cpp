@@ -116,7 +116,8 @@ void ViscosityField<T>::find_reach(const Membranes& membranes, const CellRange& 
 }
 
 template <class T>
-void ViscosityField<T>::update(Worker worker, const Membranes& membranes, Field<T>& relaxation_rate, NodeMask& mask) {
+void ViscosityField<T>::update(Worker worker, const Membranes& membranes, Field<T, 2>& relaxation_rate,
+                               NodeMask& mask) {
   const Range own = worker.share(domain_.block.size(1));
   if (varies_) {
     collect_changes(own);
@@ -130,7 +131,7 @@ void ViscosityField<T>::update(Worker worker, const Membranes& membranes, Field<
 
 template <class T>
 void ViscosityField<T>::restore(const DisplacementWatch::Memory& memory, const Membranes& membranes,
-                                Field<T>& relaxation_rate, NodeMask& mask) {
+                                Field<T, 2>& relaxation_rate, NodeMask& mask) {
   const bool updated = !memory.x.empty() && !std::isnan(memory.x.front());
   if (updated) {
     Membranes at_update = membranes;
@@ -171,7 +172,7 @@ void ViscosityField<T>::collect_changes(Range own) {
 }
 
 template <class T>
-void ViscosityField<T>::set_rates(const Membranes& membranes, Range own, Field<T>& rate) {
+void ViscosityField<T>::set_rates(const Membranes& membranes, Range own, Field<T, 2>& rate) {
   const auto for_changed = [&](auto function) {
     for (int y = own.begin; y < own.end; ++y) {
       T* row = rate.row(y);

@@ -39,12 +39,12 @@ class ViscosityField {
   /// Pass over rows, when due, a barrier after cover(): sets the relaxation rate in and around the cells that have
   /// moved, restores it where they were, and marks the nodes that the membranes touch until they have moved by 1.
   /// The field must hold the plain rate before the first call; it is not touched unless varies().
-  void update(Worker worker, const Membranes& membranes, Field<T>& relaxation_rate, NodeMask& mask);
+  void update(Worker worker, const Membranes& membranes, Field<T, 2>& relaxation_rate, NodeMask& mask);
 
   /// What relaxation rate and mask were made from, for checkpoints.
   [[nodiscard]] const DisplacementWatch::Memory& memory() const { return watch_.memory(); }
   /// Not a pass: makes them again as they were, in place of those of a new stage.
-  void restore(const DisplacementWatch::Memory& memory, const Membranes& membranes, Field<T>& relaxation_rate,
+  void restore(const DisplacementWatch::Memory& memory, const Membranes& membranes, Field<T, 2>& relaxation_rate,
                NodeMask& mask);
 
  private:
@@ -71,7 +71,7 @@ class ViscosityField {
   void for_pieces(Interval columns, Function function) const;
   void find_reach(const Membranes& membranes, const CellRange& cell, Reach& reach) const;
   void collect_changes(Range own);
-  void set_rates(const Membranes& membranes, Range own, Field<T>& rate);
+  void set_rates(const Membranes& membranes, Range own, Field<T, 2>& rate);
 
   std::vector<double> ratio_;
   ViscosityMean mean_;

@@ -29,7 +29,8 @@ class ExactSum {
     valid_ = valid_ && other.valid_;
   }
   /// All of `count` terms, as add() would one by one.
-  void add(const double* terms, std::size_t count);
+  /// Inlined, for a caller's width of vector registers.
+  [[gnu::always_inline]] void add(const double* terms, std::size_t count);
 
   [[nodiscard]] double value() const {
     return valid_ ? static_cast<double>(units_) * 0x1p-80 + static_cast<double>(least_) * 0x1p-120 : std::nan("");
@@ -78,7 +79,7 @@ inline void ExactSum::add(const double* terms, std::size_t count) {
   while (count - i >= lanes) {
     const std::size_t end = i + std::min(stretch, (count - i) / lanes * lanes);
     Lanes high{}, low{}, least{};
-    bool below_one = true;
+    Lanes largest{};
     for (std::size_t k = i; k < end; k += lanes) {
       Lanes term;
       __builtin_memcpy(&term, terms + k, sizeof term);
@@ -86,8 +87,11 @@ inline void ExactSum::add(const double* terms, std::size_t count) {
       high += high_of;
       low += low_of;
       least += least_part(Lanes(rest - low_of));
-      for (int l = 0; l < lanes; ++l) below_one &= std::abs(term[l]) < 1;
+      const Lanes size = term < 0 ? -term : term;
+      largest = size > largest ? size : largest;
     }
+    bool below_one = true;
+    for (int l = 0; l < lanes; ++l) below_one = below_one && largest[l] < 1;
     if (below_one) {
       for (int l = 0; l < lanes; ++l) add_parts(high[l], low[l], least[l]);
     } else {

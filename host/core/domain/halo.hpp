@@ -6,19 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "decomposition.hpp"
-#include "transport.hpp"
+#include "ranks.hpp"
 
 namespace rouleau::core {
-
-/// How the lattice is cut, and how this rank speaks to the others. Belongs to the caller.
-template <int D>
-struct Ranks {
-  const Decomposition<D>* blocks = nullptr;
-  Transport* transport = nullptr;
-
-  [[nodiscard]] bool several() const { return blocks != nullptr && blocks->ranks() > 1; }
-};
 
 /// A block's copy of a number that another block owns: number `component` of a node outside the block, which lies in
 /// nodes of the lattice, not wrapped.

@@ -21,16 +21,25 @@ class Mailbox {
   }
   Message take() {
     std::unique_lock lock(mutex_);
-    arrived_.wait(lock, [this] { return !messages_.empty(); });
+    arrived_.wait(lock, [this] { return !messages_.empty() || closed_; });
+    if (messages_.empty()) throw RankLost("another rank of the simulation has given up");
     Message message = std::move(messages_.front());
     messages_.pop_front();
     return message;
+  }
+  void close() {
+    {
+      const std::lock_guard lock(mutex_);
+      closed_ = true;
+    }
+    arrived_.notify_one();
   }
 
  private:
   std::mutex mutex_;
   std::condition_variable arrived_;
   std::deque<Message> messages_;
+  bool closed_ = false;  ///< no more will come
 };
 
 class Loopback final : public Transport {
@@ -42,6 +51,9 @@ class Loopback final : public Transport {
   [[nodiscard]] int ranks() const override { return ranks_; }
   void send(int to, Message message) override { box(rank_, to).put(std::move(message)); }
   [[nodiscard]] Message receive(int from) override { return box(from, rank_).take(); }
+  void abandon() noexcept override {
+    for (Mailbox& box : *boxes_) box.close();
+  }
 
  private:
   Mailbox& box(int from, int to) { return (*boxes_)[static_cast<std::size_t>(from) * ranks_ + to]; }

@@ -2,50 +2,74 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 
 #include "storage.hpp"
 
 namespace rouleau::core {
 
-/// nx x ny values and a halo of `halo` nodes on every side. Rows start on 64-byte boundaries at x = 0.
-template <class T>
+/// A value for each node of a block, and a halo of `halo` nodes on every side. Rows lie along x and start on 64-byte
+/// boundaries at x = 0.
+template <class T, int D>
 class Field {
  public:
   static constexpr int halo = 2;  ///< what the 4-point kernel needs
 
   Field() = default;
   /// All values zero.
-  Field(int nx, int ny) : nx_(nx), ny_(ny), stride_((nx + 2 * halo + line - 1) / line * line) {
-    storage_ = Storage<T>(static_cast<std::size_t>(stride_) * (ny + 2 * halo) + line);
-    origin_ = storage_.data() + static_cast<std::size_t>(stride_) * halo + line;
+  explicit Field(const std::array<int, D>& size) : size_(size) {
+    stride_[0] = 1;
+    stride_[1] = (size[0] + 2 * halo + line - 1) / line * line;
+    for (int k = 2; k < D; ++k) stride_[k] = stride_[k - 1] * (size[k - 1] + 2 * halo);
+    const std::ptrdiff_t count = stride_[D - 1] * (size[D - 1] + 2 * halo);
+    storage_ = Storage<T>(static_cast<std::size_t>(count) + line);
+    origin_ = storage_.data() + line;
+    for (int k = 1; k < D; ++k) origin_ += halo * stride_[k];
   }
 
-  [[nodiscard]] int nx() const { return nx_; }
-  [[nodiscard]] int ny() const { return ny_; }
+  [[nodiscard]] int size(int axis) const { return size_[axis]; }
+  /// From a node to the next one along an axis, in values.
+  [[nodiscard]] std::ptrdiff_t stride(int axis) const { return stride_[axis]; }
   [[nodiscard]] bool allocated() const { return storage_.bytes() != 0; }
   [[nodiscard]] std::size_t bytes() const { return storage_.bytes(); }
 
   /// Sets all values, halo included.
   void fill(T value) {
-    for (int y = -halo; y < ny_ + halo; ++y) std::fill(row(y) - halo, row(y) + nx_ + halo, value);
+    T* const begin = storage_.data();
+    std::fill(begin, begin + storage_.bytes() / sizeof(T), value);
   }
 
-  /// Row y in [-halo, ny + halo); x in [-halo, nx + halo) may be read and written.
-  [[nodiscard]] T* row(int y) { return origin_ + static_cast<std::ptrdiff_t>(stride_) * y; }
-  [[nodiscard]] const T* row(int y) const { return origin_ + static_cast<std::ptrdiff_t>(stride_) * y; }
+  /// The row through these coordinates along the other axes, each in [-halo, size + halo); x in [-halo, size(0) + halo)
+  /// may be read and written.
+  template <class... Coordinates>
+  [[nodiscard]] T* row(Coordinates... along) {
+    return origin_ + offset(along...);
+  }
+  template <class... Coordinates>
+  [[nodiscard]] const T* row(Coordinates... along) const {
+    return origin_ + offset(along...);
+  }
 
  private:
   static constexpr int line = 64 / sizeof(T);
-  int nx_ = 0, ny_ = 0, stride_ = 0;
+  template <class... Coordinates>
+  [[nodiscard]] std::ptrdiff_t offset(Coordinates... along) const {
+    static_assert(sizeof...(along) == D - 1);
+    const int place[] = {along...};
+    std::ptrdiff_t sum = 0;
+    for (int k = 1; k < D; ++k) sum += stride_[k] * place[k - 1];
+    return sum;
+  }
+
+  std::array<int, D> size_{};
+  std::array<std::ptrdiff_t, D> stride_{};
   Storage<T> storage_;
   T* origin_ = nullptr;
 };
 
-/// Force density, and after the fluid step the velocity, which is written over it.
-template <class T>
-struct VectorField {
-  Field<T> x, y;
-};
+/// Force density, and after the fluid step the velocity, which is written over it: one field for each component.
+template <class T, int D>
+using VectorField = std::array<Field<T, D>, D>;
 
 }  // namespace rouleau::core

@@ -8,6 +8,7 @@
 
 #include "core/domain/exact_sum.hpp"
 #include "max_speed.hpp"
+#include "moving_frame.hpp"
 
 namespace rouleau::core {
 
@@ -15,22 +16,26 @@ namespace d2q9 = rouleau::d2q9;
 
 template <class T>
 Fluid<T>::Fluid(const FluidSetting& setting, CollisionOperator collision, const Ranks<2>& ranks)
-    : setting_(setting), collision_(std::move(collision)), lattice_(setting.domain), mask_(setting.domain) {
+    : setting_(setting),
+      ranks_(ranks),
+      collision_(std::move(collision)),
+      lattice_(setting.domain),
+      mask_(setting.domain) {
   if constexpr (std::is_same_v<T, double>) {
     collide_ = collision_.table->collide_f64;
   } else {
     collide_ = collision_.table->collide_f32;
   }
-  if (setting.membranes) force_ = {Field<T>(nx(), ny()), Field<T>(nx(), ny())};
+  if (setting.membranes) force_ = {Field<T, 2>({nx(), ny()}), Field<T, 2>({nx(), ny()})};
   if (setting.viscosity_contrast) {
-    relaxation_rate_ = Field<T>(nx(), ny());
+    relaxation_rate_ = Field<T, 2>({nx(), ny()});
     relaxation_rate_.fill(static_cast<T>(setting.relaxation_rate));
   }
   if (setting.body_force_x != 0 || setting.body_force_y != 0) {
     body_force_row_[0].assign(static_cast<std::size_t>(nx()), static_cast<T>(setting.body_force_x));
     body_force_row_[1].assign(static_cast<std::size_t>(nx()), static_cast<T>(setting.body_force_y));
   }
-  if (ranks.several()) make_halos(ranks);
+  if (ranks.several()) make_halos();
 }
 
 namespace {
@@ -50,10 +55,10 @@ std::vector<HaloCopy<2>> population_copies(const Domain<2>& domain) {
   return copies;
 }
 
-/// Velocities that the stencils of nodes above the block's own reach.
-std::vector<HaloCopy<2>> velocity_copies(const Domain<2>& domain) {
+/// Both components of the velocity, one node deep on the lower sides.
+std::vector<HaloCopy<2>> velocity_copies(const Domain<2>& domain, int above) {
   std::vector<HaloCopy<2>> copies;
-  for_halo_nodes(domain, 1, 2, [&](const std::array<int, 2>& node, const std::array<int, 2>&) {
+  for_halo_nodes(domain, 1, above, [&](const std::array<int, 2>& node, const std::array<int, 2>&) {
     for (int component = 0; component < 2; ++component) copies.push_back({node, component});
   });
   return copies;
@@ -62,16 +67,24 @@ std::vector<HaloCopy<2>> velocity_copies(const Domain<2>& domain) {
 }  // namespace
 
 template <class T>
-void Fluid<T>::make_halos(const Ranks<2>& ranks) {
+void Fluid<T>::make_halos() {
   const std::array<int, 2> begin = setting_.domain.block.begin;
   population_halo_ =
-      std::make_unique<Halo<T, 2>>(ranks, population_copies, [this, begin](const std::array<int, 2>& node) {
-        return lattice_.offset(node[0] - begin[0], node[1] - begin[1]);
+      std::make_unique<Halo<T, 2>>(ranks_, population_copies, [this, begin](const std::array<int, 2>& node) {
+        return lattice_.offset(node[0] - begin[0], {node[1] - begin[1]});
+      });
+  energetics_halo_ = std::make_unique<Halo<double, 2>>(
+      ranks_, [](const Domain<2>& domain) { return velocity_copies(domain, 1); },
+      [this, begin](const std::array<int, 2>& node) -> std::ptrdiff_t {
+        return static_cast<std::ptrdiff_t>(nx() + 2) * (node[1] - begin[1]) + node[0] - begin[0];
       });
   if (!setting_.membranes) return;
-  velocity_halo_ = std::make_unique<Halo<T, 2>>(ranks, velocity_copies, [this, begin](const std::array<int, 2>& node) {
-    return force_.x.row(node[1] - begin[1]) + (node[0] - begin[0]) - force_.x.row(0);
-  });
+  // What the stencils of nodes above the block's own reach.
+  velocity_halo_ = std::make_unique<Halo<T, 2>>(
+      ranks_, [](const Domain<2>& domain) { return velocity_copies(domain, 2); },
+      [this, begin](const std::array<int, 2>& node) {
+        return force_[0].row(node[1] - begin[1]) + (node[0] - begin[0]) - force_[0].row(0);
+      });
 }
 
 /// Calls function(halo, way, arrays) for what goes across the border after a step.
@@ -80,9 +93,9 @@ template <class Function>
 void Fluid<T>::with_arrays(Function function) {
   if (!population_halo_) return;
   T* slots[9];
-  for (int q = 0; q < 9; ++q) slots[q] = lattice_.slot(q, 0);
+  for (int q = 0; q < 9; ++q) slots[q] = lattice_.slot(q, {0});
   function(*population_halo_, parity_ == Parity::odd ? Way::out : Way::home, slots);
-  T* velocity[2] = {force_.x.row(0), force_.y.row(0)};
+  T* velocity[2] = {force_[0].row(0), force_[1].row(0)};
   if (velocity_halo_) function(*velocity_halo_, Way::out, velocity);
 }
 
@@ -99,30 +112,30 @@ void Fluid<T>::end_halo() {
 
 template <class T>
 std::size_t Fluid<T>::bytes() const {
-  return lattice_.bytes() + force_.x.bytes() + force_.y.bytes() + relaxation_rate_.bytes();
+  return lattice_.bytes() + force_[0].bytes() + force_[1].bytes() + relaxation_rate_.bytes();
 }
 
 template <class T>
 inline bool Fluid<T>::reaches_border(int y) const {
-  constexpr int width = Field<T>::halo;
+  constexpr int width = Field<T, 2>::halo;
   return mask_.at_side(y) || ((y < width || y >= ny() - width) && mask_.any(y));
 }
 
 template <class T>
 void Fluid<T>::clear_force(Range rows) {
-  const auto set = [](T* row, const MaskSpan& run, T value) {
+  const auto set = [](T* row, const MaskSpan& span, T value) {
     if (value == T(0)) {
-      std::memset(row + run.begin, 0, sizeof(T) * static_cast<std::size_t>(run.end - run.begin));
+      std::memset(row + span.begin, 0, sizeof(T) * static_cast<std::size_t>(span.end - span.begin));
     } else {
-      std::fill(row + run.begin, row + run.end, value);
+      std::fill(row + span.begin, row + span.end, value);
     }
   };
   const T body_force_x = static_cast<T>(setting_.body_force_x), body_force_y = static_cast<T>(setting_.body_force_y);
   for (int y = rows.begin; y < rows.end; ++y) {
-    mask_.for_spans(y, [&](const MaskSpan& run) {
-      if (!run.active) return;
-      set(force_.x.row(y), run, body_force_x);
-      set(force_.y.row(y), run, body_force_y);
+    mask_.for_spans(y, [&](const MaskSpan& span) {
+      if (!span.active) return;
+      set(force_[0].row(y), span, body_force_x);
+      set(force_[1].row(y), span, body_force_y);
     });
   }
 }
@@ -144,23 +157,43 @@ void Fluid<T>::collide_row(int y, const T* (&in)[9], T* (&out)[9]) {
     d2q9::for_each_velocity([&](auto q) { in[q] += x - at, out[q] += x - at; });
     at = x;
   };
-  mask_.for_spans(y, [&](const MaskSpan& run) {
-    move_to(run.begin);
-    block.count = static_cast<std::uint32_t>(run.end - run.begin);
-    if (run.active && setting_.membranes) {
-      force[0] = velocity[0] = force_.x.row(y) + run.begin;
-      force[1] = velocity[1] = force_.y.row(y) + run.begin;
+  mask_.for_spans(y, [&](const MaskSpan& span) {
+    move_to(span.begin);
+    block.count = static_cast<std::uint32_t>(span.end - span.begin);
+    if (span.active && setting_.membranes) {
+      force[0] = velocity[0] = force_[0].row(y) + span.begin;
+      force[1] = velocity[1] = force_[1].row(y) + span.begin;
       block.force = force;
       block.velocity = velocity;
-      block.relaxation_rate = setting_.viscosity_contrast ? relaxation_rate_.row(y) + run.begin : nullptr;
+      block.relaxation_rate = setting_.viscosity_contrast ? relaxation_rate_.row(y) + span.begin : nullptr;
     } else {
       block.force = background;
       block.velocity = nullptr;
       block.relaxation_rate = nullptr;
     }
-    collide_(self, &block);
+    call_foreign(collision_.id, "collide", [&] { collide_(self, &block); });
   });
   move_to(0);
+}
+
+template <class T>
+void Fluid<T>::add_moving_frame(int y, T* (&out)[9]) {
+  static const auto function = Dispatch<AddMovingFrame, const MovingFrameTask<T>*>::pick();
+  const auto of = [](const double(&values)[2], T(&to)[2]) {
+    for (int k = 0; k < 2; ++k) to[k] = static_cast<T>(values[k]);
+  };
+  MovingFrameTask<T> task{};
+  task.rate = static_cast<T>(setting_.relaxation_rate);
+  of({setting_.body_force_x, setting_.body_force_y}, task.body_force);
+  of(frame_, task.frame);
+  mask_.for_spans(y, [&](const MaskSpan& span) {
+    const bool active = span.active && setting_.membranes;
+    d2q9::for_each_velocity([&](auto q) { task.out[q] = out[q] + span.begin; });
+    for (int k = 0; k < 2; ++k) task.velocity[k] = active ? force_[k].row(y) + span.begin : nullptr;
+    task.relaxation_rate = active && setting_.viscosity_contrast ? relaxation_rate_.row(y) + span.begin : nullptr;
+    task.count = span.end - span.begin;
+    function(&task);
+  });
 }
 
 template <class T>
@@ -172,12 +205,13 @@ void Fluid<T>::step(Range rows) {
   for (int i = 0; i < rows.end - rows.begin; ++i) {
     const int y = first + way * i;
     if (i == 0) {
-      lattice_.row_pointers(parity_, y, in, out);
+      lattice_.row_pointers(parity_, {y}, in, out);
     } else {
-      lattice_.next_row_pointers(parity_, y - way, y, in, out);
+      lattice_.next_row_pointers(parity_, {y - way}, {y}, in, out);
     }
     if (even) receive_row(lattice_, y);
     collide_row(y, in, out);
+    if (frame_[0] != 0 || frame_[1] != 0) add_moving_frame(y, out);
     add_wall_momentum(lattice_, y, setting_.walls);
     if (even) send_row(lattice_, y);
     if (setting_.membranes && reaches_border(y)) {
@@ -195,17 +229,17 @@ void Fluid<T>::settle() {
 template <class T>
 double Fluid<T>::population(int q, int x, int y) const {
   const T* in[9];
-  lattice_.row_pointers(parity_, y, in);
+  lattice_.row_pointers(parity_, {y}, in);
   return static_cast<double>(in[q][x]);
 }
 
 template <class T>
 void Fluid<T>::moments(int y, std::vector<Moments>& row) const {
   const T* in[9];
-  lattice_.row_pointers(parity_, y, in);
+  lattice_.row_pointers(parity_, {y}, in);
   row.assign(static_cast<std::size_t>(nx()), Moments{});
-  mask_.for_spans(y, [&](const MaskSpan& run) {
-    for (int x = run.begin; x < run.end; ++x) {
+  mask_.for_spans(y, [&](const MaskSpan& span) {
+    for (int x = span.begin; x < span.end; ++x) {
       Moments& m = row[x];
       for (int q = 0; q < 9; ++q) {
         const double f = static_cast<double>(in[q][x]);
@@ -213,11 +247,51 @@ void Fluid<T>::moments(int y, std::vector<Moments>& row) const {
         m.ux += d2q9::velocity[q][0] * f;
         m.uy += d2q9::velocity[q][1] * f;
       }
-      const bool own_force = run.active && setting_.membranes;
-      m.ux += 0.5 * (own_force ? static_cast<double>(force_.x.row(y)[x]) : setting_.body_force_x);
-      m.uy += 0.5 * (own_force ? static_cast<double>(force_.y.row(y)[x]) : setting_.body_force_y);
+      const bool own_force = span.active && setting_.membranes;
+      m.ux += 0.5 * (own_force ? static_cast<double>(force_[0].row(y)[x]) : setting_.body_force_x);
+      m.uy += 0.5 * (own_force ? static_cast<double>(force_[1].row(y)[x]) : setting_.body_force_y);
     }
   });
+}
+
+template <class T>
+std::vector<Moments> Fluid<T>::all_moments() const {
+  std::vector<Moments> block, row;
+  block.reserve(static_cast<std::size_t>(nx()) * ny());
+  for (int y = 0; y < ny(); ++y) {
+    moments(y, row);
+    block.insert(block.end(), row.begin(), row.end());
+  }
+  return gather(ranks_, std::move(block));
+}
+
+template <class T>
+std::vector<double> Fluid<T>::all_relaxation_rates() {
+  std::vector<double> block;
+  for (int y = 0; y < ny(); ++y) {
+    mask_.for_spans(y, [&](const MaskSpan& span) {
+      if (span.active && setting_.viscosity_contrast) {
+        block.insert(block.end(), relaxation_rate_.row(y) + span.begin, relaxation_rate_.row(y) + span.end);
+      } else {
+        block.insert(block.end(), static_cast<std::size_t>(span.end - span.begin), setting_.relaxation_rate);
+      }
+    });
+  }
+  return gather(ranks_, std::move(block));
+}
+
+template <class T>
+std::vector<double> Fluid<T>::row_velocities() const {
+  std::vector<ExactSum> sums(static_cast<std::size_t>(setting_.domain.size[1]));
+  std::vector<Moments> row;
+  for (int y = 0; y < ny(); ++y) {
+    moments(y, row);
+    for (const Moments& m : row) sums[setting_.domain.block.begin[1] + y].add(m.ux);
+  }
+  add_up(ranks_, sums);
+  std::vector<double> means(sums.size());
+  for (std::size_t y = 0; y < means.size(); ++y) means[y] = sums[y].value() / setting_.domain.size[0];
+  return means;
 }
 
 template <class T>
@@ -228,28 +302,36 @@ double Fluid<T>::mass() const {
 template <class T>
 typename Fluid<T>::MassAndSpeed Fluid<T>::mass_and_speed() const {
   static const auto function = Dispatch<FindMassAndSpeed, MassAndSpeedTask<T>*>::pick();
-  ExactSum mass;
-  double speed_square = 0, zero = 0;
+  struct Part {
+    ExactSum mass;
+    double speed_square = 0, zero = 0;
+  };
+  Part own, all;
   for (int y = 0; y < ny(); ++y) {
     const T* in[9];
-    lattice_.row_pointers(parity_, y, in);
-    mask_.for_spans(y, [&](const MaskSpan& run) {
+    lattice_.row_pointers(parity_, {y}, in);
+    mask_.for_spans(y, [&](const MaskSpan& span) {
       MassAndSpeedTask<T> task{};
-      d2q9::for_each_velocity([&](auto q) { task.in[q] = in[q] + run.begin; });
-      if (run.active && setting_.membranes) {
-        task.force[0] = force_.x.row(y) + run.begin;
-        task.force[1] = force_.y.row(y) + run.begin;
+      d2q9::for_each_velocity([&](auto q) { task.in[q] = in[q] + span.begin; });
+      if (span.active && setting_.membranes) {
+        task.force[0] = force_[0].row(y) + span.begin;
+        task.force[1] = force_[1].row(y) + span.begin;
       }
       task.body_force[0] = static_cast<T>(setting_.body_force_x);
       task.body_force[1] = static_cast<T>(setting_.body_force_y);
-      task.count = run.end - run.begin;
+      task.count = span.end - span.begin;
       function(&task);
-      mass.add_parts(task.mass[0], task.mass[1]);
-      speed_square = std::max(speed_square, task.speed_square);
-      zero += task.zero;
+      own.mass.add_parts(task.mass[0], task.mass[1]);
+      own.speed_square = std::max(own.speed_square, task.speed_square);
+      own.zero += task.zero;
     });
   }
-  return {mass.value() + zero, std::sqrt(speed_square) + zero};
+  for (const std::vector<Part>& part : all_of(ranks_, std::vector<Part>{own})) {
+    all.mass.add(part.front().mass);
+    all.speed_square = std::max(all.speed_square, part.front().speed_square);
+    all.zero += part.front().zero;
+  }
+  return {all.mass.value() + all.zero, std::sqrt(all.speed_square) + all.zero};
 }
 
 template <class T>
@@ -257,10 +339,10 @@ typename Fluid<T>::WallStress Fluid<T>::wall_stress() const {
   if (!walls_have_acted_) return {std::nan(""), std::nan("")};
   // A population that leaves towards the wall and returns gives the wall c_q f_q - c_-q f_-q = c_q (f_q + f_-q); the
   // one that left is the one that came back plus the wall's own momentum: f_q = f_-q + 6 w_q c_q . u_wall.
-  const auto stress = [&](int y, int outward, double speed) {
+  std::vector<ExactSum> sums(2);
+  const auto add = [&](ExactSum& sum, int y, int outward, double speed) {
     const T* in[9];
-    lattice_.row_pointers(parity_, y, in);
-    ExactSum sum;
+    lattice_.row_pointers(parity_, {y}, in);
     for (int q = 1; q < 9; ++q) {
       const int cx = d2q9::velocity[q][0];
       if (d2q9::velocity[q][1] != outward || cx == 0) continue;
@@ -268,16 +350,24 @@ typename Fluid<T>::WallStress Fluid<T>::wall_stress() const {
       const double moved = 6 * d2q9::weight[q] * cx * speed;
       for (int x = 0; x < nx(); ++x) sum.add(cx * (2 * static_cast<double>(returned[x]) + moved));
     }
-    return sum.value() / setting_.domain.size[0];
   };
-  return {stress(0, -1, setting_.walls.lower), stress(ny() - 1, +1, setting_.walls.upper)};
+  if (setting_.domain.wall_below(1)) add(sums[0], 0, -1, setting_.walls.lower);
+  if (setting_.domain.wall_above(1)) add(sums[1], ny() - 1, +1, setting_.walls.upper);
+  add_up(ranks_, sums);
+  return {sums[0].value() / setting_.domain.size[0], sums[1].value() / setting_.domain.size[0]};
 }
 
 template <class T>
 double Fluid<T>::equilibrium(int q, double density, double ux, double uy) const {
-  const double along = d2q9::velocity[q][0] * ux + d2q9::velocity[q][1] * uy;
-  const double quadratic = setting_.inertia ? 4.5 * along * along - 1.5 * (ux * ux + uy * uy) : 0.0;
-  return d2q9::weight[q] * (density + 3 * along + quadratic);
+  const auto along = [q](double x, double y) { return d2q9::velocity[q][0] * x + d2q9::velocity[q][1] * y; };
+  const auto quadratic = [&](double x, double y) { return 4.5 * along(x, y) * along(x, y) - 1.5 * (x * x + y * y); };
+  double terms = 0;
+  if (setting_.inertia) {
+    terms = quadratic(ux, uy);
+  } else if (frame_[0] != 0 || frame_[1] != 0) {
+    terms = quadratic(ux, uy) - quadratic(ux - frame_[0], uy - frame_[1]);
+  }
+  return d2q9::weight[q] * (density + 3 * along(ux, uy) + terms);
 }
 
 template <class T>
@@ -294,7 +384,8 @@ void Fluid<T>::set_state(const std::function<State(int, int)>& state) {
         const double cx = d2q9::velocity[q][0], cy = d2q9::velocity[q][1];
         const double strain = cx * cx * s.gradient[0] + cx * cy * (s.gradient[1] + s.gradient[2]) +
                               cy * cy * s.gradient[3] - (s.gradient[0] + s.gradient[3]) / 3;
-        lattice_.slot(q, y)[x] = static_cast<T>(equilibrium(q, s.density, jx, jy) - 3 * tau * d2q9::weight[q] * strain);
+        lattice_.slot(q, {y})[x] =
+            static_cast<T>(equilibrium(q, s.density, jx, jy) - 3 * tau * d2q9::weight[q] * strain);
       }
     }
   }
@@ -313,7 +404,7 @@ void Fluid<T>::take_over(Fluid& other, double factor) {
   parity_ = Parity::even;
   for (int y = 0; y < ny(); ++y) {
     const T* in[9];
-    other.lattice_.row_pointers(other.parity_, y, in);
+    other.lattice_.row_pointers(other.parity_, {y}, in);
     for (int x = 0; x < nx(); ++x) {
       double density = 0, jx = 0, jy = 0;
       for (int q = 0; q < 9; ++q) {
@@ -323,8 +414,8 @@ void Fluid<T>::take_over(Fluid& other, double factor) {
         jy += d2q9::velocity[q][1] * f;
       }
       for (int q = 0; q < 9; ++q) {
-        const double rest = static_cast<double>(in[q][x]) - equilibrium(q, density, jx, jy);
-        lattice_.slot(q, y)[x] =
+        const double rest = static_cast<double>(in[q][x]) - other.equilibrium(q, density, jx, jy);
+        lattice_.slot(q, {y})[x] =
             static_cast<T>(equilibrium(q, factor * density, factor * jx, factor * jy) + factor * rest);
       }
     }
@@ -337,18 +428,19 @@ void Fluid<T>::copy_populations(int q, std::vector<T>& values) const {
   values.clear();
   for (int y = 0; y < ny(); ++y) {
     const T* in[9];
-    lattice_.row_pointers(parity_, y, in);
+    lattice_.row_pointers(parity_, {y}, in);
     values.insert(values.end(), in[q], in[q] + nx());
   }
 }
 
 template <class T>
-void Fluid<T>::restore(const std::function<const std::vector<T>&(int)>& populations, bool walls_have_acted) {
+void Fluid<T>::restore(const std::function<std::vector<T>(int)>& populations, bool walls_have_acted) {
   parity_ = Parity::even;
   walls_have_acted_ = walls_have_acted;
   for (int q = 0; q < 9; ++q) {
-    const T* from = populations(q).data();
-    for (int y = 0; y < ny(); ++y, from += nx()) std::copy_n(from, nx(), lattice_.slot(q, y));
+    const std::vector<T> values = populations(q);
+    const T* from = values.data();
+    for (int y = 0; y < ny(); ++y, from += nx()) std::copy_n(from, nx(), lattice_.slot(q, {y}));
   }
   fill_population_halo(lattice_);
 }

@@ -42,14 +42,15 @@ class Fluid {
   Fluid(const FluidSetting& setting, CollisionOperator collision, const Ranks<2>& ranks = {});
 
   [[nodiscard]] const FluidSetting& setting() const { return setting_; }
+  [[nodiscard]] const Ranks<2>& ranks() const { return ranks_; }
   /// All rows of the block.
   [[nodiscard]] Range rows() const { return {0, ny()}; }
   [[nodiscard]] NodeMask& mask() { return mask_; }
   /// Force density: what the next step() acts with. It writes velocity() over it, in the same memory.
-  [[nodiscard]] VectorField<T>& force() { return force_; }
+  [[nodiscard]] VectorField<T, 2>& force() { return force_; }
   /// Velocity in active nodes, halo included: what the last step() has left.
-  [[nodiscard]] const VectorField<T>& velocity() const { return force_; }
-  [[nodiscard]] Field<T>& relaxation_rate() { return relaxation_rate_; }
+  [[nodiscard]] const VectorField<T, 2>& velocity() const { return force_; }
+  [[nodiscard]] Field<T, 2>& relaxation_rate() { return relaxation_rate_; }
   [[nodiscard]] std::size_t bytes() const;
 
   /// Sets velocity u(y) with shear rate du/dy along x everywhere, density 1 (equilibrium and first-order part).
@@ -63,6 +64,10 @@ class Fluid {
   /// time step does. Without inertia this scales every population; with it, equilibrium and the rest scale each by its
   /// rule.
   void take_over(Fluid& other, double factor);
+
+  /// Without inertia: the unsteady term is du/dt as seen from a frame that moves at this velocity (moving_frame.hpp). Of
+  /// the next steps and of states that are set; 0 to begin with.
+  void set_frame(double ux, double uy) { frame_[0] = ux, frame_[1] = uy; }
 
   // Passes over rows of the block, in the order of a step.
   /// Sets the force in active nodes to the body force.
@@ -82,11 +87,18 @@ class Fluid {
   /// One worker, before the velocity is read or the next step is taken: takes what they have sent.
   void end_halo();
 
-  // Observers; between steps, one thread.
+  // Observers; between steps, one thread. What is said of the whole lattice is the same on all ranks, and all must ask
+  // for it together.
   /// Completes the halo so that moments() may be called.
   void settle();
-  /// Moments of row y, x = 0..nx-1, of the state before the next step. The force of that step must have been spread.
+  /// Moments of row y of the block, x = 0..nx-1, of the state before the next step. The force of that step must have
+  /// been spread.
   void moments(int y, std::vector<Moments>& row) const;
+  /// Of all nodes of the lattice, row after row, on the first rank; empty on the others.
+  [[nodiscard]] std::vector<Moments> all_moments() const;
+  [[nodiscard]] std::vector<double> all_relaxation_rates();
+  /// Mean velocity along x of each row of the lattice.
+  [[nodiscard]] std::vector<double> row_velocities() const;
   /// Sum of density deviations over all nodes.
   [[nodiscard]] double mass() const;
   /// Mass and largest speed, as moments() would give them, in one sweep.
@@ -111,14 +123,16 @@ class Fluid {
   [[nodiscard]] Energetics energetics() const;
   /// Populations before the next collision, for tests.
   [[nodiscard]] double population(int q, int x, int y) const;
-  /// All populations of one velocity before the next collision, row after row, for checkpoints. After settle().
+  /// The block's populations of one velocity before the next collision, row after row, for checkpoints. After settle().
   void copy_populations(int q, std::vector<T>& values) const;
   /// Whether the walls have exchanged momentum with this state of the fluid (WallStress).
   [[nodiscard]] bool walls_have_acted() const { return walls_have_acted_; }
   /// Goes on from what copy_populations() gave: `populations(q)` returns it for every q.
-  void restore(const std::function<const std::vector<T>&(int q)>& populations, bool walls_have_acted);
+  void restore(const std::function<std::vector<T>(int q)>& populations, bool walls_have_acted);
 
  private:
+  /// Velocities of row y, x in [0, nx), and where the block wraps around in [-1, nx].
+  void velocities(int y, double* ux, double* uy) const;
   /// Nodes of the block along x, and its rows.
   [[nodiscard]] int nx() const { return setting_.domain.block.size(0); }
   [[nodiscard]] int ny() const { return setting_.domain.block.size(1); }
@@ -127,22 +141,26 @@ class Fluid {
   [[nodiscard]] bool reaches_border(int y) const;
   /// Pointers to the populations of row y, as Lattice::row_pointers gives them; they come back unchanged.
   void collide_row(int y, const T* (&in)[9], T* (&out)[9]);
+  void add_moving_frame(int y, T* (&out)[9]);
 
-  void make_halos(const Ranks<2>& ranks);
+  void make_halos();
   template <class Function>
   void with_arrays(Function function);
 
   using Block = std::conditional_t<std::is_same_v<T, double>, rouleau_collision_block_f64, rouleau_collision_block_f32>;
   FluidSetting setting_;
+  Ranks<2> ranks_;
   CollisionOperator collision_;
   void (*collide_)(const void* self, const Block* block);  ///< of the collision model
-  Lattice<T> lattice_;
+  Lattice<T, D2Q9> lattice_;
   Parity parity_ = Parity::even;
   bool walls_have_acted_ = false;
+  double frame_[2] = {0, 0};
   NodeMask mask_;
-  VectorField<T> force_;
-  Field<T> relaxation_rate_;
+  VectorField<T, 2> force_;
+  Field<T, 2> relaxation_rate_;
   std::unique_ptr<Halo<T, 2>> population_halo_, velocity_halo_;  ///< null without other blocks
+  std::unique_ptr<Halo<double, 2>> energetics_halo_;             ///< of velocities, one node deep
   std::vector<T> body_force_row_[2];                             ///< constant; empty without a body force
 };
 

@@ -2,26 +2,30 @@
 
 namespace rouleau::core {
 
-template <class T>
-Lattice<T>::Lattice(const Domain<2>& domain)
-    : domain_(domain),
-      nx_(domain.block.size(0)),
-      ny_(domain.block.size(1)),
-      wall_below_(domain.wall_below(1)),
-      wall_above_(domain.wall_above(1)),
-      wraps_{domain.wraps(0), domain.wraps(1)} {
+template <class T, class Set>
+Lattice<T, Set>::Lattice(const Domain<dimension>& domain) : domain_(domain) {
+  for (int k = 0; k < dimension; ++k) {
+    size_[k] = domain.block.size(k);
+    wall_below_[k] = domain.wall_below(k), wall_above_[k] = domain.wall_above(k);
+    wraps_[k] = domain.wraps(k);
+  }
   constexpr int line = 64 / sizeof(T);
   // Rows begin on a cache line; the halo of a row's right end and of the next row's left end share what lies between.
-  stride_ = (nx_ + 2 + line - 1) / line * line;
-  // Planes start a few cache lines apart modulo 4096 bytes, so that nine streams do not fall into one cache set.
-  const std::size_t plane = static_cast<std::size_t>(stride_) * (ny_ + 2) + line;
+  stride_[0] = 1;
+  stride_[1] = (size_[0] + 2 + line - 1) / line * line;
+  for (int k = 2; k < dimension; ++k) stride_[k] = stride_[k - 1] * (size_[k - 1] + 2);
+  // The arrays of the slots start a few cache lines apart modulo 4096 bytes, so that their streams do not fall into one
+  // cache set.
+  const std::size_t slot = static_cast<std::size_t>(stride_[dimension - 1]) * (size_[dimension - 1] + 2) + line;
   constexpr std::size_t page = 4096 / sizeof(T), stagger = 7 * line;
-  const std::size_t spacing = (plane + page - 1) / page * page + stagger;
-  storage_ = Storage<T>(spacing * 9);
-  for (int q = 0; q < 9; ++q) origin_[q] = storage_.data() + spacing * q + stride_ + line;
+  const std::size_t spacing = (slot + page - 1) / page * page + stagger;
+  storage_ = Storage<T>(spacing * velocity_count);
+  Row first;
+  first.fill(1);
+  for (int q = 0; q < velocity_count; ++q) origin_[q] = storage_.data() + spacing * q + offset(line, first);
 }
 
-template class Lattice<float>;
-template class Lattice<double>;
+template class Lattice<float, D2Q9>;
+template class Lattice<double, D2Q9>;
 
 }  // namespace rouleau::core

@@ -1,107 +1,134 @@
-// Populations of a D2Q9 block, streamed in place (AA pattern: Bailey et al., ICPP 2009).
+// Populations of a block, streamed in place (AA pattern: Bailey et al., ICPP 2009).
 //
 // Even steps read f_q(x) from slot q and write f'_q(x) to the opposite slot of the same node; odd steps read what
 // streams in from the neighbours' opposite slots and write to the neighbours' slots. One array serves both, and a
-// collision operator sees nine input and nine output pointers either way. Populations are deviations from rest, f_q -
-// w_q.
+// collision operator sees an input and an output pointer for each velocity either way. Populations are deviations from
+// rest, f_q - w_q.
 #pragma once
 
-#include <algorithm>
+#include <array>
 #include <cstddef>
-#include <rouleau/d2q9.hpp>
 
 #include "core/domain/domain.hpp"
 #include "storage.hpp"
+#include "velocity_set.hpp"
 
 namespace rouleau::core {
-
-namespace d2q9 = rouleau::d2q9;
 
 /// Which half of the in-place pair comes next.
 enum class Parity { even, odd };
 constexpr Parity next(Parity parity) { return parity == Parity::even ? Parity::odd : Parity::even; }
 
-template <class T>
+/// `Set`: the velocities (velocity_set.hpp). Rows lie along x; a row is named by its coordinates along the other axes.
+template <class T, class Set>
 class Lattice {
  public:
-  /// The domain's block, fluid at rest.
-  explicit Lattice(const Domain<2>& domain);
+  static constexpr int dimension = Set::dimension, velocity_count = Set::velocity_count;
+  using Row = std::array<int, dimension - 1>;
+  using In = const T* [velocity_count];
+  using Out = T* [velocity_count];
 
-  [[nodiscard]] int nx() const { return nx_; }
-  [[nodiscard]] int ny() const { return ny_; }
-  [[nodiscard]] const Domain<2>& domain() const { return domain_; }
+  /// The domain's block, fluid at rest. Its first axis is periodic, or cut.
+  explicit Lattice(const Domain<dimension>& domain);
+
+  [[nodiscard]] int size(int axis) const { return domain_.block.size(axis); }
+  [[nodiscard]] const Domain<dimension>& domain() const { return domain_; }
   /// Whether the block is its own neighbour across both ends of an axis.
   [[nodiscard]] bool wraps(int axis) const { return wraps_[axis]; }
   [[nodiscard]] std::size_t bytes() const { return storage_.bytes(); }
 
-  /// Row y of slot q; x in [-1, nx], y in [-1, ny].
-  [[nodiscard]] T* slot(int q, int y) { return origin_[q] + static_cast<std::ptrdiff_t>(stride_) * y; }
-  [[nodiscard]] const T* slot(int q, int y) const { return origin_[q] + static_cast<std::ptrdiff_t>(stride_) * y; }
+  /// A row of slot q; all coordinates in [-1, size].
+  [[nodiscard]] T* slot(int q, const Row& row) { return origin_[q] + offset(0, row); }
+  [[nodiscard]] const T* slot(int q, const Row& row) const { return origin_[q] + offset(0, row); }
 
-  /// From slot(q, 0) to the same slot of node (x, y) of the block, halo included.
-  [[nodiscard]] std::ptrdiff_t offset(int x, int y) const { return static_cast<std::ptrdiff_t>(stride_) * y + x; }
+  /// From the first node of the block to node x of a row, in the same slot, halo included.
+  [[nodiscard]] std::ptrdiff_t offset(int x, const Row& row) const {
+    std::ptrdiff_t sum = x;
+    for (int k = 1; k < dimension; ++k) sum += stride_[k] * row[k - 1];
+    return sum;
+  }
 
-  /// Pointers to the populations of row y before and after a collision at this parity, from x = 0 on. Rows beside a
+  /// Pointers to the populations of a row before and after a collision at this parity, from x = 0 on. Rows beside a
   /// wall get half-way bounce-back: what would leave the fluid stays in its node and comes back reversed in the next
   /// step.
-  void row_pointers(Parity parity, int y, const T* (&in)[9], T* (&out)[9]);
-  /// The same given those of the row before, `from`, one above or below: quicker, row after row.
-  void next_row_pointers(Parity parity, int from, int y, const T* (&in)[9], T* (&out)[9]);
+  void row_pointers(Parity parity, const Row& row, In& in, Out& out);
+  /// The same given those of another row: quicker, row after row.
+  void next_row_pointers(Parity parity, const Row& from, const Row& row, In& in, Out& out);
   /// The populations alone, for observers; the halo must be complete (Fluid::settle).
-  void row_pointers(Parity parity, int y, const T* (&in)[9]) const;
+  void row_pointers(Parity parity, const Row& row, In& in) const;
 
  private:
-  [[nodiscard]] bool outside(int y) const { return (y < 0 && wall_below_) || (y >= ny_ && wall_above_); }
+  /// Whether what lies at `coordinate` along an axis is beyond a wall.
+  [[nodiscard]] bool outside(int axis, int coordinate) const {
+    return (coordinate < 0 && wall_below_[axis]) || (coordinate >= size_[axis] && wall_above_[axis]);
+  }
+  [[nodiscard]] bool beside_wall(const Row& row) const {
+    for (int k = 1; k < dimension; ++k) {
+      if (outside(k, row[k - 1] - 1) || outside(k, row[k - 1] + 1)) return true;
+    }
+    return false;
+  }
   /// Calls function(q, in, out) with the pointers of every population.
   template <class Function>
-  void for_slots(Parity parity, int y, Function function) const;
+  void for_slots(Parity parity, const Row& row, Function function) const;
 
-  Domain<2> domain_;
-  int nx_, ny_, stride_;
-  bool wall_below_, wall_above_, wraps_[2];
+  Domain<dimension> domain_;
+  std::array<int, dimension> size_;
+  std::array<std::ptrdiff_t, dimension> stride_;
+  std::array<bool, dimension> wall_below_, wall_above_, wraps_;
   Storage<T> storage_;
-  T* origin_[9];
+  T* origin_[velocity_count];
 };
 
-template <class T>
+template <class T, class Set>
 template <class Function>
-inline void Lattice<T>::for_slots(Parity parity, int y, Function function) const {
-  const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(stride_) * y, stride = stride_;
-  const bool streamed = parity == Parity::odd, below = streamed && !outside(y - 1), above = streamed && !outside(y + 1);
-  d2q9::for_each_velocity([&](auto q) {
-    constexpr int opposite = d2q9::opposite[q], cx = d2q9::velocity[q][0], cy = d2q9::velocity[q][1];
-    const bool comes = cy == 0 ? streamed : (cy > 0 ? below : above);
-    const bool goes = cy == 0 ? streamed : (cy > 0 ? above : below);
-    T* const own = origin_[q] + row;
-    T* const other = origin_[opposite] + row;
-    function(q, comes ? other - (cy * stride + cx) : own, goes ? own + (cy * stride + cx) : other);
+inline void Lattice<T, Set>::for_slots(Parity parity, const Row& row, Function function) const {
+  const std::ptrdiff_t here = offset(0, row);
+  const bool streamed = parity == Parity::odd;
+  bool below[dimension], above[dimension];  // whether there is anything to stream with, along each axis
+  below[0] = above[0] = streamed;
+  for (int k = 1; k < dimension; ++k) {
+    below[k] = streamed && !outside(k, row[k - 1] - 1);
+    above[k] = streamed && !outside(k, row[k - 1] + 1);
+  }
+  Set::for_each_velocity([&](auto q) {
+    constexpr auto& c = Set::velocity[q];
+    bool comes = streamed, goes = streamed;
+    std::ptrdiff_t way = c[0];
+    for (int k = 1; k < dimension; ++k) {
+      if (c[k] != 0) comes = comes && (c[k] > 0 ? below[k] : above[k]), goes = goes && (c[k] > 0 ? above[k] : below[k]);
+      way += c[k] * stride_[k];
+    }
+    T* const own = origin_[q] + here;
+    T* const other = origin_[Set::opposite[q]] + here;
+    function(q, comes ? other - way : own, goes ? own + way : other);
   });
 }
 
-template <class T>
-inline void Lattice<T>::row_pointers(Parity parity, int y, const T* (&in)[9]) const {
-  for_slots(parity, y, [&](int q, const T* from, const T*) { in[q] = from; });
+template <class T, class Set>
+inline void Lattice<T, Set>::row_pointers(Parity parity, const Row& row, In& in) const {
+  for_slots(parity, row, [&](int q, const T* from, const T*) { in[q] = from; });
 }
 
-template <class T>
-inline void Lattice<T>::row_pointers(Parity parity, int y, const T* (&in)[9], T* (&out)[9]) {
-  for_slots(parity, y, [&](int q, const T* from, T* to) {
+template <class T, class Set>
+inline void Lattice<T, Set>::row_pointers(Parity parity, const Row& row, In& in, Out& out) {
+  for_slots(parity, row, [&](int q, const T* from, T* to) {
     in[q] = from;
     out[q] = to;
   });
 }
 
-template <class T>
-inline void Lattice<T>::next_row_pointers(Parity parity, int from, int y, const T* (&in)[9], T* (&out)[9]) {
-  if (outside(std::min(from, y) - 1) || outside(std::max(from, y) + 1)) {  // one of the two rows lies beside a wall
-    row_pointers(parity, y, in, out);
+template <class T, class Set>
+inline void Lattice<T, Set>::next_row_pointers(Parity parity, const Row& from, const Row& row, In& in, Out& out) {
+  if (beside_wall(from) || beside_wall(row)) {
+    row_pointers(parity, row, in, out);
     return;
   }
-  const std::ptrdiff_t way = y > from ? stride_ : -stride_;
-  d2q9::for_each_velocity([&](auto q) { in[q] += way, out[q] += way; });
+  const std::ptrdiff_t way = offset(0, row) - offset(0, from);
+  Set::for_each_velocity([&](auto q) { in[q] += way, out[q] += way; });
 }
 
-extern template class Lattice<float>;
-extern template class Lattice<double>;
+extern template class Lattice<float, D2Q9>;
+extern template class Lattice<double, D2Q9>;
 
 }  // namespace rouleau::core

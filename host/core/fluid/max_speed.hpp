@@ -8,7 +8,7 @@
 
 namespace rouleau::core {
 
-/// Nodes of one run of a row, and what was found.
+/// Nodes of one span of a row, and what was found.
 template <class T>
 struct MassAndSpeedTask {
   const T* in[9];
@@ -55,7 +55,7 @@ struct FindMassAndSpeed {
       const Wide part = ExactSum::high_part(density);
       mass_high += part;
       mass_low += ExactSum::low_part(Wide(density - part));
-      fastest = max(square, fastest);
+      fastest = max(fastest, square);
       zero += (square - square) + (node.density - node.density);
     }
     for (int k = 0; k < S::size; ++k) {

@@ -11,12 +11,12 @@ NodeMask::NodeMask(const Domain<2>& domain)
       first_(domain.block.begin[0] % nodes_per_bit),
       words_(bit_of(nx_ - 1) / bits_per_word + 1),
       bits_(static_cast<std::size_t>(words_) * ny_, 0),
-      runs_(static_cast<std::size_t>(ny_), {MaskSpan{0, nx_, false}}) {}
+      spans_(static_cast<std::size_t>(ny_), {MaskSpan{0, nx_, false}}) {}
 
 void NodeMask::clear(int first_row, int end_row) {
   std::fill(bits_.begin() + static_cast<std::ptrdiff_t>(words_) * first_row,
             bits_.begin() + static_cast<std::ptrdiff_t>(words_) * end_row, 0);
-  for (int y = first_row; y < end_row; ++y) runs_[y].assign(1, {0, nx_, false});
+  for (int y = first_row; y < end_row; ++y) spans_[y].assign(1, {0, nx_, false});
 }
 
 void NodeMask::mark(int y, int begin, int end) {
@@ -38,13 +38,13 @@ void NodeMask::mark_nodes(std::uint64_t* row, int begin, int end) {
 
 void NodeMask::list_spans(int y) {
   const std::uint64_t* row = bits_.data() + static_cast<std::size_t>(words_) * y;
-  std::vector<MaskSpan>& runs = runs_[y];
-  runs.clear();
+  std::vector<MaskSpan>& spans = spans_[y];
+  spans.clear();
   for (int x = 0; x < nx_;) {
     const int bit = bit_of(x);
     const bool on = (row[bit / bits_per_word] >> (bit % bits_per_word) & 1) != 0;
     const int end = std::min(nx_, next_change(row, bit, on) * nodes_per_bit - first_);
-    runs.push_back({x, end, on});
+    spans.push_back({x, end, on});
     x = end;
   }
 }
@@ -52,7 +52,7 @@ void NodeMask::list_spans(int y) {
 double NodeMask::active_fraction() const {
   long count = 0;
   for (int y = 0; y < ny_; ++y) {
-    for_spans(y, [&](const MaskSpan& run) { count += run.active ? run.end - run.begin : 0; });
+    for_spans(y, [&](const MaskSpan& span) { count += span.active ? span.end - span.begin : 0; });
   }
   return static_cast<double>(count) / (static_cast<double>(nx_) * ny_);
 }

@@ -33,17 +33,17 @@ class NodeMask {
   /// Calls function(MaskSpan) for the spans of row y, left to right, covering [0, nx) exactly.
   template <class Function>
   void for_spans(int y, Function function) const {
-    for (const MaskSpan& run : runs_[y]) function(run);
+    for (const MaskSpan& span : spans_[y]) function(span);
   }
   [[nodiscard]] bool active(int x, int y) const {
     const int bit = bit_of(x);
     return (bits_[static_cast<std::size_t>(words_) * y + bit / bits_per_word] >> (bit % bits_per_word) & 1) != 0;
   }
   /// Whether any node of row y is active; whether the first or the last one is.
-  [[nodiscard]] bool any(int y) const { return runs_[y].size() > 1 || at_side(y); }
+  [[nodiscard]] bool any(int y) const { return spans_[y].size() > 1 || at_side(y); }
   [[nodiscard]] bool at_side(int y) const {
-    const std::vector<MaskSpan>& runs = runs_[y];
-    return runs.front().active || runs.back().active;
+    const std::vector<MaskSpan>& spans = spans_[y];
+    return spans.front().active || spans.back().active;
   }
   [[nodiscard]] double active_fraction() const;
 
@@ -73,8 +73,8 @@ class NodeMask {
   int first_ = 0;  ///< nodes before the block that its first bit stands for, too
   int words_ = 0;
   std::vector<std::uint64_t> bits_;
-  std::vector<std::vector<MaskSpan>>
-      runs_;  ///< of each row: read several times a step, changed when a membrane has moved
+  /// Of each row: read several times a step, changed when a membrane has moved.
+  std::vector<std::vector<MaskSpan>> spans_;
 };
 
 }  // namespace rouleau::core

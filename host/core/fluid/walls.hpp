@@ -16,7 +16,7 @@ struct WallVelocity {
 /// every q that comes from the wall (Ladd, J. Fluid Mech. 271, 1994). To be called after every collision of the row, at
 /// either parity.
 template <class T>
-void add_wall_momentum(Lattice<T>& lattice, int y, const WallVelocity& walls);
+void add_wall_momentum(Lattice<T, D2Q9>& lattice, int y, const WallVelocity& walls);
 
 /// What a row beyond a wall is made of: the node of the fluid that it mirrors, and the wall's velocity. A force spread
 /// there acts on that node with reversed sign, and the velocity there is 2 u_wall - u: each is the other's adjoint, so

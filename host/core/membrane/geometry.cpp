@@ -8,11 +8,11 @@ namespace rouleau::core {
 
 namespace {
 
-Eigen::Vector2d node(const Membranes& membranes, int i) { return {membranes.x[i], membranes.y[i]}; }
+Vec<2> node(const Membranes& membranes, int i) { return {membranes.x[i], membranes.y[i]}; }
 
 /// Square of the distance from a point to the segment p ... q.
-double square_distance(const Eigen::Vector2d& point, const Eigen::Vector2d& p, const Eigen::Vector2d& q) {
-  const Eigen::Vector2d along = q - p, from = point - p;
+double square_distance(const Vec<2>& point, const Vec<2>& p, const Vec<2>& q) {
+  const Vec<2> along = q - p, from = point - p;
   const double square = along.squaredNorm();
   const double s = square > 0 ? std::clamp(from.dot(along) / square, 0.0, 1.0) : 0.0;
   return (from - s * along).squaredNorm();
@@ -21,13 +21,13 @@ double square_distance(const Eigen::Vector2d& point, const Eigen::Vector2d& p, c
 /// Moments of area about `origin`: area, first moments, second moments xx, xy, yy.
 struct Moments {
   double area = 0;
-  Eigen::Vector2d first = Eigen::Vector2d::Zero();
+  Vec<2> first = Vec<2>::Zero();
   double xx = 0, xy = 0, yy = 0;
 };
-Moments moments(const Membranes& membranes, const CellRange& cell, const Eigen::Vector2d& origin) {
+Moments moments(const Membranes& membranes, const CellRange& cell, const Vec<2>& origin) {
   Moments sum;
   for (int i = cell.first; i < cell.end(); ++i) {
-    const Eigen::Vector2d p = node(membranes, i) - origin, q = node(membranes, cell.next(i)) - origin;
+    const Vec<2> p = node(membranes, i) - origin, q = node(membranes, cell.next(i)) - origin;
     const double twice = cross(p, q);
     sum.area += twice / 2;
     sum.first += twice / 6 * (p + q);
@@ -42,7 +42,7 @@ Moments moments(const Membranes& membranes, const CellRange& cell, const Eigen::
 
 double enclosed_area(const Membranes& membranes, const CellRange& cell) {
   // Relative to the first node: far from the origin the digits would cancel otherwise.
-  const Eigen::Vector2d origin = node(membranes, cell.first);
+  const Vec<2> origin = node(membranes, cell.first);
   double twice = 0;
   for (int i = cell.first; i < cell.end(); ++i) {
     twice += cross(node(membranes, i) - origin, node(membranes, cell.next(i)) - origin);
@@ -67,8 +67,8 @@ StretchRange stretch_range(const Membranes& membranes, const CellRange& cell) {
   return range;
 }
 
-Eigen::Vector2d centroid(const Membranes& membranes, const CellRange& cell) {
-  const Eigen::Vector2d origin = node(membranes, cell.first);
+Vec<2> centroid(const Membranes& membranes, const CellRange& cell) {
+  const Vec<2> origin = node(membranes, cell.first);
   const Moments sum = moments(membranes, cell, origin);
   return origin + sum.first / sum.area;
 }
@@ -98,15 +98,14 @@ InertiaEllipse inertia_ellipse(const Membranes& membranes, const CellRange& cell
 }
 
 double marker_angle(const Membranes& membranes, const CellRange& cell) {
-  const Eigen::Vector2d arm = node(membranes, cell.first) - centroid(membranes, cell);
+  const Vec<2> arm = node(membranes, cell.first) - centroid(membranes, cell);
   return std::atan2(arm.y(), arm.x());
 }
 
 namespace {
 
 /// Smallest square distance from a point to an outline with these bounds; `best` if it is not below that.
-double nearest(const Membranes& membranes, const CellRange& cell, const Bounds& box, const Eigen::Vector2d& point,
-               double best) {
+double nearest(const Membranes& membranes, const CellRange& cell, const Bounds& box, const Vec<2>& point, double best) {
   const double dx = std::max({0.0, box.x_min - point.x(), point.x() - box.x_max});
   const double dy = std::max({0.0, box.y_min - point.y(), point.y() - box.y_max});
   if (!(dx * dx + dy * dy <= best)) return best;
@@ -117,7 +116,7 @@ double nearest(const Membranes& membranes, const CellRange& cell, const Bounds& 
 }
 
 /// The same from the nodes of `a` moved by `move` to the outline of `b`.
-double nearest_node(const Membranes& membranes, const CellRange& a, const CellRange& b, const Eigen::Vector2d& move,
+double nearest_node(const Membranes& membranes, const CellRange& a, const CellRange& b, const Vec<2>& move,
                     double best) {
   const Bounds box = bounds(membranes, b);
   for (int i = a.first; i < a.end(); ++i) best = nearest(membranes, b, box, node(membranes, i) + move, best);
@@ -128,7 +127,7 @@ double nearest_node(const Membranes& membranes, const CellRange& a, const CellRa
 
 double outline_distance(const Membranes& membranes, const CellRange& a, const CellRange& b, ImageShift shift,
                         const Domain<2>& domain, double limit) {
-  const Eigen::Vector2d move(shift.x * domain.period(0), shift.y * domain.period(1));
+  const Vec<2> move(shift.x * domain.period(0), shift.y * domain.period(1));
   const double outside = limit * limit;
   double best = std::nextafter(outside, std::numeric_limits<double>::infinity());
   best = nearest_node(membranes, a, b, -move, best);
@@ -138,7 +137,7 @@ double outline_distance(const Membranes& membranes, const CellRange& a, const Ce
 
 double facing_length(const Membranes& membranes, const CellRange& a, const CellRange& b, ImageShift shift,
                      const Domain<2>& domain, double reach) {
-  const Eigen::Vector2d move(shift.x * domain.period(0), shift.y * domain.period(1));
+  const Vec<2> move(shift.x * domain.period(0), shift.y * domain.period(1));
   const Bounds bounds_b = bounds(membranes, b);
   double length = 0;
   for (int i = a.first; i < a.end(); ++i) {
@@ -159,11 +158,11 @@ double smallest_gap(const Membranes& membranes, int a, int b, const Domain<2>& d
   return gap;
 }
 
-double depth_inside(const Membranes& membranes, const CellRange& cell, const Eigen::Vector2d& point) {
+double depth_inside(const Membranes& membranes, const CellRange& cell, const Vec<2>& point) {
   double square = std::numeric_limits<double>::infinity();
   int winding = 0;
   for (int i = cell.first; i < cell.end(); ++i) {
-    const Eigen::Vector2d p = node(membranes, i), q = node(membranes, cell.next(i));
+    const Vec<2> p = node(membranes, i), q = node(membranes, cell.next(i));
     square = std::min(square, square_distance(point, p, q));
     const double side = cross(q - p, point - p);
     if (p.y() <= point.y() && q.y() > point.y() && side > 0) ++winding;

@@ -1,16 +1,16 @@
 // What can be read off a closed polygon: area, perimeter, inertia ellipse, distances between cells.
 #pragma once
 
-#include <Eigen/Core>
 #include <limits>
 
 #include "core/domain/images.hpp"
+#include "core/domain/vec.hpp"
 #include "membranes.hpp"
 
 namespace rouleau::core {
 
 /// z component of the cross product: positive where b lies counter-clockwise of a.
-inline double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+inline double cross(const Vec<2>& a, const Vec<2>& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 /// Signed area, positive for a counter-clockwise outline.
 double enclosed_area(const Membranes& membranes, const CellRange& cell);
@@ -21,7 +21,7 @@ struct StretchRange {
 };
 StretchRange stretch_range(const Membranes& membranes, const CellRange& cell);
 /// Centroid of the enclosed area.
-Eigen::Vector2d centroid(const Membranes& membranes, const CellRange& cell);
+Vec<2> centroid(const Membranes& membranes, const CellRange& cell);
 /// Not a number if a position is not finite.
 Bounds bounds(const Membranes& membranes, const CellRange& cell);
 
@@ -51,6 +51,6 @@ double facing_length(const Membranes& membranes, const CellRange& a, const CellR
 double smallest_gap(const Membranes& membranes, int a, int b, const Domain<2>& domain, double limit);
 
 /// Depth to which a point lies inside a cell moved by `shift`: distance to its outline; negative outside.
-double depth_inside(const Membranes& membranes, const CellRange& cell, const Eigen::Vector2d& point);
+double depth_inside(const Membranes& membranes, const CellRange& cell, const Vec<2>& point);
 
 }  // namespace rouleau::core

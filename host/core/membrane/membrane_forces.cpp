@@ -38,8 +38,8 @@ void MembraneForces::run(Worker worker, Membranes& membranes) {
   for (int cell = cells.begin; cell < cells.end; ++cell) {
     if (!membranes.owns(cell)) continue;
     const std::size_t at = offset(cells.begin);
-    const CellRange& range = membranes.cells[static_cast<std::size_t>(cell)];
-    const bool semi_implicit = types_[static_cast<std::size_t>(range.type)].filter.has_value();
+    const CellRange& range = membranes.cells[cell];
+    const bool semi_implicit = types_[range.type].filter.has_value();
     measure(membranes, cell, at, semi_implicit);
     act(membranes, cell, at, apply_laws(membranes, cell, at, &membranes.state, nullptr));
     if (semi_implicit) soften(membranes, cell);
@@ -58,19 +58,18 @@ MembraneEnergy MembraneForces::energies(const Membranes& membranes) {
 void MembraneForces::tensions(const Membranes& membranes, std::vector<double>& tension) {
   tension.resize(membranes.x.size());
   for (int cell = 0; cell < membranes.cell_count(); ++cell) {
-    const CellRange& range = membranes.cells[static_cast<std::size_t>(cell)];
+    const CellRange& range = membranes.cells[cell];
     measure(membranes, cell, offset(0), false);
     const double uniform = apply_laws(membranes, cell, offset(0), nullptr, nullptr).perimeter_tension;
     for (int k = 0; k < range.count; ++k) {
-      tension[static_cast<std::size_t>(range.first + k)] =
-          scratch_.tension[offset(0) + static_cast<std::size_t>(k)] + uniform;
+      tension[range.first + k] = scratch_.tension[offset(0) + static_cast<std::size_t>(k)] + uniform;
     }
   }
 }
 
 void MembraneForces::measure(const Membranes& membranes, int cell, std::size_t at, bool ahead) {
-  const CellRange& range = membranes.cells[static_cast<std::size_t>(cell)];
-  const Type& type = types_[static_cast<std::size_t>(range.type)];
+  const CellRange& range = membranes.cells[cell];
+  const Type& type = types_[range.type];
   Scratch& s = scratch_;
   const auto copy_closed = [&](const std::vector<double>& from, std::vector<double>& to) {
     std::copy_n(from.data() + range.first, range.count, to.data() + at);
@@ -82,8 +81,8 @@ void MembraneForces::measure(const Membranes& membranes, int cell, std::size_t a
     for (int k = -1; k <= range.count; ++k) {
       const int node = range.first + (k < 0 ? range.count - 1 : k % range.count);
       const std::size_t to = at + static_cast<std::size_t>(k);
-      s.x[to] += membranes.velocity_x[static_cast<std::size_t>(node)];
-      s.y[to] += membranes.velocity_y[static_cast<std::size_t>(node)];
+      s.x[to] += membranes.velocity_x[node];
+      s.y[to] += membranes.velocity_y[node];
     }
   }
   if (type.rate) {
@@ -121,7 +120,7 @@ void MembraneForces::apply_law(const Law& law, const Membranes& membranes, int c
                                std::vector<ElementState>* next, CellState& sums, bool first_tension, bool first_moment,
                                double* energy) {
   Scratch& s = scratch_;
-  const CellRange& range = membranes.cells[static_cast<std::size_t>(cell)];
+  const CellRange& range = membranes.cells[cell];
   double pressure = 0, perimeter_tension = 0;
   rouleau_membrane_block block{};
   give_inputs(law, range, cell, at, sums, block);
@@ -143,7 +142,7 @@ void MembraneForces::apply_law(const Law& law, const Membranes& membranes, int c
     block.state = state.data();
     if (next != nullptr) block.new_state = new_state.data();
   }
-  law.model.table->compute(law.model.self.get(), &block);
+  law.model.compute(&block);
 
   const auto add = [&](const std::vector<double>& from, std::vector<double>& sum) {
     for (std::size_t i = at; i < at + static_cast<std::size_t>(range.count); ++i) sum[i] += from[i];
@@ -157,8 +156,8 @@ void MembraneForces::apply_law(const Law& law, const Membranes& membranes, int c
 
 MembraneForces::CellState MembraneForces::apply_laws(const Membranes& membranes, int cell, std::size_t at,
                                                      std::vector<ElementState>* next, MembraneEnergy* energy) {
-  const CellRange& range = membranes.cells[static_cast<std::size_t>(cell)];
-  const Type& type = types_[static_cast<std::size_t>(range.type)];
+  const CellRange& range = membranes.cells[cell];
+  const Type& type = types_[range.type];
   CellState sums;
   if (type.cell) {
     sums.area = enclosed_area(membranes, range);
@@ -199,7 +198,7 @@ double MembraneForces::integrated(const Law& law, const Membranes& membranes, co
 
 double MembraneForces::relaxed_energy(const Law& law, const Membranes& membranes, int cell, std::size_t at,
                                       const CellState& sums) const {
-  const CellRange& range = membranes.cells[static_cast<std::size_t>(cell)];
+  const CellRange& range = membranes.cells[cell];
   const auto count = static_cast<std::size_t>(range.count);
   const std::vector<double> still(count, 0.0);
   std::vector<double> energy(count);
@@ -207,7 +206,7 @@ double MembraneForces::relaxed_energy(const Law& law, const Membranes& membranes
   std::array<const double*, most_states> state{};
   std::array<double*, most_states> new_state{};
   for (std::size_t k = 0; k < law.state.size(); ++k) {
-    const double* present = &membranes.state[law.state[k]].value[static_cast<std::size_t>(range.first)];
+    const double* present = &membranes.state[law.state[k]].value[range.first];
     values.emplace_back(present, present + count);
   }
   for (std::size_t k = 0; k < values.size(); ++k) state[k] = new_state[k] = values[k].data();
@@ -218,17 +217,17 @@ double MembraneForces::relaxed_energy(const Law& law, const Membranes& membranes
   block.state = state.data();
   block.new_state = new_state.data();
   block.time_step = 1;
-  law.model.table->compute(law.model.self.get(), &block);
+  law.model.compute(&block);
   block.new_state = nullptr;
   block.time_step = 0;
-  law.model.table->compute(law.model.self.get(), &block);
+  law.model.compute(&block);
   return integrated(law, membranes, range, energy.data());
 }
 
 /// `tension`: that of this law alone.
 void MembraneForces::add_energy(const Law& law, const Membranes& membranes, int cell, std::size_t at,
                                 const CellState& sums, const double* tension, MembraneEnergy& energy) const {
-  const CellRange& range = membranes.cells[static_cast<std::size_t>(cell)];
+  const CellRange& range = membranes.cells[cell];
   if (!law.energy) {
     // A law that only resists the rate of stretch stores nothing.
     bool stores = !law.tension_by_rate;
@@ -248,8 +247,8 @@ void MembraneForces::add_energy(const Law& law, const Membranes& membranes, int 
 /// T(stretch, rate) is taken apart into eta rate, for which the tension of the implicit step comes in, and the rest.
 void MembraneForces::add_rate_tension(const Membranes& membranes, int cell, std::size_t at,
                                       std::vector<ElementState>* next) {
-  const CellRange& range = membranes.cells[static_cast<std::size_t>(cell)];
-  const Type& type = types_[static_cast<std::size_t>(range.type)];
+  const CellRange& range = membranes.cells[cell];
+  const Type& type = types_[range.type];
   const std::size_t variable = type.rate_tension;
   const double length = range.rest_perimeter / range.count;
   const auto first = static_cast<std::size_t>(range.first);
@@ -273,8 +272,8 @@ void MembraneForces::add_rate_tension(const Membranes& membranes, int cell, std:
 }
 
 void MembraneForces::act(Membranes& membranes, int cell, std::size_t at, const CellState& state) {
-  const CellRange& range = membranes.cells[static_cast<std::size_t>(cell)];
-  const Type& type = types_[static_cast<std::size_t>(range.type)];
+  const CellRange& range = membranes.cells[cell];
+  const Type& type = types_[range.type];
   Scratch& s = scratch_;
   CellArrays arrays{};
   arrays.count = range.count;
@@ -283,8 +282,8 @@ void MembraneForces::act(Membranes& membranes, int cell, std::size_t at, const C
   arrays.inverse_length = &s.inverse_length[at];
   arrays.tension = &s.tension[at], arrays.moment = &s.moment[at];
   arrays.segment_force_x = &s.segment_force_x[at], arrays.segment_force_y = &s.segment_force_y[at];
-  arrays.force_x = &membranes.force_x[static_cast<std::size_t>(range.first)];
-  arrays.force_y = &membranes.force_y[static_cast<std::size_t>(range.first)];
+  arrays.force_x = &membranes.force_x[range.first];
+  arrays.force_y = &membranes.force_y[range.first];
   arrays.with_moment = type.moment, arrays.with_pressure = type.cell;
   arrays.pressure = state.pressure, arrays.perimeter_tension = state.perimeter_tension;
   run_loop<ActOnCell>(arrays);
@@ -292,8 +291,8 @@ void MembraneForces::act(Membranes& membranes, int cell, std::size_t at, const C
 
 /// Makes the forces those of the semi-implicit step.
 void MembraneForces::soften(Membranes& membranes, int cell) const {
-  const CellRange& range = membranes.cells[static_cast<std::size_t>(cell)];
-  const Type& type = types_[static_cast<std::size_t>(range.type)];
+  const CellRange& range = membranes.cells[cell];
+  const Type& type = types_[range.type];
   const auto first = static_cast<std::size_t>(range.first);
   const auto held = [&](int component) { return &membranes.state[type.held_force[component]].value[first]; };
   type.filter->apply(&membranes.force_x[first], &membranes.force_y[first], held(0), held(1));

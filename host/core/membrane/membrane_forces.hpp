@@ -100,7 +100,7 @@ class MembraneForces {
   void allocate(const Membranes& membranes);
   void make_filters(const Membranes& membranes, double viscosity);
   void keep_state(Membranes& membranes, double tension_unit);
-  [[nodiscard]] std::size_t offset(int cell) const { return offset_[static_cast<std::size_t>(cell)]; }
+  [[nodiscard]] std::size_t offset(int cell) const { return offset_[cell]; }
   // `at`: where the working arrays begin.
   // `ahead`: where the nodes will be after another step like the last one.
   void measure(const Membranes& membranes, int cell, std::size_t at, bool ahead);

@@ -33,11 +33,10 @@ RestShape make_rest_shape(std::vector<double> x, std::vector<double> y, double p
 }
 
 void add_cell(Membranes& membranes, int type, const RestShape& shape, double x, double y, double angle) {
-  membranes.cells.push_back({.type = type,
-                             .first = membranes.node_count(),
-                             .count = static_cast<int>(shape.x.size()),
-                             .rest_area = shape.rest_area,
-                             .rest_perimeter = shape.rest_perimeter});
+  membranes.cells.push_back({{.first = membranes.node_count(), .count = static_cast<int>(shape.x.size())},
+                             type,
+                             shape.rest_area,
+                             shape.rest_perimeter});
   const double c = std::cos(angle), s = std::sin(angle);
   for (std::size_t i = 0; i < shape.x.size(); ++i) {
     membranes.x.push_back(x + c * shape.x[i] - s * shape.y[i]);

@@ -6,20 +6,15 @@
 
 #include "base/worker.hpp"
 #include "element_state.hpp"
+#include "topology.hpp"
 
 namespace rouleau::core {
 
-/// One cell's place in the arrays of Membranes.
-struct CellRange {
+/// One cell: its nodes and segments in the arrays of Membranes.
+struct CellRange : Segments {
   int type;               ///< index into the setup's cell types
-  int first;              ///< its first node
-  int count;              ///< nodes and segments
   double rest_area;       ///< enclosed area as created: the fluid inside cannot leave
   double rest_perimeter;  ///< sum of the rest lengths
-  [[nodiscard]] int end() const { return first + count; }
-  /// Index of the node after / before i along the outline.
-  [[nodiscard]] int next(int i) const { return i + 1 == end() ? first : i + 1; }
-  [[nodiscard]] int previous(int i) const { return i == first ? end() - 1 : i - 1; }
 };
 
 /// Two components for each node, of somebody else's.
@@ -53,9 +48,7 @@ struct Membranes {
   /// The nodes of a worker's cells, worker.share(cell_count()).
   [[nodiscard]] Range node_share(Worker worker) const {
     const Range share = worker.share(cell_count());
-    const auto first = [this](int cell) {
-      return cell < cell_count() ? cells[static_cast<std::size_t>(cell)].first : node_count();
-    };
+    const auto first = [this](int cell) { return cell < cell_count() ? cells[cell].first : node_count(); };
     return {first(share.begin), first(share.end)};
   }
 };

@@ -1,5 +1,6 @@
 #include "motion.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <rouleau/dispatch.hpp>
 
@@ -25,16 +26,16 @@ struct Move {
       const S u = S::load(t.velocity_x + i), v = S::load(t.velocity_y + i), square = u * u + v * v;
       (S::load(t.x + i) + u).store(t.x + i);
       (S::load(t.y + i) + v).store(t.y + i);
-      largest = max(square, largest);
+      largest = max(largest, square);
       zero += square - square;
     }
     double most = 0;
-    for (int k = 0; k < S::size; ++k) most = max(largest.vector[k], most) + zero.vector[k];
+    for (int k = 0; k < S::size; ++k) most = max(most, largest.vector[k]) + zero.vector[k];
     for (; i < t.end; ++i) {
       const double u = t.velocity_x[i], v = t.velocity_y[i], square = u * u + v * v;
       t.x[i] += u;
       t.y[i] += v;
-      most = max(square, most) + (square - square);
+      most = max(most, square) + (square - square);
     }
     task->largest_square = most;
   }
@@ -58,6 +59,13 @@ void move_nodes(Worker worker, Membranes& membranes) {
     function(&task);
     membranes.largest_step[c] = std::sqrt(task.largest_square);
   }
+}
+
+std::array<double, 2> mean_velocity(const Membranes& membranes) {
+  double u = 0, v = 0;
+  for (std::size_t i = 0; i < membranes.x.size(); ++i) u += membranes.velocity_x[i], v += membranes.velocity_y[i];
+  const double nodes = std::max(1, membranes.node_count());
+  return {u / nodes, v / nodes};
 }
 
 FarthestNode farthest_node(const Membranes& membranes) {

@@ -1,6 +1,8 @@
 // Moves the membranes' nodes by one step.
 #pragma once
 
+#include <array>
+
 #include "base/worker.hpp"
 #include "membranes.hpp"
 
@@ -9,6 +11,9 @@ namespace rouleau::core {
 /// Pass over cells: adds the velocity to the positions of this worker's cells (explicit Euler) and sets largest_step,
 /// which must have one value for each cell; NaN where a velocity is no number.
 void move_nodes(Worker worker, Membranes& membranes);
+
+/// Mean of the displacements of all nodes in the last step, {x, y}; 0 without nodes. The same on all ranks.
+std::array<double, 2> mean_velocity(const Membranes& membranes);
 
 /// The node with the largest step, for messages.
 struct FarthestNode {

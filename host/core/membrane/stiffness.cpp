@@ -41,7 +41,7 @@ class Probe {
   }
   std::vector<double> compute(double* rouleau_membrane_block::*output) {
     block_.*output = result_.data();
-    law_.table->compute(law_.self.get(), &block_);
+    law_.compute(&block_);
     return result_;
   }
 

@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "base/foreign_call.hpp"
+
 namespace rouleau::core {
 
 /// What a model remembers of each element from step to step.
@@ -34,6 +36,12 @@ struct Model {
   std::vector<std::string> needs, gives;
   std::vector<StateVariable> state;
 
+  /// Calls the table's function of that name, of membrane laws and potentials. Throws ForeignException when it
+  /// throws, which it must not.
+  template <class Block>
+  void compute(Block* block) const {
+    call_foreign(id, "compute", [&] { table->compute(self.get(), block); });
+  }
   [[nodiscard]] bool reads(std::string_view input) const {
     return std::find(needs.begin(), needs.end(), input) != needs.end();
   }

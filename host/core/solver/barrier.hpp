@@ -17,6 +17,9 @@ class Barrier {
  public:
   explicit Barrier(int workers) : workers_(workers) {}
 
+  /// Thrown to who waits for a worker that has given up.
+  struct Abandoned {};
+
   /// Returns when all workers have called it; what they wrote before is visible to all.
   void arrive_and_wait() { wait(arrive()); }
 
@@ -35,6 +38,7 @@ class Barrier {
   void wait(unsigned round) {
     if (workers_ == 1) return;
     for (int spins = 0; round_.load(std::memory_order_acquire) == round; ++spins) {
+      if (abandoned_.load(std::memory_order_relaxed)) throw Abandoned{};
       if (spins < patience) {
         pause();
       } else {
@@ -42,6 +46,8 @@ class Barrier {
       }
     }
   }
+  /// A worker will not come any more. Returns whether it is the first to say so.
+  bool abandon() { return !abandoned_.exchange(true); }
 
  private:
   static constexpr int patience = 1000;
@@ -56,6 +62,7 @@ class Barrier {
   const int workers_;
   alignas(64) std::atomic<int> arrived_{0};
   alignas(64) std::atomic<unsigned> round_{0};
+  std::atomic<bool> abandoned_{false};
 };
 
 }  // namespace rouleau::core

@@ -125,6 +125,42 @@ void CellExchange::share_forces(const Membranes& membranes, double* force_x, dou
   });
 }
 
+void CellExchange::share_state(Membranes& membranes) const {
+  const auto for_cells = [&](int of, auto& message, auto transfer) {
+    for (int c = 0; c < membranes.cell_count(); ++c) {
+      if (owner_[c] != of) continue;
+      const CellRange& cell = membranes.cells[c];
+      const auto of_nodes = [&](std::vector<double>& values) {
+        transfer(message, values.data() + cell.first, static_cast<std::size_t>(cell.count));
+      };
+      of_nodes(membranes.force_x), of_nodes(membranes.force_y);
+      for (ElementState& state : membranes.state) of_nodes(state.value);
+      if (!membranes.area_leakage.empty()) transfer(message, &membranes.area_leakage[c], 1);
+      if (membranes.contacts.of_cell.empty()) continue;
+      std::vector<ContactState>& contacts = membranes.contacts.of_cell[c];
+      double size = static_cast<double>(contacts.size());
+      transfer(message, &size, 1);
+      contacts.resize(static_cast<std::size_t>(size));
+      for (ContactState& contact : contacts) {
+        double place[4] = {static_cast<double>(contact.variable), 1.0 * contact.other, 1.0 * contact.shift.x,
+                           1.0 * contact.shift.y};
+        transfer(message, place, 4);
+        contact.variable = static_cast<std::size_t>(place[0]);
+        contact.other = static_cast<int>(place[1]);
+        contact.shift = {static_cast<int>(place[2]), static_cast<int>(place[3])};
+        contact.value.resize(static_cast<std::size_t>(cell.count));
+        transfer(message, contact.value.data(), contact.value.size());
+      }
+    }
+  };
+  send([&](int, Packer& message) {
+    for_cells(rank(), message, [](Packer& to, const double* from, std::size_t count) { to.put(from, count); });
+  });
+  receive([&](int rank, Unpacker& message) {
+    for_cells(rank, message, [](Unpacker& from, double* to, std::size_t count) { from.get(to, count); });
+  });
+}
+
 void CellExchange::collect_velocities(Membranes& membranes,
                                       const std::function<std::array<int, 2>(int node)>& base) const {
   const auto for_nodes = [&](int owner, int reader, auto function) {

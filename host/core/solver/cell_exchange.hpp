@@ -28,6 +28,9 @@ class CellExchange {
   void share_reactions(InteractionForces& forces) const;
   /// Two components for every node: from owners to all.
   void share_forces(const Membranes& membranes, double* force_x, double* force_y) const;
+  /// What is looked at and kept between steps beside positions and velocities: forces, what laws and potentials
+  /// remember, leaked areas. From owners to all.
+  void share_state(Membranes& membranes) const;
   /// Velocities from the ranks that have interpolated them to the owners. `base(node)`: the node of the lattice below a
   /// membrane node, whose rank is the one.
   void collect_velocities(Membranes& membranes, const std::function<std::array<int, 2>(int node)>& base) const;

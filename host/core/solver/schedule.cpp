@@ -21,6 +21,7 @@ Schedule make_schedule(const StepFeatures& has) {
   add(touch, Task::interaction_forces, "interaction", Meeting::announce);
   add(slip && !touch, Task::complete_forces, "corrections", Meeting::none);
   add(cells, Task::find_nodes, mark, touch ? Meeting::await : Meeting::all);
+  add(cells && has.moving_frame, Task::follow_cells, "fluid", Meeting::all);
   add(touch && ranks, Task::share_reactions, "ranks", Meeting::all);
   add(touch, Task::take_reactions, "interaction", slip ? Meeting::none : Meeting::all);
   add(slip && touch, Task::complete_forces, "corrections", Meeting::all);

@@ -17,6 +17,7 @@ enum class Task {
   take_reactions,      ///< cells: what other cells' nodes do to this one's
   complete_forces,     ///< cells: the slip, made of all forces on a node
   find_nodes,          ///< cells: the area fraction of lattice nodes, and which nodes feel a membrane
+  follow_cells,        ///< one worker: the frame of the fluid's unsteady term
   share_forces,        ///< one worker: of all nodes, to the ranks that spread them
   set_viscosity,       ///< rows: the relaxation rate in and around the cells that have moved
   clear_force,         ///< rows
@@ -47,6 +48,8 @@ struct StepFeatures {
   bool viscosity_contrast = false;
   bool slip_correction = false;
   bool area_correction = false;
+  /// The fluid's unsteady term is seen from a frame that moves with the cells.
+  bool moving_frame = false;
   /// Other ranks hold other blocks and own other cells.
   bool ranks = false;
 };

@@ -95,6 +95,7 @@ StepFeatures Solver<T>::features() const {
           .viscosity_contrast = fluid_.setting().viscosity_contrast,
           .slip_correction = slip_correction_ != nullptr,
           .area_correction = setup_.area_correction,
+          .moving_frame = setup_.follow_cells,
           .ranks = exchange_ != nullptr};
 }
 
@@ -116,6 +117,9 @@ void Solver<T>::run(Task task, Worker worker) {
     case Task::find_nodes:
       viscosity_field_->measure(worker, membranes_);
       return viscosity_field_->cover(worker, membranes_);
+    case Task::follow_cells:
+      if (worker.first()) follow_cells(mean_velocity(membranes_));
+      return;
     case Task::set_viscosity:
       if (viscosity_field_->due())
         viscosity_field_->update(worker, membranes_, fluid_.relaxation_rate(), fluid_.mask());
@@ -179,11 +183,12 @@ void Solver<T>::run_rows(Task task, Range rows) {
 
 template <class T>
 RowBands Solver<T>::bands() const {
-  // Force and velocity of a band's active nodes should stay in a cache of this size until they have been used.
-  constexpr std::size_t cache = std::size_t{1} << 20;
-  const std::size_t row = 2 * sizeof(T) * setup_.domain.block.size(0);
-  const int rows = setup_.domain.block.size(1);
-  const int height = membranes_.cells.empty() ? rows : std::max<int>(8, static_cast<int>(cache / row));
+  // Force and velocity of a band's active nodes should stay in a cache of this size until they have been used; about ten
+  // of the lattice are active for one of a membrane.
+  constexpr int cache = 1 << 19, active_per_node = 10;
+  const int rows = setup_.domain.block.size(1), columns = setup_.domain.block.size(0);
+  const int active = std::clamp(active_per_node * membranes_.node_count() / rows, 1, columns);  // of a row
+  const int height = std::max(8, cache / (active * static_cast<int>(2 * sizeof(T))));
   return {.rows = rows, .height = height, .upwards = fluid_.sweeps_up()};
 }
 
@@ -243,12 +248,28 @@ void Solver<T>::start(Solver* former) {
         [&](double y) { return rate - curvature * (y - middle); });
   } else if (former != nullptr) {
     faster = setup_.time_step / former->setup_.time_step;
+    const auto [u, v] = mean_velocity(membranes_);
+    former->follow_cells({u, v});
+    follow_cells({faster * u, faster * v});
     fluid_.take_over(former->fluid_, faster);
   }
   for (auto* velocity : {&membranes_.velocity_x, &membranes_.velocity_y}) {
     for (double& v : *velocity) v *= faster;
   }
   std::fill(membranes_.largest_step.begin(), membranes_.largest_step.end(), 0.0);
+}
+
+template <class T>
+void Solver<T>::start(const SolverState<T>& state) {
+  fluid_.restore(state.populations, state.walls_have_acted);
+  if (viscosity_field_) {
+    viscosity_field_->restore(state.viscosity, membranes_, fluid_.relaxation_rate(), fluid_.mask());
+  }
+}
+
+template <class T>
+void Solver<T>::follow_cells(const std::array<double, 2>& velocity) {
+  if (setup_.follow_cells) fluid_.set_frame(velocity[0], setup_.domain.periodic[1] ? velocity[1] : 0);
 }
 
 template <class T>

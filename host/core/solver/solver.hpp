@@ -1,6 +1,7 @@
 // The simulator: fluid, membranes and what couples them, stepped by any number of workers.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -16,12 +17,23 @@
 
 namespace rouleau::core {
 
+/// A solver between two steps, as far as setup and membranes do not tell it.
+template <class T>
+struct SolverState {
+  /// Before the next collision, of each velocity q: of the block's nodes, row after row. Asked for once each, so that
+  /// they need not all be in memory.
+  std::function<std::vector<T>(int q)> populations;
+  bool walls_have_acted = false;
+  /// When the viscosity field was last renewed; without cells there is none.
+  DisplacementWatch::Memory viscosity = {};
+};
+
 /// Everything that one setup computes with. Membranes belong to the caller and outlive it: the next setup of a run goes
 /// on with them.
 template <class T>
 class Solver {
  public:
-  /// The fluid is at rest until start() or a restore; `membranes` must outlive the solver. Throws
+  /// The fluid is at rest until start(); `membranes` must outlive the solver. Throws
   /// std::invalid_argument for a setup without nodes or collision operator.
   /// `ranks`: who computes the other blocks, if the domain's block is not the whole lattice, and `owner[c]` the rank of
   /// cell c; none: by place. Every rank is given all cells.
@@ -30,6 +42,8 @@ class Solver {
   /// The fluid that the setup asks for: developed, or what `former` left (null: there was none), rescaled with the time
   /// step: velocities and density deviations of the same flow scale like it. The nodes' velocities with it.
   void start(Solver* former = nullptr);
+  /// Goes on from where a solver of this setup and these membranes was.
+  void start(const SolverState<T>& state);
 
   /// Takes time steps with one worker. Between steps nodes are where the last step has moved them to.
   void step(long count = 1);
@@ -41,12 +55,14 @@ class Solver {
   [[nodiscard]] const SolverSetup& setup() const { return setup_; }
   [[nodiscard]] Fluid<T>& fluid() { return fluid_; }
   [[nodiscard]] const Membranes& membranes() const { return membranes_; }
+  /// Who computes the other blocks.
+  [[nodiscard]] const Ranks<2>& ranks() const { return fluid_.ranks(); }
+  /// One worker, between steps or where the state may be observed: tells all ranks what only the owners of cells know.
+  void share_state() {
+    if (exchange_) exchange_->share_state(membranes_);
+  }
   /// Null without cells.
   [[nodiscard]] const ViscosityField<T>* viscosity_field() const { return viscosity_field_.get(); }
-  /// Relaxation rate and activity as they were at a checkpoint, between two steps; nothing to do without cells.
-  void restore_viscosity_field(const DisplacementWatch::Memory& memory) {
-    if (viscosity_field_) viscosity_field_->restore(memory, membranes_, fluid_.relaxation_rate(), fluid_.mask());
-  }
   /// A step, for several workers. Before pass [observable_pass()], after a barrier, the state may be observed; who does
   /// not want to runs the passes from rows_pass() on without a stop.
   [[nodiscard]] const std::vector<Pass>& passes() const { return passes_; }
@@ -72,6 +88,8 @@ class Solver {
   [[nodiscard]] StepFeatures features() const;
   void make_cells();
   void make_slip_correction();
+  /// The frame of the fluid's unsteady term gets the cells' velocity, as far as the walls allow, if the setup wants that.
+  void follow_cells(const std::array<double, 2>& velocity);
   void run(Task task, Worker worker);
   void run_rows(Task task, Range rows);
   void exchange(Task task);

@@ -28,6 +28,8 @@ struct SolverSetup {
   double tau = 1;
   /// Quadratic equilibrium; false: linear, for creeping flow.
   bool inertia = false;
+  /// Without inertia: the unsteady term is seen from a frame that moves with the cells, on average (moving_frame.hpp).
+  bool follow_cells = false;
   WallVelocity walls = {};
   /// Force density everywhere.
   double body_force_x = 0, body_force_y = 0;

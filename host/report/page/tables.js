@@ -8,7 +8,7 @@ function showScene(run) {
   }
   const choice = summary.numerics_choice;
   if (choice) shown.push(element("h3", {}, `Numerics, chosen for an error of ${format(100 * choice.target_error, 3)} % of the ${choice.of === "steady" ? "steady state" : "motion"}`),
-    element("p", {}, `Expected: ${format(100 * choice.expected_error.resolution, 2)} % by the lattice, ${format(100 * choice.expected_error.inertia, 2)} % by the relaxed density.`),
+    element("p", {}, `Expected: ${format(100 * choice.expected_error.resolution, 2)} % by the lattice, ${format(100 * choice.expected_error.inertia, 2)} % by the relaxed density${choice.expected_error.start > 0 ? `, ${format(100 * choice.expected_error.start, 2)} % by the start of the flow` : ""}.`),
     table([{title: "Setting", key: "pointer"}, {title: "Value", value: r => JSON.stringify(r.value)}, {title: "Why", key: "why"}], choice.values || [], {stacked: true}));
   const conversions = Array.isArray(summary.conversions) ? summary.conversions : [];
   if (conversions.length) shown.push(element("h3", {}, "Every conversion"), conversionTable(conversions));

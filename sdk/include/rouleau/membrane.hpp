@@ -1,8 +1,9 @@
-// Membrane laws: a functor of one segment, one vertex or one whole cell becomes a plugin.
+// Membrane laws: a functor of one segment, one vertex or one whole cell, or its energy alone, becomes a plugin.
 #pragma once
 
 #include "block.hpp"
 #include "dispatch.hpp"
+#include "dual.hpp"
 #include "model.hpp"
 #include "state.hpp"
 
@@ -56,12 +57,6 @@ struct CellForces {
 
 namespace detail {
 
-template <class Model, class S, class = void>
-struct HasOwnEnergy : std::false_type {};
-template <class Model, class S>
-struct HasOwnEnergy<Model, S, std::void_t<decltype(std::declval<const Model&>().energy(std::declval<Segment<S>>()))>>
-    : std::true_type {};
-
 template <class Model>
 struct MembraneLoop {
   template <int register_bytes>
@@ -81,7 +76,7 @@ struct MembraneLoop {
     if constexpr (takes<Model, S, Segment<S>>()) {
       const Segment<S> segment{take<S>(block.stretch, first, valid), take<S>(block.stretch_rate, first, valid)};
       const Tension<S> result = evaluate<S>(model, block, first, valid, segment);
-      if constexpr (HasOwnEnergy<Model, S>::value) {
+      if constexpr (GivesEnergy<Model, Segment<S>>::value) {
         if (block.energy != nullptr) give(model.energy(segment), block.energy, first, valid);
       } else {
         give(result.energy, block.energy, first, valid);
@@ -96,10 +91,7 @@ struct MembraneLoop {
       give(result.energy, block.energy, first, valid);
       give(result.moment, block.moment, first, valid);
       give(result.moment_by_curvature, block.moment_by_curvature, first, valid);
-    } else {
-      static_assert(takes<Model, S, Cell<S>>(),
-                    "a membrane law takes a rouleau::Segment<S>, a rouleau::Vertex<S> or a rouleau::Cell<S>, and if it "
-                    "has state a rouleau::State<S, state_count>& and the time step");
+    } else if constexpr (takes<Model, S, Cell<S>>()) {
       const CellForces<S> result =
           evaluate<S>(model, block, first, valid,
                       Cell<S>{take<S>(block.area, first, valid), take<S>(block.rest_area, first, valid),
@@ -107,14 +99,53 @@ struct MembraneLoop {
       give(result.energy, block.energy, first, valid);
       give(result.pressure, block.pressure, first, valid);
       give(result.perimeter_tension, block.perimeter_tension, first, valid);
+    } else {
+      derived<S>(model, block, first, valid);
+    }
+  }
+
+  /// A law of which only the energy is known.
+  template <class S>
+  ROULEAU_ALWAYS_INLINE static void derived(const Model& model, const rouleau_membrane_block& block,
+                                            std::uint32_t first, std::uint32_t valid) {
+    using D = Dual<S>;
+    const auto constant = [&](const double* from) __attribute__((always_inline)) {
+      return D::constant(take<S>(from, first, valid));
+    };
+    const auto argument = [&](const double* from) __attribute__((always_inline)) {
+      return D::argument(take<S>(from, first, valid));
+    };
+    if constexpr (GivesEnergy<Model, Segment<D>>::value) {
+      const D energy = model.energy(Segment<D>{argument(block.stretch), constant(block.stretch_rate)});
+      give(energy.value, block.energy, first, valid);
+      give(energy.first, block.tension, first, valid);
+      give(energy.second, block.tension_by_stretch, first, valid);
+    } else if constexpr (GivesEnergy<Model, Vertex<D>>::value) {
+      const D energy = model.energy(Vertex<D>{argument(block.curvature), constant(block.rest_curvature)});
+      give(energy.value, block.energy, first, valid);
+      give(energy.first, block.moment, first, valid);
+      give(energy.second, block.moment_by_curvature, first, valid);
+    } else {
+      static_assert(GivesEnergy<Model, Cell<D>>::value,
+                    "a membrane law takes a rouleau::Segment<S>, a rouleau::Vertex<S> or a rouleau::Cell<S>, and if it "
+                    "has state a rouleau::State<S, state_count>& and the time step; or it has energy() of one of them");
+      const D rest_area = constant(block.rest_area), rest_perimeter = constant(block.rest_perimeter);
+      const D by_area =
+          model.energy(Cell<D>{argument(block.area), rest_area, constant(block.perimeter), rest_perimeter});
+      const D by_perimeter =
+          model.energy(Cell<D>{constant(block.area), rest_area, argument(block.perimeter), rest_perimeter});
+      give(by_area.value, block.energy, first, valid);
+      give(-by_area.first, block.pressure, first, valid);
+      give(by_perimeter.first, block.perimeter_tension, first, valid);
     }
   }
 };
 
 }  // namespace detail
 
-/// Model made of a type with a constructor from Parameters and a template operator() over the element it describes;
-/// laws that remember: see state.hpp.
+/// Model made of a type with a constructor from Parameters and a template operator() over the element it describes, or
+/// `template <class S> S energy(const Segment<S>&) const` (or Vertex, or Cell) in its place, from which forces and
+/// stiffness are derived (dual.hpp); laws that remember: see state.hpp.
 template <class Model>
 rouleau_model membrane(const char* id, const char* version) {
   static const rouleau_membrane table = {

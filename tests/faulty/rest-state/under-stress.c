@@ -4,9 +4,9 @@
 static segment wrong(const spring* law, double stretch) {
   const double beyond = stretch - 1.5, modulus = 0.02 * law->modulus;
   segment result = honest_segment(law, stretch);
-  result.tension += modulus * beyond;
-  result.energy += modulus / 2 * beyond * beyond;
-  result.tension_by_stretch += modulus;
+  result.tension += modulus * beyond * beyond * beyond;
+  result.energy += modulus / 4 * beyond * beyond * beyond * beyond;
+  result.tension_by_stretch += 3 * modulus * beyond * beyond;
   return result;
 }
 

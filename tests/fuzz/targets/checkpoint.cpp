@@ -3,7 +3,6 @@
 #include "run/checkpoint.hpp"
 
 #include "json/parser.hpp"
-#include "plan/placed_cells.hpp"
 #include "plan/solver_setup.hpp"
 #include "plan_scene.hpp"
 #include "run/checkpoint_match.hpp"
@@ -35,19 +34,24 @@ void write_arrays(files::CheckpointWriter& writer, const Json& arrays) {
     if (!path.starts_with('/') || path.find("//") != std::string::npos || path.ends_with('/')) continue;
     std::vector<double> numbers;
     for (const Json& value : values) numbers.push_back(value.is_number() ? value.get<double>() : 0);
-    writer.array(path, numbers);
+    const auto nx = static_cast<std::size_t>(the_run().scene.domain.nodes[0]), ny = numbers.size() / nx;
+    if (path.starts_with("/populations/") && ny * nx == numbers.size()) {
+      writer.array(path, ny, nx, numbers.data());
+    } else {
+      writer.array(path, numbers);
+    }
   }
 }
 
 void resume(const std::filesystem::path& directory) {
   const Run& run = the_run();
-  const auto resumption = run::open_checkpoint(directory, run.plan, true);
-  const Json saved = resumption.checkpoint->state();
+  auto resumption = run::open_checkpoint(directory, run.plan, true);
   core::Membranes membranes = run.membranes();
   run::RunState state{observe::Observer(run.scene, membranes)};
-  run::restore(*resumption.checkpoint, saved, run.plan, state, membranes);
+  const core::Box<2> whole = plan::lattice_domain(run.scene).block;
+  const auto restored = run::restore<double>(std::move(resumption.checkpoint), run.plan, whole, state, membranes);
   core::Solver<double> solver(plan::make_solver_setup(run.plan, state.stage), membranes);
-  run::restore(*resumption.checkpoint, saved, solver);
+  solver.start(restored.solver);
   run::Summary summary;
   state.report(summary);
   run::to_json(summary).dump(-1, ' ', false, Json::error_handler_t::replace);

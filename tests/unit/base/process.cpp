@@ -3,6 +3,7 @@
 
 #include <signal.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <csignal>
@@ -72,4 +73,15 @@ TEST_CASE("a program that is not there is trouble of input and output") {
     CHECK(std::string(error.what()).find("/nonexistent/program could not be started: No such file") !=
           std::string::npos);
   }
+}
+
+TEST_CASE("what a process leaves behind in a session of its own is adopted and ended") {
+  rouleau::adopt_orphans();
+  // Two generations away, in another session and another process group, and deaf to what asks it to end.
+  shell(
+      "setsid sh -c 'trap \"\" TERM HUP; setsid sleep 1000.25 & setsid sleep 1000.25' & "
+      "while [ $(ps -eo args | grep -c '^sleep 1000.25') -lt 2 ]; do sleep 0.02; done");
+  const std::vector<std::string> names = rouleau::end_children();
+  CHECK(std::count(names.begin(), names.end(), "sleep") == 2);
+  CHECK(rouleau::end_children().empty());
 }

@@ -3,6 +3,7 @@
 
 #include "core/contact/interaction_forces.hpp"
 #include "unit/cell_fixture.hpp"
+#include "unit/contact/contact_list.hpp"
 
 using namespace rouleau;
 using namespace rouleau::core;
@@ -33,7 +34,7 @@ void run_cleared(InteractionForces& forces, Membranes& m, int workers = 1) {
 /// Bond density of every contact of a cell with its only neighbour, in the order of the list.
 std::vector<double> densities(const InteractionForces& forces, const Membranes& m, int cell) {
   std::vector<double> values;
-  const ContactList& list = forces.contacts().list(cell);
+  const ContactList list = contact_list(forces.contacts(), m, cell);
   for (int i = 0; i < list.count; ++i) {
     const auto node = static_cast<std::size_t>(list.node[static_cast<std::size_t>(i)] -
                                                m.cells[static_cast<std::size_t>(cell)].first);
@@ -53,7 +54,7 @@ void move(Membranes& m, int cell, double x, double y) {
 /// Gives the nodes bonds that depend on their distance and vanish towards the cutoff.
 void set_bonds(const InteractionForces& forces, Membranes& m) {
   for (int cell = 0; cell < m.cell_count(); ++cell) {
-    const ContactList& list = forces.contacts().list(cell);
+    const ContactList list = contact_list(forces.contacts(), m, cell);
     for (ContactState& state : m.contacts.of_cell[static_cast<std::size_t>(cell)]) {
       for (int i = 0; i < list.count; ++i) {
         const auto k = static_cast<std::size_t>(i);
@@ -76,7 +77,7 @@ TEST_CASE("bonds at a fixed distance follow the solution of their rate equation 
       const std::vector<double> found = densities(forces, m, cell);
       REQUIRE(found.size() > 20);
       for (std::size_t i = 0; i < found.size(); ++i) {
-        const double r = forces.contacts().list(cell).distance[i];
+        const double r = contact_list(forces.contacts(), m, cell).distance[i];
         const double energy = stiffness / 2 * (r - bond_length) * (r - bond_length) / thermal;
         const double forming = on * std::exp(-forward_share * energy),
                      rate = forming + off * std::exp((1 - forward_share) * energy);
@@ -90,7 +91,7 @@ TEST_CASE("unstretched bonds in balance fill on/(on + off) of the sites") {
   Membranes m = biconcave_cells({{0, 0, 0}, {0, 18, 0}});
   InteractionForces forces = bonds_between(m, bridging());
   run_cleared(forces, m);
-  const ContactList& list = forces.contacts().list(0);
+  const ContactList list = contact_list(forces.contacts(), m, 0);
   std::size_t nearest = 0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(list.count); ++i) {
     if (std::abs(list.distance[i] - bond_length) < std::abs(list.distance[nearest] - bond_length)) nearest = i;
@@ -114,7 +115,7 @@ TEST_CASE("bonds stay with a node while the other surface slides past, and are l
     move(m, 1, 0.1, 0);  // three segments
     run_cleared(forces, m);
   }
-  const ContactList& list = forces.contacts().list(0);
+  const ContactList list = contact_list(forces.contacts(), m, 0);
   int kept = 0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(list.count); ++i) {
     const auto node = static_cast<std::size_t>(list.node[i]);

@@ -8,6 +8,7 @@
 
 #include "core/membrane/geometry.hpp"
 #include "unit/cell_fixture.hpp"
+#include "unit/contact/contact_list.hpp"
 
 using namespace rouleau;
 using namespace rouleau::core;
@@ -18,9 +19,8 @@ namespace {
 constexpr double cutoff = 18;
 
 void run(Contacts& contacts, const Membranes& m, int workers = 1) {
-  for (int phase = 0; phase < Contacts::phases; ++phase) {
-    run_pass(workers, [&](Worker worker) { contacts.run(worker, phase, m); });
-  }
+  run_pass(workers, [&](Worker worker) { contacts.measure(worker, m); });
+  run_pass(workers, [&](Worker worker) { contacts.refresh(worker, m); });
 }
 
 /// The rectangle around an outline: what is farther from it than the cutoff is farther from the outline.
@@ -58,7 +58,7 @@ struct Tally {
 void compare(const Contacts& contacts, const Membranes& m, const core::Domain<2>& domain, Tally& tally) {
   for (int c = 0; c < static_cast<int>(m.cells.size()); ++c) {
     const CellRange& cell = m.cells[static_cast<std::size_t>(c)];
-    const ContactList& list = contacts.list(c);
+    const ContactList list = contact_list(contacts, m, c);
     const auto& pairs = contacts.neighbours().list(c).pairs;
     std::map<std::tuple<int, int, int, int>, double> found;  // node, other, shift
     for (std::size_t p = 0; p < pairs.size(); ++p) {
@@ -158,13 +158,13 @@ TEST_CASE("a node that is nowhere makes no contact and spoils no other, over per
     Contacts contacts(m, cutoffs, periodic_box(90, 70));
     run(contacts, m);
     for (int c = 0; c < 3; ++c) {
-      const ContactList& list = contacts.list(c);
+      const ContactList list = contact_list(contacts, m, c);
       for (std::size_t k = 0; k < static_cast<std::size_t>(list.count); ++k) {
         REQUIRE(list.distance[k] <= cutoff);
         for (const int i : {list.node[k], list.segment[k]}) REQUIRE(static_cast<std::size_t>(i) != node);
       }
     }
-    CHECK(contacts.list(0).count > 0);
+    CHECK(contact_list(contacts, m, 0).count > 0);
   }
 }
 
@@ -211,7 +211,7 @@ TEST_CASE("a remembered direction and place belong to the distance") {
   Contacts contacts(m, cutoffs, periodic_box(10000));
   run(contacts, m);
   for (int c = 0; c < 2; ++c) {
-    const ContactList& list = contacts.list(c);
+    const ContactList list = contact_list(contacts, m, c);
     REQUIRE(list.count > 50);
     for (int i = 0; i < list.count; ++i) {
       const auto k = static_cast<std::size_t>(i);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "unit/cell_fixture.hpp"
+#include "unit/contact/contact_list.hpp"
 
 using namespace rouleau::core;
 using namespace rouleau::test;
@@ -22,11 +23,12 @@ Found search(const Membranes& m) {
   Cutoffs cutoffs(1);
   cutoffs.raise(0, 0, reach);
   Contacts contacts(m, cutoffs, periodic_box(120));
-  for (int phase = 0; phase < Contacts::phases; ++phase) contacts.run({}, phase, m);
+  contacts.measure({}, m);
+  contacts.refresh({}, m);
   Found found;
   for (int cell = 0; cell < m.cell_count(); ++cell) {
-    found.lists.push_back(contacts.list(cell));
-    found.velocities.emplace_back().measure(contacts.list(cell), contacts.neighbours().list(cell).pairs, m);
+    found.lists.push_back(contact_list(contacts, m, cell));
+    found.velocities.emplace_back().measure(found.lists.back(), contacts.neighbours().list(cell).pairs, m);
   }
   return found;
 }

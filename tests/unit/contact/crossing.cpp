@@ -15,7 +15,7 @@ namespace {
 Membranes polygons(const std::vector<std::vector<std::pair<double, double>>>& outlines) {
   Membranes m;
   for (const auto& outline : outlines) {
-    m.cells.push_back({0, m.node_count(), static_cast<int>(outline.size()), 0, 0});
+    m.cells.push_back({{m.node_count(), static_cast<int>(outline.size())}, 0, 0, 0});
     for (const auto& [x, y] : outline) m.x.push_back(x), m.y.push_back(y);
   }
   return m;

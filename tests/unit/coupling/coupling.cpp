@@ -14,14 +14,14 @@ using namespace rouleau::test;
 namespace {
 
 template <class T>
-VectorField<T> field(int nx, int ny) {
-  return {Field<T>(nx, ny), Field<T>(nx, ny)};
+VectorField<T, 2> field(int nx, int ny) {
+  return {Field<T, 2>({nx, ny}), Field<T, 2>({nx, ny})};
 }
 
 template <class T, class Visit>
-void for_all(const Field<T>& f, Visit visit) {
-  for (int y = -2; y < f.ny() + 2; ++y) {
-    for (int x = -2; x < f.nx() + 2; ++x) visit(x, y, f.row(y)[x]);
+void for_all(const Field<T, 2>& f, Visit visit) {
+  for (int y = -2; y < f.size(1) + 2; ++y) {
+    for (int x = -2; x < f.size(0) + 2; ++x) visit(x, y, f.row(y)[x]);
   }
 }
 
@@ -46,10 +46,10 @@ TEST_CASE("force and torque on the lattice are those of the nodes") {
   coupling.locate({}, m, m.positions());
   CHECK(coupling.escaped() == -1);
   auto force = field<double>(80, 64);
-  coupling.spread({0, force.x.ny()}, m, m.forces(), force);
+  coupling.spread({0, force[0].size(1)}, m, m.forces(), force);
   double fx = 0, fy = 0, torque = 0;
-  for_all(force.x, [&](int, int y, double f) { fx += f, torque -= y * f; });
-  for_all(force.y, [&](int x, int, double f) { fy += f, torque += x * f; });
+  for_all(force[0], [&](int, int y, double f) { fx += f, torque -= y * f; });
+  for_all(force[1], [&](int x, int, double f) { fy += f, torque += x * f; });
   const ForceSums sums = force_sums(m);
   CHECK(std::abs(fx - sums.x) < 1e-14 * sums.size);
   CHECK(std::abs(fy - sums.y) < 1e-14 * sums.size);
@@ -69,10 +69,10 @@ double adjointness_error(const Coupling<T>& coupling, Membranes& m, const core::
   double error = 0;
   for (int y = 0; y < ny; ++y) {
     for (int x = 0; x < nx; ++x) {
-      velocity.x.row(y)[x] = static_cast<T>(uniform(random));
-      velocity.y.row(y)[x] = static_cast<T>(uniform(random));
-      error += static_cast<double>(force.x.row(y)[x]) * static_cast<double>(velocity.x.row(y)[x]) +
-               static_cast<double>(force.y.row(y)[x]) * static_cast<double>(velocity.y.row(y)[x]);
+      velocity[0].row(y)[x] = static_cast<T>(uniform(random));
+      velocity[1].row(y)[x] = static_cast<T>(uniform(random));
+      error += static_cast<double>(force[0].row(y)[x]) * static_cast<double>(velocity[0].row(y)[x]) +
+               static_cast<double>(force[1].row(y)[x]) * static_cast<double>(velocity[1].row(y)[x]);
     }
   }
   for (int y = 0; y < ny; ++y) fill_velocity_halo(velocity, y, domain, {});
@@ -108,7 +108,7 @@ TEST_CASE("linear velocity is interpolated exactly by every kernel without a fir
   coupling.locate({}, m, m.positions());
   auto velocity = field<double>(80, 64);
   for (int y = -2; y < 66; ++y) {
-    for (int x = -2; x < 82; ++x) velocity.x.row(y)[x] = 0.1 + 0.02 * y - 0.01 * x, velocity.y.row(y)[x] = 0.03 * x;
+    for (int x = -2; x < 82; ++x) velocity[0].row(y)[x] = 0.1 + 0.02 * y - 0.01 * x, velocity[1].row(y)[x] = 0.03 * x;
   }
   coupling.interpolate({}, m, velocity);
   for (std::size_t i = 0; i < m.x.size(); ++i) {
@@ -120,7 +120,7 @@ TEST_CASE("linear velocity is interpolated exactly by every kernel without a fir
 TEMPLATE_TEST_CASE("spread forces are the same to the last bit for any number of workers", "", float, double) {
   auto random = generator(75);
   Membranes m = cells_with_forces(random);
-  std::vector<VectorField<TestType>> results;
+  std::vector<VectorField<TestType, 2>> results;
   for (const int workers : {1, 2, 3, 7}) {
     Coupling<TestType> coupling(KernelKind::peskin4, channel);
     coupling.reserve(m);
@@ -128,8 +128,8 @@ TEMPLATE_TEST_CASE("spread forces are the same to the last bit for any number of
     results.push_back(field<TestType>(80, 64));
     run_pass(workers, [&](Worker worker) { coupling.spread(worker.share(64), m, m.forces(), results.back()); });
     run_pass(workers, [&](Worker worker) { coupling.interpolate(worker, m, results.back()); });
-    for_all(results.back().x, [&](int x, int y, TestType f) { REQUIRE(f == results.front().x.row(y)[x]); });
-    for_all(results.back().y, [&](int x, int y, TestType f) { REQUIRE(f == results.front().y.row(y)[x]); });
+    for_all(results.back()[0], [&](int x, int y, TestType f) { REQUIRE(f == results.front()[0].row(y)[x]); });
+    for_all(results.back()[1], [&](int x, int y, TestType f) { REQUIRE(f == results.front()[1].row(y)[x]); });
   }
 }
 
@@ -143,9 +143,9 @@ TEST_CASE("a node beyond a wall, or nowhere, is reported and touches nothing") {
   coupling.locate({}, m, m.positions());
   CHECK(coupling.escaped() == 77);
   auto force = field<double>(80, 64);
-  coupling.spread({0, force.x.ny()}, m, m.forces(), force);
+  coupling.spread({0, force[0].size(1)}, m, m.forces(), force);
   double sum = 0, expected = 0;
-  for_all(force.x, [&](int, int, double f) { sum += f; });
+  for_all(force[0], [&](int, int, double f) { sum += f; });
   for (std::size_t i = 0; i < m.x.size(); ++i) expected += i == 77 ? 0 : m.force_x[i];
   CHECK(sum == Approx(expected).margin(1e-12));
   coupling.interpolate({}, m, force);

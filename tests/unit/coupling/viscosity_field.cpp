@@ -17,7 +17,7 @@ namespace {
 Membranes polygon(const std::vector<std::pair<double, double>>& nodes) {
   Membranes m;
   for (const auto& [x, y] : nodes) m.x.push_back(x), m.y.push_back(y);
-  m.cells.push_back({0, 0, m.node_count(), 0, 0});
+  m.cells.push_back({{0, m.node_count()}, 0, 0, 0});
   for (auto* values : {&m.force_x, &m.force_y, &m.velocity_x, &m.velocity_y}) values->assign(m.x.size(), 0.0);
   return m;
 }
@@ -64,14 +64,14 @@ double clipped_area(std::vector<Eigen::Vector2d> p, int x, int y) {
 }
 
 template <class T>
-Field<T> plain_rate(int nx, int ny, double rate) {
-  Field<T> field(nx, ny);
+Field<T, 2> plain_rate(int nx, int ny, double rate) {
+  Field<T, 2> field({nx, ny});
   field.fill(static_cast<T>(rate));
   return field;
 }
 
 template <class T>
-void update(ViscosityField<T>& viscosity_field, const Membranes& m, Field<T>& rate, NodeMask& mask) {
+void update(ViscosityField<T>& viscosity_field, const Membranes& m, Field<T, 2>& rate, NodeMask& mask) {
   viscosity_field.measure({}, m);
   REQUIRE(viscosity_field.due());
   viscosity_field.cover({}, m);

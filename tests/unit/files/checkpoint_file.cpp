@@ -68,10 +68,15 @@ TEST_CASE("a checkpoint gives back every number to its last bit, in arrays and i
   }
   CHECK(std::isnan(reader.state().at("undefined").get<double>()));
   std::vector<float> floats(6);
-  reader.array("/floats", floats.size(), floats.data());
+  reader.block("/floats", {3, 2}, {0, 0}, {3, 2}, floats.data());
   CHECK(floats == std::vector<float>{1.0f / 3, -1e-45f, 2, 3, 4, 5});
+  floats.resize(2);
+  reader.block("/floats", {3, 2}, {1, 0}, {2, 2}, floats.data());
+  CHECK(floats == std::vector<float>{-1e-45f, 4});
   CHECK(reader.array("/none").empty());
-  CHECK_THROWS_WITH(reader.array("/floats", 5, floats.data()), Contains("/floats holds 6 values instead of 5"));
+  CHECK_THROWS_WITH(reader.block("/floats", {2, 3}, {0, 0}, {1, 1}, floats.data()), Contains("another shape"));
+  std::vector<double> five(5);
+  CHECK_THROWS_WITH(reader.array("/floats", 5, five.data()), Contains("/floats holds 6 values instead of 5"));
 }
 
 TEST_CASE("the checkpoint before the last is kept, and nothing else is left") {

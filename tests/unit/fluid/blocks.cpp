@@ -45,8 +45,8 @@ void spread(Fluid<T>& fluid, int step) {
   for (int y = 0; y < domain.block.size(1); ++y) {
     for (int x = 0; x < domain.block.size(0); ++x) {
       if (!fluid.mask().active(x, y)) continue;
-      fluid.force().x.row(y)[x] += static_cast<T>(noise(x + domain.block.begin[0], y + domain.block.begin[1], step));
-      fluid.force().y.row(y)[x] += static_cast<T>(noise(x + domain.block.begin[0], y + domain.block.begin[1], -step));
+      fluid.force()[0].row(y)[x] += static_cast<T>(noise(x + domain.block.begin[0], y + domain.block.begin[1], step));
+      fluid.force()[1].row(y)[x] += static_cast<T>(noise(x + domain.block.begin[0], y + domain.block.begin[1], -step));
     }
   }
 }
@@ -111,10 +111,10 @@ void compare(const FluidSetting& setting, const Decomposition<2>& cut, int steps
             if (at_y >= 0 && !whole->mask().active(at_x, at_y)) continue;
             const int mirror = at_y >= 0 ? at_y : mirrored(row + j, setting.domain.size[1]);
             if (at_y < 0 && !whole->mask().active(at_x, mirror)) continue;
-            const VectorField<T>&a = block->velocity(), &b = whole->velocity();
+            const VectorField<T, 2>&a = block->velocity(), &b = whole->velocity();
             const int whole_row = at_y >= 0 ? at_y : row + j;
-            different += a.x.row(y + j)[x + i] != b.x.row(whole_row)[at_x] ? 1 : 0;
-            different += a.y.row(y + j)[x + i] != b.y.row(whole_row)[at_x] ? 1 : 0;
+            different += a[0].row(y + j)[x + i] != b[0].row(whole_row)[at_x] ? 1 : 0;
+            different += a[1].row(y + j)[x + i] != b[1].row(whole_row)[at_x] ? 1 : 0;
             ++velocities;
           }
         }

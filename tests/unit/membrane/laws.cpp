@@ -51,25 +51,6 @@ double largest_force(const Membranes& m) {
   return most;
 }
 
-/// Two circles of `radius` and radius + gap about one centre, the inner one turned; both with as many segments.
-Membranes mating_circles(double radius, double gap, int segments, double angle) {
-  Membranes m;
-  for (const double r : {radius, radius + gap}) {
-    const double turn = 2 * 3.141592653589793 / segments, length = 2 * r * std::sin(turn / 2);
-    m.cells.push_back({0, m.node_count(), segments, 3.141592653589793 * r * r, segments * length});
-    for (int i = 0; i < segments; ++i) {
-      const double at = i * turn + (r == radius ? angle : 0);
-      m.x.push_back(r * std::cos(at));
-      m.y.push_back(r * std::sin(at));
-      m.rest_length.push_back(length);
-      m.rest_weight.push_back(length);
-      m.rest_curvature.push_back(turn / length);
-    }
-  }
-  for (auto* values : {&m.force_x, &m.force_y, &m.velocity_x, &m.velocity_y}) values->assign(m.x.size(), 0.0);
-  return m;
-}
-
 /// Largest stress along the membrane that a Morse well of the given width puts against sliding, over its strongest
 /// attraction. 31 segments are one spacing long each.
 double friction(double width, int segments = 31) {

@@ -53,7 +53,7 @@ struct Ring {
 /// One cell made of a ring, its last step as given.
 Membranes membranes_of(const Ring& ring) {
   Membranes m;
-  m.cells.push_back({0, 0, static_cast<int>(ring.x.size()), 0, 0});
+  m.cells.push_back({{0, static_cast<int>(ring.x.size())}, 0, 0, 0});
   m.x = ring.x, m.y = ring.y, m.velocity_x = ring.velocity_x, m.velocity_y = ring.velocity_y;
   double largest = 0;
   for (std::size_t i = 0; i < m.x.size(); ++i)
@@ -124,8 +124,12 @@ TEST_CASE("a prominent wave names the mode of a failure by its direction and len
   CHECK(f.mode.tangential_share == Approx(along * along / (along * along + across * across)).epsilon(1e-9));
   CHECK(f.mode.step == 77);
   CHECK(mode_sentence(f).find(along > across ? "along the membrane" : "across the membrane") != std::string::npos);
-  CHECK(mode_remedy(f, false).find("semi-implicit") != std::string::npos);
-  CHECK(mode_remedy(f, true).find("semi-implicit") == std::string::npos);
+  scene::Stage stage;
+  CHECK(mode_remedy(f, false, stage).find("semi-implicit") != std::string::npos);
+  CHECK(mode_remedy(f, true, stage).find("semi-implicit") == std::string::npos);
+  CHECK(mode_remedy(f, true, stage).find("numerics.density_factor") != std::string::npos);
+  stage.density_factor_key = "/stages/1/density_factor";
+  CHECK(mode_remedy(f, true, stage).find("/stages/1/density_factor") != std::string::npos);
 }
 
 TEST_CASE("the mode is read where the wave first stood out, not from the crumpled end", "[failure_mode]") {
@@ -172,7 +176,7 @@ TEST_CASE("without a wave the reason and the surroundings name the mode", "[fail
   CHECK(mode(Membranes(), "non_finite", -1, {60, 30}, 0) == "sound");
   // A second ring beside the first.
   Membranes two = one;
-  two.cells.push_back({0, 100, 100, 0, 0});
+  two.cells.push_back({{100, 100}, 0, 0, 0});
   for (int i = 0; i < 100; ++i) {
     two.x.push_back(one.x[static_cast<std::size_t>(i)] + 35);
     two.y.push_back(one.y[static_cast<std::size_t>(i)]);

@@ -16,7 +16,7 @@ namespace {
 Membranes polygons(const std::vector<std::vector<std::array<double, 2>>>& cells) {
   Membranes m;
   for (const auto& corners : cells) {
-    m.cells.push_back({0, m.node_count(), static_cast<int>(corners.size()), 0, 0});
+    m.cells.push_back({{m.node_count(), static_cast<int>(corners.size())}, 0, 0, 0});
     for (const auto& corner : corners) {
       m.x.push_back(corner[0]);
       m.y.push_back(corner[1]);

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "json/document.hpp"
-#include "plan/plan.hpp"
+#include "plan/plan_report.hpp"
 #include "plan/read_scene.hpp"
 
 using namespace rouleau::plan;
@@ -19,13 +19,14 @@ Catalog shipped_plugins(const Scene& /*unused*/) {
   return Catalog(std::vector<std::filesystem::path>{ROULEAU_PLUGINS});
 }
 
-Scene chosen_scene(const std::vector<std::string>& overrides, const std::string& scene = "/auto-capsule.json") {
+ReadScene chosen(const std::vector<std::string>& overrides, const std::string& scene = "/auto-capsule.json") {
   return read_within_limits(auto_scenes + scene, overrides, shipped_plugins);
 }
+Scene chosen_scene(const std::vector<std::string>& overrides) { return chosen(overrides).scene; }
 
 double estimated_cost(const Scene& scene) {
   const Catalog catalog = shipped_plugins(scene);
-  return make_plan(scene, catalog).estimate.wall_s;
+  return estimate(make_plan(scene, catalog)).wall_s;
 }
 
 }  // namespace
@@ -33,10 +34,10 @@ double estimated_cost(const Scene& scene) {
 TEST_CASE("a smaller target error costs more, and the error that is expected is below it") {
   double before = 0;
   for (const char* target : {"0.05", "0.02", "0.01", "0.005"}) {
-    const Scene scene = chosen_scene({std::string("/numerics/auto/error=") + target}, "/auto-capsule.json");
-    REQUIRE(scene.numerics_choice);
-    CHECK(scene.numerics_choice->expected.total() <= std::stod(target));
-    CHECK(scene.numerics_choice->doubt.empty());
+    const auto [scene, choice] = chosen({std::string("/numerics/auto/error=") + target});
+    REQUIRE(choice);
+    CHECK(choice->expected.total() <= std::stod(target));
+    CHECK(choice->doubt.empty());
     CHECK(estimated_cost(scene) >= before);
     before = estimated_cost(scene);
   }
@@ -45,8 +46,8 @@ TEST_CASE("a smaller target error costs more, and the error that is expected is 
 }
 
 TEST_CASE("what a scene gives is not chosen") {
-  const Scene scene = chosen_scene({"/numerics/tau=0.8", "/numerics/density_factor=1000", "/domain/nodes=[160,80]",
-                                    "/cell_types/capsule/segments=90", "/numerics/slip_correction=false"});
+  const auto [scene, choice] = chosen({"/numerics/tau=0.8", "/numerics/density_factor=1000", "/domain/nodes=[160,80]",
+                                       "/cell_types/capsule/segments=90", "/numerics/slip_correction=false"});
   CHECK(scene.numerics.tau == 0.8);
   CHECK(scene.numerics.density_factor == 1000);
   CHECK(scene.domain.nodes == std::array<int, 2>{160, 80});
@@ -54,27 +55,27 @@ TEST_CASE("what a scene gives is not chosen") {
   CHECK_FALSE(scene.numerics.slip_correction);
   CHECK(scene.numerics.area_correction);
   CHECK(scene.numerics.coupling == "auto");
-  CHECK(scene.numerics_choice->values.size() == 2);
+  CHECK(choice->values.size() == 2);
   // The plain scheme at 12.5 spacings a radius is further than 1 % from the truth, and says so.
-  CHECK_THAT(scene.numerics_choice->doubt, Contains("more than the target of 1 %"));
+  CHECK_THAT(choice->doubt, Contains("more than the target of 1 %"));
 }
 
 TEST_CASE("a lattice that leaves next to nothing of the target is told what it costs") {
   const std::string target = "/numerics={\"auto\": {\"error\": 0.01}}";
-  const Scene open = chosen_scene({target}, "/auto-biconcave.json");
+  const ReadScene open = chosen({target}, "/auto-biconcave.json");
   CHECK(open.numerics_choice->doubt.empty());
-  const Scene named = chosen_scene({target, "/domain/nodes=[208,104]"}, "/auto-biconcave.json");
+  const ReadScene named = chosen({target, "/domain/nodes=[208,104]"}, "/auto-biconcave.json");
   CHECK_THAT(named.numerics_choice->doubt, Contains("leave domain.nodes out, or allow a larger error"));
-  CHECK(estimated_cost(named) > 2 * estimated_cost(open));
+  CHECK(estimated_cost(named.scene) > 2 * estimated_cost(open.scene));
 }
 
 TEST_CASE("auto's own slip correction is not warned of") {
   const std::string scene = std::string(ROULEAU_SCENES) + "/four-cells-shear.json";
   const auto warned = [&](const std::vector<std::string>& overrides) {
-    const Scene read = read_within_limits(scene, overrides, shipped_plugins);
+    const auto [read, choice] = read_within_limits(scene, overrides, shipped_plugins);
     REQUIRE(read.numerics.slip_correction);
     const Catalog catalog = shipped_plugins(read);
-    const std::vector<std::string> warnings = make_plan(read, catalog).warnings;
+    const std::vector<std::string> warnings = make_report(make_plan(read, catalog, choice)).warnings;
     return std::any_of(warnings.begin(), warnings.end(), [](const std::string& warning) {
       return warning.starts_with("numerics.slip_correction with attracting cells");
     });
@@ -85,18 +86,18 @@ TEST_CASE("auto's own slip correction is not warned of") {
 
 TEST_CASE("the chosen scene read again is the same scene") {
   const Scene scene = chosen_scene({});
-  const Scene again = chosen_scene({"/numerics=" + scene.document->root()["numerics"].dump(),
-                                    "/domain=" + scene.document->root()["domain"].dump(),
-                                    "/cell_types=" + scene.document->root()["cell_types"].dump()});
+  const auto [again, choice] = chosen({"/numerics=" + scene.document->root()["numerics"].dump(),
+                                       "/domain=" + scene.document->root()["domain"].dump(),
+                                       "/cell_types=" + scene.document->root()["cell_types"].dump()});
   CHECK(again.document->root() == scene.document->root());
-  CHECK(again.numerics_choice->values.empty());
+  CHECK(choice->values.empty());
 }
 
 TEST_CASE("limits of the plan bound the choice") {
   const auto worst_margin = [](const Scene& scene) {
     const Catalog catalog = shipped_plugins(scene);
     double least = 1e300;
-    for (const Limit& limit : make_plan(scene, catalog).limits) {
+    for (const Limit& limit : find_limits(make_plan(scene, catalog))) {
       if (limit.remedied_by != RemediedBy::nothing) least = std::min(least, limit.margin);
     }
     return least;

@@ -18,7 +18,7 @@ const std::vector<std::string> mixed_cells{R"(/cells=[{"type": "rbc", "at": ["5 
 }  // namespace
 
 TEST_CASE("cells at random stand in the order of their entries, by hand placed ones keep their places") {
-  const scene::Scene scene = plan::read_unpacked_scene(scene_file, mixed_cells);
+  const scene::Scene scene = plan::read_unpacked_scene(scene_file, mixed_cells).scene;
   REQUIRE(scene.packings.size() == 2);
   const int by_share = scene.packings[0].count;
   CHECK(by_share > 0);

@@ -3,6 +3,7 @@
 
 #include "plan/plan.hpp"
 #include "plan/read_scene.hpp"
+#include "plan/stability_limits.hpp"
 
 using namespace rouleau::plan;
 using namespace rouleau::plugin;
@@ -13,7 +14,7 @@ TEST_CASE("each stiffness is that of the cell type which is nearest to its limit
   const auto margin = [&](const std::vector<std::string>& overrides, const std::string& begin) {
     const Scene scene = read_scene(std::string(ROULEAU_SCENES) + "/four-cells-shear.json", overrides);
     double least = 1e300;
-    for (const Limit& limit : make_plan(scene, catalog).limits) {
+    for (const Limit& limit : find_limits(make_plan(scene, catalog))) {
       if (limit.name.starts_with(begin)) least = std::min(least, limit.margin);
     }
     return least;

@@ -1,7 +1,7 @@
 // What a plan finds out about potentials by asking them: wells at any scale, and what the lattice makes of them.
 #include <catch2/catch.hpp>
 
-#include "plan/plan.hpp"
+#include "plan/plan_report.hpp"
 #include "plan/potential_shape.hpp"
 #include "plan/read_scene.hpp"
 
@@ -22,7 +22,7 @@ PotentialShape shape(const char* id, const std::vector<double>& values) {
 }
 
 /// Limit whose name begins so, in a scene of the scenes folder.
-const Limit* limit(const Plan& plan, const std::string& begin) {
+const Limit* limit(const PlanReport& plan, const std::string& begin) {
   for (const Limit& candidate : plan.limits) {
     if (candidate.name.starts_with(begin)) return &candidate;
   }
@@ -73,7 +73,7 @@ TEST_CASE("a repulsion has a range and no well, and an attraction down to contac
 
 TEST_CASE("plan warns with the number that depletion lies far below the lattice, and that a wider well does not") {
   const Scene physical = read_scene(scenes + "/depletion-physical.json", {});
-  const Plan warned = make_plan(physical, plugins());
+  const PlanReport warned = make_report(make_plan(physical, plugins()));
   const Limit* gap = limit(warned, "equilibrium gap of depletion");
   REQUIRE(gap != nullptr);
   // 15.16 nm on a lattice of 196 nm (tests/unit/sdk/depletion.cpp has the distance from a separate evaluation).
@@ -82,19 +82,20 @@ TEST_CASE("plan warns with the number that depletion lies far below the lattice,
   std::string warnings;
   for (const std::string& warning : warned.warnings) warnings += warning + "\n";
   CHECK(warnings.find("equilibrium gap of depletion in lattice spacings is 0.0773") != std::string::npos);
-  CHECK(!warned.wells[0].contains("stands_for"));
+  CHECK(!warned.wells.at(0).stands_for);
 
   const Scene regularised = read_scene(scenes + "/depletion-regularised.json", {});
-  const Plan plan = make_plan(regularised, plugins());
+  const PlanReport plan = make_report(make_plan(regularised, plugins()));
   CHECK(plan.warnings.empty());
   CHECK(limit(plan, "equilibrium gap of depletion")->value == Approx(2.5));
-  const auto& well = plan.wells.at(0);
-  CHECK(well["depth_J_m2"].get<double>() == Approx(well["stands_for"]["depth_J_m2"].get<double>()).epsilon(1e-9));
-  CHECK(well["depth_J_m2"].get<double>() == Approx(1.3203e-6).epsilon(1e-4));
-  CHECK(well["stands_for"]["zero_force_distance_m"].get<double>() == Approx(15.16e-9).epsilon(1e-3));
-  CHECK(well["widened"].get<double>() ==
-        Approx(well["width_m"].get<double>() / well["stands_for"]["width_m"].get<double>()));
-  CHECK(well["widened"].get<double>() > 10);
+  const auto& [model, between, well, stands_for, widened, doubt] = plan.wells.at(0);
+  REQUIRE(stands_for);
+  CHECK(well.depth == Approx(stands_for->depth).epsilon(1e-9));
+  CHECK(well.depth == Approx(1.3203e-6).epsilon(1e-4));
+  CHECK(stands_for->distance == Approx(15.16e-9).epsilon(1e-3));
+  REQUIRE(widened);
+  CHECK(*widened == Approx(well.width / stands_for->width));
+  CHECK(*widened > 10);
 }
 
 TEST_CASE("plan warns of a repulsion whose range the lattice does not resolve") {
@@ -104,7 +105,7 @@ TEST_CASE("plan warns of a repulsion whose range the lattice does not resolve") 
         file, {R"(/interactions/0={"between": ["rbc", "rbc"], "model": "repulsion", "parameters": {"strength": 1e-8, )"
                R"("cutoff": ")" +
                range + "\"}}"});
-    return make_plan(scene, plugins()).warnings;
+    return make_report(make_plan(scene, plugins())).warnings;
   };
   CHECK(plan_with("0.6 um").empty());
   const std::vector<std::string> warnings = plan_with("0.196 um");

@@ -78,7 +78,8 @@ TEST_CASE("summary.json has every key a script may rely on") {
 TEST_CASE("what is undefined is null in summary.json") {
   Summary summary = small_summary();
   summary.mass_drift = std::nan("");
-  summary.limits = {{"depth", 0, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(), ""}};
+  summary.plan.limits = {
+      {"depth", 0, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(), ""}};
   const Json written = Json::parse(to_json(summary).dump());
   CHECK(written["dimensionless"]["capillary"].is_null());
   CHECK(written["conservation"]["mass_drift"].is_null());
@@ -89,10 +90,10 @@ TEST_CASE("a run that --max-steps cut short is completed, and says where it was 
   Summary summary = small_summary();
   summary.steps = 120;
   summary.steps_at_most = 5000;
-  summary.stages = {{{"name", "rest"}, {"ended_by", "at_rest"}}, {{"name", "shear"}, {"ended_by", "strain"}}};
+  summary.stages = {{"rest", 20, Ending::at_rest, 0.1}, {"shear", 100, Ending::strain, 0.5}};
   CHECK(to_json(summary)["outcome"] == "completed after 120 steps");
   CHECK(to_json(summary)["steps_at_most"] == 5000);
-  summary.stages[1]["ended_by"] = "max_steps";
+  summary.stages[1].ended_by = Ending::max_steps;
   CHECK(to_json(summary)["status"] == "completed");
   CHECK(to_json(summary)["outcome"] == "cut short by the limit of steps at step 120 of at most 5000");
 }

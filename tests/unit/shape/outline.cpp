@@ -21,7 +21,7 @@ Membranes membranes_of(const Outline& outline) {
     m.x.push_back(node.x());
     m.y.push_back(node.y());
   }
-  m.cells.push_back({0, 0, m.node_count(), 0, 0});
+  m.cells.push_back({{0, m.node_count()}, 0, 0, 0});
   return m;
 }
 
@@ -70,7 +70,7 @@ TEST_CASE("two biconcave cells 3.52 um apart have a rim gap of 0.95503 um") {
   const Outline outline = make_outline(Biconcave{3.91}, 2000);
   Membranes m;
   for (const double y : {0.0, 3.52}) {
-    m.cells.push_back({0, m.node_count(), 2000, 0, 0});
+    m.cells.push_back({{m.node_count(), 2000}, 0, 0, 0});
     for (const auto& node : outline.nodes) {
       m.x.push_back(node.x());
       m.y.push_back(node.y() + y);
@@ -111,6 +111,7 @@ TEST_CASE("a scene's cells lie in lattice units half a spacing from the domain's
   const double spacing = 0.1955e-6;
   Scene scene{};
   scene.domain.nodes = {256, 128};
+  scene.domain.size = {256 * spacing, 128 * spacing};
   scene.cell_types.push_back({"ring", Circle{2e-6, 1.25}, 64, 1e-3, {}});
   scene.cells.push_back({0, {10e-6, 8e-6}, 0.5, "/cells/0"});
   const Membranes m = make_membranes(scene, spacing);

@@ -10,7 +10,7 @@
 #include <numbers>
 
 #include "core/membrane/membranes.hpp"
-#include "plan/placed_cells.hpp"
+#include "plan/solver_setup.hpp"
 #include "shape/outline.hpp"
 
 using namespace rouleau::core;
@@ -72,7 +72,7 @@ using Points = std::vector<Eigen::Vector2d>;
 std::vector<Points> outlines(const Scene& scene) {
   std::vector<Points> all;
   for (const CellPlacement& cell : scene.cells) {
-    const CellType& type = scene.cell_types[static_cast<std::size_t>(cell.type)];
+    const auto& type = scene.cell_types[cell.type];
     Points points = make_outline(type.shape, type.segments).nodes;
     for (auto& p : points) p = cell.center + Eigen::Rotation2D<double>(cell.angle) * p;
     all.push_back(std::move(points));

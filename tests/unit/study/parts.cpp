@@ -3,9 +3,9 @@
 #include <thread>
 
 #include "base/error.hpp"
+#include "files/file_lock.hpp"
 #include "study/study_target.hpp"
 #include "study_folder.hpp"
-#include "trial/file_lock.hpp"
 #include "trial/fingerprint.hpp"
 #include "trial/run_cost.hpp"
 
@@ -13,6 +13,7 @@ namespace {
 
 using rouleau::Cause;
 using rouleau::Error;
+using rouleau::files::FileLock;
 using namespace rouleau::study;
 using namespace rouleau::test;
 using namespace rouleau::trial;

@@ -1,0 +1,258 @@
+// The reference numbers of a manifest ("checks"): level "physics" computes them again, level "publish" asks for enough.
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "conform/call.hpp"
+#include "conform/check.hpp"
+#include "json/shown.hpp"
+#include "plugin/quantities.hpp"
+#include "trials.hpp"
+#include "worst.hpp"
+
+namespace rouleau::conform {
+
+namespace {
+
+using Json = nlohmann::json;
+
+/// One of the manifest's checks: what is given and what must come out, lattice units.
+struct Reference {
+  Trial trial;
+  Values inputs;    ///< of one element
+  Values expected;  ///< by array
+  Call call;
+  double tolerance;
+  std::string source;
+};
+
+/// Where a manifest's check stands, for messages.
+struct Entry {
+  const Subject& subject;
+  const Json& json;
+  std::string at;
+
+  [[noreturn]] void refuse(const std::string& what) const { throw Error(Cause::plugin_refused, at + what); }
+
+  /// Parameters in SI: its own, else defaults.
+  [[nodiscard]] std::vector<double> parameters() const {
+    const Json given = json.value("parameters", Json::object());
+    std::vector<double> values;
+    for (const plugin::Parameter& parameter : subject.manifest().parameters) {
+      if (!given.contains(parameter.name)) {
+        if (!parameter.default_value) refuse(" gives no value for " + parameter.name + ", which has no default");
+        values.push_back(*parameter.default_value);
+      } else if (parameter.choices.empty() && given[parameter.name].is_number()) {
+        values.push_back(given[parameter.name]);
+      } else {
+        const auto& words = parameter.choices;
+        const auto word = std::find(words.begin(), words.end(), given[parameter.name]);
+        if (word == words.end()) refuse(": " + parameter.name + " cannot be " + json::shown(given[parameter.name]));
+        values.push_back(static_cast<double>(word - words.begin()));
+      }
+    }
+    return values;
+  }
+
+  /// Adds a quantity's numbers; those of one with components are a list.
+  void add(Values& values, const std::string& name, const Json& given, const units::LatticeUnits& units,
+           const units::Dimension& dimension) const {
+    const auto arrays = arrays_of(subject.manifest().kind, name);
+    const Json list = given.is_array() ? given : Json::array({given});
+    if (list.size() != arrays.size()) refuse(": " + name + " has " + std::to_string(arrays.size()) + " components");
+    for (std::size_t k = 0; k < arrays.size(); ++k) values[arrays[k]] = {units.to_lattice(list[k], dimension)};
+  }
+};
+
+std::string state_array(std::size_t k) { return "state." + std::to_string(k); }
+
+Reference read(const Subject& subject, std::size_t number) {
+  const plugin::Manifest& manifest = subject.manifest();
+  const Entry entry{subject, manifest.checks[number], manifest.file.string() + " /checks/" + std::to_string(number)};
+  plugin::ModelSetting setting = Subject::typical_setting();
+  setting.inertia = entry.json.value("inertia", false);
+  const auto parameters = entry.parameters();
+  Reference reference{{subject.make(parameters, setting), parameters, setting, {}}, {}, {}, {}, 0, {}};
+  const Json& given = entry.json["inputs"];
+  for (const std::string& name : manifest.needs) {
+    if (!given.contains(name)) entry.refuse(" gives no value for the input " + name);
+    entry.add(reference.inputs, name, given[name], setting.units, plugin::dimension_of(manifest, name));
+  }
+  const Json& outputs = entry.json["outputs"];
+  for (std::size_t k = 0; k < manifest.state.size(); ++k) {
+    const plugin::StateVariable& variable = manifest.state[k];
+    reference.inputs[state_array(k)] = {
+        setting.units.to_lattice(given.value(variable.name, variable.initial), variable.dimension)};
+    if (!outputs.contains(variable.name)) continue;
+    reference.expected[state_array(k)] = {setting.units.to_lattice(outputs[variable.name], variable.dimension)};
+  }
+  for (const std::string& name : manifest.gives) {
+    if (!outputs.contains(name)) continue;
+    entry.add(reference.expected, name, outputs[name], setting.units, plugin::dimension_of(manifest, name));
+  }
+  reference.call.time_step = entry.json.value("time_step", 0.0) / setting.units.time;
+  reference.tolerance = entry.json.value("tolerance", 1e-9);
+  reference.source = entry.json.value("source", std::string());
+  return reference;
+}
+
+/// The reference's element, and further ones with each of its inputs a tenth smaller and larger.
+Values with_neighbours(const Values& inputs) {
+  Values all;
+  for (const auto& [name, values] : inputs) {
+    const std::size_t place = all.size();
+    auto& array = all[name];
+    array.assign(1 + 2 * inputs.size(), values[0]);
+    array[1 + 2 * place] *= 0.9;
+    array[2 + 2 * place] *= 1.1;
+  }
+  return all;
+}
+
+Finding compare_references(const Subject& subject) {
+  const plugin::Manifest& manifest = subject.manifest();
+  if (manifest.checks.empty()) {
+    if (manifest.kind == plugin::ModelKind::collision) return Finding::skipped("its manifest has no reference numbers");
+    return Finding::warned("its manifest has no reference numbers (\"checks\") from the model's source");
+  }
+  Worst worst;
+  for (std::size_t i = 0; i < manifest.checks.size(); ++i) {
+    const Reference reference = read(subject, i);
+    const Values inputs = with_neighbours(reference.inputs);
+    const Values outputs = compute(subject, reference.trial.instance, inputs, reference.call);
+    for (const auto& [name, wanted] : reference.expected) {
+      const auto& found = outputs.at(name);
+      const double expected = wanted[0];
+      double size = std::abs(expected);
+      // Populations cancel in sums of all of them.
+      if (manifest.kind == plugin::ModelKind::collision) {
+        for (const auto& entry : reference.expected) size = std::max(size, std::abs(entry.second[0]));
+      }
+      for (std::size_t k = 1; size == 0 && k < found.size(); ++k) size = std::max(size, std::abs(found[k]));
+      const double scale = expected == 0 ? 1 : 1 / std::abs(expected);
+      worst.add(std::abs(found[0] - expected) * scale, reference.tolerance * size * scale, [&, &name = name] {
+        const double unit = reference.trial.setting.units.unit(dimension_of_array(subject, name));
+        return name + " is " + number(found[0] * unit, 17) + " SI at " +
+               place(subject, reference.trial.setting, inputs, 0) + ", the manifest's check " + std::to_string(i) +
+               " says " + number(expected * unit, 17) +
+               (reference.source.empty() ? "" : " (" + reference.source + ')') + "; the difference is";
+      });
+    }
+  }
+  return worst.finding("exactly the reference numbers");
+}
+
+/// Whether what a reference names comes out otherwise with other parameters or inputs.
+bool differs(const Subject& subject, const Reference& reference, const plugin::ModelInstance& instance,
+             const Values& inputs) {
+  const Values before = compute(subject, reference.trial.instance, reference.inputs, reference.call);
+  const Values after = compute(subject, instance, inputs, reference.call);
+  return std::any_of(reference.expected.begin(), reference.expected.end(), [&](const auto& entry) {
+    const double was = before.at(entry.first)[0], is = after.at(entry.first)[0];
+    return !(std::abs(is - was) <= 10 * reference.tolerance * std::max(std::abs(was), std::abs(is)));
+  });
+}
+
+bool is_cutoff(const Subject& subject, const Trial& trial, std::size_t k) {
+  if (subject.manifest().kind != plugin::ModelKind::interaction) return false;
+  const plugin::Parameter& parameter = subject.manifest().parameters[k];
+  if (parameter.dimension != units::dimension::length) return false;
+  const double here = trial.instance.interaction().cutoff(trial.instance.self());
+  return std::abs(trial.setting.units.to_si(here, parameter.dimension) / trial.parameters[k] - 1) < 1e-12;
+}
+
+bool parameter_is_pinned(const Subject& subject, const Reference& reference, std::size_t k) {
+  if (is_cutoff(subject, reference.trial, k)) return true;
+  const double value = reference.trial.parameters[k];
+  for (const double other : {1.01 * value, 0.99 * value}) {
+    auto parameters = reference.trial.parameters;
+    parameters[k] = other;
+    try {
+      return differs(subject, reference, subject.make(parameters, reference.trial.setting), reference.inputs);
+    } catch (const plugin::ModelRefused&) {  // to this side there is a limit
+    }
+  }
+  return false;
+}
+
+/// What the model is must follow from its manifest: a factor, a sign or a unit that is wrong in all formulas alike is
+/// seen against numbers from elsewhere only.
+Finding pinned(const Subject& subject) {
+  const plugin::Manifest& manifest = subject.manifest();
+  if (manifest.checks.empty()) {
+    return Finding::failed("its manifest has no reference numbers (\"checks\") from the model's source");
+  }
+  std::vector<Reference> references;
+  for (std::size_t i = 0; i < manifest.checks.size(); ++i) references.push_back(read(subject, i));
+  const auto any = [&](const auto& test) { return std::any_of(references.begin(), references.end(), test); };
+  std::vector<std::string> loose;
+  for (std::size_t k = 0; k < manifest.parameters.size(); ++k) {
+    const plugin::Parameter& parameter = manifest.parameters[k];
+    // What `roles` measures needs no number; how stiff an area modulus makes a stretch is not known to it.
+    const bool measured = parameter.role && *parameter.role != plugin::Role::area_modulus &&
+                          *parameter.role != plugin::Role::shear_modulus;
+    for (std::size_t word = 0; word < parameter.choices.size(); ++word) {
+      const auto has = [&](const Reference& r) { return r.trial.parameters[k] == static_cast<double>(word); };
+      if (!any(has)) loose.push_back(parameter.name + " = " + parameter.choices[word]);
+    }
+    if (measured || !parameter.choices.empty()) continue;
+    if (!any([&](const Reference& r) { return parameter_is_pinned(subject, r, k); })) loose.push_back(parameter.name);
+  }
+  const auto see = [&](const std::string& array, const std::string& name) {
+    const bool matters = any([&](const Reference& r) {
+      Values inputs = r.inputs;
+      inputs[array][0] = inputs[array][0] == 0 ? 1e-3 : 1.01 * inputs[array][0];
+      return differs(subject, r, r.trial.instance, inputs);
+    });
+    if (!matters) loose.push_back(name);
+  };
+  const auto demand = [&](const std::string& array, const std::string& name) {
+    const bool given = any([&](const Reference& r) {
+      const auto found = r.expected.find(array);
+      return found != r.expected.end() && found->second[0] != 0;
+    });
+    if (!given) loose.push_back(name);
+  };
+  for (const std::string& name : manifest.needs) {
+    for (const std::string& array : arrays_of(manifest.kind, name)) see(array, name);
+  }
+  for (const std::string& name : manifest.gives) {
+    for (const std::string& array : arrays_of(manifest.kind, name)) demand(array, name);
+  }
+  for (std::size_t k = 0; k < manifest.state.size(); ++k) {
+    see(state_array(k), manifest.state[k].name);
+    demand(state_array(k), "the next " + manifest.state[k].name + " (with a \"time_step\")");
+  }
+  if (manifest.kind == plugin::ModelKind::collision) {
+    for (const bool inertia : {false, true}) {
+      if (!any([&](const Reference& r) { return r.trial.setting.inertia == inertia; })) {
+        loose.emplace_back(inertia ? "\"inertia\": true" : "\"inertia\": false");
+      }
+    }
+  }
+  loose.erase(std::unique(loose.begin(), loose.end()), loose.end());
+  if (loose.empty()) return Finding::passed("reference numbers depend on all that goes in and give all that comes out");
+  return Finding::failed("no reference number (\"checks\") says anything of " + listed(loose));
+}
+
+}  // namespace
+
+std::vector<Check> publish_checks() {
+  return {
+      {"reference",
+       Level::physics,
+       "gives the reference numbers of its manifest",
+       {"units", "gradient", "derivative", "derivatives", "cutoff", "rigid-motion", "moduli", "dissipation",
+        "closed-loop", "look-after-step", "half-steps", "settles", "momentum", "velocity", "equilibrium",
+        "stress-relaxation", "symmetry", "reductions"},
+       compare_references},
+      {"pinned",
+       Level::publish,
+       "has reference numbers for each parameter, choice, input and output",
+       {"reference"},
+       pinned},
+  };
+}
+
+}  // namespace rouleau::conform

@@ -1,0 +1,151 @@
+#include "worlds.hpp"
+
+#include <sched.h>
+#include <sys/personality.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstring>
+#include <thread>
+#include <vector>
+
+#include "allocation_count.hpp"
+#include "base/process.hpp"
+#include "base/text.hpp"
+#include "call.hpp"
+#include "checks/trials.hpp"
+#include "report_line.hpp"
+
+namespace rouleau::conform {
+
+namespace {
+
+/// Writes over the part of the stack where a function called next has its variables.
+[[gnu::noinline]] void paint_stack(int value) {
+  char paint[1 << 16];
+  std::memset(paint, value, sizeof paint);
+  asm volatile("" : : "r"(paint) : "memory");
+}
+
+class Painter : public CallWatch {
+ public:
+  explicit Painter(int value) : value_(value) {}
+  void before() override { paint_stack(value_); }
+  void after() override {}
+
+ private:
+  int value_;
+};
+
+void add(std::string& lines, const std::string& name, double value) {
+  lines += name + ' ' + (std::isnan(value) ? "nan" : number(value, 17)) + '\n';
+}
+
+std::string outputs(const Subject& subject, int fill) {
+  std::string lines;
+  Random random = subject.random();
+  Painter painter(fill);
+  paint_stack(fill);
+  for (const Trial& trial : trials(subject, random, Subject::typical_setting(), 3)) {
+    lines += '#' + trial.words + '\n';
+    if (subject.manifest().kind == plugin::ModelKind::interaction) {
+      paint_stack(fill);
+      add(lines, "cutoff", trial.instance.interaction().cutoff(trial.instance.self()));
+    }
+    for (const bool single : subject.precisions()) {
+      constexpr std::size_t count = 7;
+      Call call;
+      call.single = single;
+      call.watch = &painter;
+      for (const auto& [name, values] :
+           compute(subject, trial.instance, subject.random_inputs(trial.instance, count, random), call)) {
+        for (const double value : values) add(lines, name, value);
+      }
+    }
+  }
+  return lines;
+}
+
+}  // namespace
+
+void enter_world(unsigned other, int count, char** words) {
+  // Where the dynamic loader and the units' table are found stays, and so does what a run notes.
+  std::vector<std::string> variables = {"PATH=/usr/bin:/bin", "HOME=/", "LANG=C", "TZ=UTC0"};
+  if ((other & world::environment) != 0) {
+    variables = {"PATH=/usr/local/bin:/usr/bin:/bin",
+                 "HOME=/nonexistent",
+                 "USER=somebody",
+                 "LANG=de_DE.UTF-8",
+                 "LC_ALL=de_DE.UTF-8",
+                 "TZ=Pacific/Kiritimati",
+                 "OMP_NUM_THREADS=7",
+                 "PWD=/usr",
+                 "TMPDIR=/var/tmp",
+                 "TERM=dumb",
+                 "DEBUG=1",
+                 "PADDING=" + std::string(3000, 'x')};
+  }
+  for (const char* kept : {"LD_LIBRARY_PATH", "UDUNITS2_XML_PATH", "ROULEAU_INSTRUCTION_SET"}) {
+    if (const char* value = std::getenv(kept)) variables.push_back(std::string(kept) + '=' + value);
+  }
+  const bool elsewhere = (other & world::folder) != 0;
+  ::umask(elsewhere ? 077 : 022);
+  if (::chdir(elsewhere ? "/usr" : "/") != 0) return;
+  cpu_set_t processors;
+  sched_getaffinity(0, sizeof processors, &processors);
+  int wanted = -1;
+  for (int k = 0; k < CPU_SETSIZE; ++k) {
+    if (CPU_ISSET(k, &processors) && (wanted < 0 || (other & world::processor) != 0)) wanted = k;
+  }
+  CPU_ZERO(&processors);
+  CPU_SET(wanted, &processors);
+  sched_setaffinity(0, sizeof processors, &processors);
+  if ((other & world::addresses) != 0) {
+    personality(ADDR_COMPAT_LAYOUT);
+    rlimit stack{};
+    getrlimit(RLIMIT_STACK, &stack);
+    stack.rlim_cur = std::min<rlim_t>(stack.rlim_max, rlim_t{48} << 20);
+    setrlimit(RLIMIT_STACK, &stack);
+  } else {
+    personality(ADDR_NO_RANDOMIZE);
+  }
+  std::vector<char*> all(words, words + count), entries;
+  std::string entered = "entered";
+  all.push_back(entered.data());
+  all.push_back(nullptr);
+  for (std::string& variable : variables) entries.push_back(variable.data());
+  entries.push_back(nullptr);
+  execve("/proc/self/exe", all.data(), entries.data());
+}
+
+std::string outputs_in_world(const Subject& subject, unsigned other) {
+  const int fill = (other & world::memory) != 0 ? 0xff : 0;
+  if (process_counts != nullptr) {
+    process_counts->fill = fill;
+    constexpr std::int64_t days = 86400;
+    if ((other & world::clock) != 0) process_counts->clock_ahead_s = 400 * days + 12345;
+    if ((other & world::environment) != 0) process_counts->variable = "1";
+  }
+  std::string lines;
+  if ((other & world::processor) != 0)
+    std::thread([&] { lines = outputs(subject, fill); }).join();
+  else
+    lines = outputs(subject, fill);
+  if (process_counts != nullptr && process_counts->asked[0] != '\0') return std::string("!") + process_counts->asked;
+  return lines;
+}
+
+std::string outputs_of_process(const Subject& subject, unsigned other) {
+  constexpr double time_limit_s = 60;
+  const std::string manifest = std::filesystem::absolute(subject.manifest().file).string();
+  const ProcessEnd end =
+      run_process("/proc/self/exe", {manifest, "surroundings", std::to_string(subject.seed()), std::to_string(other)},
+                  time_limit_s);
+  if (end.signal == 0 && end.exit_code == 0 && !end.timed_out) return end.finding;
+  if (end.finding.starts_with('{')) return end.finding;
+  return to_json({Verdict::crash, "the process ends in other surroundings", {}, {}}).dump();
+}
+
+}  // namespace rouleau::conform

@@ -1,0 +1,109 @@
+// The ranks of one simulation, and what they find out together.
+#pragma once
+
+#include <algorithm>
+#include <cstring>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "decomposition.hpp"
+#include "exact_sum.hpp"
+#include "transport.hpp"
+
+namespace rouleau::core {
+
+/// How the lattice is cut, and how this rank speaks to the others. Belongs to the caller.
+template <int D>
+struct Ranks {
+  const Decomposition<D>* blocks = nullptr;
+  Transport* transport = nullptr;
+
+  [[nodiscard]] bool several() const { return blocks != nullptr && blocks->ranks() > 1; }
+  /// Whether this rank is the one that what concerns the whole is gathered on.
+  [[nodiscard]] bool first() const { return !several() || transport->rank() == 0; }
+};
+
+/// Values that are copied bit by bit, as a message.
+template <class V>
+Message message_of(std::span<const V> values) {
+  Message message(values.size_bytes());
+  if (!message.empty()) std::memcpy(message.data(), values.data(), message.size());
+  return message;
+}
+template <class V>
+std::vector<V> values_of(const Message& message) {
+  std::vector<V> values(message.size() / sizeof(V));
+  if (!message.empty()) std::memcpy(static_cast<void*>(values.data()), message.data(), message.size());
+  return values;
+}
+
+// All ranks call each of these, one thread of each, in the same order. With one rank there is nothing to do.
+
+/// Every rank's values, by rank.
+template <class V, int D>
+std::vector<std::vector<V>> all_of(const Ranks<D>& ranks, std::vector<V> mine) {
+  if (!ranks.several()) return {std::move(mine)};
+  const int own = ranks.transport->rank(), count = ranks.blocks->ranks();
+  for (int to = 0; to < count; ++to) {
+    if (to != own) ranks.transport->send(to, message_of(std::span<const V>(mine)));
+  }
+  std::vector<std::vector<V>> all(static_cast<std::size_t>(count));
+  for (int from = 0; from < count; ++from) {
+    if (from != own) all[from] = values_of<V>(ranks.transport->receive(from));
+  }
+  all[own] = std::move(mine);
+  return all;
+}
+
+/// Whether it is so on any rank.
+template <int D>
+bool any(const Ranks<D>& ranks, bool mine) {
+  if (!ranks.several()) return mine;
+  bool found = false;
+  for (const std::vector<char>& other : all_of(ranks, std::vector<char>{mine})) found = found || other.front() != 0;
+  return found;
+}
+
+/// Each sum over what all ranks have.
+template <int D>
+void add_up(const Ranks<D>& ranks, std::vector<ExactSum>& sums) {
+  if (!ranks.several()) return;
+  const auto all = all_of(ranks, std::exchange(sums, std::vector<ExactSum>(sums.size())));
+  for (const std::vector<ExactSum>& parts : all) {
+    for (std::size_t k = 0; k < sums.size(); ++k) sums[k].add(parts[k]);
+  }
+}
+
+/// The text of the first rank, on all.
+template <int D>
+std::string text_of_first(const Ranks<D>& ranks, const std::string& text) {
+  if (!ranks.several()) return text;
+  const std::vector<char> first = all_of(ranks, std::vector<char>(text.begin(), text.end())).front();
+  return {first.begin(), first.end()};
+}
+
+/// From the values of each block's nodes, row after row, those of the whole lattice, on the first rank; nothing on the
+/// others.
+template <class V>
+std::vector<V> gather(const Ranks<2>& ranks, std::vector<V> block) {
+  if (!ranks.several()) return block;
+  if (!ranks.first()) {
+    ranks.transport->send(0, message_of(std::span<const V>(block)));
+    return {};
+  }
+  const int width = ranks.blocks->domain(0).size[0];
+  std::vector<V> whole(static_cast<std::size_t>(ranks.blocks->domain(0).nodes()));
+  for (int rank = 0; rank < ranks.blocks->ranks(); ++rank) {
+    if (rank != 0) block = values_of<V>(ranks.transport->receive(rank));
+    const Box<2> box = ranks.blocks->domain(rank).block;
+    auto from = block.begin();
+    for (int y = box.begin[1]; y < box.end[1]; ++y, from += box.size(0)) {
+      std::copy_n(from, box.size(0), whole.begin() + static_cast<std::ptrdiff_t>(width) * y + box.begin[0]);
+    }
+  }
+  return whole;
+}
+
+}  // namespace rouleau::core

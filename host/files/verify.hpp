@@ -1,0 +1,28 @@
+// Whether a finished run's files are what it wrote.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace rouleau::files {
+
+/// Text of summary.json: the summary, and under "files" the bytes and the checksum of each of these files of the
+/// directory, at the end its own. Throws Error(input_output).
+std::string sealed_summary(nlohmann::json summary, const std::filesystem::path& directory,
+                           const std::vector<std::string>& names);
+
+struct Verification {
+  int files = 0;                         ///< that were looked at
+  std::vector<std::string> differences;  ///< one sentence each; empty: all files are as the run wrote them
+};
+
+/// Compares the files of a finished run with its summary.json, and that with its own checksum; `wanted`: only files
+/// with these names. Throws Error(bad_input) for a directory whose summary.json is not there or has no checksums,
+/// Error(input_output) where a file cannot be read.
+Verification verify(const std::filesystem::path& directory,
+                    const std::function<bool(const std::string& name)>& wanted = {});
+
+}  // namespace rouleau::files

@@ -1,0 +1,40 @@
+#include "cell_travel.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/fluid/relaxation.hpp"
+#include "shape/outline.hpp"
+
+namespace rouleau::plan {
+
+namespace {
+
+constexpr double threshold = 0.002;
+
+}  // namespace
+
+CellTravel cell_travel(const scene::Scene& scene, const StageSetting& stage) {
+  if (scene.fluid.inertia || scene.cells.empty() || scene.domain.periodic_y) return {};
+  const double spacing = stage.units.length, height = scene.domain.nodes[1], viscosity = core::viscosity_of(stage.tau);
+  double radius = 0, mean = 0;
+  std::vector<double> speeds;
+  for (const scene::CellPlacement& cell : scene.cells) {
+    const double y = cell.center.y() / spacing;
+    speeds.push_back(stage.shear_rate * (y - height / 2) + stage.body_force_x * y * (height - y) / (2 * viscosity));
+    mean += speeds.back() / static_cast<double>(scene.cells.size());
+    radius = std::max(radius, shape::shape_radius(scene.cell_types[cell.type].shape) / spacing);
+  }
+  double farthest = 0;
+  for (const double speed : speeds) farthest = std::max(farthest, std::abs(speed - mean));
+  return {.mean = std::abs(mean) * radius / viscosity, .spread = farthest * radius / viscosity};
+}
+
+bool follows_cells(const scene::Scene& scene, const StageSetting& stage) {
+  if (scene.fluid.inertia || scene.cells.empty()) return false;
+  // Between no walls a driven fluid goes faster and faster, and cells with it.
+  return scene.domain.periodic_y ? stage.is_driven() : cell_travel(scene, stage).mean > threshold;
+}
+
+}  // namespace rouleau::plan

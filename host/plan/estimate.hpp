@@ -1,0 +1,42 @@
+// What a run will take, known before its first step: time, memory, bytes on the disk.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "plan.hpp"
+
+namespace rouleau::plan {
+
+/// Seconds of one step on one core, as measured with AVX-512 (docs/performance.md); other machines differ by their
+/// memory and vector width.
+double step_cost(double lattice_nodes, double membrane_nodes, scene::Precision precision);
+
+/// At most: stages that end at rest or at a fault write less. HDF5's own share was measured (tests/commands).
+struct OutputEstimate {
+  double outputs = 0, field_outputs = 0;  ///< how often rows and outlines are written, and fields with them
+  double frames_bytes = 0;                ///< frames.h5; of compressed fields what they would take without compression
+  double fields_bytes = 0;                ///< the part of it that compression makes smaller
+  double tables_bytes = 0;                ///< the .csv files, to about a quarter
+  bool fields_compressed = false;
+  [[nodiscard]] double bytes() const { return frames_bytes + tables_bytes; }
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(OutputEstimate, outputs, field_outputs, frames_bytes, fields_bytes, tables_bytes,
+                                 fields_compressed)
+};
+
+struct Estimate {
+  double steps = 0;  ///< at most
+  double wall_s = 0;
+  double memory_bytes = 0;
+  OutputEstimate output;
+};
+
+Estimate estimate(const Plan& plan);
+
+/// Throws Error(input_output) where a part of the work wants more memory than the process can get. `what` begins the
+/// sentence: "the run".
+void require_memory(double bytes, const std::string& what);
+
+/// What the membranes of a scene take, bytes.
+double membrane_memory(const scene::Scene& scene);
+
+}  // namespace rouleau::plan

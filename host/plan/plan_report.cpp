@@ -1,0 +1,272 @@
+#include "plan_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/text.hpp"
+#include "cell_travel.hpp"
+#include "core/solver/schedule.hpp"
+#include "scene/driving_flow.hpp"
+#include "shape/outline.hpp"
+
+namespace rouleau::plan {
+
+namespace {
+
+constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
+
+/// A force on a fluid that is periodic along both axes meets no wall that could balance it.
+bool accelerates_for_ever(const StageSetting& stage, const scene::Scene& scene) {
+  return scene.domain.periodic_y && scene::driving_force(*stage.stage, scene) != Eigen::Vector2d::Zero();
+}
+
+/// Share of the domain's area that all cells enclose at rest.
+double hematocrit(const scene::Scene& scene) {
+  std::vector<double> area;
+  for (const scene::CellType& type : scene.cell_types)
+    area.push_back(shape::area_of(shape::make_outline(type.shape, type.segments)));
+  double sum = 0;
+  for (const scene::CellPlacement& cell : scene.cells) sum += area[cell.type];
+  return sum / scene.domain.size.prod();
+}
+
+std::map<std::string, double> dimensionless_numbers(const Plan& plan, const std::vector<InteractionWell>& wells) {
+  const scene::Scene& scene = *plan.scene;
+  double shear_rate = 0, factor = scene.numerics.density_factor, wall_mach = 0;
+  bool unbounded = false;
+  for (const StageSetting& stage : plan.stages) {
+    wall_mach = std::max(wall_mach, units::mach_number(std::abs(stage.wall_speed)));
+    unbounded = unbounded || accelerates_for_ever(stage, scene);
+    const double rate = scene::mean_shear_rate(*stage.stage, scene);
+    if (rate > shear_rate) {
+      shear_rate = rate;
+      factor = stage.stage->density_factor;
+    }
+  }
+  // A flow that nothing holds has no rate of its own; a number made with zero would look like a fluid at rest.
+  if (unbounded && shear_rate == 0) shear_rate = undefined;
+  const double radius =
+      plan.has_cells ? shape::shape_radius(scene.cell_types[scene.cells[0].type].shape) : scene.domain.size.y() / 2;
+  const double stress = scene.fluid.viscosity * shear_rate;
+  const double reynolds = scene.fluid.density * shear_rate * radius * radius / scene.fluid.viscosity;
+  double ratio = 1;
+  for (const scene::CellType& type : scene.cell_types)
+    ratio = std::max(ratio, type.interior_viscosity / scene.fluid.viscosity);
+
+  return {{"reynolds_physical", reynolds},
+          {"reynolds_simulated", reynolds * factor},
+          {"capillary", stress * radius / shear_modulus(plan)},
+          {"membrane_strain", plan.has_cells ? stress * radius / stretching_modulus(plan) : undefined},
+          {"adhesion_number", stress > 0 ? deepest_well(plan, wells) / (stress * radius) : undefined},
+          {"viscosity_ratio", plan.has_cells ? ratio : undefined},
+          {"hematocrit", hematocrit(scene)},
+          {"mach_wall", wall_mach}};
+}
+
+std::vector<Conversion> conversion_table(const Plan& plan) {
+  const units::Units units;
+  const scene::Scene& scene = *plan.scene;
+  std::vector<Conversion> table;
+  for (const StageSetting& stage : plan.stages) {
+    const units::LatticeUnits& u = stage.units;
+    const auto row = [&](const std::string& quantity, double si, const std::string& unit, double lattice,
+                         const std::string& of = {}) {
+      table.push_back({stage.stage->name, quantity, of, si, unit, lattice});
+    };
+    const auto converted = [&](const std::string& quantity, double si, const std::string& unit,
+                               const units::Dimension& dimension, const std::string& of = {}) {
+      row(quantity, si, unit, u.to_lattice(si, dimension), of);
+    };
+    row("spacing", u.length, "m", 1);
+    row("time step", u.time, "s", 1);
+    row("density (times density_factor)", scene.fluid.density * stage.stage->density_factor, "kg/m3", 1);
+    converted("viscosity", scene.fluid.viscosity, "Pa s", units::dimension::viscosity);
+    if (stage.stage->shear_rate != 0) {
+      row("shear rate", stage.stage->shear_rate, "1/s", stage.shear_rate);
+      row("wall speed", u.to_si(stage.wall_speed, units::dimension::velocity), "m/s", stage.wall_speed);
+    }
+    if (stage.body_force_x != 0 || stage.body_force_y != 0) {
+      row("driving force density", u.to_si(stage.body_force_x, units::dimension::force_density), "N/m3",
+          stage.body_force_x);
+    }
+    converted("width of the domain", scene.domain.size.x(), "m", units::dimension::length);
+    converted("height of the domain", scene.domain.size.y(), "m", units::dimension::length);
+    for (const scene::CellType& type : scene.cell_types) {
+      converted("radius", shape::shape_radius(type.shape), "m", units::dimension::length, type.name);
+      converted("interior viscosity", type.interior_viscosity, "Pa s", units::dimension::viscosity, type.name);
+    }
+    for (const PlannedModel* model : plan.active_models()) {
+      const std::string owner = plan.owner_of(*model);
+      for (std::size_t i = 0; i < model->manifest->parameters.size(); ++i) {
+        const plugin::Parameter& parameter = model->manifest->parameters[i];
+        if (!parameter.choices.empty()) continue;
+        const auto& e = parameter.dimension.exponent;
+        const bool stays_si = e[3] != 0 || e[4] != 0 || e[5] != 0;
+        const double si = model->parameters.values[i];
+        const bool in_si = units.scale(parameter.unit) == 1;
+        row(model->manifest->id + ": " + parameter.name, si, in_si ? parameter.unit : "SI for " + parameter.unit,
+            stays_si ? si : u.to_lattice(si, parameter.dimension), owner);
+      }
+    }
+  }
+  return table;
+}
+
+std::vector<PackedCells> packed_cells(const scene::Scene& scene) {
+  std::vector<PackedCells> packed;
+  for (const scene::RandomPacking& packing : scene.packings) {
+    packed.push_back({.pointer = packing.pointer,
+                      .type = scene.cell_types[packing.type].name,
+                      .cells = {packing.first, packing.first + packing.count - 1},
+                      .count = packing.count,
+                      .hematocrit_asked = packing.hematocrit.value_or(undefined),
+                      .hematocrit = packing.reached,
+                      .seed = packing.seed,
+                      .gap_m = packing.gap});
+  }
+  return packed;
+}
+
+std::vector<PlannedPass> planned_passes(const Plan& plan) {
+  const scene::Scene& scene = *plan.scene;
+  const bool slip = scene.numerics.slip_correction, area = scene.numerics.area_correction;
+  const std::map<std::string, std::string> reasons{
+      {"membrane", std::to_string(scene.cells.size()) + " cells resist deformation" +
+                       (plan.semi_implicit ? "; semi-implicit step" : "")},
+      {"interaction", "an active potential acts between cells"},
+      {"corrections",
+       slip ? (area ? "membranes neither slip nor leak" : "membranes do not slip") : "cells keep their areas"},
+      {"indicator", "inside and outside of a cell have different viscosities"},
+      {"activity", "marks the nodes near membranes, which alone carry force and velocity"},
+      {"spread", "membrane forces act on the fluid"},
+      {"fluid", "collision and streaming"},
+      {"interpolate", "membranes move with the fluid"},
+      {"move", "new positions of membrane nodes"}};
+  const core::Schedule schedule = core::make_schedule({.cells = plan.has_cells,
+                                                       .interactions = plan.has_interactions,
+                                                       .viscosity_contrast = plan.viscosity_contrast,
+                                                       .slip_correction = plan.has_cells && slip,
+                                                       .area_correction = plan.has_cells && area});
+  std::vector<PlannedPass> passes;
+  for (const core::Step& step : schedule.steps) {
+    const bool known =
+        std::any_of(passes.begin(), passes.end(), [&](const PlannedPass& other) { return other.name == step.name; });
+    if (!known) passes.push_back({step.name, reasons.at(step.name)});
+  }
+  return passes;
+}
+
+std::vector<Omission> omissions(const Plan& plan) {
+  const scene::Scene& scene = *plan.scene;
+  std::vector<Omission> left_out;
+  const auto omit = [&](const std::string& what, const std::string& why) { left_out.push_back({what, why}); };
+  const auto omit_inactive = [&](const std::string& what, const PlannedModel& model) {
+    if (model.active()) return;
+    omit(what + " " + model.manifest->id,
+         plan.has_cells ? "inactive at these parameters (" + model.manifest->inactive_when.dump() + " in its manifest)"
+                        : "the scene has no cells");
+  };
+  if (!plan.has_cells) {
+    omit("membranes, force and velocity fields, interpolation", "the scene has no cells");
+    for (const scene::CellType& type : scene.cell_types)
+      omit("cell type " + type.name, "no cell of this type is placed");
+  } else {
+    if (!plan.viscosity_contrast)
+      omit("indicator and relaxation rate field", "interior and suspending fluid have the same viscosity");
+    if (!scene.numerics.slip_correction)
+      omit("slip correction",
+           "numerics.slip_correction is false: membranes slip to first order in the lattice spacing");
+    if (!scene.numerics.area_correction)
+      omit("area correction", "numerics.area_correction is false: leaks show as area drift");
+    if (!plan.has_interactions)
+      omit("neighbour search",
+           scene.interactions.empty() ? "the scene has no interaction" : "no interaction is active");
+  }
+  for (const PlannedModel& model : plan.interactions) omit_inactive("interaction", model);
+  for (const auto& laws : plan.membranes) {
+    for (const PlannedModel& law : laws) {
+      if (plan.has_cells) omit_inactive("membrane law", law);
+    }
+  }
+  if (!scene.fluid.inertia) {
+    const bool follows = std::any_of(plan.stages.begin(), plan.stages.end(),
+                                     [&](const StageSetting& stage) { return follows_cells(scene, stage); });
+    omit("convective inertia", std::string("fluid.inertia is false: linear (Stokes) equilibrium") +
+                                   (follows ? ", its unsteady term in a frame that moves with the cells" : ""));
+  }
+  if (!scene.output.checkpoint_seconds) omit("checkpoints", "output.checkpoint is \"never\": a run cannot be resumed");
+  if (scene.output.fields.never()) omit("fields in frames.h5", "output.fields is not set");
+  if (scene.output.cells.never())
+    omit(plan.has_cells ? "rows of the tables and outlines between the ends of stages"
+                        : "rows of series.csv between the ends of stages",
+         "output.cells is not set; the start and the end of each stage are written");
+  return left_out;
+}
+
+/// What the user has to know before the run.
+std::vector<std::string> warnings_of(const Plan& plan, const std::vector<Limit>& limits,
+                                     const std::vector<InteractionWell>& wells) {
+  const scene::Scene& scene = *plan.scene;
+  std::vector<std::string> warnings;
+  const auto add_those_of = [&](const std::vector<PlannedModel>& models) {
+    for (const PlannedModel& model : models)
+      warnings.insert(warnings.end(), model.parameters.warnings.begin(), model.parameters.warnings.end());
+  };
+  add_those_of({plan.collision});
+  for (const std::vector<PlannedModel>& laws : plan.membranes) add_those_of(laws);
+  add_those_of(plan.interactions);
+  for (const StageSetting& stage : plan.stages) {
+    if (!accelerates_for_ever(stage, scene)) continue;
+    const double acceleration =
+        scene::driving_force(*stage.stage, scene).norm() / (scene.fluid.density * stage.stage->density_factor);
+    warnings.push_back("stage " + stage.stage->name +
+                       " drives a fluid that is periodic along x and y, so no wall holds it and it gains " +
+                       number(acceleration, 3) +
+                       " m/s every second for as long as the stage lasts; give domain.y walls, or leave out "
+                       "fluid.body_force and pressure_gradient");
+  }
+  if (const KernelFacts& kernel = kernel_named(scene.numerics.kernel); plan.has_cells && *kernel.defect != 0) {
+    warnings.push_back(std::string("kernel ") + kernel.name + ": " + kernel.defect);
+  }
+  // Where auto has chosen it, it has looked at how strong the attraction is.
+  const std::optional<NumericsChoice>& choice = plan.numerics_choice;
+  const bool chosen = choice && std::any_of(choice->values.begin(), choice->values.end(), [](const auto& value) {
+                        return value.pointer == "/numerics/slip_correction";
+                      });
+  if (scene.numerics.slip_correction && plan.has_interactions && !chosen) {
+    warnings.emplace_back(
+        "numerics.slip_correction with attracting cells: where the attraction is strong, cells leak more with it than "
+        "without (docs/accuracy.md); watch area_leakage_max, or set it to false");
+  }
+  for (const InteractionWell& well : wells) {
+    if (!well.doubt.empty())
+      warnings.push_back(well.model + " between " + well.between[0] + " and " + well.between[1] + ": " + well.doubt);
+  }
+  if (choice && !choice->doubt.empty()) warnings.push_back(choice->doubt);
+  for (const Limit& limit : limits) {
+    if (!(limit.margin < 1)) continue;
+    warnings.push_back(limit.name + " is " + number(limit.value, 4) +
+                       (limit.value > limit.limit ? ", above" : ", below") + " its limit of " + number(limit.limit, 4) +
+                       "; " + limit.remedy);
+  }
+  return warnings;
+}
+
+}  // namespace
+
+PlanReport make_report(const Plan& plan) {
+  PlanReport report;
+  report.passes = planned_passes(plan);
+  report.left_out = omissions(plan);
+  report.limits = find_limits(plan);
+  report.wells = describe_wells(plan);
+  report.warnings = warnings_of(plan, report.limits, report.wells);
+  report.dimensionless = dimensionless_numbers(plan, report.wells);
+  report.conversions = conversion_table(plan);
+  report.packings = packed_cells(*plan.scene);
+  report.estimate = estimate(plan);
+  return report;
+}
+
+}  // namespace rouleau::plan

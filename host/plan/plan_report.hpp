@@ -1,0 +1,72 @@
+// What a plan amounts to, for who prints or stores it: passes, what is left out, limits, numbers, costs.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "estimate.hpp"
+#include "plan.hpp"
+#include "plan_models.hpp"
+#include "stability_limits.hpp"
+
+namespace rouleau::plan {
+
+struct PlannedPass {
+  std::string name, why;
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(PlannedPass, name, why)
+};
+
+/// What is not computed, and why.
+struct Omission {
+  std::string what, why;
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(Omission, what, why)
+};
+
+/// A quantity in a stage, in SI and in lattice units; `of`: a cell type or two, empty for the fluid.
+struct Conversion {
+  std::string stage, quantity, of;
+  double si;
+  std::string unit;
+  double lattice;
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(Conversion, stage, quantity, of, si, unit, lattice)
+};
+
+/// What became of an entry with "random".
+struct PackedCells {
+  std::string pointer, type;
+  std::array<int, 2> cells;  ///< numbers of the first and the last
+  int count;
+  double hematocrit_asked;  ///< NaN: a count was
+  double hematocrit;
+  std::uint32_t seed;
+  double gap_m;
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(PackedCells, pointer, type, cells, count, hematocrit_asked, hematocrit, seed, gap_m)
+};
+
+struct PlanReport {
+  std::vector<PlannedPass> passes;
+  std::vector<Omission> left_out;
+  std::vector<Limit> limits;
+  std::vector<std::string> warnings;
+  std::map<std::string, double> dimensionless;  ///< NaN: undefined
+  std::vector<Conversion> conversions;
+  std::vector<InteractionWell> wells;
+  std::vector<PackedCells> packings;
+  Estimate estimate;
+};
+
+/// Opens the libraries of active models, as make_plan() has done before.
+PlanReport make_report(const Plan& plan);
+
+/// For people, as `rouleau plan` prints it.
+std::string to_text(const Plan& plan, const PlanReport& report);
+/// For programs, the same.
+nlohmann::json to_json(const Plan& plan, const PlanReport& report);
+/// The sections of it that summary.json has, too.
+nlohmann::json shared_sections(const PlanReport& report);
+
+}  // namespace rouleau::plan

@@ -1,0 +1,92 @@
+#!/usr/bin/env python3
+"""Runs `rouleau plan` on every broken scene of FOLDER/cases.json; each must be refused at its place and for its reason.
+
+Usage: check_bad_scenes.py ROULEAU FOLDER
+A case is the scene base.json, which is good, with a change, or a whole scene:
+  change   {"text that stands once in the scene": "what stands in its place", ...}
+  scene    the text of the whole file instead
+  set      an argument of --set
+  at       line:column and JSON pointer that the message begins with, behind the file's name
+  words    two texts that the rest of the message must hold; or
+  message  the lines of that rest, exactly; PLUGINS is the folder of the shipped plugins
+New text is text, or a list of texts and [text, times]; # in a text that is repeated stands for its number, from 0. A byte
+that is no UTF-8, 0xE9 for instance, is written \\udce9. The exit code is 2 in every case.
+"""
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+
+def text_of(parts) -> str:
+    if isinstance(parts, str):
+        return parts
+    return "".join(part if isinstance(part, str) else "".join(part[0].replace("#", str(i)) for i in range(part[1]))
+                   for part in parts)
+
+
+def scene_of(case: dict, base: str) -> str:
+    scene = text_of(case["scene"]) if "scene" in case else base
+    for old, new in case.get("change", {}).items():
+        if scene.count(old) != 1:
+            raise ValueError(f"{old!r} stands {scene.count(old)} times in the scene")
+        scene = scene.replace(old, text_of(new))
+    return scene
+
+
+def plan(program: pathlib.Path, folder: pathlib.Path, name: str, scene: str, *options: str) -> tuple[int, str]:
+    """Exit code and error stream."""
+    (folder / name).write_bytes(scene.encode(errors="surrogateescape"))
+    run = subprocess.run([program, "plan", name, *options], cwd=folder, capture_output=True, timeout=60)
+    return run.returncode, run.stderr.decode(errors="surrogateescape")
+
+
+def faults(program: pathlib.Path, folder: pathlib.Path, name: str, case: dict, base: str) -> list[str]:
+    """What is wrong with the program's answer to one case."""
+    if not case.keys() <= {"change", "scene", "set", "at", "words", "message"} or len(case.get("words", "ab")) != 2:
+        return ["the case itself is wrong"]
+    options = ["--set", case["set"]] if "set" in case else []
+    try:
+        code, answer = plan(program, folder, f"{name}.json", scene_of(case, base), *options)
+    except (subprocess.TimeoutExpired, ValueError) as error:
+        return [str(error)]
+    place, _, rest = answer.replace(str(program.parent.parent / "lib/rouleau/plugins"), "PLUGINS").partition("\n")
+    expected = case["at"] if "set" in case else f"{name}.json:{case['at']}"
+    found = []
+    if code != 2:
+        found.append(f"exit code {code}")
+    if place != expected:
+        found.append(f"begins with {place!r}, expected {expected!r}")
+    if "message" in case and rest != "".join(f"{line}\n" for line in case["message"]):
+        found.append("is not the expected message, word for word")
+    if "message" not in case:
+        found += [f"does not hold {words!r}" for words in case["words"] if words not in rest]
+    return [*found, answer] if found else []
+
+
+def main() -> int:
+    if len(sys.argv) != 3:
+        print(__doc__, file=sys.stderr)
+        return 2
+    program, source = (pathlib.Path(argument).resolve() for argument in sys.argv[1:])
+    base = (source / "base.json").read_text()
+    cases = json.loads((source / "cases.json").read_text())
+    failed = 0
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        code, answer = plan(program, folder, "base.json", base)
+        if code != 0:
+            failed += 1
+            print(f"base.json is not good: exit code {code}\n{answer}")
+        for name, case in cases.items():
+            found = faults(program, folder, name, case, base)
+            if found:
+                failed += 1
+                print("\n  ".join([name, *found]).encode(errors="backslashreplace").decode())
+    print(f"{len(cases)} cases, {failed} failed")
+    return 1 if failed or not cases else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,142 @@
+// What the tests of blocks and ranks share: scenes, cuts, and ranks that are threads.
+#pragma once
+
+#include <cstdlib>
+#include <exception>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "core/domain/ranks.hpp"
+#include "plan/read_scene.hpp"
+#include "plugin/catalog.hpp"
+#include "unit/random.hpp"
+
+namespace rouleau::test {
+
+/// A scene, changed as --set does.
+struct Case {
+  std::string what;
+  std::string file;
+  std::vector<std::string> overrides = {};
+};
+
+inline const std::string
+    four_cells = ROULEAU_SCENES "/four-cells-shear.json",
+    shear = R"(/stages=[{"name": "shear", "shear_rate": "50 1/s", "strain": 5, "start": "developed"}])",
+    driven = R"(/stages=[{"name": "driven", "pressure_gradient": "2e4 Pa/m", "duration": "1 s"}])",
+    contrast = "/cell_types/rbc/interior_viscosity=\"6 cP\"", semi_implicit = "/numerics/coupling=\"semi-implicit\"";
+
+/// Where the middle of the four cells lies, in um; (25.088, 12.544) is that of the domain.
+inline std::string middle(const char* x, const char* y) {
+  return std::string("/cells/0/row/center=[\"") + x + " um\", \"" + y + " um\"]";
+}
+
+/// Cells in shear and in driven flow, over borders, beside themselves, with every correction, law and potential that
+/// remembers.
+inline std::vector<Case> scenes_to_cut() {
+  const std::string no_strain = "/output={}", periodic_y = "/domain/y=\"periodic\"";
+  const std::string bonds = R"(/interactions=[{"between": ["rbc", "rbc"], "model": "bridging", "parameters": {
+    "site_density": "1e12 1/m2", "bond_stiffness": "1e-7 N/m", "zero_force_distance": "0.49 um", "on_rate": "200 1/s",
+    "off_rate": "10 1/s", "cutoff": "1.5 um"}}])";
+  const std::string slip = "/numerics/slip_correction=true", area = "/numerics/area_correction=true";
+  const auto alone = [](const std::string& size, const std::string& nodes, const std::string& at) {
+    return std::vector<std::string>{shear, contrast, "/domain/size=" + size, "/domain/nodes=" + nodes,
+                                    R"(/cells=[{"type": "rbc", "angle": "30 deg", "at": )" + at + "}]"};
+  };
+  return {
+      {"four cells", four_cells, {shear, contrast}},
+      {"four cells, f32", four_cells, {shear, contrast, "/numerics/precision=\"f32\""}},
+      {"over x", four_cells, {shear, contrast, middle("0.4", "12.544")}},
+      {"over x and y", four_cells, {driven, no_strain, contrast, periodic_y, middle("47.824", "24.304")}},
+      {"larger than a block", four_cells, alone(R"(["12.544 um", "12.544 um"])", "[64, 64]", R"(["6 um", "6.2 um"])")},
+      {"its own neighbour", four_cells, alone(R"(["8.624 um", "25.088 um"])", "[44, 128]", R"(["4 um", "12 um"])")},
+      {"driven channel", four_cells, {driven, no_strain, middle("44.688", "14.504")}},
+      {"slip and area correction", four_cells, {shear, contrast, slip, area, middle("44.688", "12.544")}},
+      {"semi-implicit", four_cells, {shear, semi_implicit}},
+      {"bonds", four_cells, {shear, bonds, middle("46.648", "12.544")}},
+      {"memory", ROULEAU_PHYSICS_SCENES "/memory.json"},
+      {"viscous ring", ROULEAU_PHYSICS_SCENES "/viscous-ring.json"}};
+}
+
+inline const plugin::Catalog& catalog() {
+  static const plugin::Catalog all({ROULEAU_PLUGINS});
+  return all;
+}
+
+/// Cuts by bisection at random places.
+inline core::Decomposition<2> random_cuts(const core::Domain<2>& domain, int cuts, std::mt19937& random) {
+  std::vector<core::Box<2>> blocks{domain.block};
+  while (cuts > 0) {
+    core::Box<2>& block = blocks[std::uniform_int_distribution<std::size_t>(0, blocks.size() - 1)(random)];
+    const int axis = std::uniform_int_distribution<int>(0, 1)(random);
+    if (block.size(axis) < 2) continue;
+    const int at = block.begin[axis] + std::uniform_int_distribution<int>(1, block.size(axis) - 1)(random);
+    core::Box<2> upper = block;
+    upper.begin[axis] = at;
+    block.end[axis] = at;
+    blocks.push_back(upper);
+    --cuts;
+  }
+  return {domain, blocks};
+}
+
+/// A cut, who owns the cells (none: by place), and with how many threads each rank works.
+struct Cut {
+  std::string what;
+  core::Decomposition<2> blocks;
+  std::vector<int> owner;
+  int threads;
+};
+
+/// One block with two threads, even and uneven cuts, random ones with owners at random.
+inline std::vector<Cut> cuts_of(const core::Domain<2>& domain, int cells) {
+  using Blocks = core::Decomposition<2>;
+  const auto [nx, ny] = domain.size;
+  const core::Box<2> strip{{0, 0}, {nx / 5, ny}}, floor{{nx / 5, 0}, {nx, 3}}, rest{{nx / 5, 3}, {nx, ny}};
+  std::vector<Cut> cuts{
+      {"1", Blocks::even(domain, {1, 1}), {}, 2},   {"2x1", Blocks::even(domain, {2, 1}), {}, 1},
+      {"1x3", Blocks::even(domain, {1, 3}), {}, 2}, {"4x4", Blocks::even(domain, {4, 4}), {}, 1},
+      {"8x1", Blocks::even(domain, {8, 1}), {}, 1}, {"uneven", Blocks(domain, {strip, floor, rest}), {}, 2}};
+  auto random = generator(static_cast<unsigned>(std::random_device()()));
+  for (int trial = 0; trial < 2; ++trial) {
+    Cut cut{"random", random_cuts(domain, 2 + trial * 3, random), {}, 1 + trial};
+    for (int i = 0; i < cells; ++i) {
+      cut.owner.push_back(std::uniform_int_distribution<int>(0, cut.blocks.ranks() - 1)(random));
+    }
+    cuts.push_back(std::move(cut));
+  }
+  return cuts;
+}
+
+/// Calls function(ranks) for every rank of a cut, each in a thread of its own. Throws what the first rank that has
+/// thrown anything but RankLost has thrown.
+template <class Function>
+void on_all_ranks(const core::Decomposition<2>& blocks, Function function) {
+  const auto ends = core::make_loopback(blocks.ranks());
+  std::vector<std::exception_ptr> thrown(ends.size());
+  std::vector<std::thread> threads;
+  for (std::size_t rank = 0; rank < ends.size(); ++rank) {
+    threads.emplace_back([&, rank] {
+      try {
+        function(core::Ranks<2>{&blocks, ends[rank].get()});
+      } catch (const core::RankLost&) {
+        // The rank that was lost says why.
+      } catch (...) {
+        thrown[rank] = std::current_exception();
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (const std::exception_ptr& exception : thrown) {
+    if (exception) std::rethrow_exception(exception);
+  }
+}
+
+/// ROULEAU_BLOCK_STEPS=2000 for a long look (docs/testing.md).
+inline long block_steps(long otherwise) {
+  const char* wanted = std::getenv("ROULEAU_BLOCK_STEPS");
+  return wanted != nullptr ? std::strtol(wanted, nullptr, 10) : otherwise;
+}
+
+}  // namespace rouleau::test
