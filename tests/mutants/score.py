@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
 """How many wrong plugins rouleau conform finds, and whether it ever refuses an honest one.
 
-usage: score.py ROULEAU BUILD_FOLDER [--only CLASS] [--sample] [--honest RUNS] [--seed N] [--list]
+usage: score.py ROULEAU BUILD_FOLDER [--only CLASS] [--sample N] [--honest RUNS] [--seed N] [--list]
 
 Mutants are honest plugins with one piece of text replaced. Those of mutants/*.json were thought of, class by class (in
-manifests too); those
-of the class "formulas" are all that a rule makes of the shipped models' sources: another operator, another constant, a
-sign less. Each is compiled and held against `rouleau conform --level publish`; it is found when that does not conform.
-A mutant that does not compile, or whose results are the same bits as before (equivalent.json), does not count; one that
-is known to be missed (known.json) does. --sample: one mutant of each class, but those, and 8 honest runs, chosen by a
-seed that is printed. --honest: runs of honest models.
+manifests too); those of the class "formulas" are all that a rule makes of the shipped models' sources: another operator,
+another constant, a sign less. Each is compiled and held against `rouleau conform --level publish`; it is found when that
+does not conform. A mutant that does not compile, or whose results are the same bits as before (equivalent.json), does not
+count; one that is known to be missed (known.json) does. --sample N: N mutants of each class, but those, and 8 N runs of
+honest models, chosen by a seed that is printed; one mutant in ten may be missed, at least one. --honest: runs of honest
+models.
 Python's standard library only.
 """
 
@@ -210,7 +210,7 @@ def main():
     parser.add_argument("build", type=Path)
     parser.add_argument("--only", help="mutants of this class")
     parser.add_argument("--every", type=int, default=9, help="of the class formulas, each N-th")
-    parser.add_argument("--sample", action="store_true")
+    parser.add_argument("--sample", type=int, default=0, metavar="N")
     parser.add_argument("--honest", type=int, default=0, metavar="RUNS")
     parser.add_argument("--seed", type=int, default=int.from_bytes(os.urandom(3), "big"))
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
@@ -233,9 +233,10 @@ def main():
         for mutant in mutants:
             if mutant["name"] not in known:
                 classes[mutant["class"]].append(mutant)
-        chosen = [rng.choice(of_class) for _, of_class in sorted(classes.items())]
+        chosen = [m for _, of_class in sorted(classes.items()) for m in rng.sample(of_class, options.sample)]
         missed = score(chosen, options.seed, options.jobs)
-        return 1 if honest(options.build, 8, options.seed, options.jobs) or len(missed) > 1 else 0
+        alarms = honest(options.build, 8 * options.sample, options.seed, options.jobs)
+        return 1 if alarms or len(missed) > max(1, len(chosen) // 10) else 0
     if options.honest:
         return 1 if honest(options.build, options.honest, options.seed, options.jobs) else 0
     return 1 if len(score(mutants, options.seed, options.jobs)) > 0.05 * len(mutants) else 0
