@@ -15,8 +15,9 @@ struct CellTravel {
 /// None without cells and where convective inertia is kept.
 CellTravel cell_travel(const scene::Scene& scene, const StageSetting& stage);
 
-/// The fluid is computed in a frame that moves with the cells where these travel together; below the threshold a capsule
-/// drifts by less than 0.004 of its radius within a strain of 8 when it is not (docs/accuracy.md).
+/// The fluid is computed in a frame that moves with the cells where these travel together. Otherwise a capsule drifts across
+/// a shear flow in proportion to the mean, by 0.87 of its radius within a strain of 8 at a mean of 2 (docs/rheology.md): the
+/// threshold allows 0.001.
 bool follows_cells(const scene::Scene& scene, const StageSetting& stage);
 
 }  // namespace rouleau::plan
