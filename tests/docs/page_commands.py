@@ -57,7 +57,7 @@ class Command:
         for pattern, stands_for in PLACEHOLDERS:
             text = re.sub(pattern, stands_for, text)
         if re.match(r"(build/release/bin/)?rouleau run\b", text):
-            text, rest = re.match(r"([^;]*)(.*)", text).groups()
+            text, rest = re.match(r"([^;|]*)(.*)", text).groups()
             if "--max-steps" not in text:
                 text += f" --max-steps {STEPS.get(self.expected, 40)}"
             text = re.sub(r"--max-steps \d{4,}", "--max-steps 200", text) if self.expected == 0 else text
