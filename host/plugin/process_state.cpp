@@ -13,15 +13,14 @@ namespace rouleau::plugin {
 namespace {
 
 /// Read where reading does not change it: umask() itself would, for a moment, for all threads.
-unsigned file_mode_mask() {
+std::optional<unsigned> file_mode_mask() {
   std::ifstream status("/proc/self/status");
   for (std::string word; status >> word;) {
     if (word != "Umask:") continue;
     unsigned mask = 0;
-    status >> std::oct >> mask;
-    return mask;
+    if (status >> std::oct >> mask) return mask;
   }
-  return 0;
+  return std::nullopt;
 }
 
 std::vector<struct sigaction> signal_handlers() {
@@ -40,17 +39,20 @@ std::vector<std::string> environment() {
   return entries;
 }
 
-std::array<rlimit, RLIM_NLIMITS> resource_limits() {
-  std::array<rlimit, RLIM_NLIMITS> limits{};
-  for (std::size_t k = 0; k < limits.size(); ++k) getrlimit(static_cast<__rlimit_resource>(k), &limits[k]);
+std::array<std::optional<rlimit>, RLIM_NLIMITS> resource_limits() {
+  std::array<std::optional<rlimit>, RLIM_NLIMITS> limits;
+  for (std::size_t k = 0; k < limits.size(); ++k) {
+    rlimit limit{};
+    if (getrlimit(static_cast<__rlimit_resource>(k), &limit) == 0) limits[k] = limit;
+  }
   return limits;
 }
 
-bool working_directory_is(int folder) {
+bool working_directory_is_another_than(int folder) {
   struct stat now {
   }, then{};
-  return ::stat(".", &now) == 0 && ::fstat(folder, &then) == 0 && now.st_dev == then.st_dev &&
-         now.st_ino == then.st_ino;
+  return ::stat(".", &now) == 0 && ::fstat(folder, &then) == 0 &&
+         (now.st_dev != then.st_dev || now.st_ino != then.st_ino);
 }
 
 }  // namespace
@@ -90,12 +92,12 @@ ProcessState::~ProcessState() {
 
 std::vector<std::string> ProcessState::restore() const {
   std::vector<std::string> changed;
-  if (folder_ >= 0 && !working_directory_is(folder_)) {
+  if (folder_ >= 0 && working_directory_is_another_than(folder_)) {
     changed.emplace_back(::fchdir(folder_) == 0 ? "the working directory" : "the working directory, for good");
   }
-  if (file_mode_mask() != mask_) {
+  if (const auto mask = file_mode_mask(); mask && mask_ && *mask != *mask_) {
     changed.emplace_back("the file mode mask");
-    ::umask(mask_);
+    ::umask(*mask_);
   }
   const std::vector<struct sigaction> handlers = signal_handlers();
   for (std::size_t k = 0; k < handlers.size(); ++k) {
@@ -119,9 +121,10 @@ std::vector<std::string> ProcessState::restore() const {
   if (environment() != environment_) changed.emplace_back("the environment");
   const auto limits = resource_limits();
   for (std::size_t k = 0; k < limits.size(); ++k) {
-    if (limits[k].rlim_cur == limits_[k].rlim_cur && limits[k].rlim_max == limits_[k].rlim_max) continue;
+    if (!limits[k] || !limits_[k]) continue;
+    if (limits[k]->rlim_cur == limits_[k]->rlim_cur && limits[k]->rlim_max == limits_[k]->rlim_max) continue;
     changed.push_back("the limit of resource " + std::to_string(k));
-    setrlimit(static_cast<__rlimit_resource>(k), &limits_[k]);
+    setrlimit(static_cast<__rlimit_resource>(k), &*limits_[k]);
   }
   if (getpriority(PRIO_PROCESS, 0) != priority_) {
     changed.emplace_back("the priority");

@@ -11,6 +11,7 @@
 #include <exception>
 #include <locale>
 #include <new>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,7 +27,8 @@ struct FloatingPointMode {
 FloatingPointMode floating_point_mode();
 
 /// Working directory, file mode mask, signal handlers and the thread's signal mask, locale, environment, limits of
-/// resources, priority, handlers of C++ and the floating-point mode as they are when it is made.
+/// resources, priority, handlers of C++ and the floating-point mode as they are when it is made. What the system refuses to
+/// tell, then or later, is taken for unchanged.
 class ProcessState {
  public:
   ProcessState();
@@ -39,14 +41,14 @@ class ProcessState {
 
  private:
   int folder_;  // the working directory; -1: it cannot be opened
-  unsigned mask_;
+  std::optional<unsigned> mask_;
   std::vector<struct sigaction> handlers_;  // of signal k + 1
   sigset_t blocked_{};
   std::string locale_;
   locale_t locale_of_thread_;
   std::locale locale_of_streams_;
   std::vector<std::string> environment_;
-  std::array<rlimit, RLIM_NLIMITS> limits_{};
+  std::array<std::optional<rlimit>, RLIM_NLIMITS> limits_;
   int priority_;
   std::terminate_handler on_terminate_;
   std::new_handler on_no_memory_;
