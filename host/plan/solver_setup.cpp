@@ -9,6 +9,7 @@
 #include "cell_travel.hpp"
 #include "core/contact/crossing.hpp"
 #include "core/membrane/geometry.hpp"
+#include "crowding.hpp"
 #include "estimate.hpp"
 #include "plugin/handles.hpp"
 #include "shape/outline.hpp"
@@ -132,10 +133,23 @@ void require_room(const scene::Scene& scene) {
               {"take fewer cells, or a larger domain"});
 }
 
+/// Of many cells that lie on top of each other two are found before memory is asked for all of them.
+void require_distance(const scene::Scene& scene) {
+  constexpr std::size_t many = 10'000;
+  if (scene.cells.size() < many) return;
+  const auto pair = find_crowded_pair(scene);
+  if (!pair) return;
+  const auto name = [&](int cell) { return "cell " + std::to_string(cell) + " (" + scene.cells[cell].pointer + ")"; };
+  throw Error(Cause::bad_input, scene.place(scene.cells[pair->cell].pointer),
+              name(pair->cell) + " and " + name(pair->other) + " overlap: their centres are " +
+                  number(pair->distance * 1e6, 3) + " um apart; move them apart.");
+}
+
 }  // namespace
 
 core::Membranes make_membranes(const scene::Scene& scene, double spacing) {
   require_room(scene);
+  require_distance(scene);
   require_memory(membrane_memory(scene), "placing the cells");
   std::vector<core::RestShape> shapes;
   for (const scene::CellType& type : scene.cell_types) shapes.push_back(rest_shape(type, spacing));

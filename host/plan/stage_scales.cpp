@@ -39,8 +39,8 @@ StageSetting make_stage_setting(const scene::Scene& scene, int index) {
     throw Error(
         Cause::bad_input, scene.place(stage.pointer),
         "stage " + in_quotes(stage.name) + " would take " + number(steps, 3) + " steps, more than any run can (1e15)",
-        {"shorten its duration or strain, or let the lattice take longer steps: a higher density_factor, a coarser "
-         "lattice"});
+        {"shorten its duration or strain, or let the lattice take longer steps: a higher " + stage.density_factor_key +
+         ", a coarser lattice"});
   }
   setting.max_steps = static_cast<long>(std::ceil(steps - 1e-6));
   return setting;
