@@ -9,11 +9,9 @@
 
 #include "command_line.hpp"
 #include "commands.hpp"
-#include "core/membrane/membranes.hpp"
 #include "files/checkpoint_file.hpp"
 #include "interruption.hpp"
 #include "plan/estimate.hpp"
-#include "plan/solver_setup.hpp"
 #include "report/report.hpp"
 #include "run/simulation.hpp"
 #include "scene_options.hpp"
@@ -107,13 +105,12 @@ int run_command(const std::vector<std::string>& arguments) {
                                       std::to_string(processors) + " processors)");
   }
   const TimeLimit limit(max_time);
-  const auto [scene, numerics_choice] = scene_options.read();
+  const plan::ReadScene read = scene_options.read();
+  const scene::Scene& scene = read.scene;
   run.threads = std::min(run.threads, std::max(1, scene.domain.nodes[1] / 4));
   const plugin::Catalog catalog = scene_options.catalog(scene);
-  const plan::Plan plan = plan::make_plan(scene, catalog, numerics_choice);
+  const plan::Plan plan = plan_and_place(read, catalog);  // before a directory is made
   const plan::PlanReport report = plan::make_report(plan);
-  // Placing the cells finds overlaps before a directory is made.
-  if (plan.has_cells) plan::make_membranes(scene, plan::lattice_spacing(scene));
   plan::require_memory(report.estimate.memory_bytes, "the run");
   for (const std::string& warning : report.warnings) std::cerr << "warning: " << warning << "\n";
 

@@ -395,8 +395,13 @@ std::optional<NumericsChoice> fill_in_numerics(json::Document& document, const N
   spell_out_numerics(document);
   auto draft = std::make_shared<json::Document>(document);
   put_draft_numerics(*draft);
-  scene::Scene scene = scene::read_scene(std::move(draft));
-  shape::add_random_cells(scene);
+  Faults faults;
+  scene::Scene scene = scene::read_scene(draft, faults);
+  if (faults.empty()) faults.attempt([&] { shape::add_random_cells(scene); });
+  if (!faults.empty()) {
+    document = *draft;  // whose reading says them
+    return std::nullopt;
+  }
   NumericsChoice choice = Problem(scene, document.root(), bounds).solve();
   for (const ChosenValue& value : choice.values) document.put(value.pointer, value.value, origin);
   return choice;

@@ -35,15 +35,17 @@ void check_developed_flows(const Plan& plan) {
 /// Makes every active model once.
 void try_models(const Plan& plan) {
   const plugin::ModelSetting setting = plan.stages.front().model_setting(plan.scene->fluid.inertia);
+  Faults faults;
   for (const PlannedModel* model : plan.active_models()) {
     try {
       const plugin::ModelInstance instance(*model->manifest, model->parameters.values, setting);
     } catch (const plugin::ModelRefused& refused) {
-      throw Error(Cause::bad_input, plan.scene->place(model->pointer),
+      faults.add({Cause::bad_input, plan.scene->place(model->pointer),
                   in_quotes(model->manifest->id) + " cannot be made with these parameters: " + refused.reason() +
-                      "\n  its manifest: " + model->manifest->file.string());
+                      "\n  its manifest: " + model->manifest->file.string()});
     }
   }
+  faults.raise();
 }
 
 void choose_coupling(Plan& plan) {
@@ -101,18 +103,21 @@ std::vector<const PlannedModel*> Plan::active_models() const {
   return models;
 }
 
-Plan make_plan(const scene::Scene& scene, const plugin::Catalog& catalog, std::optional<NumericsChoice> choice) {
-  check_models_of_stages(scene);
+namespace {
+
+/// Finds the models that the scene names, and resolves their parameters.
+void plan_models(Plan& plan, const plugin::Catalog& catalog, Faults& faults) {
+  const scene::Scene& scene = *plan.scene;
   const units::Units units;
-  const auto planned = [&](plugin::ModelKind kind, const scene::ModelChoice& model) -> PlannedModel {
-    const plugin::Manifest& manifest = catalog.find(kind, model.model, scene.place(model.pointer + "/model"));
-    return {&manifest, plugin::resolve_parameters(model, manifest, scene, units), model.pointer};
+  const auto planned = [&](plugin::ModelKind kind, const scene::ModelChoice& model) {
+    PlannedModel result{nullptr, {}, model.pointer};
+    if (model.model.empty()) return result;  // what was wrong with it has been said
+    faults.attempt([&] {
+      result.manifest = &catalog.find(kind, model.model, scene.place(model.pointer + "/model"));
+      result.parameters = plugin::resolve_parameters(model, *result.manifest, scene, units, faults);
+    });
+    return result;
   };
-  Plan plan{};
-  plan.scene = &scene;
-  plan.numerics_choice = std::move(choice);
-  plan.has_cells = !scene.cells.empty();
-  if (catalog.lock()) plan.lock = {catalog.lock()->file.string(), catalog.lock()->sha256};
   plan.collision = planned(plugin::ModelKind::collision, scene.fluid.collision);
   for (const scene::CellType& type : scene.cell_types) {
     auto& laws = plan.membranes.emplace_back();
@@ -124,11 +129,36 @@ Plan make_plan(const scene::Scene& scene, const plugin::Catalog& catalog, std::o
     plan.has_interactions = plan.has_interactions || model.active();
     plan.interactions.push_back(std::move(model));
   }
+}
+
+}  // namespace
+
+void find_model_faults(const scene::Scene& scene, const plugin::Catalog& catalog, Faults& faults) {
+  const std::size_t before = faults.size();
+  faults.attempt([&] { check_models_of_stages(scene); });
+  if (faults.size() > before) return;  // too many to look at
+  Plan plan{};
+  plan.scene = &scene;
+  plan_models(plan, catalog, faults);
+}
+
+Plan make_plan(const scene::Scene& scene, const plugin::Catalog& catalog, std::optional<NumericsChoice> choice) {
+  check_models_of_stages(scene);
+  Plan plan{};
+  plan.scene = &scene;
+  plan.numerics_choice = std::move(choice);
+  plan.has_cells = !scene.cells.empty();
+  if (catalog.lock()) plan.lock = {catalog.lock()->file.string(), catalog.lock()->sha256};
+  Faults faults;
+  plan_models(plan, catalog, faults);
   plan.viscosity_contrast = std::any_of(scene.cells.begin(), scene.cells.end(), [&](const scene::CellPlacement& cell) {
     return scene.cell_types[cell.type].interior_viscosity != scene.fluid.viscosity;
   });
-  for (int i = 0; i < static_cast<int>(scene.stages.size()); ++i) plan.stages.push_back(make_stage_setting(scene, i));
-  check_developed_flows(plan);
+  for (int i = 0; i < static_cast<int>(scene.stages.size()); ++i) {
+    faults.attempt([&] { plan.stages.push_back(make_stage_setting(scene, i)); });
+  }
+  faults.attempt([&] { check_developed_flows(plan); });
+  faults.raise();
   choose_coupling(plan);
   try_models(plan);
   return plan;

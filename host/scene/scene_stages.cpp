@@ -29,7 +29,7 @@ void check_stage(const SceneFields& fields, const Stage& stage, const Scene& sce
   if (stage.until_at_rest && flows) {
     fields.refuse(pointer + "/until", "cells never come to rest in a stage that flows; end it by duration or strain");
   }
-  if (stage.until_at_rest && scene.cells.empty() && scene.packings.empty()) {
+  if (stage.until_at_rest && scene.cells.empty() && scene.packings.empty() && fields.settled("/cells")) {
     fields.refuse(pointer + "/until", "there are no cells that could come to rest; end the stage by duration");
   }
   if (stage.until_at_rest && !stage.duration) {
@@ -46,9 +46,11 @@ void check_stage(const SceneFields& fields, const Stage& stage, const Scene& sce
 Stage read_stage(const SceneFields& fields, const std::string& pointer, const Scene& scene) {
   Stage stage;
   stage.pointer = pointer;
-  stage.name = fields.line(pointer + "/name");
+  fields.attempt([&] { stage.name = fields.line(pointer + "/name"); });
   if (fields.has(pointer + "/duration")) stage.duration = fields.quantity(pointer + "/duration", "s", range::time);
-  if (fields.has(pointer + "/strain")) stage.strain = fields.at(pointer + "/strain").get<double>();
+  fields.attempt([&] {
+    if (fields.has(pointer + "/strain")) stage.strain = fields.value<double>(pointer + "/strain");
+  });
   stage.until_at_rest = fields.has(pointer + "/until");
   stage.shear_rate = fields.quantity_or(pointer + "/shear_rate", "1/s", range::shear_rate, 0.0);
   stage.start = fields.value_or(pointer + "/start", std::string("impulsive")) == "developed" ? WallStart::developed
@@ -56,22 +58,27 @@ Stage read_stage(const SceneFields& fields, const std::string& pointer, const Sc
   stage.pressure_gradient.x() = fields.quantity_or(pointer + "/pressure_gradient", "Pa/m", range::force_density, 0.0);
   stage.density_factor = fields.value_or(pointer + "/density_factor", scene.numerics.density_factor);
   if (fields.has(pointer + "/density_factor")) stage.density_factor_key = pointer + "/density_factor";
-  check_stage(fields, stage, scene);
+  fields.attempt([&] {
+    if (fields.settled(pointer)) check_stage(fields, stage, scene);
+  });
   return stage;
 }
 
 Cadence read_cadence(const SceneFields& fields, const std::string& pointer, const std::vector<Stage>& stages) {
   Cadence cadence;
   if (!fields.has(pointer)) return cadence;
-  if (fields.has(pointer + "/strain")) cadence.strain = fields.at(pointer + "/strain").get<double>();
+  fields.attempt([&] {
+    if (fields.has(pointer + "/strain")) cadence.strain = fields.value<double>(pointer + "/strain");
+  });
   if (fields.has(pointer + "/seconds")) cadence.seconds = fields.quantity(pointer + "/seconds", "s", range::time);
+  if (!fields.settled(pointer)) return cadence;
   if (cadence.never()) {
     fields.refuse(pointer,
                   json::subject(pointer) + " does not say when: give strain (such as 0.25) or seconds (such as 0.1)");
   }
   const bool shears =
       std::any_of(stages.begin(), stages.end(), [](const Stage& stage) { return stage.shear_rate > 0.0; });
-  if (cadence.strain && !cadence.seconds && !shears) {
+  if (cadence.strain && !cadence.seconds && !shears && fields.settled("/stages")) {
     fields.refuse_key(pointer + "/strain",
                       "no stage has a shear_rate, so strain never grows and this output never comes due; use seconds");
   }
@@ -82,23 +89,25 @@ Cadence read_cadence(const SceneFields& fields, const std::string& pointer, cons
 
 std::vector<Stage> read_stages(const SceneFields& fields, const Scene& scene) {
   std::vector<Stage> stages;
-  for (std::size_t i = 0; i < fields.at("/stages").size(); ++i) {
-    auto stage = read_stage(fields, json::child_pointer("/stages", i), scene);
-    for (const auto& earlier : stages) {
-      if (earlier.name == stage.name) {
-        fields.refuse(stage.pointer + "/name",
-                      "two stages are called " + in_quotes(stage.name) + "; give each its own name");
-      }
-    }
-    stages.push_back(std::move(stage));
+  const std::size_t count = fields.count("/stages");
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto stage = read_stage(fields, json::child_pointer("/stages", i), scene);
+    const bool again =
+        std::any_of(stages.begin(), stages.end(), [&](const Stage& earlier) { return earlier.name == stage.name; });
+    stages.push_back(stage);
+    fields.attempt([&] {
+      if (!again || stage.name.empty()) return;
+      fields.refuse(stage.pointer + "/name",
+                    "two stages are called " + in_quotes(stage.name) + "; give each its own name");
+    });
   }
   return stages;
 }
 
 Output read_output(const SceneFields& fields, const std::vector<Stage>& stages) {
   Output output;
-  output.cells = read_cadence(fields, "/output/cells", stages);
-  output.fields = read_cadence(fields, "/output/fields", stages);
+  fields.attempt([&] { output.cells = read_cadence(fields, "/output/cells", stages); });
+  fields.attempt([&] { output.fields = read_cadence(fields, "/output/fields", stages); });
   output.quantities = fields.value_or("/output/fields/quantities", std::vector<std::string>{});
   if (fields.has("/output/checkpoint/seconds")) {
     output.checkpoint_seconds = fields.quantity("/output/checkpoint/seconds", "s", range::time);
