@@ -208,6 +208,29 @@ class Errors_name_what_is_wrong(Case):
             self.assertEqual(sum(not line.startswith(" ") for line in end.stderr.splitlines()), len(wrong) - 1, end.stderr)
         self.assertFalse((self.path / "runs").exists())
 
+    def test_a_cutoff_before_the_force_changes_sign_is_warned_of_by_plan_and_run(self):
+        cut = ["--set", "/interactions/0/parameters/cutoff=0.4 um"]
+        for words in (["plan", SCENE, *cut], ["run", SCENE, *cut, "--out", self.path / "run", *SHORT]):
+            end = self.rouleau.run(*words)
+            self.assertEqual(end.returncode, 0, end.stderr)
+            self.assertIn("it attracts nowhere: its cutoff of 0.4 um", end.stdout + end.stderr)
+
+    def test_a_remedy_names_the_density_factor_that_holds(self):
+        # The first stage of the scene has one of its own, the second has that of numerics.
+        for key, stage in (("/stages/0/density_factor", "aggregate"), ("/numerics/density_factor", "shear")):
+            name = key if key.startswith("/stages") else "numerics.density_factor"
+            warnings = [line for line in self.rouleau.run("plan", SCENE, "--set", key + "=1e9").stdout.splitlines()
+                        if "warning: " in line and "density_factor" in line]
+            self.assertTrue(warnings)
+            for line in warnings:
+                self.assertIn(f"(stage {stage})", line)
+                self.assertIn("lower " + name, line)
+            end = self.rouleau.run("plan", SCENE, "--set", key + "=1e-9")
+            self.assert_stops(end, 2, "more than any run can (1e15)", "a higher " + name)
+
+    def test_the_help_of_plan_says_that_plugins_run(self):
+        self.assertIn("so their code runs", self.rouleau.run("plan", "--help").stdout)
+
     def test_studies_limits_locks_and_manifests_say_all_that_is_wrong_too(self):
         file = self.path / "wrong.json"
         file.write_text('{"rouleau_study": 2,\n"scene": 5,\n"matrx": []}')
