@@ -22,7 +22,8 @@ CellTravel cell_travel(const scene::Scene& scene, const StageSetting& stage) {
   std::vector<double> speeds;
   for (const scene::CellPlacement& cell : scene.cells) {
     const double y = cell.center.y() / spacing;
-    speeds.push_back(stage.shear_rate * (y - height / 2) + stage.body_force_x * y * (height - y) / (2 * viscosity));
+    speeds.push_back(stage.shear_rate * (y - height / 2) + stage.body_force_x * y * (height - y) / (2 * viscosity) +
+                     stage.mean_wall());
     mean += speeds.back() / static_cast<double>(scene.cells.size());
     radius = std::max(radius, shape::shape_radius(scene.cell_types[cell.type].shape) / spacing);
   }

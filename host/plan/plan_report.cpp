@@ -36,7 +36,7 @@ std::map<std::string, double> dimensionless_numbers(const Plan& plan, const std:
   double shear_rate = 0, factor = scene.numerics.density_factor, wall_mach = 0;
   bool unbounded = false;
   for (const StageSetting& stage : plan.stages) {
-    wall_mach = std::max(wall_mach, units::mach_number(std::abs(stage.wall_speed)));
+    wall_mach = std::max(wall_mach, units::mach_number(stage.fastest_wall()));
     unbounded = unbounded || accelerates_for_ever(stage, scene);
     const double rate = scene::mean_shear_rate(*stage.stage, scene);
     if (rate > shear_rate) {
@@ -84,7 +84,15 @@ std::vector<Conversion> conversion_table(const Plan& plan) {
     converted("viscosity", scene.fluid.viscosity, "Pa s", units::dimension::viscosity);
     if (stage.stage->shear_rate != 0) {
       row("shear rate", stage.stage->shear_rate, "1/s", stage.shear_rate);
-      row("wall speed", u.to_si(stage.wall_speed, units::dimension::velocity), "m/s", stage.wall_speed);
+    }
+    const auto wall = [&](const char* quantity, double speed) {
+      row(quantity, u.to_si(speed, units::dimension::velocity), "m/s", speed);
+    };
+    if (stage.stage->mean_wall_speed != 0) {
+      wall("lower wall's speed", stage.walls.lower);
+      wall("upper wall's speed", stage.walls.upper);
+    } else if (stage.shear_rate != 0) {
+      wall("wall speed", stage.walls.upper);
     }
     if (stage.body_force_x != 0 || stage.body_force_y != 0) {
       row("driving force density", u.to_si(stage.body_force_x, units::dimension::force_density), "N/m3",

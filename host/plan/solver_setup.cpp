@@ -160,7 +160,7 @@ core::SolverSetup make_solver_setup(const Plan& plan, int index) {
       .tau = stage.tau,
       .inertia = scene.fluid.inertia,
       .follow_cells = follows_cells(scene, stage),
-      .walls = {-stage.wall_speed, stage.wall_speed},
+      .walls = stage.walls,
       .body_force_x = stage.body_force_x,
       .body_force_y = stage.body_force_y,
       .developed = stage.stage->start == scene::WallStart::developed,

@@ -191,9 +191,10 @@ std::vector<Limit> find_limits(const Plan& plan) {
     const std::string where = " (stage " + stage.stage->name + ")";
     const std::string lower = "lower " + stage.stage->density_factor_key;
     const plugin::ModelSetting setting = stage.model_setting(scene.fluid.inertia);
-    if (stage.wall_speed != 0) {
-      add("Mach number of the walls" + where, units::mach_number(std::abs(stage.wall_speed)),
-          scene::largest_wall_mach(scene.fluid.inertia), true, lower + " or shear_rate, or raise the resolution",
+    if (stage.fastest_wall() != 0) {
+      const std::string what = stage.stage->mean_wall_speed != 0 ? "the walls' speeds" : "shear_rate";
+      add("Mach number of the walls" + where, units::mach_number(stage.fastest_wall()),
+          scene::largest_wall_mach(scene.fluid.inertia), true, lower + " or " + what + ", or raise the resolution",
           density);
     }
     if (stage.body_force_x != 0 && !scene.domain.periodic_y) {

@@ -4,6 +4,8 @@
 
 namespace rouleau::scene {
 
+bool walls_move(const Stage& stage) { return stage.shear_rate != 0 || stage.mean_wall_speed != 0; }
+
 Eigen::Vector2d driving_force(const Stage& stage, const Scene& scene) {
   return scene.fluid.body_force + stage.pressure_gradient;
 }

@@ -102,9 +102,10 @@ enum class WallStart { impulsive, developed };
 struct Stage {
   std::string name;
   std::optional<double> duration;  ///< s
-  std::optional<double> strain;    ///< strain of this stage, shear_rate x time
+  std::optional<double> strain;    ///< strain of this stage, |shear_rate| x time
   bool until_at_rest = false;
-  double shear_rate = 0.0;  ///< 1/s; walls move with +-shear_rate x height / 2
+  double shear_rate = 0.0;  ///< 1/s, of either sign: speed of the upper wall less that of the lower, over the height
+  double mean_wall_speed = 0.0;  ///< m/s, of both walls together, along x
   WallStart start = WallStart::impulsive;
   Eigen::Vector2d pressure_gradient =
       Eigen::Vector2d::Zero();  ///< force per volume that drives the flow, Pa/m, along x

@@ -31,7 +31,8 @@ inline constexpr AllowedRange place{-1.0, 1.0, -1e-2, 1e-2, "um"};              
 inline constexpr AllowedRange time{1e-12, 1e9, 1e-9, 1e6, "s"};                 ///< s
 inline constexpr AllowedRange density{1e-3, 1e6, 10.0, 1e5, "g/cm3"};           ///< kg/m3
 inline constexpr AllowedRange viscosity{1e-9, 1e6, 1e-5, 0.5, "cP"};            ///< Pa s
-inline constexpr AllowedRange shear_rate{0.0, 1e9, 0.0, 1e7, "1/s"};            ///< 1/s
+inline constexpr AllowedRange shear_rate{-1e9, 1e9, -1e7, 1e7, "1/s"};          ///< 1/s
+inline constexpr AllowedRange velocity{-1e6, 1e6, -0.5, 0.5, "mm/s"};           ///< m/s
 inline constexpr AllowedRange force_density{-1e15, 1e15, -1e12, 1e12, "N/m3"};  ///< N/m3
 inline constexpr AllowedRange angle{-1e3, 1e3, -7.0, 7.0, "deg"};               ///< rad; 7: just above a turn
 }  // namespace range

@@ -1,7 +1,9 @@
 // Stages of a scene, and what is written when.
 #include <algorithm>
+#include <cmath>
 
 #include "base/text.hpp"
+#include "driving_flow.hpp"
 #include "json/json_pointer.hpp"
 #include "scene_reader.hpp"
 
@@ -11,17 +13,28 @@ namespace {
 /// Faults that the schema cannot see because they lie between the keys of a stage.
 void check_stage(const SceneFields& fields, const Stage& stage, const Scene& scene) {
   const auto& pointer = stage.pointer;
-  const bool flows = stage.shear_rate > 0.0 || stage.pressure_gradient.x() != 0.0;
-  if (fields.has(pointer + "/shear_rate") && scene.domain.periodic_y) {
-    fields.refuse_key(pointer + "/shear_rate",
+  const bool flows = walls_move(stage) || stage.pressure_gradient.x() != 0.0;
+  if (fields.has(pointer + "/walls") && fields.has(pointer + "/shear_rate")) {
+    fields.refuse_key(pointer + "/walls", "walls and shear_rate both say how the walls move; leave one of them out");
+  }
+  for (const char* key : {"shear_rate", "walls"}) {
+    if (!fields.has(pointer + "/" + key) || !scene.domain.periodic_y) continue;
+    fields.refuse_key(pointer + "/" + key,
                       "shear needs walls that move, but domain.y is \"periodic\"\n"
-                      "write \"y\": {\"lower\": {\"wall\": {}}, \"upper\": {\"wall\": {}}}, or leave out shear_rate");
+                      "write \"y\": {\"lower\": {\"wall\": {}}, \"upper\": {\"wall\": {}}}, or leave out " +
+                          std::string(key));
   }
   if (fields.has(pointer + "/start") && !flows) {
     fields.refuse_key(pointer + "/start",
-                      "start says how a flow begins, but this stage has neither shear_rate nor pressure_gradient");
+                      "start says how a flow begins, but this stage has neither shear_rate, walls that move nor "
+                      "pressure_gradient");
   }
-  if (stage.strain && !(stage.shear_rate > 0.0)) {
+  if (stage.strain && stage.mean_wall_speed != 0 && stage.shear_rate == 0) {
+    fields.refuse_key(pointer + "/strain",
+                      "both walls move at the same speed, so that nothing is sheared and strain never grows; "
+                      "give them different speeds, or end the stage by duration");
+  }
+  if (stage.strain && stage.shear_rate == 0) {
     fields.refuse_key(pointer + "/strain",
                       "strain grows only where walls move, and this stage has no shear_rate; "
                       "give one, or end the stage by duration");
@@ -39,8 +52,19 @@ void check_stage(const SceneFields& fields, const Stage& stage, const Scene& sce
   }
   if (!stage.duration && !stage.strain) {
     fields.refuse(pointer, "this stage never ends; give duration (such as \"2 s\")" +
-                               std::string(stage.shear_rate > 0.0 ? " or strain (such as 15)" : ""));
+                               std::string(stage.shear_rate != 0 ? " or strain (such as 15)" : ""));
   }
+}
+
+/// Speeds of both walls, as shear rate and mean.
+void read_walls(const SceneFields& fields, const std::string& pointer, double height, Stage& stage) {
+  const double lower = fields.quantity(pointer + "/lower", "m/s", range::velocity),
+               upper = fields.quantity(pointer + "/upper", "m/s", range::velocity);
+  stage.mean_wall_speed = (lower + upper) / 2;
+  // Equal speeds that are written in different units differ by rounding.
+  const double difference = upper - lower;
+  stage.shear_rate =
+      std::abs(difference) > 1e-12 * std::max(std::abs(lower), std::abs(upper)) ? difference / height : 0.0;
 }
 
 Stage read_stage(const SceneFields& fields, const std::string& pointer, const Scene& scene) {
@@ -51,6 +75,7 @@ Stage read_stage(const SceneFields& fields, const std::string& pointer, const Sc
   if (fields.has(pointer + "/strain")) stage.strain = fields.at(pointer + "/strain").get<double>();
   stage.until_at_rest = fields.has(pointer + "/until");
   stage.shear_rate = fields.quantity_or(pointer + "/shear_rate", "1/s", range::shear_rate, 0.0);
+  if (fields.has(pointer + "/walls")) read_walls(fields, pointer + "/walls", scene.domain.size.y(), stage);
   stage.start = fields.value_or(pointer + "/start", std::string("impulsive")) == "developed" ? WallStart::developed
                                                                                              : WallStart::impulsive;
   stage.pressure_gradient.x() = fields.quantity_or(pointer + "/pressure_gradient", "Pa/m", range::force_density, 0.0);
@@ -70,7 +95,7 @@ Cadence read_cadence(const SceneFields& fields, const std::string& pointer, cons
                   json::subject(pointer) + " does not say when: give strain (such as 0.25) or seconds (such as 0.1)");
   }
   const bool shears =
-      std::any_of(stages.begin(), stages.end(), [](const Stage& stage) { return stage.shear_rate > 0.0; });
+      std::any_of(stages.begin(), stages.end(), [](const Stage& stage) { return stage.shear_rate != 0; });
   if (cadence.strain && !cadence.seconds && !shears) {
     fields.refuse_key(pointer + "/strain",
                       "no stage has a shear_rate, so strain never grows and this output never comes due; use seconds");

@@ -29,6 +29,7 @@ std::string why_no_exact_flow(const Quantity& quantity, const scene::Scene& scen
                               bool first) {
   if (quantity.poiseuille && drive(scene, stage) == 0)
     return "nothing drives the fluid along x in the stage " + stage.name;
+  if (stage.mean_wall_speed != 0) return "the walls of the stage " + stage.name + " have a mean speed";
   if (quantity.poiseuille && stage.shear_rate != 0) return "the walls move in the stage " + stage.name;
   if (!quantity.poiseuille && stage.shear_rate == 0) return "the walls do not move in the stage " + stage.name;
   if (!quantity.poiseuille && drive(scene, stage) != 0) return "a force drives the fluid in the stage " + stage.name;

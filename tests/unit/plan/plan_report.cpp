@@ -1,13 +1,38 @@
 // What a plan reports, and in which order.
 #include "plan/plan_report.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <map>
 
 #include "plan/read_scene.hpp"
 
 using namespace rouleau;
 using namespace rouleau::plan;
 using Catch::Matchers::Contains;
+
+TEST_CASE("a plan shows the speeds of walls that have a mean, and holds the faster one to the limit") {
+  const scene::Scene scene = read_scene(
+      std::string(ROULEAU_SCENES) + "/four-cells-shear.json",
+      {R"(/stages=[{"name": "flow", "duration": "1 s", "walls": {"lower": "-0.5 mm/s", "upper": "0.1 mm/s"}}])",
+       "/output={}"});
+  const plugin::Catalog catalog({ROULEAU_PLUGINS});
+  const Plan plan = make_plan(scene, catalog);
+  const PlanReport report = make_report(plan);
+  std::map<std::string, double> si, lattice;
+  for (const Conversion& row : report.conversions) si[row.quantity] = row.si, lattice[row.quantity] = row.lattice;
+  CHECK(si.at("lower wall's speed") == Approx(-0.5e-3).epsilon(1e-12));
+  CHECK(si.at("upper wall's speed") == Approx(0.1e-3).epsilon(1e-12));
+  CHECK(si.at("shear rate") == Approx(0.6e-3 / 25.088e-6).epsilon(1e-12));
+  const double faster = std::abs(lattice.at("lower wall's speed"));
+  CHECK(report.dimensionless.at("mach_wall") == Approx(faster * std::sqrt(3.0)).epsilon(1e-12));
+  const auto limit = std::find_if(report.limits.begin(), report.limits.end(),
+                                  [](const Limit& l) { return l.name.starts_with("Mach number of the walls"); });
+  REQUIRE(limit != report.limits.end());
+  CHECK(limit->value == report.dimensionless.at("mach_wall"));
+  CHECK_THAT(limit->remedy, Contains("the walls' speeds"));
+}
 
 TEST_CASE(
     "warnings go from what the scene says to what follows from it: parameters, flow, kernel, slip, auto, limits") {

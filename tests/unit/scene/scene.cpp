@@ -162,6 +162,27 @@ TEST_CASE("everything that a scene may say is read") {
   CHECK(scene.plugin_dirs == std::vector<std::filesystem::path>{beside / "mine"});
 }
 
+TEST_CASE("walls have a shear rate and a mean speed, of either sign") {
+  const auto stage = [](const std::string& keys) {
+    return read(contract_scene, {"/stages/1={\"name\": \"flow\", \"duration\": \"1 s\", " + keys + "}", "/output={}"})
+        .stages[1];
+  };
+  const double height = 25.088e-6;
+  const Stage faster = stage(R"("walls": {"lower": "1 mm/s", "upper": "2 mm/s"})");
+  CHECK(faster.shear_rate == about(1e-3 / height));
+  CHECK(faster.mean_wall_speed == about(1.5e-3));
+  const Stage slower = stage(R"("walls": {"lower": 1e-3, "upper": "-2 mm/s"})");
+  CHECK(slower.shear_rate == about(-3e-3 / height));
+  CHECK(slower.mean_wall_speed == about(-0.5e-3));
+  // The same speed in two units.
+  const Stage same = stage(R"("walls": {"lower": "0.3 mm/s", "upper": "0.03 cm/s"})");
+  CHECK(same.shear_rate == 0);
+  CHECK(same.mean_wall_speed == about(0.3e-3));
+  const Stage back = stage(R"("shear_rate": "-20 1/s", "strain": 3, "start": "developed")");
+  CHECK(back.shear_rate == -20.0);
+  CHECK(back.mean_wall_speed == 0.0);
+}
+
 TEST_CASE("a model is swapped with its parameters by set") {
   const auto scene = read(contract_scene, {"/fluid/collision={\"model\": \"bgk\"}"});
   CHECK(scene.fluid.collision.model == "bgk");
