@@ -29,8 +29,8 @@ EnergySnapshot observe_energy(core::Solver<T>& solver, const core::Membranes& me
   energy.total = energy.kinetic;
   if (!setting.domain.periodic[1]) {
     const auto stress = solver.fluid().wall_stress();  // what the fluid does to the walls
-    energy.wall_power =
-        -(stress.lower * setting.walls.lower + stress.upper * setting.walls.upper) * setting.domain.size[0] * watt;
+    const core::WallVelocity& walls = solver.fluid().last_walls();
+    energy.wall_power = -(stress.lower * walls.lower + stress.upper * walls.upper) * setting.domain.size[0] * watt;
   }
   if (setting.body_force_x != 0 || setting.body_force_y != 0) {
     energy.body_force_power =

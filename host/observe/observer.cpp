@@ -12,6 +12,7 @@
 #include "particle_stress.hpp"
 #include "plan/solver_setup.hpp"
 #include "rheology.hpp"
+#include "scene/driving_flow.hpp"
 
 namespace rouleau::observe {
 
@@ -141,14 +142,32 @@ Snapshot Observer::observe(core::Solver<T>& solver, const plan::StageSetting& se
   const double viscosity = core::viscosity_of(setting.tau);
   snapshot.relative_viscosity = snapshot.flow_rate = snapshot.area_leakage_max = std::nan("");
   snapshot.cell_free_layer_lower = snapshot.cell_free_layer_upper = std::nan("");
+  snapshot.shear_rate = snapshot.wall_stress_lower = snapshot.wall_stress_upper = std::nan("");
+  snapshot.pressure_gradient = std::nan("");
   snapshot.aggregate_size_number_mean = snapshot.aggregate_size_weight_mean = std::nan("");
-  if (setting.shear_rate != 0) {
-    const auto stress = solver.fluid().wall_stress();
-    snapshot.relative_viscosity = (stress.lower - stress.upper) / 2 / (viscosity * setting.shear_rate);
-  } else if (is_driven_channel(setting, *scene_)) {
-    const double rate = flow_rate(solver.fluid());
-    snapshot.relative_viscosity = apparent_viscosity(rate, setting, scene_->domain.nodes[1]);
+  const core::Fluid<T>& fluid = solver.fluid();
+  const bool oscillates = setting.oscillation.any();
+  if (!scene_->domain.periodic_y) {
+    const auto stress = fluid.wall_stress();
+    snapshot.wall_stress_lower = units.to_si(stress.lower, units::dimension::pressure);
+    snapshot.wall_stress_upper = units.to_si(stress.upper, units::dimension::pressure);
+    if (setting.shear_rate != 0 && !oscillates)
+      snapshot.relative_viscosity = (stress.lower - stress.upper) / 2 / (viscosity * setting.shear_rate);
+  }
+  if (scene::walls_move(*setting.stage)) {
+    const core::WallVelocity& walls = fluid.last_walls();
+    snapshot.shear_rate = units.to_si((walls.upper - walls.lower) / scene_->domain.nodes[1], units::dimension::rate);
+  }
+  if (is_driven_channel(setting, *scene_)) {
+    const double rate = flow_rate(fluid);
+    if (!oscillates)
+      snapshot.relative_viscosity =
+          apparent_viscosity(rate, fluid.setting().body_force_x, setting, scene_->domain.nodes[1]);
     snapshot.flow_rate = units.to_si(rate, units::dimension::velocity) * units.length;
+  }
+  if (setting.stage->pressure_gradient.x() != 0 || setting.oscillation.body_force_x != 0) {
+    snapshot.pressure_gradient =
+        units.to_si(fluid.setting().body_force_x, units::dimension::force_density) - scene_->fluid.body_force.x();
   }
   if (!membranes.cells.empty()) {
     if (!scene_->domain.periodic_y) {

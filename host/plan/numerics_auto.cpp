@@ -157,7 +157,8 @@ Problem::Problem(const scene::Scene& draft, const Json& written, const NumericsB
     if (std::abs(std::log(ratio)) > std::abs(std::log(viscosity_ratio_))) viscosity_ratio_ = ratio;
   }
   for (const scene::Stage& stage : scene_.stages) {
-    mean_wall_speed_ = std::max(mean_wall_speed_, std::abs(stage.mean_wall_speed));
+    mean_wall_speed_ =
+        std::max(mean_wall_speed_, std::abs(stage.mean_wall_speed) + std::abs(stage.oscillation.mean_wall_speed));
     const double rate = scene::mean_shear_rate(stage, scene_);
     if (rate == 0) continue;
     shear_rate_ = std::max(shear_rate_, rate);
@@ -293,7 +294,8 @@ double Problem::most_density_factor(double error) const {
 
 std::string Problem::why_density_factor(const Trial& best) const {
   if (!has_cells_) return "without cells the fluid's own inertia is what decides";
-  if (shear_rate_ == 0 && mean_wall_speed_ != 0) return "carried along by both walls, as large as their Mach number allows";
+  if (shear_rate_ == 0 && mean_wall_speed_ != 0)
+    return "carried along by both walls, as large as their Mach number allows";
   if (shear_rate_ == 0) return "at rest, as large as the limits of the membranes' stiffness allow";
   std::string why = "simulated Reynolds number " + number(reynolds_ * best.density_factor, 3) + ": " +
                     number(100 * best.error.inertia, 2) + " % of error";

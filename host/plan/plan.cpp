@@ -24,7 +24,8 @@ void check_models_of_stages(const scene::Scene& scene) {
 
 void check_developed_flows(const Plan& plan) {
   for (const StageSetting& stage : plan.stages) {
-    if (stage.stage->start == scene::WallStart::developed && plan.scene->domain.periodic_y && stage.body_force_x != 0) {
+    if (stage.stage->start == scene::WallStart::developed && plan.scene->domain.periodic_y &&
+        stage.largest_body_force_x() != 0) {
       throw Error(
           Cause::bad_input, plan.scene->place(stage.stage->pointer + "/start"),
           "\"developed\" wants walls: a driven flow that is periodic along y never becomes steady; leave start out");

@@ -98,6 +98,20 @@ std::vector<Conversion> conversion_table(const Plan& plan) {
       row("driving force density", u.to_si(stage.body_force_x, units::dimension::force_density), "N/m3",
           stage.body_force_x);
     }
+    if (stage.oscillation.any()) {
+      converted("frequency of the oscillation", stage.stage->oscillation.frequency, "Hz", units::dimension::rate);
+      if (stage.oscillating_rate != 0) {
+        converted("amplitude of the shear rate", stage.stage->oscillation.shear_rate, "1/s", units::dimension::rate);
+      }
+      if (stage.stage->oscillation.mean_wall_speed != 0) {
+        wall("amplitude of the lower wall's speed", stage.oscillation.walls.lower);
+        wall("amplitude of the upper wall's speed", stage.oscillation.walls.upper);
+      }
+      if (stage.oscillation.body_force_x != 0) {
+        converted("amplitude of the driving force density", stage.stage->oscillation.pressure_gradient, "N/m3",
+                  units::dimension::force_density);
+      }
+    }
     converted("width of the domain", scene.domain.size.x(), "m", units::dimension::length);
     converted("height of the domain", scene.domain.size.y(), "m", units::dimension::length);
     for (const scene::CellType& type : scene.cell_types) {

@@ -163,6 +163,7 @@ core::SolverSetup make_solver_setup(const Plan& plan, int index) {
       .walls = stage.walls,
       .body_force_x = stage.body_force_x,
       .body_force_y = stage.body_force_y,
+      .oscillation = stage.oscillation,
       .developed = stage.stage->start == scene::WallStart::developed,
       .collision = plugin::make_collision_operator(*plan.collision.manifest, values(plan.collision), setting),
       .kernel = kernel_named(scene.numerics.kernel).kind,

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <stdexcept>
 
 #include "cell_travel.hpp"
@@ -51,6 +52,10 @@ constexpr std::array<TableEntry, 3> contact_limit{{{0.6, 0.65}, {1.0, 1.46}, {2.
 // spacing long, their corners catch on each other in a narrower one: sliding along a rim of 5 spacings radius meets 2 %
 // of the strongest attraction at a width of 0.66, 5 % at 0.33, 11 % at 0.16 (docs/models.md).
 constexpr double narrowest_well = 0.5;
+
+// Of a flow that oscillates: with less the velocity is more than 1 % of its amplitude off (tests/physics/oscillation.cpp).
+constexpr double fewest_steps_of_period(double tau) { return 350 * (tau - 0.5) * (tau - 0.5); }
+constexpr double thinnest_layer = 2.5;
 
 // How many times stiffer membranes may be with the semi-implicit step, for tau from 0.6 to 5; below it gains nothing. A
 // single cell stays quiet at 80 times the stretching and 13 times the bending stiffness (docs/accuracy.md), two cells
@@ -197,11 +202,23 @@ std::vector<Limit> find_limits(const Plan& plan) {
           scene::largest_wall_mach(scene.fluid.inertia), true, lower + " or " + what + ", or raise the resolution",
           density);
     }
-    if (stage.body_force_x != 0 && !scene.domain.periodic_y) {
+    if (stage.largest_body_force_x() != 0 && !scene.domain.periodic_y) {
       const double height = scene.domain.nodes[1];
-      const double speed = std::abs(stage.body_force_x) * height * height / (8 * core::viscosity_of(tau));
+      const double speed = stage.largest_body_force_x() * height * height / (8 * core::viscosity_of(tau));
       add("Mach number of the driven flow" + where, units::mach_number(speed), 0.1, true,
           lower + " or the driving force, or raise the resolution", density);
+    }
+    if (stage.oscillation.any()) {
+      const double frequency = stage.oscillation.frequency;
+      add("time steps in a period of the oscillation" + where, 1 / frequency, fewest_steps_of_period(tau), false, lower,
+          density);
+      add("thickness of the layer that oscillates, sqrt(2 nu/omega), in lattice spacings" + where,
+          std::sqrt(core::viscosity_of(tau) / (std::numbers::pi * frequency)), thinnest_layer, false,
+          "raise the resolution, or " + lower, resolution);
+      const double delay = scene::oscillation_delay(*stage.stage, scene);
+      add("delay of the oscillation by density_factor, in radians" + where,
+          std::max(0.0, stage.stage->density_factor - 1) * delay, 0.1, true,
+          lower + ": the fluid is simulated heavier than it is and lags behind what drives it", density);
     }
     if (!plan.has_cells) continue;
     const double rate = scene::mean_shear_rate(*stage.stage, scene);

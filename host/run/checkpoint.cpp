@@ -185,6 +185,7 @@ Restored<T> restore(const std::shared_ptr<const files::CheckpointReader>& reader
                                       return values;
                                     },
                                 .walls_have_acted = saved.at("solver").at("walls_have_acted"),
+                                .steps = state.stage_step,
                                 .viscosity = {}};
     if (!membranes.cells.empty()) {
       core::DisplacementWatch::Memory& memory = solver.viscosity;

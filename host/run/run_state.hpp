@@ -58,7 +58,7 @@ struct RunState {
     return time + static_cast<double>(stage_step) * setting.units.time;
   }
   [[nodiscard]] double strain_at(const plan::StageSetting& setting) const {
-    return strain + std::abs(setting.shear_rate) * static_cast<double>(stage_step);
+    return strain + setting.strain_after(stage_step);
   }
   /// The stage is over: what it took is added up.
   void end_stage(const plan::StageSetting& setting, Ending ended_by) {

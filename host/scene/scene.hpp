@@ -99,6 +99,14 @@ struct Interaction {
 
 enum class WallStart { impulsive, developed };
 
+/// What is added to what drives a stage: amplitudes times sin(2 pi frequency t), t from the start of the stage.
+struct Oscillation {
+  double frequency = 0;          ///< Hz; 0: nothing oscillates
+  double shear_rate = 0;         ///< 1/s
+  double mean_wall_speed = 0;    ///< m/s
+  double pressure_gradient = 0;  ///< Pa/m
+};
+
 struct Stage {
   std::string name;
   std::optional<double> duration;  ///< s
@@ -109,9 +117,14 @@ struct Stage {
   WallStart start = WallStart::impulsive;
   Eigen::Vector2d pressure_gradient =
       Eigen::Vector2d::Zero();  ///< force per volume that drives the flow, Pa/m, along x
-  double density_factor;        ///< Numerics::density_factor unless the stage has its own
+  Oscillation oscillation;
+  double density_factor;  ///< Numerics::density_factor unless the stage has its own
   std::string density_factor_key = "numerics.density_factor";  ///< what to change for another one
   std::string pointer;
+
+  [[nodiscard]] bool oscillates() const { return oscillation.frequency != 0; }
+  /// Whether its walls shear at one rate: strain is counted by it.
+  [[nodiscard]] bool shears_steadily() const { return shear_rate != 0 && !oscillates(); }
 };
 
 /// When an output is due: every so much strain, every so many seconds of simulated time, or both. Empty: never.

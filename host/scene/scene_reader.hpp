@@ -34,6 +34,7 @@ inline constexpr AllowedRange viscosity{1e-9, 1e6, 1e-5, 0.5, "cP"};            
 inline constexpr AllowedRange shear_rate{-1e9, 1e9, -1e7, 1e7, "1/s"};          ///< 1/s
 inline constexpr AllowedRange velocity{-1e6, 1e6, -0.5, 0.5, "mm/s"};           ///< m/s
 inline constexpr AllowedRange force_density{-1e15, 1e15, -1e12, 1e12, "N/m3"};  ///< N/m3
+inline constexpr AllowedRange frequency{1e-9, 1e9, 1e-6, 1e6, "Hz"};            ///< Hz
 inline constexpr AllowedRange angle{-1e3, 1e3, -7.0, 7.0, "deg"};               ///< rad; 7: just above a turn
 }  // namespace range
 

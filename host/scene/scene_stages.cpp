@@ -13,7 +13,7 @@ namespace {
 /// Faults that the schema cannot see because they lie between the keys of a stage.
 void check_stage(const SceneFields& fields, const Stage& stage, const Scene& scene) {
   const auto& pointer = stage.pointer;
-  const bool flows = walls_move(stage) || stage.pressure_gradient.x() != 0.0;
+  const bool flows = walls_move(stage) || stage.pressure_gradient.x() != 0.0 || stage.oscillates();
   if (fields.has(pointer + "/walls") && fields.has(pointer + "/shear_rate")) {
     fields.refuse_key(pointer + "/walls", "walls and shear_rate both say how the walls move; leave one of them out");
   }
@@ -28,6 +28,10 @@ void check_stage(const SceneFields& fields, const Stage& stage, const Scene& sce
     fields.refuse_key(pointer + "/start",
                       "start says how a flow begins, but this stage has neither shear_rate, walls that move nor "
                       "pressure_gradient");
+  }
+  if (stage.strain && stage.oscillates()) {
+    fields.refuse_key(pointer + "/strain",
+                      "strain does not grow evenly in a flow that oscillates; end the stage by duration");
   }
   if (stage.strain && stage.mean_wall_speed != 0 && stage.shear_rate == 0) {
     fields.refuse_key(pointer + "/strain",
@@ -52,19 +56,59 @@ void check_stage(const SceneFields& fields, const Stage& stage, const Scene& sce
   }
   if (!stage.duration && !stage.strain) {
     fields.refuse(pointer, "this stage never ends; give duration (such as \"2 s\")" +
-                               std::string(stage.shear_rate != 0 ? " or strain (such as 15)" : ""));
+                               std::string(stage.shears_steadily() ? " or strain (such as 15)" : ""));
   }
 }
 
-/// Speeds of both walls, as shear rate and mean.
-void read_walls(const SceneFields& fields, const std::string& pointer, double height, Stage& stage) {
+/// Speeds of both walls, as shear rate and mean: of a stage, or of what oscillates in it.
+template <class Drive>
+void read_walls(const SceneFields& fields, const std::string& pointer, double height, Drive& drive) {
   const double lower = fields.quantity(pointer + "/lower", "m/s", range::velocity),
                upper = fields.quantity(pointer + "/upper", "m/s", range::velocity);
-  stage.mean_wall_speed = (lower + upper) / 2;
+  drive.mean_wall_speed = (lower + upper) / 2;
   // Equal speeds that are written in different units differ by rounding.
   const double difference = upper - lower;
-  stage.shear_rate =
+  drive.shear_rate =
       std::abs(difference) > 1e-12 * std::max(std::abs(lower), std::abs(upper)) ? difference / height : 0.0;
+}
+
+/// The amplitude is of that which drives the stage, in its unit and form.
+Oscillation read_oscillation(const SceneFields& fields, const std::string& stage, double height) {
+  const std::string pointer = stage + "/oscillation", amplitude = pointer + "/amplitude";
+  std::vector<std::string> driven;
+  for (const char* key : {"shear_rate", "walls", "pressure_gradient"}) {
+    if (fields.has(stage + "/" + key)) driven.emplace_back(key);
+  }
+  if (driven.empty()) {
+    fields.refuse_key(pointer,
+                      "an oscillation is added to what drives the stage, and nothing does\n"
+                      "give shear_rate, walls or pressure_gradient, which may be 0: the oscillation is around it");
+  }
+  if (driven.size() > 1) {
+    fields.refuse_key(pointer, "this stage has both " + driven[0] + " and " + driven[1] +
+                                   ", and an oscillation is of one of them; leave the other out");
+  }
+  Oscillation oscillation;
+  oscillation.frequency = fields.quantity(pointer + "/frequency", "Hz", range::frequency);
+  const bool of_walls = driven[0] == "walls";
+  if (of_walls != fields.at(amplitude).is_object()) {
+    fields.refuse(amplitude, of_walls ? "the amplitude is of the walls' speeds, so it has one for each wall\n"
+                                        "write {\"lower\": \"0 mm/s\", \"upper\": \"1 mm/s\"}, for example"
+                                      : "the amplitude is of " + driven[0] +
+                                            ", so it is one quantity; those of two "
+                                            "walls go with \"walls\"");
+  }
+  if (of_walls) {
+    read_walls(fields, amplitude, height, oscillation);
+  } else if (driven[0] == "shear_rate") {
+    oscillation.shear_rate = fields.quantity(amplitude, "1/s", range::shear_rate);
+  } else {
+    oscillation.pressure_gradient = fields.quantity(amplitude, "Pa/m", range::force_density);
+  }
+  if (oscillation.shear_rate == 0 && oscillation.mean_wall_speed == 0 && oscillation.pressure_gradient == 0) {
+    fields.refuse(amplitude, "an amplitude of 0 oscillates nothing; leave oscillation out");
+  }
+  return oscillation;
 }
 
 Stage read_stage(const SceneFields& fields, const std::string& pointer, const Scene& scene) {
@@ -79,6 +123,9 @@ Stage read_stage(const SceneFields& fields, const std::string& pointer, const Sc
   stage.start = fields.value_or(pointer + "/start", std::string("impulsive")) == "developed" ? WallStart::developed
                                                                                              : WallStart::impulsive;
   stage.pressure_gradient.x() = fields.quantity_or(pointer + "/pressure_gradient", "Pa/m", range::force_density, 0.0);
+  if (fields.has(pointer + "/oscillation")) {
+    stage.oscillation = read_oscillation(fields, pointer, scene.domain.size.y());
+  }
   stage.density_factor = fields.value_or(pointer + "/density_factor", scene.numerics.density_factor);
   if (fields.has(pointer + "/density_factor")) stage.density_factor_key = pointer + "/density_factor";
   check_stage(fields, stage, scene);
@@ -95,10 +142,12 @@ Cadence read_cadence(const SceneFields& fields, const std::string& pointer, cons
                   json::subject(pointer) + " does not say when: give strain (such as 0.25) or seconds (such as 0.1)");
   }
   const bool shears =
-      std::any_of(stages.begin(), stages.end(), [](const Stage& stage) { return stage.shear_rate != 0; });
+      std::any_of(stages.begin(), stages.end(), [](const Stage& stage) { return stage.shears_steadily(); });
   if (cadence.strain && !cadence.seconds && !shears) {
-    fields.refuse_key(pointer + "/strain",
-                      "no stage has a shear_rate, so strain never grows and this output never comes due; use seconds");
+    fields.refuse_key(
+        pointer + "/strain",
+        "no stage has a shear_rate that is steady, so strain does not grow evenly and this output never comes due; use "
+        "seconds");
   }
   return cadence;
 }

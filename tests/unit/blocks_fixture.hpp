@@ -25,6 +25,8 @@ inline const std::string
     four_cells = ROULEAU_SCENES "/four-cells-shear.json",
     shear = R"(/stages=[{"name": "shear", "shear_rate": "50 1/s", "strain": 5, "start": "developed"}])",
     driven = R"(/stages=[{"name": "driven", "pressure_gradient": "2e4 Pa/m", "duration": "1 s"}])",
+    oscillating = R"(/stages=[{"name": "shake", "walls": {"lower": 0, "upper": "1 mm/s"}, "duration": "1 s",
+      "oscillation": {"amplitude": {"lower": "0.2 mm/s", "upper": "0.5 mm/s"}, "frequency": "100 Hz"}}])",
     contrast = "/cell_types/rbc/interior_viscosity=\"6 cP\"", semi_implicit = "/numerics/coupling=\"semi-implicit\"";
 
 /// Where the middle of the four cells lies, in um; (25.088, 12.544) is that of the domain.
@@ -56,7 +58,8 @@ inline std::vector<Case> scenes_to_cut() {
       {"semi-implicit", four_cells, {shear, semi_implicit}},
       {"bonds", four_cells, {shear, bonds, middle("46.648", "12.544")}},
       {"memory", ROULEAU_PHYSICS_SCENES "/memory.json"},
-      {"viscous ring", ROULEAU_PHYSICS_SCENES "/viscous-ring.json"}};
+      {"viscous ring", ROULEAU_PHYSICS_SCENES "/viscous-ring.json"},
+      {"oscillating", four_cells, {oscillating, no_strain, contrast, middle("44.688", "14.504")}}};
 }
 
 inline const plugin::Catalog& catalog() {

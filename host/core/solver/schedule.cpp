@@ -16,6 +16,8 @@ Schedule make_schedule(const StepFeatures& has) {
   // Where a worker would wait for the others it goes on with its own cells: announce, await.
   const Meeting own_cells = touch ? Meeting::await : Meeting::none;
 
+  // The last step has left the lattice to itself; with cells a later meeting tells all workers before they take rows.
+  add(has.changing_drive, Task::set_drive, "fluid", cells ? Meeting::none : Meeting::all);
   add(touch, Task::find_contacts, "interaction", Meeting::announce);
   add(cells, Task::membrane_forces, "membrane", own_cells);
   add(touch, Task::interaction_forces, "interaction", Meeting::announce);

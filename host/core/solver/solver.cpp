@@ -96,12 +96,16 @@ StepFeatures Solver<T>::features() const {
           .slip_correction = slip_correction_ != nullptr,
           .area_correction = setup_.area_correction,
           .moving_frame = setup_.follow_cells,
+          .changing_drive = setup_.oscillation.any(),
           .ranks = exchange_ != nullptr};
 }
 
 template <class T>
 void Solver<T>::run(Task task, Worker worker) {
   switch (task) {
+    case Task::set_drive:
+      if (worker.first()) set_drive(steps_);
+      return;
     case Task::find_contacts:
       return interaction_forces_->run(worker, 0, membranes_);
     case Task::membrane_forces:
@@ -125,7 +129,7 @@ void Solver<T>::run(Task task, Worker worker) {
         viscosity_field_->update(worker, membranes_, fluid_.relaxation_rate(), fluid_.mask());
       return;
     case Task::end_step:
-      if (worker.first()) fluid_.end_step();
+      if (worker.first()) fluid_.end_step(), ++steps_;
       return;
     case Task::interpolate:
       return coupling_->interpolate(worker, membranes_, fluid_.velocity());
@@ -232,20 +236,25 @@ void Solver<T>::make_slip_correction() {
 
 template <class T>
 void Solver<T>::start(Solver* former) {
+  steps_ = 0;
   double faster = 0;  // what the membranes' last displacement is worth in the new time step
   if (setup_.developed) {
-    // Couette and Poiseuille flow, y from the middle of the channel.
+    // Couette and Poiseuille flow and what oscillates around them, y from the middle of the channel.
     const int height = setup_.domain.size[1];
     const double half_height = height / 2.0, middle = half_height - 0.5;
     const double rate = (setup_.walls.upper - setup_.walls.lower) / height;
     const double mean = (setup_.walls.upper + setup_.walls.lower) / 2;
     const double curvature = setup_.body_force_x / setup_.viscosity();
+    const auto oscillating = [&](double s) {
+      return setup_.oscillation.any() ? oscillating_profile(setup_.oscillation, setup_.viscosity(), height, s)
+                                      : ProfilePoint{0, 0};
+    };
     fluid_.set_profile(
         [&](double y) {
           const double s = y - middle;
-          return mean + rate * s + curvature * (half_height * half_height - s * s) / 2;
+          return mean + rate * s + curvature * (half_height * half_height - s * s) / 2 + oscillating(s).velocity;
         },
-        [&](double y) { return rate - curvature * (y - middle); });
+        [&](double y) { return rate - curvature * (y - middle) + oscillating(y - middle).slope; });
   } else if (former != nullptr) {
     faster = setup_.time_step / former->setup_.time_step;
     const auto [u, v] = mean_velocity(membranes_);
@@ -261,6 +270,8 @@ void Solver<T>::start(Solver* former) {
 
 template <class T>
 void Solver<T>::start(const SolverState<T>& state) {
+  steps_ = state.steps;
+  if (steps_ > 0) set_drive(steps_ - 1);
   fluid_.restore(state.populations, state.walls_have_acted);
   if (viscosity_field_) {
     viscosity_field_->restore(state.viscosity, membranes_, fluid_.relaxation_rate(), fluid_.mask());
@@ -270,6 +281,18 @@ void Solver<T>::start(const SolverState<T>& state) {
 template <class T>
 void Solver<T>::follow_cells(const std::array<double, 2>& velocity) {
   if (setup_.follow_cells) fluid_.set_frame(velocity[0], setup_.domain.periodic[1] ? velocity[1] : 0);
+}
+
+/// Walls in the middle of the step and the force at its beginning make the scheme one of second order in time: a
+/// population meets the wall half a step after its collision, and the velocity at t has half of the force at t in it.
+template <class T>
+void Solver<T>::set_drive(long steps) {
+  const Oscillation& oscillation = setup_.oscillation;
+  if (!oscillation.any()) return;
+  const double at = static_cast<double>(steps), wall = oscillation.sine(at + 0.5), force = oscillation.sine(at);
+  fluid_.set_drive(
+      {setup_.walls.lower + wall * oscillation.walls.lower, setup_.walls.upper + wall * oscillation.walls.upper},
+      setup_.body_force_x + force * oscillation.body_force_x);
 }
 
 template <class T>

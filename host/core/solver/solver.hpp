@@ -24,6 +24,8 @@ struct SolverState {
   /// they need not all be in memory.
   std::function<std::vector<T>(int q)> populations;
   bool walls_have_acted = false;
+  /// Taken since the setup's start: what oscillates goes by them.
+  long steps = 0;
   /// When the viscosity field was last renewed; without cells there is none.
   DisplacementWatch::Memory viscosity = {};
 };
@@ -90,6 +92,8 @@ class Solver {
   void make_slip_correction();
   /// The frame of the fluid's unsteady term gets the cells' velocity, as far as the walls allow, if the setup wants that.
   void follow_cells(const std::array<double, 2>& velocity);
+  /// The fluid is driven as an oscillation wants it in the step that begins after so many.
+  void set_drive(long steps);
   void run(Task task, Worker worker);
   void run_rows(Task task, Range rows);
   void exchange(Task task);
@@ -106,6 +110,7 @@ class Solver {
   std::unique_ptr<ViscosityField<T>> viscosity_field_;
   std::unique_ptr<Coupling<T>> coupling_;
   double slight_energy_ = 0;
+  long steps_ = 0;  ///< taken since start()
   std::vector<Pass> passes_;
   std::size_t rows_pass_ = 0, observable_pass_ = 0;
 };

@@ -6,6 +6,7 @@
 #include "core/contact/interaction_forces.hpp"
 #include "core/coupling/kernel_kind.hpp"
 #include "core/domain/domain.hpp"
+#include "core/fluid/oscillation.hpp"
 #include "core/fluid/relaxation.hpp"
 #include "core/fluid/walls.hpp"
 #include "core/membrane/membrane_forces.hpp"
@@ -33,7 +34,10 @@ struct SolverSetup {
   WallVelocity walls = {};
   /// Force density everywhere.
   double body_force_x = 0, body_force_y = 0;
-  /// Begin with the developed flow of the walls and the body force; false: with a fluid at rest, or the one before.
+  /// Added to the walls and the body force.
+  Oscillation oscillation = {};
+  /// Begin with the developed flow of the walls, the body force and their oscillation; false: with a fluid at rest, or
+  /// the one before.
   bool developed = false;
   CollisionOperator collision = {};
 

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
+#include <numbers>
 
 #include "plan/read_scene.hpp"
 
@@ -55,4 +56,20 @@ TEST_CASE(
   CHECK(warnings[4] == "there is a doubt");
   for (std::size_t i = 5; i < warnings.size(); ++i) CHECK(warnings[i].starts_with(report.limits[i - 5].name + " is "));
   CHECK(to_json(plan, report)["numerics_choice"]["target_error"] == 0.01);
+}
+
+TEST_CASE("strain of an oscillating stage is the integral of the shear rate's magnitude") {
+  const double base = GENERATE(0.0, 0.3, -0.3, 1.7, -1.7), amplitude = GENERATE(1.0, -1.0);
+  StageSetting setting{};
+  setting.shear_rate = base;
+  setting.oscillating_rate = amplitude;
+  setting.oscillation.frequency = 1.0 / 1000;
+  double sum = 0;
+  for (long step = 0; step <= 2600; ++step) {
+    if (step % 100 == 0) {
+      CAPTURE(step);
+      CHECK(setting.strain_after(step) == Approx(sum).epsilon(1e-5).margin(1e-2));
+    }
+    sum += std::abs(base + amplitude * std::sin(2 * std::numbers::pi * (static_cast<double>(step) + 0.5) / 1000));
+  }
 }

@@ -183,6 +183,28 @@ TEST_CASE("walls have a shear rate and a mean speed, of either sign") {
   CHECK(back.mean_wall_speed == 0.0);
 }
 
+TEST_CASE("the amplitude of an oscillation is of what drives the stage") {
+  const auto stage = [](const std::string& keys) {
+    return read(contract_scene, {"/stages/1={\"name\": \"flow\", \"duration\": \"1 s\", " + keys + "}", "/output={}"})
+        .stages[1];
+  };
+  const Stage shear = stage(R"("shear_rate": "3 1/s", "oscillation": {"amplitude": "20 1/s", "frequency": "5 Hz"})");
+  CHECK(shear.shear_rate == 3);
+  CHECK(shear.oscillation.shear_rate == 20);
+  CHECK(shear.oscillation.frequency == about(5));
+  CHECK(shear.oscillates());
+  const Stage wall = stage(R"("walls": {"lower": 0, "upper": 0}, "oscillation":
+      {"amplitude": {"lower": "0 mm/s", "upper": "1 mm/s"}, "frequency": "1 kHz"})");
+  CHECK(wall.shear_rate == 0);
+  CHECK(wall.oscillation.shear_rate == about(1e-3 / 25.088e-6));
+  CHECK(wall.oscillation.mean_wall_speed == about(0.5e-3));
+  CHECK(wall.oscillation.frequency == about(1000));
+  const Stage driven = stage(R"("pressure_gradient": 0, "oscillation": {"amplitude": "-2 kPa/m", "frequency": 10})");
+  CHECK(driven.pressure_gradient.x() == 0);
+  CHECK(driven.oscillation.pressure_gradient == about(-2000));
+  CHECK_FALSE(stage(R"("shear_rate": "3 1/s")").oscillates());
+}
+
 TEST_CASE("a model is swapped with its parameters by set") {
   const auto scene = read(contract_scene, {"/fluid/collision={\"model\": \"bgk\"}"});
   CHECK(scene.fluid.collision.model == "bgk");
