@@ -165,7 +165,8 @@ Snapshot Observer::observe(core::Solver<T>& solver, const plan::StageSetting& se
           apparent_viscosity(rate, fluid.setting().body_force_x, setting, scene_->domain.nodes[1]);
     snapshot.flow_rate = units.to_si(rate, units::dimension::velocity) * units.length;
   }
-  if (setting.stage->pressure_gradient.x() != 0 || setting.oscillation.body_force_x != 0) {
+  if (setting.stage->pressure_gradient.x() != 0 || setting.stage->mean_velocity ||
+      setting.oscillation.body_force_x != 0) {
     snapshot.pressure_gradient =
         units.to_si(fluid.setting().body_force_x, units::dimension::force_density) - scene_->fluid.body_force.x();
   }

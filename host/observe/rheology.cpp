@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/fluid/flow_rate.hpp"
 #include "core/fluid/relaxation.hpp"
 
 namespace rouleau::observe {
@@ -13,18 +14,7 @@ bool is_driven_channel(const plan::StageSetting& setting, const scene::Scene& sc
 
 template <class T>
 double flow_rate(const core::Fluid<T>& fluid) {
-  const core::FluidSetting& setting = fluid.setting();
-  const std::vector<double> mean = fluid.row_velocities();
-  double sum = 0;
-  for (const double velocity : mean) sum += velocity;
-  if (setting.domain.periodic[1]) return sum;
-  // Slopes at the walls of parabolas through the wall and the two rows nearest to it, rows at 1/2 and 3/2.
-  const auto slope = [](double wall, double first, double second) { return -8 * wall / 3 + 3 * first - second / 3; };
-  const std::size_t last = mean.size() - 1;
-  const core::WallVelocity walls = fluid.walls_now();
-  const double lower = slope(walls.lower, mean[0], mean[1]);
-  const double upper = -slope(walls.upper, mean[last], mean[last - 1]);
-  return sum + (upper - lower) / 24;
+  return core::flow_rate(fluid.row_velocities(), fluid.walls_now(), fluid.setting().domain.periodic[1]);
 }
 
 template double flow_rate(const core::Fluid<float>&);

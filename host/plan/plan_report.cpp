@@ -94,9 +94,12 @@ std::vector<Conversion> conversion_table(const Plan& plan) {
     } else if (stage.shear_rate != 0) {
       wall("wall speed", stage.walls.upper);
     }
+    if (stage.stage->mean_velocity) {
+      converted("mean velocity", *stage.stage->mean_velocity, "m/s", units::dimension::velocity);
+    }
     if (stage.body_force_x != 0 || stage.body_force_y != 0) {
-      row("driving force density", u.to_si(stage.body_force_x, units::dimension::force_density), "N/m3",
-          stage.body_force_x);
+      row(stage.stage->mean_velocity ? "driving force density, without cells" : "driving force density",
+          u.to_si(stage.body_force_x, units::dimension::force_density), "N/m3", stage.body_force_x);
     }
     if (stage.oscillation.any()) {
       converted("frequency of the oscillation", stage.stage->oscillation.frequency, "Hz", units::dimension::rate);

@@ -164,6 +164,10 @@ core::SolverSetup make_solver_setup(const Plan& plan, int index) {
       .body_force_x = stage.body_force_x,
       .body_force_y = stage.body_force_y,
       .oscillation = stage.oscillation,
+      // Without cells the gradient of Poiseuille's flow is all that it takes.
+      .mean_velocity = plan.has_cells && stage.stage->mean_velocity
+                           ? stage.units.to_lattice(*stage.stage->mean_velocity, units::dimension::velocity)
+                           : 0,
       .developed = stage.stage->start == scene::WallStart::developed,
       .collision = plugin::make_collision_operator(*plan.collision.manifest, values(plan.collision), setting),
       .kernel = kernel_named(scene.numerics.kernel).kind,

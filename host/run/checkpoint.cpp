@@ -119,7 +119,13 @@ Json save(files::CheckpointWriter* writer, core::Solver<T>& solver) {
     writer->array("/indicator/limit", memory.limit);
     writer->array("/indicator/bound", memory.bound);
   }
-  return {{"walls_have_acted", fluid.walls_have_acted()}};
+  Json saved{{"walls_have_acted", fluid.walls_have_acted()}};
+  if (const auto& control = solver.flow_control()) {
+    const core::FlowControl::State& state = control->state();
+    saved["flow_control"] = {{"force", state.force}};
+    if (state.last) saved["flow_control"]["last"] = *state.last;
+  }
+  return saved;
 }
 
 void restore_membranes(const files::CheckpointReader& reader, const Json& saved, core::Membranes& m) {
@@ -186,7 +192,13 @@ Restored<T> restore(const std::shared_ptr<const files::CheckpointReader>& reader
                                     },
                                 .walls_have_acted = saved.at("solver").at("walls_have_acted"),
                                 .steps = state.stage_step,
+                                .flow_control = {},
                                 .viscosity = {}};
+    if (const Json& of_solver = saved.at("solver"); of_solver.contains("flow_control")) {
+      const Json& control = of_solver.at("flow_control");
+      solver.flow_control = core::FlowControl::State{.force = control.at("force"), .last = {}};
+      if (control.contains("last")) solver.flow_control->last = control.at("last").get<double>();
+    }
     if (!membranes.cells.empty()) {
       core::DisplacementWatch::Memory& memory = solver.viscosity;
       for (auto* of_nodes : {&memory.x, &memory.y}) of_nodes->resize(membranes.x.size());

@@ -11,6 +11,10 @@ bool walls_move(const Stage& stage) {
 }
 
 Eigen::Vector2d driving_force(const Stage& stage, const Scene& scene) {
+  if (stage.mean_velocity) {
+    const double height = scene.domain.size.y();
+    return {12 * scene.fluid.viscosity * *stage.mean_velocity / (height * height), scene.fluid.body_force.y()};
+  }
   return scene.fluid.body_force + stage.pressure_gradient;
 }
 

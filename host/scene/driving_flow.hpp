@@ -8,7 +8,7 @@ namespace rouleau::scene {
 /// Whether the walls move in a stage.
 bool walls_move(const Stage& stage);
 
-/// Force per volume that drives the fluid in a stage, N/m3.
+/// Force per volume that drives the fluid in a stage, N/m3; for a mean velocity what it would take without cells.
 Eigen::Vector2d driving_force(const Stage& stage, const Scene& scene);
 
 /// Shear rate that a stage's numbers are made with, 1/s: that of the walls where they shear; else that of the developed

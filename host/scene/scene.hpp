@@ -116,7 +116,8 @@ struct Stage {
   double mean_wall_speed = 0.0;  ///< m/s, of both walls together, along x
   WallStart start = WallStart::impulsive;
   Eigen::Vector2d pressure_gradient =
-      Eigen::Vector2d::Zero();  ///< force per volume that drives the flow, Pa/m, along x
+      Eigen::Vector2d::Zero();          ///< force per volume that drives the flow, Pa/m, along x
+  std::optional<double> mean_velocity;  ///< m/s, of the fluid in a channel: the pressure gradient is what it takes
   Oscillation oscillation;
   double density_factor;  ///< Numerics::density_factor unless the stage has its own
   std::string density_factor_key = "numerics.density_factor";  ///< what to change for another one

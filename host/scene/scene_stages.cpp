@@ -10,10 +10,31 @@
 namespace rouleau::scene {
 namespace {
 
+void check_mean_velocity(const SceneFields& fields, const Stage& stage, const Scene& scene) {
+  if (!stage.mean_velocity) return;
+  const std::string key = stage.pointer + "/mean_velocity";
+  if (fields.has(stage.pointer + "/pressure_gradient")) {
+    fields.refuse_key(key, "the pressure gradient is what keeps the mean velocity; leave one of the two out");
+  }
+  if (walls_move(stage)) {
+    fields.refuse_key(key, "a mean velocity is kept between walls at rest; leave it out, or shear_rate and walls");
+  }
+  if (scene.domain.periodic_y) {
+    fields.refuse_key(
+        key,
+        "a mean velocity is kept against walls, but domain.y is \"periodic\"\n"
+        "write \"y\": {\"lower\": {\"wall\": {}}, \"upper\": {\"wall\": {}}}, or leave out mean_velocity");
+  }
+  if (*stage.mean_velocity == 0) {
+    fields.refuse(key, "a mean velocity of 0 drives nothing; leave it out for a stage at rest");
+  }
+}
+
 /// Faults that the schema cannot see because they lie between the keys of a stage.
 void check_stage(const SceneFields& fields, const Stage& stage, const Scene& scene) {
   const auto& pointer = stage.pointer;
-  const bool flows = walls_move(stage) || stage.pressure_gradient.x() != 0.0 || stage.oscillates();
+  const bool flows =
+      walls_move(stage) || stage.pressure_gradient.x() != 0.0 || stage.mean_velocity || stage.oscillates();
   if (fields.has(pointer + "/walls") && fields.has(pointer + "/shear_rate")) {
     fields.refuse_key(pointer + "/walls", "walls and shear_rate both say how the walls move; leave one of them out");
   }
@@ -24,10 +45,11 @@ void check_stage(const SceneFields& fields, const Stage& stage, const Scene& sce
                       "write \"y\": {\"lower\": {\"wall\": {}}, \"upper\": {\"wall\": {}}}, or leave out " +
                           std::string(key));
   }
+  check_mean_velocity(fields, stage, scene);
   if (fields.has(pointer + "/start") && !flows) {
     fields.refuse_key(pointer + "/start",
-                      "start says how a flow begins, but this stage has neither shear_rate, walls that move nor "
-                      "pressure_gradient");
+                      "start says how a flow begins, but this stage has neither shear_rate, walls that move, "
+                      "pressure_gradient nor mean_velocity");
   }
   if (stage.strain && stage.oscillates()) {
     fields.refuse_key(pointer + "/strain",
@@ -82,7 +104,8 @@ Oscillation read_oscillation(const SceneFields& fields, const std::string& stage
   if (driven.empty()) {
     fields.refuse_key(pointer,
                       "an oscillation is added to what drives the stage, and nothing does\n"
-                      "give shear_rate, walls or pressure_gradient, which may be 0: the oscillation is around it");
+                      "give shear_rate, walls or pressure_gradient, which may be 0: the oscillation is around it (a "
+                      "mean_velocity is kept, and does not oscillate)");
   }
   if (driven.size() > 1) {
     fields.refuse_key(pointer, "this stage has both " + driven[0] + " and " + driven[1] +
@@ -123,6 +146,9 @@ Stage read_stage(const SceneFields& fields, const std::string& pointer, const Sc
   stage.start = fields.value_or(pointer + "/start", std::string("impulsive")) == "developed" ? WallStart::developed
                                                                                              : WallStart::impulsive;
   stage.pressure_gradient.x() = fields.quantity_or(pointer + "/pressure_gradient", "Pa/m", range::force_density, 0.0);
+  if (fields.has(pointer + "/mean_velocity")) {
+    stage.mean_velocity = fields.quantity(pointer + "/mean_velocity", "m/s", range::velocity);
+  }
   if (fields.has(pointer + "/oscillation")) {
     stage.oscillation = read_oscillation(fields, pointer, scene.domain.size.y());
   }

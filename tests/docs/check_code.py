@@ -234,6 +234,7 @@ BLOCKS = [
     ("docs/scene.md", '{"type": "rbc", "list"', part_of_scene("cells")),
     ("docs/scene.md", '{"type": "rbc", "random"', part_of_scene("cells")),
     ("docs/scene.md", '{"name": "carry"', part_of_scene("stages")),
+    ("docs/scene.md", '{"name": "channel"', part_of_scene("stages")),
     ("docs/scene.md", '{"name": "shake"', part_of_scene("stages")),
     ("docs/scene.md", '{"between": ["rbc", "rbc"], "model": "morse"', part_of_scene("interactions")),
     ("docs/scene.md", '"domain": {', other_settings),

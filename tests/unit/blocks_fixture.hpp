@@ -25,6 +25,7 @@ inline const std::string
     four_cells = ROULEAU_SCENES "/four-cells-shear.json",
     shear = R"(/stages=[{"name": "shear", "shear_rate": "50 1/s", "strain": 5, "start": "developed"}])",
     driven = R"(/stages=[{"name": "driven", "pressure_gradient": "2e4 Pa/m", "duration": "1 s"}])",
+    kept = R"(/stages=[{"name": "kept", "mean_velocity": "1 mm/s", "duration": "1 s"}])",
     oscillating = R"(/stages=[{"name": "shake", "walls": {"lower": 0, "upper": "1 mm/s"}, "duration": "1 s",
       "oscillation": {"amplitude": {"lower": "0.2 mm/s", "upper": "0.5 mm/s"}, "frequency": "100 Hz"}}])",
     contrast = "/cell_types/rbc/interior_viscosity=\"6 cP\"", semi_implicit = "/numerics/coupling=\"semi-implicit\"";
@@ -59,7 +60,12 @@ inline std::vector<Case> scenes_to_cut() {
       {"bonds", four_cells, {shear, bonds, middle("46.648", "12.544")}},
       {"memory", ROULEAU_PHYSICS_SCENES "/memory.json"},
       {"viscous ring", ROULEAU_PHYSICS_SCENES "/viscous-ring.json"},
-      {"oscillating", four_cells, {oscillating, no_strain, contrast, middle("44.688", "14.504")}}};
+      {"oscillating", four_cells, {oscillating, no_strain, contrast, middle("44.688", "14.504")}},
+      {"mean velocity",
+       four_cells,
+       {kept, no_strain, contrast, "/domain/size=[\"12.544 um\", \"12.544 um\"]", "/domain/nodes=[64, 64]",
+        R"(/cells=[{"type": "rbc", "angle": "30 deg", "at": ["6 um", "6.2 um"]}])", "/numerics/tau=2",
+        "/numerics/density_factor=800"}}};
 }
 
 inline const plugin::Catalog& catalog() {

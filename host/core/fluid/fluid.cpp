@@ -305,6 +305,30 @@ std::vector<double> Fluid<T>::row_velocities() const {
 }
 
 template <class T>
+std::vector<double> Fluid<T>::row_velocities_without_membranes() const {
+  std::vector<ExactSum> sums(static_cast<std::size_t>(setting_.domain.size[1]));
+  std::vector<double> momentum(static_cast<std::size_t>(nx()));
+  for (int y = 0; y < ny(); ++y) {
+    const T* in[9];
+    lattice_.row_pointers(parity_, {y}, in);
+    std::fill(momentum.begin(), momentum.end(), 0.0);
+    d2q9::for_each_velocity([&](auto q) {
+      constexpr int along = d2q9::velocity[q][0];
+      if constexpr (along != 0) {
+        for (int x = 0; x < nx(); ++x) momentum[x] += along * static_cast<double>(in[q][x]);
+      }
+    });
+    ExactSum& sum = sums[setting_.domain.block.begin[1] + y];
+    for (const double j : momentum) sum.add(j);
+  }
+  add_up(ranks_, sums);
+  std::vector<double> means(sums.size());
+  for (std::size_t y = 0; y < means.size(); ++y)
+    means[y] = sums[y].value() / setting_.domain.size[0] + setting_.body_force_x / 2;
+  return means;
+}
+
+template <class T>
 double Fluid<T>::mass() const {
   return mass_and_speed().mass;
 }

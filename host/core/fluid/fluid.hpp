@@ -108,6 +108,9 @@ class Fluid {
   [[nodiscard]] std::vector<double> all_relaxation_rates();
   /// Mean velocity along x of each row of the lattice.
   [[nodiscard]] std::vector<double> row_velocities() const;
+  /// The same without the half step that the membranes' forces have still to act, and so before these are known; after
+  /// settle(). All of them together have no share in the mean.
+  [[nodiscard]] std::vector<double> row_velocities_without_membranes() const;
   /// Sum of density deviations over all nodes.
   [[nodiscard]] double mass() const;
   /// Mass and largest speed, as moments() would give them, in one sweep.

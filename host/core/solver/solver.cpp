@@ -4,6 +4,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "core/fluid/flow_rate.hpp"
 #include "core/membrane/area_correction.hpp"
 #include "core/membrane/motion.hpp"
 #include "core/membrane/stiffness.hpp"
@@ -75,6 +76,10 @@ Solver<T>::Solver(SolverSetup setup, Membranes& membranes, const Ranks<2>& ranks
     exchange_ = std::make_unique<CellExchange>(ranks, std::move(owner));
   }
   if (!membranes.cells.empty()) make_cells();
+  if (setup_.mean_velocity != 0) {
+    if (!setup_.domain.walled(1)) throw std::invalid_argument("a mean velocity is kept between walls");
+    flow_control_.emplace(setup_.mean_velocity, setup_.body_force_x, setup_.viscosity(), setup_.domain.size[1]);
+  }
   const Schedule schedule = make_schedule(features());
   for (const Step& step : schedule.steps) {
     Pass& pass = passes_.emplace_back(Pass{.name = step.name, .run = {}, .meeting = step.meeting});
@@ -96,7 +101,7 @@ StepFeatures Solver<T>::features() const {
           .slip_correction = slip_correction_ != nullptr,
           .area_correction = setup_.area_correction,
           .moving_frame = setup_.follow_cells,
-          .changing_drive = setup_.oscillation.any(),
+          .changing_drive = setup_.oscillation.any() || flow_control_.has_value(),
           .ranks = exchange_ != nullptr};
 }
 
@@ -104,7 +109,9 @@ template <class T>
 void Solver<T>::run(Task task, Worker worker) {
   switch (task) {
     case Task::set_drive:
-      if (worker.first()) set_drive(steps_);
+      if (!worker.first()) return;
+      oscillate(steps_);
+      if (flow_control_ && flow_control_->due(steps_)) keep_mean_velocity();
       return;
     case Task::find_contacts:
       return interaction_forces_->run(worker, 0, membranes_);
@@ -271,7 +278,11 @@ void Solver<T>::start(Solver* former) {
 template <class T>
 void Solver<T>::start(const SolverState<T>& state) {
   steps_ = state.steps;
-  if (steps_ > 0) set_drive(steps_ - 1);
+  if (steps_ > 0) oscillate(steps_ - 1);
+  if (flow_control_ && state.flow_control) {
+    flow_control_->restore(*state.flow_control);
+    fluid_.set_drive(setup_.walls, state.flow_control->force);
+  }
   fluid_.restore(state.populations, state.walls_have_acted);
   if (viscosity_field_) {
     viscosity_field_->restore(state.viscosity, membranes_, fluid_.relaxation_rate(), fluid_.mask());
@@ -286,13 +297,20 @@ void Solver<T>::follow_cells(const std::array<double, 2>& velocity) {
 /// Walls in the middle of the step and the force at its beginning make the scheme one of second order in time: a
 /// population meets the wall half a step after its collision, and the velocity at t has half of the force at t in it.
 template <class T>
-void Solver<T>::set_drive(long steps) {
+void Solver<T>::oscillate(long steps) {
   const Oscillation& oscillation = setup_.oscillation;
   if (!oscillation.any()) return;
   const double at = static_cast<double>(steps), wall = oscillation.sine(at + 0.5), force = oscillation.sine(at);
   fluid_.set_drive(
       {setup_.walls.lower + wall * oscillation.walls.lower, setup_.walls.upper + wall * oscillation.walls.upper},
       setup_.body_force_x + force * oscillation.body_force_x);
+}
+
+template <class T>
+void Solver<T>::keep_mean_velocity() {
+  fluid_.settle();
+  const double rate = flow_rate(fluid_.row_velocities_without_membranes(), setup_.walls, false);
+  fluid_.set_drive(setup_.walls, flow_control_->follow(rate / setup_.domain.size[1]));
 }
 
 template <class T>

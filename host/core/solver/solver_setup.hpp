@@ -36,6 +36,9 @@ struct SolverSetup {
   double body_force_x = 0, body_force_y = 0;
   /// Added to the walls and the body force.
   Oscillation oscillation = {};
+  /// Mean velocity along x between walls at rest that the body force is adapted to keep, from body_force_x on; 0: the
+  /// force is what it is.
+  double mean_velocity = 0;
   /// Begin with the developed flow of the walls, the body force and their oscillation; false: with a fluid at rest, or
   /// the one before.
   bool developed = false;

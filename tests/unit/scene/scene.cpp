@@ -183,6 +183,17 @@ TEST_CASE("walls have a shear rate and a mean speed, of either sign") {
   CHECK(back.mean_wall_speed == 0.0);
 }
 
+TEST_CASE("a mean velocity stands in place of a pressure gradient") {
+  const Stage stage =
+      read(contract_scene,
+           {R"(/stages/1={"name": "flow", "duration": "1 s", "mean_velocity": "-1 mm/s", "start": "developed"})",
+            "/output={}"})
+          .stages[1];
+  CHECK(stage.mean_velocity.value() == about(-1e-3));
+  CHECK(stage.pressure_gradient.x() == 0);
+  CHECK(stage.start == WallStart::developed);
+}
+
 TEST_CASE("the amplitude of an oscillation is of what drives the stage") {
   const auto stage = [](const std::string& keys) {
     return read(contract_scene, {"/stages/1={\"name\": \"flow\", \"duration\": \"1 s\", " + keys + "}", "/output={}"})
