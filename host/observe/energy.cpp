@@ -14,7 +14,32 @@ double given_away(const core::Membranes& m) {
   return power;
 }
 
+std::string without_energy(const char* kind, const std::string& model) {
+  return std::string(kind) + " " + model + " tells no energy";
+}
+
 }  // namespace
+
+template <class T>
+CellEnergy cell_energy(core::Solver<T>& solver, const core::Membranes& membranes) {
+  CellEnergy energy;
+  const auto add = [&](double part) { energy.sum += part, energy.magnitude += std::abs(part); };
+  if (core::MembraneForces* forces = solver.membrane_forces()) {
+    const core::MembraneEnergy membrane = forces->energies(membranes);
+    add(membrane.tension + membrane.cell);
+    add(membrane.bending);
+    if (!membrane.unknown.empty()) energy.unknown = without_energy("membrane law", membrane.unknown);
+  }
+  if (const core::InteractionForces* forces = solver.interaction_forces()) {
+    add(forces->energy(membranes, solver.ranks()));
+    const std::string silent = forces->without_energy();
+    if (!silent.empty()) energy.unknown = without_energy("interaction", silent);
+  }
+  return energy;
+}
+
+template CellEnergy cell_energy(core::Solver<float>&, const core::Membranes&);
+template CellEnergy cell_energy(core::Solver<double>&, const core::Membranes&);
 
 template <class T>
 EnergySnapshot observe_energy(core::Solver<T>& solver, const core::Membranes& membranes,
@@ -45,13 +70,13 @@ EnergySnapshot observe_energy(core::Solver<T>& solver, const core::Membranes& me
     // What corrected nodes give away and the lattice does not get is lost in the layers beside the membranes, which the
     // lattice does not resolve and the correction stands for.
     if (solver.corrects_motion()) energy.viscous_dissipation += (given_away(membranes) - fluid.membrane_power) * watt;
-    if (!membrane.unknown.empty()) energy.unknown = "membrane law " + membrane.unknown + " tells no energy";
+    if (!membrane.unknown.empty()) energy.unknown = without_energy("membrane law", membrane.unknown);
   }
   if (const core::InteractionForces* forces = solver.interaction_forces()) {
     energy.interaction = forces->energy(membranes, solver.ranks()) * joule;
     energy.total += energy.interaction;
     const std::string silent = forces->without_energy();
-    if (!silent.empty()) energy.unknown = "interaction " + silent + " tells no energy";
+    if (!silent.empty()) energy.unknown = without_energy("interaction", silent);
   }
   if (!energy.unknown.empty()) energy.total = EnergySnapshot::none;
   return energy;

@@ -33,6 +33,28 @@ void check_developed_flows(const Plan& plan) {
   }
 }
 
+/// A stage that ends by energy needs models that tell theirs.
+void check_equilibria(const Plan& plan) {
+  const auto stage = std::find_if(plan.stages.begin(), plan.stages.end(),
+                                  [](const StageSetting& s) { return s.stage->until_equilibrium; });
+  if (stage == plan.stages.end()) return;
+  const auto refuse = [&](const PlannedModel& model) {
+    throw Error(Cause::bad_input, plan.scene->place(stage->stage->pointer + "/until"),
+                "\"equilibrium\" goes by the energy of all cells, and " + model.manifest->id + " tells none",
+                {"end the stage by \"at_rest\" or by duration"});
+  };
+  for (const PlannedModel& model : plan.interactions) {
+    if (model.active() && !model.manifest->gives_output("energy")) refuse(model);
+  }
+  for (const std::vector<PlannedModel>& laws : plan.membranes) {
+    for (const PlannedModel& law : laws) {
+      // A law that only resists the rate of stretch stores nothing.
+      const bool tells = law.manifest->gives_output("energy") || law.manifest->gives_output("tension_by_rate");
+      if (law.active() && !tells) refuse(law);
+    }
+  }
+}
+
 /// Makes every active model once.
 void try_models(const Plan& plan) {
   const plugin::ModelSetting setting = plan.stages.front().model_setting(plan.scene->fluid.inertia);
@@ -130,6 +152,7 @@ Plan make_plan(const scene::Scene& scene, const plugin::Catalog& catalog, std::o
   });
   for (int i = 0; i < static_cast<int>(scene.stages.size()); ++i) plan.stages.push_back(make_stage_setting(scene, i));
   check_developed_flows(plan);
+  check_equilibria(plan);
   choose_coupling(plan);
   try_models(plan);
   return plan;

@@ -91,6 +91,13 @@ std::vector<Interaction> read_interactions(const SceneFields& fields, const std:
   return interactions;
 }
 
+Equilibrium read_equilibrium(const SceneFields& fields) {
+  Equilibrium equilibrium;
+  equilibrium.rate = fields.quantity_or("/equilibrium/rate", "1/s", range::rate, equilibrium.rate);
+  equilibrium.window = fields.quantity_or("/equilibrium/window", "s", range::time, equilibrium.window);
+  return equilibrium;
+}
+
 AtRest read_at_rest(const SceneFields& fields) {
   AtRest at_rest;
   at_rest.displacement = fields.quantity_or("/at_rest/displacement", "m", range::length, at_rest.displacement);
@@ -162,6 +169,7 @@ Scene read_scene(std::shared_ptr<const json::Document> document) {
   scene.output = read_output(fields, scene.stages);
   scene.output.field_storage = read_field_storage(fields, scene.domain);
   scene.at_rest = read_at_rest(fields);
+  scene.equilibrium = read_equilibrium(fields);
   scene.checks = read_checks(fields);
   scene.plugin_dirs = read_plugin_dirs(fields, std::filesystem::path(document->file()).parent_path());
   scene.document = std::move(document);

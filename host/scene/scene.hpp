@@ -111,7 +111,7 @@ struct Stage {
   std::string name;
   std::optional<double> duration;  ///< s
   std::optional<double> strain;    ///< strain of this stage, |shear_rate| x time
-  bool until_at_rest = false;
+  bool until_at_rest = false, until_equilibrium = false;
   double shear_rate = 0.0;  ///< 1/s, of either sign: speed of the upper wall less that of the lower, over the height
   double mean_wall_speed = 0.0;  ///< m/s, of both walls together, along x
   WallStart start = WallStart::impulsive;
@@ -162,6 +162,13 @@ struct AtRest {
   double window = 0.2;            ///< s
 };
 
+/// "equilibrium": the energy of membranes and interactions has changed by less than `rate` of itself in a second, taken
+/// over the last `window`.
+struct Equilibrium {
+  double rate = 1e-3;   ///< 1/s
+  double window = 0.2;  ///< s
+};
+
 /// Limits beyond which a run stops before it writes garbage.
 struct Checks {
   double mach = 0.3;         ///< largest Mach number of the lattice flow
@@ -184,6 +191,7 @@ struct Scene {
   std::vector<Stage> stages;
   Output output;
   AtRest at_rest;
+  Equilibrium equilibrium;
   Checks checks;
   std::vector<std::filesystem::path> plugin_dirs;  ///< relative ones begin with the scene's folder
   std::shared_ptr<const json::Document> document;  ///< for places in later errors, and for the report

@@ -32,6 +32,7 @@ inline constexpr AllowedRange time{1e-12, 1e9, 1e-9, 1e6, "s"};                 
 inline constexpr AllowedRange density{1e-3, 1e6, 10.0, 1e5, "g/cm3"};           ///< kg/m3
 inline constexpr AllowedRange viscosity{1e-9, 1e6, 1e-5, 0.5, "cP"};            ///< Pa s
 inline constexpr AllowedRange shear_rate{-1e9, 1e9, -1e7, 1e7, "1/s"};          ///< 1/s
+inline constexpr AllowedRange rate{1e-12, 1e9, 1e-12, 1e7, "1/s"};              ///< 1/s
 inline constexpr AllowedRange velocity{-1e6, 1e6, -0.5, 0.5, "mm/s"};           ///< m/s
 inline constexpr AllowedRange force_density{-1e15, 1e15, -1e12, 1e12, "N/m3"};  ///< N/m3
 inline constexpr AllowedRange frequency{1e-9, 1e9, 1e-6, 1e6, "Hz"};            ///< Hz

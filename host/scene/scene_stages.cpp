@@ -30,6 +30,28 @@ void check_mean_velocity(const SceneFields& fields, const Stage& stage, const Sc
   }
 }
 
+/// Of a stage that ends when nothing happens any more.
+void check_until(const SceneFields& fields, const Stage& stage, const Scene& scene, bool flows) {
+  if (!stage.until_at_rest && !stage.until_equilibrium) return;
+  const std::string key = stage.pointer + "/until", word = fields.at(key).get<std::string>();
+  if (flows) {
+    fields.refuse(
+        key, stage.until_at_rest
+                 ? "cells never come to rest in a stage that flows; end it by duration or strain"
+                 : "the flow puts energy in, so that there is no equilibrium; end the stage by duration or strain");
+  }
+  if (scene.cells.empty() && scene.packings.empty()) {
+    fields.refuse(key, "there are no cells that could come to " +
+                           std::string(stage.until_at_rest ? "rest" : "an equilibrium") +
+                           "; end the stage by duration");
+  }
+  if (!stage.duration) {
+    fields.refuse(key, in_quotes(word) +
+                           " needs a duration beside it, the longest time to wait: cells that never "
+                           "come to rest would run for ever");
+  }
+}
+
 /// Faults that the schema cannot see because they lie between the keys of a stage.
 void check_stage(const SceneFields& fields, const Stage& stage, const Scene& scene) {
   const auto& pointer = stage.pointer;
@@ -65,17 +87,7 @@ void check_stage(const SceneFields& fields, const Stage& stage, const Scene& sce
                       "strain grows only where walls move, and this stage has no shear_rate; "
                       "give one, or end the stage by duration");
   }
-  if (stage.until_at_rest && flows) {
-    fields.refuse(pointer + "/until", "cells never come to rest in a stage that flows; end it by duration or strain");
-  }
-  if (stage.until_at_rest && scene.cells.empty() && scene.packings.empty()) {
-    fields.refuse(pointer + "/until", "there are no cells that could come to rest; end the stage by duration");
-  }
-  if (stage.until_at_rest && !stage.duration) {
-    fields.refuse(pointer + "/until",
-                  "\"at_rest\" needs a duration beside it, the longest time to wait: cells that never "
-                  "come to rest would run for ever");
-  }
+  check_until(fields, stage, scene, flows);
   if (!stage.duration && !stage.strain) {
     fields.refuse(pointer, "this stage never ends; give duration (such as \"2 s\")" +
                                std::string(stage.shears_steadily() ? " or strain (such as 15)" : ""));
@@ -140,7 +152,9 @@ Stage read_stage(const SceneFields& fields, const std::string& pointer, const Sc
   stage.name = fields.line(pointer + "/name");
   if (fields.has(pointer + "/duration")) stage.duration = fields.quantity(pointer + "/duration", "s", range::time);
   if (fields.has(pointer + "/strain")) stage.strain = fields.at(pointer + "/strain").get<double>();
-  stage.until_at_rest = fields.has(pointer + "/until");
+  const std::string until = fields.value_or(pointer + "/until", std::string());
+  stage.until_at_rest = until == "at_rest";
+  stage.until_equilibrium = until == "equilibrium";
   stage.shear_rate = fields.quantity_or(pointer + "/shear_rate", "1/s", range::shear_rate, 0.0);
   if (fields.has(pointer + "/walls")) read_walls(fields, pointer + "/walls", scene.domain.size.y(), stage);
   stage.start = fields.value_or(pointer + "/start", std::string("impulsive")) == "developed" ? WallStart::developed

@@ -183,6 +183,18 @@ TEST_CASE("walls have a shear rate and a mean speed, of either sign") {
   CHECK(back.mean_wall_speed == 0.0);
 }
 
+TEST_CASE("a stage may end by the energy's rate") {
+  const auto scene = read(contract_scene, {"/stages/0/until=equilibrium"});
+  CHECK(scene.stages[0].until_equilibrium);
+  CHECK_FALSE(scene.stages[0].until_at_rest);
+  CHECK(scene.equilibrium.rate == about(1e-3));
+  CHECK(scene.equilibrium.window == about(0.2));
+  const auto own =
+      read(contract_scene, {"/stages/0/until=equilibrium", R"(/equilibrium={"rate": "1 1/min", "window": "50 ms"})"});
+  CHECK(own.equilibrium.rate == about(1.0 / 60));
+  CHECK(own.equilibrium.window == about(0.05));
+}
+
 TEST_CASE("a mean velocity stands in place of a pressure gradient") {
   const Stage stage =
       read(contract_scene,
