@@ -22,10 +22,11 @@ constexpr double least_refinement = 4.0 / 3, most_refinement = 2.5;
 constexpr double least_radius = 4;  ///< of the smallest cell on a companion's lattice, spacings
 // Shares of the run's time: of steps, at most and where starting the companions takes the rest; seconds to start one.
 constexpr double most_share = 0.32, least_share = 0.2, start_s = 0.08;
-constexpr double density_of_inertia = 0.5;
-/// The companion for inertia keeps its time step, up to this relaxation time: it costs less, and shows nothing of the
-/// step's own error, which is the lattice's. Not so in the plain scheme, whose slip and leak change with tau.
-constexpr double largest_tau = 3;
+/// The companion for inertia keeps its time step, for the relaxation time makes up for its density: it shows nothing of
+/// the step's own error, which is the lattice's, and costs less. Half the density is nearer to the truth; where that
+/// would want a relaxation time beyond this one, whose own error is large, it is twice the density. In the plain scheme
+/// slip and leak change with tau, which stays.
+constexpr double light = 0.5, dense = 2, largest_tau = 3;
 /// A start that makes a stage late by less than this share of its strain changes in proportion to the density, and the
 /// companion for inertia shows it.
 constexpr double slight_start = 0.1;
@@ -118,13 +119,14 @@ Companions choose_companions(const scene::Scene& scene, double run_s) {
   double densest = 1;
   for (const scene::Stage& stage : scene.stages) densest = std::max(densest, stage.density_factor);
   chosen.relaxed = 1 - 1 / densest;
-  chosen.density = std::max(density_of_inertia, 1 / densest);
   chosen.order = scene.cells.empty() || scene.numerics.slip_correction ? 2 : 1;
   const bool inertia = chosen.relaxed > 0, start = start_matters(scene);
-  const double tau = scene.numerics.tau, same_step = 0.5 + (tau - 0.5) / chosen.density;
-  const double light_tau = chosen.order == 2 ? std::min(same_step, std::max(tau, largest_tau)) : tau;
-  const double runs = 1 + (start ? 1 : 0) + (inertia ? (same_step - 0.5) / (light_tau - 0.5) : 0);
-
+  const double tau = scene.numerics.tau;
+  const auto tau_of_same_step = [&](double density) { return 0.5 + (tau - 0.5) / density; };
+  chosen.density = std::max(light, 1 / densest);
+  if (chosen.order == 2 && tau_of_same_step(chosen.density) > largest_tau) chosen.density = dense;
+  const double companion_tau = chosen.order == 2 ? tau_of_same_step(chosen.density) : tau;
+  const double runs = 1 + (start ? 1 : 0) + (inertia ? (chosen.order == 2 ? 1 : 1 / chosen.density) : 0);
   const int processes = 1 + (start ? 1 : 0) + (inertia ? 1 : 0);
   const double affordable = std::max(least_share, most_share - processes * start_s / run_s);
 
@@ -163,9 +165,9 @@ Companions choose_companions(const scene::Scene& scene, double run_s) {
   }
   if (inertia) {
     set_density(companion, chosen.density);
-    companion["numerics"]["tau"] = light_tau;
+    companion["numerics"]["tau"] = companion_tau;
     std::string differs = "density factor times " + number(chosen.density, 3);
-    if (light_tau != tau) differs += ", tau " + number(light_tau, 3);
+    if (companion_tau != tau) differs += ", tau " + number(companion_tau, 3);
     chosen.runs.push_back({Role::inertia, companion, differs});
   }
   return chosen;

@@ -13,7 +13,7 @@ namespace rouleau::accuracy {
 enum class Role {
   lattice,  ///< on a coarser lattice, all else as in the run: against the run, the lattice's error
   start,    ///< as that one, with flows that are developed when their stages begin: against it, the error of the start
-  inertia   ///< as the one before, in a fluid less dense: against it, the error of the relaxed density
+  inertia   ///< as the one before, in a fluid of another density: against it, the error of the relaxed density
 };
 const char* name_of(Role role);
 

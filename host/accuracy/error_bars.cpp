@@ -29,6 +29,15 @@ struct Values {
   std::vector<double> companions;
 };
 
+/// Early events err as the Reynolds number to the power 0.7 (docs/accuracy.md, passage of 45 deg), so that what is added
+/// with the density shows less than in proportion; what is taken away with it shows more.
+constexpr double least_power_of_density = 0.7;
+
+/// Change of the error between a companion of this relative density and the run, over the run's error.
+double change_by_density(double density) {
+  return 1 - (density < 1 ? density : std::pow(density, least_power_of_density));
+}
+
 double lattice_share(double run, double coarse, const Companions& companions) {
   return (coarse - run) / (std::pow(companions.refinement, companions.order) - 1);
 }
@@ -45,7 +54,7 @@ Shares shares_of(const Values& values, const Companions& companions, const std::
         shares.start = before - value;
         break;
       case Role::inertia:
-        shares.inertia = companions.relaxed * (before - value) / (1 - companions.density);
+        shares.inertia = companions.relaxed * (before - value) / change_by_density(companions.density);
         break;
     }
   }
@@ -192,8 +201,13 @@ std::vector<std::string> sentences(const std::vector<ErrorBar>& bars) {
 
 std::optional<Worst> worst(const std::vector<ErrorBar>& bars) {
   std::optional<Worst> found;
+  const auto counts = [](const ErrorBar& bar) {
+    return bar.quantity.principal && bar.error && bar.quantity.value != 0;
+  };
+  const bool moments =
+      std::any_of(bars.begin(), bars.end(), [&](const ErrorBar& bar) { return counts(bar) && bar.quantity.moment; });
   for (const ErrorBar& bar : bars) {
-    if (!bar.quantity.principal || !bar.error || bar.quantity.value == 0) continue;
+    if (!counts(bar) || bar.quantity.moment != moments) continue;
     const double error = bar.estimate / (is_angle(bar.quantity) ? 1 : std::abs(bar.quantity.value));
     if (!found || error > found->error) found = {error, bar.quantity.name};
   }

@@ -48,7 +48,8 @@ std::string with_error(double value, double error);
 /// Of the quantities that are told first: "deformation 0.347 +- 0.004".
 std::vector<std::string> sentences(const std::vector<ErrorBar>& bars);
 
-/// The largest relative estimate of these quantities' errors (of an angle the error in rad), and of which one.
+/// The largest relative estimate of these quantities' errors (of an angle the error in rad), and of which one. Where
+/// there are moments at which something happens they alone count: a shape that turns over has moved on by the end.
 struct Worst {
   double error = 0;
   std::string name;

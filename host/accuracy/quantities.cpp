@@ -62,7 +62,8 @@ void add_passages(std::vector<Quantity>& all, const CellColumns& cell, const std
                       std::to_string(45 * passage.multiple) + "_deg",
               .value = passage.at,
               .uncertainty = passage.uncertainty,
-              .principal = told});
+              .principal = told,
+              .moment = true});
   }
 }
 
@@ -155,7 +156,8 @@ void add_partings(std::vector<Quantity>& all, const Json& stages) {
         add(all, {.name = (last ? "" : stage->at("stage").get<std::string>() + ": ") + name,
                   .value = strain,
                   .uncertainty = strain - before,
-                  .principal = last});
+                  .principal = last,
+                  .moment = true});
       }
     }
   }

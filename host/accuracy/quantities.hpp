@@ -21,6 +21,7 @@ struct Quantity {
   double uncertainty = 0;    ///< that the value has whatever the numerics, for it was looked at in outputs only
   double part_of_cells = 0;  ///< of the value: what the lattice's error of the cells' shape must show in; 0: nothing
   bool principal = false;    ///< said on the terminal
+  bool moment = false;       ///< the strain or time at which something happens
   std::string why_not = {};  ///< why there can be no bar; empty: there can
 };
 

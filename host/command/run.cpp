@@ -34,7 +34,7 @@ the directory's last checkpoint, whatever ended the run, to the same results as 
 runs/NAME of the scene. Where no run has been, or one was killed before its first checkpoint, it begins at the beginning.
 
 --error-bar measures an error of every number that the run reports: cheap runs of the same scene follow, on a coarser
-lattice, with developed flow and with a less dense fluid, and take at most about 40 % of the run's time. A scene with
+lattice, with developed flow and with another density, and take at most about 40 % of the run's time. A scene with
 "numerics": "auto" gets error bars without being asked; --no-error-bar leaves them out.
 
 Example:
@@ -86,8 +86,8 @@ bool add_error_bars(const std::filesystem::path& folder, const scene::Scene& sce
                   std::to_string(errors.bars.size()));
   const std::optional<accuracy::Worst> worst = accuracy::worst(errors.bars);
   if (choice && worst && worst->error > choice->target) {
-    lines.push_back("numerics.auto missed its target: the error of " + worst->name + " is estimated as " +
-                    number(100 * worst->error, 2) + " %, not " + number(100 * choice->target, 2) +
+    lines.push_back("numerics.auto may have missed its target: the error of " + worst->name + " is estimated as " +
+                    number(100 * worst->error, 2) + " %, more than " + number(100 * choice->target, 2) +
                     " %; set /numerics/auto/error to less");
   }
   return true;

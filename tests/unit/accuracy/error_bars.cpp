@@ -49,6 +49,22 @@ TEST_CASE("a bar holds an error of second order in the spacing, of the start, an
   }
 }
 
+TEST_CASE("the share of the density is that of an error in proportion, of a denser companion that of a power of 0.7") {
+  Companions companions = three_companions();
+  const auto share = [&](double density, double power) {
+    companions.density = density;
+    const double companion = 1 + 0.01 * std::pow(density, power);
+    return error_bars({quantity("deformation", 1.01)}, companions,
+                      {{Role::lattice, "coarse", {quantity("deformation", 1.01)}},
+                       {Role::inertia, "other", {quantity("deformation", companion)}}})[0]
+        .shares.inertia;
+  };
+  CHECK(share(0.5, 1) == Approx(0.01));
+  CHECK(share(0.8, 1) == Approx(0.01));
+  CHECK(share(2, 0.7) == Approx(0.01));
+  CHECK(share(2, 1) > 0.01);
+}
+
 TEST_CASE("without slip correction the lattice's share is that of first order") {
   Companions companions = three_companions();
   companions.order = 1;
@@ -115,4 +131,9 @@ TEST_CASE("what is told first is told with its bar, an angle in degrees; the wor
   REQUIRE(found);
   CHECK(found->name == "deformation");
   CHECK(found->error == Approx(0.01));
+  // Of what moves on, the moments count, not where it is at the end.
+  ErrorBar passage{quantity("passage_strain_0_deg", 6), {}, 0.03, 0.04, ""};
+  passage.quantity.moment = true;
+  CHECK(worst({first, second, passage})->name == "passage_strain_0_deg");
+  CHECK(worst({first, second, passage})->error == Approx(0.005));
 }
