@@ -12,6 +12,7 @@ namespace rouleau::core {
 enum class Task {
   find_contacts,       ///< cells: the closest point of other outlines to each node
   membrane_forces,     ///< cells: F = -dE/dX of the membrane laws, and the couples of the slip correction
+  wall_forces,         ///< cells: F = -dE/dX of the potentials between cells and walls
   interaction_forces,  ///< cells: F = -dE/dX of the potentials, on own nodes
   share_reactions,     ///< one worker: what own nodes do to other ranks' cells
   take_reactions,      ///< cells: what other cells' nodes do to this one's
@@ -45,6 +46,7 @@ struct Step {
 struct StepFeatures {
   bool cells = false;
   bool interactions = false;
+  bool wall_interactions = false;
   bool viscosity_contrast = false;
   bool slip_correction = false;
   bool area_correction = false;

@@ -92,6 +92,7 @@ template <class T>
 StepFeatures Solver<T>::features() const {
   return {.cells = !membranes_.cells.empty(),
           .interactions = interaction_forces_ != nullptr,
+          .wall_interactions = wall_contacts_ != nullptr,
           .viscosity_contrast = fluid_.setting().viscosity_contrast,
           .slip_correction = slip_correction_ != nullptr,
           .area_correction = setup_.area_correction,
@@ -108,6 +109,8 @@ void Solver<T>::run(Task task, Worker worker) {
       membrane_forces_->run(worker, membranes_);
       if (slip_correction_) slip_correction_->couple(worker, membranes_);
       return;
+    case Task::wall_forces:
+      return wall_contacts_->run(worker, membranes_);
     case Task::interaction_forces:
       return interaction_forces_->run(worker, 1, membranes_);
     case Task::take_reactions:
@@ -210,6 +213,9 @@ void Solver<T>::make_cells() {
   slight_energy_ = slight_energy_of(setup_.cell_types, membranes_);
   if (!setup_.interactions.empty()) {
     interaction_forces_ = std::make_unique<InteractionForces>(membranes_, setup_.interactions, setup_.domain);
+  }
+  if (!setup_.wall_interactions.empty()) {
+    wall_contacts_ = std::make_unique<WallContacts>(membranes_, setup_.wall_interactions, setup_.domain);
   }
   viscosity_field_ = std::make_unique<ViscosityField<T>>(
       membranes_, std::move(viscosity_ratio), slip_correction_ ? ViscosityMean::harmonic : ViscosityMean::arithmetic,

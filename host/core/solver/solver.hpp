@@ -83,6 +83,8 @@ class Solver {
   [[nodiscard]] double slight_energy() const { return slight_energy_; }
   /// Null without cells or interactions.
   [[nodiscard]] const InteractionForces* interaction_forces() const { return interaction_forces_.get(); }
+  /// Null without cells or interactions with walls.
+  [[nodiscard]] const WallContacts* wall_contacts() const { return wall_contacts_.get(); }
 
  private:
   [[nodiscard]] StepFeatures features() const;
@@ -103,6 +105,7 @@ class Solver {
   std::unique_ptr<SlipCorrection> slip_correction_;
   std::unique_ptr<MembraneForces> membrane_forces_;
   std::unique_ptr<InteractionForces> interaction_forces_;
+  std::unique_ptr<WallContacts> wall_contacts_;
   std::unique_ptr<ViscosityField<T>> viscosity_field_;
   std::unique_ptr<Coupling<T>> coupling_;
   double slight_energy_ = 0;

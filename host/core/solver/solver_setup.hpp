@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/contact/interaction_forces.hpp"
+#include "core/contact/wall_contacts.hpp"
 #include "core/coupling/kernel_kind.hpp"
 #include "core/domain/domain.hpp"
 #include "core/fluid/relaxation.hpp"
@@ -41,6 +42,8 @@ struct SolverSetup {
   /// What Membranes::cells name as their types.
   std::vector<CellType> cell_types = {};
   std::vector<Interaction> interactions = {};
+  /// Only between walls, not where y is periodic.
+  std::vector<WallInteraction> wall_interactions = {};
   /// The step of stiff membranes (SemiImplicitFilter).
   bool semi_implicit = false;
   /// Takes the tangential slip of the immersed boundary out.

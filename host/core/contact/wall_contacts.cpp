@@ -1,0 +1,128 @@
+#include "wall_contacts.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "contact.hpp"
+
+namespace rouleau::core {
+
+WallContacts::WallContacts(const Membranes& membranes, std::vector<WallInteraction> interactions,
+                           const Domain<2>& domain)
+    : interactions_(std::move(interactions)),
+      lower_(-0.5),
+      upper_(domain.size[1] - 0.5),
+      contacts_(membranes.cells.size()) {
+  if (!domain.walled(1)) throw std::invalid_argument("a potential between cells and walls needs walls along y");
+  for (const WallInteraction& interaction : interactions_) {
+    const Potential& potential = interaction.potential;
+    // No memory is kept of contacts with walls, and friction would be part of the walls' stress and power.
+    if (!potential.state.empty()) throw std::invalid_argument("a potential with walls has no state: " + potential.id);
+    if (potential.reads("tangential_velocity"))
+      throw std::invalid_argument("a potential with walls reads no tangential velocity: " + potential.id);
+    const double cutoff =
+        call_foreign(potential.id, "cutoff", [&] { return potential.table->cutoff(potential.self.get()); });
+    traits_.push_back({cutoff, potential.reads("normal_velocity"), potential.writes("energy")});
+  }
+}
+
+void WallContacts::run(Worker worker, Membranes& membranes) {
+  const Range cells = worker.share(membranes.cell_count());
+  const double* weight = membranes.rest_weight.data();
+  double* force = membranes.force_y.data();
+  for (int cell = cells.begin; cell < cells.end; ++cell) {
+    if (!membranes.owns(cell)) continue;
+    Contacts& contacts = contacts_[cells.begin];
+    for (std::size_t k = 0; k < interactions_.size(); ++k) {
+      if (interactions_[k].type != membranes.cells[cell].type) continue;
+      measure(k, cell, membranes, false, contacts);
+      for (int i = 0; i < contacts.count; ++i) {
+        const int node = contacts.node[i];
+        force[node] += weight[node] * contacts.law[i] * contacts.outward[i];
+      }
+    }
+  }
+}
+
+void WallContacts::find(int cell, double cutoff, const Membranes& membranes, Contacts& contacts) const {
+  contacts.count = 0;
+  const CellRange& range = membranes.cells[cell];
+  const double* y = membranes.y.data();
+  double lowest = y[range.first], highest = lowest;
+  for (int i = range.first; i < range.end(); ++i) {
+    lowest = y[i] < lowest ? y[i] : lowest;
+    highest = y[i] > highest ? y[i] : highest;
+  }
+  if (lowest - lower_ > cutoff && upper_ - highest > cutoff) return;
+
+  const auto most = 2 * static_cast<std::size_t>(range.count);
+  if (contacts.node.size() < most) {
+    contacts.node.resize(most);
+    for (auto* values : {&contacts.distance, &contacts.outward, &contacts.normal_velocity, &contacts.law})
+      values->resize(most);
+  }
+  const auto add = [&](int node, double distance, double outward) {
+    if (!(distance <= cutoff)) return;
+    const int at = contacts.count++;
+    contacts.node[at] = node;
+    contacts.distance[at] = std::max(distance, ContactList::least_distance);
+    contacts.outward[at] = outward;
+    contacts.normal_velocity[at] = outward * membranes.velocity_y[node];  // the wall moves along itself
+  };
+  for (int i = range.first; i < range.end(); ++i) {
+    add(i, y[i] - lower_, 1);
+    add(i, upper_ - y[i], -1);
+  }
+}
+
+void WallContacts::measure(std::size_t interaction, int cell, const Membranes& membranes, bool energy,
+                           Contacts& contacts) const {
+  find(cell, traits_[interaction].cutoff, membranes, contacts);
+  if (contacts.count == 0) return;
+  rouleau_interaction_block block{};
+  block.struct_size = sizeof block;
+  block.count = static_cast<std::uint32_t>(contacts.count);
+  block.time_step = 1;
+  block.distance = contacts.distance.data();
+  if (traits_[interaction].normal_velocity) block.normal_velocity = contacts.normal_velocity.data();
+  (energy ? block.energy : block.force) = contacts.law.data();
+  interactions_[interaction].potential.compute(&block);
+}
+
+double WallContacts::energy(const Membranes& membranes, const Ranks<2>& ranks) const {
+  std::vector<ExactSum> sum(1);
+  Contacts contacts;
+  for (int cell = 0; cell < membranes.cell_count(); ++cell) {
+    if (!membranes.owns(cell)) continue;
+    for (std::size_t k = 0; k < interactions_.size(); ++k) {
+      if (interactions_[k].type != membranes.cells[cell].type || !traits_[k].energy) continue;
+      measure(k, cell, membranes, true, contacts);
+      for (int i = 0; i < contacts.count; ++i)
+        sum.front().add(membranes.rest_weight[contacts.node[i]] * contacts.law[i]);
+    }
+  }
+  add_up(ranks, sum);
+  return sum.front().value();
+}
+
+double WallContacts::net_force(const Membranes& membranes) const {
+  double sum = 0;
+  Contacts contacts;
+  for (int cell = 0; cell < membranes.cell_count(); ++cell) {
+    for (std::size_t k = 0; k < interactions_.size(); ++k) {
+      if (interactions_[k].type != membranes.cells[cell].type) continue;
+      measure(k, cell, membranes, false, contacts);
+      for (int i = 0; i < contacts.count; ++i)
+        sum += membranes.rest_weight[contacts.node[i]] * contacts.law[i] * contacts.outward[i];
+    }
+  }
+  return sum;
+}
+
+std::string WallContacts::without_energy() const {
+  for (std::size_t k = 0; k < interactions_.size(); ++k)
+    if (!traits_[k].energy) return interactions_[k].potential.id;
+  return {};
+}
+
+}  // namespace rouleau::core
