@@ -47,12 +47,18 @@ EnergySnapshot observe_energy(core::Solver<T>& solver, const core::Membranes& me
     if (solver.corrects_motion()) energy.viscous_dissipation += (given_away(membranes) - fluid.membrane_power) * watt;
     if (!membrane.unknown.empty()) energy.unknown = "membrane law " + membrane.unknown + " tells no energy";
   }
-  if (const core::InteractionForces* forces = solver.interaction_forces()) {
-    energy.interaction = forces->energy(membranes, solver.ranks()) * joule;
-    energy.total += energy.interaction;
+  bool interact = false;
+  const auto add_interaction = [&](const auto* forces) {
+    if (forces == nullptr) return;
+    const double part = forces->energy(membranes, solver.ranks()) * joule;
+    energy.interaction = interact ? energy.interaction + part : part;
+    energy.total += part;
+    interact = true;
     const std::string silent = forces->without_energy();
     if (!silent.empty()) energy.unknown = "interaction " + silent + " tells no energy";
-  }
+  };
+  add_interaction(solver.interaction_forces());
+  add_interaction(solver.wall_contacts());
   if (!energy.unknown.empty()) energy.total = EnergySnapshot::none;
   return energy;
 }

@@ -60,8 +60,8 @@ double Observer::area_leakage(const core::Membranes& membranes, int* whose) {
   return most;
 }
 
-double Observer::momentum_residual(const core::Membranes& m) {
-  double net_x = 0, net_y = 0, magnitudes = 0;
+double Observer::momentum_residual(const core::Membranes& m, double from_walls) {
+  double net_x = 0, net_y = -from_walls, magnitudes = 0;
   for (std::size_t i = 0; i < m.x.size(); ++i) {
     net_x += m.force_x[i];
     net_y += m.force_y[i];
@@ -116,6 +116,7 @@ void Observer::observe_cells(const core::Membranes& membranes, const units::Latt
     s.perimeter = core::perimeter(membranes, cell) * length;
     s.tank_treading_angle = tank_treading_angle_[k];
     s.min_gap = gaps[k] * length;
+    s.wall_gap = wall_gap(membranes, cell, domain_) * length;
     s.aggregate = aggregates.label[k];
     s.through_image = aggregates.through_image[k];
     const core::StretchRange stretch = core::stretch_range(membranes, cell);

@@ -19,6 +19,7 @@ struct CellSnapshot {
   double perimeter;            ///< m
   double tank_treading_angle;  ///< of the first node about the centroid, rad, continuous in time
   double min_gap;      ///< m, to the nearest membrane of another cell or of an image; infinite when there is none
+  double wall_gap;     ///< m, to the nearer wall; NaN without walls
   int aggregate;       ///< label: smallest index of a cell of the aggregate it belongs to
   bool through_image;  ///< its aggregate is held together by a contact across the periodic boundary
   double stretch_min, stretch_max;  ///< of its segments: length over rest length

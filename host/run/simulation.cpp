@@ -320,7 +320,10 @@ class Simulation {
           return;
         }
       }
-      state_.momentum_residual = std::max(state_.momentum_residual, observe::Observer::momentum_residual(membranes_));
+      const core::WallContacts* walls = solver_->wall_contacts();
+      const double from_walls = walls != nullptr ? walls->net_force(membranes_) : 0;
+      state_.momentum_residual =
+          std::max(state_.momentum_residual, observe::Observer::momentum_residual(membranes_, from_walls));
       progress_.update(progress(setting));
       state_.costs.add("observe and check", seconds_since(start), 1);
     }
