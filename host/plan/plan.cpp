@@ -46,6 +46,20 @@ void try_models(const Plan& plan) {
   }
 }
 
+/// Of a contact with a wall nothing is remembered, and what rubs on a wall would be part of its stress and power, which
+/// are those of the fluid.
+void require_no_more_than_distance(const PlannedModel& model, const scene::Scene& scene) {
+  const plugin::Manifest& manifest = *model.manifest;
+  const auto refuse = [&](const std::string& why) {
+    throw Error(Cause::bad_input, scene.place(model.pointer + "/model"),
+                in_quotes(manifest.id) + " cannot act between cells and walls: " + why,
+                {"take a potential of the distance alone, or another cell type in place of \"wall\""});
+  };
+  if (!manifest.state.empty())
+    refuse("it remembers contacts (" + manifest.state.front().name + "), and none is kept with a wall");
+  if (manifest.needs_input("tangential_velocity")) refuse("it needs tangential_velocity, and nothing rubs on a wall");
+}
+
 void choose_coupling(Plan& plan) {
   const std::string& wanted = plan.scene->numerics.coupling;
   if (!plan.has_cells) {
@@ -77,8 +91,8 @@ std::string Plan::owner_of(const PlannedModel& model) const {
   }
   for (std::size_t i = 0; i < interactions.size(); ++i) {
     if (&interactions[i] != &model) continue;
-    const auto [a, b] = scene->interactions[i].between;
-    return name(a) + ", " + name(b);
+    const auto [a, b] = scene->names_of(scene->interactions[i]);
+    return a + ", " + b;
   }
   return {};
 }
@@ -121,7 +135,9 @@ Plan make_plan(const scene::Scene& scene, const plugin::Catalog& catalog, std::o
   for (const scene::Interaction& interaction : scene.interactions) {
     PlannedModel model = planned(plugin::ModelKind::interaction, interaction.potential);
     if (!plan.has_cells) model.parameters.inactive = true;
-    plan.has_interactions = plan.has_interactions || model.active();
+    if (interaction.with_wall()) require_no_more_than_distance(model, scene);
+    bool& has = interaction.with_wall() ? plan.has_wall_interactions : plan.has_interactions;
+    has = has || model.active();
     plan.interactions.push_back(std::move(model));
   }
   plan.viscosity_contrast = std::any_of(scene.cells.begin(), scene.cells.end(), [&](const scene::CellPlacement& cell) {

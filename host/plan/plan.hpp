@@ -31,7 +31,8 @@ struct Plan {
   std::vector<StageSetting> stages;
   bool has_cells = false;
   bool viscosity_contrast = false;
-  bool has_interactions = false;
+  bool has_interactions = false;       ///< between cells
+  bool has_wall_interactions = false;  ///< between cells and walls
   bool semi_implicit = false;  ///< membranes: the step that numerics.coupling names or, if "auto", the limits ask for
   std::string coupling;        ///< which step that is and why, for people
   std::optional<plugin::LockUse> lock;  ///< the lock that the plugins were held against

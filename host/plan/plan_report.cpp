@@ -134,7 +134,10 @@ std::vector<PlannedPass> planned_passes(const Plan& plan) {
   const std::map<std::string, std::string> reasons{
       {"membrane", std::to_string(scene.cells.size()) + " cells resist deformation" +
                        (plan.semi_implicit ? "; semi-implicit step" : "")},
-      {"interaction", "an active potential acts between cells"},
+      {"interaction",
+       std::string("an active potential acts between cells") + (!plan.has_wall_interactions ? ""
+                                                                : plan.has_interactions     ? ", and one with the walls"
+                                                                                            : " and walls")},
       {"corrections",
        slip ? (area ? "membranes neither slip nor leak" : "membranes do not slip") : "cells keep their areas"},
       {"indicator", "inside and outside of a cell have different viscosities"},
@@ -145,6 +148,7 @@ std::vector<PlannedPass> planned_passes(const Plan& plan) {
       {"move", "new positions of membrane nodes"}};
   const core::Schedule schedule = core::make_schedule({.cells = plan.has_cells,
                                                        .interactions = plan.has_interactions,
+                                                       .wall_interactions = plan.has_wall_interactions,
                                                        .viscosity_contrast = plan.viscosity_contrast,
                                                        .slip_correction = plan.has_cells && slip,
                                                        .area_correction = plan.has_cells && area});
@@ -179,9 +183,11 @@ std::vector<Omission> omissions(const Plan& plan) {
            "numerics.slip_correction is false: membranes slip to first order in the lattice spacing");
     if (!scene.numerics.area_correction)
       omit("area correction", "numerics.area_correction is false: leaks show as area drift");
-    if (!plan.has_interactions)
-      omit("neighbour search",
-           scene.interactions.empty() ? "the scene has no interaction" : "no interaction is active");
+    if (!plan.has_interactions) {
+      omit("neighbour search", scene.interactions.empty()   ? "the scene has no interaction"
+                               : plan.has_wall_interactions ? "no interaction between cells is active"
+                                                            : "no interaction is active");
+    }
   }
   for (const PlannedModel& model : plan.interactions) omit_inactive("interaction", model);
   for (const auto& laws : plan.membranes) {

@@ -182,9 +182,13 @@ core::SolverSetup make_solver_setup(const Plan& plan, int index) {
   for (std::size_t i = 0; i < plan.interactions.size(); ++i) {
     const PlannedModel& potential = plan.interactions[i];
     if (!potential.active()) continue;
-    setup.interactions.push_back(
-        {.between = scene.interactions[i].between,
-         .potential = plugin::make_potential(*potential.manifest, values(potential), setting)});
+    const scene::Interaction& interaction = scene.interactions[i];
+    core::Potential made = plugin::make_potential(*potential.manifest, values(potential), setting);
+    if (interaction.with_wall()) {
+      setup.wall_interactions.push_back({.type = interaction.between[0], .potential = std::move(made)});
+    } else {
+      setup.interactions.push_back({.between = interaction.between, .potential = std::move(made)});
+    }
   }
   return setup;
 }

@@ -79,14 +79,28 @@ Numerics read_numerics(const SceneFields& fields) {
   return numerics;
 }
 
-std::vector<Interaction> read_interactions(const SceneFields& fields, const std::vector<CellType>& types) {
+std::array<int, 2> read_between(const SceneFields& fields, const std::string& pointer,
+                                const std::vector<CellType>& types, bool periodic_y) {
+  const auto side = [&](const std::string& which) {
+    if (fields.at(pointer + which) != wall_name) return fields.cell_type(pointer + which, types, {wall_name});
+    if (!periodic_y) return Interaction::wall;
+    fields.refuse(pointer + which,
+                  "there is no wall, for domain.y is \"periodic\"\nwrite \"y\": {\"lower\": {\"wall\": {}}, "
+                  "\"upper\": {\"wall\": {}}}, or leave this interaction out");
+  };
+  const int a = side("/0"), b = side("/1");
+  if (a == Interaction::wall && b == Interaction::wall)
+    fields.refuse(pointer, "walls do not act on each other\nname a cell type beside \"wall\"");
+  return a == Interaction::wall ? std::array{b, a} : std::array{a, b};
+}
+
+std::vector<Interaction> read_interactions(const SceneFields& fields, const std::vector<CellType>& types,
+                                           bool periodic_y) {
   std::vector<Interaction> interactions;
   const auto count = fields.has("/interactions") ? fields.at("/interactions").size() : 0;
   for (std::size_t i = 0; i < count; ++i) {
     const auto pointer = json::child_pointer("/interactions", i);
-    interactions.push_back(
-        {{fields.cell_type(pointer + "/between/0", types), fields.cell_type(pointer + "/between/1", types)},
-         fields.model(pointer)});
+    interactions.push_back({read_between(fields, pointer + "/between", types, periodic_y), fields.model(pointer)});
   }
   return interactions;
 }
@@ -127,6 +141,11 @@ const nlohmann::json& scene_schema() {
   return schema;
 }
 
+std::array<std::string, 2> Scene::names_of(const Interaction& interaction) const {
+  const auto name = [&](int type) { return type == Interaction::wall ? wall_name : cell_types[type].name; };
+  return {name(interaction.between[0]), name(interaction.between[1])};
+}
+
 Place Scene::place(const std::string& pointer) const {
   return document ? document->place(pointer) : Place{"", pointer, 0, 0};
 }
@@ -157,7 +176,7 @@ Scene read_scene(std::shared_ptr<const json::Document> document) {
   scene.numerics = read_numerics(fields);
   scene.cell_types = read_cell_types(fields, scene.fluid.viscosity);
   scene.cells = read_cells(fields, scene.cell_types, scene.domain, scene.packings);
-  scene.interactions = read_interactions(fields, scene.cell_types);
+  scene.interactions = read_interactions(fields, scene.cell_types, scene.domain.periodic_y);
   scene.stages = read_stages(fields, scene);
   scene.output = read_output(fields, scene.stages);
   scene.output.field_storage = read_field_storage(fields, scene.domain);

@@ -92,9 +92,14 @@ struct RandomPacking {
   std::string pointer;           ///< entry of /cells
 };
 
+/// Stands for both walls where an interaction names what it acts between; no cell type may be called so.
+inline constexpr const char* wall_name = "wall";
+
 struct Interaction {
-  std::array<int, 2> between;  ///< indices into Scene::cell_types; unordered
+  static constexpr int wall = -1;
+  std::array<int, 2> between;  ///< indices into Scene::cell_types; unordered; `wall` may be the second
   ModelChoice potential;
+  [[nodiscard]] bool with_wall() const { return between[1] == wall; }
 };
 
 enum class WallStart { impulsive, developed };
@@ -173,6 +178,8 @@ struct Scene {
   std::vector<std::filesystem::path> plugin_dirs;  ///< relative ones begin with the scene's folder
   std::shared_ptr<const json::Document> document;  ///< for places in later errors, and for the report
 
+  /// Names of what an interaction acts between.
+  [[nodiscard]] std::array<std::string, 2> names_of(const Interaction& interaction) const;
   /// Place of a JSON pointer in the scene file, for an Error.
   [[nodiscard]] Place place(const std::string& pointer) const;
 };

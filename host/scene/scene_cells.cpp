@@ -106,6 +106,10 @@ std::vector<CellType> read_cell_types(const SceneFields& fields, double fluid_vi
           pointer,
           in_quotes(name) + " is no name for a cell type; use letters, digits, '_', '-' and '.', a letter first");
     }
+    if (name == wall_name) {
+      fields.refuse_key(pointer,
+                        "\"wall\" is no name for a cell type: in \"between\" it stands for the walls; take another");
+    }
     if (types.size() == most_types) {
       fields.refuse_key(pointer, "there are more than " + std::to_string(most_types) + " cell types");
     }

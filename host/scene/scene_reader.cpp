@@ -87,7 +87,8 @@ ModelChoice SceneFields::model(const std::string& pointer) const {
           pointer};
 }
 
-int SceneFields::cell_type(const std::string& pointer, const std::vector<CellType>& types) const {
+int SceneFields::cell_type(const std::string& pointer, const std::vector<CellType>& types,
+                           const std::vector<std::string>& others) const {
   const auto& name = at(pointer).get_ref<const std::string&>();
   for (std::size_t i = 0; i < types.size(); ++i) {
     if (types[i].name == name) return static_cast<int>(i);
@@ -95,8 +96,9 @@ int SceneFields::cell_type(const std::string& pointer, const std::vector<CellTyp
   std::vector<std::string> names;
   names.reserve(types.size());
   for (const auto& type : types) names.push_back(type.name);
-  refuse(pointer, "no cell type is called " + in_quotes(name) + did_you_mean(name, names) +
-                      "\ncell_types has: " + listed(names));
+  const std::string there = "\ncell_types has: " + listed(names);
+  names.insert(names.end(), others.begin(), others.end());
+  refuse(pointer, "no cell type is called " + in_quotes(name) + did_you_mean(name, names) + there);
 }
 
 void SceneFields::require(const std::string& pointer, const std::string& key, const std::string& otherwise) const {

@@ -63,8 +63,9 @@ class SceneFields {
   /// A model's id and parameters; the object at `pointer` has "model".
   [[nodiscard]] ModelChoice model(const std::string& pointer) const;
 
-  /// Index of the cell type that the text at `pointer` names.
-  [[nodiscard]] int cell_type(const std::string& pointer, const std::vector<CellType>& types) const;
+  /// Index of the cell type that the text at `pointer` names. `others`: what else might have been meant.
+  [[nodiscard]] int cell_type(const std::string& pointer, const std::vector<CellType>& types,
+                              const std::vector<std::string>& others = {}) const;
 
   /// Throws when the object at `pointer` lacks a key that only some scenes may leave out; `otherwise` says what the
   /// others do.

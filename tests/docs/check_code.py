@@ -232,6 +232,7 @@ BLOCKS = [
     ("docs/scene.md", '{"type": "rbc", "list"', part_of_scene("cells")),
     ("docs/scene.md", '{"type": "rbc", "random"', part_of_scene("cells")),
     ("docs/scene.md", '{"between": ["rbc", "rbc"], "model": "morse"', part_of_scene("interactions")),
+    ("docs/scene.md", '{"between": ["rbc", "wall"], "model": "repulsion"', part_of_scene("interactions")),
     ("docs/scene.md", '"domain": {', other_settings),
     ("docs/scene.md", '"numerics": {', other_settings),
     ("docs/study.md", '{\n  "rouleau_study": 1', study),
