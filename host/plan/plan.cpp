@@ -46,18 +46,13 @@ void try_models(const Plan& plan) {
   }
 }
 
-/// Of a contact with a wall nothing is remembered, and what rubs on a wall would be part of its stress and power, which
-/// are those of the fluid.
-void require_no_more_than_distance(const PlannedModel& model, const scene::Scene& scene) {
-  const plugin::Manifest& manifest = *model.manifest;
-  const auto refuse = [&](const std::string& why) {
-    throw Error(Cause::bad_input, scene.place(model.pointer + "/model"),
-                in_quotes(manifest.id) + " cannot act between cells and walls: " + why,
-                {"take a potential of the distance alone, or another cell type in place of \"wall\""});
-  };
-  if (!manifest.state.empty())
-    refuse("it remembers contacts (" + manifest.state.front().name + "), and none is kept with a wall");
-  if (manifest.needs_input("tangential_velocity")) refuse("it needs tangential_velocity, and nothing rubs on a wall");
+/// What rubs on a wall would be part of its stress and power, which are those of the fluid.
+void refuse_friction_on_walls(const PlannedModel& model, const scene::Scene& scene) {
+  if (!model.manifest->needs_input("tangential_velocity")) return;
+  throw Error(Cause::bad_input, scene.place(model.pointer + "/model"),
+              in_quotes(model.manifest->id) +
+                  " cannot act between cells and walls: it needs tangential_velocity, and nothing rubs on a wall",
+              {"take a potential without friction, or another cell type in place of \"wall\""});
 }
 
 void choose_coupling(Plan& plan) {
@@ -135,7 +130,7 @@ Plan make_plan(const scene::Scene& scene, const plugin::Catalog& catalog, std::o
   for (const scene::Interaction& interaction : scene.interactions) {
     PlannedModel model = planned(plugin::ModelKind::interaction, interaction.potential);
     if (!plan.has_cells) model.parameters.inactive = true;
-    if (interaction.with_wall()) require_no_more_than_distance(model, scene);
+    if (interaction.with_wall()) refuse_friction_on_walls(model, scene);
     bool& has = interaction.with_wall() ? plan.has_wall_interactions : plan.has_interactions;
     has = has || model.active();
     plan.interactions.push_back(std::move(model));

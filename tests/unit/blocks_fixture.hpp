@@ -41,6 +41,9 @@ inline std::vector<Case> scenes_to_cut() {
     "off_rate": "10 1/s", "cutoff": "1.5 um"}}])";
   const std::string held = R"({"between": ["wall", "rbc"], "model": "morse", "parameters": {"depth": "1e-7 J/m2"}})",
                     held_alone = "/interactions=[" + held + "]", held_too = "/interactions/-=" + held;
+  const std::string bonds_too = R"(/interactions/-={"between": ["rbc", "wall"], "model": "bridging", "parameters": {
+    "site_density": "1e12 1/m2", "bond_stiffness": "1e-7 N/m", "zero_force_distance": "0.49 um", "on_rate": "200 1/s",
+    "off_rate": "10 1/s", "cutoff": "1.5 um"}})";
   const std::string slip = "/numerics/slip_correction=true", area = "/numerics/area_correction=true";
   const auto alone = [](const std::string& size, const std::string& nodes, const std::string& at) {
     return std::vector<std::string>{shear, contrast, "/domain/size=" + size, "/domain/nodes=" + nodes,
@@ -56,11 +59,12 @@ inline std::vector<Case> scenes_to_cut() {
       {"driven channel", four_cells, {driven, no_strain, middle("44.688", "14.504")}},
       {"slip and area correction", four_cells, {shear, contrast, slip, area, middle("44.688", "12.544")}},
       {"semi-implicit", four_cells, {shear, semi_implicit}},
-      {"held by a wall", four_cells, {shear, contrast, held_too, middle("44.688", "4.4")}},
-      {"held by a wall alone, slip correction", four_cells, {shear, slip, held_alone, middle("25.088", "4.4")}},
       {"bonds", four_cells, {shear, bonds, middle("46.648", "12.544")}},
       {"memory", ROULEAU_PHYSICS_SCENES "/memory.json"},
-      {"viscous ring", ROULEAU_PHYSICS_SCENES "/viscous-ring.json"}};
+      {"viscous ring", ROULEAU_PHYSICS_SCENES "/viscous-ring.json"},
+      {"held by a wall", four_cells, {shear, contrast, held_too, middle("44.688", "4.4")}},
+      {"held by a wall alone, slip correction", four_cells, {shear, slip, held_alone, middle("25.088", "4.4")}},
+      {"bonds with a wall, too", four_cells, {shear, bonds, bonds_too, middle("46.648", "4.4")}}};
 }
 
 inline const plugin::Catalog& catalog() {

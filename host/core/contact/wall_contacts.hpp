@@ -23,10 +23,11 @@ struct WallInteraction {
 /// (docs: physics, interaction). The wall takes the reaction, normal to itself.
 class WallContacts {
  public:
-  /// Throws std::invalid_argument without walls, and for potentials that remember or read the tangential velocity.
-  WallContacts(const Membranes& membranes, std::vector<WallInteraction> interactions, const Domain<2>& domain);
+  /// Adds what potentials remember to `membranes.wall_contacts`, as far as it is not there from an earlier stage. Throws
+  /// std::invalid_argument without walls, and for potentials that read the tangential velocity.
+  WallContacts(Membranes& membranes, std::vector<WallInteraction> interactions, const Domain<2>& domain);
 
-  /// Pass over cells: adds to force_y. A cell that no wall is near of costs a look at how high its nodes lie.
+  /// Pass over cells: adds to force_y, and advances the state of the contacts by one step. A cell that no wall is near of costs a look at how high its nodes lie.
   void run(Worker worker, Membranes& membranes);
 
   /// Energy at the present positions, of all ranks' cells. Not a pass.
@@ -44,6 +45,7 @@ class WallContacts {
     std::vector<double> outward;          // 1 at the lower wall, -1 at the upper
     std::vector<double> normal_velocity;  // d distance / dt
     std::vector<double> law;              // force or energy of the potential
+    std::vector<double> state, fresh;     // of the contacts, all variables; of the cell's nodes
     int count = 0;                        // arrays may be longer
   };
   /// Of one interaction, found by asking its potential once.
@@ -52,13 +54,17 @@ class WallContacts {
     bool normal_velocity, energy;
   };
   void find(int cell, double cutoff, const Membranes& membranes, Contacts& contacts) const;
-  /// Finds the contacts of a cell with the walls and sets their `law` to the force, or the energy.
-  void measure(std::size_t interaction, int cell, const Membranes& membranes, bool energy, Contacts& contacts) const;
+  /// The force after one step of the state, or force or energy to look at.
+  enum class Wanted { step, force, energy };
+  /// Finds the contacts of a cell with the walls and sets their `law` to what is wanted, `state` to what it becomes.
+  void measure(std::size_t interaction, int cell, const Membranes& membranes, Wanted wanted, Contacts& contacts) const;
+  void remember(std::size_t interaction, int cell, Membranes& membranes, Contacts& contacts) const;
 
   std::vector<WallInteraction> interactions_;
   std::vector<Traits> traits_;
-  double lower_, upper_;            // where the walls are
-  std::vector<Contacts> contacts_;  // of the workers, each at the place of its first cell
+  std::vector<std::vector<std::size_t>> variables_;  // of the interactions, in ContactMemory::variables
+  double lower_, upper_;                             // where the walls are
+  std::vector<Contacts> contacts_;                   // of the workers, each at the place of its first cell
 };
 
 }  // namespace rouleau::core

@@ -29,6 +29,8 @@ core::Potential lennard_jones(double depth, double distance, double cutoff) {
   return potential("lennard-jones", {depth, distance, cutoff});
 }
 
+core::Potential bridging_of_walls() { return potential("bridging", {0.7, 0.3, 2.5, 0.02, 0.03, 0.4, 0.9, 8}); }
+
 /// Polygons as they are, with their sides as rest lengths.
 Membranes polygons(const std::vector<std::vector<std::array<double, 2>>>& outlines) {
   Membranes m;
@@ -187,14 +189,64 @@ TEST_CASE("a potential is given the velocity at which a membrane leaves the wall
   CHECK(size > 0.1);
 }
 
-TEST_CASE("without walls, and for what rubs or remembers, there are no contacts with walls") {
-  const Membranes m = biconcave_cells({{40, 9, 0}});
+TEST_CASE("without walls, and for what rubs, there are no contacts with walls") {
+  Membranes m = biconcave_cells({{40, 9, 0}});
   const core::Potential good = morse(0.2, 0.75, 2.5, 18), rubs = damper(3, 8, "tangential_velocity");
   CHECK_THROWS_WITH(WallContacts(m, {{0, good}}, periodic_box(200, 90)), Catch::Matchers::Contains("needs walls"));
   CHECK_THROWS_WITH(WallContacts(m, {{0, rubs}}, channel(90)), Catch::Matchers::Contains("damper"));
-  core::Potential remembers = good;
-  remembers.state.push_back({"bonds"});
-  CHECK_THROWS_WITH(WallContacts(m, {{0, remembers}}, channel(90)), Catch::Matchers::Contains("morse"));
+}
+
+TEST_CASE("bonds of a flat membrane with a wall form and pull as those with another membrane at the same distance") {
+  const double gap = 3.5;
+  const core::Potential bond = bridging_of_walls();
+  Membranes before_wall = polygons({box(40, -0.5 + gap, 12)});
+  Membranes before_other = polygons({box(40, 30, 12), box(40, 30 - gap - 12, 12)});
+  WallContacts wall(before_wall, {{0, bond}}, channel(90));
+  InteractionForces other(before_other, {{{0, 0}, bond}}, periodic_box(10000));
+  for (int step = 0; step < 20; ++step) {
+    for (auto* m : {&before_wall, &before_other}) std::fill(m->force_y.begin(), m->force_y.end(), 0.0);
+    for (int phase = 0; phase < InteractionForces::phases; ++phase) other.run({}, phase, before_other);
+    run(wall, before_wall);
+    for (int i = 1; i < 40; ++i) REQUIRE(before_wall.force_y[i] == Approx(before_other.force_y[i]).epsilon(1e-12));
+  }
+  CHECK(wall.energy(before_wall) == Approx(other.energy(before_other)).epsilon(1e-12));
+  CHECK(wall.energy(before_wall) > 0.1);
+  REQUIRE(before_wall.wall_contacts.of_cell[0].size() == 1);
+  const double density = before_wall.wall_contacts.of_cell[0][0].value[20];
+  CHECK(density > 0.05);
+  CHECK(density == before_other.contacts.of_cell[0][0].value[20]);
+  CHECK(wall.net_force(before_wall) == Approx(force_sums(before_wall).y).epsilon(1e-12));
+  CHECK(before_wall.wall_contacts.of_cell[0][0].value[20] == density);  // a look is no step
+}
+
+TEST_CASE(
+    "bonds with either wall are kept apart, are lost where a cell leaves the wall, and go on with another solver") {
+  Membranes m = biconcave_cells({{40, 9.5, 0}, {100, 9.5, 0}});  // 19 high, 13.1 of which a cell fills
+  m.cells[1].type = 1;
+  const core::Domain<2> narrow = channel(20);
+  WallContacts walls(m, {{0, bridging_of_walls()}}, narrow);
+  for (int step = 0; step < 3; ++step) run(walls, m);
+  const std::vector<ContactState>& bonds = m.wall_contacts.of_cell[0];
+  REQUIRE(bonds.size() == 2);
+  CHECK(m.wall_contacts.of_cell[1].empty());
+  CHECK(bonds[0].other == 0);
+  CHECK(bonds[1].other == 1);
+  for (int i = 0; i < m.cells[0].count; ++i) {
+    REQUIRE((bonds[0].value[i] > 0) == (m.y[i] + 0.5 <= 8));
+    REQUIRE((bonds[1].value[i] > 0) == (19.5 - m.y[i] <= 8));
+  }
+  const std::vector<double> upper = bonds[1].value;
+  Membranes before = m;
+  WallContacts again(before, {{0, bridging_of_walls()}}, narrow);
+  run(walls, m), run(again, before);
+  CHECK(before.wall_contacts.of_cell[0][1].value == m.wall_contacts.of_cell[0][1].value);
+  CHECK(m.wall_contacts.of_cell[0][1].value != upper);
+  CHECK(m.wall_contacts.variables.size() == 1);
+
+  for (int i = 0; i < m.cells[0].count; ++i) m.y[i] += 40;
+  WallContacts wide(m, {{0, bridging_of_walls()}}, channel(90));
+  run(wide, m);
+  CHECK(m.wall_contacts.of_cell[0].empty());
 }
 
 TEST_CASE("nodes on a wall, beyond it and nowhere give a force or none, but no NaN to others") {

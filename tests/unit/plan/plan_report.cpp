@@ -7,6 +7,7 @@
 
 #include "plan/read_scene.hpp"
 #include "plan/solver_setup.hpp"
+#include "plugin/plugin_folder.hpp"
 
 using namespace rouleau;
 using namespace rouleau::plan;
@@ -85,6 +86,37 @@ TEST_CASE("potentials of walls and of cells are told apart by what they act betw
   const core::SolverSetup setup = make_solver_setup(plan, 0);
   CHECK(setup.interactions.size() == 1);
   CHECK(setup.wall_interactions.size() == 1);
+}
+
+TEST_CASE("a potential that rubs is refused between cells and walls, one that remembers is not") {
+  const test::PluginFolder folder;
+  folder.copy(TESTED_third_party, "libthird.so");
+  folder.write("interaction.json", nlohmann::json{{"manifest", 1},
+                                                  {"abi", 1},
+                                                  {"version", "1.0.0"},
+                                                  {"library", "libthird.so"},
+                                                  {"title", "Third party's"},
+                                                  {"license", "MIT"},
+                                                  {"kind", "interaction"},
+                                                  {"id", "org.example.rubs"},
+                                                  {"needs", {"distance", "tangential_velocity"}},
+                                                  {"gives", {"force", "energy"}},
+                                                  {"parameters", nlohmann::json::array()}});
+  const plugin::Catalog catalog({ROULEAU_PLUGINS, folder.path()});
+  const scene::Scene rubs = held_by_walls(R"([{"between": ["rbc", "wall"], "model": "org.example.rubs"}])");
+  try {
+    make_plan(rubs, catalog);
+    FAIL("it was not refused");
+  } catch (const Error& refused) {
+    CHECK(refused.place().pointer == "/interactions/0/model");
+    CHECK_THAT(refused.what(), Contains("org.example.rubs") && Contains("tangential_velocity"));
+  }
+  const scene::Scene bonds = held_by_walls(R"([{"between": ["rbc", "wall"], "model": "bridging", "parameters": {
+    "site_density": "1e12 1/m2", "bond_stiffness": "1e-7 N/m", "zero_force_distance": "0.49 um", "on_rate": "200 1/s",
+    "off_rate": "10 1/s", "cutoff": "1.5 um"}}])");
+  const Plan plan = make_plan(bonds, catalog);
+  CHECK(make_report(plan).wells.empty());
+  CHECK(make_solver_setup(plan, 0).wall_interactions.at(0).potential.state.size() == 1);
 }
 
 TEST_CASE("a scene without interactions with walls has neither their pass nor their forces") {
