@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "synonyms.hpp"
+
 namespace rouleau {
 namespace {
 
@@ -131,7 +133,7 @@ std::string nearest(std::string_view word, const std::vector<std::string>& candi
 }
 
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates) {
-  const auto near = nearest(word, candidates);
+  const auto near = likely(word, candidates);
   return near.empty() || near == word ? "" : "; did you mean " + in_quotes(near) + "?";
 }
 

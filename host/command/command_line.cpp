@@ -4,7 +4,9 @@
 #include <cctype>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <iostream>
+#include <system_error>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
@@ -31,6 +33,25 @@ options::options_description named(const options::options_description& all,
     if (!by_place) result.add(option);
   }
   return result;
+}
+
+/// Words behind the value of a --set that the shell has cut off it: `--set /fluid/viscosity=6 cP`. What names a file is
+/// meant to stand there.
+std::string unquoted_set(const std::vector<std::string>& arguments) {
+  const auto is_option = [](const std::string& word) { return word.starts_with("--"); };
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    const bool joined = arguments[i].starts_with("--set=");
+    if (!joined && (arguments[i] != "--set" || i + 1 == arguments.size())) continue;
+    const std::string first = joined ? arguments[i].substr(6) : arguments[i + 1];
+    std::string whole = first;
+    std::error_code ignored;
+    for (std::size_t k = i + (joined ? 1 : 2); k < arguments.size() && !is_option(arguments[k]); ++k) {
+      if (arguments[k].ends_with(".json") || std::filesystem::is_regular_file(arguments[k], ignored)) break;
+      whole += ' ' + arguments[k];
+    }
+    if (whole != first) return whole;
+  }
+  return {};
 }
 
 }  // namespace
@@ -68,6 +89,15 @@ bool parse_command_line(const std::string& command, const std::string& help, con
     // Only what is given by place is required, and its users do not know it as an option.
     const auto& option = description.find(missing.get_option_name().substr(2), false);
     throw Error(Cause::bad_input, "a " + option.description() + " is missing", hint);
+  } catch (const options::too_many_positional_options_error&) {
+    const bool sets = description.find_nothrow("set", false) != nullptr;
+    if (const std::string whole = sets ? unquoted_set(arguments) : ""; !whole.empty()) {
+      throw Error(Cause::bad_input, "--set " + whole + ": the shell takes this for several words",
+                  {"quote the whole: --set " + in_shell(whole)});
+    }
+    throw Error(Cause::bad_input,
+                "more words stand without an option than it takes, " + std::to_string(positional.max_total_count()),
+                hint);
   } catch (const options::error& error) {
     throw Error(Cause::bad_input, error.what(), hint);
   }

@@ -3,9 +3,7 @@
 
 #include "command_line.hpp"
 #include "commands.hpp"
-#include "core/membrane/membranes.hpp"
 #include "plan/plan_report.hpp"
-#include "plan/solver_setup.hpp"
 #include "scene_options.hpp"
 
 namespace rouleau::command {
@@ -35,11 +33,9 @@ int plan_command(const std::vector<std::string>& arguments) {
   description.add_options()("json", options::bool_switch(&json), "print JSON for programs");
   if (!parse_command_line("plan", plan_help, arguments, description, positional)) return 0;
 
-  const auto [scene, numerics_choice] = scene_options.read();
-  const plugin::Catalog catalog = scene_options.catalog(scene);
-  const plan::Plan plan = plan::make_plan(scene, catalog, numerics_choice);
-  // Placing the cells finds overlaps before a run does.
-  if (plan.has_cells) plan::make_membranes(scene, plan::lattice_spacing(scene));
+  const plan::ReadScene read = scene_options.read();
+  const plugin::Catalog catalog = scene_options.catalog(read.scene);
+  const plan::Plan plan = plan_and_place(read, catalog);
   const plan::PlanReport report = plan::make_report(plan);
   if (json) {
     // Names of folders need not be UTF-8.

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/faults.hpp"
 #include "base/foreign_call.hpp"
 #include "base/text.hpp"
 
@@ -29,6 +30,10 @@ const char* option_for(Way way) {
       return "--force";
   }
   return "";
+}
+
+Error for_terminal(const Error& error) {
+  return {error.cause(), error.place(), error.problem(), {in_options(error.remedy())}};
 }
 
 int fail(const std::string& message, int code) {
@@ -76,9 +81,10 @@ int run_program(const std::function<int()>& body, const std::string& too_large) 
     std::cout.flush();
     // A full disk or a closed pipe must not look like success to the script that reads the output.
     return std::cout || code != 0 ? code : fail("rouleau: the output could not be written", exit_code::input_output);
+  } catch (const SeveralFaults& several) {
+    return fail(several.with(for_terminal).what(), exit_code_of(several.cause()));
   } catch (const Error& error) {
-    const Error shown(error.cause(), error.place(), error.problem(), {in_options(error.remedy())});
-    return fail(shown.what(), exit_code_of(error.cause()));
+    return fail(for_terminal(error).what(), exit_code_of(error.cause()));
   } catch (const ForeignException& exception) {
     const Error shown(Cause::plugin_refused, exception.what(), {"report it to the plugin's author"});
     return fail(shown.what(), exit_code::plugin_refused);

@@ -7,16 +7,16 @@
 #include <thread>
 #include <vector>
 
+#include "accuracy/measure_errors.hpp"
 #include "command_line.hpp"
 #include "commands.hpp"
-#include "core/membrane/membranes.hpp"
 #include "files/checkpoint_file.hpp"
 #include "interruption.hpp"
 #include "plan/estimate.hpp"
-#include "plan/solver_setup.hpp"
 #include "report/report.hpp"
 #include "run/simulation.hpp"
 #include "scene_options.hpp"
+#include "trial/trial.hpp"
 
 namespace rouleau::command {
 
@@ -31,20 +31,75 @@ Ctrl-C, SIGTERM, a closed terminal, SIGUSR1, SIGXCPU and --max-time end a run af
 the directory's last checkpoint, whatever ended the run, to the same results as without the break; without --out in
 runs/NAME of the scene. Where no run has been, or one was killed before its first checkpoint, it begins at the beginning.
 
+--error-bar measures an error of every number that the run reports: cheap runs of the same scene follow, on a coarser
+lattice, with developed flow and with another density, and take at most about 40 % of the run's time. A scene with
+"numerics": "auto" gets error bars without being asked; --no-error-bar leaves them out.
+
 Example:
   rouleau run scenes/four-cells-shear.json --out runs/demo --threads 2
   rouleau run scenes/four-cells-shear.json --out runs/demo --overwrite --max-steps 2000
   rouleau run scenes/four-cells-shear.json --out runs/demo --resume
+  rouleau run scenes/four-cells-shear.json --out runs/demo --overwrite --error-bar
   rouleau run scenes/four-cells-shear.json --set /interactions/0/parameters/depth='"1.3e-6 J/m2"'
 
 Exit codes: 0 done, 1 the simulation failed, 2 bad input, 3 a plugin was refused, 4 input/output, 130 interrupted
 )";
 
-std::string last_words(const run::Summary& summary) {
-  std::string text = run::outcome(summary);
-  if (summary.aggregate_history.empty()) return text;
-  return text + ", " + std::to_string(summary.aggregates_final) +
-         (summary.aggregates_final == 1 ? " aggregate" : " aggregates");
+std::string last_words(const std::string& outcome, bool aggregates, int count) {
+  if (!aggregates) return outcome;
+  return outcome + ", " + std::to_string(count) + (count == 1 ? " aggregate" : " aggregates");
+}
+
+/// Of a run that had ended before.
+std::string last_words(const std::filesystem::path& folder) {
+  const nlohmann::json summary = trial::read_summary(folder);
+  return last_words(summary.at("outcome"), !summary.at("aggregate_history").empty(), summary.at("aggregates_final"));
+}
+
+/// What the command line says about error bars.
+struct ErrorBarChoice {
+  bool asked_for = false, refused = false;
+  [[nodiscard]] bool wanted(const std::optional<plan::NumericsChoice>& choice) const {
+    return asked_for || (choice && !refused);
+  }
+};
+
+/// Measures the errors of a run that has come to its end; `lines` gets what there is to say. False when interrupted,
+/// which it says by itself.
+bool add_error_bars(const std::filesystem::path& folder, const scene::Scene& scene,
+                    const std::optional<plan::NumericsChoice>& choice, const accuracy::MeasureOptions& options,
+                    const std::string& again, std::vector<std::string>& lines) {
+  const accuracy::MeasuredErrors errors = accuracy::measure_errors(folder, scene, options);
+  if (errors.interrupted) {
+    std::cerr << "ended by " << interruption_cause()
+              << "; the run is whole, its error bars are missing\nto add them: " << again << " --error-bar\n";
+    return false;
+  }
+  if (!errors.missing.empty()) {
+    lines.push_back("no error bars: " + errors.missing);
+    return true;
+  }
+  lines = accuracy::sentences(errors.bars);
+  lines.push_back("error bars took " + number(100 * errors.share, 2) + " % of the run's time; summary.json has all " +
+                  std::to_string(errors.bars.size()));
+  const std::optional<accuracy::Worst> worst = accuracy::worst(errors.bars);
+  if (choice && worst && worst->error > choice->target) {
+    lines.push_back("numerics.auto may have missed its target: the error of " + worst->name + " is estimated as " +
+                    number(100 * worst->error, 2) + " %, more than " + number(100 * choice->target, 2) +
+                    " %; set /numerics/auto/error to less");
+  }
+  return true;
+}
+
+/// Adds error bars to a run that had ended before. Returns the exit code.
+int complete_error_bars(const std::filesystem::path& folder, const scene::Scene& scene,
+                        const std::optional<plan::NumericsChoice>& choice, const accuracy::MeasureOptions& options,
+                        const std::string& again) {
+  std::vector<std::string> lines;
+  const bool whole = add_error_bars(folder, scene, choice, options, again, lines);
+  std::cout << report::write_report(folder).string() << "\n" << last_words(folder) << "\n";
+  for (const std::string& line : lines) std::cout << line << "\n";
+  return whole ? exit_code::done : exit_code::interrupted;
 }
 
 void check_max_steps(long steps) {
@@ -76,6 +131,7 @@ int run_command(const std::vector<std::string>& arguments) {
   SceneOptions scene_options;
   std::string out, max_time;
   bool overwrite = false, resume = false;
+  ErrorBarChoice bars;
   run::RunOptions run;
   options::options_description description("options");
   options::positional_options_description positional;
@@ -92,12 +148,18 @@ int run_command(const std::vector<std::string>& arguments) {
       "max-steps", options::value(&run.max_steps)->value_name("N")->notifier(check_max_steps),
       "stop after N steps over all stages")(
       "max-time", options::value(&max_time)->value_name("TIME")->notifier(not_empty("--max-time")), TimeLimit::help)(
+      "error-bar", options::bool_switch(&bars.asked_for),
+      "measure an error of every reported number, by cheap runs of the same scene")(
+      "no-error-bar", options::bool_switch(&bars.refused), "not even where numerics are chosen by \"auto\"")(
       "quiet", options::bool_switch(&run.quiet), "no progress on the terminal");
   if (!parse_command_line("run", run_help, arguments, description, positional)) return 0;
   std::signal(SIGPIPE, SIG_IGN);  // when who reads the progress has gone the run goes on
 
   if (resume && overwrite) {
     throw Error(Cause::bad_input, "--resume and --overwrite: a run either goes on or is replaced; give one of them");
+  }
+  if (bars.asked_for && bars.refused) {
+    throw Error(Cause::bad_input, "--error-bar and --no-error-bar: give one of them");
   }
   if (run.force && !resume) throw Error(Cause::bad_input, "--force: only together with --resume");
   const int processors = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
@@ -107,13 +169,12 @@ int run_command(const std::vector<std::string>& arguments) {
                                       std::to_string(processors) + " processors)");
   }
   const TimeLimit limit(max_time);
-  const auto [scene, numerics_choice] = scene_options.read();
+  const plan::ReadScene read = scene_options.read();
+  const scene::Scene& scene = read.scene;
   run.threads = std::min(run.threads, std::max(1, scene.domain.nodes[1] / 4));
   const plugin::Catalog catalog = scene_options.catalog(scene);
-  const plan::Plan plan = plan::make_plan(scene, catalog, numerics_choice);
+  const plan::Plan plan = plan_and_place(read, catalog);  // before a directory is made
   const plan::PlanReport report = plan::make_report(plan);
-  // Placing the cells finds overlaps before a directory is made.
-  if (plan.has_cells) plan::make_membranes(scene, plan::lattice_spacing(scene));
   plan::require_memory(report.estimate.memory_bytes, "the run");
   for (const std::string& warning : report.warnings) std::cerr << "warning: " << warning << "\n";
 
@@ -128,6 +189,18 @@ int run_command(const std::vector<std::string>& arguments) {
   const files::FormerRun former = resume      ? files::FormerRun::resume
                                   : overwrite ? files::FormerRun::replace
                                               : files::FormerRun::keep;
+  const accuracy::MeasureOptions measure{
+      .scene_file = scene_options.scene,
+      .plugin_dirs = {scene_options.plugin_dirs.begin(), scene_options.plugin_dirs.end()},
+      .lock = scene_options.lock,
+      .threads = run.threads,
+      .quiet = run.quiet,
+      .interrupted = run.interrupted};
+  // A run that has ended and only lacks its error bars gets them, whether or not it kept a checkpoint.
+  if (resume && bars.wanted(numerics_choice) && run.max_steps < 0 &&
+      accuracy::finished_run(folder, scene) == accuracy::Finished::without_bars) {
+    return complete_error_bars(folder, scene, numerics_choice, measure, again);
+  }
   run::Summary summary;
   {
     files::RunDirectory directory(folder, scene, former);
@@ -146,8 +219,26 @@ int run_command(const std::vector<std::string>& arguments) {
                   {remedy + (remedy.empty() ? "" : "\n  ") + next + again});
     }
   }
+  const bool whole = summary.status == "completed" && summary.stages.back().ended_by != run::Ending::max_steps;
+  std::vector<std::string> error_lines;
+  bool bars_interrupted = false;
+  if (bars.wanted(numerics_choice) && whole) {
+    try {
+      bars_interrupted = !add_error_bars(folder, scene, numerics_choice, measure, again, error_lines);
+    } catch (const Error& error) {
+      report::write_report(folder);
+      throw Error(
+          error.cause(), error.place(), error.problem(),
+          {in_options(error.remedy()) + "\n  the run is whole; to add its error bars: " + again + " --error-bar"});
+    }
+  } else if (bars.asked_for && !whole && !summary.failure) {
+    error_lines.emplace_back("no error bars: the run has not come to its end");
+  }
   const std::filesystem::path page = report::write_report(folder);
-  std::cout << page.string() << "\n" << last_words(summary) << "\n";
+  std::cout << page.string() << "\n"
+            << last_words(run::outcome(summary), !summary.aggregate_history.empty(), summary.aggregates_final) << "\n";
+  for (const std::string& line : error_lines) std::cout << line << "\n";
+  if (bars_interrupted) return exit_code::interrupted;
   if (summary.failure) {
     const monitor::Failure& f = *summary.failure;
     std::cerr << f.reason << " at step " << f.step << ", strain " << f.strain;

@@ -1,6 +1,8 @@
 #include "scene_options.hpp"
 
 #include "command_line.hpp"
+#include "core/membrane/membranes.hpp"
+#include "plan/solver_setup.hpp"
 
 namespace rouleau::command {
 
@@ -40,6 +42,16 @@ plugin::Catalog SceneOptions::catalog(const scene::Scene& read) const {
     catalog.set_lock(plugin::read_lock(file, lock_renewal(file, scene)));
   }
   return catalog;
+}
+
+plan::Plan plan_and_place(const plan::ReadScene& read, const plugin::Catalog& catalog) {
+  const scene::Scene& scene = read.scene;
+  std::optional<plan::Plan> plan;
+  Faults faults;
+  faults.attempt([&] { plan = plan::make_plan(scene, catalog, read.numerics_choice); });
+  if (!scene.cells.empty()) faults.attempt([&] { plan::make_membranes(scene, plan::lattice_spacing(scene)); });
+  faults.raise();
+  return *std::move(plan);
 }
 
 }  // namespace rouleau::command

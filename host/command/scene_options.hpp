@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "plan/plan.hpp"
 #include "plan/read_scene.hpp"
 
 namespace rouleau::command {
@@ -26,5 +27,8 @@ struct SceneOptions {
   /// What the search path offers, bound by the lock.
   [[nodiscard]] plugin::Catalog catalog(const scene::Scene& scene) const;
 };
+
+/// The plan of a scene whose cells have been found to lie apart, within the walls. Throws all that speaks against either.
+plan::Plan plan_and_place(const plan::ReadScene& read, const plugin::Catalog& catalog);
 
 }  // namespace rouleau::command

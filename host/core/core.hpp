@@ -16,5 +16,6 @@ using core::Membranes;
 using core::RestShape;
 using core::Solver;
 using core::SolverSetup;
+using core::WallInteraction;
 
 }  // namespace rouleau

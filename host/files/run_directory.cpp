@@ -27,7 +27,7 @@ constexpr std::array<std::string_view, 12> run_files{
 bool is_partial(const std::string& name) { return name.starts_with('.') && name.ends_with(".partial"); }
 
 bool written_by_a_run(const std::string& name) {
-  return is_partial(name) || segment_number(name) ||
+  return is_partial(name) || segment_number(name) || name == companions_folder ||
          std::find(run_files.begin(), run_files.end(), name) != run_files.end();
 }
 
@@ -71,7 +71,11 @@ void remove_files(const std::filesystem::path& directory, Choice chosen) {
   for (const auto& entry : std::filesystem::directory_iterator(directory)) {
     if (!chosen(entry.path().filename().string())) continue;
     std::error_code error;
-    std::filesystem::remove(entry.path(), error);
+    if (entry.path().filename() == companions_folder) {
+      std::filesystem::remove_all(entry.path(), error);
+    } else {
+      std::filesystem::remove(entry.path(), error);
+    }
     if (error) fail_file(entry.path(), "of a former run cannot be removed", error.value());
   }
 }

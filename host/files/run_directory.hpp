@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 
 #include "base/error.hpp"
 #include "frame_segments.hpp"
@@ -21,6 +22,9 @@ std::string scene_text(const json::Document& document);
 /// `wanted` if there is nothing yet (or an empty directory), else the first of wanted-2, wanted-3, ... where that is
 /// so. The directory has been made, so that of two runs started together each gets its own. Throws Error(input_output).
 std::filesystem::path unused_directory(const std::filesystem::path& wanted);
+
+/// Folder of a run's directory that holds runs which error bars are made of, until they have been made.
+inline constexpr std::string_view companions_folder = "error-bar";
 
 /// What becomes of a run that is found in the directory of a new one.
 enum class FormerRun {

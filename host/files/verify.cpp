@@ -59,6 +59,21 @@ std::string sealed_summary(Json summary, const fs::path& directory, const std::v
   return text;
 }
 
+void amend_summary(const fs::path& directory, const Json& sections) {
+  const fs::path file = directory / "summary.json";
+  std::string text = read_text(file);
+  const std::string written = exchange_own_checksum(text, no_checksum);
+  Json summary = Json::parse(text, nullptr, false);
+  if (!summary.is_object() || written != checksum_of_text(text)) {
+    throw Error(Cause::bad_input, Place{file.string()},
+                "was changed since the run wrote it, so that nothing is added to it", {"replace the run", {Way::anew}});
+  }
+  summary.update(sections);
+  text = summary.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  exchange_own_checksum(text, checksum_of_text(text));
+  write_file(file, text);
+}
+
 Verification verify(const fs::path& directory, const std::function<bool(const std::string& name)>& wanted) {
   const fs::path file = directory / "summary.json";
   const auto refuse = [&](const std::string& problem) { throw Error(Cause::bad_input, Place{file.string()}, problem); };

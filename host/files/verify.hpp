@@ -14,6 +14,10 @@ namespace rouleau::files {
 std::string sealed_summary(nlohmann::json summary, const std::filesystem::path& directory,
                            const std::vector<std::string>& names);
 
+/// Puts sections into the summary.json of a finished run, whole or not at all; what it says of the other files stays.
+/// Throws Error(bad_input) where it was changed since it was written, Error(input_output).
+void amend_summary(const std::filesystem::path& directory, const nlohmann::json& sections);
+
 struct Verification {
   int files = 0;                         ///< that were looked at
   std::vector<std::string> differences;  ///< one sentence each; empty: all files are as the run wrote them

@@ -1,11 +1,13 @@
 #include "schema.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <regex>
 #include <set>
 
+#include "base/synonyms.hpp"
 #include "base/text.hpp"
 #include "json_pointer.hpp"
 #include "schema_branch.hpp"
@@ -23,7 +25,11 @@ struct SchemaFault {
   bool at_key;  ///< the key is at fault rather than its value
   std::string problem;
 };
-using Result = std::optional<SchemaFault>;
+using Found = std::vector<SchemaFault>;
+
+void append(Found& found, Found more) {
+  found.insert(found.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+}
 
 /// Matching recurses several times for every character of a text, so that a long one would exhaust the stack.
 constexpr std::size_t longest_matched = 1000;  // bytes
@@ -38,9 +44,13 @@ const std::regex& compiled(const std::string& pattern) {
 /// Keys that belong to the other branches of a choice: known, but not beside the keys that are there.
 using OtherKeys = std::vector<std::string>;
 
+/// How much of what is wrong is asked for.
+enum class Ask { whether, what };
+
 class Explainer {
  public:
-  Explainer(const Document& document, const Json& schema) : document_(document), schema_(schema) {}
+  Explainer(const Document& document, const Json& schema, Ask ask = Ask::what)
+      : document_(document), schema_(schema), ask_(ask) {}
 
   /// A value, its pointer, and its node in the text (none when it was made by --set).
   struct At {
@@ -49,7 +59,8 @@ class Explainer {
     std::optional<TextTree::Index> node;
   };
 
-  [[nodiscard]] Result explain(const At& at, const Json& unresolved, const OtherKeys& others = {}) const {
+  /// Faults in the order of the text; one at most where only is asked whether there is one.
+  [[nodiscard]] Found explain(const At& at, const Json& unresolved, const OtherKeys& others = {}) const {
     Json described;  // a description beside a $ref speaks of this use of the rule
     const Json* chosen = &resolve(schema_, unresolved);
     if (chosen != &unresolved && unresolved.contains("description")) {
@@ -58,25 +69,26 @@ class Explainer {
       chosen = &described;
     }
     const Json& rule = *chosen;
-    if (rule.is_boolean()) return rule.get<bool>() ? Result{} : fault(at, "nothing may stand here");
-    if (auto found = wrong_kind(at, rule)) return found;
-    if (auto found = wrong_number(at, rule)) return found;
-    if (auto found = wrong_text(at, rule)) return found;
-    if (at.value.is_array()) {
-      if (auto found = wrong_array(at, rule)) return found;
-    }
-    if (at.value.is_object()) {
-      if (auto found = wrong_object(at, rule, others)) return found;
-    }
-    if (rule.contains("oneOf")) {
-      if (auto found = wrong_choice(at, rule, rule["oneOf"])) return found;
-    }
-    return {};
+    if (rule.is_boolean()) return rule.get<bool>() ? Found{} : fault(at, "nothing may stand here");
+    if (auto found = wrong_kind(at, rule); !found.empty()) return found;
+    if (auto found = wrong_number(at, rule); !found.empty()) return found;
+    if (auto found = wrong_text(at, rule); !found.empty()) return found;
+    Found found;
+    if (at.value.is_array()) found = wrong_array(at, rule);
+    if (at.value.is_object()) found = wrong_object(at, rule, others);
+    if (rule.contains("oneOf") && found.empty()) return wrong_choice(at, rule, rule["oneOf"]);
+    return found;
   }
 
  private:
-  [[nodiscard]] static Result fault(const At& at, const std::string& problem) {
-    return SchemaFault{at.pointer, false, problem};
+  [[nodiscard]] static Found fault(const At& at, const std::string& problem) {
+    return {SchemaFault{at.pointer, false, problem}};
+  }
+
+  /// Nobody reads more, and the text may hold a million.
+  [[nodiscard]] bool enough(const Found& found) const {
+    constexpr std::size_t most = 200;
+    return found.size() >= (ask_ == Ask::whether ? 1 : most);
   }
 
   /// The schema's own words about a value, as a second sentence.
@@ -90,7 +102,7 @@ class Explainer {
     return source.contains("description") ? "\n" + key + ": " + source["description"].get<std::string>() : "";
   }
 
-  [[nodiscard]] Result wrong_kind(const At& at, const Json& rule) const {
+  [[nodiscard]] Found wrong_kind(const At& at, const Json& rule) const {
     const auto name = subject(at.pointer);
     if (rule.contains("const") && at.value != rule["const"]) {
       return fault(
@@ -113,7 +125,7 @@ class Explainer {
                          remedy + description(at, rule));
   }
 
-  [[nodiscard]] static Result wrong_number(const At& at, const Json& rule) {
+  [[nodiscard]] static Found wrong_number(const At& at, const Json& rule) {
     if (!at.value.is_number()) return {};
     const auto value = at.value.get<double>();
     const auto bound = [&](const char* key) { return rule[key].get<double>(); };
@@ -126,7 +138,7 @@ class Explainer {
                          description(at, rule));
   }
 
-  [[nodiscard]] static Result wrong_text(const At& at, const Json& rule) {
+  [[nodiscard]] static Found wrong_text(const At& at, const Json& rule) {
     if (!at.value.is_string()) return {};
     const auto& text = at.value.get_ref<const std::string&>();
     const auto name = subject(at.pointer);
@@ -149,7 +161,7 @@ class Explainer {
     return {};
   }
 
-  [[nodiscard]] Result wrong_array(const At& at, const Json& rule) const {
+  [[nodiscard]] Found wrong_array(const At& at, const Json& rule) const {
     const auto size = at.value.size();
     const auto least = rule.value("minItems", std::size_t{0});
     const auto most = rule.value("maxItems", static_cast<std::size_t>(-1));
@@ -161,22 +173,22 @@ class Explainer {
                            " wants " + want + description(at, rule));
     }
     const auto nodes = at.node ? document_.tree().children(*at.node) : std::vector<TextTree::Index>{};
-    for (std::size_t i = 0; rule.contains("items") && i < size; ++i) {
+    Found found;
+    for (std::size_t i = 0; rule.contains("items") && i < size && !enough(found); ++i) {
       auto pointer = child_pointer(at.pointer, i);
       const bool in_text = i < nodes.size() && !document_.overridden(pointer);
       const auto node = in_text ? std::optional(nodes[i]) : std::nullopt;
-      if (auto found = explain({at.value[i], std::move(pointer), node}, rule["items"])) return found;
+      append(found, explain({at.value[i], std::move(pointer), node}, rule["items"]));
     }
-    if (rule.value("uniqueItems", false)) {
+    if (rule.value("uniqueItems", false) && found.empty()) {
       std::set<Json> seen;
-      for (std::size_t i = 0; i < size; ++i) {
-        if (!seen.insert(at.value[i]).second) {
-          return SchemaFault{child_pointer(at.pointer, i), false,
-                             shown(at.value[i]) + " stands twice in " + subject(at.pointer) + "; keep one of them"};
-        }
+      for (std::size_t i = 0; i < size && !enough(found); ++i) {
+        if (seen.insert(at.value[i]).second) continue;
+        found.push_back({child_pointer(at.pointer, i), false,
+                         shown(at.value[i]) + " stands twice in " + subject(at.pointer) + "; keep one of them"});
       }
     }
-    return {};
+    return found;
   }
 
   /// Members in the text's order, then those made by --set.
@@ -197,35 +209,45 @@ class Explainer {
     return list;
   }
 
-  [[nodiscard]] Result wrong_object(const At& at, const Json& rule, const OtherKeys& others) const {
+  [[nodiscard]] Found wrong_object(const At& at, const Json& rule, const OtherKeys& others) const {
     const Json none = Json::object();
     const Json& properties = rule.contains("properties") ? rule["properties"] : none;
     const Json& patterns = rule.contains("patternProperties") ? rule["patternProperties"] : none;
+    Found found;
+    std::vector<std::string> misspelt_here;  // known keys that unknown ones were most likely meant to be
     for (const auto& [key, node] : members(at)) {
+      if (enough(found)) return found;
       const At member{at.value.at(key), child_pointer(at.pointer, key), node};
       const bool known = properties.contains(key);
-      if (known) {
-        if (auto found = explain(member, properties[key])) return found;
-      }
+      if (known) append(found, explain(member, properties[key]));
       bool matched = false;
       for (const auto& [pattern, part] : patterns.items()) {
         if (!std::regex_search(key, compiled(pattern))) continue;
         matched = true;
-        if (auto found = explain(member, part)) return found;
+        append(found, explain(member, part));
       }
       if (known || matched || !rule.contains("additionalProperties")) continue;
       const Json& additional = rule["additionalProperties"];
-      if (additional == Json(false)) return unknown_key(member.pointer, key, keys_of(properties), others);
-      if (auto found = explain(member, additional)) return found;
+      if (additional == Json(false)) {
+        const auto allowed = keys_of(properties);
+        misspelt_here.push_back(likely(key, allowed));
+        found.push_back(unknown_key(member.pointer, key, allowed, others));
+      } else {
+        append(found, explain(member, additional));
+      }
     }
+    if (enough(found)) return found;
     if (rule.contains("required")) {
       for (const auto& key : rule["required"]) {
         const auto& word = key.get_ref<const std::string&>();
         if (at.value.contains(word)) continue;
-        return fault(at, in_quotes(word) + " is missing" + (at.pointer.empty() ? "" : " in " + subject(at.pointer)) +
-                             (properties.contains(word) ? described_member(word, properties[word]) : ""));
+        if (std::find(misspelt_here.begin(), misspelt_here.end(), word) != misspelt_here.end()) continue;
+        append(found,
+               fault(at, in_quotes(word) + " is missing" + (at.pointer.empty() ? "" : " in " + subject(at.pointer)) +
+                             (properties.contains(word) ? described_member(word, properties[word]) : "")));
       }
     }
+    if (!found.empty()) return found;
     const auto least = rule.value("minProperties", std::size_t{0});
     if (at.value.size() < least) {
       const auto keys = properties.empty() ? "" : "; possible: " + listed(keys_of(properties));
@@ -245,28 +267,30 @@ class Explainer {
     std::vector<std::string> keys;
     keys.reserve(places.size());
     for (const auto& [known, where] : places) keys.push_back(known);
-    const auto near = misspelt(key, keys);
+    auto near = synonym(key, keys);
+    if (near.empty()) near = misspelt(key, keys);
     constexpr std::size_t most = 2;  // "angle" and "strain" stand in so many places that none is likely
     if (near.empty() || places.at(near).size() > most) return "";
     return "; did you mean " + listed(places.at(near)) + "?";
   }
 
-  [[nodiscard]] Result unknown_key(const std::string& pointer, const std::string& key,
-                                   const std::vector<std::string>& allowed, const OtherKeys& others) const {
+  [[nodiscard]] SchemaFault unknown_key(const std::string& pointer, const std::string& key,
+                                        const std::vector<std::string>& allowed, const OtherKeys& others) const {
     if (std::find(others.begin(), others.end(), key) != others.end()) {
-      return SchemaFault{
+      return {
           pointer, true,
           in_quotes(key) + " cannot stand here together with the other keys\nallowed beside them: " + listed(allowed)};
     }
     const auto here = did_you_mean(key, allowed);
-    return SchemaFault{pointer, true,
-                       "unknown key " + in_quotes(key) + (here.empty() ? known_elsewhere(key) : here) +
-                           "\nallowed here: " + listed(allowed)};
+    return {pointer, true,
+            "unknown key " + in_quotes(key) + (here.empty() ? known_elsewhere(key) : here) +
+                "\nallowed here: " + listed(allowed)};
   }
 
-  [[nodiscard]] Result wrong_choice(const At& at, const Json& rule, const Json& branches) const {
-    const auto fitting =
-        std::count_if(branches.begin(), branches.end(), [&](const Json& branch) { return !explain(at, branch); });
+  [[nodiscard]] Found wrong_choice(const At& at, const Json& rule, const Json& branches) const {
+    const Explainer judge(document_, schema_, Ask::whether);
+    const auto fitting = std::count_if(branches.begin(), branches.end(),
+                                       [&](const Json& branch) { return judge.explain(at, branch).empty(); });
     if (fitting == 1) return {};
     const Choice choice(schema_, branches, at.value);
     const auto name = subject(at.pointer);
@@ -285,36 +309,47 @@ class Explainer {
     }
     if (choice.meant.size() == 1) return explain(at, *choice.meant.front(), choice.other_keys);
     // Nothing in the object tells the branches apart: a key is misspelt, two of them decide, or none does.
+    Found found;
     std::string first;
     for (const auto& member : members(at)) {
       const auto& key = member.first;
       const auto in = [&key](const std::vector<std::string>& keys) {
         return std::find(keys.begin(), keys.end(), key) != keys.end();
       };
-      if (!in(choice.all_keys)) return unknown_key(child_pointer(at.pointer, key), key, choice.all_keys, {});
+      if (!in(choice.all_keys)) found.push_back(unknown_key(child_pointer(at.pointer, key), key, choice.all_keys, {}));
+      if (enough(found)) return found;
       if (!in(choice.deciding_keys)) continue;
       if (!first.empty()) {
-        return SchemaFault{child_pointer(at.pointer, key), true,
-                           in_quotes(key) + " cannot stand beside " + in_quotes(first) + "; " + name +
-                               " takes only one of: " + listed(choice.deciding_keys)};
+        found.push_back({child_pointer(at.pointer, key), true,
+                         in_quotes(key) + " cannot stand beside " + in_quotes(first) + "; " + name +
+                             " takes only one of: " + listed(choice.deciding_keys)});
+        return found;
       }
       first = key;
     }
+    if (!found.empty()) return found;
     return fault(at, name + " needs one of: " + listed(choice.deciding_keys) + description(at, rule));
   }
 
   const Document& document_;
   const Json& schema_;
+  Ask ask_;
 };
 
 }  // namespace
 
-void validate(const Document& document, const Json& schema, Cause cause) {
+void judge(const Document& document, const Json& schema, Faults& faults, Cause cause) {
   const auto node = document.tree().size() > 0 ? std::optional<TextTree::Index>(0) : std::nullopt;
-  if (const auto fault = Explainer(document, schema).explain({document.root(), "", node}, schema)) {
-    throw Error(cause, fault->at_key ? document.key_place(fault->pointer) : document.place(fault->pointer),
-                indented(fault->problem));
+  for (const SchemaFault& fault : Explainer(document, schema).explain({document.root(), "", node}, schema)) {
+    faults.add({cause, fault.at_key ? document.key_place(fault.pointer) : document.place(fault.pointer),
+                indented(fault.problem)});
   }
+}
+
+void validate(const Document& document, const Json& schema, Cause cause) {
+  Faults faults;
+  judge(document, schema, faults, cause);
+  faults.raise();
 }
 
 }  // namespace rouleau::json

@@ -3,13 +3,17 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/faults.hpp"
 #include "document.hpp"
 
 namespace rouleau::json {
 
-/// Throws Error(code) for the first fault in the order of the text, naming place, value found, what is allowed and, for
-/// an unknown key or word, the nearest valid one. A missing key counts as standing at the end of its object, so that a
-/// misspelt one is met before. Only keywords that the shipped schemas use are judged, to which tests/schemas holds them.
+/// Adds all faults, each naming place, value found, what is allowed and, for an unknown key or word, the one that was
+/// most likely meant. Of a value that is wrong altogether no part is judged, and a key is not missing that another one
+/// was most likely meant to be. Only keywords that the shipped schemas use are judged, to which tests/schemas holds them.
+void judge(const Document& document, const nlohmann::json& schema, Faults& faults, Cause cause = Cause::bad_input);
+
+/// Throws those faults, in the order of the text.
 void validate(const Document& document, const nlohmann::json& schema, Cause cause = Cause::bad_input);
 
 }  // namespace rouleau::json

@@ -78,6 +78,12 @@ std::vector<double> smallest_gaps(const core::Membranes& m, const core::Domain<2
   return gaps;
 }
 
+double wall_gap(const core::Membranes& m, const core::CellRange& cell, const core::Domain<2>& domain) {
+  if (!domain.walled(1)) return std::nan("");
+  const core::Bounds box = core::bounds(m, cell);
+  return std::min(box.y_min + 0.5, domain.size[1] - 0.5 - box.y_max);
+}
+
 Aggregates find_aggregates(int cells, const std::vector<CellContact>& contacts) {
   Aggregates result;
   result.label.resize(static_cast<std::size_t>(cells));

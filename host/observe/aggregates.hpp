@@ -24,6 +24,9 @@ std::vector<CellContact> find_touching_cells(const core::Membranes& membranes, c
 /// size of the box; infinite when there is none.
 std::vector<double> smallest_gaps(const core::Membranes& membranes, const core::Domain<2>& domain);
 
+/// Smallest distance of a cell's outline to a wall (spacings), negative beyond it; NaN without walls.
+double wall_gap(const core::Membranes& membranes, const core::CellRange& cell, const core::Domain<2>& domain);
+
 struct Aggregates {
   int count = 0;
   std::vector<int> label;           ///< of each cell: smallest index in its aggregate

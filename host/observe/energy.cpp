@@ -14,7 +14,32 @@ double given_away(const core::Membranes& m) {
   return power;
 }
 
+std::string without_energy(const char* kind, const std::string& model) {
+  return std::string(kind) + " " + model + " tells no energy";
+}
+
 }  // namespace
+
+template <class T>
+CellEnergy cell_energy(core::Solver<T>& solver, const core::Membranes& membranes) {
+  CellEnergy energy;
+  const auto add = [&](double part) { energy.sum += part, energy.magnitude += std::abs(part); };
+  if (core::MembraneForces* forces = solver.membrane_forces()) {
+    const core::MembraneEnergy membrane = forces->energies(membranes);
+    add(membrane.tension + membrane.cell);
+    add(membrane.bending);
+    if (!membrane.unknown.empty()) energy.unknown = without_energy("membrane law", membrane.unknown);
+  }
+  if (const core::InteractionForces* forces = solver.interaction_forces()) {
+    add(forces->energy(membranes, solver.ranks()));
+    const std::string silent = forces->without_energy();
+    if (!silent.empty()) energy.unknown = without_energy("interaction", silent);
+  }
+  return energy;
+}
+
+template CellEnergy cell_energy(core::Solver<float>&, const core::Membranes&);
+template CellEnergy cell_energy(core::Solver<double>&, const core::Membranes&);
 
 template <class T>
 EnergySnapshot observe_energy(core::Solver<T>& solver, const core::Membranes& membranes,
@@ -29,8 +54,8 @@ EnergySnapshot observe_energy(core::Solver<T>& solver, const core::Membranes& me
   energy.total = energy.kinetic;
   if (!setting.domain.periodic[1]) {
     const auto stress = solver.fluid().wall_stress();  // what the fluid does to the walls
-    energy.wall_power =
-        -(stress.lower * setting.walls.lower + stress.upper * setting.walls.upper) * setting.domain.size[0] * watt;
+    const core::WallVelocity& walls = solver.fluid().last_walls();
+    energy.wall_power = -(stress.lower * walls.lower + stress.upper * walls.upper) * setting.domain.size[0] * watt;
   }
   if (setting.body_force_x != 0 || setting.body_force_y != 0) {
     energy.body_force_power =
@@ -45,14 +70,20 @@ EnergySnapshot observe_energy(core::Solver<T>& solver, const core::Membranes& me
     // What corrected nodes give away and the lattice does not get is lost in the layers beside the membranes, which the
     // lattice does not resolve and the correction stands for.
     if (solver.corrects_motion()) energy.viscous_dissipation += (given_away(membranes) - fluid.membrane_power) * watt;
-    if (!membrane.unknown.empty()) energy.unknown = "membrane law " + membrane.unknown + " tells no energy";
+    if (!membrane.unknown.empty()) energy.unknown = without_energy("membrane law", membrane.unknown);
   }
-  if (const core::InteractionForces* forces = solver.interaction_forces()) {
-    energy.interaction = forces->energy(membranes, solver.ranks()) * joule;
-    energy.total += energy.interaction;
+  bool interact = false;
+  const auto add_interaction = [&](const auto* forces) {
+    if (forces == nullptr) return;
+    const double part = forces->energy(membranes, solver.ranks()) * joule;
+    energy.interaction = interact ? energy.interaction + part : part;
+    energy.total += part;
+    interact = true;
     const std::string silent = forces->without_energy();
-    if (!silent.empty()) energy.unknown = "interaction " + silent + " tells no energy";
-  }
+    if (!silent.empty()) energy.unknown = without_energy("interaction", silent);
+  };
+  add_interaction(solver.interaction_forces());
+  add_interaction(solver.wall_contacts());
   if (!energy.unknown.empty()) energy.total = EnergySnapshot::none;
   return energy;
 }

@@ -11,6 +11,14 @@
 
 namespace rouleau::observe {
 
+/// Energy of membranes and interactions, lattice units. The forces of the present positions have been computed.
+struct CellEnergy {
+  double sum = 0, magnitude = 0;  ///< of elastic, bending and interaction energy: their sum, that of their magnitudes
+  std::string unknown;            ///< why the sum is not known; empty: it is
+};
+template <class T>
+CellEnergy cell_energy(core::Solver<T>& solver, const core::Membranes& membranes);
+
 /// State before the next step of `solver`, whose forces have been computed and whose fluid is settled.
 template <class T>
 EnergySnapshot observe_energy(core::Solver<T>& solver, const core::Membranes& membranes,

@@ -35,7 +35,7 @@ FieldSnapshot observe_fields(core::Fluid<T>& fluid, const scene::Scene& scene, c
     if (want) values->reserve(nodes);
   }
   // Beyond a wall lies a row of nodes whose velocities have the wall's as mean with those of the row before it.
-  const core::WallVelocity& walls = fluid.setting().walls;
+  const core::WallVelocity walls = fluid.walls_now();
   const bool periodic_y = fluid.setting().domain.periodic[1];
   const std::size_t below = periodic_y ? 0 : 1;
   const VelocityGrid grid{

@@ -117,6 +117,11 @@ Table cells_table() {
            .doc = "to the nearest outline of another cell or of any periodic image; `inf` where there is none",
            .value = cell<&CellSnapshot::min_gap>,
            .chart = "Smallest gap to another cell"},
+          {.name = "wall_gap",
+           .unit = "m",
+           .doc = "smallest distance of the outline to a wall; `nan` without walls",
+           .value = cell<&CellSnapshot::wall_gap>,
+           .chart = "Smallest gap to a wall"},
           {.name = "aggregate",
            .unit = "",
            .doc = "label of the cell's aggregate: the smallest number of its cells",
@@ -201,10 +206,33 @@ Table series_table() {
            .doc =
                "where the walls move: mean wall shear stress over viscosity times shear rate (`nan` before they have "
                "acted); where a force along x drives the flow between walls at rest: flow rate of the suspending "
-               "fluid alone, G H^3/(12 mu), over `flow_rate_m2_per_s`; else `nan`. Both are values of the instant: "
+               "fluid alone, G H^3/(12 mu), over `flow_rate_m2_per_s`; else, and where they oscillate, `nan`. Both are values of the instant: "
                "those of a suspension want a steady state and a mean",
            .value = output<&Snapshot::relative_viscosity>,
            .chart = "Relative viscosity",
+           .has_means = true},
+          {.name = "shear_rate",
+           .unit = "1/s",
+           .doc =
+               "of the walls during the last step: speed of the upper less that of the lower, over the height; `nan` "
+               "where they do not move",
+           .value = output<&Snapshot::shear_rate>},
+          {.name = "wall_stress_lower",
+           .unit = "Pa",
+           .doc = "mean shear stress of the fluid on the lower wall, along +x, during the last step (in phase with "
+                  "`shear_rate`); `nan` without walls and before they have acted",
+           .value = output<&Snapshot::wall_stress_lower>,
+           .has_means = true},
+          {.name = "wall_stress_upper",
+           .unit = "Pa",
+           .doc = "likewise, on the upper wall",
+           .value = output<&Snapshot::wall_stress_upper>,
+           .has_means = true},
+          {.name = "pressure_gradient",
+           .unit = "Pa/m",
+           .doc = "force per volume along x that drives the fluid at this instant, beside `fluid.body_force`; `nan` "
+                  "where the stage has none",
+           .value = output<&Snapshot::pressure_gradient>,
            .has_means = true},
           {.name = "particle_stress",
            .unit = "Pa",
@@ -286,7 +314,7 @@ Table series_table() {
            .line = "bending"},
           {.name = "interaction_energy",
            .unit = "J/m",
-           .doc = "of the active potentials between cells; `nan` where there is none",
+           .doc = "of the active potentials between cells, and between cells and walls; `nan` where there is none",
            .value = energy<&EnergySnapshot::interaction>,
            .chart = "Energy of the cells",
            .line = "interaction"},
@@ -319,7 +347,7 @@ Table series_table() {
            .line = "from the walls"},
           {.name = "body_force_power",
            .unit = "W/m",
-           .doc = "what `fluid.body_force` and `pressure_gradient` put in; `nan` where neither acts",
+           .doc = "what `fluid.body_force` and the pressure gradient put in; `nan` where neither acts",
            .value = energy<&EnergySnapshot::body_force_power>,
            .chart = "Power",
            .line = "from the body force"},

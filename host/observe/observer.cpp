@@ -12,6 +12,7 @@
 #include "particle_stress.hpp"
 #include "plan/solver_setup.hpp"
 #include "rheology.hpp"
+#include "scene/driving_flow.hpp"
 
 namespace rouleau::observe {
 
@@ -60,8 +61,8 @@ double Observer::area_leakage(const core::Membranes& membranes, int* whose) {
   return most;
 }
 
-double Observer::momentum_residual(const core::Membranes& m) {
-  double net_x = 0, net_y = 0, magnitudes = 0;
+double Observer::momentum_residual(const core::Membranes& m, double from_walls) {
+  double net_x = 0, net_y = -from_walls, magnitudes = 0;
   for (std::size_t i = 0; i < m.x.size(); ++i) {
     net_x += m.force_x[i];
     net_y += m.force_y[i];
@@ -116,6 +117,7 @@ void Observer::observe_cells(const core::Membranes& membranes, const units::Latt
     s.perimeter = core::perimeter(membranes, cell) * length;
     s.tank_treading_angle = tank_treading_angle_[k];
     s.min_gap = gaps[k] * length;
+    s.wall_gap = wall_gap(membranes, cell, domain_) * length;
     s.aggregate = aggregates.label[k];
     s.through_image = aggregates.through_image[k];
     const core::StretchRange stretch = core::stretch_range(membranes, cell);
@@ -141,14 +143,33 @@ Snapshot Observer::observe(core::Solver<T>& solver, const plan::StageSetting& se
   const double viscosity = core::viscosity_of(setting.tau);
   snapshot.relative_viscosity = snapshot.flow_rate = snapshot.area_leakage_max = std::nan("");
   snapshot.cell_free_layer_lower = snapshot.cell_free_layer_upper = std::nan("");
+  snapshot.shear_rate = snapshot.wall_stress_lower = snapshot.wall_stress_upper = std::nan("");
+  snapshot.pressure_gradient = std::nan("");
   snapshot.aggregate_size_number_mean = snapshot.aggregate_size_weight_mean = std::nan("");
-  if (setting.shear_rate != 0) {
-    const auto stress = solver.fluid().wall_stress();
-    snapshot.relative_viscosity = (stress.lower - stress.upper) / 2 / (viscosity * setting.shear_rate);
-  } else if (is_driven_channel(setting, *scene_)) {
-    const double rate = flow_rate(solver.fluid());
-    snapshot.relative_viscosity = apparent_viscosity(rate, setting, scene_->domain.nodes[1]);
+  const core::Fluid<T>& fluid = solver.fluid();
+  const bool oscillates = setting.oscillation.any();
+  if (!scene_->domain.periodic_y) {
+    const auto stress = fluid.wall_stress();
+    snapshot.wall_stress_lower = units.to_si(stress.lower, units::dimension::pressure);
+    snapshot.wall_stress_upper = units.to_si(stress.upper, units::dimension::pressure);
+    if (setting.shear_rate != 0 && !oscillates)
+      snapshot.relative_viscosity = (stress.lower - stress.upper) / 2 / (viscosity * setting.shear_rate);
+  }
+  if (scene::walls_move(*setting.stage)) {
+    const core::WallVelocity& walls = fluid.last_walls();
+    snapshot.shear_rate = units.to_si((walls.upper - walls.lower) / scene_->domain.nodes[1], units::dimension::rate);
+  }
+  if (is_driven_channel(setting, *scene_)) {
+    const double rate = flow_rate(fluid);
+    if (!oscillates)
+      snapshot.relative_viscosity =
+          apparent_viscosity(rate, fluid.setting().body_force_x, setting, scene_->domain.nodes[1]);
     snapshot.flow_rate = units.to_si(rate, units::dimension::velocity) * units.length;
+  }
+  if (setting.stage->pressure_gradient.x() != 0 || setting.stage->mean_velocity ||
+      setting.oscillation.body_force_x != 0) {
+    snapshot.pressure_gradient =
+        units.to_si(fluid.setting().body_force_x, units::dimension::force_density) - scene_->fluid.body_force.x();
   }
   if (!membranes.cells.empty()) {
     if (!scene_->domain.periodic_y) {

@@ -39,8 +39,9 @@ class Observer {
   /// Largest area that the area correction has kept from leaking out of (or into) a cell so far, over its rest area;
   /// `cell`: whose. NaN without that correction.
   static double area_leakage(const core::Membranes& membranes, int* cell = nullptr);
-  /// Sum of nodal forces over the sum of their magnitudes: rounding only, or an internal force is unbalanced.
-  static double momentum_residual(const core::Membranes& membranes);
+  /// Sum of nodal forces, less what walls do to the cells (along y), over the sum of their magnitudes: rounding only, or
+  /// an internal force is unbalanced.
+  static double momentum_residual(const core::Membranes& membranes, double from_walls = 0);
 
   [[nodiscard]] const core::Domain<2>& domain() const { return domain_; }
   [[nodiscard]] double mach_max() const { return mach_max_; }

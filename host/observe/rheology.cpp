@@ -3,35 +3,26 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/fluid/flow_rate.hpp"
 #include "core/fluid/relaxation.hpp"
 
 namespace rouleau::observe {
 
 bool is_driven_channel(const plan::StageSetting& setting, const scene::Scene& scene) {
-  return setting.body_force_x != 0 && setting.shear_rate == 0 && !scene.domain.periodic_y;
+  return setting.largest_body_force_x() != 0 && setting.fastest_wall() == 0 && !scene.domain.periodic_y;
 }
 
 template <class T>
 double flow_rate(const core::Fluid<T>& fluid) {
-  const core::FluidSetting& setting = fluid.setting();
-  const std::vector<double> mean = fluid.row_velocities();
-  double sum = 0;
-  for (const double velocity : mean) sum += velocity;
-  if (setting.domain.periodic[1]) return sum;
-  // Slopes at the walls of parabolas through the wall and the two rows nearest to it, rows at 1/2 and 3/2.
-  const auto slope = [](double wall, double first, double second) { return -8 * wall / 3 + 3 * first - second / 3; };
-  const std::size_t last = mean.size() - 1;
-  const double lower = slope(setting.walls.lower, mean[0], mean[1]);
-  const double upper = -slope(setting.walls.upper, mean[last], mean[last - 1]);
-  return sum + (upper - lower) / 24;
+  return core::flow_rate(fluid.row_velocities(), fluid.walls_now(), fluid.setting().domain.periodic[1]);
 }
 
 template double flow_rate(const core::Fluid<float>&);
 template double flow_rate(const core::Fluid<double>&);
 
-double apparent_viscosity(double flow_rate, const plan::StageSetting& setting, int height) {
+double apparent_viscosity(double flow_rate, double body_force, const plan::StageSetting& setting, int height) {
   const double viscosity = core::viscosity_of(setting.tau);
-  const double alone = setting.body_force_x * std::pow(height, 3) / (12 * viscosity);
+  const double alone = body_force * std::pow(height, 3) / (12 * viscosity);
   return flow_rate != 0 ? alone / flow_rate : std::nan("");
 }
 

@@ -11,7 +11,7 @@
 
 namespace rouleau::observe {
 
-/// Whether a force along x drives this stage's fluid between walls at rest: a flow with a steady flow rate.
+/// Whether a force along x drives this stage's fluid between walls at rest: a flow with a flow rate.
 bool is_driven_channel(const plan::StageSetting& setting, const scene::Scene& scene);
 
 /// Integral of the velocity along x over the height, averaged over the length; lattice units. Exact for velocities that
@@ -22,7 +22,7 @@ double flow_rate(const core::Fluid<T>& fluid);
 
 /// Flow rate of the suspending fluid alone, G H^3 / (12 mu) of plane Poiseuille flow, over `flow_rate` (lattice): the
 /// relative apparent viscosity of a driven suspension. Not a number where nothing flows.
-double apparent_viscosity(double flow_rate, const plan::StageSetting& setting, int height);
+double apparent_viscosity(double flow_rate, double body_force, const plan::StageSetting& setting, int height);
 
 /// Thickness of the layers without cells at both walls, spacings: in each column of the lattice the distance from the
 /// wall to the nearest membrane, averaged over the columns (edge of the core as in Fedosov, Caswell, Popel and

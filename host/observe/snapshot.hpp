@@ -19,6 +19,7 @@ struct CellSnapshot {
   double perimeter;            ///< m
   double tank_treading_angle;  ///< of the first node about the centroid, rad, continuous in time
   double min_gap;      ///< m, to the nearest membrane of another cell or of an image; infinite when there is none
+  double wall_gap;     ///< m, to the nearer wall; NaN without walls
   int aggregate;       ///< label: smallest index of a cell of the aggregate it belongs to
   bool through_image;  ///< its aggregate is held together by a contact across the periodic boundary
   double stretch_min, stretch_max;  ///< of its segments: length over rest length
@@ -75,7 +76,10 @@ struct Snapshot {
   double aggregate_size_number_mean = 0;  ///< cells per aggregate; NaN without cells
   double aggregate_size_weight_mean = 0;  ///< cells in the aggregate of a cell, averaged over cells; NaN without cells
   double relative_viscosity = 0;  ///< wall shear stress / (viscosity x shear rate), or of the flow rate; NaN: neither
-  double flow_rate = 0;           ///< m2/s, per depth, of a driven channel; NaN elsewhere
+  double shear_rate = 0;          ///< 1/s, of the walls over the last step; NaN where they do not move
+  double wall_stress_lower = 0, wall_stress_upper = 0;  ///< Pa, on each wall along x over the last step; NaN without
+  double pressure_gradient = 0;  ///< Pa/m, that drives the fluid beside fluid.body_force; NaN where none does
+  double flow_rate = 0;          ///< m2/s, per depth, of a driven channel; NaN elsewhere
   double cell_free_layer_lower = 0, cell_free_layer_upper = 0;  ///< m; NaN without walls or cells
   double particle_stress = 0;  ///< xy, Pa: membranes and viscosity contrast, per area of the domain
   double mach_max = 0;

@@ -18,17 +18,28 @@ constexpr double threshold = 0.002;
 CellTravel cell_travel(const scene::Scene& scene, const StageSetting& stage) {
   if (scene.fluid.inertia || scene.cells.empty() || scene.domain.periodic_y) return {};
   const double spacing = stage.units.length, height = scene.domain.nodes[1], viscosity = core::viscosity_of(stage.tau);
-  double radius = 0, mean = 0;
-  std::vector<double> speeds;
+  double radius = 0;
   for (const scene::CellPlacement& cell : scene.cells) {
-    const double y = cell.center.y() / spacing;
-    speeds.push_back(stage.shear_rate * (y - height / 2) + stage.body_force_x * y * (height - y) / (2 * viscosity));
-    mean += speeds.back() / static_cast<double>(scene.cells.size());
     radius = std::max(radius, shape::shape_radius(scene.cell_types[cell.type].shape) / spacing);
   }
-  double farthest = 0;
-  for (const double speed : speeds) farthest = std::max(farthest, std::abs(speed - mean));
-  return {.mean = std::abs(mean) * radius / viscosity, .spread = farthest * radius / viscosity};
+  CellTravel travel;
+  const auto add = [&](double shear_rate, double body_force, const core::WallVelocity& walls) {
+    double mean = 0, farthest = 0;
+    std::vector<double> speeds;
+    for (const scene::CellPlacement& cell : scene.cells) {
+      const double y = cell.center.y() / spacing;
+      speeds.push_back(shear_rate * (y - height / 2) + body_force * y * (height - y) / (2 * viscosity) +
+                       (walls.lower + walls.upper) / 2);
+      mean += speeds.back() / static_cast<double>(scene.cells.size());
+    }
+    for (const double speed : speeds) farthest = std::max(farthest, std::abs(speed - mean));
+    travel.mean += std::abs(mean) * radius / viscosity;
+    travel.spread += farthest * radius / viscosity;
+  };
+  add(stage.shear_rate, stage.body_force_x, stage.walls);
+  // At its largest, and without the delay by the fluid's inertia.
+  if (stage.oscillation.any()) add(stage.oscillating_rate, stage.oscillation.body_force_x, stage.oscillation.walls);
+  return travel;
 }
 
 bool follows_cells(const scene::Scene& scene, const StageSetting& stage) {

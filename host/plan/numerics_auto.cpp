@@ -129,6 +129,7 @@ class Problem {
   double radius_ = 0;           ///< of the smallest cell, m
   double viscosity_ratio_ = 1;  ///< the furthest from 1
   double shear_rate_ = 0, strain_ = 0;
+  double mean_wall_speed_ = 0;  ///< largest, m/s
   struct Start {
     double lag, strain;  ///< for each unit of density factor (scene::start_up_strain), and of the stage
     bool driven;         ///< by a pressure gradient rather than by walls
@@ -156,6 +157,8 @@ Problem::Problem(const scene::Scene& draft, const Json& written, const NumericsB
     if (std::abs(std::log(ratio)) > std::abs(std::log(viscosity_ratio_))) viscosity_ratio_ = ratio;
   }
   for (const scene::Stage& stage : scene_.stages) {
+    mean_wall_speed_ =
+        std::max(mean_wall_speed_, std::abs(stage.mean_wall_speed) + std::abs(stage.oscillation.mean_wall_speed));
     const double rate = scene::mean_shear_rate(stage, scene_);
     if (rate == 0) continue;
     shear_rate_ = std::max(shear_rate_, rate);
@@ -216,11 +219,12 @@ Problem::Trial Problem::tried(const std::array<int, 2>& nodes, double tau) const
   const double true_step = core::time_step(tau, spacing, scene_.fluid.viscosity / scene_.fluid.density);  // of factor 1
   if (const Json factor = pinned("density_factor"); !factor.is_null()) {
     trial.density_factor = factor.get<double>();
-  } else if (shear_rate_ == 0) {
+  } else if (shear_rate_ == 0 && mean_wall_speed_ == 0) {
     trial.density_factor = has_cells_ ? std::min(density_factor_at_rest, bounds_.most_density_factor) : 1;
   } else {
-    // Walls at shear_rate x height / 2 in units of the spacing over the time step.
-    const double wall_mach = std::sqrt(3.0) * shear_rate_ * scene_.domain.size.y() / 2 / spacing * true_step;
+    // Walls at shear_rate x height / 2 around their mean in units of the spacing over the time step.
+    const double wall_mach = std::sqrt(3.0) * shear_rate_ * scene_.domain.size.y() / 2 / spacing * true_step +
+                             std::sqrt(3.0) * mean_wall_speed_ / spacing * true_step;
     const double allowed = most_density_factor(target_ - trial.error.resolution);
     // Without cells what is computed is how the fluid's own inertia lets a flow start.
     const double wanted = has_cells_ ? allowed : 1;
@@ -290,6 +294,8 @@ double Problem::most_density_factor(double error) const {
 
 std::string Problem::why_density_factor(const Trial& best) const {
   if (!has_cells_) return "without cells the fluid's own inertia is what decides";
+  if (shear_rate_ == 0 && mean_wall_speed_ != 0)
+    return "carried along by both walls, as large as their Mach number allows";
   if (shear_rate_ == 0) return "at rest, as large as the limits of the membranes' stiffness allow";
   std::string why = "simulated Reynolds number " + number(reynolds_ * best.density_factor, 3) + ": " +
                     number(100 * best.error.inertia, 2) + " % of error";
@@ -395,8 +401,13 @@ std::optional<NumericsChoice> fill_in_numerics(json::Document& document, const N
   spell_out_numerics(document);
   auto draft = std::make_shared<json::Document>(document);
   put_draft_numerics(*draft);
-  scene::Scene scene = scene::read_scene(std::move(draft));
-  shape::add_random_cells(scene);
+  Faults faults;
+  scene::Scene scene = scene::read_scene(draft, faults);
+  if (faults.empty()) faults.attempt([&] { shape::add_random_cells(scene); });
+  if (!faults.empty()) {
+    document = *draft;  // whose reading says them
+    return std::nullopt;
+  }
   NumericsChoice choice = Problem(scene, document.root(), bounds).solve();
   for (const ChosenValue& value : choice.values) document.put(value.pointer, value.value, origin);
   return choice;

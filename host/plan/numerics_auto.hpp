@@ -50,8 +50,9 @@ struct NumericsBounds {
 
 /// Puts values into the document of a scene that leaves its numerics open ("numerics": "auto", or an object with
 /// "auto"): the cheapest that keep the target error by what was measured (docs/accuracy.md) and the bounds. What the
-/// scene says of its numerics stays, so that it can be read again. Nothing for a scene that pins its numerics. Throws
-/// Error(bad_input) when no lattice fits the domain, or for a fault of the scene.
+/// scene says of its numerics stays, so that it can be read again. Nothing for a scene that pins its numerics. A scene
+/// with faults gets values with which it can be read, and nothing is chosen. Throws Error(bad_input) when no lattice fits
+/// the domain.
 std::optional<NumericsChoice> fill_in_numerics(json::Document& document, const NumericsBounds& bounds = {});
 
 }  // namespace rouleau::plan

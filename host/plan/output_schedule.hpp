@@ -14,7 +14,8 @@ namespace rouleau::plan {
 class OutputSchedule {
  public:
   OutputSchedule(const scene::Cadence& cadence, const StageSetting& setting, bool always_some) {
-    if (cadence.strain && setting.shear_rate != 0) intervals_.push_back(*cadence.strain / std::abs(setting.shear_rate));
+    if (cadence.strain && setting.shear_rate != 0 && !setting.oscillation.any())
+      intervals_.push_back(*cadence.strain / std::abs(setting.shear_rate));
     if (cadence.seconds) intervals_.push_back(setting.steps_of(*cadence.seconds));
     // A stage at rest has no strain to count by; forty rows show how it went.
     if (intervals_.empty() && !cadence.never() && always_some)

@@ -24,7 +24,8 @@ void check_models_of_stages(const scene::Scene& scene) {
 
 void check_developed_flows(const Plan& plan) {
   for (const StageSetting& stage : plan.stages) {
-    if (stage.stage->start == scene::WallStart::developed && plan.scene->domain.periodic_y && stage.body_force_x != 0) {
+    if (stage.stage->start == scene::WallStart::developed && plan.scene->domain.periodic_y &&
+        stage.largest_body_force_x() != 0) {
       throw Error(
           Cause::bad_input, plan.scene->place(stage.stage->pointer + "/start"),
           "\"developed\" wants walls: a driven flow that is periodic along y never becomes steady; leave start out");
@@ -32,18 +33,51 @@ void check_developed_flows(const Plan& plan) {
   }
 }
 
+/// A stage that ends by energy needs models that tell theirs.
+void check_equilibria(const Plan& plan) {
+  const auto stage = std::find_if(plan.stages.begin(), plan.stages.end(),
+                                  [](const StageSetting& s) { return s.stage->until_equilibrium; });
+  if (stage == plan.stages.end()) return;
+  const auto refuse = [&](const PlannedModel& model) {
+    throw Error(Cause::bad_input, plan.scene->place(stage->stage->pointer + "/until"),
+                "\"equilibrium\" goes by the energy of all cells, and " + model.manifest->id + " tells none",
+                {"end the stage by \"at_rest\" or by duration"});
+  };
+  for (const PlannedModel& model : plan.interactions) {
+    if (model.active() && !model.manifest->gives_output("energy")) refuse(model);
+  }
+  for (const std::vector<PlannedModel>& laws : plan.membranes) {
+    for (const PlannedModel& law : laws) {
+      // A law that only resists the rate of stretch stores nothing.
+      const bool tells = law.manifest->gives_output("energy") || law.manifest->gives_output("tension_by_rate");
+      if (law.active() && !tells) refuse(law);
+    }
+  }
+}
+
 /// Makes every active model once.
 void try_models(const Plan& plan) {
   const plugin::ModelSetting setting = plan.stages.front().model_setting(plan.scene->fluid.inertia);
+  Faults faults;
   for (const PlannedModel* model : plan.active_models()) {
     try {
       const plugin::ModelInstance instance(*model->manifest, model->parameters.values, setting);
     } catch (const plugin::ModelRefused& refused) {
-      throw Error(Cause::bad_input, plan.scene->place(model->pointer),
+      faults.add({Cause::bad_input, plan.scene->place(model->pointer),
                   in_quotes(model->manifest->id) + " cannot be made with these parameters: " + refused.reason() +
-                      "\n  its manifest: " + model->manifest->file.string());
+                      "\n  its manifest: " + model->manifest->file.string()});
     }
   }
+  faults.raise();
+}
+
+/// What rubs on a wall would be part of its stress and power, which are those of the fluid.
+void refuse_friction_on_walls(const PlannedModel& model, const scene::Scene& scene) {
+  if (!model.manifest->needs_input("tangential_velocity")) return;
+  throw Error(Cause::bad_input, scene.place(model.pointer + "/model"),
+              in_quotes(model.manifest->id) +
+                  " cannot act between cells and walls: it needs tangential_velocity, and nothing rubs on a wall",
+              {"take a potential without friction, or another cell type in place of \"wall\""});
 }
 
 void choose_coupling(Plan& plan) {
@@ -77,8 +111,8 @@ std::string Plan::owner_of(const PlannedModel& model) const {
   }
   for (std::size_t i = 0; i < interactions.size(); ++i) {
     if (&interactions[i] != &model) continue;
-    const auto [a, b] = scene->interactions[i].between;
-    return name(a) + ", " + name(b);
+    const auto [a, b] = scene->names_of(scene->interactions[i]);
+    return a + ", " + b;
   }
   return {};
 }
@@ -101,18 +135,21 @@ std::vector<const PlannedModel*> Plan::active_models() const {
   return models;
 }
 
-Plan make_plan(const scene::Scene& scene, const plugin::Catalog& catalog, std::optional<NumericsChoice> choice) {
-  check_models_of_stages(scene);
+namespace {
+
+/// Finds the models that the scene names, and resolves their parameters.
+void plan_models(Plan& plan, const plugin::Catalog& catalog, Faults& faults) {
+  const scene::Scene& scene = *plan.scene;
   const units::Units units;
-  const auto planned = [&](plugin::ModelKind kind, const scene::ModelChoice& model) -> PlannedModel {
-    const plugin::Manifest& manifest = catalog.find(kind, model.model, scene.place(model.pointer + "/model"));
-    return {&manifest, plugin::resolve_parameters(model, manifest, scene, units), model.pointer};
+  const auto planned = [&](plugin::ModelKind kind, const scene::ModelChoice& model) {
+    PlannedModel result{nullptr, {}, model.pointer};
+    if (model.model.empty()) return result;  // what was wrong with it has been said
+    faults.attempt([&] {
+      result.manifest = &catalog.find(kind, model.model, scene.place(model.pointer + "/model"));
+      result.parameters = plugin::resolve_parameters(model, *result.manifest, scene, units, faults);
+    });
+    return result;
   };
-  Plan plan{};
-  plan.scene = &scene;
-  plan.numerics_choice = std::move(choice);
-  plan.has_cells = !scene.cells.empty();
-  if (catalog.lock()) plan.lock = {catalog.lock()->file.string(), catalog.lock()->sha256};
   plan.collision = planned(plugin::ModelKind::collision, scene.fluid.collision);
   for (const scene::CellType& type : scene.cell_types) {
     auto& laws = plan.membranes.emplace_back();
@@ -121,14 +158,44 @@ Plan make_plan(const scene::Scene& scene, const plugin::Catalog& catalog, std::o
   for (const scene::Interaction& interaction : scene.interactions) {
     PlannedModel model = planned(plugin::ModelKind::interaction, interaction.potential);
     if (!plan.has_cells) model.parameters.inactive = true;
-    plan.has_interactions = plan.has_interactions || model.active();
+    if (interaction.with_wall() && model.manifest != nullptr) {
+      faults.attempt([&] { refuse_friction_on_walls(model, scene); });
+    }
+    bool& has = interaction.with_wall() ? plan.has_wall_interactions : plan.has_interactions;
+    has = has || model.active();
     plan.interactions.push_back(std::move(model));
   }
+}
+
+}  // namespace
+
+void find_model_faults(const scene::Scene& scene, const plugin::Catalog& catalog, Faults& faults) {
+  const std::size_t before = faults.size();
+  faults.attempt([&] { check_models_of_stages(scene); });
+  if (faults.size() > before) return;  // too many to look at
+  Plan plan{};
+  plan.scene = &scene;
+  plan_models(plan, catalog, faults);
+}
+
+Plan make_plan(const scene::Scene& scene, const plugin::Catalog& catalog, std::optional<NumericsChoice> choice) {
+  check_models_of_stages(scene);
+  Plan plan{};
+  plan.scene = &scene;
+  plan.numerics_choice = std::move(choice);
+  plan.has_cells = !scene.cells.empty();
+  if (catalog.lock()) plan.lock = {catalog.lock()->file.string(), catalog.lock()->sha256};
+  Faults faults;
+  plan_models(plan, catalog, faults);
   plan.viscosity_contrast = std::any_of(scene.cells.begin(), scene.cells.end(), [&](const scene::CellPlacement& cell) {
     return scene.cell_types[cell.type].interior_viscosity != scene.fluid.viscosity;
   });
-  for (int i = 0; i < static_cast<int>(scene.stages.size()); ++i) plan.stages.push_back(make_stage_setting(scene, i));
-  check_developed_flows(plan);
+  for (int i = 0; i < static_cast<int>(scene.stages.size()); ++i) {
+    faults.attempt([&] { plan.stages.push_back(make_stage_setting(scene, i)); });
+  }
+  faults.attempt([&] { check_developed_flows(plan); });
+  faults.attempt([&] { check_equilibria(plan); });
+  faults.raise();
   choose_coupling(plan);
   try_models(plan);
   return plan;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/faults.hpp"
 #include "numerics_auto.hpp"
 #include "plugin/catalog.hpp"
 #include "plugin/lock.hpp"
@@ -31,7 +32,8 @@ struct Plan {
   std::vector<StageSetting> stages;
   bool has_cells = false;
   bool viscosity_contrast = false;
-  bool has_interactions = false;
+  bool has_interactions = false;       ///< between cells
+  bool has_wall_interactions = false;  ///< between cells and walls
   bool semi_implicit = false;  ///< membranes: the step that numerics.coupling names or, if "auto", the limits ask for
   std::string coupling;        ///< which step that is and why, for people
   std::optional<plugin::LockUse> lock;  ///< the lock that the plugins were held against
@@ -41,6 +43,10 @@ struct Plan {
   /// The cell type of a law, the two types of an interaction ("rbc, platelet"); empty for the fluid's model.
   [[nodiscard]] std::string owner_of(const PlannedModel& model) const;
 };
+
+/// Adds what is wrong with the models that a scene names, known or unknown, and their parameters. The scene may be one that
+/// could not be read whole; `faults` has why.
+void find_model_faults(const scene::Scene& scene, const plugin::Catalog& catalog, Faults& faults);
 
 /// Makes every active model once, so that a plan never promises a run that cannot start. Throws Error(bad_input) with
 /// the place in the scene of what cannot be computed or a model refuses, Error(plugin_refused) for a library that is

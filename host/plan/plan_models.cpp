@@ -81,11 +81,9 @@ std::vector<InteractionWell> describe_wells(const Plan& plan) {
       return find_shape(plugin::ModelInstance(*model.manifest, values, setting));
     };
     const PotentialShape shape = shape_at(model.parameters.values);
-    const auto [a, b] = plan.scene->interactions[i].between;
-    const std::vector<scene::CellType>& types = plan.scene->cell_types;
     InteractionWell& described = wells.emplace_back();
     described.model = model.manifest->id;
-    described.between = {types[a].name, types[b].name};
+    described.between = plan.scene->names_of(plan.scene->interactions[i]);
     described.well = in_si(shape.well, stage.units);
     if (!shape.well) described.doubt = why_it_attracts_nowhere(model);
     const std::vector<double> meant =

@@ -20,7 +20,7 @@ struct WellInSi {
 };
 struct InteractionWell {
   std::string model;
-  std::array<std::string, 2> between;  ///< cell types
+  std::array<std::string, 2> between;  ///< cell types, or one and the walls
   WellInSi well;
   std::optional<WellInSi> stands_for;  ///< of the potential that this one stands for, where the manifest says which
   std::optional<double> widened;       ///< width over that of the other

@@ -36,7 +36,7 @@ std::map<std::string, double> dimensionless_numbers(const Plan& plan, const std:
   double shear_rate = 0, factor = scene.numerics.density_factor, wall_mach = 0;
   bool unbounded = false;
   for (const StageSetting& stage : plan.stages) {
-    wall_mach = std::max(wall_mach, units::mach_number(std::abs(stage.wall_speed)));
+    wall_mach = std::max(wall_mach, units::mach_number(stage.fastest_wall()));
     unbounded = unbounded || accelerates_for_ever(stage, scene);
     const double rate = scene::mean_shear_rate(*stage.stage, scene);
     if (rate > shear_rate) {
@@ -84,11 +84,36 @@ std::vector<Conversion> conversion_table(const Plan& plan) {
     converted("viscosity", scene.fluid.viscosity, "Pa s", units::dimension::viscosity);
     if (stage.stage->shear_rate != 0) {
       row("shear rate", stage.stage->shear_rate, "1/s", stage.shear_rate);
-      row("wall speed", u.to_si(stage.wall_speed, units::dimension::velocity), "m/s", stage.wall_speed);
+    }
+    const auto wall = [&](const char* quantity, double speed) {
+      row(quantity, u.to_si(speed, units::dimension::velocity), "m/s", speed);
+    };
+    if (stage.stage->mean_wall_speed != 0) {
+      wall("lower wall's speed", stage.walls.lower);
+      wall("upper wall's speed", stage.walls.upper);
+    } else if (stage.shear_rate != 0) {
+      wall("wall speed", stage.walls.upper);
+    }
+    if (stage.stage->mean_velocity) {
+      converted("mean velocity", *stage.stage->mean_velocity, "m/s", units::dimension::velocity);
     }
     if (stage.body_force_x != 0 || stage.body_force_y != 0) {
-      row("driving force density", u.to_si(stage.body_force_x, units::dimension::force_density), "N/m3",
-          stage.body_force_x);
+      row(stage.stage->mean_velocity ? "driving force density, without cells" : "driving force density",
+          u.to_si(stage.body_force_x, units::dimension::force_density), "N/m3", stage.body_force_x);
+    }
+    if (stage.oscillation.any()) {
+      converted("frequency of the oscillation", stage.stage->oscillation.frequency, "Hz", units::dimension::rate);
+      if (stage.oscillating_rate != 0) {
+        converted("amplitude of the shear rate", stage.stage->oscillation.shear_rate, "1/s", units::dimension::rate);
+      }
+      if (stage.stage->oscillation.mean_wall_speed != 0) {
+        wall("amplitude of the lower wall's speed", stage.oscillation.walls.lower);
+        wall("amplitude of the upper wall's speed", stage.oscillation.walls.upper);
+      }
+      if (stage.oscillation.body_force_x != 0) {
+        converted("amplitude of the driving force density", stage.stage->oscillation.pressure_gradient, "N/m3",
+                  units::dimension::force_density);
+      }
     }
     converted("width of the domain", scene.domain.size.x(), "m", units::dimension::length);
     converted("height of the domain", scene.domain.size.y(), "m", units::dimension::length);
@@ -134,7 +159,10 @@ std::vector<PlannedPass> planned_passes(const Plan& plan) {
   const std::map<std::string, std::string> reasons{
       {"membrane", std::to_string(scene.cells.size()) + " cells resist deformation" +
                        (plan.semi_implicit ? "; semi-implicit step" : "")},
-      {"interaction", "an active potential acts between cells"},
+      {"interaction",
+       std::string("an active potential acts between cells") + (!plan.has_wall_interactions ? ""
+                                                                : plan.has_interactions     ? ", and one with the walls"
+                                                                                            : " and walls")},
       {"corrections",
        slip ? (area ? "membranes neither slip nor leak" : "membranes do not slip") : "cells keep their areas"},
       {"indicator", "inside and outside of a cell have different viscosities"},
@@ -145,6 +173,7 @@ std::vector<PlannedPass> planned_passes(const Plan& plan) {
       {"move", "new positions of membrane nodes"}};
   const core::Schedule schedule = core::make_schedule({.cells = plan.has_cells,
                                                        .interactions = plan.has_interactions,
+                                                       .wall_interactions = plan.has_wall_interactions,
                                                        .viscosity_contrast = plan.viscosity_contrast,
                                                        .slip_correction = plan.has_cells && slip,
                                                        .area_correction = plan.has_cells && area});
@@ -179,9 +208,11 @@ std::vector<Omission> omissions(const Plan& plan) {
            "numerics.slip_correction is false: membranes slip to first order in the lattice spacing");
     if (!scene.numerics.area_correction)
       omit("area correction", "numerics.area_correction is false: leaks show as area drift");
-    if (!plan.has_interactions)
-      omit("neighbour search",
-           scene.interactions.empty() ? "the scene has no interaction" : "no interaction is active");
+    if (!plan.has_interactions) {
+      omit("neighbour search", scene.interactions.empty()   ? "the scene has no interaction"
+                               : plan.has_wall_interactions ? "no interaction between cells is active"
+                                                            : "no interaction is active");
+    }
   }
   for (const PlannedModel& model : plan.interactions) omit_inactive("interaction", model);
   for (const auto& laws : plan.membranes) {

@@ -9,6 +9,7 @@
 #include "cell_travel.hpp"
 #include "core/contact/crossing.hpp"
 #include "core/membrane/geometry.hpp"
+#include "crowding.hpp"
 #include "estimate.hpp"
 #include "plugin/handles.hpp"
 #include "shape/outline.hpp"
@@ -132,10 +133,23 @@ void require_room(const scene::Scene& scene) {
               {"take fewer cells, or a larger domain"});
 }
 
+/// Of many cells that lie on top of each other two are found before memory is asked for all of them.
+void require_distance(const scene::Scene& scene) {
+  constexpr std::size_t many = 10'000;
+  if (scene.cells.size() < many) return;
+  const auto pair = find_crowded_pair(scene);
+  if (!pair) return;
+  const auto name = [&](int cell) { return "cell " + std::to_string(cell) + " (" + scene.cells[cell].pointer + ")"; };
+  throw Error(Cause::bad_input, scene.place(scene.cells[pair->cell].pointer),
+              name(pair->cell) + " and " + name(pair->other) + " overlap: their centres are " +
+                  number(pair->distance * 1e6, 3) + " um apart; move them apart.");
+}
+
 }  // namespace
 
 core::Membranes make_membranes(const scene::Scene& scene, double spacing) {
   require_room(scene);
+  require_distance(scene);
   require_memory(membrane_memory(scene), "placing the cells");
   std::vector<core::RestShape> shapes;
   for (const scene::CellType& type : scene.cell_types) shapes.push_back(rest_shape(type, spacing));
@@ -160,9 +174,14 @@ core::SolverSetup make_solver_setup(const Plan& plan, int index) {
       .tau = stage.tau,
       .inertia = scene.fluid.inertia,
       .follow_cells = follows_cells(scene, stage),
-      .walls = {-stage.wall_speed, stage.wall_speed},
+      .walls = stage.walls,
       .body_force_x = stage.body_force_x,
       .body_force_y = stage.body_force_y,
+      .oscillation = stage.oscillation,
+      // Without cells the gradient of Poiseuille's flow is all that it takes.
+      .mean_velocity = plan.has_cells && stage.stage->mean_velocity
+                           ? stage.units.to_lattice(*stage.stage->mean_velocity, units::dimension::velocity)
+                           : 0,
       .developed = stage.stage->start == scene::WallStart::developed,
       .collision = plugin::make_collision_operator(*plan.collision.manifest, values(plan.collision), setting),
       .kernel = kernel_named(scene.numerics.kernel).kind,
@@ -182,9 +201,13 @@ core::SolverSetup make_solver_setup(const Plan& plan, int index) {
   for (std::size_t i = 0; i < plan.interactions.size(); ++i) {
     const PlannedModel& potential = plan.interactions[i];
     if (!potential.active()) continue;
-    setup.interactions.push_back(
-        {.between = scene.interactions[i].between,
-         .potential = plugin::make_potential(*potential.manifest, values(potential), setting)});
+    const scene::Interaction& interaction = scene.interactions[i];
+    core::Potential made = plugin::make_potential(*potential.manifest, values(potential), setting);
+    if (interaction.with_wall()) {
+      setup.wall_interactions.push_back({.type = interaction.between[0], .potential = std::move(made)});
+    } else {
+      setup.interactions.push_back({.between = interaction.between, .potential = std::move(made)});
+    }
   }
   return setup;
 }

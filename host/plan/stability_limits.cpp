@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <stdexcept>
 
 #include "cell_travel.hpp"
@@ -51,6 +52,13 @@ constexpr std::array<TableEntry, 3> contact_limit{{{0.6, 0.65}, {1.0, 1.46}, {2.
 // spacing long, their corners catch on each other in a narrower one: sliding along a rim of 5 spacings radius meets 2 %
 // of the strongest attraction at a width of 0.66, 5 % at 0.33, 11 % at 0.16 (docs/models.md).
 constexpr double narrowest_well = 0.5;
+// A wall has no corners: what the same rim meets when it rolls along one is 0.006 % of the strongest attraction at a
+// width of 0.5, 0.8 % at 0.25 and 3.6 % at 0.17 (unit_contact, "a polygon rolls along a wall").
+constexpr double narrowest_well_of_a_wall = 0.25;
+
+// Of a flow that oscillates: with less the velocity is more than 1 % of its amplitude off (tests/physics/oscillation.cpp).
+constexpr double fewest_steps_of_period(double tau) { return 350 * (tau - 0.5) * (tau - 0.5); }
+constexpr double thinnest_layer = 2.5;
 
 // How many times stiffer membranes may be with the semi-implicit step, for tau from 0.6 to 5; below it gains nothing. A
 // single cell stays quiet at 80 times the stretching and 13 times the bending stiffness (docs/accuracy.md), two cells
@@ -191,16 +199,29 @@ std::vector<Limit> find_limits(const Plan& plan) {
     const std::string where = " (stage " + stage.stage->name + ")";
     const std::string lower = "lower " + stage.stage->density_factor_key;
     const plugin::ModelSetting setting = stage.model_setting(scene.fluid.inertia);
-    if (stage.wall_speed != 0) {
-      add("Mach number of the walls" + where, units::mach_number(std::abs(stage.wall_speed)),
-          scene::largest_wall_mach(scene.fluid.inertia), true, lower + " or shear_rate, or raise the resolution",
+    if (stage.fastest_wall() != 0) {
+      const std::string what = stage.stage->mean_wall_speed != 0 ? "the walls' speeds" : "shear_rate";
+      add("Mach number of the walls" + where, units::mach_number(stage.fastest_wall()),
+          scene::largest_wall_mach(scene.fluid.inertia), true, lower + " or " + what + ", or raise the resolution",
           density);
     }
-    if (stage.body_force_x != 0 && !scene.domain.periodic_y) {
+    if (stage.largest_body_force_x() != 0 && !scene.domain.periodic_y) {
       const double height = scene.domain.nodes[1];
-      const double speed = std::abs(stage.body_force_x) * height * height / (8 * core::viscosity_of(tau));
+      const double speed = stage.largest_body_force_x() * height * height / (8 * core::viscosity_of(tau));
       add("Mach number of the driven flow" + where, units::mach_number(speed), 0.1, true,
           lower + " or the driving force, or raise the resolution", density);
+    }
+    if (stage.oscillation.any()) {
+      const double frequency = stage.oscillation.frequency;
+      add("time steps in a period of the oscillation" + where, 1 / frequency, fewest_steps_of_period(tau), false, lower,
+          density);
+      add("thickness of the layer that oscillates, sqrt(2 nu/omega), in lattice spacings" + where,
+          std::sqrt(core::viscosity_of(tau) / (std::numbers::pi * frequency)), thinnest_layer, false,
+          "raise the resolution, or " + lower, resolution);
+      const double delay = scene::oscillation_delay(*stage.stage, scene);
+      add("delay of the oscillation by density_factor, in radians" + where,
+          std::max(0.0, stage.stage->density_factor - 1) * delay, 0.1, true,
+          lower + ": the fluid is simulated heavier than it is and lags behind what drives it", density);
     }
     if (!plan.has_cells) continue;
     const double rate = scene::mean_shear_rate(*stage.stage, scene);
@@ -234,7 +255,9 @@ std::vector<Limit> find_limits(const Plan& plan) {
       add("compression of cells by their prestress, 3 T/a" + where, compression, 1e-3, true,
           lower + ": pressure compresses the lattice's fluid the more, the longer the time step", density);
     }
-    for (const PlannedModel& model : plan.interactions) {
+    for (std::size_t i = 0; i < plan.interactions.size(); ++i) {
+      const PlannedModel& model = plan.interactions[i];
+      const bool wall = scene.interactions[i].with_wall();
       if (!model.active()) continue;
       if (!model.manifest->state.empty()) continue;  // its stiffness is a matter of what it remembers
       const PotentialShape shape = find_shape(plugin::ModelInstance(*model.manifest, model.parameters.values, setting));
@@ -246,17 +269,21 @@ std::vector<Limit> find_limits(const Plan& plan) {
       if (stage.index != 0) continue;
       if (shape.well) {
         add("equilibrium gap of " + named + " in lattice spacings", shape.well->distance, 2.0, false,
-            "raise the resolution or place the well farther out, for membranes whose gap it does not resolve stick "
-            "for ever",
+            std::string("raise the resolution or place the well farther out, for membranes whose gap it does not "
+                        "resolve stick ") +
+                (wall ? "to the wall " : "") + "for ever",
             resolution);
-        add("width of the well of " + named + " in lattice spacings", shape.well->width(), narrowest_well, false,
-            "raise the resolution or take a wider well, for the corners of membranes catch on each other in a narrow "
-            "one",
+        add("width of the well of " + named + " in lattice spacings", shape.well->width(),
+            wall ? narrowest_well_of_a_wall : narrowest_well, false,
+            std::string("raise the resolution or take a wider well, for the corners of membranes catch ") +
+                (wall ? "in" : "on each other in") + " a narrow one",
             resolution);
       } else {
         add("range of the repulsion of " + named + " in lattice spacings", shape.range, 2.0, false,
-            "raise the resolution or the range, for nearer than that the lattice moves two membranes together whatever "
-            "acts between them",
+            wall ? "raise the resolution or the range, for nearer than that the lattice holds a membrane to the wall "
+                   "whatever acts between them"
+                 : "raise the resolution or the range, for nearer than that the lattice moves two membranes together "
+                   "whatever acts between them",
             resolution);
       }
     }

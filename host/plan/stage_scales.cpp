@@ -1,14 +1,52 @@
 #include "stage_scales.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "core/fluid/relaxation.hpp"
+#include "scene/driving_flow.hpp"
 
 namespace rouleau::plan {
+
+namespace {
+
+/// Integral of |base + amplitude sin(phase)| from 0 to `phase`.
+double integral_of_magnitude(double base, double amplitude, double phase) {
+  constexpr double turn = 2 * std::numbers::pi;
+  const auto integral = [&](double p) { return base * p + amplitude * (1 - std::cos(p)); };
+  // Where the sign changes, within a turn.
+  std::array<double, 2> zeros{turn, turn};
+  if (std::abs(amplitude) > std::abs(base)) {
+    const double zero = std::asin(-base / amplitude);
+    zeros = {zero < 0 ? zero + turn : zero, std::numbers::pi - zero};
+    std::sort(zeros.begin(), zeros.end());
+  }
+  const auto up_to = [&](double end) {
+    double sum = 0, from = 0;
+    for (const double zero : {zeros[0], zeros[1], end}) {
+      const double to = std::min(zero, end);
+      sum += std::abs(integral(to) - integral(from));
+      from = to;
+    }
+    return sum;
+  };
+  const double turns = std::floor(phase / turn);
+  return turns * up_to(turn) + up_to(phase - turns * turn);
+}
+
+}  // namespace
+
+double StageSetting::strain_after(long steps) const {
+  const auto time = static_cast<double>(steps);
+  if (!oscillation.any()) return std::abs(shear_rate) * time;
+  const double omega = 2 * std::numbers::pi * oscillation.frequency;
+  return integral_of_magnitude(shear_rate, oscillating_rate, omega * time) / omega;
+}
 
 double lattice_spacing(const scene::Scene& scene) { return scene.domain.size.x() / scene.domain.nodes[0]; }
 
@@ -26,10 +64,23 @@ StageSetting make_stage_setting(const scene::Scene& scene, int index) {
   setting.units.mass = density * spacing * spacing * spacing;
   setting.tau = tau;
   setting.shear_rate = setting.units.to_lattice(stage.shear_rate, units::dimension::rate);
-  setting.wall_speed = setting.shear_rate * scene.domain.nodes[1] / 2;
-  const Eigen::Vector2d force = scene.fluid.body_force + stage.pressure_gradient;
+  const double mean = setting.units.to_lattice(stage.mean_wall_speed, units::dimension::velocity);
+  const double apart = setting.shear_rate * scene.domain.nodes[1] / 2;
+  setting.walls = {mean - apart, mean + apart};
+  const Eigen::Vector2d force = scene::driving_force(stage, scene);
   setting.body_force_x = setting.units.to_lattice(force.x(), units::dimension::force_density);
   setting.body_force_y = setting.units.to_lattice(force.y(), units::dimension::force_density);
+
+  if (stage.oscillates()) {
+    const scene::Oscillation& added = stage.oscillation;
+    const double together = setting.units.to_lattice(added.mean_wall_speed, units::dimension::velocity);
+    setting.oscillating_rate = setting.units.to_lattice(added.shear_rate, units::dimension::rate);
+    const double against = setting.oscillating_rate * scene.domain.nodes[1] / 2;
+    setting.oscillation = {
+        .walls = {together - against, together + against},
+        .body_force_x = setting.units.to_lattice(added.pressure_gradient, units::dimension::force_density),
+        .frequency = setting.units.to_lattice(added.frequency, units::dimension::rate)};
+  }
 
   double steps = std::numeric_limits<double>::infinity();
   if (stage.duration) steps = std::min(steps, *stage.duration / setting.units.time);
@@ -39,8 +90,8 @@ StageSetting make_stage_setting(const scene::Scene& scene, int index) {
     throw Error(
         Cause::bad_input, scene.place(stage.pointer),
         "stage " + in_quotes(stage.name) + " would take " + number(steps, 3) + " steps, more than any run can (1e15)",
-        {"shorten its duration or strain, or let the lattice take longer steps: a higher density_factor, a coarser "
-         "lattice"});
+        {"shorten its duration or strain, or let the lattice take longer steps: a higher " + stage.density_factor_key +
+         ", a coarser lattice"});
   }
   setting.max_steps = static_cast<long>(std::ceil(steps - 1e-6));
   return setting;

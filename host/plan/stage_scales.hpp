@@ -1,6 +1,10 @@
 // One stage in lattice units: the conversions that a stage's density factor decides.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
+#include "core/fluid/oscillation.hpp"
 #include "plugin/model.hpp"
 #include "scene/scene.hpp"
 #include "units/lattice_units.hpp"
@@ -13,13 +17,27 @@ struct StageSetting {
   units::LatticeUnits units;
   double tau;
   double shear_rate;                  ///< lattice
-  double wall_speed;                  ///< lattice, of the upper wall; the lower one moves the other way
+  core::WallVelocity walls;           ///< lattice
   double body_force_x, body_force_y;  ///< lattice, body force and pressure gradient
+  core::Oscillation oscillation;      ///< lattice, of walls and body force
+  double oscillating_rate;            ///< lattice, amplitude of the shear rate
   long max_steps;                     ///< of duration or strain, whichever is shorter
 
   [[nodiscard]] plugin::ModelSetting model_setting(bool inertia) const { return {units, 1 / tau, inertia}; }
   /// Walls or a force put energy in.
-  [[nodiscard]] bool is_driven() const { return shear_rate != 0 || body_force_x != 0 || body_force_y != 0; }
+  [[nodiscard]] bool is_driven() const {
+    return fastest_wall() != 0 || largest_body_force_x() != 0 || body_force_y != 0;
+  }
+  /// Largest speed of a wall and largest force along x that there may be, oscillation included; lattice.
+  [[nodiscard]] double fastest_wall() const {
+    return std::max(std::abs(walls.lower) + std::abs(oscillation.walls.lower),
+                    std::abs(walls.upper) + std::abs(oscillation.walls.upper));
+  }
+  [[nodiscard]] double largest_body_force_x() const {
+    return std::abs(body_force_x) + std::abs(oscillation.body_force_x);
+  }
+  /// Strain after so many steps of the stage: the shear rate's magnitude, over time.
+  [[nodiscard]] double strain_after(long steps) const;
   /// Steps from one output to the next for a time interval in seconds (at least one).
   [[nodiscard]] double steps_of(double seconds) const { return seconds / units.time; }
 };

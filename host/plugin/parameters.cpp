@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/synonyms.hpp"
 #include "base/text.hpp"
 #include "json/document.hpp"
 #include "json/json_pointer.hpp"
@@ -20,20 +21,32 @@ using Json = nlohmann::json;
 class Resolver {
  public:
   Resolver(const scene::ModelChoice& choice, const Manifest& manifest, const scene::Scene& scene,
-           const units::Units& units)
-      : choice_(choice), manifest_(manifest), scene_(scene), units_(units) {}
+           const units::Units& units, Faults& faults)
+      : choice_(choice), manifest_(manifest), scene_(scene), units_(units), faults_(faults) {}
 
   ParameterValues resolve() {
-    if (!choice_.parameters.is_null() && !choice_.parameters.is_object()) {
-      refuse("/parameters", json::shown(choice_.parameters) + " is no object of parameters");
-    }
-    refuse_unknown();
     ParameterValues result;
-    for (const Parameter& parameter : manifest_.parameters) {
-      const double value = value_of(parameter);
-      result.values.push_back(value);
-      if (is_unusual(value, parameter)) result.warnings.push_back(warning(parameter, value));
+    const std::size_t before = faults_.size();
+    if (is_faulty(choice_.pointer + "/parameters")) return result;
+    if (!choice_.parameters.is_null() && !choice_.parameters.is_object()) {
+      faults_.attempt([&] { refuse("/parameters", json::shown(choice_.parameters) + " is no object of parameters"); });
+      return result;
     }
+    // Without any, a key that is wrong beside the model's may have been meant for them.
+    const bool lost = choice_.parameters.empty() && is_member_faulty();
+    refuse_unknown();
+    for (const Parameter& parameter : manifest_.parameters) {
+      const bool skipped = choice_.parameters.is_object() && choice_.parameters.contains(parameter.name)
+                               ? is_faulty(choice_.pointer + pointer_of(parameter.name))
+                               : lost || is_misspelt(parameter.name);
+      if (skipped) continue;
+      faults_.attempt([&] {
+        const double value = value_of(parameter);
+        result.values.push_back(value);
+        if (is_unusual(value, parameter)) result.warnings.push_back(warning(parameter, value));
+      });
+    }
+    if (faults_.size() > before || result.values.size() < manifest_.parameters.size()) return result;
     result.inactive = is_inactive(result.values);
     if (result.inactive) result.warnings.clear();  // a model that is switched off need not look usual
     return result;
@@ -47,15 +60,35 @@ class Resolver {
     return json::child_pointer("/parameters", name);
   }
 
-  void refuse_unknown() const {
+  [[nodiscard]] bool is_faulty(const std::string& pointer) const {
+    for (std::size_t i = 0; i < faults_.size(); ++i) {
+      if (faults_[i].place().pointer == pointer) return true;
+    }
+    return false;
+  }
+  [[nodiscard]] bool is_member_faulty() const {
+    for (std::size_t i = 0; i < faults_.size(); ++i) {
+      const std::string& faulty = faults_[i].place().pointer;
+      if (faulty.substr(0, faulty.rfind('/')) == choice_.pointer) return true;
+    }
+    return false;
+  }
+
+  /// Was an unknown name most likely meant to be this parameter?
+  [[nodiscard]] bool is_misspelt(const std::string& name) const {
+    return std::find(misspelt_.begin(), misspelt_.end(), name) != misspelt_.end();
+  }
+
+  void refuse_unknown() {
     std::vector<std::string> names;
     for (const Parameter& parameter : manifest_.parameters) names.push_back(parameter.name);
     for (const auto& [name, value] : choice_.parameters.items()) {
       if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+      misspelt_.push_back(likely(name, names));
       const std::string pointer = choice_.pointer + pointer_of(name);
-      throw Error(Cause::bad_input, scene_.document ? scene_.document->key_place(pointer) : scene_.place(pointer),
-                  in_quotes(manifest_.id) + " has no parameter " + in_quotes(name) + did_you_mean(name, names) +
-                      "\n  its parameters: " + listed(names));
+      faults_.add({Cause::bad_input, scene_.document ? scene_.document->key_place(pointer) : scene_.place(pointer),
+                   in_quotes(manifest_.id) + " has no parameter " + in_quotes(name) + did_you_mean(name, names) +
+                       "\n  its parameters: " + listed(names)});
     }
   }
 
@@ -171,13 +204,23 @@ class Resolver {
   const Manifest& manifest_;
   const scene::Scene& scene_;
   const units::Units& units_;
+  Faults& faults_;
+  std::vector<std::string> misspelt_;  ///< parameters that unknown names were most likely meant to be
 };
 
 }  // namespace
 
 ParameterValues resolve_parameters(const scene::ModelChoice& choice, const Manifest& manifest,
+                                   const scene::Scene& scene, const units::Units& units, Faults& faults) {
+  return Resolver(choice, manifest, scene, units, faults).resolve();
+}
+
+ParameterValues resolve_parameters(const scene::ModelChoice& choice, const Manifest& manifest,
                                    const scene::Scene& scene, const units::Units& units) {
-  return Resolver(choice, manifest, scene, units).resolve();
+  Faults faults;
+  ParameterValues values = resolve_parameters(choice, manifest, scene, units, faults);
+  faults.raise();
+  return values;
 }
 
 }  // namespace rouleau::plugin

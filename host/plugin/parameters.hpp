@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "base/faults.hpp"
 #include "manifest.hpp"
 #include "scene/scene.hpp"
 
@@ -16,8 +17,12 @@ struct ParameterValues {
   bool inactive = false;              ///< the manifest's inactive_when holds: the model does nothing
 };
 
-/// Throws Error(bad_input) for an unknown name (nearest, and the model's list), a wrong unit, a value outside its
-/// limits, or a missing parameter, each with its place in the scene.
+/// Adds a fault for each unknown name (nearest, and the model's list), wrong unit, value outside its limits and missing
+/// parameter, with its place in the scene, but for what follows from faults that are there already. With faults the
+/// values mean nothing.
+ParameterValues resolve_parameters(const scene::ModelChoice& choice, const Manifest& manifest,
+                                   const scene::Scene& scene, const units::Units& units, Faults& faults);
+/// Throws those faults, Error(bad_input).
 ParameterValues resolve_parameters(const scene::ModelChoice& choice, const Manifest& manifest,
                                    const scene::Scene& scene, const units::Units& units);
 

@@ -28,6 +28,8 @@ void read(const files::CheckpointReader& reader, const std::string& path, std::v
   reader.array(path, values.size(), values.data());
 }
 
+constexpr const char *contacts_array = "/membranes/contacts", *wall_contacts_array = "/membranes/wall_contacts";
+
 Json described(const core::ElementState& s) {
   return {{"cell_type", s.cell_type}, {"law", s.law}, {"model", s.model}, {"name", s.name}, {"unit_si", s.unit}};
 }
@@ -45,8 +47,9 @@ core::ContactVariable contact_variable(const Json& d) {
   return {d.at("potential"), d.at("model"), d.at("name"), d.at("unit_si"), d.at("initial")};
 }
 
-/// What interactions remember: which pairs of cells, and for each of them the next so many values of one array.
-Json save_contacts(files::CheckpointWriter& writer, const core::ContactMemory& memory) {
+/// What interactions remember: which pairs of cells, or of cells and walls, and for each of them the next so many values
+/// of one array.
+Json save_contacts(files::CheckpointWriter& writer, const char* array, const core::ContactMemory& memory) {
   Json variables = Json::array(), pairs = Json::array();
   for (const core::ContactVariable& variable : memory.variables) variables.push_back(described(variable));
   std::vector<double> values;
@@ -56,7 +59,7 @@ Json save_contacts(files::CheckpointWriter& writer, const core::ContactMemory& m
       values.insert(values.end(), s.value.begin(), s.value.end());
     }
   }
-  writer.array("/membranes/contacts", values);
+  writer.array(array, values);
   return {{"variables", variables}, {"cells", memory.of_cell.size()}, {"pairs", pairs}};
 }
 
@@ -65,21 +68,22 @@ void require(bool fits, const files::CheckpointReader& reader, const char* what)
   if (!fits) reader.refuse(what);
 }
 
-void restore_contacts(const files::CheckpointReader& reader, const Json& saved, core::Membranes& membranes) {
-  core::ContactMemory& memory = membranes.contacts;
+/// `others`: how many there are that a cell may be in contact with.
+void restore_contacts(const files::CheckpointReader& reader, const Json& saved, const char* array, std::size_t others,
+                      const core::Membranes& membranes, core::ContactMemory& memory) {
   memory.variables.clear();
   for (const Json& variable : saved.at("variables")) memory.variables.push_back(contact_variable(variable));
   const Json& cells = saved.at("cells");
   require(cells == 0 || cells == membranes.cells.size(), reader, "contacts of another number of cells");
   memory.of_cell.assign(cells, {});
-  std::vector<double> values = reader.array("/membranes/contacts");
+  std::vector<double> values = reader.array(array);
   auto next = values.begin();
   for (const Json& pair : saved.at("pairs")) {
     const std::size_t cell = pair.at(0), variable = pair.at(1);
     const int other = pair.at(2);
     const std::ptrdiff_t count = pair.at(5);
     require(cell < memory.of_cell.size() && variable < memory.variables.size() && other >= 0 &&
-                other < static_cast<int>(memory.of_cell.size()),
+                other < static_cast<int>(others),
             reader, "a contact of a cell or of a variable that is not there");
     require(count == membranes.cells[cell].count && count <= values.end() - next, reader, "a contact without values");
     memory.of_cell[cell].push_back({variable, other, {pair.at(3), pair.at(4)}, {next, next + count}});
@@ -96,7 +100,12 @@ Json save(files::CheckpointWriter& writer, const core::Membranes& m) {
     states.push_back(described(m.state[k]));
     writer.array(state_name(k), m.state[k].value);
   }
-  return {{"leakage", m.area_leakage.size()}, {"state", states}, {"contacts", save_contacts(writer, m.contacts)}};
+  Json saved{{"leakage", m.area_leakage.size()},
+             {"state", states},
+             {"contacts", save_contacts(writer, contacts_array, m.contacts)}};
+  if (!m.wall_contacts.variables.empty())
+    saved["wall_contacts"] = save_contacts(writer, wall_contacts_array, m.wall_contacts);
+  return saved;
 }
 
 /// `writer`: null on ranks that do not write.
@@ -119,7 +128,13 @@ Json save(files::CheckpointWriter* writer, core::Solver<T>& solver) {
     writer->array("/indicator/limit", memory.limit);
     writer->array("/indicator/bound", memory.bound);
   }
-  return {{"walls_have_acted", fluid.walls_have_acted()}};
+  Json saved{{"walls_have_acted", fluid.walls_have_acted()}};
+  if (const auto& control = solver.flow_control()) {
+    const core::FlowControl::State& state = control->state();
+    saved["flow_control"] = {{"force", state.force}};
+    if (state.last) saved["flow_control"]["last"] = *state.last;
+  }
+  return saved;
 }
 
 void restore_membranes(const files::CheckpointReader& reader, const Json& saved, core::Membranes& m) {
@@ -135,7 +150,9 @@ void restore_membranes(const files::CheckpointReader& reader, const Json& saved,
     m.state.back().value.resize(m.x.size());
     read(reader, state_name(m.state.size() - 1), m.state.back().value);
   }
-  restore_contacts(reader, saved.at("contacts"), m);
+  restore_contacts(reader, saved.at("contacts"), contacts_array, m.cells.size(), m, m.contacts);
+  if (saved.contains("wall_contacts"))
+    restore_contacts(reader, saved["wall_contacts"], wall_contacts_array, 2, m, m.wall_contacts);
 }
 
 }  // namespace
@@ -185,7 +202,14 @@ Restored<T> restore(const std::shared_ptr<const files::CheckpointReader>& reader
                                       return values;
                                     },
                                 .walls_have_acted = saved.at("solver").at("walls_have_acted"),
+                                .steps = state.stage_step,
+                                .flow_control = {},
                                 .viscosity = {}};
+    if (const Json& of_solver = saved.at("solver"); of_solver.contains("flow_control")) {
+      const Json& control = of_solver.at("flow_control");
+      solver.flow_control = core::FlowControl::State{.force = control.at("force"), .last = {}};
+      if (control.contains("last")) solver.flow_control->last = control.at("last").get<double>();
+    }
     if (!membranes.cells.empty()) {
       core::DisplacementWatch::Memory& memory = solver.viscosity;
       for (auto* of_nodes : {&memory.x, &memory.y}) of_nodes->resize(membranes.x.size());

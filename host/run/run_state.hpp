@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "monitor/equilibrium_watch.hpp"
 #include "monitor/growth_watch.hpp"
 #include "monitor/rest_watch.hpp"
 #include "observe/aggregate_history.hpp"
@@ -51,6 +52,7 @@ struct RunState {
   monitor::GrowthWatch growth;
   PassCosts costs;
   monitor::RestWatch rest_watch;
+  monitor::EquilibriumWatch equilibrium;
   std::vector<StageEnd> stages;  ///< those that are over
   std::vector<Continuation> resumed;
 
@@ -58,7 +60,7 @@ struct RunState {
     return time + static_cast<double>(stage_step) * setting.units.time;
   }
   [[nodiscard]] double strain_at(const plan::StageSetting& setting) const {
-    return strain + std::abs(setting.shear_rate) * static_cast<double>(stage_step);
+    return strain + setting.strain_after(stage_step);
   }
   /// The stage is over: what it took is added up.
   void end_stage(const plan::StageSetting& setting, Ending ended_by) {
@@ -72,7 +74,7 @@ struct RunState {
   [[nodiscard]] bool fits(const plan::Plan& plan, const core::Membranes& membranes) const;
   NLOHMANN_DEFINE_TYPE_INTRUSIVE(RunState, stage, steps, stage_step, steps_before, time, strain, wall, stage_wall,
                                  momentum_residual, observer, history, rheology, energy, growth, costs, rest_watch,
-                                 stages, resumed)
+                                 equilibrium, stages, resumed)
 };
 
 }  // namespace rouleau::run

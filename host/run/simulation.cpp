@@ -148,6 +148,7 @@ class Simulation {
     state_.steps_before = state_.steps;
     state_.stage_wall = 0;
     state_.rest_watch.start(0, membranes_);
+    state_.equilibrium.start();
   }
 
   void run_stage() {
@@ -281,7 +282,7 @@ class Simulation {
       checkpoints_.write(plan_, options_.threads, state_, membranes_, *solver_);
       state_.costs.add("checkpoint", seconds_since(start), 1);
     }
-    const bool window_over = step >= state_.rest_watch.end(rest_window(setting));
+    const bool window_over = step >= state_.rest_watch.end(rest_window());
     if (setting.stage->until_at_rest && window_over) state_.rest_watch.start(step, membranes_);
   }
 
@@ -320,7 +321,10 @@ class Simulation {
           return;
         }
       }
-      state_.momentum_residual = std::max(state_.momentum_residual, observe::Observer::momentum_residual(membranes_));
+      const core::WallContacts* walls = solver_->wall_contacts();
+      const double from_walls = walls != nullptr ? walls->net_force(membranes_) : 0;
+      state_.momentum_residual =
+          std::max(state_.momentum_residual, observe::Observer::momentum_residual(membranes_, from_walls));
       progress_.update(progress(setting));
       state_.costs.add("observe and check", seconds_since(start), 1);
     }
@@ -328,7 +332,13 @@ class Simulation {
     const long check = (step / scene_.checks.every_steps + 1) * scene_.checks.every_steps;
     next_attention_ = std::min({cells.next(step), fields.next(step), check, last_step(setting)});
     if (setting.stage->until_at_rest) {
-      next_attention_ = std::min(next_attention_, state_.rest_watch.end(rest_window(setting)));
+      next_attention_ = std::min(next_attention_, state_.rest_watch.end(rest_window()));
+    }
+    if (setting.stage->until_equilibrium) {
+      watch_energy(step);
+      const long window = window_steps(scene_.equilibrium.window);
+      next_attention_ =
+          std::min(next_attention_, state_.equilibrium.reached() ? step + 1 : state_.equilibrium.next(window));
     }
   }
 
@@ -342,6 +352,7 @@ class Simulation {
     const scene::Stage& stage = *setting.stage;
     if (core::any(ranks_, interrupted())) return Ending::interrupted;
     if (stage.until_at_rest && at_rest(setting)) return Ending::at_rest;
+    if (stage.until_equilibrium && state_.equilibrium.reached()) return Ending::equilibrium;
     if (state_.stage_step >= setting.max_steps) {
       const bool by_strain =
           stage.strain && (!stage.duration || *stage.strain / std::abs(stage.shear_rate) <= *stage.duration);
@@ -351,12 +362,26 @@ class Simulation {
     return Ending::none;
   }
 
-  [[nodiscard]] long rest_window(const plan::StageSetting& setting) const {
-    return std::max(1L, std::lround(setting.steps_of(scene_.at_rest.window)));
+  [[nodiscard]] long window_steps(double seconds) const {
+    return std::max(1L, std::lround(setting().steps_of(seconds)));
+  }
+  [[nodiscard]] long rest_window() const { return window_steps(scene_.at_rest.window); }
+
+  /// Forces computed: the energy of the cells, if a window is over.
+  void watch_energy(long step) {
+    if (step < state_.equilibrium.next(window_steps(scene_.equilibrium.window))) return;
+    const observe::CellEnergy energy = observe::cell_energy(*solver_, membranes_);
+    if (!energy.unknown.empty()) {
+      throw Error(Cause::bad_input, scene_.place(setting().stage->pointer + "/until"),
+                  "there is no energy to watch, since " + energy.unknown,
+                  {"end the stage by \"at_rest\" or by duration"});
+    }
+    state_.equilibrium.note(step, energy.sum, energy.magnitude + solver_->slight_energy(),
+                            scene_.equilibrium.rate * setting().units.time);
   }
 
   [[nodiscard]] bool at_rest(const plan::StageSetting& setting) const {
-    return state_.stage_step >= state_.rest_watch.end(rest_window(setting)) &&
+    return state_.stage_step >= state_.rest_watch.end(rest_window()) &&
            state_.rest_watch.moved(membranes_) < scene_.at_rest.displacement / setting.units.length;
   }
 

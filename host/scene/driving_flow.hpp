@@ -5,12 +5,15 @@
 
 namespace rouleau::scene {
 
-/// Force per volume that drives the fluid in a stage, N/m3.
+/// Whether the walls move in a stage.
+bool walls_move(const Stage& stage);
+
+/// Force per volume that drives the fluid in a stage, N/m3; for a mean velocity what it would take without cells.
 Eigen::Vector2d driving_force(const Stage& stage, const Scene& scene);
 
-/// Shear rate that a stage's numbers are made with, 1/s: that of the walls where they move; else that of the developed
+/// Shear rate that a stage's numbers are made with, 1/s: that of the walls where they shear; else that of the developed
 /// flow between them, |du/dy| averaged over the height, G H / (4 mu), which is its largest velocity over half the
-/// height. 0 at rest, and where no wall holds a flow that is driven.
+/// height. The largest of an oscillation. 0 at rest, and where no wall holds a flow that is driven.
 double mean_shear_rate(const Stage& stage, const Scene& scene);
 
 /// Strain that a flow from a start at rest is late by, for good, for each unit of density_factor; 0 where it starts
@@ -18,6 +21,12 @@ double mean_shear_rate(const Stage& stage, const Scene& scene);
 /// integral over time gives the lag, which is H^2/(24 nu) for the shear rate in the middle between moving walls, and
 /// H^2/(10 nu) for the flow rate of a driven channel, nu the kinematic viscosity.
 double start_up_strain(const Stage& stage, const Scene& scene);
+
+/// Phase in rad, for each unit of density_factor, by which the fluid's inertia delays an oscillation: of the shear rate in
+/// the middle between walls that oscillate against each other, the velocity there between walls that do so together, the
+/// flow rate of a channel (1/6, 1/2 and 2/5 of the square of the Womersley number, made with half the height, while that
+/// is small). 0 where nothing oscillates, and where no wall holds the flow.
+double oscillation_delay(const Stage& stage, const Scene& scene);
 
 /// Largest Mach number of moving walls without a warning. Without convective inertia the fluid's equations are linear
 /// in the velocity, and what is left is the membranes' step in time: a capsule's deformation changes by 2e-4 from 0.03

@@ -33,23 +33,28 @@ std::string spacing_remedy(const Domain& domain) {
 }
 
 Domain read_domain(const SceneFields& fields) {
-  Domain domain;
+  Domain domain{};
   domain.size = fields.quantities("/domain/size", "m", range::length);
-  fields.require("/domain", "nodes", "or \"numerics\": \"auto\" chooses them");
-  domain.nodes = fields.at("/domain/nodes").get<std::array<int, 2>>();
-  domain.periodic_y = fields.at("/domain/y").is_string();
-  if (std::int64_t{domain.nodes[0]} * domain.nodes[1] > most_nodes) {
-    fields.refuse("/domain/nodes", std::to_string(domain.nodes[0]) + " x " + std::to_string(domain.nodes[1]) +
-                                       " nodes are too many; at most " + std::to_string(most_nodes) +
-                                       " can be computed");
-  }
-  const double along_x = domain.size.x() / domain.nodes[0];
-  const double along_y = domain.size.y() / domain.nodes[1];
-  if (std::abs(along_x - along_y) > spacing_tolerance * along_x) {
-    fields.refuse("/domain/size", "the lattice spacing would be " + number(along_x * 1e6) + " um along x but " +
-                                      number(along_y * 1e6) + " um along y; it must be the same along both\n" +
-                                      spacing_remedy(domain));
-  }
+  fields.attempt([&] { domain.periodic_y = fields.value<nlohmann::json>("/domain/y").is_string(); });
+  fields.attempt([&] {
+    fields.require("/domain", "nodes", "or \"numerics\": \"auto\" chooses them");
+    domain.nodes = fields.value<std::array<int, 2>>("/domain/nodes");
+    if (std::int64_t{domain.nodes[0]} * domain.nodes[1] > most_nodes) {
+      fields.refuse("/domain/nodes", std::to_string(domain.nodes[0]) + " x " + std::to_string(domain.nodes[1]) +
+                                         " nodes are too many; at most " + std::to_string(most_nodes) +
+                                         " can be computed");
+    }
+  });
+  fields.attempt([&] {
+    if (!is_known(domain)) return;
+    const double along_x = domain.size.x() / domain.nodes[0];
+    const double along_y = domain.size.y() / domain.nodes[1];
+    if (std::abs(along_x - along_y) > spacing_tolerance * along_x) {
+      fields.refuse("/domain/size", "the lattice spacing would be " + number(along_x * 1e6) + " um along x but " +
+                                        number(along_y * 1e6) + " um along y; it must be the same along both\n" +
+                                        spacing_remedy(domain));
+    }
+  });
   return domain;
 }
 
@@ -61,8 +66,10 @@ FluidProperties read_fluid(const SceneFields& fields) {
   if (fields.has("/fluid/body_force")) {
     fluid.body_force = fields.quantities("/fluid/body_force", "N/m3", range::force_density);
   }
-  fluid.collision = fields.has("/fluid/collision") ? fields.model("/fluid/collision")
-                                                   : ModelChoice{"trt", nlohmann::json::object(), "/fluid/collision"};
+  fluid.collision = {"trt", nlohmann::json::object(), "/fluid/collision"};
+  fields.attempt([&] {
+    if (fields.has("/fluid/collision")) fluid.collision = fields.model("/fluid/collision");
+  });
   return fluid;
 }
 
@@ -79,16 +86,41 @@ Numerics read_numerics(const SceneFields& fields) {
   return numerics;
 }
 
-std::vector<Interaction> read_interactions(const SceneFields& fields, const std::vector<CellType>& types) {
+std::array<int, 2> read_between(const SceneFields& fields, const std::string& pointer,
+                                const std::vector<CellType>& types, bool periodic_y) {
+  const auto side = [&](const std::string& which) {
+    if (fields.at(pointer + which) != wall_name) return fields.cell_type(pointer + which, types, {wall_name});
+    if (!periodic_y) return Interaction::wall;
+    fields.refuse(pointer + which,
+                  "there is no wall, for domain.y is \"periodic\"\nwrite \"y\": {\"lower\": {\"wall\": {}}, "
+                  "\"upper\": {\"wall\": {}}}, or leave this interaction out");
+  };
+  int a = 0, b = 0;
+  fields.attempt([&] { a = side("/0"); });
+  fields.attempt([&] { b = side("/1"); });
+  if (a == Interaction::wall && b == Interaction::wall)
+    fields.refuse(pointer, "walls do not act on each other\nname a cell type beside \"wall\"");
+  return a == Interaction::wall ? std::array{b, a} : std::array{a, b};
+}
+
+std::vector<Interaction> read_interactions(const SceneFields& fields, const std::vector<CellType>& types,
+                                           bool periodic_y) {
   std::vector<Interaction> interactions;
-  const auto count = fields.has("/interactions") ? fields.at("/interactions").size() : 0;
+  const auto count = fields.has("/interactions") ? fields.count("/interactions") : 0;
   for (std::size_t i = 0; i < count; ++i) {
     const auto pointer = json::child_pointer("/interactions", i);
-    interactions.push_back(
-        {{fields.cell_type(pointer + "/between/0", types), fields.cell_type(pointer + "/between/1", types)},
-         fields.model(pointer)});
+    auto& interaction = interactions.emplace_back();
+    fields.attempt([&] { interaction.between = read_between(fields, pointer + "/between", types, periodic_y); });
+    fields.attempt([&] { interaction.potential = fields.model(pointer); });
   }
   return interactions;
+}
+
+Equilibrium read_equilibrium(const SceneFields& fields) {
+  Equilibrium equilibrium;
+  equilibrium.rate = fields.quantity_or("/equilibrium/rate", "1/s", range::rate, equilibrium.rate);
+  equilibrium.window = fields.quantity_or("/equilibrium/window", "s", range::time, equilibrium.window);
+  return equilibrium;
 }
 
 AtRest read_at_rest(const SceneFields& fields) {
@@ -127,6 +159,11 @@ const nlohmann::json& scene_schema() {
   return schema;
 }
 
+std::array<std::string, 2> Scene::names_of(const Interaction& interaction) const {
+  const auto name = [&](int type) { return type == Interaction::wall ? wall_name : cell_types[type].name; };
+  return {name(interaction.between[0]), name(interaction.between[1])};
+}
+
 Place Scene::place(const std::string& pointer) const {
   return document ? document->place(pointer) : Place{"", pointer, 0, 0};
 }
@@ -140,32 +177,55 @@ void check_membrane_nodes(const Scene& scene) {
                             std::to_string(most_membrane_nodes) + " can be computed: use fewer cells or segments");
 }
 
-json::Document read_document(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+json::Document read_document(const std::filesystem::path& file, const std::vector<std::string>& overrides,
+                             Faults& faults) {
   auto document = json::Document::read(file);
-  for (const auto& assignment : overrides) document.set(assignment);
-  json::validate(document, scene_schema());
+  Faults of_overrides;
+  for (const auto& assignment : overrides) of_overrides.attempt([&] { document.set(assignment); });
+  of_overrides.raise();  // what one of them was to mend is no fault of the scene
+  json::judge(document, scene_schema(), faults);
   return document;
 }
 
-Scene read_scene(std::shared_ptr<const json::Document> document) {
+json::Document read_document(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  Faults faults;
+  auto document = read_document(file, overrides, faults);
+  faults.raise();
+  return document;
+}
+
+Scene read_scene(std::shared_ptr<const json::Document> document, Faults& faults) {
   Scene scene;
-  SceneFields fields(*document);
-  if (fields.has("/title")) scene.title = fields.line("/title");
-  scene.domain = read_domain(fields);
-  fields.bound_lengths(scene.domain.size);
-  scene.fluid = read_fluid(fields);
-  scene.numerics = read_numerics(fields);
-  scene.cell_types = read_cell_types(fields, scene.fluid.viscosity);
-  scene.cells = read_cells(fields, scene.cell_types, scene.domain, scene.packings);
-  scene.interactions = read_interactions(fields, scene.cell_types);
-  scene.stages = read_stages(fields, scene);
-  scene.output = read_output(fields, scene.stages);
-  scene.output.field_storage = read_field_storage(fields, scene.domain);
-  scene.at_rest = read_at_rest(fields);
-  scene.checks = read_checks(fields);
-  scene.plugin_dirs = read_plugin_dirs(fields, std::filesystem::path(document->file()).parent_path());
+  SceneFields fields(*document, faults);
+  const auto part = [&](const auto& read) { fields.attempt(read); };
+  part([&] {
+    if (fields.has("/title")) scene.title = fields.line("/title");
+  });
+  part([&] { scene.domain = read_domain(fields); });
+  if (scene.domain.size.allFinite()) fields.bound_lengths(scene.domain.size);
+  part([&] { scene.fluid = read_fluid(fields); });
+  part([&] { scene.numerics = read_numerics(fields); });
+  part([&] { scene.cell_types = read_cell_types(fields, scene.fluid.viscosity); });
+  part([&] { scene.cells = read_cells(fields, scene.cell_types, scene.domain, scene.packings); });
+  part([&] { scene.interactions = read_interactions(fields, scene.cell_types, scene.domain.periodic_y); });
+  part([&] { scene.stages = read_stages(fields, scene); });
+  part([&] { scene.output = read_output(fields, scene.stages); });
+  part([&] { scene.output.field_storage = read_field_storage(fields, scene.domain); });
+  part([&] { scene.at_rest = read_at_rest(fields); });
+  part([&] { scene.equilibrium = read_equilibrium(fields); });
+  part([&] { scene.checks = read_checks(fields); });
+  part([&] { scene.plugin_dirs = read_plugin_dirs(fields, std::filesystem::path(document->file()).parent_path()); });
   scene.document = std::move(document);
-  check_membrane_nodes(scene);
+  part([&] {
+    if (faults.empty()) check_membrane_nodes(scene);
+  });
+  return scene;
+}
+
+Scene read_scene(std::shared_ptr<const json::Document> document) {
+  Faults faults;
+  Scene scene = read_scene(std::move(document), faults);
+  faults.raise();
   return scene;
 }
 

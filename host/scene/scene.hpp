@@ -12,7 +12,7 @@
 #include <variant>
 #include <vector>
 
-#include "base/error.hpp"
+#include "base/faults.hpp"
 
 namespace rouleau::json {
 class Document;
@@ -92,25 +92,45 @@ struct RandomPacking {
   std::string pointer;           ///< entry of /cells
 };
 
+/// Stands for both walls where an interaction names what it acts between; no cell type may be called so.
+inline constexpr const char* wall_name = "wall";
+
 struct Interaction {
-  std::array<int, 2> between;  ///< indices into Scene::cell_types; unordered
+  static constexpr int wall = -1;
+  std::array<int, 2> between;  ///< indices into Scene::cell_types; unordered; `wall` may be the second
   ModelChoice potential;
+  [[nodiscard]] bool with_wall() const { return between[1] == wall; }
 };
 
 enum class WallStart { impulsive, developed };
 
+/// What is added to what drives a stage: amplitudes times sin(2 pi frequency t), t from the start of the stage.
+struct Oscillation {
+  double frequency = 0;          ///< Hz; 0: nothing oscillates
+  double shear_rate = 0;         ///< 1/s
+  double mean_wall_speed = 0;    ///< m/s
+  double pressure_gradient = 0;  ///< Pa/m
+};
+
 struct Stage {
   std::string name;
   std::optional<double> duration;  ///< s
-  std::optional<double> strain;    ///< strain of this stage, shear_rate x time
-  bool until_at_rest = false;
-  double shear_rate = 0.0;  ///< 1/s; walls move with +-shear_rate x height / 2
+  std::optional<double> strain;    ///< strain of this stage, |shear_rate| x time
+  bool until_at_rest = false, until_equilibrium = false;
+  double shear_rate = 0.0;  ///< 1/s, of either sign: speed of the upper wall less that of the lower, over the height
+  double mean_wall_speed = 0.0;  ///< m/s, of both walls together, along x
   WallStart start = WallStart::impulsive;
   Eigen::Vector2d pressure_gradient =
-      Eigen::Vector2d::Zero();  ///< force per volume that drives the flow, Pa/m, along x
-  double density_factor;        ///< Numerics::density_factor unless the stage has its own
+      Eigen::Vector2d::Zero();          ///< force per volume that drives the flow, Pa/m, along x
+  std::optional<double> mean_velocity;  ///< m/s, of the fluid in a channel: the pressure gradient is what it takes
+  Oscillation oscillation;
+  double density_factor;  ///< Numerics::density_factor unless the stage has its own
   std::string density_factor_key = "numerics.density_factor";  ///< what to change for another one
   std::string pointer;
+
+  [[nodiscard]] bool oscillates() const { return oscillation.frequency != 0; }
+  /// Whether its walls shear at one rate: strain is counted by it.
+  [[nodiscard]] bool shears_steadily() const { return shear_rate != 0 && !oscillates(); }
 };
 
 /// When an output is due: every so much strain, every so many seconds of simulated time, or both. Empty: never.
@@ -147,6 +167,13 @@ struct AtRest {
   double window = 0.2;            ///< s
 };
 
+/// "equilibrium": the energy of membranes and interactions has changed by less than `rate` of itself in a second, taken
+/// over the last `window`.
+struct Equilibrium {
+  double rate = 1e-3;   ///< 1/s
+  double window = 0.2;  ///< s
+};
+
 /// Limits beyond which a run stops before it writes garbage.
 struct Checks {
   double mach = 0.3;         ///< largest Mach number of the lattice flow
@@ -169,10 +196,13 @@ struct Scene {
   std::vector<Stage> stages;
   Output output;
   AtRest at_rest;
+  Equilibrium equilibrium;
   Checks checks;
   std::vector<std::filesystem::path> plugin_dirs;  ///< relative ones begin with the scene's folder
   std::shared_ptr<const json::Document> document;  ///< for places in later errors, and for the report
 
+  /// Names of what an interaction acts between.
+  [[nodiscard]] std::array<std::string, 2> names_of(const Interaction& interaction) const;
   /// Place of a JSON pointer in the scene file, for an Error.
   [[nodiscard]] Place place(const std::string& pointer) const;
 };
@@ -180,14 +210,20 @@ struct Scene {
 /// The schema of a scene.
 const nlohmann::json& scene_schema();
 
-/// A scene's text with `overrides` put in, found to fit the schema. They are "POINTER=VALUE" as given to --set; VALUE
-/// is any JSON value, or a bare word taken as a string. Throws Error(bad_input), or Error(input_output) when the file
-/// cannot be read.
+/// A scene's text with `overrides` put in. They are "POINTER=VALUE" as given to --set; VALUE is any JSON value, or a bare
+/// word taken as a string. Faults by the schema are added. Throws Error(bad_input) for text that is no JSON and for
+/// overrides that cannot be put in, Error(input_output) when the file cannot be read.
+json::Document read_document(const std::filesystem::path& file, const std::vector<std::string>& overrides,
+                             Faults& faults);
+/// The same; throws what is wrong by the schema.
 json::Document read_document(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
 
-/// Converts a document that fits the schema, and nothing more: cells that are placed at random are in `packings` alone,
-/// and numerics that the scene leaves open are those that Numerics begins with (plan::read_scene() reads a scene
-/// whole). Relative folders begin with that of the document's file. Throws Error(bad_input).
+/// Converts a document, and nothing more: cells that are placed at random are in `packings` alone, and numerics that the
+/// scene leaves open are those that Numerics begins with (plan::read_scene() reads a scene whole). Relative folders begin
+/// with that of the document's file. `faults` has what the schema has found in the document; what is found here is added,
+/// but for what follows from a fault. With faults, the scene is what could be read, for who looks for more of them.
+Scene read_scene(std::shared_ptr<const json::Document> document, Faults& faults);
+/// Converts a document that fits the schema. Throws what is found, Error(bad_input).
 Scene read_scene(std::shared_ptr<const json::Document> document);
 
 }  // namespace rouleau::scene

@@ -35,20 +35,23 @@ class Placements {
       : fields_(fields), types_(types), domain_(domain), packings_(packings) {}
 
   std::vector<CellPlacement> read() {
-    const auto count = fields_.has("/cells") ? fields_.at("/cells").size() : 0;
-    for (std::size_t i = 0; i < count; ++i) read_entry(json::child_pointer("/cells", i));
+    const auto count = fields_.has("/cells") ? fields_.count("/cells") : 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      fields_.attempt([&] { read_entry(json::child_pointer("/cells", i)); });
+    }
     return std::move(cells_);
   }
 
  private:
   void read_entry(const std::string& pointer) {
-    const int type = fields_.cell_type(pointer + "/type", types_);
+    int type = 0;
+    fields_.attempt([&] { type = fields_.cell_type(pointer + "/type", types_); });
     if (fields_.has(pointer + "/row")) {
       read_row(type, pointer);
     } else if (fields_.has(pointer + "/random")) {
       read_random(type, pointer);
     } else if (fields_.has(pointer + "/list")) {
-      const auto count = fields_.at(pointer + "/list").size();
+      const auto count = fields_.count(pointer + "/list");
       fields_.require_room(cells_.size(), count, pointer + "/list");
       for (std::size_t i = 0; i < count; ++i) place_one(type, json::child_pointer(pointer + "/list", i));
     } else {
@@ -63,7 +66,7 @@ class Placements {
 
   void read_row(int type, const std::string& entry) {
     const auto pointer = entry + "/row";
-    const auto count = fields_.at(pointer + "/count").get<std::size_t>();
+    const auto count = fields_.value<std::size_t>(pointer + "/count");
     fields_.require_room(cells_.size(), count, pointer + "/count");
     const double spacing = fields_.quantity(pointer + "/spacing", "m", range::length);
     const auto center = fields_.quantities(pointer + "/center", "m", range::place);
@@ -98,27 +101,39 @@ class Placements {
 
 std::vector<CellType> read_cell_types(const SceneFields& fields, double fluid_viscosity) {
   std::vector<CellType> types;
-  if (!fields.has("/cell_types")) return types;
-  for (const auto& [name, value] : fields.at("/cell_types").items()) {
+  if (!fields.has("/cell_types") || !fields.at("/cell_types").is_object()) return types;
+  for (const auto& [name, written] : fields.at("/cell_types").items()) {
     const auto pointer = json::child_pointer("/cell_types", name);
     if (!is_plain_name(name)) {
-      fields.refuse_key(
-          pointer,
-          in_quotes(name) + " is no name for a cell type; use letters, digits, '_', '-' and '.', a letter first");
+      fields.attempt([&] {
+        fields.refuse_key(
+            pointer,
+            in_quotes(name) + " is no name for a cell type; use letters, digits, '_', '-' and '.', a letter first");
+      });
+    }
+    if (name == wall_name) {
+      fields.refuse_key(pointer,
+                        "\"wall\" is no name for a cell type: in \"between\" it stands for the walls; take another");
     }
     if (types.size() == most_types) {
       fields.refuse_key(pointer, "there are more than " + std::to_string(most_types) + " cell types");
     }
-    fields.require(pointer, "segments", "about one per lattice spacing; or \"numerics\": \"auto\" chooses them");
-    CellType type{name,
-                  read_shape(fields, pointer + "/shape"),
-                  fields.at(pointer + "/segments").get<int>(),
-                  fields.quantity_or(pointer + "/interior_viscosity", "Pa s", range::viscosity, fluid_viscosity),
-                  {}};
-    for (std::size_t i = 0; i < value.at("membrane").size(); ++i) {
-      type.membrane.push_back(fields.model(json::child_pointer(pointer + "/membrane", i)));
-    }
-    types.push_back(std::move(type));
+    // The name stands, whatever is wrong with the rest.
+    CellType& type = types.emplace_back();
+    type.name = name;
+    fields.attempt([&] { type.shape = read_shape(fields, pointer + "/shape"); });
+    fields.attempt([&] {
+      fields.require(pointer, "segments", "about one per lattice spacing; or \"numerics\": \"auto\" chooses them");
+      type.segments = fields.value<int>(pointer + "/segments");
+    });
+    type.interior_viscosity =
+        fields.quantity_or(pointer + "/interior_viscosity", "Pa s", range::viscosity, fluid_viscosity);
+    fields.attempt([&] {
+      const std::size_t laws = fields.count(pointer + "/membrane");
+      for (std::size_t i = 0; i < laws; ++i) {
+        fields.attempt([&] { type.membrane.push_back(fields.model(json::child_pointer(pointer + "/membrane", i))); });
+      }
+    });
   }
   return types;
 }

@@ -46,9 +46,12 @@ int FieldStorage::count(int axis, int nodes) const {
 
 FieldStorage read_field_storage(const SceneFields& fields, const Domain& domain) {
   FieldStorage storage;
-  if (fields.has("/output/fields/region")) {
-    const auto from = fields.quantities("/output/fields/region/from", "m", range::place);
-    const auto to = fields.quantities("/output/fields/region/to", "m", range::place);
+  fields.attempt([&] {
+    const std::string region = "/output/fields/region";
+    if (!fields.has(region)) return;
+    const auto from = fields.quantities(region + "/from", "m", range::place);
+    const auto to = fields.quantities(region + "/to", "m", range::place);
+    if (!fields.settled(region) || !is_known(domain)) return;
     storage.last.emplace();
     for (const int axis : {0, 1}) {
       const auto a = static_cast<std::size_t>(axis);
@@ -56,7 +59,7 @@ FieldStorage read_field_storage(const SceneFields& fields, const Domain& domain)
       storage.first[a] = first;
       (*storage.last)[a] = last;
     }
-  }
+  });
   storage.stride = fields.value_or("/output/fields/stride", storage.stride);
   storage.compression = fields.value_or("/output/fields/compression", storage.compression);
   if (fields.value_or("/output/fields/precision", std::string("f32")) == "f64") storage.precision = Precision::f64;

@@ -12,6 +12,7 @@ void read_region(const SceneFields& fields, const std::string& pointer, const Do
   if (!fields.has(pointer)) return;
   packing.lower = fields.quantities(pointer + "/lower", "m", range::place);
   packing.upper = fields.quantities(pointer + "/upper", "m", range::place);
+  if (!fields.settled(pointer) || !is_known(domain)) return;
   for (int axis = 0; axis < 2; ++axis) {
     const std::string along = axis == 0 ? "x" : "y", name = axis == 0 ? "/0" : "/1";
     if (packing.lower[axis] < 0) fields.refuse(pointer + "/lower" + name, "the region begins outside of the domain");
@@ -34,17 +35,17 @@ RandomPacking read_packing(const SceneFields& fields, const std::string& entry, 
   RandomPacking packing{};
   packing.type = type;
   packing.pointer = entry;
-  packing.seed = fields.at(pointer + "/seed").get<std::uint32_t>();
+  packing.seed = fields.value<std::uint32_t>(pointer + "/seed");
   packing.gap = fields.quantity_or(pointer + "/gap", "m", range::length, domain.size.x() / domain.nodes[0]);
-  read_region(fields, pointer + "/region", domain, packing);
+  fields.attempt([&] { read_region(fields, pointer + "/region", domain, packing); });
 
   const bool by_share = fields.has(pointer + "/hematocrit"), by_count = fields.has(pointer + "/count");
-  if (by_share == by_count) {
+  if (by_share == by_count && fields.settled(pointer)) {
     fields.refuse(pointer, by_share ? "give hematocrit or count, not both"
                                     : "give hematocrit (such as 0.3) or count (such as 20)");
   }
-  if (by_share) packing.hematocrit = fields.at(pointer + "/hematocrit").get<double>();
-  if (by_count) packing.count = fields.at(pointer + "/count").get<int>();
+  if (by_share) packing.hematocrit = fields.value<double>(pointer + "/hematocrit");
+  if (by_count) packing.count = fields.value<int>(pointer + "/count");
   return packing;
 }
 

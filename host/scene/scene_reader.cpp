@@ -23,7 +23,33 @@ bool SceneFields::has(const std::string& pointer) const {
   return document_.root().contains(nlohmann::json::json_pointer(pointer));
 }
 
+bool SceneFields::settled(const std::string& pointer) const {
+  if (faults_ == nullptr || faults_->empty()) return true;
+  const auto parent_of = [](const std::string& child) { return child.substr(0, child.rfind('/')); };
+  const bool there = has(pointer);
+  for (std::size_t i = 0; i < faults_->size(); ++i) {
+    const std::string& faulty = (*faults_)[i].place().pointer;
+    if (faulty == pointer || faulty.starts_with(pointer + '/')) return false;
+    if (!there && (faulty == parent_of(pointer) || parent_of(faulty) == parent_of(pointer))) return false;
+  }
+  return true;
+}
+
+std::size_t SceneFields::count(const std::string& pointer) const {
+  for (std::size_t i = 0; i < of_schema_; ++i) {
+    if ((*faults_)[i].place().pointer == pointer) throw Misread{};
+  }
+  return at(pointer).size();
+}
+
 double SceneFields::quantity(const std::string& pointer, std::string_view unit, AllowedRange range) const {
+  double value = std::nan("");
+  attempt([&] { value = judged_quantity(pointer, unit, range); });
+  return value;
+}
+
+double SceneFields::judged_quantity(const std::string& pointer, std::string_view unit, AllowedRange range) const {
+  if (of_schema_ > 0 && !settled(pointer)) throw Misread{};
   const auto& value = at(pointer);
   const auto name = json::subject(pointer);
   double si = 0.0;
@@ -74,7 +100,7 @@ Eigen::Vector2d SceneFields::quantities(const std::string& pointer, std::string_
 }
 
 std::string SceneFields::line(const std::string& pointer) const {
-  auto text = at(pointer).get<std::string>();
+  auto text = value<std::string>(pointer);
   if (printable(text) != text) {
     refuse(pointer, in_quotes(text) + " holds a control character; " + json::subject(pointer) +
                         " is printed on one line: leave it out");
@@ -83,24 +109,34 @@ std::string SceneFields::line(const std::string& pointer) const {
 }
 
 ModelChoice SceneFields::model(const std::string& pointer) const {
-  return {at(pointer + "/model").get<std::string>(), value_or(pointer + "/parameters", nlohmann::json::object()),
-          pointer};
+  const std::string parameters = pointer + "/parameters";
+  return {value<std::string>(pointer + "/model"), has(parameters) ? at(parameters) : nlohmann::json::object(), pointer};
 }
 
-int SceneFields::cell_type(const std::string& pointer, const std::vector<CellType>& types) const {
-  const auto& name = at(pointer).get_ref<const std::string&>();
+int SceneFields::cell_type(const std::string& pointer, const std::vector<CellType>& types,
+                           const std::vector<std::string>& others) const {
+  const auto name = value<std::string>(pointer);
   for (std::size_t i = 0; i < types.size(); ++i) {
     if (types[i].name == name) return static_cast<int>(i);
+  }
+  if (types.empty()) {
+    if (lacks_types_ || !settled("/cell_types")) throw Misread{};
+    lacks_types_ = faults_ != nullptr;
   }
   std::vector<std::string> names;
   names.reserve(types.size());
   for (const auto& type : types) names.push_back(type.name);
-  refuse(pointer, "no cell type is called " + in_quotes(name) + did_you_mean(name, names) +
-                      "\ncell_types has: " + listed(names));
+  const std::string there = "\ncell_types has: " + listed(names);
+  names.insert(names.end(), others.begin(), others.end());
+  refuse(pointer, "no cell type is called " + in_quotes(name) + did_you_mean(name, names) + there);
 }
 
 void SceneFields::require(const std::string& pointer, const std::string& key, const std::string& otherwise) const {
-  if (has(json::child_pointer(pointer, key))) return;
+  const std::string member = json::child_pointer(pointer, key);
+  if (has(member)) return;
+  // Open numerics are chosen when the schema has found nothing.
+  const bool open = has("/numerics") && (at("/numerics") == "auto" || has("/numerics/auto"));
+  if ((of_schema_ > 0 && open) || !has(pointer) || !settled(member)) throw Misread{};
   refuse(pointer, in_quotes(key) + " is missing in " + json::subject(pointer) + "\ngive " + key + ", " + otherwise);
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/faults.hpp"
 #include "json/document.hpp"
 #include "scene.hpp"
 #include "units/units.hpp"
@@ -31,14 +32,45 @@ inline constexpr AllowedRange place{-1.0, 1.0, -1e-2, 1e-2, "um"};              
 inline constexpr AllowedRange time{1e-12, 1e9, 1e-9, 1e6, "s"};                 ///< s
 inline constexpr AllowedRange density{1e-3, 1e6, 10.0, 1e5, "g/cm3"};           ///< kg/m3
 inline constexpr AllowedRange viscosity{1e-9, 1e6, 1e-5, 0.5, "cP"};            ///< Pa s
-inline constexpr AllowedRange shear_rate{0.0, 1e9, 0.0, 1e7, "1/s"};            ///< 1/s
+inline constexpr AllowedRange shear_rate{-1e9, 1e9, -1e7, 1e7, "1/s"};          ///< 1/s
+inline constexpr AllowedRange rate{1e-12, 1e9, 1e-12, 1e7, "1/s"};              ///< 1/s
+inline constexpr AllowedRange velocity{-1e6, 1e6, -0.5, 0.5, "mm/s"};           ///< m/s
 inline constexpr AllowedRange force_density{-1e15, 1e15, -1e12, 1e12, "N/m3"};  ///< N/m3
+inline constexpr AllowedRange frequency{1e-9, 1e9, 1e-6, 1e6, "Hz"};            ///< Hz
 inline constexpr AllowedRange angle{-1e3, 1e3, -7.0, 7.0, "deg"};               ///< rad; 7: just above a turn
 }  // namespace range
 
+/// Thrown for a value that is wrong by the schema, or not there because of that: its fault has been found.
+struct Misread {};
+
+/// Every member throws Error(bad_input) for the value it is asked for; within attempt() of a reader that collects faults
+/// that ends the attempt alone.
 class SceneFields {
  public:
   explicit SceneFields(const json::Document& document) : document_(document) {}
+
+  /// Collects faults. Those that are there already are the schema's: the document need not fit it then, and what follows
+  /// from them is not said.
+  SceneFields(const json::Document& document, Faults& faults)
+      : document_(document), faults_(&faults), of_schema_(faults.size()) {}
+
+  /// Reads a part that the others do not need; its fault is kept if this collects, or else thrown.
+  template <class Read>
+  void attempt(const Read& read) const {
+    if (faults_ == nullptr) return read();
+    try {
+      read();
+    } catch (const Error& fault) {
+      faults_->add(fault);
+    } catch (const Misread&) {
+    } catch (const nlohmann::json::exception&) {  // there is no such value, or not of that type
+      if (of_schema_ == 0) throw;
+    }
+  }
+
+  /// Has no fault been found in the value at `pointer` or, if there is none, in the keys beside which it would stand?
+  /// Only then something can be said that depends on it.
+  [[nodiscard]] bool settled(const std::string& pointer) const;
 
   /// From here no length may be longer than the box, whose size in m this is.
   void bound_lengths(const Eigen::Vector2d& box) { box_ = box; }
@@ -46,15 +78,27 @@ class SceneFields {
   [[nodiscard]] const nlohmann::json& at(const std::string& pointer) const;
   [[nodiscard]] bool has(const std::string& pointer) const;
 
-  /// SI value of a quantity, or of a plain number; `unit` is what is wanted. Throws when it is outside the range.
+  /// SI value of a quantity, or of a plain number; `unit` is what is wanted. A fault where it is outside the range: then
+  /// NaN, if this collects.
   [[nodiscard]] double quantity(const std::string& pointer, std::string_view unit, AllowedRange range) const;
   [[nodiscard]] double quantity_or(const std::string& pointer, std::string_view unit, AllowedRange range,
                                    double otherwise) const;
   [[nodiscard]] Eigen::Vector2d quantities(const std::string& pointer, std::string_view unit, AllowedRange range) const;
 
+  /// How many elements or members the value has.
+  [[nodiscard]] std::size_t count(const std::string& pointer) const;
+  template <class T>
+  [[nodiscard]] T value(const std::string& pointer) const {
+    if (of_schema_ > 0 && !settled(pointer)) throw Misread{};
+    return at(pointer).get<T>();
+  }
   template <class T>
   [[nodiscard]] T value_or(const std::string& pointer, const T& otherwise) const {
-    return has(pointer) ? at(pointer).get<T>() : otherwise;
+    T result = otherwise;
+    attempt([&] {
+      if (has(pointer)) result = value<T>(pointer);
+    });
+    return result;
   }
 
   /// One line of text that will be printed; throws where it holds a control character.
@@ -63,11 +107,12 @@ class SceneFields {
   /// A model's id and parameters; the object at `pointer` has "model".
   [[nodiscard]] ModelChoice model(const std::string& pointer) const;
 
-  /// Index of the cell type that the text at `pointer` names.
-  [[nodiscard]] int cell_type(const std::string& pointer, const std::vector<CellType>& types) const;
+  /// Index of the cell type that the text at `pointer` names. `others`: what else might have been meant.
+  [[nodiscard]] int cell_type(const std::string& pointer, const std::vector<CellType>& types,
+                              const std::vector<std::string>& others = {}) const;
 
-  /// Throws when the object at `pointer` lacks a key that only some scenes may leave out; `otherwise` says what the
-  /// others do.
+  /// Refuses the object at `pointer` where it lacks a key that only scenes with open numerics may leave out; `otherwise`
+  /// says what those do.
   void require(const std::string& pointer, const std::string& key, const std::string& otherwise) const;
 
   /// Refuses `more` cells beside `cells` where there would be more than can be computed.
@@ -78,13 +123,21 @@ class SceneFields {
   [[noreturn]] void refuse_key(const std::string& pointer, const std::string& problem) const;
 
  private:
+  [[nodiscard]] double judged_quantity(const std::string& pointer, std::string_view unit, AllowedRange range) const;
+
   const json::Document& document_;
+  Faults* faults_ = nullptr;          ///< null: faults are thrown
+  std::size_t of_schema_ = 0;         ///< how many of them came first
+  mutable bool lacks_types_ = false;  ///< it has been said that there are no cell types
   units::Units units_;
   std::optional<Eigen::Vector2d> box_;
 };
 
 /// More cannot be computed.
 inline constexpr long most_cells = 1'000'000;
+
+/// Could the domain be read? Only then something can be said that depends on it.
+inline bool is_known(const Domain& domain) { return domain.size.allFinite() && domain.nodes[0] > 0; }
 
 /// The parts of a scene, each in a file of its own.
 std::vector<CellType> read_cell_types(const SceneFields& fields, double fluid_viscosity);

@@ -1,79 +1,202 @@
 // Stages of a scene, and what is written when.
 #include <algorithm>
+#include <cmath>
 
 #include "base/text.hpp"
+#include "driving_flow.hpp"
 #include "json/json_pointer.hpp"
 #include "scene_reader.hpp"
 
 namespace rouleau::scene {
 namespace {
 
+void check_mean_velocity(const SceneFields& fields, const Stage& stage, const Scene& scene) {
+  if (!stage.mean_velocity) return;
+  const std::string key = stage.pointer + "/mean_velocity";
+  if (fields.has(stage.pointer + "/pressure_gradient")) {
+    fields.refuse_key(key, "the pressure gradient is what keeps the mean velocity; leave one of the two out");
+  }
+  if (walls_move(stage)) {
+    fields.refuse_key(key, "a mean velocity is kept between walls at rest; leave it out, or shear_rate and walls");
+  }
+  if (scene.domain.periodic_y) {
+    fields.refuse_key(
+        key,
+        "a mean velocity is kept against walls, but domain.y is \"periodic\"\n"
+        "write \"y\": {\"lower\": {\"wall\": {}}, \"upper\": {\"wall\": {}}}, or leave out mean_velocity");
+  }
+  if (*stage.mean_velocity == 0) {
+    fields.refuse(key, "a mean velocity of 0 drives nothing; leave it out for a stage at rest");
+  }
+}
+
+/// Of a stage that ends when nothing happens any more.
+void check_until(const SceneFields& fields, const Stage& stage, const Scene& scene, bool flows) {
+  if (!stage.until_at_rest && !stage.until_equilibrium) return;
+  const std::string key = stage.pointer + "/until", word = fields.at(key).get<std::string>();
+  if (flows) {
+    fields.refuse(
+        key, stage.until_at_rest
+                 ? "cells never come to rest in a stage that flows; end it by duration or strain"
+                 : "the flow puts energy in, so that there is no equilibrium; end the stage by duration or strain");
+  }
+  if (scene.cells.empty() && scene.packings.empty() && fields.settled("/cells")) {
+    fields.refuse(key, "there are no cells that could come to " +
+                           std::string(stage.until_at_rest ? "rest" : "an equilibrium") +
+                           "; end the stage by duration");
+  }
+  if (!stage.duration) {
+    fields.refuse(key, in_quotes(word) +
+                           " needs a duration beside it, the longest time to wait: cells that never "
+                           "come to rest would run for ever");
+  }
+}
+
 /// Faults that the schema cannot see because they lie between the keys of a stage.
 void check_stage(const SceneFields& fields, const Stage& stage, const Scene& scene) {
   const auto& pointer = stage.pointer;
-  const bool flows = stage.shear_rate > 0.0 || stage.pressure_gradient.x() != 0.0;
-  if (fields.has(pointer + "/shear_rate") && scene.domain.periodic_y) {
-    fields.refuse_key(pointer + "/shear_rate",
-                      "shear needs walls that move, but domain.y is \"periodic\"\n"
-                      "write \"y\": {\"lower\": {\"wall\": {}}, \"upper\": {\"wall\": {}}}, or leave out shear_rate");
+  const bool flows =
+      walls_move(stage) || stage.pressure_gradient.x() != 0.0 || stage.mean_velocity || stage.oscillates();
+  if (fields.has(pointer + "/walls") && fields.has(pointer + "/shear_rate")) {
+    fields.refuse_key(pointer + "/walls", "walls and shear_rate both say how the walls move; leave one of them out");
   }
+  for (const char* key : {"shear_rate", "walls"}) {
+    if (!fields.has(pointer + "/" + key) || !scene.domain.periodic_y) continue;
+    fields.refuse_key(pointer + "/" + key,
+                      "shear needs walls that move, but domain.y is \"periodic\"\n"
+                      "write \"y\": {\"lower\": {\"wall\": {}}, \"upper\": {\"wall\": {}}}, or leave out " +
+                          std::string(key));
+  }
+  check_mean_velocity(fields, stage, scene);
   if (fields.has(pointer + "/start") && !flows) {
     fields.refuse_key(pointer + "/start",
-                      "start says how a flow begins, but this stage has neither shear_rate nor pressure_gradient");
+                      "start says how a flow begins, but this stage has neither shear_rate, walls that move, "
+                      "pressure_gradient nor mean_velocity");
   }
-  if (stage.strain && !(stage.shear_rate > 0.0)) {
+  if (stage.strain && stage.oscillates()) {
+    fields.refuse_key(pointer + "/strain",
+                      "strain does not grow evenly in a flow that oscillates; end the stage by duration");
+  }
+  if (stage.strain && stage.mean_wall_speed != 0 && stage.shear_rate == 0) {
+    fields.refuse_key(pointer + "/strain",
+                      "both walls move at the same speed, so that nothing is sheared and strain never grows; "
+                      "give them different speeds, or end the stage by duration");
+  }
+  if (stage.strain && stage.shear_rate == 0) {
     fields.refuse_key(pointer + "/strain",
                       "strain grows only where walls move, and this stage has no shear_rate; "
                       "give one, or end the stage by duration");
   }
-  if (stage.until_at_rest && flows) {
-    fields.refuse(pointer + "/until", "cells never come to rest in a stage that flows; end it by duration or strain");
-  }
-  if (stage.until_at_rest && scene.cells.empty() && scene.packings.empty()) {
-    fields.refuse(pointer + "/until", "there are no cells that could come to rest; end the stage by duration");
-  }
-  if (stage.until_at_rest && !stage.duration) {
-    fields.refuse(pointer + "/until",
-                  "\"at_rest\" needs a duration beside it, the longest time to wait: cells that never "
-                  "come to rest would run for ever");
-  }
+  check_until(fields, stage, scene, flows);
   if (!stage.duration && !stage.strain) {
     fields.refuse(pointer, "this stage never ends; give duration (such as \"2 s\")" +
-                               std::string(stage.shear_rate > 0.0 ? " or strain (such as 15)" : ""));
+                               std::string(stage.shears_steadily() ? " or strain (such as 15)" : ""));
   }
+}
+
+/// Speeds of both walls, as shear rate and mean: of a stage, or of what oscillates in it.
+template <class Drive>
+void read_walls(const SceneFields& fields, const std::string& pointer, double height, Drive& drive) {
+  const double lower = fields.quantity(pointer + "/lower", "m/s", range::velocity),
+               upper = fields.quantity(pointer + "/upper", "m/s", range::velocity);
+  drive.mean_wall_speed = (lower + upper) / 2;
+  // Equal speeds that are written in different units differ by rounding.
+  const double difference = upper - lower;
+  drive.shear_rate =
+      std::abs(difference) > 1e-12 * std::max(std::abs(lower), std::abs(upper)) ? difference / height : 0.0;
+}
+
+/// The amplitude is of that which drives the stage, in its unit and form.
+Oscillation read_oscillation(const SceneFields& fields, const std::string& stage, double height) {
+  const std::string pointer = stage + "/oscillation", amplitude = pointer + "/amplitude";
+  std::vector<std::string> driven;
+  for (const char* key : {"shear_rate", "walls", "pressure_gradient"}) {
+    if (fields.has(stage + "/" + key)) driven.emplace_back(key);
+  }
+  if (driven.empty()) {
+    fields.refuse_key(pointer,
+                      "an oscillation is added to what drives the stage, and nothing does\n"
+                      "give shear_rate, walls or pressure_gradient, which may be 0: the oscillation is around it (a "
+                      "mean_velocity is kept, and does not oscillate)");
+  }
+  if (driven.size() > 1) {
+    fields.refuse_key(pointer, "this stage has both " + driven[0] + " and " + driven[1] +
+                                   ", and an oscillation is of one of them; leave the other out");
+  }
+  Oscillation oscillation;
+  oscillation.frequency = fields.quantity(pointer + "/frequency", "Hz", range::frequency);
+  const bool of_walls = driven[0] == "walls";
+  if (of_walls != fields.at(amplitude).is_object()) {
+    fields.refuse(amplitude, of_walls ? "the amplitude is of the walls' speeds, so it has one for each wall\n"
+                                        "write {\"lower\": \"0 mm/s\", \"upper\": \"1 mm/s\"}, for example"
+                                      : "the amplitude is of " + driven[0] +
+                                            ", so it is one quantity; those of two "
+                                            "walls go with \"walls\"");
+  }
+  if (of_walls) {
+    read_walls(fields, amplitude, height, oscillation);
+  } else if (driven[0] == "shear_rate") {
+    oscillation.shear_rate = fields.quantity(amplitude, "1/s", range::shear_rate);
+  } else {
+    oscillation.pressure_gradient = fields.quantity(amplitude, "Pa/m", range::force_density);
+  }
+  if (oscillation.shear_rate == 0 && oscillation.mean_wall_speed == 0 && oscillation.pressure_gradient == 0) {
+    fields.refuse(amplitude, "an amplitude of 0 oscillates nothing; leave oscillation out");
+  }
+  return oscillation;
 }
 
 Stage read_stage(const SceneFields& fields, const std::string& pointer, const Scene& scene) {
   Stage stage;
   stage.pointer = pointer;
-  stage.name = fields.line(pointer + "/name");
+  fields.attempt([&] { stage.name = fields.line(pointer + "/name"); });
   if (fields.has(pointer + "/duration")) stage.duration = fields.quantity(pointer + "/duration", "s", range::time);
-  if (fields.has(pointer + "/strain")) stage.strain = fields.at(pointer + "/strain").get<double>();
-  stage.until_at_rest = fields.has(pointer + "/until");
+  fields.attempt([&] {
+    if (fields.has(pointer + "/strain")) stage.strain = fields.value<double>(pointer + "/strain");
+  });
+  const std::string until = fields.value_or(pointer + "/until", std::string());
+  stage.until_at_rest = until == "at_rest";
+  stage.until_equilibrium = until == "equilibrium";
   stage.shear_rate = fields.quantity_or(pointer + "/shear_rate", "1/s", range::shear_rate, 0.0);
+  if (fields.has(pointer + "/walls")) read_walls(fields, pointer + "/walls", scene.domain.size.y(), stage);
   stage.start = fields.value_or(pointer + "/start", std::string("impulsive")) == "developed" ? WallStart::developed
                                                                                              : WallStart::impulsive;
   stage.pressure_gradient.x() = fields.quantity_or(pointer + "/pressure_gradient", "Pa/m", range::force_density, 0.0);
+  if (fields.has(pointer + "/mean_velocity")) {
+    stage.mean_velocity = fields.quantity(pointer + "/mean_velocity", "m/s", range::velocity);
+  }
+  fields.attempt([&] {
+    if (fields.has(pointer + "/oscillation")) {
+      stage.oscillation = read_oscillation(fields, pointer, scene.domain.size.y());
+    }
+  });
   stage.density_factor = fields.value_or(pointer + "/density_factor", scene.numerics.density_factor);
   if (fields.has(pointer + "/density_factor")) stage.density_factor_key = pointer + "/density_factor";
-  check_stage(fields, stage, scene);
+  fields.attempt([&] {
+    if (fields.settled(pointer)) check_stage(fields, stage, scene);
+  });
   return stage;
 }
 
 Cadence read_cadence(const SceneFields& fields, const std::string& pointer, const std::vector<Stage>& stages) {
   Cadence cadence;
   if (!fields.has(pointer)) return cadence;
-  if (fields.has(pointer + "/strain")) cadence.strain = fields.at(pointer + "/strain").get<double>();
+  fields.attempt([&] {
+    if (fields.has(pointer + "/strain")) cadence.strain = fields.value<double>(pointer + "/strain");
+  });
   if (fields.has(pointer + "/seconds")) cadence.seconds = fields.quantity(pointer + "/seconds", "s", range::time);
+  if (!fields.settled(pointer)) return cadence;
   if (cadence.never()) {
     fields.refuse(pointer,
                   json::subject(pointer) + " does not say when: give strain (such as 0.25) or seconds (such as 0.1)");
   }
   const bool shears =
-      std::any_of(stages.begin(), stages.end(), [](const Stage& stage) { return stage.shear_rate > 0.0; });
-  if (cadence.strain && !cadence.seconds && !shears) {
-    fields.refuse_key(pointer + "/strain",
-                      "no stage has a shear_rate, so strain never grows and this output never comes due; use seconds");
+      std::any_of(stages.begin(), stages.end(), [](const Stage& stage) { return stage.shears_steadily(); });
+  if (cadence.strain && !cadence.seconds && !shears && fields.settled("/stages")) {
+    fields.refuse_key(
+        pointer + "/strain",
+        "no stage has a shear_rate that is steady, so strain does not grow evenly and this output never comes due; use "
+        "seconds");
   }
   return cadence;
 }
@@ -82,23 +205,25 @@ Cadence read_cadence(const SceneFields& fields, const std::string& pointer, cons
 
 std::vector<Stage> read_stages(const SceneFields& fields, const Scene& scene) {
   std::vector<Stage> stages;
-  for (std::size_t i = 0; i < fields.at("/stages").size(); ++i) {
-    auto stage = read_stage(fields, json::child_pointer("/stages", i), scene);
-    for (const auto& earlier : stages) {
-      if (earlier.name == stage.name) {
-        fields.refuse(stage.pointer + "/name",
-                      "two stages are called " + in_quotes(stage.name) + "; give each its own name");
-      }
-    }
-    stages.push_back(std::move(stage));
+  const std::size_t count = fields.count("/stages");
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto stage = read_stage(fields, json::child_pointer("/stages", i), scene);
+    const bool again =
+        std::any_of(stages.begin(), stages.end(), [&](const Stage& earlier) { return earlier.name == stage.name; });
+    stages.push_back(stage);
+    fields.attempt([&] {
+      if (!again || stage.name.empty()) return;
+      fields.refuse(stage.pointer + "/name",
+                    "two stages are called " + in_quotes(stage.name) + "; give each its own name");
+    });
   }
   return stages;
 }
 
 Output read_output(const SceneFields& fields, const std::vector<Stage>& stages) {
   Output output;
-  output.cells = read_cadence(fields, "/output/cells", stages);
-  output.fields = read_cadence(fields, "/output/fields", stages);
+  fields.attempt([&] { output.cells = read_cadence(fields, "/output/cells", stages); });
+  fields.attempt([&] { output.fields = read_cadence(fields, "/output/fields", stages); });
   output.quantities = fields.value_or("/output/fields/quantities", std::vector<std::string>{});
   if (fields.has("/output/checkpoint/seconds")) {
     output.checkpoint_seconds = fields.quantity("/output/checkpoint/seconds", "s", range::time);

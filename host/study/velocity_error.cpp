@@ -5,6 +5,7 @@
 #include "files/velocity_reader.hpp"
 #include "plan/read_scene.hpp"
 #include "quantity.hpp"
+#include "scene/driving_flow.hpp"
 
 namespace rouleau::study {
 
@@ -12,11 +13,6 @@ namespace {
 
 Measured no_velocity_error(std::string why_not) {
   return {std::numeric_limits<double>::quiet_NaN(), 0, std::move(why_not)};
-}
-
-/// Force per volume along x that drives a stage, Pa/m.
-double drive(const scene::Scene& scene, const scene::Stage& stage) {
-  return scene.fluid.body_force.x() + stage.pressure_gradient.x();
 }
 
 /// Why the exact flows do not hold for a run; empty where they do.
@@ -27,11 +23,14 @@ std::string why_no_exact_flow(const scene::Scene& scene) {
 }
 std::string why_no_exact_flow(const Quantity& quantity, const scene::Scene& scene, const scene::Stage& stage,
                               bool first) {
-  if (quantity.poiseuille && drive(scene, stage) == 0)
+  if (quantity.poiseuille && scene::driving_force(stage, scene).x() == 0)
     return "nothing drives the fluid along x in the stage " + stage.name;
+  if (stage.oscillates()) return "what drives the stage " + stage.name + " oscillates";
+  if (stage.mean_wall_speed != 0) return "the walls of the stage " + stage.name + " have a mean speed";
   if (quantity.poiseuille && stage.shear_rate != 0) return "the walls move in the stage " + stage.name;
   if (!quantity.poiseuille && stage.shear_rate == 0) return "the walls do not move in the stage " + stage.name;
-  if (!quantity.poiseuille && drive(scene, stage) != 0) return "a force drives the fluid in the stage " + stage.name;
+  if (!quantity.poiseuille && scene::driving_force(stage, scene).x() != 0)
+    return "a force drives the fluid in the stage " + stage.name;
   if (!quantity.steady && !first)
     return "the start-up is known of a fluid at rest, and the stage " + stage.name + " is not the first";
   if (!quantity.steady && !quantity.poiseuille && stage.start == scene::WallStart::developed)
@@ -54,8 +53,9 @@ Measured velocity_error(const Quantity& quantity, const std::filesystem::path& r
   const double kinematic = viscosity / (scene.fluid.density * stage.density_factor);  // as it is simulated
   const double time =
       quantity.steady ? std::numeric_limits<double>::infinity() : field->time * kinematic / (height * height);
-  const double fastest =
-      quantity.poiseuille ? drive(scene, stage) * height * height / (8 * viscosity) : stage.shear_rate * height / 2;
+  const double fastest = quantity.poiseuille
+                             ? scene::driving_force(stage, scene).x() * height * height / (8 * viscosity)
+                             : stage.shear_rate * height / 2;
   std::vector<double> value = field->velocity_x, exact;
   for (const double y : field->y) {
     const double s = y / height;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/faults.hpp"
 #include "base/text.hpp"
 #include "json/schema.hpp"
 #include "plan/read_scene.hpp"
@@ -33,10 +34,12 @@ Json read_changed_scene(const CampaignKind& kind, const CampaignFile& campaign) 
     check_scene(scene, campaign.scene_file.string());
   } catch (const Error& error) {
     // The changed scene has no lines of its own: those of the file, or of its "set".
-    const std::string& pointer = error.place().pointer;
-    if (!elsewhere) throw Error(error.cause(), document.place("/scene" + pointer), error.problem(), error.remedy());
-    throw Error(Cause::bad_input, document.place("/set"),
-                "the scene with these changes is wrong, " + pointer + ": " + error.problem(), error.remedy());
+    throw_as(error, [&](const Error& fault) -> Error {
+      const std::string& pointer = fault.place().pointer;
+      if (!elsewhere) return {fault.cause(), document.place("/scene" + pointer), fault.problem(), fault.remedy()};
+      return {Cause::bad_input, document.place("/set"),
+              "the scene with these changes is wrong, " + pointer + ": " + fault.problem(), fault.remedy()};
+    });
   }
   return scene;
 }

@@ -58,10 +58,13 @@ void write_scene(const Trial& trial) {
 /// The command and its scene, with the lock that lies beside the file that the scene was made from.
 std::vector<std::string> scene_arguments(const std::string& command, const Trial& trial) {
   std::vector<std::string> arguments{command, scene_file_of(trial).string()};
-  const fs::path lock = plugin::lock_beside(trial.scene_file);
+  const fs::path lock = trial.lock.empty() ? plugin::lock_beside(trial.scene_file) : trial.lock;
   std::error_code ignored;
-  if (fs::exists(fs::symlink_status(lock, ignored))) {
+  if (!trial.lock.empty() || fs::exists(fs::symlink_status(lock, ignored))) {
     arguments.insert(arguments.end(), {"--lock", lock.string()});
+  }
+  for (const fs::path& folder : trial.plugin_dirs) {
+    arguments.insert(arguments.end(), {"--plugin-dir", folder.string()});
   }
   return arguments;
 }
@@ -145,8 +148,8 @@ TrialResult run_trial(const Trial& trial) {
   std::error_code ignored;
   fs::remove(trial.directory / "summary.json", ignored);
   std::vector<std::string> arguments = scene_arguments("run", trial);
-  arguments.insert(arguments.end(), {"--out", trial.directory.string(), "--overwrite", "--quiet", "--threads",
-                                     std::to_string(trial.threads)});
+  arguments.insert(arguments.end(), {"--out", trial.directory.string(), "--overwrite", "--quiet", "--no-error-bar",
+                                     "--threads", std::to_string(trial.threads)});
   if (trial.max_steps > 0) arguments.insert(arguments.end(), {"--max-steps", std::to_string(trial.max_steps)});
   const ProcessEnd process = run_process(
       program_of(trial), arguments, ProcessLimits{trial.time_limit_s, trial.grace_s, trial.interrupted, longest_words});

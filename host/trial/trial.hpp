@@ -20,8 +20,10 @@ struct Trial {
   double grace_s = 20;  ///< between being asked to end and being killed: the rest of a step, a checkpoint, the report
   std::filesystem::path written_scene = {};  ///< where the complete scene is written; empty: DIRECTORY.scene.json
   long max_steps = 0;                        ///< over all stages; 0: all that the scene wants
-  std::filesystem::path program = "/proc/self/exe";  ///< that is run: this very one, but in its unit tests
-  const std::atomic<bool>* interrupted = nullptr;    ///< set by a signal handler: ends the trial
+  std::filesystem::path program = "/proc/self/exe";     ///< that is run: this very one, but in its unit tests
+  const std::atomic<bool>* interrupted = nullptr;       ///< set by a signal handler: ends the trial
+  std::vector<std::filesystem::path> plugin_dirs = {};  ///< searched before those of the scene
+  std::filesystem::path lock = {};                      ///< empty: the one beside the scene's file, if there is one
 };
 
 enum class TrialEnd { completed, diverged, refused, timed_out, crashed, interrupted };

@@ -181,6 +181,69 @@ class Errors_name_what_is_wrong(Case):
         self.assert_stops(self.rouleau.run("run", SCENE, "--threads", "0"), 2, "--threads")
         self.assert_stops(self.rouleau.run("run", SCENE, "--max-steps", "-5"), 2, "--max-steps -5", "zero or more")
         self.assert_stops(self.rouleau.run("plan", SCENE, "--set", "/fluid/densty=1"), 2, "densty", "density")
+        self.assert_stops(self.rouleau.run("plan", SCENE, "more"), 2, "more words stand without an option than it takes, 1",
+                          "rouleau plan --help")
+
+    def test_a_set_that_the_shell_has_cut_says_to_quote_the_whole(self):
+        # As `--set /fluid/viscosity=6 cP` reaches the program.
+        for words in ([SCENE, "--set", "/fluid/viscosity=6", "cP"], ["--set", "/fluid/viscosity=6", "cP", SCENE],
+                      [SCENE, "--set=/fluid/viscosity=6", "cP", "--set", "/numerics/tau=0.8"]):
+            for command in ("run", "plan"):
+                self.assert_stops(self.rouleau.run(command, *words), 2, "--set /fluid/viscosity=6 cP: ",
+                                  "quote the whole: --set '/fluid/viscosity=6 cP'")
+        self.assert_stops(self.rouleau.run("plan", SCENE, "--set", "/x=2", "g", "/", "cm3"), 2, "--set '/x=2 g / cm3'")
+        # A second scene is no unit.
+        end = self.rouleau.run("plan", "--set", "/fluid/viscosity=6", SCENE, SCENE)
+        self.assertEqual(end.returncode, 2)
+        self.assertNotIn("quote", end.stderr)
+
+    def test_all_that_is_wrong_is_said_at_once_and_leaves_no_directory(self):
+        wrong = ["/numerics/tau=0.1", "/fluid/viscosity=1 um", "/interactions/0/parameters/depht=1",
+                 "/interactions/0/model=mors", "/cell_types/rbc/membrane/1/parameters/modulus=-1 J", "/stages/1/shaer_rate=1"]
+        words = [word for one in wrong for word in ("--set", one)]
+        for command in ("run", "plan"):
+            end = self.rouleau.run(command, self.scene(), *words, cwd=self.path)
+            self.assert_stops(end, 2, *(f"--set {one.split('=')[0]}\n" for one in wrong if "depht" not in one))
+            # The parameters of a model that nobody offers are not judged.
+            self.assertEqual(sum(not line.startswith(" ") for line in end.stderr.splitlines()), len(wrong) - 1, end.stderr)
+        self.assertFalse((self.path / "runs").exists())
+
+    def test_a_cutoff_before_the_force_changes_sign_is_warned_of_by_plan_and_run(self):
+        cut = ["--set", "/interactions/0/parameters/cutoff=0.4 um"]
+        for words in (["plan", SCENE, *cut], ["run", SCENE, *cut, "--out", self.path / "run", *SHORT]):
+            end = self.rouleau.run(*words)
+            self.assertEqual(end.returncode, 0, end.stderr)
+            self.assertIn("it attracts nowhere: its cutoff of 0.4 um", end.stdout + end.stderr)
+
+    def test_a_remedy_names_the_density_factor_that_holds(self):
+        # The first stage of the scene has one of its own, the second has that of numerics.
+        for key, stage in (("/stages/0/density_factor", "aggregate"), ("/numerics/density_factor", "shear")):
+            name = key if key.startswith("/stages") else "numerics.density_factor"
+            warnings = [line for line in self.rouleau.run("plan", SCENE, "--set", key + "=1e9").stdout.splitlines()
+                        if "warning: " in line and "density_factor" in line]
+            self.assertTrue(warnings)
+            for line in warnings:
+                self.assertIn(f"(stage {stage})", line)
+                self.assertIn("lower " + name, line)
+            end = self.rouleau.run("plan", SCENE, "--set", key + "=1e-9")
+            self.assert_stops(end, 2, "more than any run can (1e15)", "a higher " + name)
+
+    def test_the_help_of_plan_says_that_plugins_run(self):
+        self.assertIn("so their code runs", self.rouleau.run("plan", "--help").stdout)
+
+    def test_studies_limits_locks_and_manifests_say_all_that_is_wrong_too(self):
+        file = self.path / "wrong.json"
+        file.write_text('{"rouleau_study": 2,\n"scene": 5,\n"matrx": []}')
+        self.assert_stops(self.rouleau.run("study", file), 2, ":1:19 /rouleau_study", ":2:10 /scene", ":3:1 /matrx")
+        file.write_text('{"rouleau_limits": 2,\n"scene": 5,\n"tries": []}')
+        self.assert_stops(self.rouleau.run("limits", file), 2, ":1:20 /rouleau_limits", ":2:10 /scene", ":3:1 /tries")
+        file.write_text('{"lock": 2,\n"plugins": [{}]}')
+        self.assert_stops(self.rouleau.run("plan", SCENE, "--lock", file), 2, ":1:10 /lock", ":2:13 /plugins/0",
+                          '"id" is missing', '"version" is missing')
+        manifest = self.rouleau.plugins / "interaction/morse/morse.json"
+        content = manifest.read_text()
+        manifest.write_text(content.replace('"version"', '"vrsion"', 1).replace('"kind"', '"knd"', 1))
+        self.assert_stops(self.rouleau.run("plan", SCENE), 3, "/vrsion", "/knd")
 
 
 class A_run_that_goes_bad_stops_before_garbage_is_written(Case):

@@ -153,6 +153,8 @@ class Code(unittest.TestCase):
             scene["cell_types"]["rbc"]["membrane"].append(part)
         elif key == "cells":
             scene["cells"] = [part]
+        elif key == "stages":
+            scene["stages"], scene["output"] = [part], {}
         else:
             scene[key] = [part]
         self.plan(scene)
@@ -231,7 +233,11 @@ BLOCKS = [
     ("docs/scene.md", '{"type": "rbc", "row"', part_of_scene("cells")),
     ("docs/scene.md", '{"type": "rbc", "list"', part_of_scene("cells")),
     ("docs/scene.md", '{"type": "rbc", "random"', part_of_scene("cells")),
+    ("docs/scene.md", '{"name": "carry"', part_of_scene("stages")),
+    ("docs/scene.md", '{"name": "channel"', part_of_scene("stages")),
+    ("docs/scene.md", '{"name": "shake"', part_of_scene("stages")),
     ("docs/scene.md", '{"between": ["rbc", "rbc"], "model": "morse"', part_of_scene("interactions")),
+    ("docs/scene.md", '{"between": ["rbc", "wall"], "model": "repulsion"', part_of_scene("interactions")),
     ("docs/scene.md", '"domain": {', other_settings),
     ("docs/scene.md", '"numerics": {', other_settings),
     ("docs/study.md", '{\n  "rouleau_study": 1', study),

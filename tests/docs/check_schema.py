@@ -34,10 +34,12 @@ SCENE = {
     ],
     "interactions": [],
     "stages": [{"name": "shear", "shear_rate": "20 1/s", "strain": 0.01},
-               {"name": "driven", "pressure_gradient": "1 kPa/m", "duration": "1 ms"}],
+               {"name": "driven", "pressure_gradient": "1 kPa/m", "duration": "1 ms"},
+               {"name": "carried", "walls": {"lower": 0, "upper": "1 mm/s"}, "duration": "1 ms",
+                "oscillation": {"amplitude": {"lower": 0, "upper": "0.1 mm/s"}, "frequency": "1 kHz"}}],
     "output": {"cells": {"strain": 0.25, "seconds": "1 ms"}, "fields": {"strain": 1, "seconds": "1 ms", "quantities": ["velocity"],
                "region": {"from": ["5 um", "2 um"], "to": ["15 um", "10 um"]}}, "checkpoint": {"seconds": 600}},
-    "at_rest": {}, "checks": {},
+    "at_rest": {}, "equilibrium": {}, "checks": {},
 }
 # Another value than the default, which must change what the program prints or writes: else a wrong default would pass unseen.
 OTHER = {
@@ -46,13 +48,14 @@ OTHER = {
     "/numerics/tau": 0.9, "/numerics/density_factor": 2000, "/numerics/kernel": "roma3", "/numerics/slip_correction": True,
     "/numerics/area_correction": True, "/numerics/precision": "f32", "/numerics/coupling": "semi-implicit",
     "/cell_types/round/shape/circle/prestretch": 1.1, "/cells/0/angle": 1, "/cells/1/row/axis": "y", "/cells/1/row/angle": 1,
-    "/cells/2/list/0/angle": 1, "/stages/0/start": "developed", "/stages/1/start": None, "/output/fields/stride": 2, "/output/fields/precision": "f64",
+    "/cells/2/list/0/angle": 1, "/stages/0/start": "developed", "/stages/1/start": None, "/stages/2/start": None, "/output/fields/stride": 2, "/output/fields/precision": "f64",
     "/output/fields/compression": 0, "/output/checkpoint": None, "/output/aggregate_gap": "3 um",
-    "/at_rest/displacement": None, "/at_rest/window": None, "/checks/mach": None, "/checks/node_step": None,
+    "/at_rest/displacement": None, "/at_rest/window": None, "/equilibrium/rate": None, "/equilibrium/window": None, "/checks/mach": None, "/checks/node_step": None,
     "/checks/area_drift": None, "/checks/stretch": None, "/checks/energy_growth": None, "/checks/every_steps": None,
 }
 # Where no short run shows the value: the schema's, and how the header says it.
 HEADER = {"/at_rest/displacement": ("0.01 um", r"displacement = 0\.01e-6;"), "/at_rest/window": ("0.2 s", r"window = 0\.2;"),
+          "/equilibrium/rate": ("0.001 1/s", r" rate = 1e-3;"), "/equilibrium/window": ("0.2 s", r"window = 0\.2;"),
           "/checks/mach": (0.3, r"mach = 0\.3;"), "/checks/node_step": (0.5, r"node_step = 0\.5;"),
           "/checks/area_drift": (0.02, r"area_drift = 0\.02;"), "/checks/stretch": (5, r"stretch = 5;"),
           "/checks/energy_growth": (0.01, r"energy_growth = 0\.01;"), "/checks/every_steps": (200, r"every_steps = 200;"),

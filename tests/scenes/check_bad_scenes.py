@@ -9,6 +9,8 @@ A case is the scene base.json, which is good, with a change, or a whole scene:
   at       line:column and JSON pointer that the message begins with, behind the file's name
   words    two texts that the rest of the message must hold; or
   message  the lines of that rest, exactly; PLUGINS is the folder of the shipped plugins
+  also     places of further faults, in order; a case without them has one fault, and nothing that follows from it is said
+  more     how many faults more there are, which are not shown
 New text is text, or a list of texts and [text, times]; # in a text that is repeated stands for its number, from 0. A byte
 that is no UTF-8, 0xE9 for instance, is written \\udce9. The exit code is 2 in every case.
 """
@@ -44,7 +46,7 @@ def plan(program: pathlib.Path, folder: pathlib.Path, name: str, scene: str, *op
 
 def faults(program: pathlib.Path, folder: pathlib.Path, name: str, case: dict, base: str) -> list[str]:
     """What is wrong with the program's answer to one case."""
-    if not case.keys() <= {"change", "scene", "set", "at", "words", "message"} or len(case.get("words", "ab")) != 2:
+    if not case.keys() <= {"change", "scene", "set", "at", "words", "message", "also", "more"} or len(case.get("words", "ab")) != 2:
         return ["the case itself is wrong"]
     options = ["--set", case["set"]] if "set" in case else []
     try:
@@ -58,6 +60,11 @@ def faults(program: pathlib.Path, folder: pathlib.Path, name: str, case: dict, b
         found.append(f"exit code {code}")
     if place != expected:
         found.append(f"begins with {place!r}, expected {expected!r}")
+    further = [line for line in rest.splitlines() if not line.startswith("  ")]
+    also = [f"{name}.json:{place}" for place in case.get("also", [])]
+    also += [f"and {case['more']} fault{'s' if case['more'] > 1 else ''} more"] if "more" in case else []
+    if further != also:
+        found.append(f"also says {further}, expected {also}")
     if "message" in case and rest != "".join(f"{line}\n" for line in case["message"]):
         found.append("is not the expected message, word for word")
     if "message" not in case:

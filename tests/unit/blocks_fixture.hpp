@@ -25,6 +25,9 @@ inline const std::string
     four_cells = ROULEAU_SCENES "/four-cells-shear.json",
     shear = R"(/stages=[{"name": "shear", "shear_rate": "50 1/s", "strain": 5, "start": "developed"}])",
     driven = R"(/stages=[{"name": "driven", "pressure_gradient": "2e4 Pa/m", "duration": "1 s"}])",
+    kept = R"(/stages=[{"name": "kept", "mean_velocity": "1 mm/s", "duration": "1 s"}])",
+    oscillating = R"(/stages=[{"name": "shake", "walls": {"lower": 0, "upper": "1 mm/s"}, "duration": "1 s",
+      "oscillation": {"amplitude": {"lower": "0.2 mm/s", "upper": "0.5 mm/s"}, "frequency": "100 Hz"}}])",
     contrast = "/cell_types/rbc/interior_viscosity=\"6 cP\"", semi_implicit = "/numerics/coupling=\"semi-implicit\"";
 
 /// Where the middle of the four cells lies, in um; (25.088, 12.544) is that of the domain.
@@ -39,6 +42,11 @@ inline std::vector<Case> scenes_to_cut() {
   const std::string bonds = R"(/interactions=[{"between": ["rbc", "rbc"], "model": "bridging", "parameters": {
     "site_density": "1e12 1/m2", "bond_stiffness": "1e-7 N/m", "zero_force_distance": "0.49 um", "on_rate": "200 1/s",
     "off_rate": "10 1/s", "cutoff": "1.5 um"}}])";
+  const std::string held = R"({"between": ["wall", "rbc"], "model": "morse", "parameters": {"depth": "1e-7 J/m2"}})",
+                    held_alone = "/interactions=[" + held + "]", held_too = "/interactions/-=" + held;
+  const std::string bonds_too = R"(/interactions/-={"between": ["rbc", "wall"], "model": "bridging", "parameters": {
+    "site_density": "1e12 1/m2", "bond_stiffness": "1e-7 N/m", "zero_force_distance": "0.49 um", "on_rate": "200 1/s",
+    "off_rate": "10 1/s", "cutoff": "1.5 um"}})";
   const std::string slip = "/numerics/slip_correction=true", area = "/numerics/area_correction=true";
   const auto alone = [](const std::string& size, const std::string& nodes, const std::string& at) {
     return std::vector<std::string>{shear, contrast, "/domain/size=" + size, "/domain/nodes=" + nodes,
@@ -56,7 +64,16 @@ inline std::vector<Case> scenes_to_cut() {
       {"semi-implicit", four_cells, {shear, semi_implicit}},
       {"bonds", four_cells, {shear, bonds, middle("46.648", "12.544")}},
       {"memory", ROULEAU_PHYSICS_SCENES "/memory.json"},
-      {"viscous ring", ROULEAU_PHYSICS_SCENES "/viscous-ring.json"}};
+      {"viscous ring", ROULEAU_PHYSICS_SCENES "/viscous-ring.json"},
+      {"oscillating", four_cells, {oscillating, no_strain, contrast, middle("44.688", "14.504")}},
+      {"mean velocity",
+       four_cells,
+       {kept, no_strain, contrast, "/domain/size=[\"12.544 um\", \"12.544 um\"]", "/domain/nodes=[64, 64]",
+        R"(/cells=[{"type": "rbc", "angle": "30 deg", "at": ["6 um", "6.2 um"]}])", "/numerics/tau=2",
+        "/numerics/density_factor=800"}},
+      {"held by a wall", four_cells, {shear, contrast, held_too, middle("44.688", "4.4")}},
+      {"held by a wall alone, slip correction", four_cells, {shear, slip, held_alone, middle("25.088", "4.4")}},
+      {"bonds with a wall, too", four_cells, {shear, bonds, bonds_too, middle("46.648", "4.4")}}};
 }
 
 inline const plugin::Catalog& catalog() {

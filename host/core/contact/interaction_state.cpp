@@ -12,17 +12,8 @@ void InteractionForces::keep_state(Membranes& membranes) {
   for (std::size_t p = 0; p < interactions_.size(); ++p) {
     const Potential& potential = interactions_[p].potential;
     for (const StateVariable& declared : potential.state) {
-      const int place = static_cast<int>(p);
-      const auto found = std::find_if(memory.variables.begin(), memory.variables.end(), [&](const ContactVariable& v) {
-        return v.potential == place && v.name == declared.name;
-      });
-      const auto variable = static_cast<std::size_t>(found - memory.variables.begin());
-      variables_[p].push_back(variable);
-      if (found == memory.variables.end()) {
-        memory.variables.push_back({place, potential.id, declared.name, declared.unit, declared.initial});
-      } else {
-        memory.change_unit(variable, declared.unit);
-      }
+      variables_[p].push_back(
+          memory.keep({static_cast<int>(p), potential.id, declared.name, declared.unit, declared.initial}));
     }
   }
 }

@@ -176,7 +176,7 @@ typename Fluid<T>::Energetics Fluid<T>::energetics() const {
     if (!all_first) find(y + 1);
     EnergyTask<T> task{.in = {},
                        .velocity = {},
-                       .wall_speed = {setting_.walls.lower, 0, setting_.walls.upper},
+                       .wall_speed = {last_walls_.lower, 0, last_walls_.upper},
                        .count = nx,
                        .sum_x = &sums[sum_x],
                        .sum_y = &sums[sum_y],

@@ -20,6 +20,7 @@ Fluid<T>::Fluid(const FluidSetting& setting, CollisionOperator collision, const 
       ranks_(ranks),
       collision_(std::move(collision)),
       lattice_(setting.domain),
+      last_walls_(setting.walls),
       mask_(setting.domain) {
   if constexpr (std::is_same_v<T, double>) {
     collide_ = collision_.table->collide_f64;
@@ -119,6 +120,15 @@ template <class T>
 inline bool Fluid<T>::reaches_border(int y) const {
   constexpr int width = Field<T, 2>::halo;
   return mask_.at_side(y) || ((y < width || y >= ny() - width) && mask_.any(y));
+}
+
+template <class T>
+void Fluid<T>::set_drive(const WallVelocity& walls, double body_force_x) {
+  setting_.walls = walls;
+  if (body_force_x == setting_.body_force_x) return;
+  setting_.body_force_x = body_force_x;
+  body_force_row_[0].assign(static_cast<std::size_t>(nx()), static_cast<T>(body_force_x));
+  body_force_row_[1].assign(static_cast<std::size_t>(nx()), static_cast<T>(setting_.body_force_y));
 }
 
 template <class T>
@@ -295,6 +305,30 @@ std::vector<double> Fluid<T>::row_velocities() const {
 }
 
 template <class T>
+std::vector<double> Fluid<T>::row_velocities_without_membranes() const {
+  std::vector<ExactSum> sums(static_cast<std::size_t>(setting_.domain.size[1]));
+  std::vector<double> momentum(static_cast<std::size_t>(nx()));
+  for (int y = 0; y < ny(); ++y) {
+    const T* in[9];
+    lattice_.row_pointers(parity_, {y}, in);
+    std::fill(momentum.begin(), momentum.end(), 0.0);
+    d2q9::for_each_velocity([&](auto q) {
+      constexpr int along = d2q9::velocity[q][0];
+      if constexpr (along != 0) {
+        for (int x = 0; x < nx(); ++x) momentum[x] += along * static_cast<double>(in[q][x]);
+      }
+    });
+    ExactSum& sum = sums[setting_.domain.block.begin[1] + y];
+    for (const double j : momentum) sum.add(j);
+  }
+  add_up(ranks_, sums);
+  std::vector<double> means(sums.size());
+  for (std::size_t y = 0; y < means.size(); ++y)
+    means[y] = sums[y].value() / setting_.domain.size[0] + setting_.body_force_x / 2;
+  return means;
+}
+
+template <class T>
 double Fluid<T>::mass() const {
   return mass_and_speed().mass;
 }
@@ -351,8 +385,8 @@ typename Fluid<T>::WallStress Fluid<T>::wall_stress() const {
       for (int x = 0; x < nx(); ++x) sum.add(cx * (2 * static_cast<double>(returned[x]) + moved));
     }
   };
-  if (setting_.domain.wall_below(1)) add(sums[0], 0, -1, setting_.walls.lower);
-  if (setting_.domain.wall_above(1)) add(sums[1], ny() - 1, +1, setting_.walls.upper);
+  if (setting_.domain.wall_below(1)) add(sums[0], 0, -1, last_walls_.lower);
+  if (setting_.domain.wall_above(1)) add(sums[1], ny() - 1, +1, last_walls_.upper);
   add_up(ranks_, sums);
   return {sums[0].value() / setting_.domain.size[0], sums[1].value() / setting_.domain.size[0]};
 }
@@ -437,6 +471,7 @@ template <class T>
 void Fluid<T>::restore(const std::function<std::vector<T>(int)>& populations, bool walls_have_acted) {
   parity_ = Parity::even;
   walls_have_acted_ = walls_have_acted;
+  last_walls_ = setting_.walls;
   for (int q = 0; q < 9; ++q) {
     const std::vector<T> values = populations(q);
     const T* from = values.data();

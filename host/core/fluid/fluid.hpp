@@ -68,6 +68,14 @@ class Fluid {
   /// Without inertia: the unsteady term is du/dt as seen from a frame that moves at this velocity (moving_frame.hpp). Of
   /// the next steps and of states that are set; 0 to begin with.
   void set_frame(double ux, double uy) { frame_[0] = ux, frame_[1] = uy; }
+  /// What drives the next steps, where that changes with time: the speeds of the walls during a step, and the force
+  /// along x at its beginning. One worker, between steps.
+  void set_drive(const WallVelocity& walls, double body_force_x);
+  /// Speeds of the walls during the last step, and now; setting() has those of the next step.
+  [[nodiscard]] const WallVelocity& last_walls() const { return last_walls_; }
+  [[nodiscard]] WallVelocity walls_now() const {
+    return {(last_walls_.lower + setting_.walls.lower) / 2, (last_walls_.upper + setting_.walls.upper) / 2};
+  }
 
   // Passes over rows of the block, in the order of a step.
   /// Sets the force in active nodes to the body force.
@@ -81,6 +89,7 @@ class Fluid {
   void end_step() {
     parity_ = next(parity_);
     walls_have_acted_ = true;
+    last_walls_ = setting_.walls;
   }
   /// One worker, after end_step(): sends what other blocks want of this step. Nothing without other blocks.
   void begin_halo();
@@ -99,6 +108,9 @@ class Fluid {
   [[nodiscard]] std::vector<double> all_relaxation_rates();
   /// Mean velocity along x of each row of the lattice.
   [[nodiscard]] std::vector<double> row_velocities() const;
+  /// The same without the half step that the membranes' forces have still to act, and so before these are known; after
+  /// settle(). All of them together have no share in the mean.
+  [[nodiscard]] std::vector<double> row_velocities_without_membranes() const;
   /// Sum of density deviations over all nodes.
   [[nodiscard]] double mass() const;
   /// Mass and largest speed, as moments() would give them, in one sweep.
@@ -106,7 +118,8 @@ class Fluid {
     double mass, speed;  ///< not a number if any density or velocity is none
   };
   [[nodiscard]] MassAndSpeed mass_and_speed() const;
-  /// Mean shear stress that the fluid exerts on the lower and the upper wall, along +x, by momentum exchange. NaN
+  /// Mean shear stress that the fluid has exerted on the lower and the upper wall in the last step, along +x, by momentum
+  /// exchange. NaN
   /// between the start of a fluid at rest (or taken over) and its first step: walls that have just begun to move have
   /// exchanged nothing yet.
   struct WallStress {
@@ -155,6 +168,7 @@ class Fluid {
   Lattice<T, D2Q9> lattice_;
   Parity parity_ = Parity::even;
   bool walls_have_acted_ = false;
+  WallVelocity last_walls_;
   double frame_[2] = {0, 0};
   NodeMask mask_;
   VectorField<T, 2> force_;

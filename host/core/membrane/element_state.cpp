@@ -29,6 +29,19 @@ const ElementState* find_state(const std::vector<ElementState>& states, int cell
   return found != states.end() ? &*found : nullptr;
 }
 
+std::size_t ContactMemory::keep(const ContactVariable& wanted) {
+  const auto found = std::find_if(variables.begin(), variables.end(), [&](const ContactVariable& v) {
+    return v.potential == wanted.potential && v.name == wanted.name;
+  });
+  const auto variable = static_cast<std::size_t>(found - variables.begin());
+  if (found == variables.end()) {
+    variables.push_back(wanted);
+  } else {
+    change_unit(variable, wanted.unit);
+  }
+  return variable;
+}
+
 void ContactMemory::change_unit(std::size_t variable, double unit) {
   ContactVariable& changed = variables[variable];
   if (changed.unit == unit) return;

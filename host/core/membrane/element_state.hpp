@@ -36,20 +36,23 @@ struct ContactVariable {
   double initial;
 };
 
-/// Values of one variable for the nodes of one cell against another cell moved by `shift` periods, in lattice units;
-/// initial where a node is not within the cutoff.
+/// Values of one variable for the nodes of one cell against another cell moved by `shift` periods, or against a wall, in
+/// lattice units; initial where a node is not within the cutoff.
 struct ContactState {
   std::size_t variable;  ///< in ContactMemory::variables
-  int other;
+  int other;             ///< a cell; of contacts with walls 0: the lower, 1: the upper
   ImageShift shift;
   std::vector<double> value;  ///< of the cell's nodes, from its first on
 };
 
-/// What interactions remember. Pairs of cells come and go with their contacts.
+/// What interactions remember. Pairs of cells, or of a cell and a wall, come and go with their contacts.
 struct ContactMemory {
   std::vector<ContactVariable> variables;
   std::vector<std::vector<ContactState>> of_cell;  ///< empty where no interaction remembers anything
 
+  /// Index of the variable with this potential and name, in lattice units of this size from now on; adds it where there
+  /// is none yet.
+  std::size_t keep(const ContactVariable& wanted);
   /// Expresses all values of a variable in lattice units of another size: a stage with another time step goes on with
   /// the same state.
   void change_unit(std::size_t variable, double unit);

@@ -36,7 +36,8 @@ struct Membranes {
   std::vector<double> rest_weight;             ///< (rest_length[i - 1] + rest_length[i]) / 2: rest measure of node i
   std::vector<double> rest_curvature;          ///< turning angle over rest_weight in the shape it was created with
   std::vector<ElementState> state;             ///< what laws remember; empty where none does
-  ContactMemory contacts;                      ///< what interactions remember
+  ContactMemory contacts;                      ///< what interactions between cells remember
+  ContactMemory wall_contacts;                 ///< what interactions with walls remember
   std::vector<std::uint8_t> owned;             ///< of each cell: whether this rank computes its forces and moves it; of
                                                ///< others it knows where they are; empty: there are no others
 

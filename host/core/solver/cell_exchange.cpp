@@ -136,20 +136,22 @@ void CellExchange::share_state(Membranes& membranes) const {
       of_nodes(membranes.force_x), of_nodes(membranes.force_y);
       for (ElementState& state : membranes.state) of_nodes(state.value);
       if (!membranes.area_leakage.empty()) transfer(message, &membranes.area_leakage[c], 1);
-      if (membranes.contacts.of_cell.empty()) continue;
-      std::vector<ContactState>& contacts = membranes.contacts.of_cell[c];
-      double size = static_cast<double>(contacts.size());
-      transfer(message, &size, 1);
-      contacts.resize(static_cast<std::size_t>(size));
-      for (ContactState& contact : contacts) {
-        double place[4] = {static_cast<double>(contact.variable), 1.0 * contact.other, 1.0 * contact.shift.x,
-                           1.0 * contact.shift.y};
-        transfer(message, place, 4);
-        contact.variable = static_cast<std::size_t>(place[0]);
-        contact.other = static_cast<int>(place[1]);
-        contact.shift = {static_cast<int>(place[2]), static_cast<int>(place[3])};
-        contact.value.resize(static_cast<std::size_t>(cell.count));
-        transfer(message, contact.value.data(), contact.value.size());
+      for (ContactMemory* memory : {&membranes.contacts, &membranes.wall_contacts}) {
+        if (memory->of_cell.empty()) continue;
+        std::vector<ContactState>& contacts = memory->of_cell[c];
+        double size = static_cast<double>(contacts.size());
+        transfer(message, &size, 1);
+        contacts.resize(static_cast<std::size_t>(size));
+        for (ContactState& contact : contacts) {
+          double place[4] = {static_cast<double>(contact.variable), 1.0 * contact.other, 1.0 * contact.shift.x,
+                             1.0 * contact.shift.y};
+          transfer(message, place, 4);
+          contact.variable = static_cast<std::size_t>(place[0]);
+          contact.other = static_cast<int>(place[1]);
+          contact.shift = {static_cast<int>(place[2]), static_cast<int>(place[3])};
+          contact.value.resize(static_cast<std::size_t>(cell.count));
+          transfer(message, contact.value.data(), contact.value.size());
+        }
       }
     }
   };

@@ -10,8 +10,10 @@ namespace rouleau::core {
 
 /// What a time step may do. A pass over cells gives each worker cells, one over rows gives it rows of the lattice.
 enum class Task {
+  set_drive,           ///< one worker: walls and body force that change with time
   find_contacts,       ///< cells: the closest point of other outlines to each node
   membrane_forces,     ///< cells: F = -dE/dX of the membrane laws, and the couples of the slip correction
+  wall_forces,         ///< cells: F = -dE/dX of the potentials between cells and walls
   interaction_forces,  ///< cells: F = -dE/dX of the potentials, on own nodes
   share_reactions,     ///< one worker: what own nodes do to other ranks' cells
   take_reactions,      ///< cells: what other cells' nodes do to this one's
@@ -45,11 +47,14 @@ struct Step {
 struct StepFeatures {
   bool cells = false;
   bool interactions = false;
+  bool wall_interactions = false;
   bool viscosity_contrast = false;
   bool slip_correction = false;
   bool area_correction = false;
   /// The fluid's unsteady term is seen from a frame that moves with the cells.
   bool moving_frame = false;
+  /// What drives the fluid changes with time.
+  bool changing_drive = false;
   /// Other ranks hold other blocks and own other cells.
   bool ranks = false;
 };

@@ -4,6 +4,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "core/fluid/flow_rate.hpp"
 #include "core/membrane/area_correction.hpp"
 #include "core/membrane/motion.hpp"
 #include "core/membrane/stiffness.hpp"
@@ -75,6 +76,10 @@ Solver<T>::Solver(SolverSetup setup, Membranes& membranes, const Ranks<2>& ranks
     exchange_ = std::make_unique<CellExchange>(ranks, std::move(owner));
   }
   if (!membranes.cells.empty()) make_cells();
+  if (setup_.mean_velocity != 0) {
+    if (!setup_.domain.walled(1)) throw std::invalid_argument("a mean velocity is kept between walls");
+    flow_control_.emplace(setup_.mean_velocity, setup_.body_force_x, setup_.viscosity(), setup_.domain.size[1]);
+  }
   const Schedule schedule = make_schedule(features());
   for (const Step& step : schedule.steps) {
     Pass& pass = passes_.emplace_back(Pass{.name = step.name, .run = {}, .meeting = step.meeting});
@@ -92,22 +97,31 @@ template <class T>
 StepFeatures Solver<T>::features() const {
   return {.cells = !membranes_.cells.empty(),
           .interactions = interaction_forces_ != nullptr,
+          .wall_interactions = wall_contacts_ != nullptr,
           .viscosity_contrast = fluid_.setting().viscosity_contrast,
           .slip_correction = slip_correction_ != nullptr,
           .area_correction = setup_.area_correction,
           .moving_frame = setup_.follow_cells,
+          .changing_drive = setup_.oscillation.any() || flow_control_.has_value(),
           .ranks = exchange_ != nullptr};
 }
 
 template <class T>
 void Solver<T>::run(Task task, Worker worker) {
   switch (task) {
+    case Task::set_drive:
+      if (!worker.first()) return;
+      oscillate(steps_);
+      if (flow_control_ && flow_control_->due(steps_)) keep_mean_velocity();
+      return;
     case Task::find_contacts:
       return interaction_forces_->run(worker, 0, membranes_);
     case Task::membrane_forces:
       membrane_forces_->run(worker, membranes_);
       if (slip_correction_) slip_correction_->couple(worker, membranes_);
       return;
+    case Task::wall_forces:
+      return wall_contacts_->run(worker, membranes_);
     case Task::interaction_forces:
       return interaction_forces_->run(worker, 1, membranes_);
     case Task::take_reactions:
@@ -125,7 +139,7 @@ void Solver<T>::run(Task task, Worker worker) {
         viscosity_field_->update(worker, membranes_, fluid_.relaxation_rate(), fluid_.mask());
       return;
     case Task::end_step:
-      if (worker.first()) fluid_.end_step();
+      if (worker.first()) fluid_.end_step(), ++steps_;
       return;
     case Task::interpolate:
       return coupling_->interpolate(worker, membranes_, fluid_.velocity());
@@ -211,6 +225,9 @@ void Solver<T>::make_cells() {
   if (!setup_.interactions.empty()) {
     interaction_forces_ = std::make_unique<InteractionForces>(membranes_, setup_.interactions, setup_.domain);
   }
+  if (!setup_.wall_interactions.empty()) {
+    wall_contacts_ = std::make_unique<WallContacts>(membranes_, setup_.wall_interactions, setup_.domain);
+  }
   viscosity_field_ = std::make_unique<ViscosityField<T>>(
       membranes_, std::move(viscosity_ratio), slip_correction_ ? ViscosityMean::harmonic : ViscosityMean::arithmetic,
       slip_correction_ ? slip_correction_->largest_shift() : 0.0, 1 / setup_.tau, setup_.domain);
@@ -232,20 +249,25 @@ void Solver<T>::make_slip_correction() {
 
 template <class T>
 void Solver<T>::start(Solver* former) {
+  steps_ = 0;
   double faster = 0;  // what the membranes' last displacement is worth in the new time step
   if (setup_.developed) {
-    // Couette and Poiseuille flow, y from the middle of the channel.
+    // Couette and Poiseuille flow and what oscillates around them, y from the middle of the channel.
     const int height = setup_.domain.size[1];
     const double half_height = height / 2.0, middle = half_height - 0.5;
     const double rate = (setup_.walls.upper - setup_.walls.lower) / height;
     const double mean = (setup_.walls.upper + setup_.walls.lower) / 2;
     const double curvature = setup_.body_force_x / setup_.viscosity();
+    const auto oscillating = [&](double s) {
+      return setup_.oscillation.any() ? oscillating_profile(setup_.oscillation, setup_.viscosity(), height, s)
+                                      : ProfilePoint{0, 0};
+    };
     fluid_.set_profile(
         [&](double y) {
           const double s = y - middle;
-          return mean + rate * s + curvature * (half_height * half_height - s * s) / 2;
+          return mean + rate * s + curvature * (half_height * half_height - s * s) / 2 + oscillating(s).velocity;
         },
-        [&](double y) { return rate - curvature * (y - middle); });
+        [&](double y) { return rate - curvature * (y - middle) + oscillating(y - middle).slope; });
   } else if (former != nullptr) {
     faster = setup_.time_step / former->setup_.time_step;
     const auto [u, v] = mean_velocity(membranes_);
@@ -261,6 +283,12 @@ void Solver<T>::start(Solver* former) {
 
 template <class T>
 void Solver<T>::start(const SolverState<T>& state) {
+  steps_ = state.steps;
+  if (steps_ > 0) oscillate(steps_ - 1);
+  if (flow_control_ && state.flow_control) {
+    flow_control_->restore(*state.flow_control);
+    fluid_.set_drive(setup_.walls, state.flow_control->force);
+  }
   fluid_.restore(state.populations, state.walls_have_acted);
   if (viscosity_field_) {
     viscosity_field_->restore(state.viscosity, membranes_, fluid_.relaxation_rate(), fluid_.mask());
@@ -270,6 +298,25 @@ void Solver<T>::start(const SolverState<T>& state) {
 template <class T>
 void Solver<T>::follow_cells(const std::array<double, 2>& velocity) {
   if (setup_.follow_cells) fluid_.set_frame(velocity[0], setup_.domain.periodic[1] ? velocity[1] : 0);
+}
+
+/// Walls in the middle of the step and the force at its beginning make the scheme one of second order in time: a
+/// population meets the wall half a step after its collision, and the velocity at t has half of the force at t in it.
+template <class T>
+void Solver<T>::oscillate(long steps) {
+  const Oscillation& oscillation = setup_.oscillation;
+  if (!oscillation.any()) return;
+  const double at = static_cast<double>(steps), wall = oscillation.sine(at + 0.5), force = oscillation.sine(at);
+  fluid_.set_drive(
+      {setup_.walls.lower + wall * oscillation.walls.lower, setup_.walls.upper + wall * oscillation.walls.upper},
+      setup_.body_force_x + force * oscillation.body_force_x);
+}
+
+template <class T>
+void Solver<T>::keep_mean_velocity() {
+  fluid_.settle();
+  const double rate = flow_rate(fluid_.row_velocities_without_membranes(), setup_.walls, false);
+  fluid_.set_drive(setup_.walls, flow_control_->follow(rate / setup_.domain.size[1]));
 }
 
 template <class T>

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "cell_exchange.hpp"
@@ -11,6 +12,7 @@
 #include "core/coupling/viscosity_field.hpp"
 #include "core/fluid/fluid.hpp"
 #include "core/membrane/membranes.hpp"
+#include "flow_control.hpp"
 #include "pass.hpp"
 #include "schedule.hpp"
 #include "solver_setup.hpp"
@@ -24,6 +26,10 @@ struct SolverState {
   /// they need not all be in memory.
   std::function<std::vector<T>(int q)> populations;
   bool walls_have_acted = false;
+  /// Taken since the setup's start: what oscillates goes by them.
+  long steps = 0;
+  /// Where a mean velocity is kept.
+  std::optional<FlowControl::State> flow_control = {};
   /// When the viscosity field was last renewed; without cells there is none.
   DisplacementWatch::Memory viscosity = {};
 };
@@ -61,6 +67,8 @@ class Solver {
   void share_state() {
     if (exchange_) exchange_->share_state(membranes_);
   }
+  /// None where no mean velocity is kept.
+  [[nodiscard]] const std::optional<FlowControl>& flow_control() const { return flow_control_; }
   /// Null without cells.
   [[nodiscard]] const ViscosityField<T>* viscosity_field() const { return viscosity_field_.get(); }
   /// A step, for several workers. Before pass [observable_pass()], after a barrier, the state may be observed; who does
@@ -83,6 +91,8 @@ class Solver {
   [[nodiscard]] double slight_energy() const { return slight_energy_; }
   /// Null without cells or interactions.
   [[nodiscard]] const InteractionForces* interaction_forces() const { return interaction_forces_.get(); }
+  /// Null without cells or interactions with walls.
+  [[nodiscard]] const WallContacts* wall_contacts() const { return wall_contacts_.get(); }
 
  private:
   [[nodiscard]] StepFeatures features() const;
@@ -90,6 +100,10 @@ class Solver {
   void make_slip_correction();
   /// The frame of the fluid's unsteady term gets the cells' velocity, as far as the walls allow, if the setup wants that.
   void follow_cells(const std::array<double, 2>& velocity);
+  /// The fluid is driven as an oscillation wants it in the step that begins after so many.
+  void oscillate(long steps);
+  /// The force that keeps the mean velocity, from what this is now.
+  void keep_mean_velocity();
   void run(Task task, Worker worker);
   void run_rows(Task task, Range rows);
   void exchange(Task task);
@@ -103,9 +117,12 @@ class Solver {
   std::unique_ptr<SlipCorrection> slip_correction_;
   std::unique_ptr<MembraneForces> membrane_forces_;
   std::unique_ptr<InteractionForces> interaction_forces_;
+  std::unique_ptr<WallContacts> wall_contacts_;
   std::unique_ptr<ViscosityField<T>> viscosity_field_;
   std::unique_ptr<Coupling<T>> coupling_;
   double slight_energy_ = 0;
+  long steps_ = 0;  ///< taken since start()
+  std::optional<FlowControl> flow_control_;
   std::vector<Pass> passes_;
   std::size_t rows_pass_ = 0, observable_pass_ = 0;
 };

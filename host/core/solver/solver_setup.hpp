@@ -4,8 +4,10 @@
 #include <vector>
 
 #include "core/contact/interaction_forces.hpp"
+#include "core/contact/wall_contacts.hpp"
 #include "core/coupling/kernel_kind.hpp"
 #include "core/domain/domain.hpp"
+#include "core/fluid/oscillation.hpp"
 #include "core/fluid/relaxation.hpp"
 #include "core/fluid/walls.hpp"
 #include "core/membrane/membrane_forces.hpp"
@@ -33,7 +35,13 @@ struct SolverSetup {
   WallVelocity walls = {};
   /// Force density everywhere.
   double body_force_x = 0, body_force_y = 0;
-  /// Begin with the developed flow of the walls and the body force; false: with a fluid at rest, or the one before.
+  /// Added to the walls and the body force.
+  Oscillation oscillation = {};
+  /// Mean velocity along x between walls at rest that the body force is adapted to keep, from body_force_x on; 0: the
+  /// force is what it is.
+  double mean_velocity = 0;
+  /// Begin with the developed flow of the walls, the body force and their oscillation; false: with a fluid at rest, or
+  /// the one before.
   bool developed = false;
   CollisionOperator collision = {};
 
@@ -41,6 +49,8 @@ struct SolverSetup {
   /// What Membranes::cells name as their types.
   std::vector<CellType> cell_types = {};
   std::vector<Interaction> interactions = {};
+  /// Only between walls, not where y is periodic.
+  std::vector<WallInteraction> wall_interactions = {};
   /// The step of stiff membranes (SemiImplicitFilter).
   bool semi_implicit = false;
   /// Takes the tangential slip of the immersed boundary out.

@@ -57,6 +57,7 @@ function showRun(run) {
   const timeline = new Timeline([run]);
   if (!timeline.count) section("Results", element("p", {}, "No output has been written."), ...whyNoAnimation(run));
   else showResults(timeline, run);
+  showErrorBars(summary);
   showScene(run);
   showDimensionless(summary.dimensionless || {});
   showLimits(summary.limits || []);

@@ -8,7 +8,7 @@ function showScene(run) {
   }
   const choice = summary.numerics_choice;
   if (choice) shown.push(element("h3", {}, `Numerics, chosen for an error of ${format(100 * choice.target_error, 3)} % of the ${choice.of === "steady" ? "steady state" : "motion"}`),
-    element("p", {}, `Expected: ${format(100 * choice.expected_error.resolution, 2)} % by the lattice, ${format(100 * choice.expected_error.inertia, 2)} % by the relaxed density${choice.expected_error.start > 0 ? `, ${format(100 * choice.expected_error.start, 2)} % by the start of the flow` : ""}.`),
+    element("p", {}, `Expected: ${format(100 * choice.expected_error.resolution, 2)} % by the lattice, ${format(100 * choice.expected_error.inertia, 2)} % by the relaxed density${choice.expected_error.start > 0 ? `, ${format(100 * choice.expected_error.start, 2)} % by the start of the flow` : ""}.${typeof choice.measured_error === "number" ? ` Measured: ${format(100 * choice.measured_error, 2)} % (${spelled(choice.measured_of)}).` : ""}`),
     table([{title: "Setting", key: "pointer"}, {title: "Value", value: r => JSON.stringify(r.value)}, {title: "Why", key: "why"}], choice.values || [], {stacked: true}));
   const conversions = Array.isArray(summary.conversions) ? summary.conversions : [];
   if (conversions.length) shown.push(element("h3", {}, "Every conversion"), conversionTable(conversions));
@@ -40,6 +40,16 @@ function conversionTable(conversions) {
     {title: same ? "SI" : `SI (${stage})`, number: true, value: row => at(row, stage).si ?? null},
     {title: same ? "Lattice" : `Lattice (${stage})`, number: true, value: row => at(row, stage).lattice ?? null}]);
   return table([{title: "Quantity", key: "quantity"}, ...(all.some(row => row.of) ? [{title: "Of", key: "of"}] : []), {title: "Unit", key: "unit"}, ...columns], all, {stacked: true});
+}
+
+/// What the run reports with its measured errors: those that have one first.
+function showErrorBars(summary) {
+  const bars = Object.entries(summary.error_bars || {}).map(([name, bar]) => ({name, ...bar}));
+  if (!bars.length) return;
+  const runs = summary.error_bar_runs || {}, measured = bars.filter(bar => bar.error !== null), rest = bars.filter(bar => bar.error === null);
+  section("Error bars", table([{title: "Quantity", value: r => spelled(r.name)}, {title: "Value", value: r => format(r.value), number: true},
+    {title: "±", value: r => r.error === null ? "–" : format(r.error, 2), number: true}, {title: "Made of", key: "how"}], [...measured, ...rest], {stacked: true}),
+    note(runs.missing || `Measured by ${(runs.companions || []).length} runs of the same scene with other numerics, which took ${format(100 * runs.share_of_run, 2)} % of this run's time.`));
 }
 
 function showDimensionless(given) {

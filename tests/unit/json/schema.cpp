@@ -23,12 +23,60 @@ std::string message_of(const std::string& text, const Json& schema) {
 
 }  // namespace
 
-TEST_CASE("the fault that comes first in the text is the one that is told") {
+TEST_CASE("the fault that comes first in the text is told first") {
   const auto schema = Json::parse(R"({"type": "object", "additionalProperties": false, "required": ["b"],
       "properties": {"a": {"type": "number"}, "b": {"type": "number"}, "z": {"type": "number"}}})");
   CHECK_THAT(message_of(R"({"z": "1", "a": "2", "b": 1})", schema), Contains("a.json:1:7 /z"));
   CHECK_THAT(message_of(R"({"bb": 1})", schema), Contains("unknown key \"bb\"; did you mean \"b\"?"));
   CHECK_THAT(message_of(R"({"a": 1})", schema), Contains("\"b\" is missing"));
+}
+
+TEST_CASE("all faults are told at once, in the order of the text") {
+  const auto schema = Json::parse(R"({"type": "object", "additionalProperties": false, "required": ["a", "b"],
+      "properties": {"a": {"type": "number", "minimum": 2}, "b": {"items": {"enum": ["x", "y"]}},
+                     "c": {"type": "object", "additionalProperties": false, "properties": {"d": {}}}}})");
+  CHECK(message_of("{\"a\": 1,\n\"b\": [\"x\", \"z\", 3],\n\"c\": {\"e\": 1, \"f\": 2}}", schema) ==
+        "a.json:1:7 /a\n  1 is out of range; a must be at least 2\n"
+        "a.json:2:12 /b/1\n  found the text \"z\"\n  b[1] can be: \"x\", \"y\"\n"
+        "a.json:2:17 /b/2\n  found the number 3\n  b[2] can be: \"x\", \"y\"\n"
+        "a.json:3:7 /c/e\n  unknown key \"e\"\n  allowed here: d\n"
+        "a.json:3:15 /c/f\n  unknown key \"f\"\n  allowed here: d");
+}
+
+TEST_CASE("what follows from a fault is not told") {
+  const auto schema = Json::parse(R"({"type": "object", "additionalProperties": false, "required": ["density", "size"],
+      "properties": {"density": {"type": "number"}, "size": {"type": "array", "minItems": 2, "items": {"type": "number"}},
+                     "shape": {"oneOf": [{"type": "object", "required": ["r"], "additionalProperties": false,
+                                          "properties": {"r": {"type": "number"}, "s": {}}},
+                                         {"type": "object", "required": ["q"], "additionalProperties": false,
+                                          "properties": {"q": {}}}]}}})");
+  // A key that is misspelt, or goes by another name, is not missing as well.
+  CHECK(message_of(R"({"densty": 1, "length": [1, 2]})", schema) ==
+        "a.json:1:2 /densty\n  unknown key \"densty\"; did you mean \"density\"?\n"
+        "  allowed here: density, shape, size\n"
+        "a.json:1:15 /length\n  unknown key \"length\"; did you mean \"size\"?\n"
+        "  allowed here: density, shape, size");
+  // One that nothing was meant to be is.
+  CHECK(message_of(R"({"zzz": 1, "size": [1, 2]})", schema) ==
+        "a.json:1:1\n  \"density\" is missing\n"
+        "a.json:1:2 /zzz\n  unknown key \"zzz\"\n  allowed here: density, shape, size");
+  // Of a list that is too short no element is judged, of a value of the wrong kind no part.
+  CHECK(message_of(R"({"density": {"x": 1}, "size": ["a"]})", schema) ==
+        "a.json:1:13 /density\n  found an object; density wants a number\n"
+        "a.json:1:31 /size\n  found 1 value; size wants at least 2");
+  // In a choice only the branch that is meant is judged, and there every part.
+  CHECK(message_of(R"({"density": 1, "size": [1, 2], "shape": {"r": "1", "t": 2}})", schema) ==
+        "a.json:1:47 /shape/r\n  found the text \"1\"; r wants a number; write 1 without quotes\n"
+        "a.json:1:52 /shape/t\n  unknown key \"t\"\n  allowed here: r, s");
+}
+
+TEST_CASE("a document with faults beyond number is refused at once") {
+  const auto schema = Json::parse(R"({"items": {"oneOf": [{"type": "number"}, {"const": "x"}]}})");
+  std::string text = "[true";
+  for (int i = 1; i < 100'000; ++i) text += ",true";
+  const std::string message = message_of(text + "]", schema);
+  CHECK_THAT(message, Catch::Matchers::StartsWith("a.json:1:2 /0\n"));
+  CHECK_THAT(message, Catch::Matchers::EndsWith("\nand at least 180 faults more"));
 }
 
 TEST_CASE("messages name what was found and what is allowed") {

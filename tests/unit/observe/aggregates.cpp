@@ -44,6 +44,18 @@ TEST_CASE("two circles are in contact exactly when their gap is below the reach"
   CHECK(contacts[0].contact_length > 0);
 }
 
+TEST_CASE("the gap to a wall is that of the nearer one, less than nothing beyond it, and none between periodic sides") {
+  const Membranes m = circles({{20, 6}, {50, 12.25}, {80, 3.5}});
+  const Domain<2> channel({100, 20}, {true, false});
+  CHECK(wall_gap(m, m.cells[0], channel) == Approx(1.5));
+  CHECK(wall_gap(m, m.cells[1], channel) == Approx(19.5 - 17.25));
+  CHECK(wall_gap(m, m.cells[2], channel) == Approx(-1));
+  CHECK(std::isnan(wall_gap(m, m.cells[0], test::periodic_box(100, 20))));
+  Membranes broken = m;
+  broken.x[7] = std::nan("");
+  CHECK(std::isnan(wall_gap(broken, broken.cells[0], channel)));
+}
+
 TEST_CASE("a contact across the periodic border is found and flagged, however far the cells have drifted") {
   const double drift = GENERATE(0.0, 300.0, -700.0);
   const Membranes m = circles({{4 + drift, 20}, {95, 20}, {50, 20}});

@@ -128,3 +128,14 @@ TEST_CASE("a flow without cells keeps its own inertia") {
   CHECK(scene.numerics.density_factor == 1);
   CHECK(scene.domain.nodes[1] >= 16);
 }
+
+TEST_CASE("a mean speed of the walls counts among what the Mach number bounds") {
+  // Without any shear, and beside a shear that the error alone would allow larger steps for.
+  const auto mach = [](const std::string& stage) {
+    const Scene scene = chosen_scene({"/stages=[" + stage + "]", "/output/cells={\"seconds\": 0.1}"});
+    return make_stage_setting(scene, 0).fastest_wall() * std::sqrt(3.0);
+  };
+  CHECK(mach(R"({"name": "carry", "duration": "1 s", "walls": {"lower": "5 mm/s", "upper": "5 mm/s"}})") < 0.2);
+  CHECK(mach(R"({"name": "carry", "duration": "1 s", "start": "developed",
+                 "walls": {"lower": "20 mm/s", "upper": "20.5 mm/s"}})") < 0.2);
+}

@@ -1,13 +1,158 @@
 // What a plan reports, and in which order.
 #include "plan/plan_report.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <map>
+#include <numbers>
 
 #include "plan/read_scene.hpp"
+#include "plan/solver_setup.hpp"
+#include "plugin/plugin_folder.hpp"
 
 using namespace rouleau;
 using namespace rouleau::plan;
 using Catch::Matchers::Contains;
+
+namespace {
+
+const plugin::Catalog& plugins_of_reports() {
+  static const plugin::Catalog catalog({ROULEAU_PLUGINS});
+  return catalog;
+}
+scene::Scene held_by_walls(const std::string& interactions) {
+  return read_scene(std::string(ROULEAU_SCENES) + "/four-cells-shear.json", {"/interactions=" + interactions});
+}
+const PlannedPass* pass_named(const PlanReport& report, const std::string& name) {
+  for (const PlannedPass& pass : report.passes)
+    if (pass.name == name) return &pass;
+  return nullptr;
+}
+std::string why_left_out(const PlanReport& report, const std::string& what) {
+  for (const Omission& omission : report.left_out)
+    if (omission.what == what) return omission.why;
+  return "";
+}
+
+const std::string morse_wall =
+    R"({"between": ["wall", "rbc"], "model": "morse", "parameters": {"depth": "1e-7 J/m2", "decay": "30 1/um"}})";
+const std::string morse_cells =
+    R"({"between": ["rbc", "rbc"], "model": "morse", "parameters": {"depth": "5.2e-8 J/m2"}})";
+
+}  // namespace
+
+TEST_CASE("a plan shows the speeds of walls that have a mean, and holds the faster one to the limit") {
+  const scene::Scene scene = read_scene(
+      std::string(ROULEAU_SCENES) + "/four-cells-shear.json",
+      {R"(/stages=[{"name": "flow", "duration": "1 s", "walls": {"lower": "-0.5 mm/s", "upper": "0.1 mm/s"}}])",
+       "/output={}"});
+  const plugin::Catalog catalog({ROULEAU_PLUGINS});
+  const Plan plan = make_plan(scene, catalog);
+  const PlanReport report = make_report(plan);
+  std::map<std::string, double> si, lattice;
+  for (const Conversion& row : report.conversions) si[row.quantity] = row.si, lattice[row.quantity] = row.lattice;
+  CHECK(si.at("lower wall's speed") == Approx(-0.5e-3).epsilon(1e-12));
+  CHECK(si.at("upper wall's speed") == Approx(0.1e-3).epsilon(1e-12));
+  CHECK(si.at("shear rate") == Approx(0.6e-3 / 25.088e-6).epsilon(1e-12));
+  const double faster = std::abs(lattice.at("lower wall's speed"));
+  CHECK(report.dimensionless.at("mach_wall") == Approx(faster * std::sqrt(3.0)).epsilon(1e-12));
+  const auto limit = std::find_if(report.limits.begin(), report.limits.end(),
+                                  [](const Limit& l) { return l.name.starts_with("Mach number of the walls"); });
+  REQUIRE(limit != report.limits.end());
+  CHECK(limit->value == report.dimensionless.at("mach_wall"));
+  CHECK_THAT(limit->remedy, Contains("the walls' speeds"));
+}
+
+TEST_CASE(
+    "a potential with walls has a well, limits and a place in the pass of interactions, but no neighbour search") {
+  const scene::Scene scene = held_by_walls("[" + morse_wall + "]");
+  const Plan plan = make_plan(scene, plugins_of_reports());
+  CHECK(plan.owner_of(plan.interactions[0]) == "rbc, wall");
+  CHECK(plan.has_wall_interactions);
+  CHECK_FALSE(plan.has_interactions);
+  const PlanReport report = make_report(plan);
+  REQUIRE(report.wells.size() == 1);
+  CHECK(report.wells[0].between == std::array<std::string, 2>{"rbc", "wall"});
+  CHECK(report.wells[0].well.depth == Approx(1e-7).epsilon(1e-9));
+  // 1e-7 J/m2 over 1.2 mPa s x 20 1/s x 3.91 um.
+  CHECK(report.dimensionless.at("adhesion_number") == Approx(1e-7 / (1.2e-3 * 20 * 3.91e-6)).epsilon(1e-9));
+  REQUIRE(pass_named(report, "interaction") != nullptr);
+  CHECK(pass_named(report, "interaction")->why.find("walls") != std::string::npos);
+  CHECK(why_left_out(report, "neighbour search") == "no interaction between cells is active");
+  // 2/(30 1/um) are 0.34 spacings of 0.196 um: too narrow for the corners of two cells, wide enough for a wall.
+  const auto width = std::find_if(report.limits.begin(), report.limits.end(), [](const Limit& limit) {
+    return limit.name.starts_with("width of the well of morse");
+  });
+  REQUIRE(width != report.limits.end());
+  CHECK(width->value == Approx(2 / (30e6 * 0.196e-6)).epsilon(1e-3));
+  CHECK(width->limit == 0.25);
+  const core::SolverSetup setup = make_solver_setup(plan, 0);
+  CHECK(setup.interactions.empty());
+  REQUIRE(setup.wall_interactions.size() == 1);
+  CHECK(setup.wall_interactions[0].type == 0);
+}
+
+TEST_CASE("potentials of walls and of cells are told apart by what they act between") {
+  const scene::Scene scene = held_by_walls("[" + morse_cells + "," + morse_wall + "]");
+  const Plan plan = make_plan(scene, plugins_of_reports());
+  CHECK(plan.has_interactions);
+  CHECK(plan.has_wall_interactions);
+  const PlanReport report = make_report(plan);
+  CHECK(why_left_out(report, "neighbour search").empty());
+  int of_cells = 0, of_walls = 0;
+  for (const Limit& limit : report.limits) {
+    of_cells += limit.name.starts_with("equilibrium gap of morse (rbc, rbc)") ? 1 : 0;
+    of_walls += limit.name.starts_with("equilibrium gap of morse (rbc, wall)") ? 1 : 0;
+  }
+  CHECK(of_cells == 1);
+  CHECK(of_walls == 1);
+  const core::SolverSetup setup = make_solver_setup(plan, 0);
+  CHECK(setup.interactions.size() == 1);
+  CHECK(setup.wall_interactions.size() == 1);
+}
+
+TEST_CASE("a potential that rubs is refused between cells and walls, one that remembers is not") {
+  const test::PluginFolder folder;
+  folder.copy(TESTED_third_party, "libthird.so");
+  folder.write("interaction.json", nlohmann::json{{"manifest", 1},
+                                                  {"abi", 1},
+                                                  {"version", "1.0.0"},
+                                                  {"library", "libthird.so"},
+                                                  {"title", "Third party's"},
+                                                  {"license", "MIT"},
+                                                  {"kind", "interaction"},
+                                                  {"id", "org.example.rubs"},
+                                                  {"needs", {"distance", "tangential_velocity"}},
+                                                  {"gives", {"force", "energy"}},
+                                                  {"parameters", nlohmann::json::array()}});
+  const plugin::Catalog catalog({ROULEAU_PLUGINS, folder.path()});
+  const scene::Scene rubs = held_by_walls(R"([{"between": ["rbc", "wall"], "model": "org.example.rubs"}])");
+  try {
+    make_plan(rubs, catalog);
+    FAIL("it was not refused");
+  } catch (const Error& refused) {
+    CHECK(refused.place().pointer == "/interactions/0/model");
+    CHECK_THAT(refused.what(), Contains("org.example.rubs") && Contains("tangential_velocity"));
+  }
+  const scene::Scene bonds = held_by_walls(R"([{"between": ["rbc", "wall"], "model": "bridging", "parameters": {
+    "site_density": "1e12 1/m2", "bond_stiffness": "1e-7 N/m", "zero_force_distance": "0.49 um", "on_rate": "200 1/s",
+    "off_rate": "10 1/s", "cutoff": "1.5 um"}}])");
+  const Plan plan = make_plan(bonds, catalog);
+  CHECK(make_report(plan).wells.empty());
+  CHECK(make_solver_setup(plan, 0).wall_interactions.at(0).potential.state.size() == 1);
+}
+
+TEST_CASE("a scene without interactions with walls has neither their pass nor their forces") {
+  const scene::Scene none = held_by_walls("[]"), idle = held_by_walls(R"([{"between": ["rbc", "wall"], "model": "morse",
+    "parameters": {"depth": 0}}])");
+  for (const scene::Scene* scene : {&none, &idle}) {
+    const Plan plan = make_plan(*scene, plugins_of_reports());
+    CHECK(pass_named(make_report(plan), "interaction") == nullptr);
+    CHECK(make_solver_setup(plan, 0).wall_interactions.empty());
+  }
+  CHECK(why_left_out(make_report(make_plan(idle, plugins_of_reports())), "interaction morse").starts_with("inactive"));
+}
 
 TEST_CASE(
     "warnings go from what the scene says to what follows from it: parameters, flow, kernel, slip, auto, limits") {
@@ -30,4 +175,20 @@ TEST_CASE(
   CHECK(warnings[4] == "there is a doubt");
   for (std::size_t i = 5; i < warnings.size(); ++i) CHECK(warnings[i].starts_with(report.limits[i - 5].name + " is "));
   CHECK(to_json(plan, report)["numerics_choice"]["target_error"] == 0.01);
+}
+
+TEST_CASE("strain of an oscillating stage is the integral of the shear rate's magnitude") {
+  const double base = GENERATE(0.0, 0.3, -0.3, 1.7, -1.7), amplitude = GENERATE(1.0, -1.0);
+  StageSetting setting{};
+  setting.shear_rate = base;
+  setting.oscillating_rate = amplitude;
+  setting.oscillation.frequency = 1.0 / 1000;
+  double sum = 0;
+  for (long step = 0; step <= 2600; ++step) {
+    if (step % 100 == 0) {
+      CAPTURE(step);
+      CHECK(setting.strain_after(step) == Approx(sum).epsilon(1e-5).margin(1e-2));
+    }
+    sum += std::abs(base + amplitude * std::sin(2 * std::numbers::pi * (static_cast<double>(step) + 0.5) / 1000));
+  }
 }

@@ -187,7 +187,8 @@ TEST_CASE("a run that fails, fails the same in any blocks") {
 
 TEST_CASE("any cut goes on from the checkpoint of any other") {
   const long steps = block_steps(130);
-  for (const Case& c : {two_stages, scenes_to_cut()[7], scenes_to_cut()[9]}) {
+  for (const Case& c : {two_stages, scenes_to_cut()[7], scenes_to_cut()[9], scenes_to_cut()[12], scenes_to_cut()[13],
+                        scenes_to_cut()[16]}) {
     Planned planned(c);
     const ScratchFolder folder;
     const auto cut = folder.path() / "cut";

@@ -162,6 +162,72 @@ TEST_CASE("everything that a scene may say is read") {
   CHECK(scene.plugin_dirs == std::vector<std::filesystem::path>{beside / "mine"});
 }
 
+TEST_CASE("walls have a shear rate and a mean speed, of either sign") {
+  const auto stage = [](const std::string& keys) {
+    return read(contract_scene, {"/stages/1={\"name\": \"flow\", \"duration\": \"1 s\", " + keys + "}", "/output={}"})
+        .stages[1];
+  };
+  const double height = 25.088e-6;
+  const Stage faster = stage(R"("walls": {"lower": "1 mm/s", "upper": "2 mm/s"})");
+  CHECK(faster.shear_rate == about(1e-3 / height));
+  CHECK(faster.mean_wall_speed == about(1.5e-3));
+  const Stage slower = stage(R"("walls": {"lower": 1e-3, "upper": "-2 mm/s"})");
+  CHECK(slower.shear_rate == about(-3e-3 / height));
+  CHECK(slower.mean_wall_speed == about(-0.5e-3));
+  // The same speed in two units.
+  const Stage same = stage(R"("walls": {"lower": "0.3 mm/s", "upper": "0.03 cm/s"})");
+  CHECK(same.shear_rate == 0);
+  CHECK(same.mean_wall_speed == about(0.3e-3));
+  const Stage back = stage(R"("shear_rate": "-20 1/s", "strain": 3, "start": "developed")");
+  CHECK(back.shear_rate == -20.0);
+  CHECK(back.mean_wall_speed == 0.0);
+}
+
+TEST_CASE("a stage may end by the energy's rate") {
+  const auto scene = read(contract_scene, {"/stages/0/until=equilibrium"});
+  CHECK(scene.stages[0].until_equilibrium);
+  CHECK_FALSE(scene.stages[0].until_at_rest);
+  CHECK(scene.equilibrium.rate == about(1e-3));
+  CHECK(scene.equilibrium.window == about(0.2));
+  const auto own =
+      read(contract_scene, {"/stages/0/until=equilibrium", R"(/equilibrium={"rate": "1 1/min", "window": "50 ms"})"});
+  CHECK(own.equilibrium.rate == about(1.0 / 60));
+  CHECK(own.equilibrium.window == about(0.05));
+}
+
+TEST_CASE("a mean velocity stands in place of a pressure gradient") {
+  const Stage stage =
+      read(contract_scene,
+           {R"(/stages/1={"name": "flow", "duration": "1 s", "mean_velocity": "-1 mm/s", "start": "developed"})",
+            "/output={}"})
+          .stages[1];
+  CHECK(stage.mean_velocity.value() == about(-1e-3));
+  CHECK(stage.pressure_gradient.x() == 0);
+  CHECK(stage.start == WallStart::developed);
+}
+
+TEST_CASE("the amplitude of an oscillation is of what drives the stage") {
+  const auto stage = [](const std::string& keys) {
+    return read(contract_scene, {"/stages/1={\"name\": \"flow\", \"duration\": \"1 s\", " + keys + "}", "/output={}"})
+        .stages[1];
+  };
+  const Stage shear = stage(R"("shear_rate": "3 1/s", "oscillation": {"amplitude": "20 1/s", "frequency": "5 Hz"})");
+  CHECK(shear.shear_rate == 3);
+  CHECK(shear.oscillation.shear_rate == 20);
+  CHECK(shear.oscillation.frequency == about(5));
+  CHECK(shear.oscillates());
+  const Stage wall = stage(R"("walls": {"lower": 0, "upper": 0}, "oscillation":
+      {"amplitude": {"lower": "0 mm/s", "upper": "1 mm/s"}, "frequency": "1 kHz"})");
+  CHECK(wall.shear_rate == 0);
+  CHECK(wall.oscillation.shear_rate == about(1e-3 / 25.088e-6));
+  CHECK(wall.oscillation.mean_wall_speed == about(0.5e-3));
+  CHECK(wall.oscillation.frequency == about(1000));
+  const Stage driven = stage(R"("pressure_gradient": 0, "oscillation": {"amplitude": "-2 kPa/m", "frequency": 10})");
+  CHECK(driven.pressure_gradient.x() == 0);
+  CHECK(driven.oscillation.pressure_gradient == about(-2000));
+  CHECK_FALSE(stage(R"("shear_rate": "3 1/s")").oscillates());
+}
+
 TEST_CASE("a model is swapped with its parameters by set") {
   const auto scene = read(contract_scene, {"/fluid/collision={\"model\": \"bgk\"}"});
   CHECK(scene.fluid.collision.model == "bgk");

@@ -1,0 +1,217 @@
+#include "error_bars.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+#include "base/text.hpp"
+#include "json/number_or_null.hpp"
+
+namespace rouleau::accuracy {
+
+namespace {
+
+using Json = nlohmann::json;
+
+// Measured with capsules (docs/accuracy.md, "Error bars").
+constexpr double doubt_of_a_share = 0.5, least_part_of_deformation = 0.75;
+
+const Quantity* find(const std::vector<Quantity>& all, const std::string& name) {
+  const auto found = std::find_if(all.begin(), all.end(), [&](const Quantity& q) { return q.name == name; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+/// Value of a quantity in the run and in each companion.
+struct Values {
+  double run = 0;
+  std::vector<double> companions;
+};
+
+/// Early events err as the Reynolds number to the power 0.7 (docs/accuracy.md, passage of 45 deg), so that what is added
+/// with the density shows less than in proportion; what is taken away with it shows more.
+constexpr double least_power_of_density = 0.7;
+
+/// Change of the error between a companion of this relative density and the run, over the run's error.
+double change_by_density(double density) {
+  return 1 - (density < 1 ? density : std::pow(density, least_power_of_density));
+}
+
+double lattice_share(double run, double coarse, const Companions& companions) {
+  return (coarse - run) / (std::pow(companions.refinement, companions.order) - 1);
+}
+
+Shares shares_of(const Values& values, const Companions& companions, const std::vector<Measured>& measured) {
+  Shares shares;
+  for (std::size_t i = 0; i < measured.size(); ++i) {
+    const double value = values.companions[i], before = i > 0 ? values.companions[i - 1] : values.run;
+    switch (measured[i].role) {
+      case Role::lattice:
+        shares.lattice = lattice_share(before, value, companions);
+        break;
+      case Role::start:
+        shares.start = before - value;
+        break;
+      case Role::inertia:
+        shares.inertia = companions.relaxed * (before - value) / change_by_density(companions.density);
+        break;
+    }
+  }
+  return shares;
+}
+
+std::string words_of(const Shares& shares, const Companions& companions, const std::vector<Measured>& measured) {
+  std::string words;
+  for (const Measured& companion : measured) {
+    if (!words.empty()) words += ", ";
+    switch (companion.role) {
+      case Role::lattice:
+        words += "lattice " + number(shares.lattice, 2) + " (" + companion.differs + ", order " +
+                 number(companions.order) + ")";
+        break;
+      case Role::start:
+        words += "start " + number(shares.start, 2) + " (" + companion.differs + ")";
+        break;
+      case Role::inertia:
+        words += "relaxed density " + number(shares.inertia, 2) + " (" + companion.differs + ")";
+        break;
+    }
+  }
+  return words;
+}
+
+ErrorBar count_bar(const Quantity& quantity, const Values& values) {
+  ErrorBar bar{quantity, {}, 0, 0, {}};
+  std::string others;
+  for (const double value : values.companions) {
+    bar.error = std::max(*bar.error, std::abs(value - quantity.value));
+    others += (others.empty() ? "" : ", ") + number(value);
+  }
+  bar.estimate = *bar.error;
+  bar.how = *bar.error == 0 ? "the same in every companion" : "in the companions " + others;
+  return bar;
+}
+
+/// How the companions' cells end otherwise than the run's.
+std::string other_end(const std::vector<Quantity>& run, const std::vector<Measured>& measured) {
+  const Quantity* own = find(run, "aggregates");
+  for (const Measured& companion : measured) {
+    const Quantity* other = find(companion.quantities, "aggregates");
+    if (own != nullptr && other != nullptr && own->value != other->value) {
+      return "; cells aggregate otherwise with " + companion.differs + " (" + number(other->value) +
+             " aggregates, not " + number(own->value) + "), so that this is the difference of two histories";
+    }
+  }
+  return {};
+}
+
+int decimals_of(double error) {
+  const double exponent = std::floor(std::log10(error));
+  const bool begins_with_one = error / std::pow(10, exponent) < 2;
+  return static_cast<int>(-exponent) + (begins_with_one ? 1 : 0);
+}
+
+std::string fixed(double value, int decimals) {
+  std::array<char, 512> text{};
+  std::snprintf(text.data(), text.size(), "%.*f", std::max(0, decimals), value);
+  return text.data();
+}
+
+bool is_angle(const Quantity& quantity) { return quantity.name.ends_with("angle_rad"); }
+
+}  // namespace
+
+std::vector<ErrorBar> error_bars(const std::vector<Quantity>& run, const Companions& companions,
+                                 const std::vector<Measured>& measured) {
+  std::vector<ErrorBar> bars;
+  const std::string otherwise = other_end(run, measured);
+  double shape = 0;  // relative lattice share of the deformation
+  if (const Quantity* own = find(run, "deformation"); own != nullptr && own->value != 0) {
+    if (const Quantity* coarse = find(measured.front().quantities, "deformation")) {
+      shape = std::abs(lattice_share(own->value, coarse->value, companions) / own->value);
+    }
+  }
+  for (const Quantity& quantity : run) {
+    ErrorBar bar{quantity, {}, 0, {}, quantity.why_not};
+    Values values{quantity.value, {}};
+    double uncertainty = quantity.uncertainty;
+    for (const Measured& companion : measured) {
+      const Quantity* other = find(companion.quantities, quantity.name);
+      if (other == nullptr || !other->why_not.empty()) {
+        if (bar.how.empty()) bar.how = "the companion with " + companion.differs + " has none to compare with";
+        continue;
+      }
+      values.companions.push_back(other->value);
+      uncertainty = std::max(uncertainty, other->uncertainty);
+    }
+    if (bar.how.empty() && quantity.nature == Nature::count) {
+      bar = count_bar(quantity, values);
+    } else if (bar.how.empty()) {
+      bar.shares = shares_of(values, companions, measured);
+      const auto& [lattice, start, inertia] = bar.shares;
+      const double least = least_part_of_deformation * shape * std::abs(quantity.part_of_cells);
+      bar.estimate = std::max(std::abs(lattice + start + inertia), least) + uncertainty;
+      bar.error = bar.estimate + doubt_of_a_share * (std::abs(lattice) + std::abs(start) + std::abs(inertia));
+      bar.how = words_of(bar.shares, companions, measured);
+      if (uncertainty > 0) bar.how += ", between outputs " + number(uncertainty, 2);
+      bar.how += otherwise;
+      if (!std::isfinite(*bar.error)) bar = {quantity, {}, 0, {}, "a companion has no finite value"};
+    }
+    bars.push_back(std::move(bar));
+  }
+  return bars;
+}
+
+Json to_json(const std::vector<ErrorBar>& bars) {
+  Json all = Json::object();
+  for (const ErrorBar& bar : bars) {
+    all[bar.quantity.name] = {{"value", json::number_or_null(bar.quantity.value)},
+                              {"error", bar.error ? Json(*bar.error) : Json()},
+                              {"how", bar.how}};
+  }
+  return all;
+}
+
+std::string with_error(double value, double error) {
+  if (!(error > 0)) return number(value) + " +- 0";
+  if (std::abs(value) < 1e-3 || error < 1e-9 || std::abs(value) >= 1e6) {  // a common power of ten
+    const double power = std::pow(10, std::floor(std::log10(std::max(std::abs(value), error))));
+    if (power != 1) return "(" + with_error(value / power, error / power) + ") x " + number(power);
+  }
+  const int decimals = decimals_of(error);
+  const double digit = std::pow(10, -decimals);
+  const double rounded = std::ceil(error / digit * (1 - 1e-12)) * digit;
+  return fixed(value, decimals) + " +- " + fixed(rounded, decimals);
+}
+
+std::vector<std::string> sentences(const std::vector<ErrorBar>& bars) {
+  std::vector<std::string> all;
+  for (const ErrorBar& bar : bars) {
+    if (!bar.quantity.principal || !bar.error) continue;
+    const bool angle = is_angle(bar.quantity);
+    const double factor = angle ? 180 / std::numbers::pi : 1;
+    std::string name = bar.quantity.name;
+    if (angle) name.replace(name.size() - 4, 4, "");
+    std::replace(name.begin(), name.end(), '_', ' ');
+    all.push_back(name + " " + with_error(factor * bar.quantity.value, factor * *bar.error) + (angle ? " deg" : ""));
+  }
+  return all;
+}
+
+std::optional<Worst> worst(const std::vector<ErrorBar>& bars) {
+  std::optional<Worst> found;
+  const auto counts = [](const ErrorBar& bar) {
+    return bar.quantity.principal && bar.error && bar.quantity.value != 0;
+  };
+  const bool moments =
+      std::any_of(bars.begin(), bars.end(), [&](const ErrorBar& bar) { return counts(bar) && bar.quantity.moment; });
+  for (const ErrorBar& bar : bars) {
+    if (!counts(bar) || bar.quantity.moment != moments) continue;
+    const double error = bar.estimate / (is_angle(bar.quantity) ? 1 : std::abs(bar.quantity.value));
+    if (!found || error > found->error) found = {error, bar.quantity.name};
+  }
+  return found;
+}
+
+}  // namespace rouleau::accuracy

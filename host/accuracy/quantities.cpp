@@ -1,0 +1,207 @@
+#include "quantities.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <set>
+#include <string_view>
+
+#include "files/csv_reader.hpp"
+#include "json/document.hpp"
+#include "observe/observables.hpp"
+
+namespace rouleau::accuracy {
+
+namespace {
+
+using Json = nlohmann::json;
+using Column = std::vector<double>;
+
+constexpr std::size_t most_single_cells = 8;
+
+/// Columns of series.csv that measure an error themselves, or hold the energy of a fluid that is made denser.
+constexpr std::array<std::string_view, 6> no_results{"mach_max",         "area_drift_max", "mass_drift",
+                                                     "area_leakage_max", "kinetic_energy", "total_energy"};
+
+void add(std::vector<Quantity>& all, Quantity quantity) {
+  if (std::isfinite(quantity.value) || !quantity.why_not.empty()) all.push_back(std::move(quantity));
+}
+
+/// Rows of one cell.
+struct CellColumns {
+  Column strain, time, angle, deformation, y;
+};
+
+std::vector<CellColumns> read_cells(const std::filesystem::path& file) {
+  const files::StoredTable table(file);
+  if (table.rows() == 0) return {};
+  std::vector<CellColumns> cells(table.count_of("cell"));
+  const Column number = table.numbers("cell"), strain = table.numbers("strain"), time = table.numbers("time_s"),
+               angle = table.numbers("angle_rad"), deformation = table.numbers("deformation"), y = table.numbers("y_m");
+  for (std::size_t i = 0; i < number.size(); ++i) {
+    CellColumns& cell = cells[static_cast<std::size_t>(number[i])];
+    cell.strain.push_back(strain[i]);
+    cell.time.push_back(time[i]);
+    cell.angle.push_back(angle[i]);
+    cell.deformation.push_back(deformation[i]);
+    cell.y.push_back(y[i]);
+  }
+  return cells;
+}
+
+void add_passages(std::vector<Quantity>& all, const CellColumns& cell, const std::string& prefix, bool principal) {
+  const bool strained = cell.strain.back() > cell.strain.front();
+  constexpr double part = std::numbers::pi / 4;
+  const std::vector<Passage> found = passages(strained ? cell.strain : cell.time, cell.angle, part);
+  if (found.size() < 3) return;  // a cell that keeps its inclination may rock about one of them
+  for (const Passage& passage : found) {
+    const bool told = principal && passage.multiple % 2 == 0;
+    add(all, {.name = prefix + (strained ? "passage_strain_" : "passage_time_s_") +
+                      std::to_string(45 * passage.multiple) + "_deg",
+              .value = passage.at,
+              .uncertainty = passage.uncertainty,
+              .principal = told,
+              .moment = true});
+  }
+}
+
+void add_cells(std::vector<Quantity>& all, const std::vector<CellColumns>& cells) {
+  if (cells.empty()) return;
+  double sum = 0;
+  for (const CellColumns& cell : cells) sum += cell.deformation.back();
+  const double mean = sum / static_cast<double>(cells.size());
+  add(all, {.name = "deformation", .value = mean, .part_of_cells = mean, .principal = true});
+  if (cells.size() > most_single_cells) return;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const CellColumns& cell = cells[i];
+    const bool lone = cells.size() == 1;
+    const std::string prefix = lone ? "" : "cell_" + std::to_string(i) + "_";
+    const double deformation = cell.deformation.back(), angle = cell.angle.back();
+    if (!lone) add(all, {.name = prefix + "deformation", .value = deformation, .part_of_cells = deformation});
+    const bool inclined = std::abs(angle) < std::numbers::pi / 2;  // an angle that turns on is large for another reason
+    add(all, {.name = prefix + "angle_rad", .value = angle, .part_of_cells = inclined ? angle : 0, .principal = lone});
+    add(all, {.name = prefix + "y_m", .value = cell.y.back()});
+    add_passages(all, cell, prefix, lone);
+  }
+}
+
+/// How much of an instant's value of series.csv is the cells' doing.
+double part_of_cells(std::string_view name, double value, double relative_viscosity) {
+  if (name == "elastic_energy" || name == "bending_energy" || name == "particle_stress") return value;
+  const bool power = name == "viscous_dissipation" || name == "wall_power";
+  return power && std::isfinite(relative_viscosity) ? value * (1 - 1 / relative_viscosity) : 0;
+}
+
+void add_series(std::vector<Quantity>& all, const std::filesystem::path& file) {
+  const files::StoredTable table(file);
+  if (table.rows() == 0) return;
+  const double viscosity = table.numbers("relative_viscosity").back();
+  for (const observe::Observable& observable : observe::table("series").observables) {
+    const bool result = std::find(no_results.begin(), no_results.end(), observable.name) == no_results.end();
+    const std::string column = observable.column();
+    if (!result || observable.has_means || observable.chart.empty() || !table.has(column)) continue;
+    const double value = table.numbers(column).back();
+    if (observable.name == "aggregate_count")
+      add(all, {.name = "aggregates", .value = value, .nature = Nature::count});
+    else if (value != 0)
+      add(all, {.name = column, .value = value, .part_of_cells = part_of_cells(observable.name, value, viscosity)});
+  }
+}
+
+void add_means(std::vector<Quantity>& all, const Json& stages) {
+  std::set<std::string> named;  // by a later stage
+  for (auto stage = stages.rbegin(); stage != stages.rend(); ++stage) {
+    for (const auto& [column, mean] : stage->at("means").items()) {
+      if (!mean.is_object() || !mean.at("mean").is_number()) continue;
+      const double value = mean.at("mean");
+      const bool last = named.insert(column).second, viscosity = column == "relative_viscosity";
+      add(all, {.name = (last ? "" : stage->at("stage").get<std::string>() + ": ") + column,
+                .value = value,
+                .part_of_cells = viscosity ? value - 1 : 0,
+                .principal = last && (viscosity || column == "flow_rate_m2_per_s")});
+    }
+  }
+}
+
+void add_turning(std::vector<Quantity>& all, const Json& stage) {
+  const Json& cells = stage.at("rotation");
+  if (cells.size() > most_single_cells) return;
+  for (const Json& cell : cells) {
+    for (const char* rate : {"tank_treading_rad_per_strain", "tumbling_rad_per_strain"}) {
+      if (!cell.contains(rate) || !cell.at(rate).is_number()) continue;
+      const double value = cell.at(rate);
+      const std::string number = std::to_string(cell.at("cell").get<int>());
+      Quantity quantity{.name = (cells.size() == 1 ? "" : "cell_" + number + "_") + rate, .value = value};
+      if (!(cell.value("turns", 0.0) >= 1)) quantity.why_not = "the outline has not turned once in the stage";
+      add(all, std::move(quantity));
+    }
+  }
+}
+
+void add_partings(std::vector<Quantity>& all, const Json& stages) {
+  std::set<std::string> named;  // by a later stage
+  for (auto stage = stages.rbegin(); stage != stages.rend(); ++stage) {
+    for (const Json& aggregate : stage->at("dissociation")) {
+      std::string members;
+      for (const Json& cell : aggregate.at("members")) members += (members.empty() ? "" : "+") + cell.dump();
+      for (const char* event : {"parted", "separate"}) {
+        const Json& when = aggregate.at(event);
+        if (event == std::string("separate") && aggregate.at("members").size() == 2) continue;  // the same as parted
+        if (!when.is_object() || !when.at("strain").is_number() || when.at("strain") == 0) continue;
+        const double strain = when.at("strain"), before = when.at("strain_before");
+        const std::string name = std::string(event) + "_strain_" + members;
+        const bool last = named.insert(name).second;
+        add(all, {.name = (last ? "" : stage->at("stage").get<std::string>() + ": ") + name,
+                  .value = strain,
+                  .uncertainty = strain - before,
+                  .principal = last,
+                  .moment = true});
+      }
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<Passage> passages(const std::vector<double>& x, const std::vector<double>& angle, double part) {
+  std::vector<Passage> found;
+  std::set<int> passed;
+  for (std::size_t i = 0; i + 1 < angle.size(); ++i) {
+    const double from = angle[i], to = angle[i + 1];
+    if (!std::isfinite(from) || !std::isfinite(to) || from == to) continue;
+    const bool falls = to < from;
+    // Multiples in (from, to], in the order in which they are passed.
+    const double first = falls ? std::ceil(from / part) - 1 : std::floor(from / part) + 1;
+    const double last = falls ? std::ceil(to / part) : std::floor(to / part);
+    double bend = 0;  // largest second difference at the two rows
+    for (const std::size_t middle : {i, i + 1}) {
+      if (middle == 0 || middle + 1 >= angle.size()) continue;
+      const double second = angle[middle + 1] - 2 * angle[middle] + angle[middle - 1];
+      if (std::isfinite(second)) bend = std::max(bend, std::abs(second));
+    }
+    for (double k = first; falls ? k >= last : k <= last; k += falls ? -1 : 1) {
+      if (!passed.insert(static_cast<int>(k)).second) continue;
+      const double slope = (to - from) / (x[i + 1] - x[i]);
+      // A parabola lies at most an eighth of its second difference beside its chord.
+      const double uncertainty = std::min(bend / 8 / std::abs(slope), std::abs(x[i + 1] - x[i]));
+      found.push_back({static_cast<int>(k), x[i] + (k * part - from) / slope, uncertainty});
+    }
+  }
+  return found;
+}
+
+std::vector<Quantity> reported_quantities(const std::filesystem::path& run_directory) {
+  std::vector<Quantity> all;
+  const Json summary = json::Document::read(run_directory / "summary.json").root();
+  add_cells(all, read_cells(run_directory / "cells.csv"));
+  const Json& stages = summary.at("rheology");
+  add_means(all, stages);
+  if (!stages.empty()) add_turning(all, stages.back());
+  add_partings(all, stages);
+  add_series(all, run_directory / "series.csv");
+  return all;
+}
+
+}  // namespace rouleau::accuracy

@@ -1,0 +1,25 @@
+// Common words for what goes by another name here, beside the search for the nearest name (text.hpp).
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace rouleau {
+
+struct Synonym {
+  std::string_view word, ours;  ///< in lower case, and as we call it
+};
+
+/// All that are known; a word may have several meanings, the likelier first.
+std::span<const Synonym> synonyms();
+
+/// The candidate that is ours for a word, whatever its case; empty where there is none.
+std::string synonym(std::string_view word, const std::vector<std::string>& candidates);
+
+/// The candidate that a word was most likely meant to be: ours for it, or else the nearest in spelling; empty where there
+/// is none.
+std::string likely(std::string_view word, const std::vector<std::string>& candidates);
+
+}  // namespace rouleau

@@ -1,0 +1,107 @@
+// Which companions a scene has.
+#include "accuracy/companions.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "plan/read_scene.hpp"
+
+using namespace rouleau;
+using namespace rouleau::accuracy;
+
+namespace {
+
+constexpr double share = 1.0 / 3, long_run_s = 1000;
+
+Companions of_capsule(const std::vector<std::string>& changes) {
+  return choose_companions(plan::read_scene(std::string(ROULEAU_PHYSICS_SCENES) + "/capsule.json", changes),
+                           long_run_s);
+}
+
+}  // namespace
+
+TEST_CASE("companions have the scene's shape on a coarser lattice, segments with it, and cost a part of the run") {
+  const Companions companions = of_capsule({});
+  REQUIRE(companions.runs.size() == 2);
+  CHECK(companions.expected_share <= share);
+  CHECK(companions.refinement > 4.0 / 3);
+  const nlohmann::json& scene = companions.runs[0].scene;
+  const double nx = scene["domain"]["nodes"][0], ny = scene["domain"]["nodes"][1];
+  CHECK(nx == 2 * ny);
+  CHECK(128 / ny == Approx(companions.refinement));
+  CHECK(scene["cell_types"]["capsule"]["segments"] == std::lround(126 / companions.refinement));
+  CHECK(companions.runs[0].role == Role::lattice);
+  CHECK(scene["numerics"]["density_factor"] == 1562.5);
+  CHECK(companions.runs[1].role == Role::inertia);
+  CHECK(companions.runs[1].scene["numerics"]["density_factor"] == 1562.5 * companions.density);
+  CHECK(companions.order == 1);
+  CHECK(companions.runs[1].scene["numerics"]["tau"] == 1.0);
+}
+
+TEST_CASE("with slip correction the companion of another density keeps its time step") {
+  const auto corrected = [](const std::string& tau) {
+    return of_capsule({"/numerics/slip_correction=true", "/numerics/tau=" + tau});
+  };
+  const Companions companions = corrected("1");
+  CHECK(companions.order == 2);
+  CHECK(companions.density == 0.5);
+  // The time step goes with (tau - 1/2) times the density factor.
+  CHECK(companions.runs[1].scene["numerics"]["tau"] == 1.5);
+  CHECK(companions.refinement < of_capsule({}).refinement);  // it costs less
+  // A relaxation time above 3 is avoided.
+  const Companions dense = corrected("2.5");
+  CHECK(dense.density == 2);
+  CHECK(dense.runs[1].scene["numerics"]["tau"] == 1.5);
+  CHECK(dense.runs[1].scene["numerics"]["density_factor"] == 3125);
+}
+
+TEST_CASE("a start from rest has a companion of its own where it takes a good part of the strain") {
+  const Companions companions = of_capsule({"/stages/0/start=impulsive", "/stages/0/strain=3"});
+  REQUIRE(companions.runs.size() == 3);
+  CHECK(companions.runs[0].scene["stages"][0]["start"] == "impulsive");
+  CHECK(companions.runs[1].role == Role::start);
+  CHECK(companions.runs[1].scene["stages"][0]["start"] == "developed");
+  CHECK(companions.runs[2].scene["stages"][0]["start"] == "developed");
+  CHECK(companions.expected_share <= share);
+  // H^2/(24 nu) times the density factor is a strain of 0.7.
+  CHECK(of_capsule({"/stages/0/start=impulsive", "/stages/0/strain=22"}).runs.size() == 2);
+}
+
+TEST_CASE("the density factors of all stages change together, and a true density is not changed") {
+  const Companions companions = of_capsule(
+      {R"(/stages=[{"name":"rest","duration":"1 s","density_factor":100},{"name":"shear","shear_rate":20,"strain":9}])"});
+  const nlohmann::json& scene = companions.runs.back().scene;
+  CHECK(scene["stages"][0]["density_factor"] == 100 * companions.density);
+  CHECK(scene["numerics"]["density_factor"] == 1562.5 * companions.density);
+  CHECK_FALSE(scene["stages"][1].contains("density_factor"));
+  CHECK(of_capsule({"/numerics/density_factor=1"}).runs.size() == 1);
+  const Companions nearly = of_capsule({"/numerics/density_factor=1.25"});
+  CHECK(nearly.density == 0.8);
+  CHECK(nearly.relaxed == Approx(0.2));
+}
+
+TEST_CASE("what auto chose is pinned in the companions") {
+  const scene::Scene scene = plan::read_scene(std::string(ROULEAU_PHYSICS_SCENES) + "/auto-capsule.json");
+  const Companions companions = choose_companions(scene, long_run_s);
+  REQUIRE_FALSE(companions.runs.empty());
+  const nlohmann::json& companion = companions.runs[0].scene;
+  CHECK_FALSE(companion["numerics"].contains("auto"));
+  CHECK(companion["numerics"]["tau"] == scene.numerics.tau);
+  CHECK(companion["numerics"]["slip_correction"] == true);
+}
+
+TEST_CASE("numbers of nodes without a common divisor, and cells that would be too small, have no companions") {
+  const Companions odd = of_capsule({"/domain/nodes=[129,65]", R"(/domain/size=["51.6 um","26 um"])"});
+  CHECK(odd.runs.empty());
+  CHECK(odd.why_none.find("129 x 65") != std::string::npos);
+  const Companions coarse = of_capsule({"/domain/nodes=[32,16]", "/cell_types/capsule/segments=16"});
+  CHECK(coarse.runs.empty());
+  CHECK(coarse.why_none.find("radius") != std::string::npos);
+}
+
+TEST_CASE("of a run that takes a second companions are coarser, for starting them takes a part of its time") {
+  const scene::Scene scene = plan::read_scene(std::string(ROULEAU_PHYSICS_SCENES) + "/capsule.json");
+  const Companions quick = choose_companions(scene, 1.5), patient = choose_companions(scene, long_run_s);
+  CHECK(quick.refinement > patient.refinement);
+  CHECK(quick.expected_share < patient.expected_share);
+}

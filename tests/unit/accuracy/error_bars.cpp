@@ -1,0 +1,139 @@
+// Error bars from values that are made up with a known truth.
+#include "accuracy/error_bars.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+using namespace rouleau::accuracy;
+
+namespace {
+
+Quantity quantity(const std::string& name, double value) { return {.name = name, .value = value, .principal = true}; }
+
+/// Companions of a run on a lattice with twice the spacing, and with half the density.
+Companions three_companions() {
+  Companions companions;
+  companions.refinement = 2;
+  companions.order = 2;
+  companions.density = 0.5;
+  companions.relaxed = 1;
+  return companions;
+}
+
+std::vector<Measured> measured(const std::string& name, double lattice, double start, double inertia) {
+  return {{Role::lattice, "coarse", {quantity(name, lattice)}},
+          {Role::start, "developed", {quantity(name, start)}},
+          {Role::inertia, "light", {quantity(name, inertia)}}};
+}
+
+}  // namespace
+
+TEST_CASE("a bar holds an error of second order in the spacing, of the start, and in proportion to the density") {
+  // truth + c h^2 + s (impulsive) + d f, with h = f = 1 in the run.
+  const double truth = 0.4;
+  for (const double c : {0.01, -0.003}) {
+    for (const double s : {0.0, 0.02, -0.02}) {
+      for (const double d : {0.0, 0.01, -0.02}) {
+        const std::vector<ErrorBar> bars =
+            error_bars({quantity("deformation", truth + c + s + d)}, three_companions(),
+                       measured("deformation", truth + 4 * c + s + d, truth + 4 * c + d, truth + 4 * c + d / 2));
+        REQUIRE(bars.size() == 1);
+        CHECK(bars[0].shares.lattice == Approx(c).margin(1e-12));
+        CHECK(bars[0].shares.start == Approx(s).margin(1e-12));
+        CHECK(bars[0].shares.inertia == Approx(d).margin(1e-12));
+        REQUIRE(bars[0].error);
+        CHECK(*bars[0].error >= std::abs(c + s + d));
+        CHECK(*bars[0].error <= 1.5 * (std::abs(c) + std::abs(s) + std::abs(d)) + 1e-12);
+      }
+    }
+  }
+}
+
+TEST_CASE("the share of the density is that of an error in proportion, of a denser companion that of a power of 0.7") {
+  Companions companions = three_companions();
+  const auto share = [&](double density, double power) {
+    companions.density = density;
+    const double companion = 1 + 0.01 * std::pow(density, power);
+    return error_bars({quantity("deformation", 1.01)}, companions,
+                      {{Role::lattice, "coarse", {quantity("deformation", 1.01)}},
+                       {Role::inertia, "other", {quantity("deformation", companion)}}})[0]
+        .shares.inertia;
+  };
+  CHECK(share(0.5, 1) == Approx(0.01));
+  CHECK(share(0.8, 1) == Approx(0.01));
+  CHECK(share(2, 0.7) == Approx(0.01));
+  CHECK(share(2, 1) > 0.01);
+}
+
+TEST_CASE("without slip correction the lattice's share is that of first order") {
+  Companions companions = three_companions();
+  companions.order = 1;
+  const auto bars = error_bars({quantity("deformation", 1.01)}, companions,
+                               {{Role::lattice, "coarse", {quantity("deformation", 1.02)}}});
+  CHECK(bars[0].shares.lattice == Approx(0.01));
+}
+
+TEST_CASE("a value that happens to be the same on both lattices has a bar by the deformation's error") {
+  Quantity viscosity{.name = "relative_viscosity", .value = 1.08, .part_of_cells = 0.08};
+  const auto bars = error_bars({quantity("deformation", 1.01), viscosity}, three_companions(),
+                               {{Role::lattice, "coarse", {quantity("deformation", 1.04), viscosity}}});
+  REQUIRE(bars.size() == 2);
+  REQUIRE(bars[1].error);
+  CHECK(*bars[1].error == Approx(0.75 * 0.08 * 0.01 / 1.01));
+}
+
+TEST_CASE("what a companion does not have has no bar, and how says so") {
+  const auto bars = error_bars({quantity("parted_strain_0+1", 9.5)}, three_companions(),
+                               {{Role::lattice, "coarse", {quantity("deformation", 0.3)}}});
+  CHECK_FALSE(bars[0].error);
+  CHECK(bars[0].how.find("coarse") != std::string::npos);
+  CHECK(to_json(bars)["parted_strain_0+1"]["error"].is_null());
+}
+
+TEST_CASE("a count is the same in the companions or differs by whole numbers, and other histories are told") {
+  const auto count = [](double value) {
+    return Quantity{.name = "aggregates", .value = value, .nature = Nature::count};
+  };
+  const auto same = error_bars({count(2)}, three_companions(), {{Role::lattice, "coarse", {count(2)}}});
+  CHECK(*same[0].error == 0);
+  const auto other = error_bars({quantity("deformation", 0.3), count(2)}, three_companions(),
+                                {{Role::lattice, "coarse", {quantity("deformation", 0.3), count(4)}}});
+  CHECK(*other[1].error == 2);
+  CHECK(other[0].how.find("4 aggregates, not 2") != std::string::npos);
+}
+
+TEST_CASE("a moment that lies between two outputs widens the bar by what is not known of it") {
+  Quantity event = quantity("parted_strain_0+1", 10);
+  event.uncertainty = 0.25;
+  const auto bars =
+      error_bars({event}, three_companions(), {{Role::lattice, "coarse", {quantity("parted_strain_0+1", 10)}}});
+  CHECK(*bars[0].error == Approx(0.25));
+}
+
+TEST_CASE("values are written to the digit of their error, which is rounded up") {
+  CHECK(with_error(0.34719, 0.0039) == "0.347 +- 0.004");
+  CHECK(with_error(0.34719, 0.0031) == "0.347 +- 0.004");
+  CHECK(with_error(0.34719, 0.00151) == "0.3472 +- 0.0016");
+  CHECK(with_error(30.258, 0.2) == "30.3 +- 0.2");
+  CHECK(with_error(-11.8, 3.0) == "-12 +- 3");
+  CHECK(with_error(1.2803e-5, 2e-8) == "(1.280 +- 0.002) x 1e-05");
+  CHECK(with_error(2, 0) == "2 +- 0");
+}
+
+TEST_CASE("what is told first is told with its bar, an angle in degrees; the worst of it is the largest relative one") {
+  Quantity deformation = quantity("deformation", 0.3), angle = quantity("angle_rad", 0.5);
+  ErrorBar first{deformation, {}, 0.003, 0.004, ""}, second{angle, {}, 0.008, 0.01, ""};
+  const std::vector<std::string> lines = sentences({first, second});
+  REQUIRE(lines.size() == 2);
+  CHECK(lines[0] == "deformation 0.300 +- 0.004");
+  CHECK(lines[1] == "angle 28.6 +- 0.6 deg");
+  const std::optional<Worst> found = worst({first, second});
+  REQUIRE(found);
+  CHECK(found->name == "deformation");
+  CHECK(found->error == Approx(0.01));
+  // Of what moves on, the moments count, not where it is at the end.
+  ErrorBar passage{quantity("passage_strain_0_deg", 6), {}, 0.03, 0.04, ""};
+  passage.quantity.moment = true;
+  CHECK(worst({first, second, passage})->name == "passage_strain_0_deg");
+  CHECK(worst({first, second, passage})->error == Approx(0.005));
+}
