@@ -66,7 +66,7 @@ StageSetting make_stage_setting(const scene::Scene& scene, int index) {
   setting.shear_rate = setting.units.to_lattice(stage.shear_rate, units::dimension::rate);
   const double mean = setting.units.to_lattice(stage.mean_wall_speed, units::dimension::velocity);
   const double apart = setting.shear_rate * scene.domain.nodes[1] / 2;
-  setting.walls = {mean - apart, mean + apart};
+  setting.walls = {-(apart - mean), apart + mean};
   const Eigen::Vector2d force = scene::driving_force(stage, scene);
   setting.body_force_x = setting.units.to_lattice(force.x(), units::dimension::force_density);
   setting.body_force_y = setting.units.to_lattice(force.y(), units::dimension::force_density);
