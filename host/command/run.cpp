@@ -170,7 +170,7 @@ int run_command(const std::vector<std::string>& arguments) {
   }
   const TimeLimit limit(max_time);
   const plan::ReadScene read = scene_options.read();
-  const scene::Scene& scene = read.scene;
+  const auto& [scene, numerics_choice] = read;
   run.threads = std::min(run.threads, std::max(1, scene.domain.nodes[1] / 4));
   const plugin::Catalog catalog = scene_options.catalog(scene);
   const plan::Plan plan = plan_and_place(read, catalog);  // before a directory is made
