@@ -114,7 +114,7 @@ const char* name_of(Role role) {
   return "";
 }
 
-Companions choose_companions(const scene::Scene& scene, double run_s) {
+Companions choose_companions(const scene::Scene& scene, double run_s, double outputs_s) {
   Companions chosen;
   double densest = 1;
   for (const scene::Stage& stage : scene.stages) densest = std::max(densest, stage.density_factor);
@@ -128,7 +128,7 @@ Companions choose_companions(const scene::Scene& scene, double run_s) {
   const double companion_tau = chosen.order == 2 ? tau_of_same_step(chosen.density) : tau;
   const double runs = 1 + (start ? 1 : 0) + (inertia ? (chosen.order == 2 ? 1 : 1 / chosen.density) : 0);
   const int processes = 1 + (start ? 1 : 0) + (inertia ? 1 : 0);
-  const double affordable = std::max(least_share, most_share - processes * start_s / run_s);
+  const double affordable = std::max(least_share, most_share - processes * (start_s + outputs_s) / run_s);
 
   const std::array<int, 2>& nodes = scene.domain.nodes;
   const int parts = std::gcd(nodes[0], nodes[1]);

@@ -33,9 +33,9 @@ struct Companions {
   std::string why_none;         ///< why there are no companions; empty: there are
 };
 
-/// The companions of a scene that has been read and whose run took so many seconds, on the finest coarser lattice of the
-/// same shape with which the steps of all of them are expected to cost a third of the run, by plan::step_cost, less what
-/// starting them takes; for that of a run of about a second matters.
-Companions choose_companions(const scene::Scene& scene, double run_s);
+/// The companions of a scene that has been read, on the finest coarser lattice of the same shape with which the steps of
+/// all of them are expected to cost a third of the run, by plan::step_cost, less what starting them and their outputs
+/// take: of a short run that is a good part. The run took so many seconds, `outputs_s` of them for its outputs.
+Companions choose_companions(const scene::Scene& scene, double run_s, double outputs_s);
 
 }  // namespace rouleau::accuracy

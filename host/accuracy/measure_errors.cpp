@@ -103,8 +103,12 @@ MeasuredErrors measure_errors(const fs::path& directory, const scene::Scene& sce
   }
   const Json summary = trial::read_summary(directory);
   const double run_s = summary.at("wall_s");
+  double outputs_s = 0;
+  for (const Json& pass : summary.at("passes")) {
+    if (pass.at("name") == "observe and check") outputs_s += pass.at("wall_s").get<double>();
+  }
   const fs::path folder = directory / files::companions_folder;
-  const Companions companions = choose_companions(scene, run_s);
+  const Companions companions = choose_companions(scene, run_s, outputs_s);
   MeasuredErrors errors;
   errors.missing = companions.why_none;
   Json told = Json::array();

@@ -14,8 +14,8 @@ namespace {
 constexpr double share = 1.0 / 3, long_run_s = 1000;
 
 Companions of_capsule(const std::vector<std::string>& changes) {
-  return choose_companions(plan::read_scene(std::string(ROULEAU_PHYSICS_SCENES) + "/capsule.json", changes),
-                           long_run_s);
+  return choose_companions(plan::read_scene(std::string(ROULEAU_PHYSICS_SCENES) + "/capsule.json", changes), long_run_s,
+                           0);
 }
 
 }  // namespace
@@ -82,7 +82,7 @@ TEST_CASE("the density factors of all stages change together, and a true density
 
 TEST_CASE("what auto chose is pinned in the companions") {
   const scene::Scene scene = plan::read_scene(std::string(ROULEAU_PHYSICS_SCENES) + "/auto-capsule.json");
-  const Companions companions = choose_companions(scene, long_run_s);
+  const Companions companions = choose_companions(scene, long_run_s, 0);
   REQUIRE_FALSE(companions.runs.empty());
   const nlohmann::json& companion = companions.runs[0].scene;
   CHECK_FALSE(companion["numerics"].contains("auto"));
@@ -101,7 +101,9 @@ TEST_CASE("numbers of nodes without a common divisor, and cells that would be to
 
 TEST_CASE("of a run that takes a second companions are coarser, for starting them takes a part of its time") {
   const scene::Scene scene = plan::read_scene(std::string(ROULEAU_PHYSICS_SCENES) + "/capsule.json");
-  const Companions quick = choose_companions(scene, 1.5), patient = choose_companions(scene, long_run_s);
+  const Companions quick = choose_companions(scene, 1.5, 0), patient = choose_companions(scene, long_run_s, 0);
   CHECK(quick.refinement > patient.refinement);
   CHECK(quick.expected_share < patient.expected_share);
+  // So do outputs, of which companions have as many.
+  CHECK(choose_companions(scene, long_run_s, 0.03 * long_run_s).refinement > patient.refinement);
 }
