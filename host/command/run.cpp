@@ -1,4 +1,5 @@
 // rouleau run SCENE: simulate and write a run directory.
+#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <iostream>
@@ -80,8 +81,8 @@ bool add_error_bars(const std::filesystem::path& folder, const scene::Scene& sce
     return true;
   }
   lines = accuracy::sentences(errors.bars);
-  lines.push_back("error bars took " + number(100 * errors.share, 2) + " % of the run's time; summary.json has all " +
-                  std::to_string(errors.bars.size()));
+  lines.push_back("error bars took " + std::to_string(std::lround(100 * errors.share)) +
+                  " % of the run's time; summary.json has all " + std::to_string(errors.bars.size()));
   const std::optional<accuracy::Worst> worst = accuracy::worst(errors.bars);
   if (choice && worst && worst->error > choice->target) {
     lines.push_back("numerics.auto may have missed its target: the error of " + worst->name + " is estimated as " +
