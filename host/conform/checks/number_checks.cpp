@@ -112,6 +112,7 @@ Finding parameters_matter(const Subject& subject) {
   Random random = subject.random();
   std::vector<bool> matters(parameters.size());
   std::vector<std::vector<bool>> words_matter;
+  words_matter.reserve(parameters.size());
   for (const auto& parameter : parameters) words_matter.emplace_back(parameter.choices.size());
   for (const bool inertia : {true, false}) {
     plugin::ModelSetting setting = Subject::typical_setting();

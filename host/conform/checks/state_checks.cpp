@@ -218,7 +218,7 @@ Finding settles(const Subject& subject) {
           const double early = course.forces[0].at(name)[i], late = course.forces[1].at(name)[i];
           const double size = std::max({std::abs(first.at(name)[i]), std::abs(early), std::abs(late)});
           const double c1 = std::abs(late - early), c2 = std::abs(values[i] - late);
-          const auto words = [&, &name = name](const std::string& what) {
+          const auto words = [&](const std::string& what) {
             return [&, what] {
               return what + ", in lattice units, at " + place(subject, trial.setting, start, i) + trial.words;
             };
