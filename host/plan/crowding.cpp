@@ -16,7 +16,8 @@ double inner_radius(const scene::CellType& type) {
   const auto nodes = shape::make_outline(type.shape, type.segments).nodes;
   double least = nodes.front().norm();
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const Eigen::Vector2d from = nodes[i], along = nodes[(i + 1) % nodes.size()] - from;
+    const Eigen::Vector2d& from = nodes[i];
+    const Eigen::Vector2d along = nodes[(i + 1) % nodes.size()] - from;
     const double share = std::clamp(-from.dot(along) / along.squaredNorm(), 0.0, 1.0);
     least = std::min(least, (from + share * along).norm());
   }

@@ -1,8 +1,8 @@
-// Fault: its manifest claims a nanosecond for an element, which takes it a thousand steps of a loop.
+// Fault: its manifest claims a nanosecond for an element, which takes it two hundred steps of a loop.
 #include "potential.h"
 
 static pair slow(const potential* p, double distance) {
-  for (volatile int i = 0; i < 1000; ++i) {
+  for (volatile int i = 0; i < 200; ++i) {
   }
   return honest_pair(p, distance);
 }
