@@ -104,17 +104,17 @@ std::vector<CellType> read_cell_types(const SceneFields& fields, double fluid_vi
   if (!fields.has("/cell_types") || !fields.at("/cell_types").is_object()) return types;
   for (const auto& [name, written] : fields.at("/cell_types").items()) {
     const auto pointer = json::child_pointer("/cell_types", name);
-    if (!is_plain_name(name)) {
-      fields.attempt([&] {
+    fields.attempt([&, &name = name] {
+      if (!is_plain_name(name)) {
         fields.refuse_key(
             pointer,
             in_quotes(name) + " is no name for a cell type; use letters, digits, '_', '-' and '.', a letter first");
-      });
-    }
-    if (name == wall_name) {
-      fields.refuse_key(pointer,
-                        "\"wall\" is no name for a cell type: in \"between\" it stands for the walls; take another");
-    }
+      }
+      if (name == wall_name) {
+        fields.refuse_key(pointer,
+                          "\"wall\" is no name for a cell type: in \"between\" it stands for the walls; take another");
+      }
+    });
     if (types.size() == most_types) {
       fields.refuse_key(pointer, "there are more than " + std::to_string(most_types) + " cell types");
     }
