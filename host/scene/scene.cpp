@@ -98,7 +98,7 @@ std::array<int, 2> read_between(const SceneFields& fields, const std::string& po
   int a = 0, b = 0;
   fields.attempt([&] { a = side("/0"); });
   fields.attempt([&] { b = side("/1"); });
-  if (a == Interaction::wall && b == Interaction::wall)
+  if (a == Interaction::wall && b == Interaction::wall && fields.settled("/cell_types"))
     fields.refuse(pointer, "walls do not act on each other\nname a cell type beside \"wall\"");
   return a == Interaction::wall ? std::array{b, a} : std::array{a, b};
 }

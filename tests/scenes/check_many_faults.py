@@ -119,6 +119,8 @@ def main() -> int:
                 continue  # one may be what makes the other wrong
             if parts & PARTS < parts:
                 parts |= PARTS  # a key at the top that is unknown or missing may be any
+            if "no-cell-types" in names:
+                parts.add("cell_types")  # a key at the top that is wrong may be the one that is missing
             open_parts = {prefix for prefix, needed in NEEDS.items() if needed & parts}
             hidden = {pointer for name in names if name.startswith(tuple(open_parts)) for pointer in alone[name]}
             changes = {old: new for name in names for old, new in cases[name]["change"].items()}
