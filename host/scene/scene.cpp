@@ -1,5 +1,6 @@
 #include "scene.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -98,7 +99,8 @@ std::array<int, 2> read_between(const SceneFields& fields, const std::string& po
   int a = 0, b = 0;
   fields.attempt([&] { a = side("/0"); });
   fields.attempt([&] { b = side("/1"); });
-  if (a == Interaction::wall && b == Interaction::wall && fields.settled("/cell_types"))
+  const bool is_type = std::any_of(types.begin(), types.end(), [](const CellType& t) { return t.name == wall_name; });
+  if (a == Interaction::wall && b == Interaction::wall && !is_type)
     fields.refuse(pointer, "walls do not act on each other\nname a cell type beside \"wall\"");
   return a == Interaction::wall ? std::array{b, a} : std::array{a, b};
 }

@@ -25,7 +25,7 @@ OF_ALL_CELLS = {"membrane-nodes-too-many", "numerics-auto-no-lattice", "random-b
 # Cases that a fault in another part may leave open: what they are about is not known then.
 NEEDS = {"field-region": {"domain"}, "length-beyond-box": {"domain"}, "unit-forgotten": {"domain"}, "random": {"domain", "cell_types"},
          "missing-nodes": {"domain", "numerics"}, "missing-segments": {"numerics"}, "output-by-strain": {"stages"},
-         "cell-type-unknown": {"cell_types"}, "no-cell-types": {"cell_types"}}
+         "cell-type-unknown": {"cell_types"}, "wall-misspelt": {"cell_types"}, "no-cell-types": {"cell_types"}}
 RENAMES = {"cell-type-name-with-comma", "unknown-key-at-the-top"}  # what others change stands elsewhere then
 COMBINED, AT_ONCE = 60, 5  # scenes, and faults in each
 
