@@ -26,7 +26,8 @@ OF_ALL_CELLS = {"membrane-nodes-too-many", "numerics-auto-no-lattice", "random-b
 NEEDS = {"field-region": {"domain"}, "length-beyond-box": {"domain"}, "unit-forgotten": {"domain"}, "random": {"domain", "cell_types"},
          "missing-nodes": {"domain", "numerics"}, "missing-segments": {"numerics"}, "output-by-strain": {"stages"},
          "cell-type-unknown": {"cell_types"}, "wall-misspelt": {"cell_types"}, "no-cell-types": {"cell_types"}}
-RENAMES = {"cell-type-name-with-comma", "unknown-key-at-the-top"}  # what others change stands elsewhere then
+# What others are about stands elsewhere then, or is gone: the key, the flow, the walls.
+RENAMES = {"cell-type-name-with-comma", "unknown-key-at-the-top", "output-by-strain-without-shear", "shear-between-periodic-sides"}
 COMBINED, AT_ONCE = 60, 5  # scenes, and faults in each
 
 
