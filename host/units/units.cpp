@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <new>
 #include <vector>
 
@@ -177,10 +178,27 @@ struct Units::System {
   }
 };
 
+/// The database that lies with an installation which brings its libraries along: in share/rouleau/udunits of the folder that
+/// the running program is below. Empty without one; UDUNITS then looks where it was built to, as where the variable is set.
+std::string installed_database() {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  if (secure_getenv("UDUNITS2_XML_PATH") != nullptr) return {};
+  fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
+  for (int levels = 0; levels < 2 && folder.has_relative_path(); ++levels) {  // from bin, or from libexec/rouleau
+    folder = folder.parent_path();
+    fs::path database = folder / ROULEAU_DATA_FOLDER / "rouleau" / "udunits" / "udunits2.xml";
+    if (fs::exists(database, error)) return database;
+  }
+  return {};
+}
+
 std::shared_ptr<const Units::System> Units::System::read() {
   auto read = std::make_shared<System>();
   ut_set_error_message_handler(ut_ignore);
-  read->system = with_memory([] { return UnitSystem(ut_read_xml(nullptr), &ut_free_system); });
+  const std::string database = installed_database();
+  read->system = with_memory(
+      [&] { return UnitSystem(ut_read_xml(database.empty() ? nullptr : database.c_str()), &ut_free_system); });
   if (!read->system) {
     throw Error(
         Cause::input_output,

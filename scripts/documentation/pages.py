@@ -1,7 +1,7 @@
 """The pages of the documentation in reading order: what the site shows and the tests of tests/docs go through."""
 
 CHAPTERS = {
-    "Begin": ["README.md", "docs/first-run.md", "docs/faq.md"],
+    "Begin": ["README.md", "docs/install.md", "docs/first-run.md", "docs/faq.md"],
     "Use": ["docs/scene.md", "docs/models.md", "docs/output.md", "docs/resume.md", "docs/rheology.md",
             "docs/study-quantities.md"],
     "Reference": ["docs/reference/scene.md", "docs/reference/models.md"],

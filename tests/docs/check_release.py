@@ -3,6 +3,8 @@
 usage: check_release.py SOURCE BUILD
 """
 
+import datetime
+import json
 import os
 import pathlib
 import re
@@ -13,7 +15,7 @@ import tempfile
 import unittest
 
 SOURCE = pathlib.Path(sys.argv[1])
-FILES = ("CMakeLists.txt", "CITATION.cff", "CHANGELOG.md", "scripts/release")
+FILES = ("CMakeLists.txt", "CITATION.cff", "codemeta.json", "CHANGELOG.md", "scripts/release")
 VERSION = "98.7.6"  # of no release
 
 
@@ -59,6 +61,8 @@ class Release(unittest.TestCase):
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertIn(f"project(Rouleau VERSION {VERSION} ", (self.root / "CMakeLists.txt").read_text())
         self.assertIn(f"\nversion: {VERSION}\ndate-released: 2031-05-04\n", (self.root / "CITATION.cff").read_text())
+        codemeta = json.loads((self.root / "codemeta.json").read_text())
+        self.assertEqual((codemeta["version"], codemeta["datePublished"]), (VERSION, "2031-05-04"))
         self.assertEqual(self.git("rev-parse", f"v{VERSION}^{{commit}}"), self.git("rev-parse", "HEAD"))
         self.assertEqual(self.git("status", "--porcelain"), "")
 
@@ -74,15 +78,32 @@ class Release(unittest.TestCase):
         for version in (VERSION, "99.0.0"):
             self.name_in_changelog(version)
             self.assertEqual(self.release(version).returncode, 0)
-        self.assertEqual((self.root / "CITATION.cff").read_text().count("date-released"), 1)
+        for name, word in (("CITATION.cff", "date-released"), ("codemeta.json", "datePublished")):
+            self.assertEqual((self.root / name).read_text().count(word), 1)
+
+    def test_what_is_unreleased_becomes_the_section_of_the_version_with_the_day_of_today(self):
+        file = self.root / "CHANGELOG.md"
+        file.write_text("# Changelog\n\n## [Unreleased]\n\n### Added\n\n- A new thing.\n\n## [0.1.0] - 2026-11-23\n\n- The first.\n")
+        self.commit()
+        today = datetime.date.today()
+        self.assertEqual(self.release(VERSION).returncode, 0)
+        days = {d.isoformat() for d in (today, datetime.date.today())}  # midnight may have passed
+        text = file.read_text()
+        self.assertIn(re.search(r"## \[Unreleased\]\n\n## \[98\.7\.6\] - (.*)\n\n### Added\n\n- A new thing\.\n\n## \[0\.1\.0\]", text)[1],
+                      days)
+        self.assertEqual(self.git("status", "--porcelain"), "")
 
     def test_changes_that_are_not_committed_are_refused(self):
         self.name_in_changelog()
         (self.root / "CHANGELOG.md").write_text("")
         self.assert_refused(self.release(VERSION), "not committed")
 
-    def test_a_version_that_the_changelog_does_not_have_is_refused(self):
-        self.assert_refused(self.release(VERSION), "CHANGELOG.md")
+    def test_a_version_of_which_the_changelog_says_nothing_is_refused(self):
+        file = self.root / "CHANGELOG.md"
+        for text in ("## [Unreleased]\n\n## [0.1.0] - 2026-11-23\n\n- The first.\n", "## [0.1.0] - 2026-11-23\n\n- The first.\n"):
+            file.write_text(text)
+            self.commit()
+            self.assert_refused(self.release(VERSION), "CHANGELOG.md")
 
     def test_a_tag_that_exists_is_refused(self):
         self.name_in_changelog()
@@ -95,10 +116,21 @@ class Release(unittest.TestCase):
         for word in ("v1.2.3", "1.2", "1.2.3-rc1", "01.2.3"):
             self.assertEqual(self.release(word).returncode, 2, word)
 
-    def test_build_and_citation_name_one_version(self):
+    def test_build_citation_and_codemeta_say_the_same(self):
         build = re.search(r"project\(Rouleau VERSION ([\d.]+)", (SOURCE / "CMakeLists.txt").read_text())[1]
-        cited = re.search(r"^version: (.*)$", (SOURCE / "CITATION.cff").read_text(), re.MULTILINE)[1]
-        self.assertEqual(build, cited)
+        citation = (SOURCE / "CITATION.cff").read_text()
+        codemeta = json.loads((SOURCE / "codemeta.json").read_text())
+        cited = dict(re.findall(r"^(\w[\w-]*): (.+)$", citation, re.MULTILINE))
+        self.assertEqual({build}, {cited["version"], codemeta["version"]})
+        self.assertEqual(cited.get("date-released"), codemeta.get("datePublished"))
+        self.assertEqual(cited["title"], codemeta["name"])
+        self.assertEqual(f"https://spdx.org/licenses/{cited['license']}", codemeta["license"])
+        abstract = re.search(r"^abstract: >-\n((?:  .*\n)+)", citation, re.MULTILINE)[1]
+        self.assertEqual(" ".join(abstract.split()), codemeta["description"])
+        self.assertEqual(re.findall(r"^  - ([a-z A-Z]+)$", citation, re.MULTILINE), codemeta["keywords"])
+        article = codemeta["referencePublication"][0]
+        self.assertEqual(f"https://doi.org/{re.search(r'^    doi: (.*)$', citation, re.MULTILINE)[1]}", article["id"])
+        self.assertIn(f"    title: {article['name']}\n", citation)
 
 
 if __name__ == "__main__":

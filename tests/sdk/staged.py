@@ -10,7 +10,9 @@ from pathlib import Path
 
 SOURCE, BUILD, CMAKE = Path(sys.argv[1]), Path(sys.argv[2]), sys.argv[3]
 SCENE = SOURCE / "scenes" / "four-cells-shear.json"
-COMPONENTS = ("sdk", "core", "program", "plugins", "scenes", "documentation")
+COMPONENTS = ["sdk", "core", "program", "plugins", "scenes", "documentation"]
+if (SOURCE / "python/CMakeLists.txt").exists():
+    COMPONENTS.append("python")
 
 
 def files(folder):
