@@ -239,8 +239,7 @@ def _make(home: pathlib.Path, name: str, identity: str, formula: str, translated
         bad = [check for plugin in answer["plugins"] for check in plugin["checks"]
                if check["verdict"] in ("fail", "crash", "timeout")]
         if bad:
-            raise Error([Fault(f'{check["name"]}: wants that the potential {check["says"]}; {check["what"]}', "", formula)
-                         for check in bad], exit_code=3)
+            raise Error([Fault(_words_of(check), "", formula) for check in bad], exit_code=3)
         (made / "conforms").write_text("rouleau conform has passed\n")
         try:
             made.rename(home)
@@ -248,6 +247,12 @@ def _make(home: pathlib.Path, name: str, identity: str, formula: str, translated
             if not (home / "conforms").is_file():
                 shutil.rmtree(home)
                 made.rename(home)
+
+
+def _words_of(check: dict[str, Any]) -> str:
+    """What a check of rouleau conform wants, and what it found."""
+    found = f' {check["measured"]:.3g}, limit {check["limit"]:.3g}' if check.get("measured") is not None else ""
+    return f'the check "{check["name"]}" failed, by which a model {check["says"]}: {check["what"]}{found}'
 
 
 def _compile(made: pathlib.Path, sdk: pathlib.Path) -> None:

@@ -71,6 +71,8 @@ def run(scene: SceneLike, out: str | os.PathLike[str] | None = None, *, threads:
     options += ["--max-time", max_time] if max_time is not None else []
     options += [word for folder in plugin_dirs for word in ("--plugin-dir", os.fspath(folder))]
     made = simulate(scene, directory, [*options, *settings(changes)], shown(progress), threading.Event())
+    if progress is None and sys.stderr.isatty():
+        print(file=sys.stderr)
     for warning in made.summary.get("warnings", ()):
         warnings.warn(warning, stacklevel=2)
     return made
@@ -146,14 +148,15 @@ def shown(progress: ProgressLike) -> Callable[[Progress], object]:
     """The callback that `progress` means."""
     if callable(progress):
         return progress
-    notebook = "ipykernel" in sys.modules
-    if progress is False or (progress is None and not notebook and not sys.stderr.isatty()):
+    if progress is False:
         return lambda now: None
-
-    def line(now: Progress) -> None:
-        print(f"\r{str(now):<76}", end="", file=sys.stdout if notebook else sys.stderr, flush=True)
-
-    return line
+    if "ipykernel" in sys.modules:
+        from IPython.display import display  # which a notebook has
+        line = display({"text/plain": ""}, raw=True, display_id=True)
+        return lambda now: line.update({"text/plain": str(now)}, raw=True)
+    if progress is None and not sys.stderr.isatty():
+        return lambda now: None
+    return lambda now: print(f"\r{str(now):<76}", end="", file=sys.stderr, flush=True)
 
 
 def _free_directory(name: str) -> pathlib.Path:

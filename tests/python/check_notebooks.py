@@ -51,6 +51,7 @@ class Notebooks(Case):
         pictures, text = self.execute("rouleau-in-shear")
         self.assertEqual(pictures, 3)
         self.assertIn("radians turned", text)
+        self.assertIn("in-shear: shear 100 %", text)  # the last that the line of progress said
         self.assertIn("data:image/png", text)  # the animation
 
     def test_phase_diagram(self):
@@ -63,7 +64,7 @@ class Notebooks(Case):
         pictures, text = self.execute("new-potential")
         self.assertEqual(pictures, 2)
         self.assertIn("python.gaussian-well-", text)
-        self.assertIn("units: wants", text)
+        self.assertIn('the check "units" failed', text)
 
     def test_are_all_tried_and_have_no_outputs(self):
         self.assertEqual({path.stem for path in NOTEBOOKS.glob("*.ipynb")}, set(QUICK))

@@ -170,6 +170,16 @@ class A_sweep(In_a_folder):
         self.assertEqual((table["deformation"][0], table["deformation_error"][0]),
                          (bars["deformation"]["value"], bars["deformation"]["error"]))
 
+    def test_that_is_interrupted_goes_on_where_it_was(self):
+        long = {"/stages/1/strain": [15, 16]}
+        with self.assertRaises(KeyboardInterrupt):
+            rouleau.sweep(small_scene(), long, out="sweep", workers=2, progress=lambda now: os.kill(os.getpid(), signal.SIGINT))
+        begun = [rouleau.open(directory).status for directory in pathlib.Path("sweep").iterdir()]
+        self.assertIn("interrupted", begun)
+        table = rouleau.sweep(small_scene(), long, out="sweep", workers=2, progress=False)
+        self.assertEqual(list(table["status"]), ["completed", "completed"])
+        self.assertTrue(any(rouleau.open(directory).summary.resumed for directory in table["directory"]))
+
     def test_with_bad_input_ends_with_its_fault(self):
         self.assert_refused('unknown unit "1/x"', rouleau.sweep, small_scene(),
                             {"/stages/1/shear_rate": ["10 1/s", "20 1/x"]}, out="sweep", progress=False)
