@@ -90,9 +90,12 @@ def overview(outputs: Outputs, over: str | None) -> Any:
     figure = pyplot.figure(figsize=(9, 5 + rows * (0.6 + 4 * height / width)), constrained_layout=True)
     grid = figure.add_gridspec(rows + 2, 2, height_ratios=[0.6 + 4 * height / width] * rows + [2.5, 2.5])
     axes = [figure.add_subplot(grid[k // 2, k % 2]) for k in range(len(shown))]
-    for axis, (_, row) in zip(axes, shown.iterrows()):
+    for k, (axis, (_, row)) in enumerate(zip(axes, shown.iterrows())):
         run._frame(row).plot(axes=axis)
-        axis.label_outer()
+        if k % 2:
+            axis.set_ylabel("")
+        if k < len(shown) - 2:
+            axis.set_xlabel("")
     lines = [figure.add_subplot(grid[k, :]) for k in (rows, rows + 1)]
     plot(outputs, ["deformation", "min_gap_m"], over, lines)
     return [*axes, *lines]
@@ -115,11 +118,12 @@ def plot_frame(frame: Frame, colour: str, field: str | None, axes: Any) -> Any:
     if axes is None:
         _, axes = pyplot.subplots(constrained_layout=True)
     width, height = (1e6 * length for length in frame.size_m)
+    bar = {"ax": axes, "shrink": min(0.9, 1.2 * height / width)}
     if field is not None:
         shown = frame.field(field)
         values = numpy.linalg.norm(shown.values, axis=2) if shown.values.ndim == 3 else shown.values
         mesh = axes.pcolormesh(1e6 * shown.x, 1e6 * shown.y, values, shading="nearest", cmap="Greys", rasterized=True)
-        axes.figure.colorbar(mesh, ax=axes, label=f"{field} ({shown.unit})", shrink=0.8)
+        axes.figure.colorbar(mesh, label=f"{field} ({shown.unit})", **bar)
     largest = max((float(abs(cell.tension).max()) for cell in frame.cells), default=0.0)
     for cell in frame.cells:
         for outline in images(cell, frame.size_m):
@@ -132,7 +136,7 @@ def plot_frame(frame: Frame, colour: str, field: str | None, axes: Any) -> Any:
                 lines.set_color(f"C{(cell.number if colour == 'cell' else cell.aggregate) % 10}")
             axes.add_collection(lines)
     if colour == "tension" and frame.cells:
-        axes.figure.colorbar(lines, ax=axes, label="tension (µN/m), compression negative", shrink=0.8)
+        axes.figure.colorbar(lines, label="tension (µN/m)", **bar)
     axes.set(xlim=(0, width), ylim=(0, height), aspect="equal", xlabel="x (µm)", ylabel="y (µm)",
              title=f"strain {frame.strain:.2f}, {frame.time_s:.3g} s")
     return axes

@@ -150,8 +150,8 @@ def shown(progress: ProgressLike) -> Callable[[Progress], object]:
         return progress
     if progress is False:
         return lambda now: None
-    if "ipykernel" in sys.modules:
-        from IPython.display import display  # which a notebook has
+    if "IPython" in sys.modules and hasattr(sys.modules["IPython"].get_ipython(), "kernel"):
+        from IPython.display import display
         line = display({"text/plain": ""}, raw=True, display_id=True)
         return lambda now: line.update({"text/plain": str(now)}, raw=True)
     if progress is None and not sys.stderr.isatty():

@@ -245,7 +245,7 @@ BLOCKS = [
     ("docs/first-run.md", "import rouleau", lambda test, block: ast.parse(block.text)),
     ("docs/output.md", "import h5py", lambda test, block: ast.parse(block.text)),
     ("docs/python.md", "import rouleau\nrun", "run by tests/python/check_notebooks.py, block after block"),
-    ("docs/python.md", "import rouleau\ntable", "run by tests/python/check_notebooks.py, block after block"),
+    ("docs/python.md", "import rouleau\nfrom", "run by tests/python/check_notebooks.py, block after block"),
     ("docs/python.md", "scene = {", "run by tests/python/check_notebooks.py, block after block"),
     ("docs/resume.md", "import h5py", lambda test, block: ast.parse(block.text)),
     ("docs/testing.md", "// Locks:", fuzz_target),
