@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <iostream>
 #include <new>
+#include <nlohmann/json.hpp>
 #include <rouleau/dispatch.hpp>
 #include <string_view>
 #include <vector>
@@ -39,6 +40,29 @@ Error for_terminal(const Error& error) {
 int fail(const std::string& message, int code) {
   std::cerr << message << '\n';
   return code;
+}
+
+nlohmann::json as_json(const Error& error) {
+  const Place& place = error.place();
+  return {{"file", place.file},     {"pointer", place.pointer},   {"line", place.line},
+          {"column", place.column}, {"problem", error.problem()}, {"remedy", in_options(error.remedy())}};
+}
+
+/// One line for programs that start this one.
+int fail_in_json(const Error& error, int code) {
+  nlohmann::json faults = nlohmann::json::array();
+  if (const auto* several = dynamic_cast<const SeveralFaults*>(&error)) {
+    for (const Error& fault : several->faults()) faults.push_back(as_json(fault));
+  } else {
+    faults.push_back(as_json(error));
+  }
+  const nlohmann::json line = {{"faults", faults}, {"exit_code", code}};
+  return fail(line.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace), code);
+}
+
+bool programs_read_errors() {
+  const char* form = std::getenv("ROULEAU_ERRORS");
+  return form != nullptr && std::string_view(form) == "json";
 }
 
 }  // namespace
@@ -82,8 +106,10 @@ int run_program(const std::function<int()>& body, const std::string& too_large) 
     // A full disk or a closed pipe must not look like success to the script that reads the output.
     return std::cout || code != 0 ? code : fail("rouleau: the output could not be written", exit_code::input_output);
   } catch (const SeveralFaults& several) {
+    if (programs_read_errors()) return fail_in_json(several, exit_code_of(several.cause()));
     return fail(several.with(for_terminal).what(), exit_code_of(several.cause()));
   } catch (const Error& error) {
+    if (programs_read_errors()) return fail_in_json(error, exit_code_of(error.cause()));
     return fail(for_terminal(error).what(), exit_code_of(error.cause()));
   } catch (const ForeignException& exception) {
     const Error shown(Cause::plugin_refused, exception.what(), {"report it to the plugin's author"});

@@ -11,6 +11,7 @@ FILES = {"SCENE", "FILE", "DIR", "MANIFEST"}
 ENVIRONMENT = {
     "ROULEAU_PLUGIN_PATH": "folders with plugins, absolute, separated by colons",
     "ROULEAU_INSTRUCTION_SET": "baseline, avx2 or avx512: narrower vectors than this processor has, to compare results and speed",
+    "ROULEAU_ERRORS": "json: an error is one line of JSON with the place and the remedy of each fault, for programs (docs/python.md)",
     "ROULEAU_TIMING_LOCK": "the file that rouleau study locks while it takes times, so that two studies do not disturb each other",
     "XDG_RUNTIME_DIR": "the folder of that file, rouleau-timing.lock, where the variable above is not set; else /tmp",
     "UDUNITS2_XML_PATH": "the database of units, for UDUNITS-2",

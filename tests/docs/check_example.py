@@ -11,7 +11,7 @@ import unittest
 
 SOURCE, BUILD = map(pathlib.Path, sys.argv[1:3])
 PYTHON = next((python for python in (sys.executable, "/usr/bin/python3") if subprocess.run(
-    [python, "-c", "import h5py, pandas, matplotlib"], capture_output=True).returncode == 0), None)
+    [python, "-c", "import h5py, numpy, pandas, matplotlib"], capture_output=True).returncode == 0), None)
 if PYTHON is None:
     print("h5py, pandas or matplotlib is not installed: scripts/install-dependencies --full")
     sys.exit(77)

@@ -2,13 +2,16 @@
 #include "command/program.hpp"
 
 #include <catch2/catch.hpp>
+#include <cstdlib>
 #include <functional>
 #include <iostream>
 #include <new>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
 
+#include "base/faults.hpp"
 #include "command/lock_scene.hpp"
 
 using namespace rouleau;
@@ -47,6 +50,31 @@ TEST_CASE("an error ends the program with its code and its message in options") 
   CHECK(refused.first == 3);
   CHECK(refused.second == "runs/a:3:4 /b\n  holds\\u0009a run\n  replace it (--overwrite)\n");
   CHECK(end_of([] { return 1; }) == std::pair(1, std::string()));
+}
+
+TEST_CASE("with ROULEAU_ERRORS=json each fault is an object in one line, with its place and its remedy in options") {
+  ::setenv("ROULEAU_ERRORS", "json", 1);
+  const auto two = end_of([]() -> int {
+    Faults faults;
+    faults.add({Cause::bad_input, Place{"a.json", "/b", 3, 4}, "holds \"\u00b5\"", {"replace it", {Way::anew}}});
+    faults.add({Cause::bad_input, "is no scene"});
+    faults.raise();
+    return 0;
+  });
+  ::unsetenv("ROULEAU_ERRORS");
+  CHECK(two.first == 2);
+  CHECK(two.second.find('\n') == two.second.size() - 1);
+  const nlohmann::json expected = {
+      {"exit_code", 2},
+      {"faults",
+       {{{"file", "a.json"},
+         {"pointer", "/b"},
+         {"line", 3},
+         {"column", 4},
+         {"problem", "holds \"\u00b5\""},
+         {"remedy", "replace it (--overwrite)"}},
+        {{"file", ""}, {"pointer", ""}, {"line", 0}, {"column", 0}, {"problem", "is no scene"}, {"remedy", ""}}}}};
+  CHECK(nlohmann::json::parse(two.second) == expected);
 }
 
 TEST_CASE("what is no Error ends the program with code 4 and words") {

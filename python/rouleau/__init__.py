@@ -1,0 +1,45 @@
+"""Rouleau: deformable red blood cells that attract each other while they flow.
+
+    import rouleau
+    run = rouleau.run("scenes/four-cells-shear.json", out="runs/demo")
+    run.plot("deformation")
+
+Lengths are in metres, times in seconds, angles in radians, all in SI, unless a name says otherwise. What is heavy
+(pandas, h5py, matplotlib) is imported when it is first used.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .comparing import Comparison as Comparison, compare as compare
+    from .errors import Error as Error, Fault as Fault
+    from .potentials import Potential as Potential, potential as potential
+    from .reading import Cell as Cell, Field as Field, Frame as Frame, Mean as Mean, Run as Run, Stage as Stage
+    from .reading import mean_and_error as mean_and_error, open as open
+    from .running import Plan as Plan, Progress as Progress, plan as plan, plugins as plugins, run as run
+    from .sweeping import sweep as sweep
+
+_HOME = {
+    "Cell": "reading", "Comparison": "comparing", "Error": "errors", "Fault": "errors", "Field": "reading",
+    "Frame": "reading", "Mean": "reading", "Plan": "running", "Potential": "potentials", "Progress": "running",
+    "Run": "reading", "Simulation": "simulation", "Stage": "reading", "compare": "comparing",
+    "mean_and_error": "reading", "open": "reading", "plan": "running", "plugins": "running", "potential": "potentials",
+    "run": "running", "sweep": "sweeping",
+}
+
+__all__ = sorted(_HOME)
+
+
+def __getattr__(name: str) -> object:
+    if name not in _HOME:
+        raise AttributeError(f"module 'rouleau' has no attribute {name!r}")
+    value: object = getattr(importlib.import_module("." + _HOME[name], __name__), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -1,0 +1,191 @@
+"""Figures of runs with matplotlib."""
+
+from __future__ import annotations
+
+import html
+import os
+import pathlib
+from typing import TYPE_CHECKING, Any, Sequence
+
+from .errors import Error, Fault
+
+if TYPE_CHECKING:
+    from .reading import Cell, Frame, Outputs, Run
+
+MOST_LINES = 12
+LABELS = {"strain": "strain", "deformation": "deformation", "min_gap_m": "gap to the nearest cell (µm)",
+          "relative_viscosity": "relative viscosity"}
+#: Endings of columns, what they are drawn in, and how many of these are one SI unit.
+DRAWN_IN = [("_J_per_m", "J/m", 1.0), ("_W_per_m", "W/m", 1.0), ("_Pa_per_m", "Pa/m", 1.0), ("_m2_per_s", "µm²/s", 1e12),
+            ("_1_per_s", "1/s", 1.0), ("_rad", "°", 57.29577951308232), ("_m2", "µm²", 1e12), ("_Pa", "Pa", 1.0),
+            ("_m", "µm", 1e6), ("_s", "s", 1.0)]
+
+
+def label_of(column: str) -> tuple[str, float]:
+    """What an axis says for a column, and by how much its values are multiplied."""
+    for ending, unit, scale in DRAWN_IN:
+        if column.endswith(ending):
+            return LABELS.get(column, f"{column.removesuffix(ending).replace('_', ' ')} ({unit})"), scale
+    return LABELS.get(column, column.replace("_", " ")), 1.0
+
+
+def plot(outputs: Outputs, columns: list[str], over: str | None, axes: Any) -> Any:
+    """Outputs.plot"""
+    from matplotlib import pyplot
+    if not columns:
+        return overview(outputs, over)
+    over = over or ("strain" if outputs.series["strain"].nunique() > 1 else "time_s")
+    if axes is None:
+        _, axes = pyplot.subplots(len(columns), 1, sharex=True, squeeze=False, constrained_layout=True,
+                                  figsize=(6.4, 1.6 + 2.4 * len(columns)))
+        axes = list(axes.flat)
+    drawn = list(axes) if isinstance(axes, (list, tuple)) or hasattr(axes, "flat") else [axes]
+    for column, axis in zip(columns, drawn, strict=True):
+        plot_column(outputs, column, over, axis)
+    drawn[-1].set_xlabel(label_of(over)[0])
+    return drawn[0] if len(drawn) == 1 else drawn
+
+
+def plot_column(outputs: Outputs, column: str, over: str, axis: Any) -> None:
+    """Lines of a column of cells.csv or series.csv."""
+    label, scale = label_of(column)
+    along = label_of(over)[1]
+    series = outputs.series
+    if column in outputs.cells and column not in ("step", "time_s", "strain"):
+        table = outputs.pivot(column, over)
+        x = along * table.index.to_numpy()
+        if table.shape[1] <= MOST_LINES:
+            for number, cell in enumerate(table):
+                style = ["-", "--"][number % 2]  # a pair of cells has one gap: both lines are to be seen
+                axis.plot(x, scale * table[cell], style, label=f"cell {cell}")
+            if 1 < table.shape[1]:
+                axis.legend()
+        else:
+            axis.fill_between(x, scale * table.min(axis=1), scale * table.max(axis=1), alpha=0.25, linewidth=0,
+                              label="smallest to largest")
+            axis.plot(x, scale * table.mean(axis=1), label=f"mean of {table.shape[1]} cells")
+            axis.legend()
+    elif column in series and over in series:
+        rows = series.drop_duplicates(over, keep="last")
+        axis.plot(along * rows[over].to_numpy(), scale * rows[column].to_numpy())
+    else:
+        known = [name for name in (*outputs.cells, *series) if name not in ("step", "type", "stage_name")]
+        raise Error(Fault(f'there is no column "{column if over in series else over}"',
+                          "columns: " + ", ".join(dict.fromkeys(known))))
+    axis.set_ylabel(label)
+
+
+def overview(outputs: Outputs, over: str | None) -> Any:
+    """Cells at four instants, deformation and gaps."""
+    from matplotlib import pyplot
+    run = outputs._run
+    frames = run.frames
+    first, last = outputs._steps()
+    frames = frames[frames["step"].between(first, last)]
+    over = over or ("strain" if outputs.series["strain"].nunique() > 1 else "time_s")
+    shown = frames.drop_duplicates(over, keep="last")
+    shown = shown.iloc[[round(k * (len(shown) - 1) / 3) for k in range(4)]] if len(shown) > 4 else shown
+    rows = (len(shown) + 1) // 2
+    width, height = run.frame().size_m if len(shown) else (1.0, 1.0)
+    figure = pyplot.figure(figsize=(9, 5 + rows * (0.6 + 4 * height / width)), constrained_layout=True)
+    grid = figure.add_gridspec(rows + 2, 2, height_ratios=[0.6 + 4 * height / width] * rows + [2.5, 2.5])
+    axes = [figure.add_subplot(grid[k // 2, k % 2]) for k in range(len(shown))]
+    for k, (axis, (_, row)) in enumerate(zip(axes, shown.iterrows())):
+        run._frame(row).plot(axes=axis)
+        if k % 2:
+            axis.set_ylabel("")
+        if k < len(shown) - 2:
+            axis.set_xlabel("")
+    lines = [figure.add_subplot(grid[k, :]) for k in (rows, rows + 1)]
+    plot(outputs, ["deformation", "min_gap_m"], over, lines)
+    return [*axes, *lines]
+
+
+def images(cell: Cell, size_m: Sequence[float]) -> list[Any]:
+    """Outlines [nodes, 2] of a cell in m, in the periodic box; on both sides where it reaches over the border."""
+    home = cell.moved_into(size_m)
+    return [moved for shift in (-size_m[0], 0.0, size_m[0])
+            if (moved := home + [shift, 0.0])[:, 0].max() > 0 and moved[:, 0].min() < size_m[0]]
+
+
+def plot_frame(frame: Frame, colour: str, field: str | None, axes: Any) -> Any:
+    """Frame.plot"""
+    import numpy
+    from matplotlib import pyplot
+    from matplotlib.collections import LineCollection
+    if colour not in ("cell", "aggregate", "tension"):
+        raise Error(f'colour is "cell", "aggregate" or "tension", not {colour!r}')
+    if axes is None:
+        _, axes = pyplot.subplots(constrained_layout=True)
+    width, height = (1e6 * length for length in frame.size_m)
+    bar = {"ax": axes, "shrink": min(0.9, 1.2 * height / width)}
+    if field is not None:
+        shown = frame.field(field)
+        values = numpy.linalg.norm(shown.values, axis=2) if shown.values.ndim == 3 else shown.values
+        mesh = axes.pcolormesh(1e6 * shown.x, 1e6 * shown.y, values, shading="nearest", cmap="Greys", rasterized=True)
+        axes.figure.colorbar(mesh, label=f"{field} ({shown.unit})", **bar)
+    largest = max((float(abs(cell.tension).max()) for cell in frame.cells), default=0.0)
+    for cell in frame.cells:
+        for outline in images(cell, frame.size_m):
+            closed = 1e6 * numpy.vstack([outline, outline[:1]])
+            pieces = numpy.stack([closed[:-1], closed[1:]], axis=1) if colour == "tension" else [closed]
+            lines = LineCollection(pieces, linewidths=1.5, capstyle="round")
+            if colour == "tension":
+                lines.set(cmap="coolwarm", array=1e6 * cell.tension, clim=(-1e6 * (largest or 1), 1e6 * (largest or 1)))
+            else:
+                lines.set_color(f"C{(cell.number if colour == 'cell' else cell.aggregate) % 10}")
+            axes.add_collection(lines)
+    if colour == "tension" and frame.cells:
+        axes.figure.colorbar(lines, label="tension (µN/m)", **bar)
+    axes.set(xlim=(0, width), ylim=(0, height), aspect="equal", xlabel="x (µm)", ylabel="y (µm)",
+             title=f"strain {frame.strain:.2f}, {frame.time_s:.3g} s")
+    return axes
+
+
+class Animation:
+    """Frames one after another. A notebook shows it as the last value of a cell."""
+
+    def __init__(self, run: Run, most_frames: int, colour: str, field: str | None) -> None:
+        frames = run.frames
+        if field is not None:
+            frames = frames[frames["fields"]]
+        count = min(most_frames, len(frames))
+        if count == 0:
+            raise Error(Fault("there are no frames to animate", "", str(run.directory / "frames.h5")))
+        self._run, self._colour, self._field = run, colour, field
+        self._rows = frames.iloc[[round(k * (len(frames) - 1) / max(1, count - 1)) for k in range(count)]]
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+    def _made(self) -> Any:
+        from matplotlib import animation
+        from matplotlib.figure import Figure
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        frames = [self._run._frame(row) for _, row in self._rows.iterrows()]
+        width, height = frames[0].size_m
+        figure = Figure(figsize=(6.4, 1.0 + 5.6 * height / width), dpi=80)
+        FigureCanvasAgg(figure)
+
+        def draw(index: int) -> list[Any]:
+            figure.clear()
+            return [plot_frame(frames[index], self._colour, self._field, figure.add_subplot())]
+
+        return animation.FuncAnimation(figure, draw, frames=len(frames), interval=100, init_func=lambda: [], cache_frame_data=False)
+
+    def _repr_html_(self) -> str:
+        return f'<div title="{html.escape(str(self._run.directory))}">{self._made().to_jshtml(default_mode="loop")}</div>'
+
+    def save(self, path: str | os.PathLike[str]) -> pathlib.Path:
+        """Writes an .html file that needs no network, a .gif, or with ffmpeg an .mp4, and returns its path."""
+        path = pathlib.Path(path)
+        partial = path.with_name(f".{path.stem}.partial{path.suffix}")
+        try:
+            if path.suffix == ".html":
+                partial.write_text("<!doctype html><meta charset=utf-8>" + self._repr_html_(), encoding="utf-8")
+            else:
+                self._made().save(partial, writer="pillow" if path.suffix == ".gif" else "ffmpeg")
+            partial.replace(path)
+        finally:
+            partial.unlink(missing_ok=True)
+        return path

@@ -1,0 +1,426 @@
+"""Runs as they lie on the disk, finished or still going."""
+
+from __future__ import annotations
+
+import builtins
+import dataclasses
+import json
+import math
+import os
+import pathlib
+from typing import TYPE_CHECKING, Any, NamedTuple, Sequence
+
+from .errors import Error, Fault
+
+if TYPE_CHECKING:
+    import h5py
+    import numpy
+    import pandas
+    from numpy.typing import NDArray
+
+    from .drawing import Animation
+
+    Floats = NDArray[numpy.float64]
+
+TEXT_COLUMNS = {"type": str, "members": str, "stage_name": str}
+
+
+class Section(dict[str, Any]):
+    """A JSON object whose keys are attributes, too: `summary.conservation.mass_drift`."""
+
+    def __getattr__(self, name: str) -> Any:
+        if name not in self:
+            raise AttributeError(f'there is no "{name}" here; there is {", ".join(self) or "nothing"}')
+        return self[name]
+
+
+class Mean(NamedTuple):
+    """A mean of outputs in time."""
+
+    value: float  #: in the column's unit; nan where there are too few outputs
+    error: float  #: standard error of the mean, in the same unit
+
+
+def mean_and_error(values: Sequence[float] | Floats, parts: int = 4) -> Mean:
+    """Mean of the finite `values` [n], and its standard error from the means of `parts` equal parts, which are nearly
+    independent where a part is longer than the values remember. As many values as do not fit are left out at the
+    beginning. nan and nan where there are fewer values than parts."""
+    finite = [float(value) for value in values if math.isfinite(value)]
+    size = len(finite) // parts
+    if size == 0:
+        return Mean(math.nan, math.nan)
+    finite = finite[len(finite) - parts * size:]
+    means = [math.fsum(finite[k * size:(k + 1) * size]) / size for k in range(parts)]
+    mean = math.fsum(means) / parts
+    return Mean(mean, math.sqrt(math.fsum((m - mean) ** 2 for m in means) / (parts - 1) / parts))
+
+
+@dataclasses.dataclass(frozen=True)
+class Cell:
+    """The outline of a cell at an instant."""
+
+    number: int  #: in the scene's order, from 0
+    aggregate: int  #: label of its aggregate: the smallest number of its cells
+    outline: Floats  #: [nodes, 2]: x and y in m, one node after another, not wrapped into the periodic box
+    tension: Floats  #: [nodes]: N/m, of the segment from a node to the next one
+
+    def moved_into(self, size_m: Sequence[float]) -> Floats:
+        """The outline [nodes, 2] in m with its centre in the periodic box of `size_m`; it is moved as a whole, along x."""
+        moved = self.outline.copy()
+        moved[:, 0] -= size_m[0] * math.floor(float(moved[:, 0].mean()) / size_m[0])
+        return moved
+
+
+@dataclasses.dataclass(frozen=True)
+class Field:
+    """A field on the lattice at an instant."""
+
+    values: Floats  #: [ny, nx], or [ny, nx, 2] of vectors
+    unit: str  #: such as "m/s"
+    x: Floats  #: [nx]: places of the nodes along x, m
+    y: Floats  #: [ny]: along y, m
+
+
+@dataclasses.dataclass(frozen=True)
+class Frame:
+    """Cells and fields at an instant."""
+
+    step: int  #: number of the step, over all stages
+    time_s: float  #: simulated time since the first stage began, s
+    strain: float  #: summed over the stages
+    stage: str  #: name of the stage
+    size_m: tuple[float, float]  #: of the box along x and y, m
+    cells: list[Cell]  #: in the scene's order
+    fields: dict[str, Field]  #: by name: velocity, density, viscosity, vorticity; empty where none were due
+
+    def field(self, name: str) -> Field:
+        """One of the fields. Throws Error where it was not written."""
+        if name not in self.fields:
+            raise Error(Fault(f'the frame at strain {self.strain:.4g} has no field "{name}"; it has ' +
+                              (", ".join(self.fields) or "none"),
+                              "ask for it in the scene's output.fields, or for run.frame(..., fields=True)"))
+        return self.fields[name]
+
+    def plot(self, colour: str = "cell", field: str | None = None, axes: Any = None) -> Any:
+        """Draws the outlines in um and returns matplotlib's Axes. `colour`: "cell", "aggregate" or "tension" (uN/m, with a
+        bar). `field`: one that is drawn under them; of a velocity, its magnitude."""
+        from . import drawing
+        return drawing.plot_frame(self, colour, field, axes)
+
+
+class Outputs:
+    """What a run, or one of its stages, wrote in the course of time."""
+
+    _run: Run
+
+    def _steps(self) -> tuple[float, float]:
+        return -math.inf, math.inf
+
+    def _rows(self, name: str) -> pandas.DataFrame:
+        table = self._run._table(name)
+        first, last = self._steps()
+        return table[table["step"].between(first, last)].reset_index(drop=True)
+
+    @property
+    def cells(self) -> pandas.DataFrame:
+        """cells.csv: one row for each output time and cell, in SI units as its columns say, and beside them `stage_name`.
+        A stage at rest has many times of one strain: `pivot` makes a table over the strain."""
+        return self._rows("cells")
+
+    @property
+    def series(self) -> pandas.DataFrame:
+        """series.csv: one row for each output time, in SI units as its columns say."""
+        return self._rows("series")
+
+    @property
+    def aggregates(self) -> pandas.DataFrame:
+        """aggregates.csv: one row for each contact, and one with empty contact columns for a cell that has none."""
+        return self._rows("aggregates")
+
+    def pivot(self, column: str, over: str = "strain") -> pandas.DataFrame:
+        """A column of cells.csv with a row for each value of `over` ("strain", "time_s" or "step") and a column for each
+        cell. Of several outputs with one strain (a stage at rest) the last stands for all."""
+        cells = _with_columns(self.cells, "cells.csv", column, over)
+        return cells.drop_duplicates([over, "cell"], keep="last").pivot(index=over, columns="cell", values=column)
+
+    def mean(self, column: str, begin: float = 0.5, parts: int = 4) -> Mean:
+        """Mean and standard error (`mean_and_error`) of a column of series.csv over the outputs after the share `begin`
+        of the strain, or of the time where the strain does not grow."""
+        series = _with_columns(self.series, "series.csv", column)
+        over = "strain" if series["strain"].nunique() > 1 else "time_s"
+        first, last = series[over].iloc[0], series[over].iloc[-1]
+        return mean_and_error(series.loc[series[over] > first + begin * (last - first), column].to_numpy(), parts)
+
+    def plot(self, *columns: str, over: str | None = None, axes: Any = None) -> Any:
+        """Draws columns of cells.csv (a line for each cell; beyond twelve the mean and the range) or series.csv and
+        returns matplotlib's Axes, of several columns a list. Without columns: cells at four instants, deformation and
+        gaps. `over`: "strain" or "time_s"; left out, the strain where it grows. Lengths are drawn in um, angles in degrees."""
+        from . import drawing
+        return drawing.plot(self, list(columns), over, axes)
+
+
+class Stage(Outputs):
+    """One stage of a run: the state with which it began, and every output since then."""
+
+    def __init__(self, run: Run, name: str, first: float, last: float) -> None:
+        self._run, self.name, self._range = run, name, (first, last)
+
+    def _steps(self) -> tuple[float, float]:
+        return self._range
+
+    def __repr__(self) -> str:
+        return f"<stage {self.name} of {self._run.directory}>"
+
+
+class Run(Outputs):
+    """A run's directory. Tables of a run that is still going are read anew whenever they are asked for."""
+
+    def __init__(self, directory: str | os.PathLike[str]) -> None:
+        self.directory = pathlib.Path(directory)
+        self._run = self
+        self._tables: dict[str, pandas.DataFrame] = {}
+        if not self.directory.is_dir():
+            raise Error(Fault("this is no directory", "give the directory of a run, such as runs/demo", str(directory)), exit_code=4)
+        if not (self.directory / "scene.json").is_file():
+            raise Error(Fault("this directory holds no run: there is no scene.json", "give the directory that rouleau run "
+                              "wrote; that of a study holds its runs in points/", str(directory)), exit_code=4)
+
+    @property
+    def finished(self) -> bool:
+        """Whether the run has ended: completed, diverged or interrupted. summary.json is written last."""
+        return (self.directory / "summary.json").is_file()
+
+    @property
+    def status(self) -> str:
+        """"completed", "diverged", "interrupted", or "unfinished" for a run that is going on or was killed."""
+        return str(self.summary["status"])
+
+    @property
+    def summary(self) -> Section:
+        """summary.json, with keys as attributes: `run.summary.dimensionless.capillary`. Of an unfinished run `status`,
+        `title`, `steps`, `strain` and `simulated_time_s` as far as they are on the disk."""
+        if self.finished:
+            found: Section = self._json("summary.json")
+            return found
+        series = self.series
+        last = series.iloc[-1] if len(series) else {"step": 0, "strain": 0.0, "time_s": 0.0}
+        return Section(status="unfinished", title=self.scene.get("title", ""), steps=int(last["step"]),
+                       strain=float(last["strain"]), simulated_time_s=float(last["time_s"]))
+
+    @property
+    def scene(self) -> Section:
+        """The scene as it was run."""
+        found: Section = self._json("scene.json")
+        return found
+
+    @property
+    def log(self) -> list[Section]:
+        """log.jsonl: what happened when; each entry has `event` and `wall_s`, seconds since the run began."""
+        lines = (self.directory / "log.jsonl").read_text(encoding="utf-8").split("\n")[:-1]
+        return [json.loads(line, object_hook=Section) for line in lines]
+
+    @property
+    def stages(self) -> list[str]:
+        """Names of the stages that have outputs, in their order."""
+        return list(dict.fromkeys(self.series["stage_name"]))
+
+    def stage(self, name: str) -> Stage:
+        """The stage of this name. Throws Error where the run has none, or has not come to it."""
+        series = self.series
+        rows = series.index[series["stage_name"] == name]
+        if len(rows) == 0:
+            raise Error(Fault(f'there is no stage "{name}"; there is ' + (", ".join(self.stages) or "none yet"), "",
+                              str(self.directory / "series.csv")))
+        return Stage(self, name, float(series["step"][max(rows[0] - 1, 0)]), float(series["step"][rows[-1]]))
+
+    @property
+    def error_bars(self) -> pandas.DataFrame:
+        """The measured errors of a run with error bars: `value`, `error` and `how` it was measured, in SI, for each
+        quantity (index). Empty without error bars."""
+        import pandas
+        bars = self.summary.get("error_bars") or {}
+        return pandas.DataFrame.from_dict(bars, orient="index", columns=["value", "error", "how"]).rename_axis("quantity")
+
+    @property
+    def results(self) -> pandas.DataFrame:
+        """What came out: `value`, `error` and `how` the error was found, in SI, for each quantity (index). With error bars
+        these are all; without, means over the second half of the last stage with their standard error (nan where
+        there are too few outputs), and the cells' mean deformation and the number of aggregates at the end, whose
+        error is not known (nan)."""
+        import pandas
+        bars = self.error_bars
+        if len(bars):
+            return bars
+        last = self.stage(self.stages[-1])
+        series = last.series
+        rows: dict[str, tuple[float, float, str]] = {}
+        cells = self.cells
+        if len(cells):
+            end = cells[cells["step"] == cells["step"].max()]
+            rows["deformation"] = (float(end["deformation"].mean()), math.nan, "at the end; no error bar")
+            rows["aggregates"] = (float(end["aggregate"].nunique()), math.nan, "at the end; no error bar")
+        for column in MEANS:
+            if series[column].notna().any():
+                rows[column] = (*last.mean(column), "mean of the last stage's second half, standard error from four parts")
+        return pandas.DataFrame.from_dict(rows, orient="index", columns=["value", "error", "how"]).rename_axis("quantity")
+
+    @property
+    def frames(self) -> pandas.DataFrame:
+        """The frames that are on the disk: `step`, `time_s`, `strain`, `stage_name`, whether there are `fields`, and the
+        `file` with its `name` in it. Of a run that goes on these are the frames up to its last checkpoint."""
+        import pandas
+        rows = []
+        finished = self.finished
+        for path in self._frame_files():
+            try:
+                with _opened(path) as file:
+                    for name in sorted(file.get("frames", ())):
+                        frame = file["frames"][name]
+                        about = frame.attrs
+                        rows.append((int(about["step"]), float(about["time_s"]), float(about["strain"]),
+                                     _text(about["stage_name"]), len(frame.get("fields", ())) > 0, path.name, name))
+            except (OSError, KeyError, RuntimeError):
+                if finished:
+                    raise Error(Fault("this file is damaged", "rouleau verify says what has changed", str(path)), exit_code=4) from None
+                break  # the segment that is being written
+        names = ["step", "time_s", "strain", "stage_name", "fields", "file", "name"]
+        return pandas.DataFrame(rows, columns=names).drop_duplicates("name", keep="last").reset_index(drop=True)
+
+    def frame(self, *, strain: float | None = None, time_s: float | None = None, index: int | None = None,
+              fields: bool = False) -> Frame:
+        """The frame nearest to a strain (of several with one strain the last) or to a time in s, or that of an index (-1:
+        the last); without any of them the last. `fields`: only of those that have fields. Throws Error for a strain or
+        time that the run has not reached."""
+        frames = self.frames
+        if fields:
+            frames = frames[frames["fields"]].reset_index(drop=True)
+        place = str(self.directory / "frames.h5")
+        if len(frames) == 0:
+            raise Error(Fault("there are no frames" + (" with fields" if fields else "") + " yet" * (not self.finished),
+                              "set output.fields in the scene" if fields else "", place))
+        if sum(given is not None for given in (strain, time_s, index)) > 1:
+            raise Error("frame() wants one of strain, time_s and index")
+        if strain is None and time_s is None:
+            chosen = -1 if index is None else index
+            if not -len(frames) <= chosen < len(frames):
+                raise Error(Fault(f"there is no frame {chosen}; there are {len(frames)}", "", place))
+            return self._frame(frames.iloc[chosen])
+        column, wanted = ("strain", strain) if strain is not None else ("time_s", time_s)
+        assert wanted is not None
+        have = frames[column].to_numpy()
+        steps = abs(have[1:] - have[:-1])
+        margin = 0.5 * steps.max(initial=0) + 1e-9 * abs(have).max()
+        if not have.min() - margin <= wanted <= have.max() + margin:
+            raise Error(Fault(f"{column} {wanted:g} is outside of what the run has: {have.min():g} to {have.max():g}", "", place))
+        distance = abs(have - wanted)
+        return self._frame(frames.iloc[int((distance <= distance.min()).nonzero()[0][-1])])
+
+    def animate(self, most_frames: int = 60, colour: str = "cell", field: str | None = None) -> Animation:
+        """An animation that plays in a notebook, of at most `most_frames` frames, evenly chosen; its `save` writes an
+        HTML, GIF or MP4 file. `colour` and `field` as in Frame.plot."""
+        from . import drawing
+        return drawing.Animation(self, most_frames, colour, field)
+
+    def __repr__(self) -> str:
+        summary = self.summary
+        words = summary.get("outcome") or f"{summary.status} at step {summary.steps}, strain {summary.strain:.4g}"
+        return f"<run {self.directory}: {words}>"
+
+    def _json(self, name: str) -> Any:
+        path = self.directory / name
+        try:
+            return json.loads(path.read_text(encoding="utf-8"), object_hook=Section)
+        except ValueError as error:
+            raise Error(Fault(f"this is no JSON: {error}", "rouleau verify says what has changed", str(path)), exit_code=4) from None
+
+    def _table(self, name: str) -> pandas.DataFrame:
+        if name in self._tables:
+            return self._tables[name].copy()
+        finished = self.finished
+        table = _read_table(self.directory / f"{name}.csv")
+        if name != "series":
+            series = self._table("series")
+            table.insert(3, "stage_name", table["step"].map(dict(zip(series["step"], series["stage_name"]))))
+        if finished:
+            self._tables[name] = table
+            return table.copy()
+        return table
+
+    def _frame_files(self) -> list[pathlib.Path]:
+        whole = self.directory / "frames.h5"
+        return [whole] if whole.is_file() and self.finished else sorted(self.directory.glob("frames-[0-9]*.h5")) or \
+            ([whole] if whole.is_file() else [])
+
+    def _frame(self, row: pandas.Series) -> Frame:
+        import numpy
+        path = self.directory / row["file"]
+        with _opened(path) as file:
+            frame = file["frames"][row["name"]]
+            size = tuple(float(length) for length in file.attrs["size_m"])
+            cells = []
+            if "membranes" in frame:
+                points, tension, first, cell_of, aggregate = (
+                    frame["membranes"][part][:] for part in ("points", "tension", "first", "cell", "aggregate"))
+                cells = [Cell(int(cell_of[b]), int(aggregate[b]), points[b:e], tension[b:e])
+                         for b, e in zip(first[:-1], first[1:])]
+            fields: dict[str, Field] = {}
+            for name, data in frame.get("fields", {}).items():
+                values = data[:].astype(numpy.float64)
+                if values.ndim == 3:
+                    values = values[:, :, :2]
+                if "fields_first_m" in file.attrs:
+                    begin, spacing = file.attrs["fields_first_m"], file.attrs["fields_spacing_m"]
+                else:
+                    nodes = file.attrs["nodes"]
+                    spacing = numpy.array([size[0] / nodes[0], size[1] / nodes[1]])
+                    begin = spacing / 2
+                spacing, begin = numpy.broadcast_to(spacing, 2), numpy.broadcast_to(begin, 2)
+                fields[name] = Field(values, _text(data.attrs["unit"]), begin[0] + spacing[0] * numpy.arange(values.shape[1]),
+                                     begin[1] + spacing[1] * numpy.arange(values.shape[0]))
+        return Frame(int(row["step"]), float(row["time_s"]), float(row["strain"]), str(row["stage_name"]),
+                     (size[0], size[1]), cells, fields)
+
+
+#: Columns of series.csv whose mean over a stage says something.
+MEANS = ("relative_viscosity", "particle_stress_Pa", "aggregate_size_number_mean", "aggregate_size_weight_mean",
+         "cell_free_layer_lower_m", "cell_free_layer_upper_m", "flow_rate_m2_per_s")
+
+
+def open(directory: str | os.PathLike[str]) -> Run:  # noqa: A001
+    """The run in a directory, finished or still going. Throws Error where there is none."""
+    return Run(directory)
+
+
+def _read_table(path: pathlib.Path) -> pandas.DataFrame:
+    """A table with all its whole lines: a run that goes on may be in the midst of one."""
+    import io
+
+    import pandas
+    if not path.is_file():
+        raise Error(Fault("this table is missing", "a run that has just begun has none yet", str(path)), exit_code=4)
+    with builtins.open(path, encoding="utf-8", newline="") as file:
+        text = file.read()
+    text = text[:text.rfind("\n") + 1]
+    if not text:
+        raise Error(Fault("this table is empty", "a run that has just begun has no outputs yet", str(path)), exit_code=4)
+    return pandas.read_csv(io.StringIO(text), float_precision="round_trip", keep_default_na=False, na_values=["", "nan"],
+                           dtype=TEXT_COLUMNS)
+
+
+def _with_columns(table: pandas.DataFrame, file: str, *names: str) -> pandas.DataFrame:
+    import difflib
+    for name in names:
+        if name not in table:
+            near = difflib.get_close_matches(name, list(table), 1)
+            raise Error(Fault(f'{file} has no column "{name}"' + (f'; did you mean "{near[0]}"?' if near else ""),
+                              "columns: " + ", ".join(table)))
+    return table
+
+
+def _opened(path: pathlib.Path) -> h5py.File:
+    import h5py
+    return h5py.File(path, "r", locking=False)  # another process may be writing beside it
+
+
+def _text(value: Any) -> str:
+    return value.decode() if isinstance(value, bytes) else str(value)

@@ -1,0 +1,235 @@
+"""rouleau.open: tables, stages, frames, pictures and comparisons of a real run, finished and still going."""
+
+import csv
+import json
+import math
+import shutil
+import tempfile
+
+from package import Case, main, need, small_scene
+
+need("numpy", "pandas", "h5py", "matplotlib")
+
+import numpy  # noqa: E402
+import rouleau  # noqa: E402
+
+FOLDER = tempfile.TemporaryDirectory(prefix="rouleau-python-")
+RUN = rouleau.run(small_scene(), f"{FOLDER.name}/run", progress=False)
+
+
+class A_run(Case):
+    def test_has_the_values_of_its_tables_bit_by_bit(self):
+        for name in ("cells", "series", "aggregates"):
+            with open(RUN.directory / f"{name}.csv", newline="") as file:
+                rows = list(csv.DictReader(file))
+            table = getattr(RUN, name)
+            self.assertEqual(len(table), len(rows))
+            for column in rows[0]:
+                if column in ("type", "members", "stage_name"):
+                    self.assertEqual(list(table[column]), [row[column] for row in rows])
+                else:
+                    expected = [float(row[column] or "nan") for row in rows]
+                    numpy.testing.assert_array_equal(table[column].to_numpy(dtype=float), expected)
+
+    def test_has_one_row_for_each_time_and_cell(self):
+        self.assertFalse(RUN.cells.duplicated(["time_s", "cell"]).any())
+        self.assertEqual(set(RUN.cells.groupby("time_s").size()), {2})
+
+    def test_makes_a_table_over_the_strain_in_which_a_rest_has_one_row(self):
+        self.assertGreater((RUN.series["strain"] == 0).sum(), 2)  # there was a rest
+        table = RUN.pivot("deformation")
+        self.assertTrue(table.index.is_unique)
+        self.assertEqual(list(table.columns), [0, 1])
+        last = RUN.cells[(RUN.cells["strain"] == 0) & (RUN.cells["cell"] == 1)].iloc[-1]
+        self.assertEqual(table.loc[0.0, 1], last["deformation"])
+
+    def test_has_its_summary_as_keys_and_as_attributes(self):
+        expected = json.loads((RUN.directory / "summary.json").read_text())
+        self.assertEqual(RUN.summary, expected)
+        self.assertEqual(RUN.summary.conservation.mass_drift, expected["conservation"]["mass_drift"])
+        self.assertEqual(RUN.summary.stages[1].name, "shear")
+        with self.assertRaisesRegex(AttributeError, 'no "outcomes"'):
+            RUN.summary.outcomes
+        self.assertEqual((RUN.status, RUN.finished), ("completed", True))
+        self.assertEqual(RUN.log[0].event, "started")
+
+    def test_has_stages_that_begin_with_the_state_they_found(self):
+        self.assertEqual(RUN.stages, ["rest", "shear"])
+        rest, shear = RUN.stage("rest").series, RUN.stage("shear").series
+        self.assertEqual(rest["step"].iloc[-1], shear["step"].iloc[0])
+        self.assertEqual(shear["strain"].iloc[0], 0)
+        self.assertTrue((shear["strain"].iloc[1:] > 0).all())
+        self.assertEqual(len(rest) + len(shear), len(RUN.series) + 1)
+        self.assert_refused('there is no stage "shear2"; there is rest, shear', RUN.stage, "shear2")
+
+    def test_says_which_columns_there_are(self):
+        self.assert_refused('did you mean "deformation"', RUN.pivot, "deformaton")
+        self.assert_refused('no column "viscosity"', RUN.mean, "viscosity")
+
+
+class A_frame(Case):
+    def test_has_outlines_with_the_area_and_centroid_of_the_table(self):
+        for strain in (0.0, 1.0, 2.0):
+            frame = RUN.frame(strain=strain)
+            rows = RUN.cells[RUN.cells["step"] == frame.step]
+            for cell, (_, row) in zip(frame.cells, rows.iterrows(), strict=True):
+                x, y = cell.outline.T
+                cross = x * numpy.roll(y, -1) - numpy.roll(x, -1) * y
+                area = 0.5 * cross.sum()
+                centroid = ((x + numpy.roll(x, -1)) * cross).sum() / (6 * area)
+                self.assertAlmostEqual(area / row["area_m2"], 1, delta=1e-9)
+                self.assertAlmostEqual(centroid / row["x_m"], 1, delta=1e-9)
+
+    def test_has_outlines_in_one_piece_that_move_into_the_box_as_a_whole(self):
+        frame = RUN.frame()
+        for cell in frame.cells:
+            steps = numpy.linalg.norm(numpy.diff(cell.outline, axis=0), axis=1)
+            self.assertLess(steps.max(), 2e-6)
+            moved = cell.moved_into(frame.size_m)
+            shift = (moved - cell.outline)[:, 0] / frame.size_m[0]
+            self.assertTrue(numpy.allclose(shift, round(shift[0]), atol=1e-12))
+            self.assertTrue(0 <= moved[:, 0].mean() < frame.size_m[0])
+
+    def test_has_fields_at_the_places_of_the_lattice(self):
+        frame = RUN.frame(strain=1, fields=True)
+        velocity = frame.field("velocity")
+        self.assertEqual((velocity.values.shape, velocity.unit), ((32, 48, 2), "m/s"))
+        self.assertAlmostEqual(velocity.x[0], 0.25e-6, delta=1e-15)
+        self.assertAlmostEqual(velocity.y[-1], 15.75e-6, delta=1e-15)
+        # Walls move with -+ shear_rate height/2; the nodes beside them lie a quarter of a micrometre away.
+        wall = 20 * 8e-6
+        self.assertAlmostEqual(velocity.values[-1, :, 0].mean() / wall, 1 - 0.25 / 8, delta=0.02)
+        self.assert_refused('has no field "vorticity"; it has', frame.field, "vorticity")
+
+    def test_is_the_nearest_to_a_strain_or_a_time_and_of_a_rest_the_last(self):
+        self.assertAlmostEqual(RUN.frame(strain=0.9).strain, 1, delta=0.13)
+        self.assertEqual(RUN.frame(strain=0).step, RUN.stage("rest").series["step"].iloc[-1])
+        self.assertEqual(RUN.frame(time_s=0).step, 0)
+        self.assertEqual(RUN.frame().step, RUN.summary.steps)
+        self.assertEqual(RUN.frame(index=0).step, 0)
+        self.assert_refused("strain 9 is outside of what the run has", RUN.frame, strain=9)
+        self.assert_refused("wants one of", RUN.frame, strain=1, index=0)
+
+
+class A_run_that_goes_on(Case):
+    def setUp(self):
+        super().setUp()
+        self.going = self.path / "run"
+        shutil.copytree(RUN.directory, self.going)
+        (self.going / "summary.json").unlink()
+
+    def test_is_read_up_to_its_last_whole_lines(self):
+        for name in ("cells", "series", "aggregates"):
+            table = self.going / f"{name}.csv"
+            table.write_bytes(table.read_bytes()[:-30])  # in the midst of a line
+        run = rouleau.open(self.going)
+        self.assertEqual((run.status, run.finished), ("unfinished", False))
+        self.assertEqual(len(run.series), len(RUN.series) - 1)
+        self.assertEqual(len(run.cells), len(RUN.cells) - 1)
+        self.assertEqual(run.summary.steps, run.series["step"].iloc[-1])
+
+    def test_shows_what_has_been_written_since(self):
+        table = self.going / "series.csv"
+        text = table.read_text().splitlines(keepends=True)
+        table.write_text("".join(text[:4]))
+        run = rouleau.open(self.going)
+        self.assertEqual(len(run.series), 3)
+        table.write_text("".join(text))
+        self.assertEqual(len(run.series), len(RUN.series))
+
+    def test_has_the_frames_of_its_closed_files(self):
+        if (self.going / "frames-0001.h5").exists():
+            (self.going / "frames.h5").unlink()
+        else:
+            (self.going / "frames.h5").rename(self.going / "frames-0001.h5")
+        (self.going / "frames-9999.h5").write_bytes(b"what HDF5 has not written yet")
+        run = rouleau.open(self.going)
+        self.assertEqual(len(run.frames), len(RUN.frames))
+        self.assertEqual(len(run.frame(strain=1).cells), 2)
+
+
+class A_mean(Case):
+    def test_has_the_error_of_the_mean_of_its_parts(self):
+        # Four parts with means 1, 2, 3, 4 (the first value does not fit): mean 2.5, variance of the means 5/3.
+        mean = rouleau.mean_and_error([99, 0, 2, 1, 3, math.nan, 2, 4, 3, 5])
+        self.assertEqual(mean.value, 2.5)
+        self.assertAlmostEqual(mean.error, math.sqrt(5 / 3 / 4), delta=1e-15)
+
+    def test_of_too_few_values_is_no_number(self):
+        self.assertTrue(all(map(math.isnan, rouleau.mean_and_error([1, 2, 3]))))
+
+    def test_is_over_the_second_half_of_the_strain(self):
+        stage = RUN.stage("shear")
+        late = stage.series[stage.series["strain"] > 1 * stage.series["strain"].iloc[-1] / 2]
+        self.assertEqual(stage.mean("relative_viscosity"), rouleau.mean_and_error(late["relative_viscosity"]))
+
+
+class Two_runs(Case):
+    def test_differ_in_their_scenes_and_results(self):
+        other = rouleau.run(small_scene(), self.path / "soft", progress=False,
+                            **{"/cell_types/rbc/membrane/0/parameters/shear_modulus": "2e-3 dyn/cm"})
+        compared = rouleau.compare(RUN, other.directory)
+        self.assertEqual(list(compared.scenes.index), ["/cell_types/rbc/membrane/0/parameters/shear_modulus"])
+        self.assertEqual(list(compared.scenes.iloc[0]), ["6e-3 dyn/cm", "2e-3 dyn/cm"])
+        row = compared.quantities.loc["deformation"]
+        self.assertEqual(row["difference"], row["b"] - row["a"])
+        self.assertIsNone(row["differs"])  # without error bars its error is not known
+        self.assertEqual(len(compared.plot("deformation").lines), 4)
+
+    def test_that_are_the_same_do_not_differ(self):
+        compared = rouleau.compare(RUN, RUN)
+        self.assertEqual(len(compared.scenes), 0)
+        self.assertTrue((compared.quantities["difference"].dropna() == 0).all())
+        self.assertFalse(compared.quantities.loc["relative_viscosity", "differs"])
+
+
+class Figures(Case):
+    def tearDown(self):
+        from matplotlib import pyplot
+        pyplot.close("all")
+
+    def test_show_a_line_for_each_cell(self):
+        axes = RUN.plot("deformation")
+        self.assertEqual([line.get_label() for line in axes.lines], ["cell 0", "cell 1"])
+        numpy.testing.assert_array_equal(axes.lines[1].get_ydata(), RUN.pivot("deformation")[1])
+        self.assertEqual((axes.get_xlabel(), axes.get_ylabel()), ("strain", "deformation"))
+
+    def test_have_lengths_in_micrometres_and_angles_in_degrees(self):
+        gap, angle = RUN.stage("shear").plot("min_gap_m", "angle_rad", over="time_s")
+        self.assertEqual(gap.get_ylabel(), "gap to the nearest cell (µm)")
+        numpy.testing.assert_allclose(gap.lines[0].get_ydata(), 1e6 * RUN.stage("shear").pivot("min_gap_m", "time_s")[0])
+        self.assertEqual(angle.get_ylabel(), "angle (°)")
+        self.assertAlmostEqual(angle.lines[0].get_ydata()[0], 90, delta=5)
+        self.assert_refused('there is no column "gap"', RUN.plot, "gap")
+
+    def test_of_a_frame_show_a_cell_on_both_sides_of_the_border(self):
+        frame = RUN.frame(index=0)  # its first cell lies across x = 0
+        axes = frame.plot()
+        self.assertEqual(len(axes.collections), 3)
+        self.assertEqual(axes.get_xlim(), (0, 24))
+        drawn = axes.collections[0].get_segments()[0]
+        numpy.testing.assert_allclose(drawn[:-1], 1e6 * frame.cells[0].outline, atol=1e-9)
+        self.assertEqual(len(RUN.frame(fields=True).plot("tension", "velocity").figure.axes), 3)  # two colour bars
+        self.assert_refused('colour is "cell"', frame.plot, "red")
+
+    def test_without_columns_show_frames_deformation_and_gaps(self):
+        axes = RUN.plot()
+        self.assertEqual([a.get_ylabel() for a in axes[-2:]], ["deformation", "gap to the nearest cell (µm)"])
+        self.assertEqual(len(axes), 6)
+
+    def test_move_in_a_page_of_their_own(self):
+        page = RUN.animate(3).save(self.path / "run.html").read_text()
+        self.assertEqual(page.count("data:image/png"), 3)
+        self.assertNotRegex(page, "(src|href)=.https?:.*[.]js")
+        self.assertEqual([f.name for f in self.path.iterdir()], ["run.html"])
+
+
+class What_is_no_run(Case):
+    def test_is_refused_with_its_place(self):
+        error = self.assert_refused("there is no scene.json", rouleau.open, self.path)
+        self.assertEqual((error.file, error.exit_code), (str(self.path), 4))
+        self.assert_refused("this is no directory", rouleau.open, self.path / "none")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,189 @@
+"""rouleau.run, plan, plugins and sweep: the program's results, faults as exceptions, progress, interruption."""
+
+import json
+import os
+import pathlib
+import signal
+import subprocess
+
+from package import BUILD, SOURCE, Case, main, need, small_scene
+
+need("numpy", "pandas")
+
+import numpy  # noqa: E402
+import rouleau  # noqa: E402
+
+SCENE = SOURCE / "scenes/four-cells-shear.json"
+
+
+class In_a_folder(Case):
+    """Where runs/ may be made."""
+
+    def setUp(self):
+        super().setUp()
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(self.path)
+
+
+class A_run(In_a_folder):
+    def test_has_the_bytes_that_the_program_writes(self):
+        rouleau.run(small_scene(), "python", progress=False)
+        pathlib.Path("small.json").write_text(json.dumps(small_scene()))
+        subprocess.run([BUILD / "bin/rouleau", "run", "small.json", "--out", "program", "--quiet"], check=True, capture_output=True)
+        for name in ("cells.csv", "series.csv", "aggregates.csv"):
+            self.assertEqual(pathlib.Path("python", name).read_bytes(), pathlib.Path("program", name).read_bytes())
+
+    def test_takes_changes_with_dots_and_with_slashes_and_values_of_numpy(self):
+        run = rouleau.run(small_scene(), max_steps=10, progress=False, **{
+            "fluid.viscosity": "2 cP", "/stages/1/strain": numpy.float64(1.5), "cells.0.at": ["2 um", "8 um"], "title": "changed"})
+        self.assertEqual(run.scene.fluid.viscosity, "2 cP")
+        self.assertEqual(run.scene.stages[1].strain, 1.5)
+        self.assertEqual((run.scene.title, run.summary.steps), ("changed", 10))
+        self.assertAlmostEqual(run.cells["x_m"][0], 2e-6, delta=1e-9)
+
+    def test_goes_into_the_first_free_directory(self):
+        names = [rouleau.run(small_scene(), max_steps=1, progress=False).directory for _ in range(2)]
+        self.assertEqual(names, [pathlib.Path("runs/scene"), pathlib.Path("runs/scene-2")])
+
+    def test_warns_as_the_program_does(self):
+        with self.assertWarnsRegex(UserWarning, "cell radius in lattice spacings"):
+            rouleau.run(small_scene(), max_steps=1, progress=False)
+
+    def test_tells_how_far_it_has_come(self):
+        seen = []
+        rouleau.run(SCENE, "run", max_steps=6000, progress=seen.append)
+        self.assertEqual({now.stage for now in seen}, {"aggregate"})
+        self.assertTrue(all(a.step <= b.step and a.fraction <= b.fraction for a, b in zip(seen, seen[1:])))
+        self.assertLessEqual(seen[-1].fraction, 6000 / 100920)
+
+
+class Interrupting(In_a_folder):
+    def test_saves_a_checkpoint_from_which_the_run_goes_on(self):
+        scene = json.loads(SCENE.read_text())
+        scene["stages"] = [{"name": "shear", "shear_rate": "20 1/s", "strain": 1.5}]
+        interrupted = rouleau.run(scene, "run", progress=lambda now: os.kill(os.getpid(), signal.SIGINT))
+        self.assertEqual(interrupted.status, "interrupted")
+        self.assertLess(interrupted.summary.strain, 1.5)
+        done = rouleau.run(scene, "run", resume=True, progress=False)
+        self.assertEqual((done.status, len(done.summary.resumed)), ("completed", 1))
+        whole = rouleau.run(scene, "whole", progress=False)
+        self.assertEqual((done.directory / "cells.csv").read_bytes(), (whole.directory / "cells.csv").read_bytes())
+
+
+class Faults(In_a_folder):
+    def test_have_place_and_remedy(self):
+        pathlib.Path("bad.json").write_text('{\n  "rouleau": 1,\n  "fluid": {"density": "1 g/cm3", "viscosity": 1.2}\n}\n')
+        error = self.assert_refused("bad.json:3:48 /fluid/viscosity", rouleau.run, "bad.json")
+        self.assertEqual(error.exit_code, 2)
+        fault = next(fault for fault in error.faults if fault.pointer == "/fluid/viscosity")
+        self.assertEqual((fault.file, fault.line, fault.column), ("bad.json", 3, 48))
+        self.assertIn("1.2 has no unit", fault.problem)
+        self.assertIn("write it with the unit that is meant", fault.problem)
+        self.assertEqual({fault.pointer for fault in error.faults if "missing" in fault.problem}, {None})
+        self.assertFalse(pathlib.Path("runs").exists())
+
+    def test_of_a_dictionary_or_a_change_have_a_pointer_and_no_file(self):
+        error = self.assert_refused('"6 Pa" is a pressure', rouleau.plan, small_scene(), **{"fluid.viscosity": "6 Pa"})
+        self.assertEqual((error.file, error.line, error.pointer), (None, None, "/fluid/viscosity"))
+        error = self.assert_refused('unknown key "speed"', rouleau.run, small_scene(speed=1))
+        self.assertEqual((error.file, error.pointer), (None, "/speed"))
+
+    def test_of_a_run_that_diverged_bring_the_run(self):
+        error = self.assert_refused("diverged", rouleau.run, small_scene(), "run", progress=False, **{"numerics.tau": 30})
+        self.assertEqual((error.exit_code, error.run.status), (1, "diverged"))
+        self.assertEqual(error.remedy, error.run.summary.failure.remedy)
+
+    def test_of_directories_that_are_taken_name_them(self):
+        rouleau.run(small_scene(), "run", max_steps=1, progress=False)
+        error = self.assert_refused("run", rouleau.run, small_scene(), "run")
+        self.assertIn("--overwrite", error.remedy)
+        rouleau.run(small_scene(), "run", max_steps=1, progress=False, overwrite=True)
+
+    def test_of_a_missing_program_say_how_to_name_one(self):
+        kept = os.environ["ROULEAU"]
+        self.addCleanup(os.environ.__setitem__, "ROULEAU", kept)
+        os.environ["ROULEAU"] = "/no/program"
+        self.assert_refused("let it name the program", rouleau.plan, SCENE)
+
+    def test_of_what_cannot_stand_in_a_scene_name_it(self):
+        self.assert_refused("cannot stand in a scene", rouleau.plan, small_scene(), title=object())
+
+
+class A_plan(Case):
+    def test_has_numbers_and_tables(self):
+        plan = rouleau.plan(SCENE, **{"fluid.viscosity": "2.4 cP"})
+        self.assertAlmostEqual(plan.dimensionless.capillary, 2 * rouleau.plan(SCENE).dimensionless.capillary, delta=1e-12)
+        table = plan.table("conversions")
+        viscosity = table[(table["quantity"] == "viscosity") & (table["stage"] == "shear")]
+        self.assertEqual(list(viscosity["si"]), [2.4e-3])
+        self.assertIn("within all limits", repr(rouleau.plan(SCENE)))
+        self.assertIn("beyond its limits: ", repr(rouleau.plan(SCENE, **{"numerics.tau": 7})))
+
+
+class Plugins(Case):
+    def test_are_those_of_the_program(self):
+        table = rouleau.plugins()
+        self.assertEqual(table.loc["morse", "kind"], "interaction")
+        self.assertIn("depth", [p["name"] for p in table.loc["morse", "parameters"]])
+
+
+class A_sweep(In_a_folder):
+    def test_has_a_row_for_each_combination_with_values_and_error_bars(self):
+        table = rouleau.sweep(small_scene(), {"/stages/1/shear_rate": ["10 1/s", "20 1/s"], "numerics.tau": [0.8, 1.0]},
+                              out="sweep", workers=2, progress=False)
+        self.assertEqual([*zip(table["shear_rate"], table["tau"])],
+                         [("10 1/s", 0.8), ("10 1/s", 1.0), ("20 1/s", 0.8), ("20 1/s", 1.0)])
+        self.assertEqual(set(table["status"]), {"completed"})
+        for _, row in table.iterrows():
+            run = rouleau.open(row["directory"])
+            self.assertEqual((run.scene.stages[1].shear_rate, run.scene.numerics.tau), (row["shear_rate"], row["tau"]))
+            mean = run.stage("shear").mean("relative_viscosity")
+            self.assertEqual((row["relative_viscosity"], row["relative_viscosity_error"]), mean)
+            self.assertGreater(mean.error, 0)
+
+    def test_runs_nothing_twice_and_what_is_new(self):
+        over = {"/stages/1/shear_rate": ["10 1/s"]}
+        first = rouleau.sweep(small_scene(), over, out="sweep", progress=False)
+        again = rouleau.sweep(small_scene(), {"/stages/1/shear_rate": ["20 1/s", "10 1/s"]}, out="sweep", progress=False)
+        self.assertEqual(again["wall_s"][1], first["wall_s"][0])
+        self.assertEqual(again["directory"][1], first["directory"][0])
+        other = rouleau.sweep(small_scene(), over, out="sweep", progress=False, **{"fluid.viscosity": "2 cP"})
+        self.assertNotEqual(other["directory"][0], first["directory"][0])
+        written = pathlib.Path(first["directory"][0], "summary.json").stat().st_mtime_ns
+        rouleau.sweep(small_scene(), over, out="sweep", progress=False, fresh=True)
+        self.assertGreater(pathlib.Path(first["directory"][0], "summary.json").stat().st_mtime_ns, written)
+
+    def test_goes_on_where_runs_diverge(self):
+        table = rouleau.sweep(small_scene(), {"numerics.tau": [1, 30]}, out="sweep", progress=False)
+        self.assertEqual(list(table["status"]), ["completed", "diverged"])
+        self.assertTrue(numpy.isnan(table["deformation"][1]))
+
+    def test_measures_what_it_is_asked_for(self):
+        table = rouleau.sweep(small_scene(), {"numerics.tau": [1]}, out="sweep", progress=False,
+                              measure=lambda run: {"turned": run.pivot("angle_rad").iloc[-1].max()})
+        self.assertEqual(list(table.columns), ["tau", "status", "turned", "wall_s", "directory"])
+
+    def test_has_measured_error_bars_where_they_are_asked_for(self):
+        table = rouleau.sweep(small_scene(cells=small_scene()["cells"][:1]), {"numerics.tau": [1]}, out="sweep", progress=False,
+                              error_bars=True)
+        bars = json.loads(pathlib.Path(table["directory"][0], "summary.json").read_text())["error_bars"]
+        self.assertEqual((table["deformation"][0], table["deformation_error"][0]),
+                         (bars["deformation"]["value"], bars["deformation"]["error"]))
+
+    def test_that_is_interrupted_goes_on_where_it_was(self):
+        long = {"/stages/1/strain": [15, 16]}
+        with self.assertRaises(KeyboardInterrupt):
+            rouleau.sweep(small_scene(), long, out="sweep", workers=2, progress=lambda now: os.kill(os.getpid(), signal.SIGINT))
+        begun = [rouleau.open(directory).status for directory in pathlib.Path("sweep").iterdir()]
+        self.assertIn("interrupted", begun)
+        table = rouleau.sweep(small_scene(), long, out="sweep", workers=2, progress=False)
+        self.assertEqual(list(table["status"]), ["completed", "completed"])
+        self.assertTrue(any(rouleau.open(directory).summary.resumed for directory in table["directory"]))
+
+    def test_with_bad_input_ends_with_its_fault(self):
+        self.assert_refused('unknown unit "1/x"', rouleau.sweep, small_scene(),
+                            {"/stages/1/shear_rate": ["10 1/s", "20 1/x"]}, out="sweep", progress=False)
+
+
+if __name__ == "__main__":
+    main()
