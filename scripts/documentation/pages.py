@@ -2,7 +2,7 @@
 
 CHAPTERS = {
     "Begin": ["README.md", "docs/first-run.md", "docs/faq.md"],
-    "Use": ["docs/scene.md", "docs/models.md", "docs/output.md", "docs/resume.md", "docs/rheology.md",
+    "Use": ["docs/scene.md", "docs/models.md", "docs/output.md", "docs/resume.md", "docs/rheology.md", "docs/simulation.md",
             "docs/study-quantities.md"],
     "Reference": ["docs/reference/scene.md", "docs/reference/models.md"],
     "Trust the numbers": ["docs/physics.md", "docs/accuracy.md", "docs/study.md", "docs/stability.md", "docs/paper.md",

@@ -250,6 +250,7 @@ BLOCKS = [
     ("docs/first-run.md", "import h5py", lambda test, block: ast.parse(block.text)),
     ("docs/output.md", "import h5py", lambda test, block: ast.parse(block.text)),
     ("docs/resume.md", "import h5py", lambda test, block: ast.parse(block.text)),
+    ("docs/simulation.md", "import rouleau", lambda test, block: ast.parse(block.text)),
     ("docs/trust.md", '{\n  "collection": 1', index_of_a_collection),
     ("docs/testing.md", "// Locks:", fuzz_target),
     ("sdk/README.md", "// Screened repulsion of flat surfaces", lambda test, block: test.conform(block.text, YUKAWA())),
