@@ -29,7 +29,7 @@ constexpr std::array commands{
     Command{"plan", "SCENE", "what a run would compute, leave out and cost, without stepping", plan_command},
     Command{"plugins", "[ID]", "models that were found, why some were refused; locks", plugins_command},
     Command{"conform", "MANIFEST...", "whether plugins do what the interface and their manifests say", conform_command},
-    Command{"new", "KIND NAME", "source, manifest and build file of a new model", new_command},
+    Command{"new", "KIND NAME", "source, manifest and build file of a new model; a scene to begin from", new_command},
     Command{"study", "STUDY", "error against run time over a matrix of settings", study_command},
     Command{"limits", "LIMITS", "where a model breaks, and how", limits_command},
     Command{"verify", "DIR", "whether a finished run's files are what it wrote", verify_command},

@@ -1,4 +1,4 @@
-// rouleau new KIND NAME: a folder with a small model that works, to begin one's own from.
+// rouleau new KIND NAME: a folder with a small model that works, or a scene, to begin one's own from.
 #include <unistd.h>
 
 #include <algorithm>
@@ -13,6 +13,7 @@
 #include "commands.hpp"
 #include "files/file.hpp"
 #include "files/run_directory.hpp"
+#include "new_scene.hpp"
 #include "plugin/catalog.hpp"
 #include "templates.hpp"
 
@@ -22,15 +23,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* new_help = R"(usage: rouleau new KIND NAME [options]
+constexpr const char* new_help = R"(usage: rouleau new KIND NAME [TEMPLATE] [options]
 
 Makes a folder with the source, the manifest and the CMakeLists.txt of a new model: a small one that works and passes its
 conformance tests as it is, to be changed into yours. Prints the commands that build, test and use it.
 KIND is collision, membrane or interaction. NAME is the model's id, a reverse domain name such as org.example.yukawa, or
 a plain name; folder and files have the name of its last part. Nothing is ever overwritten.
 
+With the KIND scene: writes NAME.json, a scene that runs as it is, with notes on what to change. TEMPLATE is
+  demo        two red cells gather and are sheared (what is taken when left out)
+  channel     red cells in a channel that a pressure gradient drives
+  suspension  red cells packed at random between walls that shear them
+  capsule     one circular capsule in shear flow
+
 Example:
   rouleau new interaction org.example.yukawa
+  rouleau new scene first channel
 )";
 
 struct Template {
@@ -52,8 +60,9 @@ const Template& template_of(const std::string& kind) {
     if (kind == entry.kind) return entry;
     kinds.emplace_back(entry.kind);
   }
+  kinds.emplace_back("scene");
   throw Error(Cause::bad_input, "rouleau new: there is no kind " + in_quotes(kind) + did_you_mean(kind, kinds) +
-                                    "\n  the kinds of models are: " + listed(kinds));
+                                    "\n  there are: " + listed(kinds));
 }
 
 /// A model's id, and what its last part becomes in the files.
@@ -164,17 +173,28 @@ void print_next_steps(const fs::path& folder, const Template& model, const Name&
 
 int new_command(const std::vector<std::string>& arguments) {
   namespace options = boost::program_options;
-  std::string kind, id, directory = ".";
+  std::string kind, id, scene_template, directory = ".";
   options::options_description description("options");
   options::positional_options_description positional;
-  description.add_options()("kind", options::value(&kind)->required(), "KIND (collision, membrane or interaction)");
+  description.add_options()("kind", options::value(&kind)->required(),
+                            "KIND (collision, membrane, interaction or scene)");
   description.add_options()("name", options::value(&id)->required(), "NAME");
+  description.add_options()("template", options::value(&scene_template),
+                            "TEMPLATE (demo, channel, suspension or capsule)");
   description.add_options()("dir", options::value(&directory)->value_name("DIR")->notifier(not_empty("--dir")),
-                            "make the folder in this one instead of the working directory");
-  positional.add("kind", 1).add("name", 1);
+                            "make folder or scene in this folder instead of the working directory");
+  positional.add("kind", 1).add("name", 1).add("template", 1);
   if (!parse_command_line("new", new_help, arguments, description, positional)) return 0;
 
+  if (kind == "scene") {
+    new_scene(directory, id, scene_template.empty() ? "demo" : scene_template);
+    return exit_code::done;
+  }
   const Template& model = template_of(kind);
+  if (!scene_template.empty()) {
+    throw Error(Cause::bad_input, "rouleau new " + kind + " NAME: a template, here " + in_quotes(scene_template) +
+                                      ", is for scenes only: rouleau new scene NAME [TEMPLATE]");
+  }
   const Name name = checked_name(id);
   const fs::path folder = (fs::path(directory) / name.file).lexically_normal();
   make_folder(folder, model, name);

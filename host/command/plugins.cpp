@@ -1,4 +1,5 @@
-// rouleau plugins [ID]: what models were found, and everything their manifests say; --lock SCENE binds a scene to them.
+// rouleau plugins [ID]: what models were found, and everything their manifests say; --lock SCENE binds a scene to them,
+// --install DIR puts more of them into the user's own folder, --index FILE compares them with a published collection.
 #include <algorithm>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -7,6 +8,7 @@
 #include "command_line.hpp"
 #include "commands.hpp"
 #include "lock_scene.hpp"
+#include "manage_plugins.hpp"
 #include "plugin/catalog.hpp"
 #include "plugin/parameter_ranges.hpp"
 
@@ -21,12 +23,20 @@ constexpr const char* plugins_help = R"(usage: rouleau plugins [ID] [options]
 Lists every model that was found, its manifest, and why others were refused.
 With the ID of a model: its parameters, units, defaults and limits. No library is opened.
 
+With --install DIR: copies the plugins of DIR, manifest and library of each, into your own folder, rouleau/plugins in
+XDG_DATA_HOME or ~/.local/share, where every run finds them. They must pass the checks of "rouleau conform --level
+interface", and an id must not be taken. To take one out again, delete its folder.
+
+With --index FILE: compares what is installed with the index of a collection that somebody publishes. Exit code 3 where
+a plugin has the id and version of an entry, but another manifest. Nothing is downloaded.
+
 With --lock SCENE: writes SCENE's lock, NAME.lock.json beside NAME.json: id, kind, version and SHA-256 of library and
 manifest of each plugin that the scene names. Runs and plans of the scene then refuse every other plugin.
 
 Example:
   rouleau plugins morse
   rouleau plugins --lock scenes/four-cells-shear.json
+  rouleau plugins --install yukawa/build
 )";
 
 /// A value as the manifest writes it: in the parameter's unit, or the word of a choice.
@@ -143,9 +153,12 @@ void print(const plugin::Manifest& manifest, const units::Units& units) {
   for (const plugin::Parameter& parameter : manifest.parameters) print(parameter, units);
 }
 
-Json list(const plugin::Catalog& catalog, const units::Units& units) {
+Json list(const plugin::Catalog& catalog, const std::vector<std::filesystem::path>& named, const units::Units& units) {
   Json plugins = Json::array(), refused = Json::array(), folders = Json::array();
-  for (const auto& manifest : catalog.manifests()) plugins.push_back(describe(manifest, units));
+  for (const auto& manifest : catalog.manifests()) {
+    plugins.push_back(describe(manifest, units));
+    plugins.back()["origin"] = plugin::origin_of(manifest.file, named);
+  }
   for (const auto& entry : catalog.refused()) {
     refused.push_back({{"manifest", entry.file.string()}, {"id", entry.id}, {"reason", entry.reason}});
   }
@@ -153,7 +166,7 @@ Json list(const plugin::Catalog& catalog, const units::Units& units) {
   return {{"plugins", plugins}, {"refused", refused}, {"folders", folders}};
 }
 
-void print(const plugin::Catalog& catalog) {
+void print(const plugin::Catalog& catalog, const std::vector<std::filesystem::path>& named) {
   for (const plugin::ModelKind kind :
        {plugin::ModelKind::collision, plugin::ModelKind::membrane, plugin::ModelKind::interaction}) {
     const auto ids = catalog.ids(kind);
@@ -174,7 +187,9 @@ void print(const plugin::Catalog& catalog) {
     std::cout << reason << '\n';
   }
   std::cout << "folders searched" << (catalog.folders().empty() ? ": none\n" : "\n");
-  for (const auto& folder : catalog.folders()) std::cout << "  " << folder.string() << '\n';
+  for (const auto& folder : catalog.folders()) {
+    std::cout << "  " << folder.string() << " (" << plugin::origin_of(folder, named) << ")\n";
+  }
 }
 
 /// The manifest with an id, of any kind.
@@ -192,13 +207,22 @@ const plugin::Manifest& find(const plugin::Catalog& catalog, const std::string& 
                                     "\n  there are: " + listed(ids));
 }
 
+/// What the command is asked for, of which there can be one at a time.
+void require_one(const std::vector<std::pair<std::string, bool>>& asked) {
+  std::vector<std::string> given;
+  for (const auto& [name, is_given] : asked) {
+    if (is_given) given.push_back(name);
+  }
+  if (given.size() > 1) throw Error(Cause::bad_input, "rouleau plugins: give one of these alone: " + listed(given));
+}
+
 }  // namespace
 
 int plugins_command(const std::vector<std::string>& arguments) {
   namespace options = boost::program_options;
-  std::string id, scene, out;
+  std::string id, scene, out, install, index;
   std::vector<std::string> plugin_dirs;
-  bool as_json = false;
+  bool as_json = false, overwrite = false;
   options::options_description description("options");
   options::positional_options_description positional;
   description.add_options()("id", options::value(&id), "a model; without it all are listed");
@@ -207,27 +231,45 @@ int plugins_command(const std::vector<std::string>& arguments) {
   description.add_options()("json", options::bool_switch(&as_json), "print JSON for programs");
   description.add_options()("lock", options::value(&scene)->value_name("SCENE"), "write the lock of this scene")(
       "out", options::value(&out)->value_name("FILE")->notifier(not_empty("--out")), "with --lock: write it there");
+  description.add_options()("install", options::value(&install)->value_name("DIR")->notifier(not_empty("--install")),
+                            "copy the plugins of this folder into your own")(
+      "overwrite", options::bool_switch(&overwrite), "with --install: replace those of the same id there")(
+      "index", options::value(&index)->value_name("FILE")->notifier(not_empty("--index")),
+      "compare with the index of a collection");
   positional.add("id", 1);
   if (!parse_command_line("plugins", plugins_help, arguments, description, positional)) return 0;
 
+  const std::vector<std::filesystem::path> named(plugin_dirs.begin(), plugin_dirs.end());
+  require_one({{"the ID of a model", !id.empty()},
+               {"--lock", !scene.empty()},
+               {"--install", !install.empty()},
+               {"--index", !index.empty()}});
+  if (overwrite && install.empty())
+    throw Error(Cause::bad_input, "rouleau plugins: --overwrite goes with --install DIR");
   if (!scene.empty()) {
-    if (!id.empty() || as_json) {
-      throw Error(Cause::bad_input, std::string("rouleau plugins --lock SCENE goes with --plugin-dir and --out, not "
-                                                "with ") +
-                                        (as_json ? "--json" : "the ID of a model"));
+    if (as_json) {
+      throw Error(Cause::bad_input, "rouleau plugins --lock SCENE goes with --plugin-dir and --out, not with --json");
     }
-    lock_scene(scene, {plugin_dirs.begin(), plugin_dirs.end()}, out);
+    lock_scene(scene, named, out);
     return exit_code::done;
   }
   if (!out.empty()) throw Error(Cause::bad_input, "rouleau plugins: --out goes with --lock SCENE");
-  const plugin::Catalog catalog(plugin::plugin_search_path({plugin_dirs.begin(), plugin_dirs.end()}, {}));
+  const plugin::Catalog catalog(plugin::plugin_search_path(named, {}));
+  if (!install.empty()) {
+    install_plugins(install, catalog, overwrite);
+    return exit_code::done;
+  }
+  if (!index.empty()) {
+    compare_with_index(index, catalog);
+    return exit_code::done;
+  }
   const units::Units units;
   if (id.empty()) {
     if (as_json) {
       // Names of folders need not be UTF-8.
-      std::cout << list(catalog, units).dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+      std::cout << list(catalog, named, units).dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
     } else {
-      print(catalog);
+      print(catalog, named);
     }
     return exit_code::done;
   }

@@ -1,4 +1,4 @@
-// The text of the files in sdk/template, which CMake compiles into the program (cmake/embed_texts.cmake).
+// The text of the files in sdk/template and scenes/templates, which CMake compiles into the program (cmake/embed_texts.cmake).
 #pragma once
 
 #include <string_view>
@@ -11,5 +11,7 @@ extern const std::string_view collision_source, collision_manifest;
 extern const std::string_view membrane_source, membrane_manifest;
 extern const std::string_view interaction_source, interaction_manifest;
 extern const std::string_view plugin_build_file;
+
+extern const std::string_view demo_scene, channel_scene, suspension_scene, capsule_scene;
 
 }  // namespace rouleau::command

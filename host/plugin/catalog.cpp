@@ -47,6 +47,18 @@ std::vector<fs::path> environment_folders() {
   return folders;
 }
 
+/// An environment variable's absolute folder, or nothing.
+fs::path absolute_folder(const char* variable) {
+  const char* value = secure_getenv(variable);
+  const fs::path folder = value == nullptr ? "" : value;
+  return folder.is_absolute() ? folder : fs::path();
+}
+
+bool is_below(const fs::path& file, const fs::path& folder) {
+  const auto [left, right] = std::mismatch(folder.begin(), folder.end(), file.begin(), file.end());
+  return left == folder.end() || (left->empty() && std::next(left) == folder.end());
+}
+
 /// The plugins installed with the running program, or built beside it.
 std::vector<fs::path> installed_folders() {
   std::error_code error;
@@ -78,12 +90,33 @@ std::string names_of(const std::vector<fs::path>& files) {
 
 }  // namespace
 
-std::vector<fs::path> plugin_search_path(const std::vector<fs::path>& given, const std::vector<fs::path>& scene) {
-  std::vector<fs::path> path;
-  for (const auto& folder : given) {
-    require_folder(folder, "folder of plugins");
-    path.push_back(folder);
+std::vector<fs::path> named_folders(const std::vector<fs::path>& given) {
+  for (const auto& folder : given) require_folder(folder, "folder of plugins");
+  return given;
+}
+
+fs::path user_plugin_folder() {
+  fs::path data = absolute_folder("XDG_DATA_HOME");
+  if (data.empty()) {
+    const fs::path home = absolute_folder("HOME");
+    if (home.empty()) return {};
+    data = home / ".local" / "share";
   }
+  return data / "rouleau" / "plugins";
+}
+
+std::string origin_of(const fs::path& file, const std::vector<fs::path>& named) {
+  const auto in = [&](const std::vector<fs::path>& folders) {
+    return std::any_of(folders.begin(), folders.end(), [&](const fs::path& folder) { return is_below(file, folder); });
+  };
+  if (in(named)) return "named";
+  if (in(environment_folders())) return "environment";
+  if (const fs::path user = user_plugin_folder(); !user.empty() && in({user})) return "user";
+  return in(installed_folders()) ? "installation" : "named";
+}
+
+std::vector<fs::path> plugin_search_path(const std::vector<fs::path>& given, const std::vector<fs::path>& scene) {
+  std::vector<fs::path> path = named_folders(given);
   for (const auto& folder : scene) {
     require_folder(folder, "plugin_dirs of the scene");
     path.push_back(folder);
@@ -91,6 +124,7 @@ std::vector<fs::path> plugin_search_path(const std::vector<fs::path>& given, con
   for (const auto& folder : environment_folders()) {
     if (is_folder(folder)) path.push_back(folder);
   }
+  if (const fs::path folder = user_plugin_folder(); !folder.empty() && is_folder(folder)) path.push_back(folder);
   for (const auto& folder : installed_folders()) {
     if (is_folder(folder)) path.push_back(folder);
   }

@@ -13,10 +13,21 @@
 namespace rouleau::plugin {
 
 /// Folders to search, first to last: those given, the scene's plugin_dirs, ROULEAU_PLUGIN_PATH (secure_getenv, ':'
-/// separated), the installation beside the program. Never the working directory. Entries that do not exist are left
+/// separated), the user's own folder, the installation beside the program. Never the working directory. Entries that do not exist are left
 /// out, except those given and those of the scene: they must exist (Error bad_input).
 std::vector<std::filesystem::path> plugin_search_path(const std::vector<std::filesystem::path>& given,
                                                       const std::vector<std::filesystem::path>& scene);
+
+/// Folders that somebody names, which must exist (Error bad_input), and no others.
+std::vector<std::filesystem::path> named_folders(const std::vector<std::filesystem::path>& given);
+
+/// The user's own folder, whether it exists or not: rouleau/plugins in XDG_DATA_HOME or else in HOME/.local/share.
+/// Empty where there is none: variables that are unset or no absolute folders, a program with raised privileges.
+std::filesystem::path user_plugin_folder();
+
+/// Why a file is on the search path: "user" of the user's own folder, "environment" of ROULEAU_PLUGIN_PATH, "installation"
+/// of the program's; "named" where an option or a scene names its folder. Of several the first in the order of the search.
+std::string origin_of(const std::filesystem::path& file, const std::vector<std::filesystem::path>& named);
 
 class Catalog {
  public:

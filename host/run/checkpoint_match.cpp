@@ -33,7 +33,8 @@ std::string in_short(const Json& value) {
 
 /// A part of the scene that decides what is written or when a stage ends, and not what a state means.
 bool is_harmless(const std::string& pointer, int stage) {
-  for (const char* part : {"/title", "/expected", "/output", "/checks", "/at_rest", "/equilibrium", "/plugin_dirs"}) {
+  for (const char* part :
+       {"/title", "/notes", "/expected", "/output", "/checks", "/at_rest", "/equilibrium", "/plugin_dirs"}) {
     if (pointer == part || pointer.starts_with(std::string(part) + "/")) return true;
   }
   const std::string stages = "/stages/";

@@ -63,6 +63,7 @@ std::vector<UsedPlugin> plugins_named(const Json& scene, const fs::path& scene_f
 std::string fingerprint(const Json& scene, const fs::path& scene_file, const std::vector<std::string>& further) {
   Json all = {{"scene", scene}, {"program", program_sha256()}, {"plugins", Json::array()}, {"further", further}};
   if (all["scene"].is_object()) all["scene"].erase("plugin_dirs");
+  if (all["scene"].is_object()) all["scene"].erase("notes");
   for (const UsedPlugin& plugin : plugins_named(scene, scene_file)) {
     all["plugins"].push_back({plugin.id, plugin.library_sha256, plugin.manifest_sha256});
   }

@@ -20,14 +20,15 @@ if TYPE_CHECKING:
     from .reading import Cell as Cell, Field as Field, Frame as Frame, Mean as Mean, Run as Run, Stage as Stage
     from .reading import mean_and_error as mean_and_error, open as open
     from .running import Plan as Plan, Progress as Progress, plan as plan, plugins as plugins, run as run
+    from .simulation import FluidField as FluidField, Simulation as Simulation
     from .sweeping import sweep as sweep
 
 _HOME = {
-    "Cell": "reading", "Comparison": "comparing", "Error": "errors", "Fault": "errors", "Field": "reading",
-    "Frame": "reading", "Mean": "reading", "Plan": "running", "Potential": "potentials", "Progress": "running",
-    "Run": "reading", "Simulation": "simulation", "Stage": "reading", "compare": "comparing",
-    "mean_and_error": "reading", "open": "reading", "plan": "running", "plugins": "running", "potential": "potentials",
-    "run": "running", "sweep": "sweeping",
+    "Cell": "reading", "compare": "comparing", "Comparison": "comparing", "Error": "errors", "Fault": "errors",
+    "Field": "reading", "FluidField": "simulation", "Frame": "reading", "Mean": "reading", "mean_and_error": "reading",
+    "open": "reading", "Plan": "running", "plan": "running", "plugins": "running", "Potential": "potentials",
+    "potential": "potentials", "Progress": "running", "Run": "reading", "run": "running", "Simulation": "simulation",
+    "Stage": "reading", "sweep": "sweeping",
 }
 
 __all__ = sorted(_HOME)

@@ -7,9 +7,11 @@ import subprocess
 
 USAGE = re.compile(r"^  (\w+) (.*?)  +(.*)$", re.MULTILINE)
 OPTION = re.compile(r"^  (--[a-z-]+)(?: (.*?))?(?:  +(.*))?$")
+KINDS, SCENES = "collision membrane interaction scene", "demo channel suspension capsule"  # of rouleau new
 FILES = {"SCENE", "FILE", "DIR", "MANIFEST"}
 ENVIRONMENT = {
     "ROULEAU_PLUGIN_PATH": "folders with plugins, absolute, separated by colons",
+    "XDG_DATA_HOME": "the folder with rouleau/plugins, your own plugins; else ~/.local/share",
     "ROULEAU_INSTRUCTION_SET": "baseline, avx2 or avx512: narrower vectors than this processor has, to compare results and speed",
     "ROULEAU_ERRORS": "json: an error is one line of JSON with the place and the remedy of each fault, for programs (docs/python.md)",
     "ROULEAU_TIMING_LOCK": "the file that rouleau study locks while it takes times, so that two studies do not disturb each other",
@@ -87,7 +89,8 @@ _rouleau() {{
   case ${{kind:-$place}} in
     id) mapfile -t COMPREPLY < <(compgen -W "$("${{COMP_WORDS[0]/#\\~/$HOME}}" plugins --json 2>/dev/null |
           sed -n 's/^ *"id": "\\(.*\\)",*$/\\1/p')" -- "$word") ;;
-    kind) [[ $COMP_CWORD -eq 2 ]] && mapfile -t COMPREPLY < <(compgen -W "collision membrane interaction" -- "$word") ;;
+    kind) [[ $COMP_CWORD -eq 2 ]] && mapfile -t COMPREPLY < <(compgen -W "{KINDS}" -- "$word")
+          [[ $COMP_CWORD -eq 4 && ${{COMP_WORDS[2]}} == scene ]] && mapfile -t COMPREPLY < <(compgen -W "{SCENES}" -- "$word") ;;
     folder) compopt -o filenames 2>/dev/null; mapfile -t COMPREPLY < <(compgen -d -- "$word") ;;
     file) compopt -o filenames 2>/dev/null; mapfile -t COMPREPLY < <(compgen -f -- "$word") ;;
     json) compopt -o filenames 2>/dev/null
@@ -104,7 +107,7 @@ def quoted(text):
 
 def zsh(commands):
     actions = {"json": "_files -g \"*.json\"", "file": "_files", "folder": "_files -/", "word": " ",
-               "kind": "(collision membrane interaction)", "id": "{_rouleau_ids}"}
+               "kind": f"({KINDS} {SCENES})", "id": "{_rouleau_ids}"}
     lines = ["#compdef rouleau", "# zsh completion of rouleau, made from its --help by scripts/docs", "_rouleau_ids() {",
              "  local -a ids; ids=(${(f)\"$(rouleau plugins --json 2>/dev/null | sed -n 's/^ *\"id\": \"\\(.*\\)\",*$/\\1/p')\"})",
              "  compadd -a ids", "}", "_rouleau() {", "  if (( CURRENT == 2 )); then", "    local -a commands; commands=("]
@@ -132,7 +135,7 @@ def fish(commands):
             takes = {"": "", "word": " -x", "folder": " -x -a '(__fish_complete_directories)'"}.get(option.kind, " -rF")
             lines.append(f"complete -c rouleau {here} -l {option.name[2:]}{takes} -d {quoted(option.text)}")
         place = by_place(arguments)
-        words = {"kind": "collision membrane interaction",
+        words = {"kind": f"{KINDS} {SCENES}",
                  "id": "(rouleau plugins --json 2>/dev/null | string match -rg \\'^ *\"id\": \"(.*)\"\\')"}
         if place in words:
             lines.append(f"complete -c rouleau {here} -a '{words[place]}'")

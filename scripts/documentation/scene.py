@@ -13,7 +13,7 @@ for a name of the author's. **Bold** keys must be there where the object is that
 unit, of the dimension of the unit that is given here (of a model's parameter: see [models.md](models.md)); a plain
 number is taken in that unit. A *vector* is a list of two quantities, along x and y.
 """
-FILE_KEYS = ("rouleau", "title", "expected", "$schema", "plugin_dirs")
+FILE_KEYS = ("rouleau", "title", "notes", "expected", "$schema", "plugin_dirs")
 
 
 def resolved(schema, rule):

@@ -121,6 +121,46 @@ class New_makes_a_model(Case):
         self.assertEqual(commands[3][-1], "/interactions/0/model=stiff")
 
 
+class New_scene(Case):
+    TEMPLATES = ("demo", "channel", "suspension", "capsule")
+
+    def test_of_each_template_plans_and_runs_as_it_is(self):
+        for template in self.TEMPLATES:
+            with self.subTest(template):
+                words = self.new("scene", template, template)
+                scene = self.desk / f"{template}.json"
+                self.assertIn(f"rouleau run {template}.json", words)
+                self.assertEqual(scene.read_bytes(), (SOURCE / f"scenes/templates/{template}.json").read_bytes())
+                plan = self.call("plan", scene, "--json")
+                self.assertEqual(plan.returncode, 0, plan.stderr)
+                exceeded = [limit["name"] for limit in json.loads(plan.stdout)["limits"] if limit["margin"] < 1]
+                self.assertEqual(exceeded, [])
+                result = self.call("run", scene, "--out", self.path / template, "--max-steps", "20", "--quiet")
+                self.assertEqual(result.returncode, 0, result.stderr)
+
+    def test_has_notes_on_its_parts_which_a_run_does_not_look_at(self):
+        self.new("scene", "mine.json")  # the ending may be given
+        scene = json.loads((self.desk / "mine.json").read_text())
+        self.assertEqual(scene, json.loads((SOURCE / "scenes/templates/demo.json").read_text()))
+        notes = scene.pop("notes")
+        self.assertLessEqual({"fluid", "numerics", "stages", "output"}, set(notes))
+        (self.desk / "bare.json").write_text(json.dumps(scene))
+        plans = [self.call("plan", self.desk / name, "--json").stdout for name in ("mine.json", "bare.json")]
+        self.assertEqual(*[{**json.loads(plan), "scene": ""} for plan in plans])
+
+    def test_refuses_what_it_cannot_make_and_leaves_what_is_there(self):
+        self.assert_stops(self.call("new", "scene", "a", "chanel"), 2, 'did you mean "channel"?')
+        for name in ("a/b", "../a", "", ".a", "a b", "a.lock"):
+            with self.subTest(name):
+                self.assert_stops(self.call("new", "scene", name), 2, "cannot be the name of a scene")
+        self.assert_stops(self.call("new", "interaction", "org.example.x", "channel"), 2, "for scenes only")
+        self.assertEqual(list(self.desk.iterdir()), [])
+        (self.desk / "a.json").write_text("mine")
+        self.assert_stops(self.call("new", "scene", "a"), 2, "a.json", "exists already")
+        self.assertEqual((self.desk / "a.json").read_text(), "mine")
+        self.assert_stops(self.call("new", "scene", "b", "--dir", self.path / "nowhere"), 4, "nowhere/b.json")
+
+
 class New_refuses(Case):
     def test_an_unknown_kind_with_the_nearest_one(self):
         self.assert_stops(self.call("new", "colision", "x"), 2, '"colision"', 'did you mean "collision"?',

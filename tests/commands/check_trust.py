@@ -12,7 +12,7 @@ import sys
 import unittest
 
 sys.dont_write_bytecode = True  # nothing is to appear in the source folder
-from check_commands import SHORT, Case
+from check_commands import PROGRAM, SHORT, Case
 
 
 class TrustCase(Case):
@@ -99,6 +99,94 @@ class Plugins_are_searched_where_the_user_said(TrustCase):
         folder = self.copy_of_morse("here", "morse")
         result = self.rouleau.run("plan", self.file, "--plugin-dir", folder)
         self.assert_stops(result, 3, str(folder / "mine.json"), str(self.morse / "morse.json"))
+
+
+class Plugins_of_the_users_own(TrustCase):
+    """The Morse potential, taken out of the installation and installed again by its user."""
+
+    def setUp(self):
+        super().setUp()
+        shutil.copytree(PROGRAM.parent.parent / "libexec", self.rouleau.root / "libexec")
+        self.offered = self.path / "offered"
+        shutil.move(self.morse, self.offered)
+        self.data = self.path / "data"
+        self.place = self.data / "rouleau/plugins/morse"
+
+    def call(self, *arguments, **variables):
+        environment = {k: v for k, v in os.environ.items() if k not in ("ROULEAU_PLUGIN_PATH", "XDG_DATA_HOME")}
+        environment |= variables or {"XDG_DATA_HOME": str(self.data)}
+        return subprocess.run([self.rouleau.program, *map(str, arguments)], capture_output=True, text=True, timeout=300,
+                              env=environment, cwd=self.path)
+
+    def listed(self, **variables):
+        plugins = json.loads(self.call("plugins", "--json", **variables).stdout)["plugins"]
+        return {plugin["id"]: plugin["origin"] for plugin in plugins}
+
+    def test_are_found_without_an_option_and_named_as_theirs(self):
+        self.assertNotIn("morse", self.listed())
+        result = self.call("plugins", "--install", self.offered)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn(str(self.place), result.stdout)
+        self.assertEqual({f.name for f in self.place.iterdir()}, {"morse.json", "libmorse.so"})
+        self.assertEqual([f.name for f in (self.data / "rouleau").iterdir()], ["plugins"])
+        self.assertEqual((self.listed()["morse"], self.listed()["bending"]), ("user", "installation"))
+        self.assertIn(f"{self.place.parent} (user)", self.call("plugins").stdout)
+        plan = self.call("plan", self.file)
+        self.assertEqual(plan.returncode, 0, plan.stderr)
+        home = self.path / "home"
+        home.mkdir()
+        shutil.copytree(self.data, home / ".local/share")
+        self.assertEqual(self.listed(HOME=str(home))["morse"], "user")
+        self.assertNotIn("morse", self.listed(XDG_DATA_HOME="data", HOME="home"))  # relative ones are none
+
+    def test_are_replaced_only_on_request_and_whole(self):
+        self.assertEqual(self.call("plugins", "--install", self.offered).returncode, 0)
+        self.assert_stops(self.call("plugins", "--install", self.offered), 2, str(self.place), "--overwrite")
+        (self.place / "left over").touch()
+        manifest = json.loads((self.offered / "morse.json").read_text())
+        manifest["title"] = "another title"
+        (self.offered / "morse.json").write_text(json.dumps(manifest))
+        result = self.call("plugins", "--install", self.offered, "--overwrite")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(json.loads((self.place / "morse.json").read_text())["title"], "another title")
+        self.assertEqual({f.name for f in self.place.iterdir()}, {"morse.json", "libmorse.so"})
+
+    def test_are_not_installed_where_they_could_not_be_used(self):
+        (self.path / "empty").mkdir()
+        self.assert_stops(self.call("plugins", "--install", "empty"), 2, "empty", "holds no manifest")
+        taken = self.path / "taken"
+        shutil.copytree(self.rouleau.plugins / "membrane/bending", taken)
+        self.assert_stops(self.call("plugins", "--install", taken), 2, '"bending"', "give yours another id")
+        self.assert_stops(self.call("plugins", "--install", self.offered, XDG_DATA_HOME="", HOME=""), 2, "HOME")
+        manifest = json.loads((self.offered / "morse.json").read_text())
+        manifest["id"] = "org.example.mine"  # which the library knows nothing of
+        (self.offered / "morse.json").write_text(json.dumps(manifest))
+        self.assert_stops(self.call("plugins", "--install", self.offered), 3, "rouleau conform", "--level interface")
+        self.assertFalse(self.data.exists())
+
+    def test_are_compared_with_the_index_of_a_collection(self):
+        manifest = (self.offered / "morse.json").read_bytes()
+        entry = {"id": "morse", "kind": "interaction", "version": json.loads(manifest)["version"],
+                 "url": "https://example.org/morse.tar.gz", "sha256": "0" * 64, "doi": "10.1000/182",
+                 "manifest_sha256": hashlib.sha256(manifest).hexdigest()}
+        file = self.path / "index.json"
+
+        def compared(*entries):
+            file.write_text(json.dumps({"collection": 1, "title": "All", "plugins": entries}))
+            return self.call("plugins", "--index", file)
+
+        self.assertIn("not installed", compared(entry).stdout)
+        self.assertEqual(self.call("plugins", "--install", self.offered).returncode, 0)
+        result = compared(entry, {**entry, "version": "0.0.1"})
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertIn("  installed\n", result.stdout)
+        self.assertIn("installed in another version", result.stdout)
+        result = compared({**entry, "manifest_sha256": "1" * 64})
+        self.assertEqual(result.returncode, 3, result.stderr)
+        self.assertIn("morse", result.stderr)
+        self.assertIn("DIFFERS", result.stdout)
+        self.assert_stops(compared(entry, entry), 2, "/plugins/1/version", "twice")
+        self.assert_stops(compared({**entry, "doi": "doi:10.1/2"}), 2, "/plugins/0/doi")
 
 
 class Open_folders_are_refused(TrustCase):
@@ -216,6 +304,8 @@ class A_lock_binds_a_scene_to_its_plugins(TrustCase):
         self.assert_stops(self.rouleau.run("plugins", "morse", "--lock", self.file), 2, "the ID of a model")
         self.assert_stops(self.rouleau.run("plugins", "--json", "--lock", self.file), 2, "--json")
         self.assert_stops(self.rouleau.run("plugins", "--out", "x"), 2, "--lock")
+        self.assert_stops(self.rouleau.run("plugins", "--install", "x", "--index", "y"), 2, "--install, --index")
+        self.assert_stops(self.rouleau.run("plugins", "--overwrite"), 2, "--install")
 
 
 if __name__ == "__main__":

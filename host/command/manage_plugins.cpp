@@ -1,0 +1,152 @@
+#include "manage_plugins.hpp"
+
+#include <fcntl.h>
+#include <stdio.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <iostream>
+#include <string>
+
+#include "base/text.hpp"
+#include "command_line.hpp"
+#include "conform/conformance.hpp"
+#include "files/file.hpp"
+#include "plugin/collection.hpp"
+#include "plugin/library.hpp"
+
+namespace rouleau::command {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The plugins of a folder that is searched for nothing else.
+std::vector<plugin::Manifest> plugins_in(const fs::path& folder) {
+  const plugin::Catalog offered(plugin::named_folders({folder}));
+  for (const auto& refused : offered.refused()) {
+    throw Error(Cause::plugin_refused, Place{refused.file.string()}, refused.reason);
+  }
+  if (offered.manifests().empty()) {
+    throw Error(Cause::bad_input, Place{folder.string()},
+                "holds no manifest of a plugin; name the folder with the built library and its manifest");
+  }
+  return offered.manifests();
+}
+
+void require_conformance(const std::vector<plugin::Manifest>& manifests) {
+  std::vector<fs::path> files;
+  for (const plugin::Manifest& manifest : manifests) files.push_back(manifest.file);
+  conform::ConformanceOptions options;
+  options.levels = {conform::Level::interface};
+  const auto silent = [](const conform::Conformance&, const conform::CheckResult&) {};
+  for (const conform::Conformance& plugin : conform::check_conformance(files, options, silent)) {
+    if (plugin.conforms()) continue;
+    throw Error(Cause::plugin_refused, Place{plugin.file.string()},
+                "the plugin does not keep to the interface, and is not installed\n  rouleau conform " +
+                    in_shell(plugin.file.string()) + " --level interface says where");
+  }
+}
+
+/// A plugin in a folder of its own beside the user's, to be moved there.
+class Prepared {
+ public:
+  Prepared(const plugin::Manifest& manifest, const fs::path& user_folder)
+      : place_(user_folder / manifest.id),
+        partial_(user_folder.parent_path() / ('.' + manifest.id + '.' + std::to_string(::getpid()) + ".partial")) {
+    std::error_code error;
+    fs::remove_all(partial_, error);
+    if (!fs::create_directory(partial_, error)) fail(error ? error.value() : EEXIST);
+    const fs::path library = partial_ / manifest.library.filename();
+    files::write_file(library, files::read_text(plugin::checked_library(manifest)));
+    files::write_file(partial_ / manifest.file.filename(), files::read_text(manifest.file));
+    for (const fs::path& path : {partial_, library, partial_ / manifest.file.filename()}) {
+      fs::permissions(path, fs::perms::others_write, fs::perm_options::remove, error);
+    }
+    files::synchronise(partial_);
+  }
+  Prepared(const Prepared&) = delete;
+  Prepared& operator=(const Prepared&) = delete;
+  ~Prepared() {
+    std::error_code ignored;
+    fs::remove_all(partial_, ignored);
+  }
+
+  /// In one step; what was there before is taken away after it.
+  void move_into_place() const {
+    const bool replaces = fs::exists(fs::symlink_status(place_));
+    const unsigned how = replaces ? RENAME_EXCHANGE : RENAME_NOREPLACE;
+    if (::renameat2(AT_FDCWD, partial_.c_str(), AT_FDCWD, place_.c_str(), how) != 0) fail(errno);
+    files::synchronise(place_.parent_path());
+  }
+  [[nodiscard]] const fs::path& place() const { return place_; }
+
+ private:
+  [[noreturn]] void fail(int error) const { files::fail_file(place_, "cannot be installed", error); }
+
+  fs::path place_, partial_;
+};
+
+void require_free(const plugin::Manifest& manifest, const fs::path& place, const plugin::Catalog& catalog,
+                  bool overwrite) {
+  if (!overwrite && fs::exists(fs::symlink_status(place))) {
+    throw Error(Cause::bad_input, Place{place.string()},
+                "there is " + in_quotes(manifest.id) + " already; --overwrite replaces it");
+  }
+  for (const plugin::Manifest& other : catalog.manifests()) {
+    if (other.id != manifest.id || other.file.parent_path() == place) continue;
+    throw Error(Cause::bad_input, Place{manifest.file.string()},
+                in_quotes(manifest.id) + " is the id of " + other.file.string() +
+                    ", too, and of two plugins with one id none can be used; give yours another id");
+  }
+}
+
+}  // namespace
+
+void install_plugins(const fs::path& folder, const plugin::Catalog& catalog, bool overwrite) {
+  const fs::path user_folder = plugin::user_plugin_folder();
+  if (user_folder.empty()) {
+    throw Error(Cause::bad_input,
+                "rouleau plugins --install: there is no folder to install into; set HOME, or XDG_DATA_HOME to an "
+                "absolute folder");
+  }
+  const std::vector<plugin::Manifest> manifests = plugins_in(folder);
+  for (const plugin::Manifest& manifest : manifests) {
+    require_free(manifest, user_folder / manifest.id, catalog, overwrite);
+  }
+  require_conformance(manifests);
+  std::error_code error;
+  fs::create_directories(user_folder, error);
+  if (error) files::fail_file(user_folder, "cannot be made", error.value());
+  std::vector<std::unique_ptr<Prepared>> prepared;
+  for (const plugin::Manifest& manifest : manifests) {
+    prepared.push_back(std::make_unique<Prepared>(manifest, user_folder));
+  }
+  for (std::size_t i = 0; i < manifests.size(); ++i) {
+    prepared[i]->move_into_place();
+    std::cout << plugin::to_string(manifests[i].kind) << ' ' << manifests[i].id << ' ' << manifests[i].version << "\n  "
+              << prepared[i]->place().string() << '\n';
+  }
+}
+
+void compare_with_index(const fs::path& index, const plugin::Catalog& catalog) {
+  const plugin::Collection collection = plugin::read_collection(index);
+  std::cout << printable(collection.title) << '\n';
+  std::vector<std::string> differing;
+  for (const plugin::CollectedPlugin& plugin : collection.plugins) {
+    const plugin::Found found = plugin::compare(plugin, catalog.manifests());
+    const char* words = found == plugin::Found::nowhere         ? "not installed"
+                        : found == plugin::Found::same          ? "installed"
+                        : found == plugin::Found::other_version ? "installed in another version"
+                                                                : "DIFFERS: installed with another manifest";
+    std::cout << "  " << plugin.kind << ' ' << plugin.id << ' ' << printable(plugin.version) << "  " << words << '\n';
+    if (found == plugin::Found::differs) differing.push_back(plugin.id);
+  }
+  if (differing.empty()) return;
+  throw Error(Cause::plugin_refused, Place{index.string()},
+              "what is installed is not what the index has under the same id and version: " + listed(differing) +
+                  "\n  install the archive of the index, or ask who changed the plugin");
+}
+
+}  // namespace rouleau::command

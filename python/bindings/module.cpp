@@ -1,0 +1,235 @@
+// The compiled part of the Python package: rouleau._core, which python/rouleau/simulation.py shows to users.
+#include <dlfcn.h>
+#include <pybind11/functional.h>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "base/faults.hpp"
+#include "base/foreign_call.hpp"
+#include "observe/observables.hpp"
+#include "simulation.hpp"
+#include "units/lattice_units.hpp"
+
+namespace py = pybind11;
+
+namespace rouleau::python {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The shipped plugins of the build or the installation that this module belongs to.
+fs::path installed_plugins() {
+  Dl_info info{};
+  if (::dladdr(reinterpret_cast<const void*>(&installed_plugins), &info) == 0) return {};
+  std::error_code error;
+  fs::path folder = fs::canonical(info.dli_fname, error);
+  while (!error && folder.has_relative_path()) {
+    folder = folder.parent_path();
+    for (const char* libraries : {ROULEAU_LIBRARY_FOLDER, "lib", "lib64"}) {
+      const fs::path plugins = folder / libraries / "rouleau" / "plugins";
+      if (fs::is_directory(plugins, error)) return plugins;
+    }
+    error.clear();
+  }
+  return {};
+}
+
+/// (problem, remedy, file, pointer, line, column): what rouleau.errors makes a Fault of.
+py::tuple fault(const Error& error) {
+  const Place& place = error.place();
+  return py::make_tuple(error.problem(), error.remedy().words, place.file, place.pointer, place.line, place.column);
+}
+
+[[noreturn]] void raise(const py::list& faults, int exit_code) {
+  const py::object error = py::module_::import("rouleau.simulation").attr("_error")(faults, exit_code);
+  PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(error.ptr())), error.ptr());
+  throw py::error_already_set();
+}
+
+int exit_code_of(Cause cause) { return cause == Cause::bad_input ? 2 : cause == Cause::plugin_refused ? 3 : 4; }
+
+/// Calls with the interpreter's lock; what the simulator throws becomes rouleau.Error.
+template <class Call>
+auto guarded(const Call& call) {
+  py::list faults;
+  int exit_code = 2;
+  try {
+    return call();
+  } catch (const SeveralFaults& several) {
+    for (const Error& error : several.faults()) faults.append(fault(error));
+    exit_code = exit_code_of(several.cause());
+  } catch (const Error& error) {
+    faults.append(fault(error));
+    exit_code = exit_code_of(error.cause());
+  } catch (const Diverged& diverged) {
+    const monitor::Failure& f = diverged.failure;
+    faults.append(
+        py::make_tuple(f.reason + " at step " + std::to_string(f.step) + ": " + f.message, f.remedy, "", "", 0, 0));
+    exit_code = 1;
+  } catch (const ForeignException& exception) {
+    faults.append(py::make_tuple(exception.what(), "report it to the plugin's author", "", "", 0, 0));
+    exit_code = 3;
+  }
+  raise(faults, exit_code);
+}
+
+/// What Python holds. Views of its arrays keep it alive, and with it the memory.
+class Session {
+ public:
+  Session(const fs::path& scene, std::vector<std::string> overrides, std::vector<fs::path> plugins) {
+    simulation_ = guarded([&] {
+      const py::gil_scoped_release other_threads_may_run;
+      return make_simulation({scene, std::move(overrides), std::move(plugins), installed_plugins()});
+    });
+  }
+
+  /// Looks for signals every so often, so that Ctrl-C ends it between two steps.
+  long step(long count, int threads) {
+    long taken = 0, piece = 16;
+    while (taken < count) {
+      const auto start = std::chrono::steady_clock::now();
+      const long wanted = std::min(piece, count - taken);
+      const long done = guarded([&] {
+        const py::gil_scoped_release other_threads_may_run;
+        return simulation_->step(wanted, threads);
+      });
+      taken += done;
+      if (done < wanted) break;
+      const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
+      if (passed.count() < 0.05) piece *= 2;
+      if (passed.count() > 0.2) piece = std::max(1L, piece / 2);
+      if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    }
+    return taken;
+  }
+
+  Simulation& simulation() { return *simulation_; }
+
+ private:
+  std::unique_ptr<Simulation> simulation_;
+};
+
+/// Nodes times two, of two arrays that lie anywhere: one step along the second axis leads from the one to the other.
+py::array pairs(const py::object& owner, std::vector<double>& x, std::vector<double>& y, bool writeable) {
+  const auto apart = reinterpret_cast<char*>(y.data()) - reinterpret_cast<char*>(x.data());
+  py::array view(py::dtype::of<double>(), {static_cast<py::ssize_t>(x.size()), py::ssize_t{2}},
+                 {static_cast<py::ssize_t>(sizeof(double)), static_cast<py::ssize_t>(apart)}, x.data(), owner);
+  if (!writeable) view.attr("setflags")(py::arg("write") = false);
+  return view;
+}
+
+py::array_t<double> array_of(const std::vector<double>& values, std::vector<py::ssize_t> shape) {
+  py::array_t<double> array(std::move(shape));
+  std::copy(values.begin(), values.end(), array.mutable_data());
+  return array;
+}
+
+py::dict fluid(Session& session) {
+  const FluidFields fields = guarded([&] { return session.simulation().fluid(); });
+  py::dict result;
+  result["velocity"] = array_of(fields.velocity, {fields.ny, fields.nx, 2});
+  result["density"] = array_of(fields.density, {fields.ny, fields.nx});
+  return result;
+}
+
+/// The rows of cells.csv for the present state, as columns.
+py::dict cells(Session& session) {
+  const observe::Snapshot snapshot = guarded([&] { return session.simulation().observe(); });
+  const observe::Table& table = observe::table("cells");
+  py::dict columns;
+  for (const observe::Observable& observable : table.observables) columns[observable.column().c_str()] = py::list();
+  table.for_each_row(snapshot, [&](const observe::Row& row) {
+    for (const observe::Observable& observable : table.observables) {
+      const observe::Value value = observable.value(row);
+      py::object shown = py::none();
+      if (const auto* number = std::get_if<double>(&value)) shown = py::float_(*number);
+      if (const auto* integer = std::get_if<long>(&value)) shown = py::int_(*integer);
+      if (const auto* truth = std::get_if<bool>(&value)) shown = py::bool_(*truth);
+      if (const auto* text = std::get_if<std::string>(&value)) shown = py::str(*text);
+      columns[observable.column().c_str()].cast<py::list>().append(shown);
+    }
+  });
+  return columns;
+}
+
+py::dict stage(Session& session) {
+  Simulation& simulation = session.simulation();
+  const plan::StageSetting& setting = simulation.stage();
+  py::dict result;
+  result["name"] = setting.stage->name;
+  result["index"] = setting.index;
+  result["most_steps"] = setting.max_steps;
+  result["length"] = setting.units.length;
+  result["time"] = setting.units.time;
+  result["force"] = setting.units.unit(units::dimension::tension);
+  return result;
+}
+
+}  // namespace
+
+PYBIND11_MODULE(_core, module) {
+  module.doc() = "The compiled part of rouleau; rouleau.Simulation is what to use.";
+  py::class_<Session>(module, "Session")
+      .def(py::init(
+          [](const std::string& scene, std::vector<std::string> overrides, const std::vector<std::string>& plugins) {
+            return std::make_unique<Session>(scene, std::move(overrides),
+                                             std::vector<fs::path>(plugins.begin(), plugins.end()));
+          }))
+      .def("step", &Session::step)
+      .def("positions",
+           [](const py::object& self) {
+             core::Membranes& m = self.cast<Session&>().simulation().membranes();
+             return pairs(self, m.x, m.y, false);
+           })
+      .def("velocities",
+           [](const py::object& self) {
+             core::Membranes& m = self.cast<Session&>().simulation().membranes();
+             return pairs(self, m.velocity_x, m.velocity_y, false);
+           })
+      .def("forces",
+           [](const py::object& self) {
+             Session& session = self.cast<Session&>();
+             guarded([&] { session.simulation().compute_forces(); });
+             core::Membranes& m = session.simulation().membranes();
+             return pairs(self, m.force_x, m.force_y, false);
+           })
+      .def("cell_nodes",
+           [](Session& session) {
+             std::vector<long> first;
+             for (const core::CellRange& cell : session.simulation().membranes().cells) first.push_back(cell.first);
+             first.push_back(session.simulation().membranes().node_count());
+             return first;
+           })
+      .def("set_force",
+           [](const py::object& self, const py::object& callback) {
+             Simulation& simulation = self.cast<Session&>().simulation();
+             if (callback.is_none()) return guarded([&] { simulation.set_force({}); });
+             // The view that the callback may write to keeps nothing alive: the session that holds it does.
+             core::Membranes& m = simulation.membranes();
+             const py::object force = pairs(py::none(), m.force_x, m.force_y, true);
+             guarded([&] {
+               simulation.set_force([callback, force] {
+                 const py::gil_scoped_acquire interpreter;
+                 callback(force);
+               });
+             });
+           })
+      .def("fluid", &fluid)
+      .def("cells", &cells)
+      .def("stage", &stage)
+      .def("save",
+           [](Session& session, const std::string& folder) { guarded([&] { session.simulation().save(folder); }); })
+      .def("restore",
+           [](Session& session, const std::string& folder) { guarded([&] { session.simulation().restore(folder); }); })
+      .def_property_readonly("done", [](Session& session) { return session.simulation().done(); })
+      .def_property_readonly("steps", [](Session& session) { return session.simulation().steps(); })
+      .def_property_readonly("time", [](Session& session) { return session.simulation().time(); })
+      .def_property_readonly("strain", [](Session& session) { return session.simulation().strain(); });
+}
+
+}  // namespace rouleau::python

@@ -1,0 +1,362 @@
+#include "simulation.hpp"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <optional>
+#include <utility>
+
+#include "base/error.hpp"
+#include "core/membrane/motion.hpp"
+#include "core/solver/solver.hpp"
+#include "files/run_directory.hpp"
+#include "monitor/node_checks.hpp"
+#include "monitor/state_checks.hpp"
+#include "observe/energy.hpp"
+#include "plan/solver_setup.hpp"
+#include "run/checkpoint.hpp"
+#include "run/checkpoint_match.hpp"
+#include "run/run_state.hpp"
+
+namespace rouleau::python {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What a checkpoint has of the membranes that forces change before the step is over.
+struct Remembered {
+  std::vector<core::ElementState> state;
+  core::ContactMemory contacts, wall_contacts;
+};
+
+/// T: of the populations. The order of what happens in a step is that of run/simulation.cpp, so that the bits are the same.
+template <class T>
+class SimulationOf final : public Simulation {
+ public:
+  SimulationOf(plan::ReadScene read, plugin::Catalog catalog)
+      : Simulation(std::move(read), std::move(catalog)), state_(observe::Observer(scene(), membranes_)) {
+    start_stage(nullptr);
+  }
+
+  long step(long count, int threads) override {
+    require_whole();
+    long taken = 0;
+    while (taken < count && !over_) {
+      const long before = state_.stage_step;
+      step_stage(count - taken, threads);
+      taken += state_.stage_step - before;
+      if (ending_ != run::Ending::none) next_stage();
+    }
+    return taken;
+  }
+
+  void compute_forces() override {
+    require_whole();
+    if (ready_) return;
+    remember();
+    whole_ = false;
+    if (state_.stage_step >= next_attention_) before_forces(state_.stage_step);
+    core::Barrier nobody(1);
+    const auto run = [&](std::size_t from, std::size_t to) {
+      core::run_passes(solver_->passes(), from, to, solver_->bands(), Worker{}, nobody, nullptr);
+    };
+    run(0, solver_->rows_pass());
+    if (add_force_) add_force_();
+    run(solver_->rows_pass(), solver_->observable_pass());
+    ready_ = whole_ = true;
+  }
+
+  FluidFields fluid() override {
+    compute_forces();
+    core::Fluid<T>& fluid = solver_->fluid();
+    fluid.settle();
+    const std::vector<core::Moments> moments = fluid.all_moments();
+    FluidFields fields{scene().domain.nodes[0], scene().domain.nodes[1], {}, {}};
+    const double speed = stage().units.unit(units::dimension::velocity);
+    for (const core::Moments& node : moments) {
+      fields.velocity.insert(fields.velocity.end(), {node.ux * speed, node.uy * speed});
+      fields.density.push_back(node.density);
+    }
+    return fields;
+  }
+
+  observe::Snapshot observe() override {
+    compute_forces();
+    observe::Snapshot snapshot = state_.observer.observe(*solver_, stage(), membranes_, false);
+    snapshot.step = state_.steps;
+    snapshot.time = time();
+    snapshot.strain = strain();
+    return snapshot;
+  }
+
+  void set_force(std::function<void()> add) override {
+    if (add && plan_.scene->numerics.slip_correction) {
+      throw Error(Cause::bad_input, plan_.scene->place("/numerics/slip_correction"),
+                  "with the slip correction the fluid feels other forces than those on the nodes, so none can be added",
+                  {"set numerics.slip_correction to false"});
+    }
+    add_force_ = std::move(add);
+  }
+
+  void save(const fs::path& directory) override {
+    require_whole();
+    if (ready_ && solver_->flow_control()) {
+      throw Error(Cause::bad_input,
+                  "the forces of the next step have been looked at, and the scene keeps a mean velocity: the state "
+                  "between two steps is gone",
+                  {"save before forces, fluid or cells are looked at, or after the next step"});
+    }
+    if (ready_) exchange_memories();
+    const auto back = [&] {
+      if (ready_) exchange_memories();
+    };
+    try {
+      files::RunDirectory to(directory, scene(), files::FormerRun::replace);
+      run::Checkpoints checkpoints(scene(), &to);
+      checkpoints.write(plan_, 1, state_, membranes_, *solver_);
+      checkpoints.settle(true);
+    } catch (...) {
+      back();
+      throw;
+    }
+    back();
+  }
+
+  void restore(const fs::path& directory) override {
+    run::Resumption resumption = run::open_checkpoint(directory, plan_, false);
+    const std::shared_ptr<const files::CheckpointReader> reader = std::move(resumption.checkpoint);
+    whole_ = false;
+    run::RunState state(observe::Observer(scene(), membranes_));
+    auto restored = run::restore<T>(reader, plan_, plan::lattice_domain(scene()).block, state, membranes_);
+    state_ = std::move(state);
+    solver_ = std::make_unique<core::Solver<T>>(plan::make_solver_setup(plan_, state_.stage), membranes_);
+    solver_->start(restored.solver);
+    next_attention_ = state_.stage_step;
+    ending_ = run::Ending::none;
+    ready_ = over_ = false;
+    whole_ = true;
+  }
+
+  [[nodiscard]] bool done() const override { return over_ || (last_stage() && next_ending() != run::Ending::none); }
+  [[nodiscard]] long steps() const override { return state_.steps; }
+  [[nodiscard]] double time() const override { return state_.time_at(stage()); }
+  [[nodiscard]] double strain() const override { return state_.strain_at(stage()); }
+  [[nodiscard]] const plan::StageSetting& stage() const override { return plan_.stages[state_.stage]; }
+
+ private:
+  [[nodiscard]] bool last_stage() const { return state_.stage + 1 == static_cast<int>(plan_.stages.size()); }
+
+  void require_whole() const {
+    if (whole_) return;
+    throw Error(Cause::bad_input, "the last step has ended in the middle, so there is no state to go on from",
+                {"load the last checkpoint, or make the simulation anew"});
+  }
+
+  void remember() { remembered_ = {membranes_.state, membranes_.contacts, membranes_.wall_contacts}; }
+  /// The membranes get what they remembered before the forces of the next step, and the other way round.
+  void exchange_memories() {
+    std::swap(membranes_.state, remembered_.state);
+    std::swap(membranes_.contacts, remembered_.contacts);
+    std::swap(membranes_.wall_contacts, remembered_.wall_contacts);
+  }
+
+  void start_stage(core::Solver<T>* former) {
+    auto next = std::make_unique<core::Solver<T>>(plan::make_solver_setup(plan_, state_.stage), membranes_);
+    next->start(former);
+    state_.observer.start_stage();
+    state_.stage_step = 0;
+    state_.steps_before = state_.steps;
+    state_.rest_watch.start(0, membranes_);
+    state_.equilibrium.start();
+    next_attention_ = 0;
+    solver_ = std::move(next);
+  }
+
+  void next_stage() {
+    const run::Ending ending = std::exchange(ending_, run::Ending::none);
+    over_ = ready_ = last_stage();  // the forces at the end of a stage are computed
+    if (over_) return;
+    state_.end_stage(stage(), ending);
+    ++state_.stage;
+    start_stage(solver_.get());
+  }
+
+  /// So many steps, or to the end of the stage, which ending_ then tells.
+  void step_stage(long count, int threads) {
+    std::exception_ptr trouble;
+    std::optional<core::Barrier> barrier;
+    const long first = state_.stage_step;
+    whole_ = false;
+#pragma omp parallel num_threads(threads)
+    {
+      // The system may grant fewer threads than were asked for.
+#pragma omp single
+      barrier.emplace(omp_get_num_threads());
+      try {
+        take_steps({omp_get_thread_num(), omp_get_num_threads()}, *barrier, first, first + count);
+      } catch (const core::Barrier::Abandoned&) {
+        // The worker that has given up says why.
+      } catch (...) {
+        if (barrier->abandon()) trouble = std::current_exception();
+      }
+    }
+    if (trouble) std::rethrow_exception(trouble);
+    whole_ = true;
+  }
+
+  void take_steps(Worker worker, core::Barrier& barrier, long step, long last) {
+    const std::vector<core::Pass>& passes = solver_->passes();
+    const std::size_t rows = solver_->rows_pass(), observable = solver_->observable_pass();
+    const auto alone = [&](auto&& action) {
+      barrier.arrive_and_wait();
+      if (worker.first()) action();
+      barrier.arrive_and_wait();
+    };
+    const auto run = [&](std::size_t from, std::size_t to) {
+      core::run_passes(passes, from, to, solver_->bands(), worker, barrier, nullptr);
+    };
+    bool ready = ready_;
+    for (; step < last; ++step) {
+      const bool attend = step >= next_attention_;
+      if (!ready) {
+        if (attend) alone([&] { before_forces(step); });
+        run(0, rows);
+        if (add_force_) alone(add_force_);
+      }
+      if (attend || wants_a_look()) {
+        if (!ready) run(rows, observable);
+        alone([&] { after_forces(step, attend); });
+        if (ending_ != run::Ending::none) break;
+        run(observable, passes.size());
+      } else {
+        run(ready ? observable : rows, passes.size());
+      }
+      ready = false;
+    }
+    barrier.arrive_and_wait();
+    if (!worker.first()) return;
+    ready_ = false;
+    count_to(step);
+  }
+
+  void count_to(long step) {
+    state_.stage_step = step;
+    state_.steps = state_.steps_before + step;
+  }
+
+  /// The last step must not be followed by another; all workers come to the same answer.
+  [[nodiscard]] bool wants_a_look() const {
+    return !(core::largest_step(membranes_) <= scene().checks.node_step) || solver_->escaped();
+  }
+
+  void before_forces(long step) {
+    count_to(step);
+    due_ending_ = next_ending();
+    if (due_ending_ != run::Ending::none) remember();
+    if (stage().stage->until_at_rest && step >= state_.rest_watch.end(rest_window()))
+      state_.rest_watch.start(step, membranes_);
+  }
+
+  void after_forces(long step, bool attended) {
+    count_to(step);
+    if (auto failure = monitor::check_nodes(membranes_, scene().checks.node_step, solver_->escaped_node(), stage()))
+      fail(std::move(*failure));
+    if (!attended) return;
+    const long every = scene().checks.every_steps;
+    if (step % every == 0 || due_ending_ != run::Ending::none) {
+      if (auto failure = monitor::check_state(state_.observer, *solver_, stage(), membranes_, scene()))
+        fail(std::move(*failure));
+    }
+    ending_ = due_ending_;
+    next_attention_ = std::min((step / every + 1) * every, stage().max_steps);
+    if (stage().stage->until_at_rest) next_attention_ = std::min(next_attention_, state_.rest_watch.end(rest_window()));
+    if (stage().stage->until_equilibrium) {
+      watch_energy(step);
+      const long window = window_steps(scene().equilibrium.window);
+      next_attention_ =
+          std::min(next_attention_, state_.equilibrium.reached() ? step + 1 : state_.equilibrium.next(window));
+    }
+  }
+
+  [[noreturn]] void fail(monitor::Failure failure) {
+    failure.step = state_.steps;
+    failure.time = time();
+    failure.strain = strain();
+    throw Diverged{std::move(failure)};
+  }
+
+  void watch_energy(long step) {
+    if (step < state_.equilibrium.next(window_steps(scene().equilibrium.window))) return;
+    const observe::CellEnergy energy = observe::cell_energy(*solver_, membranes_);
+    if (!energy.unknown.empty()) {
+      throw Error(Cause::bad_input, scene().place(stage().stage->pointer + "/until"),
+                  "there is no energy to watch, since " + energy.unknown,
+                  {"end the stage by \"at_rest\" or by duration"});
+    }
+    state_.equilibrium.note(step, energy.sum, energy.magnitude + solver_->slight_energy(),
+                            scene().equilibrium.rate * stage().units.time);
+  }
+
+  [[nodiscard]] run::Ending next_ending() const {
+    const scene::Stage& written = *stage().stage;
+    if (written.until_at_rest && at_rest()) return run::Ending::at_rest;
+    if (written.until_equilibrium && state_.equilibrium.reached()) return run::Ending::equilibrium;
+    if (state_.stage_step < stage().max_steps) return run::Ending::none;
+    const bool by_strain =
+        written.strain && (!written.duration || *written.strain / std::abs(written.shear_rate) <= *written.duration);
+    return by_strain ? run::Ending::strain : run::Ending::duration;
+  }
+  [[nodiscard]] bool at_rest() const {
+    return state_.stage_step >= state_.rest_watch.end(rest_window()) &&
+           state_.rest_watch.moved(membranes_) < scene().at_rest.displacement / stage().units.length;
+  }
+  [[nodiscard]] long window_steps(double seconds) const { return std::max(1L, std::lround(stage().steps_of(seconds))); }
+  [[nodiscard]] long rest_window() const { return window_steps(scene().at_rest.window); }
+
+  run::RunState state_;
+  std::unique_ptr<core::Solver<T>> solver_;
+  std::function<void()> add_force_;
+  Remembered remembered_;    ///< before the forces that are ready were computed
+  long next_attention_ = 0;  ///< step of the stage at which something is due
+  run::Ending due_ending_ = run::Ending::none, ending_ = run::Ending::none;
+  bool ready_ = false;  ///< the forces of the next step are computed
+  bool over_ = false;   ///< the last stage has ended
+  bool whole_ = true;   ///< false: a step has ended in the middle
+};
+
+}  // namespace
+
+Simulation::Simulation(plan::ReadScene read, plugin::Catalog catalog)
+    : read_(std::move(read)),
+      catalog_(std::move(catalog)),
+      plan_(plan::make_plan(read_.scene, catalog_, read_.numerics_choice)),
+      membranes_(plan_.has_cells ? plan::make_membranes(read_.scene, plan::lattice_spacing(read_.scene))
+                                 : core::Membranes{}) {}
+
+std::unique_ptr<Simulation> make_simulation(const SceneChoice& choice) {
+  const auto catalog_of = [&](const scene::Scene& scene) {
+    std::vector<fs::path> folders = plugin::plugin_search_path(choice.plugins, scene.plugin_dirs);
+    // What is installed with the interpreter is not what is installed with this module.
+    std::vector<fs::path> named = choice.plugins;
+    named.insert(named.end(), scene.plugin_dirs.begin(), scene.plugin_dirs.end());
+    std::erase_if(folders, [&](const fs::path& folder) { return plugin::origin_of(folder, named) == "installation"; });
+    if (!choice.installation.empty()) folders.push_back(choice.installation);
+    plugin::Catalog catalog(folders);
+    const fs::path lock = plugin::lock_beside(choice.file);
+    std::error_code ignored;
+    if (fs::exists(fs::symlink_status(lock, ignored))) {
+      catalog.set_lock(plugin::read_lock(lock, "if this is meant, lock the scene again"));
+    }
+    return catalog;
+  };
+  plan::ReadScene read = plan::read_within_limits(choice.file, choice.overrides, catalog_of);
+  plugin::Catalog catalog = catalog_of(read.scene);
+  if (read.scene.numerics.precision == scene::Precision::f32)
+    return std::make_unique<SimulationOf<float>>(std::move(read), std::move(catalog));
+  return std::make_unique<SimulationOf<double>>(std::move(read), std::move(catalog));
+}
+
+}  // namespace rouleau::python

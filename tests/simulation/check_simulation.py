@@ -1,0 +1,292 @@
+"""rouleau.Simulation: the program's bits, views without copies, forces of one's own, errors, interruption.
+
+usage: check_simulation.py SOURCE BUILD
+"""
+
+import gc
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+import weakref
+from pathlib import Path
+
+sys.dont_write_bytecode = True
+SOURCE, BUILD = (Path(a).resolve() for a in sys.argv[1:3])
+sys.path.insert(0, str(BUILD / "python"))
+try:
+    import numpy
+    import pandas  # noqa: F401
+except ImportError:
+    print("numpy or pandas is missing (Debian: python3-numpy python3-pandas)")
+    sys.exit(77)
+import rouleau  # noqa: E402
+
+PROGRAM = BUILD / "bin/rouleau"
+SMALL = json.loads((SOURCE / "tests/resume/scenes/small.json").read_text())
+# Two stages, of which the first ends by rest; a viscosity contrast, attraction, and a law that remembers.
+SMALL["cell_types"]["round"] |= {
+    "interior_viscosity": "6 cP",
+    "membrane": [{"model": "neo-hookean", "parameters": {"shear_modulus": "6e-3 dyn/cm"}},
+                 {"model": "standard-linear-solid", "parameters": {"modulus": "5e-6 N/m", "relaxation_time": "40 ms"}}]}
+SMALL["interactions"] = [{"between": ["round", "round"], "model": "morse", "parameters": {
+    "depth": "5.2e-8 J/m2", "zero_force_distance": "1 um", "cutoff": "3 um"}}]
+SMALL["stages"] = [{"name": "rest", "duration": "1 s", "until": "at_rest"},
+                   {"name": "shear", "shear_rate": "20 1/s", "strain": 0.5}]
+SMALL["at_rest"] = {"window": "2 ms", "displacement": "20 um"}
+SMALL["output"] = {"cells": {"strain": 0.1}, "checkpoint": {"seconds": 600}}
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.path = Path(folder.name)
+        self.scene = self.path / "small.json"
+        self.scene.write_text(json.dumps(SMALL))
+
+    def program(self, *words, code=0):
+        result = subprocess.run([PROGRAM, "run", self.scene, "--quiet", *map(str, words)], capture_output=True, text=True,
+                                timeout=120)
+        self.assertEqual(result.returncode, code, result.stderr)
+
+    def assert_same_state(self, one, other):
+        """To the last bit: membranes, and the fluid that their forces act on."""
+        self.assertEqual((one.step_count, one.stage, one.time, one.strain),
+                         (other.step_count, other.stage, other.time, other.strain))
+        for name in ("positions", "velocities", "forces"):
+            self.assertTrue(numpy.array_equal(getattr(one, name), getattr(other, name)), name)
+        for name in ("velocity", "density"):
+            self.assertTrue(numpy.array_equal(getattr(one, name)().values, getattr(other, name)().values), name)
+
+
+class It_computes_what_the_program_does(Case):
+    def test_to_the_last_bit_through_the_end_of_a_stage_with_any_number_of_threads(self):
+        for threads, precision in ((1, "f64"), (2, "f64"), (1, "f32")):
+            with self.subTest(threads=threads, precision=precision):
+                out = self.path / f"{threads}-{precision}"
+                self.program("--out", out, "--max-steps", 150, "--set", f"/numerics/precision={precision}")
+                simulation = rouleau.Simulation(self.scene, threads=threads, **{"numerics.precision": precision})
+                self.assertEqual(simulation.step(150), 150)
+                self.assertEqual(simulation.stage, "shear")  # it has come to the second one
+                self.assert_same_state(simulation, rouleau.Simulation.load(out))
+
+    def test_whether_or_not_somebody_looks_between_the_steps(self):
+        watched, other = (rouleau.Simulation(SMALL) for _ in range(2))
+        for _ in range(60):
+            watched.step(1)
+            watched.forces
+            watched.cells()
+        other.step(60)
+        self.assert_same_state(watched, other)
+
+    def test_to_the_end_of_the_scene(self):
+        self.program("--out", self.path / "run")
+        summary = json.loads((self.path / "run/summary.json").read_text())
+        simulation = rouleau.Simulation(SMALL)
+        self.assertFalse(simulation.done)
+        self.assertEqual(simulation.step(10**9), summary["steps"])
+        self.assertTrue(simulation.done)
+        self.assertEqual(simulation.step(1), 0)
+        self.assertEqual((simulation.strain, simulation.time), (summary["strain"], summary["simulated_time_s"]))
+        last = (self.path / "run/cells.csv").read_text().splitlines()[-1].split(",")
+        names = (self.path / "run/cells.csv").read_text().splitlines()[0].split(",")
+        cell = simulation.cells().iloc[-1]
+        for name, text in zip(names, last):
+            if name not in ("type", "aggregate", "stage"):
+                numpy.testing.assert_allclose(float(cell[name]), float(text), rtol=1e-6, err_msg=name)
+
+
+class A_checkpoint(Case):
+    def test_goes_on_with_the_same_bits_whether_or_not_forces_were_looked_at(self):
+        whole = rouleau.Simulation(self.scene)
+        whole.step(100)
+        for looks in (False, True):
+            with self.subTest(looks=looks):
+                broken = rouleau.Simulation(self.scene)
+                broken.step(60)
+                if looks:
+                    broken.forces
+                broken.save(self.path / "saved")
+                other = rouleau.Simulation.load(self.path / "saved", threads=2)
+                for part in (broken, other):
+                    part.step(40)
+                    self.assert_same_state(part, whole)
+
+    def test_is_one_that_the_program_goes_on_from(self):
+        simulation = rouleau.Simulation(self.scene)
+        simulation.step(60)
+        simulation.save(self.path / "saved")
+        self.program("--out", self.path / "saved", "--resume", "--max-steps", 100)
+        simulation.step(40)
+        self.assert_same_state(simulation, rouleau.Simulation.load(self.path / "saved"))
+
+
+class Views(Case):
+    def test_are_the_simulations_own_memory_and_cannot_be_written_to(self):
+        simulation = rouleau.Simulation(SMALL)
+        for name in ("positions", "velocities", "forces"):
+            view, again = getattr(simulation, name), getattr(simulation, name)
+            self.assertEqual(view.shape, (48, 2))
+            address, _ = view.__array_interface__["data"]
+            self.assertEqual(address, again.__array_interface__["data"][0], name)
+            self.assertFalse(view.flags.owndata or view.flags.writeable, name)
+            with self.assertRaises(ValueError):
+                view[0, 0] = 1
+        view = simulation.positions
+        before, address = view.copy(), view.__array_interface__["data"][0]
+        simulation.step(40)  # into the next stage
+        self.assertFalse(numpy.array_equal(view, before))
+        self.assertEqual(simulation.positions.__array_interface__["data"][0], address)
+
+    def test_keep_the_memory_after_the_simulation_has_gone(self):
+        simulation = rouleau.Simulation(SMALL)
+        simulation.step(5)
+        view = simulation.positions
+        copy, gone = view.copy(), weakref.ref(simulation)
+        del simulation
+        gc.collect()
+        self.assertIsNone(gone())
+        self.assertTrue(numpy.array_equal(view, copy))
+
+    def test_have_the_place_and_the_unit_of_what_they_show(self):
+        simulation = rouleau.Simulation(SMALL)
+        outline = (simulation.positions[simulation.cell_nodes[1]] + 0.5) * simulation.spacing
+        numpy.testing.assert_allclose(outline.mean(axis=0), [13e-6, 8e-6], rtol=1e-12)
+        numpy.testing.assert_allclose(numpy.hypot(*(outline - [13e-6, 8e-6]).T), 2e-6, rtol=1e-6)
+
+    def test_of_the_fluid_have_the_flow_of_the_walls(self):
+        scene = {key: value for key, value in SMALL.items() if key not in ("cells", "cell_types", "interactions", "at_rest")}
+        scene["stages"] = [{"name": "shear", "shear_rate": "20 1/s", "strain": 1, "start": "developed"}]
+        simulation = rouleau.Simulation(scene)
+        simulation.step(10)
+        velocity = simulation.velocity()
+        self.assertEqual((velocity.values.shape, velocity.unit), ((32, 48, 2), "m/s"))
+        wanted = numpy.broadcast_to(20 * (velocity.y[:, None] - 8e-6), (32, 48))
+        numpy.testing.assert_allclose(velocity.values[..., 0], wanted, rtol=1e-9)
+        numpy.testing.assert_allclose(velocity.values[..., 1], 0, atol=1e-15)
+        self.assertEqual((velocity.x[0], len(velocity.x)), (0.25e-6, 48))
+
+
+class A_force_of_ones_own(Case):
+    def test_moves_the_cells_that_it_acts_on_and_is_felt_in_newtons(self):
+        simulation = rouleau.Simulation(SMALL)
+        models_alone = rouleau.Simulation(SMALL)
+        pull = numpy.zeros((48, 2))
+        pull[simulation.cell_nodes[0], 1] = 2e-7
+        simulation.add_force(lambda sim: pull)
+        difference = (simulation.forces - models_alone.forces) * simulation.force_unit
+        numpy.testing.assert_allclose(difference, pull, atol=1e-12)
+        start = simulation.positions.copy()
+        simulation.step(30)
+        moved = simulation.positions - start
+        self.assertGreater(moved[:24, 1].mean(), 0.05)
+        self.assertGreater(moved[:24, 1].mean(), moved[24:, 1].mean())
+
+    def test_is_asked_once_a_step_and_can_be_taken_away(self):
+        simulation = rouleau.Simulation(SMALL, threads=2)
+        calls = []
+        simulation.add_force(lambda sim: calls.append(1) or 0.0)
+        simulation.step(7)
+        simulation.forces
+        simulation.step(3)
+        self.assertEqual(len(calls), 10)
+        simulation.add_force(None)
+        simulation.step(3)
+        self.assertEqual(len(calls), 10)
+        plain = rouleau.Simulation(SMALL)
+        plain.step(13)
+        self.assert_same_state(simulation, plain)
+
+    def test_that_raises_ends_the_step_with_its_own_exception(self):
+        simulation = rouleau.Simulation(SMALL, threads=2)
+        simulation.add_force(lambda sim: 1 / 0)
+        with self.assertRaises(ZeroDivisionError):
+            simulation.step(1)
+        with self.assertRaisesRegex(rouleau.Error, "ended in the middle"):
+            simulation.step(1)
+
+    def test_is_refused_with_the_slip_correction(self):
+        simulation = rouleau.Simulation(SMALL, **{"numerics.slip_correction": True})
+        with self.assertRaises(rouleau.Error) as raised:
+            simulation.add_force(lambda sim: 0)
+        self.assertEqual(raised.exception.pointer, "/numerics/slip_correction")
+        self.assertIn("slip_correction to false", raised.exception.remedy)
+
+
+class Errors(Case):
+    def test_have_place_and_remedy(self):
+        self.scene.write_text(json.dumps(SMALL).replace('"1.2 cP"', '"1.2 um"'))
+        with self.assertRaises(rouleau.Error) as raised:
+            rouleau.Simulation(self.scene)
+        error = raised.exception
+        self.assertEqual((error.file, error.pointer, error.line, error.exit_code), (str(self.scene), "/fluid/viscosity", 1, 2))
+        self.assertIn("1.2 um", error.problem)
+        with self.assertRaises(rouleau.Error) as raised:
+            rouleau.Simulation(SMALL, **{"fluid.viscosity": "1 um", "numerics.tau": -1})
+        self.assertEqual(len(raised.exception.faults), 2)
+        with self.assertRaises(rouleau.Error) as raised:
+            rouleau.Simulation(self.path / "nowhere.json")
+        self.assertEqual(raised.exception.exit_code, 4)
+
+    def test_say_that_a_check_has_failed(self):
+        simulation = rouleau.Simulation(SMALL, **{"checks.area_drift": 1e-12})
+        with self.assertRaises(rouleau.Error) as raised:
+            simulation.step(1000)
+        self.assertEqual(raised.exception.exit_code, 1)
+        self.assertIn("area_drift at step", raised.exception.problem)
+
+    def test_refuse_a_checkpoint_of_another_scene(self):
+        simulation = rouleau.Simulation(SMALL)
+        simulation.save(self.path / "saved")
+        scene = json.loads((self.path / "saved/scene.json").read_text())
+        scene["fluid"]["viscosity"] = "2 cP"
+        (self.path / "saved/scene.json").write_text(json.dumps(scene))
+        with self.assertRaisesRegex(rouleau.Error, "/fluid/viscosity"):
+            rouleau.Simulation.load(self.path / "saved")
+
+
+class Steps(Case):
+    SLOW = SOURCE / "scenes/four-cells-shear.json"
+
+    def test_are_interrupted_by_ctrl_c_between_two_of_them(self):
+        simulation = rouleau.Simulation(self.SLOW)
+        threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT)).start()
+        with self.assertRaises(KeyboardInterrupt):
+            simulation.step(10**6)
+        steps = simulation.step_count
+        self.assertGreater(steps, 0)
+        self.assertEqual(simulation.step(3), 3)
+        again = rouleau.Simulation(self.SLOW)
+        again.step(steps + 3)
+        self.assert_same_state(simulation, again)
+
+    def test_let_other_threads_run(self):
+        simulation = rouleau.Simulation(self.SLOW)
+        beats, stop = [], threading.Event()
+
+        def beat():
+            while not stop.is_set():
+                beats.append(1)
+                time.sleep(0.005)
+
+        thread = threading.Thread(target=beat)
+        thread.start()
+        before = len(beats)
+        simulation.step(200)
+        during = len(beats) - before
+        stop.set()
+        thread.join()
+        self.assertGreater(during, 5)
+
+
+if __name__ == "__main__":
+    program = unittest.main(argv=sys.argv[:1], verbosity=1, exit=False)
+    failed = len(program.result.failures) + len(program.result.errors)
+    print(f"{program.result.testsRun - failed} passed, {failed} failed")
+    sys.exit(1 if failed else 0)
