@@ -26,19 +26,19 @@ struct Command {
 
 constexpr std::array commands{
     Command{"run", "SCENE", "simulate a scene", run_command},
-    Command{"plan", "SCENE", "what a run would compute, leave out and cost, without stepping", plan_command},
+    Command{"plan", "SCENE", "what a run would compute and leave out, and how long it takes, without a step", plan_command},
     Command{"plugins", "[ID]", "models that were found, why some were refused; locks", plugins_command},
     Command{"conform", "MANIFEST...", "whether plugins do what the interface and their manifests say", conform_command},
     Command{"new", "KIND NAME", "source, manifest and build file of a new model; a scene to begin from", new_command},
     Command{"study", "STUDY", "error against run time over a matrix of settings", study_command},
-    Command{"limits", "LIMITS", "where a model breaks, and how", limits_command},
+    Command{"limits", "LIMITS", "where a simulation becomes unstable, and how", limits_command},
     Command{"verify", "DIR", "whether a finished run's files are what it wrote", verify_command},
     Command{"report", "DIR", "a run's page again, two runs side by side, or frames as pictures", report_command},
 };
 
 std::string overview() {
   std::string text =
-      "Rouleau simulates deformable red blood cells that attract each other while they flow.\n\n"
+      "Rouleau simulates deformable red blood cells that attract each other while they flow, in two dimensions.\n\n"
       "Usage: rouleau COMMAND ...\n\n";
   for (const Command& command : commands) {
     std::string call = std::string(command.name) + ' ' + command.arguments;
@@ -49,7 +49,8 @@ std::string overview() {
          "\n"
          "  --help, -h    this text; after a command: its own help\n"
          "  --version     the program's version\n\n"
-         "Example: rouleau run scenes/four-cells-shear.json\n";
+         "Start here: rouleau run scenes/four-cells-shear.json, then open the report that it names.\n"
+         "Pages: docs/first-run.md and docs/tutorial.md; when installed, in share/doc/Rouleau.\n";
 }
 
 int dispatch(const std::vector<std::string>& arguments) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -146,6 +147,16 @@ std::string number(double value, int digits) {
   std::array<char, 48> text{};
   std::snprintf(text.data(), text.size(), "%.*g", digits, value);
   return text.data();
+}
+
+std::string rounded(double value, int digits) {
+  const bool whole = std::abs(value) >= std::pow(10, digits) && std::abs(value) < 1e6;
+  return whole ? number(std::round(value), 7) : number(value, digits);
+}
+
+std::string time_in_words(double seconds) {
+  if (seconds < 120) return rounded(seconds, 2) + " s";
+  return seconds < 7200 ? rounded(seconds / 60, 2) + " min" : rounded(seconds / 3600, 2) + " h";
 }
 
 std::string indented(std::string problem) {

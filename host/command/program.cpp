@@ -14,6 +14,7 @@
 #include "base/faults.hpp"
 #include "base/foreign_call.hpp"
 #include "base/text.hpp"
+#include "terminal.hpp"
 
 namespace rouleau::command {
 
@@ -38,7 +39,13 @@ Error for_terminal(const Error& error) {
 }
 
 int fail(const std::string& message, int code) {
-  std::cerr << message << '\n';
+  // Place and problem in red; the lines below them say more.
+  const auto first_line = message.find('\n');
+  {
+    const Coloured red(std::cerr, Colour::red);
+    std::cerr << message.substr(0, first_line);
+  }
+  std::cerr << (first_line == std::string::npos ? "" : message.substr(first_line)) << '\n';
   return code;
 }
 

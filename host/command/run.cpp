@@ -16,7 +16,9 @@
 #include "plan/estimate.hpp"
 #include "report/report.hpp"
 #include "run/simulation.hpp"
+#include "run_words.hpp"
 #include "scene_options.hpp"
+#include "terminal.hpp"
 #include "trial/trial.hpp"
 
 namespace rouleau::command {
@@ -41,20 +43,25 @@ Example:
   rouleau run scenes/four-cells-shear.json --out runs/demo --overwrite --max-steps 2000
   rouleau run scenes/four-cells-shear.json --out runs/demo --resume
   rouleau run scenes/four-cells-shear.json --out runs/demo --overwrite --error-bar
-  rouleau run scenes/four-cells-shear.json --set /interactions/0/parameters/depth='"1.3e-6 J/m2"'
+  rouleau run scenes/four-cells-shear.json --set /interactions/0/parameters/depth="1.3e-6 J/m2"
 
 Exit codes: 0 done, 1 the simulation failed, 2 bad input, 3 a plugin was refused, 4 input/output, 130 interrupted
 )";
 
-std::string last_words(const std::string& outcome, bool aggregates, int count) {
-  if (!aggregates) return outcome;
-  return outcome + ", " + std::to_string(count) + (count == 1 ? " aggregate" : " aggregates");
-}
-
-/// Of a run that had ended before.
-std::string last_words(const std::filesystem::path& folder) {
+/// Writes the report, and says what came out: the status in green or red, `more`, the report's path.
+void close_run(const std::filesystem::path& folder, const std::vector<std::string>& more) {
+  const std::filesystem::path page = report::write_report(folder);
   const nlohmann::json summary = trial::read_summary(folder);
-  return last_words(summary.at("outcome"), !summary.at("aggregate_history").empty(), summary.at("aggregates_final"));
+  std::vector<std::string> lines = closing(summary);
+  {
+    const Coloured status(std::cout, summary.at("status") == "completed" ? Colour::green : Colour::red);
+    std::cout << lines.front();
+  }
+  std::cout << "\n";
+  lines.erase(lines.begin());
+  lines.insert(lines.end(), more.begin(), more.end());
+  for (const std::string& line : lines) std::cout << line << "\n";
+  std::cout << "report: " << page.string() << "\n" << std::flush;  // before what std::cerr may have to add
 }
 
 /// What the command line says about error bars.
@@ -98,8 +105,7 @@ int complete_error_bars(const std::filesystem::path& folder, const scene::Scene&
                         const std::string& again) {
   std::vector<std::string> lines;
   const bool whole = add_error_bars(folder, scene, choice, options, again, lines);
-  std::cout << report::write_report(folder).string() << "\n" << last_words(folder) << "\n";
-  for (const std::string& line : lines) std::cout << line << "\n";
+  close_run(folder, lines);
   return whole ? exit_code::done : exit_code::interrupted;
 }
 
@@ -177,7 +183,13 @@ int run_command(const std::vector<std::string>& arguments) {
   const plan::Plan plan = plan_and_place(read, catalog);  // before a directory is made
   const plan::PlanReport report = plan::make_report(plan);
   plan::require_memory(report.estimate.memory_bytes, "the run");
-  for (const std::string& warning : report.warnings) std::cerr << "warning: " << warning << "\n";
+  for (const std::string& warning : report.warnings) {
+    {
+      const Coloured yellow(std::cerr, Colour::yellow);
+      std::cerr << "warning: ";
+    }
+    std::cerr << warning << "\n";
+  }
 
   require_threads(run.threads);
   run.interrupted = &listen_for_interruption(limit);
@@ -203,6 +215,7 @@ int run_command(const std::vector<std::string>& arguments) {
     return complete_error_bars(folder, scene, numerics_choice, measure, again);
   }
   run::Summary summary;
+  if (!run.quiet) std::cerr << opening(plan, report, run.threads, processors, folder);
   {
     files::RunDirectory directory(folder, scene, former);
     if (resume && !directory.resumes()) {
@@ -235,17 +248,17 @@ int run_command(const std::vector<std::string>& arguments) {
   } else if (bars.asked_for && !whole && !summary.failure) {
     error_lines.emplace_back("no error bars: the run has not come to its end");
   }
-  const std::filesystem::path page = report::write_report(folder);
-  std::cout << page.string() << "\n"
-            << last_words(run::outcome(summary), !summary.aggregate_history.empty(), summary.aggregates_final) << "\n";
-  for (const std::string& line : error_lines) std::cout << line << "\n";
+  close_run(folder, error_lines);
   if (bars_interrupted) return exit_code::interrupted;
   if (summary.failure) {
     const monitor::Failure& f = *summary.failure;
-    std::cerr << f.reason << " at step " << f.step << ", strain " << f.strain;
-    if (f.cell >= 0) std::cerr << ", cell " << f.cell;
-    std::cerr << ", place (" << f.place[0] * 1e6 << ", " << f.place[1] * 1e6 << ") um\n  " << f.message << "\n  found "
-              << f.value << ", limit " << f.limit << "\n  " << f.remedy << "\n";
+    {
+      const Coloured red(std::cerr, Colour::red);
+      std::cerr << f.reason << " at step " << f.step << ", strain " << f.strain;
+      if (f.cell >= 0) std::cerr << ", cell " << f.cell;
+      std::cerr << ", place (" << f.place[0] * 1e6 << ", " << f.place[1] * 1e6 << ") um";
+    }
+    std::cerr << "\n  " << f.message << "\n  found " << f.value << ", limit " << f.limit << "\n  " << f.remedy << "\n";
   }
   if (summary.failure) return exit_code::simulation_failed;
   if (summary.status == "interrupted" && summary.checkpoint_step) {

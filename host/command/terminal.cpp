@@ -4,9 +4,11 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdlib>
 #include <iostream>
 #include <streambuf>
 #include <string>
+#include <string_view>
 
 #include "base/text.hpp"
 
@@ -19,6 +21,8 @@ class PrintableBuffer : public std::streambuf {
  public:
   explicit PrintableBuffer(int descriptor) : descriptor_(descriptor) {}
   [[nodiscard]] int descriptor() const { return descriptor_; }
+  /// Our own marks, which steer a terminal; everything before them must have been flushed.
+  [[nodiscard]] bool mark(const std::string& text) { return write_all(text) == 0; }
 
  protected:
   int_type overflow(int_type c) override {
@@ -32,6 +36,11 @@ class PrintableBuffer : public std::streambuf {
   int sync() override {
     const std::string text = printable_lines(pending_);
     pending_.clear();
+    return write_all(text);
+  }
+
+ private:
+  [[nodiscard]] int write_all(const std::string& text) const {
     for (std::size_t at = 0; at < text.size();) {
       const ssize_t written = ::write(descriptor_, text.data() + at, text.size() - at);
       if (written < 0 && errno == EINTR) continue;
@@ -41,13 +50,23 @@ class PrintableBuffer : public std::streambuf {
     return 0;
   }
 
- private:
   int descriptor_;
   std::string pending_;
 };
 
 // Never destroyed: the streams are flushed once more when the program ends.
 PrintableBuffer* standard_output = nullptr;
+
+bool plain_text_wanted() {
+  const char *no_color = std::getenv("NO_COLOR"), *term = std::getenv("TERM");
+  return (no_color != nullptr && *no_color != '\0') || (term != nullptr && std::string_view(term) == "dumb");
+}
+
+/// Null where it is no terminal, or colours are not wanted.
+PrintableBuffer* colour_terminal(const std::ostream& stream) {
+  auto* const buffer = dynamic_cast<PrintableBuffer*>(stream.rdbuf());
+  return buffer != nullptr && ::isatty(buffer->descriptor()) == 1 && !plain_text_wanted() ? buffer : nullptr;
+}
 
 }  // namespace
 
@@ -59,6 +78,17 @@ void take_terminal() {
   standard_output = new PrintableBuffer(own);
   std::cout.rdbuf(standard_output);
   if (fcntl(STDERR_FILENO, F_GETFD) >= 0) dup2(STDERR_FILENO, STDOUT_FILENO);
+}
+
+Coloured::Coloured(std::ostream& stream, Colour colour)
+    : stream_(stream.flush()), shown_(colour_terminal(stream) != nullptr) {
+  if (shown_) shown_ = colour_terminal(stream)->mark("\x1b[" + std::to_string(static_cast<int>(colour)) + "m");
+}
+
+Coloured::~Coloured() {
+  if (!shown_) return;
+  stream_.flush();
+  static_cast<void>(colour_terminal(stream_)->mark("\x1b[0m"));
 }
 
 void give_terminal_back() {

@@ -1,6 +1,8 @@
 // Standard output and standard error of the program, which no plugin can spoil.
 #pragma once
 
+#include <ostream>
+
 namespace rouleau::command {
 
 /// From here standard output belongs to std::cout alone: what anybody else prints there, a plugin for instance, goes to
@@ -10,5 +12,21 @@ void take_terminal();
 
 /// Standard output is the descriptor 1 again: for a program that this process becomes.
 void give_terminal_back();
+
+enum class Colour { red = 31, green = 32, yellow = 33 };
+
+/// What is printed to the stream meanwhile is coloured, if the stream is std::cout or std::cerr, leads to a terminal, and
+/// neither NO_COLOR (https://no-color.org) nor TERM=dumb asks for plain text.
+class Coloured {
+ public:
+  Coloured(std::ostream& stream, Colour colour);
+  ~Coloured();
+  Coloured(const Coloured&) = delete;
+  Coloured& operator=(const Coloured&) = delete;
+
+ private:
+  std::ostream& stream_;
+  bool shown_;
+};
 
 }  // namespace rouleau::command

@@ -15,7 +15,7 @@ double given_away(const core::Membranes& m) {
 }
 
 std::string without_energy(const char* kind, const std::string& model) {
-  return std::string(kind) + " " + model + " tells no energy";
+  return std::string(kind) + " " + model + " gives no energy";
 }
 
 }  // namespace

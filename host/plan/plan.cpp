@@ -40,7 +40,7 @@ void check_equilibria(const Plan& plan) {
   if (stage == plan.stages.end()) return;
   const auto refuse = [&](const PlannedModel& model) {
     throw Error(Cause::bad_input, plan.scene->place(stage->stage->pointer + "/until"),
-                "\"equilibrium\" goes by the energy of all cells, and " + model.manifest->id + " tells none",
+                "\"equilibrium\" needs the energy of all cells, and " + model.manifest->id + " gives none",
                 {"end the stage by \"at_rest\" or by duration"});
   };
   for (const PlannedModel& model : plan.interactions) {
@@ -83,7 +83,7 @@ void refuse_friction_on_walls(const PlannedModel& model, const scene::Scene& sce
 void choose_coupling(Plan& plan) {
   const std::string& wanted = plan.scene->numerics.coupling;
   if (!plan.has_cells) {
-    plan.coupling = "none, for the scene has no cells";
+    plan.coupling = "none: the scene has no cells";
     return;
   }
   if (wanted != "auto") {

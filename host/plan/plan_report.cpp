@@ -265,7 +265,11 @@ std::vector<std::string> warnings_of(const Plan& plan, const std::vector<Limit>&
   const bool chosen = choice && std::any_of(choice->values.begin(), choice->values.end(), [](const auto& value) {
                         return value.pointer == "/numerics/slip_correction";
                       });
-  if (scene.numerics.slip_correction && plan.has_interactions && !chosen) {
+  // Models that remember, such as bonds, may attract too, though they have no well.
+  const bool only_repulsion = deepest_well(plan, wells) == 0 &&
+                              std::all_of(plan.interactions.begin(), plan.interactions.end(),
+                                          [](const PlannedModel& model) { return model.manifest->state.empty(); });
+  if (scene.numerics.slip_correction && plan.has_interactions && !only_repulsion && !chosen) {
     warnings.emplace_back(
         "numerics.slip_correction with attracting cells: where the attraction is strong, cells leak more with it than "
         "without (docs/accuracy.md); watch area_leakage_max, or set it to false");

@@ -195,7 +195,7 @@ std::vector<Limit> find_limits(const Plan& plan) {
   add("tau - 1/2", tau - 0.5, 0.005, false, "raise numerics.tau above 0.505");
   if (plan.semi_implicit) {
     add("tau of the semi-implicit step", tau, least_semi_implicit_tau, false,
-        "raise numerics.tau, for the semi-implicit step gains nothing at low viscosity");
+        "raise numerics.tau: the semi-implicit step gains nothing at low viscosity");
   }
 
   for (const StageSetting& stage : plan.stages) {
@@ -272,20 +272,20 @@ std::vector<Limit> find_limits(const Plan& plan) {
       if (stage.index != 0) continue;
       if (shape.well) {
         add("equilibrium gap of " + named + " in lattice spacings", shape.well->distance, 2.0, false,
-            std::string("raise the resolution or place the well farther out, for membranes whose gap it does not "
-                        "resolve stick ") +
-                (wall ? "to the wall " : "") + "for ever",
+            std::string("raise the resolution or move the well outwards: where the lattice does not resolve the gap, "
+                        "membranes ") +
+                (wall ? "never leave the wall" : "never separate"),
             resolution);
         add("width of the well of " + named + " in lattice spacings", shape.well->width(),
             wall ? narrowest_well_of_a_wall : narrowest_well, false,
-            std::string("raise the resolution or take a wider well, for the corners of membranes catch ") +
+            std::string("raise the resolution or take a wider well: the corners of membranes catch ") +
                 (wall ? "in" : "on each other in") + " a narrow one",
             resolution);
       } else {
         add("range of the repulsion of " + named + " in lattice spacings", shape.range, 2.0, false,
-            wall ? "raise the resolution or the range, for nearer than that the lattice holds a membrane to the wall "
+            wall ? "raise the resolution or the range: nearer than that the lattice holds a membrane to the wall, "
                    "whatever acts between them"
-                 : "raise the resolution or the range, for nearer than that the lattice moves two membranes together "
+                 : "raise the resolution or the range: nearer than that the lattice moves two membranes together, "
                    "whatever acts between them",
             resolution);
       }
@@ -303,7 +303,7 @@ std::vector<Limit> find_limits(const Plan& plan) {
     add("shortest segment in lattice spacings", shortest, 0.4, false,
         "take fewer segments; about one for each spacing is best");
     add("longest segment in lattice spacings", longest, longest_segment, true,
-        "take more segments, for fluid leaks between nodes that lie far apart; about one for each spacing is best");
+        "take more segments, about one for each spacing: fluid leaks between nodes that lie far apart");
   }
   std::stable_sort(limits.begin(), limits.end(), [](const Limit& a, const Limit& b) { return a.margin < b.margin; });
   return limits;

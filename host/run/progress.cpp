@@ -46,45 +46,50 @@ int terminal_width() {
 
 double within_one(double fraction) { return std::isfinite(fraction) ? std::clamp(fraction, 0.0, 1.0) : 0.0; }
 
-/// The numbers of a line in their order, each with what it is worth where room is short.
+/// The numbers of a line in their order, each with what it is worth where room is short. Their widths do not change from
+/// one line to the next.
 struct Part {
   std::string text;
   int worth;
 };
-std::vector<Part> parts(const ProgressState& state, double rate, double remaining_s, bool brief) {
-  const char* const aggregates = brief ? "aggr." : state.aggregates == 1 ? "aggregate" : "aggregates";
-  return {{formatted(brief ? "%.0f%%" : "%3.0f%%", 100 * within_one(state.fraction)), 9},
-          {"ETA " + duration(remaining_s), 8},
-          {formatted("strain %.2f", state.strain), 7},
-          {formatted("%.0f steps/s", rate), 3},
-          {formatted(brief ? "Ma %.1g" : "Mach %.2g", state.mach_max), 1},
-          {formatted(brief ? "drift %.0e" : "area drift %.1e", state.area_drift), 2},
-          {formatted("%d %s", state.aggregates, aggregates), 4}};
+constexpr int worth_of_the_bar = 6;
+std::vector<Part> parts(const ProgressState& state, double rate, double remaining_s) {
+  return {{formatted("%3.0f%%", 100 * within_one(state.fraction)), 9},
+          {formatted("ETA %9s", duration(remaining_s).c_str()), 8},
+          {formatted("strain %5.2f", state.strain), 7},
+          {formatted("%5.0f steps/s", rate), 3},
+          {formatted("Mach %7.2g", state.mach_max), 1},
+          {formatted("area drift %7.1e", state.area_drift), 2},
+          {formatted(state.aggregates == 1 ? "%2d aggregate " : "%2d aggregates", state.aggregates), 4}};
 }
-std::string joined(const std::vector<Part>& parts, const char* between) {
+std::string joined(const std::vector<Part>& parts) {
   std::string text;
-  for (const Part& part : parts) text += (text.empty() ? "" : between) + part.text;
+  for (const Part& part : parts) text += "  " + part.text;
   return text;
 }
 
 }  // namespace
 
 std::string progress_line(const ProgressState& state, double rate, double remaining_s, std::size_t width) {
-  const std::string stage = state.stage.substr(0, 16) + " ";
-  const std::string whole = joined(parts(state, rate, remaining_s, false), "  ");
-  if (stage.size() + whole.size() <= width) {
-    const std::size_t free = width - stage.size() - whole.size();
-    constexpr std::size_t around = 2, shortest = 10, longest = 30;  // of the bar: its brackets, and between them
-    if (free < around + shortest) return stage + whole;
-    return stage + bar(within_one(state.fraction), static_cast<int>(std::min(longest, free - around))) + whole;
+  constexpr std::size_t around = 3, shortest = 10, longest = 30;  // of the bar: a space and its brackets, and between
+  const std::string stage = state.stage.substr(0, 16);
+  std::vector<Part> shown = parts(state, rate, remaining_s);
+  std::size_t bar_needs = around + shortest;
+  const auto least = [&] {
+    return std::min_element(shown.begin(), shown.end(), [](const Part& a, const Part& b) { return a.worth < b.worth; });
+  };
+  while (shown.size() > 1 && stage.size() + bar_needs + joined(shown).size() > width) {
+    if (bar_needs > 0 && least()->worth > worth_of_the_bar) {
+      bar_needs = 0;
+    } else {
+      shown.erase(least());
+    }
   }
-  std::vector<Part> shown = parts(state, rate, remaining_s, true);
-  const auto line = [&] { return stage + joined(shown, " "); };
-  while (shown.size() > 1 && line().size() > width) {
-    shown.erase(
-        std::min_element(shown.begin(), shown.end(), [](const Part& a, const Part& b) { return a.worth < b.worth; }));
-  }
-  return line().substr(0, width);
+  const std::string numbers = joined(shown);
+  if (bar_needs == 0) return (stage + numbers).substr(0, width);
+  const std::size_t free = width - std::min(width, stage.size() + numbers.size() + around);
+  return (stage + " " + bar(within_one(state.fraction), static_cast<int>(std::min(longest, free))) + numbers)
+      .substr(0, width);
 }
 
 Progress::Progress(bool quiet)
@@ -111,8 +116,8 @@ void Progress::update(const ProgressState& state) {
   last_step_ = state.step;
 
   if (!terminal_) {
-    std::fprintf(stderr, "%s  step %ld  %s\n", state.stage.c_str(), state.step,
-                 joined(parts(state, rate_, remaining, false), "  ").c_str());
+    std::fprintf(stderr, "%s  step %ld%s\n", state.stage.c_str(), state.step,
+                 joined(parts(state, rate_, remaining)).c_str());
     return;
   }
   const auto width = static_cast<std::size_t>(std::max(1, terminal_width() - 1));

@@ -17,8 +17,8 @@ struct ProgressState {
   int aggregates;
 };
 
-/// One line of at most `width` characters for a terminal. Where all of it has no room, what tells least is left out:
-/// first the bar, then the Mach number, the area drift, the speed, the aggregates.
+/// One line of at most `width` characters for a terminal. Where all of it has no room, what says least is left out: first
+/// the Mach number, then the area drift, the speed, the aggregates, and the bar after these.
 /// rate: steps per second; remaining_s: not finite where it is not known.
 std::string progress_line(const ProgressState& state, double rate, double remaining_s, std::size_t width);
 

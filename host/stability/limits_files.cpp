@@ -174,7 +174,7 @@ std::string limits_text(const Json& limits) {
     } else if (unstable.is_null()) {
       text << "stable throughout";
     } else {
-      text << (edge["direction"] == "above" ? "stable up to " : "stable down to ") << value(stable) << ", not at "
+      text << (edge["direction"] == "above" ? "stable up to " : "stable down to ") << value(stable) << ", fails at "
            << value(unstable) << ": ";
     }
     text << (edge["failure"].is_null() ? "" : failure_text(edge["failure"])) << "\n";

@@ -114,7 +114,6 @@ std::string name_of(const StudyData& study, const std::vector<int>& setting);
 /// "0.4 %", "0.12 deg", "3e-05".
 std::string error_in_words(const Quantity& quantity, double error);
 /// "0.8 s", "4.5 min", "2.1 h".
-std::string time_in_words(double seconds);
 /// Index of the point with this setting.
 std::optional<std::size_t> find_point(const StudyData& study, const std::vector<int>& setting);
 

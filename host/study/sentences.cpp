@@ -11,7 +11,7 @@ namespace {
 
 constexpr double of_no_target = std::numeric_limits<double>::quiet_NaN();
 
-/// "8 times cheaper than the default (6.4 s, 0.2 %)"
+/// "8 times faster than the default (6.4 s, 0.2 %)"
 std::string against_default(const StudyData& study, const Quantity& quantity, const std::vector<PointError>& errors,
                             std::size_t chosen) {
   const auto standard = find_point(study, study.default_setting);
@@ -19,10 +19,10 @@ std::string against_default(const StudyData& study, const Quantity& quantity, co
   if (*standard == chosen) return ", which is the default";
   const double ratio = study.points[*standard].wall_s / study.points[chosen].wall_s;
   const PointError& error = errors[*standard];
-  if (!std::isfinite(ratio) || !std::isfinite(error.error)) return "; the default has no value";
+  if (!std::isfinite(ratio) || !std::isfinite(error.error)) return "; the default setting has no result";
   const double times = std::max(ratio, 1 / ratio);
   const std::string more =
-      times < 1.05 ? "as dear as" : number(times, 2) + " times " + (ratio >= 1 ? "cheaper than" : "dearer than");
+      times < 1.05 ? "as fast as" : rounded(times, 2) + " times " + (ratio >= 1 ? "faster than" : "slower than");
   return ", " + more + " the default (" + time_in_words(study.points[*standard].wall_s) + ", " +
          error_in_words(quantity, error.error) + ")";
 }
@@ -47,15 +47,16 @@ StudySentence cheapest_below(const StudyData& study, const Quantity& quantity, c
            ")";
   };
   if (chosen) {
-    return {"cheapest below " + target + ": " + described(*chosen) +
+    return {"cheapest setting below " + target + " error: " + described(*chosen) +
                 against_default(study, quantity, analysis.errors, *chosen),
             quantity.target, chosen};
   }
   if (!nearest) {
     const std::string why = analysis.reference.why_not.empty() ? "no run has a value" : analysis.reference.why_not;
-    return {"no error can be told: " + why, quantity.target, std::nullopt};
+    return {"the error is not known: " + why, quantity.target, std::nullopt};
   }
-  return {"no setting is shown to be below " + target + "; nearest: " + described(*nearest), quantity.target, nearest};
+  return {"no setting is known to be below " + target + " error; nearest: " + described(*nearest), quantity.target,
+          nearest};
 }
 
 StudySentence largest_sensitivity(const StudyData& study, const Sensitivity& sensitivity) {
@@ -64,13 +65,11 @@ StudySentence largest_sensitivity(const StudyData& study, const Sensitivity& sen
   const StudyAxis& axis = study.axes[sensitivity.axis];
   const auto label = [&](std::size_t point) { return axis.labels[study.points[point].setting[sensitivity.axis]]; };
   const std::string elsewhere = name_of(study, rest);
-  const std::string price = sensitivity.time_factor == 1 ? "for the same time"
-                            : sensitivity.time_factor > 1
-                                ? "for " + number(sensitivity.time_factor, 3) + " times the time"
-                                : "and takes " + number(sensitivity.time_factor, 3) + " times the time";
-  return {"buys most error per second: " + axis.name + " " + label(sensitivity.to) + " instead of " +
-              label(sensitivity.from) + (elsewhere.empty() ? "" : " (" + elsewhere + ")") + " divides the error by " +
-              number(sensitivity.error_factor, 2) + " " + price,
+  const std::string time =
+      sensitivity.time_factor == 1 ? "the same time" : number(sensitivity.time_factor, 3) + " times the time";
+  return {"best trade: " + axis.name + " " + label(sensitivity.to) + " instead of " + label(sensitivity.from) +
+              (elsewhere.empty() ? "" : " (" + elsewhere + ")") + " makes the error " +
+              rounded(sensitivity.error_factor, 2) + " times smaller in " + time,
           of_no_target, sensitivity.to};
 }
 
@@ -80,10 +79,10 @@ std::vector<StudySentence> sentences_of(const StudyData& study, std::size_t quan
                                         const QuantityAnalysis& analysis) {
   std::vector<StudySentence> sentences{cheapest_below(study, study.quantities[quantity], analysis)};
   // A change of the error by less than this is lost in the noise of the clock.
-  constexpr double worth_telling = 1.2;
+  constexpr double worth_a_sentence = 1.2;
   const auto best =
       std::find_if(analysis.sensitivities.begin(), analysis.sensitivities.end(),
-                   [](const Sensitivity& sensitivity) { return sensitivity.error_factor >= worth_telling; });
+                   [](const Sensitivity& sensitivity) { return sensitivity.error_factor >= worth_a_sentence; });
   if (best != analysis.sensitivities.end()) sentences.push_back(largest_sensitivity(study, *best));
   if (!analysis.disagreement.empty()) sentences.push_back({analysis.disagreement, of_no_target, std::nullopt});
   return sentences;
@@ -99,13 +98,8 @@ std::string name_of(const StudyData& study, const std::vector<int>& setting) {
 }
 
 std::string error_in_words(const Quantity& quantity, double error) {
-  if (quantity.error == ErrorKind::relative) return number(100 * error, 2) + " %";
-  return number(error, 2) + (quantity.unit.empty() ? "" : " " + quantity.unit);
-}
-
-std::string time_in_words(double seconds) {
-  if (seconds < 120) return number(seconds, 2) + " s";
-  return seconds < 7200 ? number(seconds / 60, 2) + " min" : number(seconds / 3600, 2) + " h";
+  if (quantity.error == ErrorKind::relative) return rounded(100 * error, 2) + " %";
+  return rounded(error, 2) + (quantity.unit.empty() ? "" : " " + quantity.unit);
 }
 
 }  // namespace rouleau::study

@@ -224,7 +224,7 @@ TargetDecision ended(const Search& search, std::optional<std::size_t> point, boo
     const double ratio = standard ? search.cost[*standard] / search.cost[*point] : 0;
     if (standard && *standard == *point) result.sentence += ", which is the default";
     if (std::isfinite(ratio) && ratio > 1.05)
-      result.sentence += ", " + number(ratio, 2) + " times cheaper than the default";
+      result.sentence += ", " + rounded(ratio, 2) + " times faster than the default";
     return result;
   }
   result.sentence = goal + " cannot be shown to be met; nearest: " + name + " (" + numbers + ")";

@@ -17,6 +17,8 @@ ENVIRONMENT = {
     "ROULEAU_TIMING_LOCK": "the file that rouleau study locks while it takes times, so that two studies do not disturb each other",
     "XDG_RUNTIME_DIR": "the folder of that file, rouleau-timing.lock, where the variable above is not set; else /tmp",
     "UDUNITS2_XML_PATH": "the database of units, for UDUNITS-2",
+    "NO_COLOR": "not empty: no colours on a terminal",
+    "TERM": "dumb: no colours on a terminal",
 }
 
 

@@ -1,7 +1,8 @@
 """The pages of the documentation in reading order: what the site shows and the tests of tests/docs go through."""
 
 CHAPTERS = {
-    "Begin": ["README.md", "docs/install.md", "docs/first-run.md", "docs/faq.md"],
+    "Begin": ["README.md", "docs/install.md", "docs/first-run.md", "docs/tutorial.md", "docs/worked-scenes.md",
+              "docs/gallery.md", "docs/faq.md", "docs/glossary.md"],
     "Use": ["docs/scene.md", "docs/models.md", "docs/output.md", "docs/python.md", "docs/simulation.md", "docs/resume.md",
             "docs/rheology.md", "docs/study-quantities.md"],
     "Reference": ["docs/reference/scene.md", "docs/reference/models.md"],
@@ -9,5 +10,6 @@ CHAPTERS = {
                           "docs/performance.md"],
     "Extend": ["sdk/README.md", "docs/conformance.md", "docs/compatibility.md", "docs/trust.md", "docs/architecture.md",
                "docs/testing.md", "CONTRIBUTING.md"],
+    "Logs": ["docs/results/speed-2026-11.md", "docs/results/tests-2026-11.md"],
 }
 PAGES = [page for pages in CHAPTERS.values() for page in pages]

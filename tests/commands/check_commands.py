@@ -6,6 +6,7 @@ usage: check_commands.py ROULEAU PLUGIN_FOLDER SOURCE_FOLDER
 import hashlib
 import json
 import os
+import pty
 import re
 import shutil
 import signal
@@ -557,14 +558,48 @@ class Commands_do_what_they_say(Case):
         words = f"cut short by the limit of steps at step 20 of at most {summary['steps_at_most']}"
         self.assertGreater(summary["steps_at_most"], 10000)
         self.assertEqual(summary["outcome"], words)
-        self.assertTrue(result.stdout.splitlines()[-1].startswith(words), result.stdout)
+        self.assertTrue(result.stdout.startswith(words), result.stdout)
+
+    def on_a_terminal(self, *arguments, **environment):
+        """What a terminal of 80 columns shows of a run."""
+        process, terminal = pty.fork()
+        if process == 0:
+            os.chdir(self.path)
+            os.environ.update({"TERM": "xterm", **environment})
+            os.execv(self.rouleau.program, [str(self.rouleau.program), "run", str(SCENE), "--overwrite", *arguments])
+        shown = b""
+        try:
+            while part := os.read(terminal, 65536):
+                shown += part
+        except OSError:
+            pass  # how Linux says that the other end is closed
+        os.close(terminal)
+        _, status = os.waitpid(process, 0)
+        return os.waitstatus_to_exitcode(status), shown.decode().replace("\r\n", "\n")
+
+    def test_a_run_says_what_it_will_compute_and_what_came_out_with_colours_on_a_terminal_alone(self):
+        os.environ.pop("NO_COLOR", None)
+        code, shown = self.on_a_terminal("--max-steps", "20")
+        self.assertEqual(code, 0, shown)
+        self.assertTrue(shown.startswith("Four red cells gather into a rouleau and are sheared at 20 1/s\n"
+                                         "  50.2 x 25.1 um, 256 x 128 nodes, 4 cells; stages: aggregate, shear\n"), shown)
+        self.assertRegex(shown, r"\x1b\[32mcut short by the limit of steps at step 20 .*\x1b\[0m\n"
+                                r"the cells never touch: all 4 stay single\nlargest area drift .*\nreport: runs/\S+/report.html\n$")
+        code, shown = self.on_a_terminal("--set", "/fluid/viscosity=1 m")
+        self.assertEqual(code, 2, shown)
+        self.assertRegex(shown, r"^\x1b\[31m.* /fluid/viscosity\x1b\[0m\n")
+        for plain in ({"NO_COLOR": "1"}, {"TERM": "dumb"}):
+            self.assertNotIn("\x1b[3", self.on_a_terminal("--max-steps", "20", **plain)[1])
+        result = self.rouleau.run("run", SCENE, "--max-steps", "20", "--overwrite", cwd=self.path)
+        self.assertNotIn("\x1b", result.stdout + result.stderr)
+        self.assertIn("\n  into runs/four-cells-shear\n", result.stderr)
 
     def test_no_run_is_lost_to_a_later_one(self):
         scene = self.scene()
         for expected in ("scene", "scene-2", "scene-3"):
             result = self.rouleau.run("run", scene, *SHORT, cwd=self.path)
             self.assertEqual(result.returncode, 0, result.stderr)
-            self.assertEqual(result.stdout.splitlines()[0], f"runs/{expected}/report.html")
+            self.assertEqual(result.stdout.splitlines()[-1], f"report: runs/{expected}/report.html")
         before = (self.path / "runs/scene/summary.json").read_bytes()
         again = ("run", scene, "--out", self.path / "runs/scene", *SHORT)
         self.assert_stops(self.rouleau.run(*again), 2, str(self.path / "runs/scene"), "--overwrite", "--out")

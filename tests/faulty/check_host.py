@@ -7,6 +7,7 @@ FOLDER holds the built plugins as CHECK/NAME/NAME.json. Python's standard librar
 import copy
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -90,8 +91,9 @@ class A_plugin_that_misbehaves(unittest.TestCase):
         end = self.rouleau("plan", "quiet/prints", "--json")
         self.assertEqual(end.returncode, 0, end.stderr)
         json.loads(end.stdout)
-        end = self.run_steps("quiet/prints")
-        self.assertEqual((end.returncode, end.stdout), (0, self.run_steps("honest/honest-potential", "--overwrite").stdout))
+        ends = [self.run_steps("quiet/prints"), self.run_steps("honest/honest-potential", "--overwrite")]
+        said = [re.sub(r" in .* MLUPS", "", end.stdout) for end in ends]
+        self.assertEqual((ends[0].returncode, said[0]), (0, said[1]))
 
     def test_that_takes_the_place_of_a_locked_one_is_never_run(self):
         """A library that is exchanged all the time: what was hashed is what is loaded."""

@@ -317,7 +317,7 @@ TEST_CASE("a decaying vortex between periodic sides loses what viscosity takes",
   }
 }
 
-TEST_CASE("a law that acts and tells no energy leaves the total unknown, and says which it is", "[energy]") {
+TEST_CASE("a law that acts and gives no energy leaves the total unknown, and says which it is", "[energy]") {
   const auto [folder, law] =
       GENERATE(table<std::string, std::string>({{"membrane/neo-hookean/neo-hookean", "membrane law neo-hookean"},
                                                 {"interaction/morse/morse", "interaction morse"}}));
@@ -341,7 +341,7 @@ TEST_CASE("a law that acts and tells no energy leaves the total unknown, and say
   solver.fluid().settle();
   const EnergySnapshot e = observe_energy(solver, membranes, plan.stages[0].units);
   CHECK(std::isnan(e.total));
-  CHECK(e.unknown == law + " tells no energy");
+  CHECK(e.unknown == law + " gives no energy");
   CHECK(std::isfinite(e.kinetic));
 }
 

@@ -44,9 +44,9 @@ TEST_CASE("an energy that only falls has not grown, and one that nobody tells is
   CHECK(history.summary()["stages_at_rest"][0]["time_s"].is_null());
   Snapshot silent = with_energy(1, 2, 1, 1);
   silent.energy.total = EnergySnapshot::none;
-  silent.energy.unknown = "membrane law x tells no energy";
+  silent.energy.unknown = "membrane law x gives no energy";
   history.follow(silent, false);
-  CHECK(history.summary()["unknown"] == "membrane law x tells no energy");
+  CHECK(history.summary()["unknown"] == "membrane law x gives no energy");
   CHECK(history.summary()["stages_at_rest"].size() == 1);
 }
 

@@ -177,6 +177,23 @@ TEST_CASE(
   CHECK(to_json(plan, report)["numerics_choice"]["target_error"] == 0.01);
 }
 
+TEST_CASE("slip correction is warned of with attraction, not with repulsion alone") {
+  const plugin::Catalog catalog({ROULEAU_PLUGINS});
+  const auto warned = [&](const std::string& interactions) {
+    const scene::Scene scene = read_scene(std::string(ROULEAU_SCENES) + "/four-cells-shear.json",
+                                          {"/numerics/slip_correction=true", "/interactions=" + interactions});
+    const PlanReport report = make_report(make_plan(scene, catalog));
+    return std::any_of(report.warnings.begin(), report.warnings.end(), [](const std::string& warning) {
+      return warning.starts_with("numerics.slip_correction with attracting cells");
+    });
+  };
+  const std::string repulsion = R"({"between": ["rbc", "rbc"], "model": "repulsion",
+                                    "parameters": {"strength": "1e-7 J/m2", "cutoff": "1 um"}})";
+  const std::string morse = R"({"between": ["rbc", "rbc"], "model": "morse", "parameters": {"depth": "1e-8 J/m2"}})";
+  CHECK_FALSE(warned("[" + repulsion + "]"));
+  CHECK(warned("[" + repulsion + ", " + morse + "]"));
+}
+
 TEST_CASE("strain of an oscillating stage is the integral of the shear rate's magnitude") {
   const double base = GENERATE(0.0, 0.3, -0.3, 1.7, -1.7), amplitude = GENERATE(1.0, -1.0);
   StageSetting setting{};

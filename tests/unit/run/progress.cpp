@@ -17,24 +17,30 @@ TEST_CASE("a line of progress fits its terminal, and says what matters most long
     const std::string line = progress_line(state, 98765, 3.6e8, width);
     INFO(line);
     CHECK(line.size() <= width);
-    if (width >= 50) CHECK((shows(line, " 42% ") && shows(line, " ETA 100000:00 h")));
+    if (width >= 50) CHECK((shows(line, "  42%") && shows(line, "  ETA 100000:00 h")));
     // No number is cut: each stands with its word, or not at all.
-    if (width >= 50)
-      CHECK((line.ends_with("strain 12.35") || line.ends_with("12 aggregates") || line.ends_with("12 aggr.") ||
-             line.ends_with(" h")));
-    if (shows(line, " Ma")) CHECK((shows(line, "drift") && shows(line, "steps/s") && shows(line, "12 aggr")));
-    if (shows(line, "drift")) CHECK((shows(line, "steps/s") && shows(line, "12 aggr")));
-    if (shows(line, "[")) CHECK((shows(line, "Mach 0.0012") && shows(line, "]")));
+    if (width >= 50) CHECK((line.ends_with("strain 12.35") || line.ends_with("12 aggregates") || line.ends_with(" h")));
+    if (shows(line, "Mach")) CHECK(shows(line, "drift"));
+    if (shows(line, "drift")) CHECK(shows(line, "steps/s"));
+    if (shows(line, "steps/s")) CHECK(shows(line, "12 aggregates"));
+    if (shows(line, "12 aggregates")) CHECK(shows(line, "["));
+    if (shows(line, "[")) CHECK((shows(line, "strain 12.35") && shows(line, "]")));
   }
+}
+
+TEST_CASE("a terminal of 80 columns has a bar, and its numbers stay in their places") {
   ProgressState usual = state;
   usual.stage = "shear";
-  CHECK(progress_line(usual, 12345, 65, 79) ==  // of 80 columns, the last stays free
-        "shear 42% ETA 1:05 min strain 12.35 12345 steps/s Ma 0.001 drift 4e-04 12 aggr.");
+  CHECK(progress_line(usual, 12345, 65, 79) ==  // the last column stays free
+        "shear [========>            ]   42%  ETA  1:05 min  strain 12.35  12 aggregates");
+  const std::string early = progress_line({0, 0, "shear", 0, 0, 0, 4}, 0, 59, 79);
+  CHECK(early == "shear [                     ]    0%  ETA      59 s  strain  0.00   4 aggregates");
 }
 
 TEST_CASE("what is not known yet does not spoil a line of progress") {
   const double none = std::numeric_limits<double>::quiet_NaN();
   const std::string line = progress_line({0, none, "shear", 0, none, none, 1}, 0, none, 120);
   CHECK(line.starts_with("shear [          "));
-  CHECK(shows(line, "  0%  ETA ?  strain 0.00  0 steps/s  Mach nan  area drift nan  1 aggregate"));
+  CHECK(shows(line,
+              "    0%  ETA         ?  strain  0.00      0 steps/s  Mach     nan  area drift     nan   1 aggregate"));
 }

@@ -109,7 +109,7 @@ TEST_CASE("a study that cannot be extrapolated says why", "[analysis]") {
   CHECK(a.reference.why_not.find("no axis along the line refines the lattice") == 0);
   CHECK(a.front.empty());
   REQUIRE(a.sentences.size() == 1);
-  CHECK(a.sentences[0].text.find("no error can be told: no axis along the line refines") == 0);
+  CHECK(a.sentences[0].text.find("the error is not known: no axis along the line refines") == 0);
   study.resolutions = {10, 20};
   study.schemes = {"plain"};
   StudyData few = study.data();
@@ -199,23 +199,23 @@ TEST_CASE("one sentence names the cheapest setting below the target and what it 
   study.reference = {ReferenceKind::value, 2, 0, "made up", {}};
   const QuantityAnalysis a = analyse(study.data(), 0);
   REQUIRE(a.sentences.size() == 2);
-  CHECK(
-      a.sentences[0].text ==
-      "cheapest below 1 %: resolution 15, scheme corrected (5.6 s, 0.89 %), 2.9 times cheaper than the default (16 s, "
-      "2 %)");
+  CHECK(a.sentences[0].text ==
+        "cheapest setting below 1 % error: resolution 15, scheme corrected (5.6 s, 0.89 %), 2.9 times faster than the "
+        "default (16 s, 2 %)");
   CHECK(a.sentences[0].point == std::optional<std::size_t>(3));
   CHECK(a.sentences[0].target == 0.01);
-  CHECK(a.sentences[1].text ==
-        "buys most error per second: scheme corrected instead of plain (resolution 40) divides the error by 8 for 1.1 "
-        "times the time");
+  CHECK(
+      a.sentences[1].text ==
+      "best trade: scheme corrected instead of plain (resolution 40) makes the error 8 times smaller in 1.1 times the "
+      "time");
   StudyData strict = study.data();
   strict.quantities[0].target = 1e-6;
   CHECK(analyse(strict, 0).sentences[0].text ==
-        "no setting is shown to be below 0.0001 %; nearest: resolution 40, scheme corrected (4.7 min, 0.12 %)");
+        "no setting is known to be below 0.0001 % error; nearest: resolution 40, scheme corrected (4.7 min, 0.12 %)");
   strict.quantities[0].target = 0.5;
   strict.default_setting = {0, 0};
   CHECK(analyse(strict, 0).sentences[0].text ==
-        "cheapest below 50 %: resolution 10, scheme plain (1 s, 4 %), which is the default");
+        "cheapest setting below 50 % error: resolution 10, scheme plain (1 s, 4 %), which is the default");
 }
 
 TEST_CASE("study.json gets the conclusions, with null where nothing is defined", "[analysis]") {

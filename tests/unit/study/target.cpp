@@ -85,7 +85,7 @@ TEST_CASE("without a reference, three grids around the answer show that it meets
   CHECK(found.decision.estimated_error >= true_error(made_up, study, 3, 2) - found.decision.uncertainty);
   CHECK(found.decision.sentence.find(
             "deformation to 1 %: resolution 15, scheme corrected (estimated error 0.53 % +- ") == 0);
-  CHECK(found.decision.sentence.find("2.9 times cheaper than the default") != std::string::npos);
+  CHECK(found.decision.sentence.find("2.9 times faster than the default") != std::string::npos);
   // The finest grids were not needed.
   CHECK(!study.points[8].tried);
   CHECK(!study.points[9].tried);
@@ -235,7 +235,7 @@ TEST_CASE("on random studies, what is said to meet the target does", "[target][s
   const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
   constexpr int rounds = 1500;
   int met = 0, wrong = 0, could = 0;
-  std::vector<double> dearer, spent;
+  std::vector<double> costs, spent;
   for (int round = 0; round < rounds; ++round) {
     MadeUpStudy made_up;
     made_up.resolutions = {8, 10, 15, 20, 30, 40};
@@ -262,15 +262,15 @@ TEST_CASE("on random studies, what is said to meet the target does", "[target][s
     REQUIRE(best.has_value());
     if (true_error(made_up, study, *found.decision.point, truth) > target) ++wrong;
     const double cost = study.points[*best].estimated_s;
-    dearer.push_back(study.points[*found.decision.point].estimated_s / cost);
+    costs.push_back(study.points[*found.decision.point].estimated_s / cost);
     spent.push_back(found.spent / cost);
   }
-  std::sort(dearer.begin(), dearer.end());
+  std::sort(costs.begin(), costs.end());
   std::sort(spent.begin(), spent.end());
   std::cout << "target " << 100 * target << " %, reference " << (given ? "given" : "extrapolated") << ": met " << met
-            << " of " << could << " that could be, " << wrong << " wrongly; chosen point " << dearer[dearer.size() / 2]
-            << " times as dear as the cheapest (median; 9 of 10 below " << dearer[dearer.size() * 9 / 10]
-            << "), search " << spent[spent.size() / 2] << " times (median)\n";
+            << " of " << could << " that could be, " << wrong << " wrongly; chosen point " << costs[costs.size() / 2]
+            << " times the cost of the cheapest (median; 9 of 10 below " << costs[costs.size() * 9 / 10] << "), search "
+            << spent[spent.size() / 2] << " times (median)\n";
   CHECK(wrong <= 0.01 * met);
   // A limit is known to little better than the finest grid's error, so that not all that meet a target can be shown to.
   CHECK(met >= (given ? 0.9 : 0.5) * could);

@@ -1,0 +1,136 @@
+#include "run_words.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "base/text.hpp"
+
+namespace rouleau::command {
+
+namespace {
+
+using Json = nlohmann::json;
+
+std::string counted(double count, const std::string& what) {
+  return number(count, 12) + " " + what + (count == 1 ? "" : "s");
+}
+
+std::string size_in_words(double bytes) {
+  if (bytes < 1e6) return rounded(std::ceil(bytes / 1e3), 2) + " kB";
+  return bytes < 1e9 ? rounded(bytes / 1e6, 2) + " MB" : rounded(bytes / 1e9, 2) + " GB";
+}
+
+using Members = std::vector<int>;
+
+struct Event {
+  double strain, time;
+  std::vector<Members> aggregates;
+  [[nodiscard]] const Members& largest() const {
+    return *std::max_element(aggregates.begin(), aggregates.end(),
+                             [](const Members& a, const Members& b) { return a.size() < b.size(); });
+  }
+  [[nodiscard]] bool holds(const Members& wanted) const {
+    return std::any_of(aggregates.begin(), aggregates.end(), [&](const Members& members) {
+      return std::includes(members.begin(), members.end(), wanted.begin(), wanted.end());
+    });
+  }
+};
+
+/// Strain says more than time once there is any.
+std::string moment(const Event& event) {
+  return std::abs(event.strain) > 1e-9 ? "strain " + number(event.strain, 3) : number(event.time, 3) + " s";
+}
+
+std::vector<Event> events_of(const Json& history) {
+  std::vector<Event> events;
+  for (const Json& entry : history) {
+    Event event{entry.at("strain"), entry.at("time_s"), entry.at("members")};
+    for (Members& members : event.aggregates) std::sort(members.begin(), members.end());
+    if (!event.aggregates.empty()) events.push_back(std::move(event));
+  }
+  return events;
+}
+
+/// When the largest aggregate formed and broke for good, and how the cells ended; empty for fewer than two cells.
+std::string aggregation_in_words(const std::vector<Event>& events) {
+  if (events.empty()) return {};
+  const Event& last = events.back();
+  std::size_t cells = 0;
+  for (const Members& members : last.aggregates) cells += members.size();
+  if (cells < 2) return {};
+
+  const auto formed = std::max_element(events.begin(), events.end(), [](const Event& a, const Event& b) {
+    return a.largest().size() < b.largest().size();
+  });
+  const Members members = formed->largest();
+  if (members.size() < 2) return "the cells never touch: all " + std::to_string(cells) + " stay single";
+  std::string words = "rouleau of " + std::to_string(members.size()) +
+                      (formed == events.begin() ? " from the start" : " at " + moment(*formed));
+  if (last.holds(members)) return words + "; still whole at the end";
+
+  const auto broken = std::find_if(events.rbegin(), events.rend(), [&](const Event& e) { return e.holds(members); });
+  words += "; broke at " + moment(*broken.base());
+  if (last.aggregates.size() < cells)
+    return words + "; " + counted(static_cast<double>(last.aggregates.size()), "aggregate") + " of " +
+           std::to_string(cells) + " cells at the end, single ones included";
+  const auto alone =
+      std::find_if(events.rbegin(), events.rend(), [&](const Event& e) { return e.aggregates.size() < cells; });
+  return words + "; all single from " + moment(*alone.base());
+}
+
+/// Of the last stage that has one: mean and standard deviation over the outputs of the stage's second half.
+std::string viscosity_in_words(const Json& summary) {
+  if (summary.contains("error_bars") && summary.at("error_bars").contains("relative_viscosity")) return {};
+  const Json& stages = summary.at("rheology");
+  for (auto stage = stages.rbegin(); stage != stages.rend(); ++stage) {
+    const Json& means = stage->at("means");
+    if (!means.is_object() || !means.contains("relative_viscosity")) continue;
+    const Json& viscosity = means.at("relative_viscosity");
+    if (!viscosity.is_object() || !viscosity.at("mean").is_number()) continue;
+    const Json& deviation = viscosity.at("deviation");  // null where a single output has a value
+    return "relative viscosity " + number(viscosity.at("mean"), 4) +
+           (deviation.is_number() ? ", standard deviation " + number(deviation, 2) : "") + " over the second half of " +
+           stage->at("stage").get<std::string>();
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string opening(const plan::Plan& plan, const plan::PlanReport& report, int threads, int processors,
+                    const std::filesystem::path& folder) {
+  const scene::Scene& scene = *plan.scene;
+  std::string size, nodes;
+  for (const double length : scene.domain.size) size += (size.empty() ? "" : " x ") + number(length * 1e6, 3);
+  for (const int count : scene.domain.nodes) nodes += (nodes.empty() ? "" : " x ") + std::to_string(count);
+  std::vector<std::string> stages;
+  for (const scene::Stage& stage : scene.stages) stages.push_back(stage.name);
+  const plan::Estimate& estimate = report.estimate;
+  return (scene.title.empty() ? "untitled scene" : scene.title) + "\n  " + size + " um, " + nodes + " nodes, " +
+         counted(static_cast<double>(scene.cells.size()), "cell") + "; stages: " + listed(stages) + "\n  at most " +
+         counted(estimate.steps, "step") + ", about " + time_in_words(estimate.wall_s / threads) + " on " +
+         counted(threads, "thread") + " (the machine has " + counted(processors, "processor") + "), " +
+         size_in_words(estimate.output.bytes()) + " of output\n  into " + folder.string() + "\n";
+}
+
+std::vector<std::string> closing(const Json& summary) {
+  std::string ended = summary.at("outcome").get<std::string>() + " in " + time_in_words(summary.at("wall_s")) + " (" +
+                      counted(summary.at("threads"), "thread");
+  if (summary.at("mlups").is_number()) ended += ", " + rounded(summary.at("mlups"), 3) + " MLUPS";
+  ended += "): " + number(summary.at("simulated_time_s"), 3) + " s simulated";
+  if (summary.at("strain").is_number() && std::abs(summary.at("strain").get<double>()) > 1e-9)
+    ended += ", strain " + number(summary.at("strain"), 3);
+  std::vector<std::string> lines{ended};
+
+  const std::vector<Event> events = events_of(summary.at("aggregate_history"));
+  if (const std::string words = aggregation_in_words(events); !words.empty()) lines.push_back(words);
+  std::string physics = viscosity_in_words(summary);
+  const Json& drift = summary.at("conservation").at("area_drift_max");
+  if (!events.empty() && drift.is_number())
+    physics += (physics.empty() ? "" : "; ") + ("largest area drift " + number(100 * drift.get<double>(), 2) + " %");
+  if (!physics.empty()) lines.push_back(physics);
+  return lines;
+}
+
+}  // namespace rouleau::command

@@ -1,0 +1,37 @@
+// Typesets the formulas of a page, and searches all pages: lunr over search.js, which scripts/docs writes.
+"use strict";
+
+for (const formula of document.querySelectorAll(".math")) {
+  katex.render(formula.textContent, formula, {displayMode: formula.tagName === "DIV", throwOnError: false});
+}
+
+const field = document.getElementById("search"), found = document.getElementById("found");
+let index = null;
+
+function sections() {
+  index ??= lunr(function () {
+    this.ref("number");
+    this.field("title", {boost: 5});
+    this.field("text");
+    searchable.forEach((section, number) => this.add({number, ...section}));
+  });
+  const words = field.value.toLowerCase().match(/[\w.-]+/g) ?? [];
+  if (!words.length) return [];
+  // The last word may still be incomplete.
+  const all = query => words.forEach((word, place) => query.term(word, {
+    presence: lunr.Query.presence.REQUIRED,
+    wildcard: place === words.length - 1 ? lunr.Query.wildcard.TRAILING : lunr.Query.wildcard.NONE}));
+  return index.query(all).slice(0, 12).map(result => searchable[result.ref]);
+}
+
+field.addEventListener("input", () => {
+  found.replaceChildren(...sections().map(({page, anchor, title, of}) => {
+    const item = document.createElement("li"), link = document.createElement("a"), place = document.createElement("small");
+    link.href = page + (anchor ? "#" + anchor : "");
+    link.textContent = title;
+    place.textContent = of === title ? "" : " " + of;
+    item.append(link, place);
+    return item;
+  }));
+  if (field.value.trim() && !found.children.length) found.textContent = "Nothing found";
+});

@@ -1,0 +1,73 @@
+// What a run says of itself at its end.
+#include "command/run_words.hpp"
+
+#include <catch2/catch.hpp>
+
+using rouleau::command::closing;
+using Json = nlohmann::json;
+
+namespace {
+
+using Groups = std::vector<std::vector<int>>;
+
+Json event(double strain, double time, const Groups& members) {
+  return {{"strain", strain}, {"time_s", time}, {"count", members.size()}, {"members", members}};
+}
+
+Json summary_with(const std::vector<Json>& history) {
+  return {{"outcome", "completed after 1000 steps"},
+          {"status", "completed"},
+          {"wall_s", 15.2},
+          {"threads", 1},
+          {"mlups", 1322.4},
+          {"simulated_time_s", 7.75},
+          {"strain", 15.0},
+          {"aggregate_history", history},
+          {"rheology", Json::array()},
+          {"conservation", {{"area_drift_max", 0.00104}}}};
+}
+
+const Groups apart{{0}, {1}, {2}, {3}}, together{{0, 1, 2, 3}}, middle{{0}, {1, 2}, {3}};
+
+std::string aggregation(const std::vector<Json>& history) { return closing(summary_with(history)).at(1); }
+
+}  // namespace
+
+TEST_CASE("a run says how it ended, what it cost, when the largest rouleau formed and broke, and the physics") {
+  Json summary = summary_with({event(0, 0, apart), event(0, 0.35, Groups{{0, 1}, {2, 3}}), event(0, 2.1, together),
+                               event(8.75, 7.44, middle), event(10, 7.5, apart), event(12.5, 7.625, middle),
+                               event(13, 7.65, apart)});
+  summary["rheology"] = {
+      {{"stage", "rest"}, {"means", {{"relative_viscosity", nullptr}}}},
+      {{"stage", "shear"}, {"means", {{"relative_viscosity", {{"mean", 1.17471}, {"deviation", 0.0309}}}}}}};
+  CHECK(
+      closing(summary) ==
+      std::vector<std::string>{
+          "completed after 1000 steps in 15 s (1 thread, 1322 MLUPS): 7.75 s simulated, strain 15",
+          "rouleau of 4 at 2.1 s; broke at strain 8.75; all single from strain 13",
+          "relative viscosity 1.175, standard deviation 0.031 over the second half of shear; largest area drift 0.1 %"});
+  summary["rheology"][1]["means"]["relative_viscosity"]["deviation"] = nullptr;  // of a single output
+  CHECK(closing(summary).back() == "relative viscosity 1.175 over the second half of shear; largest area drift 0.1 %");
+  // The error bar of the viscosity has a line of its own.
+  summary["error_bars"] = {{"relative_viscosity", {{"value", 1.17471}, {"error", 0.004}}}};
+  CHECK(closing(summary).back() == "largest area drift 0.1 %");
+}
+
+TEST_CASE("what becomes of a rouleau is said as it happened") {
+  CHECK(aggregation({event(0, 0, together)}) == "rouleau of 4 from the start; still whole at the end");
+  CHECK(aggregation({event(0, 0, apart)}) == "the cells never touch: all 4 stay single");
+  CHECK(aggregation({event(0, 0, together), event(3, 1, middle)}) ==
+        "rouleau of 4 from the start; broke at strain 3; 3 aggregates of 4 cells at the end, single ones included");
+  // A gap that closes again is no end of it.
+  CHECK(aggregation({event(0, 0, together), event(3, 1, middle), event(4, 2, together)}) ==
+        "rouleau of 4 from the start; still whole at the end");
+  // Cells driven by pressure have no strain: the time says when.
+  CHECK(aggregation({event(0, 0, together), event(0, 1.25, middle), event(0, 2, apart)}) ==
+        "rouleau of 4 from the start; broke at 1.25 s; all single from 2 s");
+}
+
+TEST_CASE("a fluid without cells, or with one, says nothing of aggregates") {
+  CHECK(closing(summary_with({})).size() == 1);
+  CHECK(closing(summary_with({event(0, 0, Groups(1, {0}))})) ==
+        std::vector<std::string>{closing(summary_with({})).front(), "largest area drift 0.1 %"});
+}
