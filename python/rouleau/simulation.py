@@ -177,9 +177,9 @@ class Simulation:
         of depth, shape (nodes, 2) or what can be broadcast to it. None takes it away.
 
         It is asked when the forces of the models are known, and reads positions and velocities. Python is entered once
-        a step: that and numpy cost 15 to 20 us, beside 0.1 ms and more for a step of the smallest scenes. An exception
-        that it raises comes out of step(), and leaves a simulation that cannot go on. Raises rouleau.Error for scenes
-        with slip_correction. Checkpoints do not hold it."""
+        a step: that costs some 14 us for 48 nodes, beside 17 us for a step of the smallest scene and 0.3 ms for one of
+        four cells. An exception that it raises comes out of step(), and leaves a simulation that cannot go on. Raises
+        rouleau.Error for scenes with slip_correction. Checkpoints do not hold it."""
         if force is None:
             self._core.set_force(None)
             return

@@ -88,7 +88,7 @@ class In_the_shell(unittest.TestCase):
 
     def test_the_man_page_names_every_environment_variable_that_the_program_reads(self):
         source = "".join(path.read_text() for path in (SOURCE / "host").rglob("*.cpp"))
-        read = set(re.findall(r'getenv\("(\w+)"\)', source)) | {"UDUNITS2_XML_PATH"}  # which the library reads
+        read = set(re.findall(r'(?:getenv|absolute_folder)\("(\w+)"\)', source)) | {"UDUNITS2_XML_PATH"}  # which the library reads
         self.assertGreaterEqual(read, {"ROULEAU_PLUGIN_PATH", "ROULEAU_TIMING_LOCK", "XDG_RUNTIME_DIR"})
         section = (MADE / "rouleau.1").read_text().split(".SH ENVIRONMENT\n")[1].split(".SH ")[0]
         self.assertEqual(set(re.findall(r"^\.TP\n(\w+)$", section, re.MULTILINE)), read)
