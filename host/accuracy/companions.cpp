@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 #include "base/text.hpp"
 #include "json/document.hpp"
@@ -16,16 +17,22 @@ namespace rouleau::accuracy {
 namespace {
 
 using Json = nlohmann::json;
+using namespace nlohmann::literals;
 
 // Nearer lattices differ too little, and on coarser ones nothing was measured (docs/accuracy.md, "Error bars").
 constexpr double least_refinement = 4.0 / 3, most_refinement = 2.5;
 constexpr double least_radius = 4;  ///< of the smallest cell on a companion's lattice, spacings
 // Shares of the run's time: of steps, at most and where starting the companions takes the rest; seconds to start one.
-constexpr double most_share = 0.32, least_share = 0.2, start_s = 0.08;
-/// The companion for inertia keeps its time step, for the relaxation time makes up for its density: it shows nothing of
-/// the step's own error, which is the lattice's, and costs less. Half the density is nearer to the truth; where that
-/// would want a relaxation time beyond this one, whose own error is large, it is twice the density. In the plain scheme
-/// slip and leak change with tau, which stays.
+constexpr double most_share = 0.36, least_share = 0.25, start_s = 0.02;
+constexpr double outputs_of_tables = 0.5;  ///< what they cost over those of a run, which writes frames
+
+constexpr double to_the_coarsest = 1.25;  ///< spacing of the companion for the order over that for the lattice
+constexpr double least_to_the_coarsest = 1.15, most_to_the_coarsest = 1.4;
+/// Half the density is nearer to the truth, and keeps the relaxation time, with which the lattice's share of a viscosity
+/// changes. Where moments are reported (whose errors grow with the time step, too, while viscosities are beside the
+/// point) the companion keeps its time step instead, for the relaxation time makes up for its density: it shows nothing
+/// of the step's own error, which is the lattice's, and costs less. Where that would want a relaxation time beyond this
+/// one, whose own error is large, it is twice the density. In the plain scheme slip and leak change with tau.
 constexpr double light = 0.5, dense = 2, largest_tau = 3;
 /// A start that makes a stage late by less than this share of its strain changes in proportion to the density, and the
 /// companion for inertia shows it.
@@ -33,6 +40,10 @@ constexpr double slight_start = 0.1;
 /// Checks end a run before it writes garbage; a companion's coarse lattice comes nearer to them, and how wrong it is is
 /// what is asked.
 constexpr double wider_checks = 4;
+
+/// Outputs of a run that reports moments, beyond which companions have `fewer` times fewer of them: between theirs moments
+/// are known well enough (Quantity::uncertainty).
+constexpr long many_outputs = 200, fewer = 4;
 
 bool starts_at_rest(const scene::Stage& stage, const scene::Scene& scene) {
   return stage.density_factor > 1 && scene::start_up_strain(stage, scene) > 0;
@@ -100,12 +111,78 @@ Json on_lattice(const scene::Scene& scene, const std::array<int, 2>& nodes) {
   return changed;
 }
 
+/// output.cells with fewer outputs; nothing where it is not an interval of strain.
+std::optional<Json> thin_outputs(const scene::Scene& scene) {
+  Json cells = scene.document->root().value("/output/cells"_json_pointer, Json());
+  if (!cells.is_object() || !cells.value("strain", Json()).is_number()) return std::nullopt;
+  cells["strain"] = fewer * cells["strain"].get<double>();
+  return cells;
+}
+
+/// Numbers of equal parts of the lattice's sides that a coarser one of the same shape may have, the finest first.
+struct CoarserLattices {
+  explicit CoarserLattices(const scene::Scene& scene)
+      : nodes_(scene.domain.nodes), parts_(std::gcd(nodes_[0], nodes_[1])), radius_(INFINITY) {
+    if (!scene.cells.empty()) radius_ = shape::smallest_radius(scene) / plan::lattice_spacing(scene);
+  }
+  [[nodiscard]] int parts() const { return parts_; }
+  [[nodiscard]] double refinement(int part) const { return static_cast<double>(parts_) / part; }
+  [[nodiscard]] double radius(int part) const { return radius_ / refinement(part); }
+  [[nodiscard]] std::array<int, 2> nodes(int part) const {
+    return {nodes_[0] / parts_ * part, nodes_[1] / parts_ * part};
+  }
+  /// The lattice nearest to one that is to_the_coarsest times as coarse; 0: none will do.
+  [[nodiscard]] int coarser_than(int part) const {
+    const int next = static_cast<int>(std::lround(part / to_the_coarsest));
+    if (next < 1 || radius(next) < least_radius || nodes(next)[0] < 4 || nodes(next)[1] < 4) return 0;
+    const double ratio = static_cast<double>(part) / next;
+    return ratio >= least_to_the_coarsest && ratio <= most_to_the_coarsest ? next : 0;
+  }
+
+ private:
+  std::array<int, 2> nodes_;
+  int parts_;
+  double radius_;
+};
+
+/// Where the start and the density are changed, and by what.
+struct Changes {
+  bool start, inertia;
+  double density = light, tau = 1;
+  bool on_the_finer;
+  /// What they cost over a run on their lattice.
+  [[nodiscard]] double cost(double tau_of_scene) const {
+    const double steps = (tau_of_scene - 0.5) / (tau - 0.5) / density;
+    return (start ? 1 : 0) + (inertia ? steps : 0);
+  }
+};
+
+Changes choose_changes(const scene::Scene& scene, double densest, bool moments, bool corrected) {
+  Changes changes{start_matters(scene), densest > 1, std::max(light, 1 / densest), scene.numerics.tau, moments};
+  const auto tau_of_same_step = [&](double density) { return 0.5 + (scene.numerics.tau - 0.5) / density; };
+  if (!moments || !corrected) return changes;
+  if (tau_of_same_step(changes.density) > largest_tau) changes.density = dense;
+  changes.tau = tau_of_same_step(changes.density);
+  return changes;
+}
+
+/// Cost of all companions over the run's, with that for the lattice and that for the order (0: none) on these lattices.
+double cost_of_all(const scene::Scene& scene, const CoarserLattices& lattices, int fine, int coarse,
+                   const Changes& changes) {
+  const double changed = changes.cost(scene.numerics.tau), of_fine = share_of(scene, lattices.refinement(fine));
+  if (coarse == 0) return of_fine * (1 + changed);
+  const double of_coarse = share_of(scene, lattices.refinement(coarse));
+  return of_fine + of_coarse + changed * (changes.on_the_finer ? of_fine : of_coarse);
+}
+
 }  // namespace
 
 const char* name_of(Role role) {
   switch (role) {
     case Role::lattice:
       return "lattice";
+    case Role::order:
+      return "order";
     case Role::start:
       return "start";
     case Role::inertia:
@@ -114,61 +191,70 @@ const char* name_of(Role role) {
   return "";
 }
 
-Companions choose_companions(const scene::Scene& scene, double run_s, double outputs_s) {
+Companions choose_companions(const scene::Scene& scene, const RunCost& cost) {
   Companions chosen;
   double densest = 1;
   for (const scene::Stage& stage : scene.stages) densest = std::max(densest, stage.density_factor);
   chosen.relaxed = 1 - 1 / densest;
   chosen.order = scene.cells.empty() || scene.numerics.slip_correction ? 2 : 1;
-  const bool inertia = chosen.relaxed > 0, start = start_matters(scene);
-  const double tau = scene.numerics.tau;
-  const auto tau_of_same_step = [&](double density) { return 0.5 + (tau - 0.5) / density; };
-  chosen.density = std::max(light, 1 / densest);
-  if (chosen.order == 2 && tau_of_same_step(chosen.density) > largest_tau) chosen.density = dense;
-  const double companion_tau = chosen.order == 2 ? tau_of_same_step(chosen.density) : tau;
-  const double runs = 1 + (start ? 1 : 0) + (inertia ? (chosen.order == 2 ? 1 : 1 / chosen.density) : 0);
-  const int processes = 1 + (start ? 1 : 0) + (inertia ? 1 : 0);
-  const double affordable = std::max(least_share, most_share - processes * (start_s + outputs_s) / run_s);
+  const Changes changes = choose_changes(scene, densest, cost.moments, chosen.order == 2);
+  chosen.density = changes.density;
+  const int processes = 2 + (changes.start ? 1 : 0) + (changes.inertia ? 1 : 0);
+  const bool thinned = cost.moments && cost.outputs > many_outputs && thin_outputs(scene).has_value();
+  const double outputs_s = outputs_of_tables * cost.outputs_s / (thinned ? fewer : 1);
+  const double affordable = std::max(least_share, most_share - processes * (start_s + outputs_s) / cost.run_s);
 
-  const std::array<int, 2>& nodes = scene.domain.nodes;
-  const int parts = std::gcd(nodes[0], nodes[1]);
-  int best = 0;
-  for (int k = parts - 1; k > 0 && best == 0; --k) {
-    const double coarser = static_cast<double>(parts) / k;
-    if (coarser < least_refinement) continue;
-    if (coarser > most_refinement || nodes[0] / parts * k < 4 || nodes[1] / parts * k < 4) break;
-    if (runs * share_of(scene, coarser) <= affordable) best = k;
+  const CoarserLattices lattices(scene);
+  int fine = 0, coarse = 0;
+  for (int k = lattices.parts() - 1; k > 0 && fine == 0; --k) {
+    if (lattices.refinement(k) < least_refinement) continue;
+    if (lattices.refinement(k) > most_refinement || lattices.nodes(k)[0] < 4 || lattices.nodes(k)[1] < 4) break;
+    coarse = lattices.coarser_than(k);
+    if (cost_of_all(scene, lattices, k, coarse, changes) <= affordable) fine = k;
   }
-  if (best == 0) {
+  const std::array<int, 2>& nodes = scene.domain.nodes;
+  if (fine == 0) {
     chosen.why_none = "no coarser lattice has the shape of " + std::to_string(nodes[0]) + " x " +
                       std::to_string(nodes[1]) + " nodes and 1.4 to " + number(most_refinement) +
                       " times their distance at a small part of the cost; take numbers with a larger common divisor";
     return chosen;
   }
-  chosen.refinement = static_cast<double>(parts) / best;
-  chosen.expected_share = runs * share_of(scene, chosen.refinement);
-  if (const double radius = shape::smallest_radius(scene) / plan::lattice_spacing(scene) / chosen.refinement;
-      !scene.cells.empty() && radius < least_radius) {
+  chosen.refinement = lattices.refinement(fine);
+  chosen.expected_share = cost_of_all(scene, lattices, fine, coarse, changes);
+  if (const double radius = lattices.radius(fine); radius < least_radius) {
     chosen.why_none = "on a lattice that costs a small part of this one a cell's radius would be " + number(radius, 2) +
                       " spacings, fewer than " + number(least_radius);
     return chosen;
   }
-  const std::array coarse{nodes[0] / parts * best, nodes[1] / parts * best};
-  Json companion = on_lattice(scene, coarse);
-  const std::string lattice = std::to_string(coarse[0]) + " x " + std::to_string(coarse[1]) + " nodes";
-  chosen.runs.push_back({Role::lattice, companion, lattice});
-  if (start) {
+  const auto add_lattice = [&](Role role, int part) {
+    const std::array size = lattices.nodes(part);
+    Json coarser = on_lattice(scene, size);
+    if (thinned) coarser["output"]["cells"] = *thin_outputs(scene);
+    chosen.runs.push_back(
+        {role, std::move(coarser), std::to_string(size[0]) + " x " + std::to_string(size[1]) + " nodes"});
+  };
+  add_lattice(Role::lattice, fine);
+  if (coarse > 0) {
+    chosen.coarsest = lattices.refinement(coarse);
+    add_lattice(Role::order, coarse);
+  }
+  int last = changes.on_the_finer || coarse == 0 ? 0 : 1;
+  Json companion = chosen.runs[static_cast<std::size_t>(last)].scene;
+  const auto add_change = [&](Role role, const std::string& differs) {
+    chosen.runs.push_back({role, companion, differs, last});
+    last = static_cast<int>(chosen.runs.size()) - 1;
+  };
+  if (changes.start) {
     for (std::size_t i = 0; i < scene.stages.size(); ++i) {
       if (starts_at_rest(scene.stages[i], scene)) companion["stages"][i]["start"] = "developed";
     }
-    chosen.runs.push_back({Role::start, companion, "the flow developed from the start"});
+    add_change(Role::start, "the flow developed from the start");
   }
-  if (inertia) {
+  if (changes.inertia) {
     set_density(companion, chosen.density);
-    companion["numerics"]["tau"] = companion_tau;
-    std::string differs = "density factor times " + number(chosen.density, 3);
-    if (companion_tau != tau) differs += ", tau " + number(companion_tau, 3);
-    chosen.runs.push_back({Role::inertia, companion, differs});
+    companion["numerics"]["tau"] = changes.tau;
+    add_change(Role::inertia, "density factor times " + number(chosen.density, 3) +
+                                  (changes.tau != scene.numerics.tau ? ", tau " + number(changes.tau, 3) : ""));
   }
   return chosen;
 }

@@ -38,37 +38,47 @@ double change_by_density(double density) {
   return 1 - (density < 1 ? density : std::pow(density, least_power_of_density));
 }
 
-double lattice_share(double run, double coarse, const Companions& companions) {
-  return (coarse - run) / (std::pow(companions.refinement, companions.order) - 1);
-}
-
-Shares shares_of(const Values& values, const Companions& companions, const std::vector<Measured>& measured) {
+/// Shares of a quantity that all companions have, or all but the one for the order.
+struct FoundShares {
   Shares shares;
-  for (std::size_t i = 0; i < measured.size(); ++i) {
-    const double value = values.companions[i], before = i > 0 ? values.companions[i - 1] : values.run;
-    switch (measured[i].role) {
-      case Role::lattice:
-        shares.lattice = lattice_share(before, value, companions);
-        break;
-      case Role::start:
-        shares.start = before - value;
-        break;
-      case Role::inertia:
-        shares.inertia = companions.relaxed * (before - value) / change_by_density(companions.density);
-        break;
-    }
-  }
-  return shares;
+  double doubt = 0;  ///< of their sum
+};
+
+LatticeShare share_of_lattice(double run, const std::vector<double>& values, const Companions& companions,
+                              const std::vector<Measured>& measured) {
+  double coarsest = std::nan("");
+  for (std::size_t i = 0; i < measured.size(); ++i)
+    if (measured[i].role == Role::order) coarsest = values[i];
+  const double s = std::isfinite(coarsest) ? companions.coarsest : 1;
+  return lattice_share(run, values[0], companions.refinement, coarsest, s, companions.order);
 }
 
-std::string words_of(const Shares& shares, const Companions& companions, const std::vector<Measured>& measured) {
+FoundShares shares_of(const Values& values, const Companions& companions, const std::vector<Measured>& measured) {
+  FoundShares found;
+  const LatticeShare lattice = share_of_lattice(values.run, values.companions, companions, measured);
+  found.shares.lattice = lattice.error;
+  for (std::size_t i = 0; i < measured.size(); ++i) {
+    const int against = companions.runs[i].against;
+    const double value = values.companions[i],
+                 before = against < 0 ? values.run : values.companions[static_cast<std::size_t>(against)];
+    if (measured[i].role == Role::start) found.shares.start = before - value;
+    if (measured[i].role == Role::inertia)
+      found.shares.inertia = companions.relaxed * (before - value) / change_by_density(companions.density);
+  }
+  found.doubt = lattice.doubt + doubt_of_a_share * (std::abs(found.shares.start) + std::abs(found.shares.inertia));
+  return found;
+}
+
+std::string words_of(const Shares& shares, const std::vector<Measured>& measured) {
   std::string words;
   for (const Measured& companion : measured) {
     if (!words.empty()) words += ", ";
     switch (companion.role) {
       case Role::lattice:
-        words += "lattice " + number(shares.lattice, 2) + " (" + companion.differs + ", order " +
-                 number(companions.order) + ")";
+        words += "lattice " + number(shares.lattice, 2) + " (" + companion.differs + ")";
+        break;
+      case Role::order:
+        words += "its order by " + companion.differs;
         break;
       case Role::start:
         words += "start " + number(shares.start, 2) + " (" + companion.differs + ")";
@@ -85,6 +95,7 @@ ErrorBar count_bar(const Quantity& quantity, const Values& values) {
   ErrorBar bar{quantity, {}, 0, 0, {}};
   std::string others;
   for (const double value : values.companions) {
+    if (std::isnan(value)) continue;
     bar.error = std::max(*bar.error, std::abs(value - quantity.value));
     others += (others.empty() ? "" : ", ") + number(value);
   }
@@ -118,20 +129,43 @@ std::string fixed(double value, int decimals) {
   return text.data();
 }
 
+/// Relative share of the lattice in the deformation; 0 where there is none.
+double shape_error(const std::vector<Quantity>& run, const Companions& companions,
+                   const std::vector<Measured>& measured) {
+  const Quantity* own = find(run, "deformation");
+  if (own == nullptr || own->value == 0) return 0;
+  std::vector<double> values;
+  for (const Measured& companion : measured) {
+    const Quantity* other = find(companion.quantities, "deformation");
+    values.push_back(other != nullptr ? other->value : std::nan(""));
+  }
+  const double share = std::abs(share_of_lattice(own->value, values, companions, measured).error / own->value);
+  return std::isfinite(share) ? share : 0;
+}
+
 bool is_angle(const Quantity& quantity) { return quantity.name.ends_with("angle_rad"); }
 
 }  // namespace
+
+LatticeShare lattice_share(double value, double coarse, double r, double coarser, double s, double p) {
+  const double change = coarse - value, low = std::pow(r, p) - 1, high = std::pow(r, 2 * p) - 1;
+  const double plain = change / low;
+  if (s == 1 || change == 0) return {plain, doubt_of_a_share * std::abs(plain)};
+  const double further = coarser - value;
+  if (further / change < 1)  // farther off, and no more wrong
+    return {plain, std::max(doubt_of_a_share * std::abs(plain), std::abs(further) / low)};
+  const double low_s = std::pow(s, p) - 1, high_s = std::pow(s, 2 * p) - 1;
+  const double b = (further * low - change * low_s) / (high_s * low - high * low_s), a = (change - b * high) / low;
+  const double part = std::clamp((a + b) / plain, low / high, 2.0);
+  const double error = part * plain;
+  return {error, std::max(doubt_of_a_share * std::abs(error), std::abs(error - plain))};
+}
 
 std::vector<ErrorBar> error_bars(const std::vector<Quantity>& run, const Companions& companions,
                                  const std::vector<Measured>& measured) {
   std::vector<ErrorBar> bars;
   const std::string otherwise = other_end(run, measured);
-  double shape = 0;  // relative lattice share of the deformation
-  if (const Quantity* own = find(run, "deformation"); own != nullptr && own->value != 0) {
-    if (const Quantity* coarse = find(measured.front().quantities, "deformation")) {
-      shape = std::abs(lattice_share(own->value, coarse->value, companions) / own->value);
-    }
-  }
+  const double shape = shape_error(run, companions, measured);
   for (const Quantity& quantity : run) {
     ErrorBar bar{quantity, {}, 0, {}, quantity.why_not};
     Values values{quantity.value, {}};
@@ -139,7 +173,9 @@ std::vector<ErrorBar> error_bars(const std::vector<Quantity>& run, const Compani
     for (const Measured& companion : measured) {
       const Quantity* other = find(companion.quantities, quantity.name);
       if (other == nullptr || !other->why_not.empty()) {
-        if (bar.how.empty()) bar.how = "the companion with " + companion.differs + " has none to compare with";
+        values.companions.push_back(std::nan(""));
+        if (bar.how.empty() && companion.role != Role::order)
+          bar.how = "the companion with " + companion.differs + " has none to compare with";
         continue;
       }
       values.companions.push_back(other->value);
@@ -148,12 +184,13 @@ std::vector<ErrorBar> error_bars(const std::vector<Quantity>& run, const Compani
     if (bar.how.empty() && quantity.nature == Nature::count) {
       bar = count_bar(quantity, values);
     } else if (bar.how.empty()) {
-      bar.shares = shares_of(values, companions, measured);
+      const FoundShares found = shares_of(values, companions, measured);
+      bar.shares = found.shares;
       const auto& [lattice, start, inertia] = bar.shares;
       const double least = least_part_of_deformation * shape * std::abs(quantity.part_of_cells);
       bar.estimate = std::max(std::abs(lattice + start + inertia), least) + uncertainty;
-      bar.error = bar.estimate + doubt_of_a_share * (std::abs(lattice) + std::abs(start) + std::abs(inertia));
-      bar.how = words_of(bar.shares, companions, measured);
+      bar.error = bar.estimate + found.doubt;
+      bar.how = words_of(bar.shares, measured);
       if (uncertainty > 0) bar.how += ", between outputs " + number(uncertainty, 2);
       bar.how += otherwise;
       if (!std::isfinite(*bar.error)) bar = {quantity, {}, 0, {}, "a companion has no finite value"};
@@ -208,8 +245,14 @@ std::optional<Worst> worst(const std::vector<ErrorBar>& bars) {
       std::any_of(bars.begin(), bars.end(), [&](const ErrorBar& bar) { return counts(bar) && bar.quantity.moment; });
   for (const ErrorBar& bar : bars) {
     if (!counts(bar) || bar.quantity.moment != moments) continue;
-    const double error = bar.estimate / (is_angle(bar.quantity) ? 1 : std::abs(bar.quantity.value));
-    if (!found || error > found->error) found = {error, bar.quantity.name};
+    const double whole = is_angle(bar.quantity) ? 1 : std::abs(bar.quantity.value), error = bar.estimate / whole;
+    const auto& [lattice, start, inertia] = bar.shares;
+    if (!found || error > found->error) {
+      found = {error,
+               bar.quantity.name,
+               {lattice / whole, start / whole, inertia / whole},
+               bar.quantity.uncertainty / whole};
+    }
   }
   return found;
 }

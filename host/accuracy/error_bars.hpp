@@ -31,9 +31,19 @@ struct ErrorBar {
   std::string how;              ///< what it is made of, or why there is none
 };
 
+/// What differences between lattices say of a value's error on the finest of them.
+struct LatticeShare {
+  double error = 0;  ///< value - limit
+  double doubt = 0;  ///< of it, not negative
+};
+/// `coarse` and `coarser`: values on lattices `r` and `s` times as coarse as that of `value`; s = 1: there is no second
+/// one. The error is c h^p with one of them, a h^p + b h^2p with both: kept between what b h^2p alone gives and twice
+/// what c h^p gives. Where the two differences have no common trend it is c h^p, and the doubt as large as the larger one.
+LatticeShare lattice_share(double value, double coarse, double r, double coarser, double s, double p);
+
 /// `measured`: of all companions of the choice, in their order. With the sum s of the shares
 ///   estimate = max(|s|, floor) + the value's own uncertainty
-///   error = estimate + (|lattice| + |start| + |inertia|)/2
+///   error = estimate + doubt of the lattice's share + (|start| + |inertia|)/2
 /// The floor is 3/4 of the deformation's relative lattice share, times Quantity::part_of_cells: a difference that
 /// happens to vanish between two lattices is no error that vanishes.
 std::vector<ErrorBar> error_bars(const std::vector<Quantity>& run, const Companions& companions,
@@ -53,6 +63,8 @@ std::vector<std::string> sentences(const std::vector<ErrorBar>& bars);
 struct Worst {
   double error = 0;
   std::string name;
+  Shares shares = {};      ///< relative, too
+  double uncertainty = 0;  ///< relative: what outputs leave open, and no other numerics mend
 };
 std::optional<Worst> worst(const std::vector<ErrorBar>& bars);
 

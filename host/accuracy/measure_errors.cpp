@@ -1,17 +1,21 @@
 #include "measure_errors.hpp"
 
+#include <algorithm>
+#include <chrono>
 #include <iostream>
+#include <memory>
 
 #include "base/error.hpp"
-#include "base/text.hpp"
 #include "files/file_lock.hpp"
 #include "files/run_directory.hpp"
 #include "files/verify.hpp"
 #include "json/document.hpp"
+#include "plan/plan_report.hpp"
 #include "plugin/library.hpp"
-#include "run/provenance.hpp"
-#include "trial/fingerprint.hpp"
-#include "trial/point_record.hpp"
+#include "refinement.hpp"
+#include "run/simulation.hpp"
+#include "scene/scene_reader.hpp"
+#include "shape/random_cells.hpp"
 #include "trial/trial.hpp"
 
 namespace rouleau::accuracy {
@@ -21,67 +25,58 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-/// A companion may take as long as the run did, and this: a slow start is no reason to give up.
-constexpr double patience_s = 60;
-
+/// How a companion ended.
 struct Ended {
-  trial::TrialResult result;
+  std::string end;      ///< completed, diverged, refused or interrupted
+  std::string message;  ///< why it did not complete
   fs::path directory;
-  double process_s = 0;
+  double wall_s = 0;
 };
 
-std::vector<std::string> surroundings(const MeasureOptions& options) {
-  std::vector<std::string> words{"lock " + options.lock.string()};
-  for (const fs::path& folder : options.plugin_dirs) words.push_back("plugins " + fs::absolute(folder).string());
-  return words;
+/// A companion's scene; what it says of files is said from where the run's scene was.
+scene::Scene read(const Companion& companion, const std::string& file) {
+  Faults faults;
+  scene::Scene scene = scene::read_scene(
+      std::make_shared<json::Document>(json::Document::parse(companion.scene.dump(2) + "\n", file)), faults);
+  faults.raise();
+  shape::add_random_cells(scene);
+  shape::pack_cells(scene);
+  return scene;
 }
 
 /// Runs a companion, or finds that it has been run.
-Ended run_companion(const fs::path& folder, const Companion& companion, const MeasureOptions& options,
-                    double time_limit_s) {
-  const std::string fingerprint = trial::fingerprint(companion.scene, options.scene_file, surroundings(options));
-  Ended ended{{}, folder / trial::directory_name(fingerprint)};
-  if (const std::optional<trial::PointRecord> record = trial::read_record(folder, fingerprint)) {
-    ended.result = trial::result_of(*record, ended.directory);
-    for (const trial::TimedRun& run : record->runs) ended.process_s += run.process_s;
-    return ended;
+Ended run_companion(const Companion& companion, const std::string& scene_file, const fs::path& folder,
+                    const MeasureOptions& options) {
+  const auto begin = std::chrono::steady_clock::now();
+  Ended ended{"completed", {}, folder / name_of(companion.role)};
+  try {
+    const scene::Scene scene = read(companion, scene_file);
+    if (finished_run(ended.directory, scene) != Finished::no) {
+      ended.wall_s = trial::read_summary(ended.directory).at("wall_s");
+      return ended;
+    }
+    if (!options.quiet) std::cerr << "error bar: " << companion.differs << std::endl;
+    const plugin::Catalog catalog = options.catalog_of(scene);
+    const plan::Plan plan = plan::make_plan(scene, catalog);
+    run::RunOptions run{.threads = std::clamp(scene.domain.nodes[1] / 4, 1, options.threads), .quiet = true};
+    run.interrupted = options.interrupted;
+    files::RunDirectory directory(ended.directory, scene, files::FormerRun::replace, files::DataFiles::tables);
+    const run::Summary summary = run::simulate(plan, {}, run, &directory);
+    ended.end = summary.status;
+    if (summary.failure) ended.message = summary.failure->message;
+  } catch (const Error& error) {
+    if (error.cause() == Cause::input_output) throw;
+    ended.end = "refused";
+    ended.message = error.problem();
   }
-  trial::Trial trial{companion.scene, options.scene_file, ended.directory};
-  trial.plugin_dirs = options.plugin_dirs;
-  trial.lock = options.lock;
-  trial.threads = options.threads;
-  trial.time_limit_s = time_limit_s;
-  trial.program = options.program;
-  trial.interrupted = options.interrupted;
-  if (!options.quiet) std::cerr << "error bar: " << companion.differs << std::endl;
-  ended.result = trial::run_trial(trial);
-  ended.process_s = ended.result.wall_s;
-  if (ended.result.end == trial::TrialEnd::interrupted) return ended;
-  trial::PointRecord record;
-  record.fingerprint = fingerprint;
-  record.machine = run::machine_description();
-  record.time_limit_s = time_limit_s;
-  trial::add_run(record, ended.result, ended.directory);
-  trial::write_record(folder, record);
+  ended.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return ended;
 }
 
 /// Why a companion says nothing; empty: it does.
 std::string why_useless(const Companion& companion, const Ended& ended) {
-  if (ended.result.end == trial::TrialEnd::completed) return {};
-  const std::string message = ended.result.end == trial::TrialEnd::timed_out
-                                  ? "it took longer than the run itself"
-                                  : ended.result.message.substr(0, ended.result.message.find('\n'));
-  return "the companion with " + companion.differs + " did not complete (" + trial::to_string(ended.result.end) +
-         "): " + message;
-}
-
-/// Adds to a summary's choice of numerics what was measured.
-void add_measured(Json& choice, const std::vector<ErrorBar>& bars) {
-  if (!choice.is_object()) return;
-  const std::optional<Worst> found = worst(bars);
-  choice["measured_error"] = found ? Json(found->error) : Json();
-  choice["measured_of"] = found ? Json(found->name) : Json();
+  if (ended.end == "completed") return {};
+  return "the companion with " + companion.differs + " did not complete (" + ended.end + "): " + ended.message;
 }
 
 }  // namespace
@@ -103,34 +98,38 @@ MeasuredErrors measure_errors(const fs::path& directory, const scene::Scene& sce
   }
   const Json summary = trial::read_summary(directory);
   const double run_s = summary.at("wall_s");
-  double outputs_s = 0;
+  RunCost cost{.run_s = run_s};
   for (const Json& pass : summary.at("passes")) {
-    if (pass.at("name") == "observe and check") outputs_s += pass.at("wall_s").get<double>();
+    if (pass.at("name") == "observe and check") {
+      cost.outputs_s = pass.at("wall_s");
+      cost.outputs = pass.at("calls");
+    }
   }
   const fs::path folder = directory / files::companions_folder;
-  const Companions companions = choose_companions(scene, run_s, outputs_s);
+  std::vector<Quantity> quantities = reported_quantities(directory);
+  cost.moments = std::any_of(quantities.begin(), quantities.end(), [](const Quantity& q) { return q.moment; });
+  const Companions companions = choose_companions(scene, cost);
   MeasuredErrors errors;
   errors.missing = companions.why_none;
   Json told = Json::array();
   std::vector<Measured> measured;
   for (const Companion& companion : companions.runs) {
-    const Ended ended = run_companion(folder, companion, options, run_s + patience_s);
-    if (ended.result.end == trial::TrialEnd::interrupted) {
+    const Ended ended = run_companion(companion, scene.document->file(), folder, options);
+    if (ended.end == "interrupted") {
       errors.interrupted = true;
       errors.missing = "interrupted";
       return errors;
     }
-    errors.wall_s += ended.process_s;
+    errors.wall_s += ended.wall_s;
     told.push_back({{"role", name_of(companion.role)},
                     {"differs", companion.differs},
-                    {"end", trial::to_string(ended.result.end)},
-                    {"wall_s", ended.process_s},
-                    {"message", ended.result.message}});
+                    {"end", ended.end},
+                    {"wall_s", ended.wall_s},
+                    {"message", ended.message}});
     errors.missing = why_useless(companion, ended);
     if (!errors.missing.empty()) break;
     measured.push_back({companion.role, companion.differs, reported_quantities(ended.directory)});
   }
-  std::vector<Quantity> quantities = reported_quantities(directory);
   if (errors.missing.empty()) {
     errors.bars = error_bars(quantities, companions, measured);
   } else {
@@ -144,7 +143,7 @@ MeasuredErrors measure_errors(const fs::path& directory, const scene::Scene& sce
                      {"missing", errors.missing.empty() ? Json() : Json(errors.missing)},
                      {"companions", told}}},
                    {"numerics_choice", summary.value("numerics_choice", Json())}};
-  add_measured(sections["numerics_choice"], errors.bars);
+  add_measured(sections["numerics_choice"], worst(errors.bars));
   files::amend_summary(directory, sections);
   fs::remove_all(folder);
   return errors;

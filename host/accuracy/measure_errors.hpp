@@ -3,20 +3,19 @@
 
 #include <atomic>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "error_bars.hpp"
+#include "plugin/catalog.hpp"
 
 namespace rouleau::accuracy {
 
 struct MeasureOptions {
-  std::filesystem::path scene_file;                ///< that the run's scene was made from (trial::Trial)
-  std::vector<std::filesystem::path> plugin_dirs;  ///< searched before those of the scene
-  std::filesystem::path lock;                      ///< empty: the one beside the scene's file, if there is one
+  std::function<plugin::Catalog(const scene::Scene&)> catalog_of;  ///< finds the plugins of a companion's scene
   int threads = 1;
   bool quiet = false;
-  std::filesystem::path program = "/proc/self/exe";
   const std::atomic<bool>* interrupted = nullptr;  ///< set by a signal handler
 };
 
@@ -34,8 +33,9 @@ Finished finished_run(const std::filesystem::path& directory, const scene::Scene
 /// `scene` is that of the run in the directory, which has completed. Summary.json gets
 ///   error_bars        {name: {value, error, how}}
 ///   error_bar_runs    {wall_s, share_of_run, missing, companions [{role, differs, end, wall_s, message}]}
-///   numerics_choice   if not null, measured_error and measured_of: the largest relative error of what is told first
-/// Throws Error(input_output), and Error(bad_input) where another process works in the directory.
+///   numerics_choice   if not null, what refinement.hpp keeps of the largest relative error of what is told first
+/// Companions run here, one after another, and write tables alone into the directory's companions_folder, which goes
+/// when all is measured. Throws Error(input_output), and Error(bad_input) where another process works in the directory.
 MeasuredErrors measure_errors(const std::filesystem::path& directory, const scene::Scene& scene,
                               const MeasureOptions& options);
 

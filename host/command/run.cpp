@@ -14,6 +14,7 @@
 #include "files/checkpoint_file.hpp"
 #include "interruption.hpp"
 #include "plan/estimate.hpp"
+#include "refined_run.hpp"
 #include "report/report.hpp"
 #include "run/simulation.hpp"
 #include "run_words.hpp"
@@ -34,9 +35,10 @@ Ctrl-C, SIGTERM, a closed terminal, SIGUSR1, SIGXCPU and --max-time end a run af
 the directory's last checkpoint, whatever ended the run, to the same results as without the break; without --out in
 runs/NAME of the scene. Where no run has been, or one was killed before its first checkpoint, it begins at the beginning.
 
---error-bar measures an error of every number that the run reports: cheap runs of the same scene follow, on a coarser
-lattice, with developed flow and with another density, and take at most about 40 % of the run's time. A scene with
-"numerics": "auto" gets error bars without being asked; --no-error-bar leaves them out.
+--error-bar measures an error of every number that the run reports: cheap runs of the same scene follow, on coarser
+lattices, with developed flow and with another density, and take at most about 40 % of the run's time. A scene with
+"numerics": "auto" gets error bars without being asked, and where they miss its target a finer run in DIR/refined;
+--no-error-bar leaves both out.
 
 Example:
   rouleau run scenes/four-cells-shear.json --out runs/demo --threads 2
@@ -75,8 +77,8 @@ struct ErrorBarChoice {
 /// Measures the errors of a run that has come to its end; `lines` gets what there is to say. False when interrupted,
 /// which it says by itself.
 bool add_error_bars(const std::filesystem::path& folder, const scene::Scene& scene,
-                    const std::optional<plan::NumericsChoice>& choice, const accuracy::MeasureOptions& options,
-                    const std::string& again, std::vector<std::string>& lines) {
+                    const accuracy::MeasureOptions& options, const std::string& again,
+                    std::vector<std::string>& lines) {
   const accuracy::MeasuredErrors errors = accuracy::measure_errors(folder, scene, options);
   if (errors.interrupted) {
     std::cerr << "ended by " << interruption_cause()
@@ -90,21 +92,14 @@ bool add_error_bars(const std::filesystem::path& folder, const scene::Scene& sce
   lines = accuracy::sentences(errors.bars);
   lines.push_back("error bars took " + std::to_string(std::lround(100 * errors.share)) +
                   " % of the run's time; summary.json has all " + std::to_string(errors.bars.size()));
-  const std::optional<accuracy::Worst> worst = accuracy::worst(errors.bars);
-  if (choice && worst && worst->error > choice->target) {
-    lines.push_back("numerics.auto may have missed its target: the error of " + worst->name + " is estimated as " +
-                    number(100 * worst->error, 2) + " %, more than " + number(100 * choice->target, 2) +
-                    " %; set /numerics/auto/error to less");
-  }
   return true;
 }
 
 /// Adds error bars to a run that had ended before. Returns the exit code.
 int complete_error_bars(const std::filesystem::path& folder, const scene::Scene& scene,
-                        const std::optional<plan::NumericsChoice>& choice, const accuracy::MeasureOptions& options,
-                        const std::string& again) {
+                        const accuracy::MeasureOptions& options, const std::string& again) {
   std::vector<std::string> lines;
-  const bool whole = add_error_bars(folder, scene, choice, options, again, lines);
+  const bool whole = add_error_bars(folder, scene, options, again, lines);
   close_run(folder, lines);
   return whole ? exit_code::done : exit_code::interrupted;
 }
@@ -191,6 +186,11 @@ int run_command(const std::vector<std::string>& arguments) {
     std::cerr << warning << "\n";
   }
 
+  if (numerics_choice && bars.wanted(numerics_choice)) {
+    const std::string may_take = say_what_auto_may_take(*numerics_choice, report.estimate.wall_s, limit);
+    if (!may_take.empty()) std::cerr << "warning: " << may_take << "\n";
+  }
+
   require_threads(run.threads);
   run.interrupted = &listen_for_interruption(limit);
   const std::filesystem::path named = std::filesystem::path("runs") / std::filesystem::path(scene_options.scene).stem();
@@ -203,16 +203,23 @@ int run_command(const std::vector<std::string>& arguments) {
                                   : overwrite ? files::FormerRun::replace
                                               : files::FormerRun::keep;
   const accuracy::MeasureOptions measure{
-      .scene_file = scene_options.scene,
-      .plugin_dirs = {scene_options.plugin_dirs.begin(), scene_options.plugin_dirs.end()},
-      .lock = scene_options.lock,
+      .catalog_of = [&](const scene::Scene& other) { return scene_options.catalog(other); },
       .threads = run.threads,
       .quiet = run.quiet,
       .interrupted = run.interrupted};
-  // A run that has ended and only lacks its error bars gets them, whether or not it kept a checkpoint.
-  if (resume && bars.wanted(numerics_choice) && run.max_steps < 0 &&
-      accuracy::finished_run(folder, scene) == accuracy::Finished::without_bars) {
-    return complete_error_bars(folder, scene, numerics_choice, measure, again);
+  const bool refines = numerics_choice && bars.wanted(numerics_choice) && run.max_steps < 0;
+  const auto refine = [&] {
+    return refine_if_missed({scene_options, read, folder, report.estimate.wall_s, run, measure, again}, limit);
+  };
+  // A run that has ended gets what it lacks, whether or not it kept a checkpoint: error bars, and a finer run.
+  if (resume && bars.wanted(numerics_choice) && run.max_steps < 0) {
+    const accuracy::Finished finished = accuracy::finished_run(folder, scene);
+    if (finished == accuracy::Finished::without_bars) {
+      const int code = complete_error_bars(folder, scene, measure, again);
+      return code == exit_code::done && refines ? refine() : code;
+    }
+    if (finished == accuracy::Finished::with_bars && refines && missed_its_target(folder, *numerics_choice))
+      return refine();
   }
   run::Summary summary;
   if (!run.quiet) std::cerr << opening(plan, report, run.threads, processors, folder);
@@ -238,7 +245,7 @@ int run_command(const std::vector<std::string>& arguments) {
   bool bars_interrupted = false;
   if (bars.wanted(numerics_choice) && whole) {
     try {
-      bars_interrupted = !add_error_bars(folder, scene, numerics_choice, measure, again, error_lines);
+      bars_interrupted = !add_error_bars(folder, scene, measure, again, error_lines);
     } catch (const Error& error) {
       report::write_report(folder);
       throw Error(
@@ -268,7 +275,8 @@ int run_command(const std::vector<std::string>& arguments) {
               << "; no checkpoint was kept (output.checkpoint of the scene): the run can only begin again, with "
                  "--overwrite\n";
   }
-  return summary.status == "interrupted" ? exit_code::interrupted : exit_code::done;
+  if (summary.status == "interrupted") return exit_code::interrupted;
+  return refines && whole ? refine() : exit_code::done;
 }
 
 }  // namespace rouleau::command

@@ -12,6 +12,7 @@
 #include "frames.hpp"
 #include "json/document.hpp"
 #include "log.hpp"
+#include "refined_folder.hpp"
 #include "tables.hpp"
 #include "verify.hpp"
 
@@ -27,7 +28,7 @@ constexpr std::array<std::string_view, 12> run_files{
 bool is_partial(const std::string& name) { return name.starts_with('.') && name.ends_with(".partial"); }
 
 bool written_by_a_run(const std::string& name) {
-  return is_partial(name) || segment_number(name) || name == companions_folder ||
+  return is_partial(name) || segment_number(name) || name == companions_folder || name == refined_folder ||
          std::find(run_files.begin(), run_files.end(), name) != run_files.end();
 }
 
@@ -71,7 +72,7 @@ void remove_files(const std::filesystem::path& directory, Choice chosen) {
   for (const auto& entry : std::filesystem::directory_iterator(directory)) {
     if (!chosen(entry.path().filename().string())) continue;
     std::error_code error;
-    if (entry.path().filename() == companions_folder) {
+    if (const auto name = entry.path().filename(); name == companions_folder || name == refined_folder) {
       std::filesystem::remove_all(entry.path(), error);
     } else {
       std::filesystem::remove(entry.path(), error);
@@ -131,7 +132,7 @@ struct RunDirectory::Files {
   std::optional<FrameWriter> frames;
 };
 
-RunDirectory::RunDirectory(std::filesystem::path directory, const scene::Scene& scene, FormerRun former)
+RunDirectory::RunDirectory(std::filesystem::path directory, const scene::Scene& scene, FormerRun former, DataFiles data)
     : directory_(prepared(std::move(directory), former)), scene_(scene) {
   // The lock before anything is removed: another run may be writing here.
   files_ = std::make_unique<Files>(directory_);
@@ -154,7 +155,7 @@ RunDirectory::RunDirectory(std::filesystem::path directory, const scene::Scene& 
   remove_files(directory_, written_by_a_run);
   files_->log.emplace(directory_ / "log.jsonl");
   files_->tables.emplace(directory_);
-  files_->frames.emplace(directory_ / "frames.h5", scene);
+  if (data == DataFiles::all) files_->frames.emplace(directory_ / "frames.h5", scene);
   if (scene.document) write_file(directory_ / "scene.json", scene_text(*scene.document));
 }
 
@@ -178,7 +179,7 @@ RunDirectory::~RunDirectory() = default;
 void RunDirectory::write(const observe::Snapshot& snapshot) {
   if (!files_) throw std::logic_error("RunDirectory::write after finish");
   files_->tables->write(snapshot);
-  files_->frames->write(snapshot);
+  if (files_->frames) files_->frames->write(snapshot);
 }
 
 void RunDirectory::log(const std::string& event, const nlohmann::json& details) {
@@ -190,10 +191,13 @@ void RunDirectory::finish(const nlohmann::json& summary) {
   if (!files_) throw std::logic_error("RunDirectory::finish called twice");
   const auto files = std::move(files_);
   files->tables->close();
-  files->frames->close();
-  write_file(directory_ / "frames.xmf", files->frames->xdmf());
+  std::vector<std::string> names;
+  if (files->frames) {
+    files->frames->close();
+    write_file(directory_ / "frames.xmf", files->frames->xdmf());
+    names = files->frames->names();
+  }
   files->log->close();
-  std::vector<std::string> names = files->frames->names();
   for (const std::string_view name : run_files) {
     const bool made_of_others = name == "summary.json" || name == "report.html" || name == "checkpoint-previous.h5";
     const bool named = name == "frames.h5";

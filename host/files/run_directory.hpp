@@ -33,6 +33,12 @@ enum class FormerRun {
   resume    ///< if it has a checkpoint the new run goes on from it; removed where it was killed before it wrote one
 };
 
+/// Which data files a run has.
+enum class DataFiles {
+  all,
+  tables  ///< no frames.h5: such a run keeps no checkpoint
+};
+
 /// What the data files held when a checkpoint was written.
 struct DirectoryMark {
   Tables::Mark tables;
@@ -47,7 +53,8 @@ class RunDirectory {
  public:
   /// Makes the directory (and parents). Refuses one that holds files which no run wrote, one that another run is
   /// writing into, and unless told what becomes of it one that holds a former run, finished or not.
-  RunDirectory(std::filesystem::path directory, const scene::Scene& scene, FormerRun former = FormerRun::keep);
+  RunDirectory(std::filesystem::path directory, const scene::Scene& scene, FormerRun former = FormerRun::keep,
+               DataFiles data = DataFiles::all);
   ~RunDirectory();
   RunDirectory(const RunDirectory&) = delete;
   RunDirectory& operator=(const RunDirectory&) = delete;

@@ -68,7 +68,7 @@ class Error_bars(Case):
         tables = self.tables()
         summary = self.assert_whole(rouleau("run", scene, "--out", self.run_directory, "--overwrite", "--quiet", "--error-bar"))
         self.assertEqual(self.tables(), tables)
-        self.assertEqual([run["role"] for run in summary["error_bar_runs"]["companions"]], ["lattice", "inertia"])
+        self.assertEqual([run["role"] for run in summary["error_bar_runs"]["companions"]], ["lattice", "order", "inertia"])
         self.assertIn(summary["error_bars"]["deformation"]["how"], (self.run_directory / "report.html").read_text())
 
     def test_come_by_themselves_where_numerics_are_chosen_unless_they_are_refused(self):
@@ -80,6 +80,33 @@ class Error_bars(Case):
         refused = rouleau("run", scene, "--out", self.run_directory, "--overwrite", "--quiet", "--no-error-bar")
         self.assertEqual(refused.returncode, 0, refused.stderr)
         self.assertNotIn("error_bars", self.summary())
+
+    def test_that_miss_the_target_are_followed_by_a_finer_run_and_the_first_run_stays(self):
+        # A strain of 1 is the middle of the start, which the density of auto's motion delays by far more than it expects.
+        command = ("run", self.scene("auto-capsule.json", strain=1), "--out", self.run_directory, "--quiet",
+                   "--set", '/numerics={"auto": {"error": 0.05}}')
+        told = rouleau(*command)
+        self.assertEqual(told.returncode, 0, told.stderr)
+        self.assertIn("numerics.auto has missed its target", told.stdout)
+        self.assertIn("a finer run follows in " + str(self.run_directory / "refined"), told.stdout)
+        finer = self.run_directory / "refined" / "summary.json"
+        first, second = self.summary(), json.loads(finer.read_text())
+        self.assertGreater(second["steps"], first["steps"])
+        self.assertLess(second["numerics_choice"]["measured_error"], first["numerics_choice"]["measured_error"])
+        for folder in (self.run_directory, finer.parent):
+            self.assertEqual(rouleau("verify", folder).returncode, 0)
+        written = finer.read_bytes()
+        self.assertEqual(rouleau(*command, "--resume").returncode, 0)
+        self.assertEqual(finer.read_bytes(), written)
+        self.assertEqual(rouleau(*command, "--overwrite", "--no-error-bar").returncode, 0)
+        self.assertFalse(finer.parent.exists())
+
+    def test_of_a_target_for_which_there_is_no_time_are_said_before_the_run(self):
+        told = rouleau("run", self.scene("auto-capsule.json", strain=1000), "--out", self.run_directory, "--quiet",
+                       "--max-time", "1s")
+        self.assertEqual(told.returncode, 130, told.stderr)
+        self.assertLess(told.stderr.index("warning: numerics.auto"), told.stderr.index("ended by --max-time"))
+        self.assertIn("more than --max-time", told.stderr)
 
     def test_cannot_be_wanted_and_refused(self):
         result = rouleau("run", self.scene(), "--error-bar", "--no-error-bar")

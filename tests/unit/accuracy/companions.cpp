@@ -11,60 +11,88 @@ using namespace rouleau::accuracy;
 
 namespace {
 
-constexpr double share = 1.0 / 3, long_run_s = 1000;
+constexpr double share = 0.36, long_run_s = 1000;
 
 Companions of_capsule(const std::vector<std::string>& changes) {
-  return choose_companions(plan::read_scene(std::string(ROULEAU_PHYSICS_SCENES) + "/capsule.json", changes), long_run_s,
-                           0);
+  return choose_companions(plan::read_scene(std::string(ROULEAU_PHYSICS_SCENES) + "/capsule.json", changes),
+                           {.run_s = long_run_s});
 }
 
 }  // namespace
 
 TEST_CASE("companions have the scene's shape on a coarser lattice, segments with it, and cost a part of the run") {
   const Companions companions = of_capsule({});
-  REQUIRE(companions.runs.size() == 2);
+  REQUIRE(companions.runs.size() == 3);
   CHECK(companions.expected_share <= share);
   CHECK(companions.refinement > 4.0 / 3);
-  const nlohmann::json& scene = companions.runs[0].scene;
-  const double nx = scene["domain"]["nodes"][0], ny = scene["domain"]["nodes"][1];
-  CHECK(nx == 2 * ny);
-  CHECK(128 / ny == Approx(companions.refinement));
-  CHECK(scene["cell_types"]["capsule"]["segments"] == std::lround(126 / companions.refinement));
+  const auto on = [&](const Companion& companion, double refinement) {
+    const nlohmann::json& scene = companion.scene;
+    const double nx = scene["domain"]["nodes"][0], ny = scene["domain"]["nodes"][1];
+    CHECK(nx == 2 * ny);
+    CHECK(128 / ny == Approx(refinement));
+    CHECK(scene["cell_types"]["capsule"]["segments"] == std::lround(126 / refinement));
+  };
   CHECK(companions.runs[0].role == Role::lattice);
-  CHECK(scene["numerics"]["density_factor"] == 1562.5);
-  CHECK(companions.runs[1].role == Role::inertia);
-  CHECK(companions.runs[1].scene["numerics"]["density_factor"] == 1562.5 * companions.density);
+  CHECK(companions.runs[0].scene["numerics"]["density_factor"] == 1562.5);
+  on(companions.runs[0], companions.refinement);
+  CHECK(companions.runs[1].role == Role::order);
+  CHECK(companions.coarsest / companions.refinement == Approx(1.25).epsilon(0.05));
+  on(companions.runs[1], companions.coarsest);
+  // Half the density on the coarser of the two, with the same relaxation time.
+  CHECK(companions.runs[2].role == Role::inertia);
+  CHECK(companions.runs[2].against == 1);
+  on(companions.runs[2], companions.coarsest);
+  CHECK(companions.density == 0.5);
+  CHECK(companions.runs[2].scene["numerics"]["density_factor"] == 1562.5 / 2);
+  CHECK(companions.runs[2].scene["numerics"]["tau"] == 1.0);
   CHECK(companions.order == 1);
-  CHECK(companions.runs[1].scene["numerics"]["tau"] == 1.0);
 }
 
-TEST_CASE("with slip correction the companion of another density keeps its time step") {
+TEST_CASE("where moments are reported the companion of another density keeps its time step, on the finer lattice") {
   const auto corrected = [](const std::string& tau) {
-    return of_capsule({"/numerics/slip_correction=true", "/numerics/tau=" + tau});
+    return choose_companions(plan::read_scene(std::string(ROULEAU_PHYSICS_SCENES) + "/capsule.json",
+                                              {"/numerics/slip_correction=true", "/numerics/tau=" + tau}),
+                             {.run_s = long_run_s, .moments = true});
   };
   const Companions companions = corrected("1");
   CHECK(companions.order == 2);
   CHECK(companions.density == 0.5);
+  const Companion& light = companions.runs.back();
+  CHECK(light.against == 0);
+  CHECK(light.scene["domain"]["nodes"] == companions.runs[0].scene["domain"]["nodes"]);
   // The time step goes with (tau - 1/2) times the density factor.
-  CHECK(companions.runs[1].scene["numerics"]["tau"] == 1.5);
-  CHECK(companions.refinement < of_capsule({}).refinement);  // it costs less
+  CHECK(light.scene["numerics"]["tau"] == 1.5);
   // A relaxation time above 3 is avoided.
   const Companions dense = corrected("2.5");
   CHECK(dense.density == 2);
-  CHECK(dense.runs[1].scene["numerics"]["tau"] == 1.5);
-  CHECK(dense.runs[1].scene["numerics"]["density_factor"] == 3125);
+  CHECK(dense.runs.back().scene["numerics"]["tau"] == 1.5);
+  CHECK(dense.runs.back().scene["numerics"]["density_factor"] == 3125);
+}
+
+TEST_CASE("of a run with many outputs that reports moments companions have a quarter of them") {
+  const scene::Scene scene = plan::read_scene(std::string(ROULEAU_PHYSICS_SCENES) + "/capsule.json");
+  const auto interval = [&](long outputs, bool moments) {
+    const RunCost cost{.run_s = long_run_s, .outputs = outputs, .moments = moments};
+    return choose_companions(scene, cost).runs[0].scene["output"]["cells"]["strain"].get<double>();
+  };
+  CHECK(interval(1000, true) == 1);
+  CHECK(interval(100, true) == 0.25);
+  CHECK(interval(1000, false) == 0.25);
 }
 
 TEST_CASE("a start from rest has a companion of its own where it takes a good part of the strain") {
   const Companions companions = of_capsule({"/stages/0/start=impulsive", "/stages/0/strain=3"});
-  REQUIRE(companions.runs.size() == 3);
+  REQUIRE(companions.runs.size() == 4);
   CHECK(companions.runs[0].scene["stages"][0]["start"] == "impulsive");
-  CHECK(companions.runs[1].role == Role::start);
-  CHECK(companions.runs[1].scene["stages"][0]["start"] == "developed");
+  CHECK(companions.runs[1].scene["stages"][0]["start"] == "impulsive");
+  CHECK(companions.runs[2].role == Role::start);
+  CHECK(companions.runs[2].against == 1);
   CHECK(companions.runs[2].scene["stages"][0]["start"] == "developed");
+  CHECK(companions.runs[3].scene["stages"][0]["start"] == "developed");
+  CHECK(companions.runs[3].against == 2);
   CHECK(companions.expected_share <= share);
   // H^2/(24 nu) times the density factor is a strain of 0.7.
-  CHECK(of_capsule({"/stages/0/start=impulsive", "/stages/0/strain=22"}).runs.size() == 2);
+  CHECK(of_capsule({"/stages/0/start=impulsive", "/stages/0/strain=22"}).runs.size() == 3);
 }
 
 TEST_CASE("the density factors of all stages change together, and a true density is not changed") {
@@ -74,7 +102,7 @@ TEST_CASE("the density factors of all stages change together, and a true density
   CHECK(scene["stages"][0]["density_factor"] == 100 * companions.density);
   CHECK(scene["numerics"]["density_factor"] == 1562.5 * companions.density);
   CHECK_FALSE(scene["stages"][1].contains("density_factor"));
-  CHECK(of_capsule({"/numerics/density_factor=1"}).runs.size() == 1);
+  CHECK(of_capsule({"/numerics/density_factor=1"}).runs.size() == 2);
   const Companions nearly = of_capsule({"/numerics/density_factor=1.25"});
   CHECK(nearly.density == 0.8);
   CHECK(nearly.relaxed == Approx(0.2));
@@ -82,7 +110,7 @@ TEST_CASE("the density factors of all stages change together, and a true density
 
 TEST_CASE("what auto chose is pinned in the companions") {
   const scene::Scene scene = plan::read_scene(std::string(ROULEAU_PHYSICS_SCENES) + "/auto-capsule.json");
-  const Companions companions = choose_companions(scene, long_run_s, 0);
+  const Companions companions = choose_companions(scene, {.run_s = long_run_s});
   REQUIRE_FALSE(companions.runs.empty());
   const nlohmann::json& companion = companions.runs[0].scene;
   CHECK_FALSE(companion["numerics"].contains("auto"));
@@ -99,11 +127,13 @@ TEST_CASE("numbers of nodes without a common divisor, and cells that would be to
   CHECK(coarse.why_none.find("radius") != std::string::npos);
 }
 
-TEST_CASE("of a run that takes a second companions are coarser, for starting them takes a part of its time") {
+TEST_CASE("of a run that takes half a second companions are coarser, for starting them takes a part of its time") {
   const scene::Scene scene = plan::read_scene(std::string(ROULEAU_PHYSICS_SCENES) + "/capsule.json");
-  const Companions quick = choose_companions(scene, 1.5, 0), patient = choose_companions(scene, long_run_s, 0);
+  const Companions quick = choose_companions(scene, {.run_s = 0.5}),
+                   patient = choose_companions(scene, {.run_s = long_run_s});
   CHECK(quick.refinement > patient.refinement);
   CHECK(quick.expected_share < patient.expected_share);
   // So do outputs, of which companions have as many.
-  CHECK(choose_companions(scene, long_run_s, 0.03 * long_run_s).refinement > patient.refinement);
+  CHECK(choose_companions(scene, {.run_s = long_run_s, .outputs_s = 0.06 * long_run_s}).refinement >
+        patient.refinement);
 }

@@ -4,6 +4,9 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "accuracy/refinement.hpp"
+
+using namespace rouleau;
 using namespace rouleau::accuracy;
 
 namespace {
@@ -13,6 +16,8 @@ Quantity quantity(const std::string& name, double value) { return {.name = name,
 /// Companions of a run on a lattice with twice the spacing, and with half the density.
 Companions three_companions() {
   Companions companions;
+  companions.runs = {
+      {Role::lattice, {}, "coarse", -1}, {Role::start, {}, "developed", 0}, {Role::inertia, {}, "light", 1}};
   companions.refinement = 2;
   companions.order = 2;
   companions.density = 0.5;
@@ -53,6 +58,7 @@ TEST_CASE("the share of the density is that of an error in proportion, of a dens
   Companions companions = three_companions();
   const auto share = [&](double density, double power) {
     companions.density = density;
+    companions.runs = {{Role::lattice, {}, "coarse", -1}, {Role::inertia, {}, "other", 0}};
     const double companion = 1 + 0.01 * std::pow(density, power);
     return error_bars({quantity("deformation", 1.01)}, companions,
                       {{Role::lattice, "coarse", {quantity("deformation", 1.01)}},
@@ -63,6 +69,40 @@ TEST_CASE("the share of the density is that of an error in proportion, of a dens
   CHECK(share(0.8, 1) == Approx(0.01));
   CHECK(share(2, 0.7) == Approx(0.01));
   CHECK(share(2, 1) > 0.01);
+}
+
+TEST_CASE("two coarser lattices find an error of second and fourth order, and one of fourth alone") {
+  const double r = 1.6, s = 2;
+  const auto share = [&](double second, double fourth) {
+    const auto at = [&](double h) { return 0.3 + second * h * h + fourth * std::pow(h, 4); };
+    return lattice_share(at(1), at(r), r, at(s), s, 2);
+  };
+  for (const auto& [second, fourth] :
+       {std::pair{0.01, 0.0}, {0.01, 0.01}, {0.0, 0.01}, {-0.01, -0.002}, {0.01, -0.001}}) {
+    CHECK(share(second, fourth).error == Approx(second + fourth));
+    CHECK(share(second, fourth).doubt >= 0.5 * std::abs(second + fourth) * (1 - 1e-9));
+  }
+  // One coarser lattice alone takes all for the second order.
+  const double alone = lattice_share(0.31, 0.3 + 0.01 * std::pow(r, 4), r, std::nan(""), 1, 2).error;
+  CHECK(alone > 2 * 0.01);
+}
+
+TEST_CASE("values that turn back on the coarsest lattice leave a doubt of their distance") {
+  const LatticeShare share = lattice_share(6.074, 6.093, 1.7, 6.051, 2, 2);
+  CHECK(share.error == Approx(0.019 / (1.7 * 1.7 - 1)));
+  CHECK(share.doubt == Approx(0.023 / (1.7 * 1.7 - 1)));
+  CHECK(lattice_share(1, 1, 1.7, 1.2, 2, 2).error == 0);
+}
+
+TEST_CASE("a quantity that the companion for the order does not have has a bar without it") {
+  Companions companions = three_companions();
+  companions.runs = {{Role::lattice, {}, "coarse", -1}, {Role::order, {}, "coarser", -1}};
+  companions.coarsest = 2.5;
+  const auto bars = error_bars({quantity("passage_strain_-90_deg", 1.01)}, companions,
+                               {{Role::lattice, "coarse", {quantity("passage_strain_-90_deg", 1.04)}},
+                                {Role::order, "coarser", {quantity("deformation", 0.3)}}});
+  REQUIRE(bars[0].error);
+  CHECK(bars[0].shares.lattice == Approx(0.01));
 }
 
 TEST_CASE("without slip correction the lattice's share is that of first order") {
@@ -136,4 +176,30 @@ TEST_CASE("what is told first is told with its bar, an angle in degrees; the wor
   passage.quantity.moment = true;
   CHECK(worst({first, second, passage})->name == "passage_strain_0_deg");
   CHECK(worst({first, second, passage})->error == Approx(0.005));
+}
+
+TEST_CASE("a refined target is smaller by what was measured over the target, and leaves out what no lattice mends") {
+  plan::NumericsChoice choice;
+  choice.target = 0.01;
+  choice.expected = {0.005, 0.003, 0};
+  CHECK(refined_target(choice, {0.02, "deformation", {0.02, 0, 0}, 0}) == Approx(0.8 * 0.008 / 2));
+  CHECK(refined_target(choice, {0.025, "passage", {0.02, 0, 0}, 0.005}) == Approx(0.8 * 0.008 * 0.005 / 0.02));
+  CHECK_FALSE(refined_target(choice, {0.025, "passage", {0.02, 0, 0}, 0.012}) > 0);
+}
+
+TEST_CASE("a summary keeps the worst error") {
+  nlohmann::json choice = nlohmann::json::object();
+  CHECK_FALSE(measured(choice));
+  add_measured(choice, Worst{0.03, "deformation", {0.02, -0.001, 0.01}, 0.004});
+  const std::optional<Worst> back = measured(choice);
+  REQUIRE(back);
+  CHECK(back->error == 0.03);
+  CHECK(back->name == "deformation");
+  CHECK(back->shares.lattice == 0.02);
+  CHECK(back->shares.start == -0.001);
+  CHECK(back->shares.inertia == 0.01);
+  CHECK(back->uncertainty == 0.004);
+  nlohmann::json pinned;
+  add_measured(pinned, Worst{});
+  CHECK(pinned.is_null());
 }

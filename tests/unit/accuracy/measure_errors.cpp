@@ -44,8 +44,9 @@ class FinishedRun {
   [[nodiscard]] const scene::Scene& scene() const { return *scene_; }
   [[nodiscard]] MeasureOptions options() const {
     MeasureOptions options;
-    options.scene_file = folder_.path() / "scene.json";
-    options.program = ROULEAU_PROGRAM;
+    options.catalog_of = [](const scene::Scene& /*unused*/) {
+      return plugin::Catalog(std::vector<fs::path>{ROULEAU_PLUGINS});
+    };
     options.quiet = true;
     return options;
   }
@@ -78,7 +79,7 @@ TEST_CASE("the bars of a steady capsule hold the boundary-integral solution and 
   // What the run wrote is as it was, and the summary sealed again; nothing of the companions stays.
   CHECK(files::verify(run.directory()).differences.empty());
   CHECK_FALSE(fs::exists(run.directory() / files::companions_folder));
-  CHECK(run.summary()["error_bar_runs"]["companions"].size() == 2);
+  CHECK(run.summary()["error_bar_runs"]["companions"].size() == 3);
   CHECK(finished_run(run.directory(), run.scene()) == Finished::with_bars);
 }
 
@@ -101,7 +102,7 @@ TEST_CASE("interrupted companions leave the run as it was, and those that have e
 TEST_CASE("a companion that does not complete gives no bar to anything, and says why") {
   const FinishedRun run(capsule(0.5));
   MeasureOptions options = run.options();
-  options.program = "/bin/false";
+  options.catalog_of = [](const scene::Scene& /*unused*/) { return plugin::Catalog(std::vector<fs::path>{}); };
   const MeasuredErrors errors = measure_errors(run.directory(), run.scene(), options);
   CHECK(errors.missing.find("did not complete") != std::string::npos);
   const Json summary = run.summary();
