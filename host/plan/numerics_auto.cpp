@@ -331,7 +331,8 @@ NumericsChoice Problem::chosen(const Trial& best) const {
     set("coupling", "auto", "explicit or semi-implicit, by the limits of the membranes' stiffness");
     set("slip_correction", corrected_,
         corrected_ ? "takes the first-order error of the immersed boundary out"
-                   : "left out, for cells that attract each other strongly leak with it");
+                   : "left out, for plasma between cells drains with it, and some that attract each other strongly "
+                     "then become so thin that they cross themselves");
     set("area_correction", true, "cells keep their areas");
   }
   if (!meets_target(best)) {

@@ -260,24 +260,20 @@ std::vector<std::string> warnings_of(const Plan& plan, const std::vector<Limit>&
   if (const KernelFacts& kernel = kernel_named(scene.numerics.kernel); plan.has_cells && *kernel.defect != 0) {
     warnings.push_back(std::string("kernel ") + kernel.name + ": " + kernel.defect);
   }
-  // Where auto has chosen it, it has looked at how strong the attraction is.
-  const std::optional<NumericsChoice>& choice = plan.numerics_choice;
-  const bool chosen = choice && std::any_of(choice->values.begin(), choice->values.end(), [](const auto& value) {
-                        return value.pointer == "/numerics/slip_correction";
-                      });
   // Models that remember, such as bonds, may attract too, though they have no well.
   const bool only_repulsion = deepest_well(plan, wells) == 0 &&
                               std::all_of(plan.interactions.begin(), plan.interactions.end(),
                                           [](const PlannedModel& model) { return model.manifest->state.empty(); });
-  if (scene.numerics.slip_correction && plan.has_interactions && !only_repulsion && !chosen) {
+  if (scene.numerics.slip_correction && !scene.numerics.area_correction && plan.has_interactions && !only_repulsion) {
     warnings.emplace_back(
-        "numerics.slip_correction with attracting cells: where the attraction is strong, cells leak more with it than "
-        "without (docs/accuracy.md); watch area_leakage_max, or set it to false");
+        "numerics.slip_correction with attracting cells: what presses cells together leaks plasma into them "
+        "(docs/accuracy.md); set numerics.area_correction to true as well");
   }
   for (const InteractionWell& well : wells) {
     if (!well.doubt.empty())
       warnings.push_back(well.model + " between " + well.between[0] + " and " + well.between[1] + ": " + well.doubt);
   }
+  const std::optional<NumericsChoice>& choice = plan.numerics_choice;
   if (choice && !choice->doubt.empty()) warnings.push_back(choice->doubt);
   for (const Limit& limit : limits) {
     if (!(limit.margin < 1)) continue;

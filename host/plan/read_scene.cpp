@@ -15,10 +15,10 @@ namespace {
 constexpr int most_tries = 20;
 constexpr double to_spare = 1.02;
 
-/// Wells deeper than this share of the membranes' stretching modulus leak with the slip correction: by 0.7 % of the
-/// area at rest at 0.072, by nothing that was seen at 0.003 (docs/accuracy.md, cells in contact); between them nothing
-/// was measured. A wall is another matter: a red cell that comes to rest on one loses 0.30 % with the slip correction and
-/// 0.45 % without at 0.056, 0.034 % and 0.047 % at 0.0056.
+/// With the slip correction plasma drains from between cells, and where wells are deeper than this share of the membranes'
+/// stretching modulus some become so thin then that their own faces touch: of four red cells at rest at 0.072 one crossed itself,
+/// at 0.003 none did, sheared to a strain of 30 (docs/accuracy.md, cells in contact); between them nothing was measured. A
+/// wall is another matter: red cells come to rest on one at 0.056, with the slip correction and without.
 constexpr double deepest_corrected_well = 0.02;
 
 bool attracts_strongly(const Plan& plan) {

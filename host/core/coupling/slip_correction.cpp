@@ -192,11 +192,8 @@ void SlipCorrection::measure(Worker worker, const Membranes& membranes) {
   run<Measure>(worker, membranes, nullptr, nullptr);
 }
 
-void SlipCorrection::couple(Worker worker, const Membranes& membranes) {
-  run<Couple>(worker, membranes, nullptr, nullptr);
-}
-
 void SlipCorrection::complete(Worker worker, const Membranes& membranes) {
+  run<Couple>(worker, membranes, nullptr, nullptr);
   run<Slip>(worker, membranes, nullptr, nullptr);
   const Range nodes = membranes.node_share(worker);
   for (auto i = static_cast<std::size_t>(nodes.begin); i < static_cast<std::size_t>(nodes.end); ++i) {

@@ -10,6 +10,13 @@ namespace {
 
 constexpr double relaxation = 50;  // steps in which a difference of area goes by a factor e
 
+template <class S>
+ROULEAU_ALWAYS_INLINE double lane_sum(const S& values) {
+  double total = 0;
+  for (int k = 0; k < S::size; ++k) total += values.vector[k];
+  return total;
+}
+
 struct AreaTask {
   int begin, end;
   const double *x, *y;
@@ -28,9 +35,9 @@ struct KeepArea {
       const S ax = S::load(t.y + after) - S::load(t.y + before), ay = S::load(t.x + before) - S::load(t.x + after);
       // Relative to the first node, so that a cell far from the origin keeps its digits.
       const S x = S::load(t.x + i) - t.x[t.begin], y = S::load(t.y + i) - t.y[t.begin];
-      area += sum(x * ax + y * ay);
-      gain += sum(S::load(t.velocity_x + i) * ax + S::load(t.velocity_y + i) * ay);
-      square += sum(ax * ax + ay * ay);
+      area += lane_sum(x * ax + y * ay);
+      gain += lane_sum(S::load(t.velocity_x + i) * ax + S::load(t.velocity_y + i) * ay);
+      square += lane_sum(ax * ax + ay * ay);
     });
     area /= 4, gain /= 2, square /= 4;
     task->gain = gain;
@@ -42,17 +49,52 @@ struct KeepArea {
       (S::load(t.velocity_y + i) + factor * ay).store(t.velocity_y + i);
     });
   }
+};
 
- private:
-  template <class S>
-  ROULEAU_ALWAYS_INLINE static double sum(const S& values) {
-    double total = 0;
-    for (int k = 0; k < S::size; ++k) total += values.vector[k];
-    return total;
+struct PressureTask {
+  int begin, end;
+  const double *x, *y;
+  double *force_x, *force_y;
+};
+
+struct TakeOutPressure {
+  template <int register_bytes>
+  ROULEAU_ALWAYS_INLINE static void run(const PressureTask* task) {
+    const PressureTask t = *task;
+    double work = 0, square = 0;
+    for_closed_outline<register_bytes>(t.begin, t.end, [&](auto tag, int i, int before, int after) {
+      using S = decltype(tag);
+      const S ax = S::load(t.y + after) - S::load(t.y + before), ay = S::load(t.x + before) - S::load(t.x + after);
+      work += lane_sum(S::load(t.force_x + i) * ax + S::load(t.force_y + i) * ay);
+      square += lane_sum(ax * ax + ay * ay);
+    });
+    const double factor = square > 0 ? -work / square : 0;
+    for_closed_outline<register_bytes>(t.begin, t.end, [&](auto tag, int i, int before, int after) {
+      using S = decltype(tag);
+      const S ax = S::load(t.y + after) - S::load(t.y + before), ay = S::load(t.x + before) - S::load(t.x + after);
+      (S::load(t.force_x + i) + factor * ax).store(t.force_x + i);
+      (S::load(t.force_y + i) + factor * ay).store(t.force_y + i);
+    });
   }
 };
 
 }  // namespace
+
+void take_out_pressures(Worker worker, Membranes& membranes) {
+  static const auto function = Dispatch<TakeOutPressure, const PressureTask*>::pick();
+  const Range cells = worker.share(membranes.cell_count());
+  for (int c = cells.begin; c < cells.end; ++c) {
+    if (!membranes.owns(c)) continue;
+    const CellRange& cell = membranes.cells[c];
+    const PressureTask task{cell.first,
+                            cell.end(),
+                            membranes.x.data(),
+                            membranes.y.data(),
+                            membranes.force_x.data(),
+                            membranes.force_y.data()};
+    function(&task);
+  }
+}
 
 void keep_areas(Worker worker, Membranes& membranes) {
   static const auto function = Dispatch<KeepArea, AreaTask*>::pick();

@@ -11,7 +11,7 @@ Schedule make_schedule(const StepFeatures& has) {
   const auto add = [&](bool wanted, Task task, const char* name, Meeting meeting) {
     if (wanted) schedule.steps.push_back({task, name, meeting});
   };
-  const bool cells = has.cells, ranks = has.ranks, slip = has.slip_correction;
+  const bool cells = has.cells, ranks = has.ranks, corrected = has.slip_correction || has.area_correction;
   const bool touch = has.interactions, walls = has.wall_interactions;
   const char* const mark = has.viscosity_contrast ? "indicator" : "activity";
   // Where a worker would wait for the others it goes on with its own cells: announce, await.
@@ -23,12 +23,12 @@ Schedule make_schedule(const StepFeatures& has) {
   add(cells, Task::membrane_forces, "membrane", walls ? Meeting::none : own_cells);
   add(walls, Task::wall_forces, "interaction", own_cells);
   add(touch, Task::interaction_forces, "interaction", Meeting::announce);
-  add(slip && !touch, Task::complete_forces, "corrections", Meeting::none);
+  add(corrected && !touch, Task::complete_forces, "corrections", Meeting::none);
   add(cells, Task::find_nodes, mark, touch ? Meeting::await : Meeting::all);
   add(cells && has.moving_frame, Task::follow_cells, "fluid", Meeting::all);
   add(touch && ranks, Task::share_reactions, "ranks", Meeting::all);
-  add(touch, Task::take_reactions, "interaction", slip ? Meeting::none : Meeting::all);
-  add(slip && touch, Task::complete_forces, "corrections", Meeting::all);
+  add(touch, Task::take_reactions, "interaction", corrected ? Meeting::none : Meeting::all);
+  add(corrected && touch, Task::complete_forces, "corrections", Meeting::all);
   add(cells && ranks, Task::share_forces, "ranks", Meeting::all);
   add(cells, Task::set_viscosity, mark, Meeting::none);
   schedule.rows = schedule.steps.size();
@@ -41,7 +41,7 @@ Schedule make_schedule(const StepFeatures& has) {
   // The next step begins with the same cells; its first barrier serves these tasks, too.
   add(cells, Task::interpolate, "interpolate", ranks ? Meeting::all : Meeting::none);
   add(cells && ranks, Task::collect_velocities, "ranks", Meeting::all);
-  add(slip || has.area_correction, Task::correct_velocities, "corrections", Meeting::none);
+  add(corrected, Task::correct_velocities, "corrections", Meeting::none);
   add(cells, Task::move, "move", ranks ? Meeting::all : Meeting::none);
   add(cells && ranks, Task::share_positions, "ranks", Meeting::all);
   add(cells, Task::locate, "move", Meeting::none);

@@ -12,12 +12,12 @@ namespace rouleau::core {
 enum class Task {
   set_drive,           ///< one worker: walls and body force that change with time
   find_contacts,       ///< cells: the closest point of other outlines to each node
-  membrane_forces,     ///< cells: F = -dE/dX of the membrane laws, and the couples of the slip correction
+  membrane_forces,     ///< cells: F = -dE/dX of the membrane laws
   wall_forces,         ///< cells: F = -dE/dX of the potentials between cells and walls
   interaction_forces,  ///< cells: F = -dE/dX of the potentials, on own nodes
   share_reactions,     ///< one worker: what own nodes do to other ranks' cells
   take_reactions,      ///< cells: what other cells' nodes do to this one's
-  complete_forces,     ///< cells: the slip, made of all forces on a node
+  complete_forces,     ///< cells: corrections of what is spread, made of all forces on a node
   find_nodes,          ///< cells: the area fraction of lattice nodes, and which nodes feel a membrane
   follow_cells,        ///< one worker: the frame of the fluid's unsteady term
   share_forces,        ///< one worker: of all nodes, to the ranks that spread them

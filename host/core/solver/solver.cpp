@@ -117,9 +117,7 @@ void Solver<T>::run(Task task, Worker worker) {
     case Task::find_contacts:
       return interaction_forces_->run(worker, 0, membranes_);
     case Task::membrane_forces:
-      membrane_forces_->run(worker, membranes_);
-      if (slip_correction_) slip_correction_->couple(worker, membranes_);
-      return;
+      return membrane_forces_->run(worker, membranes_);
     case Task::wall_forces:
       return wall_contacts_->run(worker, membranes_);
     case Task::interaction_forces:
@@ -127,7 +125,9 @@ void Solver<T>::run(Task task, Worker worker) {
     case Task::take_reactions:
       return interaction_forces_->run(worker, 2, membranes_);
     case Task::complete_forces:
-      return slip_correction_->complete(worker, membranes_);
+      if (setup_.area_correction) core::take_out_pressures(worker, membranes_);
+      if (slip_correction_) slip_correction_->complete(worker, membranes_);
+      return;
     case Task::find_nodes:
       viscosity_field_->measure(worker, membranes_);
       return viscosity_field_->cover(worker, membranes_);

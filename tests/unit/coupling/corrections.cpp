@@ -51,10 +51,8 @@ Membranes cell_with_forces(std::mt19937& random, double noise) {
   return m;
 }
 
-/// What a step does with the forces of membranes on which nothing else acts.
 void take_forces(SlipCorrection& correction, const Membranes& m) {
   correction.measure({}, m);
-  correction.couple({}, m);
   correction.complete({}, m);
 }
 
@@ -171,16 +169,40 @@ TEST_CASE("the slip follows the tangential force along the membrane and costs en
   }
 }
 
-TEST_CASE("the slip ends where the forces on the nodes balance") {
+TEST_CASE("forces without their pressure do no work on the area and have the same sum and torque") {
   auto random = generator(86);
   Membranes m = cell_with_forces(random, 0.5);
-  SlipCorrection correction(m, {{slip_constants(KernelKind::peskin4, 1), 0, 0}}, 1.0 / 6);
-  correction.measure({}, m);
-  correction.couple({}, m);
-  for (auto* values : {&m.force_x, &m.force_y, &m.velocity_x, &m.velocity_y}) values->assign(m.x.size(), 0.0);
-  correction.complete({}, m);
-  correction.correct({}, m);
-  for (std::size_t i = 0; i < m.x.size(); ++i) REQUIRE(std::hypot(m.velocity_x[i], m.velocity_y[i]) == 0);
+  const ForceSums before = force_sums(m);
+  take_out_pressures({}, m);
+  const ForceSums after = force_sums(m);
+  CHECK(std::abs(after.x - before.x) < 1e-14 * before.size);
+  CHECK(std::abs(after.y - before.y) < 1e-14 * before.size);
+  CHECK(std::abs(after.torque - before.torque) < 1e-12 * before.size);
+  double work = 0;
+  for (std::size_t i = 0; i < m.x.size(); ++i) {
+    const std::size_t next = (i + 1) % m.x.size(), last = (i + m.x.size() - 1) % m.x.size();
+    work += m.force_x[i] * (m.y[next] - m.y[last]) / 2 + m.force_y[i] * (m.x[last] - m.x[next]) / 2;
+  }
+  CHECK(std::abs(work) < 1e-13 * before.size);
+}
+
+TEST_CASE("what the fluid gets from forces without pressure is what membranes lose that keep their area") {
+  auto random = generator(87);
+  Membranes m = cell_with_forces(random, 0.5);
+  m.cells[0].rest_area = enclosed_area(m, m.cells[0]);
+  m.area_leakage.assign(1, 0.0);
+  Membranes spread = m;
+  take_out_pressures({}, spread);
+  double fluid = 0, membrane = 0, size = 0;
+  for (std::size_t i = 0; i < m.x.size(); ++i) {
+    fluid += spread.force_x[i] * m.velocity_x[i] + spread.force_y[i] * m.velocity_y[i];
+  }
+  keep_areas({}, m);
+  for (std::size_t i = 0; i < m.x.size(); ++i) {
+    membrane += m.force_x[i] * m.velocity_x[i] + m.force_y[i] * m.velocity_y[i];
+    size += std::hypot(m.force_x[i], m.force_y[i]) * std::hypot(m.velocity_x[i], m.velocity_y[i]);
+  }
+  CHECK(std::abs(fluid - membrane) < 1e-14 * size);
 }
 
 TEST_CASE("the area correction makes no cell larger or smaller, and tells what would have been") {

@@ -69,7 +69,7 @@ TEST_CASE("a lattice that leaves next to nothing of the target is told what it c
   CHECK(estimated_cost(named.scene) > 2 * estimated_cost(open.scene));
 }
 
-TEST_CASE("auto's own slip correction is not warned of") {
+TEST_CASE("a slip correction between cells wants an area correction, which auto chooses") {
   const std::string scene = std::string(ROULEAU_SCENES) + "/four-cells-shear.json";
   const auto warned = [&](const std::vector<std::string>& overrides) {
     const auto [read, choice] = read_within_limits(scene, overrides, shipped_plugins);
@@ -81,6 +81,7 @@ TEST_CASE("auto's own slip correction is not warned of") {
     });
   };
   CHECK(warned({"/numerics/slip_correction=true"}));
+  CHECK_FALSE(warned({"/numerics/slip_correction=true", "/numerics/area_correction=true"}));
   CHECK_FALSE(warned({"/numerics={\"auto\": {\"error\": 0.05}}"}));
 }
 
