@@ -117,6 +117,15 @@ core::Domain<2> lattice_domain(const scene::Scene& scene) {
 }
 
 namespace {
+std::vector<core::Layer> lattice_layers(const scene::Scene& scene) {
+  std::vector<core::Layer> layers;
+  const double spacing = lattice_spacing(scene);
+  for (const scene::FluidLayer& layer : scene.fluid.layers) {
+    layers.push_back({layer.from / spacing, layer.to / spacing, layer.viscosity / scene.fluid.viscosity});
+  }
+  return layers;
+}
+
 
 /// Cells that cover more than the whole domain overlap, and that is known before any of them is placed.
 void require_room(const scene::Scene& scene) {
@@ -175,6 +184,7 @@ core::SolverSetup make_solver_setup(const Plan& plan, int index) {
       .inertia = scene.fluid.inertia,
       .follow_cells = follows_cells(scene, stage),
       .walls = stage.walls,
+      .layers = lattice_layers(scene),
       .body_force_x = stage.body_force_x,
       .body_force_y = stage.body_force_y,
       .oscillation = stage.oscillation,

@@ -32,9 +32,16 @@ struct Domain {
   bool periodic_y = false;   ///< false: solid walls below and above; x is periodic always
 };
 
+/// A part of the suspending fluid that has another viscosity, between two heights.
+struct FluidLayer {
+  double from, to;   ///< m, from the lower wall, or the lower edge of the domain
+  double viscosity;  ///< Pa s
+};
+
 struct FluidProperties {
   double density;                                        ///< kg/m3
   double viscosity;                                      ///< Pa s, of the suspending fluid
+  std::vector<FluidLayer> layers;                        ///< beside each other, from below
   bool inertia = false;                                  ///< false: linear (Stokes) equilibrium
   Eigen::Vector2d body_force = Eigen::Vector2d::Zero();  ///< N/m3, in every stage
   ModelChoice collision;                                 ///< "trt" when the scene names none
