@@ -79,12 +79,13 @@ struct CellType {
   std::vector<ModelChoice> membrane;  ///< laws that add up
 };
 
-/// One cell to be placed; rows and lists are expanded already.
+/// One cell to be placed; rows, lists and files are read already.
 struct CellPlacement {
   int type;                ///< index into Scene::cell_types
   Eigen::Vector2d center;  ///< m
   double angle;            ///< rad, counter-clockwise
   std::string pointer;     ///< entry of /cells that asked for it
+  int line = 0;            ///< of the file of cells that it comes from; 0: of none
 };
 
 /// Cells that were placed at random.
