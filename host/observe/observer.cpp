@@ -177,7 +177,11 @@ Snapshot Observer::observe(core::Solver<T>& solver, const plan::StageSetting& se
       snapshot.cell_free_layer_lower = layer.lower * units.length;
       snapshot.cell_free_layer_upper = layer.upper * units.length;
     }
-    snapshot.particle_stress = units.to_si(particle_stress(membranes, *scene_, viscosity), units::dimension::pressure);
+    // In layers a cell's share in the stress is not a matter of its membrane alone.
+    snapshot.particle_stress =
+        scene_->fluid.layers.empty()
+            ? units.to_si(particle_stress(membranes, *scene_, viscosity), units::dimension::pressure)
+            : std::numeric_limits<double>::quiet_NaN();
     observe_cells(membranes, units, snapshot);
     snapshot.area_drift_max = follow_area(membranes);
     snapshot.area_leakage_max = area_leakage(membranes);

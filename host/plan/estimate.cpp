@@ -120,7 +120,8 @@ Estimate estimate(const Plan& plan) {
   for (const StageSetting& stage : plan.stages) estimate.steps += static_cast<double>(stage.max_steps);
   estimate.wall_s = estimate.steps * step_cost(nodes, membrane_nodes, scene.numerics.precision);
   estimate.memory_bytes =
-      nodes * word * (9 + (plan.has_cells ? 2 : 0) + (plan.viscosity_contrast ? 1 : 0)) + membrane_memory(scene);
+      nodes * word * (9 + (plan.has_cells ? 2 : 0) + (plan.viscosity_contrast || !scene.fluid.layers.empty() ? 1 : 0)) +
+      membrane_memory(scene);
   estimate.output = estimate_output(scene, plan.stages);
   return estimate;
 }

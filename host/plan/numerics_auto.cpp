@@ -28,8 +28,9 @@ constexpr const char* origin = "numerics.auto";
 
 constexpr double nearly = 0.999;  ///< as much of a limit as is taken
 constexpr std::array relaxation_times{0.8, 1.0, 1.25, 1.5, 2.0, 2.5, 3.0};
-constexpr double finest_radius = 80;  ///< spacings; more is never chosen
-constexpr int fewest_rows = 16;       ///< of a lattice without cells
+constexpr double least_of_layers = 0.01;  ///< of tau - 1/2 in a layer: twice the limit of the plan
+constexpr double finest_radius = 80;      ///< spacings; more is never chosen
+constexpr int fewest_rows = 16;           ///< of a lattice without cells
 // Without a flow inertia only decides how membranes come to rest. The limits of the plan lower it where they must.
 constexpr double density_factor_at_rest = 13000;
 constexpr int most_coarse_rows = 4096;
@@ -143,7 +144,7 @@ Problem::Problem(const scene::Scene& draft, const Json& written, const NumericsB
   const Json wanted = numerics_.at("auto");
   target_ = wanted.value("error", default_target);
   steady_ = wanted.value("of", "motion") == "steady";
-  corrected_ = numerics_.value("slip_correction", bounds_.slip_correction);
+  corrected_ = numerics_.value("slip_correction", bounds_.slip_correction && scene_.fluid.layers.empty());
   has_cells_ = !scene_.cells.empty();
   radius_ = shape::smallest_radius(scene_);
   std::vector<int> placed(scene_.cell_types.size());
@@ -168,7 +169,7 @@ Problem::Problem(const scene::Scene& draft, const Json& written, const NumericsB
       starts_.push_back({lag, strain, stage.shear_rate == 0});
   }
   const double length = has_cells_ ? radius_ : scene_.domain.size.y() / 2;
-  reynolds_ = scene_.fluid.density * shear_rate_ * length * length / scene_.fluid.viscosity;
+  reynolds_ = scene_.fluid.density * shear_rate_ * length * length / scene::viscosity_range(scene_.fluid).least;
 }
 
 std::vector<std::array<int, 2>> Problem::lattices() const {
@@ -200,6 +201,10 @@ bool Problem::better(const Trial& a, const Trial& b) const {
 
 NumericsChoice Problem::solve() const {
   std::vector<double> taus(relaxation_times.begin(), relaxation_times.end());
+  // In layers of little viscosity tau is nearer to 1/2.
+  const double thinnest = scene::viscosity_range(scene_.fluid).least / scene_.fluid.viscosity;
+  std::erase_if(taus,
+                [&](double tau) { return tau < relaxation_times.back() && thinnest * (tau - 0.5) < least_of_layers; });
   if (!pinned("tau").is_null()) taus = {pinned("tau").get<double>()};
   std::optional<Trial> best;
   for (const auto& nodes : lattices()) {
@@ -215,7 +220,9 @@ NumericsChoice Problem::solve() const {
 Problem::Trial Problem::tried(const std::array<int, 2>& nodes, double tau) const {
   Trial trial{nodes, tau, 1, 0, {}};
   const double spacing = scene_.domain.size.y() / nodes[1];
-  trial.error.resolution = resolution_error(spacing, tau);
+  const double most_viscous_tau = core::relaxation_time_of(scene::viscosity_range(scene_.fluid).most /
+                                                           scene_.fluid.viscosity * core::viscosity_of(tau));
+  trial.error.resolution = resolution_error(spacing, most_viscous_tau);
   const double true_step = core::time_step(tau, spacing, scene_.fluid.viscosity / scene_.fluid.density);  // of factor 1
   if (const Json factor = pinned("density_factor"); !factor.is_null()) {
     trial.density_factor = factor.get<double>();
@@ -228,7 +235,7 @@ Problem::Trial Problem::tried(const std::array<int, 2>& nodes, double tau) const
     const double allowed = most_density_factor(target_ - trial.error.resolution);
     // Without cells what is computed is how the fluid's own inertia lets a flow start.
     const double wanted = has_cells_ ? allowed : 1;
-    const double pressed = has_cells_ ? compression_by_shear(tau, shear_rate_ * true_step) : 0;
+    const double pressed = has_cells_ ? compression_by_shear(most_viscous_tau, shear_rate_ * true_step) : 0;
     trial.density_factor =
         std::max(1.0, std::min({wanted, nearly * scene::largest_wall_mach(scene_.fluid.inertia) / wall_mach,
                                 nearly * largest_compression_by_shear / pressed, bounds_.most_density_factor}));
@@ -347,6 +354,10 @@ NumericsChoice Problem::chosen(const Trial& best) const {
                    " of error already, and what is left of " + percent(target_) +
                    " asks for small steps (density_factor " + number(best.density_factor, 3) +
                    "); leave domain.nodes out, or allow a larger error";
+  }
+  if (choice.doubt.empty() && has_cells_ && !scene_.fluid.layers.empty()) {
+    choice.doubt =
+        "numerics.auto: the error of cells was measured in a fluid of one viscosity, and fluid.layers has others";
   }
   if (choice.doubt.empty() && has_cells_ && (viscosity_ratio_ < 0.99 || viscosity_ratio_ > 1.01 * measured_ratio)) {
     choice.doubt = "numerics.auto: the viscosity ratio " + number(viscosity_ratio_, 3) +

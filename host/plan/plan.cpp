@@ -91,6 +91,12 @@ void choose_coupling(Plan& plan) {
     plan.coupling = wanted + ", as numerics.coupling says";
     return;
   }
+  if (!plan.scene->fluid.layers.empty()) {
+    plan.coupling =
+        "explicit, chosen by \"auto\": the semi-implicit step knows of one viscosity around the cells, and "
+        "fluid.layers has others";
+    return;
+  }
   const double margin = explicit_margin(plan);
   const bool stiff = margin < comfortable_margin;
   plan.semi_implicit = stiff && semi_implicit_gains(plan);
@@ -187,9 +193,11 @@ Plan make_plan(const scene::Scene& scene, const plugin::Catalog& catalog, std::o
   if (catalog.lock()) plan.lock = {catalog.lock()->file.string(), catalog.lock()->sha256};
   Faults faults;
   plan_models(plan, catalog, faults);
-  plan.viscosity_contrast = std::any_of(scene.cells.begin(), scene.cells.end(), [&](const scene::CellPlacement& cell) {
-    return scene.cell_types[cell.type].interior_viscosity != scene.fluid.viscosity;
-  });
+  const bool layered = plan.has_cells && !scene.fluid.layers.empty();
+  plan.viscosity_contrast =
+      layered || std::any_of(scene.cells.begin(), scene.cells.end(), [&](const scene::CellPlacement& cell) {
+        return scene.cell_types[cell.type].interior_viscosity != scene.fluid.viscosity;
+      });
   for (int i = 0; i < static_cast<int>(scene.stages.size()); ++i) {
     faults.attempt([&] { plan.stages.push_back(make_stage_setting(scene, i)); });
   }

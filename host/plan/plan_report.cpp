@@ -82,6 +82,10 @@ std::vector<Conversion> conversion_table(const Plan& plan) {
     row("time step", u.time, "s", 1);
     row("density (times density_factor)", scene.fluid.density * stage.stage->density_factor, "kg/m3", 1);
     converted("viscosity", scene.fluid.viscosity, "Pa s", units::dimension::viscosity);
+    for (const scene::FluidLayer& layer : scene.fluid.layers) {
+      converted("viscosity", layer.viscosity, "Pa s", units::dimension::viscosity,
+                "the layer from " + number(layer.from * 1e6, 4) + " um to " + number(layer.to * 1e6, 4) + " um");
+    }
     if (stage.stage->shear_rate != 0) {
       row("shear rate", stage.stage->shear_rate, "1/s", stage.shear_rate);
     }
@@ -235,6 +239,14 @@ std::vector<Omission> omissions(const Plan& plan) {
   return left_out;
 }
 
+/// Whether one layer ends where another begins.
+bool is_shared(const scene::Scene& scene, double border) {
+  const auto& layers = scene.fluid.layers;
+  return std::any_of(layers.begin(), layers.end(), [&](const scene::FluidLayer& layer) {
+    return std::abs(layer.to - border) < 1e-9 * scene.domain.size.y();
+  });
+}
+
 /// What the user has to know before the run.
 std::vector<std::string> warnings_of(const Plan& plan, const std::vector<Limit>& limits,
                                      const std::vector<InteractionWell>& wells) {
@@ -256,6 +268,16 @@ std::vector<std::string> warnings_of(const Plan& plan, const std::vector<Limit>&
                        number(acceleration, 3) +
                        " m/s every second for as long as the stage lasts; give domain.y walls, or leave out "
                        "fluid.body_force and pressure_gradient");
+  }
+  const double spacing = lattice_spacing(scene);
+  for (const scene::FluidLayer& layer : scene.fluid.layers) {
+    for (const double border : {layer.from, layer.to}) {
+      const double row = border / spacing, nearest = std::round(row);
+      if (std::abs(row - nearest) < 1e-6 || (border == layer.from && is_shared(scene, border))) continue;
+      warnings.push_back("the border of a layer at " + number(border * 1e6, 6) +
+                         " um lies within a row of nodes, whose velocity is off to first order in the spacing; at " +
+                         number(nearest * spacing * 1e6, 6) + " um it lies between two rows");
+    }
   }
   if (const KernelFacts& kernel = kernel_named(scene.numerics.kernel); plan.has_cells && *kernel.defect != 0) {
     warnings.push_back(std::string("kernel ") + kernel.name + ": " + kernel.defect);

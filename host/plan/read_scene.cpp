@@ -2,8 +2,11 @@
 
 #include <algorithm>
 
+#include "base/text.hpp"
 #include "json/document.hpp"
 #include "plan_models.hpp"
+#include "plugin/library.hpp"
+#include "scene/cell_table.hpp"
 #include "shape/outline.hpp"
 #include "shape/random_cells.hpp"
 #include "stability_limits.hpp"
@@ -45,11 +48,32 @@ NumericsBounds tightened(NumericsBounds bounds, const Plan& plan) {
   return bounds;
 }
 
+/// The document says from here on which files its cells are in, wherever it is kept, and what was in them.
+void pin_cell_files(json::Document& document) {
+  for (const std::string& entry : scene::cell_table_entries(document.root())) {
+    const auto& written = document.root().at(nlohmann::json::json_pointer(entry));
+    const std::string name = written.at("file").get<std::string>(), wanted = written.value("sha256", "");
+    const auto file = std::filesystem::absolute(std::filesystem::path(document.file()).parent_path() / name);
+    std::error_code ignored;
+    if (name.find('\0') != std::string::npos || !std::filesystem::is_regular_file(file, ignored)) continue;
+    const std::string found = plugin::sha256(file);
+    if (!wanted.empty() && wanted != found) {
+      throw Error(
+          Cause::bad_input, document.place(entry + "/sha256"),
+          in_quotes(name) + " has another hash, " + found + ": it is not the file that was meant, or has changed",
+          {"bring the file back, or leave out sha256"});
+    }
+    document.put(entry + "/file", file.lexically_normal().string(), document.file());
+    document.put(entry + "/sha256", found, document.file());
+  }
+}
+
 /// Faults are added; with some, the scene is what could be read.
 ReadScene read_unpacked_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides,
                               const NumericsBounds& bounds, Faults& faults) {
   auto document = std::make_shared<json::Document>(scene::read_document(file, overrides, faults));
   std::optional<NumericsChoice> choice;
+  if (faults.empty()) faults.attempt([&] { pin_cell_files(*document); });
   if (faults.empty()) faults.attempt([&] { choice = fill_in_numerics(*document, bounds); });
   ReadScene read{scene::read_scene(std::move(document), faults), std::move(choice)};
   if (faults.empty()) faults.attempt([&] { shape::add_random_cells(read.scene); });

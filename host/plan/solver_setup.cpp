@@ -12,6 +12,7 @@
 #include "crowding.hpp"
 #include "estimate.hpp"
 #include "plugin/handles.hpp"
+#include "scene/cell_table.hpp"
 #include "shape/outline.hpp"
 #include "stability_limits.hpp"
 
@@ -51,7 +52,7 @@ class Checker {
     return text;
   }
   [[nodiscard]] std::string name(int cell) const {
-    return "cell " + std::to_string(cell) + " (" + scene_.cells[cell].pointer + ")";
+    return "cell " + std::to_string(cell) + " (" + scene::origin_of(scene_.cells[cell]) + ")";
   }
 
   void check_fits(std::size_t cell) const {
@@ -116,6 +117,15 @@ core::Domain<2> lattice_domain(const scene::Scene& scene) {
   return {{scene.domain.nodes[0], scene.domain.nodes[1]}, {true, scene.domain.periodic_y}};
 }
 
+std::vector<core::Layer> lattice_layers(const scene::Scene& scene) {
+  std::vector<core::Layer> layers;
+  const double spacing = lattice_spacing(scene);
+  for (const scene::FluidLayer& layer : scene.fluid.layers) {
+    layers.push_back({layer.from / spacing, layer.to / spacing, layer.viscosity / scene.fluid.viscosity});
+  }
+  return layers;
+}
+
 namespace {
 
 /// Cells that cover more than the whole domain overlap, and that is known before any of them is placed.
@@ -139,7 +149,9 @@ void require_distance(const scene::Scene& scene) {
   if (scene.cells.size() < many) return;
   const auto pair = find_crowded_pair(scene);
   if (!pair) return;
-  const auto name = [&](int cell) { return "cell " + std::to_string(cell) + " (" + scene.cells[cell].pointer + ")"; };
+  const auto name = [&](int cell) {
+    return "cell " + std::to_string(cell) + " (" + scene::origin_of(scene.cells[cell]) + ")";
+  };
   throw Error(Cause::bad_input, scene.place(scene.cells[pair->cell].pointer),
               name(pair->cell) + " and " + name(pair->other) + " overlap: their centres are " +
                   number(pair->distance * 1e6, 3) + " um apart; move them apart.");
@@ -172,6 +184,7 @@ core::SolverSetup make_solver_setup(const Plan& plan, int index) {
   core::SolverSetup setup{
       .domain = lattice_domain(scene),
       .tau = stage.tau,
+      .layers = lattice_layers(scene),
       .inertia = scene.fluid.inertia,
       .follow_cells = follows_cells(scene, stage),
       .walls = stage.walls,

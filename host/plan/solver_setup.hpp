@@ -10,6 +10,9 @@ namespace rouleau::plan {
 /// The lattice of a scene, in one block.
 core::Domain<2> lattice_domain(const scene::Scene& scene);
 
+/// Its layers of other viscosities.
+std::vector<core::Layer> lattice_layers(const scene::Scene& scene);
+
 /// Membranes of a scene's cells on a lattice of the given spacing (m). Throws Error(bad_input) with the place of the
 /// entry in the scene when a cell crosses itself, sticks through a wall or overlaps another cell (over periodic
 /// images).

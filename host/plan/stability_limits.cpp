@@ -7,6 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "base/text.hpp"
 #include "cell_travel.hpp"
 #include "core/coupling/slip_constants.hpp"
 #include "core/fluid/relaxation.hpp"
@@ -17,6 +18,7 @@
 #include "potential_shape.hpp"
 #include "scene/driving_flow.hpp"
 #include "shape/outline.hpp"
+#include "solver_setup.hpp"
 
 namespace rouleau::plan {
 
@@ -59,6 +61,9 @@ constexpr double narrowest_well = 0.5;
 // width of 0.5, 0.8 % at 0.25 and 3.6 % at 0.17 (unit_contact, "a polygon rolls along a wall").
 constexpr double narrowest_well_of_a_wall = 0.25;
 
+// Of a layer of large viscosity: up to here steady flows along layers were found exact (tests/physics/layers.cpp).
+constexpr double most_layered_tau = 50.5;
+
 // Of a flow that oscillates: with less the velocity is more than 1 % of its amplitude off (tests/physics/oscillation.cpp).
 constexpr double fewest_steps_of_period(double tau) { return 350 * (tau - 0.5) * (tau - 0.5); }
 constexpr double thinnest_layer = 2.5;
@@ -83,12 +88,20 @@ constexpr std::array<KernelFacts, 4> kernels{{
      "comparison"},
 }};
 
+/// Relaxation time of a fluid with this viscosity, Pa s.
+double relaxation_time_of(double viscosity, const scene::Scene& scene) {
+  return core::relaxation_time_of(viscosity / scene.fluid.viscosity * core::viscosity_of(scene.numerics.tau));
+}
+
 /// Limit of a membrane between two fluids: the geometric mean of those at either side's relaxation time. Measured at
-/// tau 1 and ratio 5: 0.83 and 0.63 of the limits at ratio 1, by this rule 0.83 and 0.63.
+/// tau 1 and ratio 5: 0.83 and 0.63 of the limits at ratio 1, by this rule 0.83 and 0.63. A cell may come into every
+/// layer, so that the lowest counts.
 template <std::size_t n>
-double limit_between(const std::array<TableEntry, n>& table, double tau, double viscosity_ratio) {
-  const double inside = core::relaxation_time_of(viscosity_ratio * core::viscosity_of(tau));
-  return std::sqrt(interpolate(table, tau) * interpolate(table, inside));
+double limit_between(const std::array<TableEntry, n>& table, const scene::Scene& scene, double interior_viscosity) {
+  double outside = interpolate(table, scene.numerics.tau);
+  for (const scene::FluidLayer& layer : scene.fluid.layers)
+    outside = std::min(outside, interpolate(table, relaxation_time_of(layer.viscosity, scene)));
+  return std::sqrt(outside * interpolate(table, relaxation_time_of(interior_viscosity, scene)));
 }
 
 /// A stiffness as the fluid feels it, and its limit with explicit coupling.
@@ -111,7 +124,6 @@ double segment_length(const scene::CellType& type) { return shape::shape_perimet
 Stiffness membrane_stiffness(const Plan& plan, const plugin::ModelSetting& setting) {
   const scene::Scene& scene = *plan.scene;
   const KernelFacts& kernel = kernel_named(scene.numerics.kernel);
-  const double tau = scene.numerics.tau;
   Stiffness nearest;
   for (std::size_t t = 0; t < plan.membranes.size(); ++t) {
     const scene::CellType& cell = scene.cell_types[t];
@@ -128,8 +140,10 @@ Stiffness membrane_stiffness(const Plan& plan, const plugin::ModelSetting& setti
       stretching += core::stretching_stiffness(instance);
       bending += core::bending_stiffness(instance);
     }
-    nearest.stretching.narrow({factor * stretching, kernel.stretch_limit * limit_between(stretch_limit, tau, ratio)});
-    nearest.bending.narrow({factor * bending, kernel.bending_limit * limit_between(bending_limit, tau, ratio)});
+    nearest.stretching.narrow(
+        {factor * stretching, kernel.stretch_limit * limit_between(stretch_limit, scene, cell.interior_viscosity)});
+    nearest.bending.narrow(
+        {factor * bending, kernel.bending_limit * limit_between(bending_limit, scene, cell.interior_viscosity)});
   }
   return nearest;
 }
@@ -151,6 +165,17 @@ double prestress_compression(const Plan& plan, const StageSetting& stage) {
     most = std::max(most, 3 * std::abs(tension) * stage.units.length / circle->radius);
   }
   return most;
+}
+
+/// Of the developed flow between walls at rest, lattice units.
+double fastest_driven_speed(const StageSetting& stage, const scene::Scene& scene) {
+  const double height = scene.domain.nodes[1], viscosity = core::viscosity_of(scene.numerics.tau);
+  if (scene.fluid.layers.empty()) return stage.largest_body_force_x() * height * height / (8 * viscosity);
+  double fastest = 0;
+  const std::vector<double> rows = core::viscosity_of_rows(lattice_layers(scene), scene.domain.nodes[1]);
+  for (const core::ProfilePoint& point : core::layered_profile(rows, viscosity, {}, stage.largest_body_force_x()))
+    fastest = std::max(fastest, std::abs(point.velocity));
+  return fastest;
 }
 
 double stretching_gain_of(const scene::Scene& scene) {
@@ -192,7 +217,17 @@ std::vector<Limit> find_limits(const Plan& plan) {
   };
   constexpr RemediedBy density = RemediedBy::density_factor, resolution = RemediedBy::resolution;
   const double tau = scene.numerics.tau;
-  add("tau - 1/2", tau - 0.5, 0.005, false, "raise numerics.tau above 0.505");
+  constexpr double least = 0.005;  // of tau - 1/2
+  add("tau - 1/2", tau - 0.5, least, false, "raise numerics.tau above 0.505");
+  const scene::ViscosityRange viscosity = scene::viscosity_range(scene.fluid);
+  const double most_viscous_tau = relaxation_time_of(viscosity.most, scene);
+  if (!scene.fluid.layers.empty()) {
+    const double ratio = viscosity.least / scene.fluid.viscosity;
+    add("tau - 1/2 in the layer of least viscosity", ratio * (tau - 0.5), least, false,
+        "raise numerics.tau above " + number(0.5 + least / ratio, 4));
+    add("tau - 1/2 in the layer of largest viscosity", most_viscous_tau - 0.5, most_layered_tau - 0.5, true,
+        "lower numerics.tau");
+  }
   if (plan.semi_implicit) {
     add("tau of the semi-implicit step", tau, least_semi_implicit_tau, false,
         "raise numerics.tau: the semi-implicit step gains nothing at low viscosity");
@@ -209,8 +244,7 @@ std::vector<Limit> find_limits(const Plan& plan) {
           density);
     }
     if (stage.largest_body_force_x() != 0 && !scene.domain.periodic_y) {
-      const double height = scene.domain.nodes[1];
-      const double speed = stage.largest_body_force_x() * height * height / (8 * core::viscosity_of(tau));
+      const double speed = fastest_driven_speed(stage, scene);
       add("Mach number of the driven flow" + where, units::mach_number(speed), 0.1, true,
           lower + " or the driving force, or raise the resolution", density);
     }
@@ -229,7 +263,7 @@ std::vector<Limit> find_limits(const Plan& plan) {
     if (!plan.has_cells) continue;
     const double rate = scene::mean_shear_rate(*stage.stage, scene);
     if (rate > 0) {
-      add("compression of cells by the shear" + where, compression_by_shear(tau, rate * stage.units.time),
+      add("compression of cells by the shear" + where, compression_by_shear(most_viscous_tau, rate * stage.units.time),
           largest_compression_by_shear, true, lower + " or numerics.tau: pressure compresses the lattice's fluid",
           density);
     }

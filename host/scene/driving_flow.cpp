@@ -1,5 +1,6 @@
 #include "driving_flow.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -10,10 +11,36 @@ bool walls_move(const Stage& stage) {
          stage.oscillation.mean_wall_speed != 0;
 }
 
+// With a stress S - G y and fluidity 1/mu, both walls at rest give S = G B/A, and the flow rate is G (C - B^2/A), where A, B
+// and C are the integrals of 1/mu, y/mu and y^2/mu over the height.
+double channel_viscosity(const Scene& scene) {
+  if (scene.fluid.layers.empty()) return scene.fluid.viscosity;
+  const double height = scene.domain.size.y();
+  double a = 0, b = 0, c = 0;
+  const auto add = [&](double from, double to, double fluidity) {
+    a += fluidity * (to - from) / height;
+    b += fluidity * (to * to - from * from) / (2 * height * height);
+    c += fluidity * (to * to * to - from * from * from) / (3 * height * height * height);
+  };
+  add(0, height, 1 / scene.fluid.viscosity);
+  for (const FluidLayer& layer : scene.fluid.layers) {
+    add(layer.from, layer.to, 1 / layer.viscosity - 1 / scene.fluid.viscosity);
+  }
+  return 1 / (12 * (c - b * b / a));
+}
+
+ViscosityRange viscosity_range(const FluidProperties& fluid) {
+  ViscosityRange range{fluid.viscosity, fluid.viscosity};
+  for (const FluidLayer& layer : fluid.layers) {
+    range = {std::min(range.least, layer.viscosity), std::max(range.most, layer.viscosity)};
+  }
+  return range;
+}
+
 Eigen::Vector2d driving_force(const Stage& stage, const Scene& scene) {
   if (stage.mean_velocity) {
     const double height = scene.domain.size.y();
-    return {12 * scene.fluid.viscosity * *stage.mean_velocity / (height * height), scene.fluid.body_force.y()};
+    return {12 * channel_viscosity(scene) * *stage.mean_velocity / (height * height), scene.fluid.body_force.y()};
   }
   return scene.fluid.body_force + stage.pressure_gradient;
 }
@@ -24,7 +51,7 @@ namespace {
 double mean_rate(double shear_rate, double force, const Scene& scene) {
   if (shear_rate != 0) return std::abs(shear_rate);
   if (scene.domain.periodic_y) return 0;
-  return std::abs(force) * scene.domain.size.y() / (4 * scene.fluid.viscosity);
+  return std::abs(force) * scene.domain.size.y() / (4 * channel_viscosity(scene));
 }
 
 double steady_rate(const Stage& stage, const Scene& scene) {
@@ -41,13 +68,13 @@ double mean_shear_rate(const Stage& stage, const Scene& scene) {
 
 double start_up_strain(const Stage& stage, const Scene& scene) {
   if (stage.start == WallStart::developed || scene.domain.periodic_y) return 0;
-  const double height = scene.domain.size.y(), nu = scene.fluid.viscosity / scene.fluid.density;
+  const double height = scene.domain.size.y(), nu = viscosity_range(scene.fluid).least / scene.fluid.density;
   return steady_rate(stage, scene) * height * height / nu / (stage.shear_rate != 0 ? 24 : 10);
 }
 
 double oscillation_delay(const Stage& stage, const Scene& scene) {
   if (!stage.oscillates() || scene.domain.periodic_y) return 0;
-  const double half = scene.domain.size.y() / 2, nu = scene.fluid.viscosity / scene.fluid.density;
+  const double half = scene.domain.size.y() / 2, nu = viscosity_range(scene.fluid).least / scene.fluid.density;
   const double womersley_square = 2 * std::numbers::pi * stage.oscillation.frequency * half * half / nu;
   if (stage.oscillation.mean_wall_speed != 0) return womersley_square / 2;
   return womersley_square * (stage.oscillation.shear_rate != 0 ? 1.0 / 6 : 0.4);

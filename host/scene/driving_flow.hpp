@@ -11,6 +11,16 @@ bool walls_move(const Stage& stage);
 /// Force per volume that drives the fluid in a stage, N/m3; for a mean velocity what it would take without cells.
 Eigen::Vector2d driving_force(const Stage& stage, const Scene& scene);
 
+/// Viscosity of the suspending fluid as a driven channel feels it, Pa s: without layers as it is; with them that of the
+/// fluid without layers that the same pressure gradient drives through at the same rate.
+double channel_viscosity(const Scene& scene);
+
+/// Viscosities of the suspending fluid, Pa s: the least and the largest, layers included.
+struct ViscosityRange {
+  double least, most;
+};
+ViscosityRange viscosity_range(const FluidProperties& fluid);
+
 /// Shear rate that a stage's numbers are made with, 1/s: that of the walls where they shear; else that of the developed
 /// flow between them, |du/dy| averaged over the height, G H / (4 mu), which is its largest velocity over half the
 /// height. The largest of an oscillation. 0 at rest, and where no wall holds a flow that is driven.

@@ -59,10 +59,46 @@ Domain read_domain(const SceneFields& fields) {
   return domain;
 }
 
-FluidProperties read_fluid(const SceneFields& fields) {
+/// In order of height; refuses layers that lie beyond the domain or on top of each other.
+std::vector<FluidLayer> read_layers(const SceneFields& fields, double height) {
+  std::vector<FluidLayer> layers;
+  const auto um = [](double metres) { return number(metres * 1e6) + " um"; };
+  const double rounding = 1e-9 * height;
+  const std::size_t count = fields.has("/fluid/layers") ? fields.count("/fluid/layers") : 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    fields.attempt([&] {
+      const auto pointer = json::child_pointer("/fluid/layers", i);
+      FluidLayer layer{fields.quantity(pointer + "/from", "m", range::place),
+                       fields.quantity(pointer + "/to", "m", range::place),
+                       fields.quantity(pointer + "/viscosity", "Pa s", range::viscosity)};
+      if (!std::isfinite(layer.from + layer.to + layer.viscosity + height)) throw Misread{};
+      if (layer.from < -rounding || layer.to > height + rounding || !(layer.from < layer.to)) {
+        fields.refuse(pointer,
+                      "a layer from " + um(layer.from) + " to " + um(layer.to) +
+                          (layer.from < layer.to ? " is not within the domain, which is " + um(height) + " high"
+                                                 : " has no thickness; heights count from the lower wall upwards") +
+                          "\ngive heights between 0 um and " + um(height) + ", \"from\" below \"to\"");
+      }
+      layer.from = std::max(layer.from, 0.0);
+      layer.to = std::min(layer.to, height);
+      for (const FluidLayer& other : layers) {
+        if (layer.from > other.to - rounding || layer.to < other.from + rounding) continue;
+        fields.refuse(pointer, "this layer, from " + um(layer.from) + " to " + um(layer.to) +
+                                   ", lies over the one from " + um(other.from) + " to " + um(other.to) +
+                                   "\nlet one begin where the other ends");
+      }
+      layers.push_back(layer);
+    });
+  }
+  std::sort(layers.begin(), layers.end(), [](const auto& a, const auto& b) { return a.from < b.from; });
+  return layers;
+}
+
+FluidProperties read_fluid(const SceneFields& fields, double height) {
   FluidProperties fluid;
   fluid.density = fields.quantity("/fluid/density", "kg/m3", range::density);
   fluid.viscosity = fields.quantity("/fluid/viscosity", "Pa s", range::viscosity);
+  fluid.layers = read_layers(fields, height);
   fluid.inertia = fields.value_or("/fluid/inertia", false);
   if (fields.has("/fluid/body_force")) {
     fluid.body_force = fields.quantities("/fluid/body_force", "N/m3", range::force_density);
@@ -85,6 +121,21 @@ Numerics read_numerics(const SceneFields& fields) {
   numerics.slip_correction = fields.value_or("/numerics/slip_correction", numerics.slip_correction);
   numerics.area_correction = fields.value_or("/numerics/area_correction", numerics.area_correction);
   return numerics;
+}
+
+/// What cells in layers cannot have; both know of one viscosity around a cell.
+void check_layers(const SceneFields& fields, const Scene& scene) {
+  if (scene.fluid.layers.empty() || (scene.cells.empty() && scene.packings.empty())) return;
+  if (scene.numerics.slip_correction) {
+    fields.refuse("/numerics/slip_correction",
+                  "the slip correction knows of one viscosity around the cells, and fluid.layers has others\n"
+                  "set it to false, or leave out layers or cells");
+  }
+  if (scene.numerics.coupling == "semi-implicit") {
+    fields.refuse("/numerics/coupling",
+                  "the semi-implicit step knows of one viscosity around the cells, and fluid.layers has others\n"
+                  "take \"explicit\", or leave out layers or cells");
+  }
 }
 
 std::array<int, 2> read_between(const SceneFields& fields, const std::string& pointer,
@@ -205,10 +256,11 @@ Scene read_scene(std::shared_ptr<const json::Document> document, Faults& faults)
   });
   part([&] { scene.domain = read_domain(fields); });
   if (scene.domain.size.allFinite()) fields.bound_lengths(scene.domain.size);
-  part([&] { scene.fluid = read_fluid(fields); });
+  part([&] { scene.fluid = read_fluid(fields, scene.domain.size.y()); });
   part([&] { scene.numerics = read_numerics(fields); });
   part([&] { scene.cell_types = read_cell_types(fields, scene.fluid.viscosity); });
   part([&] { scene.cells = read_cells(fields, scene.cell_types, scene.domain, scene.packings); });
+  part([&] { check_layers(fields, scene); });
   part([&] { scene.interactions = read_interactions(fields, scene.cell_types, scene.domain.periodic_y); });
   part([&] { scene.stages = read_stages(fields, scene); });
   part([&] { scene.output = read_output(fields, scene.stages); });

@@ -32,9 +32,16 @@ struct Domain {
   bool periodic_y = false;   ///< false: solid walls below and above; x is periodic always
 };
 
+/// A part of the suspending fluid that has another viscosity, between two heights.
+struct FluidLayer {
+  double from, to;   ///< m, from the lower wall, or the lower edge of the domain
+  double viscosity;  ///< Pa s
+};
+
 struct FluidProperties {
   double density;                                        ///< kg/m3
   double viscosity;                                      ///< Pa s, of the suspending fluid
+  std::vector<FluidLayer> layers;                        ///< beside each other, from below
   bool inertia = false;                                  ///< false: linear (Stokes) equilibrium
   Eigen::Vector2d body_force = Eigen::Vector2d::Zero();  ///< N/m3, in every stage
   ModelChoice collision;                                 ///< "trt" when the scene names none
@@ -72,12 +79,13 @@ struct CellType {
   std::vector<ModelChoice> membrane;  ///< laws that add up
 };
 
-/// One cell to be placed; rows and lists are expanded already.
+/// One cell to be placed; rows, lists and files are read already.
 struct CellPlacement {
   int type;                ///< index into Scene::cell_types
   Eigen::Vector2d center;  ///< m
   double angle;            ///< rad, counter-clockwise
   std::string pointer;     ///< entry of /cells that asked for it
+  int line = 0;            ///< of the file of cells that it comes from; 0: of none
 };
 
 /// Cells that were placed at random.

@@ -1,5 +1,6 @@
 // Cell types and where cells are placed.
 #include "base/text.hpp"
+#include "cell_table.hpp"
 #include "json/json_pointer.hpp"
 #include "scene_reader.hpp"
 
@@ -35,7 +36,12 @@ class Placements {
       : fields_(fields), types_(types), domain_(domain), packings_(packings) {}
 
   std::vector<CellPlacement> read() {
-    const auto count = fields_.has("/cells") ? fields_.count("/cells") : 0;
+    if (!fields_.has("/cells")) return {};
+    if (fields_.at("/cells").is_object()) {
+      fields_.attempt([&] { read_file("/cells"); });
+      return std::move(cells_);
+    }
+    const auto count = fields_.count("/cells");
     for (std::size_t i = 0; i < count; ++i) {
       fields_.attempt([&] { read_entry(json::child_pointer("/cells", i)); });
     }
@@ -44,6 +50,7 @@ class Placements {
 
  private:
   void read_entry(const std::string& pointer) {
+    if (fields_.has(pointer + "/file")) return read_file(pointer);
     int type = 0;
     fields_.attempt([&] { type = fields_.cell_type(pointer + "/type", types_); });
     if (fields_.has(pointer + "/row")) {
@@ -62,6 +69,26 @@ class Placements {
 
   void place_one(int type, const std::string& pointer) {
     cells_.push_back({type, fields_.quantities(pointer + "/at", "m", range::place), angle(pointer), pointer});
+  }
+
+  void read_file(const std::string& pointer) {
+    const auto file = fields_.file(pointer + "/file");
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(file, ignored)) {
+      fields_.refuse(pointer + "/file", in_quotes(fields_.value<std::string>(pointer + "/file")) +
+                                            " is no file; a relative name begins with the scene's folder\n"
+                                            "looked for: " +
+                                            printable(file.lexically_normal().string()));
+    }
+    if (types_.empty()) {
+      if (!fields_.settled("/cell_types")) throw Misread{};
+      fields_.refuse(pointer, "there are no cell types that the cells of this file could have; add cell_types");
+    }
+    std::optional<int> type;
+    if (fields_.has(pointer + "/type")) type = fields_.cell_type(pointer + "/type", types_);
+    const auto placed = read_cell_table(file, types_, fields_.units(), pointer, type);
+    fields_.require_room(cells_.size(), placed.size(), pointer + "/file");
+    cells_.insert(cells_.end(), placed.begin(), placed.end());
   }
 
   void read_row(int type, const std::string& entry) {

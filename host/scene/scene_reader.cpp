@@ -99,6 +99,12 @@ Eigen::Vector2d SceneFields::quantities(const std::string& pointer, std::string_
           quantity(json::child_pointer(pointer, 1U), unit, range)};
 }
 
+std::filesystem::path SceneFields::file(const std::string& pointer) const {
+  const auto name = value<std::string>(pointer);
+  if (name.find('\0') != std::string::npos) refuse(pointer, "a file's name cannot hold a NUL character");
+  return std::filesystem::path(document_.file()).parent_path() / name;
+}
+
 std::string SceneFields::line(const std::string& pointer) const {
   auto text = value<std::string>(pointer);
   if (printable(text) != text) {

@@ -101,6 +101,10 @@ class SceneFields {
     return result;
   }
 
+  /// The file that the text at `pointer` names; a relative one begins with the folder of the scene.
+  [[nodiscard]] std::filesystem::path file(const std::string& pointer) const;
+  [[nodiscard]] const units::Units& units() const { return units_; }
+
   /// One line of text that will be printed; throws where it holds a control character.
   [[nodiscard]] std::string line(const std::string& pointer) const;
 

@@ -73,6 +73,12 @@ void check_stage(const SceneFields& fields, const Stage& stage, const Scene& sce
                       "start says how a flow begins, but this stage has neither shear_rate, walls that move, "
                       "pressure_gradient nor mean_velocity");
   }
+  if (stage.start == WallStart::developed && stage.oscillates() && !scene.fluid.layers.empty()) {
+    fields.refuse(
+        pointer + "/start",
+        "the flow that an oscillation settles to is not known in a fluid with layers\nleave start out, and let "
+        "some periods pass");
+  }
   if (stage.strain && stage.oscillates()) {
     fields.refuse_key(pointer + "/strain",
                       "strain does not grow evenly in a flow that oscillates; end the stage by duration");

@@ -1,4 +1,5 @@
 // Settings that make a scene's lattice and membranes finer or coarser together.
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -20,8 +21,10 @@ double length_of(const Json& quantity) {
 
 /// Radius of the first cell's type, or half its longest axis, in lattice spacings of the base scene; NaN without cells.
 double radius_in_spacings(const Json& scene) {
-  if (scene.value("cells", Json::array()).empty()) return NAN;
-  const Json& first = scene.at("cells").at(0);
+  const Json cells = scene.value("cells", Json::array());
+  const auto typed = std::find_if(cells.begin(), cells.end(), [](const Json& entry) { return entry.contains("type"); });
+  if (!cells.is_array() || typed == cells.end()) return NAN;  // cells in a file alone have no type here
+  const Json& first = *typed;
   const Json& shape = scene.at("cell_types").at(first.at("type").get<std::string>()).at("shape");
   const Json& of = shape.begin().value();
   Json length;

@@ -13,6 +13,7 @@
 #include "files/run_directory.hpp"
 #include "json/document.hpp"
 #include "plugin/lock.hpp"
+#include "scene/cell_table.hpp"
 
 namespace rouleau::trial {
 
@@ -41,8 +42,12 @@ fs::path scene_file_of(const Trial& trial) {
 /// The scene as it means the same beside the trial's directory as it did beside its own file.
 nlohmann::json moved_scene(const Trial& trial) {
   nlohmann::json scene = trial.scene;
-  if (!scene.is_object() || !scene.contains("plugin_dirs") || !scene["plugin_dirs"].is_array()) return scene;
   const fs::path folder = fs::absolute(trial.scene_file).parent_path();
+  for (const std::string& entry : scene::cell_table_entries(scene)) {
+    auto& file = scene.at(nlohmann::json::json_pointer(entry + "/file"));
+    file = (folder / file.get<std::string>()).lexically_normal().string();
+  }
+  if (!scene.is_object() || !scene.contains("plugin_dirs") || !scene["plugin_dirs"].is_array()) return scene;
   for (auto& entry : scene["plugin_dirs"]) {
     if (entry.is_string()) entry = (folder / entry.get<std::string>()).lexically_normal().string();
   }

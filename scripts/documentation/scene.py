@@ -97,8 +97,8 @@ def children(schema, rule, pointer):
             result += children(schema, below, f"{pointer}/NAME")
         else:
             result += rows(schema, extra, f"{pointer}/NAME", False)
-    if rule.get("type") == "array":
-        items = resolved(schema, rule["items"])
+    for branch in [rule, *branches]:
+        items = resolved(schema, branch["items"]) if branch.get("type") == "array" else {}
         if items.get("type") == "object":
             result += children(schema, items, f"{pointer}/N")
     return result
@@ -120,6 +120,7 @@ def page(path):
             continue
         rule = resolved(schema, top[key])
         required = " Required." if key in schema["required"] else ""
-        of_each = " " + meaning(resolved(schema, rule["items"])) if rule.get("type") == "array" else ""
+        lists = [branch for branch in (rule, *rule.get("oneOf", [])) if branch.get("type") == "array"]
+        of_each = " " + meaning(resolved(schema, lists[0]["items"])) if lists else ""
         text += f"\n## {key}\n\n{meaning(rule)}{of_each}{required}\n\n" + table(children(schema, rule, f"/{key}"))
     return text

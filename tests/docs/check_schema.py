@@ -82,10 +82,10 @@ def walk(rule, value, pointer=""):
     if isinstance(extra, dict) and isinstance(value, dict):
         for key in value:
             yield from walk(extra, value[key], f"{pointer}/{key}")
-    if isinstance(value, list) and "items" in rule:
-        items = resolved(rule["items"])
-        for place, item in enumerate(value):
-            yield from walk(items, item, f"{pointer}/{place}")
+    for branch in [rule, *map(resolved, rule.get("oneOf", []))]:
+        if isinstance(value, list) and "items" in branch:
+            for place, item in enumerate(value):
+                yield from walk(resolved(branch["items"]), item, f"{pointer}/{place}")
 
 
 RULES = dict(walk(SCHEMA, SCENE))

@@ -24,7 +24,8 @@ OF_ALL_CELLS = {"membrane-nodes-too-many", "numerics-auto-no-lattice", "random-b
                 "random-too-dense"}
 # Cases that a fault in another part may leave open: what they are about is not known then.
 NEEDS = {"field-region": {"domain"}, "length-beyond-box": {"domain"}, "unit-forgotten": {"domain"}, "random": {"domain", "cell_types"},
-         "missing-nodes": {"domain", "numerics"}, "missing-segments": {"numerics"}, "output-by-strain": {"stages"},
+         "missing-nodes": {"domain", "numerics"}, "missing-segments": {"numerics"}, "layer-": {"domain"},
+         "layers-with": {"fluid", "cells", "cell_types", "domain"}, "layers-oscillating": {"fluid", "domain"}, "output-by-strain": {"stages"},
          "cell-type-unknown": {"cell_types"}, "wall-misspelt": {"cell_types"}, "no-cell-types": {"cell_types"}}
 # What others are about stands elsewhere then, or is gone: the key, the flow, the walls.
 RENAMES = {"cell-type-name-with-comma", "unknown-key-at-the-top", "output-by-strain-without-shear", "shear-between-periodic-sides"}

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/fluid/layers.hpp"
 #include "core/membrane/geometry.hpp"
 #include "core/membrane/rounding.hpp"
 
@@ -17,16 +18,18 @@ constexpr double displacement_limit = 0.1;
 
 template <class T>
 ViscosityField<T>::ViscosityField(const Membranes& membranes, std::vector<double> viscosity_ratio, ViscosityMean mean,
-                                  double reach_beyond, double relaxation_rate, const Domain<2>& domain)
+                                  double reach_beyond, double relaxation_rate, const Domain<2>& domain,
+                                  std::vector<double> viscosity_of_rows)
     : ratio_(std::move(viscosity_ratio)),
       mean_(mean),
       margin_(static_cast<int>(std::ceil(reach_beyond))),
       plain_rate_(relaxation_rate),
+      viscosity_of_rows_(std::move(viscosity_of_rows)),
       domain_(domain),
       watch_(membranes),
       cells_(membranes.cells.size()),
       changed_(static_cast<std::size_t>(domain.block.size(1))) {
-  for (const CellRange& cell : membranes.cells) varies_ |= ratio_[cell.type] != 1;
+  for (const CellRange& cell : membranes.cells) varies_ |= differs(cell.type);
 }
 
 template <class T>
@@ -60,7 +63,7 @@ void ViscosityField<T>::cover(Worker worker, const Membranes& membranes) {
     Reach& reach = cells_[c];
     std::swap(reach.covered, reach.covered_before);
     reach.covered.columns.clear();
-    if (ratio_[cell.type] != 1) {
+    if (differs(cell.type)) {
       AreaFraction& fraction = reach.fraction;
       core::cover(membranes, cell, fraction);
       smooth(fraction, scratch);
@@ -173,24 +176,21 @@ void ViscosityField<T>::collect_changes(Range own) {
 
 template <class T>
 void ViscosityField<T>::set_rates(const Membranes& membranes, Range own, Field<T, 2>& rate) {
-  const auto for_changed = [&](auto function) {
-    for (int y = own.begin; y < own.end; ++y) {
-      T* row = rate.row(y);
-      for (const Interval& interval : changed_[y]) {
-        for (int x = interval.begin; x < interval.end; ++x) function(row[x]);
-      }
-    }
-  };
   const bool harmonic = mean_ == ViscosityMean::harmonic;
-  // The field holds the sum over cells of (ratio - 1) I, or (1/ratio - 1) I, until every cell has been added.
-  for_changed([](T& value) { value = 0; });
+  const auto averaged = [=](double viscosity) { return harmonic ? 1 / viscosity : viscosity; };
+  // The field holds the sum over cells of (mu_inside - mu_row) I, or that of 1/mu, until every cell has been added.
+  for (int y = own.begin; y < own.end; ++y) {
+    for (const Interval& interval : changed_[y])
+      std::fill(rate.row(y) + interval.begin, rate.row(y) + interval.end, T(0));
+  }
   for (std::size_t c = 0; c < cells_.size(); ++c) {
-    const double ratio = ratio_[membranes.cells[c].type];
-    const double excess = (harmonic ? 1 / ratio : ratio) - 1;
-    if (excess == 0) continue;
+    const int type = membranes.cells[c].type;
+    if (!differs(type)) continue;
+    const double inside = averaged(ratio_[type]);
     const AreaFraction& fraction = cells_[c].fraction;
     for_rows(cells_[c].covered, own, [&](int y, Interval columns, int place) {
       if (changed_[y].empty()) return;
+      const double excess = inside - averaged(viscosity_of_row(y));
       const double* from = fraction.row(place);
       T* row = rate.row(y);
       for_pieces(columns, [&](int x, int begin, int end) {
@@ -202,11 +202,20 @@ void ViscosityField<T>::set_rates(const Membranes& membranes, Range own, Field<T
       });
     });
   }
-  const T plain = static_cast<T>(plain_rate_), outside = static_cast<T>(1 / plain_rate_ - 0.5);
-  if (harmonic) {
-    for_changed([=](T& value) { value = value == T(0) ? plain : T(1) / (T(0.5) + outside / (T(1) + value)); });
-  } else {
-    for_changed([=](T& value) { value = value == T(0) ? plain : T(1) / (T(0.5) + outside * (T(1) + value)); });
+  const T outside = static_cast<T>(1 / plain_rate_ - 0.5);
+  for (int y = own.begin; y < own.end; ++y) {
+    const double viscosity = viscosity_of_row(y);
+    const T plain = static_cast<T>(rate_of_layer(plain_rate_, viscosity)), of_row = static_cast<T>(averaged(viscosity));
+    T* row = rate.row(y);
+    for (const Interval& interval : changed_[y]) {
+      for (int x = interval.begin; x < interval.end; ++x) {
+        if (row[x] == T(0)) {
+          row[x] = plain;
+        } else {
+          row[x] = T(1) / (T(0.5) + (harmonic ? outside / (of_row + row[x]) : outside * (of_row + row[x])));
+        }
+      }
+    }
   }
 }
 

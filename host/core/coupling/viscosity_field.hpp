@@ -13,18 +13,21 @@
 namespace rouleau::core {
 
 /// How viscosities inside and outside are averaged where a membrane cuts a node's square, I of which lies inside:
-/// arithmetic: mu_outside (1 + sum over cells (ratio - 1) I); harmonic: mu_outside / (1 + sum (1/ratio - 1) I).
+/// arithmetic: mu_row + sum over cells (mu_inside - mu_row) I; harmonic: the same of 1/mu. mu_row is that of the fluid at
+/// this height, which is the suspending fluid's but in layers: what is inside a cell is the same wherever it swims.
 enum class ViscosityMean { arithmetic, harmonic };
 
-/// tau = 1/2 + (tau_outside - 1/2) mu / mu_outside, kept as 1/tau.
+/// tau = 1/2 + (tau_outside - 1/2) mu / mu_outside, kept as 1/tau; outside: of the suspending fluid.
 /// Only what cells cover that have moved, or covered before they did, is computed again.
 template <class T>
 class ViscosityField {
  public:
   /// `viscosity_ratio[t]`: interior over suspending viscosity of cell type t. `reach_beyond`: how far from a node its
-  /// force may act besides the kernel's own reach, spacings.
+  /// force may act besides the kernel's own reach, spacings. `viscosity_of_rows`: of the fluid around the cells, as in
+  /// FluidSetting.
   ViscosityField(const Membranes& membranes, std::vector<double> viscosity_ratio, ViscosityMean mean,
-                 double reach_beyond, double relaxation_rate, const Domain<2>& domain);
+                 double reach_beyond, double relaxation_rate, const Domain<2>& domain,
+                 std::vector<double> viscosity_of_rows = {});
 
   /// Whether a relaxation rate that varies in space is needed; if not, the passes only mark.
   [[nodiscard]] bool varies() const { return varies_; }
@@ -38,7 +41,7 @@ class ViscosityField {
   void cover(Worker worker, const Membranes& membranes);
   /// Pass over rows, when due, a barrier after cover(): sets the relaxation rate in and around the cells that have
   /// moved, restores it where they were, and marks the nodes that the membranes touch until they have moved by 1.
-  /// The field must hold the plain rate before the first call; it is not touched unless varies().
+  /// The field must hold the rates of a fluid without cells before the first call; it is not touched unless varies().
   void update(Worker worker, const Membranes& membranes, Field<T, 2>& relaxation_rate, NodeMask& mask);
 
   /// What relaxation rate and mask were made from, for checkpoints.
@@ -69,6 +72,12 @@ class ViscosityField {
   /// column x on.
   template <class Function>
   void for_pieces(Interval columns, Function function) const;
+  /// Viscosity around the cells in a row of the block, over the suspending fluid's.
+  [[nodiscard]] double viscosity_of_row(int y) const {
+    return viscosity_of_rows_.empty() ? 1 : viscosity_of_rows_[domain_.block.begin[1] + y];
+  }
+  /// Whether cells of a type are another fluid than that around them, anywhere.
+  [[nodiscard]] bool differs(int type) const { return ratio_[type] != 1 || !viscosity_of_rows_.empty(); }
   void find_reach(const Membranes& membranes, const CellRange& cell, Reach& reach) const;
   void collect_changes(Range own);
   void set_rates(const Membranes& membranes, Range own, Field<T, 2>& rate);
@@ -77,6 +86,7 @@ class ViscosityField {
   ViscosityMean mean_;
   int margin_;  // nodes, for what reaches beyond the kernel
   double plain_rate_;
+  std::vector<double> viscosity_of_rows_;
   Domain<2> domain_;
   bool varies_ = false;
   DisplacementWatch watch_;

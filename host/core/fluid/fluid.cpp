@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "core/domain/exact_sum.hpp"
+#include "layers.hpp"
 #include "max_speed.hpp"
 #include "moving_frame.hpp"
 
@@ -28,9 +29,15 @@ Fluid<T>::Fluid(const FluidSetting& setting, CollisionOperator collision, const 
     collide_ = collision_.table->collide_f32;
   }
   if (setting.membranes) force_ = {Field<T, 2>({nx(), ny()}), Field<T, 2>({nx(), ny()})};
-  if (setting.viscosity_contrast) {
+  const bool layered = !setting.viscosity_of_rows.empty();
+  if (setting.viscosity_contrast || layered) {
     relaxation_rate_ = Field<T, 2>({nx(), ny()});
     relaxation_rate_.fill(static_cast<T>(setting.relaxation_rate));
+  }
+  for (int y = 0; layered && y < ny(); ++y) {
+    const double ratio = setting.viscosity_of_rows.at(setting.domain.block.begin[1] + y);
+    rate_of_row_.push_back(rate_of_layer(setting.relaxation_rate, ratio));
+    std::fill_n(relaxation_rate_.row(y), nx(), static_cast<T>(rate_of_row_.back()));
   }
   if (setting.body_force_x != 0 || setting.body_force_y != 0) {
     body_force_row_[0].assign(static_cast<std::size_t>(nx()), static_cast<T>(setting.body_force_x));
@@ -161,6 +168,7 @@ void Fluid<T>::collide_row(int y, const T* (&in)[9], T* (&out)[9]) {
   block.struct_size = sizeof(Block);
   block.in = in;
   block.out = out;
+  const bool layer = in_layer(y);
   int at = 0;  // where the pointers stand
   const auto move_to = [&](int x) {
     if (x == at) return;
@@ -175,11 +183,11 @@ void Fluid<T>::collide_row(int y, const T* (&in)[9], T* (&out)[9]) {
       force[1] = velocity[1] = force_[1].row(y) + span.begin;
       block.force = force;
       block.velocity = velocity;
-      block.relaxation_rate = setting_.viscosity_contrast ? relaxation_rate_.row(y) + span.begin : nullptr;
+      block.relaxation_rate = setting_.viscosity_contrast || layer ? relaxation_rate_.row(y) + span.begin : nullptr;
     } else {
       block.force = background;
       block.velocity = nullptr;
-      block.relaxation_rate = nullptr;
+      block.relaxation_rate = layer ? relaxation_rate_.row(y) + span.begin : nullptr;
     }
     call_foreign(collision_.id, "collide", [&] { collide_(self, &block); });
   });
@@ -193,7 +201,7 @@ void Fluid<T>::add_moving_frame(int y, T* (&out)[9]) {
     for (int k = 0; k < 2; ++k) to[k] = static_cast<T>(values[k]);
   };
   MovingFrameTask<T> task{};
-  task.rate = static_cast<T>(setting_.relaxation_rate);
+  task.rate = static_cast<T>(rate_of_row(y));
   of({setting_.body_force_x, setting_.body_force_y}, task.body_force);
   of(frame_, task.frame);
   mask_.for_spans(y, [&](const MaskSpan& span) {
@@ -283,7 +291,7 @@ std::vector<double> Fluid<T>::all_relaxation_rates() {
       if (span.active && setting_.viscosity_contrast) {
         block.insert(block.end(), relaxation_rate_.row(y) + span.begin, relaxation_rate_.row(y) + span.end);
       } else {
-        block.insert(block.end(), static_cast<std::size_t>(span.end - span.begin), setting_.relaxation_rate);
+        block.insert(block.end(), static_cast<std::size_t>(span.end - span.begin), rate_of_row(y));
       }
     });
   }
@@ -408,8 +416,8 @@ template <class T>
 void Fluid<T>::set_state(const std::function<State(int, int)>& state) {
   parity_ = Parity::even;
   walls_have_acted_ = true;  // a state that is given is one that goes with these walls
-  const double tau = 1 / setting_.relaxation_rate;
   for (int y = 0; y < ny(); ++y) {
+    const double tau = 1 / rate_of_row(y);
     for (int x = 0; x < nx(); ++x) {
       const State s = state(setting_.domain.block.begin[0] + x, setting_.domain.block.begin[1] + y);
       // Populations hold the momentum without the half force that the velocity includes.

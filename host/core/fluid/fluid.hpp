@@ -22,7 +22,9 @@ namespace rouleau::core {
 struct FluidSetting {
   Domain<2> domain;        ///< periodic along x
   double relaxation_rate;  ///< 1/tau of the suspending fluid
-  bool inertia = false;    ///< initial states include the quadratic terms of the equilibrium
+  /// Viscosity of each row of the lattice over that of `relaxation_rate` (layers.hpp); empty: 1 everywhere.
+  std::vector<double> viscosity_of_rows = {};
+  bool inertia = false;  ///< initial states include the quadratic terms of the equilibrium
   WallVelocity walls = {};
   double body_force_x = 0, body_force_y = 0;  ///< force density everywhere
   bool membranes = false;                     ///< keep force and velocity where nodes are active
@@ -149,6 +151,11 @@ class Fluid {
   /// Nodes of the block along x, and its rows.
   [[nodiscard]] int nx() const { return setting_.domain.block.size(0); }
   [[nodiscard]] int ny() const { return setting_.domain.block.size(1); }
+  /// 1/tau of the fluid in a row of the block, cells aside.
+  [[nodiscard]] double rate_of_row(int y) const {
+    return setting_.viscosity_of_rows.empty() ? setting_.relaxation_rate : rate_of_row_[y];
+  }
+  [[nodiscard]] bool in_layer(int y) const { return rate_of_row(y) != setting_.relaxation_rate; }
   [[nodiscard]] double equilibrium(int q, double density, double ux, double uy) const;
   /// Whether membranes may reach the halo that belongs to row y.
   [[nodiscard]] bool reaches_border(int y) const;
@@ -173,6 +180,7 @@ class Fluid {
   NodeMask mask_;
   VectorField<T, 2> force_;
   Field<T, 2> relaxation_rate_;
+  std::vector<double> rate_of_row_;                              ///< of the block; empty without layers
   std::unique_ptr<Halo<T, 2>> population_halo_, velocity_halo_;  ///< null without other blocks
   std::unique_ptr<Halo<double, 2>> energetics_halo_;             ///< of velocities, one node deep
   std::vector<T> body_force_row_[2];                             ///< constant; empty without a body force

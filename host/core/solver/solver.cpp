@@ -14,6 +14,7 @@ namespace rouleau::core {
 namespace {
 
 bool has_contrast(const SolverSetup& setup, const Membranes& membranes) {
+  if (!setup.layers.empty()) return !membranes.cells.empty();
   return std::any_of(membranes.cells.begin(), membranes.cells.end(),
                      [&](const CellRange& cell) { return setup.cell_types[cell.type].viscosity_ratio != 1; });
 }
@@ -23,15 +24,32 @@ FluidSetting fluid_setting(const SolverSetup& setup, const Membranes& membranes)
     if (nodes < 1) throw std::invalid_argument("a lattice needs at least one node along x and y");
   }
   if (!setup.domain.periodic[0]) throw std::invalid_argument("a lattice without walls along y is periodic along x");
+  if (!setup.layers.empty() && !membranes.cells.empty() && (setup.semi_implicit || setup.slip_correction))
+    throw std::invalid_argument("cells in layers take neither the semi-implicit step nor the slip correction");
+  if (!setup.layers.empty() && setup.developed && setup.oscillation.any())
+    throw std::invalid_argument("the developed oscillation of layers is not known");
   if (setup.collision.table == nullptr) throw std::invalid_argument("a fluid needs a collision operator");
   return {.domain = setup.domain,
           .relaxation_rate = 1 / setup.tau,
+          .viscosity_of_rows = viscosity_of_rows(setup.layers, setup.domain.size[1]),
           .inertia = setup.inertia,
           .walls = setup.walls,
           .body_force_x = setup.body_force_x,
           .body_force_y = setup.body_force_y,
           .membranes = !membranes.cells.empty(),
           .viscosity_contrast = has_contrast(setup, membranes)};
+}
+
+/// Of a fluid without layers that the same force drives through a channel at the same mean velocity.
+double channel_viscosity(const SolverSetup& setup) {
+  if (setup.layers.empty()) return setup.viscosity();
+  const double height = setup.domain.size[1];
+  double sum = 0;
+  for (const ProfilePoint& point :
+       layered_profile(viscosity_of_rows(setup.layers, setup.domain.size[1]), setup.viscosity(), {}, 1)) {
+    sum += point.velocity;
+  }
+  return height * height * height / (12 * sum);
 }
 
 struct Stiffness {
@@ -78,7 +96,7 @@ Solver<T>::Solver(SolverSetup setup, Membranes& membranes, const Ranks<2>& ranks
   if (!membranes.cells.empty()) make_cells();
   if (setup_.mean_velocity != 0) {
     if (!setup_.domain.walled(1)) throw std::invalid_argument("a mean velocity is kept between walls");
-    flow_control_.emplace(setup_.mean_velocity, setup_.body_force_x, setup_.viscosity(), setup_.domain.size[1]);
+    flow_control_.emplace(setup_.mean_velocity, setup_.body_force_x, channel_viscosity(setup_), setup_.domain.size[1]);
   }
   const Schedule schedule = make_schedule(features());
   for (const Step& step : schedule.steps) {
@@ -230,7 +248,8 @@ void Solver<T>::make_cells() {
   }
   viscosity_field_ = std::make_unique<ViscosityField<T>>(
       membranes_, std::move(viscosity_ratio), slip_correction_ ? ViscosityMean::harmonic : ViscosityMean::arithmetic,
-      slip_correction_ ? slip_correction_->largest_shift() : 0.0, 1 / setup_.tau, setup_.domain);
+      slip_correction_ ? slip_correction_->largest_shift() : 0.0, 1 / setup_.tau, setup_.domain,
+      fluid_.setting().viscosity_of_rows);
   coupling_ = std::make_unique<Coupling<T>>(setup_.kernel, setup_.domain);
   coupling_->reserve(membranes_);
   locate(Worker{});
@@ -251,7 +270,12 @@ template <class T>
 void Solver<T>::start(Solver* former) {
   steps_ = 0;
   double faster = 0;  // what the membranes' last displacement is worth in the new time step
-  if (setup_.developed) {
+  if (setup_.developed && !setup_.layers.empty()) {
+    const auto profile =
+        layered_profile(fluid_.setting().viscosity_of_rows, setup_.viscosity(), setup_.walls, setup_.body_force_x);
+    const auto at = [&](double y) { return profile[static_cast<std::size_t>(y)]; };
+    fluid_.set_profile([&](double y) { return at(y).velocity; }, [&](double y) { return at(y).slope; });
+  } else if (setup_.developed) {
     // Couette and Poiseuille flow and what oscillates around them, y from the middle of the channel.
     const int height = setup_.domain.size[1];
     const double half_height = height / 2.0, middle = half_height - 0.5;

@@ -7,6 +7,7 @@
 #include "core/contact/wall_contacts.hpp"
 #include "core/coupling/kernel_kind.hpp"
 #include "core/domain/domain.hpp"
+#include "core/fluid/layers.hpp"
 #include "core/fluid/oscillation.hpp"
 #include "core/fluid/relaxation.hpp"
 #include "core/fluid/walls.hpp"
@@ -28,6 +29,9 @@ struct SolverSetup {
   Domain<2> domain = {};
   /// Relaxation time of the suspending fluid in time steps; its kinematic viscosity is (tau - 1/2)/3.
   double tau = 1;
+  /// Parts of the suspending fluid with another viscosity, which do not move. With cells, neither the semi-implicit step nor
+  /// the slip correction: both know of one viscosity.
+  std::vector<Layer> layers = {};
   /// Quadratic equilibrium; false: linear, for creeping flow.
   bool inertia = false;
   /// Without inertia: the unsteady term is seen from a frame that moves with the cells, on average (moving_frame.hpp).

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/coupling/area_fraction.hpp"
+#include "core/fluid/layers.hpp"
 #include "core/membrane/geometry.hpp"
 #include "unit/cell_fixture.hpp"
 
@@ -176,6 +177,43 @@ TEST_CASE("the relaxation rate follows the arithmetic mean of the viscosities, o
     }
     for (std::size_t i = 0; i < m.x.size(); ++i) m.x[i] += 13.7, m.y[i] += periodic_y ? 20.3 : -0.3;
   }
+}
+
+TEST_CASE("in layers the inside of a cell keeps its viscosity, and what it leaves gets that of the layer again") {
+  const int nx = 80, ny = 64;
+  const double tau = 0.8;
+  const auto mean = GENERATE(ViscosityMean::arithmetic, ViscosityMean::harmonic);
+  const std::vector<double> rows = viscosity_of_rows({{0, 20.25, 3}}, ny);
+  const auto rate_of = [&](double viscosity) { return 1 / (0.5 + 0.3 * viscosity); };
+  Membranes m = biconcave_cells({{30.4, 19.1, 0.3}, {55.2, 40, 1.2}});
+  m.cells[1].type = 1;
+  const core::Domain<2> domain{{nx, ny}, {true, false}};
+  ViscosityField<double> viscosity_field(m, {5.0, 1.0}, mean, 0, 1 / tau, domain, rows);
+  CHECK(viscosity_field.varies());
+  Field<double, 2> rate({nx, ny});
+  for (int y = 0; y < ny; ++y) std::fill_n(rate.row(y), nx, rate_of(rows[y]));
+  const auto is = [&](int x, int y, double viscosity) {
+    return rate.row(y)[x] == Approx(rate_of(viscosity)).epsilon(1e-14);
+  };
+  NodeMask mask(domain);
+  update(viscosity_field, m, rate, mask);
+  // The first cell lies across the border of the layer; the second is of the fluid above.
+  CHECK(is(24, 17, 5));
+  CHECK(is(37, 23, 5));
+  CHECK(is(55, 40, 1));
+  CHECK(is(55, 10, 3));
+  CHECK(is(70, 20, 1 / (0.25 / 3 + 0.75)));
+  const CellRange& second = m.cells[1];
+  for (int i = second.first; i < second.end(); ++i) m.y[i] -= 30;
+  update(viscosity_field, m, rate, mask);
+  CHECK(is(58, 16, 1));
+  for (double& y : m.y) y += 40;
+  update(viscosity_field, m, rate, mask);
+  long different = 0;
+  for (int y = 0; y < 30; ++y) {
+    for (int x = 0; x < nx; ++x) different += is(x, y, rows[y]) ? 0 : 1;
+  }
+  CHECK(different == 0);
 }
 
 TEST_CASE("every node that a membrane can reach before the next update is marked") {

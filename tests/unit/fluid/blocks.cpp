@@ -4,6 +4,7 @@
 
 #include "core/domain/decomposition.hpp"
 #include "core/domain/transport.hpp"
+#include "core/fluid/layers.hpp"
 #include "flow_fixture.hpp"
 #include "unit/random.hpp"
 
@@ -138,6 +139,7 @@ TEMPLATE_TEST_CASE("blocks give the same bits as one lattice, whatever the cuts"
                        .membranes = membranes,
                        .viscosity_contrast = membranes};
   if (periodic_y) setting.walls = {};
+  if (GENERATE(false, true)) setting.viscosity_of_rows = viscosity_of_rows({{3.3, 9, 0.4}, {14, 19, 5}}, 19);
   using Cuts = std::array<int, 2>;
   for (const Cuts parts : {Cuts{1, 1}, Cuts{2, 1}, Cuts{1, 3}, Cuts{4, 4}, Cuts{8, 1}}) {
     CAPTURE(parts, periodic_y, membranes);

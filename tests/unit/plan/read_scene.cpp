@@ -3,6 +3,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "json/document.hpp"
+#include "scratch_folder.hpp"
 #include "shape/random_cells.hpp"
 
 using namespace rouleau;
@@ -54,4 +56,33 @@ TEST_CASE("cells at random count where cells or membrane nodes are too many") {
   CHECK_THROWS_WITH(plan::read_unpacked_scene(scene_file, {cells("1001"), "/cell_types/rbc/segments=100000",
                                                            "/cell_types/rbc/shape/biconcave/radius=1 nm"}),
                     Contains("the cells have 100200000 membrane nodes in all"));
+}
+
+TEST_CASE("a scene with cells from a file says where the file is and what was in it, and refuses another one") {
+  const test::ScratchFolder folder;
+  const std::string file = folder.write("cells.csv", "x_um,y_um,angle_deg\n10,12,90\n30,12,0\n").string();
+  const std::string all = R"(/cells={"file": ")" + file + "\"}", entry = R"(/cells/-={"file": ")" + file + "\"}";
+  const scene::Scene scene = plan::read_scene(scene_file, {all});
+  REQUIRE(scene.cells.size() == 2);
+  CHECK(scene.cells[1].center.x() == Approx(30e-6));
+  CHECK(scene.cells[1].line == 3);
+  const auto& written = scene.document->root().at("cells");
+  CHECK(written.at("file") == file);
+  const std::string hash = written.at("sha256");
+  CHECK(hash.size() == 64);
+
+  const std::vector<std::string> both{R"(/cells=[{"type": "rbc", "at": ["20 um", "12 um"]}])", entry};
+  const scene::Scene mixed = plan::read_scene(scene_file, both);
+  REQUIRE(mixed.cells.size() == 3);
+  CHECK(mixed.cells[2].pointer == "/cells/1");
+  CHECK(mixed.document->root().at("cells").at(1).at("sha256") == hash);
+
+  CHECK_NOTHROW(plan::read_scene(scene_file, {all, "/cells/sha256=\"" + hash + '"'}));
+  folder.write("cells.csv", "x_um,y_um,angle_deg\n10,12,90\n30,12,1\n");
+  CHECK_THROWS_WITH(plan::read_scene(scene_file, {all, "/cells/sha256=\"" + hash + '"'}),
+                    Contains("/cells/sha256") && Contains("has another hash"));
+  CHECK(plan::read_scene(scene_file, {all}).document->root().at("cells").at("sha256") != hash);
+  folder.write("cells.csv", "x_um,y_um\n10,12\n10,twelve\n");
+  CHECK_THROWS_WITH(plan::read_scene(scene_file, {all}),
+                    Contains("cells.csv:3:4") && Contains("\"twelve\" is no number"));
 }

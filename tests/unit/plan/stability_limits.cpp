@@ -28,3 +28,25 @@ TEST_CASE("each stiffness is that of the cell type which is nearest to its limit
   CHECK(margin(both, "bending stiffness") == margin(bends, "bending stiffness"));
   CHECK(margin(both, "stretching stiffness") < margin(bends, "stretching stiffness") / 100);
 }
+
+TEST_CASE("limits know the relaxation times of layers, and a driven channel its layers") {
+  const Catalog catalog({ROULEAU_PLUGINS});
+  const std::string two = R"(/fluid/layers=[{"from": "0 um", "to": "9.8 um", "viscosity": "0.006 cP"},
+                                            {"from": "9.8 um", "to": "15.68 um", "viscosity": "60 cP"}])";
+  const Scene scene = read_scene(std::string(ROULEAU_SCENES) + "/four-cells-shear.json", {two});
+  const auto plan = make_plan(scene, catalog);
+  const auto value = [&](const std::string& name) {
+    for (const Limit& limit : find_limits(plan)) {
+      if (limit.name == name) return std::pair(limit.value, limit.margin);
+    }
+    return std::pair(0.0, 0.0);
+  };
+  CHECK(value("tau - 1/2 in the layer of least viscosity").first == Approx(0.0025));
+  CHECK(value("tau - 1/2 in the layer of least viscosity").second == Approx(0.5));
+  CHECK(value("tau - 1/2 in the layer of largest viscosity").first == Approx(25));
+  CHECK(value("tau - 1/2 in the layer of largest viscosity").second == Approx(2));
+  CHECK(plan.viscosity_contrast);
+  // Where the cells are is not known to the limits: the lowest of all layers counts.
+  const Scene plain = read_scene(std::string(ROULEAU_SCENES) + "/four-cells-shear.json");
+  CHECK(explicit_margin(plan) < explicit_margin(make_plan(plain, catalog)));
+}
