@@ -124,6 +124,7 @@ Json scene_of(const std::filesystem::path& directory) {
 Json value_differences(const std::vector<Json>& values) {
   Json rows = Json::array();
   Sides sides;
+  sides.reserve(values.size());
   for (const Json& value : values) sides.push_back(&value);
   add_differences(rows, Pointer(), sides);
   return rows;
@@ -138,6 +139,7 @@ Json plugin_differences(const std::vector<Json>& summaries) {
       if (std::find(seen.begin(), seen.end(), name) != seen.end()) continue;
       seen.push_back(name);
       std::vector<Json> used;
+      used.reserve(summaries.size());
       for (const Json& summary : summaries) {
         const Json* own = plugin_of(summary, plugin);
         used.push_back(own == nullptr ? Json() : Json{{"version", own->at("version")}, {"sha256", own->at("sha256")}});
@@ -151,6 +153,7 @@ Json plugin_differences(const std::vector<Json>& summaries) {
 
 Json outcome_numbers(const std::vector<Json>& summaries) {
   std::vector<Named> all;
+  all.reserve(summaries.size());
   for (const Json& summary : summaries) all.push_back(outcome_of(summary));
   std::vector<std::string> names;
   for (const Named& one : all)
