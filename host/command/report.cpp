@@ -24,16 +24,16 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* report_help = R"(usage: rouleau report DIR [--out FILE]
-       rouleau report --compare A B [--out FILE]
+       rouleau report --compare A B ... [--out FILE]
        rouleau report DIR --frames [--strains S,S,...] [--out DIR]
 
 (Re)makes the page of what DIR holds, and prints its path: report.html from the files of a run, study.html from the
 study.json of a study, limits.html from a limits.json. A page is one file that needs no network. A run that was killed
 has a report too.
-With --compare a page with two runs side by side: animations at the same strain, charts over each other, and what
-differs in scenes, plugins and outcome. Both runs must have ended.
-With --frames pictures (PNG) of the outputs nearest to the strains, all of them in one figure.png, and where ffmpeg is
-installed a video of the run from the first to the last, frames.mp4.
+With --compare a page with two runs or more side by side: animations at the same strain, charts over each other, a table
+of settings and results, and what differs in scenes, plugins and outcome. The runs must have ended.
+With --frames pictures (PNG) of the outputs nearest to the strains, all of them in one figure (PNG, SVG, PDF), and where
+ffmpeg is installed a video of the run, frames.mp4, with 25 pictures a second.
 
 Examples:
   rouleau report runs/demo
@@ -97,10 +97,10 @@ void check(const Options& chosen) {
   const auto refuse = [](const std::string& words) { throw Error(Cause::bad_input, "rouleau report: " + words); };
   const std::size_t count = chosen.directories.size();
   if (chosen.compare && chosen.frames) refuse("--compare and --frames do not go together; give one of them");
-  if (chosen.compare && count != 2)
-    refuse("--compare wants the directories of two runs, A and B; " + std::to_string(count) +
-           (count == 1 ? " was given" : " were given"));
-  if (!chosen.compare && count != 1) refuse("takes one directory; two runs are set side by side with --compare A B");
+  if (chosen.compare && (count < 2 || count > report::most_compared))
+    refuse("--compare wants the directories of 2 to " + std::to_string(report::most_compared) + " runs; " +
+           std::to_string(count) + (count == 1 ? " was given" : " were given"));
+  if (!chosen.compare && count != 1) refuse("takes one directory; runs are set side by side with --compare A B");
   if (!chosen.strains.empty() && !chosen.frames) refuse("--strains is for --frames");
   if (!chosen.out.empty() && !chosen.frames && !chosen.compare && !report::has_run(chosen.directories[0]))
     refuse("--out is for the report of a run; pages of studies and limits lie in their directories");
@@ -114,7 +114,7 @@ int report_command(const std::vector<std::string>& arguments) {
   options::options_description description("options");
   options::positional_options_description positional;
   description.add_options()("directory", options::value(&chosen.directories)->required(), "directory DIR");
-  description.add_options()("compare", options::bool_switch(&chosen.compare), "two runs on one page");
+  description.add_options()("compare", options::bool_switch(&chosen.compare), "two runs or more on one page");
   description.add_options()("frames", options::bool_switch(&chosen.frames), "pictures, and a video where ffmpeg is");
   description.add_options()("strains", options::value(&chosen.strains)->composing()->value_name("S,S,..."),
                             "of the pictures (six from the first to the last)");
@@ -128,9 +128,10 @@ int report_command(const std::vector<std::string>& arguments) {
   if (chosen.frames) draw_frames(chosen);
 
   if (chosen.compare) {
-    const auto& [a, b] = std::pair(chosen.directories[0], chosen.directories[1]);
-    const fs::path file = chosen.out.empty() ? name_of(a) + "-and-" + name_of(b) + ".html" : chosen.out;
-    report::write_comparison(a, b, file);
+    const std::vector<fs::path> runs(chosen.directories.begin(), chosen.directories.end());
+    const std::string others = runs.size() > 2 ? std::to_string(runs.size() - 1) + "-more" : name_of(runs[1]);
+    const fs::path file = chosen.out.empty() ? name_of(runs[0]) + "-and-" + others + ".html" : chosen.out;
+    report::write_comparison(runs, file);
     std::cout << file.string() << "\n";
   } else if (!chosen.out.empty()) {
     std::cout << report::write_report(chosen.directories[0], chosen.out).string() << "\n";

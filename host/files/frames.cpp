@@ -225,6 +225,9 @@ observe::OutlineSnapshot FrameReader::outlines(int frame) const {
     outlines.y.push_back(points[i + 1]);
   }
   outlines.tension = file_.read(group + "/tension");
+  if (outlines.tension.size() != outlines.x.size())
+    throw Error(Cause::input_output, Place{file_.path().string()},
+                group + "/tension does not fit " + group + "/points: the file is damaged; repeat the run");
   return outlines;
 }
 

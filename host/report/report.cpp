@@ -19,9 +19,8 @@ std::filesystem::path write_report(const std::filesystem::path& directory, std::
   return file;
 }
 
-void write_comparison(const std::filesystem::path& a, const std::filesystem::path& b,
-                      const std::filesystem::path& file) {
-  files::write_file(file, page_with(report_template, compare_data(a, b)));
+void write_comparison(const std::vector<std::filesystem::path>& directories, const std::filesystem::path& file) {
+  files::write_file(file, page_with(report_template, compare_data(directories)));
 }
 
 }  // namespace rouleau::report

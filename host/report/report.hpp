@@ -1,7 +1,8 @@
-// report.html: one self-contained page made from the files of a run's directory, or of two.
+// report.html: one self-contained page made from the files of a run's directory, or of several.
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 namespace rouleau::report {
 
@@ -10,9 +11,10 @@ namespace rouleau::report {
 /// directory that is no run, Error(bad_input).
 std::filesystem::path write_report(const std::filesystem::path& directory, std::filesystem::path file = {});
 
-/// Writes a page with two runs side by side into `file`. Throws as write_report, and Error(bad_input) where a run has
+inline constexpr std::size_t most_compared = 12;
+
+/// Writes a page with runs side by side into `file`. Throws as write_report, and Error(bad_input) where a run has
 /// not ended.
-void write_comparison(const std::filesystem::path& a, const std::filesystem::path& b,
-                      const std::filesystem::path& file);
+void write_comparison(const std::vector<std::filesystem::path>& directories, const std::filesystem::path& file);
 
 }  // namespace rouleau::report

@@ -16,36 +16,56 @@ namespace {
 using Json = nlohmann::json;
 using Pointer = Json::json_pointer;
 
-/// {pointer or name: ..., a, b}, without the side that has nothing.
-Json entry(Json row, const Json* a, const Json* b) {
-  if (a != nullptr) row["a"] = *a;
-  if (b != nullptr) row["b"] = *b;
+using Sides = std::vector<const Json*>;  ///< of the same place in each run, null where it has nothing
+
+/// `row` with "values", null where a side has nothing.
+Json entry(Json row, const Sides& sides) {
+  row["values"] = Json::array();
+  for (const Json* side : sides) row["values"].push_back(side != nullptr ? *side : Json());
   return row;
 }
 
-const Json* member(const Json& value, const std::string& key) {
-  const auto found = value.find(key);
-  return found == value.end() ? nullptr : &*found;
+bool all_same(const Sides& sides) {
+  return std::all_of(sides.begin(), sides.end(), [&](const Json* side) {
+    return side == sides[0] || (side != nullptr && sides[0] != nullptr && *side == *sides[0]);
+  });
 }
 
-void add_differences(Json& rows, const Pointer& at, const Json* a, const Json* b) {
-  if (a != nullptr && b != nullptr) {
-    if (*a == *b) return;
-    if (a->is_object() && b->is_object()) {
-      std::vector<std::string> keys;
-      for (const Json* side : {a, b})
-        for (const auto& [key, value] : side->items())
-          if (std::find(keys.begin(), keys.end(), key) == keys.end()) keys.push_back(key);
-      for (const std::string& key : keys) add_differences(rows, at / key, member(*a, key), member(*b, key));
-      return;
+template <class Holds>
+bool all_are(const Sides& sides, Holds holds) {
+  return std::all_of(sides.begin(), sides.end(), [&](const Json* side) { return side != nullptr && holds(*side); });
+}
+
+template <class Of>
+Sides members(const Sides& sides, Of of) {
+  Sides found;
+  for (const Json* side : sides) found.push_back(of(*side));
+  return found;
+}
+
+void add_differences(Json& rows, const Pointer& at, const Sides& sides) {
+  if (all_same(sides)) return;
+  if (all_are(sides, [](const Json& value) { return value.is_object(); })) {
+    std::vector<std::string> keys;
+    for (const Json* side : sides)
+      for (const auto& item : side->items())
+        if (std::find(keys.begin(), keys.end(), item.key()) == keys.end()) keys.push_back(item.key());
+    for (const std::string& key : keys) {
+      const auto member = [&](const Json& value) { return value.contains(key) ? &value[key] : nullptr; };
+      add_differences(rows, at / key, members(sides, member));
     }
-    if (a->is_array() && b->is_array()) {
-      for (std::size_t i = 0; i < std::max(a->size(), b->size()); ++i)
-        add_differences(rows, at / i, i < a->size() ? &(*a)[i] : nullptr, i < b->size() ? &(*b)[i] : nullptr);
-      return;
-    }
+    return;
   }
-  rows.push_back(entry({{"pointer", at.to_string()}}, a, b));
+  if (all_are(sides, [](const Json& value) { return value.is_array(); })) {
+    std::size_t longest = 0;
+    for (const Json* side : sides) longest = std::max(longest, side->size());
+    for (std::size_t i = 0; i < longest; ++i) {
+      const auto member = [&](const Json& value) { return i < value.size() ? &value[i] : nullptr; };
+      add_differences(rows, at / i, members(sides, member));
+    }
+    return;
+  }
+  rows.push_back(entry({{"pointer", at.to_string()}}, sides));
 }
 
 const Json* plugin_of(const Json& summary, const Json& wanted) {
@@ -85,7 +105,7 @@ const Json* named(const Named& all, const std::string& name) {
 
 Json ended_run(const std::filesystem::path& directory) {
   if (!std::filesystem::is_directory(directory))
-    throw Error(Cause::bad_input, Place{directory.string()}, "is no directory", {"name the directories of two runs"});
+    throw Error(Cause::bad_input, Place{directory.string()}, "is no directory", {"name the directories of runs"});
   if (!std::filesystem::exists(directory / "summary.json"))
     throw Error(Cause::bad_input, Place{directory.string()},
                 "has no summary.json: it is no run's directory, or its run has not ended");
@@ -101,51 +121,67 @@ Json scene_of(const std::filesystem::path& directory) {
 
 }  // namespace
 
-Json value_differences(const Json& a, const Json& b) {
+Json value_differences(const std::vector<Json>& values) {
   Json rows = Json::array();
-  add_differences(rows, Pointer(), &a, &b);
+  Sides sides;
+  sides.reserve(values.size());
+  for (const Json& value : values) sides.push_back(&value);
+  add_differences(rows, Pointer(), sides);
   return rows;
 }
 
-Json plugin_differences(const Json& summary_a, const Json& summary_b) {
+Json plugin_differences(const std::vector<Json>& summaries) {
   Json rows = Json::array();
-  const auto used = [](const Json& plugin) {
-    return Json{{"version", plugin.at("version")}, {"sha256", plugin.at("sha256")}};
-  };
-  const auto add = [&](const Json& plugin, const Json* a, const Json* b) {
-    const Json left = a != nullptr ? used(*a) : Json(), right = b != nullptr ? used(*b) : Json();
-    if (left == right) return;
-    rows.push_back(entry({{"kind", plugin.at("kind")}, {"id", plugin.at("id")}}, a != nullptr ? &left : nullptr,
-                         b != nullptr ? &right : nullptr));
-  };
-  for (const Json& plugin : summary_a.at("plugins")) add(plugin, &plugin, plugin_of(summary_b, plugin));
-  for (const Json& plugin : summary_b.at("plugins"))
-    if (plugin_of(summary_a, plugin) == nullptr) add(plugin, nullptr, &plugin);
+  std::vector<std::pair<Json, Json>> seen;  // kind and id
+  for (const Json& owner : summaries) {
+    for (const Json& plugin : owner.at("plugins")) {
+      const std::pair<Json, Json> name(plugin.at("kind"), plugin.at("id"));
+      if (std::find(seen.begin(), seen.end(), name) != seen.end()) continue;
+      seen.push_back(name);
+      std::vector<Json> used;
+      used.reserve(summaries.size());
+      for (const Json& summary : summaries) {
+        const Json* own = plugin_of(summary, plugin);
+        used.push_back(own == nullptr ? Json() : Json{{"version", own->at("version")}, {"sha256", own->at("sha256")}});
+      }
+      if (std::equal(used.begin() + 1, used.end(), used.begin())) continue;
+      rows.push_back({{"kind", name.first}, {"id", name.second}, {"values", used}});
+    }
+  }
   return rows;
 }
 
-Json outcome_numbers(const Json& summary_a, const Json& summary_b) {
-  const Named a = outcome_of(summary_a), b = outcome_of(summary_b);
+Json outcome_numbers(const std::vector<Json>& summaries) {
+  std::vector<Named> all;
+  all.reserve(summaries.size());
+  for (const Json& summary : summaries) all.push_back(outcome_of(summary));
+  std::vector<std::string> names;
+  for (const Named& one : all)
+    for (const auto& outcome : one)
+      if (std::find(names.begin(), names.end(), outcome.first) == names.end()) names.push_back(outcome.first);
   Json rows = Json::array();
-  const auto add = [&](const std::string& name, const Json* left, const Json* right) {
-    Json row = entry({{"name", name}}, left, right);
-    row["differs"] = left == nullptr || right == nullptr || *left != *right;
+  for (const std::string& name : names) {
+    Sides sides;
+    for (const Named& one : all) sides.push_back(named(one, name));
+    Json row = entry({{"name", name}}, sides);
+    row["differs"] = !all_same(sides);
     rows.push_back(std::move(row));
-  };
-  for (const auto& [name, value] : a) add(name, &value, named(b, name));
-  for (const auto& [name, value] : b)
-    if (named(a, name) == nullptr) add(name, nullptr, &value);
+  }
   return rows;
 }
 
-Json compare_data(const std::filesystem::path& a, const std::filesystem::path& b) {
-  Json result{{"runs", {ended_run(a), ended_run(b)}}};
-  const Json scene_a = scene_of(a), scene_b = scene_of(b);
-  const Json &summary_a = result["runs"][0]["summary"], &summary_b = result["runs"][1]["summary"];
-  result["differences"] = {
-      {"scene", scene_a.is_null() || scene_b.is_null() ? Json() : value_differences(scene_a, scene_b)},
-      {"plugins", plugin_differences(summary_a, summary_b)},
-      {"outcome", outcome_numbers(summary_a, summary_b)}};
+Json compare_data(const std::vector<std::filesystem::path>& directories) {
+  Json result{{"runs", Json::array()}};
+  std::vector<Json> scenes, summaries;
+  for (const auto& directory : directories) {
+    result["runs"].push_back(ended_run(directory));
+    summaries.push_back(result["runs"].back()["summary"]);
+    scenes.push_back(scene_of(directory));
+  }
+  const bool has_scenes = std::none_of(scenes.begin(), scenes.end(), [](const Json& scene) { return scene.is_null(); });
+  result["differences"] = {{"scene", has_scenes ? value_differences(scenes) : Json()},
+                           {"plugins", plugin_differences(summaries)},
+                           {"outcome", outcome_numbers(summaries)}};
   return result;
 }
 

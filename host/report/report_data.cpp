@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -27,7 +28,6 @@ using Json = nlohmann::json;
 using Selection = std::vector<std::size_t>;
 
 constexpr std::size_t most_outputs = 400;
-constexpr std::size_t most_lines = 12;       ///< of a chart
 constexpr std::size_t most_points = 300000;  ///< of all outlines: about 1.6 MB of page
 constexpr std::size_t fewest_nodes = 24;     ///< of an outline
 constexpr std::size_t most_fields = 120;     ///< outputs whose flow is shown
@@ -48,35 +48,31 @@ Json picked(const std::vector<double>& values, const Selection& selection, doubl
   return result;
 }
 
-/// Lines of a chart from a column of cells.csv: `count` cells per output.
+/// A line for each cell from a column of cells.csv, which has `count` cells for each output.
 Json lines(const std::vector<double>& column, std::size_t count, const Selection& selection, double factor) {
+  constexpr int precision = 4;
   Json result = Json::array();
-  const auto at = [&](std::size_t output, std::size_t cell) { return factor * column[output * count + cell]; };
-  if (count <= most_lines) {
-    for (std::size_t cell = 0; cell < count; ++cell) {
-      Json line = Json::array();
-      for (const std::size_t output : selection) line.push_back(shown_value(at(output, cell)));
-      result.push_back(std::move(line));
-    }
-    return result;
+  for (std::size_t cell = 0; cell < count; ++cell) {
+    Json line = Json::array();
+    for (const std::size_t output : selection)
+      line.push_back(shown_value(factor * column[output * count + cell], precision));
+    result.push_back(std::move(line));
   }
-  Json smallest = Json::array(), mean = Json::array(), largest = Json::array();
-  for (const std::size_t output : selection) {
-    double low = std::numeric_limits<double>::infinity(), high = -low, sum = 0;
-    int finite = 0;
+  return result;
+}
+
+/// Speeds of all cells' centroids from the outputs before and after, laid out as a column of cells.csv, m/s.
+std::vector<double> cell_speeds(const files::StoredTable& cells, std::size_t count, std::size_t outputs) {
+  const auto x = cells.numbers("x_m"), y = cells.numbers("y_m"), time = cells.numbers("time_s");
+  std::vector<double> speeds(outputs * count, std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t output = 0; output < outputs; ++output) {
+    const std::size_t before = output > 0 ? output - 1 : 0, after = std::min(output + 1, outputs - 1);
     for (std::size_t cell = 0; cell < count; ++cell) {
-      const double value = at(output, cell);
-      if (!std::isfinite(value)) continue;
-      low = std::min(low, value);
-      high = std::max(high, value);
-      sum += value;
-      ++finite;
+      const std::size_t a = before * count + cell, b = after * count + cell;
+      if (time[b] > time[a]) speeds[output * count + cell] = std::hypot(x[b] - x[a], y[b] - y[a]) / (time[b] - time[a]);
     }
-    smallest.push_back(shown_value(low));
-    mean.push_back(shown_value(finite > 0 ? sum / finite : std::numeric_limits<double>::quiet_NaN()));
-    largest.push_back(shown_value(high));
   }
-  return Json::array({smallest, mean, largest});
+  return speeds;
 }
 
 /// How a page shows an observable: lengths in micrometres, angles in degrees.
@@ -111,14 +107,10 @@ Json charts() {
   return list;
 }
 
-Json cell_data(const files::StoredTable& table, std::size_t count, const Selection& selection) {
-  Json cells{{"labels", Json::array()}, {"aggregate", Json::array()}};
+Json cell_data(const files::StoredTable& table, std::size_t count, std::size_t outputs, const Selection& selection) {
   const auto types = table.texts("type");
-  if (count <= most_lines)
-    for (std::size_t cell = 0; cell < count; ++cell)
-      cells["labels"].push_back("cell " + std::to_string(cell) + " (" + types[cell] + ")");
-  else
-    cells["labels"] = {"smallest", "mean", "largest"};
+  Json cells{{"types", Json(std::vector<std::string>(types.begin(), types.begin() + long(count)))},
+             {"aggregate", Json::array()}};
   const auto aggregate = table.numbers("aggregate");
   for (const std::size_t output : selection) {
     Json labels = Json::array();
@@ -130,6 +122,7 @@ Json cell_data(const files::StoredTable& table, std::size_t count, const Selecti
     const Shown as = shown(observable);
     cells[as.name] = lines(table.numbers(observable.column()), count, selection, as.factor);
   }
+  cells["speed_um_per_s"] = lines(cell_speeds(table, count, outputs), count, selection, micro);
   return cells;
 }
 
@@ -139,7 +132,13 @@ Json series_data(const files::StoredTable& series, const Selection& selection) {
     // Runs of earlier versions do not have all columns.
     if (observable.chart.empty() || !series.has(observable.column())) continue;
     const Shown as = shown(observable);
-    data[as.name] = picked(series.numbers(observable.column()), selection, as.factor);
+    auto values = series.numbers(observable.column());
+    // The fluid's kinetic energy is that of a fluid density_factor times too dense: a page's total is without it.
+    if (observable.name == "total_energy" && series.has("kinetic_energy_J_per_m")) {
+      const auto kinetic = series.numbers("kinetic_energy_J_per_m");
+      std::transform(values.begin(), values.end(), kinetic.begin(), values.begin(), std::minus<>());
+    }
+    data[as.name] = picked(values, selection, as.factor);
   }
   return data;
 }
@@ -156,7 +155,7 @@ Choice choose(const std::vector<double>& aggregate_count, std::size_t nodes, std
   while (choice.outputs.size() * nodes / choice.stride > most_points &&
          nodes / std::max<std::size_t>(1, cells) / (choice.stride + 1) >= fewest_nodes)
     ++choice.stride;
-  const std::size_t per_output = std::max<std::size_t>(1, nodes / choice.stride);
+  const std::size_t per_output = std::max<std::size_t>({1, nodes / choice.stride, cells * fewest_nodes});
   if (choice.outputs.size() * per_output > most_points)
     choice.outputs = shown_outputs(aggregate_count, std::max<std::size_t>(50, most_points / per_output));
 
@@ -256,9 +255,11 @@ Json report_data(const std::filesystem::path& directory) {
     data["step"].push_back(std::llround(steps[i]));
     data["stage"].push_back(stages[i]);
   }
+  data["shear_rate"] =
+      series.has("shear_rate_1_per_s") ? picked(series.numbers("shear_rate_1_per_s"), selection) : Json();
   data["charts"] = charts();
   data["series"] = series_data(series, selection);
-  data["cells"] = count > 0 && outputs > 0 ? cell_data(cells, count, selection) : Json(nullptr);
+  data["cells"] = count > 0 && outputs > 0 ? cell_data(cells, count, outputs, selection) : Json(nullptr);
   data["outlines"] = data["fields"] = nullptr;
   if (reader && outputs > 0) {
     try {

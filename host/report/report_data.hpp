@@ -17,9 +17,11 @@ bool has_run(const std::filesystem::path& directory);
 ///   step, time_s, strain, stage   one entry per shown output
 ///   charts    [{title, unit, table: series | cells, lines: [{name, label, doc}]}]: what is drawn, of the columns that
 ///             have a chart (observe/observables.hpp), lengths in um and angles in degrees
-///   series    name -> values per shown output; only those that the run wrote
-///   cells     {labels, aggregate, and name -> lines of values per shown output (a line per cell; of more than 12 cells
-///             smallest, mean, largest)}: aggregate by output and cell
+///   series    name -> values per shown output; only those that the run wrote; the total energy without the fluid's
+///             kinetic energy
+///   shear_rate  of the walls per shown output, 1/s, null where they rest; null for runs of earlier versions
+///   cells     {types, aggregate, and name -> a line of values per shown output for each cell}: type of each cell,
+///             aggregate by output and cell; beside what has a chart speed_um_per_s, of the centroid
 ///   domain    {size_um, periodic_y}; absent without frames
 ///   outlines  outline_data() of the shown outputs (report_outlines.hpp), or null
 ///   fields    field_data() of the shown outputs (report_fields.hpp), or null

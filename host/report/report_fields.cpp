@@ -79,6 +79,42 @@ struct Grid {
   std::array<bool, 2> periodic{};
 };
 
+/// The velocity for tracers, on a coarser grid: {nx, ny, scale, values}, of int8 pairs in base64.
+class Tracers {
+ public:
+  Tracers(const Grid& grid, std::size_t outputs) : grid_(grid), most_(std::min(most_each, most_in_all / outputs)) {}
+  void add(const std::vector<double>& velocity) {
+    for (std::size_t axis = 0; axis < 2; ++axis)
+      fields_[axis].push_back(block_means(velocity_component(velocity, grid_.nx, grid_.ny, axis), most_));
+  }
+  [[nodiscard]] Json to_json() const {
+    double scale = 0;
+    for (const auto& fields : fields_)
+      for (const ScalarField& field : fields)
+        for (const double value : field.values)
+          if (std::isfinite(value)) scale = std::max(scale, std::abs(value));
+    Json values = Json::array();
+    for (std::size_t k = 0; k < fields_[0].size(); ++k) {
+      std::vector<unsigned char> bytes;
+      for (std::size_t i = 0; i < fields_[0][k].values.size(); ++i)
+        for (std::size_t axis = 0; axis < 2; ++axis) {
+          const double value = fields_[axis][k].values[i];
+          const double share = scale > 0 && std::isfinite(value) ? value / scale : 0;
+          bytes.push_back(static_cast<unsigned char>(std::lround(127 * share)));
+        }
+      values.push_back(base64(bytes));
+    }
+    const ScalarField& first = fields_[0].front();
+    return {{"nx", first.nx}, {"ny", first.ny}, {"scale", scale}, {"values", values}};
+  }
+
+ private:
+  static constexpr std::size_t most_each = 2048, most_in_all = 120000;  ///< blocks: 0.3 MB of page
+  const Grid& grid_;
+  std::size_t most_;
+  std::array<std::vector<ScalarField>, 2> fields_;
+};
+
 ScalarField speed(const std::vector<double>& velocity, std::size_t nx, std::size_t ny) {
   ScalarField field{nx, ny, std::vector<double>(nx * ny)};
   for (std::size_t i = 0; i < nx * ny; ++i) field.values[i] = std::hypot(velocity[3 * i], velocity[3 * i + 1]);
@@ -117,11 +153,13 @@ Json field_data(const std::filesystem::path& frames, const std::vector<std::size
 
   Quantity speeds{"speed", "m/s", false, {}}, vorticities{"vorticity", "1/s", true, {}};
   const Grid grid(file, group_of(with_fields.front()) + (has_velocity ? "velocity" : "vorticity"));
+  Tracers tracers(grid, with_fields.size());
   const std::size_t quantities = has_velocity ? 2 : 1;
   const std::size_t most = std::min(most_blocks, most_values / (quantities * with_fields.size()));
   for (const std::size_t output : with_fields) {
     if (has_velocity) {
       const auto velocity = file.read(group_of(output) + "velocity");
+      tracers.add(velocity);
       speeds.fields.push_back(block_means(speed(velocity, grid.nx, grid.ny), most));
       if (!has_vorticity)
         vorticities.fields.push_back(
@@ -136,9 +174,16 @@ Json field_data(const std::filesystem::path& frames, const std::vector<std::size
               {"outputs", outputs},
               {"derived", !has_vorticity},
               {"quantities", Json::array()}};
+  result["velocity"] = has_velocity ? tracers.to_json() : Json();
   if (has_velocity) result["quantities"].push_back(to_json(speeds));
   result["quantities"].push_back(to_json(vorticities));
   return result;
+}
+
+ScalarField velocity_component(const std::vector<double>& velocity, std::size_t nx, std::size_t ny, std::size_t axis) {
+  ScalarField field{nx, ny, std::vector<double>(nx * ny)};
+  for (std::size_t i = 0; i < nx * ny; ++i) field.values[i] = velocity[3 * i + axis];
+  return field;
 }
 
 ScalarField vorticity(const std::vector<double>& velocity, std::size_t nx, std::size_t ny,

@@ -17,7 +17,7 @@ struct ScalarField {
 /// Outputs of a frames.h5 whose fields a report can draw (velocity or vorticity), at most `most`, evenly thinned.
 std::vector<std::size_t> field_outputs(const std::filesystem::path& frames, std::size_t most);
 
-/// {nx, ny, box_um, outputs, quantities, derived} of the shown outputs `selection` that have fields; null when none
+/// {nx, ny, box_um, outputs, quantities, velocity, derived} of the shown outputs `selection` that have fields; null when none
 /// has.
 ///   box_um       [x, y, width, height] of what the blocks cover: the domain, or the region that was written
 ///   outputs      positions in `selection`
@@ -25,6 +25,8 @@ std::vector<std::size_t> field_outputs(const std::filesystem::path& frames, std:
 ///                stands for scale * b / 254, of a signed quantity for scale * (b - 127) / 127; 255 is undefined.
 ///                scale is the largest magnitude, or where few nodes (one in 500) lie far above the rest theirs; then
 ///                clipped is true
+///   velocity     {nx, ny, scale, values: [base64 of nx x ny pairs of int8]} on a coarser grid of the same box: u and v
+///                over scale (m/s) times 127; null where no velocity was written
 ///   derived      vorticity was computed here, from the velocity
 nlohmann::json field_data(const std::filesystem::path& frames, const std::vector<std::size_t>& selection);
 
@@ -32,6 +34,9 @@ nlohmann::json field_data(const std::filesystem::path& frames, const std::vector
 /// order. `velocity` holds three components per node.
 ScalarField vorticity(const std::vector<double>& velocity, std::size_t nx, std::size_t ny,
                       const std::array<double, 2>& spacing, const std::array<bool, 2>& periodic);
+
+/// One component, 0 or 1, of `velocity`, which holds three per node.
+ScalarField velocity_component(const std::vector<double>& velocity, std::size_t nx, std::size_t ny, std::size_t axis);
 
 /// Means over blocks of nodes, of which there are at most `most`; the blocks have the shape of the domain's nodes.
 ScalarField block_means(const ScalarField& field, std::size_t most);

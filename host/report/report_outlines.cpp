@@ -45,6 +45,30 @@ void add_outlines(Json& result, const observe::OutlineSnapshot& outlines, std::s
   result["nodes"].push_back(base64(bytes));
 }
 
+/// Tensions of the shown nodes as signed bytes: 127 stands for `scale`.
+std::string tension_bytes(const observe::OutlineSnapshot& outlines, std::size_t stride, double scale) {
+  std::vector<unsigned char> bytes;
+  for (std::size_t cell = 0; cell + 1 < outlines.first.size(); ++cell)
+    for (auto i = std::size_t(outlines.first[cell]); i < std::size_t(outlines.first[cell + 1]); i += stride) {
+      const double share = scale > 0 && std::isfinite(outlines.tension[i]) ? outlines.tension[i] / scale : 0;
+      bytes.push_back(static_cast<unsigned char>(std::lround(127 * std::clamp(share, -1.0, 1.0))));
+    }
+  return base64(bytes);
+}
+
+/// What all but one tension in a hundred stay below in magnitude, N/m: the ends of cells would hide the rest.
+double tension_scale(const files::FrameReader& reader, const std::vector<std::size_t>& selection) {
+  constexpr std::size_t beyond = 100;
+  std::vector<double> sizes;
+  for (std::size_t k = 0; k < selection.size(); k += std::max<std::size_t>(1, selection.size() / 20))
+    for (const double tension : reader.outlines(static_cast<int>(selection[k])).tension)
+      if (std::isfinite(tension)) sizes.push_back(std::abs(tension));
+  if (sizes.empty()) return 0;
+  const auto rank = sizes.begin() + static_cast<long>(sizes.size() - 1 - sizes.size() / beyond);
+  std::nth_element(sizes.begin(), rank, sizes.end());
+  return *rank;
+}
+
 }  // namespace
 
 Json outline_data(const files::FrameReader& reader, const std::vector<std::size_t>& selection, std::size_t stride) {
@@ -56,6 +80,8 @@ Json outline_data(const files::FrameReader& reader, const std::vector<std::size_
               {"nodes", Json::array()}};
   const double quantum = std::max(1e-9, std::hypot(size[0], size[1]) / std::numeric_limits<std::int16_t>::max());
   result["quantum_um"] = quantum * micro;
+  const double scale = tension_scale(reader, selection);
+  result["tension"] = {{"scale_N_per_m", scale}, {"values", Json::array()}};
   std::vector<int> first;
   for (const std::size_t output : selection) {
     const auto outlines = reader.outlines(static_cast<int>(output));
@@ -72,6 +98,7 @@ Json outline_data(const files::FrameReader& reader, const std::vector<std::size_
     }
     if (first.empty() || outlines.first != first) return nullptr;
     add_outlines(result, outlines, stride, quantum);
+    result["tension"]["values"].push_back(tension_bytes(outlines, stride, scale));
   }
   return first.empty() ? Json(nullptr) : result;
 }

@@ -85,14 +85,14 @@ class Browser:
                 self.events.append(answer)
         raise RuntimeError(f"{method}: no answer within {self.patience} s")
 
-    def open(self, url, width=1280, height=900, scheme="light", touch=False):
-        return Page(self, url, width, height, scheme, touch)
+    def open(self, url, width=1280, height=900, scheme="light", touch=False, still=True):
+        return Page(self, url, width, height, scheme, touch, still)
 
 
 class Page:
     """A tab with a page in it. Whatever goes wrong in the page stands in `faults()`."""
 
-    def __init__(self, browser, url, width, height, scheme, touch):
+    def __init__(self, browser, url, width, height, scheme, touch, still):
         self.browser = browser
         self.url = url
         self.target = browser.call("Target.createTarget", url="about:blank")["targetId"]
@@ -100,7 +100,7 @@ class Page:
         for domain in ("Page", "Runtime", "Log", "Network"):
             self.call(f"{domain}.enable")
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=2 if touch else 1, mobile=touch)
-        self.media(scheme)
+        self.media(scheme, still=still)
         self.call("Page.navigate", url=url)
         self.wait("document.readyState === 'complete'")
 
@@ -110,8 +110,9 @@ class Page:
     def call(self, method, **parameters):
         return self.browser.call(method, self.session, **parameters)
 
-    def media(self, scheme, kind=""):
-        self.call("Emulation.setEmulatedMedia", media=kind, features=[{"name": "prefers-color-scheme", "value": scheme}])
+    def media(self, scheme, kind="", still=True):
+        self.call("Emulation.setEmulatedMedia", media=kind, features=[{"name": "prefers-color-scheme", "value": scheme},
+                  {"name": "prefers-reduced-motion", "value": "reduce" if still else "no-preference"}])
 
     def run(self, expression):
         """Value of a JavaScript expression; a promise is waited for."""
@@ -135,6 +136,16 @@ class Page:
     def mouse(self, kind, x, y, **more):
         self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, **more)
 
+    def click(self, x, y):
+        for kind in ("mousePressed", "mouseReleased"):
+            self.mouse(kind, x, y, button="left", clickCount=1, buttons=1)
+
+    def key(self, key):
+        """Presses a key where the focus is."""
+        code = {" ": ("Space", 32), "ArrowRight": ("ArrowRight", 39), "ArrowLeft": ("ArrowLeft", 37), "+": ("BracketRight", 187), "0": ("Digit0", 48)}[key]
+        for kind in ("keyDown", "keyUp"):
+            self.call("Input.dispatchKeyEvent", type=kind, key=key, code=code[0], windowsVirtualKeyCode=code[1])
+
     def faults(self):
         """Exceptions, console errors and warnings, failed loads, and every request but that for the page itself."""
         found = []
@@ -151,7 +162,7 @@ class Page:
                 found.append("log: " + details["entry"]["text"])
             elif kind == "Network.requestWillBeSent":
                 url = details["request"]["url"]
-                if url != self.url and not url.startswith("data:"):
+                if url != self.url.split("#")[0] and not url.startswith("data:"):
                     found.append("request: " + url)
         return found
 
@@ -167,8 +178,8 @@ class BrowserCase(unittest.TestCase):
     """A test that looks at pages; `browser` is given to the class before the first one."""
     browser = None
 
-    def open(self, file, screen="desktop", scheme="light"):
-        page = self.browser.open(Path(file).as_uri(), scheme=scheme, **SCREENS[screen])
+    def open(self, file, screen="desktop", scheme="light", still=True, part=""):
+        page = self.browser.open(Path(file).as_uri() + part, scheme=scheme, still=still, **SCREENS[screen])
         self.addCleanup(page.close)
         return page
 

@@ -53,6 +53,9 @@ def tearDownModule():
     shutil.rmtree(folder, ignore_errors=True)
 
 
+OVER = """(v => { const s = document.querySelector('select[aria-label="Horizontal axis"]'); s.value = v; s.dispatchEvent(new Event('change')); })"""
+
+
 class PageCase(BrowserCase):
     def assert_sound(self, page, width=None):
         """No exception, no word on the console, nothing fetched, nothing wider than the screen."""
@@ -89,6 +92,7 @@ class Every_page_on_every_screen(PageCase):
         return f"[...document.querySelectorAll('button')].find(b => b.textContent === {json.dumps(text)})"
 
     def play_and_scrub(self, page):
+        page.run("timeline.seek(0)")
         first = page.run(self.VIEWS)
         page.run(self.button(page, "Play") + ".click()")
         page.wait("timeline.position > 2")
@@ -106,21 +110,21 @@ class Every_page_on_every_screen(PageCase):
         self.assertNotEqual(end, first)
         self.assertNotEqual(page.run("document.querySelector('.now').textContent"), words)
         # At the end playing begins anew; it stops there by itself.
-        page.run(f"{seek}({last}); document.querySelector('.controls select').value = '4'; " + self.button(page, "Play") + ".click()")
+        page.run(f"{seek}({last}); document.querySelector('select[aria-label=Speed]').value = '4'; " + self.button(page, "Play") + ".click()")
         page.wait("timeline.playing && timeline.position < 20")
         page.run(f"{seek}({last - 4}); " + self.button(page, "Play") + ".click()")
         page.wait("!timeline.playing && timeline.position === timeline.count - 1")
 
     def show_the_flow(self, page):
-        flow = "[...document.querySelectorAll('select')].find(s => [...s.options].some(o => o.value === 'speed'))"
+        flow = "document.querySelector('select[aria-label=Flow]')"
         choose = f"(v => {{ const s = {flow}; s.value = v; s.dispatchEvent(new Event('change')); }})"
         looks = [page.run(self.VIEWS)]
         for value, bar in (("speed", "Velocity magnitude, µm/s"), ("vorticity", "Vorticity, 1/s")):
             page.run(f"{choose}('{value}')")
-            self.assertIn(bar, page.run("document.querySelector('.bar').textContent"))
+            self.assertIn(bar, page.run("document.querySelector('.bar:not(.cells)').textContent"))
             looks.append(page.run(self.VIEWS))
         page.run(f"{choose}('')")
-        self.assertEqual(page.run("document.querySelector('.bar').textContent"), "")
+        self.assertEqual(page.run("document.querySelector('.bar:not(.cells)').textContent"), "")
         self.assertEqual(page.run(self.VIEWS), looks[0])
         self.assertEqual(len(set(looks)), 3, "two flows look the same")
 
@@ -147,14 +151,15 @@ class A_chart_under_the_mouse(PageCase):
         for file in ("a/report.html", "both.html"):
             page = self.open(folder / file)
             page.wait("charts[1].u.status === 1")
+            page.run(OVER + "('strain')")
             view = page.run(Every_page_on_every_screen.VIEWS)
             page.mouse("mouseMoved", *self.place(page, 1, 0.75))
             page.wait("Math.abs(timeline.place() - 0.75) < 0.02")
             self.assertNotEqual(page.run(Every_page_on_every_screen.VIEWS), view)
-            words = page.run("[...document.querySelectorAll('.legend .instant')].map(e => e.textContent)")
+            words = page.run("[...document.querySelectorAll('.legend .instant')].filter(e => !e.closest('details:not([open])')).map(e => e.textContent)")
             self.assertEqual(len(set(words)), 1, words)
             self.assertIn("at strain 0.7", words[0])
-            lines = page.run("charts.map(c => c.u.cursor.left / c.u.over.clientWidth)")
+            lines = page.run("charts.filter(c => !c.folded).map(c => c.u.cursor.left / c.u.over.clientWidth)")
             for share in lines:
                 self.assertAlmostEqual(share, 0.75, delta=0.03)
             self.assertEqual(page.faults(), [])
@@ -162,6 +167,7 @@ class A_chart_under_the_mouse(PageCase):
     def test_shows_a_stretch_in_all_charts_after_a_drag_and_all_again_after_a_double_click(self):
         page = self.open(folder / "a/report.html")
         page.wait("charts[1].u.status === 1")
+        page.run(OVER + "('strain')")
         begin, end = self.place(page, 1, 0.25), self.place(page, 1, 0.5)
         page.mouse("mouseMoved", *begin)
         page.mouse("mousePressed", *begin, button="left", clickCount=1)
@@ -180,8 +186,8 @@ class A_chart_under_the_mouse(PageCase):
 
     def test_has_the_axis_that_was_chosen(self):
         page = self.open(folder / "a/report.html")
-        for over, last in (("time_s", page.run("data.time_s.at(-1)")), ("output", page.run("data.step.length - 1")), ("strain", page.run("data.strain.at(-1)"))):
-            page.run(f"(() => {{ const s = document.querySelector('select[aria-label=\"Horizontal axis\"]'); s.value = '{over}'; s.dispatchEvent(new Event('change')); }})()")
+        for over, last in (("time_s", page.run("data.time_s.at(-1)")), ("stages", page.run("data.step.length - 1")), ("strain", page.run("data.strain.at(-1)"))):
+            page.run(f"{OVER}('{over}')")
             page.wait(f"charts.every(c => Math.abs(c.u.scales.x.max - {last}) <= 1e-9 * {last})")
         self.assertEqual(page.faults(), [])
 
@@ -236,16 +242,16 @@ class The_page_of_a_run(PageCase):
 
     def test_has_its_parts_in_the_order_of_their_weight(self):
         page = self.open(folder / "a/report.html")
-        self.assertEqual(self.headings(page)[:8], ["Cells", "Scene and conversions", "Dimensionless numbers", "Limits and margins", "Left out, and why",
-                                                   "Plugins", "Time by pass", "Aggregates"])
+        self.assertEqual(self.headings(page), ["Cells", "Charts", "Details", "Aggregates", "Means", "Dimensionless numbers", "Scene and conversions", "Limits and margins",
+                                                "Not computed in this run", "Conservation", "Cost", "Time by pass", "Stages", "Plugins", "Provenance"])
         self.assertIn("Permission is hereby granted", page.run("document.querySelector('main').textContent"))
 
-    def test_begins_with_its_warnings(self):
+    def test_has_its_warnings_below_its_result(self):
         # A well that the lattice does not resolve is warned of.
         page = self.open(self.report("--max-steps", "20", "--set", '/interactions/0/parameters/zero_force_distance="0.3 um"'))
         boxes = page.run("[...document.querySelectorAll('.status strong')].map(e => e.textContent)")
-        self.assertIn("arning", boxes[0])
-        self.assertIn("Cut short by the limit of steps at step 20 of at most", boxes[1])
+        self.assertIn("Cut short by the limit of steps at step 20 of at most", boxes[0])
+        self.assertIn("arning", boxes[1])
         self.assert_sound(page)
 
     def test_has_no_heading_for_cells_that_are_not_there_and_no_axis_for_what_is_zero(self):
@@ -325,8 +331,8 @@ class The_page_of_a_run(PageCase):
             damage=["frames.h5 is damaged; run again", "cells.csv is cut short"])
         boxes = page.run("[...document.querySelectorAll('.status')].map(e => [e.querySelector('strong').textContent, ...[...e.querySelectorAll('li')].map(li => li.textContent)])")
         self.assertEqual(boxes[0], ["Some of the run's files are damaged", "frames.h5 is damaged; run again", "cells.csv is cut short"])
-        self.assertEqual(boxes[1][:2], ["2 warnings", "a warning"])
-        self.assertIn("at step 7\u202f000: checkpoint.h5 is damaged", boxes[1][2])
+        self.assertEqual(boxes[2][:2], ["2 warnings", "a warning"])
+        self.assertIn("at step 7\u202f000: checkpoint.h5 is damaged", boxes[2][2])
         self.assertEqual(page.run("document.querySelector('h1').nextElementSibling.nextElementSibling.querySelector('strong').textContent"), boxes[0][0])
         # Why there is no animation stands where it would be.
         self.assertEqual(page.run("document.querySelector('.stage').firstElementChild.textContent"), "No animation: frames.h5 cannot be read.")
@@ -363,9 +369,9 @@ class The_page_of_a_run(PageCase):
             for i, row in enumerate(rows):
                 writer.writerow(row + [n for n in names if n not in row] if i == 0 else row + [f"{i}e-15"] * (len(names) - sum(n in rows[0] for n in names)))
         rouleau("report", directory)
-        for file, lines in (("ledger/report.html", [3, 2, 3]), ("a/report.html", [None] * 3)):
+        for file, lines in (("ledger/report.html", [4, 1, 3]), ("a/report.html", [None] * 3)):
             page = self.open(folder / file)
-            found = page.run("['Energy of the cells', 'Energy in all', 'Power'].map(title => charts.find(c => "
+            found = page.run("['Energy of the cells', 'Kinetic energy of the fluid as simulated', 'Power'].map(title => charts.find(c => "
                              "c.plot.parentNode.getAttribute('aria-label') === title)?.lines.length ?? null)")
             if lines[0] or "total_energy_J_per_m" not in rows[0]:
                 self.assertEqual(found, lines)
@@ -388,10 +394,9 @@ class Two_runs(PageCase):
 
     def test_are_compared_over_the_time_where_that_is_chosen(self):
         page = self.open(folder / "both.html")
-        choose = "(v => { const s = document.querySelector('select[aria-label=\"Horizontal axis\"]'); s.value = v; s.dispatchEvent(new Event('change')); })"
         self.assertEqual(page.run("[...document.querySelector('select[aria-label=\"Horizontal axis\"]').options].map(o => o.value)"), ["strain", "time_s"])
         page.run("timeline.seek(timeline.count - 1)")
-        page.run(f"{choose}('time_s')")
+        page.run(f"{OVER}('time_s')")
         last = page.run("Math.max(...data.runs.map(run => run.time_s.at(-1)))")
         page.wait(f"charts.every(c => Math.abs(c.u.scales.x.max - {last}) <= 1e-9 * {last})")
         slider = page.run("Number(document.querySelector('input[type=range]').max)")
@@ -399,8 +404,8 @@ class Two_runs(PageCase):
         for time, *outputs in page.run("timeline.instants.map((k, p) => [timeline.place(p), ...data.runs.map((run, r) => run.time_s[timeline.output(r, p)])])"):
             for r, at in enumerate(outputs):
                 self.assertAlmostEqual(at, min(page.run(f"data.runs[{r}].time_s"), key=lambda t: abs(t - time)), delta=1e-9)
-        self.assertIn("Both show the same time", page.run("document.querySelector('main').textContent"))
-        page.run(f"{choose}('strain')")
+        self.assertIn("All show the same time", page.run("document.querySelector('main').textContent"))
+        page.run(f"{OVER}('strain')")
         page.wait("charts.every(c => c.u.scales.x.max < 1.1)")
         self.assert_sound(page)
 

@@ -236,9 +236,9 @@ class The_page_of_a_study(PageCase):
             self.assertEqual(numbers, order(numbers))
             self.assertEqual(page.run("document.querySelector('.points th[aria-sort]').getAttribute('aria-sort')"), {1: "ascending", 2: "descending"}[times])
 
-    def test_says_which_knob_buys_most(self):
+    def test_says_which_setting_gains_most(self):
         page = self.open(PAGES["study"])
-        self.assertEqual(self.rows(page, "Which knob buys most")[:2], [["tau", "1", "2", "resolution 20, plain", "÷ 1.4", "× 0.35", "free"],
+        self.assertEqual(self.rows(page, "Which setting gains most")[:2], [["tau", "1", "2", "resolution 20, plain", "÷ 1.4", "× 0.35", "free"],
                                                                        ["scheme", "plain", "corrected", "resolution 20, tau 1", "÷ 3.2", "× 1.15", "8.4"]])
 
     def test_shows_a_point_s_time_by_pass_when_it_is_chosen(self):
@@ -272,6 +272,12 @@ class The_page_of_a_study(PageCase):
         self.assertIn("corrected", page.run("[...document.querySelectorAll('.scatter')][1].textContent"))
         self.assert_sound(page)
 
+    def test_with_long_names_is_no_wider_than_a_phone(self):
+        text = json.dumps(STUDY)
+        for word in ("corrected", "deformation", "scheme"):
+            text = text.replace(f'"{word}"', f'"{word} of the membranes in a slow shear flow between walls"')
+        self.assert_sound(self.open(report("long", json.loads(text)), "phone"), 390)
+
     def test_of_a_study_without_points_is_still_a_page(self):
         page = self.open(report("empty", dict(STUDY, points=[], fronts={}, knobs={}, sentences=[], target=None)))
         self.assertIn("No point has been run.", self.text(page))
@@ -295,7 +301,8 @@ class The_page_of_limits(PageCase):
     def test_says_first_what_the_map_and_the_cases_come_to(self):
         page = self.open(PAGES["limits"])
         words = self.text(page, ".status")
-        self.assertIn("of 9 combinations 7 have an edge, 1 is stable throughout, 1 nowhere", words)
+        self.assertIn("9 combinations: 1 is stable throughout, 1 fails everywhere, 7 have an edge.", words)
+        self.assertIn("First to fail: ", words)
         self.assertIn("4 extreme cases: 2 × stopped with a reason, 1 × right answer, 1 × WRONG; 2 did not end as expected.", words)
         self.assertIn("bad", page.run("document.querySelector('.status').className"))
 
@@ -310,7 +317,7 @@ class The_page_of_limits(PageCase):
         self.assertEqual(self.bar(page, "semi-implicit, cosine4"), [["stable", 6e-6, 6e-2]])
         self.assertEqual(self.bar(page, "corrected, cosine4"), [["failing", 6e-6, 6e-2]])
         # Each row says in words what its colours say.
-        self.assertIn("node-scale, node_step", page.run("map.rows[0].line.textContent"))
+        self.assertIn("node-scale, node step", page.run("map.rows[0].line.textContent"))
         self.assertEqual(page.run("document.querySelectorAll('.map-bar .trial').length"), sum(len(e["trials"]) for e in LIMITS["edges"]))
 
     def test_tells_of_a_trial_under_the_mouse(self):

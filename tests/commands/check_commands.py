@@ -435,20 +435,20 @@ class Commands_do_what_they_say(Case):
             json.loads(line)
         self.assertEqual(self.rouleau.run("report", out).returncode, 0)
 
-    def test_two_runs_are_compared_in_one_file(self):
+    def test_runs_are_compared_in_one_file(self):
         for name in "ab":
             self.assertEqual(self.rouleau.run("run", SCENE, "--out", self.path / name, *SHORT).returncode, 0)
         a, b = self.path / "a", self.path / "b"
         result = self.rouleau.run("report", "--compare", a, b, cwd=self.path)
         self.assertEqual((result.returncode, result.stdout), (0, "a-and-b.html\n"), result.stderr)
-        self.assertIn("Two runs side by side", (self.path / "a-and-b.html").read_text())
+        self.assertIn("runs side by side", (self.path / "a-and-b.html").read_text())
         out = self.path / "c.html"
-        self.assertEqual(self.rouleau.run("report", a, a, "--compare", "--out", out).stdout, f"{out}\n")
+        self.assertEqual(self.rouleau.run("report", a, b, a, "--compare", "--out", out).stdout, f"{out}\n")
         self.assertEqual({f.name for f in self.path.iterdir()} - {"installation"}, {"a", "b", "a-and-b.html", "c.html"})
 
         (b / "summary.json").unlink()
         for arguments, words in (((a, b), (str(b), "has no summary.json")), ((a, self.path / "none"), (str(self.path / "none"), "is no directory")),
-                                 ((a,), ("two runs", "1 was given")), ((a, a, a), ("two runs", "3 were given")),
+                                 ((a,), ("2 to 12 runs", "1 was given")), ((a,) * 13, ("2 to 12 runs", "13 were given")),
                                  ((a, a, "--frames"), ("--compare and --frames",)), ((a, a, "--strains", "1"), ("--strains is for --frames",))):
             self.assert_stops(self.rouleau.run("report", "--compare", *arguments, cwd=self.path), 2, *words)
         self.assert_stops(self.rouleau.run("report", a, a), 2, "takes one directory", "--compare")
@@ -483,6 +483,8 @@ class Commands_do_what_they_say(Case):
         self.assertEqual(result.returncode, 0, result.stderr)
         frames = self.path / "run-frames"
         self.assertEqual(pictures(frames), ["01-strain-0.png", "02-strain-0.3.png", "03-strain-0.5.png", "figure.png"])
+        self.assertEqual((frames / "figure.pdf").read_bytes()[:5], b"%PDF-")
+        self.assertIn("<svg", (frames / "figure.svg").read_text()[:200])
         self.assertTrue(result.stdout.startswith(f"{frames}/01-strain-0.png\n"), result.stdout)
         if shutil.which("ffmpeg"):
             self.assertEqual((frames / "frames.mp4").read_bytes()[4:8], b"ftyp")

@@ -1,5 +1,7 @@
 #include "figure.hpp"
 
+#include <cairo-pdf.h>
+#include <cairo-svg.h>
 #include <cairo.h>
 #include <fontconfig/fontconfig.h>
 
@@ -24,14 +26,13 @@ using Context = std::unique_ptr<cairo_t, Destroy>;
 
 using Colour = std::array<double, 3>;
 /// As on the report's page; told apart without seeing red and green.
-constexpr std::array<Colour, 8> cell_colours{{{0.000, 0.447, 0.698},
+constexpr std::array<Colour, 6> cell_colours{{{0.000, 0.447, 0.698},
                                               {0.835, 0.369, 0.000},
-                                              {0.000, 0.620, 0.451},
-                                              {0.722, 0.337, 0.561},
-                                              {0.725, 0.522, 0.000},
-                                              {0.184, 0.624, 0.847},
-                                              {0.478, 0.373, 0.788},
-                                              {0.435, 0.463, 0.502}}};
+                                              {0.722, 0.302, 1.000},
+                                              {0.035, 0.035, 0.698},
+                                              {0.698, 0.510, 0.384},
+                                              {0.298, 0.165, 0.165}}};
+constexpr Colour flow_colour{0.48, 0.55, 0.64};
 
 /// Sizes in pixels, for a panel of this width.
 struct Measures {
@@ -41,7 +42,7 @@ struct Measures {
         height(std::round(box.size[1] * scale)),
         font(std::max(11.0, width / 32)),
         margin(std::max(6.0, width / 60)),
-        caption(1.6 * font),
+        caption(1.9 * font),
         line(std::max(1.5, width / 280)) {}
   double width, scale, height, font, margin, caption, line;
 };
@@ -117,6 +118,39 @@ void draw_border(cairo_t* context, const PanelBox& box, const Measures& m) {
   cairo_set_dash(context, nullptr, 0, 0);
 }
 
+void draw_flow(cairo_t* context, const Panel& panel, const PanelBox& box, const Measures& m) {
+  cairo_set_line_cap(context, CAIRO_LINE_CAP_ROUND);
+  cairo_set_line_width(context, 0.6 * m.line);
+  for (const FlowLine& line : panel.flow) {
+    set_colour(context, flow_colour, 0.8 * line.strength);
+    for (const double dx : images(line.points.front()[0], box.size[0], true)) {
+      for (const auto& [x, y] : line.points) cairo_line_to(context, (x + dx) * m.scale, m.height - y * m.scale);
+      cairo_stroke(context);
+    }
+  }
+  cairo_set_line_cap(context, CAIRO_LINE_CAP_BUTT);
+}
+
+/// Arrow heads outside of each wall that moves.
+void draw_walls(cairo_t* context, const WallMotion& walls, const Measures& m) {
+  const double apart = m.width / 14, size = 0.45 * m.margin;
+  set_colour(context, {0, 0, 0});
+  for (std::size_t wall = 0; wall < 2; ++wall) {
+    if (walls.speed[wall] == 0) continue;
+    const double ahead = walls.speed[wall] > 0 ? size : -size,
+                 y = wall == 0 ? m.height + 0.55 * m.margin : -0.55 * m.margin;
+    const double begin = std::fmod(walls.gone[wall] * m.scale, apart);
+    for (double x = begin - apart; x < m.width; x += apart) {
+      if (x < size || x > m.width - size) continue;
+      cairo_move_to(context, x - ahead, y - 0.6 * size);
+      cairo_line_to(context, x + ahead, y);
+      cairo_line_to(context, x - ahead, y + 0.6 * size);
+      cairo_close_path(context);
+      cairo_fill(context);
+    }
+  }
+}
+
 /// A bar of a round length, at most a quarter of the box.
 void draw_scale(cairo_t* context, const PanelBox& box, const Measures& m) {
   constexpr double micro = 1e-6;
@@ -135,15 +169,28 @@ void draw_scale(cairo_t* context, const PanelBox& box, const Measures& m) {
 
 }  // namespace
 
-std::string draw_panels(const PanelBox& box, const std::vector<Panel>& panels, std::size_t columns, int width) {
+std::array<int, 2> picture_size(const PanelBox& box, std::size_t panels, std::size_t columns, int width) {
   const Measures m(width, box);
-  const auto shown = std::min(columns, std::max<std::size_t>(1, panels.size()));
-  const std::size_t rows = (panels.size() + columns - 1) / columns;
-  const double across = m.width + 2 * m.margin, down = m.caption + m.height + 2 * m.margin;
+  const auto shown = std::min(columns, std::max<std::size_t>(1, panels));
+  const std::size_t rows = std::max<std::size_t>(1, (panels + columns - 1) / columns);
   const auto even = [](double length) { return 2 * static_cast<int>(std::ceil(length / 2)); };
-  const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, even(across * double(shown)),
-                                                   even(down * double(std::max<std::size_t>(1, rows)))));
+  return {even((m.width + 2 * m.margin) * double(shown)), even((m.caption + m.height + 2 * m.margin) * double(rows))};
+}
+
+std::string draw_panels(const PanelBox& box, const std::vector<Panel>& panels, std::size_t columns, int width,
+                        PictureFormat format) {
+  const Measures m(width, box);
+  const auto [wide, high] = picture_size(box, panels.size(), columns, width);
+  const double across = m.width + 2 * m.margin, down = m.caption + m.height + 2 * m.margin;
+  std::string picture;
+  const Surface surface(format == PictureFormat::svg ? cairo_svg_surface_create_for_stream(append, &picture, wide, high)
+                        : format == PictureFormat::pdf
+                            ? cairo_pdf_surface_create_for_stream(append, &picture, wide, high)
+                            : cairo_image_surface_create(CAIRO_FORMAT_RGB24, wide, high));
   check(cairo_surface_status(surface.get()));
+  // A picture is the same whenever it is drawn.
+  if (format == PictureFormat::pdf)
+    cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_CREATE_DATE, "1970-01-01T00:00:00Z");
   const Context context(cairo_create(surface.get()));
   cairo_t* c = context.get();
   cairo_set_source_rgb(c, 1, 1, 1);
@@ -161,17 +208,28 @@ std::string draw_panels(const PanelBox& box, const std::vector<Panel>& panels, s
     cairo_save(c);
     cairo_rectangle(c, 0, 0, m.width, m.height);
     cairo_clip(c);
+    draw_flow(c, panels[k], box, m);
     const auto& outlines = panels[k].outlines;
     for (std::size_t cell = 0; cell + 1 < outlines.first.size(); ++cell) draw_cell(c, outlines, cell, box, m);
     cairo_restore(c);
     draw_border(c, box, m);
+    draw_walls(c, panels[k].walls, m);
     if (k == 0) draw_scale(c, box, m);
     cairo_restore(c);
   }
   check(cairo_status(c));
-  std::string png;
-  check(cairo_surface_write_to_png_stream(surface.get(), append, &png));
-  return png;
+  if (format == PictureFormat::png) {
+    check(cairo_surface_write_to_png_stream(surface.get(), append, &picture));
+  } else if (format == PictureFormat::pixels) {
+    cairo_surface_flush(surface.get());
+    const auto* data = reinterpret_cast<const char*>(cairo_image_surface_get_data(surface.get()));
+    const int stride = cairo_image_surface_get_stride(surface.get());
+    for (int y = 0; y < high; ++y) picture.append(data + long(y) * stride, std::size_t(4 * wide));
+  } else {
+    cairo_surface_finish(surface.get());
+    check(cairo_surface_status(surface.get()));
+  }
+  return picture;
 }
 
 Drawing::~Drawing() {

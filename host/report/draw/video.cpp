@@ -82,7 +82,7 @@ void keep(const std::filesystem::path& partial, const std::filesystem::path& fil
 
 }  // namespace
 
-bool write_video(const std::filesystem::path& file, int frames_per_second,
+bool write_video(const std::filesystem::path& file, const std::array<int, 2>& size, int frames_per_second,
                  const std::function<std::optional<std::string>()>& next) {
   const auto partial =
       file.parent_path() / ("." + file.filename().string() + "." + std::to_string(::getpid()) + ".partial");
@@ -97,9 +97,11 @@ bool write_video(const std::filesystem::path& file, int frames_per_second,
               "error",
               "-y",
               "-f",
-              "image2pipe",
-              "-c:v",
-              "png",
+              "rawvideo",
+              "-pixel_format",
+              "bgr0",
+              "-video_size",
+              std::to_string(size[0]) + "x" + std::to_string(size[1]),
               "-framerate",
               std::to_string(frames_per_second),
               "-i",

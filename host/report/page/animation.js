@@ -1,130 +1,285 @@
 // ---------------------------------------------------------------------------------------------------------- animation
-/// The outlines of a run's cells at the timeline's instant, with the flow under them.
+/// What all animations of a page share: what lies under the cells, their colours, and the cell that was chosen.
+class View {
+  constructor(runs) {
+    const names = new Set(runs.flatMap(run => Object.keys(cellColours(run))));
+    Object.assign(this, {field: "", tracers: true, cell: null, follow: false, listeners: [], colour: names.has("aggregate") ? "aggregate" : "grey", before: null});
+  }
+  changed() { for (const listener of this.listeners) listener(); }
+  /// Cells are grey over a field, and get their colours back without one.
+  setField(name) {
+    if (name && !this.field) { this.before = this.colour; this.colour = "grey"; }
+    if (!name && this.field && this.colour === "grey" && this.before) this.colour = this.before;
+    this.field = name;
+    this.changed();
+  }
+  choose(cell) { this.cell = cell === this.cell ? null : cell; this.follow &&= this.cell !== null; this.changed(); }
+}
+
+/// The cells of a run at the timeline's instant, with the flow under them. Drag to move it, + and - to come closer.
 class Animation {
-  constructor(parent, timeline, run, chosen) {
+  constructor(parent, timeline, run, view) {
     const data = timeline.runs[run];
-    Object.assign(this, {timeline, run, data, chosen, outlines: data.outlines, fields: data.fields && new Fields(data.fields)});
+    Object.assign(this, {timeline, run, data, view, outlines: data.outlines && new Outlines(data.outlines), fields: data.fields && new Fields(data), colours: cellColours(data), stages: stagesOf(data), zoom: 1});
     [this.lx, this.ly] = data.domain.size_um;
-    this.canvas = element("canvas", {class: "view", role: "img", "aria-label": "Outlines of the cells"});
+    this.centre = [this.lx / 2, this.ly / 2];
+    this.walls = !data.domain.periodic_y;
+    this.canvas = element("canvas", {class: "view", role: "img", tabindex: 0, "aria-label": this.description()});
+    this.tip = element("div", {class: "tip", role: "status", hidden: ""});
     this.bar = element("div", {class: "bar"});
-    parent.append(this.canvas, this.bar);
+    this.cellBar = element("div", {class: "bar cells"});
+    parent.append(element("div", {class: "view-box"}, this.canvas, this.tip), element("div", {class: "bars"}, this.cellBar, this.bar));
     timeline.listeners.push(() => this.draw());
+    view.listeners.push(() => { this.showBars(); this.draw(); });
     new ResizeObserver(() => { if (this.canvas.clientWidth !== this.width) this.draw(); }).observe(this.canvas);
+    this.listen();
+    this.showBars();
+  }
+  description() {
+    const {data} = this, cells = data.outlines ? data.outlines.first.length - 1 : 0;
+    return `Animation: ${cells ? `outlines of ${cells} ${cells === 1 ? "cell" : "cells"}` : "the flow"} in a box of ${format(this.lx, 3)} by ${format(this.ly, 3)} µm. Space plays, arrow keys step, plus and minus zoom.`;
+  }
+  showBars() { this.cellBar.replaceChildren(...(this.colours[this.view.colour] ?? this.colours.grey)?.bar() ?? []); }
+
+  // ---- what is where
+  stageAt(output) { return this.stages.findLast(stage => stage.from <= output); }
+  get between() { return this.timeline.between(this.run); }
+  nodes() { return this.outlines.between(this.between); }
+  centreOf(nodes, cell) {
+    const {first} = this.outlines, sum = [0, 0];
+    for (let i = first[cell]; i < first[cell + 1]; ++i) { sum[0] += nodes[2 * i]; sum[1] += nodes[2 * i + 1]; }
+    return sum.map(s => s / (first[cell + 1] - first[cell]));
+  }
+  /// The cell at a point of the canvas, or null.
+  cellAt(px, py) {
+    if (!this.outlines || !this.scale) return null;
+    const nodes = this.nodes(), {first, count} = this.outlines, [x, y] = this.toDomain(px, py);
+    for (let cell = count - 1; cell >= 0; --cell) {
+      const [cx, cy] = this.centreOf(nodes, cell), near = (v, middle, length) => v - length * Math.round((v - middle) / length);
+      const qx = near(x, cx, this.lx), qy = this.walls ? y : near(y, cy, this.ly);
+      let inside = false;
+      for (let i = first[cell], j = first[cell + 1] - 1; i < first[cell + 1]; j = i++) {
+        const [ax, ay, bx, by] = [nodes[2 * i], nodes[2 * i + 1], nodes[2 * j], nodes[2 * j + 1]];
+        if ((ay > qy) !== (by > qy) && qx < (bx - ax) * (qy - ay) / (by - ay) + ax) inside = !inside;
+      }
+      if (inside) return cell;
+    }
+    return null;
+  }
+  toDomain(px, py) { return [this.middle[0] + (px - this.width / 2) / this.scale, this.middle[1] - (py - this.height / 2) / this.scale]; }
+
+  // ---- pointers and keys
+  listen() {
+    const {canvas} = this;
+    let drag = null;
+    const at = event => { const box = canvas.getBoundingClientRect(); return [event.clientX - box.left, event.clientY - box.top]; };
+    canvas.addEventListener("pointerdown", event => { drag = {from: at(event), centre: [...this.centre], moved: false, id: event.pointerId}; });
+    canvas.addEventListener("pointermove", event => {
+      const now = at(event);
+      if (drag && event.buttons && (event.pointerType === "mouse" || this.zoom > 1)) {
+        const [dx, dy] = now.map((v, i) => v - drag.from[i]);
+        if (!drag.moved && Math.hypot(dx, dy) < 5) return;
+        if (!drag.moved) canvas.setPointerCapture(drag.id);
+        drag.moved = true;
+        this.centre = [drag.centre[0] - dx / this.scale, this.walls && this.zoom === 1 ? this.ly / 2 : drag.centre[1] + dy / this.scale];
+        this.view.follow = false;
+        this.tip.hidden = true;
+        this.view.changed();
+        return;
+      }
+      if (event.pointerType === "mouse") this.tell(this.cellAt(...now), now);
+    });
+    canvas.addEventListener("pointerup", event => {
+      if (drag && !drag.moved) { const cell = this.cellAt(...at(event)); if (cell !== null || this.view.cell !== null) this.view.choose(cell); this.tell(cell, at(event)); }
+      drag = null;
+    });
+    canvas.addEventListener("pointerleave", () => this.tell(null));
+    canvas.addEventListener("wheel", event => { if (event.ctrlKey || event.metaKey) { event.preventDefault(); this.zoomBy(event.deltaY < 0 ? 1.15 : 1 / 1.15, at(event)); } }, {passive: false});
+  }
+  /// Comes closer by a factor, to what lies at a point of the canvas.
+  zoomBy(factor, at = [this.width / 2, this.height / 2]) {
+    const before = this.toDomain(...at), zoom = Math.min(40, Math.max(1, this.zoom * factor)), scale = this.scale * zoom / this.zoom;
+    this.zoom = zoom;
+    this.centre = [before[0] - (at[0] - this.width / 2) / scale, before[1] + (at[1] - this.height / 2) / scale];
+    if (zoom === 1) this.centre[1] = this.ly / 2;
+    this.canvas.style.touchAction = zoom > 1 ? "none" : "";
+    this.draw();
+  }
+  showAll() { this.zoom = 1; this.centre = [this.lx / 2, this.ly / 2]; this.view.follow = false; this.canvas.style.touchAction = ""; this.view.changed(); }
+
+  /// Words about a cell beside the pointer.
+  tell(cell, at) {
+    this.canvas.style.cursor = cell === null ? "" : "pointer";
+    this.tip.hidden = cell === null;
+    if (cell === null) return;
+    const {cells} = this.data, output = this.timeline.output(this.run), value = (name, unit, digits = 3) => typeof cells?.[name]?.[cell]?.[output] === "number" ? `${format(cells[name][cell][output], digits)}${unit}` : null;
+    const size = cells ? cells.aggregate[output].filter(label => label === cells.aggregate[output][cell]).length : 1;
+    const rows = [["aggregate", cells && (size > 1 ? `of ${size} cells` : "none")], ["gap", value("min_gap_um", " µm")], ["gap to a wall", value("wall_gap_um", " µm")], ["deformation", value("deformation", "")],
+      ["angle", value("angle_deg", "°")], ["speed", value("speed_um_per_s", " µm/s")]].filter(([, text]) => text);
+    this.tip.replaceChildren(element("p", {class: "name"}, element("b", {}, `cell ${cell}`), cells ? `, ${cells.types[cell]}` : ""),
+      element("dl", {}, ...rows.flatMap(([name, text]) => [element("dt", {}, name), element("dd", {}, text)])));
+    placeTip(this.tip, this.canvas, ...at);
   }
 
+  // ---- drawing
   draw() {
-    const {canvas, lx, ly, timeline} = this, output = timeline.output(this.run), margin = 6;
-    const width = this.width = canvas.clientWidth || 340, most = Math.max(240, innerHeight * 0.7);
-    const scale = Math.min((width - 2 * margin) / lx, (most - 2 * margin) / ly), height = ly * scale + 2 * margin;
-    const fine = printing ? 3 : window.devicePixelRatio || 1;
-    canvas.width = Math.round(width * fine); canvas.height = Math.round(height * fine);
-    canvas.style.height = `${height}px`;
+    const {canvas, lx, ly} = this, fine = printing ? 3 : window.devicePixelRatio || 1, margin = {x: 7, y: this.walls ? 20 : 7};
+    const width = this.width = canvas.clientWidth || 340, most = Math.max(240, innerHeight * 0.68);
+    this.whole = Math.min((width - 2 * margin.x) / lx, (most - 2 * margin.y) / ly);
+    this.height = ly * this.whole + 2 * margin.y;
+    canvas.width = Math.round(width * fine); canvas.height = Math.round(this.height * fine);
+    canvas.style.height = `${this.height}px`;
     const context = canvas.getContext("2d");
     context.setTransform(fine, 0, 0, fine, 0, 0);
+    this.paint(context);
+  }
+
+  /// Draws the instant into a context of `width` by `height` pixels: that of the canvas, or one that writes SVG.
+  paint(context) {
+    const {lx, ly, width, height, view} = this, nodes = this.outlines && this.nodes(), scale = this.scale = this.whole * this.zoom;
     context.clearRect(0, 0, width, height);
-    context.translate((width - lx * scale) / 2, height - margin); context.scale(1, -1);  // y upwards, from the domain's lower left corner
+    const followed = view.follow && view.cell !== null && nodes ? this.centreOf(nodes, view.cell) : null;
+    this.middle = followed && this.walls && this.zoom === 1 ? [followed[0], ly / 2] : followed ?? this.centre;
+    const [cx, cy] = this.middle, half = [width / scale / 2, height / scale / 2];
+    // One period at most, and what of it the canvas shows.
+    const clip = {left: Math.max(cx - lx / 2, cx - half[0]), right: Math.min(cx + lx / 2, cx + half[0]), bottom: this.walls ? 0 : Math.max(cy - ly / 2, cy - half[1]), top: this.walls ? ly : Math.min(cy + ly / 2, cy + half[1])};
     context.save();
-    context.beginPath(); context.rect(0, 0, lx * scale, ly * scale); context.clip();
-    const under = this.drawField(context, output, scale);
-    if (this.outlines) this.drawCells(context, output, scale, under);
-    if (this.failed(output)) this.drawFailure(context, scale);
+    context.translate(width / 2 - cx * scale, height / 2 + cy * scale); context.scale(1, -1);  // y upwards
+    context.save();
+    context.beginPath(); context.rect(clip.left * scale, clip.bottom * scale, (clip.right - clip.left) * scale, (clip.top - clip.bottom) * scale); context.clip();
+    const images = (low, high, length, from, to) => { const list = []; for (let k = Math.ceil((from - high) / length); k <= Math.floor((to - low) / length); ++k) list.push(k * length); return list; };
+    const acrossX = (low, high) => images(low, high, lx, clip.left, clip.right), acrossY = (low, high) => this.walls ? [0] : images(low, high, ly, clip.bottom, clip.top);
+    const flow = this.fields?.between(this.between) ?? null, under = this.paintField(context, flow, scale, acrossX, acrossY);
+    if (flow && view.tracers && this.fields.moves) this.paintTracers(context, flow, scale, acrossX);
+    if (nodes) this.paintCells(context, nodes, scale, under, acrossX, acrossY);
+    if (this.failed()) this.paintFailure(context, scale, acrossX);
     context.restore();
-    this.drawFrame(context, scale);
+    this.paintFrame(context, scale, clip);
+    context.restore();
+    this.paintScale(context, scale);
   }
 
-  /// Whether a diverged run shows its last output, so that the place where it went bad is marked.
-  failed(output) { return output === this.data.step.length - 1 && (this.data.summary?.failure?.place_m || []).length === 2 && this.data.summary.failure.place_m.every(v => v !== null); }
-  drawFailure(context, scale) {
-    const inBox = (v, length) => v - Math.floor(v / length) * length, [x, y] = this.data.summary.failure.place_m.map(v => v * 1e6);
-    const at = [inBox(x, this.lx) * scale, (this.data.domain.periodic_y ? inBox(y, this.ly) : y) * scale];
-    for (const [colour, width] of [["--card", 6], ["--bad", 2.5]]) {
-      context.strokeStyle = css(colour); context.lineWidth = width;
-      context.beginPath(); context.arc(...at, 11, 0, 2 * Math.PI); context.stroke();
-      context.beginPath();
-      for (const [dx, dy] of [[1, 0], [0, 1], [-1, 0], [0, -1]]) { context.moveTo(at[0] + 7 * dx, at[1] + 7 * dy); context.lineTo(at[0] + 16 * dx, at[1] + 16 * dy); }
-      context.stroke();
-    }
-  }
-
-  drawField(context, output, scale) {
+  paintField(context, flow, scale, acrossX, acrossY) {
     this.bar.replaceChildren();
-    const quantity = this.fields?.quantity(this.chosen());
+    const quantity = this.fields?.quantity(this.view.field);
     if (!quantity) return false;
-    const index = this.fields.index(output);
-    if (index < 0) { this.bar.replaceChildren(...colourBar(quantity, "none written yet")); return false; }
-    const of = this.fields.fields.outputs[index], {over, runs} = this.timeline;
-    const stale = of === output ? "" : over === "strain" && grows(runs[this.run]) && this.data.strain[of] !== this.data.strain[output]
-      ? `of strain ${format(this.data.strain[of], 3)}, the last written` : `of ${format(this.data.time_s[of], 4)} s, the last written`;
+    if (!flow) { this.bar.replaceChildren(...colourBar(quantity, "none written yet")); return false; }
+    const {outputs, box_um: [x, y, w, h]} = this.fields.fields, strain = this.timeline.over !== "time_s" && grows(this.data);
+    const name = i => strain && this.stageAt(outputs[i]).over === "strain" ? `strain ${format(this.data.strain[outputs[i]], 3)}` : `${format(this.data.time_s[outputs[i]], 4)} s`;
+    const words = flow.share > 0 && flow.share < 1 ? `between what was written at ${name(flow.a)} and ${name(flow.b)}`
+      : outputs[flow.share ? flow.b : flow.a] === this.timeline.output(this.run) ? "" : `of ${name(flow.a)}, the last written`;
     context.imageSmoothingEnabled = true;
-    context.drawImage(this.fields.picture(quantity.name, index), ...this.fields.fields.box_um.map(length => length * scale));
-    this.bar.replaceChildren(...colourBar(quantity, stale));
+    for (const dx of acrossX(x, x + w)) for (const dy of acrossY(y, y + h)) for (const [index, alpha] of [[flow.a, 1], [flow.b, flow.share]]) if (alpha > 0) {
+      context.globalAlpha = alpha;
+      context.drawImage(this.fields.picture(quantity.name, index), (x + dx) * scale, (y + dy) * scale, w * scale, h * scale);
+    }
+    context.globalAlpha = 1;
+    this.bar.replaceChildren(...colourBar(quantity, words));
     return true;
   }
 
-  drawCells(context, output, scale, under) {
-    const {outlines, data, lx, ly} = this, view = new DataView(bytesOf(outlines.nodes[output]).buffer), origins = outlines.origin_um[output];
-    for (let cell = 0; cell + 1 < outlines.first.length; ++cell) {
-      const ring = [];
-      for (let i = outlines.first[cell]; i < outlines.first[cell + 1]; ++i)
-        ring.push([origins[2 * cell] + view.getInt16(4 * i, true) * outlines.quantum_um, origins[2 * cell + 1] + view.getInt16(4 * i + 2, true) * outlines.quantum_um]);
-      const base = [-Math.floor(origins[2 * cell] / lx) * lx, outlines.periodic_y ? -Math.floor(origins[2 * cell + 1] / ly) * ly : 0];
-      const tone = css(toneOf(data.cells ? data.cells.aggregate[output][cell] : cell)), bad = this.failed(output) && data.summary.failure.cell === cell;
-      // The image in the box and its neighbours: what leaves on one side enters on the other.
-      for (const ix of [-1, 0, 1]) for (const iy of outlines.periodic_y ? [-1, 0, 1] : [0]) {
+  paintTracers(context, flow, scale, acrossX) {
+    const {data, timeline} = this, output = timeline.output(this.run), stage = this.stageAt(output), life = Math.max(6, timeline.count / 14);
+    const from = Math.max(0, stage.from - 1), each = (data.time_s[stage.to] - data.time_s[from]) / Math.max(1, stage.to - from);  // s for each output
+    context.strokeStyle = css("--tracer");
+    drawTracers(context, this.fields.velocity(flow), {position: timeline.position, life, seconds: Math.min(life * each, 1e9), box: this.fields.fields.box_um, scale, shift: x => acrossX(x - 3, x + 3),
+      number: Math.min(300, Math.round(this.width * this.height / 2200))});
+  }
+
+  paintCells(context, nodes, scale, under, acrossX, acrossY) {
+    const {outlines, colours, view, between} = this, {first} = outlines, colour = colours[view.colour] ?? colours.grey, tensions = colour.tension && outlines.tension(between);
+    for (let cell = 0; cell < outlines.count; ++cell) {
+      let [left, right, low, high] = [Infinity, -Infinity, Infinity, -Infinity];
+      for (let i = first[cell]; i < first[cell + 1]; ++i) { left = Math.min(left, nodes[2 * i]); right = Math.max(right, nodes[2 * i]); low = Math.min(low, nodes[2 * i + 1]); high = Math.max(high, nodes[2 * i + 1]); }
+      const tone = colour.colour ? colour.colour(cell, between) : css(colour.tone(cell, between)), bad = this.failed() && this.data.summary.failure.cell === cell, chosen = view.cell === cell;
+      for (const dx of acrossX(left, right)) for (const dy of acrossY(low, high)) {
         context.beginPath();
-        for (const [x, y] of ring) context.lineTo((x + base[0] + ix * lx) * scale, (y + base[1] + iy * ly) * scale);
+        for (let i = first[cell]; i < first[cell + 1]; ++i) context.lineTo((nodes[2 * i] + dx) * scale, (nodes[2 * i + 1] + dy) * scale);
         context.closePath();
-        context.globalAlpha = under ? 0.45 : 0.28; context.fillStyle = tone; context.fill();
+        context.globalAlpha = colour.colour ? .75 : under ? .5 : .3; context.fillStyle = tone; context.fill();
         context.globalAlpha = 1;
-        if (under) { context.strokeStyle = css("--card"); context.lineWidth = 4; context.stroke(); }
-        context.strokeStyle = bad ? css("--bad") : tone; context.lineWidth = bad ? 3 : under ? 2 : 1.6; context.stroke();
+        if (under || chosen) { context.strokeStyle = css(chosen ? "--text" : "--card"); context.lineWidth = chosen ? 5 : 4; context.stroke(); }
+        if (tensions && !bad) {
+          context.lineWidth = 3.2; context.lineCap = "round";
+          for (let i = first[cell]; i < first[cell + 1]; ++i) {
+            const next = i + 1 < first[cell + 1] ? i + 1 : first[cell];
+            context.strokeStyle = colour.tension(tensions[i]);
+            context.beginPath(); context.moveTo((nodes[2 * i] + dx) * scale, (nodes[2 * i + 1] + dy) * scale); context.lineTo((nodes[2 * next] + dx) * scale, (nodes[2 * next + 1] + dy) * scale); context.stroke();
+          }
+          continue;
+        }
+        context.strokeStyle = bad ? css("--bad") : tone; context.lineWidth = bad ? 3 : 2; context.stroke();
       }
     }
   }
 
-  /// Walls as thick lines, periodic borders as dashes, and a bar for the scale.
-  drawFrame(context, scale) {
-    const {lx, ly, data} = this, periodic = data.domain.periodic_y;
-    const edge = (solid, ...points) => {
+  /// Whether a diverged run shows its last output, so that the place where it went bad is marked.
+  failed() { const {data} = this, place = data.summary?.failure?.place_m || []; return this.timeline.output(this.run) === data.step.length - 1 && place.length === 2 && place.every(v => v !== null); }
+  paintFailure(context, scale, acrossX) {
+    const inBox = (v, length) => v - Math.floor(v / length) * length, [x, y] = this.data.summary.failure.place_m.map(v => v * 1e6);
+    for (const dx of acrossX(inBox(x, this.lx), inBox(x, this.lx))) {
+      const at = [(inBox(x, this.lx) + dx) * scale, (this.walls ? y : inBox(y, this.ly)) * scale];
+      for (const [colour, width] of [["--card", 6], ["--bad", 2.5]]) {
+        context.strokeStyle = css(colour); context.lineWidth = width;
+        context.beginPath(); context.arc(...at, 11, 0, 2 * Math.PI); context.stroke();
+        context.beginPath();
+        for (const [ox, oy] of [[1, 0], [0, 1], [-1, 0], [0, -1]]) { context.moveTo(at[0] + 7 * ox, at[1] + 7 * oy); context.lineTo(at[0] + 16 * ox, at[1] + 16 * oy); }
+        context.stroke();
+      }
+    }
+  }
+
+  /// Walls as thick lines, with arrows that go with them where they move; periodic borders as dashes.
+  paintFrame(context, scale, clip) {
+    const {lx, ly, walls} = this;
+    const edge = (solid, x0, y0, x1, y1) => {
       context.beginPath(); context.setLineDash(solid ? [] : [5, 4]); context.lineWidth = solid ? 3 : 1;
       context.strokeStyle = css(solid ? "--text" : "--quiet");
-      context.moveTo(points[0], points[1]); context.lineTo(points[2], points[3]); context.stroke(); context.setLineDash([]);
+      context.moveTo(x0 * scale, y0 * scale); context.lineTo(x1 * scale, y1 * scale); context.stroke(); context.setLineDash([]);
     };
-    edge(false, 0, 0, 0, ly * scale); edge(false, lx * scale, 0, lx * scale, ly * scale);
-    edge(!periodic, 0, 0, lx * scale, 0); edge(!periodic, 0, ly * scale, lx * scale, ly * scale);
-    const bar = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000].filter(b => b <= lx / 4).pop() || lx / 4, words = `${format(bar)} µm`;
-    context.scale(1, -1); context.font = "12px system-ui, sans-serif";
+    for (let k = Math.ceil(clip.left / lx - 1e-9); k * lx <= clip.right + 1e-9 * lx; ++k) edge(false, k * lx, clip.bottom, k * lx, clip.top);
+    for (let k = Math.ceil(clip.bottom / ly - 1e-9); k * ly <= clip.top + 1e-9 * ly; ++k) edge(walls, clip.left, k * ly, clip.right, k * ly);
+    if (walls) this.paintWalls(context, scale, clip);
+  }
+  /// Speeds of the lower and the upper wall in um/s: from the fields where there are some, else of walls that move against
+  /// each other.
+  wallSpeeds() {
+    const rate = this.data.shear_rate?.[this.timeline.output(this.run)] ?? null, flow = this.fields?.moves ? this.fields.between(this.between) : null;
+    if (rate === null) return [0, 0];
+    const middle = flow && this.data.stage[this.fields.fields.outputs[flow.a]] === this.data.stage[this.timeline.output(this.run)] ? this.meanOfWalls(flow) : 0;
+    return [middle - rate * this.ly / 2, middle + rate * this.ly / 2];
+  }
+  meanOfWalls(flow) {
+    const velocity = this.fields.velocity(flow), few = 16, mean = y => Array.from({length: few}, (_, i) => velocity((i + .5) / few * this.lx, y)?.[0] ?? 0).reduce((a, b) => a + b) / few;
+    const speed = (mean(this.ly * .001) + mean(this.ly * .999)) / 2, rate = Math.abs(this.data.shear_rate[this.timeline.output(this.run)]) * this.ly;
+    return Math.abs(speed) > .05 * rate ? speed : 0;
+  }
+  paintWalls(context, scale, clip) {
+    const {a, b, share} = this.between, time = this.data.time_s[a] + share * (this.data.time_s[b] - this.data.time_s[a]), strain = (this.data.strain[a] ?? 0) + share * ((this.data.strain[b] ?? 0) - (this.data.strain[a] ?? 0));
+    const apart = 64 / scale, size = 7;
+    context.fillStyle = css("--text");
+    this.wallSpeeds().forEach((speed, i) => {
+      if (!speed) return;
+      const sign = Math.sign(speed), up = i ? 1 : -1, y = (i ? this.ly : 0) * scale + up * 11, rate = this.data.shear_rate[this.timeline.output(this.run)];
+      const gone = Math.abs(Math.abs(speed) - Math.abs(rate) * this.ly / 2) < 1e-6 * Math.abs(speed) ? up * Math.sign(rate) * strain * this.ly / 2 : speed * time;
+      for (let k = Math.ceil((clip.left - gone) / apart); gone + k * apart <= clip.right; ++k) {
+        const x = (gone + k * apart) * scale;
+        if (x < clip.left * scale + 6 || x > clip.right * scale - 6) continue;
+        context.beginPath(); context.moveTo(x - sign * size, y - 4.5); context.lineTo(x + sign * size, y); context.lineTo(x - sign * size, y + 4.5); context.closePath(); context.fill();
+      }
+    });
+  }
+  paintScale(context, scale) {
+    const bar = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000].filter(b => b <= this.lx / this.zoom / 4).pop() || this.lx / 4, words = `${format(bar)} µm`, bottom = this.height - (this.walls ? 26 : 13);
+    const left = Math.max(14, this.width / 2 - Math.min(this.width, this.lx * scale) / 2 + 8);
+    context.font = "12px system-ui, sans-serif";
     context.fillStyle = css("--card"); context.globalAlpha = 0.8;
-    context.fillRect(5, -33, Math.max(bar * scale, context.measureText(words).width) + 10, 27);
+    context.fillRect(left - 5, bottom - 22, Math.max(bar * scale, context.measureText(words).width) + 10, 27);
     context.globalAlpha = 1;
     context.fillStyle = context.strokeStyle = css("--text"); context.lineWidth = 2;
-    context.fillText(words, 10, -17);
-    context.beginPath(); context.moveTo(10, -11); context.lineTo(10 + bar * scale, -11); context.stroke();
+    context.fillText(words, left, bottom - 6);
+    context.beginPath(); context.moveTo(left, bottom); context.lineTo(left + bar * scale, bottom); context.stroke();
   }
-}
-
-/// Play, scrub, speed and what lies under the cells, for all animations of the page.
-function animationControls(timeline, animations, chosen) {
-  const slider = element("input", {type: "range", min: 0, max: Math.max(0, timeline.count - 1), value: 0, "aria-label": "Instant",
-    oninput: () => { timeline.stop(); timeline.seek(Number(slider.value)); }});
-  const speed = element("select", {}, ...[["0.25", "¼×"], ["0.5", "½×"], ["1", "1×"], ["2", "2×"], ["4", "4×"]].map(([v, t]) => element("option", {value: v}, t)));
-  speed.value = "1";
-  const changed = () => { play.textContent = timeline.playing ? "Pause" : "Play"; };
-  const play = element("button", {type: "button", onclick: () => timeline.playing ? timeline.stop() : timeline.play(() => Number(speed.value), changed)}, "Play");
-  const controls = element("div", {class: "controls"}, play, slider, element("label", {}, "Speed", speed));
-  const names = [...new Set(animations.flatMap(a => a.data.fields ? a.data.fields.quantities.map(q => q.name) : []))];
-  if (names.length) {
-    const under = element("select", {onchange: () => { chosen.name = under.value; for (const a of animations) a.draw(); }},
-      element("option", {value: ""}, "none"), ...names.map(name => element("option", {value: name}, fieldTitles[name])));
-    under.value = chosen.name;
-    controls.append(element("label", {}, "Flow", under));
-  }
-  timeline.listeners.push(() => {
-    slider.max = Math.max(0, timeline.count - 1);
-    slider.value = timeline.position;
-    slider.setAttribute("aria-valuetext", timeline.words);
-  });
-  return controls;
 }
 
 /// What the mark in a diverged run's animation means.
@@ -139,9 +294,9 @@ function failureNote(run) {
 function instantLine(timeline, run) {
   const data = timeline.runs[run], words = [element("span"), element("span"), element("span"), element("span")];
   timeline.listeners.push(() => {
-    const i = timeline.output(run);
-    const texts = [`strain ${format(data.strain[i], 3)}`, `${format(data.time_s[i], 4)} s`, `step ${format(data.step[i])}`, `stage ${data.stage[i]}`];
-    texts.forEach((text, k) => { words[k].textContent = text; });
+    const i = timeline.output(run), texts = [`strain ${format(data.strain[i], 3)}`, `${format(data.time_s[i], 4)} s`, `step ${format(data.step[i])}`, `stage ${data.stage[i]}`];
+    if (!grows(data)) texts[0] = "";
+    texts.forEach((text, k) => { words[k].textContent = text; words[k].hidden = !text; });
   });
   return element("div", {class: "now"}, ...words);
 }

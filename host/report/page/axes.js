@@ -39,6 +39,9 @@ function linearAxis(values, from, to, {room = .04, apart = 90} = {}) {
   return {at: v => from + (v - low) / (high - low) * (to - from), low, high, ticks, fine: []};
 }
 
+/// An SVG path through points [x, y].
+const pathThrough = points => points.map(([x, y], i) => `${i ? "L" : "M"}${x.toFixed(1)} ${y.toFixed(1)}`).join("");
+
 /// Puts a box of words above the point (x, y) of `plot`, or below it where that is outside of the plot and below there is room.
 function placeTip(tip, plot, x, y) {
   const above = y - tip.offsetHeight - 14, below = y + 16, frame = plot.getBoundingClientRect();

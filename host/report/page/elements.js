@@ -22,10 +22,11 @@ function format(value, digits = 4) {
   }
   return String(Number(value.toPrecision(digits))).replace("-", "−");
 }
-const spelled = name => name.replace(/(?<!_per)_(s|m|bytes)$/, ", $1").replace(/_/g, " ").replace(/^./, c => c.toUpperCase());
+const spelled = name => name.replace(/(?<!_per)_(s|m|bytes|Pa|(?:Pa|J|W)_per_m|m2_per_s|1_per_s)$/, (_, unit) => `, ${unit.replace("_per_", "/").replace("m2", "m²")}`).replace(/_/g, " ").replace(/^./, c => c.toUpperCase());
 const seconds = t => t === undefined || t === null ? "–" : t < 120 ? `${format(t, 3)} s` : t < 7200 ? `${format(t / 60, 3)} min` : `${format(t / 3600, 3)} h`;
 const css = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-const toneOf = label => `--c${((label % 8) + 8) % 8}`;
+/// Tones of lines, cells and runs: any two differ for every kind of colour blindness (tests/browser measures it).
+const lineTones = ["--c0", "--c1", "--c2", "--c3", "--c4", "--c5"];
 
 /// A column is {title, number, and key or value (of a row, a text, number or node), mark (class of a cell)}. With
 /// `stacked`, on a narrow screen every row becomes a list of its columns; with `sortable` a click on a title sorts by what
@@ -77,10 +78,40 @@ function warningBox(warnings, whose = "", headline = warnings.length === 1 ? "Wa
 }
 const note = text => element("p", {class: "quiet"}, text);
 
-// Sections, and the links to them that stand below the status.
+// Sections, and the links to them that stay at the top of the window.
 const links = element("nav", {"aria-label": "Sections"});
+let place = page;  // where sections go: the page, or a tab of it
 function section(title, ...content) {
   const id = title.toLowerCase().replace(/[^a-z]+/g, "-");
-  links.append(element("a", {href: `#${id}`}, title));
-  page.append(element("h2", {id}, title), ...content);
+  if (place === page) links.append(element("a", {href: `#${id}`}, title));
+  place.append(element("h2", {id}, title), ...content);
+}
+
+/// Tabs of sections, {title, mark (a word beside the title), fill (adds the sections)}; those without any are left out.
+function tabs(list) {
+  const bar = element("div", {role: "tablist", "aria-label": "Tables"}), panels = [];
+  for (const {title, mark, fill} of list) {
+    const id = `tab-${title.toLowerCase()}`, panel = element("div", {role: "tabpanel", id, "aria-label": title});
+    place = panel;
+    fill();
+    place = page;
+    if (!panel.children.length) continue;
+    const tab = element("button", {type: "button", role: "tab", "aria-controls": id, onclick: () => show(tab)}, title, ...(mark ? [element("span", {class: `mark ${mark.kind}`}, mark.text)] : []));
+    bar.append(tab);
+    panels.push(panel);
+  }
+  const show = chosen => {
+    [...bar.children].forEach((tab, i) => { tab.setAttribute("aria-selected", String(tab === chosen)); tab.tabIndex = tab === chosen ? 0 : -1; panels[i].classList.toggle("closed", tab !== chosen); });
+  };
+  bar.addEventListener("keydown", event => {
+    const all = [...bar.children], step = {ArrowRight: 1, ArrowLeft: -1}[event.key];
+    if (!step) return;
+    const next = all[(all.indexOf(document.activeElement) + step + all.length) % all.length];
+    show(next);
+    next.focus();
+    event.preventDefault();
+  });
+  if (!panels.length) return;
+  section("Details", bar, ...panels);
+  show(bar.firstChild);
 }

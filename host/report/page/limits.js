@@ -1,29 +1,46 @@
 // --------------------------------------------------------------------------------------------------------- the page of limits
 const count = (number, one, many = `${one}s`) => `${number} ${number === 1 ? one : many}`;
 
+/// "stable up to 235 1/s, fails at 251 1/s (sound waves)".
+function edgeSentence(row, unit) {
+  const value = v => `${format(v, 3)} ${unit}`.trim(), {above, below} = row, how = edge => edge.failure ? ` (${failureText(edge.failure)})` : "", text = edgeText(row, unit);
+  if (text === "not known yet") return "nothing is known yet";
+  const nowhere = [above, below].find(edge => edge && edge.stable_up_to === null);
+  if (nowhere) return `fails everywhere that was tried${how(nowhere)}`;
+  const parts = [below?.unstable_from != null ? `fails at ${value(below.unstable_from)} and below${how(below)}, stable from ${value(below.stable_up_to)}` : null,
+    above?.unstable_from != null ? `stable up to ${value(above.stable_up_to)}, fails at ${value(above.unstable_from)}${how(above)}` : null].filter(Boolean);
+  return parts.length ? parts.join("; ") : "stable at every value that was tried";
+}
+
 /// What the map and the cases come to, in sentences: {text, bad}.
 function limitsSentences(result, rows, unit) {
-  const told = [], {parameter, cases = []} = result;
-  if (rows.length) {
-    const unknown = rows.filter(row => edgeText(row, unit) === "not known yet").length, nowhere = rows.filter(row => edgeText(row, unit) === "stable nowhere").length, throughout = rows.filter(row => edgeText(row, unit) === "stable throughout").length;
-    const edge = rows.length - nowhere - throughout - unknown, range = [parameter.from, parameter.to].every(v => typeof v === "number") ? ` from ${format(parameter.from, 3)} to ${format(parameter.to, 3)} ${unit}` : "";
-    told.push({text: `${spelled(parameter.name ?? "the parameter")}${range}: of ${count(rows.length, "combination")} ${count(edge, "has an edge", "have an edge")}, ${throughout} ${throughout === 1 ? "is" : "are"} stable throughout, ${nowhere} nowhere${unknown ? `; of ${unknown} nothing is known yet` : ""}.`});
+  const said = [], {parameter, cases = []} = result, name = spelled(parameter?.name ?? "the parameter");
+  if (rows.length === 1) said.push({text: `${name}: ${edgeSentence(rows[0], unit)}.`});
+  else if (rows.length) {
+    const are = words => rows.filter(row => edgeText(row, unit) === words).length, unknown = are("not known yet"), nowhere = are("stable nowhere"), throughout = are("stable throughout");
+    const edges = rows.filter(row => row.above?.unstable_from != null && row.above.stable_up_to !== null).sort((a, b) => a.above.stable_up_to - b.above.stable_up_to), [first, last] = [edges[0], edges.at(-1)];
+    const ranged = [parameter.from, parameter.to].every(v => typeof v === "number") ? ` from ${format(parameter.from, 3)} to ${`${format(parameter.to, 3)} ${unit}`.trim()}` : "";
+    const parts = [throughout ? `${throughout} ${throughout === 1 ? "is" : "are"} stable throughout` : null, nowhere ? `${nowhere} ${nowhere === 1 ? "fails" : "fail"} everywhere` : null,
+      rows.length - nowhere - throughout - unknown ? `${count(rows.length - nowhere - throughout - unknown, "has an edge", "have an edge")}` : null, unknown ? `of ${unknown} nothing is known yet` : null].filter(Boolean);
+    said.push({text: `${name}${ranged}, ${count(rows.length, "combination")}: ${parts.join(", ")}.`});
+    if (first) said.push({text: `First to fail: ${first.name}, ${edgeSentence(first, unit)}.`});
+    if (last && last !== first) said.push({text: `Last to fail: ${last.name}, ${edgeSentence(last, unit)}.`});
   }
   if (cases.length) {
     const wrong = cases.filter(c => isWrong(c.verdict)), words = [...new Set(cases.map(c => c.verdict))].map(verdict => `${cases.filter(c => c.verdict === verdict).length} × ${verdict}`);
     const other = cases.filter(c => c.as_expected === false).length;
-    told.push({text: `${count(cases.length, "extreme case")}: ${words.join(", ")}${other ? `; ${other} did not end as expected` : ""}.`, bad: wrong.length > 0});
+    said.push({text: `${count(cases.length, "extreme case")}: ${words.join(", ")}${other ? `; ${other} did not end as expected` : ""}.`, bad: wrong.length > 0});
   }
-  return told;
+  return said;
 }
 
 function showLimits(result) {
   const title = result.title || "Untitled limits", unit = result.parameter?.unit ?? "";
   document.title = `${title} – Rouleau`;
   page.append(element("h1", {}, title), note([result.limits_file, result.started, result.machine?.cpu].filter(Boolean).join(" · ")));
-  const {methods: rows, varied} = methodsOf(result.axes ?? [], result.edges ?? []), told = limitsSentences(result, mapRows(result), unit);
-  page.append(element("div", {class: "card status sentences" + (told.some(s => s.bad) ? " bad" : "")},
-    element("ul", {}, ...(told.length ? told : [{text: "Nothing has been tried yet."}]).map(s => element("li", s.bad ? {class: "over"} : {}, s.text)))));
+  const {methods: rows, varied} = methodsOf(result.axes ?? [], result.edges ?? []), said = limitsSentences(result, mapRows(result), unit);
+  page.append(element("div", {class: "card status sentences" + (said.some(s => s.bad) ? " bad" : "")},
+    element("ul", {}, ...(said.length ? said : [{text: "Nothing has been tried yet."}]).map(s => element("li", s.bad ? {class: "over"} : {}, s.text)))));
   const warnings = [...(result.complete === false ? ["The search has not come to its end; the same command goes on with it."] : []), ...(result.warnings ?? [])];
   if (warnings.length) page.append(warningBox(warnings));
   page.append(links);

@@ -1,17 +1,19 @@
 // --------------------------------------------------------------------------------- the map: where each combination is stable
-// Each way to fail has a colour and a hatching of its own, so that they can be told apart on any paper and by any eye.
+// What fails is warm, what is stable cool. Each way to fail has a hatching of its own, so that they differ on any paper and
+// for any eye.
 const failureModes = {
-  tangential: ["--c1", "M0 3H8"], normal: ["--c0", "M3 0V8"], "node-scale": ["--c3", "M1 2h2M5 6h2"], leakage: ["--c4", "M-2 10L10 -2M-2 2L2 -2M6 10L10 6"],
-  collapse: ["--c6", "M0 0L8 8M0 8L8 0"], sound: ["--c2", "M-2 -2L10 10M6 -2L10 2M-2 6L2 10"], "": ["--c7", "M3 3h1.6M7 7h1.6"],
+  tangential: ["--f0", "M0 3H8"], normal: ["--f1", "M3 0V8"], "node-scale": ["--f2", "M1 2h2M5 6h2"], leakage: ["--f3", "M-2 10L10 -2M-2 2L2 -2M6 10L10 6"],
+  collapse: ["--f4", "M0 0L8 8M0 8L8 0"], sound: ["--f5", "M-2 -2L10 10M6 -2L10 2M-2 6L2 10"], "": ["--f6", "M3 3h1.6M7 7h1.6"],
 };
 const modeOf = failure => failure && Object.hasOwn(failureModes, failure.mode ?? "") ? failure.mode ?? "" : "";
 const modeWords = mode => ({"": "no mode", sound: "sound waves"})[mode] ?? mode;
+const reasonWords = reason => ({mach: "Mach number"})[reason] ?? reason.replaceAll("_", " ");
 const patternId = mode => `mode-${mode || "none"}`;
 const patterns = () => element("svg", {width: 0, height: 0, class: "patterns", "aria-hidden": "true"}, element("defs", {}, ...Object.entries(failureModes).map(([mode, [tone, d]]) =>
   element("pattern", {id: patternId(mode), width: 8, height: 8, patternUnits: "userSpaceOnUse"},
     element("rect", {width: 8, height: 8, fill: `var(${tone})`, opacity: .22}), element("path", {d, stroke: `var(${tone})`, "stroke-width": 1.7, fill: "none"})))));
 const modeSwatch = mode => element("svg", {width: 22, height: 14, "aria-hidden": "true"}, element("rect", {width: 22, height: 14, rx: 2, fill: `url(#${patternId(mode)})`, stroke: `var(${failureModes[mode][0]})`}));
-const failureText = failure => failure ? [failure.mode && modeWords(failure.mode), failure.reason && failure.reason !== failure.mode ? failure.reason : null].filter(Boolean).join(", ") : "";
+const failureText = failure => failure ? [failure.mode && modeWords(failure.mode), failure.reason && failure.reason !== failure.mode ? reasonWords(failure.reason) : null].filter(Boolean).join(", ") : "";
 const wavelengthText = value => typeof value === "number" ? `${format(value, 3)} segments` : null;
 
 const failed = trial => Boolean(trial.reason) || (trial.end ?? "completed") !== "completed";  // a run that completed may have failed silently

@@ -1,4 +1,6 @@
 // ------------------------------------------------------------------------------------------------------------ the page
 const data = JSON.parse(document.getElementById("data").textContent);
 const timeline = data.runs ? showComparison(data) : showRun(data);
-redraws.push(redrawCharts, () => timeline?.seek(timeline.position));
+redraws.push(redrawCharts, () => { if (timeline?.count) timeline.seek(timeline.position); });
+addEventListener("hashchange", () => { if (timeline?.count) followLink(timeline); });
+addEventListener("beforeprint", () => timeline?.stop());

@@ -1,25 +1,26 @@
 // ------------------------------------------------------------------------------------ which charts a run or two have
-const cellTones = ["--c0", "--c1", "--c2", "--c3", "--c4", "--c5", "--c6", "--c7", "--c0", "--c1", "--c2", "--c3"];
-const runTones = ["--c0", "--c1"], runNames = ["A", "B"];
+const runNames = [..."ABCDEFGHIJKLMNOPQRSTUVWXYZ"], runTones = runNames.map((_, i) => lineTones[i % lineTones.length]);
+const mostLines = 6;  // of cells in a chart: beyond these their median and spread
 
-/// Order and looks of the charts that the run's data lists; what is not named here comes last, as it is.
+/// Order and looks of the charts that the run's data lists; what is not named here comes last among `more`. `group` is
+/// where a chart stands: "main" (the four first of these are open), "more", or "numerics".
 const looks = {
-  "Aggregates (lone cells count)": {steps: true, whole: true, zero: true, needsCells: true, first: true},
-  "Smallest gap to another cell": {zero: true},
-  "Deformation (L − B)/(L + B)": {},
-  "Angle of the long axis": {},
-  "Relative viscosity": {},
-  "Largest relative area drift": {zero: true, needsCells: true},
-  // The fluid's kinetic energy is often a hundred times that of the cells, and would hide it.
-  "Energy of the cells": {needsCells: true, optional: true},
-  "Energy in all": {optional: true},
-  "Power": {optional: true},
-  "Layers without cells": {zero: true, needsCells: true, optional: true},
+  "Aggregates, single cells included": {steps: true, whole: true, zero: true, needsCells: true, group: "main"},
+  "Smallest gap to another cell": {zero: true, group: "main"},
+  "Deformation (L − B)/(L + B)": {group: "main"},
+  "Relative viscosity": {group: "main"},
+  "Cell-free layer": {zero: true, needsCells: true, optional: true, group: "main"},
+  "Angle of the long axis": {group: "main"},
+  "Smallest gap to a wall": {zero: true, optional: true},
   "Aggregate size, mean over cells": {steps: true, zero: true, needsCells: true},
   "Particle stress xy": {needsCells: true},
-  "Largest Mach number": {zero: true},
-  "Largest area kept from leaking, relative": {zero: true, needsCells: true, optional: true},
-  "Relative mass drift": {zero: true},
+  "Energy of the cells": {needsCells: true, optional: true},
+  "Power": {optional: true},
+  "Largest Mach number": {zero: true, group: "numerics"},
+  "Largest relative area drift": {zero: true, needsCells: true, group: "numerics"},
+  "Largest area kept from leaking, relative": {zero: true, needsCells: true, optional: true, group: "numerics"},
+  "Relative mass drift": {zero: true, group: "numerics"},
+  "Kinetic energy of the fluid as simulated": {optional: true, group: "numerics"},
 };
 
 /// The charts of a page, each {title, unit, table, lines: [{name, label, doc}], and its looks}.
@@ -28,40 +29,35 @@ function quantitiesOf(data) {
   return data.charts.map(chart => ({...chart, ...looks[chart.title]})).sort((a, b) => place(a) - place(b));
 }
 
-function smallestMeanLargest(run, name) {
-  const lines = run.cells[name];
-  if (run.cells.labels[0] === "smallest") return lines;
-  return [Math.min, null, Math.max].map(pick => run.step.map((_, i) => {
-    const values = lines.map(line => line[i]).filter(v => v !== null);
-    return !values.length ? null : pick ? pick(...values) : values.reduce((a, b) => a + b) / values.length;
-  }));
+/// The median of all cells and the ends of the middle 80 % of them, by output.
+function spreadOfCells(run, name) {
+  const lines = run.cells[name], at = share => run.step.map((_, i) => { const values = lines.map(line => line[i]).filter(v => v !== null); return values.length ? percentile(values, share) : null; });
+  return {low: at(.1), median: at(.5), high: at(.9)};
 }
 
-/// Lines of a quantity: of one run each cell's, of two runs each run's mean and range.
+/// Lines of a quantity: of one run each cell's, of many cells or several runs their median and range.
 function linesOf(quantity, runs) {
   if (quantity.needsCells && !runs.some(run => run.cells)) return [];
-  const two = runs.length > 1;
+  const several = runs.length > 1;
   return runs.flatMap((run, r) => {
-    const prefix = two ? `${runNames[r]} ` : "";
+    const prefix = several ? `${runNames[r]} ` : "", dashed = several && r % 2 === 1;
     if (quantity.table === "cells") {
-      const [{name}] = quantity.lines;
-      if (!run.cells) return [];
-      if (two) {
-        const [low, mean, high] = smallestMeanLargest(run, name);
-        return [{label: `${prefix}mean`, values: mean, run: r, tone: runTones[r], dashed: r === 1},
-                {label: `${prefix}range`, values: high, band: low, run: r, tone: runTones[r]}];
+      const [{name}] = quantity.lines, cells = run.cells?.[name];
+      if (!cells) return [];
+      if (several || cells.length > mostLines) {
+        const {low, median, high} = spreadOfCells(run, name), tone = several ? runTones[r] : "--c0", single = cells.length === 1;
+        return [{label: `${prefix}${single ? "" : "median"}`.trim(), values: median, run: r, tone, dashed},
+          ...(single || runs.length > 2 ? [] : [{label: `${prefix}middle 80 %`, values: high, band: low, run: r, tone}]),
+          ...(several ? [] : [{label: "", values: median.map(() => null), run: r, tone: "--c1", picked: true}])];
       }
-      const summed = run.cells.labels[0] === "smallest";
-      return run.cells[name].map((values, i) => ({values, run: r, tone: summed ? ["--c5", "--c0", "--c1"][i] : cellTones[i],
-        label: run.cells.labels[i].replace(/ \(.*/, "")}));
+      return cells.map((values, i) => ({values, run: r, tone: lineTones[i], label: `cell ${i}`, cell: i}));
     }
     const there = quantity.lines.filter(({name}) => run.series[name]);
-    return there.map(({name, label}, i) => ({values: run.series[name], run: r, dashed: r === 1,
-      label: (prefix + label).trim(), tone: two && there.length === 1 ? runTones[r] : cellTones[i]}));
-  }).filter(line => line.values.some(v => v !== null));
+    return there.map(({name, label}, i) => ({values: run.series[name], run: r, dashed, label: (prefix + label).trim(), tone: several && there.length === 1 ? runTones[r] : lineTones[i % lineTones.length]}));
+  }).filter(line => line.picked || line.values.some(v => v !== null));
 }
 
-/// Small numbers are told in a smaller unit, or as a multiple of a power of ten: {unit, factor}.
+/// Small numbers are shown in a smaller unit, or as a multiple of a power of ten: {unit, factor}.
 function readable(unit, lines) {
   const largest = Math.max(...lines.flatMap(line => [...line.values, ...(line.band || [])]).map(v => Math.abs(v ?? 0)));
   const power = Math.ceil(-Math.log10(largest) / 3);  // of a thousand
@@ -71,22 +67,26 @@ function readable(unit, lines) {
 }
 const multiplied = (values, factor) => factor === 1 || !values ? values : values.map(v => v === null ? null : v * factor);
 
-/// Draws all charts that have something to show; returns why the others are missing, in sentences.
-function plots(timeline, first, grid) {
-  const missing = [], zero = [];
+/// Draws all charts that have something to show, four of them open; returns why the others are missing, in sentences.
+function plots(timeline, parent, {view, events = []}) {
+  const missing = [], zero = [], grids = {}, open = 4;
+  const grid = name => grids[name] ??= element("div", {class: "charts" + (name === "main" ? " main" : "")});
   for (const quantity of quantitiesOf(timeline.runs[0])) {
-    const lines = linesOf(quantity, timeline.runs), parent = quantity.first ? first : grid;
-    if (!lines.length) { if (!quantity.optional && !(quantity.needsCells || quantity.table === "cells") || (!quantity.optional && timeline.runs.some(run => run.cells))) missing.push(quantity.title); continue; }
+    const lines = linesOf(quantity, timeline.runs);
+    if (!lines.some(line => !line.picked)) { if (!quantity.optional && timeline.runs.some(run => run.cells || !(quantity.needsCells || quantity.table === "cells"))) missing.push(quantity.title); continue; }
     // An axis up to 1 would speak of a size that is not there.
     if (!quantity.whole && lines.every(line => line.values.every(v => !v))) { zero.push(quantity.title); continue; }
     const {unit, factor} = readable(quantity.unit, lines);
     for (const line of lines) { line.values = multiplied(line.values, factor); if (line.band) line.band = multiplied(line.band, factor); }
-    const beside = quantity.first && timeline.runs.length === 1;  // the animation
     const about = quantity.lines.map(({label, doc}) => `${label ? `${label}: ` : ""}${doc.replaceAll("`", "")}`).join("\n");
-    new Chart(parent, timeline, {...quantity, about, unit, lines, wide: beside, height: beside && innerWidth > 800 ? 290 : 180});
+    const group = quantity.group === "main" && grid("main").children.length >= open ? "more" : quantity.group ?? "more";
+    const chart = new Chart(grid(group), timeline, {...quantity, about, unit, lines, events}), name = quantity.lines[0].name;
+    if (quantity.table === "cells" && timeline.runs.length === 1) view?.listeners.push(() => chart.pick(view.cell, cell => multiplied(timeline.runs[0].cells[name][cell], factor)));
   }
-  const listed = list => list.join(", ").toLowerCase().replace(/\bmach\b/g, "Mach");
-  const notes = [];
+  parent.append(...(grids.main ? [grids.main] : []));
+  for (const [name, title] of [["more", "More charts"], ["numerics", "Numerics: Mach number, drifts, energy of the simulated fluid"]])
+    if (grids[name]) parent.append(element("details", {class: "folded", ontoggle: () => { for (const chart of charts) { chart.resize(); chart.follow(); } }}, element("summary", {}, title), grids[name]));
+  const listed = list => list.join(", ").toLowerCase().replace(/\bmach\b/g, "Mach"), notes = [];
   if (missing.length) notes.push(`Not shown, because undefined at every output: ${listed(missing)}.`);
   if (zero.length) notes.push(`Not shown, because zero at every output: ${listed(zero)}.`);
   return notes;
@@ -95,11 +95,12 @@ function plots(timeline, first, grid) {
 /// The choice of the horizontal axis, if there is one, and the way back from a stretch of it.
 function axisControls(timeline) {
   const controls = element("div", {class: "controls"});
-  const choices = [...(timeline.sheared ? [["strain", "over strain"]] : []), ["time_s", "over time"], ...(timeline.runs.length === 1 ? [["output", "over outputs"]] : [])];
+  const choices = [...(timeline.runs.length === 1 && timeline.stages.length > 1 ? [["stages", "stage by stage"]] : []), ...(timeline.sheared ? [["strain", "over strain"]] : []), ["time_s", "over time"]];
   if (choices.length > 1) {
     const select = element("select", {"aria-label": "Horizontal axis", onchange: () => { timeline.setOver(select.value); zoomed = null; redrawCharts(); timeline.seek(timeline.position); document.dispatchEvent(new Event("zoomed")); }},
       ...choices.map(([value, text]) => element("option", {value}, text)));
-    controls.append(element("label", {}, "Charts", select));
+    select.value = timeline.over;
+    controls.append(element("label", {}, "Axis", select));
   }
   const all = element("button", {type: "button", hidden: "", onclick: () => zoom(null)}, "Show all");
   document.addEventListener("zoomed", () => { all.hidden = !zoomed; });

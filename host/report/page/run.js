@@ -15,79 +15,68 @@ function howToGoOn({checkpoint_step: step}) {
   if (step === undefined) return "The run was stopped before its end; continue it with --resume.";
   return `The run was stopped before its end. The same command with --resume goes on from step ${format(step)}.`;
 }
-
-function statusBox(run) {
-  const summary = run.summary || {};
-  const words = {completed: "Completed", diverged: "Diverged", interrupted: "Interrupted"};
-  const status = summary.status || "unfinished", last = (summary.stages || []).at(-1);
-  const cut = status === "completed" && last && last.ended_by === "max_steps";
-  const box = element("div", {class: "card status" + (status === "completed" && !cut ? "" : status === "diverged" ? " bad" : " warn"), role: "status"},
-    element("strong", {}, cut ? (summary.outcome || "cut short by the limit of steps").replace(/^./, c => c.toUpperCase()) : words[status] || "Not finished"));
-  if (!run.summary) box.append(element("p", {}, "There is no summary.json: the run is still going on, or was killed. Below is what it had written."));
-  if (status === "interrupted") box.append(element("p", {}, howToGoOn(summary)));
-  const failure = summary.failure;
-  if (failure) {
-    const where = failure.place_m ? `at (${failure.place_m.map(v => v === null ? "?" : format(v * 1e6)).join(", ")}) µm` : "";
-    box.append(element("p", {}, failure.message || spelled(failure.reason)),
-      element("p", {}, `${failure.reason}: step ${format(failure.step)}, strain ${format(failure.strain)}, ${format(failure.time_s)} s, ${where}` +
-        (failure.cell === null || failure.cell === undefined ? "" : `, cell ${failure.cell}`) + `; ${format(failure.value)} against a limit of ${format(failure.limit)}.`));
-    if (failure.remedy) box.append(element("p", {}, element("b", {}, "What to change: "), failure.remedy));
-  }
-  const facts = [["steps", format(summary.steps)], ["strain", format(summary.strain)], ["simulated", seconds(summary.simulated_time_s)],
-    ["took", seconds(summary.wall_s)], ["steps/s", format(summary.steps_per_s, 3)], ["MLUPS", format(summary.mlups, 3)],
-    ["threads", format(summary.threads)], ["precision", format(summary.precision)],
-    ["memory", summary.peak_rss_bytes ? `${format(summary.peak_rss_bytes / 1048576, 3)} MiB` : "–"]];
-  if (run.summary) box.append(element("dl", {class: "facts"}, ...facts.map(([k, v]) => element("div", {}, element("dt", {}, k), element("dd", {}, v)))));
-  return box;
-}
 function notesOf(run) {
   const notes = [];
+  if (run.outlines || run.fields) notes.push("Between two outputs the animation is interpolated.");
   if (run.shown.outputs < run.shown.of) notes.push(`${run.shown.outputs} of ${run.shown.of} outputs are shown here; the files have all.`);
   if (run.outlines && run.shown.node_stride > 1) notes.push(`Outlines are drawn through one in ${run.shown.node_stride} of their nodes.`);
   if (run.fields) notes.push("The flow is shown as means over blocks of the lattice" + (run.fields.derived ? ", the vorticity computed from the velocity that was written." : "."));
   return notes;
 }
-
-function showRun(run) {
-  const summary = run.summary || {}, title = summary.title || "Untitled scene";
-  document.title = `${title} – Rouleau`;
-  page.append(element("h1", {}, title), note([summary.scene_file, summary.started, summary.machine].filter(Boolean).join(" · ")));
-  page.append(...warningBoxes(run), statusBox(run), links);
-
-  const timeline = new Timeline([run]);
-  if (!timeline.count) section("Results", element("p", {}, "No output has been written."), ...whyNoAnimation(run));
-  else showResults(timeline, run);
-  showErrorBars(summary);
-  showScene(run);
-  showDimensionless(summary.dimensionless || {});
-  showLimits(summary.limits || []);
-  if ((summary.left_out || []).length) section("Left out, and why", table([{title: "What", key: "what"}, {title: "Why", key: "why"}], summary.left_out, {stacked: true}));
-  showPlugins(summary);
-  showPasses(summary.passes || []);
-  showHistory(summary);
-  showProvenance(run);
-  licences();
-  timeline.seek(summary.status === "diverged" ? timeline.count - 1 : 0);  // where it went bad
-  return timeline;
-}
 const whyNoAnimation = run => run.shown.note ? [element("p", {}, run.shown.note)] : [];
 
+function showRun(run) {
+  const summary = run.summary || {}, title = summary.title || "Untitled scene", timeline = new Timeline([run]);
+  document.title = `${title} – Rouleau`;
+  page.append(element("h1", {}, title), note([summary.scene_file, summary.started, summary.machine].filter(Boolean).join(" · ")));
+  page.append(...(run.shown.damage || []).length ? [warningBox(run.shown.damage, "", "Some of the run's files are damaged")] : []);
+  page.append(resultCard(run, timeline), ...warningBoxes({...run, shown: {...run.shown, damage: []}}), links);
+  if (!timeline.count) section("Results", element("p", {}, "No output has been written."), ...whyNoAnimation(run));
+  else showResults(timeline, run);
+  showTables(run);
+  licences();
+  if (timeline.count) begin(timeline, run, summary);
+  return timeline;
+}
+
+/// Where the page begins: where its address says, or at the telling instant, from which it plays once unless motion is
+/// unwanted.
+function begin(timeline, run, summary) {
+  if (followLink(timeline)) return;
+  timeline.seek(tellingPosition(run, eventsOf(run)));
+  const still = matchMedia("(prefers-reduced-motion: reduce)").matches || summary.status === "diverged" || !(run.outlines || run.fields);
+  if (still) return;
+  const started = setTimeout(() => { if (!printing && document.visibilityState === "visible") timeline.play(); }, 900), cancel = () => clearTimeout(started);
+  for (const kind of ["pointerdown", "keydown", "beforeprint"]) addEventListener(kind, cancel, {once: true});
+}
+
 function showResults(timeline, run) {
-  const top = element("div", {class: "stage"}), grid = element("div", {class: "charts"}), side = element("div", {});
-  section(run.cells ? "Cells" : "Flow", top, grid);
+  const events = eventsOf(run), view = new View([run]), box = element("div", {class: "stage"});
+  section(run.cells ? "Cells" : "Flow", box);
   if (run.outlines || run.fields) {
-    const chosen = {name: ""}, box = element("div", {class: "card"});
-    top.append(box);
-    const animation = new Animation(box, timeline, 0, () => chosen.name);
-    box.append(animationControls(timeline, [animation], chosen), instantLine(timeline, 0), ...failureNote(run), ...whyNoAnimation(run));
-  } else {
-    side.style.gridColumn = "1 / -1";
-    if (run.shown.note) top.append(element("div", {class: "card", style: "grid-column: 1 / -1"}, ...whyNoAnimation(run)));
-  }
-  top.append(side);
-  const notes = plots(timeline, side, grid);
-  side.append(axisControls(timeline));
-  if (run.cells && run.outlines) notes.push("In the animation a colour is an aggregate, named after its first cell; in the charts it is a cell.");
-  notes.push("Point at a chart to go to that instant, drag across it to look closer, click a name to hide its line.");
-  for (const text of [...notesOf(run), ...notes]) page.append(note(text));
+    const card = element("div", {class: "card"});
+    box.append(card);
+    const animation = timeline.animation = new Animation(card, timeline, 0, view), [first, second] = animationControls(timeline, [animation], view, [storyStrip(timeline, events)]);
+    card.append(first, instantLine(timeline, 0), second, ...failureNote(run), ...whyNoAnimation(run));
+  } else if (run.shown.note) box.append(element("div", {class: "card"}, ...whyNoAnimation(run)));
+  section("Charts", axisControls(timeline), note("Point at a chart to go to that instant, drag across it to look closer, click a name to hide its line, a tick above to go to an event."));
+  const notes = plots(timeline, page, {view, events});
+  page.append(element("div", {class: "notes"}, ...[...notesOf(run), ...notes].map(note)));
+}
+
+/// All that is in tables, in four tabs.
+function showTables(run) {
+  const summary = run.summary || {}, margins = (summary.limits || []).map(l => l.margin).filter(m => typeof m === "number"), least = Math.min(...margins);
+  const mark = margins.length && least < 1.5 ? {text: `${format(least, 3)} ×`, kind: least < 1 ? "bad" : "warn"} : null;
+  tabs([
+    {title: "Result", fill: () => { showHistory(summary); showErrorBars(summary); }},
+    {title: "Physics", fill: () => { showDimensionless(summary.dimensionless || {}); showScene(run); }},
+    {title: "Numerics", mark, fill: () => {
+      showLimits(summary.limits || []);
+      if ((summary.left_out || []).length) section("Not computed in this run", table([{title: "What", key: "what"}, {title: "Why", key: "why"}], summary.left_out, {stacked: true}));
+      showConservation(summary);
+      showCost(summary);
+    }},
+    {title: "Provenance", fill: () => { showPlugins(summary); showProvenance(run); }},
+  ]);
 }

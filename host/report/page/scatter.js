@@ -10,7 +10,6 @@ const marks = [corners(24, 0).map(c => c.map(v => v * .95)), corners(4, Math.PI 
   corners(6, 0).map(c => c.map(v => v * 1.1)), corners(4, 0, .45).map(c => c.map(v => v * 1.45))];
 const markPath = (shape, x, y, r = 4.6) => "M" + marks[shape % marks.length].map(([a, b]) => `${(x + r * a).toFixed(1)} ${(y + r * b).toFixed(1)}`).join("L") + "Z";
 const crossPath = (x, y, r = 4) => `M${x - r} ${y - r}L${x + r} ${y + r}M${x - r} ${y + r}L${x + r} ${y - r}`;
-const pathThrough = points => points.map(([x, y], i) => `${i ? "L" : "M"}${x.toFixed(1)} ${y.toFixed(1)}`).join("");
 
 /// A chart whose `content()` says what it holds now (null: nothing):
 ///   x, y     {title, values, ticks, names}: logarithmic over the values; with `ticks` [{value, text}] these; with

@@ -41,7 +41,7 @@ function showStudy(study) {
     showFailures(view);
     showPasses(view);
   } else section("Results", element("p", {}, view.points.length ? "The points have been run, but study.json has no quantity of them." : "No point has been run."));
-  if ((study.left_out ?? []).length) section("Left out, and why", table([{title: "Point", value: r => labelWords(r.labels ?? {})}, {title: "Why", key: "why"},
+  if ((study.left_out ?? []).length) section("Points that were left out", table([{title: "Point", value: r => labelWords(r.labels ?? {})}, {title: "Why", key: "why"},
     {title: "Estimated time", number: true, value: r => seconds(r.estimated_s)}], study.left_out, {stacked: true}));
   showOrigin(study, study.study_file, "Study");
   view.changed();

@@ -99,7 +99,7 @@ function studyControls(view) {
 }
 
 function showStudyCharts(view) {
-  const controls = studyControls(view), pair = element("div", {class: "stage"}), nothing = note(""), tell = id => view.describe(id);
+  const controls = studyControls(view), pair = element("div", {class: "halves"}), nothing = note(""), tell = id => view.describe(id);
   const charts = [];
   section("Error against run time", controls, nothing);
   const redraw = () => { for (const chart of charts) chart.draw(); };

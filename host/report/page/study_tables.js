@@ -53,22 +53,22 @@ function showFailures(view) {
   if (undefinedOnes.length) section("Numbers that are not defined", table([{title: "Point", value: r => labelWords(r.labels)}, {title: "Quantity", key: "name"}, {title: "Why", key: "why"}], undefinedOnes, {stacked: true}));
 }
 
-/// The best turns of knobs for the quantity that is shown.
+/// The changes of one setting that gain most for the quantity that is shown.
 function showKnobs(view) {
   const most = 30, all = view.study.knobs ?? {};
   if (!Object.values(all).some(list => list.length)) return;
   const box = element("div", {});
-  section("Which knob buys most", box);
+  section("Which setting gains most", box);
   let drawn = null;
   view.listeners.push(() => {
     if (drawn === view.quantity) return;
     drawn = view.quantity;
     const rows = all[drawn.name] ?? [], factor = (key, sign) => ({number: true, value: r => typeof r[key] === "number" ? `${sign} ${format(r[key], 3)}` : "–", sort: r => r[key]});
-    box.replaceChildren(rows.length ? table([{title: "Knob", key: "axis"}, {title: "From", key: "from"}, {title: "To", key: "to"}, {title: "With", value: r => labelWords(r.fixed ?? {})},
+    box.replaceChildren(rows.length ? table([{title: "Setting", key: "axis"}, {title: "From", key: "from"}, {title: "To", key: "to"}, {title: "With", value: r => labelWords(r.fixed ?? {})},
       {title: "Error", ...factor("error_factor", "÷")}, {title: "Time", ...factor("time_factor", "×")}, {title: "Gain", number: true, value: r => r.free ? "free" : format(r.gain, 3), sort: r => r.free ? Infinity : r.gain}],
       rows.slice(0, most), {sortable: true}) : note("No two points differ in one setting alone and have both an error."),
-      note(`What one turn of one knob does to the error of ${drawn.name} and to the time, all else being equal; most gain first` + (rows.length > most ? `, ${most} of ${rows.length} (study.json has all). ` : ". ") +
-        "Gain: by how many powers of ten the error falls when the time grows tenfold; free: the better setting is not the dearer one."));
+      note(`What a change of one setting does to the error of ${drawn.name} and to the time, all else being equal; most gain first` + (rows.length > most ? `, ${most} of ${rows.length} (study.json has all). ` : ". ") +
+        "Gain: by how many powers of ten the error falls when the time grows tenfold; free: the better setting is not the slower one."));
   });
 }
 

@@ -1,11 +1,6 @@
 // -------------------------------------------------------------------------------------------------------------- tables
 function showScene(run) {
   const {scene} = run, summary = run.summary || {}, shown = [];
-  if (scene) {
-    let expected;
-    try { expected = JSON.parse(scene).expected; } catch { /* a scene with comments is shown as text below all the same */ }
-    if (typeof expected === "string") shown.push(element("p", {}, element("b", {}, "What the scene expects: "), expected));
-  }
   const choice = summary.numerics_choice;
   if (choice) shown.push(element("h3", {}, `Numerics, chosen for an error of ${format(100 * choice.target_error, 3)} % of the ${choice.of === "steady" ? "steady state" : "motion"}`),
     element("p", {}, `Expected: ${format(100 * choice.expected_error.resolution, 2)} % by the lattice, ${format(100 * choice.expected_error.inertia, 2)} % by the relaxed density${choice.expected_error.start > 0 ? `, ${format(100 * choice.expected_error.start, 2)} % by the start of the flow` : ""}.${typeof choice.measured_error === "number" ? ` Measured: ${format(100 * choice.measured_error, 2)} % (${spelled(choice.measured_of)}).` : ""}`),
@@ -13,7 +8,7 @@ function showScene(run) {
   const conversions = Array.isArray(summary.conversions) ? summary.conversions : [];
   if (conversions.length) shown.push(element("h3", {}, "Every conversion"), conversionTable(conversions));
   const wells = summary.wells || [];
-  if (wells.length) shown.push(element("h3", {}, "Wells of the interactions"), table([{title: "Model", key: "model"}, {title: "Between", value: r => (r.between || []).join(", ")},
+  if (wells.length) shown.push(element("h3", {}, "Potential wells of the interactions"), table([{title: "Model", key: "model"}, {title: "Between", value: r => (r.between || []).join(", ")},
     {title: "Zero-force distance, nm", number: true, value: r => r.zero_force_distance_m === null ? null : r.zero_force_distance_m * 1e9}, {title: "Depth, J/m²", key: "depth_J_m2", number: true},
     {title: "Width, nm", number: true, value: r => r.width_m === null ? null : r.width_m * 1e9},
     ...(wells.some(r => r.widened) ? [{title: "Widened", number: true, value: r => r.widened ? `${format(r.widened, 3)} ×` : "–"}] : [])], wells, {stacked: true}));
@@ -81,19 +76,28 @@ function showPlugins(summary) {
   const plugins = summary.plugins || [];
   if (!plugins.length) return;
   const lock = summary.lock ? element("p", {}, "Locked by ", element("code", {}, summary.lock.file), ", SHA-256 ", element("code", {}, summary.lock.sha256))
-    : note("The run obeyed no lock: another version of a plugin would have been taken as well.");
+    : note("Plugin versions were not pinned (rouleau plugins --lock pins them).");
   section("Plugins", table([{title: "Id", key: "id"}, {title: "Version", key: "version"}, {title: "Kind", key: "kind"},
     {title: "SHA-256", value: r => element("code", {}, r.sha256)}, {title: "Library", value: r => element("code", {}, r.library)}], plugins, {stacked: true}), lock);
 }
 
-function showPasses(passes) {
-  if (passes.length) section("Time by pass", passTable(passes));
+/// What the run cost, and where the time went.
+function showCost(summary) {
+  const facts = [["Steps", format(summary.steps)], ["Strain", format(summary.strain)], ["Simulated", seconds(summary.simulated_time_s)], ["Took", seconds(summary.wall_s)], ["Steps per second", format(summary.steps_per_s, 3)],
+    ["Million lattice updates per second", format(summary.mlups, 3)], ["Threads", format(summary.threads)], ["Precision", format(summary.precision)], ["Memory", summary.peak_rss_bytes ? `${format(summary.peak_rss_bytes / 1048576, 3)} MiB` : "–"]];
+  if (Object.keys(summary).length) section("Cost", table([{title: "", value: r => r[0]}, {title: "", value: r => r[1], number: true}], facts.filter(([, text]) => text !== "–")));
+  if ((summary.passes || []).length) section("Time by pass", passTable(summary.passes));
+  if (Array.isArray(summary.stages) && summary.stages.length) section("Stages", freeTable(summary.stages));
+}
+function showConservation(summary) {
+  if (summary.conservation) section("Conservation", table([{title: "Quantity", key: "name"}, {title: "Value", key: "value", number: true}],
+    Object.entries(summary.conservation).map(([name, value]) => ({name: spelled(name), value}))));
 }
 
 function showHistory(summary) {
   const history = summary.aggregate_history || [];
   if (history.length) section("Aggregates", table([{title: "Strain", key: "strain", number: true}, {title: "Time, s", key: "time_s", number: true}, {title: "Count", key: "count", number: true},
-    {title: "Members", value: r => (r.members || []).map(m => m.join("+")).join(" | ")}, {title: "Held through the boundary", value: r => r.through_image ? "yes" : "no"}], history.slice(0, 200), {stacked: true}),
+    {title: "Members", value: r => (r.members || []).map(m => m.join("+")).join(" | ")}, {title: "Connected across the periodic boundary", value: r => r.through_image ? "yes" : "no"}], history.slice(0, 200), {stacked: true}),
     ...(history.length > 200 ? [note(`The first 200 of ${history.length} changes; summary.json has all.`)] : []));
   const means = (summary.rheology || []).flatMap(stage => Object.entries(stage.means || {}).filter(([, v]) => v && typeof v === "object" && typeof v.mean === "number")
     .map(([name, v]) => ({stage: stage.stage, name, ...v})));
@@ -103,9 +107,6 @@ function showHistory(summary) {
 
 function showProvenance(run) {
   const summary = run.summary || {};
-  if (summary.conservation) section("Conservation", table([{title: "Quantity", key: "name"}, {title: "Value", key: "value", number: true}],
-    Object.entries(summary.conservation).map(([name, value]) => ({name: spelled(name), value}))));
-  if (Array.isArray(summary.stages) && summary.stages.length) section("Stages", freeTable(summary.stages));
   const origin = [["Scene", summary.scene_file], ["Scene SHA-256", summary.scene_sha256], ["Program", summary.git], ["Machine", summary.machine], ["Started", summary.started]].filter(([, v]) => v);
   if (origin.length) section("Provenance", table([{title: "", value: r => r[0]}, {title: "", value: r => element("code", {}, r[1])}], origin));
 }

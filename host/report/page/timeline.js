@@ -38,17 +38,29 @@ function mergedInstants(runs, over) {
   return merged.map(k => ({...k, outputs: lists.map(list => list.length ? nearest(list, k, over) : 0)}));
 }
 
+/// The stages of a run by its outputs, {name, from, to, over}: each counts in strain where that grows in it, else in time.
+function stagesOf(run) {
+  const stages = [];
+  run.stage.forEach((name, i) => { if (name === stages.at(-1)?.name) stages.at(-1).to = i; else stages.push({name, from: i, to: i}); });
+  return stages.map(stage => {
+    const before = run.strain[Math.max(0, stage.from - 1)] ?? 0, grown = Math.abs((run.strain[stage.to] ?? 0) - before) > 1e-9;
+    return {...stage, over: grown ? "strain" : "time_s"};
+  });
+}
+
 class Timeline {
   constructor(runs) {
     this.runs = runs;
     this.listeners = [];
     this.sheared = runs.some(grows);
-    this.over = this.sheared ? "strain" : "time_s";
+    this.stages = stagesOf(runs[0]);
+    this.over = runs.length === 1 && new Set(this.stages.map(s => s.over)).size > 1 ? "stages" : this.sheared ? "strain" : "time_s";
     this.instants = mergedInstants(runs, this.over);
-    this.position = 0;
+    this.position = 0;  // between two instants while it plays
     this.frame = 0;
   }
-  /// The horizontal axis of all charts from now on: "strain", "time_s" or "output". The instant that is shown stays.
+  /// The horizontal axis of all charts from now on: "strain", "time_s" or "stages" (the outputs one after another, each
+  /// stage in its own measure). The instant that is shown stays.
   setOver(over) {
     this.stop();
     const shown = this.instant;
@@ -58,23 +70,32 @@ class Timeline {
     this.position = nearest(this.instants, shown, over);
   }
   get count() { return this.instants.length; }
-  get instant() { return this.instants[this.position]; }
-  get title() { return {strain: "strain", time_s: "time, s", output: "output"}[this.over]; }
+  get nearest() { return Math.round(this.position); }
+  get instant() { return this.instants[this.nearest]; }
+  get title() { return {strain: "strain", time_s: "time, s", stages: this.stages.map(s => `${s.name}: ${s.over === "strain" ? "strain" : "time, s"}`).join("  |  ")}[this.over]; }
   /// Number of the output that a run shows at a position.
-  output(run, position = this.position) { return this.instants[position].outputs[run]; }
+  output(run, position = this.nearest) { return this.instants[position].outputs[run]; }
+  /// The outputs that a run is between, and how far: {a, b, share}.
+  between(run) {
+    const low = Math.floor(this.position), a = this.output(run, low), b = this.output(run, Math.min(low + 1, this.count - 1));
+    return {a, b, share: a === b ? 0 : this.position - low};
+  }
   /// Horizontal place of a run's output in a chart.
-  at(run, output) { return this.over === "output" ? output : this.runs[run][this.over][output] ?? 0; }
-  /// Horizontal place of a position; two runs are not compared over their outputs.
+  at(run, output) { return this.over === "stages" ? output : this.runs[run][this.over][output] ?? 0; }
+  /// Horizontal place of a position.
   place(position = this.position) {
-    if (this.runs.length === 1) return this.at(0, position);
-    return this.over === "strain" ? this.instants[position].strain : this.instants[position].time;
+    const whole = p => this.runs.length === 1 ? this.at(0, p) : this.over === "strain" ? this.instants[p].strain : this.instants[p].time;
+    const low = Math.floor(position), share = position - low;
+    return share ? whole(low) + share * (whole(Math.min(low + 1, this.count - 1)) - whole(low)) : whole(low);
   }
   get words() {
-    const x = this.place();
-    return this.over === "strain" ? `at strain ${format(x, 3)}` : this.over === "output" ? `at output ${x}` : `at ${format(x, 3)} s`;
+    const over = this.over === "stages" ? this.stageAt(this.nearest).over : this.over, x = this.over === "stages" ? this.runs[0][over][this.nearest] : this.place(this.nearest);
+    return over === "strain" ? `at strain ${format(x, 3)}` : `at ${format(x, 3)} s`;
   }
+  stageAt(output) { return this.stages.findLast(stage => stage.from <= output) ?? this.stages[0]; }
+  /// Goes to a position, which may lie between two instants.
   seek(position) {
-    this.position = Math.max(0, Math.min(this.count - 1, Math.round(position)));
+    this.position = Math.max(0, Math.min(this.count - 1, position));
     for (const listener of this.listeners) listener();
   }
   /// The position whose place is nearest; of equal ones, such as while the strain stands still, the last.
@@ -83,26 +104,34 @@ class Timeline {
     for (let p = 0; p < this.count; ++p) if (Math.abs(this.place(p) - x) <= Math.abs(this.place(best) - x)) best = p;
     this.seek(best);
   }
+  /// The instant nearest to a strain or a time of the first run, as a link names it.
+  seekValue(over, value) {
+    const values = this.runs[0][over], found = values.reduce((best, v, i) => Math.abs((v ?? 0) - value) <= Math.abs((values[best] ?? 0) - value) ? i : best, 0);
+    this.seek(this.runs.length === 1 ? found : nearest(this.instants, instantsOf(this.runs[0])[found], over));
+  }
 
   get playing() { return this.frame !== 0; }
   /// The whole run takes about 15 s at speed 1.
-  play(speed, changed) {
+  play(speed = () => 1) {
+    if (this.playing) return;
     if (this.position >= this.count - 1) this.seek(0);
-    this.changed = changed;
-    let reached = this.position, last = performance.now();
+    let last = performance.now();
     const tick = stamp => {
-      reached += Math.max(0, stamp - last) / 1000 * Math.max(8, this.count / 15) * speed();
+      const further = this.position + Math.max(0, stamp - last) / 1000 * Math.max(8, this.count / 15) * speed();
       last = stamp;
       this.frame = requestAnimationFrame(tick);
-      if (Math.floor(reached) > this.position) this.seek(Math.floor(reached));
+      this.seek(further);
       if (this.position >= this.count - 1) this.stop();
     };
     this.frame = requestAnimationFrame(tick);
-    changed();
+    this.changed?.();
   }
+  /// At the nearest instant.
   stop() {
+    if (!this.playing) return;
     cancelAnimationFrame(this.frame);
     this.frame = 0;
+    this.seek(this.nearest);
     this.changed?.();
   }
 }

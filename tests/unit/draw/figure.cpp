@@ -96,3 +96,25 @@ TEST_CASE("an output that is not finite leaves its cell out") {
   outlines.x[3] = std::nan("");
   CHECK(coloured(draw_panels({{20e-6, 10e-6}, false}, {{"", outlines}}, 1, 400), false) == 0);
 }
+
+TEST_CASE("a picture is drawn as SVG, as PDF that is the same every time, and as pixels that are those of the PNG") {
+  const PanelBox box{{20e-6, 10e-6}, false};
+  const std::vector<Panel> panels{{"cell", disc(5, 5)}};
+  for (const auto format : {PictureFormat::pdf, PictureFormat::pixels})
+    CHECK(draw_panels(box, panels, 1, 400, format) == draw_panels(box, panels, 1, 400, format));
+  CHECK(draw_panels(box, panels, 1, 400, PictureFormat::pdf).starts_with("%PDF-"));
+  CHECK(draw_panels(box, panels, 1, 400, PictureFormat::svg).find("<svg") != std::string::npos);
+  const Image image = decoded(draw_panels(box, panels, 1, 400));
+  const auto [width, height] = picture_size(box, 1, 1, 400);
+  REQUIRE(cairo_image_surface_get_width(image.get()) == width);
+  REQUIRE(cairo_image_surface_get_height(image.get()) == height);
+  const std::string pixels = draw_panels(box, panels, 1, 400, PictureFormat::pixels);
+  REQUIRE(pixels.size() == std::size_t(4 * width * height));
+  const unsigned char* data = cairo_image_surface_get_data(image.get());
+  const int stride = cairo_image_surface_get_stride(image.get());
+  long different = 0;
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      different += std::memcmp(data + y * stride + 4 * x, pixels.data() + 4L * (y * width + x), 3) != 0 ? 1 : 0;
+  CHECK(different == 0);
+}

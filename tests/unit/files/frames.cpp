@@ -197,6 +197,27 @@ TEST_CASE("outlines whose first nodes do not fit their points are refused with f
   }
 }
 
+TEST_CASE("tensions that do not fit the points are refused with file, frame and remedy") {
+  const ScratchFolder scratch;
+  const auto file = scratch.path() / "frames.h5";
+  for (const std::size_t tensions : {0, 3, 4, 5}) {
+    {
+      Hdf5File damaged(file, Hdf5File::Mode::create);
+      for (const char* group : {"/frames", "/frames/000000", "/frames/000000/membranes"}) damaged.make_group(group);
+      damaged.write("/frames/000000/membranes/points", std::vector<double>(8), "m");
+      damaged.write("/frames/000000/membranes/tension", std::vector<double>(tensions), "N/m");
+      damaged.write("/frames/000000/membranes/first", std::vector<int>{0, 4}, "1");
+      damaged.close();
+    }
+    const FrameReader reader(file);
+    if (tensions == 4)
+      CHECK(reader.outlines(0).tension.size() == 4);
+    else
+      CHECK_THROWS_WITH(reader.outlines(0), Catch::Contains(file.string()) && Catch::Contains("/frames/000000") &&
+                                                Catch::Contains("repeat the run"));
+  }
+}
+
 TEST_CASE("a dataset that claims more numbers than its file can hold is refused before memory is asked for") {
   const ScratchFolder scratch;
   const auto file = scratch.path() / "frames.h5";

@@ -143,7 +143,7 @@ TEST_CASE("the report has the values, the unit and a sentence for every line of 
   }
   CHECK(units.at("Smallest gap to another cell") == "µm");
   CHECK(units.at("Angle of the long axis") == "°");
-  CHECK(units.at("Energy in all") == "J/m");
+  CHECK(units.at("Energy of the cells") == "J/m");
 }
 
 TEST_CASE("text from the scene cannot end the report's data or become markup") {

@@ -1,0 +1,84 @@
+// --------------------------------------------------------------------------------------------------- outlines and their colours
+const bytesOf = text => Uint8Array.from(atob(text), c => c.charCodeAt(0));
+
+/// Outlines of one run: nodes x, y in micrometres, not wrapped into the box, at an output or between two.
+class Outlines {
+  constructor(outlines) {
+    Object.assign(this, {data: outlines, first: outlines.first, count: outlines.first.length - 1, known: []});
+  }
+  at(output) {
+    return this.known[output] ??= (() => {
+      const {data, first} = this, view = new DataView(bytesOf(data.nodes[output]).buffer), origins = data.origin_um[output], nodes = new Float32Array(view.byteLength / 2);
+      for (let cell = 0; cell < this.count; ++cell)
+        for (let i = 2 * first[cell]; i < 2 * first[cell + 1]; ++i) nodes[i] = origins[2 * cell + i % 2] + view.getInt16(2 * i, true) * data.quantum_um;
+      return nodes;
+    })();
+  }
+  between({a, b, share}) {
+    const from = this.at(a);
+    if (!share) return from;
+    const to = this.at(b);
+    return from.map((v, i) => v + share * (to[i] - v));
+  }
+  /// Tension over its scale, from -1 to 1, for each node; null in pages of earlier versions.
+  tension({a, b, share}) {
+    const {values} = this.data.tension ?? {};
+    if (!values) return null;
+    const [from, to] = [a, b].map(output => new Int8Array(bytesOf(values[output]).buffer));
+    return Float32Array.from(from, (v, i) => (v + share * (to[i] - v)) / 127);
+  }
+}
+
+/// Interpolated colours as css texts. Cividis, and blue to orange: both in order for every eye.
+const rampStops = {
+  cividis: ["#00204d", "#2b3f6d", "#575c6d", "#7c7b78", "#a69d75", "#d3c164", "#ffe945"],
+  tension: ["#0b4f9e", "#5b93cf", "#a9b4c2", "#e0934a", "#a84300"],
+};
+function rampColour(stops, share) {
+  const at = Math.min(1, Math.max(0, share)) * (stops.length - 1), i = Math.min(stops.length - 2, Math.floor(at));
+  const [low, high] = [stops[i], stops[i + 1]].map(hex => [1, 3, 5].map(k => parseInt(hex.slice(k, k + 2), 16)));
+  return `rgb(${low.map((c, k) => Math.round(c + (at - i) * (high[k] - c))).join(",")})`;
+}
+
+/// Tones of the aggregates by output: single cells are grey, and aggregates that are there at the same time differ.
+function aggregateTones(aggregates) {
+  let before = new Map();
+  return aggregates.map(labels => {
+    const sizes = new Map();
+    for (const label of labels) sizes.set(label, (sizes.get(label) ?? 0) + 1);
+    const now = new Map(), big = [...sizes.keys()].filter(label => sizes.get(label) > 1);
+    for (const label of big) if (before.has(label)) now.set(label, before.get(label));
+    for (const label of big) if (!now.has(label)) { let tone = 0; while ([...now.values()].includes(tone) && tone < lineTones.length - 1) ++tone; now.set(label, tone); }
+    before = now;
+    return labels.map(label => now.has(label) ? lineTones[now.get(label)] : "--single");
+  });
+}
+
+const percentile = (values, share) => { const sorted = values.filter(v => v !== null).sort((a, b) => a - b); return sorted[Math.round(share * (sorted.length - 1))] ?? 0; };
+
+/// What colours the cells of one run can have: name -> {title, tone (a style's name) or colour of a cell, bar}.
+function cellColours(run) {
+  const {cells} = run, colours = {}, tonesOf = cells && aggregateTones(cells.aggregate);
+  if (!run.outlines) return colours;
+  if (cells) {
+    colours.aggregate = {title: "aggregate", tone: (cell, {a, b, share}) => tonesOf[share < .5 ? a : b][cell],
+      bar: () => [element("span", {}, "Colour: aggregate"), element("span", {class: "quiet"}, "single cells are grey")]};
+    const types = [...new Set(cells.types)];
+    colours.type = {title: "cell type", tone: cell => lineTones[types.indexOf(cells.types[cell]) % lineTones.length],
+      bar: () => types.map((type, i) => element("span", {}, element("i", {class: "dot", style: `background:var(${lineTones[i % lineTones.length]})`}), type))};
+    const ranged = (name, title, unit, low, high) => ({title, colour: (cell, {a, b, share}) => {
+      const from = cells[name][cell][a], to = cells[name][cell][b];
+      return from === null || to === null ? "#888" : rampColour(rampStops.cividis, ((from + share * (to - from)) - low) / (high - low || 1));
+    }, bar: () => rampBar(`${spelled(title)}${unit}`, rampStops.cividis, [format(low, 3), format((low + high) / 2, 3), `≥ ${format(high, 3)}`])});
+    const deformation = cells.deformation?.flat() ?? [], speeds = cells.speed_um_per_s?.flat() ?? [];
+    if (deformation.some(v => v !== null)) colours.deformation = ranged("deformation", "deformation", "", percentile(deformation, .01), percentile(deformation, .99));
+    if (speeds.some(v => v !== null)) colours.speed = ranged("speed_um_per_s", "speed of the cell", ", µm/s", 0, percentile(speeds, .99));
+  }
+  const scale = run.outlines.tension?.scale_N_per_m;
+  if (scale) colours.tension = {title: "membrane tension", tension: share => rampColour(rampStops.tension, (share + 1) / 2), tone: () => "--single",
+    bar: () => rampBar("Membrane tension, µN/m", rampStops.tension, [`≤ ${format(-scale * 1e6, 3)}`, "0", `≥ ${format(scale * 1e6, 3)}`])};
+  colours.grey = {title: "grey", tone: () => "--single", bar: () => []};
+  return colours;
+}
+const rampBar = (title, stops, ends) => [element("div", {}, title), element("div", {class: "ramp", style: `background:linear-gradient(to right, ${stops.join(", ")})`}),
+  element("div", {class: "ends"}, ...ends.map(text => element("span", {}, text)))];
