@@ -23,7 +23,8 @@ double radius_in_spacings(const Json& scene) {
   if (scene.value("cells", Json::array()).empty()) return NAN;
   const Json& first = scene.at("cells").at(0);
   const Json& shape = scene.at("cell_types").at(first.at("type").get<std::string>()).at("shape");
-  const Json& of = shape.begin().value();
+  const auto kind = shape.begin();
+  const Json& of = kind.value();
   Json length;
   if (of.contains("radius")) {
     length = of.at("radius");
