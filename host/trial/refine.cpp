@@ -26,7 +26,8 @@ double radius_in_spacings(const Json& scene) {
   if (!cells.is_array() || typed == cells.end()) return NAN;  // cells in a file alone have no type here
   const Json& first = *typed;
   const Json& shape = scene.at("cell_types").at(first.at("type").get<std::string>()).at("shape");
-  const Json& of = shape.begin().value();
+  const auto kind = shape.begin();
+  const Json& of = kind.value();
   Json length;
   if (of.contains("radius")) {
     length = of.at("radius");

@@ -47,8 +47,9 @@ struct Entry {
         values.push_back(given[parameter.name]);
       } else {
         const auto& words = parameter.choices;
-        const auto word = std::find(words.begin(), words.end(), given[parameter.name]);
-        if (word == words.end()) refuse(": " + parameter.name + " cannot be " + json::shown(given[parameter.name]));
+        const Json& chosen = given[parameter.name];
+        const auto word = std::find_if(words.begin(), words.end(), [&](const auto& w) { return chosen == Json(w); });
+        if (word == words.end()) refuse(": " + parameter.name + " cannot be " + json::shown(chosen));
         values.push_back(static_cast<double>(word - words.begin()));
       }
     }
