@@ -18,6 +18,7 @@
 #include "base/text.hpp"
 #include "json/json_pointer.hpp"
 #include "json/schema.hpp"
+#include "plugin/collection.hpp"
 #include "plugin/lock.hpp"
 #include "scene/scene.hpp"
 #include "stability/limits_document.hpp"
@@ -76,6 +77,7 @@ std::vector<std::unique_ptr<Judges>> all_judges() {
   add("scene", scene::scene_schema());
   add("manifest", plugin::manifest_schema());
   add("lock", plugin::lock_schema());
+  add("collection", plugin::collection_schema());
   add("study", study::study_schema());
   add("limits file", stability::limits_schema());
   add("study's result", study::study_result_schema());
@@ -90,7 +92,7 @@ std::vector<Document> one_of_each() {
     documents.push_back(Document::read(source / file));
   const std::string hash(64, 'a');
   documents.push_back(Document::parse(plugin::lock_text({{"trt", "collision", "1.0.0", hash, hash}}), "a.lock.json"));
-  for (const char* file : {"studies/biconcave.json", "limits/adhesion.json"})
+  for (const char* file : {"tests/schemas/collection.json", "studies/biconcave.json", "limits/adhesion.json"})
     documents.push_back(Document::read(source / file));
   return documents;
 }
@@ -245,8 +247,9 @@ TEST_CASE("the shipped schemas are draft 7") {
   }
 }
 
-TEST_CASE("the schemas of a scene, a manifest and a lock close every object and document every key") {
-  for (const auto* schema : {&scene::scene_schema(), &plugin::manifest_schema(), &plugin::lock_schema(), &plugin::collection_schema()}) {
+TEST_CASE("the schemas of a scene, a manifest, a lock and a collection close every object and document every key") {
+  for (const auto* schema :
+       {&scene::scene_schema(), &plugin::manifest_schema(), &plugin::lock_schema(), &plugin::collection_schema()}) {
     walk(*schema, "", [&](const Json& rule, const std::string& pointer) {
       INFO(pointer);
       if (!rule.is_object() || !rule.contains("properties") || !rule["properties"].is_object()) return;
@@ -284,7 +287,7 @@ TEST_CASE("the host and valijson accept and refuse the same documents by every s
   for (const auto& file : files_in(source / "tests/fuzz/corpus", false)) judge(file);
   CHECK(judged > 400);
   CHECK(too_long < judged / 50);
-  for (std::size_t i = 0; i < 5; ++i) {
+  for (std::size_t i = 0; i < 6; ++i) {
     INFO(all[i]->name << ": " << all[i]->accepted << " accepted, " << all[i]->refused << " refused");
     CHECK((all[i]->accepted > 0 && all[i]->refused > 0));
   }
