@@ -1,6 +1,6 @@
-# Copies the shared libraries of `needed_by` to `libraries_folder`, and on Debian their licences to `licences_folder`.
+# Copies the shared libraries of `programs` and `modules` to `libraries_folder`, and on Debian their licences to `licences_folder`.
 cmake_policy(VERSION 3.25)
-file(GET_RUNTIME_DEPENDENCIES EXECUTABLES ${needed_by} RESOLVED_DEPENDENCIES_VAR needed
+file(GET_RUNTIME_DEPENDENCIES EXECUTABLES ${programs} MODULES ${modules} RESOLVED_DEPENDENCIES_VAR needed
   PRE_EXCLUDE_REGEXES "^ld-linux.*" "^lib(c|m|mvec|dl|rt|pthread|resolv|stdc\\+\\+|gcc_s)\\.so.*")
 set(prefix "$ENV{DESTDIR}${CMAKE_INSTALL_PREFIX}")
 file(INSTALL ${needed} DESTINATION "${prefix}/${libraries_folder}" FOLLOW_SYMLINK_CHAIN)

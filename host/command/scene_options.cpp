@@ -2,6 +2,7 @@
 
 #include "command_line.hpp"
 #include "core/membrane/membranes.hpp"
+#include "lock_scene.hpp"
 #include "plan/solver_setup.hpp"
 
 namespace rouleau::command {

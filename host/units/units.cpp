@@ -1,5 +1,6 @@
 #include "units.hpp"
 
+#include <dlfcn.h>
 #include <udunits2.h>
 
 #include <cerrno>
@@ -178,17 +179,24 @@ struct Units::System {
   }
 };
 
-/// The database that lies with an installation which brings its libraries along: in share/rouleau/udunits of the folder that
-/// the running program is below. Empty without one; UDUNITS then looks where it was built to, as where the variable is set.
+/// The database that lies with an installation which brings its libraries along: in share/rouleau/udunits of a folder that
+/// the running program is below (bin, libexec/rouleau), or the Python module that this code is part of
+/// (lib/python3/dist-packages/rouleau). Empty without one; UDUNITS then looks where it was built to, as where the
+/// variable is set.
 std::string installed_database() {
   namespace fs = std::filesystem;
   std::error_code error;
   if (secure_getenv("UDUNITS2_XML_PATH") != nullptr) return {};
-  fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
-  for (int levels = 0; levels < 2 && folder.has_relative_path(); ++levels) {  // from bin, or from libexec/rouleau
-    folder = folder.parent_path();
-    fs::path database = folder / ROULEAU_DATA_FOLDER / "rouleau" / "udunits" / "udunits2.xml";
-    if (fs::exists(database, error)) return database;
+  static const char place = 0;
+  Dl_info module{};
+  const bool known = dladdr(&place, &module) != 0 && module.dli_fname != nullptr;
+  for (const fs::path& file : {fs::path("/proc/self/exe"), fs::path(known ? module.dli_fname : "")}) {
+    fs::path folder = fs::canonical(file, error).parent_path();
+    for (int levels = 0; levels < 4 && folder.has_relative_path(); ++levels) {
+      folder = folder.parent_path();
+      fs::path database = folder / ROULEAU_DATA_FOLDER / "rouleau" / "udunits" / "udunits2.xml";
+      if (fs::exists(database, error)) return database;
+    }
   }
   return {};
 }
