@@ -42,7 +42,7 @@ struct TwoLayers {
   }
 };
 
-enum class Driven { by_wall, by_force };
+enum class LayersDriven { by_wall, by_force };
 
 struct Channel {
   TwoLayers layers;
@@ -55,13 +55,13 @@ struct Channel {
   [[nodiscard]] double viscosity() const { return viscosity_of(tau); }
   [[nodiscard]] double omega() const { return womersley_square * viscosity() / rows / rows; }
 
-  [[nodiscard]] Solver<double> start(Driven driven, Membranes& none) const {
+  [[nodiscard]] Solver<double> start(LayersDriven driven, Membranes& none) const {
     SolverSetup setup{.domain = {{4, rows}, {true, false}}, .tau = tau};
     setup.layers = {{layers.border * rows, 1.0 * rows, layers.ratio}};
     setup.developed = developed;
     if (womersley_square > 0) {
       setup.oscillation = {.walls = {0, speed}, .body_force_x = 0, .frequency = omega() / (2 * std::numbers::pi)};
-    } else if (driven == Driven::by_wall) {
+    } else if (driven == LayersDriven::by_wall) {
       setup.walls = {0, speed};
     } else {
       setup.body_force_x = speed * viscosity() / rows / rows;
@@ -87,12 +87,12 @@ double distance(Solver<double>& solver, const Channel& channel, Exact exact) {
   return error / largest;
 }
 
-double steady_error(const Channel& channel, Driven driven, long steps) {
+double steady_error(const Channel& channel, LayersDriven driven, long steps) {
   Membranes none;
   Solver<double> solver = channel.start(driven, none);
   solver.step(steps);
   return distance(solver, channel, [&](double y) {
-    return driven == Driven::by_wall ? channel.layers.couette(y) : channel.layers.poiseuille(y);
+    return driven == LayersDriven::by_wall ? channel.layers.couette(y) : channel.layers.poiseuille(y);
   });
 }
 
@@ -105,7 +105,7 @@ long long_time(const Channel& channel) {
 }  // namespace
 
 TEST_CASE("flows of two layers become the exact ones to rounding where the border lies between two rows", "[layers]") {
-  const Driven driven = GENERATE(Driven::by_wall, Driven::by_force);
+  const LayersDriven driven = GENERATE(LayersDriven::by_wall, LayersDriven::by_force);
   const double ratio = GENERATE(0.2, 5.0, 100.0);
   const double border = GENERATE(0.5, 0.25);
   const Channel channel{{border, ratio}, 16};
@@ -113,7 +113,7 @@ TEST_CASE("flows of two layers become the exact ones to rounding where the borde
 }
 
 TEST_CASE("the developed flow of layers is where it stays", "[layers]") {
-  const Driven driven = GENERATE(Driven::by_wall, Driven::by_force);
+  const LayersDriven driven = GENERATE(LayersDriven::by_wall, LayersDriven::by_force);
   const Channel channel{.layers = {0.25, 5}, .rows = 32, .tau = 0.8, .developed = true};
   CHECK(steady_error(channel, driven, 0) < 1e-12);
   CHECK(steady_error(channel, driven, 300) < 1e-4);
@@ -126,7 +126,7 @@ TEST_CASE("a row that the border of a layer cuts is off to first order, and no o
   for (const int rows : {12, 24, 48}) {
     Membranes none;
     const Channel channel{{(rows / 2 + (rows == 12 ? 0.6 : 0.8)) / rows, 5}, rows};
-    Solver<double> solver = channel.start(Driven::by_wall, none);
+    Solver<double> solver = channel.start(LayersDriven::by_wall, none);
     solver.step(long_time(channel));
     const double error = distance(solver, channel, [&](double y) { return channel.layers.couette(y); });
     const auto profile = column(solver.fluid(), 1);
@@ -150,7 +150,7 @@ TEST_CASE("layers that a wall shakes follow the exact solution to second order",
   for (int i = 0; i < 3; ++i) {
     const Channel channel{.layers = {0.5, 4}, .rows = 12 << i, .womersley_square = 25};
     Membranes none;
-    Solver<double> solver = channel.start(Driven::by_wall, none);
+    Solver<double> solver = channel.start(LayersDriven::by_wall, none);
     const double period = 2 * std::numbers::pi / channel.omega();
     double error = 0;
     long done = 0;
