@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "command/program.hpp"
+#include "command/process/program.hpp"
 #include "files/csv_reader.hpp"
 #include "files/file.hpp"
 #include "files/frames.hpp"

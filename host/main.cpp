@@ -7,9 +7,9 @@
 
 #include "base/text.hpp"
 #include "command/commands.hpp"
-#include "command/faults.hpp"
-#include "command/program.hpp"
-#include "command/terminal.hpp"
+#include "command/process/faults.hpp"
+#include "command/process/program.hpp"
+#include "command/process/terminal.hpp"
 #include "observe/observables.hpp"
 
 namespace {

@@ -7,7 +7,7 @@
 
 namespace rouleau {
 
-/// What an error is about. command/program.hpp says with which exit code the program ends.
+/// What an error is about. command/process/program.hpp says with which exit code the program ends.
 enum class Cause {
   bad_input,       ///< bad usage, or a scene that cannot be right
   plugin_refused,  ///< a manifest or library was refused

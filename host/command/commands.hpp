@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "program.hpp"
+#include "command/process/program.hpp"
 
 namespace rouleau::command {
 

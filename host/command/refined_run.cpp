@@ -5,11 +5,11 @@
 
 #include "accuracy/refinement.hpp"
 #include "base/text.hpp"
+#include "command/process/program.hpp"
 #include "files/checkpoint_file.hpp"
 #include "files/refined_folder.hpp"
 #include "files/run_directory.hpp"
 #include "json/document.hpp"
-#include "program.hpp"
 #include "report/report.hpp"
 #include "trial/trial.hpp"
 

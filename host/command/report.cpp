@@ -11,11 +11,11 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "command/process/terminal.hpp"
 #include "command_line.hpp"
 #include "commands.hpp"
 #include "report/report_data.hpp"
 #include "report/result_page.hpp"
-#include "terminal.hpp"
 
 namespace rouleau::command {
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "accuracy/measure_errors.hpp"
+#include "command/process/terminal.hpp"
 #include "command_line.hpp"
 #include "commands.hpp"
 #include "files/checkpoint_file.hpp"
@@ -19,7 +20,6 @@
 #include "run/simulation.hpp"
 #include "run_words.hpp"
 #include "scene_options.hpp"
-#include "terminal.hpp"
 #include "trial/trial.hpp"
 
 namespace rouleau::command {

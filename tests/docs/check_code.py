@@ -168,6 +168,13 @@ def part_of_scene(key):
     return lambda test, block: test.with_part(key, block.text)
 
 
+def cells_of_a_file(test, block):
+    """With the table of the section below it."""
+    table = next(b.text for b in blocks_of("docs/scene.md") if b.text.startswith("type,x_um"))
+    (test.folder / json.loads(block.text)["file"]).write_text(table.rstrip() + "\n")
+    test.with_part("cells", block.text)
+
+
 def other_settings(test, block):
     """Keys that replace those of the whole scene; more than one setting of a key stands for alternatives."""
     for text in re.split(r"\n\s*\n", block.text):
@@ -238,12 +245,14 @@ BLOCKS = [
     ("docs/scene.md", '{"type": "rbc", "row"', part_of_scene("cells")),
     ("docs/scene.md", '{"type": "rbc", "list"', part_of_scene("cells")),
     ("docs/scene.md", '{"type": "rbc", "random"', part_of_scene("cells")),
+    ("docs/scene.md", '{"file"', cells_of_a_file),
     ("docs/scene.md", '{"name": "carry"', part_of_scene("stages")),
     ("docs/scene.md", '{"name": "channel"', part_of_scene("stages")),
     ("docs/scene.md", '{"name": "shake"', part_of_scene("stages")),
     ("docs/scene.md", '{"between": ["rbc", "rbc"], "model": "morse"', part_of_scene("interactions")),
     ("docs/scene.md", '{"between": ["rbc", "wall"], "model": "repulsion"', part_of_scene("interactions")),
     ("docs/scene.md", '"domain": {', other_settings),
+    ("docs/scene.md", '"fluid": {', other_settings),
     ("docs/scene.md", '"numerics": {', other_settings),
     ("docs/study.md", '{\n  "rouleau_study": 1', study),
     ("docs/study-quantities.md", '{"name": "deformation"', quantity_of_a_study),

@@ -7,13 +7,13 @@ import statistics
 import subprocess
 import sys
 
-from package import SOURCE, Case, main, need
+from package import BUILD, SOURCE, Case, main, need
 
 import rouleau
 
 PACKAGE = SOURCE / "python/rouleau"
 HERE = {name: getattr(rouleau, name) for name in rouleau.__all__
-        if name != "Simulation" or (PACKAGE / "simulation.py").exists()}
+        if name not in ("FluidField", "Simulation") or any((BUILD / "python/rouleau").glob("_core.*.so"))}
 
 
 def members(value):

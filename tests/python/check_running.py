@@ -172,8 +172,15 @@ class A_sweep(In_a_folder):
 
     def test_that_is_interrupted_goes_on_where_it_was(self):
         long = {"/stages/1/strain": [15, 16]}
+        asked = []
+
+        def interrupt_once(now):
+            if not asked:
+                asked.append(now)
+                os.kill(os.getpid(), signal.SIGINT)
+
         with self.assertRaises(KeyboardInterrupt):
-            rouleau.sweep(small_scene(), long, out="sweep", workers=2, progress=lambda now: os.kill(os.getpid(), signal.SIGINT))
+            rouleau.sweep(small_scene(), long, out="sweep", workers=2, progress=interrupt_once)
         begun = [rouleau.open(directory).status for directory in pathlib.Path("sweep").iterdir()]
         self.assertIn("interrupted", begun)
         table = rouleau.sweep(small_scene(), long, out="sweep", workers=2, progress=False)

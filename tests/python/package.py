@@ -1,4 +1,4 @@
-"""What the tests beside this file share: the package of this source folder with the program under test, and a small scene.
+"""What the tests beside this file share: the package of this build with the program under test, and a small scene.
 
 Each is called as: check_WHAT.py SOURCE BUILD
 """
@@ -13,7 +13,7 @@ import warnings
 
 sys.dont_write_bytecode = True
 SOURCE, BUILD = map(pathlib.Path, sys.argv[1:3])
-sys.path.insert(0, str(SOURCE / "python"))
+sys.path.insert(0, str(BUILD / "python"))
 os.environ["ROULEAU"] = str(BUILD / "bin/rouleau")
 os.environ["MPLBACKEND"] = "Agg"  # no screen is needed
 warnings.simplefilter("ignore", UserWarning)  # the small scene is coarse

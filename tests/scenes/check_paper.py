@@ -11,6 +11,8 @@ import subprocess
 import sys
 import unittest
 
+import numpy
+
 PROGRAM, ROOT = sys.argv[1], pathlib.Path(sys.argv[2])
 sys.dont_write_bytecode = True  # scripts/ holds no compiled copies
 loader = importlib.machinery.SourceFileLoader("paper", str(ROOT / "scripts/paper"))
@@ -19,10 +21,10 @@ loader.exec_module(paper)
 
 
 def outline(shape, turn):
-    """100 points shape(angle) -> (x, y), turned counter-clockwise."""
+    """100 points shape(angle) -> (x, y), turned counter-clockwise, as an array [100, 2]."""
     points = [shape(2 * math.pi * i / 100) for i in range(100)]
     c, s = math.cos(turn), math.sin(turn)
-    return [(3 + c * x - s * y, 7 + s * x + c * y) for x, y in points]
+    return numpy.array([(3 + c * x - s * y, 7 + s * x + c * y) for x, y in points])
 
 
 def biconcave(angle):

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "command/program.hpp"
+#include "command/process/program.hpp"
 #include "plan/read_scene.hpp"
 
 int main(int count, char** arguments) {

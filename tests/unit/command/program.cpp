@@ -1,5 +1,5 @@
 // Errors at the end of the program: exit codes, and remedies in the options of the command line.
-#include "command/program.hpp"
+#include "command/process/program.hpp"
 
 #include <catch2/catch.hpp>
 #include <cstdlib>

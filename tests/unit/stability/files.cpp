@@ -64,7 +64,7 @@ TEST_CASE("limits.json fits its schema, with edges, without, and with cases", "[
         std::string::npos);
   CHECK(csv.find("\"auto, semi\"") != std::string::npos);
   CHECK(csv.find("case,flat,,,,,,stops,stopped with a reason,node_step,4,tangential,7.5\n") != std::string::npos);
-  CHECK(text.find("stable up to 0.0001 N/m, not at 0.0002 N/m: node_step at step 7, tangential, 7.5 segments") !=
+  CHECK(text.find("stable up to 0.0001 N/m, fails at 0.0002 N/m: node_step at step 7, tangential, 7.5 segments") !=
         std::string::npos);
   CHECK(text.find("stable nowhere") != std::string::npos);
 }
