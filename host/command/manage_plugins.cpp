@@ -1,11 +1,11 @@
 #include "manage_plugins.hpp"
 
 #include <fcntl.h>
-#include <stdio.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdio>
 #include <iostream>
 #include <string>
 
@@ -37,6 +37,7 @@ std::vector<plugin::Manifest> plugins_in(const fs::path& folder) {
 
 void require_conformance(const std::vector<plugin::Manifest>& manifests) {
   std::vector<fs::path> files;
+  files.reserve(manifests.size());
   for (const plugin::Manifest& manifest : manifests) files.push_back(manifest.file);
   conform::ConformanceOptions options;
   options.levels = {conform::Level::interface};
@@ -120,6 +121,7 @@ void install_plugins(const fs::path& folder, const plugin::Catalog& catalog, boo
   fs::create_directories(user_folder, error);
   if (error) files::fail_file(user_folder, "cannot be made", error.value());
   std::vector<std::unique_ptr<Prepared>> prepared;
+  prepared.reserve(manifests.size());
   for (const plugin::Manifest& manifest : manifests) {
     prepared.push_back(std::make_unique<Prepared>(manifest, user_folder));
   }
