@@ -85,6 +85,12 @@ class Error(Exception):
         return self.faults[0].column
 
 
+def fault_of(problem: str, remedy: str, file: str, pointer: str, line: int, column: int) -> Fault:
+    """A fault as the program says it, with "" and 0 for what is unknown and lines that go on indented."""
+    return Fault(problem.replace("\n  ", "\n"), remedy.replace("\n  ", "\n"), file or None, pointer or None, line or None,
+                 column or None)
+
+
 def faults_in(said: str) -> list[Fault]:
     """Faults in what the program wrote to standard error with ROULEAU_ERRORS=json; its words where it gave none."""
     for line in reversed(said.splitlines()):
@@ -93,7 +99,5 @@ def faults_in(said: str) -> list[Fault]:
                 listed = json.loads(line)["faults"]
             except (ValueError, KeyError):
                 continue
-            return [Fault(fault["problem"].replace("\n  ", "\n"), fault["remedy"].replace("\n  ", "\n"),
-                          fault["file"] or None, fault["pointer"] or None, fault["line"] or None, fault["column"] or None)
-                    for fault in listed]
+            return [fault_of(**fault) for fault in listed]
     return [Fault(said.strip() or "the program ended without a word")]

@@ -16,7 +16,7 @@ import warnings
 from typing import TYPE_CHECKING, Any, Callable, Sequence, Union
 
 from .errors import Error, Fault, faults_in
-from .program import call_json, environment, program
+from .program import call, call_json, environment, program
 from .reading import Run, Section
 from .scenes import SceneLike, in_users_words, name_of, scene_file, settings
 
@@ -189,10 +189,10 @@ def plan(scene: SceneLike, *, plugin_dirs: Sequence[str | os.PathLike[str]] = ()
     folders = [word for folder in plugin_dirs for word in ("--plugin-dir", os.fspath(folder))]
     with scene_file(scene) as path:
         try:
-            answer = call_json("plan", path, *folders, *settings(changes))
+            answer = call("plan", path, *folders, *settings(changes), "--json")
         except Error as error:
             raise Error(in_users_words(error.faults, scene), exit_code=error.exit_code) from None
-    return Plan(json.loads(json.dumps(answer), object_hook=Section))
+    return Plan(json.loads(answer, object_hook=Section))
 
 
 def plugins(*, plugin_dirs: Sequence[str | os.PathLike[str]] = ()) -> pandas.DataFrame:

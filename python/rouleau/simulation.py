@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Callable, NamedTuple, Sequence, Union
 import numpy as np
 import numpy.typing as npt
 
-from .errors import Error, Fault
+from .errors import Error, Fault, fault_of
 from .scenes import SceneLike, as_json, pointer_of, scene_file
 
 if TYPE_CHECKING:
@@ -29,8 +29,7 @@ Doubles = npt.NDArray[np.float64]
 
 def _error(faults: Sequence[tuple[str, str, str, str, int, int]], exit_code: int) -> Error:
     """What the compiled module raises."""
-    return Error([Fault(problem.replace("\n  ", "\n"), remedy, file or None, pointer or None, line or None, column or None)
-                  for problem, remedy, file, pointer, line, column in faults], exit_code=exit_code)
+    return Error([fault_of(*fault) for fault in faults], exit_code=exit_code)
 
 
 class FluidField(NamedTuple):
