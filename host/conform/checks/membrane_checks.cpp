@@ -240,7 +240,7 @@ std::vector<Check> membrane_checks() {
       {"closed-loop",
        level,
        "takes no work over closed cycles, or if not conservative none that is negative",
-       {"compute", "gradient", "dissipation"},
+       {"compute", "gradient", "dissipation", "look-after-step"},
        check_closed_loop,
        kind},
       {"degenerate", level, "gives numbers for elements crushed, torn or folded", {"compute"}, degenerate, kind},
