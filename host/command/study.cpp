@@ -42,9 +42,7 @@ bool tell_end(const study::StudyState& state) {
     same = false;
   }
   const nlohmann::json study = study::study_json(state);
-  for (const auto& sentence : study["sentences"]) {
-    std::cout << sentence["quantity"].get<std::string>() << ": " << sentence["text"].get<std::string>() << "\n";
-  }
+  for (const auto& sentence : study["sentences"]) std::cout << sentence["text"].get<std::string>() << "\n";
   if (study["target"].is_object()) std::cout << study["target"]["sentence"].get<std::string>() << "\n";
   return same;
 }

@@ -179,6 +179,47 @@ class The_animation(PageOfFour):
         page.click(x, y)
         self.assertEqual(page.run("document.querySelector('select[aria-label=Cell]').value"), "")
 
+    def test_comes_closer_between_two_fingers_and_keeps_there_what_was_there(self):
+        page = self.four(screen="phone")
+        page.run(f"{ANIMATION}.canvas.scrollIntoView({{block: 'center'}})")
+        left, top, width, height, scroll = page.run(f"(() => {{ const r = {ANIMATION}.canvas.getBoundingClientRect(); return [r.left, r.top, r.width, r.height, scrollY]; }})()")
+        x, y = width * 0.4, height * 0.6
+
+        def fingers(kind, apart, dy=0):
+            page.call("Input.dispatchTouchEvent", type=kind, touchPoints=[{"x": left + x + s * apart, "y": top + y + dy, "id": s + 1} for s in (-1, 1)] if apart else [])
+
+        below = page.run(f"{ANIMATION}.toDomain({x}, {y})")
+        fingers("touchStart", 30)
+        for apart in (32, 45, 60):
+            fingers("touchMove", apart)
+        self.assertAlmostEqual(page.run(f"{ANIMATION}.zoom"), 60 / 32, delta=0.05)
+        for before, now in zip(below, page.run(f"{ANIMATION}.toDomain({x}, {y})")):
+            self.assertAlmostEqual(before, now, delta=0.05)
+        fingers("touchMove", 60, 20)  # both fingers move: the picture goes with them
+        for before, now in zip(below, page.run(f"{ANIMATION}.toDomain({x}, {y + 20})")):
+            self.assertAlmostEqual(before, now, delta=0.05)
+        fingers("touchEnd", 0)
+        self.assertEqual(page.run("[scrollY, visualViewport.scale, timeline.animation.view.cell]"), [scroll, 1, None])
+
+    def test_is_drawn_in_every_frame_of_the_screen_and_leaves_it_most_of_its_time(self):
+        page = self.four()
+        frames, draws, script, gap = page.run("""(async () => {
+            const a = timeline.animation, draw = a.draw.bind(a), seek = timeline.seek.bind(timeline), times = [], gaps = [];
+            let draws = 0, on = true, last = null;
+            a.draw = () => { ++draws; draw(); };
+            timeline.seek = position => { const begin = performance.now(); seek(position); times.push(performance.now() - begin); };
+            const tick = stamp => { if (last !== null) gaps.push(stamp - last); last = stamp; if (on) requestAnimationFrame(tick); };
+            timeline.seek(0); draws = 0; times.length = 0;
+            timeline.play(() => 0.2); requestAnimationFrame(tick);
+            await new Promise(r => setTimeout(r, 1500));
+            on = false; timeline.stop();
+            const median = list => list.sort((p, q) => p - q)[list.length >> 1];
+            return [gaps.length + 1, draws, median(times), median(gaps)]; })()""")
+        print(f"{1000 / gap:.0f} frames/s in the median, {script:.2f} ms of script in each")
+        self.assertLessEqual(abs(frames - draws), 2)
+        self.assertGreater(frames, 4)
+        self.assertLess(script, 1000 / 60 / 2)
+
     def test_keeps_the_cell_that_it_follows_in_the_middle(self):
         page = self.four()
         page.run("document.querySelector('select[aria-label=Cell]').value = '3'; document.querySelector('select[aria-label=Cell]').dispatchEvent(new Event('change'))")
@@ -272,6 +313,12 @@ class Charts(PageOfFour):
         page.run("document.querySelector('select[aria-label=Cell]').value = '5'; document.querySelector('select[aria-label=Cell]').dispatchEvent(new Event('change'))")
         self.assertEqual(page.run(f"{chart}.lines[2].label"), "cell 5")
         self.assertEqual(page.run(f"{chart}.u.data[4][10]"), page.run("data.cells.deformation[5][10]"))
+        page.run("timeline.animation.view.choose(5)")  # none any more
+        x, y = self.cell(page, 2)
+        page.mouse("mouseMoved", x, y)
+        self.assertEqual(page.run(f"{chart}.lines[2].label"), "cell 2")
+        page.mouse("mouseMoved", x, page.run(f"{ANIMATION}.canvas.getBoundingClientRect().top - 30"))
+        self.assertEqual(page.run(f"{chart}.lines[2].label"), "")
 
 
 class What_is_saved(PageOfFour):

@@ -139,7 +139,7 @@ class The_page_of_a_study(PageCase):
         self.assertIn(STUDY["sentences"][0]["text"], boxes[0][1])
         self.assertEqual(len(boxes[0]), 3)  # where methods disagree is a warning
         warnings = "\n".join(boxes[1])
-        for words in ("methods disagree", "6 of 40 points failed", "1 point was left out", "not deterministic: resolution 5, tau 0.6, corrected: cells.csv"):
+        for words in ("The methods disagree about deformation", "6 of 40 points failed", "1 point was left out", "not deterministic: resolution 5, tau 0.6, corrected: cells.csv"):
             self.assertIn(words, warnings)
 
     def test_draws_every_point_of_both_charts_and_marks_those_that_failed(self):
@@ -238,7 +238,7 @@ class The_page_of_a_study(PageCase):
 
     def test_says_which_setting_gains_most(self):
         page = self.open(PAGES["study"])
-        self.assertEqual(self.rows(page, "Which setting gains most")[:2], [["tau", "1", "2", "resolution 20, plain", "÷ 1.4", "× 0.35", "free"],
+        self.assertEqual(self.rows(page, "Which setting helps most")[:2], [["tau", "1", "2", "resolution 20, plain", "÷ 1.4", "× 0.35", "free"],
                                                                        ["scheme", "plain", "corrected", "resolution 20, tau 1", "÷ 3.2", "× 1.15", "8.4"]])
 
     def test_shows_a_point_s_time_by_pass_when_it_is_chosen(self):

@@ -58,7 +58,7 @@ function showKnobs(view) {
   const most = 30, all = view.study.knobs ?? {};
   if (!Object.values(all).some(list => list.length)) return;
   const box = element("div", {});
-  section("Which setting gains most", box);
+  section("Which setting helps most", box);
   let drawn = null;
   view.listeners.push(() => {
     if (drawn === view.quantity) return;
