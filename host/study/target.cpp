@@ -273,7 +273,7 @@ TargetBound bound_of(const StudyData& study, std::size_t quantity, const Quantit
   result.estimate = own.error;
   result.uncertainty = own.uncertainty;
   if (!std::isfinite(own.uncertainty)) {
-    result.why_not = "nobody knows how good the reference is";
+    result.why_not = "the uncertainty of the reference is not known";
     return result;
   }
   const std::vector<std::size_t> line = line_through(study, point);

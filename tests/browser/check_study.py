@@ -371,7 +371,7 @@ class The_page_of_limits(PageCase):
         page = self.open(report("stopped", dict(result, complete=False)))
         self.assertEqual(self.bar(page, "plain, peskin4"), [["open", 6e-6, 6e-2]])
         self.assertIn("of 1 nothing is known yet", self.text(page, ".status"))
-        self.assertIn("has not come to its end", self.text(page, ".status.warn"))
+        self.assertIn("is not finished", self.text(page, ".status.warn"))
         self.assert_sound(page)
 
     def test_has_an_even_axis_where_the_file_asks_for_one(self):

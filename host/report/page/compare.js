@@ -90,5 +90,5 @@ function showDifferences(data) {
   const ratio = ({values: [a, b]}) => typeof a === "number" && typeof b === "number" && a !== 0 ? `${format(100 * (b - a) / Math.abs(a), 3)} %` : "";
   section("Outcome", differing.length ? table([{title: "What", value: r => spelled(r.name).replace(/\//g, ", ")}, ...each(asText).map(column => ({...column, number: true})),
     ...(runs.length === 2 ? [{title: "B against A", number: true, value: ratio}] : [])], differing, {stacked: true}) : none("All numbers are the same."),
-    ...(alike && differing.length ? [note(`${alike} more ${alike === 1 ? "is" : "are"} the same in all.`)] : []));
+    ...(alike && differing.length ? [note(`${alike} more ${alike === 1 ? "is" : "are"} the same in all runs.`)] : []));
 }
