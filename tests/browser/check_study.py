@@ -13,6 +13,7 @@ from pathlib import Path
 
 import study_fixture
 from browser import SCREENS, Browser, BrowserCase, main
+from readers import EYES, contrast, difference, obstacles
 
 PROGRAM = Path(sys.argv[1]).resolve()
 SHOTS = Path(sys.argv[3]) if sys.argv[2:3] == ["--shots"] else None
@@ -111,6 +112,30 @@ class Every_page_on_every_screen(PageCase):
             page.media("light", "print")
             self.assertEqual(page.run("[...document.querySelectorAll('.scroll')].filter(e => e.scrollWidth > e.clientWidth + 1).length"), 0)
             self.assert_sound(page, 688)
+
+
+class Every_reader(PageCase):
+    def test_meets_no_obstacle(self):
+        for name in ("study", "limits"):
+            for scheme in ("light", "dark"):
+                for screen in SCREENS:
+                    page = self.open(PAGES[name], scheme=scheme, screen=screen)
+                    page.run("document.querySelectorAll('details').forEach(d => { d.open = true; })")
+                    self.assertEqual(obstacles(page), [], (name, scheme, screen))
+
+    def test_reaches_a_point_of_the_table_with_the_keyboard(self):
+        page = self.open(PAGES["study"])
+        page.run("document.querySelector('tr[data-row]').focus()")
+        page.key("Enter")
+        self.assertEqual(page.run("String(view.point)"), page.run("document.querySelector('tr[data-row]').dataset.row"))
+
+    def test_finds_what_is_planted(self):
+        page = self.open(PAGES["limits"])
+        page.run("""document.querySelector('main').insertAdjacentHTML('beforeend',
+            '<p style="color: #999; background: #fff">pale</p><button></button><span style="cursor: pointer">x</span><h4>deep</h4><i id="page"></i>')""")
+        found = "\n".join(obstacles(page))
+        for words in ("contrast 2.8", "no name: <button", "out of the keyboard's reach: <span", "level 4 follows", "twice: id page"):
+            self.assertIn(words, found)
 
 
 class What_the_pages_are_tested_with(unittest.TestCase):
@@ -305,6 +330,15 @@ class The_page_of_limits(PageCase):
         self.assertIn("First to fail: ", words)
         self.assertIn("4 extreme cases: 2 × stopped with a reason, 1 × right answer, 1 × WRONG; 2 did not end as expected.", words)
         self.assertIn("bad", page.run("document.querySelector('.status').className"))
+
+    def test_has_a_blue_for_stable_that_no_eye_takes_for_a_failure(self):
+        for scheme in ("light", "dark"):
+            stable, *failing, card = self.open(PAGES["limits"], scheme=scheme).run("['--stable', ...Object.values(failureModes).map(([tone]) => tone), '--card'].map(css)")
+            self.assertEqual(len(failing), 7)
+            for tone in failing:
+                self.assertGreaterEqual(contrast(tone, card.ljust(7, card[-1])), 3, (scheme, tone))
+                for eye in EYES:
+                    self.assertGreater(difference(stable, tone, eye), 20, (scheme, tone, eye))
 
     def test_draws_stable_and_failing_stretches_between_the_edges(self):
         page = self.open(PAGES["limits"])

@@ -42,6 +42,7 @@ function table(columns, rows, {stacked = false, sortable = false, attributes = (
   const body = element("tbody", {}, ...trs);
   const heads = columns.map(c => element("th", {scope: "col", ...(c.number ? {class: "number"} : {})}, c.title));
   if (sortable) heads.forEach((head, i) => {
+    if (!columns[i].title) return;  // a column of pictures
     const of = rows.map(columns[i].sort ?? (row => valueOf(columns[i], row))), missing = v => v === null || v === undefined || v === "";
     head.replaceChildren(element("button", {type: "button", onclick: () => {
       const down = head.getAttribute("aria-sort") === "ascending", sign = down ? -1 : 1;

@@ -16,7 +16,7 @@ function showReferences(view) {
 /// The table of points for the quantity that is shown, made anew with every other choice of it.
 function showPoints(view) {
   const box = element("div", {class: "points"});
-  section("Points", box, note("A title sorts by its column; a row shows its point in the charts. study.csv has all quantities of all points."));
+  section("Points", box, note("A title sorts by its column; a row, clicked or chosen with Enter, shows its point in the charts. study.csv has all quantities of all points."));
   let drawn = null;
   view.listeners.push(() => {
     if (drawn !== view.quantity) box.replaceChildren(pointTable(view));
@@ -39,7 +39,7 @@ function pointTable(view) {
     {title: "Front", value: r => front.has(r.id) ? "yes" : ""},
     {title: "Wall time, s", ...time("wall_s")}, {title: "Processor time, s", ...time("cpu_s")}, {title: "Steps", key: "steps", number: true},
     {title: "Memory, MiB", number: true, value: r => r.peak_rss_bytes ? format(r.peak_rss_bytes / 1048576, 3) : "–", sort: r => r.peak_rss_bytes}, ...(new Set(view.points.map(p => p.threads)).size > 1 ? [{title: "Threads", key: "threads", number: true}] : [])],
-    view.points, {sortable: true, attributes: r => ({"data-row": r.id, onclick: () => view.choose(r.id)})});
+    view.points, {sortable: true, attributes: r => ({"data-row": r.id, tabindex: 0, onclick: () => view.choose(r.id), onkeydown: event => { if (event.key === "Enter") view.choose(r.id); }})});
 }
 const spreadCell = time => typeof time.median !== "number" ? "–" : element("span", {}, format(time.median, 3), time.most > time.least ? element("span", {class: "quiet spread"}, ` ${format(time.least, 3)} … ${format(time.most, 3)}`) : "");
 
