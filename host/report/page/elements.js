@@ -22,7 +22,7 @@ function format(value, digits = 4) {
   }
   return String(Number(value.toPrecision(digits))).replace("-", "−");
 }
-const spelled = name => name.replace(/(?<!_per)_(s|m|bytes|Pa|(?:Pa|J|W)_per_m|m2_per_s|1_per_s)$/, (_, unit) => `, ${unit.replace("_per_", "/").replace("m2", "m²")}`).replace(/_/g, " ").replace(/^./, c => c.toUpperCase());
+const spelled = name => name.replace(/(?<!_per)_(s|m|um|bytes|Pa|(?:Pa|J|W)_per_m|m2_per_s|1_per_s)$/, (_, unit) => `, ${unit.replace("_per_", "/").replace("m2", "m²").replace("um", "µm")}`).replace(/^cell_free_/, "cell-free ").replace(/_/g, " ").replace(/^./, c => c.toUpperCase());
 const seconds = t => t === undefined || t === null ? "–" : t < 120 ? `${format(t, 3)} s` : t < 7200 ? `${format(t / 60, 3)} min` : `${format(t / 3600, 3)} h`;
 const css = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 /// Tones of lines, cells and runs: any two differ for every kind of colour blindness (tests/browser measures it).
