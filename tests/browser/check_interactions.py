@@ -15,7 +15,7 @@ import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 from browser import Browser, BrowserCase, main
-from readers import EYES, contrast, difference, obstacles
+from readers import EYES, contrast, difference, lab, obstacles
 
 PROGRAM, PLUGINS, SOURCE = (Path(a).resolve() for a in sys.argv[1:4])
 SCENE = SOURCE / "scenes" / "four-cells-shear.json"
@@ -411,6 +411,23 @@ class Every_reader(PageOfFour):
                 self.assertGreater(difference(a, b, eye), 20, (scheme, a, b, eye))
             for tone in tones:
                 self.assertGreaterEqual(contrast(tone, page.run("css('--card')")), 3, (scheme, tone))
+
+    def test_can_read_every_scale_of_colours(self):
+        """One that has no sign goes from dark to light or back; the two ends of one that has a sign look different."""
+        for scheme in ("light", "dark"):
+            scales = self.four(scheme=scheme).run("({...ramps[isDark() ? 'dark' : 'light'], ...rampStops})")
+            self.assertEqual(set(scales), {"speed", "vorticity", "cividis", "tension"})
+            for (name, stops), eye in itertools.product(scales.items(), EYES):
+                light = [lab(stop, eye)[0] for stop in stops]
+                if name in ("speed", "cividis"):
+                    steps = [b - a for a, b in zip(light, light[1:])]
+                    self.assertTrue(all(s > 5 for s in steps) or all(s < -5 for s in steps), (scheme, name, eye, light))
+                else:
+                    self.assertGreater(difference(stops[0], stops[-1], eye), 20, (scheme, name, eye))
+                    middle = len(stops) // 2
+                    for half in (stops[middle:], stops[middle::-1]):
+                        far = [difference(half[0], stop, eye) for stop in half]
+                        self.assertEqual(far, sorted(far), (scheme, name, eye))
 
     def test_can_read_text_of_every_kind_on_every_ground(self):
         for scheme in ("light", "dark"):
