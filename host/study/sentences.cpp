@@ -11,7 +11,12 @@ namespace {
 
 constexpr double of_no_target = std::numeric_limits<double>::quiet_NaN();
 
-/// "It runs 5.6 s, with an error of 0.89 % +- 0.1 %"
+/// "the error of deformation", "the velocity error"
+std::string the_error(const Quantity& quantity) {
+  return (quantity.name.ends_with("error") ? "the " : "the error of ") + quantity.name;
+}
+
+/// "it runs 5.6 s, with an error of 0.89 % +- 0.1 %"
 std::string described(const StudyData& study, const Quantity& quantity, const PointError& error, std::size_t point) {
   return "it runs " + time_in_words(study.points[point].wall_s) + ", with an error of " +
          error_in_words(quantity, error.error) +
@@ -52,15 +57,15 @@ StudySentence cheapest_below(const StudyData& study, const Quantity& quantity, c
     return name_of(study, study.points[i].setting) + ": " + described(study, quantity, analysis.errors[i], i) + ".";
   };
   if (chosen) {
-    return {"To keep the error of " + quantity.name + " below " + target + ", take " + setting(*chosen) +
+    return {"To keep " + the_error(quantity) + " below " + target + ", take " + setting(*chosen) +
                 against_default(study, quantity, analysis.errors, *chosen),
             quantity.target, chosen};
   }
   if (!nearest) {
     const std::string why = analysis.reference.why_not.empty() ? "no run has a value" : analysis.reference.why_not;
-    return {"The error of " + quantity.name + " is not known: " + why + ".", quantity.target, std::nullopt};
+    return {"Nothing is known about " + the_error(quantity) + ": " + why + ".", quantity.target, std::nullopt};
   }
-  return {"No setting is sure to keep the error of " + quantity.name + " below " + target + ". The nearest is " +
+  return {"No setting is sure to keep " + the_error(quantity) + " below " + target + ". The nearest is " +
               setting(*nearest),
           quantity.target, nearest};
 }
@@ -76,7 +81,7 @@ StudySentence largest_sensitivity(const StudyData& study, const Quantity& quanti
                                ? " in the same time"
                                : " and the run " + rounded(times, 2) + " times " + (longer > 1 ? "longer" : "shorter");
   return {"What helps most: " + axis.name + " " + label(sensitivity.to) + " instead of " + label(sensitivity.from) +
-              (elsewhere.empty() ? "" : ", at " + elsewhere + ",") + " makes the error of " + quantity.name + " " +
+              (elsewhere.empty() ? "" : ", at " + elsewhere + ",") + " makes " + the_error(quantity) + " " +
               rounded(sensitivity.error_factor, 2) + " times smaller" + time + ".",
           of_no_target, sensitivity.to};
 }

@@ -67,7 +67,7 @@ function showKnobs(view) {
     box.replaceChildren(rows.length ? table([{title: "Setting", key: "axis"}, {title: "From", key: "from"}, {title: "To", key: "to"}, {title: "With", value: r => labelWords(r.fixed ?? {})},
       {title: "Error", ...factor("error_factor", "÷")}, {title: "Time", ...factor("time_factor", "×")}, {title: "Gain", number: true, value: r => r.free ? "free" : format(r.gain, 3), sort: r => r.free ? Infinity : r.gain}],
       rows.slice(0, most), {sortable: true}) : note("No two points differ in one setting alone and have both an error."),
-      note(`What a change of one setting does to the error of ${drawn.name} and to the time, all else being equal; most gain first` + (rows.length > most ? `, ${most} of ${rows.length} (study.json has all). ` : ". ") +
+      note(`What a change of one setting does to ${theError(drawn.name)} and to the time, all else being equal; most gain first` + (rows.length > most ? `, ${most} of ${rows.length} (study.json has all). ` : ". ") +
         "Gain: by how many powers of ten the error falls when the time grows tenfold; free: the better setting is not the slower one."));
   });
 }

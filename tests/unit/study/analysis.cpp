@@ -109,7 +109,8 @@ TEST_CASE("a study that cannot be extrapolated says why", "[analysis]") {
   CHECK(a.reference.why_not.find("no axis along the line refines the lattice") == 0);
   CHECK(a.front.empty());
   REQUIRE(a.sentences.size() == 1);
-  CHECK(a.sentences[0].text.find("The error of deformation is not known: no axis along the line refines") == 0);
+  CHECK(a.sentences[0].text.find("Nothing is known about the error of deformation: no axis along the line refines") ==
+        0);
   study.resolutions = {10, 20};
   study.schemes = {"plain"};
   StudyData few = study.data();
@@ -219,6 +220,16 @@ TEST_CASE("one sentence names the cheapest setting below the target and what it 
       analyse(strict, 0).sentences[0].text ==
       "To keep the error of deformation below 50 %, take resolution 10, scheme plain: it runs 1 s, with an error of 4 %. "
       "This is the default.");
+}
+
+TEST_CASE("the error of a quantity that is an error is called by its name", "[analysis]") {
+  MadeUpStudy study = two_schemes();
+  study.reference = {ReferenceKind::value, 2, 0, "made up", {}};
+  StudyData data = study.data();
+  data.quantities[0].name = "velocity error";
+  const QuantityAnalysis a = analyse(data, 0);
+  CHECK(a.sentences[0].text.find("To keep the velocity error below ") == 0);
+  CHECK(a.sentences[1].text.find(" makes the velocity error 8 times smaller") != std::string::npos);
 }
 
 TEST_CASE("study.json gets the conclusions, with null where nothing is defined", "[analysis]") {
