@@ -50,7 +50,7 @@ OBSTACLES = r"""(() => {
     if (ratio < (size >= 24 || (size >= 18.6 && Number(style.fontWeight) >= 700) ? 3 : 4.5)) found.push(`contrast ${ratio.toFixed(2)}: ${about(e)}`);
   }
   for (const e of document.querySelectorAll("button, select, input, summary, canvas.view, [role=group], [role=tablist], [role=tabpanel], [role=img], nav"))
-    if (!(e.ariaLabel || e.textContent.trim() || e.title || e.closest("label")?.textContent.trim())) found.push(`no name: ${about(e)}`);
+    if (!(e.ariaLabel || e.textContent.trim() || e.title || [...e.labels ?? []].some(label => label.textContent.trim()))) found.push(`no name: ${about(e)}`);
   const keys = "a[href], button, select, input, textarea, summary, label, [tabindex]";
   for (const e of document.body.querySelectorAll("*"))
     if (seen(e) && getComputedStyle(e).cursor === "pointer" && !e.closest(keys) && !e.querySelector(keys)) found.push(`out of the keyboard's reach: ${about(e)}`);
