@@ -11,7 +11,7 @@ namespace rouleau::command {
 /// Error(bad_input) where it is no time.
 class TimeLimit {
  public:
-  static constexpr const char* help = "end in good order after so long, as 110min: for batch queues";
+  static constexpr const char* help = "stop after this time, as 110min, with everything written: for batch queues";
   explicit TimeLimit(const std::string& text);
   [[nodiscard]] bool is_set() const { return seconds_ > 0; }
   /// s; not above zero when it is over.

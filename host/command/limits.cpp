@@ -15,19 +15,19 @@ namespace {
 
 constexpr const char* limits_help = R"(usage: rouleau limits LIMITS [options]
 
-Makes one parameter of a scene larger until the simulation fails, and finds the edge by bisection, for each combination
-of methods; or runs single extreme cases. A run that ends with too much area lost, energy gained at rest, nodes uneven
-or values that are no numbers has failed too, though it did not say so. Writes limits.json, limits.csv and limits.html, which name
-reason, step, mode and wavelength of each failure.
+Increases one parameter of a scene until the simulation fails, and finds the edge by bisection, for each combination of
+methods; or runs single extreme cases. A completed run counts as failed if it lost too much area, gained energy at rest,
+has uneven nodes or wrote values that are not numbers. Writes limits.json, limits.csv and limits.html, which give reason,
+step, mode and wavelength of each failure.
 
-What was tried is not tried again: after Ctrl-C the same command goes on in the same directory.
+Finished trials are kept: after Ctrl-C the same command continues in the same directory.
 
 Example:
   rouleau limits limits/stretching.json
   rouleau limits limits/shear-rate.json --out runs/shear-rate
 
-Exit codes: 0 done, 1 an extreme case ended neither right nor with a reason, or otherwise than expected, 2 bad input,
-4 input/output, 130 interrupted
+Exit codes: 0 done, 1 an extreme case ended without a right answer and without a reason, or not as expected,
+2 bad input, 4 input/output, 130 interrupted
 )";
 
 }  // namespace

@@ -14,7 +14,7 @@ constexpr const char* plan_help = R"(usage: rouleau plan SCENE [options]
 
 Prints, without a step: every conversion, dimensionless number and limit (value, limit, margin), what will be
 computed, what is left out and why, and the estimated time, memory and output size. Plugins that the scene names are
-loaded and made, so their code runs.
+loaded and instances of them are made, so their code runs.
 
 Example:
   rouleau plan scenes/four-cells-shear.json

@@ -31,9 +31,9 @@ constexpr const char* run_help = R"(usage: rouleau run SCENE [options]
 Simulates a scene and writes a run directory: summary.json, cells.csv, aggregates.csv, aggregate_sizes.csv, series.csv,
 frames.h5 with frames.xmf (ParaView), log.jsonl, checkpoint.h5 and report.html.
 
-Ctrl-C, SIGTERM, a closed terminal, SIGUSR1, SIGXCPU and --max-time end a run after a checkpoint. --resume goes on from
-the directory's last checkpoint, whatever ended the run, to the same results as without the break; without --out in
-runs/NAME of the scene. Where no run has been, or one was killed before its first checkpoint, it begins at the beginning.
+Ctrl-C, SIGTERM, a closed terminal, SIGUSR1, SIGXCPU and --max-time stop a run after a checkpoint. --resume continues from
+the last checkpoint of the directory (without --out: runs/NAME of the scene), however the run ended, and gives the same
+results as a run without the break. If there is no checkpoint, the run begins at the beginning.
 
 --error-bar measures an error of every number that the run reports: cheap runs of the same scene follow, on coarser
 lattices, with developed flow and with another density, and take at most about 40 % of the run's time. A scene with

@@ -15,12 +15,12 @@ namespace {
 
 constexpr const char* study_help = R"(usage: rouleau study STUDY [options]
 
-Runs a scene over a matrix of settings (resolution, time step, models, any value of the scene), measures what each run
-found and what it cost, and writes study.json, study.csv and study.html: error against run time, which setting is the
-cheapest for an error, and how sure that is. A run that fails, hangs or is refused is a result like the others.
+Runs a scene over a matrix of settings (resolution, time step, models, any value of the scene), and measures results and
+run time of each. Writes study.json, study.csv and study.html: error against run time, the fastest setting for a given
+error, and how certain that is. A run that fails, hangs or is refused is a result too.
 
-Timed runs of all studies on a machine take turns. What was finished is not run again: after Ctrl-C, or with more axes,
-values or quantities, the same command goes on in the same directory.
+Timed runs of all studies on a machine take turns. Finished runs are kept: after Ctrl-C, or with more axes, values or
+quantities, the same command continues in the same directory.
 
 Example:
   rouleau study studies/couette.json
@@ -42,9 +42,7 @@ bool tell_end(const study::StudyState& state) {
     same = false;
   }
   const nlohmann::json study = study::study_json(state);
-  for (const auto& sentence : study["sentences"]) {
-    std::cout << sentence["quantity"].get<std::string>() << ": " << sentence["text"].get<std::string>() << "\n";
-  }
+  for (const auto& sentence : study["sentences"]) std::cout << sentence["text"].get<std::string>() << "\n";
   if (study["target"].is_object()) std::cout << study["target"]["sentence"].get<std::string>() << "\n";
   return same;
 }
@@ -62,9 +60,9 @@ int study_command(const std::vector<std::string>& arguments) {
       "out", options::value(&out)->value_name("DIR")->notifier(not_empty("--out")),
       "study's directory (default: runs/NAME of the study)")(
       "budget", options::value(&budget)->value_name("TIME"),
-      "time for all runs, as 5min: the cheapest points first, and what would pass it is left out")(
+      "time for all runs, as 5min: the fastest points are run first, and those that do not fit are left out")(
       "target", options::value(&target)->value_name("NAME=ERROR"),
-      "runs only what it takes to find the cheapest point whose error is below, as deformation=1%")(
+      "runs only what is needed to find the fastest point with an error below this, as deformation=1%")(
       "repeats", options::value(&repeats)->value_name("N"), "timed runs of each point (default: the study's, or 3)")(
       "max-time", options::value(&max_time)->value_name("TIME")->notifier(not_empty("--max-time")), TimeLimit::help)(
       "quiet", options::bool_switch(&chosen.quiet), "no lines on what is being run");

@@ -47,7 +47,7 @@ std::optional<std::array<int, 2>> coarsest_lattice(const Eigen::Vector2d& size) 
   return {};
 }
 
-// What was measured (docs/accuracy.md, "What auto goes by"). Errors are relative, lengths in spacings.
+// What was measured (docs/accuracy.md, "The error model of auto"). Errors are relative, lengths in spacings.
 
 /// Error of a shape at ten spacings a radius and tau 1, and the power of the spacing with which it falls.
 struct ShapeError {

@@ -226,7 +226,7 @@ void check_membrane_nodes(const Scene& scene) {
   for (const auto& cell : scene.cells) nodes += scene.cell_types[cell.type].segments;
   if (nodes <= most_membrane_nodes) return;
   SceneFields(*scene.document)
-      .refuse("/cells", "the cells have " + std::to_string(nodes) + " membrane nodes in all; at most " +
+      .refuse("/cells", "the cells have " + std::to_string(nodes) + " membrane nodes together; at most " +
                             std::to_string(most_membrane_nodes) + " can be computed: use fewer cells or segments");
 }
 

@@ -120,7 +120,7 @@ PointError error_of(const Quantity& quantity, const ResolvedReference& reference
 }
 
 std::string limit_in_words(const StudyData& study, const MethodLimit& method, const std::string& unit) {
-  return name_of(study, method.setting) + " to " + number(method.extrapolation.limit) + " +- " +
+  return name_of(study, method.setting) + " tends to " + number(method.extrapolation.limit) + " +- " +
          number(method.extrapolation.uncertainty, 2) + (unit.empty() ? "" : " " + unit);
 }
 
@@ -221,8 +221,9 @@ QuantityAnalysis analyse(const StudyData& study, std::size_t quantity) {
     const double apart = std::abs(a.extrapolation.limit - b.extrapolation.limit);
     if (apart <= widest) continue;
     widest = apart;
-    result.disagreement = "the methods disagree: " + limit_in_words(study, a, measured.unit) + ", " +
-                          limit_in_words(study, b, measured.unit) + ", further apart than their uncertainties together";
+    result.disagreement = "The methods disagree about " + measured.name + ": " +
+                          limit_in_words(study, a, measured.unit) + ", " + limit_in_words(study, b, measured.unit) +
+                          ", further apart than their uncertainties together.";
   }
   result.sentences = sentences_of(study, quantity, result);
   return result;

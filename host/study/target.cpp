@@ -208,35 +208,35 @@ TargetDecision ended(const Search& search, std::optional<std::size_t> point, boo
   if (!point) {
     const std::string why =
         search.analysis.reference.why_not.empty() ? "no run has a value" : search.analysis.reference.why_not;
-    result.sentence = goal + " cannot be shown to be met: " + why;
+    result.sentence = "Whether a setting gives " + goal + " is not known: " + why + ".";
     return result;
   }
   const TargetBound& bound = search.bounds[*point];
   result.estimated_error = bound.estimate;
   result.uncertainty = bound.uncertainty;
   const std::string name = name_of(search.study, search.study.points[*point].setting);
-  const std::string numbers = "estimated error " + error_in_words(quantity, bound.estimate) + " +- " +
-                              error_in_words(quantity, bound.uncertainty) + ", " +
-                              time_in_words(search.study.points[*point].wall_s);
+  const std::string numbers = "it runs " + time_in_words(search.study.points[*point].wall_s) +
+                              ", with an estimated error of " + error_in_words(quantity, bound.estimate) + " +- " +
+                              error_in_words(quantity, bound.uncertainty);
   if (met) {
-    result.sentence = goal + ": " + name + " (" + numbers + ")";
+    result.sentence = "For " + goal + ", take " + name + ": " + numbers + ".";
     const auto standard = find_point(search.study, search.study.default_setting);
     const double ratio = standard ? search.cost[*standard] / search.cost[*point] : 0;
-    if (standard && *standard == *point) result.sentence += ", which is the default";
+    if (standard && *standard == *point) result.sentence += " This is the default.";
     if (std::isfinite(ratio) && ratio > 1.05)
-      result.sentence += ", " + rounded(ratio, 2) + " times faster than the default";
+      result.sentence += " It is " + rounded(ratio, 2) + " times faster than the default.";
     return result;
   }
-  result.sentence = goal + " cannot be shown to be met; nearest: " + name + " (" + numbers + ")";
+  result.sentence = "No setting is sure to give " + goal + ". The nearest is " + name + ": " + numbers + ".";
   if (!search.analysis.disagreement.empty())
     result.sentence +=
-        "; " + search.analysis.disagreement + ": name the right one, \"reference\": {\"richardson\": {...}}";
+        " " + search.analysis.disagreement + " Name the right one: \"reference\": {\"richardson\": {...}}.";
   else if (!bound.why_not.empty())
-    result.sentence += "; " + bound.why_not;
+    result.sentence += " It is not sure because " + bound.why_not + ".";
   const bool left =
       std::any_of(search.study.points.begin(), search.study.points.end(), [](const auto& p) { return !p.tried; });
   result.sentence +=
-      left ? "; what is left takes longer than the budget" : "; a finer grid than the study has might show it";
+      left ? " What is left to run takes longer than the budget." : " A finer grid than the study has might show it.";
   return result;
 }
 
@@ -273,7 +273,7 @@ TargetBound bound_of(const StudyData& study, std::size_t quantity, const Quantit
   result.estimate = own.error;
   result.uncertainty = own.uncertainty;
   if (!std::isfinite(own.uncertainty)) {
-    result.why_not = "nobody knows how good the reference is";
+    result.why_not = "the uncertainty of the reference is not known";
     return result;
   }
   const std::vector<std::size_t> line = line_through(study, point);

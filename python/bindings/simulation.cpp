@@ -105,9 +105,9 @@ class SimulationOf final : public Simulation {
     require_whole();
     if (ready_ && solver_->flow_control()) {
       throw Error(Cause::bad_input,
-                  "the forces of the next step have been looked at, and the scene keeps a mean velocity: the state "
+                  "the forces of the next step have been read, and the scene keeps a mean velocity: the state "
                   "between two steps is gone",
-                  {"save before forces, fluid or cells are looked at, or after the next step"});
+                  {"save before forces, fluid or cells are read, or after the next step"});
     }
     if (ready_) exchange_memories();
     const auto back = [&] {

@@ -142,7 +142,7 @@ class Page:
 
     def key(self, key):
         """Presses a key where the focus is."""
-        code = {" ": ("Space", 32), "ArrowRight": ("ArrowRight", 39), "ArrowLeft": ("ArrowLeft", 37), "+": ("BracketRight", 187), "0": ("Digit0", 48)}[key]
+        code = {" ": ("Space", 32), "ArrowRight": ("ArrowRight", 39), "ArrowLeft": ("ArrowLeft", 37), "+": ("BracketRight", 187), "0": ("Digit0", 48), "Enter": ("Enter", 13)}[key]
         for kind in ("keyDown", "keyUp"):
             self.call("Input.dispatchKeyEvent", type=kind, key=key, code=code[0], windowsVirtualKeyCode=code[1])
 

@@ -15,6 +15,7 @@ import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 from browser import Browser, BrowserCase, main
+from readers import EYES, contrast, difference, lab, obstacles
 
 PROGRAM, PLUGINS, SOURCE = (Path(a).resolve() for a in sys.argv[1:4])
 SCENE = SOURCE / "scenes" / "four-cells-shear.json"
@@ -103,6 +104,8 @@ class The_result(PageOfFour):
         page = self.four()
         for value, error, words in ((0.34712, 0.0042, "0.347 ± 0.004"), (1.1749, 0.013, "1.175 ± 0.013"), (123.4, 2.1, "123 ± 2"), (-0.5, 0.03, "−0.50 ± 0.03")):
             self.assertEqual(page.run(f"withError({value}, {error})"), words)
+        for value, spread, words in ((1.1746, 0.031, "1.17"), (1.2, 0.003, "1.200"), (1.2, 0, "1.2")):
+            self.assertEqual(page.run(f"withError({value}, null, {spread})"), words)
 
 
 class The_animation(PageOfFour):
@@ -178,6 +181,47 @@ class The_animation(PageOfFour):
         self.assertEqual(page.run("charts.find(c => c.title.startsWith('Deformation')).lifted"), 3)
         page.click(x, y)
         self.assertEqual(page.run("document.querySelector('select[aria-label=Cell]').value"), "")
+
+    def test_comes_closer_between_two_fingers_and_keeps_there_what_was_there(self):
+        page = self.four(screen="phone")
+        page.run(f"{ANIMATION}.canvas.scrollIntoView({{block: 'center'}})")
+        left, top, width, height, scroll = page.run(f"(() => {{ const r = {ANIMATION}.canvas.getBoundingClientRect(); return [r.left, r.top, r.width, r.height, scrollY]; }})()")
+        x, y = width * 0.4, height * 0.6
+
+        def fingers(kind, apart, dy=0):
+            page.call("Input.dispatchTouchEvent", type=kind, touchPoints=[{"x": left + x + s * apart, "y": top + y + dy, "id": s + 1} for s in (-1, 1)] if apart else [])
+
+        below = page.run(f"{ANIMATION}.toDomain({x}, {y})")
+        fingers("touchStart", 30)
+        for apart in (32, 45, 60):
+            fingers("touchMove", apart)
+        self.assertAlmostEqual(page.run(f"{ANIMATION}.zoom"), 60 / 32, delta=0.05)
+        for before, now in zip(below, page.run(f"{ANIMATION}.toDomain({x}, {y})")):
+            self.assertAlmostEqual(before, now, delta=0.05)
+        fingers("touchMove", 60, 20)  # both fingers move: the picture goes with them
+        for before, now in zip(below, page.run(f"{ANIMATION}.toDomain({x}, {y + 20})")):
+            self.assertAlmostEqual(before, now, delta=0.05)
+        fingers("touchEnd", 0)
+        self.assertEqual(page.run("[scrollY, visualViewport.scale, timeline.animation.view.cell]"), [scroll, 1, None])
+
+    def test_is_drawn_in_every_frame_of_the_screen_and_leaves_it_most_of_its_time(self):
+        page = self.four()
+        frames, draws, script, gap = page.run("""(async () => {
+            const a = timeline.animation, draw = a.draw.bind(a), seek = timeline.seek.bind(timeline), times = [], gaps = [];
+            let draws = 0, on = true, last = null;
+            a.draw = () => { ++draws; draw(); };
+            timeline.seek = position => { const begin = performance.now(); seek(position); times.push(performance.now() - begin); };
+            const tick = stamp => { if (last !== null) gaps.push(stamp - last); last = stamp; if (on) requestAnimationFrame(tick); };
+            timeline.seek(0); draws = 0; times.length = 0;
+            timeline.play(() => 0.2); requestAnimationFrame(tick);
+            await new Promise(r => setTimeout(r, 1500));
+            on = false; timeline.stop();
+            const median = list => list.sort((p, q) => p - q)[list.length >> 1];
+            return [gaps.length + 1, draws, median(times), median(gaps)]; })()""")
+        print(f"{1000 / gap:.0f} frames/s in the median, {script:.2f} ms of script in each")
+        self.assertLessEqual(abs(frames - draws), 2)
+        self.assertGreater(frames, 4)
+        self.assertLess(script, 1000 / 60 / 2)
 
     def test_keeps_the_cell_that_it_follows_in_the_middle(self):
         page = self.four()
@@ -272,6 +316,12 @@ class Charts(PageOfFour):
         page.run("document.querySelector('select[aria-label=Cell]').value = '5'; document.querySelector('select[aria-label=Cell]').dispatchEvent(new Event('change'))")
         self.assertEqual(page.run(f"{chart}.lines[2].label"), "cell 5")
         self.assertEqual(page.run(f"{chart}.u.data[4][10]"), page.run("data.cells.deformation[5][10]"))
+        page.run("timeline.animation.view.choose(5)")  # none any more
+        x, y = self.cell(page, 2)
+        page.mouse("mouseMoved", x, y)
+        self.assertEqual(page.run(f"{chart}.lines[2].label"), "cell 2")
+        page.mouse("mouseMoved", x, page.run(f"{ANIMATION}.canvas.getBoundingClientRect().top - 30"))
+        self.assertEqual(page.run(f"{chart}.lines[2].label"), "")
 
 
 class What_is_saved(PageOfFour):
@@ -354,45 +404,34 @@ class Tables(PageOfFour):
         self.assertEqual(page.run(order), ["C", "B", "A"])
 
 
-def linear(text):
-    values = [int(text[i:i + 2], 16) / 255 for i in (1, 3, 5)]
-    return [v / 12.92 if v <= 0.04045 else ((v + 0.055) / 1.055) ** 2.4 for v in values]
-
-
-def luminance(colour):
-    return sum(w * v for w, v in zip((0.2126, 0.7152, 0.0722), linear(colour)))
-
-
-def contrast(a, b):
-    low, high = sorted((luminance(a), luminance(b)))
-    return (high + 0.05) / (low + 0.05)
-
-
-# Linear RGB as it is seen without one kind of cones (Machado, Oliveira and Fernandes 2009, severity 1).
-EYES = {"all": ((1, 0, 0), (0, 1, 0), (0, 0, 1)),
-        "protan": ((0.152286, 1.052583, -0.204868), (0.114503, 0.786281, 0.099216), (-0.003882, -0.048116, 1.051998)),
-        "deutan": ((0.367322, 0.860646, -0.227968), (0.280085, 0.672501, 0.047413), (-0.011820, 0.042940, 0.968881)),
-        "tritan": ((1.255528, -0.076749, -0.178779), (-0.078411, 0.930809, 0.147602), (0.004733, 0.691367, 0.303900))}
-
-
-def lab(colour, eye):
-    r, g, b = (min(1, max(0, sum(m * v for m, v in zip(row, linear(colour))))) for row in EYES[eye])
-    x, y, z = 0.4124 * r + 0.3576 * g + 0.1805 * b, 0.2126 * r + 0.7152 * g + 0.0722 * b, 0.0193 * r + 0.1192 * g + 0.9505 * b
-    f = [t ** (1 / 3) if t > 0.008856 else 7.787 * t + 16 / 116 for t in (x / 0.95047, y, z / 1.08883)]
-    return 116 * f[1] - 16, 500 * (f[0] - f[1]), 200 * (f[1] - f[2])
-
-
 class Every_reader(PageOfFour):
-    def test_can_tell_any_two_lines_apart(self):
+    def test_can_tell_any_two_colours_of_lines_and_cells_apart(self):
         for scheme in ("light", "dark"):
             page = self.four(scheme=scheme)
             tones = page.run("[...lineTones, '--single'].map(css)")
             for (a, b), eye in itertools.product(itertools.combinations(tones, 2), EYES):
-                self.assertGreater(math.dist(lab(a, eye), lab(b, eye)), 20, (scheme, a, b, eye))
+                self.assertGreater(difference(a, b, eye), 20, (scheme, a, b, eye))
             for tone in tones:
                 self.assertGreaterEqual(contrast(tone, page.run("css('--card')")), 3, (scheme, tone))
 
-    def test_can_read_all_text(self):
+    def test_can_read_every_scale_of_colours(self):
+        """One that has no sign goes from dark to light or back; the two ends of one that has a sign look different."""
+        for scheme in ("light", "dark"):
+            scales = self.four(scheme=scheme).run("({...ramps[isDark() ? 'dark' : 'light'], ...rampStops})")
+            self.assertEqual(set(scales), {"speed", "vorticity", "cividis", "tension"})
+            for (name, stops), eye in itertools.product(scales.items(), EYES):
+                light = [lab(stop, eye)[0] for stop in stops]
+                if name in ("speed", "cividis"):
+                    steps = [b - a for a, b in zip(light, light[1:])]
+                    self.assertTrue(all(s > 5 for s in steps) or all(s < -5 for s in steps), (scheme, name, eye, light))
+                else:
+                    self.assertGreater(difference(stops[0], stops[-1], eye), 20, (scheme, name, eye))
+                    middle = len(stops) // 2
+                    for half in (stops[middle:], stops[middle::-1]):
+                        far = [difference(half[0], stop, eye) for stop in half]
+                        self.assertEqual(far, sorted(far), (scheme, name, eye))
+
+    def test_can_read_text_of_every_kind_on_every_ground(self):
         for scheme in ("light", "dark"):
             page = self.four(scheme=scheme)
             for text, grounds in (("--text", ("--page", "--card", "--warn-back", "--bad-back")), ("--quiet", ("--page", "--card", "--grid", "--warn-back", "--bad-back")), ("--accent", ("--page", "--card")),
@@ -400,15 +439,11 @@ class Every_reader(PageOfFour):
                 for ground in grounds:
                     self.assertGreaterEqual(contrast(*page.run(f"['{text}', '{ground}'].map(css).map(c => c.length === 4 ? '#' + [...c.slice(1)].map(x => x + x).join('') : c)")), 4.5, (scheme, text, ground))
 
-    def test_finds_a_name_on_every_control_and_picture(self):
-        for file in ("four/report.html", "three.html"):
-            page = self.open(folder / file)
-            nameless = page.run("""[...document.querySelectorAll('button, select, input, summary, canvas.view, [role=group], [role=tablist], [role=tabpanel], nav')].filter(e =>
-                !(e.ariaLabel || e.textContent.trim() || e.title || e.closest('label')?.textContent.trim())).map(e => e.outerHTML.slice(0, 120))""")
-            self.assertEqual(nameless, [])
-            ids = page.run("[...document.querySelectorAll('[id]')].map(e => e.id)")
-            self.assertEqual(len(ids), len(set(ids)))
-            self.assertEqual(page.run("[document.documentElement.lang, document.querySelectorAll('h1').length, document.querySelectorAll('main').length]"), ["en", 1, 1])
+    def test_meets_no_obstacle(self):
+        for file, scheme, screen in itertools.product(("four/report.html", "three.html"), ("light", "dark"), ("desktop", "phone")):
+            page = self.open(folder / file, scheme=scheme, screen=screen)
+            page.run("document.querySelectorAll('details').forEach(d => { d.open = true; }); document.querySelectorAll('.closed').forEach(e => e.classList.remove('closed'))")
+            self.assertEqual(obstacles(page), [], (file, scheme, screen))
 
     def test_can_press_every_button_on_a_phone(self):
         page = self.four(screen="phone")

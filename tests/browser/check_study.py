@@ -13,6 +13,7 @@ from pathlib import Path
 
 import study_fixture
 from browser import SCREENS, Browser, BrowserCase, main
+from readers import EYES, contrast, difference, obstacles
 
 PROGRAM = Path(sys.argv[1]).resolve()
 SHOTS = Path(sys.argv[3]) if sys.argv[2:3] == ["--shots"] else None
@@ -113,6 +114,30 @@ class Every_page_on_every_screen(PageCase):
             self.assert_sound(page, 688)
 
 
+class Every_reader(PageCase):
+    def test_meets_no_obstacle(self):
+        for name in ("study", "limits"):
+            for scheme in ("light", "dark"):
+                for screen in SCREENS:
+                    page = self.open(PAGES[name], scheme=scheme, screen=screen)
+                    page.run("document.querySelectorAll('details').forEach(d => { d.open = true; })")
+                    self.assertEqual(obstacles(page), [], (name, scheme, screen))
+
+    def test_reaches_a_point_of_the_table_with_the_keyboard(self):
+        page = self.open(PAGES["study"])
+        page.run("document.querySelector('tr[data-row]').focus()")
+        page.key("Enter")
+        self.assertEqual(page.run("String(view.point)"), page.run("document.querySelector('tr[data-row]').dataset.row"))
+
+    def test_finds_what_is_planted(self):
+        page = self.open(PAGES["limits"])
+        page.run("""document.querySelector('main').insertAdjacentHTML('beforeend',
+            '<p style="color: #999; background: #fff">pale</p><button></button><span style="cursor: pointer">x</span><h4>deep</h4><i id="page"></i>')""")
+        found = "\n".join(obstacles(page))
+        for words in ("contrast 2.8", "no name: <button", "out of the keyboard's reach: <span", "level 4 follows", "twice: id page"):
+            self.assertIn(words, found)
+
+
 class What_the_pages_are_tested_with(unittest.TestCase):
     def test_is_what_the_program_s_schemas_allow(self):
         try:
@@ -139,7 +164,7 @@ class The_page_of_a_study(PageCase):
         self.assertIn(STUDY["sentences"][0]["text"], boxes[0][1])
         self.assertEqual(len(boxes[0]), 3)  # where methods disagree is a warning
         warnings = "\n".join(boxes[1])
-        for words in ("methods disagree", "6 of 40 points failed", "1 point was left out", "not deterministic: resolution 5, tau 0.6, corrected: cells.csv"):
+        for words in ("The methods disagree about deformation", "6 of 40 points failed", "1 point was left out", "not deterministic: resolution 5, tau 0.6, corrected: cells.csv"):
             self.assertIn(words, warnings)
 
     def test_draws_every_point_of_both_charts_and_marks_those_that_failed(self):
@@ -238,7 +263,7 @@ class The_page_of_a_study(PageCase):
 
     def test_says_which_setting_gains_most(self):
         page = self.open(PAGES["study"])
-        self.assertEqual(self.rows(page, "Which setting gains most")[:2], [["tau", "1", "2", "resolution 20, plain", "÷ 1.4", "× 0.35", "free"],
+        self.assertEqual(self.rows(page, "Which setting helps most")[:2], [["tau", "1", "2", "resolution 20, plain", "÷ 1.4", "× 0.35", "free"],
                                                                        ["scheme", "plain", "corrected", "resolution 20, tau 1", "÷ 3.2", "× 1.15", "8.4"]])
 
     def test_shows_a_point_s_time_by_pass_when_it_is_chosen(self):
@@ -306,6 +331,15 @@ class The_page_of_limits(PageCase):
         self.assertIn("4 extreme cases: 2 × stopped with a reason, 1 × right answer, 1 × WRONG; 2 did not end as expected.", words)
         self.assertIn("bad", page.run("document.querySelector('.status').className"))
 
+    def test_has_a_blue_for_stable_that_no_eye_takes_for_a_failure(self):
+        for scheme in ("light", "dark"):
+            stable, *failing, card = self.open(PAGES["limits"], scheme=scheme).run("['--stable', ...Object.values(failureModes).map(([tone]) => tone), '--card'].map(css)")
+            self.assertEqual(len(failing), 7)
+            for tone in failing:
+                self.assertGreaterEqual(contrast(tone, card.ljust(7, card[-1])), 3, (scheme, tone))
+                for eye in EYES:
+                    self.assertGreater(difference(stable, tone, eye), 20, (scheme, tone, eye))
+
     def test_draws_stable_and_failing_stretches_between_the_edges(self):
         page = self.open(PAGES["limits"])
         self.assertEqual(page.run("map.rows.length"), 9)
@@ -371,7 +405,7 @@ class The_page_of_limits(PageCase):
         page = self.open(report("stopped", dict(result, complete=False)))
         self.assertEqual(self.bar(page, "plain, peskin4"), [["open", 6e-6, 6e-2]])
         self.assertIn("of 1 nothing is known yet", self.text(page, ".status"))
-        self.assertIn("has not come to its end", self.text(page, ".status.warn"))
+        self.assertIn("is not finished", self.text(page, ".status.warn"))
         self.assert_sound(page)
 
     def test_has_an_even_axis_where_the_file_asks_for_one(self):

@@ -58,7 +58,7 @@ def study(resolutions=(5, 10, 20, 30, 40), taus=("0.6", "0.8", "1", "2"), scheme
          "by_method": [{"method": {"tau": tau, "scheme": scheme}, "order": None if tau == "0.6" else order[scheme] + 0.02, "limit": None if tau == "0.6" else exact,
                         "uncertainty": None if tau == "0.6" else 0.0003, "points": [], "why_not": "two of the finest three points failed" if tau == "0.6" else None}
                        for tau in taus for scheme in schemes],
-         "disagreement": "methods disagree: tau 2, plain tends to 0.2461 and tau 0.8, corrected to 0.2386, further apart than both uncertainties"},
+         "disagreement": "The methods disagree about deformation: tau 2, scheme plain tends to 0.2461 +- 0.0003, tau 0.8, scheme corrected tends to 0.2386 +- 0.0003, further apart than their uncertainties together."},
         {"name": "area drift", "kind": "area_drift", "unit": "", "error": "absolute", "target": 1e-7,
          "reference": {"kind": "analytic", "value": 0, "uncertainty": 0, "order": None, "source": "zero", "points": [], "why_not": None}, "by_method": [], "disagreement": None}]
     cheapest = min((p for p in points if (p["results"]["deformation"]["error"] or 1) < 0.05), key=lambda p: p["wall_s"]["median"])
@@ -76,12 +76,12 @@ def study(resolutions=(5, 10, 20, 30, 40), taus=("0.6", "0.8", "1", "2"), scheme
             {"axis": "tau", "from": "1", "to": "2", "fixed": {"resolution": "20", "scheme": "plain"}, "error_factor": 1.4, "time_factor": 0.35, "gain": None, "free": True},
             {"axis": "scheme", "from": "plain", "to": "corrected", "fixed": {"resolution": "20", "tau": "1"}, "error_factor": 3.2, "time_factor": 1.15, "gain": 8.4, "free": False},
             {"axis": "resolution", "from": "20", "to": "30", "fixed": {"scheme": "plain", "tau": "1"}, "error_factor": 1.6, "time_factor": 3.5, "gain": 0.36, "free": False}], "area drift": []},
-        "sentences": [{"quantity": "deformation", "text": f"cheapest below 5 %: {words(cheapest)} ({cheapest['wall_s']['median']:.2g} s), 8 times cheaper than the default",
+        "sentences": [{"quantity": "deformation", "text": f"To keep the error of deformation below 5 %, take {words(cheapest)}: it runs {cheapest['wall_s']['median']:.2g} s, with an error of 4.9 % +- 0.04 %. The default runs 17 s, 28 times longer, with an error of 1.8 %.",
                        "target": 0.05, "point": cheapest["id"]},
                       {"quantity": "deformation", "text": quantities[0]["disagreement"], "target": None, "point": None},
-                      {"quantity": "area drift", "text": "no setting is shown to be below 1e-07; nearest: resolution 40, tau 1, scheme corrected", "target": 1e-7, "point": points[-1]["id"]}],
+                      {"quantity": "area drift", "text": "No setting is sure to keep the error of area drift below 1e-07. The nearest is resolution 40, tau 1, scheme corrected: it runs 140 s, with an error of 0.00013.", "target": 1e-7, "point": points[-1]["id"]}],
         "target": {"quantity": "deformation", "value": 0.01, "met": True, "point": cheapest["id"], "estimated_error": 0.0079, "uncertainty": 0.0004,
-                   "sentence": f"deformation to 1 %: take {words(cheapest)}; estimated error 0.8 %"},
+                   "sentence": f"For deformation to 1 %, take {words(cheapest)}: it runs 0.6 s, with an estimated error of 0.79 % +- 0.04 %. It is 28 times faster than the default."},
     }
 
 

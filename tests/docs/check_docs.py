@@ -29,6 +29,17 @@ COMMANDS = [c for page, text in TEXTS.items() if page != TUTORIAL for c in comma
 # Options of programs that are not Rouleau's and that pages name in the text.
 FOREIGN = {"--component", "--prefix", "--preset", "--build", "--install", "--parallel", "--pkg-config", "--cflags", "--libs",
            "--tool"}
+# Words that readers had to read twice, and what is meant. Prose and messages do without them; names of keys are not prose.
+STUMBLING = {
+    r"told": "reported, given", r"dearer": "slower, more expensive", r"knobs?": "setting", r"lone": "single",
+    r"in all(?=[,.;:|)]|\s*$)": "together, total", r"frame of rest": "reference frame", r"obeyed": "followed",
+    r"buys": "gains", r"looked at": "checked, read", r"nobody knows": "is not known", r"layers? without cells": "cell-free layer",
+    r"garbage": "wrong results",
+}
+# "for" where "because" is meant begins a clause: "..., for hosts compute it in vain".
+CAUSAL_FOR = r"[,;] for (?:it|they|he|we|this|these|that|there|such|hosts|models|cells|membranes|laws) (?!and\b)[a-z]+"
+STUMBLING_WORDS = re.compile(rf"\b(?:{'|'.join(STUMBLING)})(?!\w)|{CAUSAL_FOR}", re.IGNORECASE | re.MULTILINE)
+LITERAL = re.compile(r'"((?:[^"\\\n]|\\.)*)"|`((?:[^`\\]|\\.)*)`')
 NUMBER = re.compile(r"-?\d+(\.\d+)?(e[-+]?\d+)?|\binf\b")
 
 
@@ -139,6 +150,25 @@ class Documentation(unittest.TestCase):
                 for option in re.findall(r"(?<![\w-])--[a-z][a-z-]+", code):
                     known = option in FOREIGN or has_option("\n".join([everything, *named]), option)
                     self.assertTrue(known, f"{page}: `{code}`")
+
+    def test_no_words_that_have_to_be_read_twice(self):
+        for words in ("which was told before", "0.1 in all.", "twelve in all", "is a warning, for hosts compute it in vain"):
+            self.assertTrue(STUMBLING_WORDS.search(words), words)  # they would be found
+        for words in ("in all scenes", "for it to rest", "alone", "a cell, for example"):
+            self.assertIsNone(STUMBLING_WORDS.search(words), words)
+        spoken = {f"rouleau {name} --help": text for name, text in {"": help_of(str(PROGRAM)), **helps_of_rouleau()}.items()}
+        found = [f"{place}:{text.count(chr(10), 0, words.start()) + 1}: {words[0]}"
+                 for place, text in {**TEXTS, **spoken}.items() for words in STUMBLING_WORDS.finditer(text)]
+        # Messages, descriptions and what the pages of reports say: literals of more than one word.
+        sources = [p for folder in ("host", "plugins", "sdk/schema", "python", "scenes") for p in (SOURCE / folder).rglob("*")
+                   if p.suffix in (".cpp", ".hpp", ".js", ".json", ".py") and "uplot" not in p.parts]
+        self.assertGreater(len(sources), 300)
+        for path in sources:
+            for line, text in enumerate(path.read_text().splitlines(), 1):
+                literals = [] if text.lstrip().startswith("//") else [a or b for a, b in LITERAL.findall(text)]
+                found += [f"{path.relative_to(SOURCE)}:{line}: {words[0]}" for literal in literals if " " in literal.strip()
+                          for words in STUMBLING_WORDS.finditer(literal)]
+        self.assertEqual(found, [], f"write instead {STUMBLING}")
 
     def test_every_file_that_is_named_exists(self):
         folders = "|".join(p.name for p in SOURCE.iterdir() if p.is_dir() and p.name not in ("build", "runs", ".git"))

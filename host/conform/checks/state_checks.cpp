@@ -84,7 +84,7 @@ Finding look_after_step(const Subject& subject) {
           const double limit =
               32 * most.at(name)[i] + 256 * epsilon * std::abs(values[i]) + std::numeric_limits<double>::min();
           worst.add(std::abs(stepped - values[i]), limit, [&, &name = name, &values = values] {
-            return name + " of a step is " + number(stepped, 17) + " and, looked at in the state after it, " +
+            return name + " of a step is " + number(stepped, 17) + " and, computed from the state after it, " +
                    number(values[i], 17) + ", in lattice units, at " + place(subject, trial.setting, inputs, i) +
                    trial.words + "; they differ by";
           });

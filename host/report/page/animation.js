@@ -3,7 +3,7 @@
 class View {
   constructor(runs) {
     const names = new Set(runs.flatMap(run => Object.keys(cellColours(run))));
-    Object.assign(this, {field: "", tracers: true, cell: null, follow: false, listeners: [], colour: names.has("aggregate") ? "aggregate" : "grey", before: null});
+    Object.assign(this, {field: "", tracers: true, cell: null, hovered: null, follow: false, listeners: [], colour: names.has("aggregate") ? "aggregate" : "grey", before: null});
   }
   changed() { for (const listener of this.listeners) listener(); }
   /// Cells are grey over a field, and get their colours back without one.
@@ -13,10 +13,14 @@ class View {
     this.field = name;
     this.changed();
   }
+  /// The cell under the pointer; charts lift it while none is chosen.
+  hover(cell) { if (cell !== this.hovered) { this.hovered = cell; this.changed(); } }
+  get lifted() { return this.cell ?? this.hovered; }
   choose(cell) { this.cell = cell === this.cell ? null : cell; this.follow &&= this.cell !== null; this.changed(); }
 }
 
-/// The cells of a run at the timeline's instant, with the flow under them. Drag to move it, + and - to come closer.
+/// The cells of a run at the timeline's instant, with the flow under them. Drag to move it; + and -, or two fingers, to come
+/// closer.
 class Animation {
   constructor(parent, timeline, run, view) {
     const data = timeline.runs[run];
@@ -37,7 +41,7 @@ class Animation {
   }
   description() {
     const {data} = this, cells = data.outlines ? data.outlines.first.length - 1 : 0;
-    return `Animation: ${cells ? `outlines of ${cells} ${cells === 1 ? "cell" : "cells"}` : "the flow"} in a box of ${format(this.lx, 3)} by ${format(this.ly, 3)} µm. Space plays, arrow keys step, plus and minus zoom.`;
+    return `Animation: ${cells ? `outlines of ${cells} ${cells === 1 ? "cell" : "cells"}` : "the flow"} in a box of ${format(this.lx, 3)} by ${format(this.ly, 3)} µm. Space plays, arrow keys step, plus and minus or two fingers zoom.`;
   }
   showBars() { this.cellBar.replaceChildren(...(this.colours[this.view.colour] ?? this.colours.grey)?.bar() ?? []); }
 
@@ -90,17 +94,33 @@ class Animation {
       if (event.pointerType === "mouse") this.tell(this.cellAt(...now), now);
     });
     canvas.addEventListener("pointerup", event => {
-      if (drag && !drag.moved) { const cell = this.cellAt(...at(event)); if (cell !== null || this.view.cell !== null) this.view.choose(cell); this.tell(cell, at(event)); }
+      if (drag && !drag.moved) { const cell = this.cellAt(...at(event)); if (cell !== null || this.view.cell !== null) this.view.choose(cell); this.tell(event.pointerType === "mouse" || this.view.cell !== null ? cell : null, at(event)); }
       drag = null;
     });
-    canvas.addEventListener("pointerleave", () => this.tell(null));
+    canvas.addEventListener("pointerleave", event => { if (event.pointerType === "mouse") this.tell(null); });
+    this.listenToFingers(at, () => { drag = null; });
     canvas.addEventListener("wheel", event => { if (event.ctrlKey || event.metaKey) { event.preventDefault(); this.zoomBy(event.deltaY < 0 ? 1.15 : 1 / 1.15, at(event)); } }, {passive: false});
   }
-  /// Comes closer by a factor, to what lies at a point of the canvas.
-  zoomBy(factor, at = [this.width / 2, this.height / 2]) {
+  /// Two fingers: what lay between them stays between them. `begin` is called when the second one moves.
+  listenToFingers(at, begin) {
+    const {canvas} = this;
+    let before = null;
+    canvas.addEventListener("touchmove", event => {
+      if (event.touches.length !== 2) return;
+      event.preventDefault();  // or the page would scroll
+      begin();
+      const [a, b] = [...event.touches].map(at), now = {apart: Math.max(1, Math.hypot(a[0] - b[0], a[1] - b[1])), middle: [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2]};
+      this.view.follow = false;
+      if (before) this.zoomBy(now.apart / before.apart, before.middle, now.middle);
+      before = now;
+    }, {passive: false});
+    for (const kind of ["touchstart", "touchend", "touchcancel"]) canvas.addEventListener(kind, () => { before = null; });
+  }
+  /// Comes closer by a factor, to what lies at a point of the canvas; it goes to the point `to`.
+  zoomBy(factor, at = [this.width / 2, this.height / 2], to = at) {
     const before = this.toDomain(...at), zoom = Math.min(40, Math.max(1, this.zoom * factor)), scale = this.scale * zoom / this.zoom;
     this.zoom = zoom;
-    this.centre = [before[0] - (at[0] - this.width / 2) / scale, before[1] + (at[1] - this.height / 2) / scale];
+    this.centre = [before[0] - (to[0] - this.width / 2) / scale, before[1] + (to[1] - this.height / 2) / scale];
     if (zoom === 1) this.centre[1] = this.ly / 2;
     this.canvas.style.touchAction = zoom > 1 ? "none" : "";
     this.draw();
@@ -110,6 +130,7 @@ class Animation {
   /// Words about a cell beside the pointer.
   tell(cell, at) {
     this.canvas.style.cursor = cell === null ? "" : "pointer";
+    this.view.hover(cell);
     this.tip.hidden = cell === null;
     if (cell === null) return;
     const {cells} = this.data, output = this.timeline.output(this.run), value = (name, unit, digits = 3) => typeof cells?.[name]?.[cell]?.[output] === "number" ? `${format(cells[name][cell][output], digits)}${unit}` : null;

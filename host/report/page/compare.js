@@ -13,7 +13,7 @@ function differenceWords(r, differences, runs) {
   return rows.length ? rows.slice(0, 3).map(row => `${settingName(row.pointer)} ${shortened(asText(row.values[r]), 32)}`).join(", ") + (rows.length > 3 ? ` and ${rows.length - 3} more` : "") : runs[r].directory;
 }
 function runName(r, {runs, differences}) {
-  return element("p", {class: "run-name"}, element("b", {style: `background:var(${runTones[r]})`}, runNames[r]), element("strong", {}, differenceWords(r, differences, runs)));
+  return element("p", {class: "run-name"}, element("b", {style: `border-color:var(${runTones[r]})`}, runNames[r]), element("strong", {}, differenceWords(r, differences, runs)));
 }
 
 function showComparison(data) {
@@ -72,7 +72,7 @@ function runTable({runs, differences}) {
   const settings = settingsOf(differences).slice(0, 6), results = runs.map(run => run.step.length ? resultOf(run).numbers : []);
   const rows = runs.map((run, r) => ({run, r})), leading = text => { const v = parseFloat(String(text ?? "").replaceAll("\u202f", "").replace("−", "-").replace(/^strain /, "")); return Number.isFinite(v) ? v : String(text ?? ""); };
   const labels = [...new Set(results.flatMap(numbers => numbers.map(n => n.label)))].slice(0, 6), found = (r, label) => results[r].find(n => n.label === label)?.value;
-  return table([{title: "Run", value: ({r}) => element("span", {class: "run-name"}, element("b", {style: `background:var(${runTones[r]})`}, runNames[r])), sort: ({r}) => r},
+  return table([{title: "Run", value: ({r}) => element("span", {class: "run-name"}, element("b", {style: `border-color:var(${runTones[r]})`}, runNames[r])), sort: ({r}) => r},
     ...settings.map(row => ({title: settingName(row.pointer), value: ({r}) => shortened(asText(row.values[r])), sort: ({r}) => leading(row.values[r])})),
     {title: "status", value: ({run}) => run.summary.status}, ...labels.map(label => ({title: label, value: ({r}) => found(r, label) ?? "–", sort: ({r}) => leading(found(r, label)), number: true})),
     {title: "took", value: ({run}) => seconds(run.summary.wall_s), sort: ({run}) => run.summary.wall_s, number: true}], rows, {sortable: true});
@@ -90,5 +90,5 @@ function showDifferences(data) {
   const ratio = ({values: [a, b]}) => typeof a === "number" && typeof b === "number" && a !== 0 ? `${format(100 * (b - a) / Math.abs(a), 3)} %` : "";
   section("Outcome", differing.length ? table([{title: "What", value: r => spelled(r.name).replace(/\//g, ", ")}, ...each(asText).map(column => ({...column, number: true})),
     ...(runs.length === 2 ? [{title: "B against A", number: true, value: ratio}] : [])], differing, {stacked: true}) : none("All numbers are the same."),
-    ...(alike && differing.length ? [note(`${alike} more ${alike === 1 ? "is" : "are"} the same in all.`)] : []));
+    ...(alike && differing.length ? [note(`${alike} more ${alike === 1 ? "is" : "are"} the same in all runs.`)] : []));
 }

@@ -22,7 +22,7 @@ function format(value, digits = 4) {
   }
   return String(Number(value.toPrecision(digits))).replace("-", "−");
 }
-const spelled = name => name.replace(/(?<!_per)_(s|m|bytes|Pa|(?:Pa|J|W)_per_m|m2_per_s|1_per_s)$/, (_, unit) => `, ${unit.replace("_per_", "/").replace("m2", "m²")}`).replace(/_/g, " ").replace(/^./, c => c.toUpperCase());
+const spelled = name => name.replace(/(?<!_per)_(s|m|um|bytes|Pa|(?:Pa|J|W)_per_m|m2_per_s|1_per_s)$/, (_, unit) => `, ${unit.replace("_per_", "/").replace("m2", "m²").replace("um", "µm")}`).replace(/^cell_free_/, "cell-free ").replace(/_/g, " ").replace(/^./, c => c.toUpperCase());
 const seconds = t => t === undefined || t === null ? "–" : t < 120 ? `${format(t, 3)} s` : t < 7200 ? `${format(t / 60, 3)} min` : `${format(t / 3600, 3)} h`;
 const css = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 /// Tones of lines, cells and runs: any two differ for every kind of colour blindness (tests/browser measures it).
@@ -42,6 +42,7 @@ function table(columns, rows, {stacked = false, sortable = false, attributes = (
   const body = element("tbody", {}, ...trs);
   const heads = columns.map(c => element("th", {scope: "col", ...(c.number ? {class: "number"} : {})}, c.title));
   if (sortable) heads.forEach((head, i) => {
+    if (!columns[i].title) return;  // a column of pictures
     const of = rows.map(columns[i].sort ?? (row => valueOf(columns[i], row))), missing = v => v === null || v === undefined || v === "";
     head.replaceChildren(element("button", {type: "button", onclick: () => {
       const down = head.getAttribute("aria-sort") === "ascending", sign = down ? -1 : 1;

@@ -41,7 +41,7 @@ function showLimits(result) {
   const {methods: rows, varied} = methodsOf(result.axes ?? [], result.edges ?? []), said = limitsSentences(result, mapRows(result), unit);
   page.append(element("div", {class: "card status sentences" + (said.some(s => s.bad) ? " bad" : "")},
     element("ul", {}, ...(said.length ? said : [{text: "Nothing has been tried yet."}]).map(s => element("li", s.bad ? {class: "over"} : {}, s.text)))));
-  const warnings = [...(result.complete === false ? ["The search has not come to its end; the same command goes on with it."] : []), ...(result.warnings ?? [])];
+  const warnings = [...(result.complete === false ? ["The search is not finished; the same command continues it."] : []), ...(result.warnings ?? [])];
   if (warnings.length) page.append(warningBox(warnings));
   page.append(links);
   const map = rows.length ? showMap(result, varied, unit) : null;
@@ -58,7 +58,7 @@ function showSoundness({steps, sound, parameter}) {
   const facts = [["Steps of each trial", typeof steps === "number" ? format(steps) : null], ...(parameter?.pointers ?? []).map(pointer => ["Varied", pointer]),
     ["Edge found to", typeof parameter?.precision === "number" ? `${parameter.scale === "linear" ? "" : "a factor of "}${format(parameter.precision, 4)}` : null],
     ...Object.entries(sound ?? {}).map(([name, limit]) => [`Fails above: ${spelled(name).toLowerCase()}`, typeof limit === "number" ? format(limit) : null])];
-  if (facts.some(([, text]) => text)) section("What counts as failed", factTable(facts), note("Beside the reasons for which a run stops by itself: a run that completes but passes one of these has failed silently."));
+  if (facts.some(([, text]) => text)) section("What counts as failed", factTable(facts), note("A run can also be stopped by its own checks. One that completes, but exceeds one of these values, has failed silently."));
 }
 
 function showMap(result, varied, unit) {

@@ -36,7 +36,7 @@ function showCases(cases) {
   section("Extreme cases", table([{title: "Case", key: "name", mark: () => "broad"}, {title: "Verdict", key: "verdict", mark: r => isWrong(r.verdict) ? "over" : r.as_expected === false ? "near" : ""},
     {title: "Expected", value: r => expected[r.expect] ?? r.expect ?? "", mark: r => r.as_expected === false ? "near" : ""}, {title: "What happened", value: r => r.outcome ?? "", mark: () => "broad"},
     {title: "What to change", value: r => r.failure?.remedy ?? "", mark: () => "broad"}], cases, {stacked: true}),
-    note("A case is well when it ends in a right answer or stops with a reason before garbage is written; anything else is WRONG. Marked, too, is what was expected and did not come."));
+    note("A case passes if it gives the right answer, or stops with a reason before it writes wrong results. Anything else is WRONG. A case that did not end as expected is marked too."));
 }
 function showMargins(scenes, unit) {
   if (!scenes.length) return;
@@ -44,5 +44,5 @@ function showMargins(scenes, unit) {
     {title: "Margin", number: true, value: r => typeof r.margin === "number" ? `${format(r.margin, 3)} ×` : "–", sort: r => r.margin,
      mark: r => typeof r.margin !== "number" ? "" : r.margin < 1 ? "over" : r.margin < 1.5 ? "near" : ""},
     ...(scenes.some(r => r.why_not) ? [{title: "Why none", value: r => r.why_not ?? ""}] : [])], scenes, {sortable: true}),
-    note("Values are compared as the lattice feels them, in lattice units: scenes differ in resolution and density factor. Margin: by what factor the value may still change before it passes the edge; below 1 it has passed."));
+    note("Values are compared in lattice units, because scenes differ in resolution and density factor. The margin is the factor by which the value may change before it passes the edge; below 1 it has passed the edge."));
 }

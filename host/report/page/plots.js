@@ -81,7 +81,7 @@ function plots(timeline, parent, {view, events = []}) {
     const about = quantity.lines.map(({label, doc}) => `${label ? `${label}: ` : ""}${doc.replaceAll("`", "")}`).join("\n");
     const group = quantity.group === "main" && grid("main").children.length >= open ? "more" : quantity.group ?? "more";
     const chart = new Chart(grid(group), timeline, {...quantity, about, unit, lines, events}), name = quantity.lines[0].name;
-    if (quantity.table === "cells" && timeline.runs.length === 1) view?.listeners.push(() => chart.pick(view.cell, cell => multiplied(timeline.runs[0].cells[name][cell], factor)));
+    if (quantity.table === "cells" && timeline.runs.length === 1) view?.listeners.push(() => chart.pick(view.lifted, cell => multiplied(timeline.runs[0].cells[name][cell], factor)));
   }
   parent.append(...(grids.main ? [grids.main] : []));
   for (const [name, title] of [["more", "More charts"], ["numerics", "Numerics: Mach number, drifts, energy of the simulated fluid"]])

@@ -14,15 +14,15 @@ function meanOf(summary, name) {
   if (!stage) return null;
   const {mean, deviation} = stage.means[name], bar = summary.error_bars?.[name];
   return typeof bar?.error === "number" ? {value: bar.value ?? mean, error: bar.error, about: `mean of the stage's second half, ± its measured error`}
-    : {value: mean, error: null, about: `mean of the second half of stage ${stage.stage}; standard deviation ${format(deviation, 2)}`};
+    : {value: mean, error: null, spread: deviation, about: `mean of the second half of stage ${stage.stage}; standard deviation ${format(deviation, 2)}`};
 }
 
-/// A value with as many digits as its error has a meaning for: "0.347 ± 0.004".
-function withError(value, error, digits = 3) {
-  if (typeof error !== "number") return format(value, digits);
-  if (!(error > 0)) return format(value, digits);
-  const decimals = Math.max(0, Math.min(8, 1 - Math.floor(Math.log10(error)) - (error / 10 ** Math.floor(Math.log10(error)) >= 2 ? 1 : 0)));
-  return `${value.toFixed(decimals)} ± ${error.toFixed(decimals)}`.replace("-", "−");
+/// A value with as many digits as its error has a meaning for: "0.347 ± 0.004"; without an error as many as its spread has.
+function withError(value, error, spread = null) {
+  const known = error > 0 ? error : spread;
+  if (!(known > 0)) return format(value, 3);
+  const size = Math.floor(Math.log10(known)), decimals = Math.max(0, Math.min(8, 1 - size - (known / 10 ** size >= 2 ? 1 : 0)));
+  return (error > 0 ? `${value.toFixed(decimals)} ± ${error.toFixed(decimals)}` : value.toFixed(decimals)).replace("-", "−");
 }
 
 /// What the aggregates did: {sentences, numbers}, of runs with two cells or more.
@@ -48,7 +48,7 @@ function aggregation(run) {
 function resultOf(run) {
   const summary = run.summary || {}, {sentences, numbers} = aggregation(run), cells = run.cells?.types.length ?? 0, bars = summary.error_bars || {};
   const viscosity = meanOf(summary, "relative_viscosity");
-  if (viscosity && cells) { numbers.push({value: withError(viscosity.value, viscosity.error), label: "relative viscosity", about: viscosity.about}); sentences.push(`The relative viscosity is ${withError(viscosity.value, viscosity.error)}.`); }
+  if (viscosity && cells) { numbers.push({value: withError(viscosity.value, viscosity.error, viscosity.spread), label: "relative viscosity", about: viscosity.about}); sentences.push(`The relative viscosity is ${withError(viscosity.value, viscosity.error, viscosity.spread)}.`); }
   const deformations = (run.cells?.deformation ?? []).map(line => line.at(-1)).filter(v => v !== null);
   if (deformations.length) {
     const mean = deformations.reduce((a, b) => a + b) / deformations.length, value = withError(bars.deformation?.value ?? mean, bars.deformation?.error);

@@ -2,11 +2,11 @@
 function studyWarnings(study, view) {
   const failed = view.points.filter(p => p.status !== "completed").length, left = study.left_out ?? [];
   return [
-    ...(study.complete === false && !left.length ? ["The study has not come to its end; the same command goes on with it."] : []),
+    ...(study.complete === false && !left.length ? ["The study is not finished; the same command continues it."] : []),
     ...view.quantities.map(q => q.disagreement && (q.disagreement.includes(q.name) ? q.disagreement : `${q.name}: ${q.disagreement}`)),
-    ...view.quantities.map(q => q.reference?.why_not && `${q.name} ${typeof q.reference.value === "number" ? "has a reference with a doubt" : "has no reference"}: ${q.reference.why_not}`),
+    ...view.quantities.map(q => q.reference?.why_not && `${typeof q.reference.value === "number" ? `The reference of ${q.name} is uncertain` : `There is no reference for ${q.name}`}: ${q.reference.why_not}`),
     ...view.points.map(p => p.not_deterministic && `not deterministic: ${labelWords(p.labels)}: ${p.not_deterministic}`),
-    ...(failed ? [`${failed} of ${view.points.length} points failed; they stand at the upper border of the charts and in a table of their own.`] : []),
+    ...(failed ? [`${failed} of ${view.points.length} points failed. They are drawn at the upper border of the charts, and a table lists them.`] : []),
     ...(left.length ? [`${left.length} ${left.length === 1 ? "point was" : "points were"} left out; the table at the end says which and why.`] : [])].filter(Boolean);
 }
 
@@ -21,7 +21,7 @@ function sentenceBox(view) {
   const lines = told.map(s => element("li", {}, ...(s.text.includes(s.quantity) ? [] : [element("b", {}, s.quantity), ": "]), s.text, " ", find(s.quantity, s.point)));
   const {target} = study;
   if (target) lines.unshift(element("li", {class: target.met ? "" : "over"}, element("b", {}, target.sentence ?? (target.met ? "The target is met." : "The target is not met.")), " ", find(target.quantity, target.point)));
-  if (!lines.length) lines.push(element("li", {}, "The study says nothing in a sentence: see the charts and tables."));
+  if (!lines.length) lines.push(element("li", {}, "There is no conclusion yet: see the charts and tables."));
   return element("div", {class: "card status sentences" + (target && !target.met ? " bad" : "")}, element("ul", {}, ...lines));
 }
 

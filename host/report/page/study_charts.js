@@ -27,7 +27,8 @@ function errorAxis(view, drawn) {
     note: (open && !near.includes(open) && open < least ? `The reference's uncertainty, ${view.errorText(view.openness)}, lies below what is drawn.` : "") + exact,
   };
 }
-const errorTitle = view => `Error of ${view.quantity.name}${view.unit ? `, ${view.unit}` : ""}`;
+const theError = name => name.endsWith("error") ? `the ${name}` : `the error of ${name}`;
+const errorTitle = view => `${spelled(theError(view.quantity.name).slice(4))}${view.unit ? `, ${view.unit}` : ""}`;
 
 function timeContent(view) {
   const place = point => { const t = view.seconds(point); return t > 0 ? t : null; };

@@ -16,7 +16,7 @@ function showReferences(view) {
 /// The table of points for the quantity that is shown, made anew with every other choice of it.
 function showPoints(view) {
   const box = element("div", {class: "points"});
-  section("Points", box, note("A title sorts by its column; a row shows its point in the charts. study.csv has all quantities of all points."));
+  section("Points", box, note("A title sorts by its column; a row, clicked or chosen with Enter, shows its point in the charts. study.csv has all quantities of all points."));
   let drawn = null;
   view.listeners.push(() => {
     if (drawn !== view.quantity) box.replaceChildren(pointTable(view));
@@ -39,7 +39,7 @@ function pointTable(view) {
     {title: "Front", value: r => front.has(r.id) ? "yes" : ""},
     {title: "Wall time, s", ...time("wall_s")}, {title: "Processor time, s", ...time("cpu_s")}, {title: "Steps", key: "steps", number: true},
     {title: "Memory, MiB", number: true, value: r => r.peak_rss_bytes ? format(r.peak_rss_bytes / 1048576, 3) : "–", sort: r => r.peak_rss_bytes}, ...(new Set(view.points.map(p => p.threads)).size > 1 ? [{title: "Threads", key: "threads", number: true}] : [])],
-    view.points, {sortable: true, attributes: r => ({"data-row": r.id, onclick: () => view.choose(r.id)})});
+    view.points, {sortable: true, attributes: r => ({"data-row": r.id, tabindex: 0, onclick: () => view.choose(r.id), onkeydown: event => { if (event.key === "Enter") view.choose(r.id); }})});
 }
 const spreadCell = time => typeof time.median !== "number" ? "–" : element("span", {}, format(time.median, 3), time.most > time.least ? element("span", {class: "quiet spread"}, ` ${format(time.least, 3)} … ${format(time.most, 3)}`) : "");
 
@@ -58,7 +58,7 @@ function showKnobs(view) {
   const most = 30, all = view.study.knobs ?? {};
   if (!Object.values(all).some(list => list.length)) return;
   const box = element("div", {});
-  section("Which setting gains most", box);
+  section("Which setting helps most", box);
   let drawn = null;
   view.listeners.push(() => {
     if (drawn === view.quantity) return;
@@ -67,7 +67,7 @@ function showKnobs(view) {
     box.replaceChildren(rows.length ? table([{title: "Setting", key: "axis"}, {title: "From", key: "from"}, {title: "To", key: "to"}, {title: "With", value: r => labelWords(r.fixed ?? {})},
       {title: "Error", ...factor("error_factor", "÷")}, {title: "Time", ...factor("time_factor", "×")}, {title: "Gain", number: true, value: r => r.free ? "free" : format(r.gain, 3), sort: r => r.free ? Infinity : r.gain}],
       rows.slice(0, most), {sortable: true}) : note("No two points differ in one setting alone and have both an error."),
-      note(`What a change of one setting does to the error of ${drawn.name} and to the time, all else being equal; most gain first` + (rows.length > most ? `, ${most} of ${rows.length} (study.json has all). ` : ". ") +
+      note(`What a change of one setting does to ${theError(drawn.name)} and to the time, all else being equal; most gain first` + (rows.length > most ? `, ${most} of ${rows.length} (study.json has all). ` : ". ") +
         "Gain: by how many powers of ten the error falls when the time grows tenfold; free: the better setting is not the slower one."));
   });
 }

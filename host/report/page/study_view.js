@@ -99,6 +99,6 @@ class StudyView {
     row("memory", mebibytes(point.peak_rss_bytes));
     row("threads", format(point.threads));
     return [element("p", {class: "name"}, swatch(method), element("b", {}, labelWords(point.labels))), ...words, element("dl", {}, ...rows),
-      ...(this.front.includes(id) ? [note("On the front: none is faster and better.")] : [])];
+      ...(this.front.includes(id) ? [note("On the front: no other setting is both faster and more accurate.")] : [])];
   }
 }

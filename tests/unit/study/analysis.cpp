@@ -54,8 +54,8 @@ TEST_CASE("methods whose limits lie further apart than their uncertainties are s
   study.value = [](double a, int scheme) { return scheme == 0 ? 2.1 + 0.8 / (a * a) : 2 - 4 / (a * a); };
   const QuantityAnalysis a = analyse(study.data(), 0);
   CHECK(disagreements(a.by_method).size() == 1);
-  CHECK(a.disagreement.find("the methods disagree: scheme plain to 2.1 +- ") == 0);
-  CHECK(a.disagreement.find("scheme corrected to 2 +- ") != std::string::npos);
+  CHECK(a.disagreement.find("The methods disagree about deformation: scheme plain tends to 2.1 +- ") == 0);
+  CHECK(a.disagreement.find("scheme corrected tends to 2 +- ") != std::string::npos);
   // A study may say whose limit it is.
   study.reference.labels = {{"scheme", "corrected"}};
   CHECK(analyse(study.data(), 0).reference.value == Approx(2));
@@ -109,7 +109,8 @@ TEST_CASE("a study that cannot be extrapolated says why", "[analysis]") {
   CHECK(a.reference.why_not.find("no axis along the line refines the lattice") == 0);
   CHECK(a.front.empty());
   REQUIRE(a.sentences.size() == 1);
-  CHECK(a.sentences[0].text.find("the error is not known: no axis along the line refines") == 0);
+  CHECK(a.sentences[0].text.find("Nothing is known about the error of deformation: no axis along the line refines") ==
+        0);
   study.resolutions = {10, 20};
   study.schemes = {"plain"};
   StudyData few = study.data();
@@ -199,23 +200,36 @@ TEST_CASE("one sentence names the cheapest setting below the target and what it 
   study.reference = {ReferenceKind::value, 2, 0, "made up", {}};
   const QuantityAnalysis a = analyse(study.data(), 0);
   REQUIRE(a.sentences.size() == 2);
-  CHECK(a.sentences[0].text ==
-        "cheapest setting below 1 % error: resolution 15, scheme corrected (5.6 s, 0.89 %), 2.9 times faster than the "
-        "default (16 s, 2 %)");
+  CHECK(
+      a.sentences[0].text ==
+      "To keep the error of deformation below 1 %, take resolution 15, scheme corrected: it runs 5.6 s, with an error of "
+      "0.89 %. The default runs 16 s, 2.9 times longer, with an error of 2 %.");
   CHECK(a.sentences[0].point == std::optional<std::size_t>(3));
   CHECK(a.sentences[0].target == 0.01);
-  CHECK(
-      a.sentences[1].text ==
-      "best trade: scheme corrected instead of plain (resolution 40) makes the error 8 times smaller in 1.1 times the "
-      "time");
+  CHECK(a.sentences[1].text ==
+        "What helps most: scheme corrected instead of plain, at resolution 40, makes the error of deformation 8 times "
+        "smaller and the run 1.1 times longer.");
   StudyData strict = study.data();
   strict.quantities[0].target = 1e-6;
   CHECK(analyse(strict, 0).sentences[0].text ==
-        "no setting is known to be below 0.0001 % error; nearest: resolution 40, scheme corrected (4.7 min, 0.12 %)");
+        "No setting is sure to keep the error of deformation below 0.0001 %. The nearest is resolution 40, scheme "
+        "corrected: it runs 4.7 min, with an error of 0.12 %.");
   strict.quantities[0].target = 0.5;
   strict.default_setting = {0, 0};
-  CHECK(analyse(strict, 0).sentences[0].text ==
-        "cheapest setting below 50 % error: resolution 10, scheme plain (1 s, 4 %), which is the default");
+  CHECK(
+      analyse(strict, 0).sentences[0].text ==
+      "To keep the error of deformation below 50 %, take resolution 10, scheme plain: it runs 1 s, with an error of 4 %. "
+      "This is the default.");
+}
+
+TEST_CASE("the error of a quantity that is an error is called by its name", "[analysis]") {
+  MadeUpStudy study = two_schemes();
+  study.reference = {ReferenceKind::value, 2, 0, "made up", {}};
+  StudyData data = study.data();
+  data.quantities[0].name = "velocity error";
+  const QuantityAnalysis a = analyse(data, 0);
+  CHECK(a.sentences[0].text.find("To keep the velocity error below ") == 0);
+  CHECK(a.sentences[1].text.find(" makes the velocity error 8 times smaller") != std::string::npos);
 }
 
 TEST_CASE("study.json gets the conclusions, with null where nothing is defined", "[analysis]") {

@@ -83,8 +83,8 @@ TEST_CASE("without a reference, three grids around the answer show that it meets
   CHECK(found.decision.point == std::optional<std::size_t>(3));
   CHECK(found.decision.estimated_error + found.decision.uncertainty <= 0.01);
   CHECK(found.decision.estimated_error >= true_error(made_up, study, 3, 2) - found.decision.uncertainty);
-  CHECK(found.decision.sentence.find(
-            "deformation to 1 %: resolution 15, scheme corrected (estimated error 0.53 % +- ") == 0);
+  CHECK(found.decision.sentence.find("For deformation to 1 %, take resolution 15, scheme corrected: it runs ") == 0);
+  CHECK(found.decision.sentence.find(", with an estimated error of 0.53 % +- ") != std::string::npos);
   CHECK(found.decision.sentence.find("2.9 times faster than the default") != std::string::npos);
   // The finest grids were not needed.
   CHECK(!study.points[8].tried);
@@ -122,9 +122,10 @@ TEST_CASE("a target that the study cannot show is said not to be met, with the r
     StudyData study = made_up.data(false);
     const Found found = search(made_up, study, 1e-5);
     CHECK(!found.decision.met);
-    CHECK(found.decision.sentence.find("cannot be shown to be met; nearest: resolution 40, scheme corrected") !=
-          std::string::npos);
-    CHECK(found.decision.sentence.find("a finer grid than the study has might show it") != std::string::npos);
+    CHECK(found.decision.sentence.find(
+              "No setting is sure to give deformation to 0.001 %. The nearest is resolution 40, scheme corrected: ") ==
+          0);
+    CHECK(found.decision.sentence.find("A finer grid than the study has might show it") != std::string::npos);
     CHECK(found.runs.size() == 10);
   }
   SECTION("too few grids for a reference") {
@@ -134,7 +135,9 @@ TEST_CASE("a target that the study cannot show is said not to be met, with the r
     const Found found = search(made_up, study, 0.01);
     CHECK(!found.decision.met);
     CHECK(!found.decision.point.has_value());
-    CHECK(found.decision.sentence.find("cannot be shown to be met: no method has three grids") != std::string::npos);
+    CHECK(found.decision.sentence.find(
+              "Whether a setting gives deformation to 1 % is not known: no method has three grids") !=
+          std::string::npos);
   }
   SECTION("the budget ends before") {
     StudyData study = made_up.data(false);
@@ -172,8 +175,8 @@ TEST_CASE("where the methods disagree, the target must be met against each limit
   const Found found = search(made_up, study, 0.01);
   CAPTURE(found.decision.sentence, found.runs);
   CHECK(!found.decision.met);
-  CHECK(found.decision.sentence.find("the methods disagree") != std::string::npos);
-  CHECK(found.decision.sentence.find("name the right one") != std::string::npos);
+  CHECK(found.decision.sentence.find("The methods disagree") != std::string::npos);
+  CHECK(found.decision.sentence.find("Name the right one") != std::string::npos);
   made_up.reference.labels = {{"scheme", "corrected"}};
   StudyData pinned = made_up.data(false);
   const Found sure = search(made_up, pinned, 0.01);
