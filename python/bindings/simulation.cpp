@@ -292,13 +292,7 @@ Simulation::Simulation(plan::ReadScene read, plugin::Catalog catalog)
 
 std::unique_ptr<Simulation> make_simulation(const SceneChoice& choice) {
   const auto catalog_of = [&](const scene::Scene& scene) {
-    std::vector<fs::path> folders = plugin::plugin_search_path(choice.plugins, scene.plugin_dirs);
-    // What is installed with the interpreter is not what is installed with this module.
-    std::vector<fs::path> named = choice.plugins;
-    named.insert(named.end(), scene.plugin_dirs.begin(), scene.plugin_dirs.end());
-    std::erase_if(folders, [&](const fs::path& folder) { return plugin::origin_of(folder, named) == "installation"; });
-    if (!choice.installation.empty()) folders.push_back(choice.installation);
-    plugin::Catalog catalog(folders);
+    plugin::Catalog catalog(plugin::plugin_search_path(choice.plugins, scene.plugin_dirs));
     const fs::path lock = plugin::lock_beside(choice.file);
     std::error_code ignored;
     if (fs::exists(fs::symlink_status(lock, ignored))) {
