@@ -8,6 +8,7 @@
 #include <iostream>
 #include <regex>
 
+#include "base/installation.hpp"
 #include "base/text.hpp"
 #include "command_line.hpp"
 #include "commands.hpp"
@@ -145,7 +146,7 @@ void make_folder(const fs::path& folder, const Template& model, const Name& name
 
 void print_next_steps(const fs::path& folder, const Template& model, const Name& name) {
   std::error_code error;
-  const fs::path shared = fs::read_symlink("/proc/self/exe", error).parent_path().parent_path() / ROULEAU_DATA_FOLDER;
+  const fs::path& shared = installation().data;
   const bool has_sdk = fs::exists(shared / "cmake/Rouleau/RouleauConfig.cmake", error);
   const fs::path installed_scene = shared / "rouleau/scenes/four-cells-shear.json";
   const std::string scene = fs::exists(installed_scene, error) ? in_shell(installed_scene.string()) : "SCENE.json";
@@ -159,7 +160,7 @@ void print_next_steps(const fs::path& folder, const Template& model, const Name&
               << name.file << ", which nobody else will choose.\n";
   }
   std::cout << "Next:\n  cmake -S " << source << " -B " << build
-            << (has_sdk ? " -DCMAKE_PREFIX_PATH=" + in_shell(shared.parent_path().string()) : "")
+            << (has_sdk ? " -DCMAKE_PREFIX_PATH=" + in_shell(installation().folder.string()) : "")
             << "\n  cmake --build " << build << "\n  ctest --test-dir " << build
             << " --output-on-failure\n  rouleau run " << scene << " --plugin-dir " << build << " --set "
             << in_shell(filled(model.setting, name)) << '\n';

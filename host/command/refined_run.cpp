@@ -5,12 +5,12 @@
 
 #include "accuracy/refinement.hpp"
 #include "base/text.hpp"
+#include "close_run.hpp"
 #include "command/process/program.hpp"
 #include "files/checkpoint_file.hpp"
 #include "files/refined_folder.hpp"
 #include "files/run_directory.hpp"
 #include "json/document.hpp"
-#include "report/report.hpp"
 #include "trial/trial.hpp"
 
 namespace rouleau::command {
@@ -24,9 +24,36 @@ constexpr double with_error_bars = 1.4;
 std::string percent(double share) { return number(100 * share, 2) + " %"; }
 std::string seconds(double time) { return number(time, 2) + " s"; }
 
-/// Numerics chosen with what the first run has shown, and the plan of a run with them.
+/// What the scene says of its numerics, with another target.
+nlohmann::json numerics_for(const FirstRun& first, double target) {
+  nlohmann::json numerics = first.read.scene.document->root().at("numerics");
+  const std::string prefix = "/numerics/";
+  for (const plan::ChosenValue& value : first.read.numerics_choice->values)
+    if (value.pointer.starts_with(prefix)) numerics.erase(value.pointer.substr(prefix.size()));
+  numerics["auto"]["error"] = target;
+  return numerics;
+}
+
+plan::ReadScene read_with_target(const FirstRun& first, double target) {
+  std::vector<std::string> overrides = first.scene.overrides;
+  overrides.push_back("/numerics=" + numerics_for(first, target).dump());
+  return plan::read_within_limits(first.scene.scene, overrides,
+                                  [&](const scene::Scene& scene) { return first.scene.catalog(scene); });
+}
+
+/// The run with numerics that are chosen with what the first run has shown.
 struct Refined {
+  Refined(const FirstRun& first, double target)
+      : read(read_with_target(first, target)),
+        catalog(first.scene.catalog(read.scene)),
+        plan(plan_and_place(read, catalog)),
+        growth(plan::estimate(plan).wall_s / first.estimated_s) {}
+  Refined(const Refined&) = delete;  // the plan points to the scene
+  Refined& operator=(const Refined&) = delete;
+
   plan::ReadScene read;
+  plugin::Catalog catalog;
+  plan::Plan plan;
   double growth;  ///< of the run's time
 };
 
@@ -45,37 +72,15 @@ std::string why_not(const FirstRun& first, const Refined& refined, double took_s
   return {};
 }
 
-/// What the scene says of its numerics, with another target.
-nlohmann::json numerics_for(const FirstRun& first, double target) {
-  nlohmann::json numerics = first.read.scene.document->root().at("numerics");
-  const std::string prefix = "/numerics/";
-  for (const plan::ChosenValue& value : first.read.numerics_choice->values)
-    if (value.pointer.starts_with(prefix)) numerics.erase(value.pointer.substr(prefix.size()));
-  numerics["auto"]["error"] = target;
-  return numerics;
-}
-
-Refined refine(const FirstRun& first, double target) {
-  const auto catalog_of = [&](const scene::Scene& scene) { return first.scene.catalog(scene); };
-  std::vector<std::string> overrides = first.scene.overrides;
-  overrides.push_back("/numerics=" + numerics_for(first, target).dump());
-  Refined refined{plan::read_within_limits(first.scene.scene, overrides, catalog_of), 0};
-  const plugin::Catalog catalog = catalog_of(refined.read.scene);
-  refined.growth = plan::estimate(plan_and_place(refined.read, catalog)).wall_s / first.estimated_s;
-  return refined;
-}
-
 /// What is to be said of a refined run once it has error bars.
-void tell(const std::filesystem::path& folder, const accuracy::MeasuredErrors& errors, double target) {
-  const std::filesystem::path page = report::write_report(folder);
-  if (!errors.missing.empty()) std::cout << "no error bars: " << errors.missing << "\n";
-  for (const std::string& line : accuracy::sentences(errors.bars)) std::cout << line << "\n";
+std::vector<std::string> refined_in_words(const accuracy::MeasuredErrors& errors, double target) {
+  std::vector<std::string> lines = in_words(errors);
   if (const std::optional<accuracy::Worst> worst = accuracy::worst(errors.bars)) {
-    std::cout << "numerics.auto: in the refined run the error of " << worst->name << " is estimated as "
-              << percent(worst->error) << (worst->error <= target ? ", within " : ", still more than ")
-              << percent(target) << "\n";
+    lines.push_back("numerics.auto: in the refined run the error of " + worst->name + " is estimated as " +
+                    percent(worst->error) + (worst->error <= target ? ", within " : ", still more than ") +
+                    percent(target));
   }
-  std::cout << "report: " << page.string() << "\n";
+  return lines;
 }
 
 int run_refined(const FirstRun& first, const Refined& refined) {
@@ -83,24 +88,26 @@ int run_refined(const FirstRun& first, const Refined& refined) {
   const std::filesystem::path folder = first.folder / files::refined_folder;
   const accuracy::Finished finished = accuracy::finished_run(folder, scene);
   if (finished == accuracy::Finished::with_bars) {
-    std::cout << "report: " << report::write_report(folder).string() << "\n";
+    close_run(folder, {});
     return exit_code::done;
   }
   if (finished == accuracy::Finished::no) {
-    const plugin::Catalog catalog = first.scene.catalog(scene);
-    const plan::Plan plan = plan_and_place(refined.read, catalog);
-    const plan::PlanReport report = plan::make_report(plan);
+    const plan::PlanReport report = plan::make_report(refined.plan);
     plan::require_memory(report.estimate.memory_bytes, "the refined run");
     const bool goes_on = std::filesystem::exists(files::checkpoint_file(folder)) ||
                          std::filesystem::exists(files::previous_checkpoint_file(folder));
-    files::RunDirectory directory(folder, scene, goes_on ? files::FormerRun::resume : files::FormerRun::replace);
-    const run::Summary summary = run::simulate(plan, report, first.options, &directory);
+    const files::FormerRun former = goes_on ? files::FormerRun::resume : files::FormerRun::replace;
+    const run::Summary summary = [&] {
+      files::RunDirectory directory(folder, scene, former);
+      return run::simulate(refined.plan, report, first.options, &directory);
+    }();
     if (summary.status == "interrupted") {
       std::cerr << "ended by " << interruption_cause() << "\nto go on: " << first.again << "\n";
       return exit_code::interrupted;
     }
     if (summary.failure) {
-      std::cerr << "the refined run failed: " << summary.failure->message << "\n  " << summary.failure->remedy << "\n";
+      close_run(folder, {"the refined run failed; what the first one found stands"});
+      say(*summary.failure);
       return exit_code::simulation_failed;
     }
   }
@@ -110,7 +117,7 @@ int run_refined(const FirstRun& first, const Refined& refined) {
               << "; the refined run lacks its error bars\nto add them: " << first.again << "\n";
     return exit_code::interrupted;
   }
-  tell(folder, errors, first.read.numerics_choice->target);
+  close_run(folder, refined_in_words(errors, first.read.numerics_choice->target));
   return exit_code::done;
 }
 
@@ -151,7 +158,7 @@ int refine_if_missed(const FirstRun& first, const TimeLimit& limit) {
     std::cout << missed << "; no finer run follows: outputs are too far apart to tell, make output.cells closer\n";
     return exit_code::done;
   }
-  const Refined refined = refine(first, target);
+  const Refined refined(first, target);
   const std::string reason = why_not(first, refined, trial::read_summary(first.folder).at("wall_s"), limit);
   if (!reason.empty()) {
     std::cout << missed << "; no finer run follows: " << reason << "\n";

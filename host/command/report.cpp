@@ -10,6 +10,7 @@
 #include <iostream>
 
 #include "base/error.hpp"
+#include "base/installation.hpp"
 #include "base/text.hpp"
 #include "command/process/terminal.hpp"
 #include "command_line.hpp"
@@ -71,11 +72,10 @@ std::vector<std::string> strains_of(const std::vector<std::string>& lists) {
   return strains;
 }
 
-/// Becomes the program that draws, which lies in the same installation, or beside this one's build.
+/// Becomes the program that draws.
 [[noreturn]] void draw_frames(const Options& chosen) {
   const fs::path directory = chosen.directories[0];
-  const fs::path program = fs::read_symlink("/proc/self/exe").parent_path().parent_path() / ROULEAU_LIBEXEC_FOLDER /
-                           "rouleau" / "draw-frames";
+  const fs::path program = installation().programs / "draw-frames";
   if (!fs::exists(program))
     throw Error(Cause::input_output, Place{program.string()},
                 "is not there: this rouleau was built without cairo; install libcairo2-dev and build it again");

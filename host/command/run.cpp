@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "accuracy/measure_errors.hpp"
+#include "close_run.hpp"
 #include "command/process/terminal.hpp"
 #include "command_line.hpp"
 #include "commands.hpp"
@@ -50,22 +51,6 @@ Example:
 Exit codes: 0 done, 1 the simulation failed, 2 bad input, 3 a plugin was refused, 4 input/output, 130 interrupted
 )";
 
-/// Writes the report, and says what came out: the status in green or red, `more`, the report's path.
-void close_run(const std::filesystem::path& folder, const std::vector<std::string>& more) {
-  const std::filesystem::path page = report::write_report(folder);
-  const nlohmann::json summary = trial::read_summary(folder);
-  std::vector<std::string> lines = closing(summary);
-  {
-    const Coloured status(std::cout, summary.at("status") == "completed" ? Colour::green : Colour::red);
-    std::cout << lines.front();
-  }
-  std::cout << "\n";
-  lines.erase(lines.begin());
-  lines.insert(lines.end(), more.begin(), more.end());
-  for (const std::string& line : lines) std::cout << line << "\n";
-  std::cout << "report: " << page.string() << "\n" << std::flush;  // before what std::cerr may have to add
-}
-
 /// What the command line says about error bars.
 struct ErrorBarChoice {
   bool asked_for = false, refused = false;
@@ -85,13 +70,7 @@ bool add_error_bars(const std::filesystem::path& folder, const scene::Scene& sce
               << "; the run is whole, its error bars are missing\nto add them: " << again << " --error-bar\n";
     return false;
   }
-  if (!errors.missing.empty()) {
-    lines.push_back("no error bars: " + errors.missing);
-    return true;
-  }
-  lines = accuracy::sentences(errors.bars);
-  lines.push_back("error bars took " + std::to_string(std::lround(100 * errors.share)) +
-                  " % of the run's time; summary.json has all " + std::to_string(errors.bars.size()));
+  lines = in_words(errors);
   return true;
 }
 
@@ -258,16 +237,9 @@ int run_command(const std::vector<std::string>& arguments) {
   close_run(folder, error_lines);
   if (bars_interrupted) return exit_code::interrupted;
   if (summary.failure) {
-    const monitor::Failure& f = *summary.failure;
-    {
-      const Coloured red(std::cerr, Colour::red);
-      std::cerr << f.reason << " at step " << f.step << ", strain " << f.strain;
-      if (f.cell >= 0) std::cerr << ", cell " << f.cell;
-      std::cerr << ", place (" << f.place[0] * 1e6 << ", " << f.place[1] * 1e6 << ") um";
-    }
-    std::cerr << "\n  " << f.message << "\n  found " << f.value << ", limit " << f.limit << "\n  " << f.remedy << "\n";
+    say(*summary.failure);
+    return exit_code::simulation_failed;
   }
-  if (summary.failure) return exit_code::simulation_failed;
   if (summary.status == "interrupted" && summary.checkpoint_step) {
     std::cerr << "ended by " << interruption_cause() << "\nto go on: " << again << "\n";
   } else if (summary.status == "interrupted") {

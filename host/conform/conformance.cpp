@@ -4,6 +4,7 @@
 #include <map>
 
 #include "base/error.hpp"
+#include "base/installation.hpp"
 #include "base/process.hpp"
 #include "base/text.hpp"
 #include "json/document.hpp"
@@ -15,11 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The program that runs one check lies in the same installation, or beside this one's build.
-fs::path check_program() {
-  const fs::path program = fs::read_symlink("/proc/self/exe");
-  return program.parent_path().parent_path() / ROULEAU_LIBEXEC_FOLDER / "rouleau" / "conform-check";
-}
+/// The program that runs one check.
+fs::path check_program() { return installation().programs / "conform-check"; }
 
 /// Ends what outlives a check, wherever it has hidden, and adds it to the finding.
 void end_leftovers(Finding& finding) {

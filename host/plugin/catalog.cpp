@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "base/installation.hpp"
 #include "base/text.hpp"
 #include "json/document.hpp"
 #include "manifest_search.hpp"
@@ -59,17 +60,10 @@ bool is_below(const fs::path& file, const fs::path& folder) {
   return left == folder.end() || (left->empty() && std::next(left) == folder.end());
 }
 
-/// The plugins installed with the running program, or built beside it.
+/// The plugins that are installed, or built, with this code.
 std::vector<fs::path> installed_folders() {
-  std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  if (error) return {};
-  const fs::path prefix = program.parent_path().parent_path();
   std::vector<fs::path> folders;
-  for (const char* library_folder : {ROULEAU_LIBRARY_FOLDER, "lib", "lib64"}) {
-    const fs::path folder = prefix / library_folder / "rouleau" / "plugins";
-    if (std::find(folders.begin(), folders.end(), folder) == folders.end()) folders.push_back(folder);
-  }
+  for (const fs::path& libraries : installation().libraries) folders.push_back(libraries / "rouleau" / "plugins");
   return folders;
 }
 

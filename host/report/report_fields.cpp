@@ -5,6 +5,7 @@
 #include <limits>
 #include <string>
 
+#include "files/field_nodes.hpp"
 #include "files/frames.hpp"
 #include "observe/vorticity.hpp"
 #include "report_outlines.hpp"
@@ -54,7 +55,7 @@ Json to_json(const Quantity& quantity) {
           {"signed", quantity.is_signed}, {"clipped", clipped},    {"values", values}};
 }
 
-Json box_um(const FieldGrid& grid) {
+Json box_um(const files::FieldNodes& grid) {
   const auto [first, size] = grid.box();
   return {first[0] * micro, first[1] * micro, size[0] * micro, size[1] * micro};
 }
@@ -62,7 +63,7 @@ Json box_um(const FieldGrid& grid) {
 /// The velocity for tracers, on a coarser grid: {nx, ny, scale, values}, of int8 pairs in base64.
 class Tracers {
  public:
-  Tracers(const FieldGrid& grid, std::size_t outputs)
+  Tracers(const files::FieldNodes& grid, std::size_t outputs)
       : grid_(grid), most_(std::min(most_each, most_in_all / outputs)) {}
   void add(const std::vector<double>& velocity) {
     for (std::size_t axis = 0; axis < 2; ++axis)
@@ -91,7 +92,7 @@ class Tracers {
 
  private:
   static constexpr std::size_t most_each = 2048, most_in_all = 120000;  ///< blocks: 0.3 MB of page
-  const FieldGrid& grid_;
+  const files::FieldNodes& grid_;
   std::size_t most_;
   std::array<std::vector<ScalarField>, 2> fields_;
 };
@@ -103,25 +104,6 @@ ScalarField speed(const std::vector<double>& velocity, std::size_t nx, std::size
 }
 
 }  // namespace
-
-FieldGrid::FieldGrid(const files::Hdf5File& file, const std::string& dataset) {
-  const auto shape = file.shape(dataset);
-  ny = shape.at(0);
-  nx = shape.at(1);
-  const bool part = file.has_attribute("/", "fields_first_m");
-  const std::array<std::size_t, 2> nodes{nx, ny};
-  for (std::size_t axis = 0; axis < 2; ++axis) {
-    const double length = file.read_attribute("/", "size_m", axis);
-    spacing[axis] = part ? file.read_attribute("/", "fields_spacing_m", axis) : length / double(nodes[axis]);
-    first[axis] = part ? file.read_attribute("/", "fields_first_m", axis) : spacing[axis] / 2;
-    const bool whole = std::abs(spacing[axis] * double(nodes[axis]) - length) < 1e-6 * length;
-    periodic[axis] = whole && (axis == 0 || file.read_attribute("/", "periodic_y") != 0);
-  }
-}
-
-FieldGrid::Box FieldGrid::box() const {
-  return {{first[0] - spacing[0] / 2, first[1] - spacing[1] / 2}, {spacing[0] * double(nx), spacing[1] * double(ny)}};
-}
 
 std::vector<std::size_t> field_outputs(const std::filesystem::path& frames, std::size_t most) {
   const files::Hdf5File file = files::open_frames(frames);
@@ -152,7 +134,7 @@ Json field_data(const std::filesystem::path& frames, const std::vector<std::size
   if (with_fields.empty() || (!has_velocity && !has_vorticity)) return nullptr;
 
   Quantity speeds{"speed", "m/s", false, {}}, vorticities{"vorticity", "1/s", true, {}};
-  const FieldGrid grid(file, group_of(with_fields.front()) + (has_velocity ? "velocity" : "vorticity"));
+  const files::FieldNodes grid(file, group_of(with_fields.front()) + (has_velocity ? "velocity" : "vorticity"));
   Tracers tracers(grid, with_fields.size());
   const std::size_t quantities = has_velocity ? 2 : 1;
   const std::size_t most = std::min(most_blocks, most_values / (quantities * with_fields.size()));

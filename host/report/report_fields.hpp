@@ -7,23 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "files/hdf5_file.hpp"
-
 namespace rouleau::report {
-
-/// The nodes that fields were written at: the lattice, or where the scene says so a region of it, or one in so many.
-struct FieldGrid {
-  /// Of a field of a frames.h5. Throws Error(input_output).
-  FieldGrid(const files::Hdf5File& file, const std::string& dataset);
-  /// Lower left corner and size of what the nodes stand for, m.
-  struct Box {
-    std::array<double, 2> first, size;
-  };
-  [[nodiscard]] Box box() const;
-  std::size_t nx = 0, ny = 0;
-  std::array<double, 2> spacing{}, first{};  ///< m
-  std::array<bool, 2> periodic{};
-};
 
 /// A scalar on a grid, row by row from below, x fastest.
 struct ScalarField {

@@ -27,6 +27,7 @@
 #include "progress.hpp"
 #include "provenance.hpp"
 #include "run_state.hpp"
+#include "stage_course.hpp"
 
 namespace rouleau::run {
 
@@ -54,6 +55,7 @@ class Simulation {
         owner_(owner),
         membranes_(plan.has_cells ? plan::make_membranes(scene_, plan::lattice_spacing(scene_)) : core::Membranes{}),
         state_(observe::Observer(scene_, membranes_)),
+        course_(plan, state_, membranes_),
         progress_(options.quiet || directory == nullptr),
         checkpoints_(scene_, directory),
         summary_(describe(plan, report, options.threads)) {}
@@ -76,7 +78,7 @@ class Simulation {
   }
 
   /// Of the present stage.
-  [[nodiscard]] const plan::StageSetting& setting() const { return plan_.stages[state_.stage]; }
+  [[nodiscard]] const plan::StageSetting& setting() const { return course_.setting(); }
 
   /// Takes over what the directory's checkpoint says, if the run goes on from one. The rank that has the directory goes
   /// first, and tells the others which file it is.
@@ -142,13 +144,7 @@ class Simulation {
     const plan::StageSetting& setting = this->setting();
     log("stage",
         {{"name", setting.stage->name}, {"time_step_s", setting.units.time}, {"most_steps", setting.max_steps}});
-    state_.observer.start_stage();
-    state_.growth.start_stage();
-    state_.stage_step = 0;
-    state_.steps_before = state_.steps;
-    state_.stage_wall = 0;
-    state_.rest_watch.start(0, membranes_);
-    state_.equilibrium.start();
+    course_.begin();
   }
 
   void run_stage() {
@@ -268,13 +264,10 @@ class Simulation {
 
   /// One thread, before the forces of a step: whether the stage ends here, and the checkpoint.
   void before_forces(long step) {
-    const plan::StageSetting& setting = this->setting();
-    state_.stage_step = step;
-    state_.steps = state_.steps_before + step;
-    due_ending_ = next_ending(setting);
-    const bool last_stage = setting.index + 1 == static_cast<int>(plan_.stages.size());
+    course_.count_to(step);
+    due_ending_ = next_ending();
     const bool stops = due_ending_ == Ending::interrupted || due_ending_ == Ending::max_steps;
-    const bool ends = due_ending_ != Ending::none && (last_stage || stops);
+    const bool ends = due_ending_ != Ending::none && (course_.is_last() || stops);
     if (core::any(ranks_, checkpoints_.due()) || (checkpoints_.wanted() && ends)) {
       take_time();
       const auto start = Clock::now();
@@ -282,16 +275,13 @@ class Simulation {
       checkpoints_.write(plan_, options_.threads, state_, membranes_, *solver_);
       state_.costs.add("checkpoint", seconds_since(start), 1);
     }
-    const bool window_over = step >= state_.rest_watch.end(rest_window());
-    if (setting.stage->until_at_rest && window_over) state_.rest_watch.start(step, membranes_);
   }
 
   /// One thread, forces computed: outputs, checks, and whether the stage ends here.
   void after_forces(long step, const plan::OutputSchedule& cells, const plan::OutputSchedule& fields) {
     const auto start = Clock::now();
     const plan::StageSetting& setting = this->setting();
-    state_.stage_step = step;
-    state_.steps = state_.steps_before + step;
+    course_.count_to(step);
     solver_->share_state();
     if (auto failure = monitor::check_nodes(membranes_, scene_.checks.node_step, solver_->escaped_node(), setting)) {
       fail(std::move(*failure));
@@ -329,67 +319,23 @@ class Simulation {
       state_.costs.add("observe and check", seconds_since(start), 1);
     }
     ending_ = due_ending_;
+    course_.look(*solver_);
     const long check = (step / scene_.checks.every_steps + 1) * scene_.checks.every_steps;
-    next_attention_ = std::min({cells.next(step), fields.next(step), check, last_step(setting)});
-    if (setting.stage->until_at_rest) {
-      next_attention_ = std::min(next_attention_, state_.rest_watch.end(rest_window()));
-    }
-    if (setting.stage->until_equilibrium) {
-      watch_energy(step);
-      const long window = window_steps(scene_.equilibrium.window);
-      next_attention_ =
-          std::min(next_attention_, state_.equilibrium.reached() ? step + 1 : state_.equilibrium.next(window));
-    }
+    next_attention_ = std::min({cells.next(step), fields.next(step), check, course_.next()});
+    if (options_.max_steps >= 0) next_attention_ = std::min(next_attention_, options_.max_steps - state_.steps_before);
   }
 
-  /// Step at which the stage ends unless something ends it before.
-  [[nodiscard]] long last_step(const plan::StageSetting& setting) const {
-    const long most = options_.max_steps >= 0 ? options_.max_steps - state_.steps_before : setting.max_steps;
-    return std::min(setting.max_steps, most);
-  }
-
-  [[nodiscard]] Ending next_ending(const plan::StageSetting& setting) const {
-    const scene::Stage& stage = *setting.stage;
+  /// What ends the stage before the forces of this step.
+  [[nodiscard]] Ending next_ending() {
+    const Ending by_scene = course_.end();
     if (core::any(ranks_, interrupted())) return Ending::interrupted;
-    if (stage.until_at_rest && at_rest(setting)) return Ending::at_rest;
-    if (stage.until_equilibrium && state_.equilibrium.reached()) return Ending::equilibrium;
-    if (state_.stage_step >= setting.max_steps) {
-      const bool by_strain =
-          stage.strain && (!stage.duration || *stage.strain / std::abs(stage.shear_rate) <= *stage.duration);
-      return by_strain ? Ending::strain : Ending::duration;
-    }
+    if (by_scene != Ending::none) return by_scene;
     if (options_.max_steps >= 0 && state_.steps >= options_.max_steps) return Ending::max_steps;
     return Ending::none;
   }
 
-  [[nodiscard]] long window_steps(double seconds) const {
-    return std::max(1L, std::lround(setting().steps_of(seconds)));
-  }
-  [[nodiscard]] long rest_window() const { return window_steps(scene_.at_rest.window); }
-
-  /// Forces computed: the energy of the cells, if a window is over.
-  void watch_energy(long step) {
-    if (step < state_.equilibrium.next(window_steps(scene_.equilibrium.window))) return;
-    const observe::CellEnergy energy = observe::cell_energy(*solver_, membranes_);
-    if (!energy.unknown.empty()) {
-      throw Error(Cause::bad_input, scene_.place(setting().stage->pointer + "/until"),
-                  "there is no energy to watch, since " + energy.unknown,
-                  {"end the stage by \"at_rest\" or by duration"});
-    }
-    state_.equilibrium.note(step, energy.sum, energy.magnitude + solver_->slight_energy(),
-                            scene_.equilibrium.rate * setting().units.time);
-  }
-
-  [[nodiscard]] bool at_rest(const plan::StageSetting& setting) const {
-    return state_.stage_step >= state_.rest_watch.end(rest_window()) &&
-           state_.rest_watch.moved(membranes_) < scene_.at_rest.displacement / setting.units.length;
-  }
-
   void fail(monitor::Failure failure) {
-    const plan::StageSetting& setting = this->setting();
-    failure.step = state_.steps;
-    failure.time = state_.time_at(setting);
-    failure.strain = state_.strain_at(setting);
+    course_.date(failure);
     tell_mode(failure);
     log("diverged", {{"reason", failure.reason}, {"step", failure.step}, {"message", failure.message}});
     failure_ = std::move(failure);
@@ -422,9 +368,7 @@ class Simulation {
   /// Writes the present state, unless it has gained energy that nothing gave it: that failure is returned.
   std::optional<monitor::Failure> write(bool with_fields) {
     observe::Snapshot snapshot = state_.observer.observe(*solver_, setting(), membranes_, with_fields);
-    snapshot.step = state_.steps;
-    snapshot.time = state_.time_at(setting());
-    snapshot.strain = state_.strain_at(setting());
+    course_.date(snapshot);
     const units::LatticeUnits& units = setting().units;
     state_.energy.follow(snapshot, setting().is_driven(),
                          units.to_si(solver_->slight_energy(), units::dimension::energy_per_depth));
@@ -475,6 +419,7 @@ class Simulation {
   core::Membranes membranes_;
   std::unique_ptr<core::Solver<T>> solver_;  ///< of the present stage
   RunState state_;
+  StageCourse course_;
   Progress progress_;
 
   static constexpr long never = std::numeric_limits<long>::max();

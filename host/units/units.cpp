@@ -1,6 +1,5 @@
 #include "units.hpp"
 
-#include <dlfcn.h>
 #include <udunits2.h>
 
 #include <cerrno>
@@ -12,6 +11,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/installation.hpp"
 #include "base/text.hpp"
 #include "dimension_names.hpp"
 #include "unit_grammar.hpp"
@@ -179,26 +179,13 @@ struct Units::System {
   }
 };
 
-/// The database that lies with an installation which brings its libraries along: in share/rouleau/udunits of a folder that
-/// the running program is below (bin, libexec/rouleau), or the Python module that this code is part of
-/// (lib/python3/dist-packages/rouleau). Empty without one; UDUNITS then looks where it was built to, as where the
-/// variable is set.
+/// The database that an installation which brings its libraries along has with it. Empty without one; UDUNITS then looks
+/// where it was built to, as where the variable is set.
 std::string installed_database() {
-  namespace fs = std::filesystem;
-  std::error_code error;
   if (secure_getenv("UDUNITS2_XML_PATH") != nullptr) return {};
-  static const char place = 0;
-  Dl_info module{};
-  const bool known = dladdr(&place, &module) != 0 && module.dli_fname != nullptr;
-  for (const fs::path& file : {fs::path("/proc/self/exe"), fs::path(known ? module.dli_fname : "")}) {
-    fs::path folder = fs::canonical(file, error).parent_path();
-    for (int levels = 0; levels < 4 && folder.has_relative_path(); ++levels) {
-      folder = folder.parent_path();
-      fs::path database = folder / ROULEAU_DATA_FOLDER / "rouleau" / "udunits" / "udunits2.xml";
-      if (fs::exists(database, error)) return database;
-    }
-  }
-  return {};
+  std::error_code error;
+  const std::filesystem::path database = installation().data / "rouleau" / "udunits" / "udunits2.xml";
+  return std::filesystem::exists(database, error) ? database.string() : std::string();
 }
 
 std::shared_ptr<const Units::System> Units::System::read() {

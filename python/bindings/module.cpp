@@ -1,5 +1,4 @@
 // The compiled part of the Python package: rouleau._core, which python/rouleau/simulation.py shows to users.
-#include <dlfcn.h>
 #include <pybind11/functional.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -21,23 +20,6 @@ namespace rouleau::python {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// The shipped plugins of the build or the installation that this module belongs to.
-fs::path installed_plugins() {
-  Dl_info info{};
-  if (::dladdr(reinterpret_cast<const void*>(&installed_plugins), &info) == 0) return {};
-  std::error_code error;
-  fs::path folder = fs::canonical(info.dli_fname, error);
-  while (!error && folder.has_relative_path()) {
-    folder = folder.parent_path();
-    for (const char* libraries : {ROULEAU_LIBRARY_FOLDER, "lib", "lib64"}) {
-      const fs::path plugins = folder / libraries / "rouleau" / "plugins";
-      if (fs::is_directory(plugins, error)) return plugins;
-    }
-    error.clear();
-  }
-  return {};
-}
 
 /// (problem, remedy, file, pointer, line, column): what rouleau.errors makes a Fault of.
 py::tuple fault(const Error& error) {
@@ -84,7 +66,7 @@ class Session {
   Session(const fs::path& scene, std::vector<std::string> overrides, std::vector<fs::path> plugins) {
     simulation_ = guarded([&] {
       const py::gil_scoped_release other_threads_may_run;
-      return make_simulation({scene, std::move(overrides), std::move(plugins), installed_plugins()});
+      return make_simulation({scene, std::move(overrides), std::move(plugins)});
     });
   }
 

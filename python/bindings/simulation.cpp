@@ -14,11 +14,11 @@
 #include "files/run_directory.hpp"
 #include "monitor/node_checks.hpp"
 #include "monitor/state_checks.hpp"
-#include "observe/energy.hpp"
 #include "plan/solver_setup.hpp"
 #include "run/checkpoint.hpp"
 #include "run/checkpoint_match.hpp"
 #include "run/run_state.hpp"
+#include "run/stage_course.hpp"
 
 namespace rouleau::python {
 
@@ -37,7 +37,9 @@ template <class T>
 class SimulationOf final : public Simulation {
  public:
   SimulationOf(plan::ReadScene read, plugin::Catalog catalog)
-      : Simulation(std::move(read), std::move(catalog)), state_(observe::Observer(scene(), membranes_)) {
+      : Simulation(std::move(read), std::move(catalog)),
+        state_(observe::Observer(scene(), membranes_)),
+        course_(plan_, state_, membranes_) {
     start_stage(nullptr);
   }
 
@@ -86,9 +88,7 @@ class SimulationOf final : public Simulation {
   observe::Snapshot observe() override {
     compute_forces();
     observe::Snapshot snapshot = state_.observer.observe(*solver_, stage(), membranes_, false);
-    snapshot.step = state_.steps;
-    snapshot.time = time();
-    snapshot.strain = strain();
+    course_.date(snapshot);
     return snapshot;
   }
 
@@ -140,15 +140,15 @@ class SimulationOf final : public Simulation {
     whole_ = true;
   }
 
-  [[nodiscard]] bool done() const override { return over_ || (last_stage() && next_ending() != run::Ending::none); }
+  [[nodiscard]] bool done() const override {
+    return over_ || (course_.is_last() && course_.ending() != run::Ending::none);
+  }
   [[nodiscard]] long steps() const override { return state_.steps; }
   [[nodiscard]] double time() const override { return state_.time_at(stage()); }
   [[nodiscard]] double strain() const override { return state_.strain_at(stage()); }
-  [[nodiscard]] const plan::StageSetting& stage() const override { return plan_.stages[state_.stage]; }
+  [[nodiscard]] const plan::StageSetting& stage() const override { return course_.setting(); }
 
  private:
-  [[nodiscard]] bool last_stage() const { return state_.stage + 1 == static_cast<int>(plan_.stages.size()); }
-
   void require_whole() const {
     if (whole_) return;
     throw Error(Cause::bad_input, "the last step has ended in the middle, so there is no state to go on from",
@@ -166,18 +166,14 @@ class SimulationOf final : public Simulation {
   void start_stage(core::Solver<T>* former) {
     auto next = std::make_unique<core::Solver<T>>(plan::make_solver_setup(plan_, state_.stage), membranes_);
     next->start(former);
-    state_.observer.start_stage();
-    state_.stage_step = 0;
-    state_.steps_before = state_.steps;
-    state_.rest_watch.start(0, membranes_);
-    state_.equilibrium.start();
+    course_.begin();
     next_attention_ = 0;
     solver_ = std::move(next);
   }
 
   void next_stage() {
     const run::Ending ending = std::exchange(ending_, run::Ending::none);
-    over_ = ready_ = last_stage();  // the forces at the end of a stage are computed
+    over_ = ready_ = course_.is_last();  // the forces at the end of a stage are computed
     if (over_) return;
     state_.end_stage(stage(), ending);
     ++state_.stage;
@@ -239,12 +235,7 @@ class SimulationOf final : public Simulation {
     barrier.arrive_and_wait();
     if (!worker.first()) return;
     ready_ = false;
-    count_to(step);
-  }
-
-  void count_to(long step) {
-    state_.stage_step = step;
-    state_.steps = state_.steps_before + step;
+    course_.count_to(step);
   }
 
   /// The last step must not be followed by another; all workers come to the same answer.
@@ -253,15 +244,13 @@ class SimulationOf final : public Simulation {
   }
 
   void before_forces(long step) {
-    count_to(step);
-    due_ending_ = next_ending();
+    course_.count_to(step);
+    due_ending_ = course_.end();
     if (due_ending_ != run::Ending::none) remember();
-    if (stage().stage->until_at_rest && step >= state_.rest_watch.end(rest_window()))
-      state_.rest_watch.start(step, membranes_);
   }
 
   void after_forces(long step, bool attended) {
-    count_to(step);
+    course_.count_to(step);
     if (auto failure = monitor::check_nodes(membranes_, scene().checks.node_step, solver_->escaped_node(), stage()))
       fail(std::move(*failure));
     if (!attended) return;
@@ -271,52 +260,17 @@ class SimulationOf final : public Simulation {
         fail(std::move(*failure));
     }
     ending_ = due_ending_;
-    next_attention_ = std::min((step / every + 1) * every, stage().max_steps);
-    if (stage().stage->until_at_rest) next_attention_ = std::min(next_attention_, state_.rest_watch.end(rest_window()));
-    if (stage().stage->until_equilibrium) {
-      watch_energy(step);
-      const long window = window_steps(scene().equilibrium.window);
-      next_attention_ =
-          std::min(next_attention_, state_.equilibrium.reached() ? step + 1 : state_.equilibrium.next(window));
-    }
+    course_.look(*solver_);
+    next_attention_ = std::min((step / every + 1) * every, course_.next());
   }
 
   [[noreturn]] void fail(monitor::Failure failure) {
-    failure.step = state_.steps;
-    failure.time = time();
-    failure.strain = strain();
+    course_.date(failure);
     throw Diverged{std::move(failure)};
   }
 
-  void watch_energy(long step) {
-    if (step < state_.equilibrium.next(window_steps(scene().equilibrium.window))) return;
-    const observe::CellEnergy energy = observe::cell_energy(*solver_, membranes_);
-    if (!energy.unknown.empty()) {
-      throw Error(Cause::bad_input, scene().place(stage().stage->pointer + "/until"),
-                  "there is no energy to watch, since " + energy.unknown,
-                  {"end the stage by \"at_rest\" or by duration"});
-    }
-    state_.equilibrium.note(step, energy.sum, energy.magnitude + solver_->slight_energy(),
-                            scene().equilibrium.rate * stage().units.time);
-  }
-
-  [[nodiscard]] run::Ending next_ending() const {
-    const scene::Stage& written = *stage().stage;
-    if (written.until_at_rest && at_rest()) return run::Ending::at_rest;
-    if (written.until_equilibrium && state_.equilibrium.reached()) return run::Ending::equilibrium;
-    if (state_.stage_step < stage().max_steps) return run::Ending::none;
-    const bool by_strain =
-        written.strain && (!written.duration || *written.strain / std::abs(written.shear_rate) <= *written.duration);
-    return by_strain ? run::Ending::strain : run::Ending::duration;
-  }
-  [[nodiscard]] bool at_rest() const {
-    return state_.stage_step >= state_.rest_watch.end(rest_window()) &&
-           state_.rest_watch.moved(membranes_) < scene().at_rest.displacement / stage().units.length;
-  }
-  [[nodiscard]] long window_steps(double seconds) const { return std::max(1L, std::lround(stage().steps_of(seconds))); }
-  [[nodiscard]] long rest_window() const { return window_steps(scene().at_rest.window); }
-
   run::RunState state_;
+  run::StageCourse course_;
   std::unique_ptr<core::Solver<T>> solver_;
   std::function<void()> add_force_;
   Remembered remembered_;    ///< before the forces that are ready were computed
@@ -338,13 +292,7 @@ Simulation::Simulation(plan::ReadScene read, plugin::Catalog catalog)
 
 std::unique_ptr<Simulation> make_simulation(const SceneChoice& choice) {
   const auto catalog_of = [&](const scene::Scene& scene) {
-    std::vector<fs::path> folders = plugin::plugin_search_path(choice.plugins, scene.plugin_dirs);
-    // What is installed with the interpreter is not what is installed with this module.
-    std::vector<fs::path> named = choice.plugins;
-    named.insert(named.end(), scene.plugin_dirs.begin(), scene.plugin_dirs.end());
-    std::erase_if(folders, [&](const fs::path& folder) { return plugin::origin_of(folder, named) == "installation"; });
-    if (!choice.installation.empty()) folders.push_back(choice.installation);
-    plugin::Catalog catalog(folders);
+    plugin::Catalog catalog(plugin::plugin_search_path(choice.plugins, scene.plugin_dirs));
     const fs::path lock = plugin::lock_beside(choice.file);
     std::error_code ignored;
     if (fs::exists(fs::symlink_status(lock, ignored))) {

@@ -19,7 +19,6 @@ struct SceneChoice {
   std::filesystem::path file;
   std::vector<std::string> overrides;          ///< as for --set
   std::vector<std::filesystem::path> plugins;  ///< folders, searched first
-  std::filesystem::path installation;          ///< folder of the shipped plugins
 };
 
 /// The state is not one to go on from: a check has failed.

@@ -1,5 +1,5 @@
 """What the pages of runs do under mouse and keys, what can be saved from them, and whether every reader can use them. Needs
-chromium and Python's standard library.
+chromium and pandas.
 
 usage: check_interactions.py ROULEAU PLUGIN_FOLDER SOURCE_FOLDER
 """
@@ -18,6 +18,10 @@ from browser import Browser, BrowserCase, main
 from readers import EYES, contrast, difference, lab, obstacles
 
 PROGRAM, PLUGINS, SOURCE = (Path(a).resolve() for a in sys.argv[1:4])
+sys.path.insert(0, str(SOURCE / "python"))
+
+import rouleau as package  # noqa: E402
+
 SCENE = SOURCE / "scenes" / "four-cells-shear.json"
 SHORT = {"stages": [{"name": "rest", "duration": "5 ms", "density_factor": 13000}, {"name": "shear", "shear_rate": "20 1/s", "strain": 0.3}],
          "output": {"cells": {"seconds": "0.5 ms"}, "fields": {"seconds": "2 ms", "quantities": ["velocity"]}}}
@@ -35,11 +39,10 @@ def make(name, history=None, **changes):
     scene.write_text(json.dumps({**json.loads(SCENE.read_text()), **SHORT, **changes}))
     rouleau("run", scene, "--out", folder / name, "--quiet")
     if history:
-        rows = [line.split(",") for line in (folder / name / "series.csv").read_text().splitlines()[1:]]
-        file = folder / name / "summary.json"
-        summary = json.loads(file.read_text())
-        summary["aggregate_history"] = [{"time_s": float(rows[i][1]), "strain": float(rows[i][2]), "count": len(m), "members": m, "through_image": False} for _, i, m in history]
-        file.write_text(json.dumps(summary))
+        run = package.open(folder / name)
+        when = run.series[["time_s", "strain"]].to_dict("records")
+        events = [{**when[i], "count": len(m), "members": m, "through_image": False} for _, i, m in history]
+        (run.directory / "summary.json").write_text(json.dumps({**run.summary, "aggregate_history": events}))
         rouleau("report", folder / name)
 
 

@@ -130,7 +130,8 @@ class New_scene(Case):
                 words = self.new("scene", template, template)
                 scene = self.desk / f"{template}.json"
                 self.assertIn(f"rouleau run {template}.json", words)
-                self.assertEqual(scene.read_bytes(), (SOURCE / f"scenes/templates/{template}.json").read_bytes())
+                shipped = [SOURCE / "scenes" / folder / scene.name for folder in (".", "templates")]
+                self.assertEqual([scene.read_bytes()], [file.read_bytes() for file in shipped if file.exists()])
                 plan = self.call("plan", scene, "--json")
                 self.assertEqual(plan.returncode, 0, plan.stderr)
                 exceeded = [limit["name"] for limit in json.loads(plan.stdout)["limits"] if limit["margin"] < 1]

@@ -79,9 +79,10 @@ class Debian_packages(Packages):
 
 class The_libraries_of_the_tarball(Packages):
     def test_programs_take_all_but_the_compilers_and_the_units_from_the_folder_wherever_it_is_and_each_has_its_licence(self):
-        prefix = self.install(self.path / "first", "program", "plugins", "scenes", "libraries").rename(self.path / "moved here")
+        prefix = self.install(self.path / "first", "program", "plugins", "scenes", "python", "libraries").rename(self.path / "moved here")
         own = prefix / "lib/rouleau/libraries"
-        for program in (prefix / "bin/rouleau", *(prefix / "libexec/rouleau").iterdir()):
+        modules = list((prefix / "lib/python3/dist-packages/rouleau").glob("_core.*.so"))
+        for program in (prefix / "bin/rouleau", *(prefix / "libexec/rouleau").iterdir(), *modules):
             taken = re.findall(r"^\s*(\S+)(?: => (.*))? \(0x", self.call("ldd", program), re.MULTILINE)
             self.assertTrue(any(name.startswith("libudunits2") for name, _ in taken), program)
             for name, place in taken:
@@ -92,8 +93,14 @@ class The_libraries_of_the_tarball(Packages):
         self.assertEqual(files(prefix / "share/doc/rouleau/libraries"), {line.split(":")[0] for line in owners.splitlines()})
 
         self.assertTrue(self.runs_from(prefix))
+        ways = [(4, prefix / "bin/rouleau", "plan", SCENE)]
+        if modules:
+            self.environment = {"PYTHONPATH": str(prefix / "lib/python3/dist-packages")}
+            ways.append((1, "/usr/bin/python3", "-c", f"import rouleau; print(rouleau.Simulation('{SCENE}').step(2))"))
+            self.assertEqual(self.call(*ways[1][1:]), "2\n")
         (prefix / "share/rouleau/udunits/udunits2.xml").write_text("nothing")
-        self.assertIn("UDUNITS-2 cannot be read", self.call(prefix / "bin/rouleau", "plan", SCENE, expect=4))
+        for expected, *words in ways:
+            self.assertIn("UDUNITS-2 cannot be read", self.call(*words, expect=expected))
 
 
 if __name__ == "__main__":

@@ -3,11 +3,10 @@
 usage: check_tutorial.py SOURCE BUILD CMAKE
 """
 
-import json
 import re
 import time
 
-from staged import BUILD, SOURCE, Case, main
+from staged import BUILD, SOURCE, Case, main, rouleau
 
 TUTORIAL = (SOURCE / "sdk/README.md").read_text().split("\n## ")[1]
 BLOCKS = re.findall(r"^```sh\n(.*?)^```$", TUTORIAL, re.MULTILINE | re.DOTALL)
@@ -33,10 +32,10 @@ class The_tutorial(Case):
         libraries = set()
         for run, parameter in (("template", "zero_force_distance"), ("yukawa", "strength")):
             self.assertTrue((desk / "runs" / run / "report.html").exists())
-            summary = json.loads((desk / "runs" / run / "summary.json").read_text())
-            self.assertEqual(summary["status"], "completed")
-            self.assertIn(parameter, json.loads((desk / "runs" / run / "scene.json").read_text())["interactions"][0]["parameters"])
-            libraries |= {p["sha256"] for p in summary["plugins"] if p["id"] == "org.example.yukawa"}
+            made = rouleau.open(desk / "runs" / run)
+            self.assertEqual(made.status, "completed")
+            self.assertIn(parameter, made.scene.interactions[0].parameters)
+            libraries |= {p.sha256 for p in made.summary.plugins if p.id == "org.example.yukawa"}
         self.assertEqual(len(libraries), 2)  # that of the template, and one's own
         self.assertEqual({p.name for p in desk.iterdir()}, {"yukawa", "runs"})
         self.assertEqual({p.name for p in (desk / "yukawa").iterdir()},

@@ -17,6 +17,11 @@ import unittest
 from pathlib import Path
 
 PROGRAM, SOURCE = (Path(a).resolve() for a in sys.argv[1:3])
+sys.path.insert(0, str(SOURCE / "python"))
+sys.dont_write_bytecode = True
+
+import rouleau  # noqa: E402
+
 
 SCENE = {
     "rouleau": 1,
@@ -117,9 +122,9 @@ class A_study_runs_every_point(Case):
                 self.assertEqual(times["median"], sorted(times["all"])[1])
                 self.assertEqual((times["least"], times["most"]), (min(times["all"]), max(times["all"])))
             self.assertGreater(point["peak_rss_bytes"], 1e6)
-            summary = json.loads((self.out / point["directory"] / "summary.json").read_text())
-            self.assertEqual(point["steps"], summary["steps"])
-            self.assertEqual([p["name"] for p in point["passes"]], [p["name"] for p in summary["passes"]])
+            summary = rouleau.open(self.out / point["directory"]).summary
+            self.assertEqual(point["steps"], summary.steps)
+            self.assertEqual([p["name"] for p in point["passes"]], [p.name for p in summary.passes])
         # 10 us over (tau - 1/2)/3 dx^2/nu.
         self.assertEqual([p["steps"] for p in study["points"]], [288, 480, 1152, 1920])
         with open(self.out / "study.csv", newline="") as file:
@@ -137,8 +142,7 @@ class A_study_runs_every_point(Case):
         self.run_study(self.study([{"name": "threads", "threads": [1, 2]}]))
         points = self.result()["points"]
         self.assertEqual([p["threads"] for p in points], [1, 2])
-        summaries = [json.loads((self.out / p["directory"] / "summary.json").read_text()) for p in points]
-        self.assertEqual([s["threads"] for s in summaries], [1, 2])
+        self.assertEqual([rouleau.open(self.out / p["directory"]).summary.threads for p in points], [1, 2])
 
 
 class Failing_points_are_results(Case):

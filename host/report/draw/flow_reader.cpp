@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "files/field_nodes.hpp"
 #include "files/frames.hpp"
 
 namespace rouleau::report {
@@ -27,7 +28,7 @@ const BlockVelocity* FlowReader::at(std::size_t output) {
   const std::size_t wanted = *(after - 1);
   if (!velocity_.u.values.empty() && read_ == wanted) return &velocity_;
   const std::string dataset = velocity_of(wanted);
-  const FieldGrid grid(file_, dataset);
+  const files::FieldNodes grid(file_, dataset);
   const auto values = file_.read(dataset);
   velocity_.first = grid.box().first;
   velocity_.size = grid.box().size;

@@ -1,0 +1,58 @@
+// The course of a stage, step by step: what has been taken of it, and when its scene ends it.
+#pragma once
+
+#include "core/solver/solver.hpp"
+#include "plan/plan.hpp"
+#include "run_state.hpp"
+
+namespace rouleau::run {
+
+/// Of whichever stage of the plan the state is in. Whoever steps calls count_to() and then end() before the forces of a
+/// step that next() has asked for, and look() once they are known; ending() may be asked for at any time.
+class StageCourse {
+ public:
+  /// All three must outlive it.
+  StageCourse(const plan::Plan& plan, RunState& state, const core::Membranes& membranes)
+      : plan_(plan), state_(state), membranes_(membranes) {}
+
+  [[nodiscard]] const plan::StageSetting& setting() const { return plan_.stages[state_.stage]; }
+  [[nodiscard]] bool is_last() const { return state_.stage + 1 == static_cast<int>(plan_.stages.size()); }
+
+  /// The stage begins.
+  void begin();
+  /// So many steps of the stage have been taken.
+  void count_to(long step) {
+    state_.stage_step = step;
+    state_.steps = state_.steps_before + step;
+  }
+  /// What ends the stage here: at_rest, equilibrium, strain, duration or none.
+  [[nodiscard]] Ending ending() const;
+  /// The same, before the forces of a step: where a window of rest is over the next one begins.
+  Ending end();
+  /// Forces computed: the energy of the cells, where the stage ends by it and a window is over. Throws Error(bad_input)
+  /// where it is unknown.
+  template <class T>
+  void look(core::Solver<T>& solver);
+  /// The next step, after look(), at which the stage may end.
+  [[nodiscard]] long next() const;
+
+  /// The present step, time and strain: of a monitor::Failure or an observe::Snapshot.
+  template <class What>
+  void date(What& what) const {
+    what.step = state_.steps;
+    what.time = state_.time_at(setting());
+    what.strain = state_.strain_at(setting());
+  }
+
+ private:
+  [[nodiscard]] bool at_rest() const;
+  [[nodiscard]] long steps_of(double seconds) const;
+  [[nodiscard]] long rest_window() const { return steps_of(plan_.scene->at_rest.window); }
+  [[nodiscard]] long energy_window() const { return steps_of(plan_.scene->equilibrium.window); }
+
+  const plan::Plan& plan_;
+  RunState& state_;
+  const core::Membranes& membranes_;
+};
+
+}  // namespace rouleau::run
