@@ -10,6 +10,7 @@
 #include "files/refined_folder.hpp"
 #include "files/run_directory.hpp"
 #include "json/document.hpp"
+#include "ranked_run.hpp"
 #include "report/report.hpp"
 #include "trial/trial.hpp"
 
@@ -26,6 +27,7 @@ std::string seconds(double time) { return number(time, 2) + " s"; }
 
 /// Numerics chosen with what the first run has shown, and the plan of a run with them.
 struct Refined {
+  SceneOptions scene;
   plan::ReadScene read;
   double growth;  ///< of the run's time
 };
@@ -56,11 +58,10 @@ nlohmann::json numerics_for(const FirstRun& first, double target) {
 }
 
 Refined refine(const FirstRun& first, double target) {
-  const auto catalog_of = [&](const scene::Scene& scene) { return first.scene.catalog(scene); };
-  std::vector<std::string> overrides = first.scene.overrides;
-  overrides.push_back("/numerics=" + numerics_for(first, target).dump());
-  Refined refined{plan::read_within_limits(first.scene.scene, overrides, catalog_of), 0};
-  const plugin::Catalog catalog = catalog_of(refined.read.scene);
+  SceneOptions scene = first.scene;
+  scene.overrides.push_back("/numerics=" + numerics_for(first, target).dump());
+  Refined refined{scene, scene.read(), 0};
+  const plugin::Catalog catalog = scene.catalog(refined.read.scene);
   refined.growth = plan::estimate(plan_and_place(refined.read, catalog)).wall_s / first.estimated_s;
   return refined;
 }
@@ -87,14 +88,13 @@ int run_refined(const FirstRun& first, const Refined& refined) {
     return exit_code::done;
   }
   if (finished == accuracy::Finished::no) {
-    const plugin::Catalog catalog = first.scene.catalog(scene);
-    const plan::Plan plan = plan_and_place(refined.read, catalog);
-    const plan::PlanReport report = plan::make_report(plan);
-    plan::require_memory(report.estimate.memory_bytes, "the refined run");
+    const PlannedScene planned(refined.scene);
+    plan::require_memory(planned.report.estimate.memory_bytes, "the refined run");
     const bool goes_on = std::filesystem::exists(files::checkpoint_file(folder)) ||
                          std::filesystem::exists(files::previous_checkpoint_file(folder));
-    files::RunDirectory directory(folder, scene, goes_on ? files::FormerRun::resume : files::FormerRun::replace);
-    const run::Summary summary = run::simulate(plan, report, first.options, &directory);
+    files::RunDirectory directory(folder, planned.read.scene,
+                                  goes_on ? files::FormerRun::resume : files::FormerRun::replace);
+    const run::Summary summary = simulate_on_all_ranks(refined.scene, planned, first.options, directory, first.again);
     if (summary.status == "interrupted") {
       std::cerr << "ended by " << interruption_cause() << "\nto go on: " << first.again << "\n";
       return exit_code::interrupted;
