@@ -120,7 +120,7 @@ std::string opening(const plan::Plan& plan, const plan::PlanReport& report, int 
 
 std::vector<std::string> closing(const Json& summary) {
   std::string ended = summary.at("outcome").get<std::string>() + " in " + time_in_words(summary.at("wall_s")) + " (" +
-                      workers(summary.at("ranks"), summary.at("threads"));
+                      workers(summary.value("ranks", 1), summary.at("threads"));
   if (summary.at("mlups").is_number()) ended += ", " + rounded(summary.at("mlups"), 3) + " MLUPS";
   ended += "): " + number(summary.at("simulated_time_s"), 3) + " s simulated";
   if (summary.at("strain").is_number() && std::abs(summary.at("strain").get<double>()) > 1e-9)

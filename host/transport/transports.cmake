@@ -8,7 +8,7 @@ set(transports "")
 function(rouleau_add_transport name mpi)
   add_library(transport-${name} MODULE ${CMAKE_CURRENT_SOURCE_DIR}/transport/mpi.c)
   target_link_libraries(transport-${name} PRIVATE ${mpi} rouleau_build_options)
-  set_target_properties(transport-${name} PROPERTIES PREFIX ""
+  set_target_properties(transport-${name} PROPERTIES PREFIX "" INSTALL_RPATH_USE_LINK_PATH ON
     LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_LIBEXECDIR}/rouleau)
   add_dependencies(rouleau transport-${name})
   install(TARGETS transport-${name} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/rouleau COMPONENT ${name})

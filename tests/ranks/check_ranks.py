@@ -2,7 +2,7 @@
 
 usage: check_ranks.py ROULEAU MPIRUN SOURCE LONELY_TRANSPORT
 
-Ranks share the cores of this machine. Python's standard library, and h5py where it is installed.
+Ranks share the cores of this machine. ROULEAU_KILLS=200 in the environment kills more of them. Python's standard library, and h5py where it is installed.
 """
 
 import json
@@ -30,6 +30,8 @@ KINETICS = SOURCE / "tests" / "resume" / "scenes" / "kinetics.json"
 SHORT = ["--set", '/stages/0/duration="8 ms"', "--set", "/stages/1/strain=0.06", "--set", "/output/cells/strain=0.02",
          "--set", "/output/fields/strain=0.05", "--set", '/output/checkpoint={"seconds": 600}']
 KINETICS_RUN = [str(KINETICS), *SHORT]
+KILLS = int(os.environ.get("ROULEAU_KILLS", 3))
+FAULTY = PROGRAM.parent.parent / "tests" / "faulty" / "plugins" / "compute"
 ENVIRONMENT = {k: v for k, v in os.environ.items() if not k.startswith(("OMPI_", "PMI", "SLURM_"))}
 SINGLE_SWITCHES = ["--allow-run-as-root", "--oversubscribe"]
 
@@ -133,6 +135,25 @@ class Same_bytes(Case):
         self.assert_same([str(self.path / "fluid.json")], [(4, 1)])
 
 
+    def test_of_numerics_that_are_chosen_of_error_bars_and_of_the_finer_run_that_follows(self):
+        scene = json.loads((SOURCE / "tests" / "physics" / "scenes" / "auto-capsule.json").read_text())
+        scene["stages"][0]["strain"] = 1
+        scene["output"] = {"cells": {"strain": 0.25}, "checkpoint": "never"}
+        scene["numerics"] = {"auto": {"error": 0.05}}
+        (self.path / "scene.json").write_text(json.dumps(scene))
+        runs = [self.path / str(count) for count in (1, 2)]
+        for count, directory in enumerate(runs, 1):
+            said = self.run_well(ranks(count, "run", self.path / "scene.json", "--out", directory, "--quiet")).stdout
+            self.assertIn("a finer run follows", said)
+        for folder in (".", "refined"):
+            one, two = (directory / folder for directory in runs)
+            self.assertEqual((one / "cells.csv").read_bytes(), (two / "cells.csv").read_bytes())
+            one, two = (json.loads((directory / "summary.json").read_text()) for directory in (one, two))
+            for key in ("error_bars", "numerics_choice"):
+                self.assertEqual(one[key], two[key])
+            self.assertEqual((one["ranks"], two["ranks"]), (1, 2))
+
+
 class Transports(Case):
     def test_the_program_knows_no_mpi_and_a_process_alone_maps_none(self):
         symbols = subprocess.run(["nm", "-D", PROGRAM], capture_output=True, text=True).stdout
@@ -225,6 +246,14 @@ class One_voice(Case):
         self.assertEqual(result.stderr.count("limit 1e-09"), 1, result.stderr)
         self.assertEqual(json.loads((self.path / "run" / "summary.json").read_text())["status"], "diverged")
 
+    @unittest.skipUnless(FAULTY.exists(), "faulty plugins are built optimised")
+    def test_a_plugin_that_ends_the_program_on_all_ranks_is_named_once(self):
+        name = "collide-crashes"
+        result = call(ranks(2, "run", *KINETICS_RUN, "--set", f'/fluid/collision={{"model": "{name}"}}', "--plugin-dir",
+                            FAULTY / name, "--quiet", "--out", self.path / "run"))
+        self.assertEqual(result.returncode, 3, result.stderr)
+        self.assertEqual(result.stderr.count(f'rouleau: the plugin "{name}"'), 1, result.stderr)
+
     def test_other_commands_answer_once_and_studies_are_refused(self):
         self.assertEqual(self.run_well(ranks(2, "--version")).stdout.count("rouleau"), 1)
         self.assertEqual(self.run_well(ranks(2, "plan", KINETICS, "--json")).stdout.count('"estimate"'), 1)
@@ -268,25 +297,30 @@ class The_end(Case):
         scene = [str(KINETICS), *SHORT[:-2], "--set", '/output/checkpoint={"seconds": 0.02}']
         alone = self.path / "alone"
         self.run_well([str(PROGRAM), "run", *scene, "--out", str(alone), "--quiet"])
-        directory, ended, count = self.path / "run", 0, 3
-        for _ in range(60):
-            process = subprocess.Popen(ranks(count, "run", *scene, "--out", directory, "--quiet", "--resume"),
-                                       env=ENVIRONMENT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-            until = time.monotonic() + CHANCE.uniform(0.3, 2)
-            if ended < 3:
-                while time.monotonic() < until and process.poll() is None:
+        ended, runs = 0, 0
+        while ended < KILLS:
+            directory, count = self.path / f"run-{runs}", 3
+            runs += 1
+            for _ in range(60):
+                process = subprocess.Popen(ranks(count, "run", *scene, "--out", directory, "--quiet", "--resume"),
+                                           env=ENVIRONMENT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+                until = time.monotonic() + CHANCE.uniform(0.2, 2)
+                while ended < KILLS and time.monotonic() < until and process.poll() is None:
                     time.sleep(0.01)
-                victims = children(process) if process.poll() is None else []
+                victims = children(process) if ended < KILLS and process.poll() is None else []
                 if victims:
                     os.kill(CHANCE.choice(victims), signal.SIGKILL)
-            seconds, errors = self.end(process)
-            if process.returncode == 0:
-                break
-            self.assertLess(seconds, 5, "mpirun outlives a rank")
-            self.assertNotIn("internal error", errors)
-            ended, count = ended + 1, CHANCE.choice([1, 2, 3])
-        self.assertEqual(process.returncode, 0, errors)
-        self.assertEqual(differences(alone, directory), [])
+                    ended += 1
+                seconds, errors = self.end(process)
+                if process.returncode == 0:
+                    break
+                self.assertTrue(victims, errors)
+                self.assertLess(seconds, 5, "mpirun outlives a rank")
+                self.assertNotIn("internal error", errors)
+                count = CHANCE.choice([1, 2, 3, 4])
+            self.assertEqual(process.returncode, 0, errors)
+            self.assertEqual(differences(alone, directory), [])
+        print(f"{ended} ranks killed in {runs} runs", flush=True)
 
     def test_a_full_disk_of_the_first_rank_ends_all_with_4_and_a_way_on(self):
         allowed = subprocess.run(["unshare", "-rm", "mount", "-t", "tmpfs", "none", self.path], capture_output=True)

@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "core/domain/ranks.hpp"
+#include "faults.hpp"
 #include "terminal.hpp"
 
 namespace rouleau::command {
@@ -50,7 +51,10 @@ void Crew::join(const transport::Launch& launch) {
     if (launch.rank > 0) std::this_thread::sleep_for(patience);
     throw;
   }
-  if (launch.rank > 0) silence_terminal();
+  if (launch.rank > 0) {
+    silence_terminal();
+    speak_as(joined->name());
+  }
   joined->agree_on_instruction_set();
 }
 
