@@ -7,10 +7,12 @@
 
 #include "base/text.hpp"
 #include "command/commands.hpp"
+#include "command/process/crew.hpp"
 #include "command/process/faults.hpp"
 #include "command/process/program.hpp"
 #include "command/process/terminal.hpp"
 #include "observe/observables.hpp"
+#include "transport/launcher.hpp"
 
 namespace {
 
@@ -26,7 +28,8 @@ struct Command {
 
 constexpr std::array commands{
     Command{"run", "SCENE", "simulate a scene", run_command},
-    Command{"plan", "SCENE", "what a run would compute and leave out, and how long it takes, without a step", plan_command},
+    Command{"plan", "SCENE", "what a run would compute and leave out, and how long it takes, without a step",
+            plan_command},
     Command{"plugins", "[ID]", "models that were found, why some were refused; locks", plugins_command},
     Command{"conform", "MANIFEST...", "whether plugins do what the interface and their manifests say", conform_command},
     Command{"new", "KIND NAME", "source, manifest and build file of a new model; a scene to begin from", new_command},
@@ -84,6 +87,20 @@ int dispatch(const std::vector<std::string>& arguments) {
               {"rouleau --help shows what there is"});
 }
 
+/// Of several processes that a launcher has started those that run a scene do it together, and others are one too many.
+/// False: there is nothing to do for this one.
+bool join_ranks(const transport::Launch& launch, const std::vector<std::string>& arguments) {
+  const std::string command = arguments.empty() ? "" : arguments.front();
+  if (command == "run") {
+    Crew::join(launch);
+    return true;
+  }
+  if (launch.rank > 0) return false;
+  if (command != "study" && command != "limits") return true;
+  throw Error(Cause::bad_input, "rouleau " + command + " starts processes of its own and cannot be cut into ranks",
+              {"start it without " + launch.command});
+}
+
 }  // namespace
 
 int main(int count, char** words) {
@@ -92,10 +109,14 @@ int main(int count, char** words) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error like a full disk, with a message
   const int code = run_program(
       [&] {
+        const std::vector<std::string> arguments(words + (count > 0 ? 1 : 0), words + count);
+        if (const auto launch = transport::launched(); launch && !join_ranks(*launch, arguments))
+          return exit_code::done;
         check_instruction_set();
-        return dispatch({words + (count > 0 ? 1 : 0), words + count});
+        return dispatch(arguments);
       },
       "; \"rouleau plan\" says how much a scene needs");
+  if (Crew* const crew = Crew::present()) crew->leave();
   expect_end();
   return code;
 }

@@ -72,7 +72,7 @@ std::string interruption_cause() {
   for (const CauseOfEnd& cause : causes) {
     if (cause.signal == first_signal) return cause.name;
   }
-  return {};
+  return "a signal to another rank";
 }
 
 }  // namespace rouleau::command

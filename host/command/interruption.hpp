@@ -28,7 +28,7 @@ class TimeLimit {
 /// Throws Error(input_output) where the system has no timer.
 const std::atomic<bool>& listen_for_interruption(const TimeLimit& limit);
 
-/// What has set the flag: "Ctrl-C (SIGINT)", "--max-time", ...; empty: nothing.
+/// What has set the flag: "Ctrl-C (SIGINT)", "--max-time", ...
 std::string interruption_cause();
 
 }  // namespace rouleau::command

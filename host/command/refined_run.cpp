@@ -11,6 +11,7 @@
 #include "files/refined_folder.hpp"
 #include "files/run_directory.hpp"
 #include "json/document.hpp"
+#include "ranked_run.hpp"
 #include "trial/trial.hpp"
 
 namespace rouleau::command {
@@ -34,39 +35,32 @@ nlohmann::json numerics_for(const FirstRun& first, double target) {
   return numerics;
 }
 
-plan::ReadScene read_with_target(const FirstRun& first, double target) {
-  std::vector<std::string> overrides = first.scene.overrides;
-  overrides.push_back("/numerics=" + numerics_for(first, target).dump());
-  return plan::read_within_limits(first.scene.scene, overrides,
-                                  [&](const scene::Scene& scene) { return first.scene.catalog(scene); });
+SceneOptions with_target(const FirstRun& first, double target) {
+  SceneOptions scene = first.scene;
+  scene.overrides.push_back("/numerics=" + numerics_for(first, target).dump());
+  return scene;
 }
 
 /// The run with numerics that are chosen with what the first run has shown.
 struct Refined {
   Refined(const FirstRun& first, double target)
-      : read(read_with_target(first, target)),
-        catalog(first.scene.catalog(read.scene)),
-        plan(plan_and_place(read, catalog)),
-        growth(plan::estimate(plan).wall_s / first.estimated_s) {}
-  Refined(const Refined&) = delete;  // the plan points to the scene
-  Refined& operator=(const Refined&) = delete;
+      : scene(with_target(first, target)), planned(scene), growth(planned.report.estimate.wall_s / first.estimated_s) {}
 
-  plan::ReadScene read;
-  plugin::Catalog catalog;
-  plan::Plan plan;
+  SceneOptions scene;
+  PlannedScene planned;
   double growth;  ///< of the run's time
 };
 
 /// Why no refined run follows; empty: one does.
 std::string why_not(const FirstRun& first, const Refined& refined, double took_s, const TimeLimit& limit) {
-  if (!refined.read.numerics_choice->doubt.empty()) return refined.read.numerics_choice->doubt;
-  if (plan::to_json(refined.read.numerics_choice).at("values") ==
+  if (!refined.planned.read.numerics_choice->doubt.empty()) return refined.planned.read.numerics_choice->doubt;
+  if (plan::to_json(refined.planned.read.numerics_choice).at("values") ==
       plan::to_json(first.read.numerics_choice).at("values"))
     return "numerics that would keep it are pinned by the scene";
   const std::string expected = "one is expected to take " + seconds(refined.growth * took_s);
   if (refined.growth > most_growth)
     return expected + ", " + number(refined.growth, 2) + " times as long as this one; to have it, set " +
-           "/numerics/auto/error to " + number(refined.read.numerics_choice->target, 2);
+           "/numerics/auto/error to " + number(refined.planned.read.numerics_choice->target, 2);
   if (limit.is_set() && with_error_bars * refined.growth * took_s > limit.left())
     return expected + ", more than --max-time leaves; to have it: " + first.again;
   return {};
@@ -84,7 +78,7 @@ std::vector<std::string> refined_in_words(const accuracy::MeasuredErrors& errors
 }
 
 int run_refined(const FirstRun& first, const Refined& refined) {
-  const scene::Scene& scene = refined.read.scene;
+  const scene::Scene& scene = refined.planned.read.scene;
   const std::filesystem::path folder = first.folder / files::refined_folder;
   const accuracy::Finished finished = accuracy::finished_run(folder, scene);
   if (finished == accuracy::Finished::with_bars) {
@@ -92,14 +86,13 @@ int run_refined(const FirstRun& first, const Refined& refined) {
     return exit_code::done;
   }
   if (finished == accuracy::Finished::no) {
-    const plan::PlanReport report = plan::make_report(refined.plan);
-    plan::require_memory(report.estimate.memory_bytes, "the refined run");
+    plan::require_memory(refined.planned.report.estimate.memory_bytes, "the refined run");
     const bool goes_on = std::filesystem::exists(files::checkpoint_file(folder)) ||
                          std::filesystem::exists(files::previous_checkpoint_file(folder));
     const files::FormerRun former = goes_on ? files::FormerRun::resume : files::FormerRun::replace;
     const run::Summary summary = [&] {
       files::RunDirectory directory(folder, scene, former);
-      return run::simulate(refined.plan, report, first.options, &directory);
+      return simulate_on_all_ranks(refined.scene, refined.planned, first.options, directory, first.again);
     }();
     if (summary.status == "interrupted") {
       std::cerr << "ended by " << interruption_cause() << "\nto go on: " << first.again << "\n";

@@ -4,18 +4,20 @@
 #include <filesystem>
 #include <iostream>
 #include <latch>
+#include <optional>
 #include <system_error>
 #include <thread>
 #include <vector>
 
 #include "accuracy/measure_errors.hpp"
 #include "close_run.hpp"
+#include "command/process/crew.hpp"
 #include "command/process/terminal.hpp"
 #include "command_line.hpp"
 #include "commands.hpp"
-#include "files/checkpoint_file.hpp"
 #include "interruption.hpp"
 #include "plan/estimate.hpp"
+#include "ranked_run.hpp"
 #include "refined_run.hpp"
 #include "report/report.hpp"
 #include "run/simulation.hpp"
@@ -36,6 +38,8 @@ Ctrl-C, SIGTERM, a closed terminal, SIGUSR1, SIGXCPU and --max-time stop a run a
 the last checkpoint of the directory (without --out: runs/NAME of the scene), however the run ended, and gives the same
 results as a run without the break. If there is no checkpoint, the run begins at the beginning.
 
+Started by mpirun or srun, its processes compute one run together, to the same bytes (docs/ranks.md).
+
 --error-bar measures an error of every number that the run reports: cheap runs of the same scene follow, on coarser
 lattices, with developed flow and with another density, and take at most about 40 % of the run's time. A scene with
 "numerics": "auto" gets error bars without being asked, and where they miss its target a finer run in DIR/refined;
@@ -46,6 +50,7 @@ Example:
   rouleau run scenes/four-cells-shear.json --out runs/demo --overwrite --max-steps 2000
   rouleau run scenes/four-cells-shear.json --out runs/demo --resume
   rouleau run scenes/four-cells-shear.json --out runs/demo --overwrite --error-bar
+  mpirun -n 4 rouleau run scenes/four-cells-shear.json --out runs/demo --overwrite --threads 2
   rouleau run scenes/four-cells-shear.json --set /interactions/0/parameters/depth="1.3e-6 J/m2"
 
 Exit codes: 0 done, 1 the simulation failed, 2 bad input, 3 a plugin was refused, 4 input/output, 130 interrupted
@@ -105,15 +110,21 @@ void require_threads(int threads) {
   all_asked.count_down();
 }
 
-}  // namespace
-
-int run_command(const std::vector<std::string>& arguments) {
-  namespace options = boost::program_options;
-  SceneOptions scene_options;
+/// What the command line asks for.
+struct Request {
+  SceneOptions scene;
   std::string out, max_time;
   bool overwrite = false, resume = false;
   ErrorBarChoice bars;
   run::RunOptions run;
+};
+
+int processors() { return static_cast<int>(std::max(1u, std::thread::hardware_concurrency())); }
+
+/// False: help was asked for, and shown.
+bool read_request(const std::vector<std::string>& arguments, Request& request) {
+  namespace options = boost::program_options;
+  auto& [scene_options, out, max_time, overwrite, resume, bars, run] = request;
   options::options_description description("options");
   options::positional_options_description positional;
   scene_options.add_to(description, positional);
@@ -133,7 +144,7 @@ int run_command(const std::vector<std::string>& arguments) {
       "measure an error of every reported number, by cheap runs of the same scene")(
       "no-error-bar", options::bool_switch(&bars.refused), "not even where numerics are chosen by \"auto\"")(
       "quiet", options::bool_switch(&run.quiet), "no progress on the terminal");
-  if (!parse_command_line("run", run_help, arguments, description, positional)) return 0;
+  if (!parse_command_line("run", run_help, arguments, description, positional)) return false;
   std::signal(SIGPIPE, SIG_IGN);  // when who reads the progress has gone the run goes on
 
   if (resume && overwrite) {
@@ -143,20 +154,22 @@ int run_command(const std::vector<std::string>& arguments) {
     throw Error(Cause::bad_input, "--error-bar and --no-error-bar: give one of them");
   }
   if (run.force && !resume) throw Error(Cause::bad_input, "--force: only together with --resume");
-  const int processors = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   if (run.threads < 1 || run.threads > 1024) {
     throw Error(Cause::bad_input, "--threads " + std::to_string(run.threads) +
                                       ": wants a number from 1 to 1024 (this machine has " +
-                                      std::to_string(processors) + " processors)");
+                                      std::to_string(processors()) + " processors)");
   }
-  const TimeLimit limit(max_time);
-  const plan::ReadScene read = scene_options.read();
-  const auto& [scene, numerics_choice] = read;
-  run.threads = std::min(run.threads, std::max(1, scene.domain.nodes[1] / 4));
-  const plugin::Catalog catalog = scene_options.catalog(scene);
-  const plan::Plan plan = plan_and_place(read, catalog);  // before a directory is made
-  const plan::PlanReport report = plan::make_report(plan);
-  plan::require_memory(report.estimate.memory_bytes, "the run");
+  return true;
+}
+
+/// Reads and plans the scene, and says what there is to warn of.
+void prepare(Request& request, const TimeLimit& limit, std::optional<PlannedScene>& planned) {
+  planned.emplace(request.scene);  // before a directory is made
+  const auto& [scene, numerics_choice] = planned->read;
+  request.run.threads = std::min(request.run.threads, std::max(1, scene.domain.nodes[1] / 4));
+  const Crew* const crew = Crew::present();
+  const plan::PlanReport& report = planned->report;
+  plan::require_memory(report.estimate.memory_bytes / (crew != nullptr ? crew->ranks() : 1), "the run");
   for (const std::string& warning : report.warnings) {
     {
       const Coloured yellow(std::cerr, Colour::yellow);
@@ -165,19 +178,29 @@ int run_command(const std::vector<std::string>& arguments) {
     std::cerr << warning << "\n";
   }
 
-  if (numerics_choice && bars.wanted(numerics_choice)) {
+  if (numerics_choice && request.bars.wanted(numerics_choice)) {
     const std::string may_take = say_what_auto_may_take(*numerics_choice, report.estimate.wall_s, limit);
     if (!may_take.empty()) std::cerr << "warning: " << may_take << "\n";
   }
+}
 
-  require_threads(run.threads);
-  run.interrupted = &listen_for_interruption(limit);
+/// What a process does that is alone, or the first rank. Returns the exit code.
+int lead(const Request& request, const PlannedScene& planned, const TimeLimit& limit) {
+  const SceneOptions& scene_options = request.scene;
+  const std::string& out = request.out;
+  const bool overwrite = request.overwrite, resume = request.resume;
+  const ErrorBarChoice& bars = request.bars;
+  const run::RunOptions& run = request.run;
+  const plan::ReadScene& read = planned.read;
+  const auto& [scene, numerics_choice] = read;
+  const plan::PlanReport& report = planned.report;
+  const Crew* const crew = Crew::present();
   const std::filesystem::path named = std::filesystem::path("runs") / std::filesystem::path(scene_options.scene).stem();
   const std::filesystem::path folder = !out.empty()          ? std::filesystem::path(out)
                                        : overwrite || resume ? named
                                                              : files::unused_directory(named);
-  const std::string again =
-      "rouleau run " + scene_options.in_shell() + " --out " + in_shell(folder.string()) + " --resume";
+  const std::string again = (crew != nullptr ? crew->start() : "") + "rouleau run " + scene_options.in_shell() +
+                            " --out " + in_shell(folder.string()) + " --resume";
   const files::FormerRun former = resume      ? files::FormerRun::resume
                                   : overwrite ? files::FormerRun::replace
                                               : files::FormerRun::keep;
@@ -201,23 +224,14 @@ int run_command(const std::vector<std::string>& arguments) {
       return refine();
   }
   run::Summary summary;
-  if (!run.quiet) std::cerr << opening(plan, report, run.threads, processors, folder);
+  if (!run.quiet)
+    std::cerr << opening(planned.plan, report, crew != nullptr ? crew->ranks() : 1, run.threads, processors(), folder);
   {
     files::RunDirectory directory(folder, scene, former);
     if (resume && !directory.resumes()) {
       std::cerr << folder.string() << " holds no checkpoint: the run begins at the beginning\n";
     }
-    try {
-      summary = run::simulate(plan, report, run, &directory);
-    } catch (const Error& error) {
-      if (error.cause() != Cause::input_output || !directory.is_open()) throw;
-      const std::string next = std::filesystem::exists(files::checkpoint_file(folder))
-                                   ? "what was computed up to the last checkpoint is kept; to go on from there: "
-                                   : "no checkpoint was written yet; to begin again: ";
-      const std::string remedy = in_options(error.remedy());
-      throw Error(error.cause(), error.place(), error.problem(),
-                  {remedy + (remedy.empty() ? "" : "\n  ") + next + again});
-    }
+    summary = simulate_on_all_ranks(scene_options, planned, run, directory, again);
   }
   const bool whole = summary.status == "completed" && summary.stages.back().ended_by != run::Ending::max_steps;
   std::vector<std::string> error_lines;
@@ -249,6 +263,33 @@ int run_command(const std::vector<std::string>& arguments) {
   }
   if (summary.status == "interrupted") return exit_code::interrupted;
   return refines && whole ? refine() : exit_code::done;
+}
+
+}  // namespace
+
+int run_command(const std::vector<std::string>& arguments) {
+  Request request;
+  std::optional<TimeLimit> limit;
+  std::optional<PlannedScene> planned;
+  const auto begin = [&] {
+    if (!read_request(arguments, request)) return;
+    limit.emplace(request.max_time);
+    prepare(request, *limit, planned);
+  };
+  Crew* const crew = Crew::present();
+  if (crew != nullptr) {
+    crew->in_turn(begin);
+  } else {
+    begin();
+  }
+  if (!planned) return exit_code::done;  // help was asked for
+  require_same_run(arguments, *planned);
+  require_threads(request.run.threads);
+  request.run.interrupted = &listen_for_interruption(*limit);
+  if (crew != nullptr && !crew->first()) return follow_first_rank(request.scene, *planned, request.run);
+  const int code = lead(request, *planned, *limit);
+  dismiss_other_ranks(code);
+  return code;
 }
 
 }  // namespace rouleau::command

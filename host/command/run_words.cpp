@@ -21,6 +21,10 @@ std::string size_in_words(double bytes) {
   return bytes < 1e9 ? rounded(bytes / 1e6, 2) + " MB" : rounded(bytes / 1e9, 2) + " GB";
 }
 
+std::string workers(int ranks, int threads) {
+  return (ranks > 1 ? counted(ranks, "rank") + " with " : "") + counted(threads, "thread") + (ranks > 1 ? " each" : "");
+}
+
 using Members = std::vector<int>;
 
 struct Event {
@@ -98,7 +102,7 @@ std::string viscosity_in_words(const Json& summary) {
 
 }  // namespace
 
-std::string opening(const plan::Plan& plan, const plan::PlanReport& report, int threads, int processors,
+std::string opening(const plan::Plan& plan, const plan::PlanReport& report, int ranks, int threads, int processors,
                     const std::filesystem::path& folder) {
   const scene::Scene& scene = *plan.scene;
   std::string size, nodes;
@@ -109,14 +113,14 @@ std::string opening(const plan::Plan& plan, const plan::PlanReport& report, int 
   const plan::Estimate& estimate = report.estimate;
   return (scene.title.empty() ? "untitled scene" : scene.title) + "\n  " + size + " um, " + nodes + " nodes, " +
          counted(static_cast<double>(scene.cells.size()), "cell") + "; stages: " + listed(stages) + "\n  at most " +
-         counted(estimate.steps, "step") + ", about " + time_in_words(estimate.wall_s / threads) + " on " +
-         counted(threads, "thread") + " (the machine has " + counted(processors, "processor") + "), " +
+         counted(estimate.steps, "step") + ", about " + time_in_words(estimate.wall_s / (ranks * threads)) + " on " +
+         workers(ranks, threads) + " (the machine has " + counted(processors, "processor") + "), " +
          size_in_words(estimate.output.bytes()) + " of output\n  into " + folder.string() + "\n";
 }
 
 std::vector<std::string> closing(const Json& summary) {
   std::string ended = summary.at("outcome").get<std::string>() + " in " + time_in_words(summary.at("wall_s")) + " (" +
-                      counted(summary.at("threads"), "thread");
+                      workers(summary.value("ranks", 1), summary.at("threads"));
   if (summary.at("mlups").is_number()) ended += ", " + rounded(summary.at("mlups"), 3) + " MLUPS";
   ended += "): " + number(summary.at("simulated_time_s"), 3) + " s simulated";
   if (summary.at("strain").is_number() && std::abs(summary.at("strain").get<double>()) > 1e-9)

@@ -10,9 +10,9 @@
 
 namespace rouleau::command {
 
-/// Lines on what is about to be computed: title, size, cells, stages, steps, time, threads, and where it goes.
-/// processors: how many the machine has.
-std::string opening(const plan::Plan& plan, const plan::PlanReport& report, int threads, int processors,
+/// Lines on what is about to be computed: title, size, cells, stages, steps, time, ranks, threads, and where it
+/// goes. processors: how many the machine has.
+std::string opening(const plan::Plan& plan, const plan::PlanReport& report, int ranks, int threads, int processors,
                     const std::filesystem::path& folder);
 
 /// Lines on what came out, from summary.json: how the run ended and what it cost; the largest aggregate, when it formed

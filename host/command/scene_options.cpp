@@ -1,8 +1,10 @@
 #include "scene_options.hpp"
 
+#include "command/process/crew.hpp"
 #include "command_line.hpp"
 #include "core/membrane/membranes.hpp"
 #include "lock_scene.hpp"
+#include "plan/blocks.hpp"
 #include "plan/solver_setup.hpp"
 
 namespace rouleau::command {
@@ -54,5 +56,13 @@ plan::Plan plan_and_place(const plan::ReadScene& read, const plugin::Catalog& ca
   faults.raise();
   return *std::move(plan);
 }
+
+PlannedScene::PlannedScene(const SceneOptions& options)
+    : read(options.read()),
+      catalog(options.catalog(read.scene)),
+      plan(plan_and_place(read, catalog)),
+      report(plan::make_report(plan)),
+      blocks(Crew::present() == nullptr ? std::nullopt
+                                        : std::optional(plan::make_blocks(plan, Crew::present()->ranks()))) {}
 
 }  // namespace rouleau::command

@@ -3,10 +3,13 @@
 
 #include <boost/program_options.hpp>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "core/domain/decomposition.hpp"
 #include "plan/plan.hpp"
+#include "plan/plan_report.hpp"
 #include "plan/read_scene.hpp"
 
 namespace rouleau::command {
@@ -30,5 +33,18 @@ struct SceneOptions {
 
 /// The plan of a scene whose cells have been found to lie apart, within the walls. Throws all that speaks against either.
 plan::Plan plan_and_place(const plan::ReadScene& read, const plugin::Catalog& catalog);
+
+/// A scene as the options mean it, read and planned. Its parts refer to each other: it stays where it is.
+struct PlannedScene {
+  explicit PlannedScene(const SceneOptions& options);
+  PlannedScene(const PlannedScene&) = delete;
+  PlannedScene& operator=(const PlannedScene&) = delete;
+
+  const plan::ReadScene read;
+  const plugin::Catalog catalog;
+  const plan::Plan plan;
+  const plan::PlanReport report;
+  const std::optional<core::Decomposition<2>> blocks;  ///< none where this process is alone
+};
 
 }  // namespace rouleau::command

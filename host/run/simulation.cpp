@@ -58,11 +58,14 @@ class Simulation {
         course_(plan, state_, membranes_),
         progress_(options.quiet || directory == nullptr),
         checkpoints_(scene_, directory),
-        summary_(describe(plan, report, options.threads)) {}
+        summary_(describe(plan, report, options.threads)) {
+    if (ranks_.several()) summary_.ranks = ranks_.blocks->ranks();
+    summary_.message_library = options.message_library;
+  }
 
   Summary run() {
     std::optional<core::SolverState<T>> former = go_on();
-    if (!former) log("started", {{"title", scene_.title}, {"threads", options_.threads}});
+    if (!former) log("started", {{"title", scene_.title}, {"threads", options_.threads}, {"ranks", summary_.ranks}});
     for (const std::string& warning : summary_.plan.warnings) log("warning", {{"message", warning}});
     run_stages(std::move(former));
     progress_.finish();
@@ -92,8 +95,8 @@ class Simulation {
       directory_->go_back(restored->directory);
       reader->take_place(directory_->path());
       file = files::checkpoint_file(directory_->path()).string();
-      log("resumed", state_.resumed.emplace_back(
-                         Continuation{state_.steps, options_.threads, resumption.accepted, resumption.damage}));
+      log("resumed", state_.resumed.emplace_back(Continuation{state_.steps, options_.threads, summary_.ranks,
+                                                              resumption.accepted, resumption.damage}));
       checkpoints_.go_on_from(state_.steps);
       say_where_it_goes_on(resumption.damage);
     }
@@ -405,7 +408,9 @@ class Simulation {
     s.failure = failure_;
     state_.report(s);
     s.mlups = s.steps_per_s * scene_.domain.nodes[0] * scene_.domain.nodes[1] / 1e6;
-    s.peak_rss_bytes = peak_memory_bytes();
+    s.peak_rss_bytes = 0;
+    for (const std::vector<long>& of_rank : core::all_of(ranks_, std::vector<long>{peak_memory_bytes()}))
+      s.peak_rss_bytes += of_rank.front();
     s.checkpoint_step = checkpoints_.kept();
     s.area_leakage_max = observe::Observer::area_leakage(membranes_);
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <string>
 #include <vector>
 
 #include "core/domain/ranks.hpp"
@@ -16,6 +17,7 @@ struct RunOptions {
   bool quiet = false;
   bool force = false;                              ///< go on from a checkpoint in spite of differences that are safe
   const std::atomic<bool>* interrupted = nullptr;  ///< set by a signal handler: stop at the next step
+  std::string message_library = {};                ///< that ranks speak over; empty: there are no others
 };
 
 /// Runs a plan and writes into `directory`, going on from its checkpoint if it resumes; the summary has been written

@@ -39,13 +39,17 @@ Json value_or_null(const std::optional<T>& value) {
 }  // namespace
 
 void to_json(Json& json, const Continuation& continuation) {
-  json = {{"step", continuation.step}, {"threads", continuation.threads}, {"accepted", continuation.accepted}};
+  json = {{"step", continuation.step},
+          {"threads", continuation.threads},
+          {"ranks", continuation.ranks},
+          {"accepted", continuation.accepted}};
   if (!continuation.damaged_checkpoint.empty()) json["damaged_checkpoint"] = continuation.damaged_checkpoint;
 }
 
 void from_json(const Json& json, Continuation& continuation) {
   json.at("step").get_to(continuation.step);
   json.at("threads").get_to(continuation.threads);
+  continuation.ranks = json.value("ranks", 1);
   json.at("accepted").get_to(continuation.accepted);
   continuation.damaged_checkpoint = json.value("damaged_checkpoint", "");
 }
@@ -80,6 +84,8 @@ Json to_json(const Summary& summary) {
   result["peak_rss_bytes"] = summary.peak_rss_bytes;
   result["checkpoint_step"] = value_or_null(summary.checkpoint_step);
   result["threads"] = summary.threads;
+  result["ranks"] = summary.ranks;
+  result["message_library"] = summary.message_library.empty() ? Json() : Json(summary.message_library);
   result["precision"] = summary.precision;
   result["instruction_set"] = summary.instruction_set;
 

@@ -37,6 +37,7 @@ struct StageEnd {
 struct Continuation {
   long step = 0;
   int threads = 1;
+  int ranks = 1;
   std::vector<std::string> accepted;  ///< differences from the run before, which --force let pass
   std::string damaged_checkpoint;     ///< why it was not the last one; empty: it was
 };
@@ -65,7 +66,8 @@ struct Summary {
   double strain = 0, simulated_time_s = 0, wall_s = 0, steps_per_s = 0, mlups = 0;
   long peak_rss_bytes = 0;
   std::optional<long> checkpoint_step;  ///< from which --resume goes on
-  int threads = 1;
+  int ranks = 1, threads = 1;           ///< threads: of a rank
+  std::string message_library;          ///< of the ranks; empty: there is one
   std::string precision, instruction_set;
   std::vector<PluginUse> plugins;
   std::optional<plugin::LockUse> lock;

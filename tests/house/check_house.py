@@ -15,7 +15,7 @@ HOST = SOURCE / "host"
 
 # A folder may include those before it (docs/architecture.md); core is what everything else stands on.
 ORDER = ["base", "json", "units", "core", "scene", "shape", "plugin", "plan", "observe", "monitor", "files", "run",
-         "report", "trial", "accuracy", "study", "stability", "conform", "command"]
+         "report", "trial", "accuracy", "study", "stability", "conform", "transport", "command"]
 MOST_UNITS = 20
 # Outside command/ nobody speaks of the command line, but for these files.
 SPEAK = {"trial/trial.cpp": "gives a child its options", "json/set_option.cpp": "reads the text of --set"}

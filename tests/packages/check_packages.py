@@ -11,10 +11,10 @@ from pathlib import Path
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "sdk"))
 
-from staged import BUILD, CMAKE, COMPONENTS, SCENE, SOURCE, Case, files, main  # noqa: E402
+from staged import BUILD, CMAKE, COMPONENTS, SCENE, SOURCE, TRANSPORTS, Case, files, main  # noqa: E402
 
 PARTS = {"rouleau": {"program", "plugins", "scenes", "documentation"}, "rouleau-dev": {"sdk", "core"},
-         "python3-rouleau": {"python"}}
+         "python3-rouleau": {"python"}, **{f"rouleau-{mpi}": {mpi} for mpi in TRANSPORTS}}
 COMPILERS = ("libc.so", "libm.so", "libmvec.so", "libdl.so", "librt.so", "libpthread.so", "libresolv.so", "libstdc++.so",
              "libgcc_s.so", "ld-linux", "linux-vdso")
 
@@ -65,7 +65,9 @@ class Debian_packages(Packages):
         needs = self.fields["rouleau"]["Depends"]
         for library in ("libc6", "libhdf5-103", "libudunits2-0", "libboost-program-options", "libgomp1"):
             self.assertIn(library, needs)
-        self.assertNotRegex(needs, r"-dev|g\+\+|cmake|python")
+        self.assertNotRegex(needs, r"-dev|g\+\+|cmake|python|mpi")
+        if "openmpi" in TRANSPORTS:
+            self.assertRegex(self.fields["rouleau-openmpi"]["Depends"], r"libopenmpi3.*rouleau \(= |rouleau \(= .*libopenmpi3")
         self.assertEqual(self.fields["rouleau-dev"]["Depends"], "libeigen3-dev (>= 3.4)")
         interface = re.findall(r"^#define ROULEAU_ABI_M\w+ (\d+)", (SOURCE / "sdk/include/rouleau/plugin.h").read_text(), re.MULTILINE)
         self.assertEqual(self.fields["rouleau"]["Provides"],

@@ -26,8 +26,9 @@ except ImportError:
     h5py = None
 
 TABLES = ["cells.csv", "aggregates.csv", "series.csv", "aggregate_sizes.csv"]
-MEASURED = ["wall_s", "steps_per_s", "mlups", "peak_rss_bytes", "threads", "started", "resumed", "files",
-            "summary_xxh3"]
+MEASURED = ["wall_s", "steps_per_s", "mlups", "peak_rss_bytes", "threads", "ranks", "message_library", "started",
+            "resumed", "files", "summary_xxh3"]
+COSTS_ALONE = ["checkpoint", "ranks"]  # passes that only some of the runs have
 INTERRUPTED = 130
 
 
@@ -36,7 +37,7 @@ def summary(directory):
     content = json.loads((directory / "summary.json").read_text())
     for key in MEASURED:
         content.pop(key)
-    content["passes"] = [(p["name"], p["calls"]) for p in content["passes"] if p["name"] != "checkpoint"]
+    content["passes"] = [(p["name"], p["calls"]) for p in content["passes"] if p["name"] not in COSTS_ALONE]
     content["stages"] = [{k: v for k, v in stage.items() if k != "wall_s"} for stage in content["stages"]]
     return content
 

@@ -18,6 +18,8 @@ SCENE = SOURCE / "scenes" / "four-cells-shear.json"
 COMPONENTS = ["sdk", "core", "program", "plugins", "scenes", "documentation"]
 if (SOURCE / "python/CMakeLists.txt").exists():
     COMPONENTS.append("python")
+TRANSPORTS = [f.stem.removeprefix("transport-") for f in (BUILD / "libexec/rouleau").glob("transport-*.so")]
+COMPONENTS += TRANSPORTS
 
 
 def files(folder):

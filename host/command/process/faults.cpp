@@ -10,6 +10,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <exception>
 #include <initializer_list>
 #include <new>
@@ -35,8 +36,18 @@ constexpr bool others_watch = false;
   while (true) ::syscall(SYS_exit_group, code);
 }
 
+const char* speaker = nullptr;  // before a rank's last words; null: of all that there are, or of the first rank
+
 /// Only calls that are allowed in a handler.
 void say(std::initializer_list<const char*> parts) {
+  if (speaker != nullptr) {
+    // Where all ranks come to the same end the launcher ends this one meanwhile, and there is one message.
+    timespec while_first_speaks{.tv_sec = 2, .tv_nsec = 0};
+    if (::nanosleep(&while_first_speaks, nullptr) != 0) return;
+    for (const char* part : {speaker, ": "}) {
+      if (::write(STDERR_FILENO, part, std::strlen(part)) < 0) return;
+    }
+  }
   for (const char* part : parts) {
     if (::write(STDERR_FILENO, part, std::strlen(part)) < 0) break;
   }
@@ -133,6 +144,8 @@ void name_culprits() {
 }
 
 void expect_end() { at_its_end = true; }
+
+void speak_as(const std::string& name) { speaker = (new std::string(name))->c_str(); }
 
 }  // namespace rouleau::command
 

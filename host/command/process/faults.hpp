@@ -1,6 +1,8 @@
 // The last words of a process that a plugin or a library ends: whichever way it does that, a sentence names the cause.
 #pragma once
 
+#include <string>
+
 namespace rouleau::command {
 
 /// From here a crash, an uncaught exception or an end of the process within a plugin's function (base/foreign_call.hpp)
@@ -11,5 +13,9 @@ void name_culprits();
 
 /// The program is about to end by itself.
 void expect_end();
+
+/// Of several ranks, one that is not the first: its last words begin with its name, and come only if the launcher has
+/// not ended it by then, as it does when the first has said the same.
+void speak_as(const std::string& name);
 
 }  // namespace rouleau::command

@@ -14,6 +14,7 @@
 #include "base/faults.hpp"
 #include "base/foreign_call.hpp"
 #include "base/text.hpp"
+#include "crew.hpp"
 #include "terminal.hpp"
 
 namespace rouleau::command {
@@ -38,7 +39,7 @@ Error for_terminal(const Error& error) {
   return {error.cause(), error.place(), error.problem(), {in_options(error.remedy())}};
 }
 
-int fail(const std::string& message, int code) {
+int show(const std::string& message, int code) {
   // Place and problem in red; the lines below them say more.
   const auto first_line = message.find('\n');
   {
@@ -47,6 +48,14 @@ int fail(const std::string& message, int code) {
   }
   std::cerr << (first_line == std::string::npos ? "" : message.substr(first_line)) << '\n';
   return code;
+}
+
+/// Of several ranks the first one shows it, for all that fail together.
+int fail(const std::string& message, int code) {
+  Crew* const crew = Crew::present();
+  if (crew == nullptr) return show(message, code);
+  crew->report(code, crew->first() ? "" : crew->name() + ": " + message);
+  return crew->first() ? show(message, code) : code;
 }
 
 nlohmann::json as_json(const Error& error) {
@@ -63,8 +72,12 @@ int fail_in_json(const Error& error, int code) {
   } else {
     faults.push_back(as_json(error));
   }
-  const nlohmann::json line = {{"faults", faults}, {"exit_code", code}};
-  return fail(line.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace), code);
+  nlohmann::json line = {{"faults", faults}, {"exit_code", code}};
+  Crew* const crew = Crew::present();
+  if (crew != nullptr && !crew->first()) line["rank"] = crew->name();
+  const std::string words = line.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+  if (crew != nullptr) crew->report(code, crew->first() ? "" : words);
+  return crew == nullptr || crew->first() ? show(words, code) : code;
 }
 
 bool programs_read_errors() {
@@ -112,6 +125,8 @@ int run_program(const std::function<int()>& body, const std::string& too_large) 
     std::cout.flush();
     // A full disk or a closed pipe must not look like success to the script that reads the output.
     return std::cout || code != 0 ? code : fail("rouleau: the output could not be written", exit_code::input_output);
+  } catch (const transport::Farewell& farewell) {
+    return Crew::present()->first() ? show(farewell.what(), farewell.exit_code) : farewell.exit_code;
   } catch (const SeveralFaults& several) {
     if (programs_read_errors()) return fail_in_json(several, exit_code_of(several.cause()));
     return fail(several.with(for_terminal).what(), exit_code_of(several.cause()));

@@ -54,6 +54,13 @@ class PrintableBuffer : public std::streambuf {
   std::string pending_;
 };
 
+/// Takes everything, and keeps nothing.
+class SilentBuffer : public std::streambuf {
+ protected:
+  int_type overflow(int_type c) override { return traits_type::not_eof(c); }
+  std::streamsize xsputn(const char*, std::streamsize count) override { return count; }
+};
+
 // Never destroyed: the streams are flushed once more when the program ends.
 PrintableBuffer* standard_output = nullptr;
 
@@ -89,6 +96,12 @@ Coloured::~Coloured() {
   if (!shown_) return;
   stream_.flush();
   static_cast<void>(colour_terminal(stream_)->mark("\x1b[0m"));
+}
+
+void silence_terminal() {
+  static auto& nobody = *new SilentBuffer;
+  std::cout.rdbuf(&nobody);
+  std::cerr.rdbuf(&nobody);
 }
 
 void give_terminal_back() {

@@ -10,6 +10,9 @@ namespace rouleau::command {
 /// come out as \uXXXX, which means the same in JSON.
 void take_terminal();
 
+/// Nothing that std::cout and std::cerr print is shown: the first rank of a run speaks for the others.
+void silence_terminal();
+
 /// Standard output is the descriptor 1 again: for a program that this process becomes.
 void give_terminal_back();
 

@@ -1,6 +1,7 @@
 // How a lattice is cut into blocks, one for each rank.
 #pragma once
 
+#include <cmath>
 #include <stdexcept>
 #include <vector>
 
@@ -47,6 +48,20 @@ class Decomposition {
     return {whole, std::move(blocks)};
   }
 
+  /// As many blocks as wanted, by cutting the longest side of what is left again and again so that both parts cost what
+  /// the numbers of their blocks ask for: a node 1, and each of the points `point_cost` more. Along the first axis cuts
+  /// lie at multiples of 16 nodes where there is room for that. Throws std::invalid_argument for more blocks than blocks
+  /// of 16 nodes have room.
+  static Decomposition bisected(const Domain<D>& whole, int ranks, const std::vector<std::array<int, D>>& points = {},
+                                double point_cost = 0) {
+    if (ranks < 1 || whole.nodes() / least_nodes < ranks)
+      throw std::invalid_argument("more blocks than there is room for");
+    std::vector<Box<D>> blocks;
+    bisect({{}, whole.size}, ranks, points, point_cost, blocks);
+    return {whole, std::move(blocks)};
+  }
+  static constexpr long least_nodes = 16;  ///< of a block, by bisection
+
   [[nodiscard]] int ranks() const { return static_cast<int>(blocks_.size()); }
   /// The lattice with the block of a rank.
   [[nodiscard]] Domain<D> domain(int rank) const { return {whole_.size, whole_.periodic, blocks_[rank]}; }
@@ -58,6 +73,48 @@ class Decomposition {
   }
 
  private:
+  static long volume(const Box<D>& box) {
+    long product = 1;
+    for (int k = 0; k < D; ++k) product *= box.size(k);
+    return product;
+  }
+  static void bisect(const Box<D>& box, int parts, std::vector<std::array<int, D>> points, double point_cost,
+                     std::vector<Box<D>>& blocks) {
+    if (parts == 1) {
+      blocks.push_back(box);
+      return;
+    }
+    int axis = 0;
+    for (int k = 1; k < D; ++k) {
+      if (box.size(k) > box.size(axis)) axis = k;
+    }
+    const int size = box.size(axis), lower_parts = parts / 2, upper_parts = parts - lower_parts;
+    const double slice = static_cast<double>(volume(box)) / size;
+    std::vector<double> cost(static_cast<std::size_t>(size), slice);
+    for (const auto& point : points) cost[point[axis] - box.begin[axis]] += point_cost;
+    double all = 0;
+    for (const double c : cost) all += c;
+    const double wanted = all * lower_parts / parts;
+    // Each part has room for its blocks where whole slices allow; and the cut a round place, where there is one.
+    const auto slices = [&](int blocks_of) { return static_cast<int>(std::ceil(blocks_of * least_nodes / slice)); };
+    const int first = slices(lower_parts), last = size - slices(upper_parts);
+    int at = static_cast<int>(std::lround(static_cast<double>(size) * lower_parts / parts));
+    for (const int grain : {axis == 0 ? 16 : 1, 1}) {
+      double below = 0, least = INFINITY;
+      for (int i = 1; i <= last; ++i) {
+        below += cost[i - 1];
+        if (i < first || (box.begin[axis] + i) % grain != 0) continue;
+        if (std::abs(below - wanted) < least) least = std::abs(below - wanted), at = i;
+      }
+      if (std::isfinite(least)) break;
+    }
+    Box<D> lower = box, upper = box;
+    lower.end[axis] = upper.begin[axis] = box.begin[axis] + at;
+    std::vector<std::array<int, D>> below, above;
+    for (const auto& point : points) (lower.contains(point) ? below : above).push_back(point);
+    bisect(lower, lower_parts, std::move(below), point_cost, blocks);
+    bisect(upper, upper_parts, std::move(above), point_cost, blocks);
+  }
   static bool overlap(const Box<D>& a, const Box<D>& b) {
     for (int k = 0; k < D; ++k) {
       if (a.end[k] <= b.begin[k] || b.end[k] <= a.begin[k]) return false;

@@ -1,0 +1,151 @@
+#include "connection.hpp"
+
+#include <dlfcn.h>
+#include <sched.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <new>
+#include <thread>
+
+#include "base/error.hpp"
+
+namespace rouleau::transport {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Kinds of messages.
+enum Kind : int { data, farewell };
+/// What is longer goes in pieces of this size; one that is shorter is the last.
+constexpr std::size_t piece = std::size_t{1} << 30;
+
+/// A rank that waits looks, then lets others run, and sleeps in the end: it may share a core with the one it waits for,
+/// and wait for minutes.
+class Patience {
+ public:
+  void wait() {
+    ++looks_;
+    if (looks_ < 50) return;
+    if (looks_ < 100'000) {
+      ::sched_yield();
+    } else {
+      std::this_thread::sleep_for(std::chrono::microseconds(200));
+    }
+  }
+
+ private:
+  long looks_ = 0;
+};
+
+std::string who(const Launch& launch) {
+  return "this is rank " + std::to_string(launch.rank) +
+         (launch.ranks > 0 ? " of " + std::to_string(launch.ranks) : "") + ", started by " + launch.launcher + ", ";
+}
+
+[[noreturn]] void refuse(const Launch& launch, const std::string& problem, const std::string& remedy) {
+  throw Error(Cause::bad_input, who(launch) + problem, {remedy});
+}
+
+fs::path library_for(const Launch& launch) {
+  if (const char* named = ::secure_getenv("ROULEAU_TRANSPORT"); named != nullptr && *named != '\0') return named;
+  if (launch.mpi.empty())
+    refuse(launch, "which has given it no way to find the others",
+           "choose one with srun's option mpi: pmix with Open MPI, pmi2 with MPICH");
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  const fs::path library =
+      program.parent_path().parent_path() / ROULEAU_LIBEXEC_FOLDER / "rouleau" / ("transport-" + launch.mpi + ".so");
+  if (!fs::exists(library, error))
+    refuse(launch, "and there is no " + library.string() + " to reach the others with",
+           "install the package rouleau-" + launch.mpi + " on every machine, or start one process without a launcher");
+  return library;
+}
+
+}  // namespace
+
+Connection::Connection(const Launch& launch) {
+  const fs::path file = library_for(launch);
+  const std::string otherwise = "install the transport that fits, or start one process without a launcher";
+  // Open MPI's components look for its symbols among the global ones.
+  void* const library = ::dlopen(file.c_str(), RTLD_NOW | RTLD_GLOBAL);
+  if (library == nullptr) refuse(launch, "and its transport does not open: " + std::string(::dlerror()), otherwise);
+  const auto open = reinterpret_cast<rouleau_transport_open>(::dlsym(library, "rouleau_transport_open_v1"));
+  if (open == nullptr) refuse(launch, "and " + file.string() + " is no transport of this version", otherwise);
+  table_ = open();
+  if (table_ == nullptr) refuse(launch, "and " + file.string() + " cannot start its MPI", otherwise);
+  const bool fits = table_->version == ROULEAU_TRANSPORT_VERSION && table_->struct_size >= sizeof(rouleau_transport);
+  if (!fits) refuse(launch, "and " + file.string() + " is a transport of another version", otherwise);
+  if (launch.ranks > 0 && table_->ranks != launch.ranks)
+    refuse(launch,
+           "and " + file.string() + " (" + table_->library + ") finds " + std::to_string(table_->ranks) +
+               (table_->ranks == 1 ? " rank: it is of another MPI than the launcher" : " ranks"),
+           otherwise);
+}
+
+void Connection::begin_to_send(int to, int kind, core::Message message) {
+  void* const sending = table_->send(to, kind, message.data(), message.size());
+  if (sending == nullptr) throw std::bad_alloc();
+  sending_.emplace_back(sending, std::move(message));  // its bytes stay where they are
+}
+
+void Connection::drop_sent() {
+  while (!sending_.empty() && table_->sent(sending_.front().first) != 0) sending_.pop_front();
+}
+
+void Connection::send(int to, core::Message message) {
+  drop_sent();
+  for (std::size_t at = 0; message.size() >= piece;) {
+    if (message.size() - at < piece) {
+      message.erase(message.begin(), message.begin() + static_cast<std::ptrdiff_t>(at));
+      break;
+    }
+    const auto begin = message.begin() + static_cast<std::ptrdiff_t>(at);
+    begin_to_send(to, data, {begin, begin + static_cast<std::ptrdiff_t>(piece)});
+    at += piece;
+  }
+  begin_to_send(to, data, std::move(message));
+}
+
+void Connection::hear_farewells() {
+  int32_t rank = 0;
+  uint64_t size = 0;
+  if (table_->arrived(-1, farewell, &rank, &size) == 0) return;
+  std::string words(size, ' ');
+  table_->take(words.data());
+  int code = 0;
+  std::memcpy(&code, words.data(), sizeof code);
+  throw Farewell(code, words.substr(sizeof code));
+}
+
+core::Message Connection::receive(int from) {
+  core::Message message;
+  for (Patience patience;;) {
+    int32_t sender = 0;
+    uint64_t size = 0;
+    if (table_->arrived(from, data, &sender, &size) != 0) {
+      const std::size_t before = message.size();
+      message.resize(before + size);
+      table_->take(message.data() + before);
+      if (size < piece) return message;
+    } else {
+      drop_sent();
+      hear_farewells();
+      patience.wait();
+    }
+  }
+}
+
+void Connection::say_farewell(int exit_code, const std::string& words) {
+  core::Message message(sizeof exit_code + words.size());
+  std::memcpy(message.data(), &exit_code, sizeof exit_code);
+  std::memcpy(message.data() + sizeof exit_code, words.data(), words.size());
+  for (int to = 0; to < ranks(); ++to) {
+    if (to != rank()) begin_to_send(to, farewell, message);
+  }
+}
+
+}  // namespace rouleau::transport

@@ -1,0 +1,345 @@
+"""Runs that several ranks compute together: the bytes of one process, one voice, and an end in good order.
+
+usage: check_ranks.py ROULEAU MPIRUN SOURCE LONELY_TRANSPORT
+
+Ranks share the cores of this machine. ROULEAU_KILLS=200 in the environment kills more of them. Python's standard library, and h5py where it is installed.
+"""
+
+import json
+import os
+import random
+import resource
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+PROGRAM, MPIRUN, SOURCE, LONELY = (Path(a).resolve() if a.startswith("/") else a for a in sys.argv[1:5])
+sys.path.insert(0, str(SOURCE / "tests" / "resume"))
+from check_kills import TABLES, differences, h5py  # noqa: E402
+
+SEED = int.from_bytes(os.urandom(4), "little")
+CHANCE = random.Random(SEED)
+KINETICS = SOURCE / "tests" / "resume" / "scenes" / "kinetics.json"
+# Two stages, short, with all that models remember, both corrections and a contrast of viscosities.
+SHORT = ["--set", '/stages/0/duration="8 ms"', "--set", "/stages/1/strain=0.06", "--set", "/output/cells/strain=0.02",
+         "--set", "/output/fields/strain=0.05", "--set", '/output/checkpoint={"seconds": 600}']
+KINETICS_RUN = [str(KINETICS), *SHORT]
+KILLS = int(os.environ.get("ROULEAU_KILLS", 3))
+FAULTY = PROGRAM.parent.parent / "tests" / "faulty" / "plugins" / "compute"
+ENVIRONMENT = {k: v for k, v in os.environ.items() if not k.startswith(("OMPI_", "PMI", "SLURM_"))}
+SINGLE_SWITCHES = ["--allow-run-as-root", "--oversubscribe"]
+
+
+def ranks(count, *words, program=PROGRAM):
+    return [str(MPIRUN), *SINGLE_SWITCHES, "-n", str(count), str(program), *map(str, words)]
+
+
+def each(*programs):
+    """One rank for each of several command lines."""
+    command = [str(MPIRUN), *SINGLE_SWITCHES]
+    for number, words in enumerate(programs):
+        command += ([":"] if number else []) + ["-n", "1", *map(str, words)]
+    return command
+
+
+def call(command, **settings):
+    return subprocess.run(command, capture_output=True, text=True, timeout=120, env=ENVIRONMENT, **settings)
+
+
+def own_words(errors):
+    """What the program has said, without mpirun's own remarks about exit codes."""
+    words, remark = [], False
+    for line in errors.splitlines():
+        if line.startswith("-----"):
+            remark = not remark
+        elif not remark and not line.startswith("warning: "):
+            words.append(line)
+    return "\n".join(words).strip()
+
+
+def children(process):
+    return [int(p) for p in Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()]
+
+
+def maps(pid):
+    return Path(f"/proc/{pid}/maps").read_text()
+
+
+def checkpoint(directory):
+    """Arrays of checkpoint.h5, which know nothing of ranks and threads."""
+    content = {}
+    with h5py.File(directory / "checkpoint.h5") as file:
+        file.visititems(lambda path, item: content.update({path: (item.shape, item[...].tobytes())})
+                        if isinstance(item, h5py.Dataset) and item.dtype.kind == "f" else None)
+    return content
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.path = Path(folder.name)
+
+    def run_well(self, command):
+        result = call(command)
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+        return result
+
+    def assert_refused(self, result, code, *words, directory=None):
+        self.assertEqual(result.returncode, code, result.stdout + result.stderr)
+        said = own_words(result.stderr)
+        for word in words:
+            self.assertEqual(said.count(word), 1, said)
+        self.assertEqual(result.stdout, "")
+        if directory is not None:
+            self.assertFalse(directory.exists())
+
+
+class Same_bytes(Case):
+    def assert_same(self, scene, cuts):
+        alone = self.path / "alone"
+        self.run_well([str(PROGRAM), "run", *scene, "--out", str(alone), "--quiet"])
+        for count, threads in cuts:
+            with self.subTest(ranks=count, threads=threads):
+                together = self.path / f"{count}-{threads}"
+                self.run_well(ranks(count, "run", *scene, "--out", together, "--quiet", "--threads", threads))
+                summary = json.loads((together / "summary.json").read_text())
+                self.assertEqual((summary["ranks"], summary["threads"]), (count, threads))
+                self.assertIn("MPI", summary["message_library"])
+                self.assertEqual(differences(alone, together), [])
+                if h5py is not None:
+                    self.assertEqual(checkpoint(alone), checkpoint(together))
+
+    def test_of_cells_with_all_that_models_remember_in_two_stages(self):
+        self.assert_same(KINETICS_RUN, [(2, 1), (3, 2), (4, 1)])
+
+    def test_of_a_driven_channel_over_borders_in_single_precision(self):
+        scene = [SOURCE / "tests" / "resume" / "scenes" / "driven.json", "--set", '/numerics/precision="f32"',
+                 "--max-steps", "150"]
+        self.assert_same([*map(str, scene)], [(3, 1), (2, 2)])
+
+    def test_of_a_fluid_alone(self):
+        scene = {"rouleau": 1, "domain": {"size": ["24 um", "16 um"], "nodes": [48, 32], "y": {
+            "lower": {"wall": {}}, "upper": {"wall": {}}}}, "fluid": {"density": "1 g/cm3", "viscosity": "1.2 cP"},
+            "numerics": {"density_factor": 2000},
+            "stages": [{"name": "shear", "shear_rate": "20 1/s", "strain": 0.2, "start": "impulsive"}],
+            "output": {"cells": {"strain": 0.1}, "fields": {"strain": 0.1, "quantities": ["velocity"]},
+                       "checkpoint": {"seconds": 600}}}
+        (self.path / "fluid.json").write_text(json.dumps(scene))
+        self.assert_same([str(self.path / "fluid.json")], [(4, 1)])
+
+
+    def test_of_numerics_that_are_chosen_of_error_bars_and_of_the_finer_run_that_follows(self):
+        scene = json.loads((SOURCE / "tests" / "physics" / "scenes" / "auto-capsule.json").read_text())
+        scene["stages"][0]["strain"] = 1
+        scene["output"] = {"cells": {"strain": 0.25}, "checkpoint": "never"}
+        scene["numerics"] = {"auto": {"error": 0.05}}
+        (self.path / "scene.json").write_text(json.dumps(scene))
+        runs = [self.path / str(count) for count in (1, 2)]
+        for count, directory in enumerate(runs, 1):
+            said = self.run_well(ranks(count, "run", self.path / "scene.json", "--out", directory, "--quiet")).stdout
+            self.assertIn("a finer run follows", said)
+        for folder in (".", "refined"):
+            one, two = (directory / folder for directory in runs)
+            self.assertEqual((one / "cells.csv").read_bytes(), (two / "cells.csv").read_bytes())
+            one, two = (json.loads((directory / "summary.json").read_text()) for directory in (one, two))
+            for key in ("error_bars", "numerics_choice"):
+                self.assertEqual(one[key], two[key])
+            self.assertEqual((one["ranks"], two["ranks"]), (1, 2))
+
+
+class Transports(Case):
+    def test_the_program_knows_no_mpi_and_a_process_alone_maps_none(self):
+        symbols = subprocess.run(["nm", "-D", PROGRAM], capture_output=True, text=True).stdout
+        self.assertNotRegex(symbols, r"\bMPI_")
+        for together in (False, True):
+            words = ["run", str(KINETICS), "--out", str(self.path / str(together)), "--quiet"]
+            command = ranks(2, *words) if together else [str(PROGRAM), *words]
+            process = subprocess.Popen(command, env=ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            try:
+                while not (self.path / str(together) / "cells.csv").exists():
+                    self.assertIsNone(process.poll())
+                    time.sleep(0.01)
+                pid = children(process)[0] if together else process.pid
+                self.assertEqual("libmpi" in maps(pid), together)
+                self.assertEqual("transport-" in maps(pid), together)
+            finally:
+                process.send_signal(signal.SIGUSR1)
+                process.wait(60)
+
+    def refused_by(self, transport, *words):
+        directory = self.path / "run"
+        result = subprocess.run(ranks(2, "run", *KINETICS_RUN, "--out", directory), capture_output=True, text=True,
+                                timeout=60, env=ENVIRONMENT | {"ROULEAU_TRANSPORT": str(transport)})
+        self.assert_refused(result, 2, "rank 0 of 2", *words, directory=directory)
+
+    def test_one_that_is_missing_or_wrong_is_refused_in_one_sentence_before_anything_is_written(self):
+        self.refused_by(LONELY, "finds 1 rank: it is of another MPI than the launcher", "install the transport that fits")
+        self.refused_by(self.path / "none.so", "does not open", "install the transport that fits")
+        self.refused_by(shutil.which("true"), "install the transport that fits")
+
+    def test_an_installation_without_any_names_the_package(self):
+        (self.path / "bin").mkdir()
+        shutil.copy(PROGRAM, self.path / "bin" / "rouleau")
+        result = call(ranks(2, "run", *KINETICS_RUN, "--out", self.path / "run", program=self.path / "bin" / "rouleau"))
+        self.assert_refused(result, 2, "rank 0 of 2", "install the package rouleau-", directory=self.path / "run")
+
+
+class One_voice(Case):
+    def test_what_all_ranks_find_wrong_is_said_once(self):
+        for words, code, sentence in (
+                (["--threads", "0"], 2, "wants a number from 1 to 1024"),
+                (["--set", "/numerics/tau=0.4"], 2, "/numerics/tau"),
+                (["--set", '/cell_types/rbc/membrane/0/model="none"'], 2, '"none"')):
+            result = call(ranks(3, "run", *KINETICS_RUN, "--out", self.path / "run", *words))
+            self.assert_refused(result, code, sentence, directory=self.path / "run")
+            self.assertNotIn("rank ", own_words(result.stderr))
+
+    def test_more_ranks_than_blocks_are_refused(self):
+        small = [str(KINETICS), "--set", "/domain/nodes=[16, 12]"]
+        result = call(ranks(4, "run", *small, "--out", self.path / "run"))
+        self.assert_refused(result, 2, "4 ranks are more than the 3 blocks", directory=self.path / "run")
+
+    def test_a_scene_that_one_rank_cannot_read_ends_all_with_its_name(self):
+        here, there = self.path / "here", self.path / "there"
+        here.mkdir(), there.mkdir()
+        shutil.copy(KINETICS, here / "scene.json")
+        words = [PROGRAM, "run", "scene.json", "--out", self.path / "run"]
+        result = call([*each(["-wdir", here, *words], ["-wdir", there, *words])])
+        self.assert_refused(result, 4, f"rank 1 of 2 on {socket.gethostname()}: scene.json",
+                            directory=self.path / "run")
+
+    def test_another_plugin_scene_or_command_line_on_one_rank_is_refused(self):
+        copies = [self.path / "a", self.path / "b"]
+        for copy in copies:
+            for folder in ("lib/rouleau", "libexec/rouleau", "bin"):
+                (copy / folder).mkdir(parents=True)
+            shutil.copytree(PROGRAM.parent.parent / "lib" / "rouleau" / "plugins", copy / "lib/rouleau/plugins")
+            shutil.copy(PROGRAM, copy / "bin" / "rouleau")
+            for transport in (PROGRAM.parent.parent / "libexec" / "rouleau").glob("transport-*"):
+                shutil.copy(transport, copy / "libexec" / "rouleau")
+        library = next((copies[1] / "lib").rglob("*neo-hookean.so"))
+        library.write_bytes(library.read_bytes() + b"\0")
+        directory, run = self.path / "run", ["run", *KINETICS_RUN, "--out", self.path / "run"]
+        first, second = ([copy / "bin" / "rouleau", *run] for copy in copies)
+        self.assert_refused(call(each(first, second)), 3, "rank 1 of 2 on", "the library of plugin", "neo-hookean",
+                            directory=directory)
+        self.assert_refused(call(each(first, [*first, "--threads", "2"])), 2, "rank 1 of 2 on",
+                            "the command line differs", directory=directory)
+
+    def test_ranks_take_the_least_instruction_set_of_all(self):
+        words = [PROGRAM, "run", *KINETICS_RUN, "--out", self.path / "run", "--max-steps", "5"]
+        result = self.run_well(each(words, ["-x", "ROULEAU_INSTRUCTION_SET=baseline", *words]))
+        self.assertEqual(result.stderr.count("all ranks compute with baseline, which is all that rank 1 of 2"), 1)
+        self.assertEqual(json.loads((self.path / "run" / "summary.json").read_text())["instruction_set"], "baseline")
+
+    def test_a_run_that_diverges_ends_all_with_1_and_one_report(self):
+        words = [*KINETICS_RUN, "--set", "/checks/mach=1e-9", "--out", self.path / "run", "--quiet"]
+        result = call(ranks(3, "run", *words))
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertEqual(result.stderr.count("limit 1e-09"), 1, result.stderr)
+        self.assertEqual(json.loads((self.path / "run" / "summary.json").read_text())["status"], "diverged")
+
+    @unittest.skipUnless(FAULTY.exists(), "faulty plugins are built optimised")
+    def test_a_plugin_that_ends_the_program_on_all_ranks_is_named_once(self):
+        name = "collide-crashes"
+        result = call(ranks(2, "run", *KINETICS_RUN, "--set", f'/fluid/collision={{"model": "{name}"}}', "--plugin-dir",
+                            FAULTY / name, "--quiet", "--out", self.path / "run"))
+        self.assertEqual(result.returncode, 3, result.stderr)
+        self.assertEqual(result.stderr.count(f'rouleau: the plugin "{name}"'), 1, result.stderr)
+
+    def test_other_commands_answer_once_and_studies_are_refused(self):
+        self.assertEqual(self.run_well(ranks(2, "--version")).stdout.count("rouleau"), 1)
+        self.assertEqual(self.run_well(ranks(2, "plan", KINETICS, "--json")).stdout.count('"estimate"'), 1)
+        self.assertEqual(self.run_well(ranks(2, "run", "--help")).stdout.count("usage:"), 1)
+        result = call(ranks(2, "study", "studies/none.json"))
+        self.assert_refused(result, 2, "cannot be cut into ranks")
+
+
+class The_end(Case):
+    def start(self, count, directory, *words):
+        process = subprocess.Popen(ranks(count, "run", KINETICS, "--out", directory, "--quiet", *words), env=ENVIRONMENT,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        while not (directory / "checkpoint.h5").exists():
+            self.assertIsNone(process.poll(), process.stderr.read() if process.poll() is not None else "")
+            time.sleep(0.01)
+        return process
+
+    def end(self, process):
+        begin = time.monotonic()
+        errors = process.communicate(timeout=60)[1]
+        return time.monotonic() - begin, errors
+
+    def test_sigusr1_to_mpirun_or_to_one_rank_ends_all_after_a_checkpoint(self):
+        for to_one_rank in (False, True):
+            directory = self.path / f"run-{to_one_rank}"
+            process = self.start(2, directory)
+            os.kill(children(process)[1] if to_one_rank else process.pid, signal.SIGUSR1)
+            seconds, errors = self.end(process)
+            self.assertEqual(process.returncode, 130, errors)
+            self.assertLess(seconds, 20)
+            self.assertIn("to go on: mpirun -n 2 rouleau run", errors)
+            summary = json.loads((directory / "summary.json").read_text())
+            self.assertEqual(summary["checkpoint_step"], summary["steps"])
+
+    def test_max_time_ends_all_ranks(self):
+        result = call(ranks(2, "run", KINETICS, "--out", self.path / "run", "--quiet", "--max-time", "1 s"))
+        self.assertEqual(result.returncode, 130, result.stderr)
+        self.assertIn("ended by --max-time", result.stderr)
+
+    def test_the_death_of_a_rank_ends_mpirun_and_any_number_of_ranks_goes_on(self):
+        scene = [str(KINETICS), *SHORT[:-2], "--set", '/output/checkpoint={"seconds": 0.02}']
+        alone = self.path / "alone"
+        self.run_well([str(PROGRAM), "run", *scene, "--out", str(alone), "--quiet"])
+        ended, runs = 0, 0
+        while ended < KILLS:
+            directory, count = self.path / f"run-{runs}", 3
+            runs += 1
+            for _ in range(60):
+                process = subprocess.Popen(ranks(count, "run", *scene, "--out", directory, "--quiet", "--resume"),
+                                           env=ENVIRONMENT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+                until = time.monotonic() + CHANCE.uniform(0.2, 2)
+                while ended < KILLS and time.monotonic() < until and process.poll() is None:
+                    time.sleep(0.01)
+                victims = children(process) if ended < KILLS and process.poll() is None else []
+                if victims:
+                    os.kill(CHANCE.choice(victims), signal.SIGKILL)
+                    ended += 1
+                seconds, errors = self.end(process)
+                if process.returncode == 0:
+                    break
+                self.assertTrue(victims, errors)
+                self.assertLess(seconds, 5, "mpirun outlives a rank")
+                self.assertNotIn("internal error", errors)
+                count = CHANCE.choice([1, 2, 3, 4])
+            self.assertEqual(process.returncode, 0, errors)
+            self.assertEqual(differences(alone, directory), [])
+        print(f"{ended} ranks killed in {runs} runs", flush=True)
+
+    def test_a_full_disk_of_the_first_rank_ends_all_with_4_and_a_way_on(self):
+        allowed = subprocess.run(["unshare", "-rm", "mount", "-t", "tmpfs", "none", self.path], capture_output=True)
+        if allowed.returncode != 0:
+            self.skipTest("no mount namespaces for users here")
+        disk = self.path / "disk"
+        disk.mkdir()
+        command = " ".join(ranks(2, "run", KINETICS, "--out", disk / "run", "--quiet"))
+        result = call(["unshare", "-rm", "sh", "-c", f"mount -t tmpfs -o size=700k none {disk} && {command}"])
+        self.assertEqual(result.returncode, 4, result.stdout + result.stderr)
+        said = own_words(result.stderr)
+        self.assertEqual(said.count("No space left on device"), 1, said)
+        self.assertEqual(said.count(": mpirun -n 2 rouleau run"), 1, said)
+
+
+if __name__ == "__main__":
+    print(f"seed {SEED}{'' if h5py else '; HDF5 files are not compared: no h5py here'}", flush=True)
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    result = unittest.main(argv=[sys.argv[0], *sys.argv[5:]], exit=False, verbosity=2).result
+    failed = len(result.failures) + len(result.errors)
+    print(f"{result.testsRun - failed} passed, {failed} failed")
+    sys.exit(failed > 0)

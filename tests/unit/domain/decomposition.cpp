@@ -1,0 +1,77 @@
+#include "core/domain/decomposition.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+
+#include "unit/random.hpp"
+
+namespace rouleau::core {
+namespace {
+
+using Points = std::vector<std::array<int, 2>>;
+
+/// Of the most expensive block over the mean.
+double imbalance(const Decomposition<2>& blocks, const Points& points, double point_cost) {
+  std::vector<double> costs;
+  double sum = 0;
+  for (int rank = 0; rank < blocks.ranks(); ++rank) {
+    const Box<2> box = blocks.domain(rank).block;
+    double cost = static_cast<double>(box.size(0)) * box.size(1);
+    for (const auto& point : points) cost += box.contains(point) ? point_cost : 0;
+    costs.push_back(cost);
+    sum += cost;
+  }
+  return *std::max_element(costs.begin(), costs.end()) / (sum / blocks.ranks());
+}
+
+}  // namespace
+
+TEST_CASE("an empty lattice is cut into equal blocks, whose number is a power of two") {
+  const Domain<2> domain({256, 128}, {true, false});
+  for (const int ranks : {1, 2, 4, 8, 16}) {
+    const auto blocks = Decomposition<2>::bisected(domain, ranks);
+    CHECK(blocks.ranks() == ranks);
+    CHECK(imbalance(blocks, {}, 0) == 1);
+  }
+}
+
+TEST_CASE("blocks that have to hold the same cost do, within the columns and rows that a cut can choose") {
+  auto random = test::generator(static_cast<unsigned>(std::random_device()()));
+  const Domain<2> domain({512, 384}, {true, false});
+  Points points;  // twice as many in the left half
+  std::uniform_int_distribution<int> left(0, 255), right(256, 511), row(0, 383);
+  for (int i = 0; i < 3000; ++i) points.push_back({i % 3 == 0 ? right(random) : left(random), row(random)});
+  const double point_cost = 200;
+  for (const int ranks : {2, 3, 5, 8, 12}) {
+    CAPTURE(ranks);
+    const auto blocks = Decomposition<2>::bisected(domain, ranks, points, point_cost);
+    // A cut errs by up to 8 columns of 4/3 of the mean cost, of blocks at least 128 wide, and two cuts add up.
+    const double bound = 1.2;
+    CHECK(imbalance(blocks, points, point_cost) < bound);
+    CHECK(imbalance(Decomposition<2>::bisected(domain, ranks), points, point_cost) > bound);  // blind to points
+  }
+}
+
+TEST_CASE("cuts along rows of memory lie at multiples of 16 nodes where there is room for them") {
+  const auto blocks = Decomposition<2>::bisected(Domain<2>({200, 40}, {true, true}), 5);
+  for (int rank = 0; rank < 5; ++rank) CHECK(blocks.domain(rank).block.begin[0] % 16 == 0);
+  CHECK(Decomposition<2>::bisected(Domain<2>({20, 4}, {true, true}), 2).ranks() == 2);
+}
+
+TEST_CASE("random lattices are cut into as many blocks as wanted, and refused where there is no room") {
+  auto random = test::generator(static_cast<unsigned>(std::random_device()()));
+  for (int trial = 0; trial < 200; ++trial) {
+    const int nx = std::uniform_int_distribution<int>(1, 90)(random),
+              ny = std::uniform_int_distribution<int>(1, 90)(random);
+    const Domain<2> domain({nx, ny}, {true, false});
+    Points points;
+    for (int i = 0; i < 50; ++i) points.push_back({i * i % nx, i % ny});
+    const int most = nx * ny / static_cast<int>(Decomposition<2>::least_nodes);
+    const int ranks = std::uniform_int_distribution<int>(1, std::max(1, most))(random);
+    CAPTURE(nx, ny, ranks);
+    if (ranks <= most) CHECK(Decomposition<2>::bisected(domain, ranks, points, 30).ranks() == ranks);  // or it throws
+    CHECK_THROWS_AS(Decomposition<2>::bisected(domain, most + 1, points, 30), std::invalid_argument);
+  }
+}
+
+}  // namespace rouleau::core
