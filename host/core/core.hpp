@@ -14,6 +14,7 @@ using core::CellType;
 using core::Interaction;
 using core::Membranes;
 using core::RestShape;
+using core::SelfInteraction;
 using core::Solver;
 using core::SolverSetup;
 using core::WallInteraction;

@@ -84,6 +84,7 @@ EnergySnapshot observe_energy(core::Solver<T>& solver, const core::Membranes& me
   };
   add_interaction(solver.interaction_forces());
   add_interaction(solver.wall_contacts());
+  add_interaction(solver.self_contacts());
   if (!energy.unknown.empty()) energy.total = EnergySnapshot::none;
   return energy;
 }

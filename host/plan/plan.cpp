@@ -80,6 +80,18 @@ void refuse_friction_on_walls(const PlannedModel& model, const scene::Scene& sce
               {"take a potential without friction, or another cell type in place of \"wall\""});
 }
 
+void refuse_more_than_distance(const PlannedModel& model, const scene::Scene& scene) {
+  const auto refuse = [&](const std::string& what) {
+    throw Error(
+        Cause::bad_input, scene.place(model.pointer + "/model"),
+        in_quotes(model.manifest->id) + " cannot act within a membrane: " + what,
+        {"take a potential of the distance alone, such as \"repulsion\", or another cell type in place of \"self\""});
+  };
+  if (!model.manifest->state.empty()) refuse("it remembers its contacts");
+  for (const char* velocity : {"normal_velocity", "tangential_velocity"})
+    if (model.manifest->needs_input(velocity)) refuse(std::string("it needs ") + velocity);
+}
+
 void choose_coupling(Plan& plan) {
   const std::string& wanted = plan.scene->numerics.coupling;
   if (!plan.has_cells) {
@@ -167,7 +179,12 @@ void plan_models(Plan& plan, const plugin::Catalog& catalog, Faults& faults) {
     if (interaction.with_wall() && model.manifest != nullptr) {
       faults.attempt([&] { refuse_friction_on_walls(model, scene); });
     }
-    bool& has = interaction.with_wall() ? plan.has_wall_interactions : plan.has_interactions;
+    if (interaction.with_self() && model.manifest != nullptr) {
+      faults.attempt([&] { refuse_more_than_distance(model, scene); });
+    }
+    bool& has = interaction.with_wall()   ? plan.has_wall_interactions
+                : interaction.with_self() ? plan.has_self_interactions
+                                          : plan.has_interactions;
     has = has || model.active();
     plan.interactions.push_back(std::move(model));
   }

@@ -34,6 +34,7 @@ struct Plan {
   bool viscosity_contrast = false;
   bool has_interactions = false;       ///< between cells
   bool has_wall_interactions = false;  ///< between cells and walls
+  bool has_self_interactions = false;  ///< between parts of one membrane
   bool semi_implicit = false;  ///< membranes: the step that numerics.coupling names or, if "auto", the limits ask for
   std::string coupling;        ///< which step that is and why, for people
   std::optional<plugin::LockUse> lock;  ///< the lock that the plugins were held against

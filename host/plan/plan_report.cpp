@@ -160,13 +160,14 @@ std::vector<PackedCells> packed_cells(const scene::Scene& scene) {
 std::vector<PlannedPass> planned_passes(const Plan& plan) {
   const scene::Scene& scene = *plan.scene;
   const bool slip = scene.numerics.slip_correction, area = scene.numerics.area_correction;
+  std::vector<std::string> parties;
+  if (plan.has_interactions) parties.emplace_back("between cells");
+  if (plan.has_wall_interactions) parties.emplace_back("between cells and walls");
+  if (plan.has_self_interactions) parties.emplace_back("within a membrane");
   const std::map<std::string, std::string> reasons{
       {"membrane", std::to_string(scene.cells.size()) + " cells resist deformation" +
                        (plan.semi_implicit ? "; semi-implicit step" : "")},
-      {"interaction",
-       std::string("an active potential acts between cells") + (!plan.has_wall_interactions ? ""
-                                                                : plan.has_interactions     ? ", and one with the walls"
-                                                                                            : " and walls")},
+      {"interaction", "an active potential acts " + listed(parties)},
       {"corrections",
        slip ? (area ? "membranes neither slip nor leak" : "membranes do not slip") : "cells keep their areas"},
       {"indicator", "inside and outside of a cell have different viscosities"},
@@ -178,6 +179,7 @@ std::vector<PlannedPass> planned_passes(const Plan& plan) {
   const core::Schedule schedule = core::make_schedule({.cells = plan.has_cells,
                                                        .interactions = plan.has_interactions,
                                                        .wall_interactions = plan.has_wall_interactions,
+                                                       .self_interactions = plan.has_self_interactions,
                                                        .viscosity_contrast = plan.viscosity_contrast,
                                                        .slip_correction = plan.has_cells && slip,
                                                        .area_correction = plan.has_cells && area});
@@ -213,9 +215,10 @@ std::vector<Omission> omissions(const Plan& plan) {
     if (!scene.numerics.area_correction)
       omit("area correction", "numerics.area_correction is false: leaks show as area drift");
     if (!plan.has_interactions) {
-      omit("neighbour search", scene.interactions.empty()   ? "the scene has no interaction"
-                               : plan.has_wall_interactions ? "no interaction between cells is active"
-                                                            : "no interaction is active");
+      const bool others = plan.has_wall_interactions || plan.has_self_interactions;
+      omit("neighbour search", scene.interactions.empty() ? "the scene has no interaction"
+                               : others                   ? "no interaction between cells is active"
+                                                          : "no interaction is active");
     }
   }
   for (const PlannedModel& model : plan.interactions) omit_inactive("interaction", model);

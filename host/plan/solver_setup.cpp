@@ -218,6 +218,8 @@ core::SolverSetup make_solver_setup(const Plan& plan, int index) {
     core::Potential made = plugin::make_potential(*potential.manifest, values(potential), setting);
     if (interaction.with_wall()) {
       setup.wall_interactions.push_back({.type = interaction.between[0], .potential = std::move(made)});
+    } else if (interaction.with_self()) {
+      setup.self_interactions.push_back({.type = interaction.between[0], .potential = std::move(made)});
     } else {
       setup.interactions.push_back({.between = interaction.between, .potential = std::move(made)});
     }

@@ -51,12 +51,26 @@ constexpr std::array<TableEntry, 5> bending_limit{{{0.55, 0.36}, {0.6, 0.86}, {1
 constexpr std::array<TableEntry, 3> contact_limit{{{0.6, 0.65}, {1.0, 1.46}, {2.0, 0.97}}};
 
 // It holds for a wall, too, where one side alone gives way: of stiff rings (1.16 in shear modulus, tau 1) in a well half a
-// spacing wide, one at a wall stayed quiet at 0.74 and 1.48 and not at 2.96; two at each other at none of these.
+// spacing wide, one at a wall stayed quiet at 0.74 and 1.48 and not at 2.96; two at each other at none of these. Two
+// red cells in such a well came to rest, after strain 1 and without, with 0.7 of the stretching limit and 0.7 of this one, and
+// with 0.3 and 0.9: the shares need not add up to less than one.
+
+// Cells that attract each other press on their fluid with the strongest attraction, and the lattice's fluid gives way to it by
+// three times that (lattice units): what leaks while cells snap together. Of pairs at rest, both corrections on, 0.9 to 1.3 %
+// leaked at 0.064 to 0.13, and more than 2 %, which stops a run, at 0.17 and 0.19 (3e-6 and 1.1e-5 J/m2) and at 0.10 (6e-5 J/m2,
+// ten times the shear modulus); without corrections two sheared cells leaked 2 % between 0.16 and 0.19 (limits/adhesion.json).
+constexpr double largest_compression_by_attraction = 0.1;
+
+// Deepest well between cells, in units of bending modulus over radius squared, where nothing keeps a cell's own faces apart.
+// In the minimum of the energy (tests/reference/rouleau_minimum.py) two red cells have theirs 1.0 um apart at 55 and touching at
+// 86 (88 with a bending modulus of 2e-19 J), four of them 1.0 um apart at 25 and touching at 42.
+constexpr double deepest_well_of_bare_faces = 40;
 
 // Narrowest well, in spacings. Cells at rest settle even in wells of a twelfth of a spacing; but where segments are one
 // spacing long, their corners catch on each other in a narrower one: sliding along a rim of 5 spacings radius meets 2 %
 // of the strongest attraction at a width of 0.66, 5 % at 0.33, 11 % at 0.16 (docs/models.md).
 constexpr double narrowest_well = 0.5;
+constexpr double least_gap = 2;
 // A wall has no corners: what the same rim meets when it rolls along one is 0.006 % of the strongest attraction at a
 // width of 0.5, 0.8 % at 0.25 and 3.6 % at 0.17 (unit_contact, "a polygon rolls along a wall").
 constexpr double narrowest_well_of_a_wall = 0.25;
@@ -146,6 +160,28 @@ Stiffness membrane_stiffness(const Plan& plan, const plugin::ModelSetting& setti
         {factor * bending, kernel.bending_limit * limit_between(bending_limit, scene, cell.interior_viscosity)});
   }
   return nearest;
+}
+
+/// Depth of a well over bending modulus / radius^2, the largest of the two types that it holds together and that have no
+/// potential within their membranes; lattice units. 0 where there is nothing to say.
+double depth_over_bending(const Plan& plan, const scene::Interaction& interaction, double depth,
+                          const plugin::ModelSetting& setting) {
+  double most = 0;
+  for (const int type : interaction.between) {
+    bool kept_apart = false;
+    for (std::size_t i = 0; i < plan.interactions.size(); ++i) {
+      const scene::Interaction& other = plan.scene->interactions[i];
+      kept_apart = kept_apart || (other.with_self() && other.between[0] == type && plan.interactions[i].active());
+    }
+    double bending = 0;
+    for (const PlannedModel& law : plan.membranes[type]) {
+      if (law.active())
+        bending += core::bending_stiffness(plugin::make_membrane_law(*law.manifest, law.parameters.values, setting));
+    }
+    const double radius = shape::shape_radius(plan.scene->cell_types[type].shape) / setting.units.length;
+    if (!kept_apart && bending > 0) most = std::max(most, depth * radius * radius / bending);
+  }
+  return most;
 }
 
 /// Relative change of the area of a cell whose membrane is stretched from the start: the tension T over the radius a is
@@ -294,7 +330,7 @@ std::vector<Limit> find_limits(const Plan& plan) {
     }
     for (std::size_t i = 0; i < plan.interactions.size(); ++i) {
       const PlannedModel& model = plan.interactions[i];
-      const bool wall = scene.interactions[i].with_wall();
+      const bool wall = scene.interactions[i].with_wall(), self = scene.interactions[i].with_self();
       if (!model.active()) continue;
       if (!model.manifest->state.empty()) continue;  // its stiffness is a matter of what it remembers
       const PotentialShape shape = find_shape(plugin::ModelInstance(*model.manifest, model.parameters.values, setting));
@@ -303,9 +339,26 @@ std::vector<Limit> find_limits(const Plan& plan) {
       const std::string named = model.manifest->id + (several ? " (" + plan.owner_of(model) + ")" : "");
       add("contact stiffness of " + named + " in lattice units" + where, shape.stiffness,
           interpolate(contact_limit, tau), true, lower + ", with which the lattice stiffness falls", density);
+      if (shape.well && shape.well->distance >= least_gap) {
+        add("compression by the attraction of " + named + where, 3 * shape.well->attraction,
+            largest_compression_by_attraction, true,
+            lower + ": the lattice's fluid gives way to it, and cells leak while they snap together", density);
+      }
       if (stage.index != 0) continue;
+      if (shape.well && shape.well->distance >= least_gap && !wall && !self && scene.cells.size() > 1) {
+        const scene::Interaction& interaction = scene.interactions[i];
+        const double depth = depth_over_bending(plan, interaction, shape.well->depth, setting);
+        const std::string type = in_quotes(scene.cell_types[interaction.between[0]].name);
+        if (depth > 0) {
+          add("depth of " + named + " over bending modulus / radius^2, without a repulsion within membranes", depth,
+              deepest_well_of_bare_faces, true,
+              "at rest the cells' own faces will touch; add an interaction between [" + type +
+                  ", \"self\"], such as \"repulsion\" with about three times the well's depth and a cutoff below the cells' "
+                  "least thickness");
+        }
+      }
       if (shape.well) {
-        add("equilibrium gap of " + named + " in lattice spacings", shape.well->distance, 2.0, false,
+        add("equilibrium gap of " + named + " in lattice spacings", shape.well->distance, least_gap, false,
             std::string("raise the resolution or move the well outwards: where the lattice does not resolve the gap, "
                         "membranes ") +
                 (wall ? "never leave the wall" : "never separate"),

@@ -141,7 +141,9 @@ void check_layers(const SceneFields& fields, const Scene& scene) {
 std::array<int, 2> read_between(const SceneFields& fields, const std::string& pointer,
                                 const std::vector<CellType>& types, bool periodic_y) {
   const auto side = [&](const std::string& which) {
-    if (fields.at(pointer + which) != wall_name) return fields.cell_type(pointer + which, types, {wall_name});
+    if (fields.at(pointer + which) == self_name) return Interaction::self;
+    if (fields.at(pointer + which) != wall_name)
+      return fields.cell_type(pointer + which, types, {wall_name, self_name});
     if (!periodic_y) return Interaction::wall;
     fields.refuse(pointer + which,
                   "there is no wall, for domain.y is \"periodic\"\nwrite \"y\": {\"lower\": {\"wall\": {}}, "
@@ -150,10 +152,16 @@ std::array<int, 2> read_between(const SceneFields& fields, const std::string& po
   int a = 0, b = 0;
   fields.attempt([&] { a = side("/0"); });
   fields.attempt([&] { b = side("/1"); });
-  const bool is_type = std::any_of(types.begin(), types.end(), [](const CellType& t) { return t.name == wall_name; });
-  if (a == Interaction::wall && b == Interaction::wall && !is_type)
-    fields.refuse(pointer, "walls do not act on each other\nname a cell type beside \"wall\"");
-  return a == Interaction::wall ? std::array{b, a} : std::array{a, b};
+  // That no cell type may be called so has been said.
+  const bool is_type = std::any_of(types.begin(), types.end(), [](const CellType& type) {
+    return type.name == wall_name || type.name == self_name;
+  });
+  if (a < 0 && b < 0 && !is_type) {
+    fields.refuse(pointer, a == Interaction::wall && b == Interaction::wall
+                               ? "walls do not act on each other\nname a cell type beside \"wall\""
+                               : "\"self\" is a cell's own membrane\nname its cell type beside \"self\"");
+  }
+  return a < 0 ? std::array{b, a} : std::array{a, b};
 }
 
 std::vector<Interaction> read_interactions(const SceneFields& fields, const std::vector<CellType>& types,
@@ -213,7 +221,10 @@ const nlohmann::json& scene_schema() {
 }
 
 std::array<std::string, 2> Scene::names_of(const Interaction& interaction) const {
-  const auto name = [&](int type) { return type == Interaction::wall ? wall_name : cell_types[type].name; };
+  const auto name = [&](int type) -> std::string {
+    if (type == Interaction::wall) return wall_name;
+    return type == Interaction::self ? self_name : cell_types[type].name;
+  };
   return {name(interaction.between[0]), name(interaction.between[1])};
 }
 

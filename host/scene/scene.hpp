@@ -100,14 +100,16 @@ struct RandomPacking {
   std::string pointer;           ///< entry of /cells
 };
 
-/// Stands for both walls where an interaction names what it acts between; no cell type may be called so.
-inline constexpr const char* wall_name = "wall";
+/// Stand for both walls, and for other parts of the same membrane, where an interaction names what it acts between; no
+/// cell type may be called so.
+inline constexpr const char *wall_name = "wall", *self_name = "self";
 
 struct Interaction {
-  static constexpr int wall = -1;
-  std::array<int, 2> between;  ///< indices into Scene::cell_types; unordered; `wall` may be the second
+  static constexpr int wall = -1, self = -2;
+  std::array<int, 2> between;  ///< indices into Scene::cell_types; unordered; `wall` or `self` may be the second
   ModelChoice potential;
   [[nodiscard]] bool with_wall() const { return between[1] == wall; }
+  [[nodiscard]] bool with_self() const { return between[1] == self; }
 };
 
 enum class WallStart { impulsive, developed };

@@ -141,6 +141,10 @@ std::vector<CellType> read_cell_types(const SceneFields& fields, double fluid_vi
         fields.refuse_key(pointer,
                           "\"wall\" is no name for a cell type: in \"between\" it stands for the walls; take another");
       }
+      if (name == self_name) {
+        fields.refuse_key(
+            pointer, "\"self\" is no name for a cell type: in \"between\" it stands for the same cell; take another");
+      }
     });
     if (types.size() == most_types) {
       fields.refuse_key(pointer, "there are more than " + std::to_string(most_types) + " cell types");

@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
 """Least energy of red cells in a row at fixed areas: neo-Hookean membranes with bending, Morse potential between neighbours.
 
-usage: rouleau_minimum.py CELLS DEPTH [BENDING_MODULUS [NODES]]     J/m2, J (3.6e-19), nodes of a cell (100)
+usage: rouleau_minimum.py CELLS DEPTH [BENDING_MODULUS [NODES [STRENGTH CUTOFF]]]
+       J/m2, J (3.6e-19), nodes of a cell (100), J/m2 and um of a repulsion within each membrane (none)
 
-Prints the parts of the energy, J/m. Needs numpy and scipy. From cells at rest 3.52 um apart it goes downhill
+Prints the parts of the energy, J/m, how far the middle of an end cell's outer face stands out (negative: a dimple), and how
+near to each other a cell's faces come. Needs numpy and scipy. From cells at rest 3.52 um apart it goes downhill
 (L-BFGS-B, the areas by an augmented Lagrangian), so that it ends in the nearest minimum. Nothing of Rouleau is used.
 Inside: lengths in um, energies in shear modulus x um, closest points of all nodes on all segments of a neighbour.
 """
@@ -52,7 +54,8 @@ def turning_angles(tangents):
 
 
 class Row:
-    def __init__(self, cells, depth, bending_modulus, nodes):
+    def __init__(self, cells, depth, bending_modulus, nodes, strength=0.0, reach=0.0):
+        self.strength, self.reach = strength / SHEAR_MODULUS, reach
         self.cells, self.nodes = cells, nodes
         self.depth, self.bending = depth / SHEAR_MODULUS, bending_modulus / SHEAR_MODULUS * 1e12
         shape = biconcave(nodes)
@@ -61,6 +64,10 @@ class Row:
         self.weight = (self.length + preceding(self.length)) / 2
         self.curvature = turning_angles(sides) / self.weight
         self.area = area(shape)
+        # Nodes and segments of a cell that repel each other: half a circle of the reach's diameter apart along the outline.
+        ends = np.r_[0, np.cumsum(self.length)]
+        ahead = (ends[:-1][None] - ends[:-1][:, None]) % ends[-1]  # from node to segment
+        self.apart = (ahead >= np.pi / 2 * reach) & (ends[-1] - ahead - self.length[None] >= np.pi / 2 * reach)
         self.start = np.concatenate([turned(shape) + [SPACING * (c - (cells - 1) / 2), 0] for c in range(cells)])
 
     def membrane(self, points, gradient):
@@ -78,22 +85,38 @@ class Row:
 
     def contact(self, points, other, gradient, other_gradient):
         """Half the energy between two cells: of the nodes of one and the outline of the other."""
-        sides = following(other) - other
-        offset = points[:, None, :] - other[None]
-        along = np.clip((offset * sides[None]).sum(2) / (sides**2).sum(1)[None], 0, 1)
-        apart = offset - along[..., None] * sides[None]
-        square = (apart**2).sum(2)
-        closest, node = square.argmin(1), np.arange(self.nodes)
-        distance = np.sqrt(square[node, closest])
+        closest, along, distance, vector = self.closest_points(points, other)
         near = distance <= CUTOFF
         decayed = np.exp(DECAY * (ZERO_FORCE_DISTANCE - distance))
         slope = np.where(near, self.weight * self.depth * DECAY * (decayed - decayed**2) / distance, 0)
-        pull = slope[:, None] * apart[node, closest]
-        share = along[node, closest][:, None]
+        pull = slope[:, None] * vector
+        share = along[:, None]
         gradient += pull
         np.add.at(other_gradient, closest, -(1 - share) * pull)
         np.add.at(other_gradient, (closest + 1) % self.nodes, -share * pull)
         return 0.5 * self.depth * np.sum((self.weight * (decayed**2 - 2 * decayed))[near])
+
+    def closest_points(self, points, other, allowed=True):
+        """Of all nodes on another outline: segment, place on it, distance, vector from there to the node."""
+        sides = following(other) - other
+        offset = points[:, None, :] - other[None]
+        along = np.clip((offset * sides[None]).sum(2) / (sides**2).sum(1)[None], 0, 1)
+        apart = offset - along[..., None] * sides[None]
+        closest = np.where(allowed, (apart**2).sum(2), np.inf).argmin(1)
+        node = np.arange(self.nodes)
+        vector = apart[node, closest]
+        return closest, along[node, closest], np.hypot(*vector.T), vector
+
+    def self_repulsion(self, points, gradient):
+        """Energy A (1 - r/rc)^3 within a membrane, half for each node, as between two cells."""
+        closest, along, distance, vector = self.closest_points(points, points, self.apart)
+        within = np.maximum(1 - distance / self.reach, 0)
+        slope = -0.5 * self.weight * 3 * self.strength / self.reach * within**2 / distance
+        push = slope[:, None] * vector
+        gradient += push
+        np.add.at(gradient, closest, -(1 - along[:, None]) * push)
+        np.add.at(gradient, (closest + 1) % self.nodes, -along[:, None] * push)
+        return 0.5 * self.strength * np.sum(self.weight * within**3)
 
     def evaluate(self, flat):
         """Elastic, bending and interaction energy, their gradient, areas and the areas' gradients."""
@@ -103,6 +126,8 @@ class Row:
         for c, cell in enumerate(points):
             parts = self.membrane(cell, gradient[c])
             elastic, bending = elastic + parts[0], bending + parts[1]
+            if self.strength > 0:
+                interaction += self.self_repulsion(cell, gradient[c])
             areas[c], by_area[c] = area(cell), -0.5 * turned(following(cell) - preceding(cell))
             for d in (c - 1, c + 1):
                 if 0 <= d < self.cells:
@@ -110,7 +135,7 @@ class Row:
         return np.array([elastic, bending, interaction]), gradient, areas, by_area
 
     def least_energy(self, rounds=4, stiffness=5.0):
-        """Elastic, bending and interaction energy of the minimum, J/m."""
+        """Elastic, bending and interaction energy of the minimum, J/m, and the outlines."""
         at, pressure = self.start.ravel().copy(), np.zeros(self.cells)
         for _ in range(rounds):
 
@@ -126,16 +151,34 @@ class Row:
             energy, _, areas, _ = self.evaluate(at)
             pressure = pressure + stiffness * (areas - self.area)
         print(f"areas kept to {np.abs(areas / self.area - 1).max():.1e}")
-        return energy * SHEAR_MODULUS * 1e-6
+        return energy * SHEAR_MODULUS * 1e-6, at.reshape(self.cells, self.nodes, 2)
+
+
+def bow(points):
+    """How far the middle of the first cell's outer face, at small x, stands out beyond the points half-way to its rims."""
+    middle, half = points[:, 1].mean(), np.ptp(points[:, 1]) / 2
+
+    def face(height):
+        ahead = following(points)
+        cut = (points[:, 1] - height) * (ahead[:, 1] - height) <= 0
+        share = (height - points[cut, 1]) / (ahead[cut, 1] - points[cut, 1])
+        return (points[cut, 0] + share * (ahead[cut, 0] - points[cut, 0])).min()
+
+    return (face(middle - half / 2) + face(middle + half / 2)) / 2 - face(middle)
 
 
 def main():
-    if not 3 <= len(sys.argv) <= 5:
+    given = sys.argv[1:]
+    if not (2 <= len(given) <= 4 or len(given) == 6):
         sys.exit(__doc__)
-    cells, depth = int(sys.argv[1]), float(sys.argv[2])
-    bending_modulus = float(sys.argv[3]) if len(sys.argv) > 3 else 3.6e-19
-    energy = Row(cells, depth, bending_modulus, int(sys.argv[4]) if len(sys.argv) > 4 else 100).least_energy()
+    cells, depth = int(given[0]), float(given[1])
+    repulsion = (float(given[4]), float(given[5])) if len(given) == 6 else (0.0, 0.0)
+    row = Row(cells, depth, float(given[2]) if len(given) > 2 else 3.6e-19, int(given[3]) if len(given) > 3 else 100, *repulsion)
+    energy, outlines = row.least_energy()
     print(f"energy {energy.sum():.6e} J/m: elastic {energy[0]:.4e}, bending {energy[1]:.4e}, interaction {energy[2]:.5e}")
+    row.apart = np.abs((np.arange(row.nodes)[None] - np.arange(row.nodes)[:, None] + row.nodes // 2) % row.nodes - row.nodes // 2) > 8
+    thinnest = min(row.closest_points(cell, cell, row.apart)[2].min() for cell in outlines)
+    print(f"bow {bow(outlines[0]):+.4f} um, thinnest {thinnest:.4f} um")
 
 
 if __name__ == "__main__":

@@ -12,7 +12,7 @@ Schedule make_schedule(const StepFeatures& has) {
     if (wanted) schedule.steps.push_back({task, name, meeting});
   };
   const bool cells = has.cells, ranks = has.ranks, corrected = has.slip_correction || has.area_correction;
-  const bool touch = has.interactions, walls = has.wall_interactions;
+  const bool touch = has.interactions, walls = has.wall_interactions, self = has.self_interactions;
   const char* const mark = has.viscosity_contrast ? "indicator" : "activity";
   // Where a worker would wait for the others it goes on with its own cells: announce, await.
   const Meeting own_cells = touch ? Meeting::await : Meeting::none;
@@ -20,8 +20,9 @@ Schedule make_schedule(const StepFeatures& has) {
   // The last step has left the lattice to itself; with cells a later meeting tells all workers before they take rows.
   add(has.changing_drive, Task::set_drive, "fluid", cells ? Meeting::none : Meeting::all);
   add(touch, Task::find_contacts, "interaction", Meeting::announce);
-  add(cells, Task::membrane_forces, "membrane", walls ? Meeting::none : own_cells);
-  add(walls, Task::wall_forces, "interaction", own_cells);
+  add(cells, Task::membrane_forces, "membrane", walls || self ? Meeting::none : own_cells);
+  add(walls, Task::wall_forces, "interaction", self ? Meeting::none : own_cells);
+  add(self, Task::self_forces, "interaction", own_cells);
   add(touch, Task::interaction_forces, "interaction", Meeting::announce);
   add(corrected && !touch, Task::complete_forces, "corrections", Meeting::none);
   add(cells, Task::find_nodes, mark, touch ? Meeting::await : Meeting::all);

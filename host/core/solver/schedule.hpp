@@ -14,6 +14,7 @@ enum class Task {
   find_contacts,       ///< cells: the closest point of other outlines to each node
   membrane_forces,     ///< cells: F = -dE/dX of the membrane laws
   wall_forces,         ///< cells: F = -dE/dX of the potentials between cells and walls
+  self_forces,         ///< cells: F = -dE/dX of the potentials between parts of one membrane
   interaction_forces,  ///< cells: F = -dE/dX of the potentials, on own nodes
   share_reactions,     ///< one worker: what own nodes do to other ranks' cells
   take_reactions,      ///< cells: what other cells' nodes do to this one's
@@ -48,6 +49,7 @@ struct StepFeatures {
   bool cells = false;
   bool interactions = false;
   bool wall_interactions = false;
+  bool self_interactions = false;
   bool viscosity_contrast = false;
   bool slip_correction = false;
   bool area_correction = false;

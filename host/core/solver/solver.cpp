@@ -116,6 +116,7 @@ StepFeatures Solver<T>::features() const {
   return {.cells = !membranes_.cells.empty(),
           .interactions = interaction_forces_ != nullptr,
           .wall_interactions = wall_contacts_ != nullptr,
+          .self_interactions = self_contacts_ != nullptr,
           .viscosity_contrast = fluid_.setting().viscosity_contrast,
           .slip_correction = slip_correction_ != nullptr,
           .area_correction = setup_.area_correction,
@@ -138,6 +139,8 @@ void Solver<T>::run(Task task, Worker worker) {
       return membrane_forces_->run(worker, membranes_);
     case Task::wall_forces:
       return wall_contacts_->run(worker, membranes_);
+    case Task::self_forces:
+      return self_contacts_->run(worker, membranes_);
     case Task::interaction_forces:
       return interaction_forces_->run(worker, 1, membranes_);
     case Task::take_reactions:
@@ -245,6 +248,9 @@ void Solver<T>::make_cells() {
   }
   if (!setup_.wall_interactions.empty()) {
     wall_contacts_ = std::make_unique<WallContacts>(membranes_, setup_.wall_interactions, setup_.domain);
+  }
+  if (!setup_.self_interactions.empty()) {
+    self_contacts_ = std::make_unique<SelfContacts>(membranes_, setup_.self_interactions);
   }
   viscosity_field_ = std::make_unique<ViscosityField<T>>(
       membranes_, std::move(viscosity_ratio), slip_correction_ ? ViscosityMean::harmonic : ViscosityMean::arithmetic,

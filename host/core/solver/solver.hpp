@@ -93,6 +93,7 @@ class Solver {
   [[nodiscard]] const InteractionForces* interaction_forces() const { return interaction_forces_.get(); }
   /// Null without cells or interactions with walls.
   [[nodiscard]] const WallContacts* wall_contacts() const { return wall_contacts_.get(); }
+  [[nodiscard]] const SelfContacts* self_contacts() const { return self_contacts_.get(); }
 
  private:
   [[nodiscard]] StepFeatures features() const;
@@ -118,6 +119,7 @@ class Solver {
   std::unique_ptr<MembraneForces> membrane_forces_;
   std::unique_ptr<InteractionForces> interaction_forces_;
   std::unique_ptr<WallContacts> wall_contacts_;
+  std::unique_ptr<SelfContacts> self_contacts_;
   std::unique_ptr<ViscosityField<T>> viscosity_field_;
   std::unique_ptr<Coupling<T>> coupling_;
   double slight_energy_ = 0;

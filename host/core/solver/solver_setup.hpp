@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/contact/interaction_forces.hpp"
+#include "core/contact/self_contacts.hpp"
 #include "core/contact/wall_contacts.hpp"
 #include "core/coupling/kernel_kind.hpp"
 #include "core/domain/domain.hpp"
@@ -55,6 +56,7 @@ struct SolverSetup {
   std::vector<Interaction> interactions = {};
   /// Only between walls, not where y is periodic.
   std::vector<WallInteraction> wall_interactions = {};
+  std::vector<SelfInteraction> self_interactions = {};
   /// The step of stiff membranes (SemiImplicitFilter).
   bool semi_implicit = false;
   /// Takes the tangential slip of the immersed boundary out.

@@ -1,4 +1,5 @@
 // The limits that a plan compares a scene with.
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "plan/plan.hpp"
@@ -49,4 +50,36 @@ TEST_CASE("limits know the relaxation times of layers, and a driven channel its 
   // Where the cells are is not known to the limits: the lowest of all layers counts.
   const Scene plain = read_scene(std::string(ROULEAU_SCENES) + "/four-cells-shear.json");
   CHECK(explicit_margin(plan) < explicit_margin(make_plan(plain, catalog)));
+}
+
+TEST_CASE("attraction has a limit by compression, and one where nothing keeps a cell's own faces apart") {
+  const Catalog catalog({ROULEAU_PLUGINS});
+  const auto limits_of = [&](std::vector<std::string> overrides) {
+    overrides.emplace_back(R"(/stages=[{"name": "rest", "duration": "1 s", "density_factor": 6000}])");
+    overrides.emplace_back(R"(/interactions/0/parameters/depth="3e-6 J/m2")");
+    overrides.emplace_back("/output={}");
+    return find_limits(
+        make_plan(read_scene(std::string(ROULEAU_SCENES) + "/four-cells-shear.json", overrides), catalog));
+  };
+  const auto find = [](const std::vector<Limit>& limits, const std::string& begin) {
+    return std::find_if(limits.begin(), limits.end(), [&](const Limit& l) { return l.name.starts_with(begin); });
+  };
+  const std::vector<Limit> bare = limits_of({});
+  // Morse attracts at most by depth decay/2; a lattice unit of pressure is density_factor rho (dx/dt)^2.
+  const double spacing = 0.196e-6, density = 6000 * 1000, step = spacing * spacing * density / 6 / 1.2e-3;
+  const auto compression = find(bare, "compression by the attraction of morse");
+  REQUIRE(compression != bare.end());
+  CHECK(compression->value ==
+        Approx(3 * 3e-6 * 3.84e6 / 2 * step * step / (density * spacing * spacing)).epsilon(1e-4));
+  CHECK(compression->remedied_by == RemediedBy::density_factor);
+  const auto depth = find(bare, "depth of morse");
+  REQUIRE(depth != bare.end());
+  CHECK(depth->value == Approx(3e-6 * 3.91e-6 * 3.91e-6 / 3.6e-19).epsilon(1e-3));
+  CHECK(depth->margin < 1);
+  CHECK(depth->remedy.find(R"(["rbc", "self"])") != std::string::npos);
+
+  const std::vector<Limit> apart = limits_of({R"(/interactions/-={"between": ["self", "rbc"], "model": "repulsion",
+      "parameters": {"strength": "1e-5 J/m2", "cutoff": "0.8 um"}})"});
+  CHECK(find(apart, "depth of morse") == apart.end());
+  CHECK(find(apart, "contact stiffness of repulsion") != apart.end());
 }
