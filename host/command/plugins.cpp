@@ -88,8 +88,10 @@ Json describe(const plugin::Manifest& manifest, const units::Units& units) {
           {"manifest", manifest.file.string()},
           {"library", manifest.library.string()},
           {"parameters", parameters},
+          {"dimensions", manifest.dimensions},
           {"needs", manifest.needs},
           {"gives", manifest.gives},
+          {"in_3d", manifest.in_3d ? Json{{"needs", manifest.in_3d->needs}, {"gives", manifest.in_3d->gives}} : Json()},
           {"state", state_names(manifest)},
           {"inactive_when", manifest.inactive_when},
           {"stands_for", manifest.stands_for},
@@ -143,8 +145,13 @@ void print(const plugin::Manifest& manifest, const units::Units& units) {
   line("license", manifest.license);
   line("manifest", manifest.file.string());
   line("library", manifest.library.filename().string());
+  line("dimensions", !manifest.works_in(3) ? "2" : manifest.works_in(2) ? "2 and 3" : "3");
   line("needs", listed(manifest.needs));
   line("gives", listed(manifest.gives));
+  if (manifest.in_3d) {
+    line("needs in 3D", listed(manifest.in_3d->needs));
+    line("gives in 3D", listed(manifest.in_3d->gives));
+  }
   if (!manifest.state.empty()) line("state", listed(state_names(manifest)));
   if (manifest.inactive_when.is_object()) line("inactive when", manifest.inactive_when.dump());
   if (manifest.stands_for.is_object()) line("stands for", manifest.stands_for.dump());

@@ -113,7 +113,7 @@ Arrays<T> place(Memory& memory, const Subject& subject, const Values& inputs, co
     }));
   }
   const auto kind = subject.manifest().kind;
-  for (const std::string& quantity : plugin::inputs_of(kind)) {
+  for (const std::string& quantity : plugin::inputs_of(kind, subject.manifest().dimension())) {
     if (subject.manifest().needs_input(quantity) || call.undeclared == Undeclared::null) continue;
     for (const std::string& name : arrays_of(kind, quantity)) {
       const std::string words = "the input " + name + ", which its manifest does not declare";
@@ -194,6 +194,13 @@ constexpr std::array membrane_members = {Member<M>{"stretch", &M::stretch, nullp
                                          Member<M>{"rest_area", &M::rest_area, nullptr},
                                          Member<M>{"perimeter", &M::perimeter, nullptr},
                                          Member<M>{"rest_perimeter", &M::rest_perimeter, nullptr},
+                                         Member<M>{"invariant_1", &M::invariant_1, nullptr},
+                                         Member<M>{"invariant_2", &M::invariant_2, nullptr},
+                                         Member<M>{"area_ratio", &M::area_ratio, nullptr},
+                                         Member<M>{"volume", &M::volume, nullptr},
+                                         Member<M>{"rest_volume", &M::rest_volume, nullptr},
+                                         Member<M>{"surface_area", &M::surface_area, nullptr},
+                                         Member<M>{"rest_surface_area", &M::rest_surface_area, nullptr},
                                          Member<M>{"tension", nullptr, &M::tension},
                                          Member<M>{"moment", nullptr, &M::moment},
                                          Member<M>{"pressure", nullptr, &M::pressure},
@@ -201,7 +208,15 @@ constexpr std::array membrane_members = {Member<M>{"stretch", &M::stretch, nullp
                                          Member<M>{"energy", nullptr, &M::energy},
                                          Member<M>{"tension_by_stretch", nullptr, &M::tension_by_stretch},
                                          Member<M>{"tension_by_rate", nullptr, &M::tension_by_rate},
-                                         Member<M>{"moment_by_curvature", nullptr, &M::moment_by_curvature}};
+                                         Member<M>{"moment_by_curvature", nullptr, &M::moment_by_curvature},
+                                         Member<M>{"stress_1", nullptr, &M::stress_1},
+                                         Member<M>{"stress_2", nullptr, &M::stress_2},
+                                         Member<M>{"area_tension", nullptr, &M::area_tension},
+                                         Member<M>{"surface_tension", nullptr, &M::surface_tension},
+                                         Member<M>{"stress_1_by_1", nullptr, &M::stress_1_by_1},
+                                         Member<M>{"stress_1_by_2", nullptr, &M::stress_1_by_2},
+                                         Member<M>{"stress_2_by_2", nullptr, &M::stress_2_by_2},
+                                         Member<M>{"area_tension_by_ratio", nullptr, &M::area_tension_by_ratio}};
 using I = rouleau_interaction_block;
 constexpr std::array interaction_members = {Member<I>{"distance", &I::distance, nullptr},
                                             Member<I>{"normal_velocity", &I::normal_velocity, nullptr},

@@ -59,7 +59,7 @@ double any_double(Random& random) {
 /// What is met now and then: numbers far from the usual ones, and near to where something ends.
 double rare(const std::string& need, double high, Random& random) {
   const double power = uniform(random, 0, 1);
-  if (need == "stretch") {
+  if (need == "stretch" || need == "area_ratio") {
     return random() % 2 == 0 ? 0.1 * std::pow(50.0, power)
                              : 1 + std::pow(10.0, -1 - 9 * power) * uniform(random, -1, 1);
   }
@@ -69,7 +69,8 @@ double rare(const std::string& need, double high, Random& random) {
     return special[random() % special.size()];
   }
   const double sign = random() % 2 == 0 ? 1 : -1;
-  if (need.ends_with("area") || need.ends_with("perimeter")) return high * std::pow(2.0, sign * power);
+  if (need.ends_with("area") || need.ends_with("perimeter") || need.ends_with("volume"))
+    return high * std::pow(2.0, sign * power);
   if (need == "populations" || need == "force") return uniform(random, -high, high);
   return sign * high * std::pow(10.0, 1 - 9 * power);  // rates, velocities, curvatures
 }
@@ -186,14 +187,27 @@ Values Subject::random_inputs(const plugin::ModelInstance& instance, std::size_t
       manifest_.kind == plugin::ModelKind::interaction ? instance.interaction().cutoff(instance.self()) : 0;
   // The ranges of what simulations meet, in lattice units: Mach numbers below 0.1, stretches by a half to two, cells of
   // about twenty spacings.
-  const std::map<std::string, std::pair<double, double>> ranges = {
-      {"populations", {-0.01, 0.01}},     {"force", {-1e-3, 1e-3}},
-      {"relaxation_rate", {0.3, 1.9}},    {"stretch", {0.5, 2}},
-      {"stretch_rate", {-1e-3, 1e-3}},    {"curvature", {-0.5, 0.5}},
-      {"rest_curvature", {-0.5, 0.5}},    {"area", {250, 350}},
-      {"rest_area", {280, 320}},          {"perimeter", {80, 120}},
-      {"rest_perimeter", {90, 110}},      {"distance", {0.02 * cutoff, cutoff}},
-      {"normal_velocity", {-1e-3, 1e-3}}, {"tangential_velocity", {-1e-3, 1e-3}}};
+  const std::map<std::string, std::pair<double, double>> ranges = {{"populations", {-0.01, 0.01}},
+                                                                   {"force", {-1e-3, 1e-3}},
+                                                                   {"relaxation_rate", {0.3, 1.9}},
+                                                                   {"stretch", {0.5, 2}},
+                                                                   {"stretch_rate", {-1e-3, 1e-3}},
+                                                                   {"curvature", {-0.5, 0.5}},
+                                                                   {"rest_curvature", {-0.5, 0.5}},
+                                                                   {"area", {250, 350}},
+                                                                   {"rest_area", {280, 320}},
+                                                                   {"perimeter", {80, 120}},
+                                                                   {"rest_perimeter", {90, 110}},
+                                                                   {"invariant_1", {0, 0}},
+                                                                   {"invariant_2", {0, 0}},
+                                                                   {"area_ratio", {0.5, 2}},
+                                                                   {"volume", {3000, 5000}},
+                                                                   {"rest_volume", {3800, 4200}},
+                                                                   {"surface_area", {1200, 1600}},
+                                                                   {"rest_surface_area", {1300, 1500}},
+                                                                   {"distance", {0.02 * cutoff, cutoff}},
+                                                                   {"normal_velocity", {-1e-3, 1e-3}},
+                                                                   {"tangential_velocity", {-1e-3, 1e-3}}};
   Values inputs;
   const auto draw_all = [&] {
     for (const auto& need : manifest_.needs) {
@@ -204,7 +218,15 @@ Values Subject::random_inputs(const plugin::ModelInstance& instance, std::size_t
         });
       }
     }
-    for (const std::string name : {"curvature", "area", "perimeter"}) {  // near to rest
+    if (inputs.contains("invariant_1") || inputs.contains("invariant_2")) {  // of two stretches, which both are real
+      for (std::size_t i = 0; i < count; ++i) {
+        const auto draw = [&] { return random() % 8 == 0 ? rare("stretch", 2, random) : uniform(random, 0.5, 2); };
+        const double one = draw(), two = draw();
+        if (inputs.contains("invariant_1")) inputs["invariant_1"][i] = (one - 1) * (one + 1) + (two - 1) * (two + 1);
+        if (inputs.contains("invariant_2")) inputs["invariant_2"][i] = (one * two - 1) * (one * two + 1);
+      }
+    }
+    for (const std::string name : {"curvature", "area", "perimeter", "volume", "surface_area"}) {  // near to rest
       if (!inputs.contains(name) || !inputs.contains("rest_" + name)) continue;
       for (std::size_t i = 0; i < count; ++i) {
         if (random() % 8 != 0) continue;

@@ -61,6 +61,9 @@ class Subject {
   [[nodiscard]] std::vector<plugin::ModelInstance> make_each_choice(
       const plugin::ModelSetting& setting = typical_setting()) const;
 
+  /// The same model as one of its dimensions has it.
+  [[nodiscard]] Subject in(int dimension) const { return {manifest_.in(dimension), seed_}; }
+
   /// Whether calls are in single precision: those that the model computes in.
   [[nodiscard]] std::vector<bool> precisions() const;
 

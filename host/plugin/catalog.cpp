@@ -170,11 +170,18 @@ void Catalog::refuse_duplicates() {
   manifests_ = std::move(unique);
 }
 
-const Manifest& Catalog::find(ModelKind kind, const std::string& id, const Place& place) const {
+const Manifest& Catalog::find(ModelKind kind, const std::string& id, const Place& place,
+                              std::optional<int> dimension) const {
   for (const auto& manifest : manifests_) {
     if (manifest.id != id) continue;
     if (manifest.kind == kind) {
       if (lock_) require_locked(*lock_, manifest, place);
+      if (dimension && !manifest.works_in(*dimension)) {
+        throw Error(Cause::bad_input, place,
+                    in_quotes(id) + " (" + manifest.title + ") does not work in " +
+                        (*dimension == 3 ? "three dimensions" : "two dimensions") +
+                        "; of this kind there do: " + listed(ids(kind, dimension)));
+      }
       return manifest;
     }
     throw Error(Cause::bad_input, place,
@@ -212,10 +219,10 @@ void Catalog::set_lock(Lock lock) {
   lock_ = std::move(lock);
 }
 
-std::vector<std::string> Catalog::ids(ModelKind kind) const {
+std::vector<std::string> Catalog::ids(ModelKind kind, std::optional<int> dimension) const {
   std::vector<std::string> names;
   for (const auto& manifest : manifests_) {
-    if (manifest.kind == kind) names.push_back(manifest.id);
+    if (manifest.kind == kind && (!dimension || manifest.works_in(*dimension))) names.push_back(manifest.id);
   }
   std::sort(names.begin(), names.end());
   return names;

@@ -54,11 +54,13 @@ class Catalog {
 
   /// Manifest of a model. Throws Error(bad_input) at `place` for an id that nobody offers (nearest name, folders
   /// searched) or that is of another kind; Error(plugin_refused) for a refused manifest, two manifests with this id,
-  /// or one that differs from the lock.
-  [[nodiscard]] const Manifest& find(ModelKind kind, const std::string& id, const Place& place) const;
+  /// or one that differs from the lock. With a `dimension`, that of a scene, Error(bad_input) for a model that does not
+  /// work in it.
+  [[nodiscard]] const Manifest& find(ModelKind kind, const std::string& id, const Place& place,
+                                     std::optional<int> dimension = {}) const;
 
-  /// Ids of the usable models of a kind, sorted.
-  [[nodiscard]] std::vector<std::string> ids(ModelKind kind) const;
+  /// Ids of the usable models of a kind (and of a dimension), sorted.
+  [[nodiscard]] std::vector<std::string> ids(ModelKind kind, std::optional<int> dimension = {}) const;
 
  private:
   void refuse_duplicates();

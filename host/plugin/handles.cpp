@@ -1,9 +1,6 @@
 #include "handles.hpp"
 
-#include <array>
 #include <memory>
-
-#include "base/error.hpp"
 
 namespace rouleau::plugin {
 
@@ -35,15 +32,11 @@ core::CollisionOperator make_collision_operator(const Manifest& manifest, const 
 
 core::MembraneLaw make_membrane_law(const Manifest& manifest, const std::vector<double>& values,
                                     const ModelSetting& setting) {
-  static constexpr std::array known = {"stretch", "stretch_rate", "curvature", "rest_curvature",
-                                       "area",    "rest_area",    "perimeter", "rest_perimeter"};
-  for (const std::string& need : manifest.needs) {
-    if (std::find(known.begin(), known.end(), need) == known.end()) {
-      throw Error(Cause::plugin_refused, Place{manifest.file.string(), "/needs"},
-                  "membrane law \"" + manifest.id + "\" needs \"" + need + "\", which this program does not give.");
-    }
-  }
-  return make_model(manifest, values, setting, &ModelInstance::membrane);
+  core::MembraneLaw law = make_model(manifest, values, setting, &ModelInstance::membrane);
+  const Manifest one = manifest.in(setting.dimension);
+  law.needs = one.needs;
+  law.gives = one.gives;
+  return law;
 }
 
 core::Potential make_potential(const Manifest& manifest, const std::vector<double>& values,

@@ -53,6 +53,22 @@ bool Manifest::gives_output(const std::string& name) const {
   return std::find(gives.begin(), gives.end(), name) != gives.end();
 }
 
+bool Manifest::works_in(int dimension) const {
+  return std::find(dimensions.begin(), dimensions.end(), dimension) != dimensions.end();
+}
+
+Manifest Manifest::in(int dimension) const {
+  Manifest one = *this;
+  one.dimensions = {dimension};
+  one.in_3d.reset();
+  if (dimension == 3 && in_3d) {
+    one.needs = in_3d->needs;
+    one.gives = in_3d->gives;
+    one.checks = in_3d->checks;
+  }
+  return one;
+}
+
 std::optional<std::size_t> Manifest::parameter_with(Role role) const {
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     if (parameters[i].role == role) return i;
@@ -111,11 +127,17 @@ Manifest read_manifest(const json::Document& document, const fs::path& file, con
   manifest.stands_for = without_own_keys(root.value("stands_for", Json()));
   manifest.claims = without_own_keys(root.value("claims", Json::object()));
   manifest.checks = root.value("checks", Json::array());
+  manifest.dimensions = root.value("dimensions", manifest.dimensions);
+  if (root.contains("in_3d")) {
+    const Json& surface = root["in_3d"];
+    manifest.in_3d = {words_of(surface, "needs"), words_of(surface, "gives"), surface.value("checks", Json::array())};
+  }
   check_roles(document, manifest);
-  check_quantities(document, manifest);
+  check_dimensions(document, manifest);
+  check_quantities(document, manifest.in(manifest.dimension()), "");
+  if (manifest.in_3d) check_quantities(document, manifest.in(3), "/in_3d");
   check_parameter_values(document, manifest, "inactive_when", manifest.inactive_when, units);
   check_parameter_values(document, manifest, "stands_for", manifest.stands_for, units);
-  check_reference_numbers(document, manifest);
   return manifest;
 }
 

@@ -54,6 +54,7 @@ struct Manifest {
   std::string id;
   std::string version;
   std::string title, reference, author, license;
+  std::vector<int> dimensions = {2};  ///< of the scenes it works in
   std::vector<Parameter> parameters;
   std::vector<std::string> needs, gives;
   std::vector<StateVariable> state;
@@ -62,10 +63,21 @@ struct Manifest {
   nlohmann::json
       stands_for;  ///< object: parameter -> value at which an interaction is the one it stands for; null: it is itself
   nlohmann::json claims, checks;
+  /// What takes the place of needs, gives and checks in three dimensions, of a membrane law of both dimensions.
+  struct Surface {
+    std::vector<std::string> needs, gives;
+    nlohmann::json checks;
+  };
+  std::optional<Surface> in_3d;
   std::optional<LibraryLock> locked;  ///< a library with another hash is not opened
 
   [[nodiscard]] bool needs_input(const std::string& name) const;
   [[nodiscard]] bool gives_output(const std::string& name) const;
+  [[nodiscard]] bool works_in(int dimension) const;
+  /// The dimension that needs, gives and checks are written for.
+  [[nodiscard]] int dimension() const { return works_in(2) ? 2 : 3; }
+  /// The same model as one dimension has it, which must be one of its own.
+  [[nodiscard]] Manifest in(int dimension) const;
   /// Place of the parameter with this role in `parameters`; nothing when none has it.
   [[nodiscard]] std::optional<std::size_t> parameter_with(Role role) const;
 };

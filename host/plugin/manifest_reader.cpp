@@ -116,29 +116,37 @@ Parameter read_number(const json::Document& document, const std::string& at, con
   return parameter;
 }
 
-void check_names(const json::Document& document, const char* list, const std::vector<std::string>& names,
-                 const std::vector<std::string>& known, ModelKind kind) {
+void check_names(const json::Document& document, const std::string& at, const char* list,
+                 const std::vector<std::string>& names, const std::vector<std::string>& known,
+                 const Manifest& manifest) {
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (holds(known, names[i])) continue;
-    refuse(document, std::string("/") + list + '/' + std::to_string(i),
-           std::string("\"") + list + "\" of a " + to_string(kind) + " model cannot hold " + in_quotes(names[i]) +
+    refuse(document, at + '/' + list + '/' + std::to_string(i),
+           std::string("\"") + list + "\" of a " + to_string(manifest.kind) + " model" +
+               (manifest.dimension() == 3 ? " in three dimensions" : "") + " cannot hold " + in_quotes(names[i]) +
                did_you_mean(names[i], known) + "\n  known: " + listed(known));
   }
 }
 
 /// Inputs and outputs of a membrane law are arrays over one sort of element, so they must agree on it.
-void check_element(const json::Document& document, const Manifest& manifest) {
-  const std::string main_outputs = "\"tension\", \"moment\", or \"pressure\" and \"perimeter_tension\"";
+void check_element(const json::Document& document, const Manifest& manifest, const std::string& at) {
+  const bool surface = manifest.dimension() == 3;
   std::optional<MembraneElement> element;
-  for (const char* name : {"tension", "moment", "pressure", "perimeter_tension"}) {
+  for (const char* name : {"tension", "stress_1", "stress_2", "moment", "area_tension", "pressure", "perimeter_tension",
+                           "surface_tension"}) {
     if (manifest.gives_output(name)) element = element_of(name);
   }
-  if (!element) refuse(document, "/gives", "a membrane law must give " + main_outputs);
+  if (!element) {
+    refuse(document, at + "/gives",
+           surface ? "a membrane law in three dimensions must give \"stress_1\" and \"stress_2\", \"moment\", "
+                     "\"area_tension\", or \"pressure\" and \"surface_tension\""
+                   : "a membrane law must give \"tension\", \"moment\", or \"pressure\" and \"perimeter_tension\"");
+  }
   const auto check = [&](const char* list, const std::vector<std::string>& names) {
     for (std::size_t i = 0; i < names.size(); ++i) {
       const auto own = element_of(names[i]);
       if (!own || own == element) continue;
-      refuse(document, std::string("/") + list + '/' + std::to_string(i),
+      refuse(document, at + '/' + list + '/' + std::to_string(i),
              "\"" + names[i] + "\" belongs to a " + to_string(*own) + ", but this law is one of a " +
                  to_string(*element) + "; split it into two models");
     }
@@ -221,16 +229,67 @@ void check_roles(const json::Document& document, const Manifest& manifest) {
   }
 }
 
-void check_quantities(const json::Document& document, const Manifest& manifest) {
-  check_names(document, "needs", manifest.needs, inputs_of(manifest.kind), manifest.kind);
-  check_names(document, "gives", manifest.gives, outputs_of(manifest.kind), manifest.kind);
+void check_dimensions(const json::Document& document, const Manifest& manifest) {
+  const bool both = manifest.works_in(2) && manifest.works_in(3), membrane = manifest.kind == ModelKind::membrane;
+  if (manifest.in_3d && !(membrane && both)) {
+    refuse(document, "/in_3d",
+           membrane
+               ? "\"in_3d\" is for laws of both dimensions; " +
+                     std::string(manifest.works_in(3) ? "with \"dimensions\": [3] \"needs\", \"gives\" and "
+                                                        "\"checks\" themselves say it"
+                                                      : "give \"dimensions\": [2, 3]")
+               : std::string("only membrane laws have elements of another kind in three dimensions; leave it out"));
+  }
+  if (membrane && both && !manifest.in_3d) {
+    refuse(document, "/dimensions",
+           "a membrane law of both dimensions says in \"in_3d\" what it needs and gives there");
+  }
+  if (manifest.kind == ModelKind::interaction && manifest.works_in(3) && manifest.needs_input("tangential_velocity")) {
+    refuse(document, "/dimensions", "in three dimensions there is no \"tangential_velocity\", which this model needs");
+  }
+}
+
+namespace {
+
+void check_reference_numbers(const json::Document& document, const Manifest& manifest, const std::string& place) {
+  std::vector<std::string> parameters;
+  for (const Parameter& parameter : manifest.parameters) parameters.push_back(parameter.name);
+  const auto check = [&](const std::string& at, const Json& entry, const char* key,
+                         const std::vector<std::string>& known, const char* what) {
+    const Json members = entry.value(key, Json::object());
+    for (const auto& [name, value] : members.items()) {
+      if (name.starts_with("x-") || holds(known, name)) continue;
+      throw Error(Cause::plugin_refused, document.key_place(json::child_pointer(at + '/' + key, name)),
+                  in_quotes(name) + " is not among this model's " + what + did_you_mean(name, known) + "\n  " + what +
+                      ": " + listed(known));
+    }
+  };
+  std::vector<std::string> inputs = manifest.needs, outputs = manifest.gives;
+  for (const StateVariable& variable : manifest.state) {
+    inputs.push_back(variable.name);
+    outputs.push_back(variable.name);
+  }
+  for (std::size_t i = 0; i < manifest.checks.size(); ++i) {
+    const std::string at = place + "/checks/" + std::to_string(i);
+    check(at, manifest.checks[i], "parameters", parameters, "parameters");
+    check(at, manifest.checks[i], "inputs", inputs, manifest.state.empty() ? "\"needs\"" : "\"needs\" and \"state\"");
+    check(at, manifest.checks[i], "outputs", outputs, manifest.state.empty() ? "\"gives\"" : "\"gives\" and \"state\"");
+  }
+}
+
+}  // namespace
+
+void check_quantities(const json::Document& document, const Manifest& manifest, const std::string& at) {
+  check_names(document, at, "needs", manifest.needs, inputs_of(manifest.kind, manifest.dimension()), manifest);
+  check_names(document, at, "gives", manifest.gives, outputs_of(manifest.kind, manifest.dimension()), manifest);
+  check_reference_numbers(document, manifest, at);
   switch (manifest.kind) {
     case ModelKind::collision:
       if (!manifest.needs_input("populations")) refuse(document, "/needs", "a collision model needs \"populations\"");
       if (!manifest.gives_output("populations")) refuse(document, "/gives", "a collision model gives \"populations\"");
       break;
     case ModelKind::membrane:
-      check_element(document, manifest);
+      check_element(document, manifest, at);
       break;
     case ModelKind::interaction:
       if (!manifest.gives_output("force")) refuse(document, "/gives", "an interaction model must give \"force\"");
@@ -263,32 +322,6 @@ void check_parameter_values(const json::Document& document, const Manifest& mani
     }
     const std::string wanted = violated_limit(value.get<double>() * units.scale(parameter.unit), parameter, units);
     if (!wanted.empty()) refuse(document, at, name + " can never be " + json::shown(value) + ": it must be " + wanted);
-  }
-}
-
-void check_reference_numbers(const json::Document& document, const Manifest& manifest) {
-  std::vector<std::string> parameters;
-  for (const Parameter& parameter : manifest.parameters) parameters.push_back(parameter.name);
-  const auto check = [&](const std::string& at, const Json& entry, const char* key,
-                         const std::vector<std::string>& known, const char* what) {
-    const Json members = entry.value(key, Json::object());
-    for (const auto& [name, value] : members.items()) {
-      if (name.starts_with("x-") || holds(known, name)) continue;
-      throw Error(Cause::plugin_refused, document.key_place(json::child_pointer(at + '/' + key, name)),
-                  in_quotes(name) + " is not among this model's " + what + did_you_mean(name, known) + "\n  " + what +
-                      ": " + listed(known));
-    }
-  };
-  std::vector<std::string> inputs = manifest.needs, outputs = manifest.gives;
-  for (const StateVariable& variable : manifest.state) {
-    inputs.push_back(variable.name);
-    outputs.push_back(variable.name);
-  }
-  for (std::size_t i = 0; i < manifest.checks.size(); ++i) {
-    const std::string at = "/checks/" + std::to_string(i);
-    check(at, manifest.checks[i], "parameters", parameters, "parameters");
-    check(at, manifest.checks[i], "inputs", inputs, manifest.state.empty() ? "\"needs\"" : "\"needs\" and \"state\"");
-    check(at, manifest.checks[i], "outputs", outputs, manifest.state.empty() ? "\"gives\"" : "\"gives\" and \"state\"");
   }
 }
 

@@ -20,15 +20,16 @@ std::vector<StateVariable> read_state(const json::Document& document, const unit
 /// A role fits the manifest's kind and the parameter's unit, and is that of one parameter only.
 void check_roles(const json::Document& document, const Manifest& manifest);
 
-/// "needs" and "gives" hold names of the manifest's kind only, and what every model of this kind must have; a membrane
-/// law keeps to one element.
-void check_quantities(const json::Document& document, const Manifest& manifest);
+/// "dimensions" and "in_3d" fit each other and the kind.
+void check_dimensions(const json::Document& document, const Manifest& manifest);
+
+/// "needs" and "gives" hold names of the manifest's kind and dimension only, and what every model of this kind must have; a
+/// membrane law keeps to one element; "checks" name parameters, inputs of "needs" and outputs of "gives". `at`: the object of
+/// the manifest that holds the three.
+void check_quantities(const json::Document& document, const Manifest& manifest, const std::string& at);
 
 /// An object of the manifest ("inactive_when", "stands_for") names parameters and gives values that these can have.
 void check_parameter_values(const json::Document& document, const Manifest& manifest, const char* key,
                             const nlohmann::json& values, const units::Units& units);
-
-/// "checks" name parameters, inputs of "needs" and outputs of "gives".
-void check_reference_numbers(const json::Document& document, const Manifest& manifest);
 
 }  // namespace rouleau::plugin

@@ -9,12 +9,12 @@
 namespace rouleau::plugin {
 
 /// Element of a membrane that a law describes (plugin.h, rouleau_membrane_block).
-enum class MembraneElement { segment, node, cell };
+enum class MembraneElement { segment, triangle, node, cell };
 const char* to_string(MembraneElement element);
 
-/// Names that "needs" and "gives" of a kind may hold, in the order of plugin.h.
-const std::vector<std::string>& inputs_of(ModelKind kind);
-const std::vector<std::string>& outputs_of(ModelKind kind);
+/// Names that "needs" and "gives" of a kind may hold in two or three dimensions, in the order of plugin.h.
+const std::vector<std::string>& inputs_of(ModelKind kind, int dimension);
+const std::vector<std::string>& outputs_of(ModelKind kind, int dimension);
 
 /// The element that a membrane law's input or output belongs to; none for "energy", which belongs to all.
 std::optional<MembraneElement> element_of(const std::string& name);

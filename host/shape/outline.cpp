@@ -82,6 +82,8 @@ void march(const Curve& curve, double chord, std::vector<double>& angles) {
 
 }  // namespace
 
+Eigen::Vector2d biconcave_place(double angle) { return biconcave(scene::Biconcave{1}, angle).place; }
+
 Outline make_outline(const scene::Shape& shape, int segments) {
   if (segments < 3) throw std::invalid_argument("an outline needs at least 3 segments");
   if (!(smallest_size(shape) > 0)) throw std::invalid_argument("the size of a cell must be positive");

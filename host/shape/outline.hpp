@@ -18,6 +18,9 @@ struct Outline {
 /// Throws std::invalid_argument for fewer than 3 segments or a size that is not positive.
 Outline make_outline(const scene::Shape& shape, int segments);
 
+/// Place on the biconcave outline of radius 1 at an angle, 0 on the positive x axis, pi/2 on its axis of symmetry.
+Eigen::Vector2d biconcave_place(double angle);
+
 /// Half of the longest axis, m: what Reynolds, capillary and adhesion numbers are made with.
 double shape_radius(const scene::Shape& shape);
 /// That of the smallest cell of a scene; 0 without cells.

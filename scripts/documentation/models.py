@@ -63,7 +63,12 @@ def section(manifest, path):
         for state in manifest["state"]:
             cells = [f"`{state['name']}`", state["unit"], number(state.get("initial", 0)), state.get("doc", "")]
             text += f"| {' | '.join(cells)} |\n"
-    text += f"\n- needs {names(manifest['needs'])}\n- gives {names(manifest['gives'])}\n"
+    dimensions = manifest.get("dimensions", [2])
+    text += f"\n- works in {' and '.join(map(str, dimensions))} dimensions\n"
+    text += f"- needs {names(manifest['needs'])}\n- gives {names(manifest['gives'])}\n"
+    if "in_3d" in manifest:
+        text += f"- in three dimensions needs {names(manifest['in_3d']['needs'])}\n"
+        text += f"- in three dimensions gives {names(manifest['in_3d']['gives'])}\n"
     if claims(manifest):
         text += f"- claims to be {claims(manifest)}\n"
     if "inactive_when" in manifest:
@@ -72,7 +77,8 @@ def section(manifest, path):
     if "stands_for" in manifest:
         at = " and ".join(f'`"{key}": "{value}"`' for key, value in manifest["stands_for"].items())
         text += f"- stands for the potential at {at}: `plan` compares the two\n"
-    text += f"- {len(manifest.get('checks', []))} reference numbers in the manifest\n" if manifest.get("checks") else ""
+    checks = len(manifest.get("checks", []) + manifest.get("in_3d", {}).get("checks", []))
+    text += f"- {checks} reference numbers in the manifest\n" if checks else ""
     if "reference" in manifest:
         text += f"- reference: {manifest['reference']}\n"
     return text + f"- manifest: [{path}](../../{path})\n"

@@ -1,4 +1,5 @@
-/* Layout of every struct of the plugin interface on machines with 64-bit pointers (LP64), as released in version 1.0.
+/* Layout of every struct of the plugin interface on machines with 64-bit pointers (LP64), as released in version 1.0, and with
+ * what 1.1 appends.
  * A failure here means that plugins which are out in the world break: append fields, never move or resize them. An
  * appended field gets its line here; the sizes grow with it. */
 #ifndef ROULEAU_TESTS_ABI_LAYOUT_H
@@ -64,7 +65,7 @@ FIELD(rouleau_collision, collide_f64, 8);
 FIELD(rouleau_collision, collide_f32, 16);
 LAST(rouleau_collision, collide_f32);
 
-SIZE(rouleau_membrane_block, 160);
+SIZE(rouleau_membrane_block, 312);
 FIELD(rouleau_membrane_block, struct_size, 0);
 FIELD(rouleau_membrane_block, count, 4);
 FIELD(rouleau_membrane_block, time_step, 8);
@@ -86,14 +87,33 @@ FIELD(rouleau_membrane_block, tension_by_rate, 128);
 FIELD(rouleau_membrane_block, moment_by_curvature, 136);
 FIELD(rouleau_membrane_block, state, 144);
 FIELD(rouleau_membrane_block, new_state, 152);
-LAST(rouleau_membrane_block, new_state);
+FIELD(rouleau_membrane_block, invariant_1, 160);
+FIELD(rouleau_membrane_block, invariant_2, 168);
+FIELD(rouleau_membrane_block, invariant_1_rate, 176);
+FIELD(rouleau_membrane_block, invariant_2_rate, 184);
+FIELD(rouleau_membrane_block, area_ratio, 192);
+FIELD(rouleau_membrane_block, volume, 200);
+FIELD(rouleau_membrane_block, rest_volume, 208);
+FIELD(rouleau_membrane_block, surface_area, 216);
+FIELD(rouleau_membrane_block, rest_surface_area, 224);
+FIELD(rouleau_membrane_block, stress_1, 232);
+FIELD(rouleau_membrane_block, stress_2, 240);
+FIELD(rouleau_membrane_block, area_tension, 248);
+FIELD(rouleau_membrane_block, surface_tension, 256);
+FIELD(rouleau_membrane_block, shear_viscosity, 264);
+FIELD(rouleau_membrane_block, area_viscosity, 272);
+FIELD(rouleau_membrane_block, stress_1_by_1, 280);
+FIELD(rouleau_membrane_block, stress_1_by_2, 288);
+FIELD(rouleau_membrane_block, stress_2_by_2, 296);
+FIELD(rouleau_membrane_block, area_tension_by_ratio, 304);
+LAST(rouleau_membrane_block, area_tension_by_ratio);
 
 SIZE(rouleau_membrane, 16);
 FIELD(rouleau_membrane, struct_size, 0);
 FIELD(rouleau_membrane, compute, 8);
 LAST(rouleau_membrane, compute);
 
-SIZE(rouleau_interaction_block, 80);
+SIZE(rouleau_interaction_block, 88);
 FIELD(rouleau_interaction_block, struct_size, 0);
 FIELD(rouleau_interaction_block, count, 4);
 FIELD(rouleau_interaction_block, time_step, 8);
@@ -105,7 +125,8 @@ FIELD(rouleau_interaction_block, force, 48);
 FIELD(rouleau_interaction_block, force_by_distance, 56);
 FIELD(rouleau_interaction_block, state, 64);
 FIELD(rouleau_interaction_block, new_state, 72);
-LAST(rouleau_interaction_block, new_state);
+FIELD(rouleau_interaction_block, sliding_speed, 80);
+LAST(rouleau_interaction_block, sliding_speed);
 
 SIZE(rouleau_interaction, 24);
 FIELD(rouleau_interaction, struct_size, 0);
@@ -133,7 +154,7 @@ LAST(rouleau_plugin, models);
 
 #endif
 
-LAYOUT_ASSERT(ROULEAU_ABI_MAJOR == 1 && ROULEAU_ABI_MINOR == 0, "a new version needs its own lines here");
+LAYOUT_ASSERT(ROULEAU_ABI_MAJOR == 1 && ROULEAU_ABI_MINOR == 1, "a new version needs its own lines here");
 LAYOUT_ASSERT(ROULEAU_COLLISION_KIND == 1 && ROULEAU_MEMBRANE_KIND == 2 && ROULEAU_INTERACTION_KIND == 3, "kinds");
 
 #endif

@@ -190,6 +190,13 @@ def state_of_the_maxwell_branch(test, block):
                      - shipped_manifest("standard-linear-solid")["state"][0].items(), set())
 
 
+def law_of_both_dimensions(test, block):
+    written, shipped = json.loads("{" + block.text.rstrip().rstrip(",") + "}"), shipped_manifest("skalak")
+    test.assertEqual(written["dimensions"], shipped["dimensions"])
+    test.assertEqual(written["in_3d"]["needs"], shipped["in_3d"]["needs"])
+    test.assertLessEqual(set(written["in_3d"]["gives"]), set(shipped["in_3d"]["gives"]))
+
+
 def relaxing_model(test, block):
     if "goal" not in block.text:
         return test.compile(DECLARED % block.text)
@@ -237,6 +244,7 @@ BLOCKS = [
     ("docs/models.md", '{"model": "standard-linear-solid"', part_of_scene("membrane")),
     ("docs/models.md", '{"between": ["rbc", "rbc"], "model": "bridging"', part_of_scene("interactions")),
     ("docs/models.md", "#include <rouleau/membrane.hpp>", model(lambda: shipped_manifest("standard-linear-solid"))),
+    ("sdk/README.md", '"dimensions": [2, 3]', law_of_both_dimensions),
     ("docs/models.md", '"state": [', state_of_the_maxwell_branch),
     ("docs/models.md", "template <class S>\nrouleau::Pair<S> operator()(const rouleau::Contact<S>& contact)",
      lambda test, block: test.conform(FILM_SOURCE % block.text, FILM)),

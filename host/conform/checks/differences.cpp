@@ -27,6 +27,8 @@ double largest_step(const Trial& trial, const std::string& variable, double valu
   }
   if (variable == "stretch_rate") return 2e-5;
   if (variable == "curvature") return 0.02 * std::max(std::abs(value), 0.05);
+  if (variable == "invariant_1") return 0.02 * (value + 2);  // stretches are positive
+  if (variable == "invariant_2") return 0.02 * (value + 1);
   return 0.02 * std::abs(value);
 }
 
@@ -130,7 +132,7 @@ void compare_derivative(Worst& worst, Decided& decided, const Subject& subject, 
       if (of_use || !std::isfinite(slope.value) || !std::isfinite(claimed[i])) telling.push_back(slope);
     }
     if (telling.size() < 2) {
-      ++decided.no;
+      if (claimed[i] != 0) ++decided.no;  // a derivative of 0, out of which no slope stands, is what is claimed
       continue;
     }
     ++decided.yes;

@@ -138,7 +138,7 @@ Finding struct_size(const Subject& subject) {
 
 Finding declared_inputs(const Subject& subject) {
   std::vector<std::string> undeclared;
-  for (const std::string& name : plugin::inputs_of(subject.manifest().kind)) {
+  for (const std::string& name : plugin::inputs_of(subject.manifest().kind, subject.manifest().dimension())) {
     if (!subject.manifest().needs_input(name)) undeclared.push_back(name);
   }
   if (undeclared.empty()) return Finding::passed("declares every input that there is");

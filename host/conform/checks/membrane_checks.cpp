@@ -14,6 +14,23 @@ namespace rouleau::conform {
 
 namespace {
 
+/// Where a variable of this element may lie while its others stay.
+std::pair<double, double> range_of(const std::string& variable, const Values& element) {
+  if (variable == "stretch") return {0.25, 4};
+  if (variable == "curvature") return {-0.5, 0.5};
+  const double value = element.at(variable)[0];
+  // Both stretches are real: I1 + 2 >= 2 sqrt(I2 + 1).
+  if (variable == "invariant_1") {
+    const double least = element.contains("invariant_2") ? 2 * std::sqrt(element.at("invariant_2")[0] + 1) - 2 : -1;
+    return {least, least + 6};
+  }
+  if (variable == "invariant_2") {
+    const double most = element.contains("invariant_1") ? std::pow(element.at("invariant_1")[0] / 2 + 1, 2) : 4;
+    return {0.05 * most - 1, most - 1};
+  }
+  return {0.25 * value, 2 * value};
+}
+
 Finding compare(const Subject& subject, const std::vector<DerivativeClaim>& claims) {
   Random random = subject.random();
   Worst worst;
@@ -24,13 +41,11 @@ Finding compare(const Subject& subject, const std::vector<DerivativeClaim>& clai
       if (inputs.contains(claim.variable)) {
         compare_derivative(worst, decided, subject, trial, inputs, claim);
         if (claim.function != "energy" || !subject.manifest().state.empty()) continue;
-        const double usual = claim.variable == "curvature" ? 0.5 : inputs.at(claim.variable)[0];
-        const auto [low, high] = claim.variable == "stretch"     ? std::pair{0.25, 4.0}
-                                 : claim.variable == "curvature" ? std::pair{-usual, usual}
-                                                                 : std::pair{0.25 * usual, 2 * usual};
+        const Values element = subject.random_inputs(trial.instance, 1, random);
+        const auto [low, high] = range_of(claim.variable, element);
         const double middle = low + uniform(random, 0.1, 0.9) * (high - low);
         for (const auto& [from, to] : {std::pair{low, middle}, {middle, high}}) {
-          compare_work(worst, subject, trial, subject.random_inputs(trial.instance, 1, random), claim, from, to);
+          compare_work(worst, subject, trial, element, claim, from, to);
         }
         continue;
       }
@@ -62,9 +77,11 @@ Finding force_gradient(const Subject& subject) {
 }
 
 Finding derivatives(const Subject& subject) {
-  const std::vector<DerivativeClaim> all = {{"tension_by_stretch", "tension", "stretch", 1},
-                                            {"tension_by_rate", "tension", "stretch_rate", 1},
-                                            {"moment_by_curvature", "moment", "curvature", 1}};
+  const std::vector<DerivativeClaim> all = {
+      {"tension_by_stretch", "tension", "stretch", 1},           {"tension_by_rate", "tension", "stretch_rate", 1},
+      {"moment_by_curvature", "moment", "curvature", 1},         {"stress_1_by_1", "stress_1", "invariant_1", 1},
+      {"stress_1_by_2", "stress_1", "invariant_2", 1},           {"stress_2_by_2", "stress_2", "invariant_2", 1},
+      {"area_tension_by_ratio", "area_tension", "area_ratio", 1}};
   std::vector<DerivativeClaim> given;
   for (const DerivativeClaim& claim : all) {
     if (subject.manifest().gives_output(claim.derivative)) given.push_back(claim);
@@ -73,14 +90,32 @@ Finding derivatives(const Subject& subject) {
   return compare(subject, given);
 }
 
+/// The tension of a triangle at rest, along any direction: 2 (stress_1 + stress_2).
+Finding rest_of_triangles(const Subject& subject) {
+  Random random = subject.random();
+  for (const Trial& trial : trials(subject, random, Subject::typical_setting(), 0)) {
+    const Values forces = compute(subject, trial.instance, at_rest(subject, trial, 1, random));
+    const auto stress = [&](const char* name) { return forces.contains(name) ? forces.at(name)[0] : 0; };
+    const double one = stress("stress_1"), two = stress("stress_2");
+    if (std::abs(one + two) <= 64 * epsilon * (std::abs(one) + std::abs(two))) continue;
+    return Finding::warned("is under stress at rest: a tension of " +
+                           in_si(subject, trial.setting, "energy", 2 * (one + two)) + trial.words);
+  }
+  return Finding::passed("no force at rest");
+}
+
 /// The largest force at rest beside that of elements a tenth away from it.
 Finding rest_state(const Subject& subject) {
+  if (subject.manifest().gives_output("stress_1") || subject.manifest().gives_output("stress_2")) {
+    return rest_of_triangles(subject);
+  }
   Random random = subject.random();
   std::string prestressed;
   for (const Trial& trial : trials(subject, random, Subject::typical_setting(), 0)) {
     const Values rest = at_rest(subject, trial, 21, random);
     const Values forces = compute(subject, trial.instance, rest);
     for (const auto& c : coordinates_of(subject.manifest())) {
+      if (c.force.starts_with("stress_")) continue;  // of a triangle their sum is the force
       Values away = rest;
       if (away.contains(c.variable)) {
         for (double& value : away[c.variable]) value += c.variable == "curvature" ? 0.1 : 0.1 * value;
@@ -124,11 +159,15 @@ struct Modulus {
 
 /// Slopes a ten-thousandth to both sides of rest, where a law may have a kink; their mean is that at rest to 1e-8.
 Finding moduli(const Subject& subject) {
-  const std::vector<Modulus> all = {{"tension", "stretch", "dT/dstretch", "tension_by_stretch", false, 1},
-                                    {"tension", "stretch_rate", "dT/drate", "tension_by_rate", false, 1},
-                                    {"moment", "curvature", "dmoment/dcurvature", "moment_by_curvature", false, 1},
-                                    {"pressure", "area", "-A0 dp/dA", "", true, -1},
-                                    {"perimeter_tension", "perimeter", "P0 dtension/dperimeter", "", true, 1}};
+  const std::vector<Modulus> all = {
+      {"tension", "stretch", "dT/dstretch", "tension_by_stretch", false, 1},
+      {"tension", "stretch_rate", "dT/drate", "tension_by_rate", false, 1},
+      {"moment", "curvature", "dmoment/dcurvature", "moment_by_curvature", false, 1},
+      {"pressure", "area", "-A0 dp/dA", "", true, -1},
+      {"perimeter_tension", "perimeter", "P0 dtension/dperimeter", "", true, 1},
+      {"area_tension", "area_ratio", "dtension/dratio", "area_tension_by_ratio", false, 1},
+      {"pressure", "volume", "-V0 dp/dV", "", true, -1},
+      {"surface_tension", "surface_area", "A0 dtension/dA", "", true, 1}};
   const plugin::Manifest& manifest = subject.manifest();
   Random random = subject.random();
   Worst worst;
@@ -198,9 +237,15 @@ Finding degenerate(const Subject& subject) {
       auto& array = inputs[name];
       for (std::size_t i = 0; i < count; ++i) {
         const double factor = factor_of(i);
-        if (name == "stretch") array[i] = factor;
+        if (name == "stretch" || name == "area_ratio") array[i] = factor;
         if (name == "stretch_rate" || name == "curvature") array[i] = std::copysign(factor, values[i]);
-        if (name == "area" || name == "perimeter") array[i] = factor * values[i];
+        if (name == "area" || name == "perimeter" || name == "volume" || name == "surface_area")
+          array[i] = factor * values[i];
+        if (name.starts_with("invariant")) {  // one stretch is the factor, the other one 1
+          for (const char* invariant : {"invariant_1", "invariant_2"}) {
+            if (inputs.contains(invariant)) inputs[invariant][i] = (factor - 1) * (factor + 1);
+          }
+        }
       }
       if (name == "area" || name == "curvature" || name == "stretch_rate") array[0] = 0;
       extremes.push_back(std::move(inputs));
@@ -249,6 +294,12 @@ std::vector<Check> membrane_checks() {
        "goes on from a copy of its state with the same bits",
        {"compute"},
        check_state_restored,
+       kind},
+      {"three-dimensions",
+       level,
+       "does the same for surfaces in three dimensions",
+       {"compute", "units"},
+       check_three_dimensions,
        kind},
   };
 }

@@ -8,8 +8,6 @@
 
 namespace rouleau::conform {
 
-namespace {}  // namespace
-
 void keep_state(Values& inputs, const Values& outputs) {
   for (auto& [name, values] : inputs) {
     if (name.starts_with("state.")) values = outputs.at(name);
@@ -20,10 +18,17 @@ std::vector<MembraneCoordinate> coordinates_of(const plugin::Manifest& manifest)
   const std::vector<MembraneCoordinate> all = {{"stretch", "tension", "", 1},
                                                {"curvature", "moment", "rest_curvature", 1},
                                                {"area", "pressure", "rest_area", -1},
-                                               {"perimeter", "perimeter_tension", "rest_perimeter", 1}};
+                                               {"perimeter", "perimeter_tension", "rest_perimeter", 1},
+                                               {"invariant_1", "stress_1", "", 1},
+                                               {"invariant_2", "stress_2", "", 1},
+                                               {"area_ratio", "area_tension", "", 1},
+                                               {"volume", "pressure", "rest_volume", -1},
+                                               {"surface_area", "surface_tension", "rest_surface_area", 1}};
   std::vector<MembraneCoordinate> given;
   for (const auto& coordinate : all) {
-    if (manifest.gives_output(coordinate.force)) given.push_back(coordinate);
+    const bool of_other_dimension =
+        coordinate.force == "pressure" && (coordinate.variable == "volume") != (manifest.dimension() == 3);
+    if (manifest.gives_output(coordinate.force) && !of_other_dimension) given.push_back(coordinate);
   }
   return given;
 }
@@ -34,8 +39,9 @@ Values at_rest(const Subject& subject, const Trial& trial, std::size_t count, Ra
     if (inputs.contains(name)) inputs[name].assign(count, value);
   };
   set("stretch", 1);
-  set("stretch_rate", 0);
-  for (const std::string name : {"curvature", "area", "perimeter"}) {
+  set("area_ratio", 1);
+  for (const char* name : {"stretch_rate", "invariant_1", "invariant_2"}) set(name, 0);
+  for (const std::string name : {"curvature", "area", "perimeter", "volume", "surface_area"}) {
     if (inputs.contains(name) && inputs.contains("rest_" + name)) inputs[name] = inputs.at("rest_" + name);
   }
   for (std::size_t k = 0; k < subject.manifest().state.size(); ++k) {

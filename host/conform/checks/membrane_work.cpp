@@ -65,9 +65,10 @@ std::vector<Work> work_along(const Subject& subject, const Trial& trial, const P
   call.time_step = 0;
   Values before = compute(subject, trial.instance, inputs, call);
   call.time_step = period / steps;
-  // A straight line curves as much as a cell does.
+  // A straight line curves as much as a cell does; invariants are 0 at rest.
   const auto scale = [&](std::size_t c, std::size_t i) {
-    return coordinates[c].variable == "curvature" ? 0.2 : rest.at(coordinates[c].variable)[i];
+    const std::string& variable = coordinates[c].variable;
+    return variable == "curvature" || variable.starts_with("invariant") ? 0.2 : rest.at(coordinates[c].variable)[i];
   };
   std::vector<std::array<double, 5>> history(element_count * coordinates.size());
   std::vector<double> done(element_count), force(element_count * coordinates.size()), way(force.size());

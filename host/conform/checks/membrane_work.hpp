@@ -12,13 +12,13 @@ namespace rouleau::conform {
 
 /// A coordinate of an element and the force along it: force = sign d energy/d variable.
 struct MembraneCoordinate {
-  std::string variable, force, rest;  ///< `rest`: the input that holds its value at rest; empty: that is 1
+  std::string variable, force, rest;  ///< `rest`: the input that holds its value at rest; empty: it is a constant
   double sign = 1;
 };
 /// Those of a law's element whose force the law gives.
 std::vector<MembraneCoordinate> coordinates_of(const plugin::Manifest& manifest);
 
-/// Elements at rest: stretch 1, rate 0, curvature, area and perimeter as at rest, state with its initial values.
+/// Elements at rest: stretch 1, rate 0, invariants 0, curvature and what cells have as at rest, state with its initial values.
 Values at_rest(const Subject& subject, const Trial& trial, std::size_t count, Random& random);
 
 /// Makes the state that a step has left the input of the next one.
@@ -27,6 +27,8 @@ void keep_state(Values& inputs, const Values& outputs);
 Finding check_rigid_motion(const Subject& subject);
 Finding check_dissipation(const Subject& subject);
 Finding check_closed_loop(const Subject& subject);
+/// Of laws of both dimensions: the checks of the other one, and that a clamped membrane is the same in both.
+Finding check_three_dimensions(const Subject& subject);
 /// Of models of any kind with state.
 Finding check_state_restored(const Subject& subject);
 

@@ -3,6 +3,7 @@
 //   clamped  T = Gs (1+C) e (e^2 - 1), energy w = Gs (1+C) (e^2 - 1)^2 / 4 per rest length
 //   free     l^2 = (1 + C e^2)/(1 + C e^4), T = Gs (e/l) [e^2 - 1 + C l^2 (e^2 l^2 - 1)]
 //                                             = Gs (e/l) (e^2 - 1) [1 + C (1 + C e^2)/(1 + C e^4)^2]
+// In three dimensions: w = Gs/4 (I1^2 + 2 I1 - 2 I2 + C I2^2) per rest area, which clamped becomes the above.
 // Skalak, Tozeren, Zarda and Chien (Biophys. J. 13, 1973); Barthes-Biesel, Diaz and Dhenin (J. Fluid Mech. 460, 2002).
 #include <rouleau/membrane.hpp>
 
@@ -39,6 +40,17 @@ struct Skalak {
     return half * sum;
   }
 
+  template <class S>
+  rouleau::Stress<S> operator()(const rouleau::Triangle<S>& triangle) const {
+    const S one = triangle.invariant_1, two = triangle.invariant_2;
+    return {0.25 * Gs * (one * one + 2.0 * one - 2.0 * two + C * two * two),
+            0.5 * Gs * (one + 1.0),
+            0.5 * Gs * (C * two - 1.0),
+            S(0.5 * Gs),
+            S(0.0),
+            S(0.5 * Gs * C)};
+  }
+
  private:
   /// Places and weights of the half of twenty points on [-1, 1]; the other half lies mirrored.
   static constexpr double quadrature[10][2] = {
@@ -48,4 +60,4 @@ struct Skalak {
       {0.8391169718222188, 0.08327674157670475},  {0.912234428251326, 0.06267204833410907},
       {0.9639719272779138, 0.04060142980038694},  {0.9931285991850949, 0.017614007139152118}};
 };
-ROULEAU_MEMBRANE(Skalak, "skalak", "1.0.0")
+ROULEAU_MEMBRANE(Skalak, "skalak", "1.1.0")

@@ -28,7 +28,7 @@ extern "C" {
 
 /* The interface's major version is in the name of the exported symbol; the minor one counts appended fields. */
 #define ROULEAU_ABI_MAJOR 1
-#define ROULEAU_ABI_MINOR 0
+#define ROULEAU_ABI_MINOR 1
 #define ROULEAU_OPEN_SYMBOL "rouleau_open_v1"
 
 #if defined(_WIN32)
@@ -136,6 +136,36 @@ typedef struct rouleau_membrane_block {
 
   const double* const* state; /* [states of the manifest][count], before the step; NULL if the manifest has none */
   double* const* new_state;   /* after time_step; may be the same memory element by element; NULL: not wanted */
+
+  /* since 1.1, in three dimensions: surfaces of triangles. What one element is follows again from what the law gives:
+   *   stress_1, stress_2, shear_viscosity, area_viscosity   triangles
+   *   moment, area_tension                                  nodes, with the rest area that belongs to them
+   *   pressure, surface_tension                             whole cells
+   * With the stretches l1, l2 of a triangle against its rest shape, I1 = l1^2 + l2^2 - 2 and I2 = l1^2 l2^2 - 1.
+   * Curvature is then the sum of both principal curvatures, its integral over a node's surface over REST area, positive
+   * on a sphere; pressure is - d energy / d volume; arrays of segments, `area` and `perimeter` are NULL. Energies are
+   * per rest area (stress, moment, area_tension) or per cell. */
+  const double* invariant_1;      /* triangles: I1 */
+  const double* invariant_2;      /* triangles: I2 */
+  const double* invariant_1_rate; /* triangles: d I1 / dt */
+  const double* invariant_2_rate; /* triangles: d I2 / dt */
+  const double* area_ratio;       /* nodes: area / rest area */
+  const double* volume;           /* cells: enclosed volume */
+  const double* rest_volume;
+  const double* surface_area; /* cells */
+  const double* rest_surface_area;
+
+  double* stress_1;        /* d energy / d I1 */
+  double* stress_2;        /* d energy / d I2 */
+  double* area_tension;    /* d energy / d area_ratio */
+  double* surface_tension; /* d energy / d surface_area; with it pressure is - d energy / d volume */
+  double* shear_viscosity; /* of the surface, not negative: taken implicitly by the host if "in_3d" names it */
+  double* area_viscosity;  /* the same for dilation */
+
+  double* stress_1_by_1; /* derivatives, for steps that are implicit: d stress_1 / d I1, ... */
+  double* stress_1_by_2; /* = d stress_2 / d I1 */
+  double* stress_2_by_2;
+  double* area_tension_by_ratio;
 } rouleau_membrane_block;
 
 typedef struct rouleau_membrane {
@@ -168,6 +198,9 @@ typedef struct rouleau_interaction_block {
 
   const double* const* state; /* [states of the manifest][count], before the step; NULL if the manifest has none */
   double* const* new_state;   /* after time_step; may be the same memory element by element; NULL: not wanted */
+
+  /* since 1.1: magnitude of the sliding velocity, in any dimension; tangential_velocity is NULL in three */
+  const double* sliding_speed;
 } rouleau_interaction_block;
 
 typedef struct rouleau_interaction {

@@ -22,8 +22,10 @@ void fuzz_target(std::string_view bytes) {
 fuzz::Form fuzz_form() {
   fuzz::Form form{&plugin::manifest_schema(), {"x-own"}};
   for (const auto kind : {plugin::ModelKind::collision, plugin::ModelKind::membrane, plugin::ModelKind::interaction}) {
-    for (const auto& list : {plugin::inputs_of(kind), plugin::outputs_of(kind)}) {
-      form.words.insert(form.words.end(), list.begin(), list.end());
+    for (const int dimension : {2, 3}) {
+      for (const auto& list : {plugin::inputs_of(kind, dimension), plugin::outputs_of(kind, dimension)}) {
+        form.words.insert(form.words.end(), list.begin(), list.end());
+      }
     }
   }
   return form;

@@ -196,11 +196,14 @@ TEST_CASE("the dimension of every quantity is that of the unit which messages wr
       Manifest manifest{};
       manifest.kind = kind;
       manifest.gives = {force};
-      for (const auto& names : {inputs_of(kind), outputs_of(kind)}) {
-        for (const std::string& name : names) {
-          INFO(name);
-          const std::string unit = unit_of(manifest, name);
-          CHECK(dimension_of(manifest, name) == units.dimension(unit.empty() ? "1" : unit));
+      for (const int dimension : {2, 3}) {
+        manifest.dimensions = {dimension};
+        for (const auto& names : {inputs_of(kind, dimension), outputs_of(kind, dimension)}) {
+          for (const std::string& name : names) {
+            INFO(name);
+            const std::string unit = unit_of(manifest, name);
+            CHECK(dimension_of(manifest, name) == units.dimension(unit.empty() ? "1" : unit));
+          }
         }
       }
     }
@@ -237,6 +240,53 @@ TEST_CASE("a membrane law belongs to one element") {
   law["needs"] = {"area", "rest_area", "perimeter", "rest_perimeter"};
   law["gives"] = {"pressure", "perimeter_tension", "energy"};
   CHECK_NOTHROW(read_manifest(folder.write("cell.json", law), Units()));
+}
+
+TEST_CASE("a membrane law says in which dimensions it works, and what its elements are in three") {
+  Json law = good_manifest();
+  law["kind"] = "membrane";
+  law["needs"] = {"stretch"};
+  law["gives"] = {"tension", "energy"};
+  const PluginFolder folder;
+  const auto read = [&] { return read_manifest(folder.write("law.json", law), Units()); };
+  CHECK(read().works_in(2));
+  CHECK(!read().works_in(3));
+
+  law["dimensions"] = {2, 3};
+  CHECK(refusal(law).place().pointer == "/dimensions");
+  law["in_3d"] = Json::parse(R"({"needs": ["invariant_1"], "gives": ["stress_1", "energy"],
+                                 "checks": [{"inputs": {"invariant_1": 0}, "outputs": {"stress_1": 0}}]})");
+  const Manifest both = read(), surface = both.in(3);
+  CHECK(both.dimension() == 2);
+  CHECK(both.in(2).gives == std::vector<std::string>{"tension", "energy"});
+  CHECK(surface.dimension() == 3);
+  CHECK(surface.gives == std::vector<std::string>{"stress_1", "energy"});
+  CHECK(unit_of(surface, "energy") == "J/m2");
+
+  law["in_3d"]["gives"] = {"tension"};
+  CHECK(refusal(law).place().pointer == "/in_3d/gives/0");
+  law["in_3d"]["gives"] = {"stress_1", "moment"};
+  CHECK_THAT(refusal(law).what(), Contains("split it into two models"));
+  law["in_3d"].erase("checks");
+  law["in_3d"]["gives"] = {"energy"};
+  CHECK_THAT(refusal(law).what(), Contains("in three dimensions must give"));
+  law["in_3d"]["gives"] = {"stress_1"};
+  law["in_3d"]["checks"] = Json::parse(R"([{"inputs": {"stretch": 1}, "outputs": {"stress_1": 0}}])");
+  CHECK(refusal(law).place().pointer == "/in_3d/checks/0/inputs/stretch");
+
+  law["dimensions"] = {3};
+  CHECK_THAT(refusal(law).what(), Contains("themselves say it"));
+  law.erase("in_3d");
+  CHECK(refusal(law).place().pointer == "/needs/0");
+  law["needs"] = {"volume", "rest_volume"};
+  law["gives"] = {"pressure", "energy"};
+  CHECK(unit_of(read(), "energy") == "J");
+
+  Json pair = good_manifest();
+  pair["dimensions"] = {2, 3};
+  CHECK_NOTHROW(read_manifest(folder.write("pair.json", pair), Units()));
+  pair["needs"] = {"distance", "tangential_velocity"};
+  CHECK(refusal(pair).place().pointer == "/dimensions");
 }
 
 TEST_CASE("the manifests of the shipped plugins are accepted and name existing libraries' sources") {

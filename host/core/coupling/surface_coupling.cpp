@@ -1,0 +1,334 @@
+#include "surface_coupling.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <rouleau/dispatch.hpp>
+
+#include "core/fluid/walls.hpp"
+#include "kernel.hpp"
+#include "spread.hpp"
+
+namespace rouleau::core {
+
+namespace {
+
+template <class T>
+struct LocatePart {
+  const double* place;
+  int* base;
+  T *p, *q;
+  int begin, end;
+};
+
+/// What is kept of the weights along one axis, and floor(X + shift). In double precision before it is rounded to T.
+template <class T, class Kernel>
+struct LocateSurface {
+  template <int register_bytes>
+  ROULEAU_ALWAYS_INLINE static void run(const LocatePart<T>* part) {
+    const LocatePart<T> t = *part;
+    using One = Pack<double, 1>;
+    for (int i = t.begin; i < t.end; ++i) {
+      const double shifted = t.place[i] + Kernel::shift;
+      if (!(std::abs(shifted) < 1e9)) {
+        t.base[i] = outside;
+        t.p[i] = t.q[i] = T(0);
+        continue;
+      }
+      const double base = std::floor(shifted);
+      One p, q;
+      Kernel::keep(One(shifted - base), p, q);
+      t.base[i] = static_cast<int>(base);
+      t.p[i] = static_cast<T>(p.vector[0]);
+      t.q[i] = static_cast<T>(q.vector[0]);
+    }
+  }
+};
+
+template <class T>
+struct SurfaceStencils {
+  const int* base[3];
+  const T *p[3], *q[3];
+};
+
+template <class T>
+struct SurfaceSpread {
+  SurfaceStencils<T> at;
+  const double* force[3];
+  int begin, end;  // nodes of one cell
+  const Domain<3>* domain;
+  int row_begin, row_end;
+  T* origin[3];  // of node (0, 0, 0)
+  std::ptrdiff_t stride_y, stride_z;
+};
+
+/// Weights of a node's stencil: four along x, and one for each of its 16 rows, in all places of a pack.
+template <class T, class Kernel>
+struct StencilWeights {
+  using Four = Pack<T, 4>;
+  Four along_x, row[4][4];  // row[z][y]
+  ROULEAU_ALWAYS_INLINE StencilWeights(const SurfaceStencils<T>& at, int i) {
+    along_x = KernelWeights<Kernel, T>(at.p[0][i], at.q[0][i]).weight;
+    const SpreadWeights<Kernel, T> y(at.p[1][i], at.q[1][i]), z(at.p[2][i], at.q[2][i]);
+    for (int m = 0; m < 4; ++m) {
+      for (int l = 0; l < 4; ++l) row[m][l] = z.weight[m] * y.weight[l];
+    }
+  }
+};
+
+template <class T, class Kernel>
+struct SpreadSurface {
+  template <int register_bytes>
+  ROULEAU_ALWAYS_INLINE static void run(const SurfaceSpread<T>* task) {
+    const SurfaceSpread<T> t = *task;
+    // Neighbouring nodes add to the same places, and a sum that is still on its way to memory stalls the next one: nodes
+    // from four parts of the cell take turns.
+    constexpr int parts = 4;
+    const int length = (t.end - t.begin) / parts;
+    for (int i = t.begin; i < t.begin + length; ++i) {
+      for (int part = 0; part < parts; ++part) spread(t, i + part * length);
+    }
+    for (int i = t.begin + parts * length; i < t.end; ++i) spread(t, i);
+  }
+
+ private:
+  using Four = Pack<T, 4>;
+  ROULEAU_ALWAYS_INLINE static void spread(const SurfaceSpread<T>& t, int i) {
+    const std::array<int, 3>& size = t.domain->size;
+    const int x = t.at.base[0][i] - 1, y = t.at.base[1][i] - 1, z = t.at.base[2][i] - 1;
+    const bool inside = x >= 0 && x + 4 <= size[0] && y >= 0 && y + 4 <= size[1] && z >= 0 && z + 4 <= size[2];
+    if (!inside) return spread_at_border(t, i);
+    const int first = y + size[1] * z, last = y + 3 + size[1] * (z + 3);
+    if (last < t.row_begin || first >= t.row_end) return;
+    const StencilWeights<T, Kernel> weights(t.at, i);
+    const Four fx = weights.along_x * Four(t.force[0][i]), fy = weights.along_x * Four(t.force[1][i]),
+               fz = weights.along_x * Four(t.force[2][i]);
+    const bool whole = first >= t.row_begin && last < t.row_end;
+    for (int m = 0; m < 4; ++m) {
+      for (int l = 0; l < 4; ++l) {
+        const int row = first + l + size[1] * m;
+        if (!whole && (row < t.row_begin || row >= t.row_end)) continue;
+        const std::ptrdiff_t at = (z + m) * t.stride_z + (y + l) * t.stride_y + x;
+        const Four& weight = weights.row[m][l];
+        (Four::load(t.origin[0] + at) + fx * weight).store(t.origin[0] + at);
+        (Four::load(t.origin[1] + at) + fy * weight).store(t.origin[1] + at);
+        (Four::load(t.origin[2] + at) + fz * weight).store(t.origin[2] + at);
+      }
+    }
+  }
+
+  struct Image {
+    int node;
+    int sign;  // -1 beyond a wall, where a force acts on the mirrored node with reversed sign
+  };
+  static Image image(const Domain<3>& domain, int axis, int node) {
+    const int wrapped = domain.wrapped(axis, node);
+    return wrapped >= 0 ? Image{wrapped, 1} : Image{mirrored(node, domain.size[axis]), -1};
+  }
+  /// The same sums, number by number: of a stencil that reaches over the border of the lattice.
+  [[gnu::noinline, gnu::cold]] static void spread_at_border(const SurfaceSpread<T>& t, int i) {
+    if (t.at.base[2][i] == outside) return;
+    const Domain<3>& domain = *t.domain;
+    const StencilWeights<T, Kernel> weights(t.at, i);
+    for (int m = 0; m < 4; ++m) {
+      const Image z = image(domain, 2, t.at.base[2][i] - 1 + m);
+      for (int l = 0; l < 4; ++l) {
+        const Image y = image(domain, 1, t.at.base[1][i] - 1 + l);
+        const int row = y.node + domain.size[1] * z.node;
+        if (row < t.row_begin || row >= t.row_end) continue;
+        const T weight = static_cast<T>(y.sign * z.sign) * weights.row[m][l].vector[0];
+        for (int k = 0; k < 4; ++k) {
+          const Image x = image(domain, 0, t.at.base[0][i] - 1 + k);
+          const std::ptrdiff_t at = z.node * t.stride_z + y.node * t.stride_y + x.node;
+          for (int c = 0; c < 3; ++c) {
+            t.origin[c][at] +=
+                weights.along_x.vector[k] * static_cast<T>(t.force[c][i]) * (static_cast<T>(x.sign) * weight);
+          }
+        }
+      }
+    }
+  }
+};
+
+template <class T>
+struct SurfaceInterpolate {
+  SurfaceStencils<T> at;
+  double* velocity[3];
+  int begin, end;
+  const T* origin[3];
+  std::ptrdiff_t stride_y, stride_z;
+};
+
+template <class T, class Kernel>
+struct InterpolateSurface {
+  template <int register_bytes>
+  ROULEAU_ALWAYS_INLINE static void run(const SurfaceInterpolate<T>* task) {
+    const SurfaceInterpolate<T> t = *task;
+    using Four = Pack<T, 4>;
+    for (int i = t.begin; i < t.end; ++i) {
+      if (t.at.base[2][i] == outside) {
+        for (double* velocity : t.velocity) velocity[i] = 0;
+        continue;
+      }
+      const StencilWeights<T, Kernel> weights(t.at, i);
+      Four u = T(0), v = T(0), w = T(0);
+      const std::ptrdiff_t first =
+          (t.at.base[2][i] - 1) * t.stride_z + (t.at.base[1][i] - 1) * t.stride_y + t.at.base[0][i] - 1;
+      for (int m = 0; m < 4; ++m) {
+        for (int l = 0; l < 4; ++l) {
+          const std::ptrdiff_t at = first + m * t.stride_z + l * t.stride_y;
+          const Four& weight = weights.row[m][l];
+          u += Four::load(t.origin[0] + at) * weight;
+          v += Four::load(t.origin[1] + at) * weight;
+          w += Four::load(t.origin[2] + at) * weight;
+        }
+      }
+      t.velocity[0][i] = sum(u * weights.along_x);
+      t.velocity[1][i] = sum(v * weights.along_x);
+      t.velocity[2][i] = sum(w * weights.along_x);
+    }
+  }
+
+ private:
+  static ROULEAU_ALWAYS_INLINE T sum(const Pack<T, 4>& a) {
+    return (a.vector[0] + a.vector[1]) + (a.vector[2] + a.vector[3]);
+  }
+};
+
+}  // namespace
+
+/// The loops for one kernel.
+template <class T>
+struct SurfaceCoupling<T>::Loops {
+  void (*locate)(const LocatePart<T>*);
+  void (*spread)(const SurfaceSpread<T>*);
+  void (*interpolate)(const SurfaceInterpolate<T>*);
+
+  template <class Kernel>
+  static const Loops* of() {
+    static const Loops loops{Dispatch<LocateSurface<T, Kernel>, const LocatePart<T>*>::pick(),
+                             Dispatch<SpreadSurface<T, Kernel>, const SurfaceSpread<T>*>::pick(),
+                             Dispatch<InterpolateSurface<T, Kernel>, const SurfaceInterpolate<T>*>::pick()};
+    return &loops;
+  }
+  static const Loops* of(KernelKind kernel) {
+    switch (kernel) {
+      case KernelKind::cosine4:
+        return of<Cosine4>();
+      case KernelKind::roma3:
+        return of<Roma3>();
+      case KernelKind::linear2:
+        return of<Linear2>();
+      case KernelKind::peskin4:
+        break;
+    }
+    return of<Peskin4>();
+  }
+};
+
+template <class T>
+SurfaceCoupling<T>::SurfaceCoupling(KernelKind kernel, const Domain<3>& domain)
+    : loops_(Loops::of(kernel)), domain_(domain) {}
+
+template <class T>
+void SurfaceCoupling<T>::reserve(const Surfaces& surfaces) {
+  for (int k = 0; k < 3; ++k) {
+    base_[k].assign(surfaces.x.size(), outside);
+    p_[k].assign(surfaces.x.size(), T(0));
+    q_[k].assign(surfaces.x.size(), T(0));
+  }
+  planes_.assign(surfaces.cells.size(), {outside, outside});
+}
+
+template <class T>
+void SurfaceCoupling<T>::locate(Worker worker, const Surfaces& surfaces) {
+  const Range cells = worker.share(surfaces.cell_count());
+  const double* const place[3] = {surfaces.x.data(), surfaces.y.data(), surfaces.z.data()};
+  for (int c = cells.begin; c < cells.end; ++c) {
+    const SurfaceCell& cell = surfaces.cells[c];
+    for (int k = 0; k < 3; ++k) {
+      const LocatePart<T> part{place[k], base_[k].data(), p_[k].data(), q_[k].data(), cell.first, cell.end()};
+      loops_->locate(&part);
+    }
+    BasePlanes planes{domain_.size[2], outside};
+    for (int i = cell.first; i < cell.end(); ++i) {
+      bool escaped = false;
+      for (int k = 0; k < 3; ++k) {
+        int& base = base_[k][i];
+        escaped |= base == outside;
+        if (domain_.periodic[k]) {
+          base = domain_.wrapped(k, base);
+        } else {  // up to half a spacing beyond walls
+          escaped |= base < -1 || base >= domain_.size[k];
+        }
+      }
+      if (escaped) base_[2][i] = outside;
+      planes.lowest = std::min(planes.lowest, base_[2][i]);
+      planes.highest = std::max(planes.highest, base_[2][i]);
+    }
+    planes_[c] = planes;
+  }
+}
+
+template <class T>
+void SurfaceCoupling<T>::spread(Range rows, const Surfaces& surfaces, VectorField<T, 3>& force) const {
+  SurfaceSpread<T> task{};
+  for (int k = 0; k < 3; ++k) {
+    task.at.base[k] = base_[k].data(), task.at.p[k] = p_[k].data(), task.at.q[k] = q_[k].data();
+    task.origin[k] = force[k].row(0, 0);
+  }
+  task.force[0] = surfaces.force_x.data(), task.force[1] = surfaces.force_y.data();
+  task.force[2] = surfaces.force_z.data();
+  task.domain = &domain_;
+  task.row_begin = rows.begin, task.row_end = rows.end;
+  task.stride_y = force[0].stride(1), task.stride_z = force[0].stride(2);
+  for (std::size_t c = 0; c < planes_.size(); ++c) {
+    const auto [lowest, highest] = planes_[c];
+    const bool inside = lowest >= 1 && highest + 3 <= domain_.size[2];
+    if (inside && ((highest + 3) * domain_.size[1] <= rows.begin || (lowest - 1) * domain_.size[1] >= rows.end))
+      continue;
+    task.begin = surfaces.cells[c].first, task.end = surfaces.cells[c].end();
+    loops_->spread(&task);
+  }
+}
+
+template <class T>
+void SurfaceCoupling<T>::interpolate(Worker worker, Surfaces& surfaces, const VectorField<T, 3>& velocity) const {
+  SurfaceInterpolate<T> task{};
+  for (int k = 0; k < 3; ++k) {
+    task.at.base[k] = base_[k].data(), task.at.p[k] = p_[k].data(), task.at.q[k] = q_[k].data();
+    task.origin[k] = velocity[k].row(0, 0);
+  }
+  task.velocity[0] = surfaces.velocity_x.data(), task.velocity[1] = surfaces.velocity_y.data();
+  task.velocity[2] = surfaces.velocity_z.data();
+  task.stride_y = velocity[0].stride(1), task.stride_z = velocity[0].stride(2);
+  const Range nodes = surfaces.node_share(worker);
+  task.begin = nodes.begin, task.end = nodes.end;
+  loops_->interpolate(&task);
+}
+
+template <class T>
+void SurfaceCoupling<T>::mark_rows(std::vector<char>& reached) const {
+  for (std::size_t i = 0; i < base_[0].size(); ++i) {
+    if (base_[2][i] == outside) continue;
+    for (int m = -1; m < 3; ++m) {
+      int z = domain_.wrapped(2, base_[2][i] + m);
+      if (z < 0) z = mirrored(base_[2][i] + m, domain_.size[2]);
+      for (int l = -1; l < 3; ++l) {
+        int y = domain_.wrapped(1, base_[1][i] + l);
+        if (y < 0) y = mirrored(base_[1][i] + l, domain_.size[1]);
+        reached[y + domain_.size[1] * z] = 1;
+      }
+    }
+  }
+}
+
+template <class T>
+int SurfaceCoupling<T>::escaped() const {
+  const auto found = std::find(base_[2].begin(), base_[2].end(), outside);
+  return found == base_[2].end() ? -1 : static_cast<int>(found - base_[2].begin());
+}
+
+template class SurfaceCoupling<float>;
+template class SurfaceCoupling<double>;
+
+}  // namespace rouleau::core

@@ -1,0 +1,356 @@
+#include "surface_forces.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <rouleau/dispatch.hpp>
+#include <stdexcept>
+
+#include "surface_kernels.hpp"
+
+namespace rouleau::core {
+
+namespace {
+
+constexpr int pack_size = 8;  // doubles in the widest pack
+
+int padded(int count) { return (count + pack_size - 1) / pack_size * pack_size; }
+
+template <class Loop>
+void run_loop(const SurfaceArrays& arrays) {
+  static const auto function = Dispatch<Loop, const SurfaceArrays*>::pick();
+  function(&arrays);
+}
+
+template <std::size_t n>
+void point(const double* (&to)[n], const std::vector<double> (&from)[n]) {
+  for (std::size_t k = 0; k < n; ++k) to[k] = from[k].data();
+}
+template <std::size_t n>
+void point(double* (&to)[n], std::vector<double> (&from)[n]) {
+  for (std::size_t k = 0; k < n; ++k) to[k] = from[k].data();
+}
+
+double weighted_sum(const std::vector<double>& values, const std::vector<double>& weights) {
+  double sum = 0;
+  for (std::size_t i = 0; i < weights.size(); ++i) sum += values[i] * weights[i];
+  return sum;
+}
+
+}  // namespace
+
+SurfaceForces::Law SurfaceForces::describe(const MembraneLaw& model) {
+  if (!model.state.empty()) {
+    throw std::invalid_argument("\"" + model.id + "\" remembers \"" + model.state[0].name +
+                                "\", which surfaces of triangles have no place for yet");
+  }
+  for (const char* viscosity : {"shear_viscosity", "area_viscosity"}) {
+    if (model.writes(viscosity)) {
+      throw std::invalid_argument("\"" + model.id + "\" gives a " + viscosity + ", which surfaces do not have yet");
+    }
+  }
+  const bool triangle = model.writes("stress_1") || model.writes("stress_2");
+  const bool cell = model.writes("pressure") || model.writes("surface_tension");
+  if (!triangle && !cell && !model.writes("moment") && !model.writes("area_tension")) {
+    throw std::invalid_argument("\"" + model.id + "\" is no law of surfaces in three dimensions");
+  }
+  auto element = Law::Element::area;
+  if (model.writes("moment")) element = Law::Element::curvature;
+  if (cell) element = Law::Element::cell;
+  if (triangle) element = Law::Element::triangle;
+  return {model, element, model.writes("energy")};
+}
+
+SurfaceForces::Type SurfaceForces::prepare(const RestSurface& rest, const MembraneLaws& laws) {
+  const Mesh& mesh = rest.mesh;
+  Type type;
+  type.triangles = mesh.triangle_count();
+  type.edges = mesh.edge_count();
+  for (const MembraneLaw& model : laws) {
+    const Law& law = type.laws.emplace_back(describe(model));
+    type.triangle |= law.element == Law::Element::triangle;
+    type.curvature |= law.element == Law::Element::curvature;
+    type.area |= law.element == Law::Element::area;
+    type.cell |= law.element == Law::Element::cell;
+  }
+  // The last triangle and the last edge stand for those that fill the last pack.
+  const int triangles = padded(type.triangles), edges = padded(type.edges);
+  for (int t = 0; t < triangles; ++t) {
+    const int from = std::min(t, type.triangles - 1);
+    for (int k = 0; k < 3; ++k) {
+      type.corner[k].push_back(mesh.triangles()[from][k]);
+      type.triangle_edge[k].push_back(mesh.triangle_edges()[from][k]);
+    }
+    type.inverse[0].push_back(rest.inverse_11[from]);
+    type.inverse[1].push_back(rest.inverse_12[from]);
+    type.inverse[2].push_back(rest.inverse_22[from]);
+    type.rest_area.push_back(rest.triangle_area[from]);
+  }
+  for (int e = 0; e < edges; ++e) {
+    const Mesh::Edge& edge = mesh.edges()[std::min(e, type.edges - 1)];
+    type.edge_node[0].push_back(edge.a);
+    type.edge_node[1].push_back(edge.b);
+    type.edge_triangle[0].push_back(edge.left);
+    type.edge_triangle[1].push_back(edge.right);
+  }
+  for (int i = 0; i < mesh.node_count(); ++i) {
+    type.inverse_node_area.push_back(1 / rest.node_area[i]);
+    type.area_share.push_back(rest.node_area[i] / (3 * rest.third_area[i]));
+  }
+  type.corners = mesh.corners();
+  for (int& entry : type.corners.entry) entry = entry % 3 * triangles + entry / 3;
+  return type;
+}
+
+SurfaceForces::SurfaceForces(const Surfaces& surfaces, const std::vector<MembraneLaws>& laws)
+    : scratch_(surfaces.cells.size()) {
+  for (std::size_t t = 0; t < surfaces.types.size(); ++t) types_.push_back(prepare(*surfaces.types[t], laws[t]));
+}
+
+SurfaceForces::Scratch& SurfaceForces::scratch_of(int first_cell) {
+  Scratch& s = scratch_[first_cell];
+  if (!s.energy.empty()) return s;
+  std::size_t triangles = 0, edges = 0, nodes = 0;
+  for (const Type& type : types_) {
+    triangles = std::max(triangles, type.rest_area.size());
+    edges = std::max(edges, type.edge_node[0].size());
+    nodes = std::max(nodes, type.inverse_node_area.size());
+  }
+  const auto make = [](auto& arrays, std::size_t size) {
+    for (auto& array : arrays) array.assign(size, 0.0);
+  };
+  make(s.side, triangles);
+  make(s.normal, triangles);
+  make(s.invariant, triangles);
+  make(s.stress, triangles);
+  make(s.moment, triangles);
+  make(s.turn, triangles);
+  make(s.area_pull, triangles);
+  make(s.force, 3 * triangles);
+  make(s.along, edges);
+  make(s.normals, edges);
+  make(s.law, std::max(triangles, nodes));
+  for (auto* array : {&s.turned_length, &s.edge_turn}) array->assign(edges, 0.0);
+  for (auto* array : {&s.curvature, &s.area_ratio, &s.node_moment, &s.node_pull}) array->assign(nodes, 0.0);
+  s.energy.assign(std::max(triangles, nodes), 0.0);
+  return s;
+}
+
+namespace {
+
+/// Differences of positions, triangle by triangle or edge by edge.
+void differences(const std::vector<int>& from, const std::vector<int>& to, Nodes nodes, double* x, double* y,
+                 double* z) {
+  for (std::size_t k = 0; k < from.size(); ++k) {
+    x[k] = nodes.x[to[k]] - nodes.x[from[k]];
+    y[k] = nodes.y[to[k]] - nodes.y[from[k]];
+    z[k] = nodes.z[to[k]] - nodes.z[from[k]];
+  }
+}
+
+void gather(const std::vector<int>& index, const std::vector<double>& from, double* to) {
+  for (std::size_t k = 0; k < index.size(); ++k) to[k] = from[index[k]];
+}
+
+}  // namespace
+
+SurfaceForces::Whole SurfaceForces::measure(const Type& type, Nodes nodes, Scratch& s) {
+  differences(type.corner[0], type.corner[1], nodes, s.side[0].data(), s.side[1].data(), s.side[2].data());
+  differences(type.corner[0], type.corner[2], nodes, s.side[3].data(), s.side[4].data(), s.side[5].data());
+  SurfaceArrays arrays{};
+  arrays.triangles = type.triangles;
+  arrays.edges = type.edges;
+  point(arrays.side, s.side);
+  point(arrays.inverse, type.inverse);
+  point(arrays.normal, s.normal);
+  arrays.invariant_1 = s.invariant[0].data();
+  arrays.invariant_2 = s.invariant[1].data();
+  run_loop<MeasureTriangles>(arrays);
+  if (type.curvature) {
+    differences(type.edge_node[0], type.edge_node[1], nodes, s.along[0].data(), s.along[1].data(), s.along[2].data());
+    for (int side = 0; side < 2; ++side) {
+      for (int k = 0; k < 3; ++k) gather(type.edge_triangle[side], s.normal[k], s.normals[3 * side + k].data());
+    }
+    point(arrays.along, s.along);
+    const std::vector<double>(&normals)[6] = s.normals;
+    point(arrays.normals, normals);
+    arrays.turned_length = s.turned_length.data();
+    arrays.edge_turn = s.edge_turn.data();
+    run_loop<MeasureEdges>(arrays);
+    std::fill(s.curvature.begin(), s.curvature.end(), 0.0);
+    for (int e = 0; e < type.edges; ++e) {
+      s.curvature[type.edge_node[0][e]] += 0.5 * s.turned_length[e];
+      s.curvature[type.edge_node[1][e]] += 0.5 * s.turned_length[e];
+    }
+    for (std::size_t i = 0; i < type.inverse_node_area.size(); ++i) s.curvature[i] *= type.inverse_node_area[i];
+  }
+  Whole whole;
+  if (type.area) std::fill(s.area_ratio.begin(), s.area_ratio.end(), 0.0);
+  if (type.area || type.cell) {
+    const Vec<3> origin = nodes[0];
+    for (int t = 0; t < type.triangles; ++t) {
+      const Vec<3> normal(s.normal[0][t], s.normal[1][t], s.normal[2][t]);
+      const double twice = normal.norm();
+      whole.surface_area += twice / 2;
+      whole.volume += (nodes[type.corner[0][t]] - origin).dot(normal) / 6;
+      for (int k = 0; k < 3 && type.area; ++k) s.area_ratio[type.corner[k][t]] += twice / 2;
+    }
+    for (std::size_t i = 0; i < type.area_share.size() && type.area; ++i) {
+      s.area_ratio[i] *= type.area_share[i] * type.inverse_node_area[i];
+    }
+  }
+  return whole;
+}
+
+void SurfaceForces::apply(const Type& type, const RestSurface& rest, Scratch& s, Whole& whole, MembraneEnergy* energy) {
+  const auto triangles = static_cast<std::size_t>(type.triangles), nodes = type.inverse_node_area.size();
+  for (auto& stress : s.stress) std::fill(stress.begin(), stress.end(), 0.0);
+  if (type.curvature) std::fill(s.node_moment.begin(), s.node_moment.end(), 0.0);
+  if (type.area) std::fill(s.node_pull.begin(), s.node_pull.end(), 0.0);
+  for (const Law& law : type.laws) {
+    rouleau_membrane_block block{};
+    block.struct_size = sizeof block;
+    if (energy != nullptr && law.energy) block.energy = s.energy.data();
+    const auto given = [&](const char* name, const double* input) { return law.model.reads(name) ? input : nullptr; };
+    const auto wanted = [&](const char* name, double* output) { return law.model.writes(name) ? output : nullptr; };
+    const auto add = [&](const double* output, const std::vector<double>& from, std::vector<double>& sum,
+                         std::size_t count) {
+      for (std::size_t i = 0; i < count && output != nullptr; ++i) sum[i] += from[i];
+    };
+    double pressure = 0, surface_tension = 0;
+    switch (law.element) {
+      case Law::Element::triangle:
+        block.count = static_cast<std::uint32_t>(triangles);
+        block.invariant_1 = given("invariant_1", s.invariant[0].data());
+        block.invariant_2 = given("invariant_2", s.invariant[1].data());
+        block.stress_1 = wanted("stress_1", s.law[0].data());
+        block.stress_2 = wanted("stress_2", s.law[1].data());
+        break;
+      case Law::Element::curvature:
+        block.count = static_cast<std::uint32_t>(nodes);
+        block.curvature = given("curvature", s.curvature.data());
+        block.rest_curvature = given("rest_curvature", rest.rest_curvature.data());
+        block.moment = s.law[0].data();
+        break;
+      case Law::Element::area:
+        block.count = static_cast<std::uint32_t>(nodes);
+        block.area_ratio = given("area_ratio", s.area_ratio.data());
+        block.area_tension = s.law[0].data();
+        break;
+      case Law::Element::cell:
+        block.count = 1;
+        block.volume = given("volume", &whole.volume);
+        block.rest_volume = given("rest_volume", &rest.rest_volume);
+        block.surface_area = given("surface_area", &whole.surface_area);
+        block.rest_surface_area = given("rest_surface_area", &rest.rest_surface_area);
+        block.pressure = wanted("pressure", &pressure);
+        block.surface_tension = wanted("surface_tension", &surface_tension);
+        break;
+    }
+    law.model.compute(&block);
+    add(block.stress_1, s.law[0], s.stress[0], triangles);
+    add(block.stress_2, s.law[1], s.stress[1], triangles);
+    add(block.moment, s.law[0], s.node_moment, nodes);
+    add(block.area_tension, s.law[0], s.node_pull, nodes);
+    whole.pressure += pressure;
+    whole.surface_tension += surface_tension;
+    if (energy == nullptr) continue;
+    if (!law.energy) {
+      energy->unknown = law.model.id;
+    } else if (law.element == Law::Element::triangle) {
+      energy->tension += weighted_sum(s.energy, rest.triangle_area);
+    } else if (law.element == Law::Element::curvature) {
+      energy->bending += weighted_sum(s.energy, rest.node_area);
+    } else if (law.element == Law::Element::area) {
+      energy->tension += weighted_sum(s.energy, rest.node_area);
+    } else {
+      energy->cell += s.energy[0];
+    }
+  }
+}
+
+void SurfaceForces::act(const Type& type, const Whole& whole, Scratch& s) {
+  SurfaceArrays arrays{};
+  arrays.triangles = type.triangles;
+  point(arrays.side, s.side);
+  point(arrays.inverse, type.inverse);
+  point(arrays.normal, s.normal);
+  for (int k = 0; k < 9; ++k) arrays.force[k] = &s.force[k % 3][k / 3 * type.rest_area.size()];
+  arrays.rest_area = type.rest_area.data();
+  arrays.stress_1 = s.stress[0].data();
+  arrays.stress_2 = s.stress[1].data();
+  arrays.with_moment = type.curvature;
+  arrays.with_area_pull = type.area;
+  arrays.pressure = whole.pressure;
+  arrays.surface_tension = whole.surface_tension;
+  if (type.area) {
+    for (std::size_t i = 0; i < type.area_share.size(); ++i) s.node_pull[i] *= type.area_share[i];
+  }
+  for (int k = 0; k < 3; ++k) {
+    if (type.curvature) {
+      gather(type.corner[k], s.node_moment, s.moment[k].data());
+      gather(type.triangle_edge[k], s.edge_turn, s.turn[k].data());
+    }
+    if (type.area) gather(type.corner[k], s.node_pull, s.area_pull[k].data());
+  }
+  const std::vector<double>(&moment)[3] = s.moment, (&turn)[3] = s.turn, (&area_pull)[3] = s.area_pull;
+  point(arrays.moment, moment);
+  point(arrays.turn, turn);
+  point(arrays.area_pull, area_pull);
+  run_loop<ActOnTriangles>(arrays);
+}
+
+void SurfaceForces::run(Worker worker, Surfaces& surfaces) {
+  const Range cells = worker.share(surfaces.cell_count());
+  if (cells.begin == cells.end) return;
+  Scratch& s = scratch_of(cells.begin);
+  for (int c = cells.begin; c < cells.end; ++c) {
+    const SurfaceCell& cell = surfaces.cells[c];
+    const Type& type = types_[cell.type];
+    Whole whole = measure(type, surfaces.nodes(c), s);
+    apply(type, *surfaces.types[cell.type], s, whole, nullptr);
+    act(type, whole, s);
+    double* const force[3] = {&surfaces.force_x[cell.first], &surfaces.force_y[cell.first],
+                              &surfaces.force_z[cell.first]};
+    for (int i = 0; i < cell.count; ++i) {
+      double sum[3] = {0, 0, 0};
+      for (int k = type.corners.first[i]; k < type.corners.first[i + 1]; ++k) {
+        for (int component = 0; component < 3; ++component) sum[component] += s.force[component][type.corners.entry[k]];
+      }
+      for (int component = 0; component < 3; ++component) force[component][i] = sum[component];
+    }
+  }
+}
+
+MembraneEnergy SurfaceForces::energies(const Surfaces& surfaces) {
+  MembraneEnergy energy;
+  for (int c = 0; c < surfaces.cell_count(); ++c) {
+    const Type& type = types_[surfaces.cells[c].type];
+    Whole whole = measure(type, surfaces.nodes(c), scratch_of(0));
+    apply(type, surfaces.type_of(c), scratch_of(0), whole, &energy);
+  }
+  return energy;
+}
+
+std::vector<double> SurfaceForces::curvatures(const Surfaces& surfaces, int cell) {
+  const RestSurface& rest = surfaces.type_of(cell);
+  std::vector<double> curvature = integrated_curvature(rest.mesh, surfaces.nodes(cell));
+  for (std::size_t i = 0; i < curvature.size(); ++i) curvature[i] /= rest.node_area[i];
+  return curvature;
+}
+
+std::vector<double> SurfaceForces::tensions(const Surfaces& surfaces, int cell) {
+  const Type& type = types_[surfaces.cells[cell].type];
+  Scratch& s = scratch_of(0);
+  Whole whole = measure(type, surfaces.nodes(cell), s);
+  apply(type, surfaces.type_of(cell), s, whole, nullptr);
+  std::vector<double> tension;
+  for (int t = 0; t < type.triangles; ++t) {
+    // T1 + T2 = 2 ((l1^2 + l2^2) w1 + 2 l1^2 l2^2 w2) / (l1 l2)
+    const double squares = s.invariant[0][t] + 2, product = s.invariant[1][t] + 1;
+    const double sum = 2 * (squares * s.stress[0][t] + 2 * product * s.stress[1][t]) / std::sqrt(product);
+    tension.push_back(sum / 2 + whole.surface_tension);
+  }
+  return tension;
+}
+
+}  // namespace rouleau::core

@@ -1,0 +1,77 @@
+// Forces of the membrane laws on the nodes of surfaces: minus the gradient of the laws' energies.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/worker.hpp"
+#include "core/membrane/membrane_forces.hpp"
+#include "core/model/model.hpp"
+#include "surfaces.hpp"
+
+namespace rouleau::core {
+
+/// Turns stresses, moments, pressures and surface tensions into nodal forces whose sum and torque vanish. Only what some
+/// law of a type needs is computed. What a node gets is summed in the order of its triangles: bits do not depend on the
+/// workers.
+class SurfaceForces {
+ public:
+  /// `laws`: of each cell type, as they are in three dimensions. Throws std::invalid_argument for a law that remembers or
+  /// gives a viscosity, which surfaces do not have yet.
+  SurfaceForces(const Surfaces& surfaces, const std::vector<MembraneLaws>& laws);
+
+  /// Pass over cells: sets the forces.
+  void run(Worker worker, Surfaces& surfaces);
+
+  /// Energies at the present positions. Not a pass: one thread, no other in run().
+  [[nodiscard]] MembraneEnergy energies(const Surfaces& surfaces);
+  [[nodiscard]] double energy(const Surfaces& surfaces) { return energies(surfaces).total(); }
+
+  /// Sum of both principal curvatures at each node of a cell, over the area at rest.
+  [[nodiscard]] std::vector<double> curvatures(const Surfaces& surfaces, int cell);
+  /// Mean tension of each triangle of a cell, all laws of triangles and cells together: half of the sum of both principal
+  /// tensions, force per present length.
+  [[nodiscard]] std::vector<double> tensions(const Surfaces& surfaces, int cell);
+
+ private:
+  /// A law with its element, and what its table is asked for.
+  struct Law {
+    MembraneLaw model;
+    enum class Element { triangle, curvature, area, cell } element;
+    bool energy;
+  };
+  /// What all cells of a type share, in the order and with the padding that the loops want.
+  struct Type {
+    std::vector<Law> laws;
+    bool triangle = false, curvature = false, area = false, cell = false;  // elements of the laws
+    int triangles, edges;
+    std::vector<int> corner[3], triangle_edge[3];
+    std::vector<int> edge_node[2], edge_triangle[2];
+    std::vector<double> inverse[3], rest_area, inverse_node_area;
+    std::vector<double> area_share;  // of nodes: rest area over three times the area that area_ratio is over
+    Mesh::Rings corners;             // entries are k * padded triangles + t
+  };
+  /// One worker's arrays, for one cell after another.
+  struct Scratch {
+    std::vector<double> side[6], normal[3], invariant[2], stress[2], moment[3], turn[3], area_pull[3];
+    std::vector<double> force[3];  // on the first corners of all triangles, then on the second and third ones
+    std::vector<double> along[3], normals[6], turned_length, edge_turn;
+    std::vector<double> curvature, area_ratio, node_moment, node_pull, law[2], energy;
+  };
+  struct Whole {
+    double volume = 0, surface_area = 0, pressure = 0, surface_tension = 0;
+  };
+
+  static Law describe(const MembraneLaw& model);
+  static Type prepare(const RestSurface& rest, const MembraneLaws& laws);
+  /// The arrays of the worker whose first cell this is; made when it first asks.
+  Scratch& scratch_of(int first_cell);
+  static Whole measure(const Type& type, Nodes nodes, Scratch& scratch);
+  static void apply(const Type& type, const RestSurface& rest, Scratch& scratch, Whole& whole, MembraneEnergy* energy);
+  static void act(const Type& type, const Whole& whole, Scratch& scratch);
+
+  std::vector<Type> types_;
+  std::vector<Scratch> scratch_;  // of the first cell of each worker's share
+};
+
+}  // namespace rouleau::core

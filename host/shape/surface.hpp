@@ -1,0 +1,31 @@
+// Closed surfaces of triangles for the shapes of cells in three dimensions.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/surface/surfaces.hpp"
+
+namespace rouleau::shape {
+
+/// Nodes around the origin, and triangles counter-clockwise seen from outside.
+struct TriangleSurface {
+  std::vector<core::Vec<3>> nodes;
+  std::vector<std::array<int, 3>> triangles;
+};
+
+/// Each of an icosahedron's 20 triangles in n^2 parts, on the sphere of radius 1: 20 n^2 triangles, 10 n^2 + 2 nodes. Edges
+/// differ by a quarter at most.
+TriangleSurface unit_sphere(int n);
+
+/// Semi-axes along x, y and z.
+TriangleSurface ellipsoid(int n, const core::Vec<3>& semi_axes);
+
+/// The biconcave disc of shape/outline.hpp turned about its axis, which lies along y. Nodes lie at equal distances along
+/// meridians.
+TriangleSurface biconcave_disc(int n, double radius);
+
+/// The surface at rest; `prestretch`: lengths as given over those at rest.
+core::RestSurface rest_surface(const TriangleSurface& surface, double prestretch = 1);
+
+}  // namespace rouleau::shape

@@ -1,0 +1,196 @@
+// The coupling in three dimensions: balances, adjointness, images, order of sums.
+#include <Eigen/Geometry>
+#include <catch2/catch.hpp>
+#include <random>
+
+#include "core/coupling/surface_coupling.hpp"
+#include "shape/surface.hpp"
+#include "unit/random.hpp"
+
+using namespace rouleau;
+using namespace rouleau::core;
+using namespace rouleau::test;
+
+namespace {
+
+constexpr std::array<int, 3> box = {20, 18, 16};
+
+template <class T>
+VectorField<T, 3> field() {
+  return {Field<T, 3>(box), Field<T, 3>(box), Field<T, 3>(box)};
+}
+
+/// A sphere of radius 3 and 92 nodes, whose forces are random.
+Surfaces sphere_at(const Vec<3>& center, std::mt19937& random) {
+  Surfaces s;
+  s.types.push_back(std::make_shared<const RestSurface>(shape::rest_surface(shape::ellipsoid(3, {3, 3, 3}))));
+  add_cell(s, 0, center);
+  std::uniform_real_distribution<double> any(-1, 1);
+  for (int i = 0; i < s.node_count(); ++i)
+    s.force_x[i] = any(random), s.force_y[i] = any(random), s.force_z[i] = any(random);
+  return s;
+}
+
+template <class Function>
+void for_nodes(const Function& function) {
+  for (int z = 0; z < box[2]; ++z) {
+    for (int y = 0; y < box[1]; ++y) {
+      for (int x = 0; x < box[0]; ++x) function(x, y, z);
+    }
+  }
+}
+
+/// Fills the halo as the fluid does: images of periodic axes, and beyond walls that rest the mirrored velocity reversed.
+template <class T>
+void fill_halo(VectorField<T, 3>& u, const Domain<3>& domain) {
+  for (Field<T, 3>& component : u) {
+    for (int z = -2; z < box[2] + 2; ++z) {
+      for (int y = -2; y < box[1] + 2; ++y) {
+        for (int x = -2; x < box[0] + 2; ++x) {
+          int at[3] = {x, y, z};
+          T sign = 1;
+          for (int k = 0; k < 3; ++k) {
+            const int wrapped = domain.wrapped(k, at[k]);
+            if (wrapped < 0) sign = -sign;
+            at[k] = wrapped >= 0 ? wrapped : at[k] < 0 ? -1 - at[k] : 2 * box[k] - 1 - at[k];
+          }
+          component.row(y, z)[x] = sign * component.row(at[1], at[2])[at[0]];
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("in three dimensions spreading and interpolation are adjoint, over borders and beside walls too", "",
+                   float, double) {
+  auto random = generator(81);
+  std::uniform_real_distribution<double> any(-1, 1);
+  for (const bool walls : {false, true}) {
+    const Domain<3> domain(box, {true, !walls, !walls});
+    for (const KernelKind kernel : {KernelKind::peskin4, KernelKind::roma3, KernelKind::linear2, KernelKind::cosine4}) {
+      Surfaces s = sphere_at(walls ? Vec<3>(1.3, 2.6, 12.4) : Vec<3>(1.3, 17.6, -0.4), random);
+      SurfaceCoupling<TestType> coupling(kernel, domain);
+      coupling.reserve(s);
+      coupling.locate({}, s);
+      REQUIRE(coupling.escaped() == -1);
+      VectorField<TestType, 3> force = field<TestType>(), u = field<TestType>();
+      coupling.spread({0, box[1] * box[2]}, s, force);
+      for_nodes([&](int x, int y, int z) {
+        for (auto& component : u) component.row(y, z)[x] = static_cast<TestType>(any(random));
+      });
+      double power = 0, size = 0;
+      for_nodes([&](int x, int y, int z) {
+        for (int k = 0; k < 3; ++k) {
+          const double one = static_cast<double>(force[k].row(y, z)[x]) * static_cast<double>(u[k].row(y, z)[x]);
+          power += one;
+          size += std::abs(one);
+        }
+      });
+      fill_halo(u, domain);
+      coupling.interpolate({}, s, u);
+      for (int i = 0; i < s.node_count(); ++i) {
+        power -= s.force_x[i] * s.velocity_x[i] + s.force_y[i] * s.velocity_y[i] + s.force_z[i] * s.velocity_z[i];
+      }
+      CHECK(std::abs(power) < (sizeof(TestType) == 4 ? 1e-5 : 1e-13) * size);
+    }
+  }
+}
+
+TEST_CASE("in three dimensions force and torque on the lattice are those of the nodes") {
+  auto random = generator(82);
+  const Domain<3> domain(box, {true, true, true});
+  for (const KernelKind kernel : {KernelKind::peskin4, KernelKind::roma3, KernelKind::linear2}) {
+    Surfaces s = sphere_at({9.7, 8.2, 7.9}, random);
+    SurfaceCoupling<double> coupling(kernel, domain);
+    coupling.reserve(s);
+    coupling.locate({}, s);
+    VectorField<double, 3> force = field<double>();
+    coupling.spread({0, box[1] * box[2]}, s, force);
+    Vec<3> sum = Vec<3>::Zero(), torque = Vec<3>::Zero();
+    for_nodes([&](int x, int y, int z) {
+      const Vec<3> f(force[0].row(y, z)[x], force[1].row(y, z)[x], force[2].row(y, z)[x]);
+      sum += f;
+      torque += Vec<3>(x, y, z).cross(f);
+    });
+    for (int i = 0; i < s.node_count(); ++i) {
+      const Vec<3> f(s.force_x[i], s.force_y[i], s.force_z[i]);
+      sum -= f;
+      torque -= s.nodes(0)[i].cross(f);
+    }
+    CHECK(sum.norm() < 1e-12);
+    CHECK(torque.norm() < 1e-11);
+  }
+}
+
+TEST_CASE("in three dimensions linear velocity is interpolated exactly") {
+  auto random = generator(83);
+  const Domain<3> domain(box, {true, true, true});
+  Surfaces s = sphere_at({9.7, 8.2, 7.9}, random);
+  SurfaceCoupling<double> coupling(KernelKind::peskin4, domain);
+  coupling.reserve(s);
+  coupling.locate({}, s);
+  VectorField<double, 3> u = field<double>();
+  for_nodes([&](int x, int y, int z) {
+    u[0].row(y, z)[x] = 0.3 + 0.1 * y - 0.2 * z;
+    u[1].row(y, z)[x] = 0.05 * x + 0.02 * y;
+    u[2].row(y, z)[x] = -0.07 * z + 0.01 * x;
+  });
+  coupling.interpolate({}, s, u);
+  for (int i = 0; i < s.node_count(); ++i) {
+    CHECK(std::abs(s.velocity_x[i] - (0.3 + 0.1 * s.y[i] - 0.2 * s.z[i])) < 1e-14);
+    CHECK(std::abs(s.velocity_y[i] - (0.05 * s.x[i] + 0.02 * s.y[i])) < 1e-14);
+    CHECK(std::abs(s.velocity_z[i] - (-0.07 * s.z[i] + 0.01 * s.x[i])) < 1e-14);
+  }
+}
+
+TEMPLATE_TEST_CASE("spread forces of surfaces are the same bits however rows are shared out and wherever borders lie",
+                   "", float, double) {
+  auto random = generator(84);
+  const Domain<3> domain(box, {true, true, true});
+  Surfaces s = sphere_at({9.75, 8.25, 7.5}, random);
+  for (auto* places : {&s.x, &s.y, &s.z}) {  // with few digits, so that they are the same ones elsewhere
+    for (double& place : *places) place = std::round(place * 1024) / 1024;
+  }
+  const auto spread = [&](const std::vector<int>& cuts) {
+    SurfaceCoupling<TestType> coupling(KernelKind::peskin4, domain);
+    coupling.reserve(s);
+    coupling.locate({}, s);
+    VectorField<TestType, 3> force = field<TestType>();
+    for (std::size_t k = 1; k < cuts.size(); ++k) coupling.spread({cuts[k - 1], cuts[k]}, s, force);
+    return force;
+  };
+  const auto whole = spread({0, 288}), parts = spread({0, 1, 100, 101, 150, 288});
+  for (double& x : s.x) x += 8;  // across the border
+  for (double& z : s.z) z -= 5;
+  const auto moved = spread({0, 50, 288});
+  for_nodes([&](int x, int y, int z) {
+    for (int k = 0; k < 3; ++k) {
+      REQUIRE(whole[k].row(y, z)[x] == parts[k].row(y, z)[x]);
+      REQUIRE(whole[k].row(y, z)[x] == moved[k].row(y, (z + 11) % 16)[(x + 8) % 20]);
+    }
+  });
+}
+
+TEST_CASE("a node of a surface beyond a wall, or nowhere, is reported and touches nothing") {
+  auto random = generator(85);
+  const Domain<3> domain(box, {true, false, true});
+  Surfaces s = sphere_at({9, 9, 8}, random);
+  SurfaceCoupling<double> coupling(KernelKind::peskin4, domain);
+  coupling.reserve(s);
+  for (const double bad : {std::nan(""), 18.01, -1.01, 1e300}) {
+    Surfaces lost = s;
+    lost.y[17] = bad;
+    for (int i = 0; i < lost.node_count(); ++i) {
+      if (i != 17) lost.force_x[i] = lost.force_y[i] = lost.force_z[i] = 0;
+    }
+    coupling.locate({}, lost);
+    CHECK(coupling.escaped() == 17);
+    VectorField<double, 3> force = field<double>();
+    coupling.spread({0, box[1] * box[2]}, lost, force);
+    for_nodes([&](int x, int y, int z) { REQUIRE(force[0].row(y, z)[x] == 0); });
+    coupling.interpolate({}, lost, force);
+    CHECK(lost.velocity_y[17] == 0);
+  }
+}
