@@ -160,8 +160,9 @@ class The_page_of_a_study(PageCase):
     def test_begins_with_its_sentences_and_then_its_warnings(self):
         page = self.open(PAGES["study"])
         boxes = page.run("[...document.querySelectorAll('.status')].map(e => [...e.querySelectorAll('li')].map(l => l.textContent))")
-        self.assertIn(STUDY["target"]["sentence"], boxes[0][0])
-        self.assertIn(STUDY["sentences"][0]["text"], boxes[0][1])
+        self.assertIn(STUDY["target"]["sentence"].replace("+-", "±"), boxes[0][0])
+        self.assertIn(STUDY["sentences"][0]["text"].replace("+-", "±"), boxes[0][1])
+        self.assertIn("below 1 × 10⁻⁷. The nearest is resolution 40, tau 1, scheme corrected", boxes[0][2])
         self.assertEqual(len(boxes[0]), 3)  # where methods disagree is a warning
         warnings = "\n".join(boxes[1])
         for words in ("The methods disagree about deformation", "6 of 40 points failed", "1 point was left out", "not deterministic: resolution 5, tau 0.6, corrected: cells.csv"):

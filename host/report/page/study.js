@@ -1,9 +1,12 @@
 // ------------------------------------------------------------------------------------------------------ the page of a study
+/// A sentence of study.json as it is set: "±" for "+-", "2 × 10⁻⁵" for "2e-05".
+const typeset = text => text.replaceAll("+-", "±").replace(/(?<![\w.])(\d+(?:\.\d+)?)e([-+]?\d+)\b/g, (_, mantissa, exponent) => `${mantissa} × 10${raised(Number(exponent))}`);
+
 function studyWarnings(study, view) {
   const failed = view.points.filter(p => p.status !== "completed").length, left = study.left_out ?? [];
   return [
     ...(study.complete === false && !left.length ? ["The study is not finished; the same command continues it."] : []),
-    ...view.quantities.map(q => q.disagreement && (q.disagreement.includes(q.name) ? q.disagreement : `${q.name}: ${q.disagreement}`)),
+    ...view.quantities.map(q => q.disagreement && (q.disagreement.includes(q.name) ? typeset(q.disagreement) : `${q.name}: ${typeset(q.disagreement)}`)),
     ...view.quantities.map(q => q.reference?.why_not && `${typeof q.reference.value === "number" ? `The reference of ${q.name} is uncertain` : `There is no reference for ${q.name}`}: ${q.reference.why_not}`),
     ...view.points.map(p => p.not_deterministic && `not deterministic: ${labelWords(p.labels)}: ${p.not_deterministic}`),
     ...(failed ? [`${failed} of ${view.points.length} points failed. They are drawn at the upper border of the charts, and a table lists them.`] : []),
@@ -18,9 +21,9 @@ function sentenceBox(view) {
   }}, "show");
   // Where methods disagree is told among the warnings.
   const told = (study.sentences ?? []).filter(s => !view.quantities.some(q => q.disagreement === s.text));
-  const lines = told.map(s => element("li", {}, ...(s.text.includes(s.quantity) ? [] : [element("b", {}, s.quantity), ": "]), s.text, " ", find(s.quantity, s.point)));
+  const lines = told.map(s => element("li", {}, ...(s.text.includes(s.quantity) ? [] : [element("b", {}, s.quantity), ": "]), typeset(s.text), " ", find(s.quantity, s.point)));
   const {target} = study;
-  if (target) lines.unshift(element("li", {class: target.met ? "" : "over"}, element("b", {}, target.sentence ?? (target.met ? "The target is met." : "The target is not met.")), " ", find(target.quantity, target.point)));
+  if (target) lines.unshift(element("li", {class: target.met ? "" : "over"}, element("b", {}, target.sentence ? typeset(target.sentence) : (target.met ? "The target is met." : "The target is not met.")), " ", find(target.quantity, target.point)));
   if (!lines.length) lines.push(element("li", {}, "There is no conclusion yet: see the charts and tables."));
   return element("div", {class: "card status sentences" + (target && !target.met ? " bad" : "")}, element("ul", {}, ...lines));
 }
