@@ -15,6 +15,7 @@ core::Decomposition<2> make_blocks(const Plan& plan, int ranks) {
   const core::Domain<2> domain = lattice_domain(scene);
   constexpr int least_width = 16, least_height = 4;  // smaller blocks are mostly border
   const long most = domain.nodes() / (least_width * least_height);
+  if (ranks < 1) throw Error(Cause::bad_input, std::to_string(ranks) + " ranks: there is at least one");
   if (ranks > most) {
     throw Error(Cause::bad_input, scene.place("/domain/nodes"),
                 std::to_string(ranks) + " ranks are more than the " + std::to_string(most) + " blocks of " +

@@ -273,7 +273,7 @@ class The_end(Case):
 
     def end(self, process):
         begin = time.monotonic()
-        errors = process.communicate(timeout=60)[1]
+        errors = process.communicate(timeout=300)[1]
         return time.monotonic() - begin, errors
 
     def test_sigusr1_to_mpirun_or_to_one_rank_ends_all_after_a_checkpoint(self):

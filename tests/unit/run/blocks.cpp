@@ -43,7 +43,8 @@ std::string bytes_of(const std::filesystem::path& file) {
 /// A summary without what is measured of the machine and what depends on who wrote the last checkpoint.
 nlohmann::json summary(const std::filesystem::path& directory) {
   nlohmann::json content = nlohmann::json::parse(bytes_of(directory / "summary.json"));
-  for (const char* key : {"wall_s", "steps_per_s", "mlups", "peak_rss_bytes", "threads", "started", "resumed"}) {
+  for (const char* key :
+       {"wall_s", "steps_per_s", "mlups", "peak_rss_bytes", "threads", "ranks", "started", "resumed"}) {
     REQUIRE(content.erase(key) == 1);
   }
   // Checksums of files that are compared by themselves, and of those with times in them.
