@@ -259,6 +259,7 @@ BLOCKS = [
     ("docs/scene.md", '{"name": "shake"', part_of_scene("stages")),
     ("docs/scene.md", '{"between": ["rbc", "rbc"], "model": "morse"', part_of_scene("interactions")),
     ("docs/scene.md", '{"between": ["rbc", "wall"], "model": "repulsion"', part_of_scene("interactions")),
+    ("docs/scene.md", '{"between": ["rbc", "self"], "model": "repulsion"', part_of_scene("interactions")),
     ("docs/scene.md", '"domain": {', other_settings),
     ("docs/scene.md", '"fluid": {', other_settings),
     ("docs/scene.md", '"numerics": {', other_settings),

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Least energy of red cells in a row at fixed areas: neo-Hookean membranes with bending, Morse potential between neighbours.
+"""Least energy of red cells in a row at fixed areas: neo-Hookean membranes with bending, Morse potential between them.
 
 usage: rouleau_minimum.py CELLS DEPTH [BENDING_MODULUS [NODES [STRENGTH CUTOFF]]]
        J/m2, J (3.6e-19), nodes of a cell (100), J/m2 and um of a repulsion within each membrane (none)
@@ -7,7 +7,7 @@ usage: rouleau_minimum.py CELLS DEPTH [BENDING_MODULUS [NODES [STRENGTH CUTOFF]]
 Prints the parts of the energy, J/m, how far the middle of an end cell's outer face stands out (negative: a dimple), and how
 near to each other a cell's faces come. Needs numpy and scipy. From cells at rest 3.52 um apart it goes downhill
 (L-BFGS-B, the areas by an augmented Lagrangian), so that it ends in the nearest minimum. Nothing of Rouleau is used.
-Inside: lengths in um, energies in shear modulus x um, closest points of all nodes on all segments of a neighbour.
+Inside: lengths in um, energies in shear modulus x um, closest points of all nodes on all segments of the others.
 """
 import sys
 
@@ -129,8 +129,8 @@ class Row:
             if self.strength > 0:
                 interaction += self.self_repulsion(cell, gradient[c])
             areas[c], by_area[c] = area(cell), -0.5 * turned(following(cell) - preceding(cell))
-            for d in (c - 1, c + 1):
-                if 0 <= d < self.cells:
+            for d in range(self.cells):
+                if d != c:
                     interaction += self.contact(cell, points[d], gradient[c], gradient[d])
         return np.array([elastic, bending, interaction]), gradient, areas, by_area
 
