@@ -117,20 +117,25 @@ struct MembraneLoop {
   ROULEAU_ALWAYS_INLINE static void run(const void* self, const rouleau_membrane_block* block) {
     using S = Pack<double, register_bytes / 8>;
     const Model model = *static_cast<const Model*>(self);
-    for (std::uint32_t first = 0; first < block->count; first += S::size) {
-      const std::uint32_t valid = block->count - first < S::size ? block->count - first : S::size;
-      element<S>(model, *block, first, valid);
+    if constexpr (in_3d<S>()) {
+      if (!in_2d<S>() || is_of_surface(*block)) {
+        for (std::uint32_t first = 0; first < block->count; first += S::size) {
+          of_surface<S>(model, *block, first, valid<S>(*block, first));
+        }
+        return;
+      }
+    }
+    if constexpr (in_2d<S>() || !in_3d<S>()) {
+      for (std::uint32_t first = 0; first < block->count; first += S::size) {
+        of_outline<S>(model, *block, first, valid<S>(*block, first));
+      }
     }
   }
 
  private:
   template <class S>
-  ROULEAU_ALWAYS_INLINE static void element(const Model& model, const rouleau_membrane_block& block,
-                                            std::uint32_t first, std::uint32_t valid) {
-    if constexpr (in_3d<S>()) {
-      if (!in_2d<S>() || is_of_surface(block)) return of_surface<S>(model, block, first, valid);
-    }
-    if constexpr (in_2d<S>() || !in_3d<S>()) of_outline<S>(model, block, first, valid);
+  ROULEAU_ALWAYS_INLINE static std::uint32_t valid(const rouleau_membrane_block& block, std::uint32_t first) {
+    return block.count - first < S::size ? block.count - first : S::size;
   }
 
   /// Whether the model has a functor, or an energy, of an element that only one dimension has. Vertices have no dimension.
