@@ -173,7 +173,11 @@ int run_command(const std::vector<std::string>& arguments) {
   const TimeLimit limit(max_time);
   const plan::ReadScene read = scene_options.read();
   const auto& [scene, numerics_choice] = read;
-  run.threads = std::min(run.threads, std::max(1, scene.domain.nodes[1] / 4));
+  const int rows = scene.domain.nodes[1] * (scene.domain.depth ? scene.domain.depth->nodes : 1);
+  run.threads = std::min(run.threads, std::max(1, rows / 4));
+  if (scene.domain.depth && bars.wanted(numerics_choice)) {
+    throw Error(Cause::bad_input, "--error-bar: errors are measured in two dimensions only so far; leave it out");
+  }
   const plugin::Catalog catalog = scene_options.catalog(scene);
   const plan::Plan plan = plan_and_place(read, catalog);  // before a directory is made
   const plan::PlanReport report = plan::make_report(plan);

@@ -53,6 +53,11 @@ bool Manifest::gives_output(const std::string& name) const {
   return std::find(gives.begin(), gives.end(), name) != gives.end();
 }
 
+bool Manifest::works_in(int dimension) const {
+  const char* lattice = dimension == 2 ? "D2Q9" : "D3Q19";
+  return std::find(lattices.begin(), lattices.end(), lattice) != lattices.end();
+}
+
 std::optional<std::size_t> Manifest::parameter_with(Role role) const {
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     if (parameters[i].role == role) return i;
@@ -106,6 +111,7 @@ Manifest read_manifest(const json::Document& document, const fs::path& file, con
   manifest.parameters = read_parameters(document, units);
   manifest.needs = words_of(root, "needs");
   manifest.gives = words_of(root, "gives");
+  manifest.lattices = root.contains("lattices") ? words_of(root, "lattices") : std::vector<std::string>{"D2Q9"};
   manifest.state = read_state(document, units);
   manifest.inactive_when = without_own_keys(root.value("inactive_when", Json()));
   manifest.stands_for = without_own_keys(root.value("stands_for", Json()));

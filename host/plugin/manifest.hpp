@@ -56,6 +56,7 @@ struct Manifest {
   std::string title, reference, author, license;
   std::vector<Parameter> parameters;
   std::vector<std::string> needs, gives;
+  std::vector<std::string> lattices;  ///< of a collision operator: "D2Q9", "D3Q19"
   std::vector<StateVariable> state;
   nlohmann::json
       inactive_when;  ///< object: parameter -> value (in its unit) at which the model does nothing; null: never
@@ -66,6 +67,8 @@ struct Manifest {
 
   [[nodiscard]] bool needs_input(const std::string& name) const;
   [[nodiscard]] bool gives_output(const std::string& name) const;
+  /// Whether a collision operator works on a lattice of so many dimensions.
+  [[nodiscard]] bool works_in(int dimension) const;
   /// Place of the parameter with this role in `parameters`; nothing when none has it.
   [[nodiscard]] std::optional<std::size_t> parameter_with(Role role) const;
 };

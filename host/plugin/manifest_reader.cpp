@@ -224,6 +224,11 @@ void check_roles(const json::Document& document, const Manifest& manifest) {
 void check_quantities(const json::Document& document, const Manifest& manifest) {
   check_names(document, "needs", manifest.needs, inputs_of(manifest.kind), manifest.kind);
   check_names(document, "gives", manifest.gives, outputs_of(manifest.kind), manifest.kind);
+  if (manifest.kind != ModelKind::collision && document.root().contains("lattices")) {
+    refuse(document, "/lattices",
+           std::string("a ") + to_string(manifest.kind) +
+               " model does not know the lattice; leave \"lattices\" to collision operators");
+  }
   switch (manifest.kind) {
     case ModelKind::collision:
       if (!manifest.needs_input("populations")) refuse(document, "/needs", "a collision model needs \"populations\"");

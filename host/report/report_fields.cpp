@@ -106,8 +106,10 @@ ScalarField speed(const std::vector<double>& velocity, std::size_t nx, std::size
 
 FieldGrid::FieldGrid(const files::Hdf5File& file, const std::string& dataset) {
   const auto shape = file.shape(dataset);
-  ny = shape.at(0);
-  nx = shape.at(1);
+  const std::size_t space = file.has_attribute("/", "periodic_z") ? 1 : 0;
+  if (space == 1) nz = shape.at(0);
+  ny = shape.at(space);
+  nx = shape.at(space + 1);
   const bool part = file.has_attribute("/", "fields_first_m");
   const std::array<std::size_t, 2> nodes{nx, ny};
   for (std::size_t axis = 0; axis < 2; ++axis) {
@@ -121,6 +123,13 @@ FieldGrid::FieldGrid(const files::Hdf5File& file, const std::string& dataset) {
 
 FieldGrid::Box FieldGrid::box() const {
   return {{first[0] - spacing[0] / 2, first[1] - spacing[1] / 2}, {spacing[0] * double(nx), spacing[1] * double(ny)}};
+}
+
+std::vector<double> FieldGrid::section(const files::Hdf5File& file, const std::string& dataset) const {
+  std::vector<double> values = file.read(dataset);
+  if (nz == 1) return values;
+  const auto each = static_cast<std::ptrdiff_t>(values.size() / nz), begin = each * static_cast<std::ptrdiff_t>(nz / 2);
+  return {values.begin() + begin, values.begin() + begin + each};
 }
 
 std::vector<std::size_t> field_outputs(const std::filesystem::path& frames, std::size_t most) {
@@ -158,7 +167,7 @@ Json field_data(const std::filesystem::path& frames, const std::vector<std::size
   const std::size_t most = std::min(most_blocks, most_values / (quantities * with_fields.size()));
   for (const std::size_t output : with_fields) {
     if (has_velocity) {
-      const auto velocity = file.read(group_of(output) + "velocity");
+      const auto velocity = grid.section(file, group_of(output) + "velocity");
       tracers.add(velocity);
       speeds.fields.push_back(block_means(speed(velocity, grid.nx, grid.ny), most));
       if (!has_vorticity)
@@ -166,7 +175,8 @@ Json field_data(const std::filesystem::path& frames, const std::vector<std::size
             block_means(vorticity(velocity, grid.nx, grid.ny, grid.spacing, grid.periodic), most));
     }
     if (has_vorticity)
-      vorticities.fields.push_back(block_means({grid.nx, grid.ny, file.read(group_of(output) + "vorticity")}, most));
+      vorticities.fields.push_back(
+          block_means({grid.nx, grid.ny, grid.section(file, group_of(output) + "vorticity")}, most));
   }
   Json result{{"nx", vorticities.fields.front().nx},
               {"ny", vorticities.fields.front().ny},
