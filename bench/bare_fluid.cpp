@@ -101,7 +101,7 @@ void BareFluid<T>::set(const std::function<double(int, int, int)>& population) {
       for (int x = 0; x < lattice_.size(0); ++x) lattice_.slot(q, {y})[x] = static_cast<T>(population(q, x, y));
     }
   }
-  fill_population_halo(lattice_);
+  for (int y = 0; y < lattice_.size(1); ++y) send_row(lattice_, {y});
 }
 
 template <class T>
@@ -120,13 +120,13 @@ void BareFluid<T>::step(rouleau::Range rows) {
   task.magic = magic_;
   for (int i = 0; i < rows.end - rows.begin; ++i) {
     const int y = parity_ == core::Parity::even ? rows.begin + i : rows.end - 1 - i;
-    if (parity_ == core::Parity::even) receive_row(lattice_, y);
+    if (parity_ == core::Parity::even) receive_row(lattice_, {y});
     lattice_.row_pointers(parity_, {y}, task.in, task.out);
     if (force_[0].allocated()) task.force_x = force_[0].row(y), task.force_y = force_[1].row(y);
     row(&task);
-    add_wall_momentum(lattice_, y, walls_);
-    if (parity_ == core::Parity::even) send_row(lattice_, y);
-    if (force_[0].allocated()) fill_velocity_halo(force_, y, lattice_.domain(), walls_);
+    add_wall_momentum(lattice_, {y}, walls_);
+    if (parity_ == core::Parity::even) send_row(lattice_, {y});
+    if (force_[0].allocated()) fill_velocity_halo<T, 2>(force_, {y}, lattice_.domain(), walls_);
   }
 }
 

@@ -31,7 +31,7 @@ core::CollisionOperator trt() {
 /// The fluid of the program, with the trt plugin.
 template <class T>
 std::unique_ptr<core::Fluid<T>> plugin_fluid(int nx, int ny, bool forced, core::WallVelocity wall) {
-  core::FluidSetting setting{};
+  core::FluidSetting<2> setting{};
   setting.domain = {{nx, ny}, {true, false}};
   setting.relaxation_rate = relaxation_rate;
   setting.walls = wall;
@@ -52,7 +52,7 @@ void start_couette(core::Fluid<T>& fluid) {
 
 template <class T>
 BareFluid<T> bare_fluid(Kernel kernel, core::Fluid<T>& like) {
-  const core::FluidSetting& setting = like.setting();
+  const core::FluidSetting<2>& setting = like.setting();
   BareFluid<T> bare(kernel, setting.domain.size[0], setting.domain.size[1], relaxation_rate, magic, setting.walls);
   bare.set([&](int q, int x, int y) { return like.population(q, x, y); });
   return bare;

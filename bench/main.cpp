@@ -10,6 +10,7 @@
 
 #include "fluid_bench.hpp"
 #include "scene_bench.hpp"
+#include "space_bench.hpp"
 
 namespace {
 
@@ -44,7 +45,8 @@ int main(int argc, char** argv) {
   options::options_description description("options");
   auto add = description.add_options();
   add("check", options::bool_switch(&check), "no timing: check every kernel against an exact solution");
-  add("only", options::value(&only)->value_name("TABLE"), "fluid, scene or cells; all without");
+  add("only", options::value(&only)->value_name("TABLE"),
+      "fluid, space (three dimensions; of fluid, too), scene or cells; all without");
   add("whole", options::bool_switch(&whole), "run the four-cell scene to its end (four times 10 s)");
   add("seconds", options::value(&seconds)->default_value(1)->value_name("S"), "time for each fluid kernel");
   add("kernel", options::value(&kernel)->value_name("NAME"), "run one fluid kernel (plugin, plain, move) for counting");
@@ -71,8 +73,10 @@ int main(int argc, char** argv) {
                 instruction_set(), ROULEAU_COMPILER, ROULEAU_FLAGS);
     std::printf("\nChecks\n");
     rouleau::bench::check_fluid();
+    rouleau::bench::check_space();
     if (check) return 0;
     if (only.empty() || only == "fluid") rouleau::bench::fluid_table(seconds);
+    if (only.empty() || only == "fluid" || only == "space") rouleau::bench::space_table(seconds);
     if (only.empty() || only == "scene") rouleau::bench::scene_table(whole);
     if (only.empty() || only == "cells") rouleau::bench::cells_table();
     return 0;

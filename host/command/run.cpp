@@ -166,7 +166,11 @@ bool read_request(const std::vector<std::string>& arguments, Request& request) {
 void prepare(Request& request, const TimeLimit& limit, std::optional<PlannedScene>& planned) {
   planned.emplace(request.scene);  // before a directory is made
   const auto& [scene, numerics_choice] = planned->read;
-  request.run.threads = std::min(request.run.threads, std::max(1, scene.domain.nodes[1] / 4));
+  const int rows = scene.domain.nodes[1] * (scene.domain.depth ? scene.domain.depth->nodes : 1);
+  request.run.threads = std::min(request.run.threads, std::max(1, rows / 4));
+  if (scene.domain.depth && request.bars.wanted(numerics_choice)) {
+    throw Error(Cause::bad_input, "--error-bar: errors are measured in two dimensions only so far; leave it out");
+  }
   const Crew* const crew = Crew::present();
   const plan::PlanReport& report = planned->report;
   plan::require_memory(report.estimate.memory_bytes / (crew != nullptr ? crew->ranks() : 1), "the run");

@@ -107,7 +107,9 @@ std::string opening(const plan::Plan& plan, const plan::PlanReport& report, int 
   const scene::Scene& scene = *plan.scene;
   std::string size, nodes;
   for (const double length : scene.domain.size) size += (size.empty() ? "" : " x ") + number(length * 1e6, 3);
+  if (scene.domain.depth) size += " x " + number(scene.domain.depth->size * 1e6, 3);
   for (const int count : scene.domain.nodes) nodes += (nodes.empty() ? "" : " x ") + std::to_string(count);
+  if (scene.domain.depth) nodes += " x " + std::to_string(scene.domain.depth->nodes);
   std::vector<std::string> stages;
   for (const scene::Stage& stage : scene.stages) stages.push_back(stage.name);
   const plan::Estimate& estimate = report.estimate;

@@ -115,7 +115,7 @@ Arrays<T> place(Memory& memory, const Subject& subject, const Values& inputs, co
   const auto kind = subject.manifest().kind;
   for (const std::string& quantity : plugin::inputs_of(kind, subject.manifest().dimension())) {
     if (subject.manifest().needs_input(quantity) || call.undeclared == Undeclared::null) continue;
-    for (const std::string& name : arrays_of(kind, quantity)) {
+    for (const std::string& name : arrays_of(subject, quantity)) {
       const std::string words = "the input " + name + ", which its manifest does not declare";
       auto* array =
           reinterpret_cast<T*>(call.undeclared == Undeclared::unreadable ? memory.unreadable(words, bytes)
@@ -169,13 +169,14 @@ struct Tables {
 };
 
 template <class Block, class T>
-Block collision_block(const Tables<T>& tables) {
+Block collision_block(const Tables<T>& tables, int dimension) {
+  const std::size_t velocities = dimension == 2 ? 9 : 19, components = static_cast<std::size_t>(dimension);
   Block block{};
-  block.in = tables.in("populations", 9);
-  block.out = tables.out("populations", 9);
-  block.force = tables.in("force", 2);
+  block.in = tables.in("populations", velocities);
+  block.out = tables.out("populations", velocities);
+  block.force = tables.in("force", components);
   block.relaxation_rate = tables.arrays.input("relaxation_rate", tables.first);
-  block.velocity = tables.out("velocity", 2);
+  block.velocity = tables.out("velocity", components);
   return block;
 }
 
@@ -274,11 +275,11 @@ void call_block(Memory& memory, const Subject& subject, const plugin::ModelInsta
   const Tables<T> tables{memory, arrays, first};
   const void* self = instance.self();
   if constexpr (sizeof(T) == 4) {
-    call_with(memory, subject.manifest().id, collision_block<rouleau_collision_block_f32>(tables), count,
-              call.appended_bytes, call.watch, instance.collision().collide_f32, self);
+    call_with(memory, subject.manifest().id, collision_block<rouleau_collision_block_f32>(tables, subject.dimension()),
+              count, call.appended_bytes, call.watch, instance.collision().collide_f32, self);
   } else if (subject.manifest().kind == plugin::ModelKind::collision) {
-    call_with(memory, subject.manifest().id, collision_block<rouleau_collision_block_f64>(tables), count,
-              call.appended_bytes, call.watch, instance.collision().collide_f64, self);
+    call_with(memory, subject.manifest().id, collision_block<rouleau_collision_block_f64>(tables, subject.dimension()),
+              count, call.appended_bytes, call.watch, instance.collision().collide_f64, self);
   } else if (subject.manifest().kind == plugin::ModelKind::membrane) {
     call_with(memory, subject.manifest().id,
               element_block(tables, membrane_members, subject.manifest().state.size(), call.time_step), count,

@@ -43,6 +43,9 @@ struct Finding {
   static Finding skipped(std::string what) { return {Verdict::skip, std::move(what), {}, {}}; }
 };
 
+/// Whether a finding says more against a plugin than another: its verdict or, of the same, its measure over the limit.
+bool worse(const Finding& a, const Finding& b);
+
 struct Check {
   const char* name;
   Level level;

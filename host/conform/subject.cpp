@@ -81,15 +81,18 @@ double uniform(Random& random, double low, double high) {
   return std::uniform_real_distribution<double>(low, high)(random);
 }
 
-std::vector<std::string> arrays_of(plugin::ModelKind kind, const std::string& quantity) {
+std::vector<std::string> arrays_of(const Subject& subject, const std::string& quantity) {
+  const plugin::ModelKind kind = subject.manifest().kind;
+  const int dimension = subject.dimension();
   const auto components = [&](int count) {
     std::vector<std::string> names;
     names.reserve(static_cast<std::size_t>(count));
     for (int k = 0; k < count; ++k) names.push_back(quantity + '.' + std::to_string(k));
     return names;
   };
-  if (kind == plugin::ModelKind::collision && quantity == "populations") return components(9);
-  if (kind == plugin::ModelKind::collision && (quantity == "force" || quantity == "velocity")) return components(2);
+  if (kind == plugin::ModelKind::collision && quantity == "populations") return components(dimension == 2 ? 9 : 19);
+  if (kind == plugin::ModelKind::collision && (quantity == "force" || quantity == "velocity"))
+    return components(dimension);
   return {quantity};
 }
 
@@ -139,18 +142,18 @@ std::vector<double> Subject::random_parameters(Random& random) const {
   return values;
 }
 
-plugin::ModelSetting Subject::typical_setting() {
+plugin::ModelSetting Subject::typical_setting() const {
   const double length = 0.1955e-6, density = 1000, viscosity = 1.2e-6, relaxation = 3000;  // m, kg/m3, m2/s, 1
   const double simulated_density = density * relaxation;
   const double time = length * length / (6 * viscosity / relaxation);
-  return {{length, time, simulated_density * length * length * length}, 1, false};
+  return {{length, time, simulated_density * length * length * length}, 1, false, dimension_};
 }
 
-std::vector<plugin::ModelInstance> Subject::make_each_choice(const plugin::ModelSetting& setting) const {
+std::vector<plugin::ModelInstance> Subject::make_each_choice() const {
   std::vector<plugin::ModelInstance> instances;
   for (const auto& values : parameters_of_each_choice()) {
     try {
-      instances.push_back(make(values, setting));
+      instances.push_back(make(values));
     } catch (const plugin::ModelRefused&) {  // a word that goes only with other values of other parameters
       if (instances.empty()) throw;          // typical ones go together
     }
@@ -166,7 +169,7 @@ std::vector<bool> Subject::precisions() const {
 std::vector<std::string> Subject::input_arrays() const {
   std::vector<std::string> names;
   for (const auto& need : manifest_.needs) {
-    for (auto& name : arrays_of(manifest_.kind, need)) names.push_back(std::move(name));
+    for (auto& name : arrays_of(*this, need)) names.push_back(std::move(name));
   }
   for (std::size_t k = 0; k < manifest_.state.size(); ++k) names.push_back("state." + std::to_string(k));
   return names;
@@ -175,7 +178,7 @@ std::vector<std::string> Subject::input_arrays() const {
 std::vector<std::string> Subject::output_arrays() const {
   std::vector<std::string> names;
   for (const auto& given : manifest_.gives) {
-    for (auto& name : arrays_of(manifest_.kind, given)) names.push_back(std::move(name));
+    for (auto& name : arrays_of(*this, given)) names.push_back(std::move(name));
   }
   for (std::size_t k = 0; k < manifest_.state.size(); ++k) names.push_back("state." + std::to_string(k));
   return names;
@@ -212,7 +215,7 @@ Values Subject::random_inputs(const plugin::ModelInstance& instance, std::size_t
   const auto draw_all = [&] {
     for (const auto& need : manifest_.needs) {
       const auto [low, high] = ranges.at(need);
-      for (const auto& name : arrays_of(manifest_.kind, need)) {
+      for (const auto& name : arrays_of(*this, need)) {
         set(inputs, name, count, [&, low = low, high = high] {
           return random() % 8 == 0 ? rare(need, high, random) : uniform(random, low, high);
         });

@@ -31,10 +31,18 @@ inline std::size_t some_count(Random& random) {
 
 class Subject {
  public:
-  Subject(plugin::Manifest manifest, std::uint64_t seed) : manifest_(std::move(manifest)), seed_(seed) {}
+  Subject(plugin::Manifest manifest, std::uint64_t seed)
+      : manifest_(std::move(manifest)), seed_(seed), dimension_(manifest_.works_in(2) ? 2 : 3) {}
+  /// The same on the lattice of so many dimensions, which a collision operator's manifest names.
+  [[nodiscard]] Subject on_lattice(int dimension) const {
+    Subject other = *this;
+    other.dimension_ = dimension;
+    return other;
+  }
 
   [[nodiscard]] const plugin::Manifest& manifest() const { return manifest_; }
   [[nodiscard]] std::uint64_t seed() const { return seed_; }
+  [[nodiscard]] int dimension() const { return dimension_; }
   /// A generator that starts anew at each call: a check's inputs depend on the seed alone.
   [[nodiscard]] Random random() const { return Random(seed_); }
 
@@ -49,17 +57,19 @@ class Subject {
   [[nodiscard]] std::vector<double> random_parameters(Random& random) const;
 
   /// A lattice as the shipped scenes have it: 20 spacings to a cell's radius, tau 1, no inertia.
-  [[nodiscard]] static plugin::ModelSetting typical_setting();
+  [[nodiscard]] plugin::ModelSetting typical_setting() const;
 
   [[nodiscard]] plugin::ModelInstance make() const { return make(typical_parameters()); }
+  [[nodiscard]] plugin::ModelInstance make(const std::vector<double>& parameters) const {
+    return make(parameters, typical_setting());
+  }
   [[nodiscard]] plugin::ModelInstance make(const std::vector<double>& parameters,
-                                           const plugin::ModelSetting& setting = typical_setting()) const {
+                                           const plugin::ModelSetting& setting) const {
     return {manifest_, parameters, setting};
   }
   /// Instances with typical parameters and, in turn, with each other word of each choice; those that the model refuses
   /// are left out.
-  [[nodiscard]] std::vector<plugin::ModelInstance> make_each_choice(
-      const plugin::ModelSetting& setting = typical_setting()) const;
+  [[nodiscard]] std::vector<plugin::ModelInstance> make_each_choice() const;
 
   /// The same model as one of its dimensions has it.
   [[nodiscard]] Subject in(int dimension) const { return {manifest_.in(dimension), seed_}; }
@@ -81,9 +91,11 @@ class Subject {
  private:
   plugin::Manifest manifest_;
   std::uint64_t seed_;
+  int dimension_;
 };
 
-/// Arrays that stand for a quantity of the manifest: "force" of a collision operator is "force.0" and "force.1".
-std::vector<std::string> arrays_of(plugin::ModelKind kind, const std::string& quantity);
+/// Arrays that stand for a quantity of the manifest: "force" of a collision operator is "force.0" and "force.1", and on
+/// D3Q19 "force.2".
+std::vector<std::string> arrays_of(const Subject& subject, const std::string& quantity);
 
 }  // namespace rouleau::conform

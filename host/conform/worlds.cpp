@@ -48,7 +48,7 @@ std::string outputs(const Subject& subject, int fill) {
   Random random = subject.random();
   Painter painter(fill);
   paint_stack(fill);
-  for (const Trial& trial : trials(subject, random, Subject::typical_setting(), 3)) {
+  for (const Trial& trial : trials(subject, random, subject.typical_setting(), 3)) {
     lines += '#' + trial.words + '\n';
     if (subject.manifest().kind == plugin::ModelKind::interaction) {
       paint_stack(fill);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <string>
+#include <vector>
 
 #include "hdf5_file.hpp"
 
@@ -18,7 +19,10 @@ struct FieldNodes {
     std::array<double, 2> first, size;
   };
   [[nodiscard]] Box box() const;
+  /// A field's values on these nodes; in three dimensions on those of the layer in the middle of z.
+  [[nodiscard]] std::vector<double> section(const Hdf5File& file, const std::string& dataset) const;
   std::size_t nx = 0, ny = 0;
+  std::size_t nz = 1;                        ///< layers that the field has
   std::array<double, 2> spacing{}, first{};  ///< m
   std::array<bool, 2> periodic{};
 };

@@ -22,23 +22,21 @@ bool equal_cells(const std::vector<int>& first) {
 }
 
 FrameWriter::FrameWriter(std::filesystem::path file, const scene::Scene& scene)
-    : file_(std::move(file)),
-      title_(scene.title),
-      size_{scene.domain.size.x(), scene.domain.size.y()},
-      nodes_(scene.domain.nodes),
-      periodic_y_(scene.domain.periodic_y),
-      storage_(scene.output.field_storage) {}
+    : file_(std::move(file)), title_(scene.title), domain_(scene.domain), storage_(scene.output.field_storage) {}
 
 void FrameWriter::write_header(Hdf5File& target) const {
   target.attribute("/", "format", "rouleau frames 1");
   target.attribute("/", "title", title_);
-  target.attribute("/", "size_m", std::vector<double>{size_[0], size_[1]});
-  target.attribute("/", "nodes", std::vector<double>{double(nodes_[0]), double(nodes_[1])});
-  target.attribute("/", "periodic_y", periodic_y_ ? 1L : 0L);
+  std::vector<double> size{domain_.size.x(), domain_.size.y()}, nodes(domain_.nodes.begin(), domain_.nodes.end());
+  if (domain_.depth) size.push_back(domain_.depth->size), nodes.push_back(domain_.depth->nodes);
+  target.attribute("/", "size_m", size);
+  target.attribute("/", "nodes", nodes);
+  target.attribute("/", "periodic_y", domain_.periodic_y ? 1L : 0L);
+  if (domain_.depth) target.attribute("/", "periodic_z", domain_.depth->periodic ? 1L : 0L);
   if (!storage_.whole()) {
     const FieldGrid grid = field_grid();
-    target.attribute("/", "fields_first_m", std::vector<double>(grid.origin.begin(), grid.origin.end()));
-    target.attribute("/", "fields_spacing_m", std::vector<double>(grid.spacing.begin(), grid.spacing.end()));
+    target.attribute("/", "fields_first_m", grid.origin);
+    target.attribute("/", "fields_spacing_m", grid.spacing);
   }
   target.make_group("/frames");
   target.make_group("/topology");
@@ -134,28 +132,32 @@ void FrameWriter::write_topology(const std::vector<int>& first) {
 void FrameWriter::write_fields(const std::string& frame, const observe::FieldSnapshot& fields, FrameRecord& record) {
   const std::string group = frame + "/fields";
   open_->make_group(group);
-  const auto nx = static_cast<hsize_t>(fields.nx), ny = static_cast<hsize_t>(fields.ny);
-  const auto write = [&](const char* name, const std::vector<hsize_t>& shape, const std::vector<double>& values,
+  std::vector<hsize_t> shape{static_cast<hsize_t>(fields.ny), static_cast<hsize_t>(fields.nx)};
+  if (domain_.depth) shape.insert(shape.begin(), static_cast<hsize_t>(fields.nz));
+  const auto write = [&](const char* name, const std::vector<hsize_t>& of_values, const std::vector<double>& values,
                          const char* unit) {
     const std::string path = group + "/" + name;
     if (storage_.precision == scene::Precision::f64) {
-      open_->write(path, shape, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, values.data(), unit, storage_.compression);
+      open_->write(path, of_values, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, values.data(), unit, storage_.compression);
     } else {
       const std::vector<float> single(values.begin(), values.end());
-      open_->write(path, shape, H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, single.data(), unit, storage_.compression);
+      open_->write(path, of_values, H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, single.data(), unit, storage_.compression);
     }
     record.fields.emplace_back(name);
   };
   if (!fields.velocity_x.empty()) {
-    std::vector<double> velocity(3 * nx * ny, 0.0);
-    for (std::size_t i = 0; i < nx * ny; ++i) {
+    std::vector<double> velocity(3 * fields.velocity_x.size(), 0.0);
+    for (std::size_t i = 0; i < fields.velocity_x.size(); ++i) {
       velocity[3 * i] = fields.velocity_x[i];
       velocity[3 * i + 1] = fields.velocity_y[i];
+      if (!fields.velocity_z.empty()) velocity[3 * i + 2] = fields.velocity_z[i];
     }
-    write("velocity", {ny, nx, 3}, velocity, "m/s");
+    std::vector<hsize_t> of_vectors = shape;
+    of_vectors.push_back(3);
+    write("velocity", of_vectors, velocity, "m/s");
   }
   const auto scalar = [&](const char* name, const std::vector<double>& values, const char* unit) {
-    if (!values.empty()) write(name, {ny, nx}, values, unit);
+    if (!values.empty()) write(name, shape, values, unit);
   };
   scalar("density", fields.density, "1");
   scalar("viscosity", fields.viscosity, "Pa s");
@@ -164,12 +166,14 @@ void FrameWriter::write_fields(const std::string& frame, const observe::FieldSna
 
 FieldGrid FrameWriter::field_grid() const {
   FieldGrid grid;
-  for (const std::size_t axis : {std::size_t{0}, std::size_t{1}}) {
-    const double spacing = size_[axis] / nodes_[axis];
-    grid.nodes[axis] = storage_.count(static_cast<int>(axis), nodes_[axis]);
-    grid.origin[axis] = units::coordinate(storage_.first[axis], spacing);
-    grid.spacing[axis] = storage_.stride * spacing;
-  }
+  const auto add = [&](int axis, double size, int nodes, int first) {
+    const double spacing = size / nodes;
+    grid.nodes.push_back(storage_.count(axis, nodes));
+    grid.origin.push_back(units::coordinate(first, spacing));
+    grid.spacing.push_back(storage_.stride * spacing);
+  };
+  for (const int axis : {0, 1}) add(axis, domain_.size[axis], domain_.nodes[axis], storage_.first[axis]);
+  if (domain_.depth) add(2, domain_.depth->size, domain_.depth->nodes, 0);
   grid.bytes = storage_.precision == scene::Precision::f64 ? 8 : 4;
   return grid;
 }

@@ -1,8 +1,8 @@
 // frames.h5: outlines of all cells at every output time, fluid fields where due, in a form ParaView and h5py open.
 //
 //   /                      attributes format, title, size_m [2], nodes [2], periodic_y; where output.fields has a
-//   region
-//                          or a stride: fields_first_m [2], fields_spacing_m [2]
+//                          region or a stride: fields_first_m [2], fields_spacing_m [2]; each [3] in three
+//                          dimensions, with periodic_z
 //   /frames/000000         attributes step, time_s, strain, stage, stage_name
 //     membranes/points     [n, 2] f64, m, not wrapped into the box
 //     membranes/tension    [n] f64, N/m, of the segment from this node to the cell's next one
@@ -11,6 +11,7 @@
 //     membranes/connectivity           closed polylines for XDMF
 //     fields/velocity      [ny, nx, 3] f32 or f64, m/s (third component 0: XDMF's vectors have three)
 //     fields/density, viscosity, vorticity [ny, nx] f32 or f64
+//                          in three dimensions [nz, ny, nx, 3] and [nz, ny, nx]
 //
 // Every dataset has its unit as attribute "unit". Node (i, j) of the lattice lies at ((i + 1/2) dx, (j + 1/2) dx).
 // first, cell and connectivity are links to one dataset as long as they do not change, so that they cost nothing per
@@ -41,8 +42,8 @@ struct FrameRecord {
 
 /// Where the nodes lie that the fields are given at, and how their numbers are stored.
 struct FieldGrid {
-  std::array<double, 2> origin{}, spacing{};  ///< m, of the first node, and between nodes
-  std::array<int, 2> nodes{};
+  std::vector<double> origin, spacing;  ///< m, of the first node, and between nodes; along x, y and, if there is one, z
+  std::vector<int> nodes;
   int bytes = 4;  ///< of a number
 };
 
@@ -84,9 +85,7 @@ class FrameWriter {
 
   std::filesystem::path file_;
   std::string title_;
-  std::array<double, 2> size_;
-  std::array<int, 2> nodes_;
-  bool periodic_y_;
+  scene::Domain domain_;
   scene::FieldStorage storage_;
   FramesSaved saved_;             ///< every sealed segment
   std::optional<Hdf5File> open_;  ///< the segment that is being written

@@ -57,17 +57,20 @@ std::string membranes(const FrameRecord& frame, const std::string& group) {
 }
 
 std::string fields(const FrameRecord& frame, const std::string& group, const FieldGrid& grid) {
-  // One layer of a 3-D mesh: ParaView lays a 2DCoRectMesh into the y-z plane, across the membranes. Slowest index
-  // first.
-  const std::string shape = "1 " + std::to_string(grid.nodes[1]) + " " + std::to_string(grid.nodes[0]);
+  // In two dimensions one layer of a 3-D mesh: ParaView lays a 2DCoRectMesh into the y-z plane, across the membranes.
+  // Slowest index first.
+  const bool space = grid.nodes.size() == 3;
+  const std::string shape = (space ? std::to_string(grid.nodes[2]) : "1") + " " + std::to_string(grid.nodes[1]) + " " +
+                            std::to_string(grid.nodes[0]);
   const auto triple = [](double z, double y, double x) {
     return "<DataItem Dimensions=\"3\" NumberType=\"Float\" Precision=\"8\" Format=\"XML\">" + to_text(z) + " " +
            to_text(y) + " " + to_text(x) + "</DataItem>";
   };
   std::string text = begin_grid("fields", frame.time);
   text += "        <Topology TopologyType=\"3DCoRectMesh\" Dimensions=\"" + shape + "\"/>\n";
-  text += "        <Geometry GeometryType=\"ORIGIN_DXDYDZ\">" + triple(0, grid.origin[1], grid.origin[0]) +
-          triple(grid.spacing[0], grid.spacing[1], grid.spacing[0]) + "</Geometry>\n";
+  text += "        <Geometry GeometryType=\"ORIGIN_DXDYDZ\">" +
+          triple(space ? grid.origin[2] : 0, grid.origin[1], grid.origin[0]) +
+          triple(space ? grid.spacing[2] : grid.spacing[0], grid.spacing[1], grid.spacing[0]) + "</Geometry>\n";
   for (const auto& name : frame.fields) {
     const bool vector = name == "velocity";
     text += attribute(shown_name(name), vector ? "Vector" : "Scalar",

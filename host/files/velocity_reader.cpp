@@ -21,7 +21,7 @@ std::optional<VelocityField> last_velocity(const std::filesystem::path& frames) 
                       {}};
   for (std::size_t j = 0; j < nodes.ny; ++j)
     field.y.push_back(nodes.first[1] + static_cast<double>(j) * nodes.spacing[1]);
-  const std::vector<double> vectors = file.read(dataset);
+  const std::vector<double> vectors = nodes.section(file, dataset);
   for (std::size_t i = 0; i + 2 < vectors.size(); i += 3) {
     field.velocity_x.push_back(vectors[i]);
     field.velocity_y.push_back(vectors[i + 1]);

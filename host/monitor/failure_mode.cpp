@@ -100,12 +100,12 @@ double lattice_oscillation(int x, int y, const std::function<FluidSample(int x, 
   return most;
 }
 
-double lattice_oscillation(int x, int y, const std::vector<core::Moments>& moments, const core::Domain<2>& domain) {
+double lattice_oscillation(int x, int y, const std::vector<core::Moments<2>>& moments, const core::Domain<2>& domain) {
   return lattice_oscillation(x, y, [&](int i, int j) -> FluidSample {
     j = domain.wrapped(1, j);
     if (j < 0) return {std::nan(""), std::nan(""), std::nan("")};
-    const core::Moments& m = moments[static_cast<std::size_t>(domain.size[0]) * j + domain.wrapped(0, i)];
-    return {m.ux, m.uy, m.density / std::sqrt(3.0)};
+    const core::Moments<2>& m = moments[static_cast<std::size_t>(domain.size[0]) * j + domain.wrapped(0, i)];
+    return {m.velocity[0], m.velocity[1], m.density / std::sqrt(3.0)};
   });
 }
 

@@ -35,7 +35,7 @@ using FluidSample = std::array<double, 3>;
 double lattice_oscillation(int x, int y, const std::function<FluidSample(int x, int y)>& sample);
 
 /// The same of the moments of all nodes, row after row.
-double lattice_oscillation(int x, int y, const std::vector<core::Moments>& moments, const core::Domain<2>& domain);
+double lattice_oscillation(int x, int y, const std::vector<core::Moments<2>>& moments, const core::Domain<2>& domain);
 
 /// Sets the mode of a failure whose reason and cell are known. `place` in lattice units; `oscillation`:
 /// lattice_oscillation there; `step`: the last one.

@@ -40,22 +40,26 @@ std::string leak_remedy(double segment) {
 
 /// Node with the first value that is no number, else the one with the largest speed; on the first rank, which speaks of
 /// it.
-template <class T>
-std::array<double, 2> extreme_node(const core::Fluid<T>& fluid) {
+template <class T, class Set>
+std::array<double, Set::dimension> extreme_node(const core::Fluid<T, Set>& fluid) {
   std::size_t extreme = 0;
   double fastest = -1;
-  const std::vector<core::Moments> moments = fluid.all_moments();
+  const std::vector<core::Moments<Set::dimension>> moments = fluid.all_moments();
   for (std::size_t i = 0; i < moments.size(); ++i) {
-    const core::Moments& m = moments[i];
-    const double square = m.ux * m.ux + m.uy * m.uy;
-    const bool finite = std::isfinite(square) && std::isfinite(m.density);
+    double square = 0;
+    for (const double u : moments[i].velocity) square += u * u;
+    const bool finite = std::isfinite(square) && std::isfinite(moments[i].density);
     if (!finite || square > fastest) extreme = i;
     if (!finite) break;
     fastest = std::max(fastest, square);
   }
-  const auto width = static_cast<std::size_t>(fluid.setting().domain.size[0]);
-  const std::size_t row = extreme / width;
-  return {static_cast<double>(extreme - row * width), static_cast<double>(row)};
+  std::array<double, Set::dimension> place;
+  for (int k = 0; k < Set::dimension; ++k) {
+    const auto size = static_cast<std::size_t>(fluid.setting().domain.size[k]);
+    place[k] = static_cast<double>(extreme % size);
+    extreme /= size;
+  }
+  return place;
 }
 
 std::optional<Failure> check_stretch(const core::Membranes& membranes, const scene::Scene& scene,
@@ -85,8 +89,8 @@ std::optional<Failure> check_stretch(const core::Membranes& membranes, const sce
 
 }  // namespace
 
-template <class T>
-std::optional<Failure> check_state(observe::Observer& observer, core::Solver<T>& solver,
+template <class T, class Set>
+std::optional<Failure> check_state(observe::Observer& observer, core::Solver<T, Set>& solver,
                                    const plan::StageSetting& setting, const core::Membranes& membranes,
                                    const scene::Scene& scene) {
   const units::LatticeUnits& units = setting.units;
@@ -95,15 +99,16 @@ std::optional<Failure> check_state(observe::Observer& observer, core::Solver<T>&
   };
   const double mach = observer.follow_fluid(solver.fluid());
   if (!(mach <= scene.checks.mach)) {
-    const auto [x, y] = extreme_node(solver.fluid());
-    if (!std::isfinite(mach)) {
-      return failure("non_finite", place(x, y), -1, std::nan(""), 0, "the fluid holds a value that is no number",
-                     blown_up_remedy(*setting.stage));
-    }
-    return failure("mach", place(x, y), -1, mach, scene.checks.mach,
-                   "the flow is too fast for the lattice: Mach number above its limit",
-                   "lower " + setting.stage->density_factor_key +
-                       ", the shear rate or the driving force, or raise the resolution");
+    const auto node = extreme_node(solver.fluid());
+    Failure found = std::isfinite(mach)
+                        ? failure("mach", place(node[0], node[1]), -1, mach, scene.checks.mach,
+                                  "the flow is too fast for the lattice: Mach number above its limit",
+                                  "lower " + setting.stage->density_factor_key +
+                                      ", the shear rate or the driving force, or raise the resolution")
+                        : failure("non_finite", place(node[0], node[1]), -1, std::nan(""), 0,
+                                  "the fluid holds a value that is no number", blown_up_remedy(*setting.stage));
+    if constexpr (Set::dimension == 3) found.place_z = units::coordinate(node[2], units.length);
+    return found;
   }
   if (membranes.cells.empty()) return std::nullopt;
   int cell = -1, leaking = -1;
@@ -138,9 +143,13 @@ std::optional<Failure> check_state(observe::Observer& observer, core::Solver<T>&
   return std::nullopt;
 }
 
-template std::optional<Failure> check_state(observe::Observer&, core::Solver<float>&, const plan::StageSetting&,
-                                            const core::Membranes&, const scene::Scene&);
-template std::optional<Failure> check_state(observe::Observer&, core::Solver<double>&, const plan::StageSetting&,
-                                            const core::Membranes&, const scene::Scene&);
+#define ROULEAU_INSTANTIATE(T, Set)                                                                                 \
+  template std::optional<Failure> check_state(observe::Observer&, core::Solver<T, Set>&, const plan::StageSetting&, \
+                                              const core::Membranes&, const scene::Scene&);
+ROULEAU_INSTANTIATE(float, core::D2Q9)
+ROULEAU_INSTANTIATE(double, core::D2Q9)
+ROULEAU_INSTANTIATE(float, core::D3Q19)
+ROULEAU_INSTANTIATE(double, core::D3Q19)
+#undef ROULEAU_INSTANTIATE
 
 }  // namespace rouleau::monitor

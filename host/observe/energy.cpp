@@ -1,6 +1,7 @@
 #include "energy.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace rouleau::observe {
@@ -20,8 +21,8 @@ std::string without_energy(const char* kind, const std::string& model) {
 
 }  // namespace
 
-template <class T>
-CellEnergy cell_energy(core::Solver<T>& solver, const core::Membranes& membranes) {
+template <class T, class Set>
+CellEnergy cell_energy(core::Solver<T, Set>& solver, const core::Membranes& membranes) {
   CellEnergy energy;
   const auto add = [&](double part) { energy.sum += part, energy.magnitude += std::abs(part); };
   if (core::MembraneForces* forces = solver.membrane_forces()) {
@@ -31,7 +32,7 @@ CellEnergy cell_energy(core::Solver<T>& solver, const core::Membranes& membranes
     if (!membrane.unknown.empty()) energy.unknown = without_energy("membrane law", membrane.unknown);
   }
   if (const core::InteractionForces* forces = solver.interaction_forces()) {
-    add(forces->energy(membranes, solver.ranks()));
+    if constexpr (Set::dimension == 2) add(forces->energy(membranes, solver.ranks()));
     const std::string silent = forces->without_energy();
     if (!silent.empty()) energy.unknown = without_energy("interaction", silent);
   }
@@ -39,14 +40,19 @@ CellEnergy cell_energy(core::Solver<T>& solver, const core::Membranes& membranes
 }
 
 template CellEnergy cell_energy(core::Solver<float>&, const core::Membranes&);
+template CellEnergy cell_energy(core::Solver<float, core::D3Q19>&, const core::Membranes&);
 template CellEnergy cell_energy(core::Solver<double>&, const core::Membranes&);
+template CellEnergy cell_energy(core::Solver<double, core::D3Q19>&, const core::Membranes&);
 
-template <class T>
-EnergySnapshot observe_energy(core::Solver<T>& solver, const core::Membranes& membranes,
+template <class T, class Set>
+EnergySnapshot observe_energy(core::Solver<T, Set>& solver, const core::Membranes& membranes,
                               const units::LatticeUnits& units) {
-  const double joule = units.to_si(1, units::dimension::energy_per_depth),
-               watt = units.to_si(1, units::dimension::power_per_depth);
-  const core::FluidSetting& setting = solver.fluid().setting();
+  const core::FluidSetting<Set::dimension>& setting = solver.fluid().setting();
+  // What the lattice has is summed over its depth.
+  double depth = 1;
+  if constexpr (Set::dimension == 3) depth = setting.domain.size[2];
+  const double joule = units.to_si(1, units::dimension::energy_per_depth) / depth,
+               watt = units.to_si(1, units::dimension::power_per_depth) / depth;
   EnergySnapshot energy;
   const auto fluid = solver.fluid().energetics();
   energy.kinetic = fluid.kinetic * joule;
@@ -55,11 +61,13 @@ EnergySnapshot observe_energy(core::Solver<T>& solver, const core::Membranes& me
   if (!setting.domain.periodic[1]) {
     const auto stress = solver.fluid().wall_stress();  // what the fluid does to the walls
     const core::WallVelocity& walls = solver.fluid().last_walls();
-    energy.wall_power = -(stress.lower * walls.lower + stress.upper * walls.upper) * setting.domain.size[0] * watt;
+    energy.wall_power =
+        -(stress.lower * walls.lower + stress.upper * walls.upper) * setting.domain.size[0] * depth * watt;
   }
-  if (setting.body_force_x != 0 || setting.body_force_y != 0) {
-    energy.body_force_power =
-        (setting.body_force_x * fluid.velocity_x + setting.body_force_y * fluid.velocity_y) * watt;
+  if (setting.body_force != std::array<double, Set::dimension>{}) {
+    double power = 0;
+    for (int k = 0; k < Set::dimension; ++k) power += setting.body_force[k] * fluid.velocity[k];
+    energy.body_force_power = power * watt;
   }
   if (core::MembraneForces* forces = solver.membrane_forces()) {
     const core::MembraneEnergy membrane = forces->energies(membranes);
@@ -75,7 +83,8 @@ EnergySnapshot observe_energy(core::Solver<T>& solver, const core::Membranes& me
   bool interact = false;
   const auto add_interaction = [&](const auto* forces) {
     if (forces == nullptr) return;
-    const double part = forces->energy(membranes, solver.ranks()) * joule;
+    double part = 0;
+    if constexpr (Set::dimension == 2) part = forces->energy(membranes, solver.ranks()) * joule;
     energy.interaction = interact ? energy.interaction + part : part;
     energy.total += part;
     interact = true;
@@ -90,7 +99,11 @@ EnergySnapshot observe_energy(core::Solver<T>& solver, const core::Membranes& me
 }
 
 template EnergySnapshot observe_energy(core::Solver<float>&, const core::Membranes&, const units::LatticeUnits&);
+template EnergySnapshot observe_energy(core::Solver<float, core::D3Q19>&, const core::Membranes&,
+                                       const units::LatticeUnits&);
 template EnergySnapshot observe_energy(core::Solver<double>&, const core::Membranes&, const units::LatticeUnits&);
+template EnergySnapshot observe_energy(core::Solver<double, core::D3Q19>&, const core::Membranes&,
+                                       const units::LatticeUnits&);
 
 void EnergyHistory::follow(const Snapshot& snapshot, bool driven, double floor) {
   const EnergySnapshot& energy = snapshot.energy;

@@ -16,12 +16,12 @@ struct CellEnergy {
   double sum = 0, magnitude = 0;  ///< of elastic, bending and interaction energy: their sum, that of their magnitudes
   std::string unknown;            ///< why the sum is not known; empty: it is
 };
-template <class T>
-CellEnergy cell_energy(core::Solver<T>& solver, const core::Membranes& membranes);
+template <class T, class Set>
+CellEnergy cell_energy(core::Solver<T, Set>& solver, const core::Membranes& membranes);
 
 /// State before the next step of `solver`, whose forces have been computed and whose fluid is settled.
-template <class T>
-EnergySnapshot observe_energy(core::Solver<T>& solver, const core::Membranes& membranes,
+template <class T, class Set>
+EnergySnapshot observe_energy(core::Solver<T, Set>& solver, const core::Membranes& membranes,
                               const units::LatticeUnits& units);
 
 /// Follows the total energy through the stages at rest, where it may only fall.

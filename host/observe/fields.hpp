@@ -9,7 +9,7 @@
 namespace rouleau::observe {
 
 /// The quantities that the scene asks for, before the next step of a settled fluid whose force has been folded.
-template <class T>
-FieldSnapshot observe_fields(core::Fluid<T>& fluid, const scene::Scene& scene, const units::LatticeUnits& units);
+template <class T, class Set>
+FieldSnapshot observe_fields(core::Fluid<T, Set>& fluid, const scene::Scene& scene, const units::LatticeUnits& units);
 
 }  // namespace rouleau::observe

@@ -71,12 +71,12 @@ double Observer::momentum_residual(const core::Membranes& m, double from_walls) 
   return magnitudes > 0 ? std::hypot(net_x, net_y) / magnitudes : 0;
 }
 
-template <class T>
-double Observer::follow_fluid(core::Fluid<T>& fluid) {
+template <class T, class Set>
+double Observer::follow_fluid(core::Fluid<T, Set>& fluid) {
   fluid.settle();
   const auto [mass, speed] = fluid.mass_and_speed();
   if (std::isnan(initial_mass_)) initial_mass_ = mass;
-  const double nodes = static_cast<double>(fluid.setting().domain.size[0]) * fluid.setting().domain.size[1];
+  const auto nodes = static_cast<double>(fluid.setting().domain.nodes());
   mass_drift_ = std::max(mass_drift_, std::abs(mass - initial_mass_) / nodes);
   const double mach = units::mach_number(speed);
   mach_max_ = std::max(mach_max_, mach);
@@ -131,9 +131,9 @@ void Observer::observe_cells(const core::Membranes& membranes, const units::Latt
   started_ = true;
 }
 
-template <class T>
-Snapshot Observer::observe(core::Solver<T>& solver, const plan::StageSetting& setting, const core::Membranes& membranes,
-                           bool with_fields) {
+template <class T, class Set>
+Snapshot Observer::observe(core::Solver<T, Set>& solver, const plan::StageSetting& setting,
+                           const core::Membranes& membranes, bool with_fields) {
   const units::LatticeUnits& units = setting.units;
   Snapshot snapshot;
   snapshot.stage = setting.index;
@@ -146,7 +146,7 @@ Snapshot Observer::observe(core::Solver<T>& solver, const plan::StageSetting& se
   snapshot.shear_rate = snapshot.wall_stress_lower = snapshot.wall_stress_upper = std::nan("");
   snapshot.pressure_gradient = std::nan("");
   snapshot.aggregate_size_number_mean = snapshot.aggregate_size_weight_mean = std::nan("");
-  const core::Fluid<T>& fluid = solver.fluid();
+  const core::Fluid<T, Set>& fluid = solver.fluid();
   const bool oscillates = setting.oscillation.any();
   if (!scene_->domain.periodic_y) {
     const auto stress = fluid.wall_stress();
@@ -162,14 +162,14 @@ Snapshot Observer::observe(core::Solver<T>& solver, const plan::StageSetting& se
   if (is_driven_channel(setting, *scene_)) {
     const double rate = flow_rate(fluid);
     if (!oscillates)
-      snapshot.relative_viscosity =
-          apparent_viscosity(rate, fluid.setting().body_force_x, setting, scene_->domain.nodes[1]);
+      snapshot.relative_viscosity = apparent_viscosity(rate / scene::duct_share(scene_->domain),
+                                                       fluid.setting().body_force[0], setting, scene_->domain.nodes[1]);
     snapshot.flow_rate = units.to_si(rate, units::dimension::velocity) * units.length;
   }
   if (setting.stage->pressure_gradient.x() != 0 || setting.stage->mean_velocity ||
       setting.oscillation.body_force_x != 0) {
     snapshot.pressure_gradient =
-        units.to_si(fluid.setting().body_force_x, units::dimension::force_density) - scene_->fluid.body_force.x();
+        units.to_si(fluid.setting().body_force[0], units::dimension::force_density) - scene_->fluid.body_force.x();
   }
   if (!membranes.cells.empty()) {
     if (!scene_->domain.periodic_y) {
@@ -206,7 +206,13 @@ void Observer::start_stage() { initial_mass_ = std::nan(""); }
 
 template Snapshot Observer::observe(core::Solver<float>&, const plan::StageSetting&, const core::Membranes&, bool);
 template Snapshot Observer::observe(core::Solver<double>&, const plan::StageSetting&, const core::Membranes&, bool);
+template Snapshot Observer::observe(core::Solver<float, core::D3Q19>&, const plan::StageSetting&,
+                                    const core::Membranes&, bool);
+template Snapshot Observer::observe(core::Solver<double, core::D3Q19>&, const plan::StageSetting&,
+                                    const core::Membranes&, bool);
 template double Observer::follow_fluid(core::Fluid<float>&);
 template double Observer::follow_fluid(core::Fluid<double>&);
+template double Observer::follow_fluid(core::Fluid<float, core::D3Q19>&);
+template double Observer::follow_fluid(core::Fluid<double, core::D3Q19>&);
 
 }  // namespace rouleau::observe

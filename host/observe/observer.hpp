@@ -27,13 +27,13 @@ class Observer {
   void start_stage();
 
   /// State before the next step of `solver`, whose forces must have been computed. `with_fields`: fields are due.
-  template <class T>
-  Snapshot observe(core::Solver<T>& solver, const plan::StageSetting& setting, const core::Membranes& membranes,
+  template <class T, class Set>
+  Snapshot observe(core::Solver<T, Set>& solver, const plan::StageSetting& setting, const core::Membranes& membranes,
                    bool with_fields);
 
   /// Follows mass and Mach number; returns the latter, which is NaN if the fluid holds a value that is no number.
-  template <class T>
-  double follow_fluid(core::Fluid<T>& fluid);
+  template <class T, class Set>
+  double follow_fluid(core::Fluid<T, Set>& fluid);
   /// Follows the cells' areas; returns the largest relative change since the start. `cell`: whose.
   double follow_area(const core::Membranes& membranes, int* cell = nullptr);
   /// Largest area that the area correction has kept from leaking out of (or into) a cell so far, over its rest area;

@@ -12,13 +12,18 @@ bool is_driven_channel(const plan::StageSetting& setting, const scene::Scene& sc
   return setting.largest_body_force_x() != 0 && setting.fastest_wall() == 0 && !scene.domain.periodic_y;
 }
 
-template <class T>
-double flow_rate(const core::Fluid<T>& fluid) {
-  return core::flow_rate(fluid.row_velocities(), fluid.walls_now(), fluid.setting().domain.periodic[1]);
+template <class T, class Set>
+double flow_rate(const core::Fluid<T, Set>& fluid) {
+  const core::Domain<Set::dimension>& domain = fluid.setting().domain;
+  const double rate = core::flow_rate(fluid.row_velocities(), fluid.walls_now(), domain);
+  if constexpr (Set::dimension == 3) return rate / domain.size[2];
+  return rate;
 }
 
 template double flow_rate(const core::Fluid<float>&);
 template double flow_rate(const core::Fluid<double>&);
+template double flow_rate(const core::Fluid<float, core::D3Q19>&);
+template double flow_rate(const core::Fluid<double, core::D3Q19>&);
 
 double apparent_viscosity(double flow_rate, double body_force, const plan::StageSetting& setting, int height) {
   const double viscosity = core::viscosity_of(setting.tau);

@@ -40,18 +40,19 @@ struct OutlineSnapshot {
   std::vector<double> tension;  ///< N/m of segment i (elastic and viscous laws together)
 };
 
-/// Fluid fields on the nodes that the scene wants (FieldStorage), row by row from below, x fastest. Empty: not due or
-/// not wanted.
+/// Fluid fields on the nodes that the scene wants (FieldStorage), row by row from below, x fastest, then y. Empty: not due
+/// or not wanted.
 struct FieldSnapshot {
   int nx = 0, ny = 0;
-  std::vector<double> velocity_x, velocity_y;  ///< m/s
-  std::vector<double> density;                 ///< relative deviation from the mean
-  std::vector<double> viscosity;               ///< Pa s
-  std::vector<double> vorticity;               ///< 1/s
+  int nz = 1;                                              ///< 1 in two dimensions
+  std::vector<double> velocity_x, velocity_y, velocity_z;  ///< m/s; the last is empty in two dimensions
+  std::vector<double> density;                             ///< relative deviation from the mean
+  std::vector<double> viscosity;                           ///< Pa s
+  std::vector<double> vorticity;                           ///< 1/s
   [[nodiscard]] bool empty() const { return nx == 0; }
 };
 
-/// Energies and powers per depth (docs: physics, energy); NaN where the scene has no such thing, or nobody tells it.
+/// Energies and powers per depth, in three dimensions that of the domain along z (docs: physics, energy); NaN where the scene has no such thing, or nobody tells it.
 struct EnergySnapshot {
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
   double kinetic = none, elastic = none, bending = none, interaction = none, total = none;  ///< J/m

@@ -68,8 +68,9 @@ OutputEstimate estimate_output(const scene::Scene& scene, const std::vector<Stag
   const double membrane_nodes = membrane_nodes_of(scene);
   const scene::FieldStorage& storage = scene.output.field_storage;
   estimate.fields_compressed = storage.compression > 0 && estimate.field_outputs > 0;
-  const double nodes =
-      static_cast<double>(storage.count(0, scene.domain.nodes[0])) * storage.count(1, scene.domain.nodes[1]);
+  const double nodes = static_cast<double>(storage.count(0, scene.domain.nodes[0])) *
+                       storage.count(1, scene.domain.nodes[1]) *
+                       (scene.domain.depth ? storage.count(2, scene.domain.depth->nodes) : 1);
   double components = 0;
   for (const std::string& quantity : scene.output.quantities) components += quantity == "velocity" ? 3 : 1;
 
@@ -96,8 +97,10 @@ OutputEstimate estimate_output(const scene::Scene& scene, const std::vector<Stag
 
 }  // namespace
 
-double step_cost(double lattice_nodes, double membrane_nodes, scene::Precision precision) {
-  return lattice_nodes * (precision == scene::Precision::f64 ? 1.5e-9 : 0.85e-9) + membrane_nodes * 50e-9;
+double step_cost(double lattice_nodes, double membrane_nodes, scene::Precision precision, int dimension) {
+  const bool f64 = precision == scene::Precision::f64;
+  const double of_node = dimension == 2 ? (f64 ? 1.5e-9 : 0.85e-9) : (f64 ? 13e-9 : 7e-9);
+  return lattice_nodes * of_node + membrane_nodes * 50e-9;
 }
 
 double membrane_memory(const scene::Scene& scene) { return membrane_nodes_of(scene) * 400; }
@@ -113,14 +116,16 @@ void require_memory(double bytes, const std::string& what) {
 
 Estimate estimate(const Plan& plan) {
   const scene::Scene& scene = *plan.scene;
-  const double nodes = static_cast<double>(scene.domain.nodes[0]) * scene.domain.nodes[1];
+  const double nodes = scene.domain.node_count();
+  const int dimension = scene.domain.dimension(), velocities = dimension == 2 ? 9 : 19;
   const double membrane_nodes = membrane_nodes_of(scene);
   const double word = scene.numerics.precision == scene::Precision::f64 ? 8 : 4;
   Estimate estimate;
   for (const StageSetting& stage : plan.stages) estimate.steps += static_cast<double>(stage.max_steps);
-  estimate.wall_s = estimate.steps * step_cost(nodes, membrane_nodes, scene.numerics.precision);
+  estimate.wall_s = estimate.steps * step_cost(nodes, membrane_nodes, scene.numerics.precision, dimension);
   estimate.memory_bytes =
-      nodes * word * (9 + (plan.has_cells ? 2 : 0) + (plan.viscosity_contrast || !scene.fluid.layers.empty() ? 1 : 0)) +
+      nodes * word *
+          (velocities + (plan.has_cells ? 2 : 0) + (plan.viscosity_contrast || !scene.fluid.layers.empty() ? 1 : 0)) +
       membrane_memory(scene);
   estimate.output = estimate_output(scene, plan.stages);
   return estimate;

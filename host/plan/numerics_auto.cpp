@@ -375,6 +375,11 @@ void spell_out_numerics(json::Document& document) {
 void put_draft_numerics(json::Document& document) {
   const Json root = document.root();
   const scene::SceneFields fields(document);
+  if (root.at("domain").at("size").size() == 3) {
+    fields.refuse_key("/numerics",
+                      "\"auto\" chooses numerics in two dimensions only so far\ngive domain.nodes and numerics.tau, "
+                      "numerics.density_factor, or leave numerics out");
+  }
   if (!root.at("domain").contains("nodes")) {
     const Eigen::Vector2d size = fields.quantities("/domain/size", "m", scene::range::length);
     const auto lattice = coarsest_lattice(size);

@@ -169,6 +169,18 @@ void plan_models(Plan& plan, const plugin::Catalog& catalog, Faults& faults) {
     return result;
   };
   plan.collision = planned(plugin::ModelKind::collision, scene.fluid.collision);
+  if (plan.collision.manifest != nullptr && !plan.collision.manifest->works_in(scene.domain.dimension())) {
+    std::vector<std::string> others;
+    for (const plugin::Manifest& manifest : catalog.manifests()) {
+      if (manifest.kind == plugin::ModelKind::collision && manifest.works_in(scene.domain.dimension()))
+        others.push_back(manifest.id);
+    }
+    const bool space = scene.domain.depth.has_value();
+    faults.add(Error(Cause::bad_input, scene.place(plan.collision.pointer + "/model"),
+                     in_quotes(plan.collision.manifest->id) + " does not work on " +
+                         (space ? "D3Q19, the lattice of three dimensions" : "D2Q9, the lattice of two dimensions"),
+                     {"take one that does: " + listed(others)}));
+  }
   for (const scene::CellType& type : scene.cell_types) {
     auto& laws = plan.membranes.emplace_back();
     for (const scene::ModelChoice& law : type.membrane) laws.push_back(planned(plugin::ModelKind::membrane, law));

@@ -18,7 +18,8 @@ constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 
 /// A force on a fluid that is periodic along both axes meets no wall that could balance it.
 bool accelerates_for_ever(const StageSetting& stage, const scene::Scene& scene) {
-  return scene.domain.periodic_y && scene::driving_force(*stage.stage, scene) != Eigen::Vector2d::Zero();
+  return scene.domain.periodic_y && !scene.domain.is_duct() &&
+         scene::driving_force(*stage.stage, scene) != Eigen::Vector2d::Zero();
 }
 
 /// Share of the domain's area that all cells enclose at rest.
@@ -121,6 +122,7 @@ std::vector<Conversion> conversion_table(const Plan& plan) {
     }
     converted("width of the domain", scene.domain.size.x(), "m", units::dimension::length);
     converted("height of the domain", scene.domain.size.y(), "m", units::dimension::length);
+    if (scene.domain.depth) converted("depth of the domain", scene.domain.depth->size, "m", units::dimension::length);
     for (const scene::CellType& type : scene.cell_types) {
       converted("radius", shape::shape_radius(type.shape), "m", units::dimension::length, type.name);
       converted("interior viscosity", type.interior_viscosity, "Pa s", units::dimension::viscosity, type.name);

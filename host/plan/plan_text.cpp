@@ -78,13 +78,15 @@ void write_output(std::ostringstream& out, const scene::Scene& scene, const Outp
   if (scene.output.fields.never() || storage.whole()) return;
   const double spacing = lattice_spacing(scene) * 1e6;
   out << "  fields at";
-  for (const int axis : {0, 1}) {
-    const int count = storage.count(axis, scene.domain.nodes[axis]);
-    out << (axis == 0 ? " x = " : ", y = ") << formatted(units::coordinate(storage.first[axis], spacing)) << " um";
+  const auto write_axis = [&](const char* name, int first, int count) {
+    out << name << formatted(units::coordinate(first, spacing)) << " um";
     if (count > 1)
-      out << " to " << formatted(units::coordinate(storage.first[axis] + (count - 1) * storage.stride, spacing))
-          << " um (" << count << " nodes)";
-  }
+      out << " to " << formatted(units::coordinate(first + (count - 1) * storage.stride, spacing)) << " um (" << count
+          << " nodes)";
+  };
+  for (const int axis : {0, 1})
+    write_axis(axis == 0 ? " x = " : ", y = ", storage.first[axis], storage.count(axis, scene.domain.nodes[axis]));
+  if (scene.domain.depth) write_axis(", z = ", 0, storage.count(2, scene.domain.depth->nodes));
   out << ", " << formatted(storage.stride * spacing) << " um apart: lattice nodes inside the region"
       << (storage.stride > 1 ? " from its lower left corner" : "") << "\n";
 }

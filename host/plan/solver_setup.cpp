@@ -113,9 +113,17 @@ class Checker {
 
 }  // namespace
 
-core::Domain<2> lattice_domain(const scene::Scene& scene) {
-  return {{scene.domain.nodes[0], scene.domain.nodes[1]}, {true, scene.domain.periodic_y}};
+template <int D>
+core::Domain<D> lattice_domain(const scene::Scene& scene) {
+  const scene::Domain& domain = scene.domain;
+  if constexpr (D == 2) {
+    return {{domain.nodes[0], domain.nodes[1]}, {true, domain.periodic_y}};
+  } else {
+    return {{domain.nodes[0], domain.nodes[1], domain.depth->nodes}, {true, domain.periodic_y, domain.depth->periodic}};
+  }
 }
+template core::Domain<2> lattice_domain(const scene::Scene&);
+template core::Domain<3> lattice_domain(const scene::Scene&);
 
 std::vector<core::Layer> lattice_layers(const scene::Scene& scene) {
   std::vector<core::Layer> layers;
@@ -175,14 +183,15 @@ core::Membranes make_membranes(const scene::Scene& scene, double spacing) {
   return membranes;
 }
 
-core::SolverSetup make_solver_setup(const Plan& plan, int index) {
+template <int D>
+core::BasicSolverSetup<D> make_solver_setup(const Plan& plan, int index) {
   const scene::Scene& scene = *plan.scene;
   const StageSetting& stage = plan.stages[index];
   const plugin::ModelSetting setting = stage.model_setting(scene.fluid.inertia);
   const auto values = [](const PlannedModel& model) -> const std::vector<double>& { return model.parameters.values; };
 
-  core::SolverSetup setup{
-      .domain = lattice_domain(scene),
+  core::BasicSolverSetup<D> setup{
+      .domain = lattice_domain<D>(scene),
       .tau = stage.tau,
       .layers = lattice_layers(scene),
       .inertia = scene.fluid.inertia,
@@ -190,8 +199,9 @@ core::SolverSetup make_solver_setup(const Plan& plan, int index) {
       .walls = stage.walls,
       .body_force_x = stage.body_force_x,
       .body_force_y = stage.body_force_y,
+      .body_force_z = stage.body_force_z,
       .oscillation = stage.oscillation,
-      // Without cells the gradient of Poiseuille's flow is all that it takes.
+      // Without cells the gradient that this flow takes is known.
       .mean_velocity = plan.has_cells && stage.stage->mean_velocity
                            ? stage.units.to_lattice(*stage.stage->mean_velocity, units::dimension::velocity)
                            : 0,
@@ -226,5 +236,8 @@ core::SolverSetup make_solver_setup(const Plan& plan, int index) {
   }
   return setup;
 }
+
+template core::BasicSolverSetup<2> make_solver_setup(const Plan&, int);
+template core::BasicSolverSetup<3> make_solver_setup(const Plan&, int);
 
 }  // namespace rouleau::plan

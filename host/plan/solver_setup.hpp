@@ -7,8 +7,9 @@
 
 namespace rouleau::plan {
 
-/// The lattice of a scene, in one block.
-core::Domain<2> lattice_domain(const scene::Scene& scene);
+/// The lattice of a scene of D dimensions, in one block; with D = 2, of one of three, its section across z.
+template <int D = 2>
+core::Domain<D> lattice_domain(const scene::Scene& scene);
 
 /// Its layers of other viscosities.
 std::vector<core::Layer> lattice_layers(const scene::Scene& scene);
@@ -18,8 +19,9 @@ std::vector<core::Layer> lattice_layers(const scene::Scene& scene);
 /// images).
 core::Membranes make_membranes(const scene::Scene& scene, double spacing);
 
-/// All of stage `index` in lattice units, with instances of its active models. Throws Error(plugin_refused) for a model
+/// All of stage `index` of a scene of D dimensions in lattice units, with instances of its active models. Throws Error(plugin_refused) for a model
 /// that cannot be made.
-core::SolverSetup make_solver_setup(const Plan& plan, int index);
+template <int D = 2>
+core::BasicSolverSetup<D> make_solver_setup(const Plan& plan, int index);
 
 }  // namespace rouleau::plan

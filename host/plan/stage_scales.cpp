@@ -70,6 +70,8 @@ StageSetting make_stage_setting(const scene::Scene& scene, int index) {
   const Eigen::Vector2d force = scene::driving_force(stage, scene);
   setting.body_force_x = setting.units.to_lattice(force.x(), units::dimension::force_density);
   setting.body_force_y = setting.units.to_lattice(force.y(), units::dimension::force_density);
+  setting.body_force_z = setting.units.to_lattice(scene.fluid.body_force_z, units::dimension::force_density);
+  setting.dimension = scene.domain.dimension();
 
   if (stage.oscillates()) {
     const scene::Oscillation& added = stage.oscillation;

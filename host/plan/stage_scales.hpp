@@ -19,14 +19,16 @@ struct StageSetting {
   double shear_rate;                  ///< lattice
   core::WallVelocity walls;           ///< lattice
   double body_force_x, body_force_y;  ///< lattice, body force and pressure gradient
+  double body_force_z;                ///< lattice; 0 in two dimensions
   core::Oscillation oscillation;      ///< lattice, of walls and body force
   double oscillating_rate;            ///< lattice, amplitude of the shear rate
   long max_steps;                     ///< of duration or strain, whichever is shorter
+  int dimension;
 
-  [[nodiscard]] plugin::ModelSetting model_setting(bool inertia) const { return {units, 1 / tau, inertia}; }
+  [[nodiscard]] plugin::ModelSetting model_setting(bool inertia) const { return {units, 1 / tau, inertia, dimension}; }
   /// Walls or a force put energy in.
   [[nodiscard]] bool is_driven() const {
-    return fastest_wall() != 0 || largest_body_force_x() != 0 || body_force_y != 0;
+    return fastest_wall() != 0 || largest_body_force_x() != 0 || body_force_y != 0 || body_force_z != 0;
   }
   /// Largest speed of a wall and largest force along x that there may be, oscillation included; lattice.
   [[nodiscard]] double fastest_wall() const {

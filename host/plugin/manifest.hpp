@@ -57,6 +57,7 @@ struct Manifest {
   std::vector<int> dimensions = {2};  ///< of the scenes it works in
   std::vector<Parameter> parameters;
   std::vector<std::string> needs, gives;
+  std::vector<std::string> lattices;  ///< of a collision operator: "D2Q9", "D3Q19"
   std::vector<StateVariable> state;
   nlohmann::json
       inactive_when;  ///< object: parameter -> value (in its unit) at which the model does nothing; null: never

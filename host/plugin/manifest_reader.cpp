@@ -230,6 +230,14 @@ void check_roles(const json::Document& document, const Manifest& manifest) {
 }
 
 void check_dimensions(const json::Document& document, const Manifest& manifest) {
+  if (manifest.kind != ModelKind::collision && document.root().contains("lattices")) {
+    refuse(document, "/lattices",
+           std::string("a ") + to_string(manifest.kind) +
+               " model does not know the lattice; leave \"lattices\" to collision operators");
+  }
+  if (manifest.kind == ModelKind::collision && document.root().contains("dimensions")) {
+    refuse(document, "/dimensions", "a collision operator names its lattices; leave \"dimensions\" to other models");
+  }
   const bool both = manifest.works_in(2) && manifest.works_in(3), membrane = manifest.kind == ModelKind::membrane;
   if (manifest.in_3d && !(membrane && both)) {
     refuse(document, "/in_3d",

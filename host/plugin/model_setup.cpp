@@ -31,7 +31,7 @@ ModelSetup::ModelSetup(const Manifest& manifest, const std::vector<double>& valu
   }
   for (const Parameter& parameter : manifest.parameters) names_.push_back(parameter.name.c_str());
   values_ = lattice_values(manifest, values, setting.units);
-  setup_ = core::lattice_setup(setting.relaxation_rate, setting.inertia);
+  setup_ = core::lattice_setup(setting.dimension, setting.relaxation_rate, setting.inertia);
   setup_.parameter_count = static_cast<std::uint32_t>(values_.size());
   setup_.parameter_names = names_.data();
   setup_.parameter_values = values_.data();

@@ -15,7 +15,7 @@ struct ModelSetting {
   units::LatticeUnits units;
   double relaxation_rate;  ///< 1/tau of the suspending fluid
   bool inertia;
-  int dimension = 2;
+  int dimension = 2;  ///< 2: D2Q9, 3: D3Q19
 };
 
 class ModelSetup {

@@ -140,7 +140,7 @@ Json field_data(const std::filesystem::path& frames, const std::vector<std::size
   const std::size_t most = std::min(most_blocks, most_values / (quantities * with_fields.size()));
   for (const std::size_t output : with_fields) {
     if (has_velocity) {
-      const auto velocity = file.read(group_of(output) + "velocity");
+      const auto velocity = grid.section(file, group_of(output) + "velocity");
       tracers.add(velocity);
       speeds.fields.push_back(block_means(speed(velocity, grid.nx, grid.ny), most));
       if (!has_vorticity)
@@ -148,7 +148,8 @@ Json field_data(const std::filesystem::path& frames, const std::vector<std::size
             block_means(vorticity(velocity, grid.nx, grid.ny, grid.spacing, grid.periodic), most));
     }
     if (has_vorticity)
-      vorticities.fields.push_back(block_means({grid.nx, grid.ny, file.read(group_of(output) + "vorticity")}, most));
+      vorticities.fields.push_back(
+          block_means({grid.nx, grid.ny, grid.section(file, group_of(output) + "vorticity")}, most));
   }
   Json result{{"nx", vorticities.fields.front().nx},
               {"ny", vorticities.fields.front().ny},

@@ -109,17 +109,17 @@ Json save(files::CheckpointWriter& writer, const core::Membranes& m) {
 }
 
 /// `writer`: null on ranks that do not write.
-template <class T>
-Json save(files::CheckpointWriter* writer, core::Solver<T>& solver) {
-  core::Fluid<T>& fluid = solver.fluid();
+template <class T, class Set>
+Json save(files::CheckpointWriter* writer, core::Solver<T, Set>& solver) {
+  core::Fluid<T, Set>& fluid = solver.fluid();
   fluid.settle();
   std::vector<T> values;
-  const auto nx = static_cast<std::size_t>(fluid.setting().domain.size[0]),
-             ny = static_cast<std::size_t>(fluid.setting().domain.size[1]);
-  for (int q = 0; q < 9; ++q) {
+  const core::Domain<Set::dimension>& domain = fluid.setting().domain;
+  const auto nx = static_cast<std::size_t>(domain.size[0]), rows = static_cast<std::size_t>(domain.nodes()) / nx;
+  for (int q = 0; q < Set::velocity_count; ++q) {
     fluid.copy_populations(q, values);
     values = core::gather(solver.ranks(), std::move(values));
-    if (writer != nullptr) writer->array(population_name(q), ny, nx, values.data());
+    if (writer != nullptr) writer->array(population_name(q), rows, nx, values.data());
   }
   if (solver.viscosity_field() != nullptr && writer != nullptr) {
     const core::DisplacementWatch::Memory& memory = solver.viscosity_field()->memory();
@@ -155,15 +155,35 @@ void restore_membranes(const files::CheckpointReader& reader, const Json& saved,
     restore_contacts(reader, saved["wall_contacts"], wall_contacts_array, 2, m, m.wall_contacts);
 }
 
+/// What a block has of an array with a row for each of the lattice's rows.
+template <class T, int D>
+std::vector<T> read_block(const files::CheckpointReader& reader, const std::string& name, const core::Box<D>& block,
+                          const scene::Domain& domain) {
+  const int width = block.size(0), height = block.size(1), of_lattice = domain.nodes[1];
+  std::vector<T> values(static_cast<std::size_t>(width) * core::row_count(block));
+  T* to = values.data();
+  const auto read_rows = [&](int layer, int layers) {
+    reader.block(name, {domain.nodes[0], of_lattice * layers}, {block.begin[0], of_lattice * layer + block.begin[1]},
+                 {block.end[0], of_lattice * layer + block.end[1]}, to);
+    to += static_cast<std::ptrdiff_t>(width) * height;
+  };
+  if constexpr (D == 2) {
+    read_rows(0, 1);
+  } else {
+    for (int layer = block.begin[2]; layer < block.end[2]; ++layer) read_rows(layer, domain.depth->nodes);
+  }
+  return values;
+}
+
 }  // namespace
 
-template <class T>
+template <class T, class Set>
 void Checkpoints::write(const plan::Plan& plan, int threads, const RunState& state, const core::Membranes& membranes,
-                        core::Solver<T>& solver) {
+                        core::Solver<T, Set>& solver) {
   pending_ = true;
   step_ = state.steps;
   if (to_ == nullptr) {
-    save<T>(nullptr, solver);
+    save<T, Set>(nullptr, solver);
     return;
   }
   writer_ = std::make_unique<files::CheckpointWriter>(to_->path());
@@ -187,24 +207,21 @@ void Checkpoints::settle(bool sound) {
   last_ = Clock::now();
 }
 
-template <class T>
+template <class T, class Set>
 Restored<T> restore(const std::shared_ptr<const files::CheckpointReader>& reader, const plan::Plan& plan,
-                    const core::Box<2>& block, RunState& state, core::Membranes& membranes) {
+                    const core::Box<Set::dimension>& block, RunState& state, core::Membranes& membranes) {
   try {
     const Json saved = reader->state();
     saved.at("run").get_to(state);
     require(state.fits(plan, membranes), *reader, "counts of another scene");
     restore_membranes(*reader, saved.at("membranes"), membranes);
-    core::SolverState<T> solver{.populations =
-                                    [reader, block, size = plan.scene->domain.nodes](int q) {
-                                      std::vector<T> values(static_cast<std::size_t>(block.size(0)) * block.size(1));
-                                      reader->block(population_name(q), size, block.begin, block.end, values.data());
-                                      return values;
-                                    },
-                                .walls_have_acted = saved.at("solver").at("walls_have_acted"),
-                                .steps = state.stage_step,
-                                .flow_control = {},
-                                .viscosity = {}};
+    core::SolverState<T> solver{
+        .populations = [reader, block, domain = plan.scene->domain](
+                           int q) { return read_block<T>(*reader, population_name(q), block, domain); },
+        .walls_have_acted = saved.at("solver").at("walls_have_acted"),
+        .steps = state.stage_step,
+        .flow_control = {},
+        .viscosity = {}};
     if (const Json& of_solver = saved.at("solver"); of_solver.contains("flow_control")) {
       const Json& control = of_solver.at("flow_control");
       solver.flow_control = core::FlowControl::State{.force = control.at("force"), .last = {}};
@@ -225,12 +242,15 @@ Restored<T> restore(const std::shared_ptr<const files::CheckpointReader>& reader
   }
 }
 
-template void Checkpoints::write(const plan::Plan&, int, const RunState&, const core::Membranes&, core::Solver<float>&);
-template void Checkpoints::write(const plan::Plan&, int, const RunState&, const core::Membranes&,
-                                 core::Solver<double>&);
-template Restored<float> restore(const std::shared_ptr<const files::CheckpointReader>&, const plan::Plan&,
-                                 const core::Box<2>&, RunState&, core::Membranes&);
-template Restored<double> restore(const std::shared_ptr<const files::CheckpointReader>&, const plan::Plan&,
-                                  const core::Box<2>&, RunState&, core::Membranes&);
+#define ROULEAU_INSTANTIATE(T, Set)                                                                              \
+  template void Checkpoints::write(const plan::Plan&, int, const RunState&, const core::Membranes&,              \
+                                   core::Solver<T, Set>&);                                                       \
+  template Restored<T> restore<T, Set>(const std::shared_ptr<const files::CheckpointReader>&, const plan::Plan&, \
+                                       const core::Box<Set::dimension>&, RunState&, core::Membranes&);
+ROULEAU_INSTANTIATE(float, core::D2Q9)
+ROULEAU_INSTANTIATE(double, core::D2Q9)
+ROULEAU_INSTANTIATE(float, core::D3Q19)
+ROULEAU_INSTANTIATE(double, core::D3Q19)
+#undef ROULEAU_INSTANTIATE
 
 }  // namespace rouleau::run

@@ -30,9 +30,9 @@ class Checkpoints {
     return wanted() && std::chrono::duration<double>(Clock::now() - last_).count() >= *seconds_;
   }
   /// Writes the file, beside the last one. All ranks together; the solver's state has been shared.
-  template <class T>
+  template <class T, class Set>
   void write(const plan::Plan& plan, int threads, const RunState& state, const core::Membranes& membranes,
-             core::Solver<T>& solver);
+             core::Solver<T, Set>& solver);
   [[nodiscard]] bool pending() const { return pending_; }
   /// The file takes its place if the state has been found sound. One that is not is left to the next regular check:
   /// when checkpoints are written must not change what becomes of a run.
@@ -61,8 +61,8 @@ struct Restored {
 };
 /// Into the state and the membranes of the same scene; `block`: of the lattice, that the solver will compute. Throws
 /// Error(input_output) where the checkpoint does not fit.
-template <class T>
+template <class T, class Set = core::D2Q9>
 Restored<T> restore(const std::shared_ptr<const files::CheckpointReader>& reader, const plan::Plan& plan,
-                    const core::Box<2>& block, RunState& state, core::Membranes& membranes);
+                    const core::Box<Set::dimension>& block, RunState& state, core::Membranes& membranes);
 
 }  // namespace rouleau::run

@@ -41,12 +41,14 @@ constexpr long steps_between_questions = 16;
 
 /// The stages of a run one after another, and the steps of each: what one rank does of it. All ranks know the same of
 /// the whole and decide the same; what one of them alone sees, its clock and its signals, they tell each other first.
-/// T: of the populations.
-template <class T>
+/// T: of the populations; Set: D2Q9 or D3Q19.
+template <class T, class Set>
 class Simulation {
  public:
+  static constexpr int dimension = Set::dimension;
+
   Simulation(const plan::Plan& plan, const plan::PlanReport& report, const RunOptions& options,
-             files::RunDirectory* directory, const core::Ranks<2>& ranks, const std::vector<int>& owner)
+             files::RunDirectory* directory, const core::Ranks<dimension>& ranks, const std::vector<int>& owner)
       : plan_(plan),
         scene_(*plan.scene),
         options_(options),
@@ -91,7 +93,7 @@ class Simulation {
     if (directory_ != nullptr && directory_->resumes()) {
       Resumption resumption = open_checkpoint(directory_->path(), plan_, options_.force);
       const std::shared_ptr<const files::CheckpointReader> reader = std::move(resumption.checkpoint);
-      restored = restore<T>(reader, plan_, domain().block, state_, membranes_);
+      restored = restore<T, Set>(reader, plan_, domain().block, state_, membranes_);
       directory_->go_back(restored->directory);
       reader->take_place(directory_->path());
       file = files::checkpoint_file(directory_->path()).string();
@@ -103,7 +105,7 @@ class Simulation {
     file = core::text_of_first(ranks_, file);
     if (!restored && !file.empty()) {
       const auto reader = std::make_shared<const files::CheckpointReader>(file);
-      restored = restore<T>(reader, plan_, domain().block, state_, membranes_);
+      restored = restore<T, Set>(reader, plan_, domain().block, state_, membranes_);
     }
     if (!restored) return std::nullopt;
     return std::move(restored->solver);
@@ -123,15 +125,15 @@ class Simulation {
   }
 
   /// What this rank computes of the lattice.
-  [[nodiscard]] core::Domain<2> domain() const {
-    return ranks_.several() ? ranks_.blocks->domain(ranks_.transport->rank()) : plan::lattice_domain(scene_);
+  [[nodiscard]] core::Domain<dimension> domain() const {
+    return ranks_.several() ? ranks_.blocks->domain(ranks_.transport->rank()) : plan::lattice_domain<dimension>(scene_);
   }
 
   void run_stages(std::optional<core::SolverState<T>> former) {
     for (; state_.stage < static_cast<int>(plan_.stages.size()) && !stopped_; ++state_.stage) {
-      core::SolverSetup setup = plan::make_solver_setup(plan_, state_.stage);
+      core::BasicSolverSetup<dimension> setup = plan::make_solver_setup<dimension>(plan_, state_.stage);
       setup.domain = domain();
-      auto next = std::make_unique<core::Solver<T>>(std::move(setup), membranes_, ranks_, owner_);
+      auto next = std::make_unique<core::Solver<T, Set>>(std::move(setup), membranes_, ranks_, owner_);
       if (former) {
         next->start(*std::exchange(former, std::nullopt));
       } else {
@@ -345,22 +347,34 @@ class Simulation {
     ending_ = Ending::failed;
   }
 
+  /// How much of the fluid's motion about a place is every other node's.
+  double lattice_oscillation(const std::array<double, 2>& place, std::optional<double> place_z) {
+    solver_->fluid().settle();
+    std::vector<core::Moments<2>> section;
+    const auto nearest = [](double coordinate, int nodes) {
+      return static_cast<int>(std::lround(std::clamp(coordinate, -1.0 * nodes, 2.0 * nodes)));
+    };
+    if constexpr (dimension == 2) {
+      section = solver_->fluid().all_moments();
+    } else {
+      const auto moments = solver_->fluid().all_moments();
+      const auto nodes = static_cast<std::size_t>(scene_.domain.nodes[0]) * scene_.domain.nodes[1];
+      const double z = units::place_on_lattice(place_z.value_or(0), setting().units.length);
+      const auto first = nodes * std::clamp(nearest(z, scene_.domain.depth->nodes), 0, scene_.domain.depth->nodes - 1);
+      for (std::size_t i = first; i < first + nodes && i < moments.size(); ++i)
+        section.push_back({moments[i].density, {moments[i].velocity[0], moments[i].velocity[1]}});
+    }
+    if (section.empty() || !std::isfinite(place[0]) || !std::isfinite(place[1])) return 0;
+    return monitor::lattice_oscillation(nearest(place[0], scene_.domain.nodes[0]),
+                                        nearest(place[1], scene_.domain.nodes[1]), section, state_.observer.domain());
+  }
+
   /// What the failure looks like, and what to do about that.
   void tell_mode(monitor::Failure& failure) {
     const double spacing = setting().units.length;
     const std::array<double, 2> place{units::place_on_lattice(failure.place[0], spacing),
                                       units::place_on_lattice(failure.place[1], spacing)};
-    double oscillation = 0;
-    solver_->fluid().settle();
-    const std::vector<core::Moments> moments = solver_->fluid().all_moments();
-    if (!moments.empty() && std::isfinite(place[0]) && std::isfinite(place[1])) {
-      const auto nearest = [](double coordinate, int nodes) {
-        return static_cast<int>(std::lround(std::clamp(coordinate, -1.0 * nodes, 2.0 * nodes)));
-      };
-      oscillation =
-          monitor::lattice_oscillation(nearest(place[0], scene_.domain.nodes[0]),
-                                       nearest(place[1], scene_.domain.nodes[1]), moments, state_.observer.domain());
-    }
+    const double oscillation = lattice_oscillation(place, failure.place_z);
     monitor::find_mode(failure, membranes_, state_.growth, state_.observer.domain(), place, oscillation, failure.step);
     const std::string sentence = monitor::mode_sentence(failure),
                       remedy = monitor::mode_remedy(failure, plan_.semi_implicit, *setting().stage);
@@ -407,7 +421,7 @@ class Simulation {
     s.status = failure_ ? "diverged" : (ending_ == Ending::interrupted ? "interrupted" : "completed");
     s.failure = failure_;
     state_.report(s);
-    s.mlups = s.steps_per_s * scene_.domain.nodes[0] * scene_.domain.nodes[1] / 1e6;
+    s.mlups = s.steps_per_s * scene_.domain.node_count() / 1e6;
     s.peak_rss_bytes = 0;
     for (const std::vector<long>& of_rank : core::all_of(ranks_, std::vector<long>{peak_memory_bytes()}))
       s.peak_rss_bytes += of_rank.front();
@@ -419,10 +433,10 @@ class Simulation {
   const scene::Scene& scene_;
   const RunOptions& options_;
   files::RunDirectory* directory_;  ///< null on all ranks but one
-  core::Ranks<2> ranks_;
+  core::Ranks<dimension> ranks_;
   const std::vector<int>& owner_;
   core::Membranes membranes_;
-  std::unique_ptr<core::Solver<T>> solver_;  ///< of the present stage
+  std::unique_ptr<core::Solver<T, Set>> solver_;  ///< of the present stage
   RunState state_;
   StageCourse course_;
   Progress progress_;
@@ -443,10 +457,13 @@ class Simulation {
 Summary simulate(const plan::Plan& plan, const plan::PlanReport& report, const RunOptions& options,
                  files::RunDirectory* directory, const core::Ranks<2>& ranks, const std::vector<int>& owner) {
   try {
-    if (plan.scene->numerics.precision == scene::Precision::f64) {
-      return Simulation<double>(plan, report, options, directory, ranks, owner).run();
-    }
-    return Simulation<float>(plan, report, options, directory, ranks, owner).run();
+    const auto in = [&]<class Set>(Set, const core::Ranks<Set::dimension>& of_lattice) {
+      if (plan.scene->numerics.precision == scene::Precision::f64) {
+        return Simulation<double, Set>(plan, report, options, directory, of_lattice, owner).run();
+      }
+      return Simulation<float, Set>(plan, report, options, directory, of_lattice, owner).run();
+    };
+    return plan.scene->domain.depth ? in(core::D3Q19{}, {}) : in(core::D2Q9{}, ranks);
   } catch (...) {
     if (ranks.several()) ranks.transport->abandon();
     throw;

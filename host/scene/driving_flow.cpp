@@ -29,6 +29,15 @@ double channel_viscosity(const Scene& scene) {
   return 1 / (12 * (c - b * b / a));
 }
 
+double duct_share(const Domain& domain) {
+  if (!domain.is_duct()) return 1;
+  // White, Viscous Fluid Flow, section 3-3; terms fall as 1/n^5.
+  const double pi = std::numbers::pi, height = domain.size.y(), width = domain.depth->size;
+  double sum = 0;
+  for (int n = 199; n > 0; n -= 2) sum += std::tanh(n * pi * width / (2 * height)) / std::pow(n, 5);
+  return 1 - 192 * height / (std::pow(pi, 5) * width) * sum;
+}
+
 ViscosityRange viscosity_range(const FluidProperties& fluid) {
   ViscosityRange range{fluid.viscosity, fluid.viscosity};
   for (const FluidLayer& layer : fluid.layers) {
@@ -40,7 +49,8 @@ ViscosityRange viscosity_range(const FluidProperties& fluid) {
 Eigen::Vector2d driving_force(const Stage& stage, const Scene& scene) {
   if (stage.mean_velocity) {
     const double height = scene.domain.size.y();
-    return {12 * channel_viscosity(scene) * *stage.mean_velocity / (height * height), scene.fluid.body_force.y()};
+    return {12 * channel_viscosity(scene) * *stage.mean_velocity / (height * height * duct_share(scene.domain)),
+            scene.fluid.body_force.y()};
   }
   return scene.fluid.body_force + stage.pressure_gradient;
 }

@@ -15,6 +15,10 @@ Eigen::Vector2d driving_force(const Stage& stage, const Scene& scene);
 /// fluid without layers that the same pressure gradient drives through at the same rate.
 double channel_viscosity(const Scene& scene);
 
+/// Flow rate of a channel with walls across z, too, over that of the part of a plane channel between them, at the same
+/// pressure gradient, viscosity and height; 1 without such walls.
+double duct_share(const Domain& domain);
+
 /// Viscosities of the suspending fluid, Pa s: the least and the largest, layers included.
 struct ViscosityRange {
   double least, most;

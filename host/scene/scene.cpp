@@ -33,15 +33,79 @@ std::string spacing_remedy(const Domain& domain) {
   return remedy;
 }
 
+/// The third number of size and nodes, and what is at both ends along z; none: two dimensions.
+std::optional<Depth> read_depth(const SceneFields& fields) {
+  const auto has_third = [&](const std::string& key) { return fields.has(key) && fields.count(key) == 3; };
+  const bool size = has_third("/domain/size"), nodes = has_third("/domain/nodes");
+  if (!size && nodes) {
+    fields.refuse("/domain/nodes",
+                  "nodes has three numbers and size two\ngive both three, for three dimensions, or both two");
+  }
+  if (!size) {
+    if (fields.has("/domain/z")) {
+      fields.refuse_key("/domain/z",
+                        "there is no z in two dimensions\ngive size and nodes three numbers, or leave z out");
+    }
+    return std::nullopt;
+  }
+  fields.require("/domain", "nodes", "and in three dimensions nothing chooses them");
+  if (!nodes) {
+    fields.refuse("/domain/nodes",
+                  "size has three numbers and nodes two\ngive both three, for three dimensions, or both two");
+  }
+  Depth depth{fields.quantity("/domain/size/2", "m", range::length), fields.value<int>("/domain/nodes/2")};
+  if (fields.has("/domain/z")) depth.periodic = fields.value<nlohmann::json>("/domain/z").is_string();
+  return depth;
+}
+
+/// What is there in two dimensions only, so far.
+void check_space(const SceneFields& fields, const Scene& scene) {
+  if (!scene.domain.depth) return;
+  for (const char* key : {"/cells", "/cell_types", "/interactions"}) {
+    if (!fields.has(key) || fields.count(key) == 0) continue;
+    fields.attempt([&] {
+      fields.refuse_key(key,
+                        "cells are computed in two dimensions only so far: in three there is the fluid alone\ngive "
+                        "domain.size and domain.nodes two numbers, or leave this out");
+    });
+  }
+  if (fields.has("/output/fields/region")) {
+    fields.attempt([&] {
+      fields.refuse_key("/output/fields/region",
+                        "in three dimensions the fields of the whole lattice are written\nleave region out; "
+                        "\"stride\" makes them smaller");
+    });
+  }
+  const auto& quantities = scene.output.quantities;
+  const auto vorticity = std::find(quantities.begin(), quantities.end(), "vorticity");
+  if (vorticity != quantities.end()) {
+    fields.attempt([&] {
+      fields.refuse(json::child_pointer("/output/fields/quantities", std::size_t(vorticity - quantities.begin())),
+                    "vorticity is written in two dimensions only so far\nleave it out; ParaView makes it of the "
+                    "velocity");
+    });
+  }
+  for (const Stage& stage : scene.stages) {
+    if (stage.start != WallStart::developed || !scene.domain.is_duct()) continue;
+    fields.attempt([&] {
+      fields.refuse(stage.pointer + "/start",
+                    "the developed flow is known between two walls, and domain.z has walls, too\nleave start out, and "
+                    "let the flow come to be");
+    });
+  }
+}
+
 Domain read_domain(const SceneFields& fields) {
   Domain domain{};
   domain.size = fields.quantities("/domain/size", "m", range::length);
   fields.attempt([&] { domain.periodic_y = fields.value<nlohmann::json>("/domain/y").is_string(); });
+  fields.attempt([&] { domain.depth = read_depth(fields); });
   fields.attempt([&] {
     fields.require("/domain", "nodes", "or \"numerics\": \"auto\" chooses them");
     domain.nodes = fields.value<std::array<int, 2>>("/domain/nodes");
-    if (std::int64_t{domain.nodes[0]} * domain.nodes[1] > most_nodes) {
+    if (domain.node_count() > static_cast<double>(most_nodes)) {
       fields.refuse("/domain/nodes", std::to_string(domain.nodes[0]) + " x " + std::to_string(domain.nodes[1]) +
+                                         (domain.depth ? " x " + std::to_string(domain.depth->nodes) : "") +
                                          " nodes are too many; at most " + std::to_string(most_nodes) +
                                          " can be computed");
     }
@@ -54,6 +118,14 @@ Domain read_domain(const SceneFields& fields) {
       fields.refuse("/domain/size", "the lattice spacing would be " + number(along_x * 1e6) + " um along x but " +
                                         number(along_y * 1e6) + " um along y; it must be the same along both\n" +
                                         spacing_remedy(domain));
+    }
+    if (!domain.depth) return;
+    const double along_z = domain.depth->size / domain.depth->nodes;
+    if (std::abs(along_x - along_z) > spacing_tolerance * along_x) {
+      fields.refuse("/domain/size/2", "the lattice spacing would be " + number(along_x * 1e6) + " um along x but " +
+                                          number(along_z * 1e6) +
+                                          " um along z; it must be the same along all axes\nwrite " +
+                                          in_micrometres(along_x * domain.depth->nodes) + " here");
     }
   });
   return domain;
@@ -94,7 +166,18 @@ std::vector<FluidLayer> read_layers(const SceneFields& fields, double height) {
   return layers;
 }
 
-FluidProperties read_fluid(const SceneFields& fields, double height) {
+double read_body_force_z(const SceneFields& fields, int dimension) {
+  const std::string pointer = "/fluid/body_force";
+  if (static_cast<int>(fields.count(pointer)) != dimension) {
+    fields.refuse(pointer, "the force has " + std::to_string(fields.count(pointer)) + " components, and domain.size " +
+                               std::to_string(dimension) + "\ngive it as many");
+  }
+  return dimension == 3 ? fields.quantity(pointer + "/2", "N/m3", range::force_density) : 0;
+}
+
+FluidProperties read_fluid(const SceneFields& fields, const Domain& domain) {
+  const double height = domain.size.y();
+  const int dimension = domain.dimension();
   FluidProperties fluid;
   fluid.density = fields.quantity("/fluid/density", "kg/m3", range::density);
   fluid.viscosity = fields.quantity("/fluid/viscosity", "Pa s", range::viscosity);
@@ -102,6 +185,7 @@ FluidProperties read_fluid(const SceneFields& fields, double height) {
   fluid.inertia = fields.value_or("/fluid/inertia", false);
   if (fields.has("/fluid/body_force")) {
     fluid.body_force = fields.quantities("/fluid/body_force", "N/m3", range::force_density);
+    fields.attempt([&] { fluid.body_force_z = read_body_force_z(fields, dimension); });
   }
   fluid.collision = {"trt", nlohmann::json::object(), "/fluid/collision"};
   fields.attempt([&] {
@@ -267,7 +351,7 @@ Scene read_scene(std::shared_ptr<const json::Document> document, Faults& faults)
   });
   part([&] { scene.domain = read_domain(fields); });
   if (scene.domain.size.allFinite()) fields.bound_lengths(scene.domain.size);
-  part([&] { scene.fluid = read_fluid(fields, scene.domain.size.y()); });
+  part([&] { scene.fluid = read_fluid(fields, scene.domain); });
   part([&] { scene.numerics = read_numerics(fields); });
   part([&] { scene.cell_types = read_cell_types(fields, scene.fluid.viscosity); });
   part([&] { scene.cells = read_cells(fields, scene.cell_types, scene.domain, scene.packings); });
@@ -276,6 +360,7 @@ Scene read_scene(std::shared_ptr<const json::Document> document, Faults& faults)
   part([&] { scene.stages = read_stages(fields, scene); });
   part([&] { scene.output = read_output(fields, scene.stages); });
   part([&] { scene.output.field_storage = read_field_storage(fields, scene.domain); });
+  part([&] { check_space(fields, scene); });
   part([&] { scene.at_rest = read_at_rest(fields); });
   part([&] { scene.equilibrium = read_equilibrium(fields); });
   part([&] { scene.checks = read_checks(fields); });

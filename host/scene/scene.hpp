@@ -26,10 +26,26 @@ struct ModelChoice {
   std::string pointer;        ///< JSON pointer of the object that names the model
 };
 
+/// The third dimension of a domain.
+struct Depth {
+  double size;           ///< m
+  int nodes;             ///< along z
+  bool periodic = true;  ///< false: solid walls at both ends
+};
+
 struct Domain {
-  Eigen::Vector2d size;      ///< m
-  std::array<int, 2> nodes;  ///< lattice nodes along x and y; the spacing is the same along both
-  bool periodic_y = false;   ///< false: solid walls below and above; x is periodic always
+  Eigen::Vector2d size;        ///< m
+  std::array<int, 2> nodes;    ///< lattice nodes along x and y; the spacing is the same along all axes
+  bool periodic_y = false;     ///< false: solid walls below and above; x is periodic always
+  std::optional<Depth> depth;  ///< none: two dimensions
+
+  [[nodiscard]] int dimension() const { return depth ? 3 : 2; }
+  /// Of the whole lattice.
+  [[nodiscard]] double node_count() const {
+    return static_cast<double>(nodes[0]) * nodes[1] * (depth ? depth->nodes : 1);
+  }
+  /// Whether walls close it along z, too.
+  [[nodiscard]] bool is_duct() const { return depth && !depth->periodic; }
 };
 
 /// A part of the suspending fluid that has another viscosity, between two heights.
@@ -44,6 +60,7 @@ struct FluidProperties {
   std::vector<FluidLayer> layers;                        ///< beside each other, from below
   bool inertia = false;                                  ///< false: linear (Stokes) equilibrium
   Eigen::Vector2d body_force = Eigen::Vector2d::Zero();  ///< N/m3, in every stage
+  double body_force_z = 0;                               ///< N/m3, likewise
   ModelChoice collision;                                 ///< "trt" when the scene names none
 };
 
@@ -158,7 +175,7 @@ struct FieldStorage {
   Precision precision = Precision::f32;
   int compression = 1;  ///< level of deflate, behind a shuffle of the bytes; 0: none
   [[nodiscard]] bool whole() const { return !last && stride == 1; }
-  /// Nodes along an axis of a lattice that has `nodes` of them.
+  /// Nodes along an axis of a lattice that has `nodes` of them. Along z a region has them all.
   [[nodiscard]] int count(int axis, int nodes) const;
 };
 

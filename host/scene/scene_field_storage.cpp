@@ -40,6 +40,7 @@ std::array<int, 2> nodes_within(const SceneFields& fields, const Domain& domain,
 }  // namespace
 
 int FieldStorage::count(int axis, int nodes) const {
+  if (axis == 2) return (nodes - 1) / stride + 1;
   const auto a = static_cast<std::size_t>(axis);
   return ((last ? (*last)[a] : nodes - 1) - first[a]) / stride + 1;
 }

@@ -19,6 +19,7 @@ Measured no_velocity_error(std::string why_not) {
 std::string why_no_exact_flow(const scene::Scene& scene) {
   if (!scene.cells.empty() || !scene.packings.empty())
     return "the scene has cells, and the exact flow is of the fluid alone";
+  if (scene.domain.depth) return "the exact flow is of two dimensions, and the scene has three";
   if (!scene.fluid.layers.empty()) return "the fluid has layers, and the exact flow is of one viscosity";
   return scene.domain.periodic_y ? "the scene has no walls" : "";
 }

@@ -75,11 +75,11 @@ class SimulationOf final : public Simulation {
     compute_forces();
     core::Fluid<T>& fluid = solver_->fluid();
     fluid.settle();
-    const std::vector<core::Moments> moments = fluid.all_moments();
+    const std::vector<core::Moments<2>> moments = fluid.all_moments();
     FluidFields fields{scene().domain.nodes[0], scene().domain.nodes[1], {}, {}};
     const double speed = stage().units.unit(units::dimension::velocity);
-    for (const core::Moments& node : moments) {
-      fields.velocity.insert(fields.velocity.end(), {node.ux * speed, node.uy * speed});
+    for (const core::Moments<2>& node : moments) {
+      fields.velocity.insert(fields.velocity.end(), {node.velocity[0] * speed, node.velocity[1] * speed});
       fields.density.push_back(node.density);
     }
     return fields;
@@ -292,6 +292,11 @@ Simulation::Simulation(plan::ReadScene read, plugin::Catalog catalog)
 
 std::unique_ptr<Simulation> make_simulation(const SceneChoice& choice) {
   const auto catalog_of = [&](const scene::Scene& scene) {
+    if (scene.domain.depth) {
+      throw Error(Cause::bad_input, scene.place("/domain/size"),
+                  "rouleau.Simulation steps two dimensions only so far, and this scene has three",
+                  {"run it whole, with rouleau.run"});
+    }
     plugin::Catalog catalog(plugin::plugin_search_path(choice.plugins, scene.plugin_dirs));
     const fs::path lock = plugin::lock_beside(choice.file);
     std::error_code ignored;

@@ -120,7 +120,7 @@ def plot_frame(frame: Frame, colour: str, field: str | None, axes: Any) -> Any:
     width, height = (1e6 * length for length in frame.size_m)
     bar = {"ax": axes, "shrink": min(0.9, 1.2 * height / width)}
     if field is not None:
-        shown = frame.field(field)
+        shown = frame.field(field).section()
         values = numpy.linalg.norm(shown.values, axis=2) if shown.values.ndim == 3 else shown.values
         mesh = axes.pcolormesh(1e6 * shown.x, 1e6 * shown.y, values, shading="nearest", cmap="Greys", rasterized=True)
         axes.figure.colorbar(mesh, label=f"{field} ({shown.unit})", **bar)

@@ -75,10 +75,18 @@ class Cell:
 class Field:
     """A field on the lattice at an instant."""
 
-    values: Floats  #: [ny, nx], or [ny, nx, 2] of vectors
+    values: Floats  #: [ny, nx], or [ny, nx, 2] of vectors; in three dimensions [nz, ny, nx], or [nz, ny, nx, 3]
     unit: str  #: such as "m/s"
     x: Floats  #: [nx]: places of the nodes along x, m
     y: Floats  #: [ny]: along y, m
+    z: Floats | None = None  #: [nz]: along z, m; None in two dimensions
+
+    def section(self) -> Field:
+        """In three dimensions the layer in the middle of z, as a field of two: of vectors the first two components."""
+        if self.z is None:
+            return self
+        layer = self.values[len(self.z) // 2]
+        return Field(layer[..., :2] if layer.ndim == 3 else layer, self.unit, self.x, self.y)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -366,17 +374,17 @@ class Run(Outputs):
             fields: dict[str, Field] = {}
             for name, data in frame.get("fields", {}).items():
                 values = data[:].astype(numpy.float64)
-                if values.ndim == 3:
+                axes = len(size)
+                if axes == 2 and values.ndim == 3:
                     values = values[:, :, :2]
                 if "fields_first_m" in file.attrs:
                     begin, spacing = file.attrs["fields_first_m"], file.attrs["fields_spacing_m"]
                 else:
-                    nodes = file.attrs["nodes"]
-                    spacing = numpy.array([size[0] / nodes[0], size[1] / nodes[1]])
+                    spacing = numpy.array(size) / numpy.array(file.attrs["nodes"])
                     begin = spacing / 2
-                spacing, begin = numpy.broadcast_to(spacing, 2), numpy.broadcast_to(begin, 2)
-                fields[name] = Field(values, _text(data.attrs["unit"]), begin[0] + spacing[0] * numpy.arange(values.shape[1]),
-                                     begin[1] + spacing[1] * numpy.arange(values.shape[0]))
+                spacing, begin = numpy.broadcast_to(spacing, axes), numpy.broadcast_to(begin, axes)
+                places = [begin[k] + spacing[k] * numpy.arange(values.shape[axes - 1 - k]) for k in range(axes)]
+                fields[name] = Field(values, _text(data.attrs["unit"]), *places)
         return Frame(int(row["step"]), float(row["time_s"]), float(row["strain"]), str(row["stage_name"]),
                      (size[0], size[1]), cells, fields)
 

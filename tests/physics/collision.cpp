@@ -51,15 +51,15 @@ std::vector<Operator> operators_of_other_magic() {
 /// the fluid moves with (drift, crossing).
 double viscosity_error(const Operator& op, double tau, bool inertia, int n, double drift = 0, double crossing = 0) {
   const double nu = (tau - 0.5) / 3, k = 2 * pi / n, speed = 1e-4;
-  FluidSetting setting{.domain = {{8, n}, {true, true}}, .relaxation_rate = 1 / tau, .inertia = inertia};
+  FluidSetting<2> setting{.domain = {{8, n}, {true, true}}, .relaxation_rate = 1 / tau, .inertia = inertia};
   Fluid<double> fluid(setting, make_collision(op.id, op.parameters, tau, inertia));
   fluid.set_state([&](int, int y) {
-    return Fluid<double>::State{0, drift + speed * std::sin(k * y), crossing, {0, speed * k * std::cos(k * y), 0, 0}};
+    return Fluid<double>::State{0, {drift + speed * std::sin(k * y), crossing}, {0, speed * k * std::cos(k * y), 0, 0}};
   });
   const auto amplitude = [&] {
     std::complex<double> sum = 0;
     int y = 0;
-    for (const Moments& m : column(fluid, 3)) sum += m.ux * std::polar(1.0, -k * y++);
+    for (const Moments<2>& m : column(fluid, 3)) sum += m.velocity[0] * std::polar(1.0, -k * y++);
     return std::abs(sum);
   };
   // What the start disturbs is gone after some relaxation times.
@@ -78,16 +78,16 @@ struct Slip {
 Slip poiseuille_slip(const Operator& op, double tau, bool inertia, int n, double maximum = 0.01) {
   const double nu = (tau - 0.5) / 3, force = 8 * nu * maximum / n / n;
   const auto parabola = [&](double y) { return 4 * (y + 0.5) / n * (1 - (y + 0.5) / n); };
-  FluidSetting setting{
-      .domain = {{8, n}, {true, false}}, .relaxation_rate = 1 / tau, .inertia = inertia, .body_force_x = force};
+  FluidSetting<2> setting{
+      .domain = {{8, n}, {true, false}}, .relaxation_rate = 1 / tau, .inertia = inertia, .body_force = {force}};
   Fluid<double> fluid(setting, make_collision(op.id, op.parameters, tau, inertia));
   fluid.set_profile([&](double y) { return maximum * parabola(y); },
                     [&](double y) { return maximum * 4 / n * (1 - 2 * (y + 0.5) / n); });
   advance(fluid, std::lround(4 * n * n / nu));
   double sum = 0, least = 1, most = -1;
   int y = 0;
-  for (const Moments& m : column(fluid, 0)) {
-    const double difference = m.ux / maximum - parabola(y++);
+  for (const Moments<2>& m : column(fluid, 0)) {
+    const double difference = m.velocity[0] / maximum - parabola(y++);
     sum += difference;
     least = std::min(least, difference);
     most = std::max(most, difference);
@@ -171,12 +171,12 @@ TEST_CASE("Couette flow of two layers, viscosity ratio 5, is the exact broken li
   // Equal stress: the shear rates are as 1 : 5, and add up to the speed of the upper wall.
   const double slow = speed / (layer + 5 * (n - layer));
   for (const Operator& op : shipped_operators()) {
-    FluidSetting setting{.domain = {{16, n}, {true, false}},
-                         .relaxation_rate = 1 / tau,
-                         .inertia = inertia,
-                         .walls = {0, speed},
-                         .membranes = true,
-                         .viscosity_contrast = true};
+    FluidSetting<2> setting{.domain = {{16, n}, {true, false}},
+                            .relaxation_rate = 1 / tau,
+                            .inertia = inertia,
+                            .walls = {0, speed},
+                            .membranes = true,
+                            .viscosity_contrast = true};
     Fluid<double> fluid(setting, make_collision(op.id, op.parameters, tau, inertia));
     for (int y = 0; y < n; ++y) {
       fluid.mask().mark(y, 0, 16);
@@ -191,10 +191,10 @@ TEST_CASE("Couette flow of two layers, viscosity ratio 5, is the exact broken li
     double error = 0;
     int y = 0;
     fluid.clear_force(fluid.rows());
-    for (const Moments& m : column(fluid, 5)) {
+    for (const Moments<2>& m : column(fluid, 5)) {
       const double height = y++ + 0.5;
       const double exact = height < layer ? slow * height : slow * layer + 5 * slow * (height - layer);
-      error = std::max(error, std::abs(m.ux - exact) / speed);
+      error = std::max(error, std::abs(m.velocity[0] - exact) / speed);
     }
     std::cout << "two layers, " << op.id << (inertia ? ", inertia" : ", Stokes") << ": largest error " << error << "\n";
     CAPTURE(op.id, inertia);

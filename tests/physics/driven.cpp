@@ -95,7 +95,7 @@ TEST_CASE("cells without laws and with the fluid's viscosity do not change a dri
   overrides.emplace_back("/cell_types/ring/membrane=[]");
   SolverBench bench(scenes + "/ring.json", overrides);
   bench.start();
-  FluidSetting setting = bench.solver->fluid().setting();
+  FluidSetting<2> setting = bench.solver->fluid().setting();
   setting.membranes = false;
   Fluid<double> alone(setting, make_collision("trt", {0.1875}, 1.0, false));
   bench.step(500);
@@ -105,13 +105,14 @@ TEST_CASE("cells without laws and with the fluid's viscosity do not change a dri
   with_cells.settle();
   alone.settle();
   double difference = 0, largest = 0;
-  std::vector<Moments> a, b;
+  std::vector<Moments<2>> a, b;
   for (int y = 0; y < 128; ++y) {
     with_cells.moments(y, a);
     alone.moments(y, b);
     for (std::size_t x = 0; x < a.size(); ++x) {
-      difference = std::max(difference, std::hypot(a[x].ux - b[x].ux, a[x].uy - b[x].uy));
-      largest = std::max(largest, std::abs(b[x].ux));
+      difference =
+          std::max(difference, std::hypot(a[x].velocity[0] - b[x].velocity[0], a[x].velocity[1] - b[x].velocity[1]));
+      largest = std::max(largest, std::abs(b[x].velocity[0]));
     }
   }
   CHECK(largest > 0);

@@ -287,7 +287,7 @@ TEST_CASE("a decaying vortex between periodic sides loses what viscosity takes",
   const int n = GENERATE(32, 64);
   for (const double tau : {0.6, 1.0, 2.0}) {
     const double k = 2 * std::numbers::pi / n, speed = 1e-3, nu = (tau - 0.5) / 3;
-    FluidSetting setting{.domain = {{n, n}, {true, true}}, .relaxation_rate = 1 / tau};
+    FluidSetting<2> setting{.domain = {{n, n}, {true, true}}, .relaxation_rate = 1 / tau};
     Fluid<double> fluid(setting, make_collision("trt", {3.0 / 16}, tau, false));
     fluid.set_state([&](int x, int y) -> Fluid<double>::State {
       const double sx = std::sin(k * x), cx = std::cos(k * x), sy = std::sin(k * y), cy = std::cos(k * y);

@@ -34,13 +34,13 @@ TEST_CASE("start-up Couette flow converges to its series with second order", "[f
   std::vector<double> errors;
   for (int n : {16, 32, 64}) {
     const double speed = 0.8 / n, nu = (tau - 0.5) / 3, t = 0.06;
-    FluidSetting setting{.domain = {{8, n}, {true, false}}, .relaxation_rate = 1 / tau, .walls = {-speed, speed}};
+    FluidSetting<2> setting{.domain = {{8, n}, {true, false}}, .relaxation_rate = 1 / tau, .walls = {-speed, speed}};
     Fluid<double> fluid(setting, make_collision("trt", {0.1875}, tau, false));
     const long steps = std::lround(t * n * n / nu);
     advance(fluid, steps);
     std::vector<double> value, exact;
     for (int y = 0; y < n; ++y) {
-      value.push_back(column(fluid, 3)[static_cast<std::size_t>(y)].ux / speed);
+      value.push_back(column(fluid, 3)[static_cast<std::size_t>(y)].velocity[0] / speed);
       exact.push_back(couette_start((y + 0.5) / n - 0.5, static_cast<double>(steps) * nu / n / n));
     }
     errors.push_back(relative_l2(value, exact));
@@ -55,14 +55,14 @@ TEST_CASE("start-up Poiseuille flow converges to its series with second order", 
   std::vector<double> errors;
   for (int n : {16, 32, 64}) {
     const double nu = (tau - 0.5) / 3, maximum = 0.8 / n, force = 8 * nu * maximum / n / n, t = 0.06;
-    FluidSetting setting{.domain = {{8, n}, {true, false}}, .relaxation_rate = 1 / tau, .body_force_x = force};
+    FluidSetting<2> setting{.domain = {{8, n}, {true, false}}, .relaxation_rate = 1 / tau, .body_force = {force}};
     Fluid<double> fluid(setting, make_collision("trt", {0.1875}, tau, false));
     const long steps = std::lround(t * n * n / nu);
     fluid.set_profile([](double) { return 0.0; }, [](double) { return 0.0; });
     advance(fluid, steps);
     std::vector<double> value, exact;
     for (int y = 0; y < n; ++y) {
-      value.push_back(column(fluid, 5)[static_cast<std::size_t>(y)].ux / maximum);
+      value.push_back(column(fluid, 5)[static_cast<std::size_t>(y)].velocity[0] / maximum);
       exact.push_back(poiseuille_start((y + 0.5) / n, static_cast<double>(steps) * nu / n / n));
     }
     errors.push_back(relative_l2(value, exact));
@@ -78,11 +78,11 @@ TEST_CASE("steady Poiseuille flow with TRT does not depend on tau and is exact a
   int k = 0;
   for (double tau : {0.7, 1.0, 2.0}) {
     const double nu = (tau - 0.5) / 3, maximum = 0.01, force = 8 * nu * maximum / n / n;
-    FluidSetting setting{.domain = {{8, n}, {true, false}}, .relaxation_rate = 1 / tau, .body_force_x = force};
+    FluidSetting<2> setting{.domain = {{8, n}, {true, false}}, .relaxation_rate = 1 / tau, .body_force = {force}};
     Fluid<double> fluid(setting, make_collision("trt", {0.1875}, tau, false));
     fluid.set_profile([](double) { return 0.0; }, [](double) { return 0.0; });
     advance(fluid, std::lround(4 * n * n / nu));
-    for (const Moments& m : column(fluid, 0)) profiles[k].push_back(m.ux / maximum);
+    for (const Moments<2>& m : column(fluid, 0)) profiles[k].push_back(m.velocity[0] / maximum);
     ++k;
   }
   double spread = 0, error = 0;
@@ -103,7 +103,7 @@ TEST_CASE("steady Poiseuille flow with TRT does not depend on tau and is exact a
 double taylor_green_error(const std::string& collision, std::vector<double> parameters, bool inertia, int n,
                           std::array<double, 2> mean = {0, 0}, bool frame_moves = true) {
   const double tau = 0.8, nu = (tau - 0.5) / 3, k = 2 * pi / n, speed = 0.32 / n;
-  FluidSetting setting{.domain = {{n, n}, {true, true}}, .relaxation_rate = 1 / tau, .inertia = inertia};
+  FluidSetting<2> setting{.domain = {{n, n}, {true, true}}, .relaxation_rate = 1 / tau, .inertia = inertia};
   Fluid<double> fluid(setting, make_collision(collision, std::move(parameters), tau, inertia));
   for (double& u : mean) u *= speed;
   if (frame_moves) fluid.set_frame(mean[0], mean[1]);
@@ -112,8 +112,7 @@ double taylor_green_error(const std::string& collision, std::vector<double> para
     // Pressure balances inertia where there is any: p = -u^2/4 (cos 2kx + cos 2ky), density deviation 3 p.
     const double density = inertia ? -0.75 * speed * speed * (std::cos(2 * k * x) + std::cos(2 * k * y)) : 0.0;
     return Fluid<double>::State{density,
-                                mean[0] - speed * cx * sy,
-                                mean[1] + speed * sx * cy,
+                                {mean[0] - speed * cx * sy, mean[1] + speed * sx * cy},
                                 {speed * k * sx * sy, -speed * k * cx * cy, speed * k * cx * cy, -speed * k * sx * sy}};
   });
   const long steps = std::lround(0.5 / (2 * nu * k * k));
@@ -121,12 +120,12 @@ double taylor_green_error(const std::string& collision, std::vector<double> para
   fluid.settle();
   const double decay = std::exp(-2 * nu * k * k * static_cast<double>(steps));
   std::vector<double> value, exact;
-  std::vector<Moments> row;
+  std::vector<Moments<2>> row;
   for (int y = 0; y < n; ++y) {
     fluid.moments(y, row);
     for (int x = 0; x < n; ++x) {
       const double time = static_cast<double>(steps), at_x = x - mean[0] * time, at_y = y - mean[1] * time;
-      value.push_back((row[static_cast<std::size_t>(x)].ux - mean[0]) / speed);
+      value.push_back((row[static_cast<std::size_t>(x)].velocity[0] - mean[0]) / speed);
       exact.push_back(-std::cos(k * at_x) * std::sin(k * at_y) * decay);
     }
   }
@@ -185,16 +184,16 @@ TEST_CASE("developed Couette flow stays as it was started, and its wall stress i
   const double tau = 1.1, rate = GENERATE(1e-4, -1e-4), mean = GENERATE(0.0, 0.02);
   constexpr int n = 20;
   const double middle = (n - 1) / 2.0, viscosity = (tau - 0.5) / 3;
-  FluidSetting setting{.domain = {{12, n}, {true, false}},
-                       .relaxation_rate = 1 / tau,
-                       .walls = {mean - rate * n / 2, mean + rate * n / 2}};
+  FluidSetting<2> setting{.domain = {{12, n}, {true, false}},
+                          .relaxation_rate = 1 / tau,
+                          .walls = {mean - rate * n / 2, mean + rate * n / 2}};
   Fluid<double> fluid(setting, make_collision("trt", {0.1875}, tau, false));
   fluid.set_profile([&](double y) { return mean + rate * (y - middle); }, [&](double) { return rate; });
   for (int steps : {0, 1, 2, 501}) {
     advance(fluid, steps);
     const auto profile = column(fluid, 7);
     for (int y = 0; y < n; ++y)
-      CHECK(profile[static_cast<std::size_t>(y)].ux == Approx(mean + rate * (y - middle)).margin(1e-14));
+      CHECK(profile[static_cast<std::size_t>(y)].velocity[0] == Approx(mean + rate * (y - middle)).margin(1e-14));
     const auto stress = fluid.wall_stress();
     CHECK(stress.lower == Approx(viscosity * rate).epsilon(1e-9));
     CHECK(stress.upper == Approx(-viscosity * rate).epsilon(1e-9));
@@ -204,7 +203,7 @@ TEST_CASE("developed Couette flow stays as it was started, and its wall stress i
 TEST_CASE("a fluid taken over with a new density factor goes on at the scaled velocity", "[flow]") {
   const double tau = 0.9;
   constexpr int n = 24;
-  FluidSetting setting{.domain = {{16, n}, {true, false}}, .relaxation_rate = 1 / tau, .walls = {-0.01, 0.01}};
+  FluidSetting<2> setting{.domain = {{16, n}, {true, false}}, .relaxation_rate = 1 / tau, .walls = {-0.01, 0.01}};
   Fluid<double> fluid(setting, make_collision("trt", {0.1875}, tau, false));
   const int before = GENERATE(300, 301);
   advance(fluid, before);
@@ -214,5 +213,5 @@ TEST_CASE("a fluid taken over with a new density factor goes on at the scaled ve
   advance(fluid, 57);
   advance(scaled, 57);
   const auto a = column(fluid, 2), b = column(scaled, 2);
-  for (std::size_t y = 0; y < a.size(); ++y) CHECK(b[y].ux == Approx(0.4 * a[y].ux).margin(1e-15));
+  for (std::size_t y = 0; y < a.size(); ++y) CHECK(b[y].velocity[0] == Approx(0.4 * a[y].velocity[0]).margin(1e-15));
 }

@@ -21,13 +21,13 @@ inline const Catalog& plugins() {
 
 /// Collision model in lattice units; `values` in the manifest's order.
 inline core::CollisionOperator make_collision(const std::string& id, const std::vector<double>& values, double tau,
-                                              bool inertia) {
+                                              bool inertia, int dimension = 2) {
   return make_collision_operator(plugins().find(ModelKind::collision, id, {}), values,
-                                 ModelSetting{{1, 1, 1}, 1 / tau, inertia});
+                                 ModelSetting{{1, 1, 1}, 1 / tau, inertia, dimension});
 }
 
-template <class T>
-void advance(Fluid<T>& fluid, long steps) {
+template <class T, class Set>
+void advance(Fluid<T, Set>& fluid, long steps) {
   for (long i = 0; i < steps; ++i) {
     fluid.step(fluid.rows());
     fluid.end_step();
@@ -35,9 +35,9 @@ void advance(Fluid<T>& fluid, long steps) {
 }
 
 template <class T>
-std::vector<Moments> column(Fluid<T>& fluid, int x) {
+std::vector<Moments<2>> column(Fluid<T>& fluid, int x) {
   fluid.settle();
-  std::vector<Moments> result, row;
+  std::vector<Moments<2>> result, row;
   for (int y = 0; y < fluid.setting().domain.size[1]; ++y) {
     fluid.moments(y, row);
     result.push_back(row[static_cast<std::size_t>(x)]);

@@ -81,7 +81,7 @@ double distance(Solver<double>& solver, const Channel& channel, Exact exact) {
   double error = 0, largest = 0;
   for (int y = 0; y < channel.rows; ++y) {
     const double wanted = exact((y + 0.5) / channel.rows);
-    error = std::max(error, std::abs(profile[y].ux / Channel::speed - wanted));
+    error = std::max(error, std::abs(profile[y].velocity[0] / Channel::speed - wanted));
     largest = std::max(largest, std::abs(wanted));
   }
   return error / largest;
@@ -133,8 +133,8 @@ TEST_CASE("a row that the border of a layer cuts is off to first order, and no o
     double elsewhere = 0;
     for (int y = 0; y < rows; ++y) {
       if (y == rows / 2) continue;
-      elsewhere =
-          std::max(elsewhere, std::abs(profile[y].ux / Channel::speed - channel.layers.couette((y + 0.5) / rows)));
+      elsewhere = std::max(
+          elsewhere, std::abs(profile[y].velocity[0] / Channel::speed - channel.layers.couette((y + 0.5) / rows)));
     }
     std::cout << "two layers, border within a row, " << rows << " rows: error " << error << ", elsewhere " << elsewhere
               << "\n";

@@ -59,7 +59,7 @@ double error_of(const Case& c, int n, double periods) {
     const Complex phase = std::exp(Complex(0, omega * static_cast<double>(step)));
     for (int y = 0; y < n; ++y) {
       const double exact = (phase * exact_amplitude(c.driven, c.womersley_square, (y + 0.5) / n)).imag();
-      error = std::max(error, std::abs(profile[static_cast<std::size_t>(y)].ux / speed - exact));
+      error = std::max(error, std::abs(profile[static_cast<std::size_t>(y)].velocity[0] / speed - exact));
       largest = std::max(largest, std::abs(exact));
     }
     solver.advance();

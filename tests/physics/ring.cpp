@@ -22,7 +22,7 @@ double mean_density(SolverBench& bench, double from, double to) {
   fluid.settle();
   double sum = 0;
   int count = 0;
-  std::vector<Moments> row;
+  std::vector<Moments<2>> row;
   for (int y = 0; y < fluid.setting().domain.size[1]; ++y) {
     fluid.moments(y, row);
     for (int x = 0; x < fluid.setting().domain.size[0]; ++x) {

@@ -12,6 +12,7 @@
 #include "conform/call.hpp"
 #include "conform/check.hpp"
 #include "conform/subject.hpp"
+#include "trials.hpp"
 
 namespace rouleau::conform {
 
@@ -207,10 +208,14 @@ std::vector<Check> block_checks() {
   const Level level = Level::robustness;
   return {
       {"hidden-state", level, "remembers nothing from one call to the next", {"compute"}, hidden_state},
-      {"blocks", level, "gives the same however the host cuts its blocks", {"hidden-state", "bounds"}, blocks},
-      {"aliasing", level, "bears outputs over inputs", {"hidden-state"}, aliasing},
-      {"contained", level, "keeps what is no number in its element", {"blocks"}, contained},
-      {"threads", level, "gives the same to eight threads on one instance", {"hidden-state"}, threads},
+      {"blocks",
+       level,
+       "gives the same however the host cuts its blocks",
+       {"hidden-state", "bounds"},
+       on_each_lattice<blocks>},
+      {"aliasing", level, "bears outputs over inputs", {"hidden-state"}, on_each_lattice<aliasing>},
+      {"contained", level, "keeps what is no number in its element", {"blocks"}, on_each_lattice<contained>},
+      {"threads", level, "gives the same to eight threads on one instance", {"hidden-state"}, on_each_lattice<threads>},
   };
 }
 

@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <rouleau/d2q9.hpp>
+#include <iterator>
 
 #include "base/text.hpp"
 #include "collision_nodes.hpp"
@@ -49,10 +49,10 @@ Finding momentum(const Subject& subject) {
     return Finding::skipped("says that it is not conservative");
   Worst worst;
   for_each_collision(subject, [&](const Trial& trial, const CollisionNode& before, const CollisionNode& after) {
-    for (std::size_t k = 0; k < 2; ++k) {
+    for (std::size_t k = 0; k < before.set->dimension; ++k) {
       worst.add(std::abs(after.momentum(k) - before.momentum(k) - before.force[k]),
                 rounding * (before.size() + after.size()), [&] {
-                  return std::string(k == 0 ? "x" : "y") + "-momentum changes by " +
+                  return std::string(1, "xyz"[k]) + "-momentum changes by " +
                          number(after.momentum(k) - before.momentum(k)) + " where the force is " +
                          number(before.force[k]) + trial.words;
                 });
@@ -65,7 +65,7 @@ Finding velocity(const Subject& subject) {
   if (!subject.manifest().gives_output("velocity")) return Finding::skipped("gives no velocity");
   Worst worst;
   for_each_collision(subject, [&](const Trial& trial, const CollisionNode& before, const CollisionNode& after) {
-    for (std::size_t k = 0; k < 2; ++k) {
+    for (std::size_t k = 0; k < before.set->dimension; ++k) {
       const double expected = before.momentum(k) + 0.5 * before.force[k];
       worst.add(std::abs(after.velocity[k] - expected), rounding * before.size(), [&] {
         return "velocity." + std::to_string(k) + " is " + number(after.velocity[k], 17) + ", sum f c + F/2 is " +
@@ -81,10 +81,11 @@ Values equilibria(const Subject& subject, const Trial& trial, double size) {
   Random random = subject.random();
   Values inputs = subject.random_inputs(trial.instance, nodes, random);
   for (std::size_t i = 0; i < nodes; ++i) {
-    CollisionNode node;
+    CollisionNode node(VelocitySet::of(trial.setting.dimension));
     const double density = size * uniform(random, -1, 1);
-    node.set_equilibrium(density, {size * uniform(random, -1, 1), size * uniform(random, -1, 1)},
-                         trial.setting.inertia);
+    CollisionNode::Vector u{};
+    for (std::size_t k = 0; k < node.set->dimension; ++k) u[k] = size * uniform(random, -1, 1);
+    node.set_equilibrium(density, u, trial.setting.inertia);
     node.store(inputs, i);
   }
   return inputs;
@@ -99,7 +100,7 @@ double change_of_equilibria(const Subject& subject, const Trial& trial, double s
   double most = 0;
   for (std::size_t i = 0; i < nodes; ++i) {
     const CollisionNode before = node_of(inputs, i, trial), after = node_of(outputs, i, trial);
-    for (std::size_t q = 0; q < 9; ++q) {
+    for (std::size_t q = 0; q < before.set->count(); ++q) {
       const double change = std::abs(after.f[q] - before.f[q]);
       if (!(change <= most)) most = change;
     }
@@ -154,13 +155,13 @@ Finding stress_relaxation(const Subject& subject) {
         const CollisionNode after = node_of(outputs, i, trial);
         const auto is = after.shear_stress(), was = before.shear_stress();
         const auto equilibrium = before.equilibrium_stress(), source = before.source_stress();
-        for (std::size_t k = 0; k < 2; ++k) {
+        const auto names = before.stress_names();
+        for (std::size_t k = 0; k < names.size(); ++k) {
           const double left = is[k] - equilibrium[k] - source[k] / 2;
           const double expected = (1 - before.relaxation_rate) * (was[k] - equilibrium[k] + source[k] / 2);
           worst.add(std::abs(left - expected), rounding * (before.size() + after.size()), [&] {
-            return std::string("of the stress ") + (k == 0 ? "xy" : "xx - yy") + " beyond equilibrium " +
-                   number(left, 17) + " is left, expected " + number(expected, 17) + ", at tau " +
-                   number(1 / before.relaxation_rate, 4) +
+            return "of the stress " + names[k] + " beyond equilibrium " + number(left, 17) + " is left, expected " +
+                   number(expected, 17) + ", at tau " + number(1 / before.relaxation_rate, 4) +
                    (absent.contains("force") ? " without force" : " with a force") + trial.words + "; they differ by";
           });
         }
@@ -170,41 +171,57 @@ Finding stress_relaxation(const Subject& subject) {
   return worst.finding("exactly so");
 }
 
-/// A symmetry of the square: a quarter turn `turns` times, after a reflection of x if asked for.
-struct SquareSymmetry {
-  int turns;
-  bool reflect;
+/// A symmetry of the square or the cube: axes change places, and then some are reversed.
+struct LatticeSymmetry {
+  std::array<std::size_t, 3> from;  ///< axis that component k comes from
+  std::array<bool, 3> reversed;
 
-  [[nodiscard]] std::array<double, 2> moved(std::array<double, 2> v) const {
-    if (reflect) v[0] = -v[0];
-    for (int i = 0; i < turns; ++i) v = {-v[1], v[0]};
-    return v;
+  /// All that leave the lattice as it is, but for the one that does nothing.
+  static std::vector<LatticeSymmetry> all(std::size_t dimension) {
+    std::vector<LatticeSymmetry> symmetries;
+    LatticeSymmetry next{{0, 1, 2}, {}};
+    do {
+      for (unsigned signs = 0; signs < 1U << dimension; ++signs) {
+        for (std::size_t k = 0; k < dimension; ++k) next.reversed[k] = (signs >> k & 1) != 0;
+        symmetries.push_back(next);
+      }
+    } while (std::next_permutation(next.from.begin(), next.from.begin() + static_cast<std::ptrdiff_t>(dimension)));
+    symmetries.erase(symmetries.begin());
+    return symmetries;
+  }
+  [[nodiscard]] std::array<double, 3> moved(const std::array<double, 3>& v) const {
+    std::array<double, 3> image;
+    for (std::size_t k = 0; k < 3; ++k) image[k] = reversed[k] ? -v[from[k]] : v[from[k]];
+    return image;
   }
   [[nodiscard]] CollisionNode operator()(const CollisionNode& node) const {
     CollisionNode image = node;
-    for (std::size_t q = 0; q < 9; ++q) {
-      const auto to = moved({double(d2q9::velocity[q][0]), double(d2q9::velocity[q][1])});
-      for (std::size_t p = 0; p < 9; ++p) {
-        if (d2q9::velocity[p][0] == to[0] && d2q9::velocity[p][1] == to[1]) image.f[p] = node.f[q];
-      }
+    const auto& velocities = node.set->velocity;
+    for (std::size_t q = 0; q < velocities.size(); ++q) {
+      const auto to = std::find(velocities.begin(), velocities.end(), moved(velocities[q]));
+      image.f[static_cast<std::size_t>(to - velocities.begin())] = node.f[q];
     }
     image.force = moved(node.force);
     image.velocity = moved(node.velocity);
     return image;
   }
-  [[nodiscard]] std::string words() const {
-    return (reflect ? "a reflection and " : "") + std::to_string(turns) + " quarter turns";
+  [[nodiscard]] std::string words(std::size_t dimension) const {
+    std::string axes;
+    for (std::size_t k = 0; k < dimension; ++k)
+      axes += std::string(k == 0 ? "" : ", ") + (reversed[k] ? "-" : "") + "xyz"[from[k]];
+    return "the axes become " + axes;
   }
 };
 
 Finding symmetry(const Subject& subject) {
   Random random = subject.random();
   Worst worst;
+  const auto dimension = static_cast<std::size_t>(subject.dimension());
+  const std::vector<LatticeSymmetry> symmetries = LatticeSymmetry::all(dimension);
   for (const Trial& trial : collision_trials(subject, random)) {
     const Values inputs = subject.random_inputs(trial.instance, nodes, random);
     const Values outputs = compute(subject, trial.instance, inputs);
-    for (int k = 1; k < 8; ++k) {
-      const SquareSymmetry image{k % 4, k >= 4};
+    for (const LatticeSymmetry& image : symmetries) {
       Values turned = inputs;
       for (std::size_t i = 0; i < nodes; ++i) image(node_of(inputs, i, trial)).store(turned, i);
       const Values results = compute(subject, trial.instance, turned);
@@ -212,7 +229,7 @@ Finding symmetry(const Subject& subject) {
         const CollisionNode expected = image(node_of(outputs, i, trial)), found = node_of(results, i, trial);
         const double limit = rounding * (expected.size() + node_of(inputs, i, trial).size());
         worst.add(found.distance(expected), limit,
-                  [&] { return "after " + image.words() + " of its node a result differs by" + trial.words; });
+                  [&] { return "where " + image.words(dimension) + " a node's result differs by" + trial.words; });
       }
     }
   }
@@ -244,7 +261,7 @@ Finding reductions(const Subject& subject) {
               "without relaxation rates and with that of the setup everywhere");
     }
     if (subject.manifest().needs_input("force")) {
-      for (const char* name : {"force.0", "force.1"}) inputs[name].assign(nodes, 0);
+      for (const std::string& name : arrays_of(subject, "force")) inputs[name].assign(nodes, 0);
       Call call;
       call.absent = {"force"};
       compare(worst, trial, inputs, compute(subject, trial.instance, inputs, call),
@@ -292,14 +309,39 @@ std::vector<Check> collision_checks() {
   constexpr auto kind = plugin::ModelKind::collision;
   constexpr auto level = Level::physics;
   return {
-      {"mass", level, "conserves mass", {"compute"}, mass, kind},
-      {"momentum", level, "changes momentum by the force and nothing else", {"mass"}, momentum, kind},
-      {"velocity", level, "gives the velocity sum f c + F/2", {"compute"}, velocity, kind},
-      {"equilibrium", level, "leaves populations in equilibrium alone", {"momentum"}, equilibrium, kind},
-      {"stress-relaxation", level, "leaves 1 - 1/tau of the shear stress", {"equilibrium"}, stress_relaxation, kind},
-      {"symmetry", level, "has the eight symmetries of the square", {"stress-relaxation", "velocity"}, symmetry, kind},
-      {"reductions", level, "takes NULL inputs and no velocity as the interface says", {"symmetry"}, reductions, kind},
-      {"precision", level, "gives in single precision what it gives in double", {"compute"}, precision, kind},
+      {"mass", level, "conserves mass", {"compute"}, on_each_lattice<mass>, kind},
+      {"momentum", level, "changes momentum by the force and nothing else", {"mass"}, on_each_lattice<momentum>, kind},
+      {"velocity", level, "gives the velocity sum f c + F/2", {"compute"}, on_each_lattice<velocity>, kind},
+      {"equilibrium",
+       level,
+       "leaves populations in equilibrium alone",
+       {"momentum"},
+       on_each_lattice<equilibrium>,
+       kind},
+      {"stress-relaxation",
+       level,
+       "leaves 1 - 1/tau of the shear stress",
+       {"equilibrium"},
+       on_each_lattice<stress_relaxation>,
+       kind},
+      {"symmetry",
+       level,
+       "has the symmetries of the square, and of the cube",
+       {"stress-relaxation", "velocity"},
+       on_each_lattice<symmetry>,
+       kind},
+      {"reductions",
+       level,
+       "takes NULL inputs and no velocity as the interface says",
+       {"symmetry"},
+       on_each_lattice<reductions>,
+       kind},
+      {"precision",
+       level,
+       "gives in single precision what it gives in double",
+       {"compute"},
+       on_each_lattice<precision>,
+       kind},
   };
 }
 

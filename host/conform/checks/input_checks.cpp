@@ -27,7 +27,7 @@ struct Creation {
 Creation create_guarded(const Subject& subject, const std::vector<double>& values, std::size_t given,
                         std::size_t error_size = 256, std::uint32_t appended = 0) {
   const rouleau_model& model = plugin::open_model(subject.manifest());
-  plugin::ModelSetup setup(subject.manifest(), values, Subject::typical_setting());
+  plugin::ModelSetup setup(subject.manifest(), values, subject.typical_setting());
   using Flush = GuardedArray::Flush;
   GuardedArray names("the setup's parameter names", given * sizeof(char*), Flush::behind);
   GuardedArray numbers("the setup's parameter values", given * sizeof(double), Flush::behind);
@@ -169,7 +169,7 @@ Finding needs_matter(const Subject& subject) {
       const Values inputs = subject.random_inputs(instance, ordinary_count, random);
       Values changed = inputs;
       const Values other = subject.random_inputs(instance, ordinary_count, random);
-      for (const std::string& array : arrays_of(subject.manifest().kind, need)) changed[array] = other.at(array);
+      for (const std::string& array : arrays_of(subject, need)) changed[array] = other.at(array);
       matters =
           matters || !first_difference(compute(subject, instance, inputs), compute(subject, instance, changed)).empty();
     }
@@ -249,7 +249,7 @@ Finding outputs_optional(const Subject& subject) {
   std::vector<std::set<std::string>> choices = {always};
   for (const std::string& given : subject.manifest().gives) {
     std::set<std::string> alone = always, others = all;
-    for (const std::string& array : arrays_of(subject.manifest().kind, given)) {
+    for (const std::string& array : arrays_of(subject, given)) {
       alone.insert(array);
       if (!always.contains(array)) others.erase(array);
     }

@@ -17,7 +17,7 @@ Finding compare(const Subject& subject, const DerivativeClaim& claim) {
   Random random = subject.random();
   Worst worst;
   Decided decided;
-  for (const Trial& trial : trials(subject, random, Subject::typical_setting())) {
+  for (const Trial& trial : trials(subject, random, subject.typical_setting())) {
     compare_derivative(worst, decided, subject, trial, subject.random_inputs(trial.instance, 256, random), claim);
     if (claim.function != "energy" || !subject.manifest().state.empty()) continue;
     const double cutoff = trial.instance.interaction().cutoff(trial.instance.self());
@@ -72,7 +72,7 @@ Finding cutoff(const Subject& subject) {
   const bool smooth = subject.manifest().claims.value("smooth_at_cutoff", false);
   Worst worst;
   std::string jumps;
-  for (const Trial& trial : trials(subject, random, Subject::typical_setting())) {
+  for (const Trial& trial : trials(subject, random, subject.typical_setting())) {
     const auto ask = [&] { return trial.instance.interaction().cutoff(trial.instance.self()); };
     const double range = ask();
     if (!(range > 0) || !std::isfinite(range)) {
@@ -96,7 +96,7 @@ Finding cutoff(const Subject& subject) {
 
 Finding near_zero(const Subject& subject) {
   Random random = subject.random();
-  for (const Trial& trial : trials(subject, random, Subject::typical_setting())) {
+  for (const Trial& trial : trials(subject, random, subject.typical_setting())) {
     const double range = trial.instance.interaction().cutoff(trial.instance.self());
     std::vector<double> distances;
     for (int i = 0; i <= 60; ++i) distances.push_back(range * std::pow(10.0, -0.1 * i));
@@ -115,7 +115,7 @@ Finding near_zero(const Subject& subject) {
 Finding energy_optional(const Subject& subject) {
   if (!subject.manifest().gives_output("energy")) return Finding::skipped("gives no energy");
   Random random = subject.random();
-  for (const Trial& trial : trials(subject, random, Subject::typical_setting())) {
+  for (const Trial& trial : trials(subject, random, subject.typical_setting())) {
     const Values inputs = subject.random_inputs(trial.instance, 101, random);
     Call without;
     without.outputs.emplace();

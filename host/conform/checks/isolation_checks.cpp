@@ -65,7 +65,7 @@ void call_in_many_ways(const Subject& subject, const std::vector<Trial>& trials,
 
 std::vector<Trial> some_trials(const Subject& subject, Random& random) {
   if (subject.manifest().kind == plugin::ModelKind::collision) return collision_trials(subject, random);
-  return trials(subject, random, Subject::typical_setting(), 3);
+  return trials(subject, random, subject.typical_setting(), 3);
 }
 
 /// Lets the model's function make no system call and read no clock, and counts what it allocates and locks. As there is no
@@ -125,10 +125,10 @@ class BareModel {
   /// Looks at the files; loads nothing.
   explicit BareModel(const Subject& subject) : subject_(subject), file_(plugin::checked_library(subject.manifest())) {
     for (const auto& parameters : subject.parameters_of_each_choice()) {
-      setups_.emplace_back(subject.manifest(), parameters, Subject::typical_setting());
+      setups_.emplace_back(subject.manifest(), parameters, subject.typical_setting());
     }
     const std::vector<double> none(subject.manifest().parameters.size(), std::nan(""));
-    setups_.emplace_back(subject.manifest(), none, Subject::typical_setting());  // to be refused, perhaps
+    setups_.emplace_back(subject.manifest(), none, subject.typical_setting());  // to be refused, perhaps
   }
 
   void load() {

@@ -35,7 +35,7 @@ Finding compare(const Subject& subject, const std::vector<DerivativeClaim>& clai
   Random random = subject.random();
   Worst worst;
   Decided decided;
-  for (const Trial& trial : trials(subject, random, Subject::typical_setting())) {
+  for (const Trial& trial : trials(subject, random, subject.typical_setting())) {
     const Values inputs = subject.random_inputs(trial.instance, 256, random);
     for (const DerivativeClaim& claim : claims) {
       if (inputs.contains(claim.variable)) {
@@ -111,7 +111,7 @@ Finding rest_state(const Subject& subject) {
   }
   Random random = subject.random();
   std::string prestressed;
-  for (const Trial& trial : trials(subject, random, Subject::typical_setting(), 0)) {
+  for (const Trial& trial : trials(subject, random, subject.typical_setting(), 0)) {
     const Values rest = at_rest(subject, trial, 21, random);
     const Values forces = compute(subject, trial.instance, rest);
     for (const auto& c : coordinates_of(subject.manifest())) {
@@ -173,7 +173,7 @@ Finding moduli(const Subject& subject) {
   Worst worst;
   Decided decided;
   std::string report;
-  const auto all_trials = trials(subject, random, Subject::typical_setting());
+  const auto all_trials = trials(subject, random, subject.typical_setting());
   for (const Trial& trial : all_trials) {
     const Values rest = at_rest(subject, trial, 8, random);
     for (const Modulus& modulus : all) {
@@ -227,7 +227,7 @@ Finding moduli(const Subject& subject) {
 /// may not give what is no number, and not outgrow them where cells in a strong flow come to.
 Finding degenerate(const Subject& subject) {
   Random random = subject.random();
-  for (const Trial& trial : trials(subject, random, Subject::typical_setting())) {
+  for (const Trial& trial : trials(subject, random, subject.typical_setting())) {
     std::vector<Values> extremes;
     constexpr std::size_t count = 91;  // 1e-6 to 1e3 in tenths of a decade
     const auto factor_of = [](std::size_t i) { return std::pow(10.0, -6 + 0.1 * static_cast<double>(i)); };

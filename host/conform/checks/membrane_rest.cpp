@@ -55,7 +55,7 @@ Finding check_rigid_motion(const Subject& subject) {
   const bool has_state = !subject.manifest().state.empty(), gives_energy = subject.manifest().gives_output("energy");
   Worst worst;
   Decided decided;
-  for (const Trial& trial : trials(subject, random, Subject::typical_setting())) {
+  for (const Trial& trial : trials(subject, random, subject.typical_setting())) {
     Values inputs = subject.random_inputs(trial.instance, 101, random);
     Values moving = inputs;
     if (inputs.contains("stretch_rate")) inputs["stretch_rate"].assign(101, 0);
@@ -96,7 +96,7 @@ Finding check_rigid_motion(const Subject& subject) {
 Finding check_state_restored(const Subject& subject) {
   if (subject.manifest().state.empty()) return Finding::skipped("has no state");
   Random random = subject.random();
-  for (const Trial& trial : trials(subject, random, Subject::typical_setting())) {
+  for (const Trial& trial : trials(subject, random, subject.typical_setting())) {
     const Values start = subject.random_inputs(trial.instance, 101, random);
     Call look;
     look.time_step = 0;

@@ -136,7 +136,7 @@ bool can_move(const Subject& subject) {
 template <class See>
 void for_each_path(const Subject& subject, const See& see) {
   Random random = subject.random();
-  for (const Trial& trial : trials(subject, random, Subject::typical_setting(), 2)) {
+  for (const Trial& trial : trials(subject, random, subject.typical_setting(), 2)) {
     for (int i = 0; i < 2; ++i) {
       const double period = std::pow(10.0, uniform(random, 2, 7));
       const Path path(coordinates_of(subject.manifest()), random);
@@ -177,7 +177,7 @@ Finding dissipation_of_state(const Subject& subject) {
 Finding dissipation_of_rates(const Subject& subject) {
   Random random = subject.random();
   Worst worst;
-  for (const Trial& trial : trials(subject, random, Subject::typical_setting())) {
+  for (const Trial& trial : trials(subject, random, subject.typical_setting())) {
     Values moving = subject.random_inputs(trial.instance, 201, random);
     for (double& rate : moving["stretch_rate"]) {
       rate = std::copysign(std::pow(10.0, uniform(random, -8, -1)), uniform(random, -1, 1));

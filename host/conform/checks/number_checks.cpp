@@ -23,7 +23,7 @@ bool is_tracked(const std::string& output) {
 /// there with a reason, instead of going on with an invented number. Plugins of the first release need not know it.
 Finding nan_out(const Subject& subject) {
   Random random = subject.random();
-  for (const Trial& trial : trials(subject, random, Subject::typical_setting(), 2)) {
+  for (const Trial& trial : trials(subject, random, subject.typical_setting(), 2)) {
     for (const bool single : subject.precisions()) {
       Call call;
       call.single = single;
@@ -115,7 +115,7 @@ Finding parameters_matter(const Subject& subject) {
   words_matter.reserve(parameters.size());
   for (const auto& parameter : parameters) words_matter.emplace_back(parameter.choices.size());
   for (const bool inertia : {true, false}) {
-    plugin::ModelSetting setting = Subject::typical_setting();
+    plugin::ModelSetting setting = subject.typical_setting();
     setting.inertia = inertia;
     setting.relaxation_rate = 1.3;
     for (const Trial& trial : trials_at_ends(subject, random, setting)) {
@@ -156,7 +156,7 @@ Finding parameters_matter(const Subject& subject) {
 Finding fluid_independent(const Subject& subject) {
   if (subject.manifest().kind == plugin::ModelKind::collision) return Finding::skipped("is a collision operator");
   Random random = subject.random();
-  const plugin::ModelSetting here = Subject::typical_setting();
+  const plugin::ModelSetting here = subject.typical_setting();
   for (const Trial& trial : trials(subject, random, here)) {
     for (int i = 0; i < 4; ++i) {
       plugin::ModelSetting there = here;

@@ -136,7 +136,7 @@ Finding units(const Subject& subject) {
   if (subject.manifest().kind == plugin::ModelKind::collision) return collision_units(subject);
   Random random = subject.random();
   Worst worst;
-  for (const Trial& trial : trials(subject, random, Subject::typical_setting())) {
+  for (const Trial& trial : trials(subject, random, subject.typical_setting())) {
     for (int i = 0; i < 3; ++i) compare_lattices(worst, subject, trial, random);
   }
   return worst.finding("the same on all lattices");

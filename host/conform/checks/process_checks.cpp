@@ -54,7 +54,7 @@ Finding floating_point(const Subject& subject) {
 Finding leaks(const Subject& subject) {
   if (process_counts == nullptr) return Finding::skipped("allocations are not counted in a build with sanitizers");
   const rouleau_model& model = plugin::open_model(subject.manifest());
-  const plugin::ModelSetup setup(subject.manifest(), subject.typical_parameters(), Subject::typical_setting());
+  const plugin::ModelSetup setup(subject.manifest(), subject.typical_parameters(), subject.typical_setting());
   const auto held = [] { return process_counts->allocations - process_counts->releases; };
   constexpr int cycles = 1000;
   std::int64_t before = 0;
@@ -77,9 +77,9 @@ Finding fuzz(const Subject& subject) {
   for (int i = 0; i < rounds; ++i) {
     std::optional<plugin::ModelInstance> instance;
     try {
-      instance.emplace(subject.manifest(), subject.random_parameters(random), Subject::typical_setting());
+      instance.emplace(subject.manifest(), subject.random_parameters(random), subject.typical_setting());
     } catch (const plugin::ModelRefused&) {  // parameters that do not go together
-      instance.emplace(subject.manifest(), subject.typical_parameters(), Subject::typical_setting());
+      instance.emplace(subject.manifest(), subject.typical_parameters(), subject.typical_setting());
     }
     const std::size_t count = 1 + random() % 97;
     const Values inputs = subject.any_inputs(count, random);

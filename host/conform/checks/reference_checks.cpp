@@ -59,7 +59,7 @@ struct Entry {
   /// Adds a quantity's numbers; those of one with components are a list.
   void add(Values& values, const std::string& name, const Json& given, const units::LatticeUnits& units,
            const units::Dimension& dimension) const {
-    const auto arrays = arrays_of(subject.manifest().kind, name);
+    const auto arrays = arrays_of(subject, name);
     const Json list = given.is_array() ? given : Json::array({given});
     if (list.size() != arrays.size()) refuse(": " + name + " has " + std::to_string(arrays.size()) + " components");
     for (std::size_t k = 0; k < arrays.size(); ++k) values[arrays[k]] = {units.to_lattice(list[k], dimension)};
@@ -71,7 +71,7 @@ std::string state_array(std::size_t k) { return "state." + std::to_string(k); }
 Reference read(const Subject& subject, std::size_t number) {
   const plugin::Manifest& manifest = subject.manifest();
   const Entry entry{subject, manifest.checks[number], manifest.file.string() + " /checks/" + std::to_string(number)};
-  plugin::ModelSetting setting = Subject::typical_setting();
+  plugin::ModelSetting setting = subject.typical_setting();
   setting.inertia = entry.json.value("inertia", false);
   const auto parameters = entry.parameters();
   Reference reference{{subject.make(parameters, setting), parameters, setting, {}}, {}, {}, {}, 0, {}};
@@ -216,10 +216,10 @@ Finding pinned(const Subject& subject) {
     if (!given) loose.push_back(name);
   };
   for (const std::string& name : manifest.needs) {
-    for (const std::string& array : arrays_of(manifest.kind, name)) see(array, name);
+    for (const std::string& array : arrays_of(subject, name)) see(array, name);
   }
   for (const std::string& name : manifest.gives) {
-    for (const std::string& array : arrays_of(manifest.kind, name)) demand(array, name);
+    for (const std::string& array : arrays_of(subject, name)) demand(array, name);
   }
   for (std::size_t k = 0; k < manifest.state.size(); ++k) {
     see(state_array(k), manifest.state[k].name);

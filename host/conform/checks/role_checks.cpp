@@ -128,7 +128,7 @@ std::string without(const plugin::Manifest& manifest, plugin::Role role) {
 Finding roles(const Subject& subject) {
   const auto& parameters = subject.manifest().parameters;
   Random random = subject.random();
-  const auto all = trials(subject, random, Subject::typical_setting());
+  const auto all = trials(subject, random, subject.typical_setting());
   Worst worst;
   for (std::size_t k = 0; k < parameters.size(); ++k) {
     if (!parameters[k].role) continue;

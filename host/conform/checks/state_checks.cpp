@@ -51,7 +51,7 @@ Values advanced(const Subject& subject, const Trial& trial, const Values& end, d
 Finding look_after_step(const Subject& subject) {
   Random random = subject.random();
   Worst worst;
-  for (const Trial& trial : trials(subject, random, Subject::typical_setting())) {
+  for (const Trial& trial : trials(subject, random, subject.typical_setting())) {
     const Values inputs = subject.random_inputs(trial.instance, state_elements, random);
     for (const double time_step : {1.0, std::pow(10.0, uniform(random, 0, 5))}) {
       Call step, look;
@@ -121,7 +121,7 @@ std::vector<Halving> halvings(const Subject& subject, const Trial& trial, const 
 Finding half_steps(const Subject& subject) {
   Random random = subject.random();
   Worst worst;
-  for (const Trial& trial : trials(subject, random, Subject::typical_setting())) {
+  for (const Trial& trial : trials(subject, random, subject.typical_setting())) {
     for (const bool moving : {false, true}) {
       Values inputs = subject.random_inputs(trial.instance, state_elements, random);
       if (!moving) stop(inputs);
@@ -198,7 +198,7 @@ Course held(const Subject& subject, const Trial& trial, const Values& start, dou
 Finding settles(const Subject& subject) {
   Random random = subject.random();
   Worst worst;
-  for (const Trial& trial : trials(subject, random, Subject::typical_setting(), 2)) {
+  for (const Trial& trial : trials(subject, random, subject.typical_setting(), 2)) {
     Values start = subject.random_inputs(trial.instance, state_elements, random);
     stop(start);
     for (std::size_t k = 0; k < subject.manifest().state.size(); ++k) {

@@ -55,7 +55,7 @@ std::vector<Trial> collision_trials(const Subject& subject, Random& random, int 
   const std::array<double, 3> rates = {uniform(random, 0.1, 1.95), 1, random() % 2 == 0 ? 1.999999 : 0.01};
   for (int i = 0; i < 6; ++i) {
     const bool inertia = i % 2 == 1;
-    plugin::ModelSetting setting = Subject::typical_setting();
+    plugin::ModelSetting setting = subject.typical_setting();
     setting.inertia = inertia;
     setting.relaxation_rate = rates[i / 2];
     for (Trial& trial : trials(subject, random, setting, i < 2 ? draws : 0)) {
@@ -82,7 +82,7 @@ std::string place(const Subject& subject, const plugin::ModelSetting& setting, c
                   std::size_t element) {
   std::vector<std::string> words;
   for (const std::string& name : subject.manifest().needs) {
-    for (const std::string& array : arrays_of(subject.manifest().kind, name)) {
+    for (const std::string& array : arrays_of(subject, name)) {
       words.push_back(array + ' ' + in_si(subject, setting, name, inputs.at(array)[element], 10));
     }
   }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "conform/check.hpp"
 #include "conform/subject.hpp"
 
 namespace rouleau::conform {
@@ -22,6 +23,16 @@ std::vector<Trial> trials(const Subject& subject, Random& random, const plugin::
 /// A collision operator's trials without and with inertia, each at a random relaxation rate of the setup: one, one near
 /// its limits, or 1, where much cancels.
 std::vector<Trial> collision_trials(const Subject& subject, Random& random, int draws = 4);
+
+/// What a check finds of a model on each lattice that its manifest names: the worst of it.
+template <Finding (*run)(const Subject&)>
+Finding on_each_lattice(const Subject& subject) {
+  Finding found = run(subject);
+  if (subject.dimension() == 3 || !subject.manifest().works_in(3)) return found;
+  Finding in_space = run(subject.on_lattice(3));
+  in_space.what += " (D3Q19)";
+  return worse(in_space, found) ? in_space : found;
+}
 
 /// A number of a trial's lattice in SI with its unit, "1.2e-05 N/m"; `name` is of "needs" or "gives".
 std::string in_si(const Subject& subject, const plugin::ModelSetting& setting, const std::string& name, double lattice,

@@ -20,6 +20,24 @@ struct Box {
   friend bool operator==(const Box&, const Box&) = default;
 };
 
+/// Rows of a box lie along its first axis. How many there are, and where row i of them is along the other axes.
+template <int D>
+int row_count(const Box<D>& box) {
+  int rows = 1;
+  for (int k = 1; k < D; ++k) rows *= box.size(k);
+  return rows;
+}
+template <int D>
+std::array<int, D - 1> row_of(const Box<D>& box, int i) {
+  std::array<int, D - 1> row{};
+  for (int k = 1; k + 1 < D; ++k) {
+    row[k - 1] = i % box.size(k);
+    i /= box.size(k);
+  }
+  row[D - 2] = i;
+  return row;
+}
+
 /// Node i along an axis lies at coordinate i, in spacings. Along a periodic axis node i + size is an image of node i;
 /// along any other there are walls half a spacing outside the first and the last node, at -1/2 and size - 1/2.
 template <int D>

@@ -95,24 +95,35 @@ class Halo {
 /// Calls function(node, out) for the nodes around a block, `below` nodes deep on its lower sides and `above` on the upper
 /// ones, that the block does not reach by its own periodic images alone and that do not lie beyond a wall. `out`: -1, 0
 /// or 1 along every axis, by where the node lies outside.
-template <class Function>
-void for_halo_nodes(const Domain<2>& domain, int below, int above, Function function) {
-  const Box<2>& block = domain.block;
-  for (int y = block.begin[1] - below; y < block.end[1] + above; ++y) {
-    const bool beside = y >= block.begin[1] && y < block.end[1];
-    for (int x = block.begin[0] - below; x < block.end[0] + above; ++x) {
-      if (beside && x == block.begin[0]) x = block.end[0];
-      const std::array<int, 2> node{x, y};
-      std::array<int, 2> out{};
+template <int D, class Function>
+void for_halo_nodes(const Domain<D>& domain, int below, int above, Function function) {
+  const Box<D>& block = domain.block;
+  std::array<int, D> node;
+  for (int k = 0; k < D; ++k) node[k] = block.begin[k] - below;
+  const auto next_row = [&] {  // false: that was the last one
+    node[0] = block.begin[0] - below;
+    for (int k = 1; k < D; ++k) {
+      if (++node[k] < block.end[k] + above) return true;
+      node[k] = block.begin[k] - below;
+    }
+    return false;
+  };
+  do {
+    std::array<int, D> inside = node;
+    inside[0] = block.begin[0];
+    const bool beside = block.contains(inside);
+    for (; node[0] < block.end[0] + above; ++node[0]) {
+      if (beside && node[0] == block.begin[0]) node[0] = block.end[0];
+      std::array<int, D> out{};
       bool foreign = false, wall = false;
-      for (int k = 0; k < 2; ++k) {
+      for (int k = 0; k < D; ++k) {
         out[k] = node[k] < block.begin[k] ? -1 : (node[k] >= block.end[k] ? 1 : 0);
         foreign = foreign || (out[k] != 0 && !domain.wraps(k));
         wall = wall || domain.wrapped(k, node[k]) < 0;
       }
       if (foreign && !wall) function(node, out);
     }
-  }
+  } while (next_row());
 }
 
 }  // namespace rouleau::core

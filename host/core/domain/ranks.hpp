@@ -86,21 +86,24 @@ std::string text_of_first(const Ranks<D>& ranks, const std::string& text) {
 
 /// From the values of each block's nodes, row after row, those of the whole lattice, on the first rank; nothing on the
 /// others.
-template <class V>
-std::vector<V> gather(const Ranks<2>& ranks, std::vector<V> block) {
+template <class V, int D>
+std::vector<V> gather(const Ranks<D>& ranks, std::vector<V> block) {
   if (!ranks.several()) return block;
   if (!ranks.first()) {
     ranks.transport->send(0, message_of(std::span<const V>(block)));
     return {};
   }
-  const int width = ranks.blocks->domain(0).size[0];
+  const std::array<int, D> size = ranks.blocks->domain(0).size;
   std::vector<V> whole(static_cast<std::size_t>(ranks.blocks->domain(0).nodes()));
   for (int rank = 0; rank < ranks.blocks->ranks(); ++rank) {
     if (rank != 0) block = values_of<V>(ranks.transport->receive(rank));
-    const Box<2> box = ranks.blocks->domain(rank).block;
+    const Box<D> box = ranks.blocks->domain(rank).block;
     auto from = block.begin();
-    for (int y = box.begin[1]; y < box.end[1]; ++y, from += box.size(0)) {
-      std::copy_n(from, box.size(0), whole.begin() + static_cast<std::ptrdiff_t>(width) * y + box.begin[0]);
+    for (int i = 0; i < row_count(box); ++i, from += box.size(0)) {
+      const std::array<int, D - 1> row = row_of(box, i);
+      std::ptrdiff_t at = 0;
+      for (int k = D - 1; k > 0; --k) at = at * size[k] + box.begin[k] + row[k - 1];
+      std::copy_n(from, box.size(0), whole.begin() + at * size[0] + box.begin[0]);
     }
   }
   return whole;

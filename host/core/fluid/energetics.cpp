@@ -1,5 +1,4 @@
 // Kinetic energy and viscous dissipation of the fluid, for the energy ledger.
-#include <rouleau/d2q9.hpp>
 #include <rouleau/dispatch.hpp>
 #include <rouleau/pack.hpp>
 
@@ -16,21 +15,22 @@ ROULEAU_ALWAYS_INLINE S load_wide(const T* from) {
 }
 
 /// Consecutive nodes of a row.
-template <class T>
+template <class T, class Set>
 struct VelocityTask {
-  const T* in[9];
-  const T* force[2];  // null: body_force
-  double body_force[2];
+  const T* in[Set::velocity_count];
+  const T* force[Set::dimension];  // null: body_force
+  double body_force[Set::dimension];
   int count;
-  double* velocity[2];  // to be set
+  double* velocity[Set::dimension];  // to be set
 };
 
-template <class T>
+template <class T, class Set>
 struct FindVelocity {
+  using Task = VelocityTask<T, Set>;
   template <int register_bytes>
-  ROULEAU_ALWAYS_INLINE static void run(const VelocityTask<T>* task) {
+  ROULEAU_ALWAYS_INLINE static void run(const Task* task) {
     using S = Pack<double, register_bytes / 8>;
-    const VelocityTask<T> t = *task;
+    const Task t = *task;
     const int whole = t.count / S::size * S::size;
     for (int x = 0; x < whole; x += S::size) set<S>(t, x);
     for (int x = whole; x < t.count; ++x) set<Pack<double, 1>>(t, x);
@@ -38,45 +38,59 @@ struct FindVelocity {
 
  private:
   template <class S>
-  ROULEAU_ALWAYS_INLINE static void set(const VelocityTask<T>& t, int x) {
-    S u[2] = {S(0.0), S(0.0)};
-    d2q9::for_each_velocity([&](auto q) {
+  ROULEAU_ALWAYS_INLINE static void set(const Task& t, int x) {
+    S u[Set::dimension];
+    for (S& component : u) component = S(0.0);
+    Set::for_each_velocity([&](auto q) {
       const S f = load_wide<T, S>(t.in[q] + x);
-      for (int k = 0; k < 2; ++k) {
-        if (d2q9::velocity[q][k] != 0) u[k] = d2q9::velocity[q][k] > 0 ? u[k] + f : u[k] - f;
+      for (int k = 0; k < Set::dimension; ++k) {
+        if (Set::velocity[q][k] != 0) u[k] = Set::velocity[q][k] > 0 ? u[k] + f : u[k] - f;
       }
     });
-    for (int k = 0; k < 2; ++k) {
+    for (int k = 0; k < Set::dimension; ++k) {
       const S force = t.force[k] != nullptr ? load_wide<T, S>(t.force[k] + x) : S(t.body_force[k]);
       (u[k] + 0.5 * force).store(t.velocity[k] + x);
     }
   }
 };
 
-/// A row of nodes; its velocities and those of the rows below and above, with a node more at both ends.
-template <class T>
-struct EnergyTask {
-  const T* in[9];
-  const double* velocity[3][2];  // null: there is a wall
-  double wall_speed[3];
-  int count;
-  ExactSum *sum_x, *sum_y, *kinetic, *dissipation;
+/// Rows beside a row, itself in the middle, are counted along y first: by -1, 0 or 1 along y and z.
+template <class Set>
+struct RowsAround {
+  static constexpr int count = Set::dimension == 2 ? 3 : 9, middle = count / 2;
+  /// The row that velocity q comes from.
+  static constexpr int origin(int q) {
+    int at = 0;
+    for (int k = Set::dimension - 1; k > 0; --k) at = 3 * at + 1 - Set::velocity[q][k];
+    return at;
+  }
 };
 
-template <class T>
+/// A row of nodes; its velocities and those of the rows around it, with a node more at both ends.
+template <class T, class Set>
+struct EnergyTask {
+  const T* in[Set::velocity_count];
+  const double* velocity[RowsAround<Set>::count][Set::dimension];  // null: there is a wall
+  double wall_speed[3];                                            // by the place along y
+  int count;
+  ExactSum* sum[Set::dimension];
+  ExactSum *kinetic, *dissipation;
+};
+
+template <class T, class Set>
 struct SumEnergy {
+  using Task = EnergyTask<T, Set>;
   template <int register_bytes>
-  ROULEAU_ALWAYS_INLINE static void run(const EnergyTask<T>* task) {
+  ROULEAU_ALWAYS_INLINE static void run(const Task* task) {
     using S = Pack<double, register_bytes / 8>;
-    const EnergyTask<T> t = *task;
+    const Task t = *task;
     double kinetic[stretch], lost[stretch];
     for (int begin = 0; begin < t.count; begin += stretch) {
       const int count = std::min(stretch, t.count - begin), whole = count / S::size * S::size;
       for (int i = 0; i < whole; i += S::size) set<S>(t, begin + i, kinetic + i, lost + i);
       for (int i = whole; i < count; ++i) set<Pack<double, 1>>(t, begin + i, kinetic + i, lost + i);
       const auto terms = static_cast<std::size_t>(count);
-      t.sum_x->add(t.velocity[1][0] + begin, terms);
-      t.sum_y->add(t.velocity[1][1] + begin, terms);
+      for (int k = 0; k < Set::dimension; ++k) t.sum[k]->add(t.velocity[RowsAround<Set>::middle][k] + begin, terms);
       t.kinetic->add(kinetic, terms);
       t.dissipation->add(lost, terms);
     }
@@ -85,39 +99,56 @@ struct SumEnergy {
  private:
   static constexpr int stretch = 256;
   template <class S>
-  ROULEAU_ALWAYS_INLINE static void set(const EnergyTask<T>& t, int x, double* kinetic, double* lost) {
-    const S ux = S::load(t.velocity[1][0] + x), uy = S::load(t.velocity[1][1] + x);
-    S sum = 0.0;
-    d2q9::for_each_velocity([&](auto q) {
-      constexpr int cx = d2q9::velocity[q][0], cy = d2q9::velocity[q][1];
+  ROULEAU_ALWAYS_INLINE static void set(const Task& t, int x, double* kinetic, double* lost) {
+    S u[Set::dimension];
+    for (int k = 0; k < Set::dimension; ++k) u[k] = S::load(t.velocity[RowsAround<Set>::middle][k] + x);
+    S sum = 0.0, square = u[0] * u[0];
+    for (int k = 1; k < Set::dimension; ++k) square += u[k] * u[k];
+    Set::for_each_velocity([&](auto q) {
+      constexpr auto& c = Set::velocity[q];
       if constexpr (q == 0) return;
       const S f = load_wide<T, S>(t.in[q] + x);
-      const double* const* origin = t.velocity[1 - cy];
+      const double* const* origin = t.velocity[RowsAround<Set>::origin(q)];
       if (origin[0] != nullptr) {
-        sum -= f * (cx * (ux - S::load(origin[0] + x - cx)) + cy * (uy - S::load(origin[1] + x - cx)));
+        S change = c[0] * (u[0] - S::load(origin[0] + x - c[0]));
+        for (int k = 1; k < Set::dimension; ++k) change += c[k] * (u[k] - S::load(origin[k] + x - c[0]));
+        sum -= f * change;
       } else {
-        const double speed = t.wall_speed[1 - cy], moved = 6 * d2q9::weight[q] * cx * speed;  // as in wall_stress()
-        sum -= (2.0 * f - moved) * (cx * (ux - speed) + cy * uy);
+        const double speed = t.wall_speed[1 - c[1]], moved = 6 * Set::weight[q] * c[0] * speed;  // as in wall_stress()
+        S change = c[0] * (u[0] - speed);
+        for (int k = 1; k < Set::dimension; ++k) change += c[k] * u[k];
+        sum -= (2.0 * f - moved) * change;
       }
     });
-    (0.5 * (ux * ux + uy * uy)).store(kinetic);
+    (0.5 * square).store(kinetic);
     sum.store(lost);
   }
 };
 
-/// Velocities of rows [-1, ny], each with a node more at both ends: of all rows, or only of three that follow each other.
+/// Velocities of rows with a node more at both ends, and of those around the block: of all of them, or only of three
+/// layers, across the last axis, that follow each other.
+template <int D>
 class VelocityRows {
  public:
-  VelocityRows(int nx, int rows) : width_(nx + 2), rows_(rows) {
-    for (auto& values : values_) values.resize(static_cast<std::size_t>(width_) * rows);
+  VelocityRows(const Box<D>& block, int layers) : layers_(layers) {
+    stride_[0] = 1;
+    for (int k = 1; k < D; ++k) stride_[k] = stride_[k - 1] * (block.size(k - 1) + 2);
+    for (auto& values : values_) values.resize(static_cast<std::size_t>(stride_[D - 1]) * layers);
   }
-  /// Component k of row y, at x = 0.
-  [[nodiscard]] double* row(int k, int y) { return values_[k].data() + width_ * ((y + 1) % rows_) + 1; }
+  /// Every component of a row, at x = 0; its coordinates in [-1, size].
+  [[nodiscard]] std::array<double*, D> row(std::array<int, D - 1> row) {
+    row[D - 2] = (row[D - 2] + 1) % layers_ - 1;
+    std::ptrdiff_t at = 1;
+    for (int k = 1; k < D; ++k) at += stride_[k] * (row[k - 1] + 1);
+    std::array<double*, D> u;
+    for (int k = 0; k < D; ++k) u[k] = values_[k].data() + at;
+    return u;
+  }
 
  private:
-  std::ptrdiff_t width_;
-  int rows_;
-  std::vector<double> values_[2];
+  std::array<std::ptrdiff_t, D> stride_;
+  int layers_;
+  std::array<std::vector<double>, D> values_;
 };
 
 }  // namespace
@@ -129,88 +160,119 @@ class VelocityRows {
 //
 // for links that end in a wall the momentum exchanged with it times u(x) - u_wall. In a flow that varies slowly this is
 // 2 mu S:S. Unlike that it is right on the scale of the lattice, too, on which the membranes' forces are spread.
-template <class T>
-void Fluid<T>::velocities(int y, double* ux, double* uy) const {
-  static const auto function = Dispatch<FindVelocity<T>, const VelocityTask<T>*>::pick();
-  const T* in[9];
-  lattice_.row_pointers(parity_, {y}, in);
-  mask_.for_spans(y, [&](const MaskSpan& span) {
-    VelocityTask<T> task{.in = {},
-                         .force = {},
-                         .body_force = {setting_.body_force_x, setting_.body_force_y},
-                         .count = span.end - span.begin,
-                         .velocity = {ux + span.begin, uy + span.begin}};
-    for (int q = 0; q < 9; ++q) task.in[q] = in[q] + span.begin;
-    for (int k = 0; k < 2 && span.active && setting_.membranes; ++k) task.force[k] = force_[k].row(y) + span.begin;
+template <class T, class Set>
+void Fluid<T, Set>::velocities(int i, const std::array<double*, dimension>& u) const {
+  using Task = VelocityTask<T, Set>;
+  static const auto function = Dispatch<FindVelocity<T, Set>, const Task*>::pick();
+  const T* in[velocity_count];
+  const Row row = lattice_.row(i);
+  lattice_.row_pointers(parity_, row, in);
+  mask_.for_spans(i, [&](const MaskSpan& span) {
+    Task task{};
+    task.count = span.end - span.begin;
+    for (int q = 0; q < velocity_count; ++q) task.in[q] = in[q] + span.begin;
+    for (int k = 0; k < dimension; ++k) {
+      task.body_force[k] = setting_.body_force[k];
+      task.velocity[k] = u[k] + span.begin;
+      if (span.active && setting_.membranes) task.force[k] = force_[k].row(row) + span.begin;
+    }
     function(&task);
   });
-  for (double* u : {ux, uy}) {
-    if (setting_.domain.wraps(0)) u[-1] = u[nx() - 1], u[nx()] = u[0];
+  for (double* component : u) {
+    if (setting_.domain.wraps(0)) component[-1] = component[nx() - 1], component[nx()] = component[0];
   }
 }
 
-template <class T>
-typename Fluid<T>::Energetics Fluid<T>::energetics() const {
-  static const auto function = Dispatch<SumEnergy<T>, const EnergyTask<T>*>::pick();
-  const int nx = this->nx(), ny = this->ny();
-  const Domain<2>& domain = setting_.domain;
+template <class T, class Set>
+typename Fluid<T, Set>::Energetics Fluid<T, Set>::energetics() const {
+  using Task = EnergyTask<T, Set>;
+  static const auto function = Dispatch<SumEnergy<T, Set>, const Task*>::pick();
+  const int nx = this->nx();
+  const Domain<dimension>& domain = setting_.domain;
+  constexpr int last = dimension - 1;
+  const int layers = lattice_.size(last), rows_of_layer = lattice_.rows() / layers;
   // Where other blocks want velocities, those of all rows are found first.
   const bool all_first = energetics_halo_ != nullptr;
-  VelocityRows rows(nx, all_first ? ny + 2 : 3);
-  const auto find = [&](int y) {
-    const int from = domain.wraps(1) ? (y + ny) % ny : y;
-    if (from >= 0 && from < ny) velocities(from, rows.row(0, y), rows.row(1, y));
+  VelocityRows<dimension> rows(domain.block, all_first ? layers + 2 : 3);
+  const auto inside = [&](int axis, int place) {
+    const int n = lattice_.size(axis);
+    return domain.wraps(axis) ? (place + n) % n : (place < n ? place : -1);
+  };
+  const auto find = [&](int layer) {
+    const int from = inside(last, layer);
+    if (from < 0) return;
+    if constexpr (dimension == 2) {
+      velocities(from, rows.row({layer}));
+    } else {
+      for (int y = -1; y <= lattice_.size(1); ++y) {
+        const int from_y = inside(1, y);
+        if (from_y >= 0) velocities(from_y + lattice_.size(1) * from, rows.row({y, layer}));
+      }
+    }
   };
   if (all_first) {
-    for (int y = -1; y <= ny; ++y) find(y);
-    double* const first_node[2] = {rows.row(0, 0), rows.row(1, 0)};
+    for (int layer = -1; layer <= layers; ++layer) find(layer);
+    const std::array<double*, dimension> first_node = rows.row(Row{});
     energetics_halo_->begin(Way::out, first_node);
     energetics_halo_->end(Way::out, first_node);
   } else {
     find(-1), find(0);
   }
-  enum { kinetic, sum_x, sum_y, membrane_power, dissipation };
-  std::vector<ExactSum> sums(5);
+  enum { kinetic, membrane_power, dissipation, velocity };
+  std::vector<ExactSum> sums(velocity + dimension);
   std::vector<double> power(static_cast<std::size_t>(nx));
-  for (int y = 0; y < ny; ++y) {
-    if (!all_first) find(y + 1);
-    EnergyTask<T> task{.in = {},
-                       .velocity = {},
-                       .wall_speed = {last_walls_.lower, 0, last_walls_.upper},
-                       .count = nx,
-                       .sum_x = &sums[sum_x],
-                       .sum_y = &sums[sum_y],
-                       .kinetic = &sums[kinetic],
-                       .dissipation = &sums[dissipation]};
-    lattice_.row_pointers(parity_, {y}, task.in);
-    for (int side = -1; side <= 1; ++side) {
-      if ((y + side < 0 && domain.wall_below(1)) || (y + side >= ny && domain.wall_above(1))) continue;
-      for (int k = 0; k < 2; ++k) task.velocity[side + 1][k] = rows.row(k, y + side);
+  for (int i = 0; i < lattice_.rows(); ++i) {
+    const Row row = lattice_.row(i);
+    if (!all_first && i % rows_of_layer == 0) find(row[last - 1] + 1);
+    Task task{};
+    task.wall_speed[0] = last_walls_.lower, task.wall_speed[2] = last_walls_.upper;
+    task.count = nx;
+    for (int k = 0; k < dimension; ++k) task.sum[k] = &sums[velocity + k];
+    task.kinetic = &sums[kinetic];
+    task.dissipation = &sums[dissipation];
+    lattice_.row_pointers(parity_, row, task.in);
+    for (int place = 0; place < RowsAround<Set>::count; ++place) {
+      Row beside = row;
+      bool wall = false;
+      for (int k = 1, rest = place; k < dimension; ++k, rest /= 3) {
+        int& coordinate = beside[k - 1];
+        coordinate += rest % 3 - 1;
+        wall = wall || (coordinate < 0 && domain.wall_below(k)) ||
+               (coordinate >= lattice_.size(k) && domain.wall_above(k));
+      }
+      if (wall) continue;
+      const std::array<double*, dimension> u = rows.row(beside);
+      std::copy(u.begin(), u.end(), task.velocity[place]);
     }
     function(&task);
     if (!setting_.membranes) continue;
-    const double *ux = rows.row(0, y), *uy = rows.row(1, y);
-    mask_.for_spans(y, [&](const MaskSpan& span) {
+    const std::array<double*, dimension> u = rows.row(row);
+    mask_.for_spans(i, [&](const MaskSpan& span) {
       if (!span.active) return;
-      const T *fx = force_[0].row(y), *fy = force_[1].row(y);
       for (int x = span.begin; x < span.end; ++x) {
-        power[x] = (static_cast<double>(fx[x]) - setting_.body_force_x) * ux[x] +
-                   (static_cast<double>(fy[x]) - setting_.body_force_y) * uy[x];
+        power[x] = 0;
+        for (int k = 0; k < dimension; ++k)
+          power[x] += (static_cast<double>(force_[k].row(row)[x]) - setting_.body_force[k]) * u[k][x];
       }
       sums[membrane_power].add(power.data() + span.begin, static_cast<std::size_t>(span.end - span.begin));
     });
   }
   add_up(ranks_, sums);
-  return {.kinetic = sums[kinetic].value(),
-          .dissipation = sums[dissipation].value(),
-          .velocity_x = sums[sum_x].value(),
-          .velocity_y = sums[sum_y].value(),
-          .membrane_power = sums[membrane_power].value()};
+  Energetics energetics{.kinetic = sums[kinetic].value(),
+                        .dissipation = sums[dissipation].value(),
+                        .velocity = {},
+                        .membrane_power = sums[membrane_power].value()};
+  for (int k = 0; k < dimension; ++k) energetics.velocity[k] = sums[velocity + k].value();
+  return energetics;
 }
 
-template void Fluid<float>::velocities(int, double*, double*) const;
-template void Fluid<double>::velocities(int, double*, double*) const;
-template Fluid<float>::Energetics Fluid<float>::energetics() const;
-template Fluid<double>::Energetics Fluid<double>::energetics() const;
+#define ROULEAU_INSTANTIATE(T, Set)                                                          \
+  template void Fluid<T, Set>::velocities(int, const std::array<double*, dimension>&) const; \
+  template Fluid<T, Set>::Energetics Fluid<T, Set>::energetics() const;
+ROULEAU_INSTANTIATE(float, D2Q9)
+ROULEAU_INSTANTIATE(double, D2Q9)
+ROULEAU_INSTANTIATE(float, D3Q19)
+ROULEAU_INSTANTIATE(double, D3Q19)
+#undef ROULEAU_INSTANTIATE
 
 }  // namespace rouleau::core

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <concepts>
 #include <cstddef>
 
 #include "storage.hpp"
@@ -42,23 +43,22 @@ class Field {
 
   /// The row through these coordinates along the other axes, each in [-halo, size + halo); x in [-halo, size(0) + halo)
   /// may be read and written.
-  template <class... Coordinates>
+  template <std::integral... Coordinates>
   [[nodiscard]] T* row(Coordinates... along) {
-    return origin_ + offset(along...);
+    return row(std::array<int, D - 1>{static_cast<int>(along)...});
   }
-  template <class... Coordinates>
+  template <std::integral... Coordinates>
   [[nodiscard]] const T* row(Coordinates... along) const {
-    return origin_ + offset(along...);
+    return row(std::array<int, D - 1>{static_cast<int>(along)...});
   }
+  [[nodiscard]] T* row(const std::array<int, D - 1>& along) { return origin_ + offset(along); }
+  [[nodiscard]] const T* row(const std::array<int, D - 1>& along) const { return origin_ + offset(along); }
 
  private:
   static constexpr int line = 64 / sizeof(T);
-  template <class... Coordinates>
-  [[nodiscard]] std::ptrdiff_t offset(Coordinates... along) const {
-    static_assert(sizeof...(along) == D - 1);
-    const int place[] = {along...};
+  [[nodiscard]] std::ptrdiff_t offset(const std::array<int, D - 1>& along) const {
     std::ptrdiff_t sum = 0;
-    for (int k = 1; k < D; ++k) sum += stride_[k] * place[k - 1];
+    for (int k = 1; k < D; ++k) sum += stride_[k] * along[k - 1];
     return sum;
   }
 

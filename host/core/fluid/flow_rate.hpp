@@ -3,12 +3,15 @@
 
 #include <vector>
 
+#include "core/domain/domain.hpp"
 #include "walls.hpp"
 
 namespace rouleau::core {
 
-/// Integral of the velocity along x over the height, lattice units, from its mean in each row. Between walls it is exact
-/// for velocities that are parabolas in y (midpoint rule with its end correction; the walls' velocity counts as a value).
-double flow_rate(const std::vector<double>& row_velocities, const WallVelocity& walls, bool periodic);
+/// Integral of the velocity along x over the cross-section (the height, in two dimensions), lattice units, from its mean
+/// in each row. Between walls it is exact for velocities that are parabolas from wall to wall (midpoint rule with its end
+/// correction; the walls' velocity counts as a value).
+template <int D>
+double flow_rate(const std::vector<double>& row_velocities, const WallVelocity& walls, const Domain<D>& domain);
 
 }  // namespace rouleau::core

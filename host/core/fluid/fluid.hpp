@@ -1,6 +1,7 @@
 // The fluid of one stage: its lattice, what acts on it, and one step of collision and streaming.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <type_traits>
@@ -19,49 +20,58 @@
 namespace rouleau::core {
 
 /// What a fluid is made of. Lattice units.
+template <int D>
 struct FluidSetting {
-  Domain<2> domain;        ///< periodic along x
+  Domain<D> domain;        ///< periodic along x
   double relaxation_rate;  ///< 1/tau of the suspending fluid
-  /// Viscosity of each row of the lattice over that of `relaxation_rate` (layers.hpp); empty: 1 everywhere.
+  /// Viscosity at each height y of the lattice over that of `relaxation_rate` (layers.hpp); empty: 1 everywhere.
   std::vector<double> viscosity_of_rows = {};
   bool inertia = false;  ///< initial states include the quadratic terms of the equilibrium
   WallVelocity walls = {};
-  double body_force_x = 0, body_force_y = 0;  ///< force density everywhere
-  bool membranes = false;                     ///< keep force and velocity where nodes are active
-  bool viscosity_contrast = false;            ///< keep a relaxation rate where nodes are active
+  std::array<double, D> body_force = {};  ///< force density everywhere
+  bool membranes = false;                 ///< keep force and velocity where nodes are active
+  bool viscosity_contrast = false;        ///< keep a relaxation rate where nodes are active
 };
 
 /// Moments of one node before collision.
+template <int D>
 struct Moments {
-  double density;  ///< deviation from 1
-  double ux, uy;   ///< with half the force
+  double density;                  ///< deviation from 1
+  std::array<double, D> velocity;  ///< with half the force
 };
 
-template <class T>
+template <class T, class Set = D2Q9>
 class Fluid {
  public:
-  /// `ranks`: who holds the other blocks, if the domain's block is not the whole lattice; used as long as the fluid lives.
-  Fluid(const FluidSetting& setting, CollisionOperator collision, const Ranks<2>& ranks = {});
+  static constexpr int dimension = Set::dimension, velocity_count = Set::velocity_count;
+  using Row = typename Lattice<T, Set>::Row;
+  using NodeMoments = Moments<dimension>;
 
-  [[nodiscard]] const FluidSetting& setting() const { return setting_; }
-  [[nodiscard]] const Ranks<2>& ranks() const { return ranks_; }
-  /// All rows of the block.
-  [[nodiscard]] Range rows() const { return {0, ny()}; }
+  /// `ranks`: who holds the other blocks, if the domain's block is not the whole lattice; used as long as the fluid lives.
+  Fluid(const FluidSetting<dimension>& setting, CollisionOperator collision, const Ranks<dimension>& ranks = {});
+
+  [[nodiscard]] const FluidSetting<dimension>& setting() const { return setting_; }
+  [[nodiscard]] const Ranks<dimension>& ranks() const { return ranks_; }
+  /// All rows of the block (Lattice::row).
+  [[nodiscard]] Range rows() const { return {0, lattice_.rows()}; }
   [[nodiscard]] NodeMask& mask() { return mask_; }
   /// Force density: what the next step() acts with. It writes velocity() over it, in the same memory.
-  [[nodiscard]] VectorField<T, 2>& force() { return force_; }
+  [[nodiscard]] VectorField<T, dimension>& force() { return force_; }
   /// Velocity in active nodes, halo included: what the last step() has left.
-  [[nodiscard]] const VectorField<T, 2>& velocity() const { return force_; }
-  [[nodiscard]] Field<T, 2>& relaxation_rate() { return relaxation_rate_; }
+  [[nodiscard]] const VectorField<T, dimension>& velocity() const { return force_; }
+  [[nodiscard]] Field<T, dimension>& relaxation_rate() { return relaxation_rate_; }
   [[nodiscard]] std::size_t bytes() const;
 
   /// Sets velocity u(y) with shear rate du/dy along x everywhere, density 1 (equilibrium and first-order part).
   void set_profile(const std::function<double(double y)>& velocity, const std::function<double(double y)>& shear_rate);
-  /// General initial state by node of the lattice: deviation of density, velocity and its gradient {du/dx, du/dy, dv/dx, dv/dy} at a node.
+  /// General initial state by node of the lattice: deviation of density, velocity and its gradient {du/dx, du/dy, ...,
+  /// dv/dx, dv/dy, ...} at a node.
   struct State {
-    double density, ux, uy, gradient[4];
+    double density, velocity[dimension], gradient[dimension * dimension];
   };
-  void set_state(const std::function<State(int x, int y)>& state);
+  using StateOfNode =
+      std::conditional_t<dimension == 2, std::function<State(int x, int y)>, std::function<State(int x, int y, int z)>>;
+  void set_state(const StateOfNode& state);
   /// Takes over another fluid's state with velocities and density deviation times `factor`: what a stage with another
   /// time step does. Without inertia this scales every population; with it, equilibrium and the rest scale each by its
   /// rule.
@@ -69,7 +79,7 @@ class Fluid {
 
   /// Without inertia: the unsteady term is du/dt as seen from a frame that moves at this velocity (moving_frame.hpp). Of
   /// the next steps and of states that are set; 0 to begin with.
-  void set_frame(double ux, double uy) { frame_[0] = ux, frame_[1] = uy; }
+  void set_frame(double ux, double uy) requires(dimension == 2) { frame_[0] = ux, frame_[1] = uy; }
   /// What drives the next steps, where that changes with time: the speeds of the walls during a step, and the force
   /// along x at its beginning. One worker, between steps.
   void set_drive(const WallVelocity& walls, double body_force_x);
@@ -102,13 +112,13 @@ class Fluid {
   // for it together.
   /// Completes the halo so that moments() may be called.
   void settle();
-  /// Moments of row y of the block, x = 0..nx-1, of the state before the next step. The force of that step must have
+  /// Moments of row i of the block, x = 0..nx-1, of the state before the next step. The force of that step must have
   /// been spread.
-  void moments(int y, std::vector<Moments>& row) const;
+  void moments(int i, std::vector<NodeMoments>& values) const;
   /// Of all nodes of the lattice, row after row, on the first rank; empty on the others.
-  [[nodiscard]] std::vector<Moments> all_moments() const;
+  [[nodiscard]] std::vector<NodeMoments> all_moments() const;
   [[nodiscard]] std::vector<double> all_relaxation_rates();
-  /// Mean velocity along x of each row of the lattice.
+  /// Mean velocity along x of each row of the lattice (flow_rate.hpp).
   [[nodiscard]] std::vector<double> row_velocities() const;
   /// The same without the half step that the membranes' forces have still to act, and so before these are known; after
   /// settle(). All of them together have no share in the mean.
@@ -120,7 +130,7 @@ class Fluid {
     double mass, speed;  ///< not a number if any density or velocity is none
   };
   [[nodiscard]] MassAndSpeed mass_and_speed() const;
-  /// Mean shear stress that the fluid has exerted on the lower and the upper wall in the last step, along +x, by momentum
+  /// Mean shear stress that the fluid has exerted on the lower and the upper wall across y in the last step, along +x, by momentum
   /// exchange. NaN
   /// between the start of a fluid at rest (or taken over) and its first step: walls that have just begun to move have
   /// exchanged nothing yet.
@@ -130,14 +140,17 @@ class Fluid {
   [[nodiscard]] WallStress wall_stress() const;
   /// What of the fluid's energy there is and what becomes of it, summed over all nodes; state as in moments().
   struct Energetics {
-    double kinetic;                 ///< u^2/2, density 1
-    double dissipation;             ///< what viscosity takes in a step, see energetics.cpp
-    double velocity_x, velocity_y;  ///< sums of u
-    double membrane_power;          ///< of the forces beside the body force, f . u
+    double kinetic;                          ///< u^2/2, density 1
+    double dissipation;                      ///< what viscosity takes in a step, see energetics.cpp
+    std::array<double, dimension> velocity;  ///< sums of u
+    double membrane_power;                   ///< of the forces beside the body force, f . u
   };
   [[nodiscard]] Energetics energetics() const;
   /// Populations before the next collision, for tests.
-  [[nodiscard]] double population(int q, int x, int y) const;
+  [[nodiscard]] double population(int q, int x, const Row& row) const;
+  [[nodiscard]] double population(int q, int x, int y) const requires(dimension == 2) {
+    return population(q, x, Row{y});
+  }
   /// The block's populations of one velocity before the next collision, row after row, for checkpoints. After settle().
   void copy_populations(int q, std::vector<T>& values) const;
   /// Whether the walls have exchanged momentum with this state of the fluid (WallStress).
@@ -146,47 +159,53 @@ class Fluid {
   void restore(const std::function<std::vector<T>(int q)>& populations, bool walls_have_acted);
 
  private:
-  /// Velocities of row y, x in [0, nx), and where the block wraps around in [-1, nx].
-  void velocities(int y, double* ux, double* uy) const;
-  /// Nodes of the block along x, and its rows.
+  /// Velocities of row i, x in [0, nx), and where the block wraps around in [-1, nx].
+  void velocities(int i, const std::array<double*, dimension>& u) const;
+  /// Nodes of the block along x.
   [[nodiscard]] int nx() const { return setting_.domain.block.size(0); }
-  [[nodiscard]] int ny() const { return setting_.domain.block.size(1); }
-  /// 1/tau of the fluid in a row of the block, cells aside.
-  [[nodiscard]] double rate_of_row(int y) const {
-    return setting_.viscosity_of_rows.empty() ? setting_.relaxation_rate : rate_of_row_[y];
+  /// 1/tau of the fluid at a height of the block, cells aside.
+  [[nodiscard]] double rate_of_row(const Row& row) const {
+    return setting_.viscosity_of_rows.empty() ? setting_.relaxation_rate : rate_of_row_[row[0]];
   }
-  [[nodiscard]] bool in_layer(int y) const { return rate_of_row(y) != setting_.relaxation_rate; }
-  [[nodiscard]] double equilibrium(int q, double density, double ux, double uy) const;
-  /// Whether membranes may reach the halo that belongs to row y.
-  [[nodiscard]] bool reaches_border(int y) const;
-  /// Pointers to the populations of row y, as Lattice::row_pointers gives them; they come back unchanged.
-  void collide_row(int y, const T* (&in)[9], T* (&out)[9]);
-  void add_moving_frame(int y, T* (&out)[9]);
+  [[nodiscard]] bool in_layer(const Row& row) const { return rate_of_row(row) != setting_.relaxation_rate; }
+  [[nodiscard]] double equilibrium(int q, double density, const std::array<double, dimension>& u) const;
+  [[nodiscard]] bool driven() const { return setting_.body_force != std::array<double, dimension>{}; }
+  void fill_body_force_rows();
+  /// Sums over all ranks, row by row of the lattice, of what `add(i, sum)` adds of row i of the block.
+  template <class Function>
+  [[nodiscard]] std::vector<double> means_of_rows(Function add) const;
+  /// Whether membranes may reach the halo that belongs to row i.
+  [[nodiscard]] bool reaches_border(int i, const Row& row) const;
+  /// Pointers to the populations of row i, as Lattice::row_pointers gives them; they come back unchanged.
+  void collide_row(int i, const Row& row, const T* (&in)[velocity_count], T* (&out)[velocity_count]);
+  void add_moving_frame(int i, const Row& row, T* (&out)[velocity_count]);
 
   void make_halos();
   template <class Function>
   void with_arrays(Function function);
 
   using Block = std::conditional_t<std::is_same_v<T, double>, rouleau_collision_block_f64, rouleau_collision_block_f32>;
-  FluidSetting setting_;
-  Ranks<2> ranks_;
+  FluidSetting<dimension> setting_;
+  Ranks<dimension> ranks_;
   CollisionOperator collision_;
   void (*collide_)(const void* self, const Block* block);  ///< of the collision model
-  Lattice<T, D2Q9> lattice_;
+  Lattice<T, Set> lattice_;
   Parity parity_ = Parity::even;
   bool walls_have_acted_ = false;
   WallVelocity last_walls_;
-  double frame_[2] = {0, 0};
+  std::array<double, dimension> frame_ = {};
   NodeMask mask_;
-  VectorField<T, 2> force_;
-  Field<T, 2> relaxation_rate_;
-  std::vector<double> rate_of_row_;                              ///< of the block; empty without layers
-  std::unique_ptr<Halo<T, 2>> population_halo_, velocity_halo_;  ///< null without other blocks
-  std::unique_ptr<Halo<double, 2>> energetics_halo_;             ///< of velocities, one node deep
-  std::vector<T> body_force_row_[2];                             ///< constant; empty without a body force
+  VectorField<T, dimension> force_;
+  Field<T, dimension> relaxation_rate_;
+  std::vector<double> rate_of_row_;  ///< by height in the block; empty without layers
+  std::unique_ptr<Halo<T, dimension>> population_halo_, velocity_halo_;  ///< null without other blocks
+  std::unique_ptr<Halo<double, dimension>> energetics_halo_;             ///< of velocities, one node deep
+  std::array<std::vector<T>, dimension> body_force_row_;                 ///< constant; empty without a body force
 };
 
 extern template class Fluid<float>;
 extern template class Fluid<double>;
+extern template class Fluid<float, D3Q19>;
+extern template class Fluid<double, D3Q19>;
 
 }  // namespace rouleau::core

@@ -27,5 +27,7 @@ Lattice<T, Set>::Lattice(const Domain<dimension>& domain) : domain_(domain) {
 
 template class Lattice<float, D2Q9>;
 template class Lattice<double, D2Q9>;
+template class Lattice<float, D3Q19>;
+template class Lattice<double, D3Q19>;
 
 }  // namespace rouleau::core

@@ -33,6 +33,9 @@ class Lattice {
 
   [[nodiscard]] int size(int axis) const { return domain_.block.size(axis); }
   [[nodiscard]] const Domain<dimension>& domain() const { return domain_; }
+  /// Number of rows; row i of them, whose second coordinate counts first.
+  [[nodiscard]] int rows() const { return row_count(domain_.block); }
+  [[nodiscard]] Row row(int i) const { return row_of(domain_.block, i); }
   /// Whether the block is its own neighbour across both ends of an axis.
   [[nodiscard]] bool wraps(int axis) const { return wraps_[axis]; }
   [[nodiscard]] std::size_t bytes() const { return storage_.bytes(); }
@@ -130,5 +133,7 @@ inline void Lattice<T, Set>::next_row_pointers(Parity parity, const Row& from, c
 
 extern template class Lattice<float, D2Q9>;
 extern template class Lattice<double, D2Q9>;
+extern template class Lattice<float, D3Q19>;
+extern template class Lattice<double, D3Q19>;
 
 }  // namespace rouleau::core

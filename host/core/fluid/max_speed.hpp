@@ -5,52 +5,47 @@
 #include <rouleau/collision.hpp>
 
 #include "core/domain/exact_sum.hpp"
+#include "velocity_set.hpp"
 
 namespace rouleau::core {
 
 /// Nodes of one span of a row, and what was found.
-template <class T>
+template <class T, class Set>
 struct MassAndSpeedTask {
-  const T* in[9];
-  const T* force[2];  // per node, or null
-  T body_force[2];
+  const T* in[Set::velocity_count];
+  const T* force[Set::dimension];  // per node, or null
+  T body_force[Set::dimension];
   int count;
   double mass[2];  // parts of an exact sum of the densities (ExactSum)
   double speed_square, zero;
 };
 
 /// Sum of the densities, largest speed; `zero` becomes NaN with the first value that is not finite.
+template <class T, class Set>
 struct FindMassAndSpeed {
+  using Task = MassAndSpeedTask<T, Set>;
   template <int register_bytes>
-  ROULEAU_ALWAYS_INLINE static void run(MassAndSpeedTask<float>* task) {
-    sweep<register_bytes>(*task);
-  }
-  template <int register_bytes>
-  ROULEAU_ALWAYS_INLINE static void run(MassAndSpeedTask<double>* task) {
-    sweep<register_bytes>(*task);
+  ROULEAU_ALWAYS_INLINE static void run(Task* task) {
+    constexpr int width = register_bytes / sizeof(T);
+    const Task t = *task;
+    const int whole = t.count / width * width;
+    sweep<Pack<T, width>>(t, 0, whole, *task);
+    sweep<Pack<T, 1>>(t, whole, t.count, *task);
   }
 
  private:
-  template <int register_bytes, class T>
-  ROULEAU_ALWAYS_INLINE static void sweep(MassAndSpeedTask<T>& task) {
-    constexpr int width = register_bytes / sizeof(T);
-    const MassAndSpeedTask<T> t = task;
-    const int whole = t.count / width * width;
-    sweep<Pack<T, width>>(t, 0, whole, task);
-    sweep<Pack<T, 1>>(t, whole, t.count, task);
-  }
-  template <class S, class T>
-  ROULEAU_ALWAYS_INLINE static void sweep(const MassAndSpeedTask<T>& t, int begin, int end,
-                                          MassAndSpeedTask<T>& result) {
+  template <class S>
+  ROULEAU_ALWAYS_INLINE static void sweep(const Task& t, int begin, int end, Task& result) {
     using Wide = typename Pack<double, S::size>::Vector;
     Wide mass_high{}, mass_low{};
     S fastest = 0, zero = 0;
     for (int x = begin; x < end; x += S::size) {
-      Node<S, true, false> node;
-      d2q9::for_each_velocity([&](auto q) { node.f[q] = S::load(t.in[q] + x); });
-      for (int k = 0; k < 2; ++k) node.force[k] = t.force[k] != nullptr ? S::load(t.force[k] + x) : S(t.body_force[k]);
+      Node<Set, S, true, false> node;
+      Set::for_each_velocity([&](auto q) { node.f[q] = S::load(t.in[q] + x); });
+      for (int k = 0; k < Set::dimension; ++k)
+        node.force[k] = t.force[k] != nullptr ? S::load(t.force[k] + x) : S(t.body_force[k]);
       node.compute_moments();
-      const S square = node.velocity[0] * node.velocity[0] + node.velocity[1] * node.velocity[1];
+      const S square = node.dot(node.velocity, node.velocity);
       const Wide density = __builtin_convertvector(node.density.vector, Wide);
       const Wide part = ExactSum::high_part(density);
       mass_high += part;

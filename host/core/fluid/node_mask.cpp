@@ -4,11 +4,11 @@
 
 namespace rouleau::core {
 
-NodeMask::NodeMask(const Domain<2>& domain)
-    : domain_(domain),
-      nx_(domain.block.size(0)),
-      ny_(domain.block.size(1)),
-      first_(domain.block.begin[0] % nodes_per_bit),
+NodeMask::NodeMask(const Domain<1>& along_x, int rows)
+    : along_x_(along_x),
+      nx_(along_x.block.size(0)),
+      ny_(rows),
+      first_(along_x.block.begin[0] % nodes_per_bit),
       words_(bit_of(nx_ - 1) / bits_per_word + 1),
       bits_(static_cast<std::size_t>(words_) * ny_, 0),
       spans_(static_cast<std::size_t>(ny_), {MaskSpan{0, nx_, false}}) {}
@@ -22,15 +22,15 @@ void NodeMask::clear(int first_row, int end_row) {
 void NodeMask::mark(int y, int begin, int end) {
   if (y < 0 || y >= ny_ || begin >= end) return;
   std::uint64_t* row = bits_.data() + static_cast<std::size_t>(words_) * y;
-  const int size = domain_.size[0];
-  const int first = end - begin < size ? domain_.wrapped(0, begin) : 0, last = first + std::min(end - begin, size);
+  const int size = along_x_.size[0];
+  const int first = end - begin < size ? along_x_.wrapped(0, begin) : 0, last = first + std::min(end - begin, size);
   mark_nodes(row, first, std::min(last, size));
   if (last > size) mark_nodes(row, 0, last - size);
   list_spans(y);
 }
 
 void NodeMask::mark_nodes(std::uint64_t* row, int begin, int end) {
-  const int before = (domain_.block.begin[0] - first_) / nodes_per_bit;  // bits of the lattice before those kept here
+  const int before = (along_x_.block.begin[0] - first_) / nodes_per_bit;  // bits of the lattice before those kept here
   const int first = std::max(begin / nodes_per_bit - before, 0);
   const int last = std::min((end - 1) / nodes_per_bit - before, bit_of(nx_ - 1));
   for (int bit = first; bit <= last; ++bit) row[bit / bits_per_word] |= std::uint64_t{1} << (bit % bits_per_word);

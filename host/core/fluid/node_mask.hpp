@@ -22,12 +22,15 @@ class NodeMask {
 
   NodeMask() = default;
   /// Nothing is active.
-  explicit NodeMask(const Domain<2>& domain);
+  template <int D>
+  explicit NodeMask(const Domain<D>& domain)
+      : NodeMask({{domain.size[0]}, {domain.periodic[0]}, {{domain.block.begin[0]}, {domain.block.end[0]}}},
+                 row_count(domain.block)) {}
 
   /// Takes the marks of rows [first_row, end_row) away.
   void clear(int first_row, int end_row);
-  /// Marks the nodes of row y of the block that are images of columns [begin, end) of the lattice; rows outside the block
-  /// are left out.
+  /// Marks the nodes of row y of the block (Lattice::row) that are images of columns [begin, end) of the lattice; rows
+  /// outside the block are left out.
   void mark(int y, int begin, int end);
 
   /// Calls function(MaskSpan) for the spans of row y, left to right, covering [0, nx) exactly.
@@ -48,6 +51,7 @@ class NodeMask {
   [[nodiscard]] double active_fraction() const;
 
  private:
+  NodeMask(const Domain<1>& along_x, int rows);
   static constexpr int bits_per_word = 64;
   /// First bit from `bit` on that is not `on`; beyond the row's last bit if there is none.
   [[nodiscard]] int next_change(const std::uint64_t* row, int bit, bool on) const {
@@ -68,7 +72,7 @@ class NodeMask {
   /// Lists the spans of row y anew from its bits.
   void list_spans(int y);
 
-  Domain<2> domain_;
+  Domain<1> along_x_;
   int nx_ = 0, ny_ = 0;
   int first_ = 0;  ///< nodes before the block that its first bit stands for, too
   int words_ = 0;

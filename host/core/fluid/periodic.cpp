@@ -4,138 +4,202 @@
 
 namespace rouleau::core {
 
-namespace d2q9 = rouleau::d2q9;
-
 namespace {
 
 constexpr int width = Field<double, 2>::halo;
 
-/// Slots whose velocity component k has the given sign.
-template <class Function>
-inline void for_slots(int k, int sign, Function function) {
-  d2q9::for_each_velocity([&](auto q) {
-    if (d2q9::velocity[q][k] == sign) function(q);
+/// Slots whose velocity along x has the given sign.
+template <class Set, class Function>
+inline void for_slots(int sign, Function function) {
+  Set::for_each_velocity([&](auto q) {
+    if (Set::velocity[q][0] == sign) function(q);
   });
 }
 
-/// True if slot q of row y is touched from across the left or right border: its row neighbour y - c_y must exist.
-template <class T>
-bool crosses_side(const Lattice<T, D2Q9>& lattice, int q, int y) {
-  const int from = y - d2q9::velocity[q][1];
-  return lattice.wraps(1) || (from >= 0 && from < lattice.size(1));
+/// Whether a row lies at an end of an axis across x that slot q is streamed in from, which must be the block's own other
+/// end: `across` becomes the row of the halo that stands for it there. False: nothing comes to this slot, or it does not
+/// come across such an end.
+template <class T, class Set>
+bool comes_across(const Lattice<T, Set>& lattice, int q, const typename Lattice<T, Set>::Row& row,
+                  typename Lattice<T, Set>::Row& across) {
+  across = row;
+  bool comes = false;
+  for (int k = 1; k < Set::dimension; ++k) {
+    const int c = Set::velocity[q][k], from = row[k - 1] - c, size = lattice.size(k);
+    if (from >= 0 && from < size) continue;
+    if (!lattice.wraps(k)) return false;
+    across[k - 1] += c * size;
+    comes = true;
+  }
+  return comes;
 }
 
-/// Copies a row, with the halo at its ends if it is the block's own, of the slots whose velocity has this sign along y.
+/// The same slots, in the row itself or there: from a row beyond a wall, or one of another block, nothing comes.
+template <class T, class Set>
+bool comes_along(const Lattice<T, Set>& lattice, int q, const typename Lattice<T, Set>::Row& row) {
+  for (int k = 1; k < Set::dimension; ++k) {
+    const int from = row[k - 1] - Set::velocity[q][k];
+    if (!lattice.wraps(k) && (from < 0 || from >= lattice.size(k))) return false;
+  }
+  return true;
+}
+
+/// Whether a row has images in the block's own halo.
+template <class T, class Set>
+bool at_border(const Lattice<T, Set>& lattice, const typename Lattice<T, Set>::Row& row) {
+  for (int k = 1; k < Set::dimension; ++k) {
+    if (lattice.wraps(k) && (row[k - 1] == 0 || row[k - 1] == lattice.size(k) - 1)) return true;
+  }
+  return false;
+}
+
+/// Copies between a row and the rows of the halo that stand for it, with the halo at their ends if it is the block's own.
 /// What comes from beyond a side that is another block's is not there to be copied.
-template <class T>
-void copy_row(Lattice<T, D2Q9>& lattice, int sign, int from, int to) {
+template <class T, class Set>
+void copy_across(Lattice<T, Set>& lattice, const typename Lattice<T, Set>::Row& row, bool out) {
+  if (!at_border(lattice, row)) return;
   const bool wraps = lattice.wraps(0);
-  for_slots(1, sign, [&](int q) {
-    const int along = d2q9::velocity[q][0];
+  Set::for_each_velocity([&](auto q) {
+    typename Lattice<T, Set>::Row across;
+    if (!comes_across(lattice, q, row, across)) return;
+    const int along = Set::velocity[q][0];
     const int begin = wraps ? -1 : (along > 0 ? 1 : 0), end = lattice.size(0) + (wraps ? 1 : (along < 0 ? -1 : 0));
-    for (int x = begin; x < end; ++x) lattice.slot(q, {to})[x] = lattice.slot(q, {from})[x];
+    const T* const from = lattice.slot(q, out ? row : across);
+    std::copy(from + begin, from + end, lattice.slot(q, out ? across : row) + begin);
   });
 }
 
 }  // namespace
 
-template <class T>
-void send_row(Lattice<T, D2Q9>& lattice, int y) {
-  const int nx = lattice.size(0), ny = lattice.size(1);
+template <class T, class Set>
+void send_row(Lattice<T, Set>& lattice, const typename Lattice<T, Set>::Row& row) {
+  const int nx = lattice.size(0);
   if (lattice.wraps(0)) {
-    for_slots(0, +1, [&](int q) { lattice.slot(q, {y})[nx] = lattice.slot(q, {y})[0]; });
-    for_slots(0, -1, [&](int q) { lattice.slot(q, {y})[-1] = lattice.slot(q, {y})[nx - 1]; });
+    for_slots<Set>(+1, [&](int q) { lattice.slot(q, row)[nx] = lattice.slot(q, row)[0]; });
+    for_slots<Set>(-1, [&](int q) { lattice.slot(q, row)[-1] = lattice.slot(q, row)[nx - 1]; });
   }
-  if (!lattice.wraps(1)) return;
-  if (y == 0) copy_row(lattice, +1, 0, ny);
-  if (y == ny - 1) copy_row(lattice, -1, ny - 1, -1);
+  copy_across(lattice, row, true);
 }
 
-template <class T>
-void fill_population_halo(Lattice<T, D2Q9>& lattice) {
-  const int nx = lattice.size(0), ny = lattice.size(1);
-  for (int q = 1; q < 9; ++q) {
-    for (int y = 0; y < ny; ++y) {
-      lattice.slot(q, {y})[nx] = lattice.slot(q, {y})[0];
-      lattice.slot(q, {y})[-1] = lattice.slot(q, {y})[nx - 1];
-    }
-    for (int x = -1; x <= nx; ++x) {
-      lattice.slot(q, {ny})[x] = lattice.slot(q, {0})[x];
-      lattice.slot(q, {-1})[x] = lattice.slot(q, {ny - 1})[x];
-    }
-  }
-}
-
-template <class T>
-void receive_row(Lattice<T, D2Q9>& lattice, int y) {
-  const int nx = lattice.size(0), ny = lattice.size(1);
-  if (lattice.wraps(1)) {
-    if (y == 0) copy_row(lattice, +1, ny, 0);
-    if (y == ny - 1) copy_row(lattice, -1, -1, ny - 1);
-  }
+template <class T, class Set>
+void receive_row(Lattice<T, Set>& lattice, const typename Lattice<T, Set>::Row& row) {
+  const int nx = lattice.size(0);
+  copy_across(lattice, row, false);
   if (!lattice.wraps(0)) return;
-  for_slots(0, +1, [&](int q) {
-    if (crosses_side(lattice, q, y)) lattice.slot(q, {y})[0] = lattice.slot(q, {y})[nx];
+  for_slots<Set>(+1, [&](int q) {
+    if (comes_along(lattice, q, row)) lattice.slot(q, row)[0] = lattice.slot(q, row)[nx];
   });
-  for_slots(0, -1, [&](int q) {
-    if (crosses_side(lattice, q, y)) lattice.slot(q, {y})[nx - 1] = lattice.slot(q, {y})[-1];
+  for_slots<Set>(-1, [&](int q) {
+    if (comes_along(lattice, q, row)) lattice.slot(q, row)[nx - 1] = lattice.slot(q, row)[-1];
   });
 }
 
 namespace {
 
-/// Row `to` beyond a wall from the row that it mirrors.
-template <class T>
-void mirror(Field<T, 2>& field, int from, int to, double wall) {
-  const T* source = field.row(from);
-  T* target = field.row(to);
-  for (int x = -width; x < field.size(0) + width; ++x) target[x] = static_cast<T>(2 * wall) - source[x];
+/// A row of the halo that is made of a row of the block: sum - u if it lies beyond a wall (with another one, sum + u).
+template <int D>
+struct Image {
+  std::array<int, D - 1> row;
+  double sum = 0;
+  bool reversed = false;
+};
+
+/// Writes an image of a row, with the halo at its ends.
+template <class T, int D>
+void write_image(Field<T, D>& field, const std::array<int, D - 1>& row, const Image<D>& image) {
+  const T* const source = field.row(row);
+  T* const target = field.row(image.row);
+  const T sum = static_cast<T>(image.sum);
+  const int begin = -width, end = field.size(0) + width;
+  if (image.reversed) {
+    for (int x = begin; x < end; ++x) target[x] = sum - source[x];
+  } else if (sum != T(0)) {
+    for (int x = begin; x < end; ++x) target[x] = sum + source[x];
+  } else {
+    std::copy(source + begin, source + end, target + begin);
+  }
 }
 
-template <class T>
-void fill_component(Field<T, 2>& field, int y, const Domain<2>& domain, double lower, double upper) {
-  const int nx = field.size(0), ny = field.size(1);
-  T* row = field.row(y);
-  for (int k = 0; k < width && domain.wraps(0); ++k) {
-    row[nx + k] = row[k];
-    row[-1 - k] = row[nx - 1 - k];
+/// Of a component with these speeds of the walls across y.
+template <class T, int D>
+void fill_images(Field<T, D>& field, const std::array<int, D - 1>& row, const Domain<D>& domain, int axis,
+                 const Image<D>& image, const WallVelocity& walls) {
+  if (axis == D) {
+    if (image.row != row) write_image(field, row, image);
+    return;
   }
-  if (domain.wraps(1)) {
-    if (y < width) std::copy(row - width, row + nx + width, field.row(ny + y) - width);
-    if (y >= ny - width) std::copy(row - width, row + nx + width, field.row(y - ny) - width);
-  }
-  if (y < width && domain.wall_below(1)) mirror(field, y, mirrored(y, 0), lower);
-  if (y >= ny - width && domain.wall_above(1)) mirror(field, y, mirrored(y, ny), upper);
+  const int place = row[axis - 1], size = field.size(axis);
+  const auto next = [&](int to, double speed, bool mirrored) {
+    Image<D> further = image;
+    further.row[axis - 1] = to;
+    if (mirrored) further.sum = 2 * speed - image.sum, further.reversed = !image.reversed;
+    fill_images(field, row, domain, axis + 1, further, walls);
+  };
+  next(place, 0, false);
+  const bool low = place < width, high = place >= size - width;
+  if (domain.wraps(axis) && low) next(size + place, 0, false);
+  if (domain.wraps(axis) && high) next(place - size, 0, false);
+  if (domain.wall_below(axis) && low) next(mirrored(place, 0), axis == 1 ? walls.lower : 0, true);
+  if (domain.wall_above(axis) && high) next(mirrored(place, size), axis == 1 ? walls.upper : 0, true);
 }
 
 }  // namespace
 
-template <class T>
-void fill_velocity_halo(VectorField<T, 2>& velocity, int y, const Domain<2>& domain, const WallVelocity& walls) {
-  fill_component(velocity[0], y, domain, walls.lower, walls.upper);
-  fill_component(velocity[1], y, domain, 0.0, 0.0);
-}
-
-template <class T>
-void mirror_velocity(VectorField<T, 2>& velocity, const Domain<2>& domain, const WallVelocity& walls) {
-  const int ny = velocity[0].size(1);
-  for (int k = 0; k < width; ++k) {
-    if (domain.wall_below(1))
-      mirror(velocity[0], k, mirrored(k, 0), walls.lower), mirror(velocity[1], k, mirrored(k, 0), 0.0);
-    const int y = ny - 1 - k;
-    if (domain.wall_above(1))
-      mirror(velocity[0], y, mirrored(y, ny), walls.upper), mirror(velocity[1], y, mirrored(y, ny), 0.0);
+template <class T, int D>
+void fill_velocity_halo(VectorField<T, D>& velocity, const std::array<int, D - 1>& row, const Domain<D>& domain,
+                        const WallVelocity& walls) {
+  for (int component = 0; component < D; ++component) {
+    Field<T, D>& field = velocity[component];
+    const int nx = field.size(0);
+    T* const own = field.row(row);
+    for (int k = 0; k < width && domain.wraps(0); ++k) {
+      own[nx + k] = own[k];
+      own[-1 - k] = own[nx - 1 - k];
+    }
+    fill_images(field, row, domain, 1, {row}, component == 0 ? walls : WallVelocity{});
   }
 }
 
-#define ROULEAU_INSTANTIATE(T)                                                                         \
-  template void fill_population_halo<T>(Lattice<T, D2Q9>&);                                            \
-  template void send_row<T>(Lattice<T, D2Q9>&, int);                                                   \
-  template void receive_row<T>(Lattice<T, D2Q9>&, int);                                                \
-  template void fill_velocity_halo<T>(VectorField<T, 2>&, int, const Domain<2>&, const WallVelocity&); \
-  template void mirror_velocity<T>(VectorField<T, 2>&, const Domain<2>&, const WallVelocity&);
-ROULEAU_INSTANTIATE(float)
-ROULEAU_INSTANTIATE(double)
+template <class T, int D>
+void mirror_velocity(VectorField<T, D>& velocity, const Domain<D>& domain, const WallVelocity& walls) {
+  for (int axis = 1; axis < D; ++axis) {
+    if (domain.periodic[axis]) continue;
+    const int begin = domain.block.begin[axis], lattice = domain.size[axis], size = domain.block.size(axis);
+    const auto mirror = [&](std::array<int, D - 1> row, int from, int to, int component, double speed) {
+      row[axis - 1] = from;
+      Image<D> image{.row = row, .sum = 2 * speed, .reversed = true};
+      image.row[axis - 1] = to;
+      write_image(velocity[component], row, image);
+    };
+    // Of each of the rows beside each other across the other axis, its halo included. A wall may lie in the halo of a block
+    // that does not touch it.
+    Box<D> columns = domain.block;
+    for (int k = 1; k < D; ++k) columns.end[k] = columns.begin[k] + (k == axis ? 1 : velocity[0].size(k) + 2 * width);
+    for (int i = 0; i < row_count(columns); ++i) {
+      std::array<int, D - 1> row = row_of(columns, i);
+      for (int& place : row) place -= width;
+      for (int k = 0; k < width; ++k) {
+        for (int component = 0; component < D; ++component) {
+          const WallVelocity speed = component == 0 && axis == 1 ? walls : WallVelocity{};
+          const int below = -begin - 1 - k, above = lattice - begin + k;
+          if (below >= -width) mirror(row, k - begin, below, component, speed.lower);
+          if (above < size + width) mirror(row, above - 1 - 2 * k, above, component, speed.upper);
+        }
+      }
+    }
+  }
+}
+
+#define ROULEAU_INSTANTIATE(T, Set, D)                                                                        \
+  template void send_row(Lattice<T, Set>&, const Lattice<T, Set>::Row&);                                      \
+  template void receive_row(Lattice<T, Set>&, const Lattice<T, Set>::Row&);                                   \
+  template void fill_velocity_halo<T, D>(VectorField<T, D>&, const std::array<int, D - 1>&, const Domain<D>&, \
+                                         const WallVelocity&);                                                \
+  template void mirror_velocity<T, D>(VectorField<T, D>&, const Domain<D>&, const WallVelocity&);
+ROULEAU_INSTANTIATE(float, D2Q9, 2)
+ROULEAU_INSTANTIATE(double, D2Q9, 2)
+ROULEAU_INSTANTIATE(float, D3Q19, 3)
+ROULEAU_INSTANTIATE(double, D3Q19, 3)
 #undef ROULEAU_INSTANTIATE
 
 }  // namespace rouleau::core

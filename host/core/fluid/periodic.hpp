@@ -9,25 +9,23 @@
 
 namespace rouleau::core {
 
-/// After an even step of row y: copies what its neighbours across the border will read in the odd step.
-template <class T>
-void send_row(Lattice<T, D2Q9>& lattice, int y);
+/// After an even step of a row: copies what its neighbours across the border will read in the odd step. Also after the
+/// populations of a row have been set for an even step, so that the first receive_row() finds what odd steps would have
+/// streamed across the border.
+template <class T, class Set>
+void send_row(Lattice<T, Set>& lattice, const typename Lattice<T, Set>::Row& row);
 
-/// After the populations of all nodes have been set for an even step: what odd steps would have streamed across the
-/// border, so that the first receive_row() finds it.
-template <class T>
-void fill_population_halo(Lattice<T, D2Q9>& lattice);
+/// Before an even step of a row: takes what odd steps have streamed across the border. May be repeated.
+template <class T, class Set>
+void receive_row(Lattice<T, Set>& lattice, const typename Lattice<T, Set>::Row& row);
 
-/// Before an even step of row y: takes what odd steps have streamed across the border. May be repeated.
-template <class T>
-void receive_row(Lattice<T, D2Q9>& lattice, int y);
+/// Sets the halo nodes that belong to a row: periodic images, or beyond a wall 2 u_wall - u (no slip, linear).
+template <class T, int D>
+void fill_velocity_halo(VectorField<T, D>& velocity, const std::array<int, D - 1>& row, const Domain<D>& domain,
+                        const WallVelocity& walls);
 
-/// Sets the halo nodes that belong to row y: periodic images, or beyond a wall 2 u_wall - u (no slip, linear).
-template <class T>
-void fill_velocity_halo(VectorField<T, 2>& velocity, int y, const Domain<2>& domain, const WallVelocity& walls);
-
-/// The rows beyond the walls of a block once more, when the halo at its sides is complete.
-template <class T>
-void mirror_velocity(VectorField<T, 2>& velocity, const Domain<2>& domain, const WallVelocity& walls);
+/// The rows of the halo beyond walls once more, when the halo at its sides is complete.
+template <class T, int D>
+void mirror_velocity(VectorField<T, D>& velocity, const Domain<D>& domain, const WallVelocity& walls);
 
 }  // namespace rouleau::core

@@ -2,23 +2,28 @@
 
 namespace rouleau::core {
 
-template <class T>
-void add_wall_momentum(Lattice<T, D2Q9>& lattice, int y, const WallVelocity& walls) {
+template <class T, class Set>
+void add_wall_momentum(Lattice<T, Set>& lattice, const typename Lattice<T, Set>::Row& row, const WallVelocity& walls) {
   const auto add = [&](int normal, double speed) {
     if (speed == 0) return;
-    d2q9::for_each_velocity([&](auto q) {
-      const int along = d2q9::velocity[q][0];
-      if (d2q9::velocity[q][1] != normal || along == 0) return;
-      const T momentum = static_cast<T>(6 * d2q9::weight[q] * along * speed);
-      T* slot = lattice.slot(q, {y});
+    Set::for_each_velocity([&](auto q) {
+      const int along = Set::velocity[q][0];
+      if (Set::velocity[q][1] != normal || along == 0) return;
+      const T momentum = static_cast<T>(6 * Set::weight[q] * along * speed);
+      T* slot = lattice.slot(q, row);
       for (int x = 0; x < lattice.size(0); ++x) slot[x] += momentum;
     });
   };
-  if (y == 0 && lattice.domain().wall_below(1)) add(+1, walls.lower);
-  if (y == lattice.size(1) - 1 && lattice.domain().wall_above(1)) add(-1, walls.upper);
+  if (row[0] == 0 && lattice.domain().wall_below(1)) add(+1, walls.lower);
+  if (row[0] == lattice.size(1) - 1 && lattice.domain().wall_above(1)) add(-1, walls.upper);
 }
 
-template void add_wall_momentum<float>(Lattice<float, D2Q9>&, int, const WallVelocity&);
-template void add_wall_momentum<double>(Lattice<double, D2Q9>&, int, const WallVelocity&);
+#define ROULEAU_INSTANTIATE(T, Set) \
+  template void add_wall_momentum(Lattice<T, Set>&, const Lattice<T, Set>::Row&, const WallVelocity&);
+ROULEAU_INSTANTIATE(float, D2Q9)
+ROULEAU_INSTANTIATE(double, D2Q9)
+ROULEAU_INSTANTIATE(float, D3Q19)
+ROULEAU_INSTANTIATE(double, D3Q19)
+#undef ROULEAU_INSTANTIATE
 
 }  // namespace rouleau::core

@@ -37,16 +37,17 @@ Model<Table> instance(const rouleau_model& model, const Table* table, rouleau_se
 
 }  // namespace
 
-CollisionOperator collision_operator(const rouleau_model& model, double tau, const Facts& facts, bool inertia) {
-  return instance(model, model.collision, lattice_setup(1 / tau, inertia), facts);
+CollisionOperator collision_operator(const rouleau_model& model, double tau, const Facts& facts, bool inertia,
+                                     int dimension) {
+  return instance(model, model.collision, lattice_setup(dimension, 1 / tau, inertia), facts);
 }
 
 MembraneLaw membrane_law(const rouleau_model& model, const Facts& facts) {
-  return instance(model, model.membrane, lattice_setup(1, false), facts);
+  return instance(model, model.membrane, lattice_setup(2, 1, false), facts);
 }
 
 Potential potential(const rouleau_model& model, const Facts& facts) {
-  return instance(model, model.interaction, lattice_setup(1, false), facts);
+  return instance(model, model.interaction, lattice_setup(2, 1, false), facts);
 }
 
 }  // namespace rouleau::core

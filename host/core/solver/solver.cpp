@@ -13,35 +13,42 @@ namespace rouleau::core {
 
 namespace {
 
-bool has_contrast(const SolverSetup& setup, const Membranes& membranes) {
+template <int D>
+bool has_contrast(const BasicSolverSetup<D>& setup, const Membranes& membranes) {
   if (!setup.layers.empty()) return !membranes.cells.empty();
   return std::any_of(membranes.cells.begin(), membranes.cells.end(),
                      [&](const CellRange& cell) { return setup.cell_types[cell.type].viscosity_ratio != 1; });
 }
 
-FluidSetting fluid_setting(const SolverSetup& setup, const Membranes& membranes) {
+template <int D>
+FluidSetting<D> fluid_setting(const BasicSolverSetup<D>& setup, const Membranes& membranes) {
   for (const int nodes : setup.domain.size) {
-    if (nodes < 1) throw std::invalid_argument("a lattice needs at least one node along x and y");
+    if (nodes < 1) throw std::invalid_argument("a lattice needs at least one node along every axis");
   }
   if (!setup.domain.periodic[0]) throw std::invalid_argument("a lattice without walls along y is periodic along x");
+  if (D == 3 && !membranes.cells.empty()) throw std::invalid_argument("cells are computed in two dimensions only");
+  if (D == 3 && setup.domain.walled(D - 1) && setup.developed)
+    throw std::invalid_argument("the developed flow between walls across z is not known");
   if (!setup.layers.empty() && !membranes.cells.empty() && (setup.semi_implicit || setup.slip_correction))
     throw std::invalid_argument("cells in layers take neither the semi-implicit step nor the slip correction");
   if (!setup.layers.empty() && setup.developed && setup.oscillation.any())
     throw std::invalid_argument("the developed oscillation of layers is not known");
   if (setup.collision.table == nullptr) throw std::invalid_argument("a fluid needs a collision operator");
-  return {.domain = setup.domain,
-          .relaxation_rate = 1 / setup.tau,
-          .viscosity_of_rows = viscosity_of_rows(setup.layers, setup.domain.size[1]),
-          .inertia = setup.inertia,
-          .walls = setup.walls,
-          .body_force_x = setup.body_force_x,
-          .body_force_y = setup.body_force_y,
-          .membranes = !membranes.cells.empty(),
-          .viscosity_contrast = has_contrast(setup, membranes)};
+  FluidSetting<D> setting{.domain = setup.domain,
+                          .relaxation_rate = 1 / setup.tau,
+                          .viscosity_of_rows = viscosity_of_rows(setup.layers, setup.domain.size[1]),
+                          .inertia = setup.inertia,
+                          .walls = setup.walls,
+                          .membranes = !membranes.cells.empty(),
+                          .viscosity_contrast = has_contrast(setup, membranes)};
+  const double body_force[] = {setup.body_force_x, setup.body_force_y, setup.body_force_z};
+  std::copy_n(body_force, D, setting.body_force.begin());
+  return setting;
 }
 
 /// Of a fluid without layers that the same force drives through a channel at the same mean velocity.
-double channel_viscosity(const SolverSetup& setup) {
+template <int D>
+double channel_viscosity(const BasicSolverSetup<D>& setup) {
   if (setup.layers.empty()) return setup.viscosity();
   const double height = setup.domain.size[1];
   double sum = 0;
@@ -82,18 +89,22 @@ double slight_energy_of(const std::vector<CellType>& types, const Membranes& mem
 
 }  // namespace
 
-template <class T>
-Solver<T>::Solver(SolverSetup setup, Membranes& membranes, const Ranks<2>& ranks, std::vector<int> owner)
+template <class T, class Set>
+Solver<T, Set>::Solver(Setup setup, Membranes& membranes, const Ranks<dimension>& ranks, std::vector<int> owner)
     : setup_(std::move(setup)),
       membranes_(membranes),
       fluid_(fluid_setting(setup_, membranes), setup_.collision, ranks) {
-  if (ranks.several()) {
-    if (owner.empty()) owner = CellExchange::owners_by_place(membranes, *ranks.blocks);
-    membranes_.owned.clear();
-    for (const int rank : owner) membranes_.owned.push_back(rank == ranks.transport->rank() ? 1 : 0);
-    exchange_ = std::make_unique<CellExchange>(ranks, std::move(owner));
+  if constexpr (dimension == 2) {
+    if (ranks.several()) {
+      if (owner.empty()) owner = CellExchange::owners_by_place(membranes, *ranks.blocks);
+      membranes_.owned.clear();
+      for (const int rank : owner) membranes_.owned.push_back(rank == ranks.transport->rank() ? 1 : 0);
+      exchange_ = std::make_unique<CellExchange>(ranks, std::move(owner));
+    }
   }
-  if (!membranes.cells.empty()) make_cells();
+  if constexpr (dimension == 2) {
+    if (!membranes.cells.empty()) make_cells();
+  }
   if (setup_.mean_velocity != 0) {
     if (!setup_.domain.walled(1)) throw std::invalid_argument("a mean velocity is kept between walls");
     flow_control_.emplace(setup_.mean_velocity, setup_.body_force_x, channel_viscosity(setup_), setup_.domain.size[1]);
@@ -111,8 +122,8 @@ Solver<T>::Solver(SolverSetup setup, Membranes& membranes, const Ranks<2>& ranks
   observable_pass_ = schedule.observable;
 }
 
-template <class T>
-StepFeatures Solver<T>::features() const {
+template <class T, class Set>
+StepFeatures Solver<T, Set>::features() const {
   return {.cells = !membranes_.cells.empty(),
           .interactions = interaction_forces_ != nullptr,
           .wall_interactions = wall_contacts_ != nullptr,
@@ -122,17 +133,35 @@ StepFeatures Solver<T>::features() const {
           .area_correction = setup_.area_correction,
           .moving_frame = setup_.follow_cells,
           .changing_drive = setup_.oscillation.any() || flow_control_.has_value(),
-          .ranks = exchange_ != nullptr};
+          .ranks = fluid_.ranks().several()};
 }
 
-template <class T>
-void Solver<T>::run(Task task, Worker worker) {
+template <class T, class Set>
+void Solver<T, Set>::run(Task task, Worker worker) {
   switch (task) {
     case Task::set_drive:
       if (!worker.first()) return;
       oscillate(steps_);
       if (flow_control_ && flow_control_->due(steps_)) keep_mean_velocity();
       return;
+    case Task::end_step:
+      if (worker.first()) fluid_.end_step(), ++steps_;
+      return;
+    case Task::exchange_halo:
+      if (worker.first()) fluid_.begin_halo(), fluid_.end_halo();
+      return;
+    case Task::clear_force:
+    case Task::spread:
+    case Task::collide_and_stream:
+      return;  // over rows
+    default:
+      if constexpr (dimension == 2) run_cells(task, worker);
+  }
+}
+
+template <class T, class Set>
+void Solver<T, Set>::run_cells(Task task, Worker worker) requires(dimension == 2) {
+  switch (task) {
     case Task::find_contacts:
       return interaction_forces_->run(worker, 0, membranes_);
     case Task::membrane_forces:
@@ -159,9 +188,6 @@ void Solver<T>::run(Task task, Worker worker) {
       if (viscosity_field_->due())
         viscosity_field_->update(worker, membranes_, fluid_.relaxation_rate(), fluid_.mask());
       return;
-    case Task::end_step:
-      if (worker.first()) fluid_.end_step(), ++steps_;
-      return;
     case Task::interpolate:
       return coupling_->interpolate(worker, membranes_, fluid_.velocity());
     case Task::correct_velocities:
@@ -174,29 +200,23 @@ void Solver<T>::run(Task task, Worker worker) {
       return locate(worker);
     case Task::share_reactions:
     case Task::share_forces:
-    case Task::exchange_halo:
     case Task::collect_velocities:
     case Task::share_positions:
       if (worker.first()) exchange(task);
       return;
-    case Task::clear_force:
-    case Task::spread:
-    case Task::collide_and_stream:
-      break;  // over rows
+    default:
+      return;  // of the fluid
   }
 }
 
-template <class T>
-void Solver<T>::exchange(Task task) {
+template <class T, class Set>
+void Solver<T, Set>::exchange(Task task) {
   if (task == Task::share_reactions) {
     exchange_->share_reactions(*interaction_forces_);
   } else if (task == Task::share_forces) {
     const auto [x, y] = slip_correction_ ? slip_correction_->forces_of_all()
                                          : std::array{membranes_.force_x.data(), membranes_.force_y.data()};
     exchange_->share_forces(membranes_, x, y);
-  } else if (task == Task::exchange_halo) {
-    fluid_.begin_halo();
-    fluid_.end_halo();
   } else if (task == Task::collect_velocities) {
     exchange_->collect_velocities(membranes_, [this](int node) { return coupling_->base(node); });
   } else {
@@ -204,31 +224,33 @@ void Solver<T>::exchange(Task task) {
   }
 }
 
-template <class T>
-void Solver<T>::run_rows(Task task, Range rows) {
+template <class T, class Set>
+void Solver<T, Set>::run_rows(Task task, Range rows) {
   if (task == Task::clear_force) {
     fluid_.clear_force(rows);
   } else if (task == Task::spread) {
-    coupling_->spread(rows, membranes_, slip_correction_ ? slip_correction_->forces() : membranes_.forces(),
-                      fluid_.force());
+    if constexpr (dimension == 2) {
+      coupling_->spread(rows, membranes_, slip_correction_ ? slip_correction_->forces() : membranes_.forces(),
+                        fluid_.force());
+    }
   } else {
     fluid_.step(rows);
   }
 }
 
-template <class T>
-RowBands Solver<T>::bands() const {
+template <class T, class Set>
+RowBands Solver<T, Set>::bands() const {
   // Force and velocity of a band's active nodes should stay in a cache of this size until they have been used; about ten
   // of the lattice are active for one of a membrane.
   constexpr int cache = 1 << 19, active_per_node = 10;
-  const int rows = setup_.domain.block.size(1), columns = setup_.domain.block.size(0);
+  const int rows = row_count(setup_.domain.block), columns = setup_.domain.block.size(0);
   const int active = std::clamp(active_per_node * membranes_.node_count() / rows, 1, columns);  // of a row
-  const int height = std::max(8, cache / (active * static_cast<int>(2 * sizeof(T))));
+  const int height = std::max(8, cache / (active * static_cast<int>(dimension * sizeof(T))));
   return {.rows = rows, .height = height, .upwards = fluid_.sweeps_up()};
 }
 
-template <class T>
-void Solver<T>::make_cells() {
+template <class T, class Set>
+void Solver<T, Set>::make_cells() requires(dimension == 2) {
   if (setup_.slip_correction) make_slip_correction();
   membranes_.largest_step.resize(membranes_.cells.size(), 0.0);
   if (setup_.area_correction) membranes_.area_leakage.resize(membranes_.cells.size(), 0.0);  // earlier leakage stays
@@ -261,8 +283,8 @@ void Solver<T>::make_cells() {
   locate(Worker{});
 }
 
-template <class T>
-void Solver<T>::make_slip_correction() {
+template <class T, class Set>
+void Solver<T, Set>::make_slip_correction() {
   std::vector<SlipCorrection::Type> types;
   for (const CellType& type : setup_.cell_types) {
     const Stiffness stiffness = stiffness_of(type.laws);
@@ -272,8 +294,8 @@ void Solver<T>::make_slip_correction() {
   slip_correction_ = std::make_unique<SlipCorrection>(membranes_, std::move(types), setup_.viscosity());
 }
 
-template <class T>
-void Solver<T>::start(Solver* former) {
+template <class T, class Set>
+void Solver<T, Set>::start(Solver* former) {
   steps_ = 0;
   double faster = 0;  // what the membranes' last displacement is worth in the new time step
   if (setup_.developed && !setup_.layers.empty()) {
@@ -300,9 +322,11 @@ void Solver<T>::start(Solver* former) {
         [&](double y) { return rate - curvature * (y - middle) + oscillating(y - middle).slope; });
   } else if (former != nullptr) {
     faster = setup_.time_step / former->setup_.time_step;
-    const auto [u, v] = mean_velocity(membranes_);
-    former->follow_cells({u, v});
-    follow_cells({faster * u, faster * v});
+    if constexpr (dimension == 2) {
+      const auto [u, v] = mean_velocity(membranes_);
+      former->follow_cells({u, v});
+      follow_cells({faster * u, faster * v});
+    }
     fluid_.take_over(former->fluid_, faster);
   }
   for (auto* velocity : {&membranes_.velocity_x, &membranes_.velocity_y}) {
@@ -311,8 +335,8 @@ void Solver<T>::start(Solver* former) {
   std::fill(membranes_.largest_step.begin(), membranes_.largest_step.end(), 0.0);
 }
 
-template <class T>
-void Solver<T>::start(const SolverState<T>& state) {
+template <class T, class Set>
+void Solver<T, Set>::start(const SolverState<T>& state) {
   steps_ = state.steps;
   if (steps_ > 0) oscillate(steps_ - 1);
   if (flow_control_ && state.flow_control) {
@@ -320,20 +344,21 @@ void Solver<T>::start(const SolverState<T>& state) {
     fluid_.set_drive(setup_.walls, state.flow_control->force);
   }
   fluid_.restore(state.populations, state.walls_have_acted);
-  if (viscosity_field_) {
-    viscosity_field_->restore(state.viscosity, membranes_, fluid_.relaxation_rate(), fluid_.mask());
+  if constexpr (dimension == 2) {
+    if (viscosity_field_)
+      viscosity_field_->restore(state.viscosity, membranes_, fluid_.relaxation_rate(), fluid_.mask());
   }
 }
 
-template <class T>
-void Solver<T>::follow_cells(const std::array<double, 2>& velocity) {
+template <class T, class Set>
+void Solver<T, Set>::follow_cells(const std::array<double, 2>& velocity) requires(dimension == 2) {
   if (setup_.follow_cells) fluid_.set_frame(velocity[0], setup_.domain.periodic[1] ? velocity[1] : 0);
 }
 
 /// Walls in the middle of the step and the force at its beginning make the scheme one of second order in time: a
 /// population meets the wall half a step after its collision, and the velocity at t has half of the force at t in it.
-template <class T>
-void Solver<T>::oscillate(long steps) {
+template <class T, class Set>
+void Solver<T, Set>::oscillate(long steps) {
   const Oscillation& oscillation = setup_.oscillation;
   if (!oscillation.any()) return;
   const double at = static_cast<double>(steps), wall = oscillation.sine(at + 0.5), force = oscillation.sine(at);
@@ -342,47 +367,52 @@ void Solver<T>::oscillate(long steps) {
       setup_.body_force_x + force * oscillation.body_force_x);
 }
 
-template <class T>
-void Solver<T>::keep_mean_velocity() {
+template <class T, class Set>
+void Solver<T, Set>::keep_mean_velocity() {
   fluid_.settle();
-  const double rate = flow_rate(fluid_.row_velocities_without_membranes(), setup_.walls, false);
-  fluid_.set_drive(setup_.walls, flow_control_->follow(rate / setup_.domain.size[1]));
+  const Domain<dimension>& domain = setup_.domain;
+  const double rate = flow_rate(fluid_.row_velocities_without_membranes(), setup_.walls, domain);
+  double section = 1;
+  for (int k = 1; k < dimension; ++k) section *= domain.size[k];
+  fluid_.set_drive(setup_.walls, flow_control_->follow(rate / section));
 }
 
-template <class T>
-void Solver<T>::step(long count) {
+template <class T, class Set>
+void Solver<T, Set>::step(long count) {
   for (; count > 0; --count) run_alone(0, passes_.size());
 }
 
-template <class T>
-void Solver<T>::compute_forces() {
+template <class T, class Set>
+void Solver<T, Set>::compute_forces() {
   run_alone(0, observable_pass_);
 }
 
-template <class T>
-void Solver<T>::advance() {
+template <class T, class Set>
+void Solver<T, Set>::advance() {
   run_alone(observable_pass_, passes_.size());
 }
 
-template <class T>
-void Solver<T>::run_alone(std::size_t first, std::size_t last) {
+template <class T, class Set>
+void Solver<T, Set>::run_alone(std::size_t first, std::size_t last) {
   Barrier nobody(1);
   run_passes(passes_, first, last, bands(), Worker{}, nobody, nullptr);
 }
 
 /// Pass over cells: where the nodes touch the lattice.
-template <class T>
-void Solver<T>::locate(Worker worker) {
+template <class T, class Set>
+void Solver<T, Set>::locate(Worker worker) {
   if (slip_correction_) slip_correction_->measure(worker, membranes_);
   coupling_->locate(worker, membranes_, slip_correction_ ? slip_correction_->positions() : membranes_.positions());
 }
 
-template <class T>
-void Solver<T>::tensions(std::vector<double>& tension) const {
+template <class T, class Set>
+void Solver<T, Set>::tensions(std::vector<double>& tension) const {
   membrane_forces_->tensions(membranes_, tension);
 }
 
 template class Solver<float>;
 template class Solver<double>;
+template class Solver<float, D3Q19>;
+template class Solver<double, D3Q19>;
 
 }  // namespace rouleau::core

@@ -1,6 +1,7 @@
 // The simulator: fluid, membranes and what couples them, stepped by any number of workers.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -36,14 +37,19 @@ struct SolverState {
 
 /// Everything that one setup computes with. Membranes belong to the caller and outlive it: the next setup of a run goes
 /// on with them.
-template <class T>
+///
+/// T: of the populations; Set: D2Q9 or, without cells, D3Q19.
+template <class T, class Set = D2Q9>
 class Solver {
  public:
+  static constexpr int dimension = Set::dimension;
+  using Setup = BasicSolverSetup<dimension>;
+
   /// The fluid is at rest until start(); `membranes` must outlive the solver. Throws
-  /// std::invalid_argument for a setup without nodes or collision operator.
+  /// std::invalid_argument for a setup without nodes or collision operator, and for cells in three dimensions.
   /// `ranks`: who computes the other blocks, if the domain's block is not the whole lattice, and `owner[c]` the rank of
   /// cell c; none: by place. Every rank is given all cells.
-  Solver(SolverSetup setup, Membranes& membranes, const Ranks<2>& ranks = {}, std::vector<int> owner = {});
+  Solver(Setup setup, Membranes& membranes, const Ranks<dimension>& ranks = {}, std::vector<int> owner = {});
 
   /// The fluid that the setup asks for: developed, or what `former` left (null: there was none), rescaled with the time
   /// step: velocities and density deviations of the same flow scale like it. The nodes' velocities with it.
@@ -58,11 +64,11 @@ class Solver {
   void compute_forces();
   void advance();
 
-  [[nodiscard]] const SolverSetup& setup() const { return setup_; }
-  [[nodiscard]] Fluid<T>& fluid() { return fluid_; }
+  [[nodiscard]] const Setup& setup() const { return setup_; }
+  [[nodiscard]] Fluid<T, Set>& fluid() { return fluid_; }
   [[nodiscard]] const Membranes& membranes() const { return membranes_; }
   /// Who computes the other blocks.
-  [[nodiscard]] const Ranks<2>& ranks() const { return fluid_.ranks(); }
+  [[nodiscard]] const Ranks<dimension>& ranks() const { return fluid_.ranks(); }
   /// One worker, between steps or where the state may be observed: tells all ranks what only the owners of cells know.
   void share_state() {
     if (exchange_) exchange_->share_state(membranes_);
@@ -97,23 +103,24 @@ class Solver {
 
  private:
   [[nodiscard]] StepFeatures features() const;
-  void make_cells();
+  void make_cells() requires(dimension == 2);
   void make_slip_correction();
   /// The frame of the fluid's unsteady term gets the cells' velocity, as far as the walls allow, if the setup wants that.
-  void follow_cells(const std::array<double, 2>& velocity);
+  void follow_cells(const std::array<double, 2>& velocity) requires(dimension == 2);
   /// The fluid is driven as an oscillation wants it in the step that begins after so many.
   void oscillate(long steps);
   /// The force that keeps the mean velocity, from what this is now.
   void keep_mean_velocity();
   void run(Task task, Worker worker);
+  void run_cells(Task task, Worker worker) requires(dimension == 2);
   void run_rows(Task task, Range rows);
   void exchange(Task task);
   void run_alone(std::size_t first, std::size_t last);
   void locate(Worker worker);
 
-  SolverSetup setup_;
+  Setup setup_;
   Membranes& membranes_;
-  Fluid<T> fluid_;
+  Fluid<T, Set> fluid_;
   std::unique_ptr<CellExchange> exchange_;  ///< null without other ranks
   std::unique_ptr<SlipCorrection> slip_correction_;
   std::unique_ptr<MembraneForces> membrane_forces_;
@@ -131,5 +138,7 @@ class Solver {
 
 extern template class Solver<float>;
 extern template class Solver<double>;
+extern template class Solver<float, D3Q19>;
+extern template class Solver<double, D3Q19>;
 
 }  // namespace rouleau::core

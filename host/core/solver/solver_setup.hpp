@@ -24,10 +24,12 @@ struct CellType {
   double viscosity_ratio = 1;
 };
 
-/// Lattice units: spacing, time step and density of the fluid are 1.
-struct SolverSetup {
-  /// Periodic along x; along y periodic, or between walls.
-  Domain<2> domain = {};
+/// In D dimensions: two, or three, where there are no cells yet. Lattice units: spacing, time step and density of the fluid
+/// are 1.
+template <int D>
+struct BasicSolverSetup {
+  /// Periodic along x; along y and z periodic, or between walls.
+  Domain<D> domain = {};
   /// Relaxation time of the suspending fluid in time steps; its kinematic viscosity is (tau - 1/2)/3.
   double tau = 1;
   /// Parts of the suspending fluid with another viscosity, which do not move. With cells, neither the semi-implicit step nor
@@ -39,14 +41,14 @@ struct SolverSetup {
   bool follow_cells = false;
   WallVelocity walls = {};
   /// Force density everywhere.
-  double body_force_x = 0, body_force_y = 0;
+  double body_force_x = 0, body_force_y = 0, body_force_z = 0;
   /// Added to the walls and the body force.
   Oscillation oscillation = {};
-  /// Mean velocity along x between walls at rest that the body force is adapted to keep, from body_force_x on; 0: the
+  /// Mean velocity along x, between walls at rest, that the body force is adapted to keep, from body_force_x on; 0: the
   /// force is what it is.
   double mean_velocity = 0;
-  /// Begin with the developed flow of the walls, the body force and their oscillation; false: with a fluid at rest, or
-  /// the one before.
+  /// Begin with the developed flow of the walls, the body force and their oscillation, not between walls across z; false:
+  /// with a fluid at rest, or the one before.
   bool developed = false;
   CollisionOperator collision = {};
 
@@ -71,5 +73,6 @@ struct SolverSetup {
 
   [[nodiscard]] double viscosity() const { return viscosity_of(tau); }
 };
+using SolverSetup = BasicSolverSetup<2>;
 
 }  // namespace rouleau::core

@@ -29,7 +29,7 @@ const BlockVelocity* FlowReader::at(std::size_t output) {
   if (!velocity_.u.values.empty() && read_ == wanted) return &velocity_;
   const std::string dataset = velocity_of(wanted);
   const files::FieldNodes grid(file_, dataset);
-  const auto values = file_.read(dataset);
+  const std::vector<double> values = grid.section(file_, dataset);
   velocity_.first = grid.box().first;
   velocity_.size = grid.box().size;
   velocity_.periodic_x = grid.periodic[0];

@@ -8,36 +8,62 @@ struct Regularised {
   explicit Regularised(const rouleau::Parameters&) {}
 
   template <class Node, class S>
-  ROULEAU_ALWAYS_INLINE void operator()(const Node& node, const S& omega, S (&after)[9]) const {
+  ROULEAU_ALWAYS_INLINE void operator()(const Node& node, const S& omega, S (&after)[Node::velocity_count]) const {
+    constexpr int d = Node::dimension;
+    constexpr const auto& c = Node::VelocitySet::velocity;
     const auto& f = node.f;
     const S keep = 1.0 - omega, pressure = node.density * (1.0 / 3.0);
-    const S rising = f[5] + f[7], falling = f[6] + f[8];
-    S xx = keep * ((f[1] + f[3]) + (rising + falling) - pressure), xy = keep * (rising - falling);
-    S yy = keep * ((f[2] + f[4]) + (rising + falling) - pressure);
-    S momentum[2] = {node.momentum[0], node.momentum[1]};
+    S stress[d][d], axis[d];
+    for (auto& row : stress) {
+      for (S& component : row) component = S(0);
+    }
+    Node::for_each_pair([&](auto q) {
+      const S pair = f[q] + f[Node::opposite[q]];
+      for (int i = 0; i < d; ++i) {
+        if (q == axes<Node>[i]) axis[i] = pair;
+        for (int j = i; j < d && q != axes<Node>[i]; ++j) {
+          if (c[q][i] * c[q][j] > 0) stress[i][j] += pair;
+          if (c[q][i] * c[q][j] < 0) stress[i][j] -= pair;
+        }
+      }
+    });
+    S momentum[d], half[d];
+    for (int i = 0; i < d; ++i) {
+      stress[i][i] = axis[i] + stress[i][i] - pressure;
+      for (int j = i; j < d; ++j) stress[i][j] *= keep;
+      momentum[i] = node.momentum[i];
+      if constexpr (Node::forced) momentum[i] += node.force[i];
+    }
     if constexpr (Node::inertia) {
       // omega uu + (1 - omega/2)(uF + Fu) = (h u)v + (v h)u with h = omega u/2 + (1 - omega/2) F and v = u.
-      S half[2] = {0.5 * omega * node.velocity[0], 0.5 * omega * node.velocity[1]};
-      if constexpr (Node::forced) {
-        half[0] += (1.0 - 0.5 * omega) * node.force[0];
-        half[1] += (1.0 - 0.5 * omega) * node.force[1];
+      for (int i = 0; i < d; ++i) {
+        half[i] = 0.5 * omega * node.velocity[i];
+        if constexpr (Node::forced) half[i] += (1.0 - 0.5 * omega) * node.force[i];
       }
-      xx += 2.0 * half[0] * node.velocity[0];
-      xy += half[0] * node.velocity[1] + half[1] * node.velocity[0];
-      yy += 2.0 * half[1] * node.velocity[1];
+      for (int i = 0; i < d; ++i) {
+        stress[i][i] += 2.0 * half[i] * node.velocity[i];
+        for (int j = i + 1; j < d; ++j) stress[i][j] += half[i] * node.velocity[j] + half[j] * node.velocity[i];
+      }
     }
-    if constexpr (Node::forced) {
-      momentum[0] += node.force[0];
-      momentum[1] += node.force[1];
+    S trace = stress[0][0];
+    for (int i = 1; i < d; ++i) trace += stress[i][i];
+    for (int i = 0; i < d; ++i) {
+      for (int j = 0; j < i; ++j) stress[i][j] = stress[j][i];
     }
-    const S even = node.density - 1.5 * (xx + yy);
-    after[0] = rouleau::d2q9::weight[0] * even;
-    rouleau::d2q9::for_each_pair([&](auto q) {
-      const S sum = even + 4.5 * node.project(q, {node.project(q, {xx, xy}), node.project(q, {xy, yy})});
-      const S difference = 3.0 * node.project(q, momentum);
-      after[q] = rouleau::d2q9::weight[q] * (sum + difference);
-      after[rouleau::d2q9::opposite[q]] = rouleau::d2q9::weight[q] * (sum - difference);
+    const S even = node.density - 1.5 * trace;
+    after[0] = Node::weight[0] * even;
+    Node::for_each_pair([&](auto q) {
+      S along[d];
+      for (int i = 0; i < d; ++i) along[i] = Node::project(q, stress[i]);
+      const S sum = even + 4.5 * Node::project(q, along), difference = 3.0 * Node::project(q, momentum);
+      after[q] = Node::weight[q] * (sum + difference);
+      after[Node::opposite[q]] = Node::weight[q] * (sum - difference);
     });
   }
+
+ private:
+  /// The velocities along the axes.
+  template <class Node>
+  static constexpr int axes[3] = {1, 2, Node::dimension == 3 ? 9 : 0};
 };
 ROULEAU_COLLISION(Regularised, "regularised", "1.0.0")

@@ -1,10 +1,11 @@
-// Collision operators: a functor over the nine populations of one node becomes a plugin.
+// Collision operators: a functor over the populations of one node, of D2Q9 or D3Q19, becomes a plugin.
 //
 // Moments and equilibrium follow He and Luo (J. Stat. Phys. 88, 1997) with reference density 1, forcing follows Guo,
 // Zheng and Shi (Phys. Rev. E 65, 2002); without inertia the quadratic terms of both are left out (Stokes flow).
 #pragma once
 
 #include "d2q9.hpp"
+#include "d3q19.hpp"
 #include "dispatch.hpp"
 #include "model.hpp"
 
@@ -12,66 +13,94 @@ namespace rouleau {
 
 /// One lattice node before collision. Populations are deviations from rest, f_q - w_q.
 /// Forced and Inertia are compile-time facts, so that a formula pays only for what its node has.
-template <class S, bool Forced, bool Inertia>
+template <class Set, class S, bool Forced, bool Inertia>
 struct Node {
   static constexpr bool forced = Forced;
   static constexpr bool inertia = Inertia;
 
-  S f[9];
-  S force[2];  ///< force density; not to be read unless forced
+  /// D2Q9 or D3Q19: `velocity`, `weight`, `opposite` of each q.
+  using VelocitySet = Set;
+  static constexpr int dimension = Set::dimension, velocity_count = Set::velocity_count;
+  static constexpr const auto& weight = Set::weight;
+  static constexpr const auto& opposite = Set::opposite;
 
-  S density;      ///< deviation from 1
-  S momentum[2];  ///< sum f c, before the force has acted
-  S velocity[2];  ///< momentum + force / 2
+  S f[velocity_count];
+  S force[dimension];  ///< force density; not to be read unless forced
+
+  S density;              ///< deviation from 1
+  S momentum[dimension];  ///< sum f c, before the force has acted
+  S velocity[dimension];  ///< momentum + force / 2
+
+  /// Calls function(q) with every q, or with one of each pair of opposites, as a compile-time constant.
+  template <class Function>
+  ROULEAU_ALWAYS_INLINE static void for_each_velocity(Function&& function) {
+    Set::for_each_velocity(std::forward<Function>(function));
+  }
+  template <class Function>
+  ROULEAU_ALWAYS_INLINE static void for_each_pair(Function&& function) {
+    Set::for_each_pair(std::forward<Function>(function));
+  }
 
   /// Sets density, momentum and velocity from populations and force.
   ROULEAU_ALWAYS_INLINE void compute_moments() {
     // Sums and differences of opposite pairs: what operators that relax even and odd parts compute as well.
-    const S rising = f[5] - f[7], falling = f[6] - f[8];
-    density = f[0] + ((f[1] + f[3]) + (f[2] + f[4])) + ((f[5] + f[7]) + (f[6] + f[8]));
-    momentum[0] = (f[1] - f[3]) + (rising - falling);
-    momentum[1] = (f[2] - f[4]) + (rising + falling);
-    for (int k = 0; k < 2; ++k) {
+    if constexpr (dimension == 2) {
+      const S rising = f[5] - f[7], falling = f[6] - f[8];
+      density = f[0] + ((f[1] + f[3]) + (f[2] + f[4])) + ((f[5] + f[7]) + (f[6] + f[8]));
+      momentum[0] = (f[1] - f[3]) + (rising - falling);
+      momentum[1] = (f[2] - f[4]) + (rising + falling);
+    } else {
+      density = f[0];
+      for (int k = 0; k < dimension; ++k) momentum[k] = S(0);
+      for_each_pair([&](auto q) {
+        density += f[q] + f[opposite[q]];
+        const S difference = f[q] - f[opposite[q]];
+        for (int k = 0; k < dimension; ++k) {
+          if (Set::velocity[q][k] > 0) momentum[k] += difference;
+          if (Set::velocity[q][k] < 0) momentum[k] -= difference;
+        }
+      });
+    }
+    for (int k = 0; k < dimension; ++k) {
       velocity[k] = momentum[k];
       if constexpr (Forced) velocity[k] += 0.5 * force[k];
     }
   }
 
   /// c_q . a for a vector a.
-  ROULEAU_ALWAYS_INLINE static S project(int q, const S (&a)[2]) {
-    switch (q) {
-      case 1:
-        return a[0];
-      case 2:
-        return a[1];
-      case 3:
-        return -a[0];
-      case 4:
-        return -a[1];
-      case 5:
-        return a[0] + a[1];
-      case 6:
-        return a[1] - a[0];
-      case 7:
-        return -(a[0] + a[1]);
-      case 8:
-        return a[0] - a[1];
-      default:
-        return S(0);
+  ROULEAU_ALWAYS_INLINE static S project(int q, const S (&a)[dimension]) {
+    S sum = S(0);
+    bool first = true;
+    for (int k = 0; k < dimension; ++k) {
+      const int c = Set::velocity[q][k];
+      if (c == 0) continue;
+      if (first) {
+        sum = c > 0 ? a[k] : -a[k];
+      } else {
+        sum = c > 0 ? sum + a[k] : sum - a[k];
+      }
+      first = false;
+    }
+    return sum;
+  }
+  /// a . b for vectors a and b.
+  ROULEAU_ALWAYS_INLINE static S dot(const S (&a)[dimension], const S (&b)[dimension]) {
+    if constexpr (dimension == 2) {
+      return a[0] * b[0] + a[1] * b[1];
+    } else {
+      return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
     }
   }
 
   /// What relaxation at a rate adds to the part of f_q that is even under reversal of the velocity (the same for q and
   /// its opposite): rate f_eq + (1 - rate/2) S, with the even parts of equilibrium and of Guo's source.
   ROULEAU_ALWAYS_INLINE S even_gain(int q, const S& rate) const {
-    S gain = rate * d2q9::weight[q] * density;
+    S gain = rate * weight[q] * density;
     if constexpr (Inertia) {
       const S along = project(q, velocity);
-      gain += rate * d2q9::weight[q] *
-              (4.5 * along * along - 1.5 * (velocity[0] * velocity[0] + velocity[1] * velocity[1]));
+      gain += rate * weight[q] * (4.5 * along * along - 1.5 * dot(velocity, velocity));
       if constexpr (Forced) {
-        gain += (1.0 - 0.5 * rate) * d2q9::weight[q] *
-                (9.0 * along * project(q, force) - 3.0 * (velocity[0] * force[0] + velocity[1] * force[1]));
+        gain += (1.0 - 0.5 * rate) * weight[q] * (9.0 * along * project(q, force) - 3.0 * dot(velocity, force));
       }
     }
     return gain;
@@ -80,10 +109,11 @@ struct Node {
   /// half force in u and that in Guo's factor cancel.
   ROULEAU_ALWAYS_INLINE S odd_gain(int q, const S& rate) const {
     if constexpr (Forced) {
-      const S gained[2] = {rate * momentum[0] + force[0], rate * momentum[1] + force[1]};
-      return 3.0 * d2q9::weight[q] * project(q, gained);
+      S gained[dimension];
+      for (int k = 0; k < dimension; ++k) gained[k] = rate * momentum[k] + force[k];
+      return 3.0 * weight[q] * project(q, gained);
     } else {
-      return rate * (3.0 * d2q9::weight[q]) * project(q, momentum);
+      return rate * (3.0 * weight[q]) * project(q, momentum);
     }
   }
 };
@@ -105,25 +135,48 @@ ROULEAU_ALWAYS_INLINE S derived_rates(const Model&, const S& relaxation_rate, lo
 template <class T>
 using CollisionBlock = std::conditional_t<sizeof(T) == 8, rouleau_collision_block_f64, rouleau_collision_block_f32>;
 
+/// Whether an operator is written for a velocity set: `S (&after)[9]` in its signature says D2Q9 alone, `S
+/// (&after)[Node::velocity_count]` any.
+template <class Model, class Set>
+constexpr bool knows() {
+  using S = Pack<double, 1>;
+  using Rates = decltype(derived_rates(std::declval<const Model&>(), std::declval<const S&>(), 0));
+  return std::is_invocable_v<const Model&, const Node<Set, S, false, false>&, const Rates&, S(&)[Set::velocity_count]>;
+}
+
 /// What a collision instance holds: the author's operator and what the loop needs of the setup.
 template <class Model>
 struct CollisionInstance {
   explicit CollisionInstance(const Parameters& parameters)
-      : model(parameters),
+      : dimension(known_dimension(parameters.setup())),
+        model(parameters),
         relaxation_rate(parameters.setup().relaxation_rate),
-        inertia(parameters.setup().inertia != 0) {
-    if (parameters.setup().dimension != 2 || parameters.setup().velocity_count != 9) {
-      throw std::invalid_argument("this operator is written for D2Q9");
-    }
-  }
+        inertia(parameters.setup().inertia != 0) {}
+  int dimension;
   Model model;
   double relaxation_rate;
   bool inertia;
+
+ private:
+  template <class Set>
+  static bool is(const rouleau_setup& setup) {
+    return knows<Model, Set>() && setup.dimension == Set::dimension && setup.velocity_count == Set::velocity_count;
+  }
+  static int known_dimension(const rouleau_setup& setup) {
+    if (is<D2Q9>(setup) || is<D3Q19>(setup)) return static_cast<int>(setup.dimension);
+    throw std::invalid_argument(knows<Model, D3Q19>() ? "this operator is written for D2Q9 and D3Q19"
+                                                      : "this operator is written for D2Q9");
+  }
 };
 
 template <class Model, class T>
-struct CollisionLoop {
+struct CollisionLoop;
+
+/// The loop on one velocity set.
+template <class Set, class Model, class T>
+struct CollisionLoopOn {
   using Block = CollisionBlock<T>;
+  static constexpr int dimension = Set::dimension, velocity_count = Set::velocity_count;
 
   template <int register_bytes>
   ROULEAU_ALWAYS_INLINE static void run(const void* self, const Block* block) {
@@ -142,6 +195,7 @@ struct CollisionLoop {
 
   template <int register_bytes, bool Inertia>
   ROULEAU_ALWAYS_INLINE static void choose(const CollisionInstance<Model>& instance, const Block& block) {
+    if constexpr (dimension == 3) return choose_of_three<register_bytes, Inertia>(instance, block);
     if (block.force == nullptr) {
       if (block.velocity != nullptr) write_velocity<register_bytes>(block);
       choose<register_bytes, Inertia, Force::none>(instance, block);
@@ -160,14 +214,30 @@ struct CollisionLoop {
     }
   }
 
+  /// Three dimensions have three sweeps and not six, since a compiler needs long for each: nothing but the collision; with
+  /// force and velocity; and these with a relaxation rate for each node. What a block has not is read from, and written
+  /// to, a pack here. The baseline has the last one only.
+  template <int register_bytes, bool Inertia>
+  ROULEAU_ALWAYS_INLINE static void choose_of_three(const CollisionInstance<Model>& instance, const Block& block) {
+    if constexpr (register_bytes == static_cast<int>(InstructionSet::baseline)) {
+      sweep<register_bytes, Force::acts_and_velocity, true, Inertia>(instance, block);
+    } else if (block.force == nullptr && block.velocity == nullptr && block.relaxation_rate == nullptr) {
+      sweep<register_bytes, Force::none, false, Inertia>(instance, block);
+    } else if (block.relaxation_rate == nullptr) {
+      sweep<register_bytes, Force::acts_and_velocity, false, Inertia>(instance, block);
+    } else {
+      sweep<register_bytes, Force::acts_and_velocity, true, Inertia>(instance, block);
+    }
+  }
+
   /// Velocity of nodes without a force, before their populations are overwritten: a host seldom asks for it.
   template <int register_bytes>
   ROULEAU_ALWAYS_INLINE static void write_velocity(const Block& block) {
     for (std::uint32_t x = 0; x < block.count; ++x) {
-      Node<Pack<T, 1>, false, false> node;
-      d2q9::for_each_velocity([&](auto q) { node.f[q] = Pack<T, 1>::load(block.in[q] + x); });
+      Node<Set, Pack<T, 1>, false, false> node;
+      Set::for_each_velocity([&](auto q) { node.f[q] = Pack<T, 1>::load(block.in[q] + x); });
       node.compute_moments();
-      for (int k = 0; k < 2; ++k) node.velocity[k].store(block.velocity[k] + x);
+      for (int k = 0; k < dimension; ++k) node.velocity[k].store(block.velocity[k] + x);
     }
   }
 
@@ -180,34 +250,37 @@ struct CollisionLoop {
     const Model model = instance.model;
     const std::uint32_t count = block.count / width * width;
     // Copies: what is stored below could be these pointers, for all the compiler knows.
-    const T *in[9], *from[2];
-    T *out[9], *to[2];
-    d2q9::for_each_velocity([&](auto q) { in[q] = block.in[q], out[q] = block.out[q]; });
-    for (int k = 0; k < 2; ++k) {
-      from[k] = forced ? block.force[k] : nullptr;
-      to[k] = velocity ? block.velocity[k] : nullptr;
+    const T *in[velocity_count], *from[dimension];
+    T *out[velocity_count], *to[dimension];
+    Set::for_each_velocity([&](auto q) { in[q] = block.in[q], out[q] = block.out[q]; });
+    T none[width] = {}, same[width], unread[width];  // for choose_of_three()
+    S(instance.relaxation_rate).store(same);
+    const bool has_force = dimension == 2 || block.force != nullptr;
+    const bool has_velocity = dimension == 2 || block.velocity != nullptr;
+    const bool has_rate = dimension == 2 || block.relaxation_rate != nullptr;
+    for (int k = 0; k < dimension; ++k) {
+      from[k] = !forced ? nullptr : (has_force ? block.force[k] : none);
+      to[k] = !velocity ? nullptr : (has_velocity ? block.velocity[k] : unread);
     }
-    const T* const rate = Varying ? block.relaxation_rate : nullptr;
+    const T* const rate = !Varying ? nullptr : (has_rate ? block.relaxation_rate : same);
     const auto uniform = derived_rates(model, S(instance.relaxation_rate), 0);
     for (std::uint32_t x = 0; x < count; x += width) {
-      Node<S, forced, Inertia> node;
-      d2q9::for_each_velocity([&](auto q) { node.f[q] = S::load(in[q] + x); });
+      Node<Set, S, forced, Inertia> node;
+      Set::for_each_velocity([&](auto q) { node.f[q] = S::load(in[q] + x); });
       if constexpr (forced) {
-        node.force[0] = S::load(from[0] + x);
-        node.force[1] = S::load(from[1] + x);
+        for (int k = 0; k < dimension; ++k) node.force[k] = S::load(from[k] + (has_force ? x : 0));
       }
       node.compute_moments();
       if constexpr (velocity) {
-        node.velocity[0].store(to[0] + x);
-        node.velocity[1].store(to[1] + x);
+        for (int k = 0; k < dimension; ++k) node.velocity[k].store(to[k] + (has_velocity ? x : 0));
       }
-      S after[9];
+      S after[velocity_count];
       if constexpr (Varying) {
-        model(node, derived_rates(model, S::load(rate + x), 0), after);
+        model(node, derived_rates(model, S::load(rate + (has_rate ? x : 0)), 0), after);
       } else {
         model(node, uniform, after);
       }
-      d2q9::for_each_velocity([&](auto q) { after[q].store(out[q] + x); });
+      Set::for_each_velocity([&](auto q) { after[q].store(out[q] + x); });
     }
   }
 
@@ -217,9 +290,9 @@ struct CollisionLoop {
   __attribute__((noinline)) static void collide_rest(const void* self, const Block& block, std::uint32_t rest) {
     constexpr std::uint32_t width = register_bytes / sizeof(T);
     const std::uint32_t first = block.count - rest;
-    T values[14][width];
-    const T *in[9], *force[2];
-    T *out[9], *velocity[2];
+    T values[velocity_count + 2 * dimension + 1][width];
+    const T *in[velocity_count], *force[dimension];
+    T *out[velocity_count], *velocity[dimension];
     const auto copy = [&](const T* from, T(&to)[width]) {
       for (std::uint32_t i = 0; i < width; ++i) to[i] = from[first + (i < rest ? i : 0)];
       return to;
@@ -227,29 +300,45 @@ struct CollisionLoop {
     Block padded{};  // not a copy: an older host's block may be smaller than this struct
     padded.struct_size = sizeof padded;
     padded.count = width;
-    for (int q = 0; q < 9; ++q) in[q] = out[q] = copy(block.in[q], values[q]);
+    for (int q = 0; q < velocity_count; ++q) in[q] = out[q] = copy(block.in[q], values[q]);
     padded.in = in;
     padded.out = out;
-    for (int k = 0; k < 2; ++k) {
-      if (block.force != nullptr) force[k] = copy(block.force[k], values[9 + k]);
-      velocity[k] = values[11 + k];
+    for (int k = 0; k < dimension; ++k) {
+      if (block.force != nullptr) force[k] = copy(block.force[k], values[velocity_count + k]);
+      velocity[k] = values[velocity_count + dimension + k];
     }
     if (block.force != nullptr) padded.force = force;
-    if (block.relaxation_rate != nullptr) padded.relaxation_rate = copy(block.relaxation_rate, values[13]);
+    T(&rates)[width] = values[velocity_count + 2 * dimension];
+    if (block.relaxation_rate != nullptr) padded.relaxation_rate = copy(block.relaxation_rate, rates);
     if (block.velocity != nullptr) padded.velocity = velocity;
-    Dispatch<CollisionLoop, const void*, const Block*>::template variant<register_bytes>()(self, &padded);
+    Dispatch<CollisionLoop<Model, T>, const void*, const Block*>::template variant<register_bytes>()(self, &padded);
     for (std::uint32_t i = 0; i < rest; ++i) {
-      for (int q = 0; q < 9; ++q) block.out[q][first + i] = values[q][i];
-      for (int k = 0; k < 2 && block.velocity != nullptr; ++k) block.velocity[k][first + i] = velocity[k][i];
+      for (int q = 0; q < velocity_count; ++q) block.out[q][first + i] = values[q][i];
+      for (int k = 0; k < dimension && block.velocity != nullptr; ++k) block.velocity[k][first + i] = velocity[k][i];
     }
+  }
+};
+
+/// The loop of an operator, on the velocity set of its setup.
+template <class Model, class T>
+struct CollisionLoop {
+  template <int register_bytes>
+  ROULEAU_ALWAYS_INLINE static void run(const void* self, const CollisionBlock<T>* block) {
+    if constexpr (knows<Model, D3Q19>()) {
+      if (static_cast<const CollisionInstance<Model>*>(self)->dimension == 3) {
+        return CollisionLoopOn<D3Q19, Model, T>::template run<register_bytes>(self, block);
+      }
+    }
+    if constexpr (knows<Model, D2Q9>()) CollisionLoopOn<D2Q9, Model, T>::template run<register_bytes>(self, block);
   }
 };
 
 }  // namespace detail
 
 /// Model made of a type with a constructor from Parameters and
-/// `template <class Node, class S, class Rates> void operator()(const Node& before, const Rates& rates, S (&after)[9])
-/// const`. The rates are what the member `template <class S> Rates<S> rates(const S& relaxation_rate) const` makes of
+/// `template <class Node, class S, class Rates> void operator()(const Node& before, const Rates& rates, S
+/// (&after)[Node::velocity_count]) const`: then it works on D2Q9 and D3Q19, with `S (&after)[9]` on D2Q9 alone; the
+/// manifest's "lattices" has to say so. The rates are what the member `template <class S> Rates<S> rates(const S& relaxation_rate) const` makes of
 /// 1/tau of the shear stress, or 1/tau itself if there is no such member: once for a block where the viscosity is the
 /// same everywhere.
 template <class Model>

@@ -57,7 +57,7 @@ typedef struct rouleau_setup {
 
   /* The lattice: dimension, velocity set with its weights, speed of sound squared.
    * velocities[q * dimension + k] is component k of velocity q; populations have this order everywhere. */
-  uint32_t dimension, velocity_count; /* 2 and 9 in this version */
+  uint32_t dimension, velocity_count; /* 2 and 9, or 3 and 19 */
   const double* velocities;           /* [velocity_count * dimension] */
   const double* weights;              /* [velocity_count], their sum is 1 */
   double sound_speed_squared;         /* 1/3 */

@@ -8,11 +8,11 @@ struct ModelType {
   explicit ModelType(const rouleau::Parameters& p) : odd_rate{p["odd_rate"]} {}
 
   template <class Node, class S>
-  void operator()(const Node& node, const S& omega, S (&after)[9]) const {
+  void operator()(const Node& node, const S& omega, S (&after)[Node::velocity_count]) const {
     const S odd = odd_rate;
-    rouleau::d2q9::for_each_velocity([&](auto q) {
+    Node::for_each_velocity([&](auto q) {
       const S& f = node.f[q];
-      const S& opposite = node.f[rouleau::d2q9::opposite[q]];
+      const S& opposite = node.f[Node::opposite[q]];
       after[q] = 0.5 * (1.0 - omega) * (f + opposite) + node.even_gain(q, omega) + 0.5 * (1.0 - odd) * (f - opposite) +
                  node.odd_gain(q, odd);
     });

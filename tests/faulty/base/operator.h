@@ -6,42 +6,44 @@
 #include "create.h"
 
 typedef struct lattice {
-  double c[9][2], weight[9], relaxation_rate;
-  int inertia;
+  double c[19][3], weight[19], relaxation_rate;
+  int inertia, dimension, count;
 } lattice;
 
 typedef struct node {
-  double f[9], force[2], relaxation_rate;
+  double f[19], force[3], relaxation_rate;
 } node;
 
 typedef struct collided {
-  double f[9], velocity[2];
+  double f[19], velocity[3];
 } collided;
 
-static inline void moments(const lattice* l, const node* n, double* density, double velocity[2]) {
+static inline void moments(const lattice* l, const node* n, double* density, double* velocity) {
   *density = 0;
-  velocity[0] = n->force[0] / 2;
-  velocity[1] = n->force[1] / 2;
-  for (int q = 0; q < 9; ++q) {
+  for (int k = 0; k < l->dimension; ++k) velocity[k] = n->force[k] / 2;
+  for (int q = 0; q < l->count; ++q) {
     *density += n->f[q];
-    velocity[0] += l->c[q][0] * n->f[q];
-    velocity[1] += l->c[q][1] * n->f[q];
+    for (int k = 0; k < l->dimension; ++k) velocity[k] += l->c[q][k] * n->f[q];
   }
 }
 
-static inline double equilibrium(const lattice* l, int q, double density, const double u[2]) {
-  const double along = l->c[q][0] * u[0] + l->c[q][1] * u[1];
+static inline double dot(const lattice* l, const double* a, const double* b) {
+  double sum = 0;
+  for (int k = 0; k < l->dimension; ++k) sum += a[k] * b[k];
+  return sum;
+}
+
+static inline double equilibrium(const lattice* l, int q, double density, const double* u) {
+  const double along = dot(l, l->c[q], u);
   double value = density + 3 * along;
-  if (l->inertia) value += 4.5 * along * along - 1.5 * (u[0] * u[0] + u[1] * u[1]);
+  if (l->inertia) value += 4.5 * along * along - 1.5 * dot(l, u, u);
   return l->weight[q] * value;
 }
 
-static inline double source(const lattice* l, int q, const double force[2], const double u[2]) {
-  const double along = l->c[q][0] * force[0] + l->c[q][1] * force[1];
+static inline double source(const lattice* l, int q, const double* force, const double* u) {
+  const double along = dot(l, l->c[q], force);
   double value = 3 * along;
-  if (l->inertia) {
-    value += 9 * along * (l->c[q][0] * u[0] + l->c[q][1] * u[1]) - 3 * (u[0] * force[0] + u[1] * force[1]);
-  }
+  if (l->inertia) value += 9 * along * dot(l, l->c[q], u) - 3 * dot(l, u, force);
   return l->weight[q] * value;
 }
 
@@ -49,7 +51,7 @@ static inline collided honest_node(const lattice* l, const node* n) {
   collided after;
   double density;
   moments(l, n, &density, after.velocity);
-  for (int q = 0; q < 9; ++q) {
+  for (int q = 0; q < l->count; ++q) {
     after.f[q] = n->f[q] + n->relaxation_rate * (equilibrium(l, q, density, after.velocity) - n->f[q]) +
                  (1 - n->relaxation_rate / 2) * source(l, q, n->force, after.velocity);
   }
@@ -59,16 +61,16 @@ static inline collided honest_node(const lattice* l, const node* n) {
 /* One node of a block, in whichever precision. */
 #define READ_NODE(block, x, l, n)                                                                                \
   do {                                                                                                           \
-    for (int q = 0; q < 9; ++q) (n).f[q] = (block)->in[q][x];                                                    \
-    for (int k = 0; k < 2; ++k) (n).force[k] = (block)->force != NULL ? (block)->force[k][x] : 0;                \
+    for (int q = 0; q < (l)->count; ++q) (n).f[q] = (block)->in[q][x];                                           \
+    for (int k = 0; k < (l)->dimension; ++k) (n).force[k] = (block)->force != NULL ? (block)->force[k][x] : 0;   \
     (n).relaxation_rate = (block)->relaxation_rate != NULL ? (block)->relaxation_rate[x] : (l)->relaxation_rate; \
   } while (0)
-#define WRITE_NODE(type, block, x, after)                                \
-  do {                                                                   \
-    for (int q = 0; q < 9; ++q) (block)->out[q][x] = (type)(after).f[q]; \
-    for (int k = 0; k < 2 && (block)->velocity != NULL; ++k) {           \
-      (block)->velocity[k][x] = (type)(after).velocity[k];               \
-    }                                                                    \
+#define WRITE_NODE(type, block, x, l, after)                                      \
+  do {                                                                            \
+    for (int q = 0; q < (l)->count; ++q) (block)->out[q][x] = (type)(after).f[q]; \
+    for (int k = 0; k < (l)->dimension && (block)->velocity != NULL; ++k) {       \
+      (block)->velocity[k][x] = (type)(after).velocity[k];                        \
+    }                                                                             \
   } while (0)
 
 /* Every node of a block by a formula. */
@@ -79,7 +81,7 @@ static inline void collide_f64(collided (*formula)(const lattice*, const node*),
     node n;
     READ_NODE(block, x, l, n);
     const collided after = formula(l, &n);
-    WRITE_NODE(double, block, x, after);
+    WRITE_NODE(double, block, x, l, after);
   }
 }
 static inline void collide_f32(collided (*formula)(const lattice*, const node*), const void* self,
@@ -89,7 +91,7 @@ static inline void collide_f32(collided (*formula)(const lattice*, const node*),
     node n;
     READ_NODE(block, x, l, n);
     const collided after = formula(l, &n);
-    WRITE_NODE(float, block, x, after);
+    WRITE_NODE(float, block, x, l, after);
   }
 }
 static inline void honest_f64(const void* self, const rouleau_collision_block_f64* block) {
@@ -100,13 +102,17 @@ static inline void honest_f32(const void* self, const rouleau_collision_block_f3
 }
 
 static inline int honest_create(const rouleau_setup* setup, void** self, char* error, size_t error_size) {
-  lattice made;
-  if (setup->dimension != 2 || setup->velocity_count != 9) {
-    snprintf(error, error_size, "this operator is written for D2Q9");
+  lattice made = {0};
+  made.dimension = (int)setup->dimension;
+  made.count = (int)setup->velocity_count;
+  if (!(made.dimension == 2 && made.count == 9) && !(made.dimension == 3 && made.count == 19)) {
+    snprintf(error, error_size, "this operator is written for D2Q9 and D3Q19");
     return 1;
   }
-  memcpy(made.c, setup->velocities, sizeof made.c);
-  memcpy(made.weight, setup->weights, sizeof made.weight);
+  for (int q = 0; q < made.count; ++q) {
+    memcpy(made.c[q], setup->velocities + made.dimension * q, sizeof(double) * (size_t)made.dimension);
+    made.weight[q] = setup->weights[q];
+  }
   made.relaxation_rate = setup->relaxation_rate;
   made.inertia = setup->inertia != 0;
   return keep(&made, sizeof made, self, error, error_size);

@@ -14,7 +14,7 @@ static void f32(const void* self, const rouleau_collision_block_f32* block) {
     node n;
     READ_NODE(block, x, l, n);
     const collided after = honest_node(l, &n);
-    WRITE_NODE(float, block, x, after);
+    WRITE_NODE(float, block, x, l, after);
     for (int q = 0; q < 9; ++q) block->out[q][x] = cut_off(after.f[q]);
   }
 }

@@ -75,7 +75,7 @@ double adjointness_error(const Coupling<T>& coupling, Membranes& m, const core::
                static_cast<double>(force[1].row(y)[x]) * static_cast<double>(velocity[1].row(y)[x]);
     }
   }
-  for (int y = 0; y < ny; ++y) fill_velocity_halo(velocity, y, domain, {});
+  for (int y = 0; y < ny; ++y) fill_velocity_halo<T, 2>(velocity, {y}, domain, {});
   coupling.interpolate({}, m, velocity);
   for (std::size_t i = 0; i < m.x.size(); ++i) error -= m.force_x[i] * m.velocity_x[i] + m.force_y[i] * m.velocity_y[i];
   return error;

@@ -104,7 +104,8 @@ TEST_CASE("beside a moving wall linear flow is interpolated exactly, by every ke
   for (int y = 0; y < ny; ++y) {
     for (int x = 0; x < nx; ++x) velocity[0].row(y)[x] = lower + rate * (y + 0.5);
   }
-  for (int y = 0; y < ny; ++y) fill_velocity_halo(velocity, y, {{nx, ny}, {true, false}}, {lower, lower + rate * ny});
+  for (int y = 0; y < ny; ++y)
+    fill_velocity_halo<double, 2>(velocity, {y}, {{nx, ny}, {true, false}}, {lower, lower + rate * ny});
   Membranes m = biconcave_cells({{12, 8, 0}}, 64);
   auto random = generator(77);
   std::uniform_real_distribution<double> along(0, nx), gap(0, 2);

@@ -149,7 +149,7 @@ TEST_CASE("the relaxation rate follows the arithmetic mean of the viscosities, o
   ViscosityField<double> viscosity_field(m, {5.0, 2.0}, ViscosityMean::arithmetic, 0, 1 / tau,
                                          {{nx, ny}, {true, periodic_y}});
   auto rate = plain_rate<double>(nx, ny, 1 / tau);
-  NodeMask mask({{nx, ny}, {true, false}});
+  NodeMask mask(core::Domain<2>({nx, ny}, {true, false}));
   for (int round = 0; round < 3; ++round) {
     update(viscosity_field, m, rate, mask);
     // Smoothed sum over cells, wrapped, node by node.
@@ -226,7 +226,7 @@ TEST_CASE("every node that a membrane can reach before the next update is marked
   ViscosityField<float> viscosity_field(m, {ratio}, ViscosityMean::arithmetic, 0, 1.0, {{nx, ny}, {true, false}});
   CHECK(viscosity_field.varies() == (ratio != 1));
   auto rate = plain_rate<float>(nx, ny, 1.0);
-  NodeMask mask({{nx, ny}, {true, false}});
+  NodeMask mask(core::Domain<2>({nx, ny}, {true, false}));
   update(viscosity_field, m, rate, mask);
   CHECK(mask.active_fraction() < 0.6);
   CHECK(mask.active_fraction() > 0.1);
@@ -248,7 +248,7 @@ TEST_CASE("an update is due once a node has moved by a tenth of a spacing, and f
   Membranes m = biconcave_cells({{30, 20, 0}, {30, 40, 0}});
   ViscosityField<double> viscosity_field(m, {5.0}, ViscosityMean::arithmetic, 0, 1.0, {{80, 64}, {true, false}});
   auto rate = plain_rate<double>(80, 64, 1.0);
-  NodeMask mask({{80, 64}, {true, false}});
+  NodeMask mask(core::Domain<2>({80, 64}, {true, false}));
   update(viscosity_field, m, rate, mask);
   m.x[150] += 0.099;
   viscosity_field.measure({}, m);
@@ -272,7 +272,7 @@ TEST_CASE("where no cell is any more, the plain rate is back to the last bit") {
   Membranes m = biconcave_cells({{30, 20, 0}});
   ViscosityField<float> viscosity_field(m, {5.0}, ViscosityMean::arithmetic, 0, 1 / 0.7, {{160, 64}, {true, false}});
   auto rate = plain_rate<float>(160, 64, 1 / 0.7);
-  NodeMask mask({{160, 64}, {true, false}});
+  NodeMask mask(core::Domain<2>({160, 64}, {true, false}));
   update(viscosity_field, m, rate, mask);
   CHECK(rate.row(20)[30] != static_cast<float>(1 / 0.7));
   for (double& x : m.x) x += 80;
@@ -291,7 +291,7 @@ TEST_CASE("an update after some cells have moved gives what all cells anew would
   deform(m, random, 2, 0.1);
   ViscosityField<double> kept(m, {5.0}, ViscosityMean::arithmetic, 0, 1.25, {{nx, ny}, {true, periodic_y}});
   auto rate = plain_rate<double>(nx, ny, 1.25);
-  NodeMask mask({{nx, ny}, {true, false}});
+  NodeMask mask(core::Domain<2>({nx, ny}, {true, false}));
   update(kept, m, rate, mask);
   for (int round = 0; round < 6; ++round) {
     const CellRange& cell = m.cells[static_cast<std::size_t>(round % 4)];
@@ -302,7 +302,7 @@ TEST_CASE("an update after some cells have moved gives what all cells anew would
     update(kept, m, rate, mask);
     ViscosityField<double> fresh(m, {5.0}, ViscosityMean::arithmetic, 0, 1.25, {{nx, ny}, {true, periodic_y}});
     auto fresh_rate = plain_rate<double>(nx, ny, 1.25);
-    NodeMask fresh_activity({{nx, ny}, {true, false}});
+    NodeMask fresh_activity(core::Domain<2>({nx, ny}, {true, false}));
     update(fresh, m, fresh_rate, fresh_activity);
     for (int y = 0; y < ny; ++y) {
       for (int x = 0; x < nx; ++x) {

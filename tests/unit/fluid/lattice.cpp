@@ -71,12 +71,12 @@ TEST_CASE("in-place streaming gives the same populations as two arrays, with wal
   std::mt19937 random(1);
   std::uniform_real_distribution<double> uniform(-0.01, 0.01);
   const auto collision = make_collision("trt", {0.1875}, tau, inertia);
-  FluidSetting setting{
+  FluidSetting<2> setting{
       .domain = {{nx, ny}, {true, periodic_y}}, .relaxation_rate = 1 / tau, .inertia = inertia, .walls = {-0.01, 0.02}};
   if (periodic_y) setting.walls = {};
   Fluid<double> fluid(setting, collision);
   fluid.set_state([&](int, int) {
-    return Fluid<double>::State{uniform(random), uniform(random), uniform(random), {}};
+    return Fluid<double>::State{uniform(random), {uniform(random), uniform(random)}, {}};
   });
   TwoArrayFluid plain{
       nx, ny, periodic_y, setting.walls, collision, std::vector<double>(static_cast<std::size_t>(nx * ny * 9))};
@@ -105,10 +105,10 @@ TEST_CASE("in-place streaming gives the same populations as two arrays, with wal
 
 TEST_CASE("the number of workers does not change a bit") {
   const auto run = [](int workers) {
-    FluidSetting setting{.domain = {{40, 23}, {true, false}}, .relaxation_rate = 1.1, .walls = {-0.02, 0.02}};
+    FluidSetting<2> setting{.domain = {{40, 23}, {true, false}}, .relaxation_rate = 1.1, .walls = {-0.02, 0.02}};
     Fluid<float> fluid(setting, make_collision("trt", {0.1875}, 1 / 1.1, true));
     fluid.set_state([](int x, int y) {
-      return Fluid<float>::State{0, 1e-3 * ((x * 7 + y * 3) % 11), 1e-3 * ((x * 5 + y) % 7), {}};
+      return Fluid<float>::State{0, {1e-3 * ((x * 7 + y * 3) % 11), 1e-3 * ((x * 5 + y) % 7)}, {}};
     });
     for (int step = 0; step < 51; ++step) {
       for (int w = 0; w < workers; ++w) fluid.step(Worker{w, workers}.share(23));
@@ -130,12 +130,12 @@ TEST_CASE("the number of workers does not change a bit") {
 
 TEST_CASE("mass does not drift between walls or in a periodic box") {
   const bool periodic_y = GENERATE(false, true);
-  FluidSetting setting{
+  FluidSetting<2> setting{
       .domain = {{32, 16}, {true, periodic_y}}, .relaxation_rate = 0.9, .inertia = true, .walls = {-0.05, 0.05}};
   if (periodic_y) setting.walls = {};
   Fluid<double> fluid(setting, make_collision("bgk", {}, 1 / 0.9, true));
   fluid.set_state([](int x, int y) {
-    return Fluid<double>::State{1e-3 * (x % 3), 1e-2 * (y % 2), 1e-2 * (x % 5), {}};
+    return Fluid<double>::State{1e-3 * (x % 3), {1e-2 * (y % 2), 1e-2 * (x % 5)}, {}};
   });
   fluid.settle();
   const double before = fluid.mass();
@@ -149,20 +149,21 @@ TEMPLATE_TEST_CASE("mass and largest speed are those of the moments, and a value
   std::mt19937 random(4);
   std::uniform_real_distribution<double> uniform(-0.01, 0.01);
   const int nx = 37, ny = 11;
-  const FluidSetting setting{
-      .domain = {{nx, ny}, {true, false}}, .relaxation_rate = 1.0, .body_force_x = 1e-3, .body_force_y = -2e-3};
+  const FluidSetting<2> setting{
+      .domain = {{nx, ny}, {true, false}}, .relaxation_rate = 1.0, .body_force = {1e-3, -2e-3}};
   Fluid<TestType> fluid(setting, make_collision("trt", {0.1875}, 1, false));
   const int bad = GENERATE(-1, 0, 20, 36);
   fluid.set_state([&](int x, int y) {
     const double density = x == bad && y == 5 ? std::nan("") : uniform(random);
-    return typename Fluid<TestType>::State{density, uniform(random), uniform(random), {}};
+    return typename Fluid<TestType>::State{density, {uniform(random), uniform(random)}, {}};
   });
   fluid.settle();
   double mass = 0, square = 0;
-  std::vector<Moments> row;
+  std::vector<Moments<2>> row;
   for (int y = 0; y < ny; ++y) {
     fluid.moments(y, row);
-    for (const Moments& m : row) mass += m.density, square = std::max(square, m.ux * m.ux + m.uy * m.uy);
+    for (const Moments<2>& m : row)
+      mass += m.density, square = std::max(square, m.velocity[0] * m.velocity[0] + m.velocity[1] * m.velocity[1]);
   }
   const auto found = fluid.mass_and_speed();
   if (bad >= 0) {
@@ -176,7 +177,7 @@ TEMPLATE_TEST_CASE("mass and largest speed are those of the moments, and a value
 }
 
 TEST_CASE("runs cover every row once and follow the marks, periodic along x") {
-  NodeMask mask({{100, 4}, {true, false}});
+  NodeMask mask(Domain<2>({100, 4}, {true, false}));
   mask.mark(1, 90, 105);
   mask.mark(2, -3, 2);
   mask.mark(7, 0, 5);

@@ -114,6 +114,8 @@ const std::vector<Fault> faults = {
      "/checks/0/inputs/bond",
      {"did you mean \"bonds\"?", "\"state\""}},
     {R"([{"op": "add", "path": "/claims", "value": {"conservativ": true}}])", "/claims/conservativ", {"conservative"}},
+    {R"([{"op": "add", "path": "/lattices", "value": ["D2Q7"]}])", "/lattices/0", {"D2Q7", "D2Q9"}},
+    {R"([{"op": "add", "path": "/lattices", "value": ["D2Q9"]}])", "/lattices", {"interaction", "collision"}},
 };
 
 }  // namespace
@@ -287,6 +289,23 @@ TEST_CASE("a membrane law says in which dimensions it works, and what its elemen
   CHECK_NOTHROW(read_manifest(folder.write("pair.json", pair), Units()));
   pair["needs"] = {"distance", "tangential_velocity"};
   CHECK(refusal(pair).place().pointer == "/dimensions");
+}
+
+TEST_CASE("a collision operator works on the lattices that its manifest names, on D2Q9 if it names none") {
+  const PluginFolder folder;
+  Json manifest = {{"manifest", 1},           {"abi", 1},           {"kind", "collision"},
+                   {"id", "mixes"},           {"version", "1.0.0"}, {"library", "libmixes.so"},
+                   {"title", "Mixes"},        {"license", "MIT"},   {"needs", {"populations"}},
+                   {"gives", {"populations"}}};
+  const auto works = [&] {
+    const Manifest read = read_manifest(folder.write("mixes.json", manifest), Units());
+    return std::pair{read.works_in(2), read.works_in(3)};
+  };
+  CHECK(works() == std::pair{true, false});
+  manifest["lattices"] = {"D2Q9", "D3Q19"};
+  CHECK(works() == std::pair{true, true});
+  manifest["lattices"] = Json::array({"D3Q19"});
+  CHECK(works() == std::pair{false, true});
 }
 
 TEST_CASE("the manifests of the shipped plugins are accepted and name existing libraries' sources") {
