@@ -177,8 +177,7 @@ void compare_clamped(Worst& worst, const Subject& outline, const Subject& surfac
 Finding check_three_dimensions(const Subject& subject) {
   const plugin::Manifest& manifest = subject.manifest();
   if (!manifest.works_in(3)) return Finding::skipped("works in two dimensions");
-  if (!manifest.works_in(2))
-    return Finding::skipped("works in three dimensions only, where all checks have looked at it");
+  if (!manifest.works_in(2)) return Finding::skipped("works in three dimensions only, where all checks have been run");
   const Subject surface = subject.in(3);
   std::string warnings;
   for (const char* name : {"compute", "hidden-state", "blocks", "contained", "bounds", "declared-inputs",
