@@ -36,8 +36,8 @@ Ending StageCourse::end() {
   return found;
 }
 
-template <class T>
-void StageCourse::look(core::Solver<T>& solver) {
+template <class T, class Set>
+void StageCourse::look(core::Solver<T, Set>& solver) {
   const plan::StageSetting& setting = this->setting();
   if (!setting.stage->until_equilibrium || state_.stage_step < state_.equilibrium.next(energy_window())) return;
   const observe::CellEnergy energy = observe::cell_energy(solver, membranes_);
@@ -51,7 +51,9 @@ void StageCourse::look(core::Solver<T>& solver) {
 }
 
 template void StageCourse::look(core::Solver<float>&);
+template void StageCourse::look(core::Solver<float, core::D3Q19>&);
 template void StageCourse::look(core::Solver<double>&);
+template void StageCourse::look(core::Solver<double, core::D3Q19>&);
 
 long StageCourse::next() const {
   const scene::Stage& stage = *setting().stage;

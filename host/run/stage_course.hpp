@@ -31,8 +31,8 @@ class StageCourse {
   Ending end();
   /// Forces computed: the energy of the cells, where the stage ends by it and a window is over. Throws Error(bad_input)
   /// where it is unknown.
-  template <class T>
-  void look(core::Solver<T>& solver);
+  template <class T, class Set>
+  void look(core::Solver<T, Set>& solver);
   /// The next step, after look(), at which the stage may end.
   [[nodiscard]] long next() const;
 

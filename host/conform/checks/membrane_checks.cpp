@@ -93,7 +93,7 @@ Finding derivatives(const Subject& subject) {
 /// The tension of a triangle at rest, along any direction: 2 (stress_1 + stress_2).
 Finding rest_of_triangles(const Subject& subject) {
   Random random = subject.random();
-  for (const Trial& trial : trials(subject, random, Subject::typical_setting(), 0)) {
+  for (const Trial& trial : trials(subject, random, subject.typical_setting(), 0)) {
     const Values forces = compute(subject, trial.instance, at_rest(subject, trial, 1, random));
     const auto stress = [&](const char* name) { return forces.contains(name) ? forces.at(name)[0] : 0; };
     const double one = stress("stress_1"), two = stress("stress_2");

@@ -145,14 +145,16 @@ bool is_clamped(const Subject& subject, const Trial& trial) {
 void compare_clamped(Worst& worst, const Subject& outline, const Subject& surface) {
   Random random = outline.random();
   constexpr std::size_t count = 64;
-  for (const Trial& trial : trials(outline, random, Subject::typical_setting())) {
+  for (const Trial& trial : trials(outline, random, outline.typical_setting())) {
     if (!is_clamped(outline, trial)) continue;
     Values segments = outline.random_inputs(trial.instance, count, random), triangles;
     if (!segments.contains("stretch")) return;
     for (const char* name : {"invariant_1", "invariant_2"}) {
       for (const double l : segments.at("stretch")) triangles[name].push_back((l - 1) * (l + 1));
     }
-    const Trial same{surface.make(trial.parameters, trial.setting), trial.parameters, trial.setting, trial.words};
+    plugin::ModelSetting setting = trial.setting;
+    setting.dimension = 3;
+    const Trial same{surface.make(trial.parameters, setting), trial.parameters, setting, trial.words};
     Values stretched = segments;
     for (double& l : stretched["stretch"]) l *= 1.01;
     const Values one = compute(outline, trial.instance, segments), away = compute(outline, trial.instance, stretched);

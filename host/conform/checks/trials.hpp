@@ -28,6 +28,7 @@ std::vector<Trial> collision_trials(const Subject& subject, Random& random, int 
 template <Finding (*run)(const Subject&)>
 Finding on_each_lattice(const Subject& subject) {
   Finding found = run(subject);
+  if (subject.manifest().kind != plugin::ModelKind::collision) return found;
   if (subject.dimension() == 3 || !subject.manifest().works_in(3)) return found;
   Finding in_space = run(subject.on_lattice(3));
   in_space.what += " (D3Q19)";
