@@ -41,7 +41,7 @@ struct RowTask {
 };
 
 /// Two relaxation times, Stokes flow, as somebody would write it who needs nothing else; with a force its velocity is
-/// written over it.
+/// written over it, its halo included.
 template <bool forced, class T>
 struct Row {
   template <int register_bytes>
@@ -138,6 +138,7 @@ class BareSpace {
       for (int c = 0; c < 3 && force_[0].allocated(); ++c) task_.force[c] = force_[c].row(row);
       row_(&task_);
       if (even) send_row(lattice_, row);
+      if (force_[0].allocated()) core::fill_velocity_halo<T, 3>(force_, row, lattice_.domain(), {});
     }
   }
   void end_step() { parity_ = core::next(parity_); }

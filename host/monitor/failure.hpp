@@ -23,12 +23,12 @@ struct Failure {
   long step = 0;
   double time = 0, strain = 0;
   std::array<double, 2> place{};  ///< m
-  std::optional<double> place_z;  ///< m, in three dimensions
   int cell = -1;                  ///< -1: none
   double value = 0, limit = 0;    ///< what was measured and the limit it passed
   std::string message;            ///< one sentence
   std::string remedy;             ///< what to change
   FailureMode mode;
+  std::optional<double> place_z = {};  ///< m, in three dimensions
 };
 
 }  // namespace rouleau::monitor
