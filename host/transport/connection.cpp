@@ -57,7 +57,7 @@ fs::path library_for(const Launch& launch) {
            "choose one with srun's option mpi: pmix with Open MPI, pmi2 with MPICH");
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  const fs::path library =
+  fs::path library =
       program.parent_path().parent_path() / ROULEAU_LIBEXEC_FOLDER / "rouleau" / ("transport-" + launch.mpi + ".so");
   if (!fs::exists(library, error))
     refuse(launch, "and there is no " + library.string() + " to reach the others with",

