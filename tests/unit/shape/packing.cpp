@@ -28,7 +28,7 @@ struct Packed {
   std::optional<PackingShortfall> shortfall;
 
   Packed(int nx, int ny, bool periodic_y, std::vector<Shape> shapes = {Biconcave{3.91 * um}}, int segments = 80) {
-    scene.domain = {{nx * spacing, ny * spacing}, {nx, ny}, periodic_y};
+    scene.domain = {{nx * spacing, ny * spacing}, {nx, ny}, periodic_y, {}};
     for (Shape& shape : shapes) {
       scene.cell_types.push_back({"type" + std::to_string(scene.cell_types.size()), shape, segments, 6e-3, {}});
     }
