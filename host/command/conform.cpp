@@ -5,7 +5,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "command_line.hpp"
+#include "command/process/command_line.hpp"
 #include "commands.hpp"
 #include "conform/conformance.hpp"
 #include "conform/report_line.hpp"

@@ -3,9 +3,9 @@
 #include <iostream>
 
 #include "base/error.hpp"
-#include "command_line.hpp"
+#include "command/process/command_line.hpp"
+#include "command/process/interruption.hpp"
 #include "commands.hpp"
-#include "interruption.hpp"
 #include "stability/limits_files.hpp"
 #include "stability/limits_run.hpp"
 

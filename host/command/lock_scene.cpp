@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <iostream>
 
-#include "command_line.hpp"
+#include "command/process/command_line.hpp"
 #include "files/file.hpp"
 #include "files/run_directory.hpp"
 #include "plan/read_scene.hpp"

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "base/text.hpp"
-#include "command_line.hpp"
+#include "command/process/command_line.hpp"
 #include "conform/conformance.hpp"
 #include "files/file.hpp"
 #include "plugin/collection.hpp"

@@ -10,7 +10,7 @@
 
 #include "base/installation.hpp"
 #include "base/text.hpp"
-#include "command_line.hpp"
+#include "command/process/command_line.hpp"
 #include "commands.hpp"
 #include "files/file.hpp"
 #include "files/run_directory.hpp"

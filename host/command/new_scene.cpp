@@ -7,7 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "command_line.hpp"
+#include "command/process/command_line.hpp"
 #include "files/file.hpp"
 #include "templates.hpp"
 

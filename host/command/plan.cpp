@@ -2,7 +2,7 @@
 #include <iostream>
 #include <optional>
 
-#include "command_line.hpp"
+#include "command/process/command_line.hpp"
 #include "commands.hpp"
 #include "plan/blocks.hpp"
 #include "plan/plan_report.hpp"

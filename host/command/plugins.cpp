@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/text.hpp"
-#include "command_line.hpp"
+#include "command/process/command_line.hpp"
 #include "commands.hpp"
 #include "lock_scene.hpp"
 #include "manage_plugins.hpp"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "accuracy/measure_errors.hpp"
-#include "interruption.hpp"
+#include "command/process/interruption.hpp"
 #include "run/simulation.hpp"
 #include "scene_options.hpp"
 

@@ -11,11 +11,11 @@
 
 #include "accuracy/measure_errors.hpp"
 #include "close_run.hpp"
+#include "command/process/command_line.hpp"
 #include "command/process/crew.hpp"
+#include "command/process/interruption.hpp"
 #include "command/process/terminal.hpp"
-#include "command_line.hpp"
 #include "commands.hpp"
-#include "interruption.hpp"
 #include "plan/estimate.hpp"
 #include "ranked_run.hpp"
 #include "refined_run.hpp"

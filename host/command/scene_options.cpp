@@ -1,7 +1,7 @@
 #include "scene_options.hpp"
 
+#include "command/process/command_line.hpp"
 #include "command/process/crew.hpp"
-#include "command_line.hpp"
 #include "core/membrane/membranes.hpp"
 #include "lock_scene.hpp"
 #include "plan/blocks.hpp"

@@ -3,9 +3,9 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "command_line.hpp"
+#include "command/process/command_line.hpp"
+#include "command/process/interruption.hpp"
 #include "commands.hpp"
-#include "interruption.hpp"
 #include "study/study_files.hpp"
 #include "study/study_run.hpp"
 

@@ -1,7 +1,7 @@
 // rouleau verify DIR: whether a finished run is what it was when it ended.
 #include <iostream>
 
-#include "command_line.hpp"
+#include "command/process/command_line.hpp"
 #include "commands.hpp"
 #include "files/verify.hpp"
 

@@ -14,7 +14,7 @@ core::Decomposition<2> make_blocks(const Plan& plan, int ranks) {
   const scene::Scene& scene = *plan.scene;
   if (scene.domain.depth) {
     throw Error(Cause::bad_input, scene.place("/domain/size"), "three dimensions run in one process only so far",
-                {"start it without mpirun, with --threads"});
+                {"start one process, with several threads"});
   }
   const core::Domain<2> domain = lattice_domain(scene);
   constexpr int least_width = 16, least_height = 4;  // smaller blocks are mostly border

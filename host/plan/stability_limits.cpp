@@ -352,7 +352,8 @@ std::vector<Limit> find_limits(const Plan& plan) {
         if (depth > 0) {
           add("depth of " + named + " over bending modulus / radius^2, without a repulsion within membranes", depth,
               deepest_well_of_bare_faces, true,
-              "at rest the cells' own faces will touch; add an interaction between [" + type +
+              "cells that come to rest may be squeezed until their own faces touch; add an interaction between [" +
+                  type +
                   ", \"self\"], such as \"repulsion\" with about three times the well's depth and a cutoff below the cells' "
                   "least thickness");
         }

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "base/error.hpp"
+#include "base/installation.hpp"
 
 namespace rouleau::transport {
 
@@ -55,10 +56,8 @@ fs::path library_for(const Launch& launch) {
   if (launch.mpi.empty())
     refuse(launch, "which has given it no way to find the others",
            "choose one with srun's option mpi: pmix with Open MPI, pmi2 with MPICH");
+  fs::path library = installation().programs / ("transport-" + launch.mpi + ".so");
   std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  fs::path library =
-      program.parent_path().parent_path() / ROULEAU_LIBEXEC_FOLDER / "rouleau" / ("transport-" + launch.mpi + ".so");
   if (!fs::exists(library, error))
     refuse(launch, "and there is no " + library.string() + " to reach the others with",
            "install the package rouleau-" + launch.mpi + " on every machine, or start one process without a launcher");

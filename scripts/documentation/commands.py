@@ -14,6 +14,7 @@ ENVIRONMENT = {
     "XDG_DATA_HOME": "the folder with rouleau/plugins, your own plugins; else ~/.local/share",
     "HOME": "the folder of ~/.local/share, where the variable above is not set",
     "ROULEAU_INSTRUCTION_SET": "baseline, avx2 or avx512: narrower vectors than this processor has, to compare results and speed",
+    "ROULEAU_TRANSPORT": "the library through which ranks speak that mpirun or srun has started, in place of the installed one (docs/ranks.md)",
     "ROULEAU_ERRORS": "json: an error is one line of JSON with the place and the remedy of each fault, for programs (docs/python.md)",
     "ROULEAU_TIMING_LOCK": "the file that rouleau study locks while it takes times, so that two studies do not disturb each other",
     "XDG_RUNTIME_DIR": "the folder of that file, rouleau-timing.lock, where the variable above is not set; else /tmp",

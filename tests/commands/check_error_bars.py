@@ -103,7 +103,7 @@ class Error_bars(Case):
 
     def test_of_a_target_for_which_there_is_no_time_are_said_before_the_run(self):
         told = rouleau("run", self.scene("auto-capsule.json", strain=1000), "--out", self.run_directory, "--quiet",
-                       "--max-time", "1s")
+                       "--max-time", "0.2s")
         self.assertEqual(told.returncode, 130, told.stderr)
         self.assertLess(told.stderr.index("warning: numerics.auto"), told.stderr.index("ended by --max-time"))
         self.assertIn("more than --max-time", told.stderr)

@@ -7,6 +7,7 @@ import importlib.util
 import json
 import math
 import pathlib
+import re
 import subprocess
 import sys
 import unittest
@@ -33,6 +34,12 @@ def biconcave(angle):
     return side * 0.5 * math.sqrt(max(0, 1 - y * y)) * (0.207 + 2.002 * y**2 - 1.122 * y**4), y
 
 
+# Wells in which four cells at rest have no minimum with their own faces apart, and one that compresses the fluid: true, and
+# the paper's scenes keep them.
+STRONG = {**{f"fig{name}.json": ["depth"] for name in ("1-6e-7", "1-1.3e-6", "4-creeping", "4-inertia", "6-creeping", "6-inertia")},
+          "fig1-3e-6.json": ["depth", "compression"]}
+
+
 class Paper(unittest.TestCase):
     def test_every_scene_is_planned_and_says_what_the_paper_says_and_what_is_expected(self):
         files = sorted((ROOT / "scenes/paper").glob("*.json"))
@@ -41,7 +48,8 @@ class Paper(unittest.TestCase):
             with self.subTest(file.name):
                 result = subprocess.run([PROGRAM, "plan", file], capture_output=True, text=True)
                 self.assertEqual(result.returncode, 0, result.stderr)
-                self.assertNotIn("warning", result.stdout)
+                warnings = re.findall(r"warning: (\w+)", result.stdout)
+                self.assertEqual(warnings, STRONG.get(file.name, []), result.stdout)
                 expected = json.loads(file.read_text())["expected"]
                 self.assertTrue(expected["paper"])
                 self.assertTrue("end_faces" in expected or 1 <= expected["aggregates_final"] <= 4)

@@ -2,7 +2,8 @@
 #include "operator.h"
 
 static collided crashing(const lattice* l, const node* n) {
-  *(volatile int*)NULL = 1;
+  int* volatile nowhere = NULL; /* a compiler that knew would take the node, and the loop over nodes, to be never reached */
+  *nowhere = 1;
   return honest_node(l, n);
 }
 

@@ -152,13 +152,15 @@ TEST_CASE("all instruction sets give the same collision but for rounding") {
   }
 }
 
-TEST_CASE("an operator for D2Q9 refuses another lattice, a missing parameter, and a rate beside magic") {
+TEST_CASE("an operator refuses a lattice that it is not written for, a missing parameter, and a rate beside magic") {
   void* self = nullptr;
-  Setup cube;
-  cube.dimension = 3;
-  const auto [code, error] = create(collision_model("bgk"), cube, &self);
-  CHECK(code != 0);
-  CHECK(error == "this operator is written for D2Q9");
+  Setup neither;  // nine velocities in space
+  neither.dimension = 3;
+  for (const auto& [id, lattices] : {std::pair{"bgk", "D2Q9 and D3Q19"}, std::pair{"central-moment", "D2Q9"}}) {
+    const auto [code, error] = create(collision_model(id), neither, &self);
+    CHECK(code != 0);
+    CHECK(error == std::string("this operator is written for ") + lattices);
+  }
   const auto [missing, text] = create(collision_model("trt"), {}, &self);
   CHECK(missing != 0);
   CHECK_THAT(text, Catch::Matchers::Contains("magic"));
