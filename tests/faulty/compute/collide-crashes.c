@@ -2,7 +2,8 @@
 #include "operator.h"
 
 static collided crashing(const lattice* l, const node* n) {
-  int* volatile nowhere = NULL; /* a compiler that knew would take the node, and the loop over nodes, to be never reached */
+  /* A compiler that saw the null pointer would take the loop over nodes for never reached. */
+  volatile int* volatile nowhere = NULL;
   *nowhere = 1;
   return honest_node(l, n);
 }
