@@ -39,6 +39,7 @@ Json without_own_keys(const Json& value) {
 
 std::vector<int> dimensions_of(const std::vector<std::string>& lattices) {
   std::vector<int> dimensions;
+  dimensions.reserve(lattices.size());
   for (const std::string& lattice : lattices) dimensions.push_back(lattice == "D3Q19" ? 3 : 2);
   return dimensions;
 }

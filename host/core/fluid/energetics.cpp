@@ -218,8 +218,8 @@ typename Fluid<T, Set>::Energetics Fluid<T, Set>::energetics() const {
   } else {
     find(-1), find(0);
   }
-  enum { kinetic, membrane_power, dissipation, velocity };
-  std::vector<ExactSum> sums(velocity + dimension);
+  enum { kinetic, membrane_power, dissipation, sum_of_velocity };
+  std::vector<ExactSum> sums(sum_of_velocity + dimension);
   std::vector<double> power(static_cast<std::size_t>(nx));
   for (int i = 0; i < lattice_.rows(); ++i) {
     const Row row = lattice_.row(i);
@@ -227,7 +227,7 @@ typename Fluid<T, Set>::Energetics Fluid<T, Set>::energetics() const {
     Task task{};
     task.wall_speed[0] = last_walls_.lower, task.wall_speed[2] = last_walls_.upper;
     task.count = nx;
-    for (int k = 0; k < dimension; ++k) task.sum[k] = &sums[velocity + k];
+    for (int k = 0; k < dimension; ++k) task.sum[k] = &sums[sum_of_velocity + k];
     task.kinetic = &sums[kinetic];
     task.dissipation = &sums[dissipation];
     lattice_.row_pointers(parity_, row, task.in);
@@ -262,7 +262,7 @@ typename Fluid<T, Set>::Energetics Fluid<T, Set>::energetics() const {
                         .dissipation = sums[dissipation].value(),
                         .velocity = {},
                         .membrane_power = sums[membrane_power].value()};
-  for (int k = 0; k < dimension; ++k) energetics.velocity[k] = sums[velocity + k].value();
+  for (int k = 0; k < dimension; ++k) energetics.velocity[k] = sums[sum_of_velocity + k].value();
   return energetics;
 }
 

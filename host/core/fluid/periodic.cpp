@@ -190,11 +190,11 @@ void mirror_velocity(VectorField<T, D>& velocity, const Domain<D>& domain, const
   }
 }
 
-#define ROULEAU_INSTANTIATE(T, Set, D)                                                                        \
-  template void send_row(Lattice<T, Set>&, const Lattice<T, Set>::Row&);                                      \
-  template void receive_row(Lattice<T, Set>&, const Lattice<T, Set>::Row&);                                   \
-  template void fill_velocity_halo<T, D>(VectorField<T, D>&, const std::array<int, D - 1>&, const Domain<D>&, \
-                                         const WallVelocity&);                                                \
+#define ROULEAU_INSTANTIATE(T, Set, D)                                                                      \
+  template void send_row(Lattice<T, Set>&, const Lattice<T, Set>::Row&);                                    \
+  template void receive_row(Lattice<T, Set>&, const Lattice<T, Set>::Row&);                                 \
+  template void fill_velocity_halo<T, D>(VectorField<T, D>&, const Lattice<T, Set>::Row&, const Domain<D>&, \
+                                         const WallVelocity&);                                              \
   template void mirror_velocity<T, D>(VectorField<T, D>&, const Domain<D>&, const WallVelocity&);
 ROULEAU_INSTANTIATE(float, D2Q9, 2)
 ROULEAU_INSTANTIATE(double, D2Q9, 2)

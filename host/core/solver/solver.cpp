@@ -160,52 +160,54 @@ void Solver<T, Set>::run(Task task, Worker worker) {
 }
 
 template <class T, class Set>
-void Solver<T, Set>::run_cells(Task task, Worker worker) requires(dimension == 2) {
-  switch (task) {
-    case Task::find_contacts:
-      return interaction_forces_->run(worker, 0, membranes_);
-    case Task::membrane_forces:
-      return membrane_forces_->run(worker, membranes_);
-    case Task::wall_forces:
-      return wall_contacts_->run(worker, membranes_);
-    case Task::self_forces:
-      return self_contacts_->run(worker, membranes_);
-    case Task::interaction_forces:
-      return interaction_forces_->run(worker, 1, membranes_);
-    case Task::take_reactions:
-      return interaction_forces_->run(worker, 2, membranes_);
-    case Task::complete_forces:
-      if (setup_.area_correction) core::take_out_pressures(worker, membranes_);
-      if (slip_correction_) slip_correction_->complete(worker, membranes_);
-      return;
-    case Task::find_nodes:
-      viscosity_field_->measure(worker, membranes_);
-      return viscosity_field_->cover(worker, membranes_);
-    case Task::follow_cells:
-      if (worker.first()) follow_cells(mean_velocity(membranes_));
-      return;
-    case Task::set_viscosity:
-      if (viscosity_field_->due())
-        viscosity_field_->update(worker, membranes_, fluid_.relaxation_rate(), fluid_.mask());
-      return;
-    case Task::interpolate:
-      return coupling_->interpolate(worker, membranes_, fluid_.velocity());
-    case Task::correct_velocities:
-      if (slip_correction_) slip_correction_->correct(worker, membranes_);
-      if (setup_.area_correction) core::keep_areas(worker, membranes_);
-      return;
-    case Task::move:
-      return core::move_nodes(worker, membranes_);
-    case Task::locate:
-      return locate(worker);
-    case Task::share_reactions:
-    case Task::share_forces:
-    case Task::collect_velocities:
-    case Task::share_positions:
-      if (worker.first()) exchange(task);
-      return;
-    default:
-      return;  // of the fluid
+void Solver<T, Set>::run_cells(Task task, Worker worker) {
+  if constexpr (dimension == 2) {
+    switch (task) {
+      case Task::find_contacts:
+        return interaction_forces_->run(worker, 0, membranes_);
+      case Task::membrane_forces:
+        return membrane_forces_->run(worker, membranes_);
+      case Task::wall_forces:
+        return wall_contacts_->run(worker, membranes_);
+      case Task::self_forces:
+        return self_contacts_->run(worker, membranes_);
+      case Task::interaction_forces:
+        return interaction_forces_->run(worker, 1, membranes_);
+      case Task::take_reactions:
+        return interaction_forces_->run(worker, 2, membranes_);
+      case Task::complete_forces:
+        if (setup_.area_correction) core::take_out_pressures(worker, membranes_);
+        if (slip_correction_) slip_correction_->complete(worker, membranes_);
+        return;
+      case Task::find_nodes:
+        viscosity_field_->measure(worker, membranes_);
+        return viscosity_field_->cover(worker, membranes_);
+      case Task::follow_cells:
+        if (worker.first()) follow_cells(mean_velocity(membranes_));
+        return;
+      case Task::set_viscosity:
+        if (viscosity_field_->due())
+          viscosity_field_->update(worker, membranes_, fluid_.relaxation_rate(), fluid_.mask());
+        return;
+      case Task::interpolate:
+        return coupling_->interpolate(worker, membranes_, fluid_.velocity());
+      case Task::correct_velocities:
+        if (slip_correction_) slip_correction_->correct(worker, membranes_);
+        if (setup_.area_correction) core::keep_areas(worker, membranes_);
+        return;
+      case Task::move:
+        return core::move_nodes(worker, membranes_);
+      case Task::locate:
+        return locate(worker);
+      case Task::share_reactions:
+      case Task::share_forces:
+      case Task::collect_velocities:
+      case Task::share_positions:
+        if (worker.first()) exchange(task);
+        return;
+      default:
+        return;  // of the fluid
+    }
   }
 }
 
@@ -250,37 +252,39 @@ RowBands Solver<T, Set>::bands() const {
 }
 
 template <class T, class Set>
-void Solver<T, Set>::make_cells() requires(dimension == 2) {
-  if (setup_.slip_correction) make_slip_correction();
-  membranes_.largest_step.resize(membranes_.cells.size(), 0.0);
-  if (setup_.area_correction) membranes_.area_leakage.resize(membranes_.cells.size(), 0.0);  // earlier leakage stays
+void Solver<T, Set>::make_cells() {
+  if constexpr (dimension == 2) {
+    if (setup_.slip_correction) make_slip_correction();
+    membranes_.largest_step.resize(membranes_.cells.size(), 0.0);
+    if (setup_.area_correction) membranes_.area_leakage.resize(membranes_.cells.size(), 0.0);  // earlier leakage stays
 
-  MembraneForcesSetup membrane_setup{
-      .semi_implicit = setup_.semi_implicit, .viscosity = setup_.viscosity(), .tension_unit = setup_.tension_unit};
-  std::vector<double> viscosity_ratio;
-  for (const CellType& type : setup_.cell_types) {
-    membrane_setup.laws.push_back(type.laws);
-    viscosity_ratio.push_back(type.viscosity_ratio);
+    MembraneForcesSetup membrane_setup{
+        .semi_implicit = setup_.semi_implicit, .viscosity = setup_.viscosity(), .tension_unit = setup_.tension_unit};
+    std::vector<double> viscosity_ratio;
+    for (const CellType& type : setup_.cell_types) {
+      membrane_setup.laws.push_back(type.laws);
+      viscosity_ratio.push_back(type.viscosity_ratio);
+    }
+    if (slip_correction_) membrane_setup.mobility = slip_correction_->mobility();
+    membrane_forces_ = std::make_unique<MembraneForces>(membranes_, membrane_setup);
+    slight_energy_ = slight_energy_of(setup_.cell_types, membranes_);
+    if (!setup_.interactions.empty()) {
+      interaction_forces_ = std::make_unique<InteractionForces>(membranes_, setup_.interactions, setup_.domain);
+    }
+    if (!setup_.wall_interactions.empty()) {
+      wall_contacts_ = std::make_unique<WallContacts>(membranes_, setup_.wall_interactions, setup_.domain);
+    }
+    if (!setup_.self_interactions.empty()) {
+      self_contacts_ = std::make_unique<SelfContacts>(membranes_, setup_.self_interactions);
+    }
+    viscosity_field_ = std::make_unique<ViscosityField<T>>(
+        membranes_, std::move(viscosity_ratio), slip_correction_ ? ViscosityMean::harmonic : ViscosityMean::arithmetic,
+        slip_correction_ ? slip_correction_->largest_shift() : 0.0, 1 / setup_.tau, setup_.domain,
+        fluid_.setting().viscosity_of_rows);
+    coupling_ = std::make_unique<Coupling<T>>(setup_.kernel, setup_.domain);
+    coupling_->reserve(membranes_);
+    locate(Worker{});
   }
-  if (slip_correction_) membrane_setup.mobility = slip_correction_->mobility();
-  membrane_forces_ = std::make_unique<MembraneForces>(membranes_, membrane_setup);
-  slight_energy_ = slight_energy_of(setup_.cell_types, membranes_);
-  if (!setup_.interactions.empty()) {
-    interaction_forces_ = std::make_unique<InteractionForces>(membranes_, setup_.interactions, setup_.domain);
-  }
-  if (!setup_.wall_interactions.empty()) {
-    wall_contacts_ = std::make_unique<WallContacts>(membranes_, setup_.wall_interactions, setup_.domain);
-  }
-  if (!setup_.self_interactions.empty()) {
-    self_contacts_ = std::make_unique<SelfContacts>(membranes_, setup_.self_interactions);
-  }
-  viscosity_field_ = std::make_unique<ViscosityField<T>>(
-      membranes_, std::move(viscosity_ratio), slip_correction_ ? ViscosityMean::harmonic : ViscosityMean::arithmetic,
-      slip_correction_ ? slip_correction_->largest_shift() : 0.0, 1 / setup_.tau, setup_.domain,
-      fluid_.setting().viscosity_of_rows);
-  coupling_ = std::make_unique<Coupling<T>>(setup_.kernel, setup_.domain);
-  coupling_->reserve(membranes_);
-  locate(Worker{});
 }
 
 template <class T, class Set>
@@ -351,8 +355,10 @@ void Solver<T, Set>::start(const SolverState<T>& state) {
 }
 
 template <class T, class Set>
-void Solver<T, Set>::follow_cells(const std::array<double, 2>& velocity) requires(dimension == 2) {
-  if (setup_.follow_cells) fluid_.set_frame(velocity[0], setup_.domain.periodic[1] ? velocity[1] : 0);
+void Solver<T, Set>::follow_cells(const std::array<double, 2>& velocity) {
+  if constexpr (dimension == 2) {
+    if (setup_.follow_cells) fluid_.set_frame(velocity[0], setup_.domain.periodic[1] ? velocity[1] : 0);
+  }
 }
 
 /// Walls in the middle of the step and the force at its beginning make the scheme one of second order in time: a

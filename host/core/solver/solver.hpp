@@ -103,16 +103,17 @@ class Solver {
 
  private:
   [[nodiscard]] StepFeatures features() const;
-  void make_cells() requires(dimension == 2);
+  // What follows of cells does nothing in three dimensions, which have none yet.
+  void make_cells();
   void make_slip_correction();
   /// The frame of the fluid's unsteady term gets the cells' velocity, as far as the walls allow, if the setup wants that.
-  void follow_cells(const std::array<double, 2>& velocity) requires(dimension == 2);
+  void follow_cells(const std::array<double, 2>& velocity);
   /// The fluid is driven as an oscillation wants it in the step that begins after so many.
   void oscillate(long steps);
   /// The force that keeps the mean velocity, from what this is now.
   void keep_mean_velocity();
   void run(Task task, Worker worker);
-  void run_cells(Task task, Worker worker) requires(dimension == 2);
+  void run_cells(Task task, Worker worker);
   void run_rows(Task task, Range rows);
   void exchange(Task task);
   void run_alone(std::size_t first, std::size_t last);

@@ -219,15 +219,15 @@ struct CollisionLoopOn {
   /// to, a pack here. The baseline has the last one only.
   template <int register_bytes, bool Inertia>
   ROULEAU_ALWAYS_INLINE static void choose_of_three(const CollisionInstance<Model>& instance, const Block& block) {
-    if constexpr (register_bytes == static_cast<int>(InstructionSet::baseline)) {
-      sweep<register_bytes, Force::acts_and_velocity, true, Inertia>(instance, block);
-    } else if (block.force == nullptr && block.velocity == nullptr && block.relaxation_rate == nullptr) {
-      sweep<register_bytes, Force::none, false, Inertia>(instance, block);
-    } else if (block.relaxation_rate == nullptr) {
-      sweep<register_bytes, Force::acts_and_velocity, false, Inertia>(instance, block);
-    } else {
-      sweep<register_bytes, Force::acts_and_velocity, true, Inertia>(instance, block);
+    if constexpr (register_bytes != static_cast<int>(InstructionSet::baseline)) {
+      if (block.force == nullptr && block.velocity == nullptr && block.relaxation_rate == nullptr) {
+        return sweep<register_bytes, Force::none, false, Inertia>(instance, block);
+      }
+      if (block.relaxation_rate == nullptr) {
+        return sweep<register_bytes, Force::acts_and_velocity, false, Inertia>(instance, block);
+      }
     }
+    sweep<register_bytes, Force::acts_and_velocity, true, Inertia>(instance, block);
   }
 
   /// Velocity of nodes without a force, before their populations are overwritten: a host seldom asks for it.
