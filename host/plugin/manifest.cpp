@@ -129,14 +129,13 @@ Manifest read_manifest(const json::Document& document, const fs::path& file, con
   manifest.parameters = read_parameters(document, units);
   manifest.needs = words_of(root, "needs");
   manifest.gives = words_of(root, "gives");
-  manifest.lattices = root.contains("lattices") ? words_of(root, "lattices") : std::vector<std::string>{"D2Q9"};
   manifest.state = read_state(document, units);
   manifest.inactive_when = without_own_keys(root.value("inactive_when", Json()));
   manifest.stands_for = without_own_keys(root.value("stands_for", Json()));
   manifest.claims = without_own_keys(root.value("claims", Json::object()));
   manifest.checks = root.value("checks", Json::array());
   manifest.dimensions = root.value("dimensions", manifest.dimensions);
-  if (manifest.kind == ModelKind::collision) manifest.dimensions = dimensions_of(manifest.lattices);
+  if (root.contains("lattices")) manifest.dimensions = dimensions_of(words_of(root, "lattices"));
   if (root.contains("in_3d")) {
     const Json& surface = root["in_3d"];
     manifest.in_3d = {words_of(surface, "needs"), words_of(surface, "gives"), surface.value("checks", Json::array())};

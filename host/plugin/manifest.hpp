@@ -54,10 +54,9 @@ struct Manifest {
   std::string id;
   std::string version;
   std::string title, reference, author, license;
-  std::vector<int> dimensions = {2};  ///< of the scenes it works in
+  std::vector<int> dimensions = {2};  ///< of the scenes it works in; of a collision operator by its "lattices"
   std::vector<Parameter> parameters;
   std::vector<std::string> needs, gives;
-  std::vector<std::string> lattices;  ///< of a collision operator: "D2Q9", "D3Q19"
   std::vector<StateVariable> state;
   nlohmann::json
       inactive_when;  ///< object: parameter -> value (in its unit) at which the model does nothing; null: never

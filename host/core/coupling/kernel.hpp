@@ -3,6 +3,8 @@
 
 #include <rouleau/pack.hpp>
 
+#include "kernel_kind.hpp"
+
 namespace rouleau::core {
 
 /// A kernel is a type with
@@ -102,5 +104,21 @@ struct SpreadWeights {
     }
   }
 };
+
+/// function(kernel) with the kernel of a kind, for its type.
+template <class Function>
+auto with_kernel(KernelKind kind, Function function) {
+  switch (kind) {
+    case KernelKind::cosine4:
+      return function(Cosine4{});
+    case KernelKind::roma3:
+      return function(Roma3{});
+    case KernelKind::linear2:
+      return function(Linear2{});
+    case KernelKind::peskin4:
+      break;
+  }
+  return function(Peskin4{});
+}
 
 }  // namespace rouleau::core

@@ -69,17 +69,7 @@ double kernel_density(double distance) {
 }
 
 Distribution kernel_distribution(KernelKind kernel) {
-  switch (kernel) {
-    case KernelKind::cosine4:
-      return Distribution(kernel_density<Cosine4>);
-    case KernelKind::roma3:
-      return Distribution(kernel_density<Roma3>);
-    case KernelKind::linear2:
-      return Distribution(kernel_density<Linear2>);
-    case KernelKind::peskin4:
-      break;
-  }
-  return Distribution(kernel_density<Peskin4>);
+  return with_kernel(kernel, []<class Kernel>(Kernel) { return Distribution(kernel_density<Kernel>); });
 }
 
 /// The area fraction of unit squares, smoothed once by (1/4, 1/2, 1/4).

@@ -211,17 +211,7 @@ struct SurfaceCoupling<T>::Loops {
     return &loops;
   }
   static const Loops* of(KernelKind kernel) {
-    switch (kernel) {
-      case KernelKind::cosine4:
-        return of<Cosine4>();
-      case KernelKind::roma3:
-        return of<Roma3>();
-      case KernelKind::linear2:
-        return of<Linear2>();
-      case KernelKind::peskin4:
-        break;
-    }
-    return of<Peskin4>();
+    return with_kernel(kernel, []<class Kernel>(Kernel) { return of<Kernel>(); });
   }
 };
 
