@@ -52,7 +52,7 @@ plan::Plan plan_and_place(const plan::ReadScene& read, const plugin::Catalog& ca
   std::optional<plan::Plan> plan;
   Faults faults;
   faults.attempt([&] { plan = plan::make_plan(scene, catalog, read.numerics_choice); });
-  if (!scene.cells.empty()) faults.attempt([&] { plan::make_membranes(scene, plan::lattice_spacing(scene)); });
+  if (!scene.cells.empty()) faults.attempt([&] { plan::try_cells(scene); });
   faults.raise();
   return *std::move(plan);
 }

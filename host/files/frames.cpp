@@ -68,24 +68,30 @@ void FrameWriter::write(const observe::Snapshot& snapshot) {
 
 void FrameWriter::write_membranes(const std::string& frame, const observe::Snapshot& snapshot, FrameRecord& record) {
   const auto& outlines = snapshot.outlines;
-  if (!topology_here_ || outlines.first != first_) write_topology(outlines.first);
+  if (!topology_here_ || outlines.first != first_) write_topology(outlines);
   record.nodes = topology_record_.nodes;
   record.cells = topology_record_.cells;
   record.connectivity = topology_record_.connectivity;
   record.uniform = topology_record_.uniform;
+  record.surfaces = topology_record_.surfaces;
 
   const std::string group = frame + "/membranes";
   open_->make_group(group);
-  std::vector<double> points(2 * outlines.x.size());
+  const std::size_t components = record.surfaces ? 3 : 2;
+  std::vector<double> points;
+  points.reserve(components * outlines.x.size());
   for (std::size_t i = 0; i < outlines.x.size(); ++i) {
-    points[2 * i] = outlines.x[i];
-    points[2 * i + 1] = outlines.y[i];
+    points.push_back(outlines.x[i]);
+    points.push_back(outlines.y[i]);
+    if (record.surfaces) points.push_back(outlines.z[i]);
   }
-  open_->write(group + "/points", {outlines.x.size(), 2}, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, points.data(), "m");
+  open_->write(group + "/points", {outlines.x.size(), components}, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, points.data(),
+               "m");
   // frames.xmf promises every attribute at every frame, so that ParaView can colour the whole animation.
   auto tension = outlines.tension;
   tension.resize(outlines.x.size(), 0.0);
   open_->write(group + "/tension", tension, "N/m");
+  if (record.surfaces) open_->write(group + "/curvature", outlines.curvature, "1/m");
 
   std::map<int, int> label;
   for (const auto& cell : snapshot.cells) label[cell.cell] = cell.aggregate;
@@ -96,16 +102,19 @@ void FrameWriter::write_membranes(const std::string& frame, const observe::Snaps
               known == label.end() ? static_cast<int>(cell) : known->second);
   }
   open_->write(group + "/aggregate", aggregate, "1");
-  for (const char* shared : {"/first", "/cell", "/connectivity"}) open_->link(topology_ + shared, group + shared);
+  for (const char* shared : {"/first", "/cell", record.surfaces ? "/triangles" : "/connectivity"})
+    open_->link(topology_ + shared, group + shared);
 }
 
-void FrameWriter::write_topology(const std::vector<int>& first) {
+void FrameWriter::write_topology(const observe::OutlineSnapshot& outlines) {
+  const std::vector<int>& first = outlines.first;
   constexpr int polyline = 2;  // XDMF's code in a mixed topology, followed by the number of nodes
   const std::size_t cells = first.size() - 1;
   topology_record_ = {};
   topology_record_.nodes = static_cast<std::size_t>(first.back());
   topology_record_.cells = cells;
   topology_record_.uniform = equal_cells(first);
+  topology_record_.surfaces = !outlines.z.empty();
 
   std::vector<int> owner, connectivity;
   for (std::size_t cell = 0; cell < cells; ++cell) {
@@ -117,6 +126,8 @@ void FrameWriter::write_topology(const std::vector<int>& first) {
     }
     connectivity.push_back(first[cell]);  // closes the outline
   }
+  if (topology_record_.surfaces) connectivity.clear();
+  for (const auto& corners : outlines.triangles) connectivity.insert(connectivity.end(), corners.begin(), corners.end());
   topology_record_.connectivity = connectivity.size();
 
   // A new segment repeats the topology that still holds, under its name.
@@ -125,7 +136,12 @@ void FrameWriter::write_topology(const std::vector<int>& first) {
   open_->make_group(topology_);
   open_->write(topology_ + "/first", first, "1");
   open_->write(topology_ + "/cell", owner, "1");
-  open_->write(topology_ + "/connectivity", connectivity, "1");
+  if (topology_record_.surfaces) {
+    open_->write(topology_ + "/triangles", {outlines.triangles.size(), 3}, H5T_STD_I32LE, H5T_NATIVE_INT,
+                 connectivity.data(), "1");
+  } else {
+    open_->write(topology_ + "/connectivity", connectivity, "1");
+  }
   first_ = first;
 }
 
@@ -214,7 +230,9 @@ observe::OutlineSnapshot FrameReader::outlines(int frame) const {
   const std::string group = frame_path(static_cast<std::size_t>(frame)) + "/membranes";
   if (!file_.has(group)) return outlines;
   const auto points = file_.read(group + "/points");
-  const auto nodes = static_cast<double>(points.size()) / 2;
+  const bool surfaces = file_.has(group + "/triangles");
+  const std::size_t components = surfaces ? 3 : 2;
+  const auto nodes = static_cast<double>(points.size() / components);
   double before = -1;
   for (const double first : file_.read(group + "/first")) {
     const bool begins = before >= 0 || first == 0;
@@ -224,9 +242,10 @@ observe::OutlineSnapshot FrameReader::outlines(int frame) const {
     }
     outlines.first.push_back(static_cast<int>(before = first));
   }
-  for (std::size_t i = 0; i + 1 < points.size(); i += 2) {
+  for (std::size_t i = 0; i + components <= points.size(); i += components) {
     outlines.x.push_back(points[i]);
     outlines.y.push_back(points[i + 1]);
+    if (surfaces) outlines.z.push_back(points[i + 2]);
   }
   outlines.tension = file_.read(group + "/tension");
   if (outlines.tension.size() != outlines.x.size())

@@ -4,17 +4,20 @@
 //                          region or a stride: fields_first_m [2], fields_spacing_m [2]; each [3] in three
 //                          dimensions, with periodic_z
 //   /frames/000000         attributes step, time_s, strain, stage, stage_name
-//     membranes/points     [n, 2] f64, m, not wrapped into the box
-//     membranes/tension    [n] f64, N/m, of the segment from this node to the cell's next one
+//     membranes/points     [n, 2] f64, m, not wrapped into the box; [n, 3] in three dimensions
+//     membranes/tension    [n] f64, N/m, of the segment from this node to the cell's next one; of a surface the mean of
+//                          the triangles around the node
+//     membranes/curvature  [n] f64, 1/m, sum of both principal curvatures, in three dimensions
 //     membranes/first      [cells + 1] i32, first node of each cell and the total
 //     membranes/cell       [n] i32     membranes/aggregate [n] i32, label: smallest index of its cells
-//     membranes/connectivity           closed polylines for XDMF
+//     membranes/connectivity           closed polylines for XDMF; in three dimensions instead
+//     membranes/triangles  [m, 3] i32  nodes, counter-clockwise seen from outside
 //     fields/velocity      [ny, nx, 3] f32 or f64, m/s (third component 0: XDMF's vectors have three)
 //     fields/density, viscosity, vorticity [ny, nx] f32 or f64
 //                          in three dimensions [nz, ny, nx, 3] and [nz, ny, nx]
 //
 // Every dataset has its unit as attribute "unit". Node (i, j) of the lattice lies at ((i + 1/2) dx, (j + 1/2) dx).
-// first, cell and connectivity are links to one dataset as long as they do not change, so that they cost nothing per
+// first, cell and connectivity or triangles are links to one dataset as long as they do not change, so that they cost nothing per
 // frame.
 #pragma once
 
@@ -37,6 +40,7 @@ struct FrameRecord {
   std::size_t nodes = 0, cells = 0;  ///< of membranes; 0: none
   std::size_t connectivity = 0;      ///< entries
   bool uniform = false;              ///< all cells have the same number of nodes
+  bool surfaces = false;             ///< triangles, of three nodes each, and not outlines
   std::vector<std::string> fields;   ///< datasets under fields/
 };
 
@@ -77,7 +81,7 @@ class FrameWriter {
   void open_segment();
   void write_header(Hdf5File& target) const;
   void write_membranes(const std::string& frame, const observe::Snapshot& snapshot, FrameRecord& record);
-  void write_topology(const std::vector<int>& first);
+  void write_topology(const observe::OutlineSnapshot& outlines);
   void write_fields(const std::string& frame, const observe::FieldSnapshot& fields, FrameRecord& record);
   [[nodiscard]] FieldGrid field_grid() const;
   void read_back(const std::filesystem::path& source, std::size_t frames);

@@ -26,6 +26,7 @@ std::string attribute(const std::string& name, const std::string& kind, const st
 /// XDMF has no place for units that ParaView would show; names stand on its colour bars and in its tables.
 std::string shown_name(const std::string& dataset) {
   if (dataset == "tension") return "tension (N/m)";
+  if (dataset == "curvature") return "curvature (1/m)";
   if (dataset == "velocity") return "velocity (m/s)";
   if (dataset == "density") return "density deviation";
   if (dataset == "viscosity") return "viscosity (Pa s)";
@@ -40,7 +41,11 @@ std::string begin_grid(const std::string& name, double time) {
 std::string membranes(const FrameRecord& frame, const std::string& group) {
   const std::string n = std::to_string(frame.nodes), cells = std::to_string(frame.cells);
   std::string text = begin_grid("membranes", frame.time);
-  if (frame.uniform) {
+  if (frame.surfaces) {
+    const std::string triangles = std::to_string(frame.connectivity / 3);
+    text += "        <Topology TopologyType=\"Triangle\" NumberOfElements=\"" + triangles + "\">" +
+            data_item(triangles + " 3", {"Int", 4}, group + "/triangles") + "</Topology>\n";
+  } else if (frame.uniform) {
     const std::string per_cell = std::to_string(frame.connectivity / frame.cells);
     text += "        <Topology TopologyType=\"Polyline\" NumberOfElements=\"" + cells + "\" NodesPerElement=\"" +
             per_cell + "\">" + data_item(cells + " " + per_cell, {"Int", 4}, group + "/connectivity") + "</Topology>\n";
@@ -48,9 +53,11 @@ std::string membranes(const FrameRecord& frame, const std::string& group) {
     text += "        <Topology TopologyType=\"Mixed\" NumberOfElements=\"" + cells + "\">" +
             data_item(std::to_string(frame.connectivity), {"Int", 4}, group + "/connectivity") + "</Topology>\n";
   }
-  text +=
-      "        <Geometry GeometryType=\"XY\">" + data_item(n + " 2", {"Float", 8}, group + "/points") + "</Geometry>\n";
+  text += std::string("        <Geometry GeometryType=\"") + (frame.surfaces ? "XYZ" : "XY") + "\">" +
+          data_item(n + (frame.surfaces ? " 3" : " 2"), {"Float", 8}, group + "/points") + "</Geometry>\n";
   text += attribute(shown_name("tension"), "Scalar", data_item(n, {"Float", 8}, group + "/tension"));
+  if (frame.surfaces)
+    text += attribute(shown_name("curvature"), "Scalar", data_item(n, {"Float", 8}, group + "/curvature"));
   text += attribute("cell", "Scalar", data_item(n, {"Int", 4}, group + "/cell"));
   text += attribute("aggregate", "Scalar", data_item(n, {"Int", 4}, group + "/aggregate"));
   return text + "      </Grid>\n";

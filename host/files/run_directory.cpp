@@ -154,7 +154,7 @@ RunDirectory::RunDirectory(std::filesystem::path directory, const scene::Scene& 
   }
   remove_files(directory_, written_by_a_run);
   files_->log.emplace(directory_ / "log.jsonl");
-  files_->tables.emplace(directory_);
+  files_->tables.emplace(directory_, scene.domain.dimension());
   if (data == DataFiles::all) files_->frames.emplace(directory_ / "frames.h5", scene);
   if (scene.document) write_file(directory_ / "scene.json", scene_text(*scene.document));
 }
@@ -167,7 +167,7 @@ void RunDirectory::go_back(const DirectoryMark& mark) {
   remove_files(directory_, [](const std::string& name) {
     return is_partial(name) || name == "summary.json" || name == "report.html" || name == "frames.xmf";
   });
-  files_->tables.emplace(directory_, mark.tables);
+  files_->tables.emplace(directory_, scene_.domain.dimension(), mark.tables);
   files_->log->go_on(mark.log_s);
   if (scene_.document) write_file(directory_ / "scene.json", scene_text(*scene_.document));
 }

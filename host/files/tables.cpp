@@ -50,15 +50,15 @@ void Tables::require(const std::filesystem::path& directory, const Mark& mark) {
   for (std::size_t k = 0; k < mark.size(); ++k) files::require(directory / file_of(observe::tables()[k]), mark[k]);
 }
 
-Tables::Tables(const std::filesystem::path& directory) {
+Tables::Tables(const std::filesystem::path& directory, int dimension) : dimension_(dimension) {
   for (const observe::Table& table : observe::tables()) {
     files_.emplace_back(directory / file_of(table));
     files_.back().clear();
-    files_.back().write(line_of(table.columns()));
+    files_.back().write(line_of(table.columns(dimension)));
   }
 }
 
-Tables::Tables(const std::filesystem::path& directory, const Mark& mark) {
+Tables::Tables(const std::filesystem::path& directory, int dimension, const Mark& mark) : dimension_(dimension) {
   for (std::size_t k = 0; k < mark.size(); ++k) {
     files_.emplace_back(directory / file_of(observe::tables()[k]));
     files_.back().go_back(mark[k]);
@@ -69,10 +69,11 @@ void Tables::write(const observe::Snapshot& snapshot) {
   std::vector<std::string> entries;
   for (std::size_t k = 0; k < files_.size(); ++k) {
     const observe::Table& table = observe::tables()[k];
+    const std::vector<const observe::Observable*> observables = table.of(dimension_);
     table.for_each_row(snapshot, [&](const observe::Row& row) {
       entries.clear();
-      for (const observe::Observable& observable : table.observables)
-        entries.push_back(std::visit(Entry(), observable.value(row)));
+      for (const observe::Observable* observable : observables)
+        entries.push_back(std::visit(Entry(), observable->value(row)));
       files_[k].write(line_of(entries));
     });
     files_[k].flush();

@@ -32,15 +32,16 @@ class Tables {
   static void require(const std::filesystem::path& directory, const Mark& mark);
 
   /// Creates the four files in `directory` with their header lines. Throws Error(input_output), as all members do.
-  explicit Tables(const std::filesystem::path& directory);
+  Tables(const std::filesystem::path& directory, int dimension);
   /// Opens them, and drops what was written after the mark.
-  Tables(const std::filesystem::path& directory, const Mark& mark);
+  Tables(const std::filesystem::path& directory, int dimension, const Mark& mark);
   void write(const observe::Snapshot& snapshot);
   /// To the disk.
   Mark mark();
   void close();
 
  private:
+  int dimension_;  ///< of the run, which decides on columns
   std::vector<AppendFile> files_;
 };
 

@@ -7,7 +7,7 @@
 
 namespace rouleau::monitor {
 
-std::optional<Failure> check_energy(const observe::EnergyHistory& energy, const core::Membranes& membranes,
+std::optional<Failure> check_energy(const observe::EnergyHistory& energy, const core::CellNodes& membranes,
                                     const plan::Plan& plan, const plan::StageSetting& setting) {
   const double growth = energy.relative_growth(), limit = plan.scene->checks.energy_growth;
   if (growth <= limit) return std::nullopt;

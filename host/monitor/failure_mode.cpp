@@ -125,6 +125,14 @@ void find_mode(monitor::Failure& failure, const core::Membranes& membranes, cons
   failure.mode = mode;
 }
 
+void find_mode(monitor::Failure& failure, const core::Surfaces& surfaces, double oscillation) {
+  if (failure.reason == "area_drift") {
+    failure.mode.name = "leakage";
+  } else if (surfaces.cells.empty() || (failure.cell < 0 && oscillation >= lattice_oscillation_limit)) {
+    failure.mode.name = "sound";
+  }
+}
+
 std::string mode_sentence(const monitor::Failure& failure) {
   const FailureMode& mode = failure.mode;
   if (std::isfinite(mode.wavelength)) {

@@ -8,6 +8,7 @@
 #include "core/domain/images.hpp"
 #include "core/fluid/fluid.hpp"
 #include "core/membrane/membranes.hpp"
+#include "core/surface/surfaces.hpp"
 #include "failure.hpp"
 #include "growth_watch.hpp"
 #include "scene/scene.hpp"
@@ -41,6 +42,8 @@ double lattice_oscillation(int x, int y, const std::vector<core::Moments<2>>& mo
 /// lattice_oscillation there; `step`: the last one.
 void find_mode(Failure& failure, const core::Membranes& membranes, const GrowthWatch& growth,
                const core::Domain<2>& domain, std::array<double, 2> place, double oscillation, long step);
+/// Of surfaces: leakage where a volume drifts, sound where the fluid oscillates or there are no cells, else none.
+void find_mode(Failure& failure, const core::Surfaces& surfaces, double oscillation);
 
 /// What the mode adds to the failure's message, and what to do about it first; empty where the mode says no more than
 /// the reason does.

@@ -7,7 +7,7 @@
 
 namespace rouleau::monitor {
 
-void GrowthWatch::note(long step, const core::Membranes& membranes) {
+void GrowthWatch::note(long step, const core::CellNodes& membranes) {
   const double speed = core::largest_step(membranes);
   if (!std::isfinite(speed)) return;
   const auto fastest = std::max_element(membranes.largest_step.begin(), membranes.largest_step.end());
@@ -27,7 +27,7 @@ void GrowthWatch::note(long step, const core::Membranes& membranes) {
   level_ = 2 * speed;
 }
 
-void GrowthWatch::check(long step, const core::Membranes& membranes) {
+void GrowthWatch::check(long step, const core::CellNodes& membranes) {
   if (membranes.largest_step.empty()) return;
   speeds_.push_back(core::largest_step(membranes));
   steps_.push_back(step);
@@ -41,7 +41,7 @@ void GrowthWatch::check(long step, const core::Membranes& membranes) {
   level_ = std::max({least_level, calm, noted});
 }
 
-bool GrowthWatch::fits(const core::Membranes& membranes) const {
+bool GrowthWatch::fits(const core::CellNodes& membranes) const {
   const auto of_a_cell = [&](const Excursion& e) {
     if (e.cell < 0 || e.cell >= static_cast<int>(membranes.cells.size())) return false;
     const auto nodes = static_cast<std::size_t>(membranes.cells[e.cell].count);

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "core/membrane/membranes.hpp"
+#include "core/membrane/cell_nodes.hpp"
 
 namespace rouleau::monitor {
 
@@ -25,14 +25,14 @@ class GrowthWatch {
   /// Largest step of a node beyond which note() is to be called, lattice spacings.
   [[nodiscard]] double level() const { return level_; }
   /// The largest step has passed the level, which rises to twice that step.
-  void note(long step, const core::Membranes& membranes);
+  void note(long step, const core::CellNodes& membranes);
   /// At every regular check: what lies ten of them back is forgotten.
-  void check(long step, const core::Membranes& membranes);
+  void check(long step, const core::CellNodes& membranes);
   /// A stage begins: with another time step speeds are others.
   void start_stage() { *this = GrowthWatch(); }
   /// Oldest first.
   [[nodiscard]] const std::vector<Excursion>& excursions() const { return excursions_; }
-  [[nodiscard]] bool fits(const core::Membranes& membranes) const;
+  [[nodiscard]] bool fits(const core::CellNodes& membranes) const;
   NLOHMANN_DEFINE_TYPE_INTRUSIVE(GrowthWatch, level_, speeds_, steps_, excursions_)
 
  private:

@@ -7,16 +7,17 @@
 
 namespace rouleau::monitor {
 
-void locate_failure(Failure& f, const core::Membranes& membranes, int node, double spacing) {
+void locate_failure(Failure& f, const core::CellNodes& membranes, int node, double spacing) {
   const auto k = static_cast<std::size_t>(node);
   f.place = {units::coordinate(membranes.x[k] - membranes.velocity_x[k], spacing),
              units::coordinate(membranes.y[k] - membranes.velocity_y[k], spacing)};
+  if (!membranes.z.empty()) f.place_z = units::coordinate(membranes.z[k] - membranes.velocity_z[k], spacing);
   for (std::size_t c = 0; c < membranes.cells.size(); ++c) {
     if (node >= membranes.cells[c].first && node < membranes.cells[c].end()) f.cell = static_cast<int>(c);
   }
 }
 
-std::optional<Failure> check_nodes(const core::Membranes& membranes, double limit, int escaped,
+std::optional<Failure> check_nodes(const core::CellNodes& membranes, double limit, int escaped,
                                    const plan::StageSetting& setting) {
   if (membranes.cells.empty()) return std::nullopt;
   Failure f;

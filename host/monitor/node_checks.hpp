@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "core/membrane/membranes.hpp"
+#include "core/membrane/cell_nodes.hpp"
 #include "failure.hpp"
 #include "plan/stage_scales.hpp"
 #include "scene/scene.hpp"
@@ -17,11 +17,11 @@ inline std::string blown_up_remedy(const scene::Stage& stage) {
 }
 
 /// Sets cell and place (before its last step) of a failure to those of a node. `spacing` in m.
-void locate_failure(Failure& failure, const core::Membranes& membranes, int node, double spacing);
+void locate_failure(Failure& failure, const core::CellNodes& membranes, int node, double spacing);
 
 /// The first check that the last step failed, without its time: a node that moved further than `limit` lattice
 /// spacings, is nowhere, or (`escaped`, -1: none) has left the domain.
-std::optional<Failure> check_nodes(const core::Membranes& membranes, double limit, int escaped,
+std::optional<Failure> check_nodes(const core::CellNodes& membranes, double limit, int escaped,
                                    const plan::StageSetting& setting);
 
 }  // namespace rouleau::monitor

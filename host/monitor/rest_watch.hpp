@@ -5,7 +5,10 @@
 #include <vector>
 
 #include "core/membrane/displacement_watch.hpp"
-#include "core/membrane/membranes.hpp"
+
+namespace rouleau::core {
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(OldPlaces, x, y, z)
+}  // namespace rouleau::core
 
 namespace rouleau::monitor {
 
@@ -13,25 +16,24 @@ namespace rouleau::monitor {
 class RestWatch {
  public:
   /// A window begins.
-  void start(long step, const core::Membranes& membranes) {
+  void start(long step, const core::CellNodes& cells) {
     step_ = step;
-    x_ = membranes.x;
-    y_ = membranes.y;
+    old_ = {cells.x, cells.y, cells.z};
   }
   /// First step at which a window of so many steps has ended.
   [[nodiscard]] long end(long window) const { return step_ + window; }
   /// Largest distance that a node has moved since the window began, spacings.
-  [[nodiscard]] double moved(const core::Membranes& membranes) const {
-    return core::largest_displacement(membranes.x, membranes.y, x_, y_, {0, membranes.node_count()});
+  [[nodiscard]] double moved(const core::CellNodes& cells) const {
+    return core::largest_displacement(cells, old_, {0, cells.node_count()});
   }
-  [[nodiscard]] bool fits(const core::Membranes& membranes) const {
-    return step_ >= 0 && x_.size() == membranes.x.size() && y_.size() == membranes.x.size();
+  [[nodiscard]] bool fits(const core::CellNodes& cells) const {
+    return step_ >= 0 && old_.x.size() == cells.x.size() && old_.y.size() == cells.y.size() && old_.z.size() == cells.z.size();
   }
-  NLOHMANN_DEFINE_TYPE_INTRUSIVE(RestWatch, step_, x_, y_)
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(RestWatch, step_, old_)
 
  private:
   long step_ = 0;
-  std::vector<double> x_, y_;
+  core::OldPlaces old_;
 };
 
 }  // namespace rouleau::monitor

@@ -62,6 +62,15 @@ std::array<double, Set::dimension> extreme_node(const core::Fluid<T, Set>& fluid
   return place;
 }
 
+/// Of a piece of a membrane, segment or edge, that is too short or too long.
+Failure uneven_failure(const std::string& piece, int cell, double stretch, double limit, const scene::Stage& stage) {
+  return failure("uneven_nodes", {}, cell, stretch, stretch < 1 ? 1 / limit : limit,
+                 piece + " has become too " + (stretch < 1 ? "short" : "long") +
+                     " against the length it was placed with",
+                 "lower " + stage.density_factor_key +
+                     " or the load, stiffen the membrane, or raise checks.stretch if it is meant to give way so far");
+}
+
 std::optional<Failure> check_stretch(const core::Membranes& membranes, const scene::Scene& scene,
                                      const scene::Stage& stage, const units::LatticeUnits& units) {
   const double limit = scene.checks.stretch;
@@ -74,15 +83,79 @@ std::optional<Failure> check_stretch(const core::Membranes& membranes, const sce
       const double dx = membranes.x[to] - membranes.x[from], dy = membranes.y[to] - membranes.y[from];
       const double stretch = std::hypot(dx, dy) / (placed * membranes.rest_length[from]);
       if (stretch <= limit && stretch * limit >= 1) continue;
-      const std::array<double, 2> place{units::coordinate(membranes.x[from], units.length),
-                                        units::coordinate(membranes.y[from], units.length)};
-      return failure("uneven_nodes", place, static_cast<int>(k), stretch, stretch < 1 ? 1 / limit : limit,
-                     stretch < 1 ? "a segment of a membrane has become too short against the length it was placed with"
-                                 : "a segment of a membrane has become too long against the length it was placed with",
-                     "lower " + stage.density_factor_key +
-                         " or the load, stiffen the membrane, or raise checks.stretch if it "
-                         "is meant to give way so far");
+      Failure found = uneven_failure("a segment of a membrane", static_cast<int>(k), stretch, limit, stage);
+      found.place = {units::coordinate(membranes.x[from], units.length),
+                     units::coordinate(membranes.y[from], units.length)};
+      return found;
     }
+  }
+  return std::nullopt;
+}
+
+/// What an area or a volume that drifts means, and what to do about it.
+Failure drift_failure(const char* measure, std::array<double, 2> place, int cell, double drift, bool corrected,
+                      const std::string& first_remedy, const plan::StageSetting& setting, const scene::Scene& scene) {
+  const std::string changed = std::string("changed its ") + measure + " by more than the limit";
+  return failure("area_drift", place, cell, drift, scene.checks.area_drift,
+                 "a cell " + (corrected ? "would have " + changed + " without numerics.area_correction" : "has " + changed) +
+                     ": fluid leaks through its membrane or is compressed",
+                 first_remedy + "lower " + setting.stage->density_factor_key +
+                     ", raise the resolution, or raise checks.area_drift if this error is acceptable");
+}
+
+std::optional<Failure> check_cells(observe::Observer& observer, const plan::StageSetting& setting,
+                                   const core::Membranes& membranes, const scene::Scene& scene) {
+  const auto place = [&](const core::Vec<2>& at) {
+    return std::array<double, 2>{units::coordinate(at.x(), setting.units.length),
+                                 units::coordinate(at.y(), setting.units.length)};
+  };
+  int cell = -1, leaking = -1;
+  double drift = observer.follow_area(membranes, &cell);
+  // Where areas are kept, the correction that this took is the leak.
+  const double leakage = observe::Observer::area_leakage(membranes, &leaking);
+  if (leakage > drift) drift = leakage, cell = leaking;
+  if (!(drift <= scene.checks.area_drift)) {
+    const core::CellRange& drifting = membranes.cells[cell];
+    return drift_failure("area", place(core::centroid(membranes, drifting)), cell, drift, drift == leakage,
+                         leak_remedy(core::perimeter(membranes, drifting) / drifting.count), setting, scene);
+  }
+  if (auto uneven = check_stretch(membranes, scene, *setting.stage, setting.units)) return uneven;
+  if (const auto crossing = core::find_crossing(membranes, observer.domain())) {
+    return failure(
+        "crossing", place(crossing->place), crossing->cell, 0, 0,
+        crossing->cell == crossing->other
+            ? "the membrane of a cell crosses itself"
+            : "the membranes of cells " + std::to_string(crossing->cell) + " and " + std::to_string(crossing->other) +
+                  (crossing->inside ? " lie one inside the other" : " cross"),
+        "lower " + setting.stage->density_factor_key + " or the attraction, raise the resolution, or stiffen bending");
+  }
+  return std::nullopt;
+}
+
+std::optional<Failure> check_cells(observe::Observer& observer, const plan::StageSetting& setting,
+                                   const core::Surfaces& surfaces, const scene::Scene& scene) {
+  const double length = setting.units.length, limit = scene.checks.stretch;
+  const auto at = [&](Failure found, const core::Vec<3>& place) {
+    found.place = {units::coordinate(place.x(), length), units::coordinate(place.y(), length)};
+    found.place_z = units::coordinate(place.z(), length);
+    return found;
+  };
+  const auto middle = [&](int cell) {
+    return core::inertia_ellipsoid(surfaces.type_of(cell).mesh, surfaces.nodes(cell)).center;
+  };
+  int cell = -1;
+  const double drift = observer.follow_area(surfaces, &cell);
+  if (!(drift <= scene.checks.area_drift))
+    return at(drift_failure("volume", {}, cell, drift, false, "", setting, scene), middle(cell));
+  for (int k = 0; k < surfaces.cell_count(); ++k) {
+    const auto* sphere = std::get_if<scene::Sphere>(&scene.cell_types[surfaces.cells[k].type].shape);
+    const double placed = sphere != nullptr ? sphere->prestretch : 1.0;
+    core::StretchRange stretch = core::stretch_range(surfaces, k);
+    stretch.least /= placed, stretch.most /= placed;
+    const bool shrunk = !(stretch.least * limit >= 1);
+    if (!shrunk && stretch.most <= limit) continue;
+    return at(uneven_failure("an edge of a membrane", k, shrunk ? stretch.least : stretch.most, limit, *setting.stage),
+              middle(k));
   }
   return std::nullopt;
 }
@@ -91,8 +164,8 @@ std::optional<Failure> check_stretch(const core::Membranes& membranes, const sce
 
 template <class T, class Set>
 std::optional<Failure> check_state(observe::Observer& observer, core::Solver<T, Set>& solver,
-                                   const plan::StageSetting& setting, const core::Membranes& membranes,
-                                   const scene::Scene& scene) {
+                                   const plan::StageSetting& setting,
+                                   const typename core::Solver<T, Set>::Cells& cells, const scene::Scene& scene) {
   const units::LatticeUnits& units = setting.units;
   const auto place = [&](double x, double y) {
     return std::array<double, 2>{units::coordinate(x, units.length), units::coordinate(y, units.length)};
@@ -110,42 +183,13 @@ std::optional<Failure> check_state(observe::Observer& observer, core::Solver<T, 
     if constexpr (Set::dimension == 3) found.place_z = units::coordinate(node[2], units.length);
     return found;
   }
-  if (membranes.cells.empty()) return std::nullopt;
-  int cell = -1, leaking = -1;
-  double drift = observer.follow_area(membranes, &cell);
-  // Where areas are kept, the correction that this took is the leak.
-  const double leakage = observe::Observer::area_leakage(membranes, &leaking);
-  if (leakage > drift) drift = leakage, cell = leaking;
-  if (!(drift <= scene.checks.area_drift)) {
-    const core::CellRange& drifting = membranes.cells[cell];
-    const Eigen::Vector2d c = core::centroid(membranes, drifting);
-    return failure(
-        "area_drift", place(c.x(), c.y()), cell, drift, scene.checks.area_drift,
-        std::string("a cell ") +
-            (drift == leakage ? "would have changed its area by more than the limit without numerics.area_correction"
-                              : "has changed its area by more than the limit") +
-            ": fluid leaks through its membrane or is compressed",
-        leak_remedy(core::perimeter(membranes, drifting) / drifting.count) + "lower " +
-            setting.stage->density_factor_key +
-            ", raise the resolution, or raise checks.area_drift if this error is "
-            "acceptable");
-  }
-  if (auto uneven = check_stretch(membranes, scene, *setting.stage, units)) return uneven;
-  if (const auto crossing = core::find_crossing(membranes, observer.domain())) {
-    return failure(
-        "crossing", place(crossing->place.x(), crossing->place.y()), crossing->cell, 0, 0,
-        crossing->cell == crossing->other
-            ? "the membrane of a cell crosses itself"
-            : "the membranes of cells " + std::to_string(crossing->cell) + " and " + std::to_string(crossing->other) +
-                  (crossing->inside ? " lie one inside the other" : " cross"),
-        "lower " + setting.stage->density_factor_key + " or the attraction, raise the resolution, or stiffen bending");
-  }
-  return std::nullopt;
+  if (cells.cells.empty()) return std::nullopt;
+  return check_cells(observer, setting, cells, scene);
 }
 
 #define ROULEAU_INSTANTIATE(T, Set)                                                                                 \
   template std::optional<Failure> check_state(observe::Observer&, core::Solver<T, Set>&, const plan::StageSetting&, \
-                                              const core::Membranes&, const scene::Scene&);
+                                              const typename core::Solver<T, Set>::Cells&, const scene::Scene&);
 ROULEAU_INSTANTIATE(float, core::D2Q9)
 ROULEAU_INSTANTIATE(double, core::D2Q9)
 ROULEAU_INSTANTIATE(float, core::D3Q19)

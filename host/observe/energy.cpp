@@ -9,9 +9,10 @@ namespace rouleau::observe {
 namespace {
 
 /// Power that the membranes give away, at the velocities of their last step.
-double given_away(const core::Membranes& m) {
+double given_away(const core::CellNodes& m) {
   double power = 0;
   for (std::size_t i = 0; i < m.x.size(); ++i) power += m.force_x[i] * m.velocity_x[i] + m.force_y[i] * m.velocity_y[i];
+  for (std::size_t i = 0; i < m.z.size(); ++i) power += m.force_z[i] * m.velocity_z[i];
   return power;
 }
 
@@ -22,31 +23,30 @@ std::string without_energy(const char* kind, const std::string& model) {
 }  // namespace
 
 template <class T, class Set>
-CellEnergy cell_energy(core::Solver<T, Set>& solver, const core::Membranes& membranes) {
+CellEnergy cell_energy(core::Solver<T, Set>& solver) {
   CellEnergy energy;
+  auto* tasks = solver.cell_tasks();
+  if (tasks == nullptr) return energy;
   const auto add = [&](double part) { energy.sum += part, energy.magnitude += std::abs(part); };
-  if (core::MembraneForces* forces = solver.membrane_forces()) {
-    const core::MembraneEnergy membrane = forces->energies(membranes);
-    add(membrane.tension + membrane.cell);
-    add(membrane.bending);
-    if (!membrane.unknown.empty()) energy.unknown = without_energy("membrane law", membrane.unknown);
-  }
-  if (const core::InteractionForces* forces = solver.interaction_forces()) {
-    if constexpr (Set::dimension == 2) add(forces->energy(membranes, solver.ranks()));
-    const std::string silent = forces->without_energy();
+  const core::MembraneEnergy membrane = tasks->forces().energies(solver.cells());
+  add(membrane.tension + membrane.cell);
+  add(membrane.bending);
+  if (!membrane.unknown.empty()) energy.unknown = without_energy("membrane law", membrane.unknown);
+  tasks->for_each_interaction([&](const auto& forces) {
+    add(forces.energy(solver.cells(), solver.ranks()));
+    const std::string silent = forces.without_energy();
     if (!silent.empty()) energy.unknown = without_energy("interaction", silent);
-  }
+  });
   return energy;
 }
 
-template CellEnergy cell_energy(core::Solver<float>&, const core::Membranes&);
-template CellEnergy cell_energy(core::Solver<float, core::D3Q19>&, const core::Membranes&);
-template CellEnergy cell_energy(core::Solver<double>&, const core::Membranes&);
-template CellEnergy cell_energy(core::Solver<double, core::D3Q19>&, const core::Membranes&);
+template CellEnergy cell_energy(core::Solver<float>&);
+template CellEnergy cell_energy(core::Solver<float, core::D3Q19>&);
+template CellEnergy cell_energy(core::Solver<double>&);
+template CellEnergy cell_energy(core::Solver<double, core::D3Q19>&);
 
 template <class T, class Set>
-EnergySnapshot observe_energy(core::Solver<T, Set>& solver, const core::Membranes& membranes,
-                              const units::LatticeUnits& units) {
+EnergySnapshot observe_energy(core::Solver<T, Set>& solver, const units::LatticeUnits& units) {
   const core::FluidSetting<Set::dimension>& setting = solver.fluid().setting();
   // What the lattice has is summed over its depth.
   double depth = 1;
@@ -69,41 +69,35 @@ EnergySnapshot observe_energy(core::Solver<T, Set>& solver, const core::Membrane
     for (int k = 0; k < Set::dimension; ++k) power += setting.body_force[k] * fluid.velocity[k];
     energy.body_force_power = power * watt;
   }
-  if (core::MembraneForces* forces = solver.membrane_forces()) {
-    const core::MembraneEnergy membrane = forces->energies(membranes);
+  if (auto* tasks = solver.cell_tasks()) {
+    const core::MembraneEnergy membrane = tasks->forces().energies(solver.cells());
     energy.elastic = (membrane.tension + membrane.cell) * joule;
     energy.bending = membrane.bending * joule;
     energy.membrane_dissipation = membrane.dissipation * watt;
     energy.total += energy.elastic + energy.bending;
     // What corrected nodes give away and the lattice does not get is lost in the layers beside the membranes, which the
     // lattice does not resolve and the correction stands for.
-    if (solver.corrects_motion()) energy.viscous_dissipation += (given_away(membranes) - fluid.membrane_power) * watt;
+    if (tasks->corrects_motion())
+      energy.viscous_dissipation += (given_away(solver.cells()) - fluid.membrane_power) * watt;
     if (!membrane.unknown.empty()) energy.unknown = without_energy("membrane law", membrane.unknown);
+    bool interact = false;
+    tasks->for_each_interaction([&](const auto& forces) {
+      const double part = forces.energy(solver.cells(), solver.ranks()) * joule;
+      energy.interaction = interact ? energy.interaction + part : part;
+      energy.total += part;
+      interact = true;
+      const std::string silent = forces.without_energy();
+      if (!silent.empty()) energy.unknown = without_energy("interaction", silent);
+    });
   }
-  bool interact = false;
-  const auto add_interaction = [&](const auto* forces) {
-    if (forces == nullptr) return;
-    double part = 0;
-    if constexpr (Set::dimension == 2) part = forces->energy(membranes, solver.ranks()) * joule;
-    energy.interaction = interact ? energy.interaction + part : part;
-    energy.total += part;
-    interact = true;
-    const std::string silent = forces->without_energy();
-    if (!silent.empty()) energy.unknown = without_energy("interaction", silent);
-  };
-  add_interaction(solver.interaction_forces());
-  add_interaction(solver.wall_contacts());
-  add_interaction(solver.self_contacts());
   if (!energy.unknown.empty()) energy.total = EnergySnapshot::none;
   return energy;
 }
 
-template EnergySnapshot observe_energy(core::Solver<float>&, const core::Membranes&, const units::LatticeUnits&);
-template EnergySnapshot observe_energy(core::Solver<float, core::D3Q19>&, const core::Membranes&,
-                                       const units::LatticeUnits&);
-template EnergySnapshot observe_energy(core::Solver<double>&, const core::Membranes&, const units::LatticeUnits&);
-template EnergySnapshot observe_energy(core::Solver<double, core::D3Q19>&, const core::Membranes&,
-                                       const units::LatticeUnits&);
+template EnergySnapshot observe_energy(core::Solver<float>&, const units::LatticeUnits&);
+template EnergySnapshot observe_energy(core::Solver<float, core::D3Q19>&, const units::LatticeUnits&);
+template EnergySnapshot observe_energy(core::Solver<double>&, const units::LatticeUnits&);
+template EnergySnapshot observe_energy(core::Solver<double, core::D3Q19>&, const units::LatticeUnits&);
 
 void EnergyHistory::follow(const Snapshot& snapshot, bool driven, double floor) {
   const EnergySnapshot& energy = snapshot.energy;

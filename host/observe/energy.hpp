@@ -17,12 +17,11 @@ struct CellEnergy {
   std::string unknown;            ///< why the sum is not known; empty: it is
 };
 template <class T, class Set>
-CellEnergy cell_energy(core::Solver<T, Set>& solver, const core::Membranes& membranes);
+CellEnergy cell_energy(core::Solver<T, Set>& solver);
 
 /// State before the next step of `solver`, whose forces have been computed and whose fluid is settled.
 template <class T, class Set>
-EnergySnapshot observe_energy(core::Solver<T, Set>& solver, const core::Membranes& membranes,
-                              const units::LatticeUnits& units);
+EnergySnapshot observe_energy(core::Solver<T, Set>& solver, const units::LatticeUnits& units);
 
 /// Follows the total energy through the stages at rest, where it may only fall.
 class EnergyHistory {

@@ -23,6 +23,20 @@ template <auto member>
 Value cell(const Row& row) {
   return row.cell->*member;
 }
+/// Of a surface; empty of an outline.
+template <auto member>
+Value in_space(const Row& row) {
+  return row.cell->in_space ? Value((*row.cell->in_space).*member) : Value();
+}
+template <auto member, std::size_t k>
+Value in_space(const Row& row) {
+  return row.cell->in_space ? Value(((*row.cell->in_space).*member)[k]) : Value();
+}
+/// Of an outline; empty of a surface.
+template <auto member>
+Value in_plane(const Row& row) {
+  return row.cell->in_space ? Value() : Value(row.cell->*member);
+}
 template <auto member>
 Value aggregate(const Row& row) {
   return row.aggregate->*member;
@@ -96,22 +110,30 @@ Table cells_table() {
           {.name = "type", .unit = "", .doc = "its type", .value = cell<&CellSnapshot::type>},
           {.name = "x",
            .unit = "m",
-           .doc = "centroid of the enclosed area; not wrapped into the periodic box",
+           .doc = "centroid of what the membrane encloses; not wrapped into the periodic box",
            .value = cell<&CellSnapshot::x>},
           {.name = "y", .unit = "m", .doc = "likewise", .value = cell<&CellSnapshot::y>},
           {.name = "angle",
            .unit = "rad",
            .doc = "of the long axis of the inertia ellipse against x, counter-clockwise, followed over turns; `nan` "
-                  "for a circle (deformation below 1e-6), which has none",
+                  "for a circle (deformation below 1e-6), which has none; in three dimensions of the longer of the two "
+                  "axes of the inertia ellipsoid that lie nearest to the plane of x and y",
            .value = cell<&CellSnapshot::angle>,
            .chart = "Angle of the long axis"},
           {.name = "deformation",
            .unit = "",
-           .doc = "(L - B)/(L + B) with the axes L > B of the ellipse that has the enclosed area's second moments",
+           .doc = "(L - B)/(L + B) with the axes L > B of the ellipse that has the enclosed area's second moments; in "
+                  "three dimensions of the two axes of the ellipsoid that lie nearest to the plane of x and y",
            .value = cell<&CellSnapshot::deformation>,
            .chart = "Deformation (L − B)/(L + B)"},
-          {.name = "area", .unit = "m2", .doc = "that the outline encloses", .value = cell<&CellSnapshot::area>},
-          {.name = "perimeter", .unit = "m", .doc = "of the outline", .value = cell<&CellSnapshot::perimeter>},
+          {.name = "area",
+           .unit = "m2",
+           .doc = "that the outline encloses; empty in three dimensions",
+           .value = in_plane<&CellSnapshot::area>},
+          {.name = "perimeter",
+           .unit = "m",
+           .doc = "of the outline; empty in three dimensions",
+           .value = in_plane<&CellSnapshot::perimeter>},
           {.name = "min_gap",
            .unit = "m",
            .doc = "to the nearest outline of another cell or of any periodic image; `inf` where there is none",
@@ -128,7 +150,8 @@ Table cells_table() {
            .value = cell<&CellSnapshot::aggregate>},
           {.name = "tank_treading_angle",
            .unit = "rad",
-           .doc = "of the outline's first node about the centroid, followed over turns",
+           .doc = "of the outline's first node about the centroid, followed over turns; of a surface that of the node "
+                  "that was farthest from its axis along z at the start",
            .value = cell<&CellSnapshot::tank_treading_angle>},
           {.name = "through_image",
            .unit = "",
@@ -142,6 +165,51 @@ Table cells_table() {
            .unit = "",
            .doc = "largest stretch of a segment of the cell",
            .value = cell<&CellSnapshot::stretch_max>},
+          {.name = "z",
+           .unit = "m",
+           .doc = "centroid along z",
+           .value = in_space<&CellSnapshot::InSpace::z>,
+           .in_space = true},
+          {.name = "volume",
+           .unit = "m3",
+           .doc = "that the surface encloses",
+           .value = in_space<&CellSnapshot::InSpace::volume>,
+           .in_space = true},
+          {.name = "surface_area",
+           .unit = "m2",
+           .doc = "of the surface",
+           .value = in_space<&CellSnapshot::InSpace::surface_area>,
+           .in_space = true},
+          {.name = "semi_axis_a",
+           .unit = "m",
+           .doc = "largest semi-axis of the ellipsoid that has the enclosed volume's second moments",
+           .value = in_space<&CellSnapshot::InSpace::semi_axes, 0>,
+           .in_space = true},
+          {.name = "semi_axis_b",
+           .unit = "m",
+           .doc = "its middle semi-axis",
+           .value = in_space<&CellSnapshot::InSpace::semi_axes, 1>,
+           .in_space = true},
+          {.name = "semi_axis_c",
+           .unit = "m",
+           .doc = "its smallest semi-axis",
+           .value = in_space<&CellSnapshot::InSpace::semi_axes, 2>,
+           .in_space = true},
+          {.name = "axis_x",
+           .unit = "",
+           .doc = "direction of the smallest semi-axis, which is the axis of a red cell: a unit vector",
+           .value = in_space<&CellSnapshot::InSpace::short_axis, 0>,
+           .in_space = true},
+          {.name = "axis_y",
+           .unit = "",
+           .doc = "likewise",
+           .value = in_space<&CellSnapshot::InSpace::short_axis, 1>,
+           .in_space = true},
+          {.name = "axis_z",
+           .unit = "",
+           .doc = "likewise",
+           .value = in_space<&CellSnapshot::InSpace::short_axis, 2>,
+           .in_space = true},
       }),
       for_each_cell};
 }
@@ -378,9 +446,17 @@ std::string Observable::column() const {
   return text;
 }
 
-std::vector<std::string> Table::columns() const {
+std::vector<const Observable*> Table::of(int dimension) const {
+  std::vector<const Observable*> chosen;
+  for (const Observable& observable : observables) {
+    if (dimension == 3 || !observable.in_space) chosen.push_back(&observable);
+  }
+  return chosen;
+}
+
+std::vector<std::string> Table::columns(int dimension) const {
   std::vector<std::string> names;
-  for (const Observable& observable : observables) names.push_back(observable.column());
+  for (const Observable* observable : of(dimension)) names.push_back(observable->column());
   return names;
 }
 
@@ -400,7 +476,7 @@ nlohmann::json columns_json() {
   for (const Table& table : tables()) {
     auto columns = nlohmann::json::array();
     for (const Observable& o : table.observables)
-      columns.push_back({{"column", o.column()}, {"unit", o.unit}, {"doc", o.doc}, {"has_means", o.has_means}});
+      columns.push_back({{"column", o.column()}, {"unit", o.unit}, {"doc", o.doc}, {"has_means", o.has_means}, {"in_space", o.in_space}});
     list.push_back({{"name", table.name}, {"columns", std::move(columns)}});
   }
   return list;

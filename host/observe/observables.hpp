@@ -43,6 +43,7 @@ struct Observable {
   std::string_view chart = {};  ///< title of the report's chart that draws it; empty: none does
   std::string_view line = {};   ///< which line of that chart it is, where there are several
   bool has_means = false;       ///< summary.json has its means over the stages (RheologyHistory)
+  bool in_space = false;        ///< there in three dimensions only
 
   /// The column's name: the name and the unit, "kinetic_energy_J_per_m".
   [[nodiscard]] std::string column() const;
@@ -54,7 +55,10 @@ struct Table {
   /// Calls `visit` for each row that an output has, in the order of the file.
   void (*for_each_row)(const Snapshot& output, const std::function<void(const Row&)>& visit);
 
-  [[nodiscard]] std::vector<std::string> columns() const;
+  /// Those of a run of so many dimensions.
+  [[nodiscard]] std::vector<const Observable*> of(int dimension) const;
+  /// Their columns' names.
+  [[nodiscard]] std::vector<std::string> columns(int dimension) const;
 };
 
 /// cells, aggregates, series and aggregate_sizes, in this order.
@@ -62,7 +66,7 @@ const std::array<Table, 4>& tables();
 /// That of this name; throws std::out_of_range where there is none.
 const Table& table(std::string_view name);
 
-/// [{name, columns: [{column, unit, doc, has_means}]}], for scripts/docs.
+/// [{name, columns: [{column, unit, doc, has_means, in_space}]}], for scripts/docs.
 nlohmann::json columns_json();
 
 }  // namespace rouleau::observe

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -21,27 +22,31 @@ namespace rouleau::observe {
 /// Follows angles over turns, and remembers what drifts are measured against; lives for the whole run.
 class Observer {
  public:
-  Observer(const scene::Scene& scene, const core::Membranes& membranes);
+  /// Of the cells as they are placed.
+  template <class Cells>
+  Observer(const scene::Scene& scene, const Cells& cells);
 
   /// Mass is compared within a stage: a new density factor rescales the populations.
   void start_stage();
 
   /// State before the next step of `solver`, whose forces must have been computed. `with_fields`: fields are due.
   template <class T, class Set>
-  Snapshot observe(core::Solver<T, Set>& solver, const plan::StageSetting& setting, const core::Membranes& membranes,
-                   bool with_fields);
+  Snapshot observe(core::Solver<T, Set>& solver, const plan::StageSetting& setting,
+                   const typename core::Solver<T, Set>::Cells& cells, bool with_fields);
 
   /// Follows mass and Mach number; returns the latter, which is NaN if the fluid holds a value that is no number.
   template <class T, class Set>
   double follow_fluid(core::Fluid<T, Set>& fluid);
-  /// Follows the cells' areas; returns the largest relative change since the start. `cell`: whose.
-  double follow_area(const core::Membranes& membranes, int* cell = nullptr);
+  /// Follows the areas that outlines enclose, the volumes of surfaces; returns the largest relative change since the
+  /// start. `cell`: whose.
+  template <class Cells>
+  double follow_area(const Cells& cells, int* cell = nullptr);
   /// Largest area that the area correction has kept from leaking out of (or into) a cell so far, over its rest area;
   /// `cell`: whose. NaN without that correction.
-  static double area_leakage(const core::Membranes& membranes, int* cell = nullptr);
+  static double area_leakage(const core::CellNodes& cells, int* cell = nullptr);
   /// Sum of nodal forces, less what walls do to the cells (along y), over the sum of their magnitudes: rounding only, or
   /// an internal force is unbalanced.
-  static double momentum_residual(const core::Membranes& membranes, double from_walls = 0);
+  static double momentum_residual(const core::CellNodes& cells, double from_walls = 0);
 
   [[nodiscard]] const core::Domain<2>& domain() const { return domain_; }
   [[nodiscard]] double mach_max() const { return mach_max_; }
@@ -50,8 +55,8 @@ class Observer {
   /// Of any segment at any output so far.
   [[nodiscard]] const core::StretchRange& stretch() const { return stretch_; }
   /// Whether what it remembers is about so many cells.
-  [[nodiscard]] bool fits(const core::Membranes& membranes) const {
-    const std::size_t cells = membranes.cells.size();
+  [[nodiscard]] bool fits(const core::CellNodes& nodes) const {
+    const std::size_t cells = nodes.cells.size();
     return initial_area_.size() == cells && angle_.size() == cells && tank_treading_angle_.size() == cells;
   }
   NLOHMANN_DEFINE_TYPE_INTRUSIVE(Observer, initial_area_, angle_, tank_treading_angle_, rotation_, started_, mach_max_,
@@ -59,10 +64,14 @@ class Observer {
 
  private:
   void observe_cells(const core::Membranes& membranes, const units::LatticeUnits& units, Snapshot& snapshot);
+  void observe_cells(const core::Surfaces& surfaces, const units::LatticeUnits& units, Snapshot& snapshot);
+  void follow_angles(std::size_t cell, std::optional<double> angle, double marker, CellSnapshot& snapshot);
+  void follow_stretch(const core::StretchRange& stretch, CellSnapshot& snapshot);
 
   const scene::Scene* scene_;
   core::Domain<2> domain_;
-  std::vector<double> initial_area_;
+  std::vector<double> initial_area_;  ///< or volumes
+  std::vector<int> marker_;           ///< of each surface: the node that tells its tank treading
   std::vector<double> angle_, tank_treading_angle_;  ///< last values, continuous
   Rotation rotation_;
   bool started_ = false;

@@ -21,4 +21,25 @@ double particle_stress(const core::Membranes& m, const scene::Scene& scene, doub
   return stress / (static_cast<double>(scene.domain.nodes[0]) * scene.domain.nodes[1]);
 }
 
+double particle_stress(const core::Surfaces& s, const scene::Scene& scene, double viscosity) {
+  double stress = 0;
+  for (int c = 0; c < s.cell_count(); ++c) {
+    const core::CellRange& cell = s.cells[c];
+    const core::Mesh& mesh = s.type_of(c).mesh;
+    const double middle = core::inertia_ellipsoid(mesh, s.nodes(c)).center.y();
+    for (int i = cell.first; i < cell.end(); ++i) stress -= s.force_x[i] * (s.y[i] - middle);
+    const double ratio = scene.cell_types[cell.type].interior_viscosity / scene.fluid.viscosity;
+    if (ratio == 1) continue;
+    const std::vector<core::Vec<3>> twice_area = core::area_vectors(mesh, s.nodes(c));
+    std::size_t t = 0;
+    for (const auto& corners : mesh.triangles()) {
+      double ux = 0, uy = 0;
+      for (const int node : corners) ux += s.velocity_x[cell.first + node] / 3, uy += s.velocity_y[cell.first + node] / 3;
+      stress += viscosity * (ratio - 1) * (ux * twice_area[t].y() + uy * twice_area[t].x()) / 2;
+      ++t;
+    }
+  }
+  return stress / scene.domain.node_count();
+}
+
 }  // namespace rouleau::observe

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/membrane/membranes.hpp"
+#include "core/surface/surfaces.hpp"
 #include "scene/scene.hpp"
 
 namespace rouleau::observe {
@@ -10,5 +11,7 @@ namespace rouleau::observe {
 /// viscosity contrast (Batchelor, J. Fluid Mech. 41, 1970; surface integral of u n + n u over the outline). `viscosity`
 /// is that of the suspending fluid; forces and velocities must be those of the present step.
 double particle_stress(const core::Membranes& membranes, const scene::Scene& scene, double viscosity);
+/// The same of surfaces, per volume of the domain.
+double particle_stress(const core::Surfaces& surfaces, const scene::Scene& scene, double viscosity);
 
 }  // namespace rouleau::observe

@@ -4,6 +4,7 @@
 #include <array>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,14 +16,22 @@ struct CellSnapshot {
   double x, y;                 ///< centroid, m; x is not wrapped into the box
   double angle;                ///< of the long axis of the inertia ellipse, rad, continuous in time; NaN for a circle
   double deformation;          ///< (L - B) / (L + B) of the inertia ellipse
-  double area;                 ///< m2
-  double perimeter;            ///< m
+  double area;                 ///< m2; NaN in three dimensions
+  double perimeter;            ///< m; NaN in three dimensions
   double tank_treading_angle;  ///< of the first node about the centroid, rad, continuous in time
   double min_gap;      ///< m, to the nearest membrane of another cell or of an image; infinite when there is none
   double wall_gap;     ///< m, to the nearer wall; NaN without walls
   int aggregate;       ///< label: smallest index of a cell of the aggregate it belongs to
   bool through_image;  ///< its aggregate is held together by a contact across the periodic boundary
-  double stretch_min, stretch_max;  ///< of its segments: length over rest length
+  double stretch_min, stretch_max;  ///< of its segments or edges: length over rest length
+  /// In three dimensions, where angle and deformation are those of the plane of x and y.
+  struct InSpace {
+    double z;                                   ///< centroid, m
+    double volume, surface_area;                ///< m3, m2
+    std::array<double, 3> semi_axes;            ///< m, of the inertia ellipsoid, largest first
+    std::array<double, 3> short_axis;           ///< unit vector, its first component that is not 0 positive
+  };
+  std::optional<InSpace> in_space = {};
 };
 
 /// Two cells (or a cell and an image) whose gap is below Output::aggregate_gap.
@@ -33,11 +42,16 @@ struct ContactSnapshot {
   double contact_length;     ///< m, length of a's membrane nearer than the aggregate gap
 };
 
-/// Outlines of all cells, one after another.
+/// Outlines or surfaces of all cells, one after another.
 struct OutlineSnapshot {
   std::vector<int> first;       ///< first node of each cell, and the total at the end
-  std::vector<double> x, y;     ///< m, not wrapped
-  std::vector<double> tension;  ///< N/m of segment i (elastic and viscous laws together)
+  std::vector<double> x, y, z;  ///< m, not wrapped; the last is empty in two dimensions
+  std::vector<double> tension;  ///< N/m of segment i (elastic and viscous laws together); of surfaces, the mean of the
+                                ///< triangles around node i
+  // Of surfaces.
+  std::vector<double> curvature;              ///< 1/m, sum of both principal curvatures at node i, positive where a
+                                              ///< surface bulges outward
+  std::vector<std::array<int, 3>> triangles;  ///< nodes, counter-clockwise seen from outside
 };
 
 /// Fluid fields on the nodes that the scene wants (FieldStorage), row by row from below, x fastest, then y. Empty: not due

@@ -43,7 +43,7 @@ CellTravel cell_travel(const scene::Scene& scene, const StageSetting& stage) {
 }
 
 bool follows_cells(const scene::Scene& scene, const StageSetting& stage) {
-  if (scene.fluid.inertia || scene.cells.empty()) return false;
+  if (scene.fluid.inertia || scene.cells.empty() || scene.domain.depth) return false;
   // Between no walls a driven fluid goes faster and faster, and cells with it.
   return scene.domain.periodic_y ? stage.is_driven() : cell_travel(scene, stage).mean > threshold;
 }

@@ -18,6 +18,7 @@ CellTravel cell_travel(const scene::Scene& scene, const StageSetting& stage);
 /// The fluid is computed in a frame that moves with the cells where these travel together. Otherwise a capsule drifts across
 /// a shear flow in proportion to the mean, by 0.87 of its radius within a strain of 8 at a mean of 2 (docs/rheology.md): the
 /// threshold allows 0.001.
+/// Not in three dimensions, whose fluid has no such frame.
 bool follows_cells(const scene::Scene& scene, const StageSetting& stage);
 
 }  // namespace rouleau::plan

@@ -6,6 +6,7 @@
 #include "base/process.hpp"
 #include "base/text.hpp"
 #include "output_schedule.hpp"
+#include "shape/extent.hpp"
 
 namespace rouleau::plan {
 
@@ -49,8 +50,10 @@ Counts count_outputs(const scene::Scene& scene, const StageSetting& stage) {
 }
 
 double membrane_nodes_of(const scene::Scene& scene) {
+  std::vector<double> of_type;
+  for (const scene::CellType& type : scene.cell_types) of_type.push_back(shape::node_count(type));
   double nodes = 0;
-  for (const scene::CellPlacement& cell : scene.cells) nodes += scene.cell_types[cell.type].segments;
+  for (const scene::CellPlacement& cell : scene.cells) nodes += of_type[cell.type];
   return nodes;
 }
 
@@ -100,10 +103,10 @@ OutputEstimate estimate_output(const scene::Scene& scene, const std::vector<Stag
 double step_cost(double lattice_nodes, double membrane_nodes, scene::Precision precision, int dimension) {
   const bool f64 = precision == scene::Precision::f64;
   const double of_node = dimension == 2 ? (f64 ? 1.5e-9 : 0.85e-9) : (f64 ? 13e-9 : 7e-9);
-  return lattice_nodes * of_node + membrane_nodes * 50e-9;
+  return lattice_nodes * of_node + membrane_nodes * (dimension == 2 ? 50e-9 : 200e-9);
 }
 
-double membrane_memory(const scene::Scene& scene) { return membrane_nodes_of(scene) * 400; }
+double membrane_memory(const scene::Scene& scene) { return membrane_nodes_of(scene) * (scene.domain.depth ? 1200 : 400); }
 
 void require_memory(double bytes, const std::string& what) {
   const double left = available_memory();
@@ -125,7 +128,7 @@ Estimate estimate(const Plan& plan) {
   estimate.wall_s = estimate.steps * step_cost(nodes, membrane_nodes, scene.numerics.precision, dimension);
   estimate.memory_bytes =
       nodes * word *
-          (velocities + (plan.has_cells ? 2 : 0) + (plan.viscosity_contrast || !scene.fluid.layers.empty() ? 1 : 0)) +
+          (velocities + (plan.has_cells ? dimension : 0) + (plan.viscosity_contrast || !scene.fluid.layers.empty() ? 1 : 0)) +
       membrane_memory(scene);
   estimate.output = estimate_output(scene, plan.stages);
   return estimate;

@@ -163,7 +163,8 @@ void plan_models(Plan& plan, const plugin::Catalog& catalog, Faults& faults) {
     PlannedModel result{nullptr, {}, model.pointer};
     if (model.model.empty()) return result;  // what was wrong with it has been said
     faults.attempt([&] {
-      result.manifest = &catalog.find(kind, model.model, scene.place(model.pointer + "/model"), 2);
+      result.manifest = &catalog.find(kind, model.model, scene.place(model.pointer + "/model"),
+                                      kind == plugin::ModelKind::collision ? 2 : scene.domain.dimension());
       result.parameters = plugin::resolve_parameters(model, *result.manifest, scene, units, faults);
     });
     return result;

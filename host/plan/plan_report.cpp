@@ -8,6 +8,7 @@
 #include "cell_travel.hpp"
 #include "core/solver/schedule.hpp"
 #include "scene/driving_flow.hpp"
+#include "shape/extent.hpp"
 #include "shape/outline.hpp"
 
 namespace rouleau::plan {
@@ -22,14 +23,13 @@ bool accelerates_for_ever(const StageSetting& stage, const scene::Scene& scene) 
          scene::driving_force(*stage.stage, scene) != Eigen::Vector2d::Zero();
 }
 
-/// Share of the domain's area that all cells enclose at rest.
+/// Share of the domain's area or volume that all cells enclose at rest.
 double hematocrit(const scene::Scene& scene) {
-  std::vector<double> area;
-  for (const scene::CellType& type : scene.cell_types)
-    area.push_back(shape::area_of(shape::make_outline(type.shape, type.segments)));
+  std::vector<double> enclosed;
+  for (const scene::CellType& type : scene.cell_types) enclosed.push_back(shape::enclosed_by(type));
   double sum = 0;
-  for (const scene::CellPlacement& cell : scene.cells) sum += area[cell.type];
-  return sum / scene.domain.size.prod();
+  for (const scene::CellPlacement& cell : scene.cells) sum += enclosed[cell.type];
+  return sum / scene.domain.content();
 }
 
 std::map<std::string, double> dimensionless_numbers(const Plan& plan, const std::vector<InteractionWell>& wells) {

@@ -1,6 +1,8 @@
 #include "solver_setup.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <string>
 
@@ -13,7 +15,9 @@
 #include "estimate.hpp"
 #include "plugin/handles.hpp"
 #include "scene/cell_table.hpp"
+#include "shape/extent.hpp"
 #include "shape/outline.hpp"
+#include "shape/surface.hpp"
 #include "stability_limits.hpp"
 
 namespace rouleau::plan {
@@ -138,16 +142,19 @@ namespace {
 
 /// Cells that cover more than the whole domain overlap, and that is known before any of them is placed.
 void require_room(const scene::Scene& scene) {
-  std::vector<double> area;
-  for (const scene::CellType& type : scene.cell_types)
-    area.push_back(shape::area_of(shape::make_outline(type.shape, type.segments)));
+  std::vector<double> enclosed;
+  for (const scene::CellType& type : scene.cell_types) enclosed.push_back(shape::enclosed_by(type));
   double covered = 0;
-  for (const scene::CellPlacement& cell : scene.cells) covered += area[cell.type];
-  const double there = scene.domain.size.prod();
+  for (const scene::CellPlacement& cell : scene.cells) covered += enclosed[cell.type];
+  const double there = scene.domain.content();
   if (covered <= there) return;
+  const bool space = scene.domain.depth.has_value();
+  const auto measured = [space](double content) {
+    return number(content * (space ? 1e18 : 1e12)) + (space ? " um3" : " um2");
+  };
   throw Error(Cause::bad_input, scene.place("/cells"),
-              "the " + std::to_string(scene.cells.size()) + " cells cover " + number(covered * 1e12) +
-                  " um2 and so overlap: the domain has " + number(there * 1e12) + " um2",
+              "the " + std::to_string(scene.cells.size()) + " cells cover " + measured(covered) +
+                  " and so overlap: the domain has " + measured(there),
               {"take fewer cells, or a larger domain"});
 }
 
@@ -181,6 +188,124 @@ core::Membranes make_membranes(const scene::Scene& scene, double spacing) {
   }
   Checker(scene, membranes, spacing).check();
   return membranes;
+}
+
+namespace {
+
+core::RestSurface rest_surface(const scene::CellType& type, double spacing) {
+  shape::TriangleSurface surface = shape::make_surface(type);
+  for (core::Vec<3>& node : surface.nodes) node /= spacing;
+  const auto* sphere = std::get_if<scene::Sphere>(&type.shape);
+  return shape::rest_surface(surface, sphere != nullptr ? sphere->prestretch : 1.0);
+}
+
+/// Turned about z, or so that the shape's y axis becomes the axis wanted, and about that.
+Eigen::Matrix3d rotation_of(const scene::CellPlacement& cell) {
+  using Eigen::AngleAxisd, Eigen::Vector3d;
+  if (!cell.axis) return AngleAxisd(cell.angle, Vector3d::UnitZ()).toRotationMatrix();
+  const Eigen::Quaterniond turned = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitY(), *cell.axis);
+  return (turned * AngleAxisd(cell.angle, Vector3d::UnitY())).toRotationMatrix();
+}
+
+/// Refuses surfaces that stick through walls, are longer than a period, or overlap.
+class SurfaceChecker {
+ public:
+  SurfaceChecker(const scene::Scene& scene, const core::Surfaces& surfaces, double spacing)
+      : scene_(scene), surfaces_(surfaces), spacing_(spacing), domain_(lattice_domain<3>(scene)) {
+    for (int c = 0; c < surfaces.cell_count(); ++c) {
+      Eigen::AlignedBox3d& box = boxes_.emplace_back();
+      for (int i = 0; i < surfaces.cells[c].count; ++i) box.extend(surfaces.nodes(c)[i]);
+    }
+  }
+
+  void check() const {
+    for (int c = 0; c < surfaces_.cell_count(); ++c) check_fits(c);
+    for (int c = 0; c < surfaces_.cell_count(); ++c) {
+      for (int other = 0; other < c; ++other) check_apart(c, other);
+    }
+  }
+
+ private:
+  static constexpr std::array axes{"x", "y", "z"};
+
+  [[noreturn]] void refuse(int cell, const std::string& problem) const {
+    throw Error(Cause::bad_input, scene_.place(scene_.cells[cell].pointer), problem);
+  }
+  [[nodiscard]] std::string name(int cell) const {
+    return "cell " + std::to_string(cell) + " (" + scene::origin_of(scene_.cells[cell]) + ")";
+  }
+  [[nodiscard]] std::string micrometres(double spacings) const { return number(spacings * spacing_ * 1e6, 3) + " um"; }
+
+  void check_fits(int cell) const {
+    for (int k = 0; k < 3; ++k) {
+      const double length = boxes_[cell].sizes()[k];
+      if (domain_.periodic[k]) {
+        if (length < domain_.period(k)) continue;
+        refuse(cell, name(cell) + " is " + micrometres(length) + " long along " + axes[k] +
+                         ", more than the periodic length of the domain, " + micrometres(domain_.period(k)) +
+                         "; make the domain longer.");
+      }
+      const double beyond = std::max(-0.5 - boxes_[cell].min()[k], boxes_[cell].max()[k] - (domain_.size[k] - 0.5));
+      if (beyond < 0) continue;
+      refuse(cell, name(cell) + " sticks through a wall across " + axes[k] + " by " + micrometres(beyond) +
+                       "; move it away from the wall.");
+    }
+  }
+
+  /// Of all images of the other cell the one that is nearest lies nearest along each axis.
+  void check_apart(int cell, int other) const {
+    core::Vec<3> shift = core::Vec<3>::Zero();
+    for (int k = 0; k < 3; ++k) {
+      if (!domain_.periodic[k]) continue;
+      const double apart = boxes_[cell].center()[k] - boxes_[other].center()[k];
+      shift[k] = std::round(apart / domain_.period(k)) * domain_.period(k);
+    }
+    const Eigen::AlignedBox3d moved(boxes_[other].min() + shift, boxes_[other].max() + shift);
+    if (!boxes_[cell].intersects(moved)) return;
+    if (!holds_node_of(cell, other, shift) && !holds_node_of(other, cell, -shift)) return;
+    refuse(cell, name(cell) + " and " + (shift.isZero() ? "" : "a periodic image of ") + name(other) +
+                     " overlap; move them apart.");
+  }
+  /// Whether a node of `other`, moved by `shift`, lies inside `cell`.
+  [[nodiscard]] bool holds_node_of(int cell, int other, const core::Vec<3>& shift) const {
+    for (int i = 0; i < surfaces_.cells[other].count; ++i) {
+      const core::Vec<3> place = surfaces_.nodes(other)[i] + shift;
+      if (boxes_[cell].contains(place) && core::encloses(surfaces_.type_of(cell).mesh, surfaces_.nodes(cell), place))
+        return true;
+    }
+    return false;
+  }
+
+  const scene::Scene& scene_;
+  const core::Surfaces& surfaces_;
+  double spacing_;
+  core::Domain<3> domain_;
+  std::vector<Eigen::AlignedBox3d> boxes_;
+};
+
+}  // namespace
+
+core::Surfaces make_surfaces(const scene::Scene& scene, double spacing) {
+  require_room(scene);
+  require_memory(membrane_memory(scene), "placing the cells");
+  core::Surfaces surfaces;
+  for (const scene::CellType& type : scene.cell_types)
+    surfaces.types.push_back(std::make_shared<const core::RestSurface>(rest_surface(type, spacing)));
+  for (const scene::CellPlacement& cell : scene.cells) {
+    const core::Vec<3> center(cell.center.x() / spacing - 0.5, cell.center.y() / spacing - 0.5,
+                              cell.z / spacing - 0.5);
+    core::add_cell(surfaces, cell.type, center, rotation_of(cell));
+  }
+  SurfaceChecker(scene, surfaces, spacing).check();
+  return surfaces;
+}
+
+void try_cells(const scene::Scene& scene) {
+  if (scene.domain.depth) {
+    make_cells<3>(scene);
+  } else {
+    make_cells<2>(scene);
+  }
 }
 
 template <int D>

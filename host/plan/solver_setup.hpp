@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/membrane/membranes.hpp"
+#include "core/surface/surfaces.hpp"
 #include "core/solver/solver_setup.hpp"
 #include "plan.hpp"
 
@@ -18,6 +19,20 @@ std::vector<core::Layer> lattice_layers(const scene::Scene& scene);
 /// entry in the scene when a cell crosses itself, sticks through a wall or overlaps another cell (over periodic
 /// images).
 core::Membranes make_membranes(const scene::Scene& scene, double spacing);
+/// The same in three dimensions; overlaps are found where one cell's node lies inside another.
+core::Surfaces make_surfaces(const scene::Scene& scene, double spacing);
+/// Either, on the scene's own lattice.
+template <int D>
+auto make_cells(const scene::Scene& scene) {
+  if constexpr (D == 2) {
+    return make_membranes(scene, lattice_spacing(scene));
+  } else {
+    return make_surfaces(scene, lattice_spacing(scene));
+  }
+}
+
+/// Throws what making the cells does.
+void try_cells(const scene::Scene& scene);
 
 /// All of stage `index` of a scene of D dimensions in lattice units, with instances of its active models. Throws Error(plugin_refused) for a model
 /// that cannot be made.

@@ -17,6 +17,7 @@
 #include "plugin/handles.hpp"
 #include "potential_shape.hpp"
 #include "scene/driving_flow.hpp"
+#include "shape/extent.hpp"
 #include "shape/outline.hpp"
 #include "solver_setup.hpp"
 
@@ -131,8 +132,6 @@ struct Stiffness {
   Bounded stretching, bending;
 };
 
-/// Mean length of a cell type's segments, m.
-double segment_length(const scene::CellType& type) { return shape::shape_perimeter(type.shape) / type.segments; }
 
 /// Of all cell types in a stage, the stretching and the bending stiffness that are nearest to their limits.
 Stiffness membrane_stiffness(const Plan& plan, const plugin::ModelSetting& setting) {
@@ -145,7 +144,7 @@ Stiffness membrane_stiffness(const Plan& plan, const plugin::ModelSetting& setti
     double factor = 1;
     if (scene.numerics.slip_correction) {
       factor =
-          core::stiffening(core::slip_constants(kernel.kind, ratio).shift, segment_length(cell) / setting.units.length);
+          core::stiffening(core::slip_constants(kernel.kind, ratio).shift, shape::node_spacing(cell) / setting.units.length);
     }
     double stretching = 0, bending = 0;
     for (const PlannedModel& law : plan.membranes[t]) {
@@ -185,20 +184,24 @@ double depth_over_bending(const Plan& plan, const scene::Interaction& interactio
 }
 
 /// Relative change of the area of a cell whose membrane is stretched from the start: the tension T over the radius a is
-/// a pressure, and density deviates by three times the pressure. 0 without prestretch.
+/// a pressure (twice that of a sphere), and density deviates by three times the pressure. 0 without prestretch.
 double prestress_compression(const Plan& plan, const StageSetting& stage) {
   double most = 0;
   for (std::size_t type = 0; type < plan.membranes.size(); ++type) {
-    const auto* circle = std::get_if<scene::Circle>(&plan.scene->cell_types[type].shape);
-    if (circle == nullptr) continue;
+    const scene::Shape& shape = plan.scene->cell_types[type].shape;
+    const auto* circle = std::get_if<scene::Circle>(&shape);
+    const auto* sphere = std::get_if<scene::Sphere>(&shape);
+    if (circle == nullptr && sphere == nullptr) continue;
+    const double radius = circle != nullptr ? circle->radius : sphere->radius;
+    const double prestretch = circle != nullptr ? circle->prestretch : sphere->prestretch;
     double tension = 0;
     for (const PlannedModel& law : plan.membranes[type]) {
       if (!law.active()) continue;
       const core::MembraneLaw instance = plugin::make_membrane_law(*law.manifest, law.parameters.values,
                                                                    stage.model_setting(plan.scene->fluid.inertia));
-      tension += core::tension_at(instance, circle->prestretch);
+      tension += core::tension_at(instance, prestretch);
     }
-    most = std::max(most, 3 * std::abs(tension) * stage.units.length / circle->radius);
+    most = std::max(most, 3 * std::abs(tension) * (sphere != nullptr ? 2 : 1) * stage.units.length / radius);
   }
   return most;
 }
@@ -309,7 +312,12 @@ std::vector<Limit> find_limits(const Plan& plan) {
       add("strain that the start of the flow costs, over that of the stage" + where, late / strain, 0.1, true,
           "let it start \"developed\", or " + lower, density);
     }
-    if (const CellTravel travel = cell_travel(scene, stage); travel.spread > 0) {
+    const CellTravel travel = cell_travel(scene, stage);
+    if (scene.domain.depth && travel.mean > 0) {
+      add("Reynolds number of cells that move through the lattice, without convective inertia" + where, travel.mean, 0.05,
+          true, lower + ", or set fluid.inertia to true: cells would drift across the flow wrongly", density);
+    }
+    if (travel.spread > 0) {
       add("Reynolds number of cells that pass each other, without convective inertia" + where, travel.spread, 0.05,
           true, lower + ", or set fluid.inertia to true: cells would drift across the flow wrongly", density);
     }
@@ -380,18 +388,22 @@ std::vector<Limit> find_limits(const Plan& plan) {
     }
     if (stage.index != 0) continue;
     double shortest = 1e300, longest = 0;
+    std::vector<double> spacing_of_type;
+    for (const scene::CellType& type : scene.cell_types) spacing_of_type.push_back(shape::node_spacing(type));
     for (const scene::CellPlacement& cell : scene.cells) {
-      const scene::CellType& type = scene.cell_types[cell.type];
-      const double segment = segment_length(type) / stage.units.length;
+      const double segment = spacing_of_type[cell.type] / stage.units.length;
       shortest = std::min(shortest, segment);
       longest = std::max(longest, segment);
     }
     add("cell radius in lattice spacings", shape::smallest_radius(scene) / stage.units.length, 10, false,
         "raise the resolution; results are converged from about 20", resolution);
-    add("shortest segment in lattice spacings", shortest, 0.4, false,
-        "take fewer segments; about one for each spacing is best");
-    add("longest segment in lattice spacings", longest, longest_segment, true,
-        "take more segments, about one for each spacing: fluid leaks between nodes that lie far apart");
+    const bool space = scene.domain.depth.has_value();
+    const std::string piece = space ? "edge" : "segment", pieces = space ? "triangles" : "segments";
+    const std::string best = space ? "edges of about one spacing" : "about one for each spacing";
+    add("shortest " + piece + " in lattice spacings", shortest, 0.4, false,
+        "take fewer " + pieces + "; " + best + (space ? " are best" : " is best"));
+    add("longest " + piece + " in lattice spacings", longest, longest_segment, true,
+        "take more " + pieces + ", " + best + ": fluid leaks between nodes that lie far apart");
   }
   std::stable_sort(limits.begin(), limits.end(), [](const Limit& a, const Limit& b) { return a.margin < b.margin; });
   return limits;

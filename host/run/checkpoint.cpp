@@ -15,13 +15,15 @@ using Json = nlohmann::json;
 std::string population_name(int q) { return "/populations/" + std::to_string(q); }
 std::string state_name(std::size_t k) { return "/membranes/state/" + std::to_string(k); }
 
-/// Arrays of the membranes that have a value for each node or each cell.
-template <class M>
-auto arrays(M& m) {
-  return std::array{std::pair{"/membranes/x", &m.x}, std::pair{"/membranes/y", &m.y},
-                    std::pair{"/membranes/velocity_x", &m.velocity_x},
-                    std::pair{"/membranes/velocity_y", &m.velocity_y},
-                    std::pair{"/membranes/largest_step", &m.largest_step}};
+/// Arrays of the cells that have a value for each node or each cell.
+template <class Cells>
+auto arrays(Cells& m) {
+  std::vector all{std::pair{"/membranes/x", &m.x}, std::pair{"/membranes/y", &m.y},
+                  std::pair{"/membranes/velocity_x", &m.velocity_x}, std::pair{"/membranes/velocity_y", &m.velocity_y},
+                  std::pair{"/membranes/largest_step", &m.largest_step}};
+  if (!m.z.empty())
+    all.insert(all.end(), {std::pair{"/membranes/z", &m.z}, std::pair{"/membranes/velocity_z", &m.velocity_z}});
+  return all;
 }
 
 void read(const files::CheckpointReader& reader, const std::string& path, std::vector<double>& values) {
@@ -92,6 +94,10 @@ void restore_contacts(const files::CheckpointReader& reader, const Json& saved, 
 }
 
 /// Writes the arrays, and returns what belongs into the file's /state.
+Json save(files::CheckpointWriter& writer, const core::Surfaces& surfaces) {
+  for (const auto& [path, values] : arrays(surfaces)) writer.array(path, *values);
+  return Json::object();
+}
 Json save(files::CheckpointWriter& writer, const core::Membranes& m) {
   for (const auto& [path, values] : arrays(m)) writer.array(path, *values);
   writer.array("/membranes/area_leakage", m.area_leakage);
@@ -121,10 +127,11 @@ Json save(files::CheckpointWriter* writer, core::Solver<T, Set>& solver) {
     values = core::gather(solver.ranks(), std::move(values));
     if (writer != nullptr) writer->array(population_name(q), rows, nx, values.data());
   }
-  if (solver.viscosity_field() != nullptr && writer != nullptr) {
-    const core::DisplacementWatch::Memory& memory = solver.viscosity_field()->memory();
+  if (solver.cell_tasks() != nullptr && writer != nullptr) {
+    const core::DisplacementWatch::Memory& memory = solver.cell_tasks()->viscosity_field().memory();
     writer->array("/indicator/x", memory.x);
     writer->array("/indicator/y", memory.y);
+    if (Set::dimension == 3) writer->array("/indicator/z", memory.z);
     writer->array("/indicator/limit", memory.limit);
     writer->array("/indicator/bound", memory.bound);
   }
@@ -137,7 +144,12 @@ Json save(files::CheckpointWriter* writer, core::Solver<T, Set>& solver) {
   return saved;
 }
 
-void restore_membranes(const files::CheckpointReader& reader, const Json& saved, core::Membranes& m) {
+void restore_cells(const files::CheckpointReader& reader, const Json&, core::Surfaces& surfaces) {
+  surfaces.largest_step.resize(surfaces.cells.size());
+  for (const auto& [path, values] : arrays(surfaces)) read(reader, path, *values);
+}
+
+void restore_cells(const files::CheckpointReader& reader, const Json& saved, core::Membranes& m) {
   m.largest_step.resize(m.cells.size());
   for (const auto& [path, values] : arrays(m)) read(reader, path, *values);
   const Json& leakage = saved.at("leakage");
@@ -178,8 +190,8 @@ std::vector<T> read_block(const files::CheckpointReader& reader, const std::stri
 }  // namespace
 
 template <class T, class Set>
-void Checkpoints::write(const plan::Plan& plan, int threads, const RunState& state, const core::Membranes& membranes,
-                        core::Solver<T, Set>& solver) {
+void Checkpoints::write(const plan::Plan& plan, int threads, const RunState& state,
+                        const typename core::Solver<T, Set>::Cells& cells, core::Solver<T, Set>& solver) {
   pending_ = true;
   step_ = state.steps;
   if (to_ == nullptr) {
@@ -187,7 +199,7 @@ void Checkpoints::write(const plan::Plan& plan, int threads, const RunState& sta
     return;
   }
   writer_ = std::make_unique<files::CheckpointWriter>(to_->path());
-  Json saved_membranes = save(*writer_, membranes), saved_solver = save(writer_.get(), solver);
+  Json saved_membranes = save(*writer_, cells), saved_solver = save(writer_.get(), solver);
   writer_->facts(checkpoint_facts(plan, state, threads));
   writer_->state({{"run", state},
                   {"membranes", std::move(saved_membranes)},
@@ -209,12 +221,13 @@ void Checkpoints::settle(bool sound) {
 
 template <class T, class Set>
 Restored<T> restore(const std::shared_ptr<const files::CheckpointReader>& reader, const plan::Plan& plan,
-                    const core::Box<Set::dimension>& block, RunState& state, core::Membranes& membranes) {
+                    const core::Box<Set::dimension>& block, RunState& state,
+                    typename core::Solver<T, Set>::Cells& cells) {
   try {
     const Json saved = reader->state();
     saved.at("run").get_to(state);
-    require(state.fits(plan, membranes), *reader, "counts of another scene");
-    restore_membranes(*reader, saved.at("membranes"), membranes);
+    require(state.fits(plan, cells), *reader, "counts of another scene");
+    restore_cells(*reader, saved.at("membranes"), cells);
     core::SolverState<T> solver{
         .populations = [reader, block, domain = plan.scene->domain](
                            int q) { return read_block<T>(*reader, population_name(q), block, domain); },
@@ -227,10 +240,14 @@ Restored<T> restore(const std::shared_ptr<const files::CheckpointReader>& reader
       solver.flow_control = core::FlowControl::State{.force = control.at("force"), .last = {}};
       if (control.contains("last")) solver.flow_control->last = control.at("last").get<double>();
     }
-    if (!membranes.cells.empty()) {
+    if (!cells.cells.empty()) {
       core::DisplacementWatch::Memory& memory = solver.viscosity;
-      for (auto* of_nodes : {&memory.x, &memory.y}) of_nodes->resize(membranes.x.size());
-      for (auto* of_cells : {&memory.limit, &memory.bound}) of_cells->resize(membranes.cells.size());
+      for (auto* of_nodes : {&memory.x, &memory.y}) of_nodes->resize(cells.x.size());
+      for (auto* of_cells : {&memory.limit, &memory.bound}) of_cells->resize(cells.cells.size());
+      if (Set::dimension == 3) {
+        memory.z.resize(cells.z.size());
+        read(*reader, "/indicator/z", memory.z);
+      }
       read(*reader, "/indicator/x", memory.x);
       read(*reader, "/indicator/y", memory.y);
       read(*reader, "/indicator/limit", memory.limit);
@@ -243,10 +260,11 @@ Restored<T> restore(const std::shared_ptr<const files::CheckpointReader>& reader
 }
 
 #define ROULEAU_INSTANTIATE(T, Set)                                                                              \
-  template void Checkpoints::write(const plan::Plan&, int, const RunState&, const core::Membranes&,              \
-                                   core::Solver<T, Set>&);                                                       \
+  template void Checkpoints::write(const plan::Plan&, int, const RunState&,                                      \
+                                   const typename core::Solver<T, Set>::Cells&, core::Solver<T, Set>&);          \
   template Restored<T> restore<T, Set>(const std::shared_ptr<const files::CheckpointReader>&, const plan::Plan&, \
-                                       const core::Box<Set::dimension>&, RunState&, core::Membranes&);
+                                       const core::Box<Set::dimension>&, RunState&,                              \
+                                       typename core::Solver<T, Set>::Cells&);
 ROULEAU_INSTANTIATE(float, core::D2Q9)
 ROULEAU_INSTANTIATE(double, core::D2Q9)
 ROULEAU_INSTANTIATE(float, core::D3Q19)

@@ -31,8 +31,8 @@ class Checkpoints {
   }
   /// Writes the file, beside the last one. All ranks together; the solver's state has been shared.
   template <class T, class Set>
-  void write(const plan::Plan& plan, int threads, const RunState& state, const core::Membranes& membranes,
-             core::Solver<T, Set>& solver);
+  void write(const plan::Plan& plan, int threads, const RunState& state, 
+             const typename core::Solver<T, Set>::Cells& cells, core::Solver<T, Set>& solver);
   [[nodiscard]] bool pending() const { return pending_; }
   /// The file takes its place if the state has been found sound. One that is not is left to the next regular check:
   /// when checkpoints are written must not change what becomes of a run.
@@ -59,10 +59,11 @@ struct Restored {
   core::SolverState<T> solver;     ///< which keeps the file open
   files::DirectoryMark directory;  ///< how far the files of the directory had come
 };
-/// Into the state and the membranes of the same scene; `block`: of the lattice, that the solver will compute. Throws
+/// Into the state and the cells of the same scene; `block`: of the lattice, that the solver will compute. Throws
 /// Error(input_output) where the checkpoint does not fit.
 template <class T, class Set = core::D2Q9>
 Restored<T> restore(const std::shared_ptr<const files::CheckpointReader>& reader, const plan::Plan& plan,
-                    const core::Box<Set::dimension>& block, RunState& state, core::Membranes& membranes);
+                    const core::Box<Set::dimension>& block, RunState& state,
+                    typename core::Solver<T, Set>::Cells& cells);
 
 }  // namespace rouleau::run

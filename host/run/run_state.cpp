@@ -1,6 +1,6 @@
 #include "run_state.hpp"
 
-#include "core/membrane/membranes.hpp"
+#include "core/membrane/cell_nodes.hpp"
 
 namespace rouleau::run {
 
@@ -24,7 +24,7 @@ void RunState::report(Summary& s) const {
   s.resumed = resumed;
 }
 
-bool RunState::fits(const plan::Plan& plan, const core::Membranes& membranes) const {
+bool RunState::fits(const plan::Plan& plan, const core::CellNodes& membranes) const {
   return stage >= 0 && stage < static_cast<int>(plan.stages.size()) && stage_step >= 0 && steps_before >= 0 &&
          steps >= stage_step && observer.fits(membranes) && rheology.fits() && growth.fits(membranes) &&
          rest_watch.fits(membranes);

@@ -46,6 +46,7 @@ template <class T, class Set>
 class Simulation {
  public:
   static constexpr int dimension = Set::dimension;
+  using Cells = typename core::Solver<T, Set>::Cells;
 
   Simulation(const plan::Plan& plan, const plan::PlanReport& report, const RunOptions& options,
              files::RunDirectory* directory, const core::Ranks<dimension>& ranks, const std::vector<int>& owner)
@@ -55,9 +56,9 @@ class Simulation {
         directory_(directory),
         ranks_(ranks),
         owner_(owner),
-        membranes_(plan.has_cells ? plan::make_membranes(scene_, plan::lattice_spacing(scene_)) : core::Membranes{}),
-        state_(observe::Observer(scene_, membranes_)),
-        course_(plan, state_, membranes_),
+        cells_(plan.has_cells ? plan::make_cells<dimension>(scene_) : Cells{}),
+        state_(observe::Observer(scene_, cells_)),
+        course_(plan, state_, cells_),
         progress_(options.quiet || directory == nullptr),
         checkpoints_(scene_, directory),
         summary_(describe(plan, report, options.threads)) {
@@ -93,7 +94,7 @@ class Simulation {
     if (directory_ != nullptr && directory_->resumes()) {
       Resumption resumption = open_checkpoint(directory_->path(), plan_, options_.force);
       const std::shared_ptr<const files::CheckpointReader> reader = std::move(resumption.checkpoint);
-      restored = restore<T, Set>(reader, plan_, domain().block, state_, membranes_);
+      restored = restore<T, Set>(reader, plan_, domain().block, state_, cells_);
       directory_->go_back(restored->directory);
       reader->take_place(directory_->path());
       file = files::checkpoint_file(directory_->path()).string();
@@ -105,10 +106,23 @@ class Simulation {
     file = core::text_of_first(ranks_, file);
     if (!restored && !file.empty()) {
       const auto reader = std::make_shared<const files::CheckpointReader>(file);
-      restored = restore<T, Set>(reader, plan_, domain().block, state_, membranes_);
+      restored = restore<T, Set>(reader, plan_, domain().block, state_, cells_);
     }
     if (!restored) return std::nullopt;
     return std::move(restored->solver);
+  }
+
+  /// All ranks know what owners of cells know; before the state is observed.
+  void share_state() {
+    if (solver_->cell_tasks() != nullptr) solver_->cell_tasks()->share_state();
+  }
+  /// What walls do to the cells along y.
+  [[nodiscard]] double force_from_walls() const {
+    if constexpr (dimension == 2) {
+      const auto* tasks = solver_->cell_tasks();
+      if (tasks != nullptr && tasks->wall_contacts() != nullptr) return tasks->wall_contacts()->net_force(cells_);
+    }
+    return 0;
   }
 
   /// On the terminal, where what was lost is said even to whom wants no progress.
@@ -133,7 +147,7 @@ class Simulation {
     for (; state_.stage < static_cast<int>(plan_.stages.size()) && !stopped_; ++state_.stage) {
       core::BasicSolverSetup<dimension> setup = plan::make_solver_setup<dimension>(plan_, state_.stage);
       setup.domain = domain();
-      auto next = std::make_unique<core::Solver<T, Set>>(std::move(setup), membranes_, ranks_, owner_);
+      auto next = std::make_unique<core::Solver<T, Set>>(std::move(setup), cells_, ranks_, owner_);
       if (former) {
         next->start(*std::exchange(former, std::nullopt));
       } else {
@@ -263,7 +277,7 @@ class Simulation {
   /// Whether the last step must not be followed by another, or was faster than any before; all workers come to the same
   /// answer.
   [[nodiscard]] bool wants_a_look() const {
-    return !(core::largest_step(membranes_) <= std::min(scene_.checks.node_step, state_.growth.level())) ||
+    return !(core::largest_step(cells_) <= std::min(scene_.checks.node_step, state_.growth.level())) ||
            solver_->escaped();
   }
 
@@ -276,8 +290,8 @@ class Simulation {
     if (core::any(ranks_, checkpoints_.due()) || (checkpoints_.wanted() && ends)) {
       take_time();
       const auto start = Clock::now();
-      solver_->share_state();
-      checkpoints_.write(plan_, options_.threads, state_, membranes_, *solver_);
+      share_state();
+      checkpoints_.write(plan_, options_.threads, state_, cells_, *solver_);
       state_.costs.add("checkpoint", seconds_since(start), 1);
     }
   }
@@ -287,15 +301,15 @@ class Simulation {
     const auto start = Clock::now();
     const plan::StageSetting& setting = this->setting();
     course_.count_to(step);
-    solver_->share_state();
-    if (auto failure = monitor::check_nodes(membranes_, scene_.checks.node_step, solver_->escaped_node(), setting)) {
+    share_state();
+    if (auto failure = monitor::check_nodes(cells_, scene_.checks.node_step, solver_->escaped_node(), setting)) {
       fail(std::move(*failure));
       return;
     }
-    if (core::largest_step(membranes_) > state_.growth.level()) state_.growth.note(state_.steps, membranes_);
+    if (core::largest_step(cells_) > state_.growth.level()) state_.growth.note(state_.steps, cells_);
     if (checkpoints_.pending()) {
       observe::Observer look = state_.observer;  // one that leaves no trace
-      checkpoints_.settle(!monitor::check_state(look, *solver_, setting, membranes_, scene_));
+      checkpoints_.settle(!monitor::check_state(look, *solver_, setting, cells_, scene_));
     }
     // The end of a stage has been written; the beginning of the next is the same instant.
     const bool written = step == 0 && state_.steps > 0;
@@ -304,11 +318,11 @@ class Simulation {
     const bool check_due = step % scene_.checks.every_steps == 0;
     const bool last = due_ending_ != Ending::none;
     if (cells_due || fields_due || check_due || last) {
-      if (auto failure = monitor::check_state(state_.observer, *solver_, setting, membranes_, scene_)) {
+      if (auto failure = monitor::check_state(state_.observer, *solver_, setting, cells_, scene_)) {
         fail(std::move(*failure));
         return;
       }
-      if (check_due) state_.growth.check(state_.steps, membranes_);
+      if (check_due) state_.growth.check(state_.steps, cells_);
       if (cells_due || fields_due || last) {
         const bool with_fields = fields_due || (last && !scene_.output.fields.never());
         if (auto failure = write(with_fields)) {
@@ -316,10 +330,8 @@ class Simulation {
           return;
         }
       }
-      const core::WallContacts* walls = solver_->wall_contacts();
-      const double from_walls = walls != nullptr ? walls->net_force(membranes_) : 0;
       state_.momentum_residual =
-          std::max(state_.momentum_residual, observe::Observer::momentum_residual(membranes_, from_walls));
+          std::max(state_.momentum_residual, observe::Observer::momentum_residual(cells_, force_from_walls()));
       progress_.update(progress(setting));
       state_.costs.add("observe and check", seconds_since(start), 1);
     }
@@ -375,7 +387,11 @@ class Simulation {
     const std::array<double, 2> place{units::place_on_lattice(failure.place[0], spacing),
                                       units::place_on_lattice(failure.place[1], spacing)};
     const double oscillation = lattice_oscillation(place, failure.place_z);
-    monitor::find_mode(failure, membranes_, state_.growth, state_.observer.domain(), place, oscillation, failure.step);
+    if constexpr (dimension == 2) {
+      monitor::find_mode(failure, cells_, state_.growth, state_.observer.domain(), place, oscillation, failure.step);
+    } else {
+      monitor::find_mode(failure, cells_, oscillation);
+    }
     const std::string sentence = monitor::mode_sentence(failure),
                       remedy = monitor::mode_remedy(failure, plan_.semi_implicit, *setting().stage);
     if (!sentence.empty()) failure.message += "; " + sentence;
@@ -384,12 +400,13 @@ class Simulation {
 
   /// Writes the present state, unless it has gained energy that nothing gave it: that failure is returned.
   std::optional<monitor::Failure> write(bool with_fields) {
-    observe::Snapshot snapshot = state_.observer.observe(*solver_, setting(), membranes_, with_fields);
+    observe::Snapshot snapshot = state_.observer.observe(*solver_, setting(), cells_, with_fields);
     course_.date(snapshot);
     const units::LatticeUnits& units = setting().units;
     state_.energy.follow(snapshot, setting().is_driven(),
-                         units.to_si(solver_->slight_energy(), units::dimension::energy_per_depth));
-    if (auto failure = monitor::check_energy(state_.energy, membranes_, plan_, setting())) return failure;
+                         units.to_si(solver_->slight_energy(), units::dimension::energy_per_depth) /
+                             (dimension == 3 ? scene_.domain.depth->nodes : 1));
+    if (auto failure = monitor::check_energy(state_.energy, cells_, plan_, setting())) return failure;
     state_.history.follow(snapshot);
     state_.rheology.follow(snapshot);
     if (directory_ != nullptr) directory_->write(snapshot);
@@ -426,7 +443,7 @@ class Simulation {
     for (const std::vector<long>& of_rank : core::all_of(ranks_, std::vector<long>{peak_memory_bytes()}))
       s.peak_rss_bytes += of_rank.front();
     s.checkpoint_step = checkpoints_.kept();
-    s.area_leakage_max = observe::Observer::area_leakage(membranes_);
+    s.area_leakage_max = observe::Observer::area_leakage(cells_);
   }
 
   const plan::Plan& plan_;
@@ -435,7 +452,7 @@ class Simulation {
   files::RunDirectory* directory_;  ///< null on all ranks but one
   core::Ranks<dimension> ranks_;
   const std::vector<int>& owner_;
-  core::Membranes membranes_;
+  Cells cells_;
   std::unique_ptr<core::Solver<T, Set>> solver_;  ///< of the present stage
   RunState state_;
   StageCourse course_;

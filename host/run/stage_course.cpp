@@ -40,7 +40,7 @@ template <class T, class Set>
 void StageCourse::look(core::Solver<T, Set>& solver) {
   const plan::StageSetting& setting = this->setting();
   if (!setting.stage->until_equilibrium || state_.stage_step < state_.equilibrium.next(energy_window())) return;
-  const observe::CellEnergy energy = observe::cell_energy(solver, membranes_);
+  const observe::CellEnergy energy = observe::cell_energy(solver);
   if (!energy.unknown.empty()) {
     throw Error(Cause::bad_input, plan_.scene->place(setting.stage->pointer + "/until"),
                 "there is no energy to watch, since " + energy.unknown,

@@ -12,7 +12,7 @@ namespace rouleau::run {
 class StageCourse {
  public:
   /// All three must outlive it.
-  StageCourse(const plan::Plan& plan, RunState& state, const core::Membranes& membranes)
+  StageCourse(const plan::Plan& plan, RunState& state, const core::CellNodes& membranes)
       : plan_(plan), state_(state), membranes_(membranes) {}
 
   [[nodiscard]] const plan::StageSetting& setting() const { return plan_.stages[state_.stage]; }
@@ -52,7 +52,7 @@ class StageCourse {
 
   const plan::Plan& plan_;
   RunState& state_;
-  const core::Membranes& membranes_;
+  const core::CellNodes& membranes_;
 };
 
 }  // namespace rouleau::run

@@ -84,6 +84,7 @@ class CellTable {
     step_ = find("step");
     x_ = quantity("x", "m", "um");
     y_ = quantity("y", "m", "um");
+    z_ = quantity("z", "m", "um");
     angle_ = quantity("angle", "rad", "deg");
     for (const auto* needed : {&x_, &y_}) {
       if (needed->has_value()) continue;
@@ -166,7 +167,9 @@ class CellTable {
                       {si(*x_, range::place), si(*y_, range::place)},
                       angle_ ? si(*angle_, range::angle) : 0,
                       pointer_,
-                      line_});
+                      line_,
+                      z_ ? si(*z_, range::place) : std::nan(""),
+                      {}});
   }
 
   [[nodiscard]] int type_of(const Entry& entry) const {
@@ -210,7 +213,7 @@ class CellTable {
   int line_ = 0;
   std::size_t columns_ = 0;
   std::optional<std::size_t> type_, step_;
-  std::optional<QuantityColumn> x_, y_, angle_;
+  std::optional<QuantityColumn> x_, y_, z_, angle_;
   double last_step_ = 0;
   std::vector<CellPlacement> cells_;
 };

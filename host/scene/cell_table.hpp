@@ -11,8 +11,8 @@
 
 namespace rouleau::scene {
 
-/// Reads a CSV file whose header names the columns `type`, `x_UNIT`, `y_UNIT` and, where cells are turned, `angle_UNIT`, in
-/// any order and beside others that are not looked at; without `type` all cells are of that which is given, or of the only cell type. Where there is
+/// Reads a CSV file whose header names the columns `type`, `x_UNIT`, `y_UNIT`, in three dimensions `z_UNIT` (a place
+/// along z is NaN without it), and, where cells are turned, `angle_UNIT`, in any order and beside others that are not looked at; without `type` all cells are of that which is given, or of the only cell type. Where there is
 /// a column `step`, as in cells.csv of a run, the rows of the last step are taken: where that run has come to. Lines may
 /// end with CR LF; a last line without an end of line is one. `pointer`: of the entry in the scene, for the cells. Throws
 /// Error(bad_input) with file, line and column (in bytes from 1), or Error(input_output) when the file cannot be read.

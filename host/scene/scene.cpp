@@ -61,14 +61,25 @@ std::optional<Depth> read_depth(const SceneFields& fields) {
 /// What is there in two dimensions only, so far.
 void check_space(const SceneFields& fields, const Scene& scene) {
   if (!scene.domain.depth) return;
-  for (const char* key : {"/cells", "/cell_types", "/interactions"}) {
-    if (!fields.has(key) || fields.count(key) == 0) continue;
+  if (fields.has("/interactions") && fields.count("/interactions") > 0) {
     fields.attempt([&] {
-      fields.refuse_key(key,
-                        "cells are computed in two dimensions only so far: in three there is the fluid alone\ngive "
-                        "domain.size and domain.nodes two numbers, or leave this out");
+      fields.refuse_key("/interactions",
+                        "cells act on each other in two dimensions only so far\nleave this out, or give domain.size and "
+                        "domain.nodes two numbers");
     });
   }
+  const auto in_plane_only = [&](const char* key, bool asked_for, const char* instead) {
+    if (!asked_for) return;
+    fields.attempt([&] {
+      fields.refuse(key, std::string("there is no such thing in three dimensions yet\n") + instead);
+    });
+  };
+  const bool cells = !scene.cells.empty();
+  in_plane_only("/numerics/slip_correction", cells && scene.numerics.slip_correction, "set it to false, or leave it out");
+  in_plane_only("/numerics/area_correction", cells && scene.numerics.area_correction, "set it to false, or leave it out");
+  in_plane_only("/numerics/coupling", cells && scene.numerics.coupling == "semi-implicit",
+                "take \"explicit\", or leave it out");
+  in_plane_only("/fluid/layers", cells && !scene.fluid.layers.empty(), "leave the layers or the cells out");
   if (fields.has("/output/fields/region")) {
     fields.attempt([&] {
       fields.refuse_key("/output/fields/region",
@@ -318,7 +329,10 @@ Place Scene::place(const std::string& pointer) const {
 
 void check_membrane_nodes(const Scene& scene) {
   std::int64_t nodes = 0;
-  for (const auto& cell : scene.cells) nodes += scene.cell_types[cell.type].segments;
+  for (const auto& cell : scene.cells) {
+    const CellType& type = scene.cell_types[cell.type];
+    nodes += scene.domain.depth ? type.triangles / 2 + 2 : type.segments;
+  }
   if (nodes <= most_membrane_nodes) return;
   SceneFields(*scene.document)
       .refuse("/cells", "the cells have " + std::to_string(nodes) + " membrane nodes together; at most " +
@@ -353,7 +367,7 @@ Scene read_scene(std::shared_ptr<const json::Document> document, Faults& faults)
   if (scene.domain.size.allFinite()) fields.bound_lengths(scene.domain.size);
   part([&] { scene.fluid = read_fluid(fields, scene.domain); });
   part([&] { scene.numerics = read_numerics(fields); });
-  part([&] { scene.cell_types = read_cell_types(fields, scene.fluid.viscosity); });
+  part([&] { scene.cell_types = read_cell_types(fields, scene.fluid.viscosity, scene.domain); });
   part([&] { scene.cells = read_cells(fields, scene.cell_types, scene.domain, scene.packings); });
   part([&] { check_layers(fields, scene); });
   part([&] { scene.interactions = read_interactions(fields, scene.cell_types, scene.domain.periodic_y); });

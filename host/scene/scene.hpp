@@ -44,6 +44,8 @@ struct Domain {
   [[nodiscard]] double node_count() const {
     return static_cast<double>(nodes[0]) * nodes[1] * (depth ? depth->nodes : 1);
   }
+  /// m2, or m3 in three dimensions.
+  [[nodiscard]] double content() const { return size.prod() * (depth ? depth->size : 1); }
   /// Whether walls close it along z, too.
   [[nodiscard]] bool is_duct() const { return depth && !depth->periodic; }
 };
@@ -78,7 +80,7 @@ struct Numerics {
 
 struct Biconcave {
   double radius;
-};  ///< m; reduced-volume red cell, long axis along x at angle 0
+};  ///< m; reduced-volume red cell, long axis along x at angle 0; in three dimensions turned about its axis, along y
 struct Circle {
   double radius;
   double prestretch = 1.0;
@@ -86,14 +88,27 @@ struct Circle {
 struct Ellipse {
   Eigen::Vector2d semi_axes;
 };  ///< m, first along x at angle 0
-using Shape = std::variant<Biconcave, Circle, Ellipse>;
+struct Sphere {
+  double radius;
+  double prestretch = 1.0;
+};  ///< in three dimensions, as a circle
+struct Ellipsoid {
+  Eigen::Vector3d semi_axes;
+};  ///< m, along x, y and z at angle 0
+struct MeshFile {
+  std::filesystem::path file;
+  double unit;
+};  ///< a surface of triangles from a file, whose coordinates are in this unit, m
+/// Circle and ellipse are of two dimensions, sphere, ellipsoid and mesh of three.
+using Shape = std::variant<Biconcave, Circle, Ellipse, Sphere, Ellipsoid, MeshFile>;
 
 struct CellType {
   std::string name;
   Shape shape;
-  int segments;
+  int segments;       ///< of an outline; 0 in three dimensions
   double interior_viscosity;          ///< Pa s
   std::vector<ModelChoice> membrane;  ///< laws that add up
+  int triangles = 0;                  ///< of a surface: 20 n^2; 0 in two dimensions, and of a mesh, whose file has them
 };
 
 /// One cell to be placed; rows, lists and files are read already.
@@ -103,6 +118,9 @@ struct CellPlacement {
   double angle;            ///< rad, counter-clockwise
   std::string pointer;     ///< entry of /cells that asked for it
   int line = 0;            ///< of the file of cells that it comes from; 0: of none
+  double z = 0;            ///< m, of the centre, in three dimensions
+  std::optional<Eigen::Vector3d> axis = {};  ///< unit vector that the shape's y axis is turned to; `angle` is then about
+                                             ///< it, not about z
 };
 
 /// Cells that were placed at random.

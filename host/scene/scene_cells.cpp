@@ -1,4 +1,8 @@
 // Cell types and where cells are placed.
+#include <array>
+#include <cmath>
+#include <numbers>
+
 #include "base/text.hpp"
 #include "cell_table.hpp"
 #include "json/json_pointer.hpp"
@@ -19,7 +23,34 @@ bool is_plain_name(const std::string& name) {
   return true;
 }
 
-Shape read_shape(const SceneFields& fields, const std::string& pointer) {
+/// Shapes of one dimension are refused in the other, with what stands for them there.
+void check_shape(const SceneFields& fields, const std::string& pointer, bool in_space) {
+  struct Pair {
+    const char *plane, *space;
+  };
+  for (const auto& [plane, space] : {Pair{"circle", "sphere"}, Pair{"ellipse", "ellipsoid"}, Pair{"biconcave", "mesh"}}) {
+    const char* const wrong = in_space ? plane : space;
+    if (std::string(wrong) == "biconcave" || !fields.has(pointer + "/" + wrong)) continue;
+    fields.refuse_key(pointer + "/" + wrong,
+                      in_quotes(wrong) + (in_space ? " is a shape of two dimensions, and the domain has three\ntake "
+                                                   : " is a shape of three dimensions, and the domain has two\ntake ") +
+                          in_quotes(in_space ? space : plane));
+  }
+}
+
+Shape read_shape(const SceneFields& fields, const std::string& pointer, bool in_space) {
+  check_shape(fields, pointer, in_space);
+  if (fields.has(pointer + "/sphere")) {
+    return Sphere{fields.quantity(pointer + "/sphere/radius", "m", range::length),
+                  fields.value_or(pointer + "/sphere/prestretch", 1.0)};
+  }
+  if (fields.has(pointer + "/ellipsoid")) {
+    const std::string axes = pointer + "/ellipsoid/semi_axes";
+    const Eigen::Vector2d first = fields.quantities(axes, "m", range::length);
+    return Ellipsoid{{first.x(), first.y(), fields.quantity(axes + "/2", "m", range::length)}};
+  }
+  if (fields.has(pointer + "/mesh"))
+    return MeshFile{fields.file(pointer + "/mesh/file"), fields.quantity(pointer + "/mesh/unit", "m", range::length)};
   if (fields.has(pointer + "/biconcave"))
     return Biconcave{fields.quantity(pointer + "/biconcave/radius", "m", range::length)};
   if (fields.has(pointer + "/circle")) {
@@ -27,6 +58,45 @@ Shape read_shape(const SceneFields& fields, const std::string& pointer) {
                   fields.value_or(pointer + "/circle/prestretch", 1.0)};
   }
   return Ellipse{fields.quantities(pointer + "/ellipse/semi_axes", "m", range::length)};
+}
+
+/// Of the shape's surface, m2; of a mesh 0.
+double surface_area(const Shape& shape) {
+  if (const auto* disc = std::get_if<Biconcave>(&shape)) return 8.83 * disc->radius * disc->radius;
+  if (const auto* sphere = std::get_if<Sphere>(&shape)) return 4 * std::numbers::pi * sphere->radius * sphere->radius;
+  const auto* ellipsoid = std::get_if<Ellipsoid>(&shape);
+  if (ellipsoid == nullptr) return 0;
+  constexpr double p = 1.6075;  // Thomsen's formula, good to 1 %
+  const auto [a, b, c] = std::array{ellipsoid->semi_axes[0], ellipsoid->semi_axes[1], ellipsoid->semi_axes[2]};
+  return 4 * std::numbers::pi *
+         std::pow((std::pow(a * b, p) + std::pow(a * c, p) + std::pow(b * c, p)) / 3, 1 / p);
+}
+
+/// What the scene says, or so many that nodes lie a lattice spacing apart, about.
+int read_triangles(const SceneFields& fields, const std::string& pointer, const CellType& type, const Domain& domain) {
+  if (fields.has(pointer + "/segments")) {
+    fields.refuse_key(pointer + "/segments",
+                      "a surface has triangles\ngive \"triangles\", or leave it out: then nodes lie about a lattice "
+                      "spacing apart");
+  }
+  const std::string key = pointer + "/triangles";
+  if (std::holds_alternative<MeshFile>(type.shape)) {
+    if (fields.has(key)) fields.refuse_key(key, "the triangles are those of the mesh; leave this out");
+    return 0;
+  }
+  if (!fields.has(key)) {
+    if (!is_known(domain)) return 20;
+    const double spacing = domain.size.x() / domain.nodes[0];
+    const double n = std::round(std::sqrt(surface_area(type.shape) / (4 * std::numbers::pi)) / spacing);
+    return 20 * static_cast<int>(std::pow(std::clamp(n, 2.0, 200.0), 2));
+  }
+  const int triangles = fields.value<int>(key);
+  const int n = static_cast<int>(std::floor(std::sqrt(triangles / 20.0)));
+  if (20 * n * n != triangles) {
+    fields.refuse(key, std::to_string(triangles) + " is no number of triangles of a divided icosahedron, 20 n^2\ntake " +
+                           std::to_string(20 * n * n) + " or " + std::to_string(20 * (n + 1) * (n + 1)));
+  }
+  return triangles;
 }
 
 class Placements {
@@ -68,7 +138,10 @@ class Placements {
   }
 
   void place_one(int type, const std::string& pointer) {
-    cells_.push_back({type, fields_.quantities(pointer + "/at", "m", range::place), angle(pointer), pointer});
+    CellPlacement cell{type, fields_.quantities(pointer + "/at", "m", range::place), angle(pointer), pointer};
+    cell.z = height(pointer + "/at");
+    cell.axis = axis(pointer);
+    cells_.push_back(std::move(cell));
   }
 
   void read_file(const std::string& pointer) {
@@ -88,6 +161,9 @@ class Placements {
     if (fields_.has(pointer + "/type")) type = fields_.cell_type(pointer + "/type", types_);
     const auto placed = read_cell_table(file, types_, fields_.units(), pointer, type);
     fields_.require_room(cells_.size(), placed.size(), pointer + "/file");
+    if (domain_.depth && !placed.empty() && std::isnan(placed.front().z)) {
+      fields_.refuse(pointer + "/file", "in three dimensions cells have a place along z\nadd a column z_um to the file");
+    }
     cells_.insert(cells_.end(), placed.begin(), placed.end());
   }
 
@@ -98,19 +174,51 @@ class Placements {
     const double spacing = fields_.quantity(pointer + "/spacing", "m", range::length);
     const auto center = fields_.quantities(pointer + "/center", "m", range::place);
     const double turn = angle(pointer);
-    const Eigen::Vector2d direction = fields_.value_or(pointer + "/axis", std::string("x")) == "y"
-                                          ? Eigen::Vector2d::UnitY()
-                                          : Eigen::Vector2d::UnitX();
+    const double z = height(pointer + "/center");
+    const std::string along = fields_.value_or(pointer + "/axis", std::string("x"));
+    if (along == "z" && !domain_.depth)
+      fields_.refuse(pointer + "/axis", "there is no z in two dimensions\ntake \"x\" or \"y\"");
+    const Eigen::Vector3d direction(along == "x" ? 1 : 0, along == "y" ? 1 : 0, along == "z" ? 1 : 0);
     const double middle = 0.5 * static_cast<double>(count - 1);
     for (std::size_t i = 0; i < count; ++i) {
-      cells_.push_back({type, center + (static_cast<double>(i) - middle) * spacing * direction, turn, entry});
+      const Eigen::Vector3d way = (static_cast<double>(i) - middle) * spacing * direction;
+      CellPlacement cell{type, center + way.head<2>(), turn, entry};
+      cell.z = z + way.z();
+      cells_.push_back(std::move(cell));
     }
   }
 
   void read_random(int type, const std::string& entry) {
+    if (domain_.depth) {
+      fields_.refuse_key(entry + "/random",
+                         "cells are placed at random in two dimensions only so far\nplace them by \"at\", a \"row\", a "
+                         "\"list\" or a \"file\"");
+    }
     RandomPacking packing = read_packing(fields_, entry, type, domain_);
     packing.first = static_cast<int>(cells_.size());
     packings_.push_back(std::move(packing));
+  }
+
+  /// The third number of a place; 0 in two dimensions.
+  [[nodiscard]] double height(const std::string& pointer) const {
+    const bool third = fields_.count(pointer) == 3, in_space = domain_.depth.has_value();
+    if (third && !in_space && is_known(domain_))
+      fields_.refuse(pointer, "there is no z in two dimensions\ngive two lengths");
+    if (!third && in_space) fields_.refuse(pointer, "in three dimensions a place has three lengths");
+    return third && in_space ? fields_.quantity(pointer + "/2", "m", range::place) : 0;
+  }
+
+  /// What a cell's own axis is turned to, if the scene says it.
+  [[nodiscard]] std::optional<Eigen::Vector3d> axis(const std::string& pointer) const {
+    if (!fields_.has(pointer + "/axis")) return std::nullopt;
+    if (!domain_.depth && is_known(domain_)) {
+      fields_.refuse_key(pointer + "/axis", "in two dimensions cells turn in the plane\ngive \"angle\"");
+    }
+    const auto written = fields_.value<std::array<double, 3>>(pointer + "/axis");
+    const Eigen::Vector3d direction(written[0], written[1], written[2]);
+    if (!(direction.norm() > 1e-9 && direction.norm() < 1e9))
+      fields_.refuse(pointer + "/axis", "this axis has no direction\ngive three numbers that are not all 0");
+    return direction.normalized();
   }
 
   [[nodiscard]] double angle(const std::string& pointer) const {
@@ -126,7 +234,7 @@ class Placements {
 
 }  // namespace
 
-std::vector<CellType> read_cell_types(const SceneFields& fields, double fluid_viscosity) {
+std::vector<CellType> read_cell_types(const SceneFields& fields, double fluid_viscosity, const Domain& domain) {
   std::vector<CellType> types;
   if (!fields.has("/cell_types") || !fields.at("/cell_types").is_object()) return types;
   for (const auto& [name, written] : fields.at("/cell_types").items()) {
@@ -152,8 +260,17 @@ std::vector<CellType> read_cell_types(const SceneFields& fields, double fluid_vi
     // The name stands, whatever is wrong with the rest.
     CellType& type = types.emplace_back();
     type.name = name;
-    fields.attempt([&] { type.shape = read_shape(fields, pointer + "/shape"); });
+    const bool in_space = domain.depth.has_value();
+    fields.attempt([&] { type.shape = read_shape(fields, pointer + "/shape", in_space); });
+    type.segments = 0;
     fields.attempt([&] {
+      if (in_space) {
+        type.triangles = read_triangles(fields, pointer, type, domain);
+        return;
+      }
+      if (fields.has(pointer + "/triangles")) {
+        fields.refuse_key(pointer + "/triangles", "an outline has segments\ngive \"segments\", about one for each spacing");
+      }
       fields.require(pointer, "segments", "about one per lattice spacing; or \"numerics\": \"auto\" chooses them");
       type.segments = fields.value<int>(pointer + "/segments");
     });

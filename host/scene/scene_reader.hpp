@@ -144,7 +144,7 @@ inline constexpr long most_cells = 1'000'000;
 inline bool is_known(const Domain& domain) { return domain.size.allFinite() && domain.nodes[0] > 0; }
 
 /// The parts of a scene, each in a file of its own.
-std::vector<CellType> read_cell_types(const SceneFields& fields, double fluid_viscosity);
+std::vector<CellType> read_cell_types(const SceneFields& fields, double fluid_viscosity, const Domain& domain);
 /// Cells as placed by hand. What is wanted at random goes into `packings`.
 std::vector<CellPlacement> read_cells(const SceneFields& fields, const std::vector<CellType>& types,
                                       const Domain& domain, std::vector<RandomPacking>& packings);

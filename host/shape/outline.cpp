@@ -1,7 +1,11 @@
 #include "outline.hpp"
 
+#include <Eigen/Geometry>
+
 #include <cmath>
 #include <numbers>
+
+#include "mesh_file.hpp"
 #include <stdexcept>
 #include <utility>
 
@@ -116,9 +120,23 @@ Outline make_outline(const scene::Shape& shape, int segments) {
   return outline;
 }
 
+namespace {
+
+/// Half of the longest side of the box around a surface.
+double half_extent(const TriangleSurface& surface) {
+  Eigen::AlignedBox3d box;
+  for (const core::Vec<3>& node : surface.nodes) box.extend(node);
+  return box.sizes().maxCoeff() / 2;
+}
+
+}  // namespace
+
 double shape_radius(const scene::Shape& shape) {
   if (const auto* biconcave = std::get_if<scene::Biconcave>(&shape)) return biconcave->radius;
   if (const auto* circle = std::get_if<scene::Circle>(&shape)) return circle->radius;
+  if (const auto* sphere = std::get_if<scene::Sphere>(&shape)) return sphere->radius;
+  if (const auto* ellipsoid = std::get_if<scene::Ellipsoid>(&shape)) return ellipsoid->semi_axes.maxCoeff();
+  if (const auto* mesh = std::get_if<scene::MeshFile>(&shape)) return mesh->unit * half_extent(read_mesh(mesh->file));
   return std::get<scene::Ellipse>(shape).semi_axes.maxCoeff();
 }
 

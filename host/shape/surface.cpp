@@ -5,6 +5,7 @@
 #include <map>
 #include <numbers>
 
+#include "mesh_file.hpp"
 #include "outline.hpp"
 
 namespace rouleau::shape {
@@ -105,6 +106,18 @@ TriangleSurface biconcave_disc(int n, double radius) {
     node = radius * Vec<3>(scale * node.x(), y, scale * node.z());
   }
   return made;
+}
+
+TriangleSurface make_surface(const scene::CellType& type) {
+  if (const auto* mesh = std::get_if<scene::MeshFile>(&type.shape)) {
+    TriangleSurface made = read_mesh(mesh->file);
+    for (Vec<3>& node : made.nodes) node *= mesh->unit;
+    return made;
+  }
+  const int n = static_cast<int>(std::lround(std::sqrt(type.triangles / 20.0)));
+  if (const auto* disc = std::get_if<scene::Biconcave>(&type.shape)) return biconcave_disc(n, disc->radius);
+  if (const auto* solid = std::get_if<scene::Ellipsoid>(&type.shape)) return ellipsoid(n, solid->semi_axes);
+  return ellipsoid(n, Vec<3>::Constant(std::get<scene::Sphere>(type.shape).radius));
 }
 
 core::RestSurface rest_surface(const TriangleSurface& surface, double prestretch) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/surface/surfaces.hpp"
+#include "scene/scene.hpp"
 
 namespace rouleau::shape {
 
@@ -24,6 +25,9 @@ TriangleSurface ellipsoid(int n, const core::Vec<3>& semi_axes);
 /// The biconcave disc of shape/outline.hpp turned about its axis, which lies along y. Nodes lie at equal distances along
 /// meridians.
 TriangleSurface biconcave_disc(int n, double radius);
+
+/// Of a cell type in three dimensions, m. Throws what read_mesh() throws.
+TriangleSurface make_surface(const scene::CellType& type);
 
 /// The surface at rest; `prestretch`: lengths as given over those at rest.
 core::RestSurface rest_surface(const TriangleSurface& surface, double prestretch = 1);

@@ -24,7 +24,7 @@ namespace {
 /// With the forces of the next step, which laws that remember must not be asked for twice.
 EnergySnapshot ledger_now(SolverBench& bench) {
   bench.solver->fluid().settle();
-  return observe_energy(*bench.solver, bench.membranes, bench.plan.stages[0].units);
+  return observe_energy(*bench.solver, bench.plan.stages[0].units);
 }
 EnergySnapshot ledger(SolverBench& bench) {
   bench.forces();
@@ -339,7 +339,7 @@ TEST_CASE("a law that acts and gives no energy leaves the total unknown, and say
   Solver<double> solver(make_solver_setup(plan, 0), membranes);
   solver.compute_forces();
   solver.fluid().settle();
-  const EnergySnapshot e = observe_energy(solver, membranes, plan.stages[0].units);
+  const EnergySnapshot e = observe_energy(solver, plan.stages[0].units);
   CHECK(std::isnan(e.total));
   CHECK(e.unknown == law + " gives no energy");
   CHECK(std::isfinite(e.kinetic));

@@ -234,7 +234,7 @@ void SurfaceCoupling<T>::locate(Worker worker, const Surfaces& surfaces) {
   const Range cells = worker.share(surfaces.cell_count());
   const double* const place[3] = {surfaces.x.data(), surfaces.y.data(), surfaces.z.data()};
   for (int c = cells.begin; c < cells.end; ++c) {
-    const SurfaceCell& cell = surfaces.cells[c];
+    const CellRange& cell = surfaces.cells[c];
     for (int k = 0; k < 3; ++k) {
       const LocatePart<T> part{place[k], base_[k].data(), p_[k].data(), q_[k].data(), cell.first, cell.end()};
       loops_->locate(&part);
@@ -297,25 +297,14 @@ void SurfaceCoupling<T>::interpolate(Worker worker, Surfaces& surfaces, const Ve
 }
 
 template <class T>
-void SurfaceCoupling<T>::mark_rows(std::vector<char>& reached) const {
-  for (std::size_t i = 0; i < base_[0].size(); ++i) {
-    if (base_[2][i] == outside) continue;
-    for (int m = -1; m < 3; ++m) {
-      int z = domain_.wrapped(2, base_[2][i] + m);
-      if (z < 0) z = mirrored(base_[2][i] + m, domain_.size[2]);
-      for (int l = -1; l < 3; ++l) {
-        int y = domain_.wrapped(1, base_[1][i] + l);
-        if (y < 0) y = mirrored(base_[1][i] + l, domain_.size[1]);
-        reached[y + domain_.size[1] * z] = 1;
-      }
-    }
-  }
+bool SurfaceCoupling<T>::any_escaped() const {
+  return std::any_of(planes_.begin(), planes_.end(), [](const BasePlanes& planes) { return planes.lowest == outside; });
 }
 
 template <class T>
 int SurfaceCoupling<T>::escaped() const {
-  const auto found = std::find(base_[2].begin(), base_[2].end(), outside);
-  return found == base_[2].end() ? -1 : static_cast<int>(found - base_[2].begin());
+  if (!any_escaped()) return -1;
+  return static_cast<int>(std::find(base_[2].begin(), base_[2].end(), outside) - base_[2].begin());
 }
 
 template class SurfaceCoupling<float>;

@@ -33,8 +33,7 @@ class SurfaceCoupling {
   /// First node whose stencil left the lattice or whose position is not a number at the last locate(); -1: none.
   /// Such a node neither spreads nor is moved.
   [[nodiscard]] int escaped() const;
-  /// Marks the rows that forces of the last locate() reach, among one for each row of the lattice.
-  void mark_rows(std::vector<char>& reached) const;
+  [[nodiscard]] bool any_escaped() const;
 
  private:
   struct Loops;

@@ -6,33 +6,44 @@
 
 namespace rouleau::core {
 
-double largest_displacement(const std::vector<double>& x, const std::vector<double>& y,
-                            const std::vector<double>& old_x, const std::vector<double>& old_y, Range nodes) {
+double largest_displacement(const CellNodes& cells, const OldPlaces& old, Range nodes) {
   double square = 0, zero = 0;  // zero becomes NaN with the first position that is not finite
-  for (auto i = static_cast<std::size_t>(nodes.begin); i < static_cast<std::size_t>(nodes.end); ++i) {
-    const double dx = x[i] - old_x[i], dy = y[i] - old_y[i], s = dx * dx + dy * dy;
+  const auto compare = [&](double s) {
     square = s > square ? s : square;
     zero += s - s;
+  };
+  const auto begin = static_cast<std::size_t>(nodes.begin), end = static_cast<std::size_t>(nodes.end);
+  if (cells.z.empty()) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const double dx = cells.x[i] - old.x[i], dy = cells.y[i] - old.y[i];
+      compare(dx * dx + dy * dy);
+    }
+  } else {
+    for (std::size_t i = begin; i < end; ++i) {
+      const double dx = cells.x[i] - old.x[i], dy = cells.y[i] - old.y[i], dz = cells.z[i] - old.z[i];
+      compare(dx * dx + dy * dy + dz * dz);
+    }
   }
   return std::sqrt(square) + zero;
 }
 
-DisplacementWatch::DisplacementWatch(const Membranes& membranes)
-    : memory_{std::vector<double>(membranes.x.size(), std::nan("")),
-              std::vector<double>(membranes.y.size(), std::nan("")), std::vector<double>(membranes.cells.size(), 0.0),
-              std::vector<double>(membranes.cells.size(), std::numeric_limits<double>::infinity())},
-      moved_(membranes.cells.size(), 1) {}
+DisplacementWatch::DisplacementWatch(const CellNodes& cells)
+    : memory_{{std::vector<double>(cells.x.size(), std::nan("")), std::vector<double>(cells.y.size(), std::nan("")),
+               std::vector<double>(cells.z.size(), std::nan(""))},
+              std::vector<double>(cells.cells.size(), 0.0),
+              std::vector<double>(cells.cells.size(), std::numeric_limits<double>::infinity())},
+      moved_(cells.cells.size(), 1) {}
 
-void DisplacementWatch::measure(Worker worker, const Membranes& membranes) {
-  const Range cells = worker.share(membranes.cell_count());
-  const bool unknown = membranes.largest_step.empty();
+void DisplacementWatch::measure(Worker worker, const CellNodes& nodes) {
+  const Range cells = worker.share(nodes.cell_count());
+  const bool unknown = nodes.largest_step.empty();
   for (int c = cells.begin; c < cells.end; ++c) {
     const auto at = static_cast<std::size_t>(c);
     double& bound = memory_.bound[at];
-    bound = unknown ? std::numeric_limits<double>::infinity() : bound + membranes.largest_step[at];
+    bound = unknown ? std::numeric_limits<double>::infinity() : bound + nodes.largest_step[at];
     if (!(bound <= memory_.limit[at])) {
-      const CellRange& cell = membranes.cells[at];
-      bound = largest_displacement(membranes.x, membranes.y, memory_.x, memory_.y, {cell.first, cell.end()});
+      const CellRange& cell = nodes.cells[at];
+      bound = largest_displacement(nodes, memory_, {cell.first, cell.end()});
     }
     moved_[at] = !(bound <= memory_.limit[at]);
   }
@@ -42,10 +53,14 @@ bool DisplacementWatch::exceeded() const {
   return std::any_of(moved_.begin(), moved_.end(), [](std::uint8_t moved) { return moved != 0; });
 }
 
-void DisplacementWatch::remember(int cell, const Membranes& membranes, double limit) {
-  const CellRange& range = membranes.cells[cell];
-  std::copy(membranes.x.begin() + range.first, membranes.x.begin() + range.end(), memory_.x.begin() + range.first);
-  std::copy(membranes.y.begin() + range.first, membranes.y.begin() + range.end(), memory_.y.begin() + range.first);
+void DisplacementWatch::remember(int cell, const CellNodes& nodes, double limit) {
+  const CellRange& range = nodes.cells[cell];
+  const auto copy = [&range](const std::vector<double>& from, std::vector<double>& to) {
+    std::copy(from.begin() + range.first, from.begin() + range.end(), to.begin() + range.first);
+  };
+  copy(nodes.x, memory_.x);
+  copy(nodes.y, memory_.y);
+  if (!nodes.z.empty()) copy(nodes.z, memory_.z);
   memory_.limit[cell] = limit;
   memory_.bound[cell] = 0;
 }

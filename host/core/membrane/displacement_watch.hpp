@@ -6,14 +6,17 @@
 #include <vector>
 
 #include "base/worker.hpp"
-#include "membranes.hpp"
+#include "cell_nodes.hpp"
 
 namespace rouleau::core {
 
-/// Largest distance between corresponding nodes [nodes.begin, nodes.end) of two sets of positions; NaN if a position is
-/// no number.
-double largest_displacement(const std::vector<double>& x, const std::vector<double>& y,
-                            const std::vector<double>& old_x, const std::vector<double>& old_y, Range nodes);
+/// Positions as they were.
+struct OldPlaces {
+  std::vector<double> x, y, z;  ///< of all nodes; the last is empty in two dimensions
+};
+
+/// Largest distance of nodes [nodes.begin, nodes.end) from where they were; NaN if a position is no number.
+double largest_displacement(const CellNodes& cells, const OldPlaces& old, Range nodes);
 
 /// Remembers positions and compares. After construction every cell counts as moved.
 ///
@@ -22,20 +25,19 @@ double largest_displacement(const std::vector<double>& x, const std::vector<doub
 class DisplacementWatch {
  public:
   DisplacementWatch() = default;
-  explicit DisplacementWatch(const Membranes& membranes);
+  explicit DisplacementWatch(const CellNodes& cells);
 
   /// Pass over cells, once a step. A barrier must lie between it and the next two.
-  void measure(Worker worker, const Membranes& membranes);
+  void measure(Worker worker, const CellNodes& nodes);
   /// True if a node of the cell had moved further than its limit (or is not a number) at the last measure().
   [[nodiscard]] bool moved(int cell) const { return moved_[cell] != 0; }
   /// True if any cell has moved.
   [[nodiscard]] bool exceeded() const;
   /// Remembers the present positions of a cell and how far its nodes may move from there. Does not change moved().
-  void remember(int cell, const Membranes& membranes, double limit);
+  void remember(int cell, const CellNodes& nodes, double limit);
 
   /// What it knows from one step to the next.
-  struct Memory {
-    std::vector<double> x, y;   ///< of the nodes; NaN: nothing remembered yet
+  struct Memory : OldPlaces {   // NaN: nothing remembered yet
     std::vector<double> limit;  ///< of each cell
     std::vector<double> bound;  ///< of each cell: upper bound of its nodes' displacements
   };

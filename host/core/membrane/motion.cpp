@@ -8,80 +8,93 @@ namespace rouleau::core {
 
 namespace {
 
+template <int D>
 struct MoveTask {
-  double *x, *y;
-  const double *velocity_x, *velocity_y;
+  double* place[D];
+  const double* velocity[D];
   int begin, end;
   double largest_square;
 };
 
+template <int D>
 struct Move {
   template <int register_bytes>
-  ROULEAU_ALWAYS_INLINE static void run(MoveTask* task) {
+  ROULEAU_ALWAYS_INLINE static void run(MoveTask<D>* task) {
     using S = Pack<double, register_bytes / 8>;
-    const MoveTask t = *task;
+    const MoveTask<D> t = *task;
     S largest = 0.0, zero = 0.0;  // zero becomes NaN with the first velocity that is not finite
     int i = t.begin;
     for (; i + S::size <= t.end; i += S::size) {
-      const S u = S::load(t.velocity_x + i), v = S::load(t.velocity_y + i), square = u * u + v * v;
-      (S::load(t.x + i) + u).store(t.x + i);
-      (S::load(t.y + i) + v).store(t.y + i);
+      S square = S::load(t.velocity[0] + i) * S::load(t.velocity[0] + i);
+      for (int k = 1; k < D; ++k) square = square + S::load(t.velocity[k] + i) * S::load(t.velocity[k] + i);
+      for (int k = 0; k < D; ++k) (S::load(t.place[k] + i) + S::load(t.velocity[k] + i)).store(t.place[k] + i);
       largest = max(largest, square);
       zero += square - square;
     }
     double most = 0;
     for (int k = 0; k < S::size; ++k) most = max(most, largest.vector[k]) + zero.vector[k];
     for (; i < t.end; ++i) {
-      const double u = t.velocity_x[i], v = t.velocity_y[i], square = u * u + v * v;
-      t.x[i] += u;
-      t.y[i] += v;
+      double square = t.velocity[0][i] * t.velocity[0][i];
+      for (int k = 1; k < D; ++k) square = square + t.velocity[k][i] * t.velocity[k][i];
+      for (int k = 0; k < D; ++k) t.place[k][i] += t.velocity[k][i];
       most = max(most, square) + (square - square);
     }
     task->largest_square = most;
   }
 };
 
-}  // namespace
-
-void move_nodes(Worker worker, Membranes& membranes) {
-  static const auto function = Dispatch<Move, MoveTask*>::pick();
-  const Range cells = worker.share(membranes.cell_count());
+template <int D>
+void move(Range cells, CellNodes& nodes) {
+  static const auto function = Dispatch<Move<D>, MoveTask<D>*>::pick();
+  std::vector<double>* const places[] = {&nodes.x, &nodes.y, &nodes.z};
+  const std::vector<double>* const velocities[] = {&nodes.velocity_x, &nodes.velocity_y, &nodes.velocity_z};
   for (int c = cells.begin; c < cells.end; ++c) {
-    if (!membranes.owns(c)) continue;
-    const CellRange& cell = membranes.cells[c];
-    MoveTask task{membranes.x.data(),
-                  membranes.y.data(),
-                  membranes.velocity_x.data(),
-                  membranes.velocity_y.data(),
-                  cell.first,
-                  cell.end(),
-                  0};
+    if (!nodes.owns(c)) continue;
+    const CellRange& cell = nodes.cells[c];
+    MoveTask<D> task{.place = {}, .velocity = {}, .begin = cell.first, .end = cell.end(), .largest_square = 0};
+    for (int k = 0; k < D; ++k) task.place[k] = places[k]->data(), task.velocity[k] = velocities[k]->data();
     function(&task);
-    membranes.largest_step[c] = std::sqrt(task.largest_square);
+    nodes.largest_step[c] = std::sqrt(task.largest_square);
   }
 }
 
-std::array<double, 2> mean_velocity(const Membranes& membranes) {
-  double u = 0, v = 0;
-  for (std::size_t i = 0; i < membranes.x.size(); ++i) u += membranes.velocity_x[i], v += membranes.velocity_y[i];
-  const double nodes = std::max(1, membranes.node_count());
-  return {u / nodes, v / nodes};
+}  // namespace
+
+void move_nodes(Worker worker, CellNodes& cells) {
+  const Range share = worker.share(cells.cell_count());
+  if (cells.z.empty()) {
+    move<2>(share, cells);
+  } else {
+    move<3>(share, cells);
+  }
 }
 
-FarthestNode farthest_node(const Membranes& membranes) {
+std::array<double, 3> mean_velocity(const CellNodes& cells) {
+  const double nodes = std::max(1, cells.node_count());
+  std::array<double, 3> mean{};
+  const std::vector<double>* const velocities[] = {&cells.velocity_x, &cells.velocity_y, &cells.velocity_z};
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (const double u : *velocities[k]) mean[k] += u;
+    mean[k] /= nodes;
+  }
+  return mean;
+}
+
+FarthestNode farthest_node(const CellNodes& cells) {
   FarthestNode farthest{0, -1};
-  for (int i = 0; i < membranes.node_count(); ++i) {
+  for (int i = 0; i < cells.node_count(); ++i) {
     const auto k = static_cast<std::size_t>(i);
-    const double step = std::hypot(membranes.velocity_x[k], membranes.velocity_y[k]);
+    const double along_z = cells.z.empty() ? 0 : cells.velocity_z[k];
+    const double step = std::hypot(std::hypot(cells.velocity_x[k], cells.velocity_y[k]), along_z);
     if (std::isnan(step)) return {step, i};
     if (farthest.node < 0 || step > farthest.step) farthest = {step, i};
   }
   return farthest;
 }
 
-double largest_step(const Membranes& membranes) {
+double largest_step(const CellNodes& cells) {
   double largest = 0;
-  for (const double step : membranes.largest_step) {
+  for (const double step : cells.largest_step) {
     if (!(step <= largest)) largest = step;
     if (std::isnan(largest)) break;
   }

@@ -1,28 +1,28 @@
-// Moves the membranes' nodes by one step.
+// Moves the cells' nodes by one step.
 #pragma once
 
 #include <array>
 
 #include "base/worker.hpp"
-#include "membranes.hpp"
+#include "cell_nodes.hpp"
 
 namespace rouleau::core {
 
 /// Pass over cells: adds the velocity to the positions of this worker's cells (explicit Euler) and sets largest_step,
 /// which must have one value for each cell; NaN where a velocity is no number.
-void move_nodes(Worker worker, Membranes& membranes);
+void move_nodes(Worker worker, CellNodes& cells);
 
-/// Mean of the displacements of all nodes in the last step, {x, y}; 0 without nodes. The same on all ranks.
-std::array<double, 2> mean_velocity(const Membranes& membranes);
+/// Mean of the displacements of all nodes in the last step; 0 without nodes. The same on all ranks.
+std::array<double, 3> mean_velocity(const CellNodes& cells);
 
 /// The node with the largest step, for messages.
 struct FarthestNode {
   double step;  ///< lattice spacings; NaN if any velocity is no number
   int node;     ///< whose; -1 without nodes
 };
-FarthestNode farthest_node(const Membranes& membranes);
+FarthestNode farthest_node(const CellNodes& cells);
 
 /// Largest of all steps; NaN if any is.
-double largest_step(const Membranes& membranes);
+double largest_step(const CellNodes& cells);
 
 }  // namespace rouleau::core

@@ -26,7 +26,7 @@ class Probe {
   }
 
   std::vector<double> tension_by_stretch() { return segments(&rouleau_membrane_block::tension_by_stretch); }
-  std::vector<double> tension() { return segments(&rouleau_membrane_block::tension); }
+  std::vector<double> tension() { return law_.writes("stress_1") ? tension_along() : segments(&rouleau_membrane_block::tension); }
   std::vector<double> moment_by_curvature() {
     block_.curvature = arguments_.data();
     if (law_.reads("rest_curvature")) block_.rest_curvature = zero_.data();
@@ -34,6 +34,17 @@ class Probe {
   }
 
  private:
+  /// Of a law of triangles: the tension along one principal direction, stretched so, while the other is held at rest.
+  std::vector<double> tension_along() {
+    std::vector<double> invariant(arguments_), first(arguments_.size(), 0.0), second(first);
+    for (double& value : invariant) value = value * value - 1;
+    block_.invariant_1 = block_.invariant_2 = invariant.data();
+    block_.stress_1 = first.data();
+    if (law_.writes("stress_2")) block_.stress_2 = second.data();
+    law_.compute(&block_);
+    for (std::size_t i = 0; i < first.size(); ++i) result_[i] = 2 * arguments_[i] * (first[i] + second[i]);
+    return result_;
+  }
   std::vector<double> segments(double* rouleau_membrane_block::*output) {
     if (law_.reads("stretch")) block_.stretch = arguments_.data();
     if (law_.reads("stretch_rate")) block_.stretch_rate = zero_.data();
@@ -62,7 +73,7 @@ double largest(const std::vector<double>& values) {
 
 double stretching_stiffness(const MembraneLaw& law, const std::vector<double>& stretches) {
   if (law.writes("tension_by_stretch")) return largest(Probe(law, stretches).tension_by_stretch());
-  if (!law.writes("tension")) return 0;
+  if (!law.writes("tension") && !law.writes("stress_1")) return 0;
   constexpr double h = 1e-5;
   std::vector<double> below, above;
   for (const double stretch : stretches) {
@@ -76,7 +87,7 @@ double stretching_stiffness(const MembraneLaw& law, const std::vector<double>& s
 }
 
 double tension_at(const MembraneLaw& law, double stretch) {
-  return law.writes("tension") ? Probe(law, {stretch}).tension().front() : 0;
+  return law.writes("tension") || law.writes("stress_1") ? Probe(law, {stretch}).tension().front() : 0;
 }
 
 double bending_stiffness(const MembraneLaw& law) {

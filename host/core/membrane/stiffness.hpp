@@ -7,11 +7,11 @@
 
 namespace rouleau::core {
 
-/// Largest d tension / d stretch of a law of segments at these stretches, without rate and with its initial state; by
+/// Largest d tension / d stretch of a law of segments, or of one of triangles stretched along one direction, at these stretches, without rate and with its initial state; by
 /// differences of the tension where the law gives no derivative. 0 for other laws. Lattice units.
 double stretching_stiffness(const MembraneLaw& law, const std::vector<double>& stretches = {0.95, 1.0, 1.1});
 
-/// Tension of a law of segments at a stretch, at once; 0 for other laws.
+/// Tension of such a law at a stretch, at once; 0 for other laws.
 double tension_at(const MembraneLaw& law, double stretch);
 
 /// d moment / d curvature of a law of nodes, as much of it as the law gives, for a shape that is flat at rest. 0 for

@@ -4,7 +4,7 @@
 namespace rouleau::core {
 
 /// In two dimensions: a closed polygon, counter-clockwise. Segment i joins node i and the next node, so that nodes and
-/// segments share their numbers. Surfaces of triangles will be another topology, with edges and hinges of their own.
+/// segments share their numbers. How the nodes of a surface are joined is a matter of its type (Mesh).
 struct Segments {
   int first;  ///< node
   int count;  ///< of nodes and of segments

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <map>
 #include <stdexcept>
+
+#include "line_crossing.hpp"
 #include <string>
 
 namespace rouleau::core {
@@ -135,6 +137,15 @@ double surface_area(const Mesh& mesh, Nodes nodes) {
   double sum = 0;
   for (const auto& [a, b, c] : mesh.triangles()) sum += (nodes[b] - nodes[a]).cross(nodes[c] - nodes[a]).norm();
   return sum / 2;
+}
+
+bool encloses(const Mesh& mesh, Nodes nodes, const Vec<3>& point) {
+  int inside = 0;
+  for (const auto& [i, j, k] : mesh.triangles()) {
+    const auto crossing = line_crossing(nodes[i], nodes[j], nodes[k], {point.y(), point.z()});
+    if (crossing && crossing->x > point.x()) inside += crossing->leaves ? 1 : -1;
+  }
+  return inside > 0;
 }
 
 std::vector<Vec<3>> area_vectors(const Mesh& mesh, Nodes nodes) {

@@ -55,6 +55,8 @@ struct Nodes {
 /// Enclosed volume, positive where triangles run counter-clockwise seen from outside.
 double enclosed_volume(const Mesh& mesh, Nodes nodes);
 double surface_area(const Mesh& mesh, Nodes nodes);
+/// Whether a point lies inside.
+bool encloses(const Mesh& mesh, Nodes nodes, const Vec<3>& point);
 
 /// Twice the area of each triangle, along its outer normal.
 std::vector<Vec<3>> area_vectors(const Mesh& mesh, Nodes nodes);

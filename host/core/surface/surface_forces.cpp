@@ -304,7 +304,7 @@ void SurfaceForces::run(Worker worker, Surfaces& surfaces) {
   if (cells.begin == cells.end) return;
   Scratch& s = scratch_of(cells.begin);
   for (int c = cells.begin; c < cells.end; ++c) {
-    const SurfaceCell& cell = surfaces.cells[c];
+    const CellRange& cell = surfaces.cells[c];
     const Type& type = types_[cell.type];
     Whole whole = measure(type, surfaces.nodes(c), s);
     apply(type, *surfaces.types[cell.type], s, whole, nullptr);

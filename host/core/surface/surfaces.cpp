@@ -1,6 +1,7 @@
 #include "surfaces.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -39,9 +40,22 @@ RestSurface make_rest_surface(Mesh mesh, std::vector<double> x, std::vector<doub
   return rest;
 }
 
+StretchRange stretch_range(const Surfaces& surfaces, int cell) {
+  const RestSurface& rest = surfaces.type_of(cell);
+  const Nodes now = surfaces.nodes(cell), then = rest.nodes();
+  const double prestretch = std::sqrt(surface_area(rest.mesh, then) / rest.rest_surface_area);
+  StretchRange range;
+  for (const Mesh::Edge& edge : rest.mesh.edges()) {
+    const double stretch = prestretch * (now[edge.b] - now[edge.a]).norm() / (then[edge.b] - then[edge.a]).norm();
+    range.least = std::min(range.least, stretch);
+    range.most = std::max(range.most, stretch);
+  }
+  return range;
+}
+
 void add_cell(Surfaces& surfaces, int type, const Vec<3>& center, const Eigen::Matrix3d& rotation) {
   const RestSurface& rest = *surfaces.types[type];
-  surfaces.cells.push_back({surfaces.node_count(), rest.mesh.node_count(), type});
+  surfaces.cells.push_back({{.first = surfaces.node_count(), .count = rest.mesh.node_count()}, type});
   for (int i = 0; i < rest.mesh.node_count(); ++i) {
     const Vec<3> place = center + rotation * rest.nodes()[i];
     surfaces.x.push_back(place.x());

@@ -1,11 +1,12 @@
-// All membranes of a scene in three dimensions: nodes of all cells in one structure of arrays, in lattice units.
+// All membranes of a scene in three dimensions: closed surfaces of triangles, in lattice units.
 #pragma once
 
 #include <memory>
 #include <utility>
 #include <vector>
 
-#include "base/worker.hpp"
+#include "core/membrane/cell_nodes.hpp"
+#include "core/membrane/geometry.hpp"
 #include "mesh.hpp"
 
 namespace rouleau::core {
@@ -31,36 +32,19 @@ struct RestSurface {
 RestSurface make_rest_surface(Mesh mesh, std::vector<double> x, std::vector<double> y, std::vector<double> z,
                               double prestretch = 1);
 
-/// One cell: its nodes in the arrays of Surfaces, in the order of its type's mesh.
-struct SurfaceCell {
-  int first, count;
-  int type;
-  [[nodiscard]] int end() const { return first + count; }
-};
-
-/// Positions are not wrapped into the periodic box, so that surfaces stay whole. Lattice node (0, 0, 0) lies at the
-/// origin, walls half a spacing outside the first and the last node.
-struct Surfaces {
+/// Closed surfaces: the nodes of a cell are in the order of its type's mesh.
+struct Surfaces : CellNodes {
   std::vector<std::shared_ptr<const RestSurface>> types;
-  std::vector<SurfaceCell> cells;
-  std::vector<double> x, y, z;                             ///< positions
-  std::vector<double> force_x, force_y, force_z;           ///< on the nodes, set anew each step
-  std::vector<double> velocity_x, velocity_y, velocity_z;  ///< displacement of the last step
 
-  [[nodiscard]] int node_count() const { return static_cast<int>(x.size()); }
-  [[nodiscard]] int cell_count() const { return static_cast<int>(cells.size()); }
   [[nodiscard]] const RestSurface& type_of(int cell) const { return *types[cells[cell].type]; }
   [[nodiscard]] Nodes nodes(int cell) const {
     const int first = cells[cell].first;
     return {&x[first], &y[first], &z[first]};
   }
-  /// The nodes of a worker's cells, worker.share(cell_count()).
-  [[nodiscard]] Range node_share(Worker worker) const {
-    const Range share = worker.share(cell_count());
-    const auto first = [this](int cell) { return cell < cell_count() ? cells[cell].first : node_count(); };
-    return {first(share.begin), first(share.end)};
-  }
 };
+
+/// Smallest and largest stretch of an edge: length over rest length.
+StretchRange stretch_range(const Surfaces& surfaces, int cell);
 
 /// Adds a cell that rests, its shape's origin at `center`, turned by `rotation`.
 void add_cell(Surfaces& surfaces, int type, const Vec<3>& center,

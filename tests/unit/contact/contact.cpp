@@ -121,7 +121,7 @@ TEST_CASE("closest points are those of brute force on moving, turning, deforming
       run(contacts, m, 1 + step % 3);
       compare(contacts, m, domain, tally);
       // Move by up to the skin since the lists were made, by rigid motion and by single nodes.
-      const std::vector<double> old_x = m.x, old_y = m.y;
+      const OldPlaces old{m.x, m.y, {}};
       for (const CellRange& cell : m.cells) {
         const double vx = speed * 0.06 * uniform(random), vy = speed * 0.06 * uniform(random),
                      turn = speed * 0.003 * uniform(random);
@@ -134,7 +134,7 @@ TEST_CASE("closest points are those of brute force on moving, turning, deforming
         }
       }
       if (known)
-        m.largest_step.assign(m.cells.size(), largest_displacement(m.x, m.y, old_x, old_y, {0, m.node_count()}));
+        m.largest_step.assign(m.cells.size(), largest_displacement(m, old, {0, m.node_count()}));
     }
     renewals += contacts.neighbours().renewals();
   }

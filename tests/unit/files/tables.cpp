@@ -44,7 +44,7 @@ TEST_CASE("numbers have a decimal point in every locale") {
 
 TEST_CASE("the tables hold what the snapshots say") {
   const ScratchFolder folder;
-  Tables tables(folder.path());
+  Tables tables(folder.path(), 2);
   tables.write(small_snapshot(0));
   tables.write(small_snapshot(7));
   tables.close();
@@ -73,7 +73,7 @@ TEST_CASE("the tables hold what the snapshots say") {
 
 TEST_CASE("every table has a header with the names of its observables, and as many entries in every row") {
   const ScratchFolder folder;
-  Tables tables(folder.path());
+  Tables tables(folder.path(), 2);
   auto snapshot = small_snapshot(0);
   for (CellSnapshot& cell : snapshot.cells) cell.type = "rbc";
   snapshot.aggregate_sizes = {{1, 2}, {3, 1}};
@@ -85,7 +85,7 @@ TEST_CASE("every table has a header with the names of its observables, and as ma
     std::istringstream lines(read_text(folder.path() / (std::string(table.name) + ".csv")));
     std::string header, row, expected;
     std::getline(lines, header);
-    for (const std::string& column : table.columns()) expected += (expected.empty() ? "" : ",") + column;
+    for (const std::string& column : table.columns(2)) expected += (expected.empty() ? "" : ",") + column;
     CHECK(header == expected);
     int rows = 0;
     for (; std::getline(lines, row); ++rows)
@@ -96,7 +96,7 @@ TEST_CASE("every table has a header with the names of its observables, and as ma
 
 TEST_CASE("an aggregate without contact has a row of its own with empty contact columns") {
   const ScratchFolder folder;
-  Tables tables(folder.path());
+  Tables tables(folder.path(), 2);
   auto snapshot = small_snapshot(0);
   snapshot.contacts.clear();
   snapshot.cells[1].aggregate = 1;
@@ -111,7 +111,7 @@ TEST_CASE("an aggregate without contact has a row of its own with empty contact 
 
 TEST_CASE("every aggregate has its own rotation, lone cells have none, and the series follows the largest") {
   const ScratchFolder folder;
-  Tables tables(folder.path());
+  Tables tables(folder.path(), 2);
   Snapshot snapshot;
   snapshot.aggregate_count = 3;
   for (const int label : {0, 1, 1, 3, 3, 3}) {

@@ -1,0 +1,193 @@
+#include "interior_field.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/membrane/rounding.hpp"
+
+namespace rouleau::core {
+
+template <class T>
+InteriorField<T>::InteriorField(const Surfaces& surfaces, std::vector<double> viscosity_ratio, double relaxation_rate,
+                                const Domain<3>& domain)
+    : ratio_(std::move(viscosity_ratio)),
+      plain_rate_(relaxation_rate),
+      domain_(domain),
+      watch_(surfaces),
+      fraction_(surfaces.cells.size()),
+      reach_(surfaces.cells.size()),
+      changed_(static_cast<std::size_t>(row_count(domain.block))) {
+  for (const CellRange& cell : surfaces.cells) varies_ |= differs(cell.type);
+}
+
+template <class T>
+void InteriorField<T>::cover(Worker worker, const Surfaces& surfaces) {
+  const Range cells = worker.share(surfaces.cell_count());
+  std::vector<double> scratch;
+  for (int c = cells.begin; c < cells.end; ++c) {
+    if (!watch_.moved(c)) continue;
+    if (differs(surfaces.cells[c].type)) {
+      core::cover(surfaces.type_of(c).mesh, surfaces.nodes(c), fraction_[c]);
+      smooth(fraction_[c], scratch);
+    }
+    find_reach(surfaces, c);
+    watch_.remember(c, surfaces, displacement_limit);
+  }
+}
+
+// A node at (X, Y, Z) reaches columns floor(X) - 1 ... floor(X) + 2 of the same rows along y and z; one more each for its
+// motion.
+template <class T>
+void InteriorField<T>::find_reach(const Surfaces& surfaces, int cell) {
+  Rows& reach = reach_[cell];
+  reach.columns.clear();
+  reach.size[0] = reach.size[1] = 0;
+  const CellRange& range = surfaces.cells[cell];
+  const double* const along[2] = {surfaces.y.data(), surfaces.z.data()};
+  const VolumeFraction& fraction = fraction_[cell];
+  for (int axis = 0; axis < 2; ++axis) {
+    const auto [least, most] = std::minmax_element(along[axis] + range.first, along[axis] + range.end());
+    if (!(std::abs(*least) < 1e9 && std::abs(*most) < 1e9)) return;  // the run is about to end
+    reach.first[axis] = floor_int(*least) - 2;
+    reach.size[axis] = floor_int(*most) + 4 - reach.first[axis];
+  }
+  const Interval none{1 << 30, -(1 << 30)};
+  reach.columns.assign(static_cast<std::size_t>(reach.size[0]) * reach.size[1], none);
+  const auto include = [](Interval& to, const Interval& added) {
+    to = {std::min(to.begin, added.begin), std::max(to.end, added.end)};
+  };
+  for (int i = range.first; i < range.end(); ++i) {
+    if (!(std::abs(surfaces.x[i]) < 1e9)) continue;
+    const int x = floor_int(surfaces.x[i]);
+    include(reach.at(floor_int(surfaces.y[i]) - reach.first[0], floor_int(surfaces.z[i]) - reach.first[1]),
+            {x - 2, x + 4});
+  }
+  // From the row below a node to the rows that its stencil reaches, along one axis and then the other.
+  for (int axis = 0; axis < 2; ++axis) {
+    const std::vector<Interval> before = reach.columns;
+    for (int k = 0; k < reach.size[1]; ++k) {
+      for (int j = 0; j < reach.size[0]; ++j) {
+        const int at = axis == 0 ? j : k;
+        for (int from = std::max(0, at - 3); from <= std::min(reach.size[axis] - 1, at + 2); ++from)
+          include(reach.at(j, k), before[static_cast<std::size_t>(reach.size[0] * (axis == 0 ? k : from) +
+                                                                  (axis == 0 ? from : j))]);
+      }
+    }
+  }
+  for (int k = 0; k < fraction.size[2]; ++k) {
+    for (int j = 0; j < fraction.size[1]; ++j) {
+      const double* row = fraction.row(j, k);
+      int begin = 0, end = fraction.size[0];
+      while (begin < end && row[begin] == 0) ++begin;
+      while (end > begin && row[end - 1] == 0) --end;
+      if (begin == end) continue;
+      include(reach.at(fraction.first[1] + j - reach.first[0], fraction.first[2] + k - reach.first[1]),
+              {fraction.first[0] + begin, fraction.first[0] + end});
+    }
+  }
+}
+
+template <class T>
+template <class Function>
+void InteriorField<T>::for_rows(const int (&first)[2], const int (&size)[2], Range own, Function function) const {
+  for (int k = 0; k < size[1]; ++k) {
+    const int z = domain_.wrapped(2, first[1] + k);
+    if (z < 0) continue;
+    for (int j = 0; j < size[0]; ++j) {
+      const int y = domain_.wrapped(1, first[0] + j), row = y + domain_.size[1] * z;
+      if (y >= 0 && row >= own.begin && row < own.end) function(row, j, k);
+    }
+  }
+}
+
+template <class T>
+void InteriorField<T>::update(Worker worker, const Surfaces& surfaces, Field<T, 3>& relaxation_rate, NodeMask& mask) {
+  const Range own = worker.share(row_count(domain_.block));
+  if (varies_) set_rates(surfaces, own, relaxation_rate);
+  mask.clear(own.begin, own.end);
+  for (const Rows& reach : reach_) {
+    for_rows(reach.first, reach.size, own, [&](int row, int j, int k) {
+      const Interval& columns = reach.at(j, k);
+      if (columns.begin < columns.end) mask.mark(row, columns.begin, columns.end);
+    });
+  }
+}
+
+template <class T>
+void InteriorField<T>::set_rates(const Surfaces& surfaces, Range own, Field<T, 3>& rate) {
+  // The field holds the sum over cells of (ratio - 1) I until every cell has been added. Cells that do not overlap may
+  // share the columns between them, which are made plain again first and count once.
+  const int width = domain_.size[0];
+  const auto row_of = [&](int row) { return rate.row(row % domain_.size[1], row / domain_.size[1]); };
+  for (int row = own.begin; row < own.end; ++row) {
+    for (const Interval& columns : changed_[row])
+      std::fill(row_of(row) + columns.begin, row_of(row) + columns.end, static_cast<T>(plain_rate_));
+    changed_[row].clear();
+  }
+  const auto note = [&](int row, int begin, int end) {  // intervals of a row stay disjoint
+    std::vector<Interval>& intervals = changed_[row];
+    Interval added{begin, end};
+    for (std::size_t i = 0; i < intervals.size();) {
+      if (intervals[i].end < added.begin || added.end < intervals[i].begin) {
+        ++i;
+        continue;
+      }
+      added = {std::min(added.begin, intervals[i].begin), std::max(added.end, intervals[i].end)};
+      intervals[i] = intervals.back();
+      intervals.pop_back();
+    }
+    intervals.push_back(added);
+  };
+  const auto for_pieces = [&](const auto& function) {
+    for (std::size_t c = 0; c < fraction_.size(); ++c) {
+      const VolumeFraction& fraction = fraction_[c];
+      const int first[2] = {fraction.first[1], fraction.first[2]}, size[2] = {fraction.size[1], fraction.size[2]};
+      const double excess = ratio_[surfaces.cells[c].type] - 1;
+      for_rows(first, size, own, [&](int row, int j, int k) {
+        for (int begin = 0; begin < fraction.size[0];) {
+          const int x = domain_.wrapped(0, fraction.first[0] + begin);
+          const int end = std::min(fraction.size[0], begin + width - x);
+          function(row, x, fraction.row(j, k) + begin, end - begin, excess);
+          begin = end;
+        }
+      });
+    }
+  };
+  for_pieces([&](int row, int x, const double*, int count, double) { note(row, x, x + count); });
+  for (int row = own.begin; row < own.end; ++row) {
+    for (const Interval& columns : changed_[row])
+      std::fill(row_of(row) + columns.begin, row_of(row) + columns.end, T(0));
+  }
+  for_pieces([&](int row, int x, const double* value, int count, double excess) {
+    T* to = row_of(row) + x;
+    for (int i = 0; i < count; ++i) to[i] += static_cast<T>(excess * value[i]);
+  });
+  const T outside = static_cast<T>(1 / plain_rate_ - 0.5), plain = static_cast<T>(plain_rate_);
+  for (int row = own.begin; row < own.end; ++row) {
+    T* to = row_of(row);
+    for (const Interval& columns : changed_[row]) {
+      for (int x = columns.begin; x < columns.end; ++x)
+        to[x] = to[x] == T(0) ? plain : T(1) / (T(0.5) + outside * (T(1) + to[x]));
+    }
+  }
+}
+
+template <class T>
+void InteriorField<T>::restore(const DisplacementWatch::Memory& memory, const Surfaces& surfaces,
+                               Field<T, 3>& relaxation_rate, NodeMask& mask) {
+  const bool updated = !memory.x.empty() && !std::isnan(memory.x.front());
+  if (updated) {
+    Surfaces at_update = surfaces;
+    at_update.x = memory.x;
+    at_update.y = memory.y;
+    at_update.z = memory.z;
+    cover(Worker{}, at_update);
+    update(Worker{}, at_update, relaxation_rate, mask);
+  }
+  watch_.recall(memory);
+}
+
+template class InteriorField<float>;
+template class InteriorField<double>;
+
+}  // namespace rouleau::core

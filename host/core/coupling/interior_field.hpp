@@ -1,0 +1,79 @@
+// What closed surfaces cover and reach on the lattice: the viscosity inside them, and the nodes that feel them.
+#pragma once
+
+#include <vector>
+
+#include "base/worker.hpp"
+#include "core/fluid/field.hpp"
+#include "core/fluid/node_mask.hpp"
+#include "core/membrane/displacement_watch.hpp"
+#include "core/surface/surfaces.hpp"
+#include "volume_fraction.hpp"
+
+namespace rouleau::core {
+
+/// tau = 1/2 + (tau_outside - 1/2) (1 + sum over cells (ratio - 1) I), kept as 1/tau: I of a node's cube lies inside a
+/// cell. Of a lattice in one block. Where nodes have moved all that the cells cover is computed again.
+template <class T>
+class InteriorField {
+ public:
+  /// `viscosity_ratio[t]`: interior over suspending viscosity of cell type t.
+  InteriorField(const Surfaces& surfaces, std::vector<double> viscosity_ratio, double relaxation_rate,
+                const Domain<3>& domain);
+
+  /// Whether a relaxation rate that varies in space is needed; if not, the passes only mark.
+  [[nodiscard]] bool varies() const { return varies_; }
+
+  /// Pass over cells: compares positions with those of the last update. After a barrier, due() is the same for all
+  /// workers.
+  void measure(Worker worker, const Surfaces& surfaces) { watch_.measure(worker, surfaces); }
+  [[nodiscard]] bool due() const { return watch_.exceeded(); }
+  /// Pass over cells, after measure(): what the cells that have moved cover and reach.
+  void cover(Worker worker, const Surfaces& surfaces);
+  /// Pass over rows, when due, a barrier after cover(): sets the relaxation rate, and marks the nodes that the surfaces
+  /// touch until they have moved by 1. The field must hold the rate of a fluid without cells before the first call; it is
+  /// not touched unless varies().
+  void update(Worker worker, const Surfaces& surfaces, Field<T, 3>& relaxation_rate, NodeMask& mask);
+
+  /// What relaxation rate and mask were made from, for checkpoints.
+  [[nodiscard]] const DisplacementWatch::Memory& memory() const { return watch_.memory(); }
+  /// Not a pass: makes them again as they were, in place of those of a new stage.
+  void restore(const DisplacementWatch::Memory& memory, const Surfaces& surfaces, Field<T, 3>& relaxation_rate,
+               NodeMask& mask);
+
+ private:
+  /// Nodes may move this far before the next update; the marks allow for a whole spacing.
+  static constexpr double displacement_limit = 0.1;
+
+  struct Interval {
+    int begin, end;  ///< of columns of the plane, not wrapped into the lattice
+  };
+  /// Of the rows (y, z) of a box: from first[0], first[1] on, y the faster index.
+  struct Rows {
+    int first[2] = {0, 0}, size[2] = {0, 0};
+    std::vector<Interval> columns;
+    [[nodiscard]] Interval& at(int j, int k) { return columns[static_cast<std::size_t>(size[0] * k + j)]; }
+    [[nodiscard]] const Interval& at(int j, int k) const { return columns[static_cast<std::size_t>(size[0] * k + j)]; }
+  };
+
+  [[nodiscard]] bool differs(int type) const { return ratio_[type] != 1; }
+  void find_reach(const Surfaces& surfaces, int cell);
+  /// Calls function(row, j, k) for those rows (j, k) of a box that fall on rows `own` of the lattice.
+  template <class Function>
+  void for_rows(const int (&first)[2], const int (&size)[2], Range own, Function function) const;
+  void set_rates(const Surfaces& surfaces, Range own, Field<T, 3>& rate);
+
+  std::vector<double> ratio_;
+  double plain_rate_;
+  Domain<3> domain_;
+  bool varies_ = false;
+  DisplacementWatch watch_;
+  std::vector<VolumeFraction> fraction_;  // of each cell; empty if its viscosity does not differ
+  std::vector<Rows> reach_;               // of each cell: where its nodes may spread or interpolate, and what it covers
+  std::vector<std::vector<Interval>> changed_;  // of each row of the lattice: where the rate is not the plain one
+};
+
+extern template class InteriorField<float>;
+extern template class InteriorField<double>;
+
+}  // namespace rouleau::core

@@ -1,0 +1,195 @@
+#include "outline_tasks.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+#include "core/membrane/area_correction.hpp"
+#include "core/membrane/motion.hpp"
+#include "core/membrane/stiffness.hpp"
+
+namespace rouleau::core {
+
+namespace {
+
+struct Stiffness {
+  double stretching = 0, bending = 0;
+};
+Stiffness stiffness_of(const MembraneLaws& laws) {
+  Stiffness sum;
+  for (const MembraneLaw& law : laws) {
+    sum.stretching += core::stretching_stiffness(law);
+    sum.bending += core::bending_stiffness(law);
+  }
+  return sum;
+}
+
+}  // namespace
+
+template <class T>
+OutlineTasks<T>::OutlineTasks(const SolverSetup& setup, Membranes& membranes, Fluid<T>& fluid, const Ranks<2>& ranks,
+                              std::vector<int> owner)
+    : setup_(setup),
+      membranes_(membranes),
+      fluid_(fluid),
+      slip_correction_(make_slip_correction()),
+      membrane_forces_(membranes, forces_setup()),
+      viscosity_field_(membranes, viscosity_ratios(),
+                       slip_correction_ ? ViscosityMean::harmonic : ViscosityMean::arithmetic,
+                       slip_correction_ ? slip_correction_->largest_shift() : 0.0, 1 / setup.tau, setup.domain,
+                       fluid.setting().viscosity_of_rows),
+      coupling_(setup.kernel, setup.domain) {
+  if (ranks.several()) {
+    if (owner.empty()) owner = CellExchange::owners_by_place(membranes, *ranks.blocks);
+    membranes_.owned.clear();
+    for (const int rank : owner) membranes_.owned.push_back(rank == ranks.transport->rank() ? 1 : 0);
+    exchange_ = std::make_unique<CellExchange>(ranks, std::move(owner));
+  }
+  membranes_.largest_step.resize(membranes_.cells.size(), 0.0);
+  if (setup.area_correction) membranes_.area_leakage.resize(membranes_.cells.size(), 0.0);  // earlier leakage stays
+  if (!setup.interactions.empty()) {
+    interaction_forces_ = std::make_unique<InteractionForces>(membranes_, setup.interactions, setup.domain);
+  }
+  if (!setup.wall_interactions.empty()) {
+    wall_contacts_ = std::make_unique<WallContacts>(membranes_, setup.wall_interactions, setup.domain);
+  }
+  if (!setup.self_interactions.empty()) {
+    self_contacts_ = std::make_unique<SelfContacts>(membranes_, setup.self_interactions);
+  }
+  coupling_.reserve(membranes_);
+  locate(Worker{});
+}
+
+template <class T>
+std::unique_ptr<SlipCorrection> OutlineTasks<T>::make_slip_correction() const {
+  if (!setup_.slip_correction) return nullptr;
+  std::vector<SlipCorrection::Type> types;
+  for (const CellType& type : setup_.cell_types) {
+    const Stiffness stiffness = stiffness_of(type.laws);
+    types.push_back(
+        {core::slip_constants(setup_.kernel, type.viscosity_ratio), stiffness.stretching, stiffness.bending});
+  }
+  return std::make_unique<SlipCorrection>(membranes_, std::move(types), setup_.viscosity());
+}
+
+template <class T>
+MembraneForcesSetup OutlineTasks<T>::forces_setup() const {
+  MembraneForcesSetup forces{
+      .semi_implicit = setup_.semi_implicit, .viscosity = setup_.viscosity(), .tension_unit = setup_.tension_unit};
+  for (const CellType& type : setup_.cell_types) forces.laws.push_back(type.laws);
+  if (slip_correction_) forces.mobility = slip_correction_->mobility();
+  return forces;
+}
+
+template <class T>
+std::vector<double> OutlineTasks<T>::viscosity_ratios() const {
+  std::vector<double> ratios;
+  for (const CellType& type : setup_.cell_types) ratios.push_back(type.viscosity_ratio);
+  return ratios;
+}
+
+template <class T>
+void OutlineTasks<T>::describe(StepFeatures& features) const {
+  features.cells = true;
+  features.interactions = interaction_forces_ != nullptr;
+  features.wall_interactions = wall_contacts_ != nullptr;
+  features.self_interactions = self_contacts_ != nullptr;
+  features.slip_correction = slip_correction_ != nullptr;
+  features.area_correction = setup_.area_correction;
+}
+
+template <class T>
+void OutlineTasks<T>::run(Task task, Worker worker) {
+  switch (task) {
+    case Task::find_contacts:
+      return interaction_forces_->run(worker, 0, membranes_);
+    case Task::membrane_forces:
+      return membrane_forces_.run(worker, membranes_);
+    case Task::wall_forces:
+      return wall_contacts_->run(worker, membranes_);
+    case Task::self_forces:
+      return self_contacts_->run(worker, membranes_);
+    case Task::interaction_forces:
+      return interaction_forces_->run(worker, 1, membranes_);
+    case Task::take_reactions:
+      return interaction_forces_->run(worker, 2, membranes_);
+    case Task::complete_forces:
+      if (setup_.area_correction) core::take_out_pressures(worker, membranes_);
+      if (slip_correction_) slip_correction_->complete(worker, membranes_);
+      return;
+    case Task::find_nodes:
+      viscosity_field_.measure(worker, membranes_);
+      return viscosity_field_.cover(worker, membranes_);
+    case Task::follow_cells:
+      if (worker.first()) follow(mean_velocity(membranes_));
+      return;
+    case Task::set_viscosity:
+      if (viscosity_field_.due()) viscosity_field_.update(worker, membranes_, fluid_.relaxation_rate(), fluid_.mask());
+      return;
+    case Task::interpolate:
+      return coupling_.interpolate(worker, membranes_, fluid_.velocity());
+    case Task::correct_velocities:
+      if (slip_correction_) slip_correction_->correct(worker, membranes_);
+      if (setup_.area_correction) core::keep_areas(worker, membranes_);
+      return;
+    case Task::move:
+      return core::move_nodes(worker, membranes_);
+    case Task::locate:
+      return locate(worker);
+    case Task::share_reactions:
+    case Task::share_forces:
+    case Task::collect_velocities:
+    case Task::share_positions:
+      if (worker.first()) exchange(task);
+      return;
+    default:
+      return;  // of the fluid
+  }
+}
+
+template <class T>
+void OutlineTasks<T>::exchange(Task task) {
+  if (task == Task::share_reactions) {
+    exchange_->share_reactions(*interaction_forces_);
+  } else if (task == Task::share_forces) {
+    const auto [x, y] = slip_correction_ ? slip_correction_->forces_of_all()
+                                         : std::array{membranes_.force_x.data(), membranes_.force_y.data()};
+    exchange_->share_forces(membranes_, x, y);
+  } else if (task == Task::collect_velocities) {
+    exchange_->collect_velocities(membranes_, [this](int node) { return coupling_.base(node); });
+  } else {
+    exchange_->share_positions(membranes_);
+  }
+}
+
+template <class T>
+void OutlineTasks<T>::follow(const std::array<double, 3>& velocity) {
+  if (setup_.follow_cells) fluid_.set_frame(velocity[0], setup_.domain.periodic[1] ? velocity[1] : 0);
+}
+
+/// Pass over cells: where the nodes touch the lattice.
+template <class T>
+void OutlineTasks<T>::locate(Worker worker) {
+  if (slip_correction_) slip_correction_->measure(worker, membranes_);
+  coupling_.locate(worker, membranes_, slip_correction_ ? slip_correction_->positions() : membranes_.positions());
+}
+
+template <class T>
+double OutlineTasks<T>::slight_energy() const {
+  constexpr double strain = 1e-3;
+  std::vector<Stiffness> of_type;
+  of_type.reserve(setup_.cell_types.size());
+  for (const CellType& type : setup_.cell_types) of_type.push_back(stiffness_of(type.laws));
+  double energy = 0;
+  for (const CellRange& cell : membranes_.cells) {
+    const double curvature = strain * 2 * std::numbers::pi / cell.rest_perimeter;  // of a circle
+    const Stiffness& stiffness = of_type[cell.type];
+    energy +=
+        (stiffness.stretching * strain * strain + stiffness.bending * curvature * curvature) / 2 * cell.rest_perimeter;
+  }
+  return energy;
+}
+
+template class OutlineTasks<float>;
+template class OutlineTasks<double>;
+
+}  // namespace rouleau::core

@@ -1,0 +1,92 @@
+// The tasks of a step that are about cells, in two dimensions.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "cell_exchange.hpp"
+#include "core/coupling/coupling.hpp"
+#include "core/coupling/slip_correction.hpp"
+#include "core/coupling/viscosity_field.hpp"
+#include "core/fluid/fluid.hpp"
+#include "core/membrane/membranes.hpp"
+#include "schedule.hpp"
+#include "solver_setup.hpp"
+
+namespace rouleau::core {
+
+/// What a solver does with its cells: outlines, their forces, and what couples them to the fluid.
+template <class T>
+class OutlineTasks {
+ public:
+  using Cells = Membranes;
+
+  /// The setup, the membranes, of which there is at least one, and the fluid belong to the solver, and outlive this.
+  /// `owner[c]`: the rank of cell c; none: by place.
+  OutlineTasks(const SolverSetup& setup, Membranes& membranes, Fluid<T>& fluid, const Ranks<2>& ranks,
+               std::vector<int> owner);
+
+  /// Adds what a step of these cells takes.
+  void describe(StepFeatures& features) const;
+  /// A worker's share of a task of schedule.hpp that is not one over rows; what the fluid does alone is left out.
+  void run(Task task, Worker worker);
+  /// Pass over rows of the block.
+  void spread(Range rows) {
+    coupling_.spread(rows, membranes_, slip_correction_ ? slip_correction_->forces() : membranes_.forces(),
+                     fluid_.force());
+  }
+  /// The frame of the fluid's unsteady term gets the cells' velocity, as far as the walls allow, if the setup wants that.
+  void follow(const std::array<double, 3>& velocity);
+  /// One worker, between steps or where the state may be observed: tells all ranks what only the owners of cells know.
+  void share_state() {
+    if (exchange_) exchange_->share_state(membranes_);
+  }
+  /// Between two steps: as a solver was whose viscosity field was last renewed so.
+  void restore(const DisplacementWatch::Memory& viscosity) {
+    viscosity_field_.restore(viscosity, membranes_, fluid_.relaxation_rate(), fluid_.mask());
+  }
+
+  /// First node that has left the domain; -1: none.
+  [[nodiscard]] int escaped_node() const { return coupling_.escaped(); }
+  [[nodiscard]] bool escaped() const { return coupling_.any_escaped(); }
+  [[nodiscard]] MembraneForces& forces() { return membrane_forces_; }
+  /// What it takes to stretch all membranes by 0.1 %, and to bend them by as much.
+  [[nodiscard]] double slight_energy() const;
+  /// Nodes move otherwise than the lattice's fluid at their places does.
+  [[nodiscard]] bool corrects_motion() const { return slip_correction_ || setup_.area_correction; }
+  [[nodiscard]] const ViscosityField<T>& viscosity_field() const { return viscosity_field_; }
+  /// Null without such interactions.
+  [[nodiscard]] const WallContacts* wall_contacts() const { return wall_contacts_.get(); }
+  /// Calls function(forces) for the kinds of interactions that there are: between cells, with walls, of a cell with itself.
+  template <class Function>
+  void for_each_interaction(Function function) const {
+    if (interaction_forces_) function(*interaction_forces_);
+    if (wall_contacts_) function(*wall_contacts_);
+    if (self_contacts_) function(*self_contacts_);
+  }
+
+ private:
+  [[nodiscard]] std::unique_ptr<SlipCorrection> make_slip_correction() const;
+  [[nodiscard]] MembraneForcesSetup forces_setup() const;
+  [[nodiscard]] std::vector<double> viscosity_ratios() const;
+  void exchange(Task task);
+  void locate(Worker worker);
+
+  const SolverSetup& setup_;
+  Membranes& membranes_;
+  Fluid<T>& fluid_;
+  std::unique_ptr<CellExchange> exchange_;  ///< null without other ranks
+  std::unique_ptr<SlipCorrection> slip_correction_;
+  MembraneForces membrane_forces_;
+  std::unique_ptr<InteractionForces> interaction_forces_;
+  std::unique_ptr<WallContacts> wall_contacts_;
+  std::unique_ptr<SelfContacts> self_contacts_;
+  ViscosityField<T> viscosity_field_;
+  Coupling<T> coupling_;
+};
+
+extern template class OutlineTasks<float>;
+extern template class OutlineTasks<double>;
+
+}  // namespace rouleau::core

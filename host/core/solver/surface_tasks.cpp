@@ -1,0 +1,97 @@
+#include "surface_tasks.hpp"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "core/membrane/motion.hpp"
+
+namespace rouleau::core {
+
+namespace {
+
+void check(const BasicSolverSetup<3>& setup, const Ranks<3>& ranks) {
+  if (!setup.interactions.empty() || !setup.wall_interactions.empty() || !setup.self_interactions.empty())
+    throw std::invalid_argument("interactions are computed in two dimensions only");
+  if (setup.slip_correction || setup.area_correction)
+    throw std::invalid_argument("corrections of the coupling are made in two dimensions only");
+  if (setup.semi_implicit) throw std::invalid_argument("the semi-implicit step is taken in two dimensions only");
+  if (!setup.layers.empty()) throw std::invalid_argument("cells in layers are computed in two dimensions only");
+  if (ranks.several()) throw std::invalid_argument("cells in three dimensions are computed in one process");
+}
+
+std::vector<MembraneLaws> laws_of(const BasicSolverSetup<3>& setup) {
+  std::vector<MembraneLaws> laws;
+  for (const CellType& type : setup.cell_types) laws.push_back(type.laws);
+  return laws;
+}
+
+std::vector<double> ratios_of(const BasicSolverSetup<3>& setup) {
+  std::vector<double> ratios;
+  for (const CellType& type : setup.cell_types) ratios.push_back(type.viscosity_ratio);
+  return ratios;
+}
+
+/// Second difference of a type's energy when its shape is stretched along x.
+double energy_of_strain(const std::shared_ptr<const RestSurface>& rest, const MembraneLaws& laws, double strain) {
+  MembraneLaws without_volume;
+  for (const MembraneLaw& law : laws) {
+    if (!law.reads("volume")) without_volume.push_back(law);
+  }
+  Surfaces one;
+  one.types = {rest};
+  add_cell(one, 0, Vec<3>::Zero());
+  SurfaceForces forces(one, {without_volume});
+  double sum = -2 * forces.energy(one);
+  for (const double side : {-1.0, 1.0}) {
+    Surfaces strained = one;
+    for (double& x : strained.x) x *= 1 + side * strain;
+    sum += forces.energy(strained);
+  }
+  return std::abs(sum) / 2;
+}
+
+}  // namespace
+
+template <class T>
+SurfaceTasks<T>::SurfaceTasks(const BasicSolverSetup<3>& setup, Surfaces& surfaces, Fluid<T, D3Q19>& fluid,
+                              const Ranks<3>& ranks, const std::vector<int>&)
+    : surfaces_(surfaces),
+      fluid_(fluid),
+      forces_((check(setup, ranks), surfaces), laws_of(setup)),
+      viscosity_field_(surfaces, ratios_of(setup), 1 / setup.tau, setup.domain),
+      coupling_(setup.kernel, setup.domain) {
+  surfaces_.largest_step.resize(surfaces_.cells.size(), 0.0);
+  std::vector<double> of_type;
+  for (std::size_t t = 0; t < surfaces.types.size(); ++t)
+    of_type.push_back(energy_of_strain(surfaces.types[t], setup.cell_types[t].laws, 1e-3));
+  for (const CellRange& cell : surfaces.cells) slight_energy_ += of_type[cell.type];
+  coupling_.reserve(surfaces_);
+  coupling_.locate(Worker{}, surfaces_);
+}
+
+template <class T>
+void SurfaceTasks<T>::run(Task task, Worker worker) {
+  switch (task) {
+    case Task::membrane_forces:
+      return forces_.run(worker, surfaces_);
+    case Task::find_nodes:
+      viscosity_field_.measure(worker, surfaces_);
+      return viscosity_field_.cover(worker, surfaces_);
+    case Task::set_viscosity:
+      if (viscosity_field_.due()) viscosity_field_.update(worker, surfaces_, fluid_.relaxation_rate(), fluid_.mask());
+      return;
+    case Task::interpolate:
+      return coupling_.interpolate(worker, surfaces_, fluid_.velocity());
+    case Task::move:
+      return core::move_nodes(worker, surfaces_);
+    case Task::locate:
+      return coupling_.locate(worker, surfaces_);
+    default:
+      return;  // of the fluid
+  }
+}
+
+template class SurfaceTasks<float>;
+template class SurfaceTasks<double>;
+
+}  // namespace rouleau::core

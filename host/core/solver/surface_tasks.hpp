@@ -1,0 +1,70 @@
+// The tasks of a step that are about cells, in three dimensions.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "core/coupling/interior_field.hpp"
+#include "core/coupling/surface_coupling.hpp"
+#include "core/domain/ranks.hpp"
+#include "core/fluid/fluid.hpp"
+#include "core/surface/surface_forces.hpp"
+#include "schedule.hpp"
+#include "solver_setup.hpp"
+
+namespace rouleau::core {
+
+/// What a solver does with its cells: closed surfaces, their forces, and what couples them to the fluid.
+template <class T>
+class SurfaceTasks {
+ public:
+  using Cells = Surfaces;
+
+  /// The setup, the surfaces, of which there is at least one, and the fluid belong to the solver, and outlive this.
+  /// Throws std::invalid_argument for what surfaces do not have: interactions, corrections, the semi-implicit step,
+  /// layers, other ranks.
+  SurfaceTasks(const BasicSolverSetup<3>& setup, Surfaces& surfaces, Fluid<T, D3Q19>& fluid, const Ranks<3>& ranks,
+               const std::vector<int>& owner);
+
+  /// Adds what a step of these cells takes.
+  void describe(StepFeatures& features) const { features.cells = true; }
+  /// A worker's share of a task of schedule.hpp that is not one over rows; what the fluid does alone is left out.
+  void run(Task task, Worker worker);
+  /// Pass over rows of the block.
+  void spread(Range rows) { coupling_.spread(rows, surfaces_, fluid_.force()); }
+  /// The fluid's unsteady term has no frame in three dimensions.
+  void follow(const std::array<double, 3>&) {}
+  /// There are no other ranks.
+  void share_state() {}
+  /// Between two steps: as a solver was whose relaxation rates were last renewed so.
+  void restore(const DisplacementWatch::Memory& viscosity) {
+    viscosity_field_.restore(viscosity, surfaces_, fluid_.relaxation_rate(), fluid_.mask());
+  }
+
+  /// First node that has left the domain; -1: none.
+  [[nodiscard]] int escaped_node() const { return coupling_.escaped(); }
+  [[nodiscard]] bool escaped() const { return coupling_.any_escaped(); }
+  [[nodiscard]] SurfaceForces& forces() { return forces_; }
+  /// What it takes to stretch all membranes by 0.1 % along x, the volume law left aside.
+  [[nodiscard]] double slight_energy() const { return slight_energy_; }
+  /// Nodes move as the lattice's fluid at their places does.
+  [[nodiscard]] bool corrects_motion() const { return false; }
+  /// There are no interactions yet.
+  template <class Function>
+  void for_each_interaction(Function) const {}
+  [[nodiscard]] const InteriorField<T>& viscosity_field() const { return viscosity_field_; }
+
+ private:
+  Surfaces& surfaces_;
+  Fluid<T, D3Q19>& fluid_;
+  SurfaceForces forces_;
+  InteriorField<T> viscosity_field_;
+  SurfaceCoupling<T> coupling_;
+  double slight_energy_ = 0;
+};
+
+extern template class SurfaceTasks<float>;
+extern template class SurfaceTasks<double>;
+
+}  // namespace rouleau::core

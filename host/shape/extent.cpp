@@ -1,0 +1,39 @@
+#include "extent.hpp"
+
+#include <cmath>
+
+#include "outline.hpp"
+#include "surface.hpp"
+
+namespace rouleau::shape {
+
+namespace {
+
+bool is_surface(const scene::CellType& type) { return type.segments == 0; }
+
+/// Of the cell at rest where it is stretched from the start: lengths as placed.
+core::RestSurface placed_surface(const scene::CellType& type) { return rest_surface(make_surface(type)); }
+
+}  // namespace
+
+double enclosed_by(const scene::CellType& type) {
+  if (is_surface(type)) return placed_surface(type).rest_volume;
+  return area_of(make_outline(type.shape, type.segments));
+}
+
+double node_count(const scene::CellType& type) {
+  if (!is_surface(type)) return type.segments;
+  if (type.triangles > 0) return type.triangles / 2 + 2;
+  return static_cast<double>(make_surface(type).nodes.size());
+}
+
+double node_spacing(const scene::CellType& type) {
+  if (!is_surface(type)) return shape_perimeter(type.shape) / type.segments;
+  const core::RestSurface surface = placed_surface(type);
+  double sum = 0;
+  for (const core::Mesh::Edge& edge : surface.mesh.edges())
+    sum += (surface.nodes()[edge.b] - surface.nodes()[edge.a]).norm();
+  return sum / surface.mesh.edge_count();
+}
+
+}  // namespace rouleau::shape

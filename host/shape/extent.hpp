@@ -1,0 +1,15 @@
+// How much there is of a cell, as an outline or as a surface.
+#pragma once
+
+#include "scene/scene.hpp"
+
+namespace rouleau::shape {
+
+/// What a cell of this type encloses as placed: m2 of an outline, m3 of a surface.
+double enclosed_by(const scene::CellType& type);
+/// Nodes of its membrane.
+double node_count(const scene::CellType& type);
+/// Mean length of its segments, or of its edges, m.
+double node_spacing(const scene::CellType& type);
+
+}  // namespace rouleau::shape
