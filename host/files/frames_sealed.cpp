@@ -49,11 +49,14 @@ void FrameWriter::read_back(const std::filesystem::path& source, std::size_t fra
         topology_record_.nodes = static_cast<std::size_t>(first_.back());
         topology_record_.cells = first_.size() - 1;
         topology_record_.uniform = equal_cells(first_);
-        topology_record_.connectivity = file.elements(topology + "/connectivity");
+        topology_record_.surfaces = file.has(topology + "/triangles");
+        topology_record_.connectivity =
+            file.elements(topology + (topology_record_.surfaces ? "/triangles" : "/connectivity"));
       }
       record.nodes = topology_record_.nodes;
       record.cells = topology_record_.cells;
       record.connectivity = topology_record_.connectivity;
+      record.surfaces = topology_record_.surfaces;
       record.uniform = topology_record_.uniform;
     }
     if (file.has(frame + "/fields"))

@@ -65,8 +65,8 @@ std::array<double, Set::dimension> extreme_node(const core::Fluid<T, Set>& fluid
 /// Of a piece of a membrane, segment or edge, that is too short or too long.
 Failure uneven_failure(const std::string& piece, int cell, double stretch, double limit, const scene::Stage& stage) {
   return failure("uneven_nodes", {}, cell, stretch, stretch < 1 ? 1 / limit : limit,
-                 piece + " has become too " + (stretch < 1 ? "short" : "long") +
-                     " against the length it was placed with",
+                 piece + (stretch < 1 ? " of a membrane has become too short against the length it was placed with"
+                                      : " of a membrane has become too long against the length it was placed with"),
                  "lower " + stage.density_factor_key +
                      " or the load, stiffen the membrane, or raise checks.stretch if it is meant to give way so far");
 }
@@ -83,7 +83,7 @@ std::optional<Failure> check_stretch(const core::Membranes& membranes, const sce
       const double dx = membranes.x[to] - membranes.x[from], dy = membranes.y[to] - membranes.y[from];
       const double stretch = std::hypot(dx, dy) / (placed * membranes.rest_length[from]);
       if (stretch <= limit && stretch * limit >= 1) continue;
-      Failure found = uneven_failure("a segment of a membrane", static_cast<int>(k), stretch, limit, stage);
+      Failure found = uneven_failure("a segment", static_cast<int>(k), stretch, limit, stage);
       found.place = {units::coordinate(membranes.x[from], units.length),
                      units::coordinate(membranes.y[from], units.length)};
       return found;
@@ -96,9 +96,10 @@ std::optional<Failure> check_stretch(const core::Membranes& membranes, const sce
 Failure drift_failure(const char* measure, std::array<double, 2> place, int cell, double drift, bool corrected,
                       const std::string& first_remedy, const plan::StageSetting& setting, const scene::Scene& scene) {
   const std::string changed = std::string("changed its ") + measure + " by more than the limit";
+  const std::string said =
+      corrected ? "would have " + changed + " without numerics.area_correction" : "has " + changed;
   return failure("area_drift", place, cell, drift, scene.checks.area_drift,
-                 "a cell " + (corrected ? "would have " + changed + " without numerics.area_correction" : "has " + changed) +
-                     ": fluid leaks through its membrane or is compressed",
+                 "a cell " + said + ": fluid leaks through its membrane or is compressed",
                  first_remedy + "lower " + setting.stage->density_factor_key +
                      ", raise the resolution, or raise checks.area_drift if this error is acceptable");
 }
@@ -154,7 +155,7 @@ std::optional<Failure> check_cells(observe::Observer& observer, const plan::Stag
     stretch.least /= placed, stretch.most /= placed;
     const bool shrunk = !(stretch.least * limit >= 1);
     if (!shrunk && stretch.most <= limit) continue;
-    return at(uneven_failure("an edge of a membrane", k, shrunk ? stretch.least : stretch.most, limit, *setting.stage),
+    return at(uneven_failure("an edge", k, shrunk ? stretch.least : stretch.most, limit, *setting.stage),
               middle(k));
   }
   return std::nullopt;

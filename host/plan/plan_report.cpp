@@ -211,11 +211,13 @@ std::vector<Omission> omissions(const Plan& plan) {
   } else {
     if (!plan.viscosity_contrast)
       omit("indicator and relaxation rate field", "interior and suspending fluid have the same viscosity");
+    const bool space = scene.domain.depth.has_value();
     if (!scene.numerics.slip_correction)
       omit("slip correction",
            "numerics.slip_correction is false: membranes slip to first order in the lattice spacing");
     if (!scene.numerics.area_correction)
-      omit("area correction", "numerics.area_correction is false: leaks show as area drift");
+      omit("area correction", std::string("numerics.area_correction is false: leaks show as ") +
+                                  (space ? "volume" : "area") + " drift");
     if (!plan.has_interactions) {
       const bool others = plan.has_wall_interactions || plan.has_self_interactions;
       omit("neighbour search", scene.interactions.empty() ? "the scene has no interaction"

@@ -88,6 +88,7 @@ Json to_json(const Summary& summary) {
   result["threads"] = summary.threads;
   result["ranks"] = summary.ranks;
   result["message_library"] = summary.message_library.empty() ? Json() : Json(summary.message_library);
+  result["dimensions"] = summary.dimensions;
   result["precision"] = summary.precision;
   result["instruction_set"] = summary.instruction_set;
 

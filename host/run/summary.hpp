@@ -68,6 +68,7 @@ struct Summary {
   std::optional<long> checkpoint_step;  ///< from which --resume goes on
   int ranks = 1, threads = 1;           ///< threads: of a rank
   std::string message_library;          ///< of the ranks; empty: there is one
+  int dimensions = 2;
   std::string precision, instruction_set;
   std::vector<PluginUse> plugins;
   std::optional<plugin::LockUse> lock;

@@ -9,7 +9,8 @@ def lines(columns):
     yield "| column | meaning |\n|---|---|"
     for column in columns:
         means = "; means in summary.json" if column["has_means"] else ""
-        yield f"| `{column['column']}` | {column['doc']}{means} |"
+        space = "in three dimensions: " if column["in_space"] else ""
+        yield f"| `{column['column']}` | {space}{column['doc']}{means} |"
 
 
 def page(path, program):

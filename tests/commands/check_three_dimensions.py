@@ -26,6 +26,23 @@ PLANE = {
 }
 SPACE = copy.deepcopy(PLANE)
 SPACE["domain"] = {"size": ["8 um", "4 um", "1 um"], "nodes": [32, 16, 4], "y": WALLS}
+CAPSULE = {
+    "cell_types": {"capsule": {"shape": {"sphere": {"radius": "0.45 um"}}, "triangles": 80, "interior_viscosity": "3 cP",
+                               "membrane": [{"model": "neo-hookean", "parameters": {"shear_modulus": "1e-6 N/m"}},
+                                            {"model": "bending", "parameters": {"modulus": "1e-21 J"}}]}},
+    "cells": [{"type": "capsule", "at": ["2 um", "2 um", "0.5 um"]}],
+}
+SHEARED = {
+    **CAPSULE,
+    "rouleau": 1,
+    "domain": {"size": ["4 um", "4 um", "3 um"], "nodes": [16, 16, 12], "y": WALLS},
+    "fluid": {"density": "1 g/cm3", "viscosity": "1.2 cP"},
+    "numerics": {"density_factor": 300},
+    "cells": [{"type": "capsule", "at": ["1.2 um", "1.7 um", "1 um"]},
+              {"type": "capsule", "at": ["3.9 um", "2.2 um", "2.9 um"], "axis": [0, 0, 1], "angle": "20 deg"}],
+    "stages": [{"name": "rest", "duration": "0.05 ms"}, {"name": "shear", "shear_rate": "1000 1/s", "strain": 0.2}],
+    "output": {"cells": {"strain": 0.02}, "fields": {"strain": 0.1, "quantities": ["velocity", "viscosity"]}},
+}
 
 
 def changed(scene, **pointers):
@@ -100,6 +117,67 @@ class A_run_in_three_dimensions(Case):
                     seen += 1
             self.assertGreater(seen, 5)
 
+    def cells(self, folder):
+        with open(folder / "cells.csv", newline="") as file:
+            return list(csv.DictReader(file))
+
+    def test_of_cells_has_its_own_columns_and_surfaces(self):
+        folder = self.run_scene(SHEARED, "cells")
+        first, *_, last = self.cells(folder)
+        self.assertEqual((first["area_m2"], first["perimeter_m"]), ("", ""))
+        self.assertAlmostEqual(float(first["z_m"]), 1e-6, delta=1e-9)
+        self.assertAlmostEqual(float(first["volume_m3"]), 4.19 * 0.45e-6**3, delta=0.25 * 4.19 * 0.45e-6**3)
+        self.assertGreater(float(last["deformation"]), 0.01)
+        self.assertLess(float(last["axis_y"]), 1)
+        self.assertLess(json.loads((folder / "summary.json").read_text())["conservation"]["area_drift_max"], 0.01)
+        xdmf = (folder / "frames.xmf").read_text()
+        self.assertIn('TopologyType="Triangle" NumberOfElements="160"', xdmf)
+        self.assertIn('GeometryType="XYZ"', xdmf)
+        plane = self.run_scene(changed(PLANE, stages=PLANE["stages"][:1]), "plane")
+        self.assertNotIn("z_m", (plane / "cells.csv").read_text())
+        self.assertEqual(self.rouleau("report", folder).returncode, 0)
+        self.assertEqual(self.rouleau("verify", folder).returncode, 0)
+        try:
+            import h5py
+        except ImportError:
+            return
+        with h5py.File(folder / "frames.h5") as file:
+            frame = file["frames/000000/membranes"]
+            self.assertEqual((frame["points"].shape, frame["triangles"].shape), ((84, 3), (160, 3)))
+            self.assertEqual(frame["curvature"].shape, (84,))
+
+    def test_of_cells_has_the_same_bits_for_any_number_of_threads_and_when_it_goes_on_after_a_pause(self):
+        for precision in ("f64", "f32"):
+            scene = changed(SHEARED, numerics__precision=precision)
+            one = self.run_scene(scene, "one" + precision)
+            many = self.run_scene(scene, "many" + precision, "--threads", 3)
+            paused = self.folder / ("paused" + precision)
+            steps = json.loads((one / "summary.json").read_text())["steps"]
+            for options in (("--max-steps", 2 * steps // 3), ("--resume", "--threads", 2)):
+                done = self.rouleau("run", self.folder / "scene.json", "--out", paused, "--quiet", *options)
+                self.assertEqual(done.returncode, 0, done.stderr)
+            for other in (many, paused):
+                own, others = self.cells(one), self.cells(other)
+                known = {row["step"] for row in own}
+                self.assertEqual(own, [row for row in others if row["step"] in known])
+
+    def test_of_a_mesh_from_a_file_is_that_of_the_shape(self):
+        octahedron = "OFF\n6 8 12\n" + "".join(f"{x} {y} {z}\n" for x, y, z in
+                                               [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)])
+        octahedron += "".join(f"3 {a} {b} {c}\n" for a, b, c in [(0, 2, 4), (2, 1, 4), (1, 3, 4), (3, 0, 4),
+                                                                 (2, 0, 5), (1, 2, 5), (3, 1, 5), (0, 3, 5)])
+        (self.folder / "cell.off").write_text(octahedron)
+        mesh = {"mesh": {"file": "cell.off", "unit": "0.5 um"}}
+        scene = changed(SHEARED, cell_types__capsule__shape=mesh, stages=SHEARED["stages"][:1],
+                        output={"cells": {"seconds": "0.02 ms"}})
+        del scene["cell_types"]["capsule"]["triangles"]
+        first = self.cells(self.run_scene(scene, "mesh"))[0]
+        self.assertAlmostEqual(float(first["volume_m3"]) / (4 / 3 * 0.5e-6**3), 1, delta=1e-12)
+        (self.folder / "cell.off").write_text(octahedron.replace("3 0 3 5\n", "3 0 3 4\n"))
+        done = self.rouleau("run", self.folder / "scene.json", "--out", self.folder / "no")
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("cell.off", done.stderr)
+
     def test_opens_as_a_volume(self):
         folder = self.run_scene(changed(SPACE, domain__z=WALLS, output__fields__stride=2), "volume")
         xdmf = (folder / "frames.xmf").read_text()
@@ -145,9 +223,27 @@ class Three_dimensions_refuse(Case):
         self.assertFalse((self.folder / "no").exists())
 
     def test_cells_and_what_belongs_to_them(self):
-        cells = {"cell_types": {"rbc": {"shape": {"circle": {"radius": "1 um"}}, "segments": 20, "membrane": []}},
-                 "cells": [{"type": "rbc", "at": ["2 um", "2 um"]}]}
-        self.refused(SPACE | cells, "/cells", "two dimensions only")
+        scene = SPACE | CAPSULE
+        capsule = "cell_types__capsule__"
+        self.refused(changed(scene, **{capsule + "shape": {"circle": {"radius": "0.5 um"}}}),
+                     "/cell_types/capsule/shape/circle", 'take "sphere"')
+        self.refused(changed(scene, **{capsule + "segments": 20}), "/cell_types/capsule/segments", "triangles")
+        self.refused(changed(scene, **{capsule + "triangles": 100}), "/cell_types/capsule/triangles", "80 or 180")
+        self.refused(changed(scene, cells__0__at=["2 um", "2 um"]), "/cells/0/at", "three lengths")
+        self.refused(changed(scene, cells__0__at=["2 um", "3.7 um", "0.5 um"]), "/cells/0", "wall across y")
+        self.refused(changed(scene, cells__0__axis=[0, 0, 0]), "/cells/0/axis", "no direction")
+        two = [{"type": "capsule", "at": ["2 um", "2 um", "0.1 um"]}, {"type": "capsule", "at": ["2.3 um", "2 um", "0.9 um"]}]
+        self.refused(scene | {"cells": two}, "/cells/1", "overlap")
+        self.refused(changed(scene, cells=[{"type": "capsule", "random": {"count": 2, "seed": 1}}]), "/cells/0/random",
+                     "two dimensions only")
+        for key in ("slip_correction", "area_correction"):
+            self.refused(changed(scene, **{"numerics__" + key: True}), "/numerics/" + key, "three dimensions")
+        self.refused(changed(scene, numerics__coupling="semi-implicit"), "/numerics/coupling", "explicit")
+        laws = [{"model": "hooke", "parameters": {"shear_modulus": "1e-6 N/m"}}]
+        self.refused(changed(scene, **{capsule + "membrane": laws}), "/cell_types/capsule/membrane/0/model",
+                     "three dimensions", "neo-hookean")
+        plane = changed(PLANE | CAPSULE, cells__0__at=["2 um", "2 um"])
+        self.refused(plane, "/cell_types/capsule/shape/sphere", 'take "circle"')
 
     def test_numbers_that_do_not_go_together(self):
         self.refused(changed(SPACE, domain__nodes=[32, 16]), "/domain/nodes", "three numbers and nodes two")
