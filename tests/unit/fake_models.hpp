@@ -30,6 +30,17 @@ struct ConstantForce {
     return {force * (end - distance), S(force), S(0.0)};
   }
 };
+/// Energy k/2 ((d - rest)^2 - (cutoff - rest)^2), which is 0 at the cutoff.
+struct SpringBetween {
+  double stiffness, rest, end;
+  explicit SpringBetween(const Parameters& given)
+      : stiffness{given["stiffness"]}, rest{given["rest"]}, end{given["cutoff"]} {}
+  double cutoff() const { return end; }
+  template <class S>
+  S energy(const S& distance) const {
+    return 0.5 * stiffness * ((distance - rest) * (distance - rest) - (end - rest) * (end - rest));
+  }
+};
 /// A tension that is no number.
 struct NoNumber {
   explicit NoNumber(const Parameters&) {}
@@ -59,6 +70,13 @@ core::MembraneLaw fake_law(double modulus) {
 inline core::Potential constant_force(double force, double cutoff) {
   return core::potential(interaction<ConstantForce>("constant", "1"),
                          {.parameters = {{"force", force}, {"cutoff", cutoff}},
+                          .needs = {"distance"},
+                          .gives = {"force", "energy", "force_by_distance"}});
+}
+
+inline core::Potential spring_potential(double stiffness, double rest, double cutoff) {
+  return core::potential(interaction<SpringBetween>("spring", "1"),
+                         {.parameters = {{"stiffness", stiffness}, {"rest", rest}, {"cutoff", cutoff}},
                           .needs = {"distance"},
                           .gives = {"force", "energy", "force_by_distance"}});
 }

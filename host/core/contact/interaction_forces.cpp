@@ -5,8 +5,6 @@
 
 namespace rouleau::core {
 
-namespace {
-
 std::vector<double> cutoffs_of(const std::vector<Interaction>& interactions) {
   std::vector<double> cutoffs;
   cutoffs.reserve(interactions.size());
@@ -18,10 +16,10 @@ std::vector<double> cutoffs_of(const std::vector<Interaction>& interactions) {
   return cutoffs;
 }
 
-Cutoffs pair_cutoffs(const Membranes& membranes, const std::vector<Interaction>& interactions,
+Cutoffs pair_cutoffs(const CellNodes& cells, const std::vector<Interaction>& interactions,
                      const std::vector<double>& cutoffs) {
   int types = 1;
-  for (const CellRange& cell : membranes.cells) types = std::max(types, cell.type + 1);
+  for (const CellRange& cell : cells.cells) types = std::max(types, cell.type + 1);
   for (const Interaction& interaction : interactions)
     types = std::max({types, interaction.between[0] + 1, interaction.between[1] + 1});
   Cutoffs result(types);
@@ -35,8 +33,6 @@ bool acts_between(const Interaction& interaction, int a, int b) {
   return (interaction.between[0] == a && interaction.between[1] == b) ||
          (interaction.between[0] == b && interaction.between[1] == a);
 }
-
-}  // namespace
 
 InteractionForces::InteractionForces(Membranes& membranes, std::vector<Interaction> interactions, Domain<2> domain)
     : interactions_(std::move(interactions)),

@@ -22,6 +22,13 @@ struct Interaction {
   Potential potential;
 };
 
+/// Of the potentials, as their plugins say.
+std::vector<double> cutoffs_of(const std::vector<Interaction>& interactions);
+/// The largest of them for each pair of types.
+Cutoffs pair_cutoffs(const CellNodes& cells, const std::vector<Interaction>& interactions,
+                     const std::vector<double>& cutoffs);
+bool acts_between(const Interaction& interaction, int type, int other_type);
+
 /// Node i with rest weight Lb at distance r of its closest point on another cell: energy Lb/2 phi(r), force Lb/2 f(r)
 /// along the connecting line, the reaction shared by the ends of the other segment. With rest weights this is the exact
 /// gradient of the energy, with neither net force nor net torque (Derjaguin; docs: physics, interaction).

@@ -57,14 +57,6 @@ struct Candidates {
   }
 };
 
-/// Skin for lists that are made now.
-double suitable_skin(const Membranes& membranes) {
-  if (membranes.largest_step.empty()) return usual_skin;  // nobody keeps account of the steps
-  double skin = thinnest_skin;  // also where a step is no number: the run's own checks will tell
-  for (const double step : membranes.largest_step) skin = std::max(skin, lifetime * step);
-  return std::min(skin, thickest_skin);
-}
-
 /// Distance between two boxes, the second moved.
 double distance(const Bounds& a, const Bounds& b, double move_x, double move_y) {
   const double dx = std::max({0.0, b.x_min + move_x - a.x_max, a.x_min - b.x_max - move_x});
@@ -73,6 +65,13 @@ double distance(const Bounds& a, const Bounds& b, double move_x, double move_y) 
 }
 
 }  // namespace
+
+double suitable_skin(const CellNodes& cells) {
+  if (cells.largest_step.empty()) return usual_skin;  // nobody keeps account of the steps
+  double skin = thinnest_skin;  // also where a step is no number: the run's own checks will tell
+  for (const double step : cells.largest_step) skin = std::max(skin, lifetime * step);
+  return std::min(skin, thickest_skin);
+}
 
 void Cutoffs::raise(int a, int b, double cutoff) {
   const double value = std::max((*this)(a, b), cutoff);

@@ -25,6 +25,9 @@ class Cutoffs {
   std::vector<double> cutoff_;
 };
 
+/// Skin for lists that are made now, by the speed at which nodes move.
+double suitable_skin(const CellNodes& cells);
+
 /// Ordered pair: nodes of a cell against the outline of `other` moved by `shift` periods.
 struct CellPair {
   int other;

@@ -10,8 +10,8 @@ namespace rouleau::core {
 namespace {
 
 void check(const BasicSolverSetup<3>& setup, const Ranks<3>& ranks) {
-  if (!setup.interactions.empty() || !setup.wall_interactions.empty() || !setup.self_interactions.empty())
-    throw std::invalid_argument("interactions are computed in two dimensions only");
+  if (!setup.wall_interactions.empty() || !setup.self_interactions.empty())
+    throw std::invalid_argument("interactions with walls and within a cell are computed in two dimensions only");
   if (setup.slip_correction || setup.area_correction)
     throw std::invalid_argument("corrections of the coupling are made in two dimensions only");
   if (setup.semi_implicit) throw std::invalid_argument("the semi-implicit step is taken in two dimensions only");
@@ -65,6 +65,8 @@ SurfaceTasks<T>::SurfaceTasks(const BasicSolverSetup<3>& setup, Surfaces& surfac
   for (std::size_t t = 0; t < surfaces.types.size(); ++t)
     of_type.push_back(energy_of_strain(surfaces.types[t], setup.cell_types[t].laws, 1e-3));
   for (const CellRange& cell : surfaces.cells) slight_energy_ += of_type[cell.type];
+  if (!setup.interactions.empty())
+    interactions_ = std::make_unique<SurfaceInteractions>(surfaces_, setup.interactions, setup.domain);
   coupling_.reserve(surfaces_);
   coupling_.locate(Worker{}, surfaces_);
 }
@@ -72,8 +74,14 @@ SurfaceTasks<T>::SurfaceTasks(const BasicSolverSetup<3>& setup, Surfaces& surfac
 template <class T>
 void SurfaceTasks<T>::run(Task task, Worker worker) {
   switch (task) {
+    case Task::find_contacts:
+      return interactions_->run(worker, 0, surfaces_);
     case Task::membrane_forces:
       return forces_.run(worker, surfaces_);
+    case Task::interaction_forces:
+      return interactions_->run(worker, 1, surfaces_);
+    case Task::take_reactions:
+      return interactions_->run(worker, 2, surfaces_);
     case Task::find_nodes:
       viscosity_field_.measure(worker, surfaces_);
       return viscosity_field_.cover(worker, surfaces_);

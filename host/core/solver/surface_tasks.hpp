@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/contact/surface_interactions.hpp"
 #include "core/coupling/interior_field.hpp"
 #include "core/coupling/surface_coupling.hpp"
 #include "core/domain/ranks.hpp"
@@ -22,13 +23,16 @@ class SurfaceTasks {
   using Cells = Surfaces;
 
   /// The setup, the surfaces, of which there is at least one, and the fluid belong to the solver, and outlive this.
-  /// Throws std::invalid_argument for what surfaces do not have: interactions, corrections, the semi-implicit step,
+  /// Throws std::invalid_argument for what surfaces do not have: interactions with walls and within cells, corrections, the semi-implicit step,
   /// layers, other ranks.
   SurfaceTasks(const BasicSolverSetup<3>& setup, Surfaces& surfaces, Fluid<T, D3Q19>& fluid, const Ranks<3>& ranks,
                const std::vector<int>& owner);
 
   /// Adds what a step of these cells takes.
-  void describe(StepFeatures& features) const { features.cells = true; }
+  void describe(StepFeatures& features) const {
+    features.cells = true;
+    features.interactions = interactions_ != nullptr;
+  }
   /// A worker's share of a task of schedule.hpp that is not one over rows; what the fluid does alone is left out.
   void run(Task task, Worker worker);
   /// Pass over rows of the block.
@@ -50,15 +54,18 @@ class SurfaceTasks {
   [[nodiscard]] double slight_energy() const { return slight_energy_; }
   /// Nodes move as the lattice's fluid at their places does.
   [[nodiscard]] bool corrects_motion() const { return false; }
-  /// There are no interactions yet.
+  /// Calls function(forces) for the interactions between cells, if there are any.
   template <class Function>
-  void for_each_interaction(Function) const {}
+  void for_each_interaction(Function function) const {
+    if (interactions_) function(*interactions_);
+  }
   [[nodiscard]] const InteriorField<T>& viscosity_field() const { return viscosity_field_; }
 
  private:
   Surfaces& surfaces_;
   Fluid<T, D3Q19>& fluid_;
   SurfaceForces forces_;
+  std::unique_ptr<SurfaceInteractions> interactions_;
   InteriorField<T> viscosity_field_;
   SurfaceCoupling<T> coupling_;
   double slight_energy_ = 0;

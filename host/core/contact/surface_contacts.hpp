@@ -1,0 +1,76 @@
+// Closest points of the nodes of one cell on the surfaces of its neighbours, in three dimensions.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "base/worker.hpp"
+#include "core/domain/domain.hpp"
+#include "core/membrane/displacement_watch.hpp"
+#include "core/surface/surfaces.hpp"
+#include "neighbour_list.hpp"
+
+namespace rouleau::core {
+
+/// A node X of a cell and the closest point P = sum of weight[k] X_corner[k] on another cell's image.
+struct SurfaceContact {
+  int node;                   ///< index in Surfaces
+  int other;                  ///< cell; the cell itself, for one of its images
+  std::array<int, 3> shift;   ///< periods by which that image is moved
+  std::array<int, 3> corner;  ///< of the triangle that P is on: indices in Surfaces
+  std::array<double, 3> weight;
+  double distance;   ///< |X - P|, at least least_distance
+  Vec<3> direction;  ///< (X - P) / |X - P|; the triangle's outward normal where X = P
+
+  /// Potentials are promised a positive distance.
+  static constexpr double least_distance = 1e-12;
+};
+
+/// Exact closest points within the cutoffs, one for each node and each image of another cell. They depend on the present
+/// positions alone, not on when the lists of candidates were made.
+///
+/// Candidates stay complete while no node has moved further than the skin, for the reason that NeighbourList has; a
+/// triangle is a set of convex combinations of its corners, too. They are sorted by their distance when the list was
+/// made, which has changed by no more than nodes have moved since: most need not be looked at.
+class SurfaceContacts {
+ public:
+  SurfaceContacts(const Surfaces& surfaces, Cutoffs cutoffs, const Domain<3>& domain);
+
+  /// Pass over cells: whether a node has moved too far for the lists.
+  void measure(Worker worker, const Surfaces& surfaces) { watch_.measure(worker, surfaces); }
+  /// Pass over cells, after a barrier: their lists, if they have to be made anew.
+  void refresh(Worker worker, const Surfaces& surfaces);
+  /// Then: the contacts of a cell, by node, then by the other cell and its image.
+  void find(int cell, const Surfaces& surfaces, std::vector<SurfaceContact>& contacts) const;
+
+  /// How often lists were made.
+  [[nodiscard]] long renewals() const { return renewals_; }
+  [[nodiscard]] const Cutoffs& cutoffs() const { return cutoffs_; }
+
+ private:
+  struct Candidate {
+    double distance;  ///< when the list was made
+    int triangle;     ///< of the other cell
+  };
+  /// Candidates [begin, end) of a node against one image of a cell, nearest first.
+  struct Group {
+    int node, other;
+    std::array<int, 3> shift;
+    int begin, end;
+  };
+  struct CandidateList {
+    std::vector<Group> groups;
+    std::vector<Candidate> candidates;
+  };
+  class Bins;
+
+  void list_candidates(int cell, const Surfaces& surfaces, const Bins& bins, double skin);
+
+  Cutoffs cutoffs_;
+  Domain<3> domain_;
+  DisplacementWatch watch_;
+  std::vector<CandidateList> lists_;
+  long renewals_ = 0;
+};
+
+}  // namespace rouleau::core

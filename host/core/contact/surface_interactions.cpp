@@ -1,0 +1,111 @@
+#include "surface_interactions.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace rouleau::core {
+
+SurfaceInteractions::SurfaceInteractions(const Surfaces& surfaces, std::vector<Interaction> interactions,
+                                         const Domain<3>& domain)
+    : interactions_(std::move(interactions)),
+      cutoffs_(cutoffs_of(interactions_)),
+      contacts_(surfaces, pair_cutoffs(surfaces, interactions_, cutoffs_), domain),
+      scratch_(surfaces.cells.size()),
+      reactions_(surfaces.cells.size()) {
+  for (const auto& [between, potential] : interactions_) {
+    if (!potential.state.empty() || potential.reads("normal_velocity") || potential.reads("tangential_velocity"))
+      throw std::invalid_argument("\"" + potential.id + "\" acts by more than the distance, which surfaces do not tell");
+  }
+}
+
+void SurfaceInteractions::run(Worker worker, int phase, Surfaces& surfaces) {
+  const Range cells = worker.share(surfaces.cell_count());
+  if (phase == 0) return contacts_.measure(worker, surfaces);
+  if (phase == 1) {
+    contacts_.refresh(worker, surfaces);
+    for (int cell = cells.begin; cell < cells.end; ++cell) {
+      Scratch& scratch = scratch_[cells.begin];
+      contacts_.find(cell, surfaces, scratch.contacts);
+      evaluate(cell, surfaces, false, scratch);
+      act(cell, surfaces, scratch);
+    }
+    return;
+  }
+  // All cells' reactions in their order, of which each worker takes those on its own cells.
+  const Range own = surfaces.node_share(worker);
+  for (const std::vector<Reaction>& of_cell : reactions_) {
+    for (const Reaction& reaction : of_cell) {
+      if (reaction.node < own.begin || reaction.node >= own.end) continue;
+      surfaces.force_x[reaction.node] += reaction.force.x();
+      surfaces.force_y[reaction.node] += reaction.force.y();
+      surfaces.force_z[reaction.node] += reaction.force.z();
+    }
+  }
+}
+
+void SurfaceInteractions::evaluate(int cell, const Surfaces& surfaces, bool energy, Scratch& scratch) const {
+  scratch.result.assign(scratch.contacts.size(), 0.0);
+  const int type = surfaces.cells[cell].type;
+  for (std::size_t p = 0; p < interactions_.size(); ++p) {
+    const Potential& model = interactions_[p].potential;
+    if (energy && !model.writes("energy")) continue;
+    scratch.distance.clear();
+    scratch.contact.clear();
+    for (std::size_t c = 0; c < scratch.contacts.size(); ++c) {
+      const SurfaceContact& contact = scratch.contacts[c];
+      if (contact.distance > cutoffs_[p] ||
+          !acts_between(interactions_[p], type, surfaces.cells[contact.other].type))
+        continue;
+      scratch.distance.push_back(contact.distance);
+      scratch.contact.push_back(static_cast<int>(c));
+    }
+    if (scratch.distance.empty()) continue;
+    scratch.law.resize(scratch.distance.size());
+    rouleau_interaction_block block{};
+    block.struct_size = sizeof block;
+    block.count = static_cast<std::uint32_t>(scratch.distance.size());
+    block.time_step = 1;
+    block.distance = scratch.distance.data();
+    (energy ? block.energy : block.force) = scratch.law.data();
+    model.compute(&block);
+    for (std::size_t i = 0; i < scratch.law.size(); ++i) scratch.result[scratch.contact[i]] += scratch.law[i];
+  }
+}
+
+void SurfaceInteractions::act(int cell, Surfaces& surfaces, const Scratch& scratch) {
+  const RestSurface& rest = surfaces.type_of(cell);
+  const int first = surfaces.cells[cell].first;
+  reactions_[cell].clear();
+  for (std::size_t c = 0; c < scratch.contacts.size(); ++c) {
+    const SurfaceContact& contact = scratch.contacts[c];
+    if (scratch.result[c] == 0) continue;
+    const Vec<3> force = 0.5 * rest.node_area[contact.node - first] * scratch.result[c] * contact.direction;
+    surfaces.force_x[contact.node] += force.x();
+    surfaces.force_y[contact.node] += force.y();
+    surfaces.force_z[contact.node] += force.z();
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (contact.weight[k] != 0) reactions_[cell].push_back({contact.corner[k], -contact.weight[k] * force});
+    }
+  }
+}
+
+double SurfaceInteractions::energy(const Surfaces& surfaces, const Ranks<3>&) const {
+  double sum = 0;
+  Scratch scratch;
+  for (int cell = 0; cell < surfaces.cell_count(); ++cell) {
+    contacts_.find(cell, surfaces, scratch.contacts);
+    evaluate(cell, surfaces, true, scratch);
+    const RestSurface& rest = surfaces.type_of(cell);
+    for (std::size_t c = 0; c < scratch.contacts.size(); ++c)
+      sum += 0.5 * rest.node_area[scratch.contacts[c].node - surfaces.cells[cell].first] * scratch.result[c];
+  }
+  return sum;
+}
+
+std::string SurfaceInteractions::without_energy() const {
+  for (const Interaction& interaction : interactions_)
+    if (!interaction.potential.writes("energy")) return interaction.potential.id;
+  return {};
+}
+
+}  // namespace rouleau::core
