@@ -6,8 +6,10 @@
 #include <variant>
 
 #include "core/contact/crossing.hpp"
+#include "core/contact/surface_crossing.hpp"
 #include "core/membrane/geometry.hpp"
 #include "node_checks.hpp"
+#include "plan/solver_setup.hpp"
 #include "plan/stability_limits.hpp"
 
 namespace rouleau::monitor {
@@ -92,6 +94,14 @@ std::optional<Failure> check_stretch(const core::Membranes& membranes, const sce
   return std::nullopt;
 }
 
+Failure crossing_failure(int cell, int other, bool inside, const scene::Stage& stage) {
+  return failure("crossing", {}, cell, 0, 0,
+                 cell == other ? "the membrane of a cell crosses itself"
+                               : "the membranes of cells " + std::to_string(cell) + " and " + std::to_string(other) +
+                                     (inside ? " lie one inside the other" : " cross"),
+                 "lower " + stage.density_factor_key + " or the attraction, raise the resolution, or stiffen bending");
+}
+
 /// What an area or a volume that drifts means, and what to do about it.
 Failure drift_failure(const char* measure, std::array<double, 2> place, int cell, double drift, bool corrected,
                       const std::string& first_remedy, const plan::StageSetting& setting, const scene::Scene& scene) {
@@ -122,13 +132,9 @@ std::optional<Failure> check_cells(observe::Observer& observer, const plan::Stag
   }
   if (auto uneven = check_stretch(membranes, scene, *setting.stage, setting.units)) return uneven;
   if (const auto crossing = core::find_crossing(membranes, observer.domain())) {
-    return failure(
-        "crossing", place(crossing->place), crossing->cell, 0, 0,
-        crossing->cell == crossing->other
-            ? "the membrane of a cell crosses itself"
-            : "the membranes of cells " + std::to_string(crossing->cell) + " and " + std::to_string(crossing->other) +
-                  (crossing->inside ? " lie one inside the other" : " cross"),
-        "lower " + setting.stage->density_factor_key + " or the attraction, raise the resolution, or stiffen bending");
+    Failure found = crossing_failure(crossing->cell, crossing->other, crossing->inside, *setting.stage);
+    found.place = place(crossing->place);
+    return found;
   }
   return std::nullopt;
 }
@@ -157,6 +163,11 @@ std::optional<Failure> check_cells(observe::Observer& observer, const plan::Stag
     if (!shrunk && stretch.most <= limit) continue;
     return at(uneven_failure("an edge", k, shrunk ? stretch.least : stretch.most, limit, *setting.stage),
               middle(k));
+  }
+  if (const auto crossing = core::find_crossing(surfaces, plan::lattice_domain<3>(scene))) {
+    const auto node = static_cast<std::size_t>(crossing->node);
+    return at(crossing_failure(crossing->cell, crossing->other, false, *setting.stage),
+              {surfaces.x[node], surfaces.y[node], surfaces.z[node]});
   }
   return std::nullopt;
 }

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
+#include <tuple>
 
 #include "core/contact/cell_grid.hpp"
+#include "core/contact/surface_contacts.hpp"
 #include "core/membrane/geometry.hpp"
 
 namespace rouleau::observe {
@@ -60,6 +63,87 @@ std::vector<CellContact> find_touching_cells(const core::Membranes& m, const cor
   return contacts;
 }
 
+namespace {
+
+/// The contacts of all cells of a scene within a reach.
+class AllContacts {
+ public:
+  AllContacts(const core::Surfaces& surfaces, const core::Domain<3>& domain, double reach)
+      : surfaces_(surfaces), contacts_(surfaces, everybody(surfaces, reach), domain) {
+    contacts_.measure({}, surfaces);
+    contacts_.refresh({}, surfaces);
+  }
+  const std::vector<core::SurfaceContact>& of(int cell) {
+    contacts_.find(cell, surfaces_, list_);
+    return list_;
+  }
+
+ private:
+  static core::Cutoffs everybody(const core::Surfaces& surfaces, double reach) {
+    const int types = static_cast<int>(surfaces.types.size());
+    core::Cutoffs cutoffs(types);
+    for (int a = 0; a < types; ++a) {
+      for (int b = 0; b <= a; ++b) cutoffs.raise(a, b, reach);
+    }
+    return cutoffs;
+  }
+
+  const core::Surfaces& surfaces_;
+  core::SurfaceContacts contacts_;
+  std::vector<core::SurfaceContact> list_;
+};
+
+}  // namespace
+
+std::vector<CellContact> find_touching_cells(const core::Surfaces& s, const core::Domain<3>& domain, double reach) {
+  AllContacts all(s, domain, reach);
+  std::map<std::tuple<int, int, std::array<int, 3>>, CellContact> found;
+  for (int cell = 0; cell < s.cell_count(); ++cell) {
+    for (const core::SurfaceContact& contact : all.of(cell)) {
+      // A pair is known by its first cell and the image of the second; a cell and its own image are seen from both sides.
+      std::array<int, 3> shift = contact.shift;
+      const bool turned = contact.other < cell || (contact.other == cell && shift < std::array<int, 3>{});
+      if (turned) shift = {-shift[0], -shift[1], -shift[2]};
+      const int a = turned ? contact.other : cell, b = turned ? cell : contact.other;
+      CellContact& pair = found.try_emplace({a, b, shift}, CellContact{a, b, {shift[0], shift[1]}, reach, 0, shift[2]})
+                              .first->second;
+      pair.gap = std::min(pair.gap, contact.distance);
+      if (!turned) pair.contact_length += s.type_of(cell).node_area[contact.node - s.cells[cell].first];
+    }
+  }
+  std::vector<CellContact> contacts;
+  for (const auto& [key, contact] : found) {
+    if (contact.gap < reach) contacts.push_back(contact);
+  }
+  return contacts;
+}
+
+std::vector<double> smallest_gaps(const core::Surfaces& s, const core::Domain<3>& domain) {
+  double most = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 3; ++k) {
+    if (domain.periodic[k]) most = std::min(most, domain.period(k) / 2);
+  }
+  std::vector<double> gaps(s.cells.size(), std::numeric_limits<double>::infinity());
+  for (double reach = std::min(4.0, most);; reach = std::min(2 * reach, most)) {
+    AllContacts all(s, domain, reach);
+    bool open = false;
+    for (int cell = 0; cell < s.cell_count(); ++cell) {
+      double& gap = gaps[cell];
+      if (!std::isinf(gap)) continue;
+      for (const core::SurfaceContact& contact : all.of(cell)) gap = std::min(gap, contact.distance);
+      open = open || std::isinf(gap);
+    }
+    if (!open || reach == most) break;
+  }
+  // A node of the other cell may be nearer than any of this one's nodes is to the other.
+  AllContacts near(s, domain, std::min(4.0, most));
+  for (int cell = 0; cell < s.cell_count(); ++cell) {
+    for (const core::SurfaceContact& contact : near.of(cell))
+      gaps[contact.other] = std::min(gaps[contact.other], contact.distance);
+  }
+  return gaps;
+}
+
 std::vector<double> smallest_gaps(const core::Membranes& m, const core::Domain<2>& domain) {
   std::vector<double> gaps(m.cells.size(), std::numeric_limits<double>::infinity());
   const std::vector<core::Bounds> boxes = all_bounds(m);
@@ -100,7 +184,7 @@ Aggregates find_aggregates(int cells, const std::vector<CellContact>& contacts) 
   }
   std::vector<bool> crossed(static_cast<std::size_t>(cells), false);
   for (const CellContact& c : contacts) {
-    if (!(c.image == core::ImageShift{})) crossed[result.label[c.cell_a]] = true;
+    if (!(c.image == core::ImageShift{}) || c.image_z != 0) crossed[result.label[c.cell_a]] = true;
   }
   result.through_image.resize(static_cast<std::size_t>(cells));
   for (int i = 0; i < cells; ++i) {

@@ -6,23 +6,30 @@
 
 #include "core/domain/images.hpp"
 #include "core/membrane/membranes.hpp"
+#include "core/surface/surfaces.hpp"
 
 namespace rouleau::observe {
 
 struct CellContact {
   int cell_a, cell_b;      ///< cell_a < cell_b, or equal for a cell and its own image
   core::ImageShift image;  ///< of b
-  double gap;              ///< smallest distance between the two polygons, lattice units
-  double contact_length;   ///< rest length of a's nodes nearer to b than `reach`
+  double gap;              ///< smallest distance between the two polygons or surfaces, lattice units
+  double contact_length;   ///< rest length of a's nodes nearer to b than `reach`; of surfaces, their rest area
+  int image_z = 0;         ///< of b, periods along z
 };
 
 /// All pairs nearer than `reach` (lattice units).
 std::vector<CellContact> find_touching_cells(const core::Membranes& membranes, const core::Domain<2>& domain,
                                              double reach);
 
+/// The same of surfaces: the distance between the nodes of either and the triangles of the other.
+std::vector<CellContact> find_touching_cells(const core::Surfaces& surfaces, const core::Domain<3>& domain, double reach);
+
 /// Of each cell the smallest gap to any other or to an image (spacings), looked for in growing neighbourhoods up to the
 /// size of the box; infinite when there is none.
 std::vector<double> smallest_gaps(const core::Membranes& membranes, const core::Domain<2>& domain);
+/// The same of surfaces, up to half of the shortest period.
+std::vector<double> smallest_gaps(const core::Surfaces& surfaces, const core::Domain<3>& domain);
 
 /// Smallest distance of a cell's outline to a wall (spacings), negative beyond it; NaN without walls.
 double wall_gap(const core::Membranes& membranes, const core::CellRange& cell, const core::Domain<2>& domain);

@@ -136,7 +136,8 @@ Table cells_table() {
            .value = in_plane<&CellSnapshot::perimeter>},
           {.name = "min_gap",
            .unit = "m",
-           .doc = "to the nearest outline of another cell or of any periodic image; `inf` where there is none",
+           .doc = "to the nearest outline of another cell or of any periodic image; `inf` where there is none; in three "
+                  "dimensions between nodes and triangles, up to half of the shortest period",
            .value = cell<&CellSnapshot::min_gap>,
            .chart = "Smallest gap to another cell"},
           {.name = "wall_gap",
@@ -250,6 +251,12 @@ Table aggregates_table() {
            .unit = "m",
            .doc = "rest length of `cell_a`'s membrane that is nearer to `cell_b` than `aggregate_gap`",
            .value = contact<&ContactSnapshot::contact_length>},
+          {.name = "image_z", .unit = "", .doc = "along z", .value = image<2>, .in_space = true},
+          {.name = "contact_area",
+           .unit = "m2",
+           .doc = "rest area of `cell_a`'s surface nearer to the other than the aggregate gap",
+           .value = contact<&ContactSnapshot::contact_area>,
+           .in_space = true},
       }),
       for_each_contact};
 }

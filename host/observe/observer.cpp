@@ -169,7 +169,7 @@ void Observer::observe_cells(const core::Membranes& membranes, const units::Latt
   snapshot.aggregate_size_weight_mean = weight_mean(snapshot.aggregate_sizes);
   for (const CellContact& c : contacts) {
     snapshot.contacts.push_back(
-        {c.cell_a, c.cell_b, {c.image.x, c.image.y}, c.gap * length, c.contact_length * length});
+        {c.cell_a, c.cell_b, {c.image.x, c.image.y, 0}, c.gap * length, c.contact_length * length});
   }
   const std::vector<double> gaps = smallest_gaps(membranes, domain_);
   std::vector<Eigen::Vector2d> centers;
@@ -203,7 +203,14 @@ void Observer::observe_cells(const core::Membranes& membranes, const units::Latt
 void Observer::observe_cells(const core::Surfaces& surfaces, const units::LatticeUnits& units, Snapshot& snapshot) {
   const double length = units.length;
   const core::Domain<3> domain = plan::lattice_domain<3>(*scene_);
-  const Aggregates aggregates = find_aggregates(surfaces.cell_count(), {});
+  const auto contacts = find_touching_cells(surfaces, domain, scene_->output.aggregate_gap / length);
+  const Aggregates aggregates = find_aggregates(surfaces.cell_count(), contacts);
+  for (const CellContact& c : contacts) {
+    snapshot.contacts.push_back({c.cell_a, c.cell_b, {c.image.x, c.image.y, c.image_z}, c.gap * length, std::nan(""),
+                                 c.contact_length * length * length});
+  }
+  const std::vector<double> gaps = smallest_gaps(surfaces, domain);
+  std::vector<Eigen::Vector2d> centers;  // as seen along z
   snapshot.aggregate_count = aggregates.count;
   snapshot.aggregate_sizes = aggregate_sizes(aggregates.label);
   snapshot.aggregate_size_number_mean = number_mean(snapshot.aggregate_sizes);
@@ -214,6 +221,7 @@ void Observer::observe_cells(const core::Surfaces& surfaces, const units::Lattic
     const core::InertiaEllipsoid ellipsoid = core::inertia_ellipsoid(mesh, nodes);
     const core::PlaneDeformation plane = core::deformation_in_xy(ellipsoid);
     const core::Vec<3> marker = nodes[marker_[k]] - ellipsoid.center;
+    centers.emplace_back(ellipsoid.center.x(), ellipsoid.center.y());
     CellSnapshot s;
     follow_angles(static_cast<std::size_t>(k),
                   plane.deformation > roundest ? std::optional(plane.angle) : std::nullopt,
@@ -224,7 +232,7 @@ void Observer::observe_cells(const core::Surfaces& surfaces, const units::Lattic
     s.y = units::coordinate(ellipsoid.center.y(), length);
     s.deformation = plane.deformation;
     s.area = s.perimeter = std::nan("");
-    s.min_gap = std::numeric_limits<double>::infinity();
+    s.min_gap = gaps[k] * length;
     s.wall_gap = wall_gap(surfaces, k, domain) * length;
     s.aggregate = aggregates.label[k];
     s.through_image = aggregates.through_image[k];
@@ -237,6 +245,7 @@ void Observer::observe_cells(const core::Surfaces& surfaces, const units::Lattic
     space.short_axis = pointed(ellipsoid.axes[2]);
     snapshot.cells.push_back(std::move(s));
   }
+  snapshot.rotation = rotation_.follow(contacts, aggregates, centers, domain_);
   started_ = true;
 }
 

@@ -37,9 +37,10 @@ struct CellSnapshot {
 /// Two cells (or a cell and an image) whose gap is below Output::aggregate_gap.
 struct ContactSnapshot {
   int cell_a, cell_b;
-  std::array<int, 2> image;  ///< periodic shift of cell_b, in boxes
+  std::array<int, 3> image;  ///< periodic shift of cell_b, in boxes
   double gap;                ///< m, smallest
-  double contact_length;     ///< m, length of a's membrane nearer than the aggregate gap
+  double contact_length;     ///< m, length of a's membrane nearer than the aggregate gap; NaN in three dimensions
+  double contact_area = std::numeric_limits<double>::quiet_NaN();  ///< m2, in three dimensions
 };
 
 /// Outlines or surfaces of all cells, one after another.

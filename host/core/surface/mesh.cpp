@@ -179,6 +179,18 @@ std::vector<double> node_areas(const Mesh& mesh, Nodes nodes) {
   return area;
 }
 
+std::vector<Vec<3>> node_normals(const Mesh& mesh, Nodes nodes) {
+  const std::vector<Vec<3>> of_triangle = area_vectors(mesh, nodes);
+  std::vector<Vec<3>> normals(static_cast<std::size_t>(mesh.node_count()), Vec<3>::Zero());
+  std::size_t t = 0;
+  for (const auto& corners : mesh.triangles()) {
+    for (const int node : corners) normals[node] += of_triangle[t];
+    ++t;
+  }
+  for (Vec<3>& normal : normals) normal.normalize();
+  return normals;
+}
+
 std::vector<double> integrated_curvature(const Mesh& mesh, Nodes nodes) {
   const std::vector<Vec<3>> normal = area_vectors(mesh, nodes);
   std::vector<double> sum(mesh.node_count());

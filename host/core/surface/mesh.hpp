@@ -61,6 +61,9 @@ bool encloses(const Mesh& mesh, Nodes nodes, const Vec<3>& point);
 /// Twice the area of each triangle, along its outer normal.
 std::vector<Vec<3>> area_vectors(const Mesh& mesh, Nodes nodes);
 
+/// Outer normal at each node, a unit vector: that of the triangles around it, by their areas.
+std::vector<Vec<3>> node_normals(const Mesh& mesh, Nodes nodes);
+
 /// Share of the surface that belongs to each node: the part of its triangles that lies nearest to it (of an obtuse one
 /// half to the obtuse corner and a quarter to each other). Their sum is the surface's area. Curvature over this area
 /// converges at every node, nodes with five neighbours included, which a third of each triangle does not.
