@@ -5,6 +5,7 @@
 #include <map>
 
 #include "base/error.hpp"
+#include "middle_sections.hpp"
 #include "units/lattice_units.hpp"
 
 namespace rouleau::files {
@@ -251,7 +252,18 @@ observe::OutlineSnapshot FrameReader::outlines(int frame) const {
   if (outlines.tension.size() != outlines.x.size())
     throw Error(Cause::input_output, Place{file_.path().string()},
                 group + "/tension does not fit " + group + "/points: the file is damaged; repeat the run");
-  return outlines;
+  if (!surfaces) return outlines;
+  const auto corners = file_.read(group + "/triangles");
+  for (std::size_t i = 0; i + 3 <= corners.size(); i += 3) {
+    std::array<int, 3>& triangle = outlines.triangles.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (!(corners[i + k] >= 0 && corners[i + k] < nodes))
+        throw Error(Cause::input_output, Place{file_.path().string()},
+                    group + "/triangles does not fit " + group + "/points: the file is damaged; repeat the run");
+      triangle[k] = static_cast<int>(corners[i + k]);
+    }
+  }
+  return middle_sections(outlines);
 }
 
 }  // namespace rouleau::files

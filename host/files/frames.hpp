@@ -115,7 +115,7 @@ class FrameReader {
   [[nodiscard]] bool periodic_y() const { return file_.read_attribute("/", "periodic_y") != 0; }
   [[nodiscard]] int frames() const { return file_.members("/frames"); }
   [[nodiscard]] long step(int frame) const;
-  /// Empty (no cells) when the frame has no membranes.
+  /// Empty (no cells) when the frame has no membranes. Of surfaces their middle sections (middle_sections.hpp).
   [[nodiscard]] observe::OutlineSnapshot outlines(int frame) const;
 
  private:
