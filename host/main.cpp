@@ -41,7 +41,7 @@ constexpr std::array commands{
 
 std::string overview() {
   std::string text =
-      "Rouleau simulates deformable red blood cells that attract each other while they flow, in two dimensions.\n\n"
+      "Rouleau simulates deformable red blood cells that attract each other while they flow, in two dimensions and in three.\n\n"
       "Usage: rouleau COMMAND ...\n\n";
   for (const Command& command : commands) {
     std::string call = std::string(command.name) + ' ' + command.arguments;

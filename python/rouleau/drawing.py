@@ -131,7 +131,7 @@ def plot_frame(frame: Frame, colour: str, field: str | None, axes: Any) -> Any:
             pieces = numpy.stack([closed[:-1], closed[1:]], axis=1) if colour == "tension" else [closed]
             lines = LineCollection(pieces, linewidths=1.5, capstyle="round")
             if colour == "tension":
-                lines.set(cmap="coolwarm", array=1e6 * cell.tension, clim=(-1e6 * (largest or 1), 1e6 * (largest or 1)))
+                lines.set(cmap="coolwarm", array=1e6 * cell.section().tension, clim=(-1e6 * (largest or 1), 1e6 * (largest or 1)))
             else:
                 lines.set_color(f"C{(cell.number if colour == 'cell' else cell.aggregate) % 10}")
             axes.add_collection(lines)

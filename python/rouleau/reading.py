@@ -57,18 +57,47 @@ def mean_and_error(values: Sequence[float] | Floats, parts: int = 4) -> Mean:
 
 @dataclasses.dataclass(frozen=True)
 class Cell:
-    """The outline of a cell at an instant."""
+    """The membrane of a cell at an instant: an outline, or in three dimensions a surface."""
 
     number: int  #: in the scene's order, from 0
     aggregate: int  #: label of its aggregate: the smallest number of its cells
-    outline: Floats  #: [nodes, 2]: x and y in m, one node after another, not wrapped into the periodic box
-    tension: Floats  #: [nodes]: N/m, of the segment from a node to the next one
+    outline: Floats  #: [nodes, 2]: x and y in m, one node after another, not wrapped into the periodic box; [nodes, 3] of a surface
+    tension: Floats  #: [nodes]: N/m, of the segment from a node to the next one; of a surface the mean of the triangles around it
+    curvature: Floats | None = None  #: [nodes]: 1/m, sum of both principal curvatures of a surface; None in two dimensions
+    triangles: Any = None  #: [triangles, 3]: nodes of a surface, counter-clockwise seen from outside; None in two dimensions
 
     def moved_into(self, size_m: Sequence[float]) -> Floats:
-        """The outline [nodes, 2] in m with its centre in the periodic box of `size_m`; it is moved as a whole, along x."""
-        moved = self.outline.copy()
+        """The outline [nodes, 2] in m, of a surface its section(), with its centre in the periodic box of `size_m`; it is moved as a whole, along x."""
+        moved = self.section().outline.copy()
         moved[:, 0] -= size_m[0] * math.floor(float(moved[:, 0].mean()) / size_m[0])
         return moved
+
+    def section(self) -> Cell:
+        """In three dimensions the outline in which the plane across z through the surface's middle cuts it (of several the
+        longest), as a cell of two."""
+        import numpy
+        if self.triangles is None:
+            return self
+        z = self.outline[:, 2]
+        height = (z.min() + z.max()) / 2
+        above = z >= height
+        ways: dict[tuple[int, int], list[tuple[int, int]]] = {}
+        for corners in self.triangles[above[self.triangles].any(axis=1) & ~above[self.triangles].all(axis=1)].tolist():
+            cut = [(min(a, b), max(a, b)) for a, b in zip(corners, corners[1:] + corners[:1]) if above[a] != above[b]]
+            ways.setdefault(cut[0], []).append(cut[1])
+            ways.setdefault(cut[1], []).append(cut[0])
+        loops: list[list[tuple[int, int]]] = []
+        while ways:
+            edge: tuple[int, int] | None = next(iter(ways))
+            loops.append([])
+            while edge is not None:
+                loops[-1].append(edge)
+                edge = next((way for way in ways.pop(edge) if way in ways), None)
+        a, b = numpy.array(max(loops, key=len)).T
+        share = ((height - z[a]) / (z[b] - z[a]))
+        place = self.outline[a, :2] + share[:, None] * (self.outline[b, :2] - self.outline[a, :2])
+        tension = self.tension[a] + share * (self.tension[b] - self.tension[a])
+        return Cell(self.number, self.aggregate, place, tension)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -369,8 +398,13 @@ class Run(Outputs):
             if "membranes" in frame:
                 points, tension, first, cell_of, aggregate = (
                     frame["membranes"][part][:] for part in ("points", "tension", "first", "cell", "aggregate"))
-                cells = [Cell(int(cell_of[b]), int(aggregate[b]), points[b:e], tension[b:e])
-                         for b, e in zip(first[:-1], first[1:])]
+                curvature = frame["membranes"]["curvature"][:] if "curvature" in frame["membranes"] else None
+                triangles = frame["membranes"]["triangles"][:] if "triangles" in frame["membranes"] else None
+                for b, e in zip(first[:-1], first[1:]):
+                    surface = {} if triangles is None or curvature is None else {
+                        "curvature": curvature[b:e],
+                        "triangles": triangles[(triangles[:, 0] >= b) & (triangles[:, 0] < e)] - b}
+                    cells.append(Cell(int(cell_of[b]), int(aggregate[b]), points[b:e], tension[b:e], **surface))
             fields: dict[str, Field] = {}
             for name, data in frame.get("fields", {}).items():
                 values = data[:].astype(numpy.float64)

@@ -40,6 +40,8 @@ SHEARED = {
     "numerics": {"density_factor": 300},
     "cells": [{"type": "capsule", "at": ["1.2 um", "1.7 um", "1 um"]},
               {"type": "capsule", "at": ["3.9 um", "2.2 um", "2.9 um"], "axis": [0, 0, 1], "angle": "20 deg"}],
+    "interactions": [{"between": ["capsule", "capsule"], "model": "morse",
+                      "parameters": {"depth": "1e-8 J/m2", "zero_force_distance": "0.49 um", "cutoff": "1.5 um"}}],
     "stages": [{"name": "rest", "duration": "0.05 ms"}, {"name": "shear", "shear_rate": "1000 1/s", "strain": 0.2}],
     "output": {"cells": {"strain": 0.02}, "fields": {"strain": 0.1, "quantities": ["velocity", "viscosity"]}},
 }
@@ -161,6 +163,30 @@ class A_run_in_three_dimensions(Case):
                 known = {row["step"] for row in own}
                 self.assertEqual(own, [row for row in others if row["step"] in known])
 
+    def test_of_cells_that_attract_each_other_loses_energy_at_rest_and_joins_them(self):
+        attraction = [{"between": ["capsule", "capsule"], "model": "morse",
+                       "parameters": {"depth": "1e-6 J/m2", "zero_force_distance": "0.5 um", "cutoff": "1.5 um"}}]
+        scene = changed(SHEARED, interactions=attraction, stages=[{"name": "rest", "duration": "20 ms"}],
+                        output={"cells": {"seconds": "2 ms"}, "aggregate_gap": "0.7 um"},
+                        cells=[{"type": "capsule", "row": {"count": 2, "spacing": "1.6 um", "axis": "z",
+                                                           "center": ["2 um", "2 um", "1.5 um"]}}])
+        for model in ("morse", "lennard-jones"):
+            options = ("--set", "/interactions/0/model=" + model)
+            folder = self.run_scene(scene, model, *options)
+            series = self.series(folder)
+            energy = [float(row["total_energy_J_per_m"]) for row in series]
+            self.assertLess(energy[-1], energy[0])
+            for before, after in zip(energy, energy[1:]):
+                self.assertLess(after, before + 1e-4 * abs(energy[0]))
+            gaps = [float(row["min_gap_m"]) for row in self.cells(folder)]
+            self.assertLess(gaps[-1], gaps[0])
+            self.assertAlmostEqual(gaps[-1], 0.5e-6, delta=0.15e-6)
+            self.assertEqual(series[-1]["aggregate_count"], "1")
+            with open(folder / "aggregates.csv", newline="") as file:
+                contact = list(csv.DictReader(file))[-1]
+            self.assertGreater(float(contact["contact_area_m2"]), 0)
+            self.assertEqual(contact["members"], "0+1")
+
     def test_of_a_mesh_from_a_file_is_that_of_the_shape(self):
         octahedron = "OFF\n6 8 12\n" + "".join(f"{x} {y} {z}\n" for x, y, z in
                                                [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)])
@@ -236,6 +262,11 @@ class Three_dimensions_refuse(Case):
         self.refused(scene | {"cells": two}, "/cells/1", "overlap")
         self.refused(changed(scene, cells=[{"type": "capsule", "random": {"count": 2, "seed": 1}}]), "/cells/0/random",
                      "two dimensions only")
+        for other in ("wall", "self"):
+            acting = [{"between": ["capsule", other], "model": "morse", "parameters": {"depth": "1e-8 J/m2"}}]
+            self.refused(scene | {"interactions": acting}, "/interactions/0/between", "two dimensions only")
+        bonds = [{"between": ["capsule", "capsule"], "model": "bridging", "parameters": {}}]
+        self.refused(scene | {"interactions": bonds}, "/interactions/0/model", "three dimensions")
         for key in ("slip_correction", "area_correction"):
             self.refused(changed(scene, **{"numerics__" + key: True}), "/numerics/" + key, "three dimensions")
         self.refused(changed(scene, numerics__coupling="semi-implicit"), "/numerics/coupling", "explicit")
