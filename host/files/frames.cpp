@@ -222,17 +222,26 @@ std::array<double, 2> FrameReader::size() const {
   return {file_.read_attribute("/", "size_m", 0), file_.read_attribute("/", "size_m", 1)};
 }
 
+std::array<double, 3> FrameReader::size_in_space() const {
+  return {size()[0], size()[1], file_.read_attribute("/", "size_m", 2)};
+}
+
 long FrameReader::step(int frame) const {
   return static_cast<long>(file_.read_attribute(frame_path(static_cast<std::size_t>(frame)), "step"));
 }
 
 observe::OutlineSnapshot FrameReader::outlines(int frame) const {
+  observe::OutlineSnapshot written = surfaces(frame);
+  return written.triangles.empty() ? written : middle_sections(written);
+}
+
+observe::OutlineSnapshot FrameReader::surfaces(int frame) const {
   observe::OutlineSnapshot outlines;
   const std::string group = frame_path(static_cast<std::size_t>(frame)) + "/membranes";
   if (!file_.has(group)) return outlines;
   const auto points = file_.read(group + "/points");
-  const bool surfaces = file_.has(group + "/triangles");
-  const std::size_t components = surfaces ? 3 : 2;
+  const bool in_space = file_.has(group + "/triangles");
+  const std::size_t components = in_space ? 3 : 2;
   const auto nodes = static_cast<double>(points.size() / components);
   double before = -1;
   for (const double first : file_.read(group + "/first")) {
@@ -246,13 +255,13 @@ observe::OutlineSnapshot FrameReader::outlines(int frame) const {
   for (std::size_t i = 0; i + components <= points.size(); i += components) {
     outlines.x.push_back(points[i]);
     outlines.y.push_back(points[i + 1]);
-    if (surfaces) outlines.z.push_back(points[i + 2]);
+    if (in_space) outlines.z.push_back(points[i + 2]);
   }
   outlines.tension = file_.read(group + "/tension");
   if (outlines.tension.size() != outlines.x.size())
     throw Error(Cause::input_output, Place{file_.path().string()},
                 group + "/tension does not fit " + group + "/points: the file is damaged; repeat the run");
-  if (!surfaces) return outlines;
+  if (!in_space) return outlines;
   const auto corners = file_.read(group + "/triangles");
   for (std::size_t i = 0; i + 3 <= corners.size(); i += 3) {
     std::array<int, 3>& triangle = outlines.triangles.emplace_back();
@@ -263,7 +272,7 @@ observe::OutlineSnapshot FrameReader::outlines(int frame) const {
       triangle[k] = static_cast<int>(corners[i + k]);
     }
   }
-  return middle_sections(outlines);
+  return outlines;
 }
 
 }  // namespace rouleau::files

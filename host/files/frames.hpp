@@ -112,11 +112,15 @@ class FrameReader {
  public:
   explicit FrameReader(const std::filesystem::path& file) : file_(open_frames(file)) {}
   [[nodiscard]] std::array<double, 2> size() const;  ///< of the domain, m
+  [[nodiscard]] std::array<double, 3> size_in_space() const;  ///< m, in three dimensions
+  [[nodiscard]] bool periodic_z() const { return file_.read_attribute("/", "periodic_z") != 0; }
   [[nodiscard]] bool periodic_y() const { return file_.read_attribute("/", "periodic_y") != 0; }
   [[nodiscard]] int frames() const { return file_.members("/frames"); }
   [[nodiscard]] long step(int frame) const;
   /// Empty (no cells) when the frame has no membranes. Of surfaces their middle sections (middle_sections.hpp).
   [[nodiscard]] observe::OutlineSnapshot outlines(int frame) const;
+  /// The same as it was written, of surfaces without their curvature.
+  [[nodiscard]] observe::OutlineSnapshot surfaces(int frame) const;
 
  private:
   Hdf5File file_;

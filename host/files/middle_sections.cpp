@@ -81,7 +81,8 @@ observe::OutlineSnapshot middle_sections(const observe::OutlineSnapshot& s, int 
     const double plane = (*least + *most) / 2;
     for (const std::vector<Edge>& edges : loops_of(own, s.z, plane)) {
       std::vector<Point> loop;
-      for (const auto& [a, b] : edges) {
+      for (const Edge& edge : edges) {
+        const int a = edge.first, b = edge.second;
         const double share = (plane - s.z[a]) / (s.z[b] - s.z[a]);
         const auto between = [&](const std::vector<double>& values) { return values[a] + share * (values[b] - values[a]); };
         loop.push_back({between(s.x), between(s.y), between(s.tension)});

@@ -353,7 +353,9 @@ std::vector<Limit> find_limits(const Plan& plan) {
             lower + ": the lattice's fluid gives way to it, and cells leak while they snap together", density);
       }
       if (stage.index != 0) continue;
-      if (shape.well && shape.well->distance >= least_gap && !wall && !self && scene.cells.size() > 1) {
+      // Measured in two dimensions, where there is a potential to keep faces apart.
+      if (shape.well && shape.well->distance >= least_gap && !wall && !self && scene.cells.size() > 1 &&
+          !scene.domain.depth) {
         const scene::Interaction& interaction = scene.interactions[i];
         const double depth = depth_over_bending(plan, interaction, shape.well->depth, setting);
         const std::string type = in_quotes(scene.cell_types[interaction.between[0]].name);

@@ -11,16 +11,29 @@
 
 namespace rouleau::report {
 
+namespace {
+
+/// The page with what draws surfaces, where there are some.
+std::string report_page(const nlohmann::json& data) {
+  const bool in_space = data.contains("surfaces") && !data["surfaces"].is_null();
+  constexpr std::string_view mark = "@ROULEAU_SPACE@";
+  std::string page(report_template);
+  page.replace(page.find(mark), mark.size(), in_space ? space_template : std::string_view{});
+  return page_with(page, data);
+}
+
+}  // namespace
+
 std::filesystem::path write_report(const std::filesystem::path& directory, std::filesystem::path file) {
   if (file.empty()) file = directory / "report.html";
   const nlohmann::json data = report_data(directory);
   for (const auto& words : data["shown"]["damage"]) std::cerr << "warning: " << words.get<std::string>() << "\n";
-  files::write_file(file, page_with(report_template, data));
+  files::write_file(file, report_page(data));
   return file;
 }
 
 void write_comparison(const std::vector<std::filesystem::path>& directories, const std::filesystem::path& file) {
-  files::write_file(file, page_with(report_template, compare_data(directories)));
+  files::write_file(file, report_page(compare_data(directories)));
 }
 
 }  // namespace rouleau::report

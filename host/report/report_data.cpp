@@ -19,6 +19,7 @@
 #include "observe/observables.hpp"
 #include "report_fields.hpp"
 #include "report_outlines.hpp"
+#include "report_surfaces.hpp"
 
 namespace rouleau::report {
 
@@ -234,7 +235,7 @@ Json report_data(const std::filesystem::path& directory) {
     reader.emplace(directory / "frames.h5");
     take("frames.h5", static_cast<std::size_t>(reader->frames()));
     if (outputs > 0) {
-      nodes = reader->outlines(0).x.size();
+      nodes = reader->outlines(0).x.size();  // of their sections, where they are surfaces
       with_fields = field_outputs(directory / "frames.h5", most_fields);
     }
   } catch (const Error& error) {
@@ -260,7 +261,7 @@ Json report_data(const std::filesystem::path& directory) {
   data["charts"] = charts();
   data["series"] = series_data(series, selection);
   data["cells"] = count > 0 && outputs > 0 ? cell_data(cells, count, outputs, selection) : Json(nullptr);
-  data["outlines"] = data["fields"] = nullptr;
+  data["outlines"] = data["fields"] = data["surfaces"] = nullptr;
   if (reader && outputs > 0) {
     try {
       const auto size = reader->size();
@@ -268,6 +269,7 @@ Json report_data(const std::filesystem::path& directory) {
       Json outlines = outline_data(*reader, selection, stride);
       data["fields"] = field_data(directory / "frames.h5", selection);
       data["outlines"] = std::move(outlines);  // both or none
+      data["surfaces"] = surface_data(*reader, selection);
     } catch (const Error& error) {
       without_animation(error);
     }

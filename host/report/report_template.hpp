@@ -6,6 +6,7 @@
 
 namespace rouleau::report {
 
+extern const std::string_view space_template;  ///< what a report of surfaces has besides
 extern const std::string_view report_template, study_template, limits_template;
 
 }  // namespace rouleau::report

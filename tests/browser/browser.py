@@ -15,9 +15,9 @@ SCREENS = {"desktop": {"width": 1280, "height": 900}, "phone": {"width": 390, "h
 
 
 class Browser:
-    """One browser, with an empty profile of its own; a context manager."""
+    """One browser, with an empty profile of its own; a context manager. `draws_space`: with WebGL, computed by the processor."""
 
-    def __init__(self, program="chromium", patience=30):
+    def __init__(self, program="chromium", patience=30, draws_space=False):
         self.patience = patience
         self.profile = tempfile.mkdtemp(prefix="rouleau-browser-")
         to_browser, self.output = os.pipe()
@@ -30,7 +30,9 @@ class Browser:
             os.dup2(104, 4)
 
         self.process = subprocess.Popen(
-            [program, "--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--no-first-run",
+            [program, "--headless=new", "--no-sandbox", "--disable-dev-shm-usage",
+             *(("--use-angle=swiftshader", "--enable-unsafe-swiftshader") if draws_space else ("--disable-gpu",)),
+             "--no-first-run",
              "--disable-background-networking", "--disable-component-update", "--hide-scrollbars", "--mute-audio",
              "--remote-debugging-pipe", f"--user-data-dir={self.profile}", "about:blank"],
             preexec_fn=hand_over, pass_fds=(3, 4), stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,

@@ -378,6 +378,42 @@ class The_page_of_a_run(PageCase):
             self.assert_sound(page)
 
 
+class The_page_of_a_run_in_three_dimensions(PageCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.browser = Browser(draws_space=True)
+        cls.directory = folder / "space"
+        rouleau("run", SOURCE / "scenes/capsule-3d.json", "--out", cls.directory, "--quiet", "--set", "/domain/nodes=[32, 32, 32]",
+                "--set", "/stages/0/strain=0.4", "--set", "/output/cells/strain=0.05")
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.browser.__exit__()
+
+    PIXELS = """(() => { const c = document.querySelector("canvas.space"), gl = c.getContext("webgl2") ?? c.getContext("webgl"), p = new Uint8Array(4 * c.width * c.height);
+        gl.readPixels(0, 0, c.width, c.height, gl.RGBA, gl.UNSIGNED_BYTE, p); let sum = 0, seen = 0; for (let i = 0; i < p.length; i += 4) if (p[i + 3]) { ++seen; sum = (sum + (i / 4) * p[i]) % 1000003; } return [seen, sum]; })()"""
+
+    def test_shows_surfaces_that_turn_and_follow_the_instant(self):
+        for screen, scheme in (("desktop", "light"), ("phone", "dark")):
+            page = self.open(self.directory / "report.html", screen, scheme, part="#strain=0.4")
+            page.run(Every_page_on_every_screen.DRAWN)
+            seen, first = page.run(self.PIXELS)
+            self.assertGreater(seen, 500)
+            page.run("document.querySelector('canvas.space').dispatchEvent(new KeyboardEvent('keydown', {key: 'ArrowLeft', bubbles: true}))")
+            turned = page.run(self.PIXELS)[1]
+            self.assertNotEqual(turned, first)
+            page.run("document.querySelector('canvas.space').dispatchEvent(new KeyboardEvent('keydown', {key: '0', bubbles: true}))")
+            self.assertEqual(page.run(self.PIXELS)[1], first)
+            page.run("timeline.seek(0)")
+            self.assertNotEqual(page.run(self.PIXELS)[1], first)
+            self.assert_sound(page, SCREENS[screen]["width"])
+
+    def test_carries_what_draws_them_alone(self):
+        self.assertIn("var ogl=", (self.directory / "report.html").read_text())
+        self.assertNotIn("var ogl=", (folder / "a/report.html").read_text())
+        self.assertLess((self.directory / "report.html").stat().st_size, LARGEST_PAGE)
+
+
 class Two_runs(PageCase):
     def test_move_together_and_what_differs_stands_below(self):
         page = self.open(folder / "both.html")

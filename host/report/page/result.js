@@ -62,7 +62,7 @@ function resultOf(run) {
   if (!cells && flow) sentences.push(`The fluid flows at ${format(flow.value, 3)} m²/s per depth.`);
   const layer = ["cell_free_layer_lower_m", "cell_free_layer_upper_m"].map(name => meanOf(summary, name)?.value).filter(v => typeof v === "number");
   if (cells > 4 && layer.length) numbers.push({value: `${format(1e6 * layer.reduce((a, b) => a + b) / layer.length, 3)} µm`, label: "cell-free layer", about: "mean of both walls over the second half of the last stage"});
-  if (typeof summary.conservation?.area_drift_max === "number" && cells) numbers.push({value: `${format(100 * summary.conservation.area_drift_max, 2)} %`, label: "largest area drift", about: "of any cell at any time: a measure of the error"});
+  if (typeof summary.conservation?.area_drift_max === "number" && cells) numbers.push({value: `${format(100 * summary.conservation.area_drift_max, 2)} %`, label: `largest ${summary.dimensions === 3 ? "volume" : "area"} drift`, about: "of any cell at any time: a measure of the error"});
   const mach = summary.dimensionless?.mach_max;
   if (typeof mach === "number") numbers.push({value: format(mach, 2), label: "largest Mach number", about: "of the lattice; errors grow with its square"});
   if (!sentences.length) sentences.push(cells ? `${cells} ${cells === 1 ? "cell" : "cells"}, ${whenOf(run, run.step.length - 1)} at the end.` : "The fluid alone was simulated.");

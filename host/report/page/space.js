@@ -1,0 +1,151 @@
+// ------------------------------------------------------------------------------------------------ cells in three dimensions
+/// Surfaces of one run: nodes x, y, z in micrometres, not wrapped into the box, at an output that has them or between two.
+class Surfaces {
+  constructor(surfaces) {
+    const triangles = new DataView(bytesOf(surfaces.triangles).buffer);
+    Object.assign(this, {data: surfaces, first: surfaces.first, count: surfaces.first.length - 1, nodes: surfaces.first.at(-1), known: []});
+    this.triangles = Uint32Array.from({length: triangles.byteLength / 4}, (_, i) => triangles.getUint32(4 * i, true));
+  }
+  at(kept) {
+    return this.known[kept] ??= (() => {
+      const {data, first} = this, view = new DataView(bytesOf(data.nodes[kept]).buffer), origins = data.origin_um[kept], places = new Float32Array(view.byteLength / 2);
+      for (let cell = 0; cell < this.count; ++cell)
+        for (let i = 3 * first[cell]; i < 3 * first[cell + 1]; ++i) places[i] = origins[3 * cell + i % 3] + view.getInt16(2 * i, true) * data.quantum_um;
+      return places;
+    })();
+  }
+  /// At a place among the page's outputs, of which some have surfaces.
+  between({a, share}) {
+    const {outputs} = this.data, position = a + share, after = outputs.findIndex(output => output >= position);
+    if (after <= 0) return this.at(after < 0 ? outputs.length - 1 : 0);
+    const part = (position - outputs[after - 1]) / (outputs[after] - outputs[after - 1]), from = this.at(after - 1);
+    if (!part) return from;
+    const to = this.at(after);
+    return from.map((v, i) => v + part * (to[i] - v));
+  }
+  /// Moved as whole cells into the periodic box.
+  wrapped(places, box, periodic) {
+    const moved = places.slice(), {first} = this;
+    for (let cell = 0; cell < this.count; ++cell) {
+      for (let k = 0; k < 3; ++k) {
+        if (!periodic[k]) continue;
+        let sum = 0;
+        for (let i = first[cell]; i < first[cell + 1]; ++i) sum += moved[3 * i + k];
+        const shift = box[k] * Math.floor(sum / (first[cell + 1] - first[cell]) / box[k]);
+        if (shift) for (let i = first[cell]; i < first[cell + 1]; ++i) moved[3 * i + k] -= shift;
+      }
+    }
+    return moved;
+  }
+  /// Outer normals at the nodes, by the areas around them.
+  normals(places) {
+    const normals = new Float32Array(places.length), {triangles} = this;
+    for (let t = 0; t < triangles.length; t += 3) {
+      const [a, b, c] = [3 * triangles[t], 3 * triangles[t + 1], 3 * triangles[t + 2]], u = [0, 1, 2].map(k => places[b + k] - places[a + k]), v = [0, 1, 2].map(k => places[c + k] - places[a + k]);
+      const cross = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+      for (const at of [a, b, c]) for (let k = 0; k < 3; ++k) normals[at + k] += cross[k];
+    }
+    return normals;
+  }
+}
+
+const rgbOf = (() => {
+  const context = document.createElement("canvas").getContext("2d", {willReadFrequently: true}), known = new Map();
+  return text => {
+    if (!known.has(text)) {
+      context.fillStyle = "#888"; context.fillStyle = text; context.clearRect(0, 0, 1, 1); context.fillRect(0, 0, 1, 1);
+      known.set(text, [...context.getImageData(0, 0, 1, 1).data].slice(0, 3).map(v => v / 255));
+    }
+    return known.get(text);
+  };
+})();
+
+/// The surfaces of a run at the timeline's instant, in their box. Drag or arrow keys turn it, the wheel, two fingers, + and -
+/// come closer, 0 is where it began.
+class SpaceView {
+  static start = {azimuth: -.5, elevation: .35, distance: .75};
+  constructor(parent, timeline, run, view) {
+    const data = timeline.runs[run], surfaces = new Surfaces(data.surfaces);
+    Object.assign(this, {timeline, run, data, view, surfaces, colours: cellColours(data), box: data.surfaces.size_um, periodic: data.surfaces.periodic, ...SpaceView.start});
+    this.canvas = element("canvas", {class: "view space", role: "img", tabindex: 0, "aria-label": `${surfaces.count} ${surfaces.count === 1 ? "cell" : "cells"} in a box of ${this.box.map(l => format(l, 3)).join(" by ")} µm, seen in perspective. Arrow keys turn it, plus and minus zoom.`});
+    parent.append(this.canvas);
+    try { this.begin(); } catch { parent.replaceChildren(note("This browser has no WebGL: the surfaces are in frames.xmf, for ParaView.")); return; }
+    timeline.listeners.push(() => this.draw());
+    view.listeners.push(() => this.draw());
+    redraws.push(() => this.draw());
+    new ResizeObserver(() => { if (this.canvas.clientWidth !== this.width) this.draw(); }).observe(this.canvas);
+    this.listen();
+  }
+  begin() {
+    const {Renderer, Camera, Transform, Program, Mesh, Geometry} = ogl, nodes = this.surfaces.nodes, [x, y, z] = this.box.map(l => l / 2);
+    this.renderer = new Renderer({canvas: this.canvas, dpr: Math.min(2, window.devicePixelRatio || 1), alpha: true, antialias: true, premultipliedAlpha: false, preserveDrawingBuffer: true});
+    const {gl} = this.renderer;
+    if (!gl) throw new Error("no WebGL");
+    gl.clearColor(0, 0, 0, 0);
+    this.camera = new Camera(gl, {fov: 32, near: .01, far: 100});
+    this.scene = new Transform();
+    this.geometry = new Geometry(gl, {position: {size: 3, data: new Float32Array(3 * nodes), usage: gl.DYNAMIC_DRAW}, normal: {size: 3, data: new Float32Array(3 * nodes), usage: gl.DYNAMIC_DRAW},
+      colour: {size: 3, data: new Float32Array(3 * nodes), usage: gl.DYNAMIC_DRAW}, index: {data: this.surfaces.triangles}});
+    const program = new Program(gl, {cullFace: false,
+      vertex: `attribute vec3 position, normal, colour; uniform mat4 modelViewMatrix, projectionMatrix; uniform mat3 normalMatrix; varying vec3 n, c;
+        void main() { n = normalMatrix * normal; c = colour; gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }`,
+      fragment: `precision highp float; varying vec3 n, c;
+        void main() { vec3 m = normalize(n); float light = 0.45 + 0.6 * abs(dot(m, normalize(vec3(0.3, 0.5, 0.8)))); gl_FragColor = vec4(c * light, 1.0); }`});
+    this.mesh = new Mesh(gl, {geometry: this.geometry, program, frustumCulled: false});
+    this.mesh.setParent(this.scene);
+    const corners = Array.from({length: 8}, (_, i) => [i & 1 ? x : -x, i & 2 ? y : -y, i & 4 ? z : -z]), edges = [];
+    for (let i = 0; i < 8; ++i) for (const bit of [1, 2, 4]) if (!(i & bit)) edges.push(...corners[i], ...corners[i | bit]);
+    this.frameProgram = new Program(gl, {uniforms: {tone: {value: [0, 0, 0]}}, vertex: "attribute vec3 position; uniform mat4 modelViewMatrix, projectionMatrix; void main() { gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }",
+      fragment: "precision highp float; uniform vec3 tone; void main() { gl_FragColor = vec4(tone, 1.0); }"});
+    new Mesh(gl, {mode: gl.LINES, geometry: new Geometry(gl, {position: {size: 3, data: new Float32Array(edges)}}), program: this.frameProgram, frustumCulled: false}).setParent(this.scene);
+  }
+  draw() {
+    const {canvas, geometry, surfaces, box} = this, width = canvas.clientWidth;
+    if (!width || !this.renderer) return;
+    const height = Math.round(Math.min(width * .6, 520)), between = this.timeline.between(this.run), colour = this.colours[this.view.colour] ?? this.colours.grey;
+    if (this.width !== width) { this.renderer.setSize(width, height); canvas.style.width = "100%"; this.camera.perspective({aspect: width / height}); this.width = width; }
+    const places = surfaces.wrapped(surfaces.between(between), box, this.periodic), position = geometry.attributes.position, tones = geometry.attributes.colour;
+    geometry.attributes.normal.data.set(surfaces.normals(places));
+    for (let i = 0; i < places.length; ++i) position.data[i] = places[i] - box[i % 3] / 2;
+    for (let cell = 0; cell < surfaces.count; ++cell) {
+      const rgb = rgbOf(this.view.cell === cell ? css("--text") : colour?.colour ? colour.colour(cell, between) : css(colour ? colour.tone(cell, between) : "--single"));
+      for (let i = surfaces.first[cell]; i < surfaces.first[cell + 1]; ++i) tones.data.set(rgb, 3 * i);
+    }
+    for (const name of ["position", "normal", "colour"]) geometry.attributes[name].needsUpdate = true;
+    const far = this.distance * 1.15 * Math.hypot(...box) / (2 * Math.tan(16 * Math.PI / 180)), {azimuth, elevation} = this;
+    Object.assign(this.camera, {near: far / 100, far: far * 10});
+    this.camera.perspective({near: far / 100, far: far * 10});
+    this.camera.position.set(far * Math.cos(elevation) * Math.sin(azimuth), far * Math.sin(elevation), far * Math.cos(elevation) * Math.cos(azimuth));
+    this.camera.lookAt([0, 0, 0]);
+    this.frameProgram.uniforms.tone.value = rgbOf(css("--quiet") || css("--text"));
+    this.renderer.render({scene: this.scene, camera: this.camera});
+  }
+  turn(dx, dy) {
+    this.azimuth -= dx;
+    this.elevation = Math.min(1.5, Math.max(-1.5, this.elevation + dy));
+    this.draw();
+  }
+  zoomBy(factor) { this.distance = Math.min(4, Math.max(.1, this.distance / factor)); this.draw(); }
+  listen() {
+    const {canvas} = this, held = new Map(), apart = () => { const [[ax, ay], [bx, by]] = [...held.values()]; return Math.hypot(ax - bx, ay - by); };
+    canvas.style.touchAction = "none";
+    canvas.addEventListener("pointerdown", event => { held.set(event.pointerId, [event.clientX, event.clientY]); canvas.setPointerCapture(event.pointerId); });
+    canvas.addEventListener("pointermove", event => {
+      const before = held.get(event.pointerId);
+      if (!before) return;
+      const spread = held.size === 2 ? apart() : 0;
+      held.set(event.pointerId, [event.clientX, event.clientY]);
+      if (spread) this.zoomBy(apart() / spread); else this.turn((event.clientX - before[0]) / 150, (event.clientY - before[1]) / 150);
+    });
+    for (const kind of ["pointerup", "pointercancel"]) canvas.addEventListener(kind, event => held.delete(event.pointerId));
+    canvas.addEventListener("wheel", event => { event.preventDefault(); this.zoomBy(Math.exp(-event.deltaY / 500)); }, {passive: false});
+    canvas.addEventListener("keydown", event => {
+      const act = {ArrowLeft: () => this.turn(.1, 0), ArrowRight: () => this.turn(-.1, 0), ArrowUp: () => this.turn(0, .1), ArrowDown: () => this.turn(0, -.1), "+": () => this.zoomBy(1.25), "-": () => this.zoomBy(.8),
+        "0": () => { Object.assign(this, SpaceView.start); this.draw(); }}[event.key];
+      if (!act || event.ctrlKey || event.metaKey || event.altKey) return;
+      act();
+      event.preventDefault();
+      event.stopPropagation();
+    });
+  }
+}
