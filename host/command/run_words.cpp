@@ -135,7 +135,8 @@ std::vector<std::string> closing(const Json& summary) {
   const Json& drift = summary.at("conservation").at("area_drift_max");
   if (!events.empty() && drift.is_number())
     physics += (physics.empty() ? "" : "; ") +
-               (std::string("largest ") + (summary.value("dimensions", 2) == 3 ? "volume" : "area") + " drift " + number(100 * drift.get<double>(), 2) + " %");
+               (std::string("largest ") + (summary.value("dimensions", 2) == 3 ? "volume" : "area") + " drift " +
+                number(100 * drift.get<double>(), 2) + " %");
   if (!physics.empty()) lines.push_back(physics);
   return lines;
 }

@@ -128,7 +128,8 @@ void FrameWriter::write_topology(const observe::OutlineSnapshot& outlines) {
     connectivity.push_back(first[cell]);  // closes the outline
   }
   if (topology_record_.surfaces) connectivity.clear();
-  for (const auto& corners : outlines.triangles) connectivity.insert(connectivity.end(), corners.begin(), corners.end());
+  for (const auto& corners : outlines.triangles)
+    connectivity.insert(connectivity.end(), corners.begin(), corners.end());
   topology_record_.connectivity = connectivity.size();
 
   // A new segment repeats the topology that still holds, under its name.

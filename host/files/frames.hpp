@@ -111,7 +111,7 @@ Hdf5File open_frames(const std::filesystem::path& file);
 class FrameReader {
  public:
   explicit FrameReader(const std::filesystem::path& file) : file_(open_frames(file)) {}
-  [[nodiscard]] std::array<double, 2> size() const;  ///< of the domain, m
+  [[nodiscard]] std::array<double, 2> size() const;           ///< of the domain, m
   [[nodiscard]] std::array<double, 3> size_in_space() const;  ///< m, in three dimensions
   [[nodiscard]] bool periodic_z() const { return file_.read_attribute("/", "periodic_z") != 0; }
   [[nodiscard]] bool periodic_y() const { return file_.read_attribute("/", "periodic_y") != 0; }

@@ -62,7 +62,8 @@ void arrange(std::vector<Point>& loop) {
     twice_area += a.x * b.y - a.y * b.x;
   }
   if (twice_area < 0) std::reverse(loop.begin(), loop.end());
-  const auto first = std::max_element(loop.begin(), loop.end(), [](const Point& a, const Point& b) { return a.x < b.x; });
+  const auto first =
+      std::max_element(loop.begin(), loop.end(), [](const Point& a, const Point& b) { return a.x < b.x; });
   std::rotate(loop.begin(), first, loop.end());
 }
 
@@ -84,7 +85,9 @@ observe::OutlineSnapshot middle_sections(const observe::OutlineSnapshot& s, int 
       for (const Edge& edge : edges) {
         const int a = edge.first, b = edge.second;
         const double share = (plane - s.z[a]) / (s.z[b] - s.z[a]);
-        const auto between = [&](const std::vector<double>& values) { return values[a] + share * (values[b] - values[a]); };
+        const auto between = [&](const std::vector<double>& values) {
+          return values[a] + share * (values[b] - values[a]);
+        };
         loop.push_back({between(s.x), between(s.y), between(s.tension)});
       }
       if (length_of(loop) > length_of(longest)) longest = std::move(loop);

@@ -27,7 +27,8 @@ class RestWatch {
     return core::largest_displacement(cells, old_, {0, cells.node_count()});
   }
   [[nodiscard]] bool fits(const core::CellNodes& cells) const {
-    return step_ >= 0 && old_.x.size() == cells.x.size() && old_.y.size() == cells.y.size() && old_.z.size() == cells.z.size();
+    return step_ >= 0 && old_.x.size() == cells.x.size() && old_.y.size() == cells.y.size() &&
+           old_.z.size() == cells.z.size();
   }
   NLOHMANN_DEFINE_TYPE_INTRUSIVE(RestWatch, step_, old_)
 

@@ -106,8 +106,7 @@ Failure crossing_failure(int cell, int other, bool inside, const scene::Stage& s
 Failure drift_failure(const char* measure, std::array<double, 2> place, int cell, double drift, bool corrected,
                       const std::string& first_remedy, const plan::StageSetting& setting, const scene::Scene& scene) {
   const std::string changed = std::string("changed its ") + measure + " by more than the limit";
-  const std::string said =
-      corrected ? "would have " + changed + " without numerics.area_correction" : "has " + changed;
+  const std::string said = corrected ? "would have " + changed + " without numerics.area_correction" : "has " + changed;
   return failure("area_drift", place, cell, drift, scene.checks.area_drift,
                  "a cell " + said + ": fluid leaks through its membrane or is compressed",
                  first_remedy + "lower " + setting.stage->density_factor_key +
@@ -161,8 +160,7 @@ std::optional<Failure> check_cells(observe::Observer& observer, const plan::Stag
     stretch.least /= placed, stretch.most /= placed;
     const bool shrunk = !(stretch.least * limit >= 1);
     if (!shrunk && stretch.most <= limit) continue;
-    return at(uneven_failure("an edge", k, shrunk ? stretch.least : stretch.most, limit, *setting.stage),
-              middle(k));
+    return at(uneven_failure("an edge", k, shrunk ? stretch.least : stretch.most, limit, *setting.stage), middle(k));
   }
   if (const auto crossing = core::find_crossing(surfaces, plan::lattice_domain<3>(scene))) {
     const auto node = static_cast<std::size_t>(crossing->node);
@@ -176,8 +174,8 @@ std::optional<Failure> check_cells(observe::Observer& observer, const plan::Stag
 
 template <class T, class Set>
 std::optional<Failure> check_state(observe::Observer& observer, core::Solver<T, Set>& solver,
-                                   const plan::StageSetting& setting,
-                                   const typename core::Solver<T, Set>::Cells& cells, const scene::Scene& scene) {
+                                   const plan::StageSetting& setting, const typename core::Solver<T, Set>::Cells& cells,
+                                   const scene::Scene& scene) {
   const units::LatticeUnits& units = setting.units;
   const auto place = [&](double x, double y) {
     return std::array<double, 2>{units::coordinate(x, units.length), units::coordinate(y, units.length)};

@@ -14,7 +14,7 @@ namespace rouleau::monitor {
 /// number, a cell's area or volume, the length of a segment or edge, membranes that cross (looked for in two dimensions). `observer` follows mass, Mach number and areas.
 template <class T, class Set>
 std::optional<Failure> check_state(observe::Observer& observer, core::Solver<T, Set>& solver,
-                                   const plan::StageSetting& setting,
-                                   const typename core::Solver<T, Set>::Cells& cells, const scene::Scene& scene);
+                                   const plan::StageSetting& setting, const typename core::Solver<T, Set>::Cells& cells,
+                                   const scene::Scene& scene);
 
 }  // namespace rouleau::monitor

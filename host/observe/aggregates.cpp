@@ -105,8 +105,8 @@ std::vector<CellContact> find_touching_cells(const core::Surfaces& s, const core
       const bool turned = contact.other < cell || (contact.other == cell && shift < std::array<int, 3>{});
       if (turned) shift = {-shift[0], -shift[1], -shift[2]};
       const int a = turned ? contact.other : cell, b = turned ? cell : contact.other;
-      CellContact& pair = found.try_emplace({a, b, shift}, CellContact{a, b, {shift[0], shift[1]}, reach, 0, shift[2]})
-                              .first->second;
+      CellContact& pair =
+          found.try_emplace({a, b, shift}, CellContact{a, b, {shift[0], shift[1]}, reach, 0, shift[2]}).first->second;
       pair.gap = std::min(pair.gap, contact.distance);
       if (!turned) pair.contact_length += s.type_of(cell).node_area[contact.node - s.cells[cell].first];
     }

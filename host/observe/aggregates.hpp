@@ -23,7 +23,8 @@ std::vector<CellContact> find_touching_cells(const core::Membranes& membranes, c
                                              double reach);
 
 /// The same of surfaces: the distance between the nodes of either and the triangles of the other.
-std::vector<CellContact> find_touching_cells(const core::Surfaces& surfaces, const core::Domain<3>& domain, double reach);
+std::vector<CellContact> find_touching_cells(const core::Surfaces& surfaces, const core::Domain<3>& domain,
+                                             double reach);
 
 /// Of each cell the smallest gap to any other or to an image (spacings), looked for in growing neighbourhoods up to the
 /// size of the box; infinite when there is none.

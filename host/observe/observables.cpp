@@ -136,8 +136,9 @@ Table cells_table() {
            .value = in_plane<&CellSnapshot::perimeter>},
           {.name = "min_gap",
            .unit = "m",
-           .doc = "to the nearest outline of another cell or of any periodic image; `inf` where there is none; in three "
-                  "dimensions between nodes and triangles, up to half of the shortest period",
+           .doc =
+               "to the nearest outline of another cell or of any periodic image; `inf` where there is none; in three "
+               "dimensions between nodes and triangles, up to half of the shortest period",
            .value = cell<&CellSnapshot::min_gap>,
            .chart = "Smallest gap to another cell"},
           {.name = "wall_gap",
@@ -483,7 +484,11 @@ nlohmann::json columns_json() {
   for (const Table& table : tables()) {
     auto columns = nlohmann::json::array();
     for (const Observable& o : table.observables)
-      columns.push_back({{"column", o.column()}, {"unit", o.unit}, {"doc", o.doc}, {"has_means", o.has_means}, {"in_space", o.in_space}});
+      columns.push_back({{"column", o.column()},
+                         {"unit", o.unit},
+                         {"doc", o.doc},
+                         {"has_means", o.has_means},
+                         {"in_space", o.in_space}});
     list.push_back({{"name", table.name}, {"columns", std::move(columns)}});
   }
   return list;

@@ -53,7 +53,8 @@ double wall_gap(const core::Surfaces& surfaces, int cell, const core::Domain<3>&
   double gap = std::numeric_limits<double>::infinity();
   for (int axis = 1; axis < 3; ++axis) {
     if (!domain.walled(axis)) continue;
-    const auto [least, most] = std::minmax_element(along[axis]->begin() + range.first, along[axis]->begin() + range.end());
+    const auto [least, most] =
+        std::minmax_element(along[axis]->begin() + range.first, along[axis]->begin() + range.end());
     gap = std::min({gap, *least + 0.5, domain.size[axis] - 0.5 - *most});
   }
   return std::isinf(gap) ? std::nan("") : gap;
@@ -81,7 +82,8 @@ void draw(core::SurfaceTasks<T>& tasks, const core::Surfaces& surfaces, const un
     const core::Mesh& mesh = surfaces.type_of(k).mesh;
     const std::vector<double> of_triangle = tasks.forces().tensions(surfaces, k);
     for (int i = 0; i < mesh.node_count(); ++i) {
-      const auto begin = static_cast<std::size_t>(mesh.corners().first[i]), end = static_cast<std::size_t>(mesh.corners().first[i + 1]);
+      const auto begin = static_cast<std::size_t>(mesh.corners().first[i]),
+                 end = static_cast<std::size_t>(mesh.corners().first[i + 1]);
       double sum = 0;
       for (std::size_t c = begin; c < end; ++c) sum += of_triangle[mesh.corners().entry[c] / 3];
       outlines.tension.push_back(sum / static_cast<double>(end - begin) * tension_unit);
@@ -206,7 +208,11 @@ void Observer::observe_cells(const core::Surfaces& surfaces, const units::Lattic
   const auto contacts = find_touching_cells(surfaces, domain, scene_->output.aggregate_gap / length);
   const Aggregates aggregates = find_aggregates(surfaces.cell_count(), contacts);
   for (const CellContact& c : contacts) {
-    snapshot.contacts.push_back({c.cell_a, c.cell_b, {c.image.x, c.image.y, c.image_z}, c.gap * length, std::nan(""),
+    snapshot.contacts.push_back({c.cell_a,
+                                 c.cell_b,
+                                 {c.image.x, c.image.y, c.image_z},
+                                 c.gap * length,
+                                 std::nan(""),
                                  c.contact_length * length * length});
   }
   const std::vector<double> gaps = smallest_gaps(surfaces, domain);
@@ -223,8 +229,7 @@ void Observer::observe_cells(const core::Surfaces& surfaces, const units::Lattic
     const core::Vec<3> marker = nodes[marker_[k]] - ellipsoid.center;
     centers.emplace_back(ellipsoid.center.x(), ellipsoid.center.y());
     CellSnapshot s;
-    follow_angles(static_cast<std::size_t>(k),
-                  plane.deformation > roundest ? std::optional(plane.angle) : std::nullopt,
+    follow_angles(static_cast<std::size_t>(k), plane.deformation > roundest ? std::optional(plane.angle) : std::nullopt,
                   std::atan2(marker.y(), marker.x()), s);
     s.cell = k;
     s.type = scene_->cell_types[surfaces.cells[k].type].name;

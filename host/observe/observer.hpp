@@ -2,8 +2,8 @@
 #pragma once
 
 #include <limits>
-#include <optional>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <vector>
 
 #include "aggregates.hpp"
@@ -70,8 +70,8 @@ class Observer {
 
   const scene::Scene* scene_;
   core::Domain<2> domain_;
-  std::vector<double> initial_area_;  ///< or volumes
-  std::vector<int> marker_;           ///< of each surface: the node that tells its tank treading
+  std::vector<double> initial_area_;                 ///< or volumes
+  std::vector<int> marker_;                          ///< of each surface: the node that tells its tank treading
   std::vector<double> angle_, tank_treading_angle_;  ///< last values, continuous
   Rotation rotation_;
   bool started_ = false;

@@ -34,7 +34,8 @@ double particle_stress(const core::Surfaces& s, const scene::Scene& scene, doubl
     std::size_t t = 0;
     for (const auto& corners : mesh.triangles()) {
       double ux = 0, uy = 0;
-      for (const int node : corners) ux += s.velocity_x[cell.first + node] / 3, uy += s.velocity_y[cell.first + node] / 3;
+      for (const int node : corners)
+        ux += s.velocity_x[cell.first + node] / 3, uy += s.velocity_y[cell.first + node] / 3;
       stress += viscosity * (ratio - 1) * (ux * twice_area[t].y() + uy * twice_area[t].x()) / 2;
       ++t;
     }

@@ -26,10 +26,10 @@ struct CellSnapshot {
   double stretch_min, stretch_max;  ///< of its segments or edges: length over rest length
   /// In three dimensions, where angle and deformation are those of the plane of x and y.
   struct InSpace {
-    double z;                                   ///< centroid, m
-    double volume, surface_area;                ///< m3, m2
-    std::array<double, 3> semi_axes;            ///< m, of the inertia ellipsoid, largest first
-    std::array<double, 3> short_axis;           ///< unit vector, its first component that is not 0 positive
+    double z;                          ///< centroid, m
+    double volume, surface_area;       ///< m3, m2
+    std::array<double, 3> semi_axes;   ///< m, of the inertia ellipsoid, largest first
+    std::array<double, 3> short_axis;  ///< unit vector, its first component that is not 0 positive
   };
   std::optional<InSpace> in_space = {};
 };

@@ -106,7 +106,9 @@ double step_cost(double lattice_nodes, double membrane_nodes, scene::Precision p
   return lattice_nodes * of_node + membrane_nodes * (dimension == 2 ? 50e-9 : 200e-9);
 }
 
-double membrane_memory(const scene::Scene& scene) { return membrane_nodes_of(scene) * (scene.domain.depth ? 1200 : 400); }
+double membrane_memory(const scene::Scene& scene) {
+  return membrane_nodes_of(scene) * (scene.domain.depth ? 1200 : 400);
+}
 
 void require_memory(double bytes, const std::string& what) {
   const double left = available_memory();
@@ -126,10 +128,10 @@ Estimate estimate(const Plan& plan) {
   Estimate estimate;
   for (const StageSetting& stage : plan.stages) estimate.steps += static_cast<double>(stage.max_steps);
   estimate.wall_s = estimate.steps * step_cost(nodes, membrane_nodes, scene.numerics.precision, dimension);
-  estimate.memory_bytes =
-      nodes * word *
-          (velocities + (plan.has_cells ? dimension : 0) + (plan.viscosity_contrast || !scene.fluid.layers.empty() ? 1 : 0)) +
-      membrane_memory(scene);
+  estimate.memory_bytes = nodes * word *
+                              (velocities + (plan.has_cells ? dimension : 0) +
+                               (plan.viscosity_contrast || !scene.fluid.layers.empty() ? 1 : 0)) +
+                          membrane_memory(scene);
   estimate.output = estimate_output(scene, plan.stages);
   return estimate;
 }

@@ -216,8 +216,8 @@ std::vector<Omission> omissions(const Plan& plan) {
       omit("slip correction",
            "numerics.slip_correction is false: membranes slip to first order in the lattice spacing");
     if (!scene.numerics.area_correction)
-      omit("area correction", std::string("numerics.area_correction is false: leaks show as ") +
-                                  (space ? "volume" : "area") + " drift");
+      omit("area correction",
+           std::string("numerics.area_correction is false: leaks show as ") + (space ? "volume" : "area") + " drift");
     if (!plan.has_interactions) {
       const bool others = plan.has_wall_interactions || plan.has_self_interactions;
       omit("neighbour search", scene.interactions.empty() ? "the scene has no interaction"

@@ -292,8 +292,7 @@ core::Surfaces make_surfaces(const scene::Scene& scene, double spacing) {
   for (const scene::CellType& type : scene.cell_types)
     surfaces.types.push_back(std::make_shared<const core::RestSurface>(rest_surface(type, spacing)));
   for (const scene::CellPlacement& cell : scene.cells) {
-    const core::Vec<3> center(cell.center.x() / spacing - 0.5, cell.center.y() / spacing - 0.5,
-                              cell.z / spacing - 0.5);
+    const core::Vec<3> center(cell.center.x() / spacing - 0.5, cell.center.y() / spacing - 0.5, cell.z / spacing - 0.5);
     core::add_cell(surfaces, cell.type, center, rotation_of(cell));
   }
   SurfaceChecker(scene, surfaces, spacing).check();

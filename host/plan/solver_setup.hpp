@@ -2,8 +2,8 @@
 #pragma once
 
 #include "core/membrane/membranes.hpp"
-#include "core/surface/surfaces.hpp"
 #include "core/solver/solver_setup.hpp"
+#include "core/surface/surfaces.hpp"
 #include "plan.hpp"
 
 namespace rouleau::plan {

@@ -132,7 +132,6 @@ struct Stiffness {
   Bounded stretching, bending;
 };
 
-
 /// Of all cell types in a stage, the stretching and the bending stiffness that are nearest to their limits.
 Stiffness membrane_stiffness(const Plan& plan, const plugin::ModelSetting& setting) {
   const scene::Scene& scene = *plan.scene;
@@ -143,8 +142,8 @@ Stiffness membrane_stiffness(const Plan& plan, const plugin::ModelSetting& setti
     const double ratio = cell.interior_viscosity / scene.fluid.viscosity;
     double factor = 1;
     if (scene.numerics.slip_correction) {
-      factor =
-          core::stiffening(core::slip_constants(kernel.kind, ratio).shift, shape::node_spacing(cell) / setting.units.length);
+      factor = core::stiffening(core::slip_constants(kernel.kind, ratio).shift,
+                                shape::node_spacing(cell) / setting.units.length);
     }
     double stretching = 0, bending = 0;
     for (const PlannedModel& law : plan.membranes[t]) {
@@ -314,8 +313,8 @@ std::vector<Limit> find_limits(const Plan& plan) {
     }
     const CellTravel travel = cell_travel(scene, stage);
     if (scene.domain.depth && travel.mean > 0) {
-      add("Reynolds number of cells that move through the lattice, without convective inertia" + where, travel.mean, 0.05,
-          true, lower + ", or set fluid.inertia to true: cells would drift across the flow wrongly", density);
+      add("Reynolds number of cells that move through the lattice, without convective inertia" + where, travel.mean,
+          0.05, true, lower + ", or set fluid.inertia to true: cells would drift across the flow wrongly", density);
     }
     if (travel.spread > 0) {
       add("Reynolds number of cells that pass each other, without convective inertia" + where, travel.spread, 0.05,

@@ -29,7 +29,8 @@ void add_surfaces(Json& result, const observe::OutlineSnapshot& s, double quantu
     const auto begin = static_cast<std::size_t>(s.first[cell]), end = static_cast<std::size_t>(s.first[cell + 1]);
     double origin[3];
     for (std::size_t k = 0; k < 3; ++k) {
-      const auto [low, high] = std::minmax_element(along[k]->begin() + static_cast<long>(begin), along[k]->begin() + static_cast<long>(end));
+      const auto [low, high] =
+          std::minmax_element(along[k]->begin() + static_cast<long>(begin), along[k]->begin() + static_cast<long>(end));
       const double middle = std::round((*low + *high) / 2 / quantum) * quantum;
       origin[k] = std::isfinite(middle) ? middle : 0;
       origins.push_back(std::round(origin[k] * micro * 1000) / 1000);
@@ -37,7 +38,8 @@ void add_surfaces(Json& result, const observe::OutlineSnapshot& s, double quantu
     for (std::size_t i = begin; i < end; ++i) {
       for (std::size_t k = 0; k < 3; ++k) {
         const double steps = ((*along[k])[i] - origin[k]) / quantum;
-        const auto value = static_cast<std::int16_t>(std::isfinite(steps) ? std::lround(std::clamp(steps, -limit, limit)) : 0);
+        const auto value =
+            static_cast<std::int16_t>(std::isfinite(steps) ? std::lround(std::clamp(steps, -limit, limit)) : 0);
         append(bytes, static_cast<std::uint16_t>(value), 2);
       }
     }
@@ -53,7 +55,8 @@ Json surface_data(const files::FrameReader& reader, const std::vector<std::size_
   const observe::OutlineSnapshot begin = reader.surfaces(static_cast<int>(selection.front()));
   if (begin.triangles.empty()) return nullptr;
   const std::array<double, 3> size = reader.size_in_space();
-  const double quantum = std::max(1e-9, std::hypot(size[0], size[1], size[2]) / std::numeric_limits<std::int16_t>::max());
+  const double quantum =
+      std::max(1e-9, std::hypot(size[0], size[1], size[2]) / std::numeric_limits<std::int16_t>::max());
   std::vector<unsigned char> triangles;
   for (const auto& corners : begin.triangles) {
     for (const int node : corners) append(triangles, static_cast<std::uint32_t>(node), 4);
@@ -66,7 +69,8 @@ Json surface_data(const files::FrameReader& reader, const std::vector<std::size_
               {"outputs", Json::array()},
               {"origin_um", Json::array()},
               {"nodes", Json::array()}};
-  const std::size_t kept = std::clamp<std::size_t>(most_surface_points / begin.x.size(), 2, std::max<std::size_t>(2, selection.size()));
+  const std::size_t kept =
+      std::clamp<std::size_t>(most_surface_points / begin.x.size(), 2, std::max<std::size_t>(2, selection.size()));
   std::size_t last = selection.size();  // none yet
   for (std::size_t k = 0; k < kept; ++k) {
     const std::size_t place = k * (selection.size() - 1) / (kept - 1);

@@ -31,7 +31,7 @@ class Checkpoints {
   }
   /// Writes the file, beside the last one. All ranks together; the solver's state has been shared.
   template <class T, class Set>
-  void write(const plan::Plan& plan, int threads, const RunState& state, 
+  void write(const plan::Plan& plan, int threads, const RunState& state,
              const typename core::Solver<T, Set>::Cells& cells, core::Solver<T, Set>& solver);
   [[nodiscard]] bool pending() const { return pending_; }
   /// The file takes its place if the state has been found sound. One that is not is left to the next regular check:

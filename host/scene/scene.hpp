@@ -105,7 +105,7 @@ using Shape = std::variant<Biconcave, Circle, Ellipse, Sphere, Ellipsoid, MeshFi
 struct CellType {
   std::string name;
   Shape shape;
-  int segments;       ///< of an outline; 0 in three dimensions
+  int segments;                       ///< of an outline; 0 in three dimensions
   double interior_viscosity;          ///< Pa s
   std::vector<ModelChoice> membrane;  ///< laws that add up
   int triangles = 0;                  ///< of a surface: 20 n^2; 0 in two dimensions, and of a mesh, whose file has them
@@ -119,8 +119,9 @@ struct CellPlacement {
   std::string pointer;     ///< entry of /cells that asked for it
   int line = 0;            ///< of the file of cells that it comes from; 0: of none
   double z = 0;            ///< m, of the centre, in three dimensions
-  std::optional<Eigen::Vector3d> axis = {};  ///< unit vector that the shape's y axis is turned to; `angle` is then about
-                                             ///< it, not about z
+  std::optional<Eigen::Vector3d> axis =
+      {};  ///< unit vector that the shape's y axis is turned to; `angle` is then about
+           ///< it, not about z
 };
 
 /// Cells that were placed at random.

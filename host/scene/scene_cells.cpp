@@ -28,12 +28,14 @@ void check_shape(const SceneFields& fields, const std::string& pointer, bool in_
   struct Pair {
     const char *plane, *space;
   };
-  for (const auto& [plane, space] : {Pair{"circle", "sphere"}, Pair{"ellipse", "ellipsoid"}, Pair{"biconcave", "mesh"}}) {
+  for (const auto& [plane, space] :
+       {Pair{"circle", "sphere"}, Pair{"ellipse", "ellipsoid"}, Pair{"biconcave", "mesh"}}) {
     const char* const wrong = in_space ? plane : space;
     if (std::string(wrong) == "biconcave" || !fields.has(pointer + "/" + wrong)) continue;
     fields.refuse_key(pointer + "/" + wrong,
-                      in_quotes(wrong) + (in_space ? " is a shape of two dimensions, and the domain has three\ntake "
-                                                   : " is a shape of three dimensions, and the domain has two\ntake ") +
+                      in_quotes(wrong) +
+                          (in_space ? " is a shape of two dimensions, and the domain has three\ntake "
+                                    : " is a shape of three dimensions, and the domain has two\ntake ") +
                           in_quotes(in_space ? space : plane));
   }
 }
@@ -68,8 +70,7 @@ double surface_area(const Shape& shape) {
   if (ellipsoid == nullptr) return 0;
   constexpr double p = 1.6075;  // Thomsen's formula, good to 1 %
   const auto [a, b, c] = std::array{ellipsoid->semi_axes[0], ellipsoid->semi_axes[1], ellipsoid->semi_axes[2]};
-  return 4 * std::numbers::pi *
-         std::pow((std::pow(a * b, p) + std::pow(a * c, p) + std::pow(b * c, p)) / 3, 1 / p);
+  return 4 * std::numbers::pi * std::pow((std::pow(a * b, p) + std::pow(a * c, p) + std::pow(b * c, p)) / 3, 1 / p);
 }
 
 /// What the scene says, or so many that nodes lie a lattice spacing apart, about.
@@ -93,7 +94,8 @@ int read_triangles(const SceneFields& fields, const std::string& pointer, const 
   const int triangles = fields.value<int>(key);
   const int n = static_cast<int>(std::floor(std::sqrt(triangles / 20.0)));
   if (20 * n * n != triangles) {
-    fields.refuse(key, std::to_string(triangles) + " is no number of triangles of a divided icosahedron, 20 n^2\ntake " +
+    fields.refuse(key, std::to_string(triangles) +
+                           " is no number of triangles of a divided icosahedron, 20 n^2\ntake " +
                            std::to_string(20 * n * n) + " or " + std::to_string(20 * (n + 1) * (n + 1)));
   }
   return triangles;
@@ -162,7 +164,8 @@ class Placements {
     const auto placed = read_cell_table(file, types_, fields_.units(), pointer, type);
     fields_.require_room(cells_.size(), placed.size(), pointer + "/file");
     if (domain_.depth && !placed.empty() && std::isnan(placed.front().z)) {
-      fields_.refuse(pointer + "/file", "in three dimensions cells have a place along z\nadd a column z_um to the file");
+      fields_.refuse(pointer + "/file",
+                     "in three dimensions cells have a place along z\nadd a column z_um to the file");
     }
     cells_.insert(cells_.end(), placed.begin(), placed.end());
   }
@@ -269,7 +272,8 @@ std::vector<CellType> read_cell_types(const SceneFields& fields, double fluid_vi
         return;
       }
       if (fields.has(pointer + "/triangles")) {
-        fields.refuse_key(pointer + "/triangles", "an outline has segments\ngive \"segments\", about one for each spacing");
+        fields.refuse_key(pointer + "/triangles",
+                          "an outline has segments\ngive \"segments\", about one for each spacing");
       }
       fields.require(pointer, "segments", "about one per lattice spacing; or \"numerics\": \"auto\" chooses them");
       type.segments = fields.value<int>(pointer + "/segments");

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "mesh_file.hpp"
 #include <stdexcept>
 #include <utility>
+#include "mesh_file.hpp"
 
 namespace rouleau::shape {
 

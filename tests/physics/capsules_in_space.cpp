@@ -45,9 +45,9 @@ TEST_CASE("capsules in three dimensions deform and turn as the boundary integral
     double strain, deformation, angle_over_pi, within;
   };
   // Own boundary integral on 1 442 nodes, 0.3 %; and 25/12 Ca of Barthes-Biesel and Rallison, J. Fluid Mech. 113 (1981).
-  const auto [name, membrane, strain, deformation, angle, within] =
-      GENERATE(Case{"neo-Hookean, Ca 0.15", capsule("neo-hookean", 0.15), 3.5, 0.2717, 0.172, 0.02},
-               Case{"Skalak C = 1, Ca 0.3", capsule("skalak", 0.3, R"(, "area_dilation": 1)"), 3.5, 0.3349, 0.155, 0.02});
+  const auto [name, membrane, strain, deformation, angle, within] = GENERATE(
+      Case{"neo-Hookean, Ca 0.15", capsule("neo-hookean", 0.15), 3.5, 0.2717, 0.172, 0.02},
+      Case{"Skalak C = 1, Ca 0.3", capsule("skalak", 0.3, R"(, "area_dilation": 1)"), 3.5, 0.3349, 0.155, 0.02});
   const SceneRun run = sheared_sphere(membrane, strain);
   REQUIRE(run.summary["status"] == "completed");
   const double d = run.column("deformation").back(), turned = run.column("angle_rad").back() / std::numbers::pi;

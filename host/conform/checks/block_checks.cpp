@@ -207,15 +207,23 @@ Finding threads(const Subject& subject) {
 std::vector<Check> block_checks() {
   const Level level = Level::robustness;
   return {
-      {"hidden-state", level, "remembers nothing from one call to the next", {"compute"}, hidden_state},
+      {"hidden-state", level, "keeps nothing from one call to the next", {"compute"}, hidden_state},
       {"blocks",
        level,
-       "gives the same however the host cuts its blocks",
+       "gives the same results however elements are divided into blocks",
        {"hidden-state", "bounds"},
        on_each_lattice<blocks>},
-      {"aliasing", level, "bears outputs over inputs", {"hidden-state"}, on_each_lattice<aliasing>},
-      {"contained", level, "keeps what is no number in its element", {"blocks"}, on_each_lattice<contained>},
-      {"threads", level, "gives the same to eight threads on one instance", {"hidden-state"}, on_each_lattice<threads>},
+      {"aliasing",
+       level,
+       "gives the same results when outputs overwrite inputs",
+       {"hidden-state"},
+       on_each_lattice<aliasing>},
+      {"contained", level, "spreads no NaN from one element to another", {"blocks"}, on_each_lattice<contained>},
+      {"threads",
+       level,
+       "gives the same results when eight threads share one instance",
+       {"hidden-state"},
+       on_each_lattice<threads>},
   };
 }
 

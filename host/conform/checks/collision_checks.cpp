@@ -314,7 +314,7 @@ std::vector<Check> collision_checks() {
       {"velocity", level, "gives the velocity sum f c + F/2", {"compute"}, on_each_lattice<velocity>, kind},
       {"equilibrium",
        level,
-       "leaves populations in equilibrium alone",
+       "does not change populations in equilibrium",
        {"momentum"},
        on_each_lattice<equilibrium>,
        kind},

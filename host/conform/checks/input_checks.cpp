@@ -280,19 +280,19 @@ Finding outputs_optional(const Subject& subject) {
 std::vector<Check> input_checks() {
   const Level level = Level::robustness;
   return {
-      {"parameters", level, "takes or refuses any parameters, in words", {"struct-size"}, parameters},
-      {"struct-size", level, "keeps to the fields that both sides know", {"hidden-state"}, struct_size},
+      {"parameters", level, "accepts or refuses any parameters, and says why", {"struct-size"}, parameters},
+      {"struct-size", level, "uses only the fields that host and plugin both know", {"hidden-state"}, struct_size},
       {"declared-inputs",
        level,
        "reads no input that its manifest does not declare",
        {"hidden-state"},
        declared_inputs},
-      {"needs-matter", level, "needs what it declares", {"hidden-state"}, needs_matter},
+      {"needs-matter", level, "depends on each input that it declares", {"hidden-state"}, needs_matter},
       {"read-only-inputs", level, "does not write to its inputs", {"compute"}, read_only_inputs},
-      {"bounds", level, "stays within its arrays", {"hidden-state"}, bounds},
+      {"bounds", level, "reads and writes only inside its arrays", {"hidden-state"}, bounds},
       {"outputs-optional",
        level,
-       "gives the same whichever outputs are wanted",
+       "gives the same results whichever outputs are asked for",
        {"hidden-state", "energy-optional"},
        outputs_optional},
   };

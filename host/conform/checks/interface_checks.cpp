@@ -96,7 +96,7 @@ std::vector<Check> interface_checks() {
       {"load", Level::interface, "loads with all its symbols bound", {"library"}, load},
       {"open", Level::interface, "gives this host and later ones one table", {"load"}, open},
       {"agreement", Level::interface, "table and manifest agree: id, version, kind, functions", {"open"}, agreement},
-      {"create", Level::interface, "makes instances with typical parameters", {"agreement"}, create},
+      {"create", Level::interface, "creates instances from typical parameter values", {"agreement"}, create},
       {"compute", Level::interface, "writes finite outputs for ordinary inputs", {"create"}, computes},
   };
 }

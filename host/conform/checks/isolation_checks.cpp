@@ -307,15 +307,23 @@ Finding surroundings(const Subject& subject) {
 std::vector<Check> isolation_checks() {
   const Level level = Level::robustness;
   return {
-      {"quiet", level, "computes without allocation, lock, input or output", {"fuzz", "outputs-optional"}, quiet},
+      {"quiet",
+       level,
+       "computes without allocating memory, locking, reading or writing files",
+       {"fuzz", "outputs-optional"},
+       quiet},
       {"system-calls",
        level,
-       "asks the kernel for memory alone when it is loaded and made",
+       "asks the kernel for nothing but memory while it is loaded and created",
        {"compute", "parameters"},
        system_calls},
       {"traces", level, "leaves nothing behind in the process", {"quiet", "system-calls"}, traces},
-      {"memory", level, "computes without changing memory of its own", {"traces", "hidden-state", "threads"}, memory},
-      {"surroundings", level, "gives the same in other surroundings", {"memory"}, surroundings},
+      {"memory",
+       level,
+       "does not change its own memory while it computes",
+       {"traces", "hidden-state", "threads"},
+       memory},
+      {"surroundings", level, "gives the same results in another environment", {"memory"}, surroundings},
   };
 }
 

@@ -227,7 +227,7 @@ Finding bias(const Subject& subject) {
 
 std::vector<Check> number_checks() {
   return {
-      {"nan-out", Level::robustness, "gives no number for what is none", {"contained"}, nan_out},
+      {"nan-out", Level::robustness, "returns NaN where its inputs are NaN", {"contained"}, nan_out},
       {"parameters-matter",
        Level::robustness,
        "depends on each of its parameters and choices",
@@ -235,12 +235,12 @@ std::vector<Check> number_checks() {
        parameters_matter},
       {"fluid-independent",
        Level::physics,
-       "knows nothing of the fluid that its manifest does not say",
+       "depends on no property of the fluid that its manifest does not name",
        {"hidden-state", "units"},
        fluid_independent},
       {"bias",
        Level::physics,
-       "rounds mass and momentum in no direction",
+       "adds no mass and no momentum by rounding, in any direction",
        {"mass", "momentum", "precision"},
        bias,
        plugin::ModelKind::collision},

@@ -148,7 +148,7 @@ std::vector<Check> physics_checks() {
   return {
       {"units",
        Level::physics,
-       "means SI by its units: the lattice's do not matter",
+       "gives results in SI that do not depend on the lattice's units",
        {"compute", "state-restored"},
        units},
   };

@@ -68,7 +68,7 @@ double distance(const Bounds& a, const Bounds& b, double move_x, double move_y) 
 
 double suitable_skin(const CellNodes& cells) {
   if (cells.largest_step.empty()) return usual_skin;  // nobody keeps account of the steps
-  double skin = thinnest_skin;  // also where a step is no number: the run's own checks will tell
+  double skin = thinnest_skin;                        // also where a step is no number: the run's own checks will tell
   for (const double step : cells.largest_step) skin = std::max(skin, lifetime * step);
   return std::min(skin, thickest_skin);
 }

@@ -52,7 +52,8 @@ class SurfaceContacts::Bins {
     std::vector<int> bin(entries.size());
     begin_.assign(static_cast<std::size_t>(count_[0]) * count_[1] * count_[2] + 1, 0);
     for (std::size_t e = 0; e < entries.size(); ++e) {
-      bin[e] = bin_of({along(0, entries[e].middle.x()), along(1, entries[e].middle.y()), along(2, entries[e].middle.z())});
+      bin[e] =
+          bin_of({along(0, entries[e].middle.x()), along(1, entries[e].middle.y()), along(2, entries[e].middle.z())});
       ++begin_[bin[e] + 1];
     }
     for (std::size_t b = 1; b < begin_.size(); ++b) begin_[b] += begin_[b - 1];
@@ -200,8 +201,13 @@ void SurfaceContacts::find(int cell, const Surfaces& surfaces, std::vector<Surfa
     }
     if (closest < 0) continue;
     const auto& [i, j, k] = triangles[closest];
-    SurfaceContact contact{group.node, group.other, group.shift, {other.first + i, other.first + j, other.first + k},
-                           point.weight, std::max(root, SurfaceContact::least_distance), {}};
+    SurfaceContact contact{group.node,
+                           group.other,
+                           group.shift,
+                           {other.first + i, other.first + j, other.first + k},
+                           point.weight,
+                           std::max(root, SurfaceContact::least_distance),
+                           {}};
     contact.direction = root > SurfaceContact::least_distance
                             ? Vec<3>((place - point.place) / root)
                             : Vec<3>((nodes[j] - nodes[i]).cross(nodes[k] - nodes[i]).normalized());

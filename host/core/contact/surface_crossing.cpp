@@ -23,7 +23,8 @@ std::optional<SurfaceCrossing> find_crossing(const Surfaces& surfaces, const Dom
     contacts.find(cell, surfaces, list);
     for (const SurfaceContact& contact : list) {
       std::vector<Vec<3>>& of_other = normals[contact.other];
-      if (of_other.empty()) of_other = node_normals(surfaces.type_of(contact.other).mesh, surfaces.nodes(contact.other));
+      if (of_other.empty())
+        of_other = node_normals(surfaces.type_of(contact.other).mesh, surfaces.nodes(contact.other));
       Vec<3> outward = Vec<3>::Zero();
       for (std::size_t k = 0; k < 3; ++k)
         outward += contact.weight[k] * of_other[contact.corner[k] - surfaces.cells[contact.other].first];

@@ -14,7 +14,8 @@ SurfaceInteractions::SurfaceInteractions(const Surfaces& surfaces, std::vector<I
       reactions_(surfaces.cells.size()) {
   for (const auto& [between, potential] : interactions_) {
     if (!potential.state.empty() || potential.reads("normal_velocity") || potential.reads("tangential_velocity"))
-      throw std::invalid_argument("\"" + potential.id + "\" acts by more than the distance, which surfaces do not tell");
+      throw std::invalid_argument("\"" + potential.id +
+                                  "\" acts by more than the distance, which surfaces do not tell");
   }
 }
 
@@ -53,8 +54,7 @@ void SurfaceInteractions::evaluate(int cell, const Surfaces& surfaces, bool ener
     scratch.contact.clear();
     for (std::size_t c = 0; c < scratch.contacts.size(); ++c) {
       const SurfaceContact& contact = scratch.contacts[c];
-      if (contact.distance > cutoffs_[p] ||
-          !acts_between(interactions_[p], type, surfaces.cells[contact.other].type))
+      if (contact.distance > cutoffs_[p] || !acts_between(interactions_[p], type, surfaces.cells[contact.other].type))
         continue;
       scratch.distance.push_back(contact.distance);
       scratch.contact.push_back(static_cast<int>(c));

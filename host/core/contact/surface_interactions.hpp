@@ -37,9 +37,9 @@ class SurfaceInteractions {
   };
   struct Scratch {
     std::vector<SurfaceContact> contacts;
-    std::vector<double> result;          // of each contact: sum over the potentials
-    std::vector<double> distance, law;   // of one potential's contacts
-    std::vector<int> contact;            // which those are
+    std::vector<double> result;         // of each contact: sum over the potentials
+    std::vector<double> distance, law;  // of one potential's contacts
+    std::vector<int> contact;           // which those are
   };
   /// Sets scratch.result to the sum of the potentials' forces, or energies, at the contacts of a cell.
   void evaluate(int cell, const Surfaces& surfaces, bool energy, Scratch& scratch) const;

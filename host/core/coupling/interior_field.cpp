@@ -69,8 +69,8 @@ void InteriorField<T>::find_reach(const Surfaces& surfaces, int cell) {
       for (int j = 0; j < reach.size[0]; ++j) {
         const int at = axis == 0 ? j : k;
         for (int from = std::max(0, at - 3); from <= std::min(reach.size[axis] - 1, at + 2); ++from)
-          include(reach.at(j, k), before[static_cast<std::size_t>(reach.size[0] * (axis == 0 ? k : from) +
-                                                                  (axis == 0 ? from : j))]);
+          include(reach.at(j, k),
+                  before[static_cast<std::size_t>(reach.size[0] * (axis == 0 ? k : from) + (axis == 0 ? from : j))]);
       }
     }
   }

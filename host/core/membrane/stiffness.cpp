@@ -26,7 +26,9 @@ class Probe {
   }
 
   std::vector<double> tension_by_stretch() { return segments(&rouleau_membrane_block::tension_by_stretch); }
-  std::vector<double> tension() { return law_.writes("stress_1") ? tension_along() : segments(&rouleau_membrane_block::tension); }
+  std::vector<double> tension() {
+    return law_.writes("stress_1") ? tension_along() : segments(&rouleau_membrane_block::tension);
+  }
   std::vector<double> moment_by_curvature() {
     block_.curvature = arguments_.data();
     if (law_.reads("rest_curvature")) block_.rest_curvature = zero_.data();

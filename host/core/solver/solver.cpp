@@ -60,8 +60,7 @@ double channel_viscosity(const BasicSolverSetup<D>& setup) {
 template <class T, class Set>
 Solver<T, Set>::Solver(Setup setup, Cells& cells, const Ranks<dimension>& ranks, std::vector<int> owner)
     : setup_(std::move(setup)), cells_(cells), fluid_(fluid_setting(setup_, cells), setup_.collision, ranks) {
-  if (!cells.cells.empty())
-    cell_tasks_ = std::make_unique<CellTasks>(setup_, cells_, fluid_, ranks, std::move(owner));
+  if (!cells.cells.empty()) cell_tasks_ = std::make_unique<CellTasks>(setup_, cells_, fluid_, ranks, std::move(owner));
   if (setup_.mean_velocity != 0) {
     if (!setup_.domain.walled(1)) throw std::invalid_argument("a mean velocity is kept between walls");
     flow_control_.emplace(setup_.mean_velocity, setup_.body_force_x, channel_viscosity(setup_), setup_.domain.size[1]);

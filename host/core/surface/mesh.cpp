@@ -6,8 +6,8 @@
 #include <map>
 #include <stdexcept>
 
-#include "line_crossing.hpp"
 #include <string>
+#include "line_crossing.hpp"
 
 namespace rouleau::core {
 

@@ -133,8 +133,7 @@ TEST_CASE("closest points are those of brute force on moving, turning, deforming
           m.y[k] += vy + turn * rx + speed * 0.02 * uniform(random);
         }
       }
-      if (known)
-        m.largest_step.assign(m.cells.size(), largest_displacement(m, old, {0, m.node_count()}));
+      if (known) m.largest_step.assign(m.cells.size(), largest_displacement(m, old, {0, m.node_count()}));
     }
     renewals += contacts.neighbours().renewals();
   }

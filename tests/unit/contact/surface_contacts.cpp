@@ -25,7 +25,8 @@ Surfaces pair(std::mt19937& random, double apart = 1.2) {
   Surfaces s;
   s.types.push_back(std::make_shared<const RestSurface>(shape::rest_surface(shape::ellipsoid(5, {3, 3, 3}))));
   s.types.push_back(std::make_shared<const RestSurface>(shape::rest_surface(shape::biconcave_disc(6, 4))));
-  const Vec<3> center(any(random), 10, any(random) + 21), towards = Vec<3>(any(random), any(random), any(random)).normalized();
+  const Vec<3> center(any(random), 10, any(random) + 21),
+      towards = Vec<3>(any(random), any(random), any(random)).normalized();
   add_cell(s, 0, center);
   add_cell(s, 1, center + (4.2 + apart) * towards, Eigen::Quaterniond::UnitRandom().toRotationMatrix());
   for (auto* places : {&s.x, &s.y, &s.z}) {
@@ -136,7 +137,8 @@ TEST_CASE("contacts of surfaces are the closest of all triangles, while cells mo
   CHECK(renewals < 15);
 }
 
-TEST_CASE("forces between surfaces are minus the gradient of their energy, balanced, with the same bits for any workers") {
+TEST_CASE(
+    "forces between surfaces are minus the gradient of their energy, balanced, with the same bits for any workers") {
   std::mt19937 random(21);
   for (int trial = 0; trial < 4; ++trial) {
     Surfaces s = pair(random, 0.6);
@@ -205,10 +207,12 @@ TEST_CASE("spheres around the same centre have the energy of their areas at the 
   for (const int n : {8, 16}) {
     Surfaces s;
     for (const double radius : {6.0, 7.5})
-      s.types.push_back(std::make_shared<const RestSurface>(shape::rest_surface(shape::ellipsoid(n, Vec<3>::Constant(radius)))));
+      s.types.push_back(
+          std::make_shared<const RestSurface>(shape::rest_surface(shape::ellipsoid(n, Vec<3>::Constant(radius)))));
     add_cell(s, 0, {12, 10, 11});
     add_cell(s, 1, {12, 10, 11}, Eigen::AngleAxisd(0.3, Vec<3>(1, 2, 3).normalized()).toRotationMatrix());
-    SurfaceInteractions forces(s, {{{0, 1}, test::spring_potential(0.5, 1.0, 4)}}, Domain<3>{{24, 24, 24}, {true, true, true}});
+    SurfaceInteractions forces(s, {{{0, 1}, test::spring_potential(0.5, 1.0, 4)}},
+                               Domain<3>{{24, 24, 24}, {true, true, true}});
     run(forces, s);
     const double exact = 0.25 * (0.5 * 0.5 - 3 * 3) * 4 * std::numbers::pi * (36 + 7.5 * 7.5) / 2;
     errors.push_back(std::abs(forces.energy(s) / exact - 1));

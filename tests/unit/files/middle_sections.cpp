@@ -39,7 +39,8 @@ TEST_CASE("surfaces are cut through their middles into outlines of equal pieces"
     CHECK(sections.tension[i] == Approx(x).margin(1e-9));
     const std::size_t next = (i + 1) % 100;
     twice_area += sections.x[i] * sections.y[next] - sections.y[i] * sections.x[next];
-    CHECK(std::hypot(sections.x[next] - sections.x[i], sections.y[next] - sections.y[i]) == Approx(0.1586).epsilon(0.02));
+    CHECK(std::hypot(sections.x[next] - sections.x[i], sections.y[next] - sections.y[i]) ==
+          Approx(0.1586).epsilon(0.02));
   }
   CHECK(sections.x[0] == Approx(8).margin(0.02));
   CHECK(twice_area / 2 == Approx(6 * 3.14159265).epsilon(0.01));
