@@ -455,4 +455,4 @@ class Every_reader(PageOfFour):
 
 
 if __name__ == "__main__":
-    main()
+    main("numpy", "pandas")
