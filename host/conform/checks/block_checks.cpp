@@ -207,15 +207,23 @@ Finding threads(const Subject& subject) {
 std::vector<Check> block_checks() {
   const Level level = Level::robustness;
   return {
-      {"hidden-state", level, "remembers nothing from one call to the next", {"compute"}, hidden_state},
+      {"hidden-state",
+       level,
+       "gives the same result again: nothing is kept from earlier calls",
+       {"compute"},
+       hidden_state},
       {"blocks",
        level,
-       "gives the same however the host cuts its blocks",
+       "gives the same result for any block size",
        {"hidden-state", "bounds"},
        on_each_lattice<blocks>},
-      {"aliasing", level, "bears outputs over inputs", {"hidden-state"}, on_each_lattice<aliasing>},
-      {"contained", level, "keeps what is no number in its element", {"blocks"}, on_each_lattice<contained>},
-      {"threads", level, "gives the same to eight threads on one instance", {"hidden-state"}, on_each_lattice<threads>},
+      {"aliasing", level, "works when outputs are written over inputs", {"hidden-state"}, on_each_lattice<aliasing>},
+      {"contained", level, "keeps a NaN within the element where it came in", {"blocks"}, on_each_lattice<contained>},
+      {"threads",
+       level,
+       "gives the same result to eight threads that share an instance",
+       {"hidden-state"},
+       on_each_lattice<threads>},
   };
 }
 

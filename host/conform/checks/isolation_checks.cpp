@@ -310,12 +310,16 @@ std::vector<Check> isolation_checks() {
       {"quiet", level, "computes without allocation, lock, input or output", {"fuzz", "outputs-optional"}, quiet},
       {"system-calls",
        level,
-       "asks the kernel for memory alone when it is loaded and made",
+       "makes only harmless system calls while it is loaded and created",
        {"compute", "parameters"},
        system_calls},
       {"traces", level, "leaves nothing behind in the process", {"quiet", "system-calls"}, traces},
-      {"memory", level, "computes without changing memory of its own", {"traces", "hidden-state", "threads"}, memory},
-      {"surroundings", level, "gives the same in other surroundings", {"memory"}, surroundings},
+      {"memory",
+       level,
+       "does not change its own memory while it computes",
+       {"traces", "hidden-state", "threads"},
+       memory},
+      {"surroundings", level, "gives the same result in another environment", {"memory"}, surroundings},
   };
 }
 

@@ -227,7 +227,7 @@ Finding bias(const Subject& subject) {
 
 std::vector<Check> number_checks() {
   return {
-      {"nan-out", Level::robustness, "gives no number for what is none", {"contained"}, nan_out},
+      {"nan-out", Level::robustness, "answers a NaN with a NaN", {"contained"}, nan_out},
       {"parameters-matter",
        Level::robustness,
        "depends on each of its parameters and choices",
@@ -235,12 +235,12 @@ std::vector<Check> number_checks() {
        parameters_matter},
       {"fluid-independent",
        Level::physics,
-       "knows nothing of the fluid that its manifest does not say",
+       "depends on the fluid only as its manifest says",
        {"hidden-state", "units"},
        fluid_independent},
       {"bias",
        Level::physics,
-       "rounds mass and momentum in no direction",
+       "rounds without shifting mass or momentum on average",
        {"mass", "momentum", "precision"},
        bias,
        plugin::ModelKind::collision},

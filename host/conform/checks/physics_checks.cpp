@@ -148,7 +148,7 @@ std::vector<Check> physics_checks() {
   return {
       {"units",
        Level::physics,
-       "means SI by its units: the lattice's do not matter",
+       "gives the same result in SI on lattices of other units",
        {"compute", "state-restored"},
        units},
   };

@@ -100,9 +100,9 @@ Finding fuzz(const Subject& subject) {
 std::vector<Check> process_checks() {
   const Level level = Level::robustness;
   return {
-      {"floating-point-mode", level, "leaves the floating-point mode alone", {"compute"}, floating_point},
+      {"floating-point-mode", level, "does not change the floating-point mode", {"compute"}, floating_point},
       {"leaks", level, "frees what it allocates", {"create"}, leaks},
-      {"fuzz", level, "bears any inputs", {"contained"}, fuzz},
+      {"fuzz", level, "survives any input", {"contained"}, fuzz},
   };
 }
 
