@@ -20,15 +20,15 @@ namespace fs = std::filesystem;
 std::string help() {
   std::string text = R"(usage: rouleau conform MANIFEST... [options]
 
-Tests plugins against the interface and against what their manifests say. Each check runs in a process of its own, which
-is killed with all it started when its time is up: a plugin can crash, hang or write where it likes.
-Verdicts: pass, warn, fail, crash, timeout; skip for what builds on a check that did not pass, or does not apply.
-Exit code 0 when every plugin conforms (warnings allowed), 3 otherwise.
+Checks whether plugins keep to the interface and to their own manifests. Each check runs in its own process. When its time
+is up, that process and everything it started are killed, so a plugin that crashes, hangs or overwrites memory does no harm.
+Verdicts: pass, warn, fail, crash, timeout, and skip (the check does not apply, or a check that it needs did not pass).
+The exit code is 0 if every plugin conforms (warnings are allowed), and 3 if one does not.
 
 Example:
   rouleau conform lib/rouleau/plugins/interaction/morse/morse.json --level physics
 
-Checks:
+Checks, by level. A plugin passes a check if it
 )";
   for (const conform::Level level : conform::all_levels) {
     text += std::string("  ") + conform::to_string(level) + '\n';
@@ -145,14 +145,15 @@ int conform_command(const std::vector<std::string>& arguments) {
   options::positional_options_description positional;
   description.add_options()("manifest", options::value(&manifests)->required(), "manifest");
   description.add_options()("only", options::value(&only)->composing()->value_name("CHECK"),
-                            "this check alone, whatever it builds on (repeatable)");
-  description.add_options()("level", options::value(&levels)->composing()->value_name("LEVEL"),
-                            "interface, physics, robustness or speed, with the checks that it builds on (repeatable);\n"
-                            "publish: all of them, and what is warned of otherwise fails");
+                            "run this check even if the checks it needs did not pass (repeatable)");
+  description.add_options()(
+      "level", options::value(&levels)->composing()->value_name("LEVEL"),
+      "run the checks of this level and those that they need: interface, physics, robustness or speed (repeatable);\n"
+      "publish: all levels, and warnings count as failures");
   description.add_options()("seed", options::value(&chosen.seed)->value_name("N"),
-                            "of the random inputs; without it another one each time");
+                            "seed of the random inputs (default: a new one each time)");
   description.add_options()("timeout", options::value(&chosen.time_limit_s)->value_name("SECONDS"),
-                            "longest time of one check (20)");
+                            "time limit of one check (20)");
   description.add_options()("json", options::bool_switch(&as_json), "print JSON for programs");
   positional.add("manifest", -1);
   if (!parse_command_line("conform", help(), arguments, description, positional)) return 0;

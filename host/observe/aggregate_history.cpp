@@ -1,5 +1,7 @@
 #include "aggregate_history.hpp"
 
+#include <algorithm>
+
 namespace rouleau::observe {
 
 void AggregateHistory::follow(const Snapshot& snapshot) {
@@ -18,6 +20,12 @@ void AggregateHistory::follow(const Snapshot& snapshot) {
   const bool changed =
       events_.empty() || events_.back().members != event.members || events_.back().through_image != event.through_image;
   if (changed) events_.push_back(std::move(event));
+}
+
+int AggregateHistory::rouleaux() const {
+  if (events_.empty()) return 0;
+  const auto& members = events_.back().members;
+  return static_cast<int>(std::count_if(members.begin(), members.end(), [](const auto& m) { return m.size() > 1; }));
 }
 
 }  // namespace rouleau::observe

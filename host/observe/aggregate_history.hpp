@@ -13,8 +13,10 @@ class AggregateHistory {
   /// Adds an event if members or contacts across the periodic border differ from those before.
   void follow(const Snapshot& snapshot);
   [[nodiscard]] const std::vector<AggregateEvent>& events() const { return events_; }
-  /// Aggregates at the last snapshot.
+  /// Aggregates at the last snapshot, single cells included.
   [[nodiscard]] int count() const { return events_.empty() ? 0 : events_.back().count; }
+  /// Those of two cells or more.
+  [[nodiscard]] int rouleaux() const;
   NLOHMANN_DEFINE_TYPE_INTRUSIVE(AggregateHistory, events_)
 
  private:

@@ -60,7 +60,7 @@ std::vector<Part> parts(const ProgressState& state, double rate, double remainin
           {formatted("%5.0f steps/s", rate), 3},
           {formatted("Mach %7.2g", state.mach_max), 1},
           {formatted("area drift %7.1e", state.area_drift), 2},
-          {formatted(state.aggregates == 1 ? "%2d aggregate " : "%2d aggregates", state.aggregates), 4}};
+          {formatted(state.rouleaux == 1 ? "%2d rouleau " : "%2d rouleaux", state.rouleaux), 4}};
 }
 std::string joined(const std::vector<Part>& parts) {
   std::string text;

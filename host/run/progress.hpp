@@ -14,11 +14,11 @@ struct ProgressState {
   std::string stage;
   double strain;
   double mach_max, area_drift;
-  int aggregates;
+  int rouleaux;  ///< aggregates of two cells or more
 };
 
 /// One line of at most `width` characters for a terminal. Where all of it has no room, what says least is left out: first
-/// the Mach number, then the area drift, the speed, the aggregates, and the bar after these.
+/// the Mach number, then the area drift, the speed, the rouleaux, and the bar after these.
 /// rate: steps per second; remaining_s: not finite where it is not known.
 std::string progress_line(const ProgressState& state, double rate, double remaining_s, std::size_t width);
 

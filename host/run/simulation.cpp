@@ -429,7 +429,7 @@ class Simulation {
             state_.strain_at(setting),
             state_.observer.mach_max(),
             state_.observer.area_drift_max(),
-            state_.history.count()};
+            state_.history.rouleaux()};
   }
 
   /// Adds to the summary what is known behind the last step.

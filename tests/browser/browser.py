@@ -1,5 +1,6 @@
 """A headless Chromium that Python talks to through two pipes (the DevTools protocol), with nothing but the standard
 library: --remote-debugging-pipe needs neither a port nor a WebSocket."""
+import importlib.util
 import json
 import os
 import select
@@ -189,10 +190,12 @@ class BrowserCase(unittest.TestCase):
 SKIPPED = 77  # for ctest
 
 
-def main():
-    """Runs the tests of the script that calls it; without a browser they are skipped."""
-    if not shutil.which("chromium"):
-        print("skipped: there is no chromium (scripts/install-dependencies --full installs it)")
+def main(*modules):
+    """Runs the tests of the script that calls it. Without a browser, or one of the Python modules, they are skipped."""
+    missing = [] if shutil.which("chromium") else ["chromium"]
+    missing += [module for module in modules if importlib.util.find_spec(module) is None]
+    if missing:
+        print(f"skipped: {', '.join(missing)} missing (scripts/install-dependencies --full)")
         sys.exit(SKIPPED)
     program = unittest.main(argv=sys.argv[:1], verbosity=2, exit=False)
     failed = len(program.result.failures) + len(program.result.errors)

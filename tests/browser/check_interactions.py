@@ -14,19 +14,13 @@ import tempfile
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
-from browser import SKIPPED, Browser, BrowserCase, main
+from browser import Browser, BrowserCase, main
 from readers import EYES, contrast, difference, lab, obstacles
 
 PROGRAM, PLUGINS, SOURCE = (Path(a).resolve() for a in sys.argv[1:4])
 sys.path.insert(0, str(SOURCE / "python"))
 
 import rouleau as package  # noqa: E402
-
-try:
-    import pandas  # noqa: F401  what the package reads runs with
-except ImportError:
-    print("skipped: there is no pandas (scripts/install-dependencies --full installs it)")
-    sys.exit(SKIPPED)
 
 SCENE = SOURCE / "scenes" / "four-cells-shear.json"
 SHORT = {"stages": [{"name": "rest", "duration": "5 ms", "density_factor": 13000}, {"name": "shear", "shear_rate": "20 1/s", "strain": 0.3}],
@@ -461,4 +455,4 @@ class Every_reader(PageOfFour):
 
 
 if __name__ == "__main__":
-    main()
+    main("numpy", "pandas")

@@ -310,8 +310,8 @@ std::vector<Check> collision_checks() {
   constexpr auto level = Level::physics;
   return {
       {"mass", level, "conserves mass", {"compute"}, on_each_lattice<mass>, kind},
-      {"momentum", level, "changes momentum by the force and nothing else", {"mass"}, on_each_lattice<momentum>, kind},
-      {"velocity", level, "gives the velocity sum f c + F/2", {"compute"}, on_each_lattice<velocity>, kind},
+      {"momentum", level, "changes momentum by the force only", {"mass"}, on_each_lattice<momentum>, kind},
+      {"velocity", level, "reports the velocity sum f c + F/2", {"compute"}, on_each_lattice<velocity>, kind},
       {"equilibrium",
        level,
        "does not change populations in equilibrium",
@@ -320,7 +320,7 @@ std::vector<Check> collision_checks() {
        kind},
       {"stress-relaxation",
        level,
-       "leaves 1 - 1/tau of the shear stress",
+       "reduces the shear stress to 1 - 1/tau of it",
        {"equilibrium"},
        on_each_lattice<stress_relaxation>,
        kind},
@@ -332,7 +332,7 @@ std::vector<Check> collision_checks() {
        kind},
       {"reductions",
        level,
-       "takes NULL inputs and no velocity as the interface says",
+       "treats missing inputs and zero velocity as the interface says",
        {"symmetry"},
        on_each_lattice<reductions>,
        kind},

@@ -280,19 +280,15 @@ Finding outputs_optional(const Subject& subject) {
 std::vector<Check> input_checks() {
   const Level level = Level::robustness;
   return {
-      {"parameters", level, "accepts or refuses any parameters, and says why", {"struct-size"}, parameters},
-      {"struct-size", level, "uses only the fields that host and plugin both know", {"hidden-state"}, struct_size},
-      {"declared-inputs",
-       level,
-       "reads no input that its manifest does not declare",
-       {"hidden-state"},
-       declared_inputs},
-      {"needs-matter", level, "depends on each input that it declares", {"hidden-state"}, needs_matter},
+      {"parameters", level, "accepts any parameters, or refuses them with a message", {"struct-size"}, parameters},
+      {"struct-size", level, "uses only the fields that both sides know", {"hidden-state"}, struct_size},
+      {"declared-inputs", level, "reads only the inputs that its manifest declares", {"hidden-state"}, declared_inputs},
+      {"needs-matter", level, "depends on every input that its manifest declares", {"hidden-state"}, needs_matter},
       {"read-only-inputs", level, "does not write to its inputs", {"compute"}, read_only_inputs},
-      {"bounds", level, "reads and writes only inside its arrays", {"hidden-state"}, bounds},
+      {"bounds", level, "stays within its arrays", {"hidden-state"}, bounds},
       {"outputs-optional",
        level,
-       "gives the same results whichever outputs are asked for",
+       "gives the same result whichever outputs are asked for",
        {"hidden-state", "energy-optional"},
        outputs_optional},
   };

@@ -90,13 +90,17 @@ Finding computes(const Subject& subject) {
 
 std::vector<Check> interface_checks() {
   return {
-      {"manifest", Level::interface, "fits the schema; units, limits and defaults fit together", {}, manifest},
-      {"library", Level::interface, "lies beside its manifest and is made for this machine", {"manifest"}, library},
+      {"manifest", Level::interface, "fits the schema; units, limits and defaults agree", {}, manifest},
+      {"library", Level::interface, "lies beside its manifest and is built for this machine", {"manifest"}, library},
       {"exports", Level::interface, "exports rouleau_open_v1 and nothing else", {"library"}, exports},
-      {"load", Level::interface, "loads with all its symbols bound", {"library"}, load},
-      {"open", Level::interface, "gives this host and later ones one table", {"load"}, open},
-      {"agreement", Level::interface, "table and manifest agree: id, version, kind, functions", {"open"}, agreement},
-      {"create", Level::interface, "creates instances from typical parameter values", {"agreement"}, create},
+      {"load", Level::interface, "loads, with every symbol found", {"library"}, load},
+      {"open", Level::interface, "gives the same table to this host and to later ones", {"load"}, open},
+      {"agreement",
+       Level::interface,
+       "has a table that agrees with its manifest: id, version, kind, functions",
+       {"open"},
+       agreement},
+      {"create", Level::interface, "creates instances with typical parameters", {"agreement"}, create},
       {"compute", Level::interface, "writes finite outputs for ordinary inputs", {"create"}, computes},
   };
 }

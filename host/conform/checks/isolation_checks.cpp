@@ -307,14 +307,10 @@ Finding surroundings(const Subject& subject) {
 std::vector<Check> isolation_checks() {
   const Level level = Level::robustness;
   return {
-      {"quiet",
-       level,
-       "computes without allocating memory, locking, reading or writing files",
-       {"fuzz", "outputs-optional"},
-       quiet},
+      {"quiet", level, "computes without allocation, lock, input or output", {"fuzz", "outputs-optional"}, quiet},
       {"system-calls",
        level,
-       "asks the kernel for nothing but memory while it is loaded and created",
+       "makes only harmless system calls while it is loaded and created",
        {"compute", "parameters"},
        system_calls},
       {"traces", level, "leaves nothing behind in the process", {"quiet", "system-calls"}, traces},
@@ -323,7 +319,7 @@ std::vector<Check> isolation_checks() {
        "does not change its own memory while it computes",
        {"traces", "hidden-state", "threads"},
        memory},
-      {"surroundings", level, "gives the same results in another environment", {"memory"}, surroundings},
+      {"surroundings", level, "gives the same result in another environment", {"memory"}, surroundings},
   };
 }
 

@@ -227,7 +227,7 @@ Finding bias(const Subject& subject) {
 
 std::vector<Check> number_checks() {
   return {
-      {"nan-out", Level::robustness, "returns NaN where its inputs are NaN", {"contained"}, nan_out},
+      {"nan-out", Level::robustness, "answers a NaN with a NaN", {"contained"}, nan_out},
       {"parameters-matter",
        Level::robustness,
        "depends on each of its parameters and choices",
@@ -235,12 +235,12 @@ std::vector<Check> number_checks() {
        parameters_matter},
       {"fluid-independent",
        Level::physics,
-       "depends on no property of the fluid that its manifest does not name",
+       "depends on the fluid only as its manifest says",
        {"hidden-state", "units"},
        fluid_independent},
       {"bias",
        Level::physics,
-       "adds no mass and no momentum by rounding, in any direction",
+       "rounds without shifting mass or momentum on average",
        {"mass", "momentum", "precision"},
        bias,
        plugin::ModelKind::collision},

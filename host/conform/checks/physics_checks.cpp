@@ -148,7 +148,7 @@ std::vector<Check> physics_checks() {
   return {
       {"units",
        Level::physics,
-       "gives results in SI that do not depend on the lattice's units",
+       "gives the same result in SI on lattices of other units",
        {"compute", "state-restored"},
        units},
   };

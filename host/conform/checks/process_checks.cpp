@@ -102,7 +102,7 @@ std::vector<Check> process_checks() {
   return {
       {"floating-point-mode", level, "does not change the floating-point mode", {"compute"}, floating_point},
       {"leaks", level, "frees what it allocates", {"create"}, leaks},
-      {"fuzz", level, "survives any inputs", {"contained"}, fuzz},
+      {"fuzz", level, "survives any input", {"contained"}, fuzz},
   };
 }
 

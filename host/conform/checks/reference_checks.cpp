@@ -243,14 +243,14 @@ std::vector<Check> publish_checks() {
   return {
       {"reference",
        Level::physics,
-       "gives the reference numbers of its manifest",
+       "gives the reference results of its manifest",
        {"units", "gradient", "derivative", "derivatives", "cutoff", "rigid-motion", "moduli", "dissipation",
         "closed-loop", "look-after-step", "half-steps", "settles", "momentum", "velocity", "equilibrium",
         "stress-relaxation", "symmetry", "reductions"},
        compare_references},
       {"pinned",
        Level::publish,
-       "has reference numbers for each parameter, choice, input and output",
+       "has reference results for every parameter, choice, input and output",
        {"reference"},
        pinned},
   };

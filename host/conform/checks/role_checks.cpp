@@ -166,7 +166,7 @@ Finding roles(const Subject& subject) {
 std::vector<Check> role_checks() {
   return {{"roles",
            Level::physics,
-           "has parameters that do what their roles say",
+           "has parameters that mean what their roles say",
            {"compute", "gradient", "derivative", "derivatives", "cutoff", "units"},
            roles}};
 }

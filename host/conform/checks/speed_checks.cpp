@@ -43,8 +43,6 @@ Finding budget(const Subject& subject) {
 
 }  // namespace
 
-std::vector<Check> speed_checks() {
-  return {{"budget", Level::speed, "takes no longer than it claims", {"compute"}, budget}};
-}
+std::vector<Check> speed_checks() { return {{"budget", Level::speed, "is as fast as it claims", {"compute"}, budget}}; }
 
 }  // namespace rouleau::conform

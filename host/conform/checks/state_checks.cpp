@@ -255,7 +255,7 @@ std::vector<Check> state_checks() {
   return {
       {"look-after-step",
        level,
-       "after a step, gives the forces of the state that the step leaves",
+       "gives the forces of the state at the end of a step",
        {"compute", "state-restored"},
        [](const Subject& subject) { return with_state(subject, look_after_step); }},
       {"half-steps",
@@ -265,7 +265,7 @@ std::vector<Check> state_checks() {
        [](const Subject& subject) { return with_state(subject, half_steps); }},
       {"settles",
        level,
-       "reaches a limit when it is held still, the same for steps of any length",
+       "settles to one limit when held still, whatever the step",
        {"half-steps"},
        [](const Subject& subject) { return with_state(subject, settles); }},
   };

@@ -36,7 +36,7 @@ function aggregation(run) {
   if (most === began) sentences.push(`${capital(name)} were together from the start`);
   else { sentences.push(`${capital(name)} joined at ${when(most)}`); number(when(most), all ? "all cells joined" : `largest aggregate (${size} cells)`, most, "the first output at which they are one aggregate"); }
   const later = history.slice(history.indexOf(most) + 1), broke = later.find(h => h.count > most.count && largest(h) < size);
-  if (!broke) { sentences[0] += " and stayed together."; if (history.length === 1) number(String(last.count), "aggregates", last, "single cells included"); return {sentences, numbers}; }
+  if (!broke) { sentences[0] += " and stayed together."; if (history.length === 1) number(String(last.members.filter(m => m.length > 1).length), last.members.filter(m => m.length > 1).length === 1 ? "rouleau" : "rouleaux", last, "aggregates of two cells or more"); return {sentences, numbers}; }
   number(when(broke), "first break", broke, "the first output at which that aggregate has come apart");
   const end = largest(last) === 1;
   if (end) number(when(last), "all single from", last, "from here to the end no two cells are aggregated");

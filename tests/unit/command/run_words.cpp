@@ -57,7 +57,16 @@ TEST_CASE("what becomes of a rouleau is said as it happened") {
   CHECK(aggregation({event(0, 0, together)}) == "rouleau of 4 from the start; still whole at the end");
   CHECK(aggregation({event(0, 0, apart)}) == "the cells never touch: all 4 stay single");
   CHECK(aggregation({event(0, 0, together), event(3, 1, middle)}) ==
-        "rouleau of 4 from the start; broke at strain 3; 3 aggregates of 4 cells at the end, single ones included");
+        "rouleau of 4 from the start; broke at strain 3; a rouleau of 2 cells and 2 single cells at the end");
+  CHECK(aggregation({event(0, 0, together), event(3, 1, {{0, 3}, {1, 2}})}) ==
+        "rouleau of 4 from the start; broke at strain 3; rouleaux of 2 and 2 cells at the end");
+  CHECK(aggregation({event(0, 0, together), event(3, 1, {{2}, {0, 1, 3}})}) ==
+        "rouleau of 4 from the start; broke at strain 3; a rouleau of 3 cells and 1 single cell at the end");
+  Groups all(1), parts{{10, 11, 12}};
+  for (int cell = 0; cell < 13; ++cell) all.front().push_back(cell);
+  for (int cell = 0; cell < 10; cell += 2) parts.push_back({cell, cell + 1});
+  CHECK(aggregation({event(0, 0, all), event(3, 1, parts)}) ==
+        "rouleau of 13 from the start; broke at strain 3; 6 rouleaux of 2 to 3 cells at the end");
   // A gap that closes again is no end of it.
   CHECK(aggregation({event(0, 0, together), event(3, 1, middle), event(4, 2, together)}) ==
         "rouleau of 4 from the start; still whole at the end");

@@ -19,11 +19,11 @@ TEST_CASE("a line of progress fits its terminal, and says what matters most long
     CHECK(line.size() <= width);
     if (width >= 50) CHECK((shows(line, "  42%") && shows(line, "  ETA 100000:00 h")));
     // No number is cut: each stands with its word, or not at all.
-    if (width >= 50) CHECK((line.ends_with("strain 12.35") || line.ends_with("12 aggregates") || line.ends_with(" h")));
+    if (width >= 50) CHECK((line.ends_with("strain 12.35") || line.ends_with("12 rouleaux") || line.ends_with(" h")));
     if (shows(line, "Mach")) CHECK(shows(line, "drift"));
     if (shows(line, "drift")) CHECK(shows(line, "steps/s"));
-    if (shows(line, "steps/s")) CHECK(shows(line, "12 aggregates"));
-    if (shows(line, "12 aggregates")) CHECK(shows(line, "["));
+    if (shows(line, "steps/s")) CHECK(shows(line, "12 rouleaux"));
+    if (shows(line, "12 rouleaux")) CHECK(shows(line, "["));
     if (shows(line, "[")) CHECK((shows(line, "strain 12.35") && shows(line, "]")));
   }
 }
@@ -32,15 +32,15 @@ TEST_CASE("a terminal of 80 columns has a bar, and its numbers stay in their pla
   ProgressState usual = state;
   usual.stage = "shear";
   CHECK(progress_line(usual, 12345, 65, 79) ==  // the last column stays free
-        "shear [========>            ]   42%  ETA  1:05 min  strain 12.35  12 aggregates");
-  const std::string early = progress_line({0, 0, "shear", 0, 0, 0, 4}, 0, 59, 79);
-  CHECK(early == "shear [                     ]    0%  ETA      59 s  strain  0.00   4 aggregates");
+        "shear [=========>             ]   42%  ETA  1:05 min  strain 12.35  12 rouleaux");
+  const std::string early = progress_line({0, 0, "shear", 0, 0, 0, 0}, 0, 59, 79);
+  CHECK(early == "shear [                       ]    0%  ETA      59 s  strain  0.00   0 rouleaux");
 }
 
 TEST_CASE("what is not known yet does not spoil a line of progress") {
   const double none = std::numeric_limits<double>::quiet_NaN();
   const std::string line = progress_line({0, none, "shear", 0, none, none, 1}, 0, none, 120);
   CHECK(line.starts_with("shear [          "));
-  CHECK(shows(line,
-              "    0%  ETA         ?  strain  0.00      0 steps/s  Mach     nan  area drift     nan   1 aggregate"));
+  CHECK(
+      shows(line, "    0%  ETA         ?  strain  0.00      0 steps/s  Mach     nan  area drift     nan   1 rouleau"));
 }

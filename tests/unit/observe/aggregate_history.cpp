@@ -1,0 +1,40 @@
+// Who is joined to whom, as a history of changes.
+#include "observe/aggregate_history.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace rouleau::observe;
+
+namespace {
+
+/// labels: of each cell, the smallest cell of its aggregate.
+Snapshot snapshot(const std::vector<int>& labels) {
+  Snapshot result;
+  for (std::size_t cell = 0; cell < labels.size(); ++cell) {
+    CellSnapshot entry{};
+    entry.cell = static_cast<int>(cell);
+    entry.aggregate = labels[cell];
+    result.aggregate_count += entry.aggregate == entry.cell ? 1 : 0;
+    result.cells.push_back(entry);
+  }
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("a rouleau has two cells or more; an aggregate may be a single cell") {
+  AggregateHistory history;
+  CHECK(history.rouleaux() == 0);
+  history.follow(snapshot({0, 1, 2, 3}));
+  CHECK(history.count() == 4);
+  CHECK(history.rouleaux() == 0);
+  history.follow(snapshot({0, 0, 2, 3}));
+  CHECK(history.count() == 3);
+  CHECK(history.rouleaux() == 1);
+  history.follow(snapshot({0, 1, 1, 0}));
+  CHECK(history.count() == 2);
+  CHECK(history.rouleaux() == 2);
+  history.follow(snapshot({0, 0, 0, 0}));
+  CHECK(history.rouleaux() == 1);
+  CHECK(history.events().size() == 4);
+}
