@@ -188,7 +188,7 @@ void SurfaceContacts::find(int cell, const Surfaces& surfaces, std::vector<Surfa
     for (int k = 0; k < 3; ++k) place[k] -= group.shift[k] * (domain_.periodic[k] ? domain_.period(k) : 0);
     double square = cutoff * cutoff, root = cutoff;
     int closest = -1;
-    TrianglePoint point{};
+    TrianglePoint point{.weight = {}, .place = Vec<3>::Zero()};
     for (int c = group.begin; c < group.end; ++c) {
       const Candidate& candidate = list.candidates[c];
       if (candidate.distance - slack > root) break;
