@@ -266,6 +266,7 @@ BLOCKS = [
     ("docs/study.md", '{\n  "rouleau_study": 1', study),
     ("docs/study-quantities.md", '{"name": "deformation"', quantity_of_a_study),
     ("docs/three-dimensions.md", '{\n  "rouleau": 1', lambda test, block: test.plan(block.text.split("\n\nrouleau run")[0])),
+    ("docs/three-dimensions.md", '"cell_types": {', "of scenes/capsule-3d.json, which tests/physics runs"),
     ("docs/first-run.md", "import rouleau", lambda test, block: ast.parse(block.text)),
     ("docs/output.md", "import h5py", lambda test, block: ast.parse(block.text)),
     ("docs/python.md", "import rouleau\nrun", "run by tests/python/check_notebooks.py, block after block"),

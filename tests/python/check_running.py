@@ -171,7 +171,7 @@ class A_sweep(In_a_folder):
                          (bars["deformation"]["value"], bars["deformation"]["error"]))
 
     def test_that_is_interrupted_goes_on_where_it_was(self):
-        long = {"/stages/1/strain": [15, 16]}
+        long = {"/stages/1/strain": [200, 201]}  # seconds, also on a fast machine
         asked = []
 
         def interrupt_once(now):
