@@ -38,7 +38,7 @@ inline void plan_scene(const std::filesystem::path& file, const std::vector<std:
     if (!is_small(scene)) return;
     shape::pack_cells(scene);
     const auto plan = plan::make_plan(scene, shipped_catalog(), numerics_choice);
-    if (plan.has_cells) plan::make_membranes(scene, plan::lattice_spacing(scene));
+    if (plan.has_cells) plan::try_cells(scene);
     const auto report = plan::make_report(plan);
     require_printable(plan::to_text(plan, report));
     plan::to_json(plan, report).dump();
