@@ -86,9 +86,10 @@ int read_triangles(const SceneFields& fields, const std::string& pointer, const 
     return 0;
   }
   if (!fields.has(key)) {
-    if (!is_known(domain)) return 20;
+    if (!is_known(domain)) return 20;  // any number that is one
     const double spacing = domain.size.x() / domain.nodes[0];
     const double n = std::round(std::sqrt(surface_area(type.shape) / (4 * std::numbers::pi)) / spacing);
+    if (!std::isfinite(n)) return 20;  // what is wrong with the size has been said
     return 20 * static_cast<int>(std::pow(std::clamp(n, 2.0, 200.0), 2));
   }
   const int triangles = fields.value<int>(key);
