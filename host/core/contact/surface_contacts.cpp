@@ -44,9 +44,11 @@ class SurfaceContacts::Bins {
       }
     }
     reach_ = reach + largest;
+    // No more bins than about eight times the triangles.
+    const int most = 1 + static_cast<int>(2 * std::cbrt(static_cast<double>(entries.size())));
     for (int axis = 0; axis < 3; ++axis) {
       const double length = domain.size[axis];
-      count_[axis] = std::clamp(static_cast<int>(length / std::max(1.0, reach_ / 2)), 1, 1024);
+      count_[axis] = std::clamp(static_cast<int>(length / std::max(1.0, reach_ / 2)), 1, most);
       width_[axis] = length / count_[axis];
     }
     std::vector<int> bin(entries.size());
@@ -140,22 +142,32 @@ void SurfaceContacts::list_candidates(int cell, const Surfaces& surfaces, const 
     bins.for_near(place, [&](const Bins::Entry& entry) {
       const double cutoff = cutoffs_(own.type, surfaces.cells[entry.cell].type);
       if (!(cutoff > 0)) return;
-      std::array<int, 3> shift{};
-      Vec<3> from = place - entry.middle;
-      for (int k = 0; k < 3; ++k) {
-        if (!domain_.periodic[k]) continue;
-        const double periods = std::round(from[k] / domain_.period(k));
-        shift[k] = static_cast<int>(periods);
-        from[k] -= periods * domain_.period(k);
-      }
-      if (entry.cell == cell && shift == std::array<int, 3>{}) return;
-      const double reach = cutoff + 2 * skin, center = reach + entry.radius;
-      if (from.squaredNorm() > center * center) return;
+      const double reach = cutoff + 2 * skin, around = reach + entry.radius;
       const Nodes nodes = surfaces.nodes(entry.cell);
       const auto& [i, j, k] = surfaces.type_of(entry.cell).mesh.triangles()[entry.triangle];
-      const Vec<3> near = from + entry.middle;
-      const double distance = (near - closest_point(near, nodes[i], nodes[j], nodes[k]).place).norm();
-      if (distance <= reach) found.push_back({entry.cell, shift, distance, entry.triangle});
+      const Vec<3> apart = place - entry.middle;
+      // All images of the triangle that come so near: in a narrow box more than the nearest one.
+      std::array<int, 3> first{}, last{};
+      for (int axis = 0; axis < 3; ++axis) {
+        if (!domain_.periodic[axis]) continue;
+        first[axis] = static_cast<int>(std::ceil((apart[axis] - around) / domain_.period(axis)));
+        last[axis] = static_cast<int>(std::floor((apart[axis] + around) / domain_.period(axis)));
+      }
+      std::array<int, 3> shift{};
+      for (shift[2] = first[2]; shift[2] <= last[2]; ++shift[2]) {
+        for (shift[1] = first[1]; shift[1] <= last[1]; ++shift[1]) {
+          for (shift[0] = first[0]; shift[0] <= last[0]; ++shift[0]) {
+            if (entry.cell == cell && shift == std::array<int, 3>{}) continue;
+            Vec<3> near = place;
+            for (int axis = 0; axis < 3; ++axis) {
+              if (domain_.periodic[axis]) near[axis] -= shift[axis] * domain_.period(axis);
+            }
+            if ((near - entry.middle).squaredNorm() > around * around) continue;
+            const double distance = (near - closest_point(near, nodes[i], nodes[j], nodes[k]).place).norm();
+            if (distance <= reach) found.push_back({entry.cell, shift, distance, entry.triangle});
+          }
+        }
+      }
     });
     std::sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.order() < b.order(); });
     for (std::size_t begin = 0; begin < found.size();) {
