@@ -143,9 +143,15 @@ void SurfaceContacts::list_candidates(int cell, const Surfaces& surfaces, const 
       const double cutoff = cutoffs_(own.type, surfaces.cells[entry.cell].type);
       if (!(cutoff > 0)) return;
       const double reach = cutoff + 2 * skin, around = reach + entry.radius;
+      const Vec<3> apart = place - entry.middle;
+      Vec<3> nearest = apart;  // of all images
+      for (int axis = 0; axis < 3; ++axis) {
+        if (domain_.periodic[axis])
+          nearest[axis] -= std::round(apart[axis] / domain_.period(axis)) * domain_.period(axis);
+      }
+      if (nearest.squaredNorm() > around * around) return;
       const Nodes nodes = surfaces.nodes(entry.cell);
       const auto& [i, j, k] = surfaces.type_of(entry.cell).mesh.triangles()[entry.triangle];
-      const Vec<3> apart = place - entry.middle;
       // All images of the triangle that come so near: in a narrow box more than the nearest one.
       std::array<int, 3> first{}, last{};
       for (int axis = 0; axis < 3; ++axis) {
