@@ -126,20 +126,14 @@ std::vector<double> smallest_gaps(const core::Surfaces& s, const core::Domain<3>
   std::vector<double> gaps(s.cells.size(), std::numeric_limits<double>::infinity());
   for (double reach = std::min(4.0, most);; reach = std::min(2 * reach, most)) {
     AllContacts all(s, domain, reach);
-    bool open = false;
     for (int cell = 0; cell < s.cell_count(); ++cell) {
-      double& gap = gaps[cell];
-      if (!std::isinf(gap)) continue;
-      for (const core::SurfaceContact& contact : all.of(cell)) gap = std::min(gap, contact.distance);
-      open = open || std::isinf(gap);
+      for (const core::SurfaceContact& contact : all.of(cell)) {  // which both cells feel
+        gaps[cell] = std::min(gaps[cell], contact.distance);
+        gaps[contact.other] = std::min(gaps[contact.other], contact.distance);
+      }
     }
+    const bool open = std::any_of(gaps.begin(), gaps.end(), [](double gap) { return std::isinf(gap); });
     if (!open || reach == most) break;
-  }
-  // A node of the other cell may be nearer than any of this one's nodes is to the other.
-  AllContacts near(s, domain, std::min(4.0, most));
-  for (int cell = 0; cell < s.cell_count(); ++cell) {
-    for (const core::SurfaceContact& contact : near.of(cell))
-      gaps[contact.other] = std::min(gaps[contact.other], contact.distance);
   }
   return gaps;
 }
