@@ -243,7 +243,8 @@ observe::OutlineSnapshot FrameReader::surfaces(int frame) const {
   const auto points = file_.read(group + "/points");
   const bool in_space = file_.has(group + "/triangles");
   const std::size_t components = in_space ? 3 : 2;
-  const auto nodes = static_cast<double>(points.size() / components);
+  const std::size_t count = points.size() / components;
+  const auto nodes = static_cast<double>(count);
   double before = -1;
   for (const double first : file_.read(group + "/first")) {
     const bool begins = before >= 0 || first == 0;

@@ -23,7 +23,8 @@ double enclosed_by(const scene::CellType& type) {
 
 double node_count(const scene::CellType& type) {
   if (!is_surface(type)) return type.segments;
-  if (type.triangles > 0) return type.triangles / 2 + 2;
+  const int nodes = type.triangles / 2 + 2;  // of a sphere that is cut into triangles
+  if (type.triangles > 0) return nodes;
   return static_cast<double>(make_surface(type).nodes.size());
 }
 
