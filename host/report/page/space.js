@@ -63,7 +63,7 @@ const rgbOf = (() => {
 /// The surfaces of a run at the timeline's instant, in their box. Drag or arrow keys turn it, the wheel, two fingers, + and -
 /// come closer, 0 is where it began.
 class SpaceView {
-  static start = {azimuth: -.5, elevation: .35, distance: .75};
+  static start = {azimuth: -.5, elevation: .35, distance: .9};
   constructor(parent, timeline, run, view) {
     const data = timeline.runs[run], surfaces = new Surfaces(data.surfaces);
     Object.assign(this, {timeline, run, data, view, surfaces, colours: cellColours(data), box: data.surfaces.size_um, periodic: data.surfaces.periodic, ...SpaceView.start});
