@@ -63,43 +63,13 @@ std::vector<CellContact> find_touching_cells(const core::Membranes& m, const cor
   return contacts;
 }
 
-namespace {
-
-/// The contacts of all cells of a scene within a reach.
-class AllContacts {
- public:
-  AllContacts(const core::Surfaces& surfaces, const core::Domain<3>& domain, double reach)
-      : surfaces_(surfaces), contacts_(surfaces, everybody(surfaces, reach), domain) {
-    contacts_.measure({}, surfaces);
-    contacts_.refresh({}, surfaces);
-  }
-  const std::vector<core::SurfaceContact>& of(int cell) {
-    contacts_.find(cell, surfaces_, list_);
-    return list_;
-  }
-
- private:
-  static core::Cutoffs everybody(const core::Surfaces& surfaces, double reach) {
-    const int types = static_cast<int>(surfaces.types.size());
-    core::Cutoffs cutoffs(types);
-    for (int a = 0; a < types; ++a) {
-      for (int b = 0; b <= a; ++b) cutoffs.raise(a, b, reach);
-    }
-    return cutoffs;
-  }
-
-  const core::Surfaces& surfaces_;
-  core::SurfaceContacts contacts_;
-  std::vector<core::SurfaceContact> list_;
-};
-
-}  // namespace
-
 std::vector<CellContact> find_touching_cells(const core::Surfaces& s, const core::Domain<3>& domain, double reach) {
-  AllContacts all(s, domain, reach);
+  const core::SurfaceContacts all = core::SurfaceContacts::within(reach, s, domain);
+  std::vector<core::SurfaceContact> of_cell;
   std::map<std::tuple<int, int, std::array<int, 3>>, CellContact> found;
   for (int cell = 0; cell < s.cell_count(); ++cell) {
-    for (const core::SurfaceContact& contact : all.of(cell)) {
+    all.find(cell, s, of_cell);
+    for (const core::SurfaceContact& contact : of_cell) {
       // A pair is known by its first cell and the image of the second; a cell and its own image are seen from both sides.
       std::array<int, 3> shift = contact.shift;
       const bool turned = contact.other < cell || (contact.other == cell && shift < std::array<int, 3>{});
@@ -124,10 +94,12 @@ std::vector<double> smallest_gaps(const core::Surfaces& s, const core::Domain<3>
     if (domain.periodic[k]) most = std::min(most, domain.period(k) / 2);
   }
   std::vector<double> gaps(s.cells.size(), std::numeric_limits<double>::infinity());
+  std::vector<core::SurfaceContact> of_cell;
   for (double reach = std::min(4.0, most);; reach = std::min(2 * reach, most)) {
-    AllContacts all(s, domain, reach);
+    const core::SurfaceContacts all = core::SurfaceContacts::within(reach, s, domain);
     for (int cell = 0; cell < s.cell_count(); ++cell) {
-      for (const core::SurfaceContact& contact : all.of(cell)) {  // which both cells feel
+      all.find(cell, s, of_cell);
+      for (const core::SurfaceContact& contact : of_cell) {  // which both cells feel
         gaps[cell] = std::min(gaps[cell], contact.distance);
         gaps[contact.other] = std::min(gaps[contact.other], contact.distance);
       }

@@ -66,6 +66,13 @@ std::array<double, 3> pointed(const core::Vec<3>& axis) {
   return {sign * axis.x(), sign * axis.y(), sign * axis.z()};
 }
 
+void count_aggregates(const Aggregates& aggregates, Snapshot& snapshot) {
+  snapshot.aggregate_count = aggregates.count;
+  snapshot.aggregate_sizes = aggregate_sizes(aggregates.label);
+  snapshot.aggregate_size_number_mean = number_mean(snapshot.aggregate_sizes);
+  snapshot.aggregate_size_weight_mean = weight_mean(snapshot.aggregate_sizes);
+}
+
 /// Adds places, tensions and, of surfaces, curvatures and triangles.
 template <class T>
 void draw(core::OutlineTasks<T>& tasks, const core::Membranes& membranes, const units::LatticeUnits& units,
@@ -165,10 +172,7 @@ void Observer::observe_cells(const core::Membranes& membranes, const units::Latt
   const double length = units.length;
   const auto contacts = find_touching_cells(membranes, domain_, scene_->output.aggregate_gap / length);
   const Aggregates aggregates = find_aggregates(static_cast<int>(membranes.cells.size()), contacts);
-  snapshot.aggregate_count = aggregates.count;
-  snapshot.aggregate_sizes = aggregate_sizes(aggregates.label);
-  snapshot.aggregate_size_number_mean = number_mean(snapshot.aggregate_sizes);
-  snapshot.aggregate_size_weight_mean = weight_mean(snapshot.aggregate_sizes);
+  count_aggregates(aggregates, snapshot);
   for (const CellContact& c : contacts) {
     snapshot.contacts.push_back(
         {c.cell_a, c.cell_b, {c.image.x, c.image.y, 0}, c.gap * length, c.contact_length * length});
@@ -217,10 +221,7 @@ void Observer::observe_cells(const core::Surfaces& surfaces, const units::Lattic
   }
   const std::vector<double> gaps = smallest_gaps(surfaces, domain);
   std::vector<Eigen::Vector2d> centers;  // as seen along z
-  snapshot.aggregate_count = aggregates.count;
-  snapshot.aggregate_sizes = aggregate_sizes(aggregates.label);
-  snapshot.aggregate_size_number_mean = number_mean(snapshot.aggregate_sizes);
-  snapshot.aggregate_size_weight_mean = weight_mean(snapshot.aggregate_sizes);
+  count_aggregates(aggregates, snapshot);
   for (int k = 0; k < surfaces.cell_count(); ++k) {
     const core::Mesh& mesh = surfaces.type_of(k).mesh;
     const core::Nodes nodes = surfaces.nodes(k);

@@ -8,6 +8,15 @@
 
 namespace rouleau::report {
 
+void append_place(std::vector<unsigned char>& bytes, double metres, double quantum) {
+  const double limit = std::numeric_limits<std::int16_t>::max();
+  if (!std::isfinite(metres)) metres = 0;  // the last output of a diverged run
+  const auto value = static_cast<std::int16_t>(std::lround(std::clamp(metres / quantum, -limit, limit)));
+  const auto bits = static_cast<std::uint16_t>(value);
+  bytes.push_back(static_cast<unsigned char>(bits & 0xff));
+  bytes.push_back(static_cast<unsigned char>(bits >> 8));
+}
+
 namespace {
 
 using Json = nlohmann::json;
@@ -16,14 +25,6 @@ using Json = nlohmann::json;
 void add_outlines(Json& result, const observe::OutlineSnapshot& outlines, std::size_t stride, double quantum) {
   Json origins = Json::array();
   std::vector<unsigned char> bytes;
-  const auto add = [&](double metres) {
-    const double limit = std::numeric_limits<std::int16_t>::max();
-    if (!std::isfinite(metres)) metres = 0;  // the last output of a diverged run
-    const auto value = static_cast<std::int16_t>(std::lround(std::clamp(metres / quantum, -limit, limit)));
-    const auto bits = static_cast<std::uint16_t>(value);
-    bytes.push_back(static_cast<unsigned char>(bits & 0xff));
-    bytes.push_back(static_cast<unsigned char>(bits >> 8));
-  };
   for (std::size_t cell = 0; cell + 1 < outlines.first.size(); ++cell) {
     const auto begin = static_cast<std::size_t>(outlines.first[cell]),
                end = static_cast<std::size_t>(outlines.first[cell + 1]);
@@ -37,8 +38,8 @@ void add_outlines(Json& result, const observe::OutlineSnapshot& outlines, std::s
     origins.push_back(std::round(x * micro * 1000) / 1000);
     origins.push_back(std::round(y * micro * 1000) / 1000);
     for (std::size_t i = begin; i < end; i += stride) {
-      add(outlines.x[i] - x);
-      add(outlines.y[i] - y);
+      append_place(bytes, outlines.x[i] - x, quantum);
+      append_place(bytes, outlines.y[i] - y, quantum);
     }
   }
   result["origin_um"].push_back(std::move(origins));

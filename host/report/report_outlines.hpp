@@ -19,6 +19,9 @@ inline constexpr double micro = 1e6;
 nlohmann::json outline_data(const files::FrameReader& reader, const std::vector<std::size_t>& selection,
                             std::size_t stride);
 
+/// Adds a length as a little-endian int16 of quanta; 0 where it is no number.
+void append_place(std::vector<unsigned char>& bytes, double metres, double quantum);
+
 /// Base64 (RFC 4648) of bytes.
 std::string base64(const std::vector<unsigned char>& bytes);
 

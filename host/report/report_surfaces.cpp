@@ -15,16 +15,11 @@ using Json = nlohmann::json;
 
 constexpr std::size_t most_surface_points = 200000;  ///< of all outputs: about 1.6 MB of page
 
-void append(std::vector<unsigned char>& bytes, std::uint32_t value, int count) {
-  for (int k = 0; k < count; ++k) bytes.push_back(static_cast<unsigned char>(value >> 8 * k & 0xff));
-}
-
 /// One output's surfaces.
 void add_surfaces(Json& result, const observe::OutlineSnapshot& s, double quantum) {
   const std::vector<double>* const along[] = {&s.x, &s.y, &s.z};
   Json origins = Json::array();
   std::vector<unsigned char> bytes;
-  constexpr double limit = std::numeric_limits<std::int16_t>::max();
   for (std::size_t cell = 0; cell + 1 < s.first.size(); ++cell) {
     const auto begin = static_cast<std::size_t>(s.first[cell]), end = static_cast<std::size_t>(s.first[cell + 1]);
     double origin[3];
@@ -36,12 +31,7 @@ void add_surfaces(Json& result, const observe::OutlineSnapshot& s, double quantu
       origins.push_back(std::round(origin[k] * micro * 1000) / 1000);
     }
     for (std::size_t i = begin; i < end; ++i) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        const double steps = ((*along[k])[i] - origin[k]) / quantum;
-        const auto value =
-            static_cast<std::int16_t>(std::isfinite(steps) ? std::lround(std::clamp(steps, -limit, limit)) : 0);
-        append(bytes, static_cast<std::uint16_t>(value), 2);
-      }
+      for (std::size_t k = 0; k < 3; ++k) append_place(bytes, (*along[k])[i] - origin[k], quantum);
     }
   }
   result["origin_um"].push_back(std::move(origins));
@@ -59,7 +49,10 @@ Json surface_data(const files::FrameReader& reader, const std::vector<std::size_
       std::max(1e-9, std::hypot(size[0], size[1], size[2]) / std::numeric_limits<std::int16_t>::max());
   std::vector<unsigned char> triangles;
   for (const auto& corners : begin.triangles) {
-    for (const int node : corners) append(triangles, static_cast<std::uint32_t>(node), 4);
+    for (const int node : corners) {
+      for (int shift = 0; shift < 32; shift += 8)
+        triangles.push_back(static_cast<unsigned char>(static_cast<std::uint32_t>(node) >> shift & 0xff));
+    }
   }
   Json result{{"size_um", {size[0] * micro, size[1] * micro, size[2] * micro}},
               {"periodic", {true, reader.periodic_y(), reader.periodic_z()}},

@@ -109,6 +109,18 @@ class SurfaceContacts::Bins {
 SurfaceContacts::SurfaceContacts(const Surfaces& surfaces, Cutoffs cutoffs, const Domain<3>& domain)
     : cutoffs_(std::move(cutoffs)), domain_(domain), watch_(surfaces), lists_(surfaces.cells.size()) {}
 
+SurfaceContacts SurfaceContacts::within(double reach, const Surfaces& surfaces, const Domain<3>& domain) {
+  const int types = static_cast<int>(surfaces.types.size());
+  Cutoffs cutoffs(types);
+  for (int a = 0; a < types; ++a) {
+    for (int b = 0; b <= a; ++b) cutoffs.raise(a, b, reach);
+  }
+  SurfaceContacts contacts(surfaces, std::move(cutoffs), domain);
+  contacts.measure({}, surfaces);
+  contacts.refresh({}, surfaces);
+  return contacts;
+}
+
 void SurfaceContacts::refresh(Worker worker, const Surfaces& surfaces) {
   if (!watch_.exceeded()) return;
   const Range cells = worker.share(surfaces.cell_count());

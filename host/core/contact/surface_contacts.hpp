@@ -36,6 +36,9 @@ class SurfaceContacts {
  public:
   SurfaceContacts(const Surfaces& surfaces, Cutoffs cutoffs, const Domain<3>& domain);
 
+  /// Of all cells within one reach, whatever their types, at the present positions: find() may be called.
+  static SurfaceContacts within(double reach, const Surfaces& surfaces, const Domain<3>& domain);
+
   /// Pass over cells: whether a node has moved too far for the lists.
   void measure(Worker worker, const Surfaces& surfaces) { watch_.measure(worker, surfaces); }
   /// Pass over cells, after a barrier: their lists, if they have to be made anew.

@@ -8,14 +8,7 @@ namespace rouleau::core {
 
 std::optional<SurfaceCrossing> find_crossing(const Surfaces& surfaces, const Domain<3>& domain) {
   constexpr double reach = 3, rounding = 1e-6;
-  const int types = static_cast<int>(surfaces.types.size());
-  Cutoffs cutoffs(types);
-  for (int a = 0; a < types; ++a) {
-    for (int b = 0; b <= a; ++b) cutoffs.raise(a, b, reach);
-  }
-  SurfaceContacts contacts(surfaces, cutoffs, domain);
-  contacts.measure({}, surfaces);
-  contacts.refresh({}, surfaces);
+  const SurfaceContacts contacts = SurfaceContacts::within(reach, surfaces, domain);
   std::vector<std::vector<Vec<3>>> normals(surfaces.cells.size());  // of nodes; made where they are wanted
   std::optional<SurfaceCrossing> deepest;
   std::vector<SurfaceContact> list;

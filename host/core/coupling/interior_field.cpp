@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/membrane/rounding.hpp"
+#include "disjoint.hpp"
 
 namespace rouleau::core {
 
@@ -124,20 +125,6 @@ void InteriorField<T>::set_rates(const Surfaces& surfaces, Range own, Field<T, 3
       std::fill(row_of(row) + columns.begin, row_of(row) + columns.end, static_cast<T>(plain_rate_));
     changed_[row].clear();
   }
-  const auto note = [&](int row, int begin, int end) {  // intervals of a row stay disjoint
-    std::vector<Interval>& intervals = changed_[row];
-    Interval added{begin, end};
-    for (std::size_t i = 0; i < intervals.size();) {
-      if (intervals[i].end < added.begin || added.end < intervals[i].begin) {
-        ++i;
-        continue;
-      }
-      added = {std::min(added.begin, intervals[i].begin), std::max(added.end, intervals[i].end)};
-      intervals[i] = intervals.back();
-      intervals.pop_back();
-    }
-    intervals.push_back(added);
-  };
   const auto for_pieces = [&](const auto& function) {
     for (std::size_t c = 0; c < fraction_.size(); ++c) {
       const VolumeFraction& fraction = fraction_[c];
@@ -153,7 +140,7 @@ void InteriorField<T>::set_rates(const Surfaces& surfaces, Range own, Field<T, 3
       });
     }
   };
-  for_pieces([&](int row, int x, const double*, int count, double) { note(row, x, x + count); });
+  for_pieces([&](int row, int x, const double*, int count, double) { add_disjoint(changed_[row], {x, x + count}); });
   for (int row = own.begin; row < own.end; ++row) {
     for (const Interval& columns : changed_[row])
       std::fill(row_of(row) + columns.begin, row_of(row) + columns.end, T(0));

@@ -6,6 +6,7 @@
 #include "core/fluid/layers.hpp"
 #include "core/membrane/geometry.hpp"
 #include "core/membrane/rounding.hpp"
+#include "disjoint.hpp"
 
 namespace rouleau::core {
 
@@ -153,18 +154,7 @@ void ViscosityField<T>::collect_changes(Range own) {
     columns.end = std::min(columns.end, columns.begin + domain_.size[0]);
     for_pieces(columns, [&](int x, int begin, int end) {
       // Intervals of a row stay disjoint, since what is done to them is not to be done twice.
-      Interval added{x, x + end - begin};
-      std::vector<Interval>& row = changed_[y];
-      for (std::size_t k = 0; k < row.size();) {
-        if (row[k].end < added.begin || added.end < row[k].begin) {
-          ++k;
-          continue;
-        }
-        added = {std::min(added.begin, row[k].begin), std::max(added.end, row[k].end)};
-        row[k] = row.back();
-        row.pop_back();
-      }
-      row.push_back(added);
+      add_disjoint(changed_[y], {x, x + end - begin});
     });
   };
   for (std::size_t c = 0; c < cells_.size(); ++c) {

@@ -1,18 +1,21 @@
 // --------------------------------------------------------------------------------------------------- outlines and their colours
 const bytesOf = text => Uint8Array.from(atob(text), c => c.charCodeAt(0));
 
+/// Nodes of an output in micrometres, so many coordinates each.
+function decodedNodes({data, first, count}, output, axes) {
+  const view = new DataView(bytesOf(data.nodes[output]).buffer), origins = data.origin_um[output], nodes = new Float32Array(view.byteLength / 2);
+  for (let cell = 0; cell < count; ++cell)
+    for (let i = axes * first[cell]; i < axes * first[cell + 1]; ++i) nodes[i] = origins[axes * cell + i % axes] + view.getInt16(2 * i, true) * data.quantum_um;
+  return nodes;
+}
+
 /// Outlines of one run: nodes x, y in micrometres, not wrapped into the box, at an output or between two.
 class Outlines {
   constructor(outlines) {
     Object.assign(this, {data: outlines, first: outlines.first, count: outlines.first.length - 1, known: []});
   }
   at(output) {
-    return this.known[output] ??= (() => {
-      const {data, first} = this, view = new DataView(bytesOf(data.nodes[output]).buffer), origins = data.origin_um[output], nodes = new Float32Array(view.byteLength / 2);
-      for (let cell = 0; cell < this.count; ++cell)
-        for (let i = 2 * first[cell]; i < 2 * first[cell + 1]; ++i) nodes[i] = origins[2 * cell + i % 2] + view.getInt16(2 * i, true) * data.quantum_um;
-      return nodes;
-    })();
+    return this.known[output] ??= decodedNodes(this, output, 2);
   }
   between({a, b, share}) {
     const from = this.at(a);

@@ -7,12 +7,7 @@ class Surfaces {
     this.triangles = Uint32Array.from({length: triangles.byteLength / 4}, (_, i) => triangles.getUint32(4 * i, true));
   }
   at(kept) {
-    return this.known[kept] ??= (() => {
-      const {data, first} = this, view = new DataView(bytesOf(data.nodes[kept]).buffer), origins = data.origin_um[kept], places = new Float32Array(view.byteLength / 2);
-      for (let cell = 0; cell < this.count; ++cell)
-        for (let i = 3 * first[cell]; i < 3 * first[cell + 1]; ++i) places[i] = origins[3 * cell + i % 3] + view.getInt16(2 * i, true) * data.quantum_um;
-      return places;
-    })();
+    return this.known[kept] ??= decodedNodes(this, kept, 3);
   }
   /// At a place among the page's outputs, of which some have surfaces.
   between({a, share}) {
@@ -113,7 +108,6 @@ class SpaceView {
     }
     for (const name of ["position", "normal", "colour"]) geometry.attributes[name].needsUpdate = true;
     const far = this.distance * 1.15 * Math.hypot(...box) / (2 * Math.tan(16 * Math.PI / 180)), {azimuth, elevation} = this;
-    Object.assign(this.camera, {near: far / 100, far: far * 10});
     this.camera.perspective({near: far / 100, far: far * 10});
     this.camera.position.set(far * Math.cos(elevation) * Math.sin(azimuth), far * Math.sin(elevation), far * Math.cos(elevation) * Math.cos(azimuth));
     this.camera.lookAt([0, 0, 0]);
