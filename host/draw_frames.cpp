@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <iomanip>
 #include <iostream>
+#include <map>
 #include <sstream>
 #include <system_error>
 #include <utility>
@@ -18,6 +19,7 @@
 #include "files/file.hpp"
 #include "files/frames.hpp"
 #include "files/run_directory.hpp"
+#include "observe/aggregate_words.hpp"
 #include "report/draw/figure.hpp"
 #include "report/draw/flow_reader.hpp"
 #include "report/draw/frame_choice.hpp"
@@ -64,7 +66,8 @@ class Run {
   explicit Run(const fs::path& directory)
       : series_(table(directory)), reader_(directory / "frames.h5"), flow_(directory / "frames.h5") {
     times_ = {series_.numbers("strain"), series_.numbers("time_s")};
-    aggregates_ = series_.numbers("aggregate_count");
+    steps_ = series_.numbers("step");
+    sizes_ = aggregate_sizes(directory / "aggregates.csv");
     stages_ = series_.texts("stage_name");
     if (series_.has("shear_rate_1_per_s")) shear_rate_ = series_.numbers("shear_rate_1_per_s");
     const auto frames = std::min(series_.rows(), static_cast<std::size_t>(reader_.frames()));  // of a killed run
@@ -133,15 +136,26 @@ class Run {
   }
   /// Whether the last field written belongs to the stage of `output`: that of another says nothing of this one.
   [[nodiscard]] bool flow_holds(std::size_t output) const { return stages_[flow_.read_output()] == stages_[output]; }
+  /// "shear: strain 7.5, a rouleau of 3 cells and 1 single cell".
   [[nodiscard]] std::string caption(std::size_t output, std::size_t firsts) const {
-    const auto count = static_cast<std::size_t>(aggregates_[output]);
-    std::string held;
-    if (firsts > 2) {
-      held = count + 1 == firsts ? ", " + std::to_string(count) + " single cells"
-             : count == 1        ? ", one aggregate"
-                                 : ", " + std::to_string(count) + " aggregates and single cells";
+    const std::string instant = stages_[output] + ": " + words(output, grows(output));
+    const auto sizes = sizes_.find(steps_[output]);
+    if (firsts < 3 || sizes == sizes_.end()) return instant;
+    return instant + ", " + rouleau::observe::aggregates_in_words(sizes->second);
+  }
+  /// Number of cells of each aggregate by step: aggregates.csv has a row for every contact.
+  static std::map<double, std::vector<std::size_t>> aggregate_sizes(const fs::path& file) {
+    std::map<double, std::vector<std::size_t>> sizes;
+    if (!fs::exists(file)) return sizes;
+    const files::StoredTable table(file);
+    const auto steps = table.numbers("step"), labels = table.numbers("aggregate");
+    const auto members = table.texts("members");
+    for (std::size_t row = 0; row < table.rows(); ++row) {
+      if (row > 0 && steps[row] == steps[row - 1] && labels[row] == labels[row - 1]) continue;
+      const auto joints = std::count(members[row].begin(), members[row].end(), '+');
+      sizes[steps[row]].push_back(1 + static_cast<std::size_t>(joints));
     }
-    return stages_[output] + ": " + words(output, grows(output)) + held;
+    return sizes;
   }
   files::StoredTable series_;
   files::FrameReader reader_;
@@ -149,7 +163,8 @@ class Run {
   std::vector<std::string> stages_;
   std::vector<double> shear_rate_;
   report::OutputTimes times_;
-  std::vector<double> aggregates_;
+  std::vector<double> steps_;
+  std::map<double, std::vector<std::size_t>> sizes_;
 };
 
 std::string file_name(std::size_t place, std::string instant) {

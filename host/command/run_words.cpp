@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "base/text.hpp"
+#include "observe/aggregate_words.hpp"
 
 namespace rouleau::command {
 
@@ -56,24 +58,6 @@ std::vector<Event> events_of(const Json& history) {
   return events;
 }
 
-/// "rouleaux of 3 and 2 cells and 1 single cell", the largest first; of more than four rouleaux the number and range.
-std::string parts_in_words(std::vector<Members> aggregates) {
-  std::sort(aggregates.begin(), aggregates.end(),
-            [](const Members& a, const Members& b) { return a.size() > b.size(); });
-  const auto single = std::find_if(aggregates.begin(), aggregates.end(), [](const Members& m) { return m.size() < 2; });
-  const auto rouleaux = static_cast<std::size_t>(single - aggregates.begin());
-  const auto size = [&](std::size_t rouleau) { return std::to_string(aggregates[rouleau].size()); };
-  std::string words = rouleaux == 1 ? "a rouleau of " + size(0) : "rouleaux of " + size(0);
-  if (rouleaux > 4) {
-    words = std::to_string(rouleaux) + " rouleaux of " + size(rouleaux - 1) + " to " + size(0);
-  } else {
-    for (std::size_t i = 1; i < rouleaux; ++i) words += (i + 1 == rouleaux ? " and " : ", ") + size(i);
-  }
-  words += " cells";
-  const auto singles = static_cast<double>(aggregates.end() - single);
-  return singles > 0 ? words + " and " + counted(singles, "single cell") : words;
-}
-
 /// When the largest aggregate formed and broke for good, and how the cells ended; empty for fewer than two cells.
 std::string aggregation_in_words(const std::vector<Event>& events) {
   if (events.empty()) return {};
@@ -93,7 +77,11 @@ std::string aggregation_in_words(const std::vector<Event>& events) {
 
   const auto broken = std::find_if(events.rbegin(), events.rend(), [&](const Event& e) { return e.holds(members); });
   words += "; broke at " + moment(*broken.base());
-  if (last.aggregates.size() < cells) return words + "; " + parts_in_words(last.aggregates) + " at the end";
+  if (last.aggregates.size() < cells) {
+    std::vector<std::size_t> sizes;
+    for (const Members& aggregate : last.aggregates) sizes.push_back(aggregate.size());
+    return words + "; " + observe::aggregates_in_words(std::move(sizes)) + " at the end";
+  }
   const auto alone =
       std::find_if(events.rbegin(), events.rend(), [&](const Event& e) { return e.aggregates.size() < cells; });
   return words + "; all single from " + moment(*alone.base());

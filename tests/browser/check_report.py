@@ -408,6 +408,23 @@ class The_page_of_a_run_in_three_dimensions(PageCase):
             self.assertNotEqual(page.run(self.PIXELS)[1], first)
             self.assert_sound(page, SCREENS[screen]["width"])
 
+    def test_cuts_the_surfaces_where_the_reader_wants(self):
+        page = self.open(self.directory / "report.html", part="#strain=0.4")
+        page.run(Every_page_on_every_screen.DRAWN)
+        whole = page.run(self.PIXELS)
+        change = "(() => { const s = document.querySelector(%r); s.value = %r; s.dispatchEvent(new Event(%r)); })()"
+        page.run(change % ("select[aria-label='Cut']", "2", "change"))
+        page.run(change % ("input[aria-label='Place of the cut']", "1", "input"))
+        self.assertAlmostEqual(page.run(self.PIXELS)[0], whole[0], delta=200)  # the cell and the rim of a plane in front of it
+        self.assertIn("z = ", page.run("document.querySelector('input[aria-label=\"Place of the cut\"]').getAttribute('aria-valuetext')"))
+        page.run(change % ("input[aria-label='Place of the cut']", "0.5", "input"))
+        half = page.run(self.PIXELS)
+        self.assertNotEqual(half[1], whole[1])  # open: the inside of the far half
+        page.run(change % ("input[aria-label='Place of the cut']", "0", "input"))
+        self.assertLess(page.run(self.PIXELS)[0], 0.6 * whole[0])  # the box alone
+        page.run(change % ("select[aria-label='Cut']", "", "change"))
+        self.assertEqual(page.run(self.PIXELS), whole)
+
     def test_carries_what_draws_them_alone(self):
         self.assertIn("var ogl=", (self.directory / "report.html").read_text())
         self.assertNotIn("var ogl=", (folder / "a/report.html").read_text())

@@ -60,7 +60,7 @@ function showResults(timeline, run) {
     card.append(first, instantLine(timeline, 0), second, ...failureNote(run), ...whyNoAnimation(run));
     if (run.surfaces) {
       const space = element("div", {class: "card"});
-      box.append(note("Above each cell is cut by the plane across z through its middle. Below: drag to turn, wheel or + and − to come closer."), space);
+      box.append(note("Above each cell is cut by the plane across z through its middle. Below: drag to turn, wheel or + and − to come closer; a cut across an axis opens the cells."), space);
       new SpaceView(space, timeline, 0, view);
     }
   } else if (run.shown.note) box.append(element("div", {class: "card"}, ...whyNoAnimation(run)));

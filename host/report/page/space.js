@@ -56,14 +56,15 @@ const rgbOf = (() => {
 })();
 
 /// The surfaces of a run at the timeline's instant, in their box. Drag or arrow keys turn it, the wheel, two fingers, + and -
-/// come closer, 0 is where it began.
+/// come closer, 0 is where it began. A plane across one axis cuts them open: what lies between it and the eye is left out.
 class SpaceView {
   static start = {azimuth: -.5, elevation: .35, distance: .9};
+  static uncut = [0, 0, 0, 1];
   constructor(parent, timeline, run, view) {
     const data = timeline.runs[run], surfaces = new Surfaces(data.surfaces);
-    Object.assign(this, {timeline, run, data, view, surfaces, colours: cellColours(data), box: data.surfaces.size_um, periodic: data.surfaces.periodic, ...SpaceView.start});
+    Object.assign(this, {timeline, run, data, view, surfaces, colours: cellColours(data), box: data.surfaces.size_um, periodic: data.surfaces.periodic, cut: {axis: null, share: .5}, ...SpaceView.start});
     this.canvas = element("canvas", {class: "view space", role: "img", tabindex: 0, "aria-label": `${surfaces.count} ${surfaces.count === 1 ? "cell" : "cells"} in a box of ${this.box.map(l => format(l, 3)).join(" by ")} µm, seen in perspective. Arrow keys turn it, plus and minus zoom.`});
-    parent.append(this.canvas);
+    parent.append(this.canvas, this.cutControls());
     try { this.begin(); } catch { parent.replaceChildren(note("This browser has no WebGL: the surfaces are in frames.xmf, for ParaView.")); return; }
     timeline.listeners.push(() => this.draw());
     view.listeners.push(() => this.draw());
@@ -81,17 +82,19 @@ class SpaceView {
     this.scene = new Transform();
     this.geometry = new Geometry(gl, {position: {size: 3, data: new Float32Array(3 * nodes), usage: gl.DYNAMIC_DRAW}, normal: {size: 3, data: new Float32Array(3 * nodes), usage: gl.DYNAMIC_DRAW},
       colour: {size: 3, data: new Float32Array(3 * nodes), usage: gl.DYNAMIC_DRAW}, index: {data: this.surfaces.triangles}});
-    const program = new Program(gl, {cullFace: false,
-      vertex: `attribute vec3 position, normal, colour; uniform mat4 modelViewMatrix, projectionMatrix; uniform mat3 normalMatrix; varying vec3 n, c;
-        void main() { n = normalMatrix * normal; c = colour; gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }`,
-      fragment: `precision highp float; varying vec3 n, c;
-        void main() { vec3 m = normalize(n); float light = 0.45 + 0.6 * abs(dot(m, normalize(vec3(0.3, 0.5, 0.8)))); gl_FragColor = vec4(c * light, 1.0); }`});
-    this.mesh = new Mesh(gl, {geometry: this.geometry, program, frustumCulled: false});
-    this.mesh.setParent(this.scene);
+    this.program = new Program(gl, {cullFace: false, uniforms: {plane: {value: SpaceView.uncut}},
+      vertex: `attribute vec3 position, normal, colour; uniform mat4 modelViewMatrix, projectionMatrix; uniform mat3 normalMatrix; varying vec3 p, n, c;
+        void main() { p = position; n = normalMatrix * normal; c = colour; gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }`,
+      fragment: `precision highp float; uniform vec4 plane; varying vec3 p, n, c;
+        void main() { if (dot(plane.xyz, p) > plane.w) discard;
+          float light = 0.45 + 0.6 * abs(dot(normalize(n), normalize(vec3(0.3, 0.5, 0.8)))); gl_FragColor = vec4(c * light * (gl_FrontFacing ? 1.0 : 0.55), 1.0); }`});
+    new Mesh(gl, {geometry: this.geometry, program: this.program, frustumCulled: false}).setParent(this.scene);
     const corners = Array.from({length: 8}, (_, i) => [i & 1 ? x : -x, i & 2 ? y : -y, i & 4 ? z : -z]), edges = [];
     for (let i = 0; i < 8; ++i) for (const bit of [1, 2, 4]) if (!(i & bit)) edges.push(...corners[i], ...corners[i | bit]);
     this.frameProgram = new Program(gl, {uniforms: {tone: {value: [0, 0, 0]}}, vertex: "attribute vec3 position; uniform mat4 modelViewMatrix, projectionMatrix; void main() { gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }",
       fragment: "precision highp float; uniform vec3 tone; void main() { gl_FragColor = vec4(tone, 1.0); }"});
+    this.rim = new Geometry(gl, {position: {size: 3, data: new Float32Array(12), usage: gl.DYNAMIC_DRAW}});
+    new Mesh(gl, {mode: gl.LINE_LOOP, geometry: this.rim, program: this.frameProgram, frustumCulled: false}).setParent(this.scene);
     new Mesh(gl, {mode: gl.LINES, geometry: new Geometry(gl, {position: {size: 3, data: new Float32Array(edges)}}), program: this.frameProgram, frustumCulled: false}).setParent(this.scene);
   }
   draw() {
@@ -111,8 +114,27 @@ class SpaceView {
     this.camera.perspective({near: far / 100, far: far * 10});
     this.camera.position.set(far * Math.cos(elevation) * Math.sin(azimuth), far * Math.sin(elevation), far * Math.cos(elevation) * Math.cos(azimuth));
     this.camera.lookAt([0, 0, 0]);
+    this.drawCut();
     this.frameProgram.uniforms.tone.value = rgbOf(css("--quiet") || css("--text"));
     this.renderer.render({scene: this.scene, camera: this.camera});
+  }
+  /// The plane as the shader takes it, on the side of the eye, and its rim in the box.
+  drawCut() {
+    const {axis, share} = this.cut, {position} = this.rim.attributes, plane = SpaceView.uncut.slice(), half = this.box.map(l => l / 2);
+    position.data.fill(0);
+    if (axis !== null) {
+      const place = (share - .5) * this.box[axis], side = this.camera.position[axis] < 0 ? -1 : 1, [u, v] = [0, 1, 2].filter(k => k !== axis);
+      plane[axis] = side; plane[3] = side * place;
+      [[-1, -1], [1, -1], [1, 1], [-1, 1]].forEach(([a, b], i) => { position.data[3 * i + axis] = place; position.data[3 * i + u] = a * half[u]; position.data[3 * i + v] = b * half[v]; });
+    }
+    position.needsUpdate = true;
+    this.program.uniforms.plane.value = plane;
+  }
+  cutControls() {
+    const words = () => this.cut.axis === null ? "" : `${"xyz"[this.cut.axis]} = ${format(this.cut.share * this.box[this.cut.axis], 3)} µm`, where = element("span", {class: "quiet"});
+    const slider = element("input", {type: "range", min: 0, max: 1, step: .005, value: this.cut.share, disabled: "", "aria-label": "Place of the cut", oninput: () => { this.cut.share = Number(slider.value); changed(); }});
+    const changed = () => { slider.disabled = this.cut.axis === null; where.textContent = words(); slider.setAttribute("aria-valuetext", words()); this.draw(); };
+    return element("div", {class: "controls"}, choice("Cut", [["", "none"], ["0", "across x"], ["1", "across y"], ["2", "across z"]], "", axis => { this.cut.axis = axis === "" ? null : Number(axis); changed(); }), slider, where);
   }
   turn(dx, dy) {
     this.azimuth -= dx;

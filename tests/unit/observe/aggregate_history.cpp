@@ -3,6 +3,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "observe/aggregate_words.hpp"
+
 using namespace rouleau::observe;
 
 namespace {
@@ -37,4 +39,13 @@ TEST_CASE("a rouleau has two cells or more; an aggregate may be a single cell") 
   history.follow(snapshot({0, 0, 0, 0}));
   CHECK(history.rouleaux() == 1);
   CHECK(history.events().size() == 4);
+}
+
+TEST_CASE("aggregates are said as rouleaux and single cells") {
+  using rouleau::observe::aggregates_in_words;
+  CHECK(aggregates_in_words({1, 1, 1, 1}) == "4 single cells");
+  CHECK(aggregates_in_words({1}) == "1 single cell");
+  CHECK(aggregates_in_words({4}) == "a rouleau of 4 cells");
+  CHECK(aggregates_in_words({1, 2, 3}) == "rouleaux of 3 and 2 cells and 1 single cell");
+  CHECK(aggregates_in_words({2, 2, 3, 7, 5, 1, 1}) == "5 rouleaux of 2 to 7 cells and 2 single cells");
 }
