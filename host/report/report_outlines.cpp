@@ -46,7 +46,8 @@ void add_outlines(Json& result, const observe::OutlineSnapshot& outlines, std::s
   result["nodes"].push_back(base64(bytes));
 }
 
-/// Tensions of the shown nodes as signed bytes: 127 stands for `scale`.
+}  // namespace
+
 std::string tension_bytes(const observe::OutlineSnapshot& outlines, std::size_t stride, double scale) {
   std::vector<unsigned char> bytes;
   for (std::size_t cell = 0; cell + 1 < outlines.first.size(); ++cell)
@@ -57,20 +58,17 @@ std::string tension_bytes(const observe::OutlineSnapshot& outlines, std::size_t 
   return base64(bytes);
 }
 
-/// What all but one tension in a hundred stay below in magnitude, N/m: the ends of cells would hide the rest.
-double tension_scale(const files::FrameReader& reader, const std::vector<std::size_t>& selection) {
+double tension_scale(const Outlines& outlines, const std::vector<std::size_t>& selection) {
   constexpr std::size_t beyond = 100;
   std::vector<double> sizes;
   for (std::size_t k = 0; k < selection.size(); k += std::max<std::size_t>(1, selection.size() / 20))
-    for (const double tension : reader.outlines(static_cast<int>(selection[k])).tension)
+    for (const double tension : outlines(static_cast<int>(selection[k])).tension)
       if (std::isfinite(tension)) sizes.push_back(std::abs(tension));
   if (sizes.empty()) return 0;
   const auto rank = sizes.begin() + static_cast<long>(sizes.size() - 1 - sizes.size() / beyond);
   std::nth_element(sizes.begin(), rank, sizes.end());
   return *rank;
 }
-
-}  // namespace
 
 Json outline_data(const files::FrameReader& reader, const std::vector<std::size_t>& selection, std::size_t stride) {
   const auto size = reader.size();
@@ -81,7 +79,7 @@ Json outline_data(const files::FrameReader& reader, const std::vector<std::size_
               {"nodes", Json::array()}};
   const double quantum = std::max(1e-9, std::hypot(size[0], size[1]) / std::numeric_limits<std::int16_t>::max());
   result["quantum_um"] = quantum * micro;
-  const double scale = tension_scale(reader, selection);
+  const double scale = tension_scale([&](int output) { return reader.outlines(output); }, selection);
   result["tension"] = {{"scale_N_per_m", scale}, {"values", Json::array()}};
   std::vector<int> first;
   for (const std::size_t output : selection) {

@@ -1,6 +1,7 @@
 // The cells' outlines as report.html carries them: integers relative to each cell's origin, in base64.
 #pragma once
 
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -21,6 +22,14 @@ nlohmann::json outline_data(const files::FrameReader& reader, const std::vector<
 
 /// Adds a length as a little-endian int16 of quanta; 0 where it is no number.
 void append_place(std::vector<unsigned char>& bytes, double metres, double quantum);
+
+/// What all but one tension in a hundred stay below in magnitude, N/m: the ends of cells would hide the rest. outlines:
+/// those of an output.
+using Outlines = std::function<observe::OutlineSnapshot(int output)>;
+double tension_scale(const Outlines& outlines, const std::vector<std::size_t>& selection);
+
+/// Tensions of one node in `stride` of every cell as signed bytes in base64: 127 stands for `scale`.
+std::string tension_bytes(const observe::OutlineSnapshot& outlines, std::size_t stride, double scale);
 
 /// Base64 (RFC 4648) of bytes.
 std::string base64(const std::vector<unsigned char>& bytes);

@@ -62,6 +62,8 @@ Json surface_data(const files::FrameReader& reader, const std::vector<std::size_
               {"outputs", Json::array()},
               {"origin_um", Json::array()},
               {"nodes", Json::array()}};
+  const double scale = tension_scale([&](int output) { return reader.surfaces(output); }, selection);
+  result["tension"] = {{"scale_N_per_m", scale}, {"values", Json::array()}};
   const std::size_t kept =
       std::clamp<std::size_t>(most_surface_points / begin.x.size(), 2, std::max<std::size_t>(2, selection.size()));
   std::size_t last = selection.size();  // none yet
@@ -73,6 +75,7 @@ Json surface_data(const files::FrameReader& reader, const std::vector<std::size_
     if (surfaces.first != begin.first) return nullptr;
     result["outputs"].push_back(place);
     add_surfaces(result, surfaces, quantum);
+    result["tension"]["values"].push_back(tension_bytes(surfaces, 1, scale));
   }
   return result;
 }

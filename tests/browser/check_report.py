@@ -425,6 +425,16 @@ class The_page_of_a_run_in_three_dimensions(PageCase):
         page.run(change % ("select[aria-label='Cut']", "", "change"))
         self.assertEqual(page.run(self.PIXELS), whole)
 
+    def test_colours_one_cell_by_its_tension(self):
+        page = self.open(self.directory / "report.html", part="#strain=0.4")
+        page.run(Every_page_on_every_screen.DRAWN)
+        self.assertEqual(page.run("[...document.querySelector(\"select[aria-label='Cells by']\").options].map(o => o.text).filter(t => t === 'aggregate')"), [])
+        tense = page.run(self.PIXELS)
+        page.run("(() => { const s = document.querySelector(\"select[aria-label='Cells by']\"); if (s.value !== 'tension') throw s.value; s.value = 'grey'; s.dispatchEvent(new Event('change')); })()")
+        grey = page.run(self.PIXELS)
+        self.assertEqual(grey[0], tense[0])
+        self.assertNotEqual(grey[1], tense[1])
+
     def test_carries_what_draws_them_alone(self):
         self.assertIn("var ogl=", (self.directory / "report.html").read_text())
         self.assertNotIn("var ogl=", (folder / "a/report.html").read_text())

@@ -3,7 +3,7 @@
 class View {
   constructor(runs) {
     const names = new Set(runs.flatMap(run => Object.keys(cellColours(run))));
-    Object.assign(this, {field: "", tracers: true, cell: null, hovered: null, follow: false, listeners: [], colour: names.has("aggregate") ? "aggregate" : "grey", before: null});
+    Object.assign(this, {field: "", tracers: true, cell: null, hovered: null, follow: false, listeners: [], colour: names.has("aggregate") ? "aggregate" : names.has("tension") && runs[0].surfaces ? "tension" : "grey", before: null});
   }
   changed() { for (const listener of this.listeners) listener(); }
   /// Cells are grey over a field, and get their colours back without one.

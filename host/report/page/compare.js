@@ -7,9 +7,10 @@ const settingName = pointer => pointer.split("/").filter(word => word && !/^\d+$
 /// The settings that differ, {pointer, values}: how cells were placed comes last.
 const settingsOf = ({scene}) => (scene ?? []).filter(row => !["/title", "/expected"].includes(row.pointer)).sort((a, b) => a.pointer.startsWith("/cells") - b.pointer.startsWith("/cells"));
 
-/// What tells run `r` from the others, in words: its settings that differ, or its directory.
+/// What tells run `r` from the others, in words: its settings that differ, those first that tell most runs apart, or its
+/// directory.
 function differenceWords(r, differences, runs) {
-  const rows = settingsOf(differences);
+  const kinds = ({values}) => new Set(values.map(asText)).size, rows = settingsOf(differences).sort((a, b) => kinds(b) - kinds(a));
   return rows.length ? rows.slice(0, 3).map(row => `${settingName(row.pointer)} ${shortened(asText(row.values[r]), 32)}`).join(", ") + (rows.length > 3 ? ` and ${rows.length - 3} more` : "") : runs[r].directory;
 }
 function runName(r, {runs, differences}) {

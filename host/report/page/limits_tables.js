@@ -19,7 +19,7 @@ function showEdges(result, unit) {
   section("Edges", table([...varied.map(axis => ({title: axis.name, value: r => r.labels[axis.name] ?? ""})), {title: "Unstable", value: r => r.unstable_from === null ? "nowhere" : r.direction ?? "above"},
     value("Last stable", "stable_up_to", "none"), value("First unstable", "unstable_from", "none"), failure("Mode", "mode"), failure("Reason", "reason"), failure("Step", "step", {number: true}),
     failure("Wavelength, segments", "wavelength", {number: true}),
-    ...(rows.some(r => r.out_of_order?.length) ? [{title: "Contradicted at", value: r => (r.out_of_order ?? []).map(v => format(v, 3)).join(", ")}] : [])], rows, {sortable: true}));
+    ...(rows.some(r => r.out_of_order?.length) ? [{title: "Contradicted at", value: r => (r.out_of_order ?? []).map(v => format(v, 3)).join(", ")}] : [])], rows, {sortable: true, stacked: true}));
   const told = rows.filter(r => r.failure.message || r.failure.remedy);
   if (told.length) page.append(element("h3", {}, "What the failures say"), table([{title: "Combination", value: r => labelWords(r.labels) || "all points"}, failure("Reason", "reason"),
     failure("What happened", "message"), failure("What to change", "remedy")], told, {stacked: true}));

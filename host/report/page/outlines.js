@@ -9,6 +9,12 @@ function decodedNodes({data, first, count}, output, axes) {
   return nodes;
 }
 
+/// Tension over its scale, from -1 to 1, for each node, between outputs a and b.
+function decodedTension(values, a, b, share) {
+  const [from, to] = [a, b].map(output => new Int8Array(bytesOf(values[output]).buffer));
+  return Float32Array.from(from, (v, i) => (v + share * (to[i] - v)) / 127);
+}
+
 /// Outlines of one run: nodes x, y in micrometres, not wrapped into the box, at an output or between two.
 class Outlines {
   constructor(outlines) {
@@ -23,12 +29,10 @@ class Outlines {
     const to = this.at(b);
     return from.map((v, i) => v + share * (to[i] - v));
   }
-  /// Tension over its scale, from -1 to 1, for each node; null in pages of earlier versions.
+  /// Tension over its scale, from -1 to 1, for each node; null in pages of earlier versions and of sections.
   tension({a, b, share}) {
-    const {values} = this.data.tension ?? {};
-    if (!values) return null;
-    const [from, to] = [a, b].map(output => new Int8Array(bytesOf(values[output]).buffer));
-    return Float32Array.from(from, (v, i) => (v + share * (to[i] - v)) / 127);
+    const {values, scale_N_per_m: scale} = this.data.tension ?? {};
+    return scale ? decodedTension(values, a, b, share) : null;
   }
 }
 
@@ -37,10 +41,12 @@ const rampStops = {
   cividis: ["#00204d", "#2b3f6d", "#575c6d", "#7c7b78", "#a69d75", "#d3c164", "#ffe945"],
   tension: ["#0b4f9e", "#5b93cf", "#a9b4c2", "#e0934a", "#a84300"],
 };
-function rampColour(stops, share) {
+const rampColour = (stops, share) => `rgb(${rampRgb(stops, share).map(v => Math.round(255 * v)).join(",")})`;
+/// Red, green and blue from 0 to 1.
+function rampRgb(stops, share) {
   const at = Math.min(1, Math.max(0, share)) * (stops.length - 1), i = Math.min(stops.length - 2, Math.floor(at));
   const [low, high] = [stops[i], stops[i + 1]].map(hex => [1, 3, 5].map(k => parseInt(hex.slice(k, k + 2), 16)));
-  return `rgb(${low.map((c, k) => Math.round(c + (at - i) * (high[k] - c))).join(",")})`;
+  return low.map((c, k) => (c + (at - i) * (high[k] - c)) / 255);
 }
 
 /// Tones of the aggregates by output: single cells are grey, and aggregates that are there at the same time differ.
@@ -63,9 +69,11 @@ const percentile = (values, share) => { const sorted = values.filter(v => v !== 
 function cellColours(run) {
   const {cells} = run, colours = {}, tonesOf = cells && aggregateTones(cells.aggregate);
   if (!run.outlines) return colours;
-  if (cells) {
+  if (cells && cells.types.length > 1) {
     colours.aggregate = {title: "aggregate", tone: (cell, {a, b, share}) => tonesOf[share < .5 ? a : b][cell],
       bar: () => [element("span", {}, "Colour: aggregate"), element("span", {class: "quiet"}, "single cells are grey")]};
+  }
+  if (cells) {
     const types = [...new Set(cells.types)];
     colours.type = {title: "cell type", tone: cell => lineTones[types.indexOf(cells.types[cell]) % lineTones.length],
       bar: () => types.map((type, i) => element("span", {}, element("i", {class: "dot", style: `background:var(${lineTones[i % lineTones.length]})`}), type))};
@@ -77,7 +85,7 @@ function cellColours(run) {
     if (deformation.some(v => v !== null)) colours.deformation = ranged("deformation", "deformation", "", percentile(deformation, .01), percentile(deformation, .99));
     if (speeds.some(v => v !== null)) colours.speed = ranged("speed_um_per_s", "speed of the cell", ", µm/s", 0, percentile(speeds, .99));
   }
-  const scale = run.outlines.tension?.scale_N_per_m;
+  const scale = run.outlines.tension?.scale_N_per_m || run.surfaces?.tension?.scale_N_per_m;
   if (scale) colours.tension = {title: "membrane tension", tension: share => rampColour(rampStops.tension, (share + 1) / 2), tone: () => "--single",
     bar: () => rampBar("Membrane tension, µN/m", rampStops.tension, [`≤ ${format(-scale * 1e6, 3)}`, "0", `≥ ${format(scale * 1e6, 3)}`])};
   colours.grey = {title: "grey", tone: () => "--single", bar: () => []};

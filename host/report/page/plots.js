@@ -5,20 +5,20 @@ const mostLines = 6;  // of cells in a chart: beyond these their median and spre
 /// Order and looks of the charts that the run's data lists; what is not named here comes last among `more`. `group` is
 /// where a chart stands: "main" (the four first of these are open), "more", or "numerics".
 const looks = {
-  "Aggregates, single cells included": {steps: true, whole: true, zero: true, needsCells: true, group: "main"},
-  "Smallest gap to another cell": {zero: true, group: "main"},
+  "Aggregates, single cells included": {steps: true, whole: true, zero: true, needsCells: 2, group: "main"},
+  "Smallest gap to another cell": {zero: true, needsCells: 2, group: "main"},
   "Deformation (L − B)/(L + B)": {group: "main"},
   "Relative viscosity": {group: "main"},
-  "Cell-free layer": {zero: true, needsCells: true, optional: true, group: "main"},
+  "Cell-free layer": {zero: true, needsCells: 1, optional: true, group: "main"},
   "Angle of the long axis": {group: "main"},
   "Smallest gap to a wall": {zero: true, optional: true},
-  "Aggregate size, mean over cells": {steps: true, zero: true, needsCells: true},
-  "Particle stress xy": {needsCells: true},
-  "Energy of the cells": {needsCells: true, optional: true},
+  "Aggregate size, mean over cells": {steps: true, zero: true, needsCells: 2},
+  "Particle stress xy": {needsCells: 1},
+  "Energy of the cells": {needsCells: 1, optional: true},
   "Power": {optional: true},
   "Largest Mach number": {zero: true, group: "numerics"},
-  "Largest relative area drift": {zero: true, needsCells: true, group: "numerics"},
-  "Largest area kept from leaking, relative": {zero: true, needsCells: true, optional: true, group: "numerics"},
+  "Largest relative area drift": {zero: true, needsCells: 1, group: "numerics"},
+  "Largest area kept from leaking, relative": {zero: true, needsCells: 1, optional: true, group: "numerics"},
   "Relative mass drift": {zero: true, group: "numerics"},
   "Kinetic energy of the fluid as simulated": {optional: true, group: "numerics"},
 };
@@ -35,9 +35,12 @@ function spreadOfCells(run, name) {
   return {low: at(.1), median: at(.5), high: at(.9)};
 }
 
+/// A quantity may make sense with so many cells alone.
+const enoughCells = ({needsCells = 0, table}, runs) => runs.some(run => (run.cells?.types.length ?? 0) >= (needsCells || (table === "cells" ? 1 : 0)));
+
 /// Lines of a quantity: of one run each cell's, of many cells or several runs their median and range.
 function linesOf(quantity, runs) {
-  if (quantity.needsCells && !runs.some(run => run.cells)) return [];
+  if (!enoughCells(quantity, runs)) return [];
   const several = runs.length > 1;
   return runs.flatMap((run, r) => {
     const prefix = several ? `${runNames[r]} ` : "", dashed = several && r % 2 === 1;
@@ -73,7 +76,7 @@ function plots(timeline, parent, {view, events = []}) {
   const grid = name => grids[name] ??= element("div", {class: "charts" + (name === "main" ? " main" : "")});
   for (const quantity of quantitiesOf(timeline.runs[0])) {
     const lines = linesOf(quantity, timeline.runs);
-    if (!lines.some(line => !line.picked)) { if (!quantity.optional && timeline.runs.some(run => run.cells || !(quantity.needsCells || quantity.table === "cells"))) missing.push(quantity.title); continue; }
+    if (!lines.some(line => !line.picked)) { if (!quantity.optional && enoughCells(quantity, timeline.runs)) missing.push(quantity.title); continue; }
     // An axis up to 1 would speak of a size that is not there.
     if (!quantity.whole && lines.every(line => line.values.every(v => !v))) { zero.push(quantity.title); continue; }
     const {unit, factor} = readable(quantity.unit, lines);

@@ -56,13 +56,11 @@ function showResults(timeline, run) {
   if (run.outlines || run.fields) {
     const card = element("div", {class: "card"});
     box.append(card);
-    const animation = timeline.animation = new Animation(card, timeline, 0, view), [first, second] = animationControls(timeline, [animation], view, [storyStrip(timeline, events)]);
+    const drawn = run.surfaces ? element("div", {class: "pair"}, element("div"), element("div")) : card;
+    if (run.surfaces) { card.append(drawn); new SpaceView(drawn.firstChild, timeline, 0, view); }
+    const animation = timeline.animation = new Animation(drawn.lastChild ?? drawn, timeline, 0, view), [first, second] = animationControls(timeline, [animation], view, [storyStrip(timeline, events)]);
     card.append(first, instantLine(timeline, 0), second, ...failureNote(run), ...whyNoAnimation(run));
-    if (run.surfaces) {
-      const space = element("div", {class: "card"});
-      box.append(note("Above each cell is cut by the plane across z through its middle. Below: drag to turn, wheel or + and − to come closer; a cut across an axis opens the cells."), space);
-      new SpaceView(space, timeline, 0, view);
-    }
+    if (run.surfaces) card.append(note("The surfaces: drag to turn, wheel or + and − to come closer; a cut across an axis opens the cells. The outlines: every cell cut by the plane across z through its own middle."));
   } else if (run.shown.note) box.append(element("div", {class: "card"}, ...whyNoAnimation(run)));
   section("Charts", axisControls(timeline), note("Point at a chart to go to that instant, drag across it to look closer, click a name to hide its line, a tick above to go to an event."));
   const notes = plots(timeline, page, {view, events});

@@ -9,14 +9,22 @@ class Surfaces {
   at(kept) {
     return this.known[kept] ??= decodedNodes(this, kept, 3);
   }
-  /// At a place among the page's outputs, of which some have surfaces.
-  between({a, share}) {
+  /// The two that have surfaces around a place among the page's outputs, {a, b, share}.
+  around({a, share}) {
     const {outputs} = this.data, position = a + share, after = outputs.findIndex(output => output >= position);
-    if (after <= 0) return this.at(after < 0 ? outputs.length - 1 : 0);
-    const part = (position - outputs[after - 1]) / (outputs[after] - outputs[after - 1]), from = this.at(after - 1);
-    if (!part) return from;
-    const to = this.at(after);
-    return from.map((v, i) => v + part * (to[i] - v));
+    if (after <= 0) { const only = after < 0 ? outputs.length - 1 : 0; return {a: only, b: only, share: 0}; }
+    return {a: after - 1, b: after, share: (position - outputs[after - 1]) / (outputs[after] - outputs[after - 1])};
+  }
+  between(instant) {
+    const {a, b, share} = this.around(instant), from = this.at(a);
+    if (!share) return from;
+    const to = this.at(b);
+    return from.map((v, i) => v + share * (to[i] - v));
+  }
+  /// Tension over its scale, from -1 to 1, for each node.
+  tension(instant) {
+    const {a, b, share} = this.around(instant);
+    return decodedTension(this.data.tension.values, a, b, share);
   }
   /// Moved as whole cells into the periodic box.
   wrapped(places, box, periodic) {
@@ -58,7 +66,7 @@ const rgbOf = (() => {
 /// The surfaces of a run at the timeline's instant, in their box. Drag or arrow keys turn it, the wheel, two fingers, + and -
 /// come closer, 0 is where it began. A plane across one axis cuts them open: what lies between it and the eye is left out.
 class SpaceView {
-  static start = {azimuth: -.5, elevation: .35, distance: .9};
+  static start = {azimuth: -.5, elevation: .35, distance: .85};
   static uncut = [0, 0, 0, 1];
   constructor(parent, timeline, run, view) {
     const data = timeline.runs[run], surfaces = new Surfaces(data.surfaces);
@@ -100,12 +108,17 @@ class SpaceView {
   draw() {
     const {canvas, geometry, surfaces, box} = this, width = canvas.clientWidth;
     if (!width || !this.renderer) return;
-    const height = Math.round(Math.min(width * .6, 520)), between = this.timeline.between(this.run), colour = this.colours[this.view.colour] ?? this.colours.grey;
+    const height = Math.round(Math.min(width * .76, 520)), between = this.timeline.between(this.run), colour = this.colours[this.view.colour] ?? this.colours.grey;
     if (this.width !== width) { this.renderer.setSize(width, height); canvas.style.width = "100%"; this.camera.perspective({aspect: width / height}); this.width = width; }
     const places = surfaces.wrapped(surfaces.between(between), box, this.periodic), position = geometry.attributes.position, tones = geometry.attributes.colour;
     geometry.attributes.normal.data.set(surfaces.normals(places));
     for (let i = 0; i < places.length; ++i) position.data[i] = places[i] - box[i % 3] / 2;
+    const tension = colour?.tension && surfaces.tension(between);
     for (let cell = 0; cell < surfaces.count; ++cell) {
+      if (tension && this.view.cell !== cell) {
+        for (let i = surfaces.first[cell]; i < surfaces.first[cell + 1]; ++i) tones.data.set(rampRgb(rampStops.tension, (tension[i] + 1) / 2), 3 * i);
+        continue;
+      }
       const rgb = rgbOf(this.view.cell === cell ? css("--text") : colour?.colour ? colour.colour(cell, between) : css(colour ? colour.tone(cell, between) : "--single"));
       for (let i = surfaces.first[cell]; i < surfaces.first[cell + 1]; ++i) tones.data.set(rgb, 3 * i);
     }

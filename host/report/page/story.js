@@ -50,11 +50,13 @@ function storyStrip(timeline, events) {
   new ResizeObserver(() => {
     const ends = [-Infinity, -Infinity];
     for (const button of buttons) {
-      const words = button.firstChild, wide = 6.4 * words.textContent.length, middle = parseFloat(button.style.left) / 100 * box.clientWidth;
+      const words = button.firstChild;
+      words.hidden = false;
+      const wide = words.offsetWidth, middle = parseFloat(button.style.left) / 100 * box.clientWidth;
       const left = Math.min(Math.max(middle - wide / 2, 0), box.clientWidth - wide), row = ends.findIndex(end => left > end + 8);
       words.hidden = row < 0;
       if (row < 0) continue;
-      words.style.left = `${left - middle + 7}px`; words.style.top = `${16 + 16 * row}px`;
+      words.style.left = `${left - middle + 14}px`; words.style.top = `${16 + 16 * row}px`;
       ends[row] = left + wide;
     }
   }).observe(box);

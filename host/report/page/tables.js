@@ -96,8 +96,9 @@ function showConservation(summary) {
 
 function showHistory(summary) {
   const history = summary.aggregate_history || [];
-  if (history.length) section("Aggregates", table([{title: "Strain", key: "strain", number: true}, {title: "Time, s", key: "time_s", number: true}, {title: "Count", key: "count", number: true},
-    {title: "Members", value: r => (r.members || []).map(m => m.join("+")).join(" | ")}, {title: "Connected across the periodic boundary", value: r => r.through_image ? "yes" : "no"}], history.slice(0, 200), {stacked: true}),
+  const folded = rows => history.length > 12 ? element("details", {}, element("summary", {}, `All ${history.length} changes`), rows) : rows;
+  if (history.length && history[0].members?.flat().length !== 1) section("Aggregates", folded(table([{title: "Strain", key: "strain", number: true}, {title: "Time, s", key: "time_s", number: true}, {title: "Count", key: "count", number: true},
+    {title: "Members", value: r => (r.members || []).map(m => m.join("+")).join(" | ")}, {title: "Connected across the periodic boundary", value: r => r.through_image ? "yes" : "no"}], history.slice(0, 200), {stacked: true})),
     ...(history.length > 200 ? [note(`The first 200 of ${history.length} changes; summary.json has all.`)] : []));
   const means = [...(summary.rheology || [])].reverse().flatMap(stage => Object.entries(stage.means || {}).filter(([, v]) => v && typeof v === "object" && typeof v.mean === "number")
     .map(([name, {mean, deviation}]) => name.endsWith("_m") ? {name: name.replace(/_m$/, "_um"), mean: 1e6 * mean, deviation: 1e6 * deviation} : {name, mean, deviation})
