@@ -117,11 +117,13 @@ std::string opening(const plan::Plan& plan, const plan::PlanReport& report, int 
   std::vector<std::string> stages;
   for (const scene::Stage& stage : scene.stages) stages.push_back(stage.name);
   const plan::Estimate& estimate = report.estimate;
+  std::string late;
+  for (const plan::LateStart& start : report.late_starts) late += "  fluid from rest: " + plan::in_words(start) + "\n";
   return (scene.title.empty() ? "untitled scene" : scene.title) + "\n  " + size + " um, " + nodes + " nodes, " +
          counted(static_cast<double>(scene.cells.size()), "cell") + "; stages: " + listed(stages) + "\n  at most " +
          counted(estimate.steps, "step") + ", about " + time_in_words(estimate.wall_s / (ranks * threads)) + " on " +
          workers(ranks, threads) + " (the machine has " + counted(processors, "processor") + "), " +
-         size_in_words(estimate.output.bytes()) + " of output\n  into " + folder.string() + "\n";
+         size_in_words(estimate.output.bytes()) + " of output\n" + late + "  into " + folder.string() + "\n";
 }
 
 std::vector<std::string> closing(const Json& summary) {

@@ -315,6 +315,24 @@ std::vector<std::string> warnings_of(const Plan& plan, const std::vector<Limit>&
 
 }  // namespace
 
+namespace {
+
+std::vector<LateStart> late_starts(const Plan& plan) {
+  constexpr double slight = 0.01;
+  std::vector<LateStart> found;
+  if (!plan.has_cells) return found;  // how the flow starts is what is computed
+  for (const StageSetting& stage : plan.stages) {
+    const double late = stage.stage->density_factor * scene::start_up_strain(*stage.stage, *plan.scene);
+    const double strain =
+        static_cast<double>(stage.max_steps) * stage.units.time * scene::mean_shear_rate(*stage.stage, *plan.scene);
+    if (stage.stage->density_factor > 1 && late > slight * strain && strain > 0)
+      found.push_back({stage.stage->name, late, strain});
+  }
+  return found;
+}
+
+}  // namespace
+
 PlanReport make_report(const Plan& plan) {
   PlanReport report;
   report.passes = planned_passes(plan);
@@ -325,6 +343,7 @@ PlanReport make_report(const Plan& plan) {
   report.dimensionless = dimensionless_numbers(plan, report.wells);
   report.conversions = conversion_table(plan);
   report.packings = packed_cells(*plan.scene);
+  report.late_starts = late_starts(plan);
   report.estimate = estimate(plan);
   return report;
 }

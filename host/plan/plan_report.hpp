@@ -47,6 +47,14 @@ struct PackedCells {
   NLOHMANN_DEFINE_TYPE_INTRUSIVE(PackedCells, pointer, type, cells, count, hematocrit_asked, hematocrit, seed, gap_m)
 };
 
+/// A stage whose fluid starts from rest and, being simulated denser than it is, makes what happens there come late.
+struct LateStart {
+  std::string stage;
+  double strain;        ///< by so much
+  double stage_strain;  ///< of this much
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(LateStart, stage, strain, stage_strain)
+};
+
 struct PlanReport {
   std::vector<PlannedPass> passes;
   std::vector<Omission> left_out;
@@ -56,12 +64,15 @@ struct PlanReport {
   std::vector<Conversion> conversions;
   std::vector<InteractionWell> wells;
   std::vector<PackedCells> packings;
+  std::vector<LateStart> late_starts;  ///< by more than 1 % of the stage's strain
   Estimate estimate;
 };
 
 /// Opens the libraries of active models, as make_plan() has done before.
 PlanReport make_report(const Plan& plan);
 
+/// "in stage shear everything comes late by a strain of 1.31 (of 15)"
+std::string in_words(const LateStart& late);
 /// For people, as `rouleau plan` prints it.
 std::string to_text(const Plan& plan, const PlanReport& report);
 /// For programs, the same.

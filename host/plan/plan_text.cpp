@@ -121,6 +121,9 @@ std::string to_text(const Plan& plan, const PlanReport& report) {
     out << "  Convective inertia is left out (fluid.inertia false), so the simulated Reynolds number only scales the\n"
            "  unsteady term; the flow is Stokes flow.\n";
   }
+  for (const LateStart& late : report.late_starts) {
+    out << "  The fluid starts from rest: " << in_words(late) << ".\n  With \"start\": \"developed\" it would not.\n";
+  }
 
   write_wells(out, report.wells);
   out << "\nLimits, sharpest first (margin below 1: beyond the limit)\n  " << padded("limit", 62) << padded("value", 12)
@@ -149,10 +152,15 @@ std::string to_text(const Plan& plan, const PlanReport& report) {
   return out.str();
 }
 
+std::string in_words(const LateStart& late) {
+  return "in stage " + late.stage + " everything comes late by a strain of " + number(late.strain, 3) + " (of " +
+         number(late.stage_strain, 3) + ")";
+}
+
 nlohmann::json shared_sections(const PlanReport& report) {
   return {{"warnings", report.warnings}, {"conversions", report.conversions},     {"packings", report.packings},
           {"limits", report.limits},     {"dimensionless", report.dimensionless}, {"wells", report.wells},
-          {"left_out", report.left_out}};
+          {"left_out", report.left_out}, {"late_starts", report.late_starts}};
 }
 
 nlohmann::json to_json(const Plan& plan, const PlanReport& report) {

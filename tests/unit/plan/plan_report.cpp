@@ -35,6 +35,24 @@ std::string why_left_out(const PlanReport& report, const std::string& what) {
   return "";
 }
 
+TEST_CASE("a plan says by how much a start from rest makes a stage late") {
+  const auto late = [](const std::vector<std::string>& changes) {
+    scene::Scene scene = read_scene(std::string(ROULEAU_SCENES) + "/four-cells-shear.json", changes);
+    const Plan plan = make_plan(scene, plugins_of_reports());
+    return make_report(plan).late_starts;
+  };
+  // Mean lag of a Couette flow that starts from rest, H^2/(24 nu) at this rate, of a fluid that is so many times denser.
+  const auto found = late({});
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].stage == "shear");
+  CHECK(found[0].strain == Approx(3000 * 20 * 25.088e-6 * 25.088e-6 / (24 * 1.2e-6)).epsilon(1e-6));
+  CHECK(found[0].stage_strain == Approx(15).epsilon(1e-3));
+  CHECK_THAT(in_words(found[0]), Contains("in stage shear") && Contains("strain of 1.31 (of 15)"));
+  CHECK(late({"/stages/1/start=developed"}).empty());
+  CHECK(late({"/numerics/density_factor=300"}).empty());  // 0.9 %
+  CHECK(late({"/fluid/inertia=true", "/numerics/density_factor=1"}).empty());
+}
+
 const std::string morse_wall =
     R"({"between": ["wall", "rbc"], "model": "morse", "parameters": {"depth": "1e-7 J/m2", "decay": "30 1/um"}})";
 const std::string morse_cells =
