@@ -8,6 +8,7 @@
 #include "base/text.hpp"
 #include "json/document.hpp"
 #include "plan/estimate.hpp"
+#include "plan/numerics_auto.hpp"
 #include "plan/stage_scales.hpp"
 #include "scene/driving_flow.hpp"
 #include "shape/outline.hpp"
@@ -45,6 +46,10 @@ constexpr double wider_mach = 4, wider_area = 20;
 /// Outputs of a run that reports moments, beyond which companions have `fewer` times fewer of them: between theirs moments
 /// are known well enough (Quantity::uncertainty).
 constexpr long many_outputs = 200, fewer = 4;
+
+/// Where moments are reported a companion goes on beyond the scene by this share of its last stage.
+constexpr double beyond_the_end = 0.25;
+constexpr const char* name_beyond = "beyond the end of the scene";
 
 bool starts_at_rest(const scene::Stage& stage, const scene::Scene& scene) {
   return stage.density_factor > 1 && scene::start_up_strain(stage, scene) > 0;
@@ -100,7 +105,7 @@ Json on_lattice(const scene::Scene& scene, const std::array<int, 2>& nodes) {
   }
   if (!changed.contains("numerics") || !changed["numerics"].is_object()) changed["numerics"] = Json::object();
   changed["numerics"].erase("auto");  // what it chose stands beside it
-  // The semi-implicit step changes next to nothing, and a coarse lattice is nearer to the explicit one's limit.
+  // A coarse lattice is nearer to the limit of the explicit step.
   if (scene.numerics.coupling == "explicit") changed["numerics"]["coupling"] = "auto";
   Json& checks = changed["checks"];
   checks["mach"] = std::min(1.0, wider_mach * scene.checks.mach);
@@ -118,6 +123,17 @@ std::optional<Json> thin_outputs(const scene::Scene& scene) {
   if (!cells.is_object() || !cells.value("strain", Json()).is_number()) return std::nullopt;
   cells["strain"] = fewer * cells["strain"].get<double>();
   return cells;
+}
+
+/// Lets the last stage go on; false where it has no end of its own. What drives it does not change, nor does the flow.
+bool go_on(Json& scene) {
+  Json stage = scene["stages"].back();
+  if (!(stage.contains("strain") && stage["strain"].is_number()) || stage.contains("oscillation")) return false;
+  stage["name"] = name_beyond;
+  stage["strain"] = beyond_the_end * stage["strain"].get<double>();
+  for (const char* key : {"start", "duration", "until"}) stage.erase(key);
+  scene["stages"].push_back(std::move(stage));
+  return true;
 }
 
 /// Numbers of equal parts of the lattice's sides that a coarser one of the same shape may have, the finest first.
@@ -198,12 +214,14 @@ Companions choose_companions(const scene::Scene& scene, const RunCost& cost) {
   for (const scene::Stage& stage : scene.stages) densest = std::max(densest, stage.density_factor);
   chosen.relaxed = 1 - 1 / densest;
   chosen.order = scene.cells.empty() || scene.numerics.slip_correction ? 2 : 1;
+  chosen.usual_order = std::max(chosen.order, plan::order_of_lattice_error(scene));
   const Changes changes = choose_changes(scene, densest, cost.moments, chosen.order == 2);
   chosen.density = changes.density;
   const int processes = 2 + (changes.start ? 1 : 0) + (changes.inertia ? 1 : 0);
   const bool thinned = cost.moments && cost.outputs > many_outputs && thin_outputs(scene).has_value();
   const double outputs_s = outputs_of_tables * cost.outputs_s / (thinned ? fewer : 1);
-  const double affordable = std::max(least_share, most_share - processes * (start_s + outputs_s) / cost.run_s);
+  const double longer = cost.moments ? 1 + beyond_the_end : 1;
+  const double affordable = std::max(least_share, most_share - processes * (start_s + outputs_s) / cost.run_s) / longer;
 
   const CoarserLattices lattices(scene);
   int fine = 0, coarse = 0;
@@ -221,7 +239,7 @@ Companions choose_companions(const scene::Scene& scene, const RunCost& cost) {
     return chosen;
   }
   chosen.refinement = lattices.refinement(fine);
-  chosen.expected_share = cost_of_all(scene, lattices, fine, coarse, changes);
+  chosen.expected_share = longer * cost_of_all(scene, lattices, fine, coarse, changes);
   if (const double radius = lattices.radius(fine); radius < least_radius) {
     chosen.why_none = "on a lattice that costs a small part of this one a cell's radius would be " + number(radius, 2) +
                       " spacings, fewer than " + number(least_radius);
@@ -231,8 +249,10 @@ Companions choose_companions(const scene::Scene& scene, const RunCost& cost) {
     const std::array size = lattices.nodes(part);
     Json coarser = on_lattice(scene, size);
     if (thinned) coarser["output"]["cells"] = *thin_outputs(scene);
-    chosen.runs.push_back(
-        {role, std::move(coarser), std::to_string(size[0]) + " x " + std::to_string(size[1]) + " nodes"});
+    const bool longer_run = cost.moments && go_on(coarser);
+    chosen.runs.push_back({role, std::move(coarser),
+                           std::to_string(size[0]) + " x " + std::to_string(size[1]) + " nodes",
+                           longer_run ? name_beyond : ""});
   };
   add_lattice(Role::lattice, fine);
   if (coarse > 0) {
@@ -241,8 +261,9 @@ Companions choose_companions(const scene::Scene& scene, const RunCost& cost) {
   }
   int last = changes.on_the_finer || coarse == 0 ? 0 : 1;
   Json companion = chosen.runs[static_cast<std::size_t>(last)].scene;
+  const std::string beyond = chosen.runs[static_cast<std::size_t>(last)].beyond;
   const auto add_change = [&](Role role, const std::string& differs) {
-    chosen.runs.push_back({role, companion, differs, last});
+    chosen.runs.push_back({role, companion, differs, beyond, last});
     last = static_cast<int>(chosen.runs.size()) - 1;
   };
   if (changes.start) {

@@ -22,6 +22,7 @@ struct Companion {
   Role role;
   nlohmann::json scene;
   std::string differs;  ///< "88 x 44 nodes", for people
+  std::string beyond;   ///< name of the stage that was added at its end; empty: none
   int against = -1;     ///< from which other companion of the choice it differs by its role alone; -1: from the run
 };
 
@@ -30,6 +31,7 @@ struct Companions {
   double refinement = 1;        ///< spacing of the companion for the lattice over the run's
   double coarsest = 1;          ///< that of the companion for the order
   double order = 2;             ///< at which the lattice's error falls in the end
+  double usual_order = 2;       ///< at which it was measured to fall, where companions do not show it
   double density = 1;           ///< density factors of the companion for inertia over the run's
   double relaxed = 0;           ///< share of the density that is not the fluid's own: 1 - 1/density_factor, the largest
   double expected_share = 0;    ///< of what the run costs
@@ -46,7 +48,8 @@ struct RunCost {
 /// The companions of a scene that has been read: the finest coarser lattice of the same shape with which the steps of
 /// all of them are expected to cost a third of the run, by plan::step_cost, less what starting them and their outputs
 /// take, and one that is 1.25 times coarser again. The start and the density are changed on the coarser one; on the
-/// finer where the run reports moments, for a coarse cell may come too late to what the run's has reached.
+/// finer where the run reports moments, for a coarse cell may come too late to what the run's has reached: for the same
+/// reason companions then go on beyond the end of the scene.
 Companions choose_companions(const scene::Scene& scene, const RunCost& cost);
 
 }  // namespace rouleau::accuracy

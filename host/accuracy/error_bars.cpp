@@ -50,7 +50,7 @@ LatticeShare share_of_lattice(double run, const std::vector<double>& values, con
   for (std::size_t i = 0; i < measured.size(); ++i)
     if (measured[i].role == Role::order) coarsest = values[i];
   const double s = std::isfinite(coarsest) ? companions.coarsest : 1;
-  return lattice_share(run, values[0], companions.refinement, coarsest, s, companions.order);
+  return lattice_share(run, values[0], companions.refinement, coarsest, s, companions.order, companions.usual_order);
 }
 
 FoundShares shares_of(const Values& values, const Companions& companions, const std::vector<Measured>& measured) {
@@ -147,13 +147,13 @@ bool is_angle(const Quantity& quantity) { return quantity.name.ends_with("angle_
 
 }  // namespace
 
-LatticeShare lattice_share(double value, double coarse, double r, double coarser, double s, double p) {
+LatticeShare lattice_share(double value, double coarse, double r, double coarser, double s, double p, double q) {
   const double change = coarse - value, low = std::pow(r, p) - 1, high = std::pow(r, 2 * p) - 1;
-  const double plain = change / low;
-  if (s == 1 || change == 0) return {plain, doubt_of_a_share * std::abs(plain)};
+  const double plain = change / low, usual = change / (std::pow(r, q) - 1);
+  const double doubt_of_usual = std::max(doubt_of_a_share * std::abs(usual), std::abs(plain - usual));
+  if (s == 1 || change == 0) return {usual, doubt_of_usual};
   const double further = coarser - value;
-  if (further / change < 1)  // farther off, and no more wrong
-    return {plain, std::max(doubt_of_a_share * std::abs(plain), std::abs(further) / low)};
+  if (further / change < 1) return {usual, std::max(doubt_of_usual, std::abs(further) / low)};  // no more wrong
   const double low_s = std::pow(s, p) - 1, high_s = std::pow(s, 2 * p) - 1;
   const double b = (further * low - change * low_s) / (high_s * low - high * low_s), a = (change - b * high) / low;
   const double part = std::clamp((a + b) / plain, low / high, 2.0);

@@ -73,6 +73,20 @@ Ended run_companion(const Companion& companion, const std::string& scene_file, c
   return ended;
 }
 
+/// If one of them takes the semi-implicit step, all do: on a coarse lattice its own error shows, and pairs would differ by it.
+void share_coupling(Companions& companions, const std::string& scene_file, const MeasureOptions& options) {
+  const auto semi_implicit = [&](const Companion& companion) {
+    try {
+      const scene::Scene scene = read(companion, scene_file);
+      return plan::make_plan(scene, options.catalog_of(scene)).semi_implicit;
+    } catch (const Error&) {
+      return false;  // said when it runs
+    }
+  };
+  if (std::none_of(companions.runs.begin(), companions.runs.end(), semi_implicit)) return;
+  for (Companion& companion : companions.runs) companion.scene["numerics"]["coupling"] = "semi-implicit";
+}
+
 /// Why a companion says nothing; empty: it does.
 std::string why_useless(const Companion& companion, const Ended& ended) {
   if (ended.end == "completed") return {};
@@ -108,7 +122,8 @@ MeasuredErrors measure_errors(const fs::path& directory, const scene::Scene& sce
   const fs::path folder = directory / files::companions_folder;
   std::vector<Quantity> quantities = reported_quantities(directory);
   cost.moments = std::any_of(quantities.begin(), quantities.end(), [](const Quantity& q) { return q.moment; });
-  const Companions companions = choose_companions(scene, cost);
+  Companions companions = choose_companions(scene, cost);
+  share_coupling(companions, scene.document->file(), options);
   MeasuredErrors errors;
   errors.missing = companions.why_none;
   Json told = Json::array();
@@ -128,7 +143,7 @@ MeasuredErrors measure_errors(const fs::path& directory, const scene::Scene& sce
                     {"message", ended.message}});
     errors.missing = why_useless(companion, ended);
     if (!errors.missing.empty()) break;
-    measured.push_back({companion.role, companion.differs, reported_quantities(ended.directory)});
+    measured.push_back({companion.role, companion.differs, reported_quantities(ended.directory, companion.beyond)});
   }
   if (errors.missing.empty()) {
     errors.bars = error_bars(quantities, companions, measured);

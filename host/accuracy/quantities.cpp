@@ -32,9 +32,18 @@ void add(std::vector<Quantity>& all, Quantity quantity) {
 /// Rows of one cell.
 struct CellColumns {
   Column strain, time, angle, deformation, y;
+  std::size_t rows = 0;  ///< until the end of the scene's own stages
 };
 
-std::vector<CellColumns> read_cells(const std::filesystem::path& file) {
+/// Rows of series.csv until the end of the scene's own stages.
+std::size_t own_rows(const files::StoredTable& series, const std::string& beyond) {
+  if (beyond.empty()) return series.rows();
+  const std::vector<std::string> stages = series.texts("stage_name");
+  return static_cast<std::size_t>(std::find(stages.begin(), stages.end(), beyond) - stages.begin());
+}
+
+/// end: time of the last of these rows.
+std::vector<CellColumns> read_cells(const std::filesystem::path& file, double end) {
   const files::StoredTable table(file);
   if (table.rows() == 0) return {};
   std::vector<CellColumns> cells(table.count_of("cell"));
@@ -47,6 +56,7 @@ std::vector<CellColumns> read_cells(const std::filesystem::path& file) {
     cell.angle.push_back(angle[i]);
     cell.deformation.push_back(deformation[i]);
     cell.y.push_back(y[i]);
+    if (time[i] <= end) cell.rows = cell.time.size();
   }
   return cells;
 }
@@ -70,7 +80,7 @@ void add_passages(std::vector<Quantity>& all, const CellColumns& cell, const std
 void add_cells(std::vector<Quantity>& all, const std::vector<CellColumns>& cells) {
   if (cells.empty()) return;
   double sum = 0;
-  for (const CellColumns& cell : cells) sum += cell.deformation.back();
+  for (const CellColumns& cell : cells) sum += cell.deformation[cell.rows - 1];
   const double mean = sum / static_cast<double>(cells.size());
   add(all, {.name = "deformation", .value = mean, .part_of_cells = mean, .principal = true});
   if (cells.size() > most_single_cells) return;
@@ -78,11 +88,11 @@ void add_cells(std::vector<Quantity>& all, const std::vector<CellColumns>& cells
     const CellColumns& cell = cells[i];
     const bool lone = cells.size() == 1;
     const std::string prefix = lone ? "" : "cell_" + std::to_string(i) + "_";
-    const double deformation = cell.deformation.back(), angle = cell.angle.back();
+    const double deformation = cell.deformation[cell.rows - 1], angle = cell.angle[cell.rows - 1];
     if (!lone) add(all, {.name = prefix + "deformation", .value = deformation, .part_of_cells = deformation});
     const bool inclined = std::abs(angle) < std::numbers::pi / 2;  // an angle that turns on is large for another reason
     add(all, {.name = prefix + "angle_rad", .value = angle, .part_of_cells = inclined ? angle : 0, .principal = lone});
-    add(all, {.name = prefix + "y_m", .value = cell.y.back()});
+    add(all, {.name = prefix + "y_m", .value = cell.y[cell.rows - 1]});
     add_passages(all, cell, prefix, lone);
   }
 }
@@ -94,15 +104,14 @@ double part_of_cells(std::string_view name, double value, double relative_viscos
   return power && std::isfinite(relative_viscosity) ? value * (1 - 1 / relative_viscosity) : 0;
 }
 
-void add_series(std::vector<Quantity>& all, const std::filesystem::path& file) {
-  const files::StoredTable table(file);
-  if (table.rows() == 0) return;
-  const double viscosity = table.numbers("relative_viscosity").back();
+void add_series(std::vector<Quantity>& all, const files::StoredTable& table, std::size_t rows) {
+  if (rows == 0) return;
+  const double viscosity = table.numbers("relative_viscosity")[rows - 1];
   for (const observe::Observable& observable : observe::table("series").observables) {
     const bool result = std::find(no_results.begin(), no_results.end(), observable.name) == no_results.end();
     const std::string column = observable.column();
     if (!result || observable.has_means || observable.chart.empty() || !table.has(column)) continue;
-    const double value = table.numbers(column).back();
+    const double value = table.numbers(column)[rows - 1];
     if (observable.name == "aggregate_count")
       add(all, {.name = "aggregates", .value = value, .nature = Nature::count});
     else if (value != 0)
@@ -192,15 +201,18 @@ std::vector<Passage> passages(const std::vector<double>& x, const std::vector<do
   return found;
 }
 
-std::vector<Quantity> reported_quantities(const std::filesystem::path& run_directory) {
+std::vector<Quantity> reported_quantities(const std::filesystem::path& run_directory, const std::string& beyond) {
   std::vector<Quantity> all;
   const Json summary = json::Document::read(run_directory / "summary.json").root();
-  add_cells(all, read_cells(run_directory / "cells.csv"));
-  const Json& stages = summary.at("rheology");
+  const files::StoredTable series(run_directory / "series.csv");
+  const std::size_t rows = own_rows(series, beyond);
+  if (rows > 0) add_cells(all, read_cells(run_directory / "cells.csv", series.numbers("time_s")[rows - 1]));
+  Json stages = summary.at("rheology");
+  if (!beyond.empty() && !stages.empty() && stages.back().at("stage") == beyond) stages.erase(stages.size() - 1);
   add_means(all, stages);
   if (!stages.empty()) add_turning(all, stages.back());
   add_partings(all, stages);
-  add_series(all, run_directory / "series.csv");
+  add_series(all, series, rows);
   return all;
 }
 

@@ -77,10 +77,14 @@ double distance_from_one(double viscosity_ratio) {
 double between(double at_one, double at_measured, double viscosity_ratio) {
   return at_one + distance_from_one(viscosity_ratio) * (at_measured - at_one);
 }
-double between(const ShapeError (&pair)[2], double viscosity_ratio, double radius) {
-  const double order = std::clamp(between(pair[0].order, pair[1].order, viscosity_ratio), 2.0, 3.0);
-  return between(pair[0].at_ten, pair[1].at_ten, viscosity_ratio) * std::pow(10 / radius, order);
+double order_between(const ShapeError (&pair)[2], double viscosity_ratio) {
+  return std::clamp(between(pair[0].order, pair[1].order, viscosity_ratio), 2.0, 3.0);
 }
+double between(const ShapeError (&pair)[2], double viscosity_ratio, double radius) {
+  return between(pair[0].at_ten, pair[1].at_ten, viscosity_ratio) *
+         std::pow(10 / radius, order_between(pair, viscosity_ratio));
+}
+bool is_thin(const scene::CellType& type) { return std::holds_alternative<scene::Biconcave>(type.shape); }
 
 /// What a person would write: three digits, rounded down. Whole numbers stay whole.
 Json three_digits_below(double value) {
@@ -255,11 +259,10 @@ double Problem::resolution_error(double spacing, double tau) const {
   }
   double largest = 0;
   for (const scene::CellType* type : used_types_) {
-    const bool thin = std::holds_alternative<scene::Biconcave>(type->shape);
     const auto* ellipse = std::get_if<scene::Ellipse>(&type->shape);
     const double radius =
         (ellipse != nullptr ? ellipse->semi_axes.minCoeff() : shape::shape_radius(type->shape)) / spacing;
-    double error = between(thin ? biconcave_cell : round_cell, viscosity_ratio_, radius) *
+    double error = between(is_thin(*type) ? biconcave_cell : round_cell, viscosity_ratio_, radius) *
                    (1 + growth_with_tau * std::max(0.0, tau - 1));
     if (!corrected_) error += between(slip_at_ten[0], slip_at_ten[1], viscosity_ratio_) * 10 / radius;
     largest = std::max(largest, error);
@@ -411,6 +414,18 @@ Json to_json(const std::optional<NumericsChoice>& choice) {
           {"of", choice->steady ? "steady" : "motion"},
           {"values", choice->values},
           {"expected_error", choice->expected}};
+}
+
+double order_of_lattice_error(const scene::Scene& scene) {
+  if (scene.cells.empty()) return 2;
+  if (!scene.numerics.slip_correction) return 1;
+  double least = biconcave_cell[0].order;
+  for (const scene::CellPlacement& cell : scene.cells) {
+    const scene::CellType& type = scene.cell_types[cell.type];
+    const double ratio = type.interior_viscosity / scene.fluid.viscosity;
+    least = std::min(least, order_between(is_thin(type) ? biconcave_cell : round_cell, ratio));
+  }
+  return least;
 }
 
 std::optional<NumericsChoice> fill_in_numerics(json::Document& document, const NumericsBounds& bounds) {

@@ -10,6 +10,9 @@
 namespace rouleau::json {
 class Document;
 }  // namespace rouleau::json
+namespace rouleau::scene {
+struct Scene;
+}  // namespace rouleau::scene
 namespace rouleau::plan {
 
 /// Parts of the error that is expected of a result, relative.
@@ -54,5 +57,9 @@ struct NumericsBounds {
 /// with faults gets values with which it can be read, and nothing is chosen. Throws Error(bad_input) when no lattice fits
 /// the domain.
 std::optional<NumericsChoice> fill_in_numerics(json::Document& document, const NumericsBounds& bounds = {});
+
+/// The power of the spacing with which the lattice's error was measured to fall: 2, and for biconcave cells with the fluid's own
+/// viscosity inside 3 (docs/accuracy.md, "The error model of auto"); without slip correction 1.
+double order_of_lattice_error(const scene::Scene& scene);
 
 }  // namespace rouleau::plan

@@ -16,8 +16,9 @@ Quantity quantity(const std::string& name, double value) { return {.name = name,
 /// Companions of a run on a lattice with twice the spacing, and with half the density.
 Companions three_companions() {
   Companions companions;
-  companions.runs = {
-      {Role::lattice, {}, "coarse", -1}, {Role::start, {}, "developed", 0}, {Role::inertia, {}, "light", 1}};
+  companions.runs = {{Role::lattice, {}, "coarse", "", -1},
+                     {Role::start, {}, "developed", "", 0},
+                     {Role::inertia, {}, "light", "", 1}};
   companions.refinement = 2;
   companions.order = 2;
   companions.density = 0.5;
@@ -58,7 +59,7 @@ TEST_CASE("the share of the density is that of an error in proportion, of a dens
   Companions companions = three_companions();
   const auto share = [&](double density, double power) {
     companions.density = density;
-    companions.runs = {{Role::lattice, {}, "coarse", -1}, {Role::inertia, {}, "other", 0}};
+    companions.runs = {{Role::lattice, {}, "coarse", "", -1}, {Role::inertia, {}, "other", "", 0}};
     const double companion = 1 + 0.01 * std::pow(density, power);
     return error_bars({quantity("deformation", 1.01)}, companions,
                       {{Role::lattice, "coarse", {quantity("deformation", 1.01)}},
@@ -75,7 +76,7 @@ TEST_CASE("two coarser lattices find an error of second and fourth order, and on
   const double r = 1.6, s = 2;
   const auto share = [&](double second, double fourth) {
     const auto at = [&](double h) { return 0.3 + second * h * h + fourth * std::pow(h, 4); };
-    return lattice_share(at(1), at(r), r, at(s), s, 2);
+    return lattice_share(at(1), at(r), r, at(s), s, 2, 2);
   };
   for (const auto& [second, fourth] :
        {std::pair{0.01, 0.0}, {0.01, 0.01}, {0.0, 0.01}, {-0.01, -0.002}, {0.01, -0.001}}) {
@@ -83,20 +84,30 @@ TEST_CASE("two coarser lattices find an error of second and fourth order, and on
     CHECK(share(second, fourth).doubt >= 0.5 * std::abs(second + fourth) * (1 - 1e-9));
   }
   // One coarser lattice alone takes all for the second order.
-  const double alone = lattice_share(0.31, 0.3 + 0.01 * std::pow(r, 4), r, std::nan(""), 1, 2).error;
+  const double alone = lattice_share(0.31, 0.3 + 0.01 * std::pow(r, 4), r, std::nan(""), 1, 2, 2).error;
   CHECK(alone > 2 * 0.01);
 }
 
 TEST_CASE("values that turn back on the coarsest lattice leave a doubt of their distance") {
-  const LatticeShare share = lattice_share(6.074, 6.093, 1.7, 6.051, 2, 2);
+  const LatticeShare share = lattice_share(6.074, 6.093, 1.7, 6.051, 2, 2, 2);
   CHECK(share.error == Approx(0.019 / (1.7 * 1.7 - 1)));
   CHECK(share.doubt == Approx(0.023 / (1.7 * 1.7 - 1)));
-  CHECK(lattice_share(1, 1, 1.7, 1.2, 2, 2).error == 0);
+  CHECK(lattice_share(1, 1, 1.7, 1.2, 2, 2, 2).error == 0);
+}
+
+TEST_CASE("where the order does not show it is the usual one, and the bar holds the lower one") {
+  const double r = 2, error = 0.01, change = 0.01 * (r * r * r - 1);
+  for (const LatticeShare& share :
+       {lattice_share(1 + error, 1 + error + change, r, std::nan(""), 1, 2, 3),
+        lattice_share(1 + error, 1 + error + change, r, 1 + error + change / 2, 2.5, 2, 3)}) {
+    CHECK(share.error == Approx(error));
+    CHECK(share.error + share.doubt >= change / (r * r - 1) * (1 - 1e-9));
+  }
 }
 
 TEST_CASE("a quantity that the companion for the order does not have has a bar without it") {
   Companions companions = three_companions();
-  companions.runs = {{Role::lattice, {}, "coarse", -1}, {Role::order, {}, "coarser", -1}};
+  companions.runs = {{Role::lattice, {}, "coarse", "", -1}, {Role::order, {}, "coarser", "", -1}};
   companions.coarsest = 2.5;
   const auto bars = error_bars({quantity("passage_strain_-90_deg", 1.01)}, companions,
                                {{Role::lattice, "coarse", {quantity("passage_strain_-90_deg", 1.04)}},
@@ -107,7 +118,7 @@ TEST_CASE("a quantity that the companion for the order does not have has a bar w
 
 TEST_CASE("without slip correction the lattice's share is that of first order") {
   Companions companions = three_companions();
-  companions.order = 1;
+  companions.order = companions.usual_order = 1;
   const auto bars = error_bars({quantity("deformation", 1.01)}, companions,
                                {{Role::lattice, "coarse", {quantity("deformation", 1.02)}}});
   CHECK(bars[0].shares.lattice == Approx(0.01));
