@@ -53,12 +53,16 @@ double number_at(const Json& summary, const std::string& pointer) {
   return summary.contains(at) && summary[at].is_number() ? summary[at].get<double>() : std::nan("");
 }
 
+bool is_in_space(const Json& summary) { return summary.is_object() && summary.value("dimensions", 2) == 3; }
+
 /// A run may stop for a reason, but before it writes what is no number. Null when it did.
-Json garbage_written(const fs::path& directory) {
+Json garbage_written(const fs::path& directory, bool in_space) {
   const auto table = [&](const char* name, const std::vector<std::string>& columns) {
     return find_no_number(directory / name, columns);
   };
-  std::optional<std::string> found = table("cells.csv", {"x_m", "y_m", "deformation", "area_m2", "perimeter_m"});
+  std::optional<std::string> found =
+      in_space ? table("cells.csv", {"x_m", "y_m", "z_m", "deformation", "volume_m3", "surface_area_m2"})
+               : table("cells.csv", {"x_m", "y_m", "deformation", "area_m2", "perimeter_m"});
   if (!found) found = table("series.csv", {"mach_max", "mass_drift", "kinetic_energy_J_per_m"});
   if (const fs::path frames = directory / "frames.h5"; !found && fs::exists(frames))
     found = files::find_no_number_in_frames(frames);
@@ -73,7 +77,9 @@ Json silent_failure(const Json& summary, const HealthCriteria& criteria) {
     double most;
   };
   const std::array bounds{
-      Bound{"area_loss", "/conservation/area_drift_max", "a cell has changed its area by", criteria.area_drift},
+      Bound{"area_loss", "/conservation/area_drift_max",
+            is_in_space(summary) ? "a cell has changed its volume by" : "a cell has changed its area by",
+            criteria.area_drift},
       Bound{"area_loss", "/conservation/area_leakage_max", "area_correction has kept back", criteria.area_drift},
       Bound{"energy_growth", "/energy/largest_growth_at_rest_relative", "energy at rest has grown by",
             criteria.energy_growth},
@@ -112,7 +118,7 @@ Judgement judge(const trial::TrialResult& result, const fs::path& directory, con
   Judgement judgement;
   judgement.end = trial::to_string(result.end);
   const bool ended = result.end == trial::TrialEnd::completed || result.end == trial::TrialEnd::diverged;
-  if (Json garbage = ended ? garbage_written(directory) : Json(); !garbage.is_null()) {
+  if (Json garbage = ended ? garbage_written(directory, is_in_space(result.summary)) : Json(); !garbage.is_null()) {
     judgement.failure = std::move(garbage);
   } else if (result.end == trial::TrialEnd::completed) {
     judgement.failure = silent_failure(result.summary, criteria);

@@ -76,6 +76,23 @@ TEST_CASE("a shape that is no number has been written, an angle may be none", "[
   CHECK(run.judged().failure["message"].get<std::string>().find("deformation in row 3") != std::string::npos);
 }
 
+TEST_CASE("in three dimensions a cell has a volume, and no area of a plane", "[judgement]") {
+  RunToJudge run;
+  const auto cells = [&](const std::string& volume) {
+    std::ofstream(run.folder / "cells.csv") << "step,cell,x_m,z_m,area_m2,perimeter_m,deformation,volume_m3\n"
+                                            << "0,0,1e-6,1e-6,,,0.1," << volume << '\n';
+  };
+  cells("1e-16");
+  CHECK(run.reason() == "no_number_written");  // of two dimensions it would be
+  run.result.summary["dimensions"] = 3;
+  CHECK(run.judged().healthy);
+  cells("nan");
+  CHECK(run.reason() == "no_number_written");
+  cells("1e-16");
+  run.result.summary["conservation"]["area_drift_max"] = 0.03;
+  CHECK(run.judged().failure["message"].get<std::string>().find("its volume") != std::string::npos);
+}
+
 TEST_CASE("what is no number in a frame has been written, also where the run was then stopped", "[judgement]") {
   RunToJudge run;
   const auto frame = [&](double last) {
