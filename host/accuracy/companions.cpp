@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <optional>
 
@@ -11,6 +12,7 @@
 #include "plan/numerics_auto.hpp"
 #include "plan/stage_scales.hpp"
 #include "scene/driving_flow.hpp"
+#include "shape/extent.hpp"
 #include "shape/outline.hpp"
 
 namespace rouleau::accuracy {
@@ -71,16 +73,33 @@ bool start_matters(const scene::Scene& scene) {
 
 double membrane_nodes(const scene::Scene& scene) {
   double nodes = 0;
-  for (const scene::CellPlacement& cell : scene.cells) nodes += scene.cell_types[cell.type].segments;
+  for (const scene::CellPlacement& cell : scene.cells) nodes += shape::node_count(scene.cell_types[cell.type]);
   return nodes;
+}
+
+/// Numbers of nodes along each side: two, or three.
+using LatticeSize = std::vector<int>;
+LatticeSize lattice_size(const scene::Domain& domain) {
+  LatticeSize size{domain.nodes[0], domain.nodes[1]};
+  if (domain.depth) size.push_back(domain.depth->nodes);
+  return size;
+}
+std::string in_words(const LatticeSize& size) {
+  std::string words;
+  for (const int nodes : size) words += (words.empty() ? "" : " x ") + std::to_string(nodes);
+  return words + " nodes";
 }
 
 /// Cost of a run on a lattice with `coarser` times fewer nodes along each side, over that of the run.
 double share_of(const scene::Scene& scene, double coarser) {
-  const double nodes = static_cast<double>(scene.domain.nodes[0]) * scene.domain.nodes[1];
+  const LatticeSize size = lattice_size(scene.domain);
+  const double nodes = std::accumulate(size.begin(), size.end(), 1.0, std::multiplies<>());
+  const int dimension = static_cast<int>(size.size());
   const double membranes = membrane_nodes(scene);
   const auto cost = [&](double by) {
-    return plan::step_cost(nodes / (by * by), membranes / by, scene.numerics.precision) / (by * by);
+    const double of_membranes = membranes / std::pow(by, dimension - 1);
+    return plan::step_cost(nodes / std::pow(by, dimension), of_membranes, scene.numerics.precision, dimension) /
+           (by * by);
   };
   return cost(coarser) / cost(1);
 }
@@ -95,13 +114,20 @@ void set_density(Json& scene, double factor) {
   }
 }
 
-Json on_lattice(const scene::Scene& scene, const std::array<int, 2>& nodes) {
+/// Triangles of a surface whose edges are so many times longer: 20 n^2.
+int fewer_triangles(int triangles, double coarser) {
+  const int n = std::max(1, static_cast<int>(std::lround(std::sqrt(triangles / 20.0) / coarser)));
+  return 20 * n * n;
+}
+
+Json on_lattice(const scene::Scene& scene, const LatticeSize& nodes) {
   Json changed = scene.document->root();
   const double coarser = static_cast<double>(scene.domain.nodes[1]) / nodes[1];
   changed["domain"]["nodes"] = nodes;
   for (const scene::CellType& type : scene.cell_types) {
-    const long segments = std::lround(type.segments / coarser);
-    changed["cell_types"][type.name]["segments"] = std::max(8L, segments);
+    Json& cell = changed["cell_types"][type.name];
+    if (scene.domain.depth && type.triangles > 0) cell["triangles"] = fewer_triangles(type.triangles, coarser);
+    if (!scene.domain.depth) cell["segments"] = std::max(8L, std::lround(type.segments / coarser));
   }
   if (!changed.contains("numerics") || !changed["numerics"].is_object()) changed["numerics"] = Json::object();
   changed["numerics"].erase("auto");  // what it chose stands beside it
@@ -138,27 +164,33 @@ bool go_on(Json& scene) {
 
 /// Numbers of equal parts of the lattice's sides that a coarser one of the same shape may have, the finest first.
 struct CoarserLattices {
-  explicit CoarserLattices(const scene::Scene& scene)
-      : nodes_(scene.domain.nodes), parts_(std::gcd(nodes_[0], nodes_[1])), radius_(INFINITY) {
+  explicit CoarserLattices(const scene::Scene& scene) : nodes_(lattice_size(scene.domain)), radius_(INFINITY) {
+    for (const int nodes : nodes_) parts_ = std::gcd(parts_, nodes);
     if (!scene.cells.empty()) radius_ = shape::smallest_radius(scene) / plan::lattice_spacing(scene);
   }
   [[nodiscard]] int parts() const { return parts_; }
   [[nodiscard]] double refinement(int part) const { return static_cast<double>(parts_) / part; }
   [[nodiscard]] double radius(int part) const { return radius_ / refinement(part); }
-  [[nodiscard]] std::array<int, 2> nodes(int part) const {
-    return {nodes_[0] / parts_ * part, nodes_[1] / parts_ * part};
+  [[nodiscard]] LatticeSize nodes(int part) const {
+    LatticeSize size = nodes_;
+    for (int& nodes : size) nodes = nodes / parts_ * part;
+    return size;
+  }
+  [[nodiscard]] bool too_small(int part) const {
+    const LatticeSize size = nodes(part);
+    return *std::min_element(size.begin(), size.end()) < 4;
   }
   /// The lattice nearest to one that is to_the_coarsest times as coarse; 0: none will do.
   [[nodiscard]] int coarser_than(int part) const {
     const int next = static_cast<int>(std::lround(part / to_the_coarsest));
-    if (next < 1 || radius(next) < least_radius || nodes(next)[0] < 4 || nodes(next)[1] < 4) return 0;
+    if (next < 1 || radius(next) < least_radius || too_small(next)) return 0;
     const double ratio = static_cast<double>(part) / next;
     return ratio >= least_to_the_coarsest && ratio <= most_to_the_coarsest ? next : 0;
   }
 
  private:
-  std::array<int, 2> nodes_;
-  int parts_;
+  LatticeSize nodes_;
+  int parts_ = 0;
   double radius_;
 };
 
@@ -227,14 +259,13 @@ Companions choose_companions(const scene::Scene& scene, const RunCost& cost) {
   int fine = 0, coarse = 0;
   for (int k = lattices.parts() - 1; k > 0 && fine == 0; --k) {
     if (lattices.refinement(k) < least_refinement) continue;
-    if (lattices.refinement(k) > most_refinement || lattices.nodes(k)[0] < 4 || lattices.nodes(k)[1] < 4) break;
+    if (lattices.refinement(k) > most_refinement || lattices.too_small(k)) break;
     coarse = lattices.coarser_than(k);
     if (cost_of_all(scene, lattices, k, coarse, changes) <= affordable) fine = k;
   }
-  const std::array<int, 2>& nodes = scene.domain.nodes;
   if (fine == 0) {
-    chosen.why_none = "no coarser lattice has the shape of " + std::to_string(nodes[0]) + " x " +
-                      std::to_string(nodes[1]) + " nodes and 1.4 to " + number(most_refinement) +
+    chosen.why_none = "no coarser lattice has the shape of " + in_words(lattice_size(scene.domain)) + " and 1.4 to " +
+                      number(most_refinement) +
                       " times their distance at a small part of the cost; take numbers with a larger common divisor";
     return chosen;
   }
@@ -246,13 +277,11 @@ Companions choose_companions(const scene::Scene& scene, const RunCost& cost) {
     return chosen;
   }
   const auto add_lattice = [&](Role role, int part) {
-    const std::array size = lattices.nodes(part);
+    const LatticeSize size = lattices.nodes(part);
     Json coarser = on_lattice(scene, size);
     if (thinned) coarser["output"]["cells"] = *thin_outputs(scene);
     const bool longer_run = cost.moments && go_on(coarser);
-    chosen.runs.push_back({role, std::move(coarser),
-                           std::to_string(size[0]) + " x " + std::to_string(size[1]) + " nodes",
-                           longer_run ? name_beyond : ""});
+    chosen.runs.push_back({role, std::move(coarser), in_words(size), longer_run ? name_beyond : ""});
   };
   add_lattice(Role::lattice, fine);
   if (coarse > 0) {

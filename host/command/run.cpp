@@ -168,9 +168,6 @@ void prepare(Request& request, const TimeLimit& limit, std::optional<PlannedScen
   const auto& [scene, numerics_choice] = planned->read;
   const int rows = scene.domain.nodes[1] * (scene.domain.depth ? scene.domain.depth->nodes : 1);
   request.run.threads = std::min(request.run.threads, std::max(1, rows / 4));
-  if (scene.domain.depth && request.bars.wanted(numerics_choice)) {
-    throw Error(Cause::bad_input, "--error-bar: errors are measured in two dimensions only so far; leave it out");
-  }
   const Crew* const crew = Crew::present();
   const plan::PlanReport& report = planned->report;
   plan::require_memory(report.estimate.memory_bytes / (crew != nullptr ? crew->ranks() : 1), "the run");

@@ -80,6 +80,25 @@ TEST_CASE("of a run with many outputs that reports moments companions have a qua
   CHECK(interval(1000, false) == 0.25);
 }
 
+TEST_CASE("companions of a three-dimensional run have fewer nodes along each of three sides, and fewer triangles") {
+  const scene::Scene scene =
+      plan::read_scene(std::string(ROULEAU_SCENES) + "/capsule-3d.json", {"/domain/nodes=[64, 64, 64]"});
+  const Companions companions = choose_companions(scene, {.run_s = long_run_s});
+  REQUIRE(companions.why_none.empty());
+  CHECK(companions.order == 1);  // without slip correction
+  CHECK(companions.expected_share < 0.4);
+  REQUIRE(companions.runs.size() == 3);
+  for (const auto& [run, coarser] : {std::pair(0, companions.refinement), {1, companions.coarsest}}) {
+    const nlohmann::json& changed = companions.runs[static_cast<std::size_t>(run)].scene;
+    const auto nodes = changed["domain"]["nodes"].get<std::vector<int>>();
+    CHECK(nodes == std::vector<int>(3, static_cast<int>(std::lround(64 / coarser))));
+    const double edges =
+        std::sqrt(scene.cell_types[0].triangles / changed["cell_types"]["capsule"]["triangles"].get<double>());
+    CHECK(edges == Approx(coarser).epsilon(0.15));
+    CHECK_FALSE(changed["cell_types"]["capsule"].contains("segments"));
+  }
+}
+
 TEST_CASE("a start from rest has a companion of its own where it takes a good part of the strain") {
   const Companions companions = of_capsule({"/stages/0/start=impulsive", "/stages/0/strain=3"});
   REQUIRE(companions.runs.size() == 4);
