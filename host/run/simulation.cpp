@@ -118,11 +118,8 @@ class Simulation {
   }
   /// What walls do to the cells along y.
   [[nodiscard]] double force_from_walls() const {
-    if constexpr (dimension == 2) {
-      const auto* tasks = solver_->cell_tasks();
-      if (tasks != nullptr && tasks->wall_contacts() != nullptr) return tasks->wall_contacts()->net_force(cells_);
-    }
-    return 0;
+    const auto* tasks = solver_->cell_tasks();
+    return tasks != nullptr && tasks->wall_contacts() != nullptr ? tasks->wall_contacts()->net_force(cells_) : 0;
   }
 
   /// On the terminal, where what was lost is said even to whom wants no progress.

@@ -63,11 +63,11 @@ void check_space(const SceneFields& fields, const Scene& scene) {
   if (!scene.domain.depth) return;
   for (std::size_t i = 0; i < scene.interactions.size(); ++i) {
     const Interaction& interaction = scene.interactions[i];
-    if (!interaction.with_wall() && !interaction.with_self()) continue;
+    if (!interaction.with_self()) continue;
     fields.attempt([&] {
       fields.refuse(json::child_pointer("/interactions", i) + "/between",
-                    std::string(interaction.with_wall() ? "walls act on cells" : "cells act on themselves") +
-                        " in two dimensions only so far\nname two cell types, or leave this interaction out");
+                    "cells act on themselves in two dimensions only so far\nname two cell types, or leave this "
+                    "interaction out");
     });
   }
   const auto in_plane_only = [&](const char* key, bool asked_for, const char* instead) {

@@ -10,8 +10,8 @@ namespace rouleau::core {
 namespace {
 
 void check(const BasicSolverSetup<3>& setup, const Ranks<3>& ranks) {
-  if (!setup.wall_interactions.empty() || !setup.self_interactions.empty())
-    throw std::invalid_argument("interactions with walls and within a cell are computed in two dimensions only");
+  if (!setup.self_interactions.empty())
+    throw std::invalid_argument("interactions within a cell are computed in two dimensions only");
   if (setup.slip_correction || setup.area_correction)
     throw std::invalid_argument("corrections of the coupling are made in two dimensions only");
   if (setup.semi_implicit) throw std::invalid_argument("the semi-implicit step is taken in two dimensions only");
@@ -67,6 +67,8 @@ SurfaceTasks<T>::SurfaceTasks(const BasicSolverSetup<3>& setup, Surfaces& surfac
   for (const CellRange& cell : surfaces.cells) slight_energy_ += of_type[cell.type];
   if (!setup.interactions.empty())
     interactions_ = std::make_unique<SurfaceInteractions>(surfaces_, setup.interactions, setup.domain);
+  if (!setup.wall_interactions.empty())
+    wall_contacts_ = std::make_unique<SurfaceWallContacts>(setup.wall_interactions, setup.domain);
   coupling_.reserve(surfaces_);
   coupling_.locate(Worker{}, surfaces_);
 }
@@ -78,6 +80,8 @@ void SurfaceTasks<T>::run(Task task, Worker worker) {
       return interactions_->run(worker, 0, surfaces_);
     case Task::membrane_forces:
       return forces_.run(worker, surfaces_);
+    case Task::wall_forces:
+      return wall_contacts_->run(worker, surfaces_);
     case Task::interaction_forces:
       return interactions_->run(worker, 1, surfaces_);
     case Task::take_reactions:

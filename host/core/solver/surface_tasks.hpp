@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/contact/surface_interactions.hpp"
+#include "core/contact/surface_wall_contacts.hpp"
 #include "core/coupling/interior_field.hpp"
 #include "core/coupling/surface_coupling.hpp"
 #include "core/domain/ranks.hpp"
@@ -23,7 +24,7 @@ class SurfaceTasks {
   using Cells = Surfaces;
 
   /// The setup, the surfaces, of which there is at least one, and the fluid belong to the solver, and outlive this.
-  /// Throws std::invalid_argument for what surfaces do not have: interactions with walls and within cells, corrections, the semi-implicit step,
+  /// Throws std::invalid_argument for what surfaces do not have: interactions within cells, corrections, the semi-implicit step,
   /// layers, other ranks.
   SurfaceTasks(const BasicSolverSetup<3>& setup, Surfaces& surfaces, Fluid<T, D3Q19>& fluid, const Ranks<3>& ranks,
                const std::vector<int>& owner);
@@ -32,6 +33,7 @@ class SurfaceTasks {
   void describe(StepFeatures& features) const {
     features.cells = true;
     features.interactions = interactions_ != nullptr;
+    features.wall_interactions = wall_contacts_ != nullptr;
   }
   /// A worker's share of a task of schedule.hpp that is not one over rows; what the fluid does alone is left out.
   void run(Task task, Worker worker);
@@ -54,10 +56,13 @@ class SurfaceTasks {
   [[nodiscard]] double slight_energy() const { return slight_energy_; }
   /// Nodes move as the lattice's fluid at their places does.
   [[nodiscard]] bool corrects_motion() const { return false; }
-  /// Calls function(forces) for the interactions between cells, if there are any.
+  /// Null without such interactions.
+  [[nodiscard]] const SurfaceWallContacts* wall_contacts() const { return wall_contacts_.get(); }
+  /// Calls function(forces) for the kinds of interactions that there are: between cells, and with walls.
   template <class Function>
   void for_each_interaction(Function function) const {
     if (interactions_) function(*interactions_);
+    if (wall_contacts_) function(*wall_contacts_);
   }
   [[nodiscard]] const InteriorField<T>& viscosity_field() const { return viscosity_field_; }
 
@@ -66,6 +71,7 @@ class SurfaceTasks {
   Fluid<T, D3Q19>& fluid_;
   SurfaceForces forces_;
   std::unique_ptr<SurfaceInteractions> interactions_;
+  std::unique_ptr<SurfaceWallContacts> wall_contacts_;
   InteriorField<T> viscosity_field_;
   SurfaceCoupling<T> coupling_;
   double slight_energy_ = 0;

@@ -1,0 +1,116 @@
+#include "surface_wall_contacts.hpp"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+#include "contact.hpp"
+
+namespace rouleau::core {
+
+namespace {
+
+const std::vector<double>& along(const Surfaces& surfaces, int axis) { return axis == 1 ? surfaces.y : surfaces.z; }
+std::vector<double>& force_along(Surfaces& surfaces, int axis) {
+  return axis == 1 ? surfaces.force_y : surfaces.force_z;
+}
+
+}  // namespace
+
+SurfaceWallContacts::SurfaceWallContacts(std::vector<WallInteraction> interactions, const Domain<3>& domain)
+    : interactions_(std::move(interactions)) {
+  for (const int axis : {1, 2}) {
+    if (!domain.walled(axis)) continue;
+    walls_.push_back({axis, -0.5, 1});
+    walls_.push_back({axis, domain.size[axis] - 0.5, -1});
+  }
+  if (walls_.empty()) throw std::invalid_argument("a potential between cells and walls needs walls");
+  for (const WallInteraction& interaction : interactions_) {
+    const Potential& potential = interaction.potential;
+    if (!potential.state.empty() || potential.reads("normal_velocity") || potential.reads("tangential_velocity"))
+      throw std::invalid_argument("\"" + potential.id +
+                                  "\" acts by more than the distance, which surfaces do not tell");
+    cutoffs_.push_back(
+        call_foreign(potential.id, "cutoff", [&] { return potential.table->cutoff(potential.self.get()); }));
+  }
+}
+
+void SurfaceWallContacts::measure(std::size_t interaction, int cell, const Wall& wall, const Surfaces& surfaces,
+                                  bool energy, Contacts& contacts) const {
+  contacts.node.clear();
+  contacts.distance.clear();
+  const CellRange& range = surfaces.cells[cell];
+  const double* place = along(surfaces, wall.axis).data();
+  for (int i = range.first; i < range.end(); ++i) {
+    const double distance = wall.outward * (place[i] - wall.place);
+    if (!(distance <= cutoffs_[interaction])) continue;
+    contacts.node.push_back(i);
+    contacts.distance.push_back(std::max(distance, ContactList::least_distance));
+  }
+  if (contacts.node.empty()) return;
+  contacts.law.resize(contacts.node.size());
+  rouleau_interaction_block block{};
+  block.struct_size = sizeof block;
+  block.count = static_cast<std::uint32_t>(contacts.node.size());
+  block.time_step = 1;
+  block.distance = contacts.distance.data();
+  (energy ? block.energy : block.force) = contacts.law.data();
+  interactions_[interaction].potential.compute(&block);
+}
+
+template <class Act>
+void SurfaceWallContacts::for_each(Range cells, const Surfaces& surfaces, bool energy, Contacts& contacts,
+                                   Act act) const {
+  for (int cell = cells.begin; cell < cells.end; ++cell) {
+    for (std::size_t k = 0; k < interactions_.size(); ++k) {
+      if (interactions_[k].type != surfaces.cells[cell].type) continue;
+      if (energy && !interactions_[k].potential.writes("energy")) continue;
+      for (const Wall& wall : walls_) {
+        measure(k, cell, wall, surfaces, energy, contacts);
+        if (!contacts.node.empty()) act(cell, wall);
+      }
+    }
+  }
+}
+
+void SurfaceWallContacts::run(Worker worker, Surfaces& surfaces) {
+  Contacts contacts;
+  for_each(worker.share(surfaces.cell_count()), surfaces, false, contacts, [&](int cell, const Wall& wall) {
+    const double* area = surfaces.type_of(cell).node_area.data();
+    const int first = surfaces.cells[cell].first;
+    double* force = force_along(surfaces, wall.axis).data();
+    for (std::size_t i = 0; i < contacts.node.size(); ++i)
+      force[contacts.node[i]] += area[contacts.node[i] - first] * contacts.law[i] * wall.outward;
+  });
+}
+
+double SurfaceWallContacts::energy(const Surfaces& surfaces, const Ranks<3>&) const {
+  double sum = 0;
+  Contacts contacts;
+  for_each({0, surfaces.cell_count()}, surfaces, true, contacts, [&](int cell, const Wall&) {
+    const RestSurface& rest = surfaces.type_of(cell);
+    for (std::size_t i = 0; i < contacts.node.size(); ++i)
+      sum += rest.node_area[contacts.node[i] - surfaces.cells[cell].first] * contacts.law[i];
+  });
+  return sum;
+}
+
+double SurfaceWallContacts::net_force(const Surfaces& surfaces) const {
+  double sum = 0;
+  Contacts contacts;
+  for_each({0, surfaces.cell_count()}, surfaces, false, contacts, [&](int cell, const Wall& wall) {
+    if (wall.axis != 1) return;
+    const RestSurface& rest = surfaces.type_of(cell);
+    for (std::size_t i = 0; i < contacts.node.size(); ++i)
+      sum += rest.node_area[contacts.node[i] - surfaces.cells[cell].first] * contacts.law[i] * wall.outward;
+  });
+  return sum;
+}
+
+std::string SurfaceWallContacts::without_energy() const {
+  for (const WallInteraction& interaction : interactions_)
+    if (!interaction.potential.writes("energy")) return interaction.potential.id;
+  return {};
+}
+
+}  // namespace rouleau::core

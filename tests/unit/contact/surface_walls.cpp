@@ -1,0 +1,84 @@
+// Walls that act on surfaces in three dimensions: the energy of a sphere in closed form, forces against its differences.
+#include <Eigen/Geometry>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "core/contact/surface_wall_contacts.hpp"
+#include "shape/surface.hpp"
+#include "unit/fake_models.hpp"
+
+using namespace rouleau;
+using namespace rouleau::core;
+
+namespace {
+
+constexpr double stiffness = 0.3, rest = 1.2, cutoff = 3;
+const Domain<3> domain{{24, 20, 22}, {true, false, false}};
+
+Surfaces sphere(int n, double radius, const Vec<3>& center) {
+  Surfaces s;
+  s.types.push_back(
+      std::make_shared<const RestSurface>(shape::rest_surface(shape::ellipsoid(n, Vec<3>::Constant(radius)))));
+  add_cell(s, 0, center, Eigen::AngleAxisd(0.4, Vec<3>(3, 1, 2).normalized()).toRotationMatrix());
+  return s;
+}
+SurfaceWallContacts walls() { return {{{0, test::spring_potential(stiffness, rest, cutoff)}}, domain}; }
+
+void act(SurfaceWallContacts& contacts, Surfaces& s, int workers = 1) {
+  for (auto* force : {&s.force_x, &s.force_y, &s.force_z}) std::fill(force->begin(), force->end(), 0.0);
+  for (int worker = 0; worker < workers; ++worker) contacts.run({worker, workers}, s);
+}
+
+}  // namespace
+
+TEST_CASE("a sphere beside a wall has the energy of the zones of its surface") {
+  // A zone of a sphere has the area 2 pi R dr, wherever it lies.
+  constexpr double radius = 5, gap = 0.7, there = cutoff - rest, here = gap - rest;
+  constexpr double integral =
+      stiffness / 2 * ((there * there * there - here * here * here) / 3 - there * there * (cutoff - gap));
+  const double exact = 2 * std::numbers::pi * radius * integral;
+  for (const Vec<3>& center : {Vec<3>(3, -0.5 + gap + radius, 10), Vec<3>(3, 19.5 - gap - radius, 10),
+                               Vec<3>(3, 9, -0.5 + gap + radius), Vec<3>(3, 9, 21.5 - gap - radius)}) {
+    std::vector<double> errors;
+    for (const int n : {8, 16}) errors.push_back(std::abs(walls().energy(sphere(n, radius, center)) / exact - 1));
+    CHECK(errors[1] < 0.01);
+    CHECK(errors[1] < errors[0] / 2.5);
+  }
+  CHECK(walls().energy(sphere(8, radius, {3, 9, 10})) == 0);
+}
+
+TEST_CASE("forces of walls on surfaces are minus the gradient of their energy, whatever the number of workers") {
+  Surfaces s = sphere(6, 4, {3, 4.3, 17.1});  // in a corner
+  SurfaceWallContacts contacts = walls();
+  act(contacts, s);
+  const Surfaces at = s;
+  double largest = 0, along_y = 0;
+  for (int i = 0; i < s.node_count(); ++i) {
+    largest = std::max({largest, std::abs(s.force_y[i]), std::abs(s.force_z[i])});
+    along_y += s.force_y[i];
+    CHECK(s.force_x[i] == 0);
+  }
+  REQUIRE(largest > 1e-3);
+  CHECK(contacts.net_force(s) == Approx(along_y));
+  constexpr double h = 1e-5;
+  for (int i = 0; i < s.node_count(); i += 3) {
+    for (const auto& [places, found] : {std::pair(&s.y, &at.force_y), {&s.z, &at.force_z}}) {
+      const double here = (*places)[i];
+      (*places)[i] = here + h;
+      const double above = contacts.energy(s);
+      (*places)[i] = here - h;
+      const double below = contacts.energy(s);
+      (*places)[i] = here;
+      CHECK(std::abs((below - above) / (2 * h) - (*found)[i]) < 1e-7 * largest);
+    }
+  }
+  act(contacts, s, 2);
+  CHECK(s.force_y == at.force_y);
+  CHECK(s.force_z == at.force_z);
+}
+
+TEST_CASE("walls act on surfaces where there are walls, by the distance alone") {
+  CHECK_THROWS_AS(SurfaceWallContacts({{0, test::spring_potential(1, 1, 2)}}, Domain<3>{{8, 8, 8}, {true, true, true}}),
+                  std::invalid_argument);
+}
