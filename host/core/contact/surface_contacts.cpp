@@ -12,6 +12,13 @@ namespace rouleau::core {
 
 namespace {
 
+/// By so much an image lies beside the cell itself.
+Vec<3> moved_by(const std::array<int, 3>& shift, const Domain<3>& domain) {
+  Vec<3> move = Vec<3>::Zero();
+  for (int axis = 0; axis < 3; ++axis)
+    if (domain.periodic[axis]) move[axis] = shift[axis] * domain.period(axis);
+  return move;
+}
 bool usable(const Vec<3>& place) { return place.cwiseAbs().maxCoeff() < 1e9; }  // false where one is no number
 
 }  // namespace
@@ -64,17 +71,18 @@ class SurfaceContacts::Bins {
     for (std::size_t e = 0; e < entries.size(); ++e) entries_[next[bin[e]]++] = entries[e];
   }
 
-  /// Calls function(entry) for the triangles that may lie within the reach of a place, in some order.
+  /// Calls function(entry) for the triangles that may lie within the reach of a box, once for each, in some order.
   template <class Function>
-  void for_near(const Vec<3>& place, Function function) const {
+  void for_near(const Eigen::AlignedBox3d& box, Function function) const {
     int first[3], last[3];
     for (int axis = 0; axis < 3; ++axis) {
-      const int around = static_cast<int>(std::ceil(reach_ / width_[axis])), at = along(axis, place[axis]);
-      first[axis] = at - around, last[axis] = at + around;
+      const auto bin = [&](double place) { return static_cast<int>(std::floor((place + 0.5) / width_[axis])); };
+      first[axis] = bin(box.min()[axis] - reach_), last[axis] = bin(box.max()[axis] + reach_);
       if (domain_.periodic[axis]) {
         last[axis] = std::min(last[axis], first[axis] + count_[axis] - 1);  // no bin twice
       } else {
-        first[axis] = std::max(first[axis], 0), last[axis] = std::min(last[axis], count_[axis] - 1);
+        first[axis] = std::clamp(first[axis], 0, count_[axis] - 1),
+        last[axis] = std::clamp(last[axis], 0, count_[axis] - 1);
       }
     }
     for (int z = first[2]; z <= last[2]; ++z) {
@@ -107,7 +115,11 @@ class SurfaceContacts::Bins {
 };
 
 SurfaceContacts::SurfaceContacts(const Surfaces& surfaces, Cutoffs cutoffs, const Domain<3>& domain)
-    : cutoffs_(std::move(cutoffs)), domain_(domain), watch_(surfaces), lists_(surfaces.cells.size()) {}
+    : cutoffs_(std::move(cutoffs)),
+      domain_(domain),
+      watch_(surfaces),
+      path_(surfaces.cells.size(), 0.0),
+      lists_(surfaces.cells.size()) {}
 
 SurfaceContacts SurfaceContacts::within(double reach, const Surfaces& surfaces, const Domain<3>& domain) {
   const int types = static_cast<int>(surfaces.types.size());
@@ -121,6 +133,21 @@ SurfaceContacts SurfaceContacts::within(double reach, const Surfaces& surfaces, 
   return contacts;
 }
 
+void SurfaceContacts::measure(Worker worker, const Surfaces& surfaces) {
+  watch_.measure(worker, surfaces);
+  const Range cells = worker.share(surfaces.cell_count());
+  const bool known = !surfaces.largest_step.empty();
+  for (int cell = cells.begin; cell < cells.end; ++cell)
+    path_[cell] += known ? surfaces.largest_step[cell] : std::numeric_limits<double>::infinity();
+}
+
+/// By how much two cells may have come nearer to each other since distances were what the list says.
+double SurfaceContacts::travelled(int cell, int other) const {
+  const std::vector<double>& moved = watch_.memory().bound;
+  const double path = path_[cell] + path_[other];
+  return std::isfinite(path) ? path : moved[cell] + moved[other];
+}
+
 void SurfaceContacts::refresh(Worker worker, const Surfaces& surfaces) {
   if (!watch_.exceeded()) return;
   const Range cells = worker.share(surfaces.cell_count());
@@ -130,105 +157,168 @@ void SurfaceContacts::refresh(Worker worker, const Surfaces& surfaces) {
   for (int cell = cells.begin; cell < cells.end; ++cell) {
     list_candidates(cell, surfaces, bins, skin);
     watch_.remember(cell, surfaces, skin);
+    path_[cell] = 0;
   }
   if (worker.first()) ++renewals_;
 }
 
-void SurfaceContacts::list_candidates(int cell, const Surfaces& surfaces, const Bins& bins, double skin) {
-  CandidateList& list = lists_[cell];
-  list.groups.clear();
-  list.candidates.clear();
-  struct Found {
+/// Images of other cells' triangles that may lie within the reach of some node of a cell.
+struct SurfaceContacts::Neighbours {
+  struct Triangle {
     int other;
     std::array<int, 3> shift;
-    double distance;
     int triangle;
-    [[nodiscard]] auto order() const { return std::tie(other, shift, distance, triangle); }
+    Vec<3> middle;  ///< of the image
+    double around;  ///< reach plus the triangle's own radius
+    [[nodiscard]] auto order() const { return std::tie(other, shift, triangle); }
   };
-  std::vector<Found> found;
-  const CellRange& own = surfaces.cells[cell];
-  for (int node = own.first; node < own.end(); ++node) {
-    const Vec<3> place(surfaces.x[node], surfaces.y[node], surfaces.z[node]);
-    if (!usable(place)) continue;
-    found.clear();
-    bins.for_near(place, [&](const Bins::Entry& entry) {
-      const double cutoff = cutoffs_(own.type, surfaces.cells[entry.cell].type);
+  std::vector<Triangle> triangles;      // sorted
+  std::vector<double> x, y, z, square;  // their middles, and squares of `around`
+  std::vector<unsigned char> near;      // of a node: which of them
+
+  Neighbours(int cell, const Eigen::AlignedBox3d& box, const Surfaces& surfaces, const Bins& bins,
+             const Cutoffs& cutoffs, const Domain<3>& domain, double skin) {
+    bins.for_near(box, [&](const Bins::Entry& entry) {
+      const double cutoff = cutoffs(surfaces.cells[cell].type, surfaces.cells[entry.cell].type);
       if (!(cutoff > 0)) return;
-      const double reach = cutoff + 2 * skin, around = reach + entry.radius;
-      const Vec<3> apart = place - entry.middle;
-      Vec<3> nearest = apart;  // of all images
-      for (int axis = 0; axis < 3; ++axis) {
-        if (domain_.periodic[axis])
-          nearest[axis] -= std::round(apart[axis] / domain_.period(axis)) * domain_.period(axis);
-      }
-      if (nearest.squaredNorm() > around * around) return;
-      const Nodes nodes = surfaces.nodes(entry.cell);
-      const auto& [i, j, k] = surfaces.type_of(entry.cell).mesh.triangles()[entry.triangle];
-      // All images of the triangle that come so near: in a narrow box more than the nearest one.
+      const double around = cutoff + 2 * skin + entry.radius;
+      // All images that come so near: in a narrow box more than the nearest one.
       std::array<int, 3> first{}, last{};
       for (int axis = 0; axis < 3; ++axis) {
-        if (!domain_.periodic[axis]) continue;
-        first[axis] = static_cast<int>(std::ceil((apart[axis] - around) / domain_.period(axis)));
-        last[axis] = static_cast<int>(std::floor((apart[axis] + around) / domain_.period(axis)));
+        const double low = box.min()[axis] - around - entry.middle[axis],
+                     high = box.max()[axis] + around - entry.middle[axis];
+        if (domain.periodic[axis]) {
+          first[axis] = static_cast<int>(std::ceil(low / domain.period(axis)));
+          last[axis] = static_cast<int>(std::floor(high / domain.period(axis)));
+        } else if (low > 0 || high < 0) {
+          return;
+        }
       }
       std::array<int, 3> shift{};
       for (shift[2] = first[2]; shift[2] <= last[2]; ++shift[2]) {
         for (shift[1] = first[1]; shift[1] <= last[1]; ++shift[1]) {
           for (shift[0] = first[0]; shift[0] <= last[0]; ++shift[0]) {
             if (entry.cell == cell && shift == std::array<int, 3>{}) continue;
-            Vec<3> near = place;
-            for (int axis = 0; axis < 3; ++axis) {
-              if (domain_.periodic[axis]) near[axis] -= shift[axis] * domain_.period(axis);
-            }
-            if ((near - entry.middle).squaredNorm() > around * around) continue;
-            const double distance = (near - closest_point(near, nodes[i], nodes[j], nodes[k]).place).norm();
-            if (distance <= reach) found.push_back({entry.cell, shift, distance, entry.triangle});
+            triangles.push_back({entry.cell, shift, entry.triangle, entry.middle + moved_by(shift, domain), around});
           }
         }
       }
     });
-    std::sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.order() < b.order(); });
-    for (std::size_t begin = 0; begin < found.size();) {
-      const Found& nearest = found[begin];
-      std::size_t end = begin;
-      const int first = static_cast<int>(list.candidates.size());
-      for (; end < found.size() && found[end].other == nearest.other && found[end].shift == nearest.shift; ++end) {
-        if (found[end].distance <= nearest.distance + 4 * skin)
-          list.candidates.push_back({found[end].distance, found[end].triangle});
-      }
-      list.groups.push_back({node, nearest.other, nearest.shift, first, static_cast<int>(list.candidates.size())});
-      begin = end;
+    std::sort(triangles.begin(), triangles.end(), [](const auto& a, const auto& b) { return a.order() < b.order(); });
+    for (const Triangle& triangle : triangles) {
+      x.push_back(triangle.middle.x());
+      y.push_back(triangle.middle.y());
+      z.push_back(triangle.middle.z());
+      square.push_back(triangle.around * triangle.around);
     }
+    near.resize(triangles.size());
+  }
+
+  /// Sets near for a place.
+  void look(const Vec<3>& place) {
+    const double at_x = place.x(), at_y = place.y(), at_z = place.z();
+    const double *const px = x.data(), *const py = y.data(), *const pz = z.data(), *const most = square.data();
+    unsigned char* const result = near.data();
+    for (std::size_t t = 0; t < near.size(); ++t) {
+      const double dx = at_x - px[t], dy = at_y - py[t], dz = at_z - pz[t];
+      result[t] = dx * dx + dy * dy + dz * dz <= most[t];
+    }
+  }
+};
+
+void SurfaceContacts::list_candidates(int cell, const Surfaces& surfaces, const Bins& bins, double skin) {
+  CandidateList& list = lists_[cell];
+  list.groups.clear();
+  list.candidates.clear();
+  const CellRange& own = surfaces.cells[cell];
+  const auto place_of = [&](int node) { return Vec<3>(surfaces.x[node], surfaces.y[node], surfaces.z[node]); };
+  Eigen::AlignedBox3d box;
+  for (int node = own.first; node < own.end(); ++node)
+    if (usable(place_of(node))) box.extend(place_of(node));
+  if (box.isEmpty()) return;
+  Neighbours neighbours(cell, box, surfaces, bins, cutoffs_, domain_, skin);
+  Eigen::AlignedBox3d reached;
+  for (const Neighbours::Triangle& there : neighbours.triangles) {
+    reached.extend(there.middle - Vec<3>::Constant(there.around));
+    reached.extend(there.middle + Vec<3>::Constant(there.around));
+  }
+  for (int node = own.first; node < own.end(); ++node) {
+    const Vec<3> place = place_of(node);
+    if (!usable(place) || !reached.contains(place)) continue;
+    neighbours.look(place);
+    for (std::size_t t = 0; t < neighbours.triangles.size();) {
+      const auto& [other, shift, triangle, middle, around] = neighbours.triangles[t];
+      const int first = static_cast<int>(list.candidates.size());
+      const double reach = cutoffs_(own.type, surfaces.cells[other].type) + 2 * skin;
+      const Vec<3> near = place - moved_by(shift, domain_);
+      const Nodes nodes = surfaces.nodes(other);
+      const auto& corners = surfaces.type_of(other).mesh.triangles();
+      double nearest = reach;
+      for (; t < neighbours.triangles.size() && neighbours.triangles[t].other == other &&
+             neighbours.triangles[t].shift == shift;
+           ++t) {
+        if (neighbours.near[t] == 0) continue;
+        const auto& [i, j, k] = corners[neighbours.triangles[t].triangle];
+        const double distance = (near - closest_point(near, nodes[i], nodes[j], nodes[k]).place).norm();
+        if (!(distance <= reach)) continue;
+        nearest = std::min(nearest, distance);
+        list.candidates.push_back({distance, neighbours.triangles[t].triangle});
+      }
+      // Others stay farther away than the nearest one.
+      const auto begin = list.candidates.begin() + first;
+      list.candidates.erase(
+          std::remove_if(begin, list.candidates.end(),
+                         [&](const Candidate& candidate) { return candidate.distance > nearest + 4 * skin; }),
+          list.candidates.end());
+      if (first == static_cast<int>(list.candidates.size())) continue;
+      std::sort(list.candidates.begin() + first, list.candidates.end(), [](const Candidate& a, const Candidate& b) {
+        return std::tie(a.distance, a.triangle) < std::tie(b.distance, b.triangle);
+      });
+      list.groups.push_back({node, other, shift, first, static_cast<int>(list.candidates.size())});
+    }
+  }
+}
+
+/// The first `count` of `all` have new distances, the rest are sorted: all are afterwards.
+void SurfaceContacts::sort_in(Candidate* candidates, int count, int all) {
+  for (int c = count - 1; c >= 0; --c) {
+    const Candidate candidate = candidates[c];
+    int at = c;
+    for (; at + 1 < all && candidates[at + 1].distance < candidate.distance; ++at) candidates[at] = candidates[at + 1];
+    candidates[at] = candidate;
   }
 }
 
 void SurfaceContacts::find(int cell, const Surfaces& surfaces, std::vector<SurfaceContact>& contacts) const {
   contacts.clear();
-  const CandidateList& list = lists_[cell];
-  const std::vector<double>& moved = watch_.memory().bound;
+  CandidateList& list = lists_[cell];
   const int type = surfaces.cells[cell].type;
   for (const Group& group : list.groups) {
     const CellRange& other = surfaces.cells[group.other];
     const Nodes nodes = surfaces.nodes(group.other);
     const auto& triangles = surfaces.type_of(group.other).mesh.triangles();
     const double cutoff = cutoffs_(type, other.type);
-    // How much nearer a triangle may have come since the list was made, rounding included.
-    const double slack = moved[cell] + moved[group.other] + 1e-9;
-    Vec<3> place(surfaces.x[group.node], surfaces.y[group.node], surfaces.z[group.node]);
-    for (int k = 0; k < 3; ++k) place[k] -= group.shift[k] * (domain_.periodic[k] ? domain_.period(k) : 0);
+    constexpr double rounding = 1e-9;
+    const double path = travelled(cell, group.other);
+    const bool remembers = std::isfinite(path_[cell] + path_[group.other]);
+    const Vec<3> place =
+        Vec<3>(surfaces.x[group.node], surfaces.y[group.node], surfaces.z[group.node]) - moved_by(group.shift, domain_);
     double square = cutoff * cutoff, root = cutoff;
     int closest = -1;
     TrianglePoint point{.weight = {}, .place = Vec<3>::Zero()};
-    for (int c = group.begin; c < group.end; ++c) {
-      const Candidate& candidate = list.candidates[c];
-      if (candidate.distance - slack > root) break;
+    int looked_at = group.begin;
+    for (; looked_at < group.end; ++looked_at) {
+      Candidate& candidate = list.candidates[looked_at];
+      if (candidate.distance - path - rounding > root) break;
       const auto& [i, j, k] = triangles[candidate.triangle];
       const TrianglePoint there = closest_point(place, nodes[i], nodes[j], nodes[k]);
       const double here = (place - there.place).squaredNorm();
+      if (remembers) candidate.distance = std::sqrt(here) + path;
       // Of triangles equally far away the first counts, in whatever order they are listed.
       if (!(here < square || (here == square && (closest < 0 || candidate.triangle < closest)))) continue;
       square = here, root = std::sqrt(here), closest = candidate.triangle, point = there;
     }
+    if (remembers) sort_in(&list.candidates[group.begin], looked_at - group.begin, group.end - group.begin);
     if (closest < 0) continue;
     const auto& [i, j, k] = triangles[closest];
     SurfaceContact contact{group.node,

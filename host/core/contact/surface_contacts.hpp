@@ -30,8 +30,8 @@ struct SurfaceContact {
 /// positions alone, not on when the lists of candidates were made.
 ///
 /// Candidates stay complete while no node has moved further than the skin, for the reason that NeighbourList has; a
-/// triangle is a set of convex combinations of its corners, too. They are sorted by their distance when the list was
-/// made, which has changed by no more than nodes have moved since: most need not be looked at.
+/// triangle is a set of convex combinations of its corners, too. Of each the last known distance is kept, which has changed
+/// by no more than both cells' nodes have travelled since: nearest first, most need not be looked at.
 class SurfaceContacts {
  public:
   SurfaceContacts(const Surfaces& surfaces, Cutoffs cutoffs, const Domain<3>& domain);
@@ -40,10 +40,10 @@ class SurfaceContacts {
   static SurfaceContacts within(double reach, const Surfaces& surfaces, const Domain<3>& domain);
 
   /// Pass over cells: whether a node has moved too far for the lists.
-  void measure(Worker worker, const Surfaces& surfaces) { watch_.measure(worker, surfaces); }
+  void measure(Worker worker, const Surfaces& surfaces);
   /// Pass over cells, after a barrier: their lists, if they have to be made anew.
   void refresh(Worker worker, const Surfaces& surfaces);
-  /// Then: the contacts of a cell, by node, then by the other cell and its image.
+  /// Then: the contacts of a cell, by node, then by the other cell and its image. A cell's by one worker at a time.
   void find(int cell, const Surfaces& surfaces, std::vector<SurfaceContact>& contacts) const;
 
   /// How often lists were made.
@@ -52,7 +52,7 @@ class SurfaceContacts {
 
  private:
   struct Candidate {
-    double distance;  ///< when the list was made
+    double distance;  ///< when it was last looked at, and how far both cells had travelled by then, added up
     int triangle;     ///< of the other cell
   };
   /// Candidates [begin, end) of a node against one image of a cell, nearest first.
@@ -66,13 +66,17 @@ class SurfaceContacts {
     std::vector<Candidate> candidates;
   };
   class Bins;
+  struct Neighbours;
 
+  static void sort_in(Candidate* candidates, int count, int all);
+  [[nodiscard]] double travelled(int cell, int other) const;
   void list_candidates(int cell, const Surfaces& surfaces, const Bins& bins, double skin);
 
   Cutoffs cutoffs_;
   Domain<3> domain_;
   DisplacementWatch watch_;
-  std::vector<CandidateList> lists_;
+  std::vector<double> path_;  // of each cell since its list was made: no node has a longer one; infinite: unknown
+  mutable std::vector<CandidateList> lists_;  // of which distances are mutable
   long renewals_ = 0;
 };
 
