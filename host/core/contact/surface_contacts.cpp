@@ -119,6 +119,7 @@ SurfaceContacts::SurfaceContacts(const Surfaces& surfaces, Cutoffs cutoffs, cons
       domain_(domain),
       watch_(surfaces),
       path_(surfaces.cells.size(), 0.0),
+      renewed_(surfaces.cells.size(), 0),
       lists_(surfaces.cells.size()) {}
 
 SurfaceContacts SurfaceContacts::within(double reach, const Surfaces& surfaces, const Domain<3>& domain) {
@@ -136,28 +137,34 @@ SurfaceContacts SurfaceContacts::within(double reach, const Surfaces& surfaces, 
 void SurfaceContacts::measure(Worker worker, const Surfaces& surfaces) {
   watch_.measure(worker, surfaces);
   const Range cells = worker.share(surfaces.cell_count());
-  const bool known = !surfaces.largest_step.empty();
-  for (int cell = cells.begin; cell < cells.end; ++cell)
-    path_[cell] += known ? surfaces.largest_step[cell] : std::numeric_limits<double>::infinity();
+  for (int cell = cells.begin; cell < cells.end; ++cell) {
+    if (renewed_[cell] != 0) path_[cell] = 0;
+    path_[cell] +=
+        surfaces.largest_step.empty() ? std::numeric_limits<double>::infinity() : surfaces.largest_step[cell];
+  }
 }
 
-/// By how much two cells may have come nearer to each other since distances were what the list says.
+/// By how much two cells may have come nearer to each other since their distances were measured. While lists are made anew
+/// others' paths say nothing: those workers may be ahead or behind.
 double SurfaceContacts::travelled(int cell, int other) const {
-  const std::vector<double>& moved = watch_.memory().bound;
+  if (renewed_[cell] != 0) return 0;
   const double path = path_[cell] + path_[other];
-  return std::isfinite(path) ? path : moved[cell] + moved[other];
+  if (std::isfinite(path)) return path;
+  const std::vector<double>& moved = watch_.memory().bound;
+  return moved[cell] + moved[other];
 }
 
 void SurfaceContacts::refresh(Worker worker, const Surfaces& surfaces) {
-  if (!watch_.exceeded()) return;
+  const bool renew = watch_.exceeded();
   const Range cells = worker.share(surfaces.cell_count());
+  for (int cell = cells.begin; cell < cells.end; ++cell) renewed_[cell] = renew;
+  if (!renew) return;
   const double skin = suitable_skin(surfaces);
   // Every worker sorts all triangles: that is quicker than to wait for one who does.
   const Bins bins(surfaces, cutoffs_.largest() + 2 * skin, domain_);
   for (int cell = cells.begin; cell < cells.end; ++cell) {
     list_candidates(cell, surfaces, bins, skin);
     watch_.remember(cell, surfaces, skin);
-    path_[cell] = 0;
   }
   if (worker.first()) ++renewals_;
 }
@@ -300,7 +307,7 @@ void SurfaceContacts::find(int cell, const Surfaces& surfaces, std::vector<Surfa
     const double cutoff = cutoffs_(type, other.type);
     constexpr double rounding = 1e-9;
     const double path = travelled(cell, group.other);
-    const bool remembers = std::isfinite(path_[cell] + path_[group.other]);
+    const bool remembers = !surfaces.largest_step.empty();
     const Vec<3> place =
         Vec<3>(surfaces.x[group.node], surfaces.y[group.node], surfaces.z[group.node]) - moved_by(group.shift, domain_);
     double square = cutoff * cutoff, root = cutoff;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "base/worker.hpp"
@@ -76,6 +77,7 @@ class SurfaceContacts {
   Domain<3> domain_;
   DisplacementWatch watch_;
   std::vector<double> path_;  // of each cell since its list was made: no node has a longer one; infinite: unknown
+  std::vector<std::uint8_t> renewed_;         // of each cell: its list was made in this step
   mutable std::vector<CandidateList> lists_;  // of which distances are mutable
   long renewals_ = 0;
 };
