@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "fluid_bench.hpp"
+#include "network_bench.hpp"
 #include "scene_bench.hpp"
 #include "space_bench.hpp"
 
@@ -46,9 +47,11 @@ int main(int argc, char** argv) {
   auto add = description.add_options();
   add("check", options::bool_switch(&check), "no timing: check every kernel against an exact solution");
   add("only", options::value(&only)->value_name("TABLE"),
-      "fluid, space (three dimensions; of fluid, too), scene or cells; all without");
+      "fluid, space (three dimensions; of fluid, too), scene or cells; all without. Or network: messages between ranks, "
+      "under mpirun");
   add("whole", options::bool_switch(&whole), "run the four-cell scene to its end (four times 10 s)");
-  add("seconds", options::value(&seconds)->default_value(1)->value_name("S"), "time for each fluid kernel");
+  add("seconds", options::value(&seconds)->default_value(1)->value_name("S"),
+      "time for each fluid kernel, and each line of network");
   add("kernel", options::value(&kernel)->value_name("NAME"), "run one fluid kernel (plugin, plain, move) for counting");
   add("steps", options::value(&steps)->default_value(0)->value_name("N"), "with --kernel: its steps");
   add("nx", options::value(&nx)->default_value(256), "with --kernel: nodes along x, a multiple of 16");
@@ -67,6 +70,10 @@ int main(int argc, char** argv) {
     }
     if (!kernel.empty()) {
       rouleau::bench::run_kernel(kernel.c_str(), f32, force, nx, ny, steps);
+      return 0;
+    }
+    if (only == "network") {
+      rouleau::bench::network_table(seconds);
       return 0;
     }
     std::printf("%s, %u processors, %s\n%s, %s\n", processor().c_str(), std::thread::hardware_concurrency(),
