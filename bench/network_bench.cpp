@@ -116,13 +116,15 @@ void measure_network(core::Transport& transport, const std::string& library, dou
     std::printf(bytes > 0 ? " %12.0f\n" : "\n", bytes / times.at(0.5) / 1e6);
     std::fflush(stdout);
   };
+  constexpr std::size_t typical = std::size_t{1} << 14;
   double latency = 0, bandwidth = 0, slowest = 0;
   for (const std::size_t bytes :
-       {std::size_t{8}, std::size_t{1} << 10, std::size_t{1} << 14, std::size_t{1} << 17, std::size_t{1} << 20}) {
+       {std::size_t{8}, std::size_t{1} << 10, typical, std::size_t{1} << 17, std::size_t{1} << 20}) {
     const Times times = network.half_round(bytes);
     if (bytes == 8) latency = times.at(0.5);
     slowest = std::max(slowest, times.at(0.99));
-    bandwidth = static_cast<double>(bytes) / std::max(times.at(0.5) - latency, 1e-9);
+    // What a run sends is about as long: longer messages travel faster.
+    if (bytes == typical) bandwidth = static_cast<double>(bytes) / std::max(times.at(0.5) - latency, 1e-9);
     line("there, of " + std::to_string(bytes) + " bytes", times, bytes > 8 ? static_cast<double>(bytes) : 0);
   }
   const Times in_a_row = network.in_a_row();
