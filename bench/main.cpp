@@ -8,6 +8,7 @@
 #include <string>
 #include <thread>
 
+#include "block_bench.hpp"
 #include "fluid_bench.hpp"
 #include "network_bench.hpp"
 #include "scene_bench.hpp"
@@ -39,10 +40,10 @@ const char* instruction_set() {
 int main(int argc, char** argv) {
   namespace options = boost::program_options;
   bool check = false, whole = false, f32 = false, force = false;
-  std::string only, kernel;
+  std::string only, kernel, scene;
   double seconds = 1;
   long steps = 0;
-  int nx = 256, ny = 128;
+  int nx = 256, ny = 128, ranks = 0, rank = 0;
   options::options_description description("options");
   auto add = description.add_options();
   add("check", options::bool_switch(&check), "no timing: check every kernel against an exact solution");
@@ -58,6 +59,12 @@ int main(int argc, char** argv) {
   add("ny", options::value(&ny)->default_value(128), "with --kernel: nodes along y");
   add("f32", options::bool_switch(&f32), "with --kernel: single precision");
   add("force", options::bool_switch(&force), "with --kernel: every node has a force and writes its velocity");
+  add("ranks", options::value(&ranks)->value_name("N"),
+      "the block of one rank of N, its neighbours replaced by itself: what a step of its fluid costs");
+  add("rank", options::value(&rank)->value_name("K"), "with --ranks: which, 0 to N - 1");
+  add("scene",
+      options::value(&scene)->value_name("FILE")->default_value(ROULEAU_SCENES "/four-cells-shear.json", "four cells"),
+      "with --ranks: the scene");
   add("help", "this text");
   try {
     options::variables_map values;
@@ -81,7 +88,12 @@ int main(int argc, char** argv) {
     std::printf("\nChecks\n");
     rouleau::bench::check_fluid();
     rouleau::bench::check_space();
+    rouleau::bench::check_block();
     if (check) return 0;
+    if (ranks != 0) {
+      rouleau::bench::block_table(scene, ranks, rank, seconds);
+      return 0;
+    }
     if (only.empty() || only == "fluid") rouleau::bench::fluid_table(seconds);
     if (only.empty() || only == "fluid" || only == "space") rouleau::bench::space_table(seconds);
     if (only.empty() || only == "scene") rouleau::bench::scene_table(whole);

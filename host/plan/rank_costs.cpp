@@ -20,11 +20,12 @@ namespace {
 
 using Blocks = core::Decomposition<2>;
 
-/// What a membrane node of another rank costs in a step, s: measured (docs/scaling.md).
-namespace cost_of_other {
-constexpr double beside = 65e-9;    ///< of a cell that shares rows with the block: spreading tries each of its nodes
-constexpr double anywhere = 23e-9;  ///< of any cell: finding its nodes, packing and unpacking
-}  // namespace cost_of_other
+/// What the cut costs, s: measured (docs/scaling.md).
+namespace cost_of_sharing {
+constexpr double number = 5e-9;     ///< that goes to a neighbour: packing it, and unpacking one
+constexpr double beside = 65e-9;    ///< a membrane node of another rank's cell that shares rows: spreading tries it
+constexpr double anywhere = 23e-9;  ///< any membrane node: finding, packing and unpacking it
+}  // namespace cost_of_sharing
 
 /// The ranks whose blocks lie within two nodes of a rank's own, itself included, across periodic borders too.
 std::vector<int> ranks_near(const Blocks& blocks, int rank) {
@@ -159,7 +160,7 @@ void add_cells(const Plan& plan, const Blocks& blocks, std::vector<RankCost>& ra
     const core::Box<2> block = blocks.domain(r).block;
     const double beside =
         std::max(0.0, rows.nodes(block.begin[1], block.end[1]) - static_cast<double>(rank.membrane_nodes));
-    rank.others_s = others > 0 ? beside * cost_of_other::beside + nodes_of_all * cost_of_other::anywhere : 0;
+    rank.sharing_s += others > 0 ? beside * cost_of_sharing::beside + nodes_of_all * cost_of_sharing::anywhere : 0;
   }
 }
 
@@ -190,6 +191,8 @@ std::vector<RankCost> rank_costs(const Plan& plan, const Blocks& blocks) {
     cost.nodes = static_cast<long>(block.size(0)) * block.size(1);
     const double nodes = static_cast<double>(cost.nodes), all = static_cast<double>(blocks.domain(rank).nodes());
     cost.memory_bytes = lattice * nodes / all + membranes;  // every rank holds all cells
+    const double word = scene.numerics.precision == scene::Precision::f64 ? 8 : 4;
+    cost.sharing_s += cost.lattice_bytes() / word * cost_of_sharing::number;
     cost.step_s = step_cost(nodes, static_cast<double>(cost.membrane_nodes), scene.numerics.precision);
   }
   return ranks;
@@ -229,7 +232,7 @@ std::string to_text(const std::vector<RankCost>& ranks) {
   out += in_line("received, kB", ranks, scaled(&RankCost::received_bytes, 1e-3), decimal);
   out += in_line("memory, MB", ranks, scaled(&RankCost::memory_bytes, 1e-6), decimal);
   out += in_line("a step's computing, us", ranks, scaled(&RankCost::step_s, 1e6), decimal);
-  out += in_line("for membranes of other ranks, us", ranks, scaled(&RankCost::others_s, 1e6), decimal);
+  out += in_line("sharing it with others, us", ranks, scaled(&RankCost::sharing_s, 1e6), decimal);
   std::snprintf(text.data(), text.size(), "  balance %.2f: the ranks' mean computing time over the largest\n",
                 balance(ranks));
   return out + text.data();
@@ -249,7 +252,7 @@ std::string to_text(const RankCost& cost, int rank, const core::Box<2>& block) {
                 "positions of cells, kB", cost.position_bytes / 1e3, "forces of cells, kB", cost.force_bytes / 1e3,
                 "velocities of cells, kB", cost.node_velocity_bytes / 1e3,  //
                 "received, kB", cost.received_bytes / 1e3, "memory, MB", cost.memory_bytes / 1e6,
-                "a step's computing, us", cost.step_s * 1e6, "for membranes of other ranks, us", cost.others_s * 1e6);
+                "a step's computing, us", cost.step_s * 1e6, "sharing it with others, us", cost.sharing_s * 1e6);
   return text.data();
 }
 

@@ -24,14 +24,14 @@ struct RankCost {
   double node_velocity_bytes = 0;                   ///< of membranes in its block, to their owners
   double received_bytes = 0;
   double memory_bytes = 0;
-  double step_s = 0;    ///< computing its own part, by plan::step_cost
-  double others_s = 0;  ///< what the membranes of other ranks cost it
+  double step_s = 0;     ///< computing its own part, by plan::step_cost
+  double sharing_s = 0;  ///< what the cut costs: packing and unpacking, and other ranks' membranes
   [[nodiscard]] double lattice_bytes() const { return population_bytes + velocity_bytes; }
   [[nodiscard]] double membrane_bytes() const { return position_bytes + force_bytes + node_velocity_bytes; }
   [[nodiscard]] double sent_bytes() const { return lattice_bytes() + membrane_bytes(); }
   NLOHMANN_DEFINE_TYPE_INTRUSIVE(RankCost, nodes, cells, membrane_nodes, neighbours, messages, waits, population_bytes,
                                  velocity_bytes, position_bytes, force_bytes, node_velocity_bytes, received_bytes,
-                                 memory_bytes, step_s, others_s)
+                                 memory_bytes, step_s, sharing_s)
 };
 
 std::vector<RankCost> rank_costs(const Plan& plan, const core::Decomposition<2>& blocks);

@@ -21,7 +21,7 @@ constexpr std::size_t many_cells = 100'000;  ///< cells; powers of four have to 
 double step_time(const std::vector<RankCost>& ranks, const Network& network, double scale) {
   double computing = 0, messages = 0;
   for (const RankCost& rank : ranks) {
-    computing = std::max(computing, rank.step_s * scale + rank.others_s);
+    computing = std::max(computing, rank.step_s * scale + rank.sharing_s);
     messages = std::max(messages, message_time(rank, network));
   }
   return computing + messages;  // who is done first waits: no message is behind computing
