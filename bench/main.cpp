@@ -8,7 +8,9 @@
 #include <string>
 #include <thread>
 
+#include "block_bench.hpp"
 #include "fluid_bench.hpp"
+#include "network_bench.hpp"
 #include "scene_bench.hpp"
 #include "space_bench.hpp"
 
@@ -38,23 +40,31 @@ const char* instruction_set() {
 int main(int argc, char** argv) {
   namespace options = boost::program_options;
   bool check = false, whole = false, f32 = false, force = false;
-  std::string only, kernel;
+  std::string only, kernel, scene;
   double seconds = 1;
   long steps = 0;
-  int nx = 256, ny = 128;
+  int nx = 256, ny = 128, ranks = 0, rank = 0;
   options::options_description description("options");
   auto add = description.add_options();
   add("check", options::bool_switch(&check), "no timing: check every kernel against an exact solution");
   add("only", options::value(&only)->value_name("TABLE"),
-      "fluid, space (three dimensions; of fluid, too), scene or cells; all without");
+      "fluid, space (three dimensions; of fluid, too), scene or cells; all without. Or network: messages between ranks, "
+      "under mpirun");
   add("whole", options::bool_switch(&whole), "run the four-cell scene to its end (four times 10 s)");
-  add("seconds", options::value(&seconds)->default_value(1)->value_name("S"), "time for each fluid kernel");
+  add("seconds", options::value(&seconds)->default_value(1)->value_name("S"),
+      "time for each fluid kernel, and each line of network");
   add("kernel", options::value(&kernel)->value_name("NAME"), "run one fluid kernel (plugin, plain, move) for counting");
   add("steps", options::value(&steps)->default_value(0)->value_name("N"), "with --kernel: its steps");
   add("nx", options::value(&nx)->default_value(256), "with --kernel: nodes along x, a multiple of 16");
   add("ny", options::value(&ny)->default_value(128), "with --kernel: nodes along y");
   add("f32", options::bool_switch(&f32), "with --kernel: single precision");
   add("force", options::bool_switch(&force), "with --kernel: every node has a force and writes its velocity");
+  add("ranks", options::value(&ranks)->value_name("N"),
+      "the block of one rank of N, its neighbours replaced by itself: what a step of its fluid costs");
+  add("rank", options::value(&rank)->value_name("K"), "with --ranks: which, 0 to N - 1");
+  add("scene",
+      options::value(&scene)->value_name("FILE")->default_value(ROULEAU_SCENES "/four-cells-shear.json", "four cells"),
+      "with --ranks: the scene");
   add("help", "this text");
   try {
     options::variables_map values;
@@ -69,12 +79,21 @@ int main(int argc, char** argv) {
       rouleau::bench::run_kernel(kernel.c_str(), f32, force, nx, ny, steps);
       return 0;
     }
+    if (only == "network") {
+      rouleau::bench::network_table(seconds);
+      return 0;
+    }
     std::printf("%s, %u processors, %s\n%s, %s\n", processor().c_str(), std::thread::hardware_concurrency(),
                 instruction_set(), ROULEAU_COMPILER, ROULEAU_FLAGS);
     std::printf("\nChecks\n");
     rouleau::bench::check_fluid();
     rouleau::bench::check_space();
+    rouleau::bench::check_block();
     if (check) return 0;
+    if (ranks != 0) {
+      rouleau::bench::block_table(scene, ranks, rank, seconds);
+      return 0;
+    }
     if (only.empty() || only == "fluid") rouleau::bench::fluid_table(seconds);
     if (only.empty() || only == "fluid" || only == "space") rouleau::bench::space_table(seconds);
     if (only.empty() || only == "scene") rouleau::bench::scene_table(whole);

@@ -2,12 +2,15 @@
 #include <iostream>
 #include <optional>
 
+#include "base/error.hpp"
 #include "command/process/command_line.hpp"
 #include "commands.hpp"
 #include "plan/blocks.hpp"
 #include "plan/plan_report.hpp"
 #include "plan/rank_costs.hpp"
+#include "plan/rank_times.hpp"
 #include "scene_options.hpp"
+#include "units/units.hpp"
 
 namespace rouleau::command {
 
@@ -18,13 +21,87 @@ constexpr const char* plan_help = R"(usage: rouleau plan SCENE [options]
 Prints, without a step: every conversion, dimensionless number and limit (value, limit, margin), what will be
 computed, what is left out and why, and the estimated time, memory and output size. Plugins that the scene names are
 loaded and instances of them are made, so their code runs. With --ranks N also how the lattice would be cut for
-mpirun -n N, and what each rank would compute, send and hold.
+mpirun -n N, what each rank would compute, send and hold, how long a step would take, and how many ranks are fastest.
 
 Example:
   rouleau plan scenes/four-cells-shear.json
   rouleau plan scenes/four-cells-shear.json --set /numerics/density_factor=30000 --json
   rouleau plan scenes/four-cells-shear.json --ranks 8
+  rouleau plan scenes/four-cells-shear.json --ranks 8 --rank 3 --network "2 us,10 GB/s"
 )";
+
+/// What is asked about several ranks.
+struct RankOptions {
+  std::optional<int> ranks, rank;
+  std::string network, step;
+
+  void add_to(boost::program_options::options_description& description) {
+    namespace options = boost::program_options;
+    auto add = description.add_options();
+    add("ranks", options::value<int>()->value_name("N")->notifier([this](int count) { ranks = count; }),
+        "what a run by N ranks would ask of each of them, and how long a step would take");
+    add("rank", options::value<int>()->value_name("K")->notifier([this](int number) { rank = number; }),
+        "with --ranks: of rank K alone, 0 to N - 1");
+    add("network", options::value(&network)->value_name("LATENCY,BANDWIDTH[,EACH]"),
+        "with --ranks: what messages take, as rouleau-bench --only network prints it; without \"2 us,10 GB/s,0.5 us\"");
+    add("step", options::value(&step)->value_name("TIME"),
+        "with --ranks: what a step by one process takes, as measured, such as \"90 us\"; without it is estimated");
+  }
+  void check() const {
+    if (!ranks && (rank || !network.empty() || !step.empty()))
+      throw Error(Cause::bad_input, "--rank, --network and --step are about several ranks", {"add --ranks N"});
+    if (ranks && rank && (*rank < 0 || *rank >= *ranks)) {
+      throw Error(Cause::bad_input, "--rank " + std::to_string(*rank) + ": there is no such rank",
+                  {"ranks count from 0 to " + std::to_string(*ranks - 1)});
+    }
+  }
+};
+
+/// The answers.
+class PlannedRanks {
+ public:
+  PlannedRanks(const RankOptions& options, const plan::Plan& plan)
+      : rank_(options.rank),
+        network_(options.network.empty() ? plan::Network{} : plan::read_network(options.network)),
+        blocks_(plan::make_blocks(plan, *options.ranks)),
+        costs_(plan::rank_costs(plan, blocks_)),
+        times_(plan::rank_times(plan, costs_, network_, step_of(options.step))) {}
+
+  [[nodiscard]] nlohmann::json json() const {
+    nlohmann::json object{{"balance", plan::balance(costs_)}, {"network", network_}, {"times", times_}};
+    if (rank_) {
+      object["rank"] = costs_[*rank_];
+      object["rank"]["first_node"] = block().begin;
+      object["rank"]["size"] = {block().size(0), block().size(1)};
+    } else {
+      object["of_each"] = costs_;
+    }
+    return object;
+  }
+  [[nodiscard]] std::string text() const {
+    return (rank_ ? plan::to_text(costs_[*rank_], *rank_, block()) : plan::to_text(costs_)) +
+           plan::to_text(times_, network_);
+  }
+
+ private:
+  static double step_of(const std::string& text) {
+    if (text.empty()) return 0;
+    try {
+      const double step = units::Units().to_si(text, "s", "the time of a step");
+      if (step > 0) return step;
+    } catch (const units::UnitError& error) {
+      throw Error(Cause::bad_input, std::string("--step: ") + error.what());
+    }
+    throw Error(Cause::bad_input, "--step: the time of a step is above zero");
+  }
+  [[nodiscard]] core::Box<2> block() const { return blocks_.domain(*rank_).block; }
+
+  std::optional<int> rank_;
+  plan::Network network_;
+  core::Decomposition<2> blocks_;
+  std::vector<plan::RankCost> costs_;
+  plan::RankTimes times_;
+};
 
 }  // namespace
 
@@ -32,25 +109,25 @@ int plan_command(const std::vector<std::string>& arguments) {
   namespace options = boost::program_options;
   SceneOptions scene_options;
   bool json = false;
-  std::optional<int> ranks;
+  RankOptions rank_options;
   options::options_description description("options");
   options::positional_options_description positional;
   scene_options.add_to(description, positional);
-  description.add_options()("json", options::bool_switch(&json), "print JSON for programs")(
-      "ranks", options::value<int>()->value_name("N")->notifier([&](int count) { ranks = count; }),
-      "what a run by N ranks would ask of each of them");
+  description.add_options()("json", options::bool_switch(&json), "print JSON for programs");
+  rank_options.add_to(description);
   if (!parse_command_line("plan", plan_help, arguments, description, positional)) return 0;
+  rank_options.check();
 
   const PlannedScene planned(scene_options);
-  std::vector<plan::RankCost> costs;
-  if (ranks) costs = plan::rank_costs(planned.plan, plan::make_blocks(planned.plan, *ranks));
+  std::optional<PlannedRanks> ranks;
+  if (rank_options.ranks) ranks.emplace(rank_options, planned.plan);
   if (json) {
     nlohmann::json object = plan::to_json(planned.plan, planned.report);
-    if (!costs.empty()) object["ranks"] = {{"balance", plan::balance(costs)}, {"of_each", costs}};
+    if (ranks) object["ranks"] = ranks->json();
     // Names of folders need not be UTF-8.
     std::cout << object.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
   } else {
-    std::cout << plan::to_text(planned.plan, planned.report) << (costs.empty() ? "" : plan::to_text(costs));
+    std::cout << plan::to_text(planned.plan, planned.report) << (ranks ? ranks->text() : "");
   }
   return 0;
 }

@@ -10,19 +10,28 @@
 
 namespace rouleau::plan {
 
-/// Of one rank, with the cells where they begin. Bytes of a step: what the rank sends, the mean of two steps; reactions
-/// between cells of different ranks, a small part, are left out.
+/// Of one rank, with the cells where they begin. Messages and bytes are those that the rank sends in a step, the mean of
+/// two steps; bytes of reactions between cells of different ranks, a small part, are left out.
 struct RankCost {
   long nodes = 0;  ///< of its block
   long cells = 0;  ///< that it owns
   long membrane_nodes = 0;
-  long neighbours = 0;    ///< ranks that it shares a border with
-  double halo_bytes = 0;  ///< populations and velocities of a step, to neighbours
-  double cell_bytes = 0;  ///< positions, forces and velocities of membranes of a step, to all
+  long neighbours = 0;  ///< ranks that it shares a border with
+  long messages = 0;
+  long waits = 0;                                   ///< how often in a step it waits for others
+  double population_bytes = 0, velocity_bytes = 0;  ///< of the lattice, to neighbours
+  double position_bytes = 0, force_bytes = 0;       ///< of its membranes, to all
+  double node_velocity_bytes = 0;                   ///< of membranes in its block, to their owners
+  double received_bytes = 0;
   double memory_bytes = 0;
-  double step_s = 0;  ///< computing alone
-  NLOHMANN_DEFINE_TYPE_INTRUSIVE(RankCost, nodes, cells, membrane_nodes, neighbours, halo_bytes, cell_bytes,
-                                 memory_bytes, step_s)
+  double step_s = 0;     ///< computing its own part, by plan::step_cost
+  double sharing_s = 0;  ///< what the cut costs: packing and unpacking, and other ranks' membranes
+  [[nodiscard]] double lattice_bytes() const { return population_bytes + velocity_bytes; }
+  [[nodiscard]] double membrane_bytes() const { return position_bytes + force_bytes + node_velocity_bytes; }
+  [[nodiscard]] double sent_bytes() const { return lattice_bytes() + membrane_bytes(); }
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(RankCost, nodes, cells, membrane_nodes, neighbours, messages, waits, population_bytes,
+                                 velocity_bytes, position_bytes, force_bytes, node_velocity_bytes, received_bytes,
+                                 memory_bytes, step_s, sharing_s)
 };
 
 std::vector<RankCost> rank_costs(const Plan& plan, const core::Decomposition<2>& blocks);
@@ -32,5 +41,7 @@ double balance(const std::vector<RankCost>& ranks);
 
 /// For people: least, mean and most of all ranks.
 std::string to_text(const std::vector<RankCost>& ranks);
+/// One of them.
+std::string to_text(const RankCost& cost, int rank, const core::Box<2>& block);
 
 }  // namespace rouleau::plan

@@ -174,6 +174,28 @@ void require_distance(const scene::Scene& scene) {
 
 }  // namespace
 
+void for_each_outline(const scene::Scene& scene, double spacing,
+                      const std::function<void(std::size_t, const core::Membranes&)>& function) {
+  std::vector<core::RestShape> shapes;
+  std::vector<core::Membranes> outlines;
+  for (const scene::CellType& type : scene.cell_types) {
+    shapes.push_back(rest_shape(type, spacing));
+    core::add_cell(outlines.emplace_back(), static_cast<int>(outlines.size()), shapes.back(), 0, 0, 0);
+  }
+  for (std::size_t c = 0; c < scene.cells.size(); ++c) {
+    const scene::CellPlacement& cell = scene.cells[c];
+    const core::RestShape& shape = shapes[cell.type];
+    core::Membranes& outline = outlines[cell.type];
+    const double x = cell.center.x() / spacing - 0.5, y = cell.center.y() / spacing - 0.5;
+    const double cosine = std::cos(cell.angle), sine = std::sin(cell.angle);
+    for (std::size_t i = 0; i < shape.x.size(); ++i) {
+      outline.x[i] = x + cosine * shape.x[i] - sine * shape.y[i];
+      outline.y[i] = y + sine * shape.x[i] + cosine * shape.y[i];
+    }
+    function(c, outline);
+  }
+}
+
 core::Membranes make_membranes(const scene::Scene& scene, double spacing) {
   require_room(scene);
   require_distance(scene);

@@ -1,6 +1,8 @@
 // What a scene and its plan are to the solver: lattice, membranes, and the setup of each stage.
 #pragma once
 
+#include <functional>
+
 #include "core/membrane/membranes.hpp"
 #include "core/solver/solver_setup.hpp"
 #include "core/surface/surfaces.hpp"
@@ -21,6 +23,10 @@ std::vector<core::Layer> lattice_layers(const scene::Scene& scene);
 core::Membranes make_membranes(const scene::Scene& scene, double spacing);
 /// The same in three dimensions; overlaps are found where one cell's node lies inside another.
 core::Surfaces make_surfaces(const scene::Scene& scene, double spacing);
+/// Calls function(c, outline) with each cell by itself, as it would be placed and without a check: for who does not need
+/// all of them at once.
+void for_each_outline(const scene::Scene& scene, double spacing,
+                      const std::function<void(std::size_t cell, const core::Membranes& outline)>& function);
 /// Either, on the scene's own lattice.
 template <int D>
 auto make_cells(const scene::Scene& scene) {

@@ -310,6 +310,31 @@ class Commands_do_what_they_say(Case):
             self.assertIn(key, plan)
         self.assertAlmostEqual(plan["dimensionless"]["reynolds_physical"], 2.548e-4, delta=1e-6)
 
+    def test_plan_says_what_each_of_several_ranks_would_do_and_how_long_a_step_takes(self):
+        words = ["plan", SCENE, "--ranks", 6, "--network", "1 us,5 GB/s,0.25 us", "--step", "1 ms"]
+        ranks = json.loads(self.rouleau.run(*words, "--json").stdout)["ranks"]
+        self.assertEqual(len(ranks["of_each"]), 6)
+        self.assertEqual(sum(rank["nodes"] for rank in ranks["of_each"]), 256 * 128)
+        self.assertEqual(sum(rank["cells"] for rank in ranks["of_each"]), 4)
+        sent = sum(rank[f"{what}_bytes"] for rank in ranks["of_each"]
+                   for what in ("population", "velocity", "position", "force", "node_velocity"))
+        self.assertAlmostEqual(sum(rank["received_bytes"] for rank in ranks["of_each"]), sent, delta=1e-6 * sent)
+        times = {time["ranks"]: time for time in ranks["times"]["of"]}
+        self.assertAlmostEqual(times[1]["step_s"], 1e-3)
+        self.assertEqual(ranks["times"]["fastest"], min(times.values(), key=lambda time: time["step_s"])["ranks"])
+        self.assertAlmostEqual(times[6]["efficiency"], 1e-3 / times[6]["step_s"] / 6)
+        for number in range(6):
+            one = json.loads(self.rouleau.run(*words, "--rank", number, "--json").stdout)["ranks"]
+            self.assertEqual({**ranks["of_each"][number], **one["rank"]}, one["rank"])
+            self.assertEqual(one["rank"]["size"][0] * one["rank"]["size"][1], one["rank"]["nodes"])
+        text = self.rouleau.run(*words, "--rank", 5).stdout
+        self.assertIn("Rank 5: nodes ", text)
+        self.assertIn("   the fastest", text)
+        for wrong, what in ((["--rank", 6], "from 0 to 5"), (["--rank", -1], "from 0 to 5"), (["--network", "2 us"], "1 values"),
+                            (["--network", "2 us,3 m"], "ends with B/s"), (["--step", "0 s"], "above zero"), (["--step", "1 m"], "length")):
+            self.assert_stops(self.rouleau.run("plan", SCENE, "--ranks", 6, *wrong), 2, what)
+        self.assert_stops(self.rouleau.run("plan", SCENE, "--rank", 2), 2, "add --ranks N")
+
     def test_conversions_and_limits_say_whose_they_are(self):
         scene = json.loads(SCENE.read_text())
         stiff = json.loads(json.dumps(scene["cell_types"]["rbc"]))

@@ -8,6 +8,7 @@ Ranks share the cores of this machine. ROULEAU_KILLS=200 in the environment kill
 import json
 import os
 import random
+import re
 import resource
 import shutil
 import signal
@@ -25,6 +26,7 @@ from check_kills import TABLES, differences, h5py  # noqa: E402
 
 SEED = int.from_bytes(os.urandom(4), "little")
 CHANCE = random.Random(SEED)
+BENCH = PROGRAM.parent / "rouleau-bench"
 KINETICS = SOURCE / "tests" / "resume" / "scenes" / "kinetics.json"
 # Two stages, short, with all that models remember, both corrections and a contrast of viscosities.
 SHORT = ["--set", '/stages/0/duration="8 ms"', "--set", "/stages/1/strain=0.06", "--set", "/output/cells/strain=0.02",
@@ -203,6 +205,19 @@ class Transports(Case):
         shutil.copy(PROGRAM, self.path / "bin" / "rouleau")
         result = call(ranks(2, "run", *KINETICS_RUN, "--out", self.path / "run", program=self.path / "bin" / "rouleau"))
         self.assert_refused(result, 2, "rank 0 of 2", "install the package rouleau-", directory=self.path / "run")
+
+
+class Network(Case):
+    @unittest.skipUnless(BENCH.exists(), "rouleau-bench is not built")
+    def test_it_is_measured_by_all_ranks_and_shown_once(self):
+        result = call(ranks(3, "--only", "network", "--seconds", 0.01, program=BENCH))
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(result.stdout.count("Messages between the first two of 3 ranks, Open MPI v"), 1, result.stdout)
+        shown = re.search(r'--network "([0-9.]+) us,(\d+) MB/s,([0-9.]+) us"', result.stdout)
+        self.assertIsNotNone(shown, result.stdout)
+        latency, bandwidth, each = map(float, shown.groups())
+        # Between a tenth of a microsecond and a turn of the scheduler; memory is not slower, and not faster.
+        self.assertTrue(0.1 < latency < 1e5 and 0 < each < 1e5 and 1 < bandwidth < 1e6, result.stdout)
 
 
 class One_voice(Case):

@@ -1,6 +1,7 @@
 // How a lattice is cut into blocks, one for each rank.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <vector>
@@ -24,9 +25,10 @@ class Decomposition {
         volume *= blocks_[i].size(k);
       }
       nodes += volume;
-      for (std::size_t j = 0; j < i; ++j) {
-        if (overlap(blocks_[i], blocks_[j])) throw std::invalid_argument("two blocks overlap");
-      }
+    }
+    make_index();
+    for (const Box<D>& block : blocks_) {
+      if (meeting(block).size() > 1) throw std::invalid_argument("two blocks overlap");
     }
     if (nodes != whole.nodes()) throw std::invalid_argument("the blocks do not fill the lattice");
   }
@@ -67,12 +69,56 @@ class Decomposition {
   [[nodiscard]] Domain<D> domain(int rank) const { return {whole_.size, whole_.periodic, blocks_[rank]}; }
   /// The rank that computes a node of the lattice.
   [[nodiscard]] int owner(const std::array<int, D>& node) const {
-    int rank = 0;
-    while (!blocks_[rank].contains(node)) ++rank;
-    return rank;
+    const std::vector<int>& near = index_[square_of(node)];
+    return *std::find_if(near.begin(), near.end(), [&](int rank) { return blocks_[rank].contains(node); });
+  }
+  /// The ranks, in their order, whose blocks have nodes in a box; the box may reach out of the lattice.
+  [[nodiscard]] std::vector<int> meeting(const Box<D>& box) const {
+    std::vector<int> ranks;
+    for_squares(box, [&](int square) {
+      for (const int rank : index_[square]) {
+        if (overlap(blocks_[rank], box)) ranks.push_back(rank);
+      }
+    });
+    std::sort(ranks.begin(), ranks.end());
+    ranks.erase(std::unique(ranks.begin(), ranks.end()), ranks.end());
+    return ranks;
   }
 
  private:
+  /// Squares of about a block's size, and the ranks whose blocks meet each.
+  void make_index() {
+    const double share = static_cast<double>(whole_.nodes()) / static_cast<double>(blocks_.size());
+    side_ = std::max(1, static_cast<int>(std::pow(share, 1.0 / D)));
+    std::size_t count = 1;
+    for (int k = 0; k < D; ++k) count *= static_cast<std::size_t>(squares(k));
+    index_.resize(count);
+    for (int rank = 0; rank < ranks(); ++rank) {
+      for_squares(blocks_[rank], [&](int square) { index_[square].push_back(rank); });
+    }
+  }
+  [[nodiscard]] int squares(int axis) const { return (whole_.size[axis] + side_ - 1) / side_; }
+  [[nodiscard]] int square_of(const std::array<int, D>& node) const {
+    int square = 0;
+    for (int k = D - 1; k >= 0; --k) square = square * squares(k) + node[k] / side_;
+    return square;
+  }
+  /// Calls function(square) for those that a box meets.
+  template <class Function>
+  void for_squares(const Box<D>& box, Function function) const {
+    std::array<int, D> first, last;  // nodes of the lattice
+    for (int k = 0; k < D; ++k) {
+      first[k] = std::max(box.begin[k], 0) / side_ * side_;
+      last[k] = std::min(box.end[k], whole_.size[k]) - 1;
+      if (box.begin[k] >= box.end[k] || first[k] > last[k]) return;
+    }
+    for (std::array<int, D> node = first;;) {
+      function(square_of(node));
+      int k = 0;
+      for (; k < D && (node[k] += side_) > last[k]; ++k) node[k] = first[k];
+      if (k == D) return;
+    }
+  }
   static long volume(const Box<D>& box) {
     long product = 1;
     for (int k = 0; k < D; ++k) product *= box.size(k);
@@ -123,6 +169,8 @@ class Decomposition {
   }
   Domain<D> whole_;
   std::vector<Box<D>> blocks_;
+  int side_ = 1;  ///< of the squares of the index, nodes
+  std::vector<std::vector<int>> index_;
 };
 
 }  // namespace rouleau::core

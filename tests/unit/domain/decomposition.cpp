@@ -74,4 +74,31 @@ TEST_CASE("random lattices are cut into as many blocks as wanted, and refused wh
   }
 }
 
+TEST_CASE("blocks are found by place as by looking at all of them") {
+  auto random = test::generator(static_cast<unsigned>(std::random_device()()));
+  const auto number = [&](int least, int most) { return std::uniform_int_distribution<int>(least, most)(random); };
+  for (int trial = 0; trial < 200; ++trial) {
+    const Domain<2> domain({number(8, 90), number(8, 90)}, {true, false});
+    Points points;
+    for (int i = 0; i < 50; ++i) points.push_back({number(0, domain.size[0] / 3), number(0, domain.size[1] - 1)});
+    const auto blocks =
+        trial % 2 == 0 ? Decomposition<2>::bisected(domain, number(1, static_cast<int>(domain.nodes() / 16)), points, 9)
+                       : Decomposition<2>::even(domain, {number(1, domain.size[0]), number(1, domain.size[1])});
+    for (int look = 0; look < 20; ++look) {
+      const std::array<int, 2> node{number(0, domain.size[0] - 1), number(0, domain.size[1] - 1)};
+      REQUIRE(blocks.domain(blocks.owner(node)).block.contains(node));
+      const Box<2> box{{number(-9, 95), number(-9, 95)}, {number(-9, 99), number(-9, 99)}};
+      std::vector<int> met;
+      for (int rank = 0; rank < blocks.ranks(); ++rank) {
+        const Box<2> block = blocks.domain(rank).block;
+        bool meets = true;
+        for (int k = 0; k < 2; ++k)
+          meets = meets && std::max(block.begin[k], box.begin[k]) < std::min(block.end[k], box.end[k]);
+        if (meets) met.push_back(rank);
+      }
+      REQUIRE(blocks.meeting(box) == met);
+    }
+  }
+}
+
 }  // namespace rouleau::core

@@ -1,0 +1,161 @@
+#include "network_bench.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "core/domain/ranks.hpp"
+#include "transport/connection.hpp"
+
+namespace rouleau::bench {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+/// Quantiles of times, s.
+struct Times {
+  std::vector<double> sorted;
+  explicit Times(std::vector<double> times) : sorted(std::move(times)) { std::sort(sorted.begin(), sorted.end()); }
+  [[nodiscard]] double at(double share) const {
+    return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
+  }
+};
+
+/// The figures of a network, as the first rank finds them.
+class Network {
+ public:
+  /// Every figure takes so many seconds.
+  Network(core::Transport& transport, const core::Ranks<1>& ranks, double seconds)
+      : transport_(transport), ranks_(ranks), seconds_(seconds) {}
+
+  /// Half a round trip of a message between the first two ranks; the others wait for the end.
+  Times half_round(std::size_t bytes) {
+    return repeated(
+        [&](bool first) {
+          if (first) {
+            transport_.send(1, core::Message(bytes));
+            return transport_.receive(1).size();
+          }
+          transport_.send(0, transport_.receive(0));
+          return bytes;
+        },
+        2);
+  }
+  /// Each of many small messages that the first rank sends without waiting.
+  Times in_a_row() {
+    constexpr int count = 100;
+    return repeated(
+        [&](bool first) {
+          if (first) {
+            for (int i = 0; i < count; ++i) transport_.send(1, core::Message(64));
+            return transport_.receive(1).size();
+          }
+          for (int i = 0; i < count; ++i) static_cast<void>(transport_.receive(0));
+          transport_.send(0, core::Message(1));
+          return std::size_t{1};
+        },
+        count);
+  }
+  /// Eight numbers from every rank to every other, as a step's agreement and the sums of checks go.
+  Times agreement() {
+    return repeated([&](bool) { return core::all_of(ranks_, std::vector<double>(8)).size(); }, 1, true);
+  }
+
+ private:
+  /// Times of function(whether it is the first rank), over `parts`. Of the first two ranks, or of all.
+  template <class Function>
+  Times repeated(Function function, double parts, bool of_all = false) {
+    const bool first = transport_.rank() == 0, takes_part = of_all || transport_.rank() < 2;
+    std::vector<double> times;
+    const auto begin = Clock::now();
+    for (int i = 0; i < 5; ++i) {  // connections are made by the first messages
+      if (takes_part) static_cast<void>(function(first));
+    }
+    // The first rank chooses how often, by what one takes.
+    const double once = std::max(since(begin) / 5, 1e-7);
+    const int count =
+        core::all_of(ranks_, std::vector<int>{std::clamp(static_cast<int>(seconds_ / once), 20, 20000)})[0][0];
+    for (int i = 0; i < count && takes_part; ++i) {
+      const auto start = Clock::now();
+      static_cast<void>(function(first));
+      times.push_back(since(start) / parts);
+    }
+    static_cast<void>(core::all_of(ranks_, std::vector<int>{0}));  // nobody goes on before all are done
+    return Times(takes_part ? std::move(times) : std::vector<double>{0});
+  }
+
+  core::Transport& transport_;
+  const core::Ranks<1>& ranks_;
+  double seconds_;
+};
+
+void measure_network(core::Transport& transport, const std::string& library, double seconds) {
+  const int count = transport.ranks();
+  // The lattice means nothing here: it says how many ranks there are.
+  const auto blocks = core::Decomposition<1>::even({{count}, {false}}, {count});
+  const core::Ranks<1> ranks{&blocks, &transport};
+  Network network(transport, ranks, seconds);
+  const bool prints = transport.rank() == 0;
+  const unsigned processors = std::thread::hardware_concurrency();
+  if (prints) {
+    std::printf("\nMessages between the first two of %d ranks, %s, %u processors\n", count, library.c_str(),
+                processors);
+    std::printf("  %-34s %10s %10s %10s %12s\n", "microseconds", "best", "median", "1 of 100", "MB/s");
+  }
+  const auto line = [&](const std::string& what, const Times& times, double bytes) {
+    if (!prints) return;
+    std::printf("  %-34s %10.2f %10.2f %10.2f", what.c_str(), times.at(0) * 1e6, times.at(0.5) * 1e6,
+                times.at(0.99) * 1e6);
+    std::printf(bytes > 0 ? " %12.0f\n" : "\n", bytes / times.at(0.5) / 1e6);
+    std::fflush(stdout);
+  };
+  constexpr std::size_t typical = std::size_t{1} << 14;
+  double latency = 0, bandwidth = 0, slowest = 0;
+  for (const std::size_t bytes :
+       {std::size_t{8}, std::size_t{1} << 10, typical, std::size_t{1} << 17, std::size_t{1} << 20}) {
+    const Times times = network.half_round(bytes);
+    if (bytes == 8) latency = times.at(0.5);
+    slowest = std::max(slowest, times.at(0.99));
+    // What a run sends is about as long: longer messages travel faster.
+    if (bytes == typical) bandwidth = static_cast<double>(bytes) / std::max(times.at(0.5) - latency, 1e-9);
+    line("there, of " + std::to_string(bytes) + " bytes", times, bytes > 8 ? static_cast<double>(bytes) : 0);
+  }
+  const Times in_a_row = network.in_a_row();
+  line("each of 100 in a row", in_a_row, 0);
+  line("eight numbers from all to all", network.agreement(), 0);
+  if (!prints) return;
+  std::printf("  rouleau plan SCENE --ranks N --network \"%.2f us,%.0f MB/s,%.2f us\"\n", latency * 1e6,
+              bandwidth / 1e6, in_a_row.at(0.5) * 1e6);
+  if (static_cast<unsigned>(count) > processors) {
+    std::printf(
+        "  More ranks than processors: a rank that waits lets others run, and times are those of the scheduler.\n");
+  } else if (slowest > 1e-3) {
+    std::printf(
+        "  Some messages take milliseconds: other processes use these processors, and a rank that lets them run waits\n"
+        "  for its turn. Measure again when they do not, or with mpirun's option --bind-to none.\n");
+  }
+}
+
+}  // namespace
+
+void network_table(double seconds) {
+  if (const auto launch = transport::launched()) {
+    transport::Connection connection(*launch);
+    measure_network(connection, connection.library(), seconds);
+    connection.finish();
+    return;
+  }
+  const auto ends = core::make_loopback(2);
+  std::thread other([&] { measure_network(*ends[1], "", seconds); });
+  measure_network(*ends[0], "threads of this process", seconds);
+  other.join();
+}
+
+}  // namespace rouleau::bench

@@ -1,0 +1,114 @@
+#include "rank_times.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <map>
+#include <string_view>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "blocks.hpp"
+#include "units/units.hpp"
+
+namespace rouleau::plan {
+
+namespace {
+
+constexpr double slower = 1.3;               ///< than the fastest: more ranks will not help
+constexpr std::size_t many_cells = 100'000;  ///< cells; powers of four have to do, each takes seconds
+
+double step_time(const std::vector<RankCost>& ranks, const Network& network, double scale) {
+  double computing = 0, messages = 0;
+  for (const RankCost& rank : ranks) {
+    computing = std::max(computing, rank.step_s * scale + rank.sharing_s);
+    messages = std::max(messages, message_time(rank, network));
+  }
+  return computing + messages;  // who is done first waits: no message is behind computing
+}
+
+}  // namespace
+
+Network read_network(const std::string& text) {
+  const auto refuse = [&](const std::string& problem) -> double {
+    throw Error(
+        Cause::bad_input, "the network " + in_quotes(text) + ": " + problem,
+        {"give latency and bandwidth, such as \"2 us,10 GB/s\", and, if known, the time of each further message"});
+  };
+  std::vector<std::string> parts;
+  for (std::size_t begin = 0;;) {
+    const std::size_t comma = std::min(text.find(',', begin), text.size());
+    parts.push_back(text.substr(begin, comma - begin));
+    if (comma == text.size()) break;
+    begin = comma + 1;
+  }
+  if (parts.size() < 2 || parts.size() > 3) refuse("it has " + std::to_string(parts.size()) + " values");
+  const units::Units units;
+  const auto in_si = [&](const std::string& value, const char* unit, const char* name) {
+    try {
+      const double result = units.to_si(value, unit, name);
+      return result > 0 ? result : refuse(std::string(name) + " is not above zero");
+    } catch (const units::UnitError& error) {
+      return refuse(error.what());
+    }
+  };
+  Network network;
+  network.latency_s = in_si(parts[0], "s", "latency");
+  // UDUNITS has no byte: its prefix and "B/s" are one for it without unit.
+  constexpr std::string_view per_second = "B/s";
+  std::string rate = parts[1];
+  const std::size_t at = rate.rfind(per_second);
+  if (at == std::string::npos || at + per_second.size() != rate.size()) refuse("the bandwidth ends with B/s");
+  network.bandwidth = in_si(rate.replace(at, per_second.size(), "Hz"), "Hz", "bandwidth");
+  network.each_s = parts.size() == 3 ? in_si(parts[2], "s", "time of each message") : network.latency_s / 4;
+  return network;
+}
+
+double message_time(const RankCost& cost, const Network& network) {
+  const double further = std::max(0.0, static_cast<double>(cost.messages - cost.waits));
+  return static_cast<double>(cost.messages > 0 ? cost.waits : 0) * network.latency_s + further * network.each_s +
+         (cost.sent_bytes() + cost.received_bytes) / 2 / network.bandwidth;
+}
+
+RankTimes rank_times(const Plan& plan, const std::vector<RankCost>& asked, const Network& network, double one_step_s) {
+  const int most = most_blocks(plan), wanted = static_cast<int>(asked.size());
+  std::map<int, double> steps;
+  const double by_estimate = step_time(rank_costs(plan, make_blocks(plan, 1)), network, 1);
+  const double scale = one_step_s > 0 ? one_step_s / by_estimate : 1;
+  double least = steps[1] = by_estimate * scale;
+  steps[wanted] = step_time(asked, network, scale);
+  const int factor = plan.scene->cells.size() > many_cells ? 4 : 2;
+  for (int ranks = factor; ranks <= most / factor * factor; ranks *= factor) {
+    if (ranks != wanted) steps[ranks] = step_time(rank_costs(plan, make_blocks(plan, ranks)), network, scale);
+    if (steps[ranks] > slower * least) break;
+    least = std::min(least, steps[ranks]);
+    if (ranks > most / factor) break;
+  }
+  RankTimes times;
+  for (const auto& [ranks, step] : steps) {
+    times.of.push_back({ranks, step, steps[1] / step / ranks});
+    if (step < steps[times.fastest]) times.fastest = ranks;
+    if (times.of.back().efficiency >= 0.5) times.economical = ranks;
+  }
+  return times;
+}
+
+std::string to_text(const RankTimes& times, const Network& network) {
+  std::array<char, 256> text{};
+  std::snprintf(text.data(), text.size(),
+                "\nTime of a step, with a core for each rank, messages of %s us and %s GB/s\n"
+                "  %-12s %14s %12s\n",
+                number(network.latency_s * 1e6, 3).c_str(), number(network.bandwidth / 1e9, 3).c_str(), "ranks",
+                "a step, us", "efficiency");
+  std::string out = text.data();
+  for (const RankTime& time : times.of) {
+    std::string remark = time.ranks == times.fastest ? "   the fastest" : "";
+    if (time.ranks == times.economical) remark += "   the most that are half used";
+    std::snprintf(text.data(), text.size(), "  %-12d %14.2f %12.3f%s\n", time.ranks, time.step_s * 1e6, time.efficiency,
+                  remark.c_str());
+    out += text.data();
+  }
+  return out;
+}
+
+}  // namespace rouleau::plan

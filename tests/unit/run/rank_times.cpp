@@ -1,0 +1,66 @@
+// The model of a step by several ranks.
+#include "plan/rank_times.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "base/error.hpp"
+#include "plan/blocks.hpp"
+#include "plan/read_scene.hpp"
+#include "unit/blocks_fixture.hpp"
+
+namespace rouleau::plan {
+namespace {
+
+const RankTime& by(const RankTimes& times, int ranks) {
+  return *std::find_if(times.of.begin(), times.of.end(), [&](const RankTime& time) { return time.ranks == ranks; });
+}
+
+}  // namespace
+
+TEST_CASE("a network is a latency, a bandwidth and what further messages take") {
+  const Network network = read_network("1.5 us,12 GB/s,300 ns");
+  CHECK(network.latency_s == Approx(1.5e-6));
+  CHECK(network.bandwidth == Approx(12e9));
+  CHECK(network.each_s == Approx(3e-7));
+  CHECK(read_network("1 ms, 8e5 kB/s").bandwidth == Approx(8e8));
+  for (const char* wrong : {"", "1 us", "1 us,10 GB/s,1 us,1 us", "1 um,10 GB/s", "1 us,10 GB", "1 us,0 GB/s",
+                            "-1 us,1 GB/s", "1 us,1 GB/s,", "1,2", "nan us,1 GB/s"}) {
+    CAPTURE(wrong);
+    CHECK_THROWS_AS(read_network(wrong), Error);
+  }
+}
+
+TEST_CASE("messages take a latency for each wait, a moment for each further one, and the bandwidth's time") {
+  RankCost cost;
+  cost.messages = 12, cost.waits = 5;
+  cost.population_bytes = 4000, cost.position_bytes = 6000, cost.received_bytes = 30000;
+  const Network network{.latency_s = 2e-6, .bandwidth = 1e9, .each_s = 5e-7};
+  CHECK(message_time(cost, network) == Approx(5 * 2e-6 + 7 * 5e-7 + (10000 + 30000) / 2 / 1e9));
+  CHECK(message_time(RankCost{}, network) == 0);  // alone
+}
+
+TEST_CASE("a fluid alone is as efficient as its blocks are equal, but for what goes over their borders") {
+  const scene::Scene scene =
+      plan::read_scene(test::four_cells, {test::shear, "/cells=[]", "/interactions=[]"});  // 256 x 128
+  const Plan plan = make_plan(scene, test::catalog());
+  const Network none{.latency_s = 1e-30, .bandwidth = 1e30, .each_s = 1e-30};
+  const RankTimes times = rank_times(plan, rank_costs(plan, make_blocks(plan, 8)), none, 1e-3);
+  CHECK(times.of.size() == 10);  // to 512 blocks of 16 x 4
+  for (const RankTime& time : times.of) {
+    const std::vector<RankCost> costs = rank_costs(plan, make_blocks(plan, time.ranks));
+    double sharing = 0;
+    for (const RankCost& cost : costs) sharing = std::max(sharing, cost.sharing_s);
+    if (time.ranks == 1) CHECK(sharing == 0);
+    CHECK(time.step_s >= 1e-3 / time.ranks);
+    CHECK(time.step_s <= 1e-3 / time.ranks + sharing * (1 + 1e-9));
+  }
+  CHECK(times.fastest == 512);
+  // With messages a border has its price.
+  const RankTimes slow = rank_times(plan, rank_costs(plan, make_blocks(plan, 3)), {});
+  const RankTime& best = by(slow, slow.fastest);
+  for (const RankTime& time : slow.of) CHECK(time.step_s >= best.step_s);
+  CHECK(by(slow, 3).efficiency < 1);
+  CHECK(slow.of.back().efficiency < 0.1);
+}
+
+}  // namespace rouleau::plan
