@@ -59,6 +59,9 @@ EnergySnapshot observe_energy(core::Solver<T, Set>& solver, const units::Lattice
   energy.viscous_dissipation = fluid.dissipation * watt;
   energy.total = energy.kinetic;
   if (!setting.domain.periodic[1]) {
+    energy.wall_power = 0;
+  }
+  if (!setting.domain.periodic[1] && !setting.solid) {
     const auto stress = solver.fluid().wall_stress();  // what the fluid does to the walls
     const core::WallVelocity& walls = solver.fluid().last_walls();
     energy.wall_power =

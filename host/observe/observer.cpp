@@ -46,8 +46,9 @@ int outermost(const core::Surfaces& surfaces, int cell) {
   return farthest;
 }
 
-/// Distance of a surface to the nearer wall, spacings, negative beyond it; NaN without walls.
-double wall_gap(const core::Surfaces& surfaces, int cell, const core::Domain<3>& domain) {
+/// Distance of a surface to the nearest wall, spacings, negative beyond it; NaN without walls. `tube_radius`: 0 without one.
+double wall_gap(const core::Surfaces& surfaces, int cell, const core::Domain<3>& domain, double tube_radius) {
+  if (tube_radius > 0) return tube_radius - core::farthest_from_axis(surfaces, cell, domain);
   const core::CellRange& range = surfaces.cells[cell];
   const std::vector<double>* const along[] = {&surfaces.x, &surfaces.y, &surfaces.z};
   double gap = std::numeric_limits<double>::infinity();
@@ -239,7 +240,7 @@ void Observer::observe_cells(const core::Surfaces& surfaces, const units::Lattic
     s.deformation = plane.deformation;
     s.area = s.perimeter = std::nan("");
     s.min_gap = gaps[k] * length;
-    s.wall_gap = wall_gap(surfaces, k, domain) * length;
+    s.wall_gap = wall_gap(surfaces, k, domain, scene_->domain.tube_radius.value_or(0) / length) * length;
     s.aggregate = aggregates.label[k];
     s.through_image = aggregates.through_image[k];
     follow_stretch(core::stretch_range(surfaces, k), s);

@@ -1,5 +1,7 @@
 #include "particle_stress.hpp"
 
+#include <cmath>
+
 #include "core/membrane/geometry.hpp"
 
 namespace rouleau::observe {
@@ -40,7 +42,8 @@ double particle_stress(const core::Surfaces& s, const scene::Scene& scene, doubl
       ++t;
     }
   }
-  return stress / scene.domain.node_count();
+  if (!scene.domain.tube_radius) return stress / scene.domain.node_count();
+  return stress / (scene.domain.content() / std::pow(scene.domain.size.x() / scene.domain.nodes[0], 3));
 }
 
 }  // namespace rouleau::observe

@@ -15,7 +15,8 @@ bool is_driven_channel(const plan::StageSetting& setting, const scene::Scene& sc
 template <class T, class Set>
 double flow_rate(const core::Fluid<T, Set>& fluid) {
   const core::Domain<Set::dimension>& domain = fluid.setting().domain;
-  const double rate = core::flow_rate(fluid.row_velocities(), fluid.walls_now(), domain);
+  const double rate =
+      core::flow_rate(fluid.row_velocities(), fluid.walls_now(), domain, fluid.setting().solid != nullptr);
   if constexpr (Set::dimension == 3) return rate / domain.size[2];
   return rate;
 }

@@ -18,9 +18,9 @@ constexpr double threshold = 0.002;
 CellTravel cell_travel(const scene::Scene& scene, const StageSetting& stage) {
   if (scene.fluid.inertia || scene.cells.empty() || scene.domain.periodic_y) return {};
   const double spacing = stage.units.length, height = scene.domain.nodes[1], viscosity = core::viscosity_of(stage.tau);
-  double radius = 0;
+  double cell_radius = 0;
   for (const scene::CellPlacement& cell : scene.cells) {
-    radius = std::max(radius, shape::shape_radius(scene.cell_types[cell.type].shape) / spacing);
+    cell_radius = std::max(cell_radius, shape::shape_radius(scene.cell_types[cell.type].shape) / spacing);
   }
   CellTravel travel;
   const auto add = [&](double shear_rate, double body_force, const core::WallVelocity& walls) {
@@ -28,13 +28,19 @@ CellTravel cell_travel(const scene::Scene& scene, const StageSetting& stage) {
     std::vector<double> speeds;
     for (const scene::CellPlacement& cell : scene.cells) {
       const double y = cell.center.y() / spacing;
-      speeds.push_back(shear_rate * (y - height / 2) + body_force * y * (height - y) / (2 * viscosity) +
-                       (walls.lower + walls.upper) / 2);
+      if (scene.domain.tube_radius) {
+        const double radius = *scene.domain.tube_radius / spacing;
+        const double off = std::hypot(y - height / 2, (cell.z - scene.domain.depth->size / 2) / spacing);
+        speeds.push_back(body_force * std::max(0.0, radius * radius - off * off) / (4 * viscosity));
+      } else {
+        speeds.push_back(shear_rate * (y - height / 2) + body_force * y * (height - y) / (2 * viscosity) +
+                         (walls.lower + walls.upper) / 2);
+      }
       mean += speeds.back() / static_cast<double>(scene.cells.size());
     }
     for (const double speed : speeds) farthest = std::max(farthest, std::abs(speed - mean));
-    travel.mean += std::abs(mean) * radius / viscosity;
-    travel.spread += farthest * radius / viscosity;
+    travel.mean += std::abs(mean) * cell_radius / viscosity;
+    travel.spread += farthest * cell_radius / viscosity;
   };
   add(stage.shear_rate, stage.body_force_x, stage.walls);
   // At its largest, and without the delay by the fluid's inertia.

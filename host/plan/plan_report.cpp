@@ -48,7 +48,7 @@ std::map<std::string, double> dimensionless_numbers(const Plan& plan, const std:
   // A flow that nothing holds has no rate of its own; a number made with zero would look like a fluid at rest.
   if (unbounded && shear_rate == 0) shear_rate = undefined;
   const double radius =
-      plan.has_cells ? shape::shape_radius(scene.cell_types[scene.cells[0].type].shape) : scene.domain.size.y() / 2;
+      plan.has_cells ? shape::shape_radius(scene.cell_types[scene.cells[0].type].shape) : scene.domain.height() / 2;
   const double stress = scene.fluid.viscosity * shear_rate;
   const double reynolds = scene.fluid.density * shear_rate * radius * radius / scene.fluid.viscosity;
   double ratio = 1;
@@ -123,6 +123,8 @@ std::vector<Conversion> conversion_table(const Plan& plan) {
     converted("width of the domain", scene.domain.size.x(), "m", units::dimension::length);
     converted("height of the domain", scene.domain.size.y(), "m", units::dimension::length);
     if (scene.domain.depth) converted("depth of the domain", scene.domain.depth->size, "m", units::dimension::length);
+    if (scene.domain.tube_radius)
+      converted("radius of the tube", *scene.domain.tube_radius, "m", units::dimension::length);
     for (const scene::CellType& type : scene.cell_types) {
       converted("radius", shape::shape_radius(type.shape), "m", units::dimension::length, type.name);
       converted("interior viscosity", type.interior_viscosity, "Pa s", units::dimension::viscosity, type.name);

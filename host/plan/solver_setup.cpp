@@ -129,6 +129,12 @@ core::Domain<D> lattice_domain(const scene::Scene& scene) {
 template core::Domain<2> lattice_domain(const scene::Scene&);
 template core::Domain<3> lattice_domain(const scene::Scene&);
 
+std::shared_ptr<const core::SolidNodes<3>> solid_nodes(const scene::Scene& scene) {
+  if (!scene.domain.tube_radius) return nullptr;
+  return std::make_shared<const core::SolidNodes<3>>(
+      core::tube_nodes(lattice_domain<3>(scene).size, *scene.domain.tube_radius / lattice_spacing(scene)));
+}
+
 std::vector<core::Layer> lattice_layers(const scene::Scene& scene) {
   std::vector<core::Layer> layers;
   const double spacing = lattice_spacing(scene);
@@ -272,6 +278,11 @@ class SurfaceChecker {
       refuse(cell, name(cell) + " sticks through a wall across " + axes[k] + " by " + micrometres(beyond) +
                        "; move it away from the wall.");
     }
+    if (!scene_.domain.tube_radius) return;
+    const double beyond = core::farthest_from_axis(surfaces_, cell, domain_) - *scene_.domain.tube_radius / spacing_;
+    if (beyond < 0) return;
+    refuse(cell, name(cell) + " sticks through the wall of the tube by " + micrometres(beyond) +
+                     "; move it towards the axis, or make the tube wider.");
   }
 
   /// Of all images of the other cell the one that is nearest lies nearest along each axis.
@@ -359,6 +370,7 @@ core::BasicSolverSetup<D> make_solver_setup(const Plan& plan, int index) {
       .area_correction = scene.numerics.area_correction,
       .time_step = stage.stage->density_factor,  // proportional to it
       .tension_unit = stage.units.unit(units::dimension::tension)};
+  if constexpr (D == 3) setup.solid = solid_nodes(scene);
   if (!plan.has_cells) return setup;
   for (std::size_t t = 0; t < scene.cell_types.size(); ++t) {
     core::CellType& type = setup.cell_types.emplace_back();

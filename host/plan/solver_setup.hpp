@@ -14,6 +14,9 @@ namespace rouleau::plan {
 template <int D = 2>
 core::Domain<D> lattice_domain(const scene::Scene& scene);
 
+/// Its nodes in the walls of a tube; null: it is none.
+std::shared_ptr<const core::SolidNodes<3>> solid_nodes(const scene::Scene& scene);
+
 /// Its layers of other viscosities.
 std::vector<core::Layer> lattice_layers(const scene::Scene& scene);
 

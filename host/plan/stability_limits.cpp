@@ -83,6 +83,9 @@ constexpr double most_layered_tau = 50.5;
 constexpr double fewest_steps_of_period(double tau) { return 350 * (tau - 0.5) * (tau - 0.5); }
 constexpr double thinnest_layer = 2.5;
 
+/// Of a tube, in spacings: below it the staircase of its wall may cost more than 5 % of the flow rate (tests/physics/tube.cpp).
+constexpr double least_tube_radius = 10;
+
 // How many times stiffer membranes may be with the semi-implicit step, for tau from 0.6 to 5; below it gains nothing. A
 // single cell stays quiet at 80 times the stretching and 13 times the bending stiffness (docs/accuracy.md), two cells
 // that are sheared and come to rest in contact at 20 times the former. There are two exceptions: with the slip
@@ -208,6 +211,10 @@ double prestress_compression(const Plan& plan, const StageSetting& stage) {
 /// Of the developed flow between walls at rest, lattice units.
 double fastest_driven_speed(const StageSetting& stage, const scene::Scene& scene) {
   const double height = scene.domain.nodes[1], viscosity = core::viscosity_of(scene.numerics.tau);
+  if (scene.domain.tube_radius) {
+    const double radius = *scene.domain.tube_radius / stage.units.length;
+    return stage.largest_body_force_x() * radius * radius / (4 * viscosity);
+  }
   if (scene.fluid.layers.empty()) return stage.largest_body_force_x() * height * height / (8 * viscosity);
   double fastest = 0;
   const std::vector<double> rows = core::viscosity_of_rows(lattice_layers(scene), scene.domain.nodes[1]);
@@ -285,6 +292,13 @@ std::vector<Limit> find_limits(const Plan& plan) {
       const double speed = fastest_driven_speed(stage, scene);
       add("Mach number of the driven flow" + where, units::mach_number(speed), 0.1, true,
           lower + " or the driving force, or raise the resolution", density);
+    }
+    if (scene.domain.tube_radius && stage.index == 0) {
+      add("radius of the tube in lattice spacings", *scene.domain.tube_radius / stage.units.length, least_tube_radius,
+          false,
+          "raise the resolution: the wall is a staircase of nodes, and the flow rate is off by up to half a spacing over "
+          "the radius",
+          resolution);
     }
     if (stage.oscillation.any()) {
       const double frequency = stage.oscillation.frequency;

@@ -31,8 +31,10 @@ double channel_viscosity(const Scene& scene) {
 
 double duct_share(const Domain& domain) {
   if (!domain.is_duct()) return 1;
-  // White, Viscous Fluid Flow, section 3-3; terms fall as 1/n^5.
   const double pi = std::numbers::pi, height = domain.size.y(), width = domain.depth->size;
+  if (domain.tube_radius)  // Hagen and Poiseuille: pi G R^4 / (8 mu)
+    return 1.5 * pi * std::pow(*domain.tube_radius, 4) / (width * std::pow(height, 3));
+  // White, Viscous Fluid Flow, section 3-3; terms fall as 1/n^5.
   double sum = 0;
   for (int n = 199; n > 0; n -= 2) sum += std::tanh(n * pi * width / (2 * height)) / std::pow(n, 5);
   return 1 - 192 * height / (std::pow(pi, 5) * width) * sum;
@@ -47,6 +49,10 @@ ViscosityRange viscosity_range(const FluidProperties& fluid) {
 }
 
 Eigen::Vector2d driving_force(const Stage& stage, const Scene& scene) {
+  if (stage.mean_velocity && scene.domain.tube_radius) {
+    const double radius = *scene.domain.tube_radius;
+    return {8 * scene.fluid.viscosity * *stage.mean_velocity / (radius * radius), scene.fluid.body_force.y()};
+  }
   if (stage.mean_velocity) {
     const double height = scene.domain.size.y();
     return {12 * channel_viscosity(scene) * *stage.mean_velocity / (height * height * duct_share(scene.domain)),
@@ -61,7 +67,8 @@ namespace {
 double mean_rate(double shear_rate, double force, const Scene& scene) {
   if (shear_rate != 0) return std::abs(shear_rate);
   if (scene.domain.periodic_y) return 0;
-  return std::abs(force) * scene.domain.size.y() / (4 * channel_viscosity(scene));
+  const double height = scene.domain.height(), round = scene.domain.tube_radius ? 2 : 1;
+  return std::abs(force) * height / (4 * round * channel_viscosity(scene));
 }
 
 double steady_rate(const Stage& stage, const Scene& scene) {
@@ -78,16 +85,17 @@ double mean_shear_rate(const Stage& stage, const Scene& scene) {
 
 double start_up_strain(const Stage& stage, const Scene& scene) {
   if (stage.start == WallStart::developed || scene.domain.periodic_y) return 0;
-  const double height = scene.domain.size.y(), nu = viscosity_range(scene.fluid).least / scene.fluid.density;
-  return steady_rate(stage, scene) * height * height / nu / (stage.shear_rate != 0 ? 24 : 10);
+  const double height = scene.domain.height(), nu = viscosity_range(scene.fluid).least / scene.fluid.density;
+  const double slower = stage.shear_rate != 0 || scene.domain.tube_radius ? 24 : 10;
+  return steady_rate(stage, scene) * height * height / nu / slower;
 }
 
 double oscillation_delay(const Stage& stage, const Scene& scene) {
   if (!stage.oscillates() || scene.domain.periodic_y) return 0;
-  const double half = scene.domain.size.y() / 2, nu = viscosity_range(scene.fluid).least / scene.fluid.density;
+  const double half = scene.domain.height() / 2, nu = viscosity_range(scene.fluid).least / scene.fluid.density;
   const double womersley_square = 2 * std::numbers::pi * stage.oscillation.frequency * half * half / nu;
   if (stage.oscillation.mean_wall_speed != 0) return womersley_square / 2;
-  return womersley_square * (stage.oscillation.shear_rate != 0 ? 1.0 / 6 : 0.4);
+  return womersley_square * (stage.oscillation.shear_rate != 0 || scene.domain.tube_radius ? 1.0 / 6 : 0.4);
 }
 
 }  // namespace rouleau::scene

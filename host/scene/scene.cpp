@@ -18,6 +18,8 @@ constexpr std::int64_t most_nodes = std::int64_t{1} << 28;
 constexpr std::int64_t most_membrane_nodes = 100'000'000;
 /// How far the spacings along x and y may differ: far above rounding of the text's digits, far below any effect.
 constexpr double spacing_tolerance = 1e-9;
+/// In the radius of a tube: below this there is hardly a node between its walls.
+constexpr double fewest_spacings = 2;
 
 std::string in_micrometres(double metres) { return '"' + number(metres * 1e6, 12) + " um\""; }
 
@@ -58,6 +60,37 @@ std::optional<Depth> read_depth(const SceneFields& fields) {
   return depth;
 }
 
+/// The radius of a tube, which closes y and z; none: planes do, or nothing.
+std::optional<double> read_tube(const SceneFields& fields, const Domain& domain) {
+  if (!fields.has("/domain/walls")) {
+    fields.require("/domain", "y", "\"periodic\" or walls, or \"walls\" with a tube");
+    return std::nullopt;
+  }
+  if (!domain.depth) {
+    fields.refuse_key("/domain/walls",
+                      "a tube has three dimensions, and this domain two\ngive size and nodes three numbers, or leave "
+                      "walls out and close y");
+  }
+  for (const char* key : {"/domain/y", "/domain/z"}) {
+    if (fields.has(key)) fields.refuse_key(key, "the tube closes y and z; leave this out, or the tube");
+  }
+  const std::string key = "/domain/walls/tube/radius";
+  const double radius = fields.quantity(key, "m", range::length);
+  if (!is_known(domain) || !std::isfinite(radius)) return radius;
+  const double most = std::min(domain.size.y(), domain.depth->size) / 2, spacing = domain.size.y() / domain.nodes[1];
+  if (radius > most * (1 + spacing_tolerance)) {
+    fields.refuse(key, "a tube with a radius of " + in_micrometres(radius) +
+                           " does not fit into the domain\ngive at most " + in_micrometres(most) +
+                           ", or make the domain larger along y and z");
+  }
+  if (radius < fewest_spacings * spacing) {
+    fields.refuse(key, "the tube's radius of " + in_micrometres(radius) + " is " + number(radius / spacing, 3) +
+                           " lattice spacings, which is no tube\ngive more nodes: at least " + number(fewest_spacings) +
+                           " spacings, and better 10");
+  }
+  return radius;
+}
+
 /// What is there in two dimensions only, so far.
 void check_space(const SceneFields& fields, const Scene& scene) {
   if (!scene.domain.depth) return;
@@ -83,6 +116,11 @@ void check_space(const SceneFields& fields, const Scene& scene) {
   in_plane_only("/numerics/coupling", cells && scene.numerics.coupling == "semi-implicit",
                 "take \"explicit\", or leave it out");
   in_plane_only("/fluid/layers", cells && !scene.fluid.layers.empty(), "leave the layers or the cells out");
+  if (scene.domain.tube_radius && !scene.fluid.layers.empty()) {
+    fields.attempt([&] {
+      fields.refuse("/fluid/layers", "layers lie along plane walls, and this domain is a tube\nleave the layers out");
+    });
+  }
   if (fields.has("/output/fields/region")) {
     fields.attempt([&] {
       fields.refuse_key("/output/fields/region",
@@ -103,8 +141,9 @@ void check_space(const SceneFields& fields, const Scene& scene) {
     if (stage.start != WallStart::developed || !scene.domain.is_duct()) continue;
     fields.attempt([&] {
       fields.refuse(stage.pointer + "/start",
-                    "the developed flow is known between two walls, and domain.z has walls, too\nleave start out, and "
-                    "let the flow come to be");
+                    std::string("a developed flow is set between two walls only, and ") +
+                        (scene.domain.tube_radius ? "this domain is a tube" : "domain.z has walls, too") +
+                        "\nleave start out, and let the flow come to be");
     });
   }
 }
@@ -112,7 +151,9 @@ void check_space(const SceneFields& fields, const Scene& scene) {
 Domain read_domain(const SceneFields& fields) {
   Domain domain{};
   domain.size = fields.quantities("/domain/size", "m", range::length);
-  fields.attempt([&] { domain.periodic_y = fields.value<nlohmann::json>("/domain/y").is_string(); });
+  fields.attempt([&] {
+    if (fields.has("/domain/y")) domain.periodic_y = fields.value<nlohmann::json>("/domain/y").is_string();
+  });
   fields.attempt([&] { domain.depth = read_depth(fields); });
   fields.attempt([&] {
     fields.require("/domain", "nodes", "or \"numerics\": \"auto\" chooses them");
@@ -141,6 +182,10 @@ Domain read_domain(const SceneFields& fields) {
                                           " um along z; it must be the same along all axes\nwrite " +
                                           in_micrometres(along_x * domain.depth->nodes) + " here");
     }
+  });
+  fields.attempt([&] {
+    domain.tube_radius = read_tube(fields, domain);
+    if (domain.tube_radius) domain.depth->periodic = false;
   });
   return domain;
 }

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <variant>
@@ -38,16 +39,23 @@ struct Domain {
   std::array<int, 2> nodes;    ///< lattice nodes along x and y; the spacing is the same along all axes
   bool periodic_y = false;     ///< false: solid walls below and above; x is periodic always
   std::optional<Depth> depth;  ///< none: two dimensions
+  /// Of a tube along x through the middle, in place of walls across y and z, m; in three dimensions.
+  std::optional<double> tube_radius = {};
 
   [[nodiscard]] int dimension() const { return depth ? 3 : 2; }
   /// Of the whole lattice.
   [[nodiscard]] double node_count() const {
     return static_cast<double>(nodes[0]) * nodes[1] * (depth ? depth->nodes : 1);
   }
-  /// m2, or m3 in three dimensions.
-  [[nodiscard]] double content() const { return size.prod() * (depth ? depth->size : 1); }
+  /// Of what the walls enclose: m2, or m3 in three dimensions.
+  [[nodiscard]] double content() const {
+    if (tube_radius) return std::numbers::pi * *tube_radius * *tube_radius * size.x();
+    return size.prod() * (depth ? depth->size : 1);
+  }
   /// Whether walls close it along z, too.
   [[nodiscard]] bool is_duct() const { return depth && !depth->periodic; }
+  /// From wall to wall, m.
+  [[nodiscard]] double height() const { return tube_radius ? 2 * *tube_radius : size.y(); }
 };
 
 /// A part of the suspending fluid that has another viscosity, between two heights.

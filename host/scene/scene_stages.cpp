@@ -61,7 +61,13 @@ void check_stage(const SceneFields& fields, const Stage& stage, const Scene& sce
     fields.refuse_key(pointer + "/walls", "walls and shear_rate both say how the walls move; leave one of them out");
   }
   for (const char* key : {"shear_rate", "walls"}) {
-    if (!fields.has(pointer + "/" + key) || !scene.domain.periodic_y) continue;
+    if (!fields.has(pointer + "/" + key)) continue;
+    if (scene.domain.tube_radius) {
+      fields.refuse_key(
+          pointer + "/" + key,
+          "the wall of a tube does not move\ngive pressure_gradient or mean_velocity in place of " + std::string(key));
+    }
+    if (!scene.domain.periodic_y) continue;
     fields.refuse_key(pointer + "/" + key,
                       "shear needs walls that move, but domain.y is \"periodic\"\n"
                       "write \"y\": {\"lower\": {\"wall\": {}}, \"upper\": {\"wall\": {}}}, or leave out " +

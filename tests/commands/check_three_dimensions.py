@@ -45,6 +45,17 @@ SHEARED = {
     "stages": [{"name": "rest", "duration": "0.05 ms"}, {"name": "shear", "shear_rate": "1000 1/s", "strain": 0.2}],
     "output": {"cells": {"strain": 0.02}, "fields": {"strain": 0.1, "quantities": ["velocity", "viscosity"]}},
 }
+TUBE = {
+    **CAPSULE,
+    "rouleau": 1,
+    "domain": {"size": ["3 um", "3 um", "3.5 um"], "nodes": [12, 12, 14], "walls": {"tube": {"radius": "1.45 um"}}},
+    "fluid": {"density": "1 g/cm3", "viscosity": "1.2 cP"},
+    "numerics": {"density_factor": 300},
+    "cells": [{"type": "capsule", "at": ["1.5 um", "1.7 um", "2.2 um"]}],
+    "stages": [{"name": "flow", "mean_velocity": "1 mm/s", "duration": "2 ms"},
+               {"name": "on", "pressure_gradient": "4e6 Pa/m", "duration": "1 ms"}],
+    "output": {"cells": {"seconds": "0.1 ms"}, "fields": {"seconds": "1 ms", "quantities": ["velocity", "viscosity"]}},
+}
 
 
 def changed(scene, **pointers):
@@ -54,7 +65,7 @@ def changed(scene, **pointers):
         place = scene
         for key in path:
             place = place[int(key) if key.isdigit() else key]
-        place[last] = value
+        place[int(last) if isinstance(place, list) else last] = value
     return scene
 
 
@@ -252,6 +263,63 @@ class A_run_in_three_dimensions(Case):
                 self.assertEqual(tables[0], common, other)
 
 
+class A_tube(Case):
+    def rows(self, folder, name):
+        with open(folder / name, newline="") as file:
+            return list(csv.DictReader(file))
+
+    def test_carries_a_cell_at_the_mean_velocity_that_is_kept_and_its_fluid_rests_in_the_wall(self):
+        folder = self.run_scene(TUBE, "tube")
+        flow = [row for row in self.rows(folder, "series.csv") if row["stage_name"] == "flow"][-1]
+        self.assertAlmostEqual(float(flow["flow_rate_m2_per_s"]) * 3.5e-6 / (1e-3 * 3.14159 * 1.45e-6**2), 1, delta=0.06)
+        self.assertAlmostEqual(float(flow["relative_viscosity"]), 1, delta=0.15)
+        self.assertEqual(flow["wall_stress_lower_Pa"], "nan")
+        self.assertEqual(float(flow["wall_power_W_per_m"]), 0)
+        self.assertAlmostEqual(float(flow["viscous_dissipation_W_per_m"]) / float(flow["body_force_power_W_per_m"]), 1,
+                               delta=0.05)
+        cells = self.rows(folder, "cells.csv")
+        first, later = cells[0], next(row for row in cells if row["step"] == flow["step"])
+        self.assertAlmostEqual(float(first["wall_gap_m"]), 1.45e-6 - 0.45e-6 - (0.2**2 + 0.45**2)**0.5 * 1e-6, delta=0.05e-6)
+        moved = float(later["x_m"]) - float(first["x_m"])
+        self.assertGreater(moved, 1.5e-6)
+        self.assertLess(moved, 4e-6)
+        self.assertLess(json.loads((folder / "summary.json").read_text())["conservation"]["area_drift_max"], 0.02)
+        self.assertEqual(self.rouleau("report", folder).returncode, 0)
+        try:
+            import h5py
+            import numpy
+        except ImportError:
+            return
+        with h5py.File(folder / "frames.h5") as file:
+            velocity = numpy.array([frame["fields/velocity"][:] for frame in file["frames"].values() if "fields" in frame])[-1]
+        z, y = numpy.mgrid[0:14, 0:12]
+        solid = (y - 5.5)**2 + (z - 6.5)**2 >= 5.8**2
+        self.assertEqual(float(numpy.abs(velocity[solid]).max()), 0)
+        self.assertGreater(float(velocity[~solid][:, :, 0].min()), 0)
+
+    def test_has_the_same_bits_for_any_number_of_threads_and_when_it_goes_on_after_a_pause(self):
+        for precision in ("f64", "f32"):
+            scene = changed(TUBE, numerics__precision=precision)
+            one = self.run_scene(scene, "one" + precision)
+            many = self.run_scene(scene, "many" + precision, "--threads", 3)
+            paused = self.folder / ("paused" + precision)
+            steps = json.loads((one / "summary.json").read_text())["steps"]
+            for options in (("--max-steps", steps // 3 + 1), ("--resume", "--threads", 2)):
+                done = self.rouleau("run", self.folder / "scene.json", "--out", paused, "--quiet", *options)
+                self.assertEqual(done.returncode, 0, done.stderr)
+            for other in (many, paused):
+                for name in ("series.csv", "cells.csv"):
+                    own, others = self.rows(one, name), self.rows(other, name)
+                    known = {row["step"] for row in own}
+                    self.assertEqual(own, [row for row in others if row["step"] in known])
+
+    def test_is_planned_with_its_own_numbers(self):
+        text = self.rouleau("plan", self.write(TUBE)).stdout
+        self.assertIn("radius of the tube", text)
+        self.assertRegex(text, "warning: radius of the tube in lattice spacings is 5.8, below")
+        self.assertRegex(text, r"driving force density, without cells +4\.566e\+06")  # 8 mu U / R^2
+
+
 class A_plan_in_three_dimensions(Case):
     def test_knows_its_memory_and_its_fields(self):
         plan = json.loads(self.rouleau("plan", self.write(SPACE), "--json").stdout)
@@ -305,6 +373,22 @@ class Three_dimensions_refuse(Case):
         self.refused(changed(SPACE, fluid__body_force=[0, 0]), "/fluid/body_force", "2 components")
         self.refused(changed(PLANE, fluid__body_force=[0, 0, 1]), "/fluid/body_force", "3 components")
         self.refused(changed(PLANE, domain__z="periodic"), "/domain/z", "no z in two dimensions")
+
+    def test_tubes_that_are_none(self):
+        self.refused(changed(PLANE, domain__walls=TUBE["domain"]["walls"]), "/domain/walls", "three dimensions")
+        self.refused(changed(TUBE, domain__y=WALLS), "/domain/y", "the tube closes y and z")
+        self.refused(changed(TUBE, domain__z="periodic"), "/domain/z", "the tube closes y and z")
+        self.refused(changed(TUBE, domain__walls__tube__radius="1.6 um"), "/domain/walls/tube/radius", '"1.5 um"')
+        self.refused(changed(TUBE, domain__walls__tube__radius="0.4 um"), "/domain/walls/tube/radius", "1.6 lattice spacings")
+        self.refused(changed(TUBE, domain__walls__tube__axis="y"), "/domain/walls/tube/axis", '"x"')
+        self.refused(changed(TUBE, domain__walls={}), "/domain/walls", "tube")
+        self.refused(changed(SPACE, domain={"size": ["8 um", "4 um", "1 um"], "nodes": [32, 16, 4]}), "/domain", '"y"')
+        self.refused(changed(TUBE, cells__0__at=["1.5 um", "2.4 um", "2.4 um"]), "/cells/0", "the wall of the tube by 0.0874 um")
+        self.refused(changed(TUBE, stages__1={"name": "s", "shear_rate": 1, "duration": 1}), "/stages/1/shear_rate",
+                     "pressure_gradient or mean_velocity")
+        self.refused(changed(TUBE, stages__1__start="developed"), "/stages/1/start", "a tube")
+        layers = [{"from": "0 um", "to": "1 um", "viscosity": "3 cP"}]
+        self.refused(changed(TUBE, fluid__layers=layers, cells=[]), "/fluid/layers", "a tube")
 
     def test_what_is_not_there_yet(self):
         fields = {"seconds": "1 ms", "quantities": ["velocity", "vorticity"]}

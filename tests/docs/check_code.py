@@ -175,6 +175,13 @@ def cells_of_a_file(test, block):
     test.with_part("cells", block.text)
 
 
+def domain_of_a_tube(test, block):
+    scene = json.loads((SOURCE / "scenes/tube-3d.json").read_text())
+    domain = json.loads("{" + block.text.strip().rstrip(",") + "}")
+    test.assertEqual(domain, {"domain": scene["domain"]})
+    test.plan(scene)
+
+
 def other_settings(test, block):
     """Keys that replace those of the whole scene; more than one setting of a key stands for alternatives."""
     for text in re.split(r"\n\s*\n", block.text):
@@ -266,6 +273,7 @@ BLOCKS = [
     ("docs/study.md", '{\n  "rouleau_study": 1', study),
     ("docs/study-quantities.md", '{"name": "deformation"', quantity_of_a_study),
     ("docs/three-dimensions.md", '{\n  "rouleau": 1', lambda test, block: test.plan(block.text.split("\n\nrouleau run")[0])),
+    ("docs/three-dimensions.md", '"domain": {', domain_of_a_tube),
     ("docs/three-dimensions.md", '"cell_types": {', "of scenes/capsule-3d.json, which tests/physics runs"),
     ("docs/first-run.md", "import rouleau", lambda test, block: ast.parse(block.text)),
     ("docs/output.md", "import h5py", lambda test, block: ast.parse(block.text)),

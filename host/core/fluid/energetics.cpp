@@ -167,6 +167,9 @@ void Fluid<T, Set>::velocities(int i, const std::array<double*, dimension>& u) c
   const T* in[velocity_count];
   const Row row = lattice_.row(i);
   lattice_.row_pointers(parity_, row, in);
+  mask_.for_solid(i, [&](int begin, int end) {
+    for (double* component : u) std::fill(component + begin, component + end, 0.0);
+  });
   mask_.for_spans(i, [&](const MaskSpan& span) {
     Task task{};
     task.count = span.end - span.begin;
@@ -244,9 +247,29 @@ typename Fluid<T, Set>::Energetics Fluid<T, Set>::energetics() const {
       const std::array<double*, dimension> u = rows.row(beside);
       std::copy(u.begin(), u.end(), task.velocity[place]);
     }
-    function(&task);
-    if (!setting_.membranes) continue;
     const std::array<double*, dimension> u = rows.row(row);
+    if (!links_) {
+      function(&task);
+    } else {
+      if constexpr (dimension == 3) {
+        mask_.for_fluid(i, [&](int begin, int end) {
+          Task part = task;
+          part.count = end - begin;
+          for (const T*& in : part.in) in += begin;
+          for (auto& beside : part.velocity) {
+            for (const double*& component : beside) component += component != nullptr ? begin : 0;
+          }
+          function(&part);
+        });
+        // A link into a solid node counts twice, as one into any wall.
+        links_->for_links(i, [&](int x, int q) {
+          double change = 0;
+          for (int k = 0; k < dimension; ++k) change += Set::velocity[q][k] * u[k][x];
+          sums[dissipation].add(-static_cast<double>(task.in[q][x]) * change);
+        });
+      }
+    }
+    if (!setting_.membranes) continue;
     mask_.for_spans(i, [&](const MaskSpan& span) {
       if (!span.active) return;
       for (int x = span.begin; x < span.end; ++x) {

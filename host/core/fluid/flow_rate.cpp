@@ -19,9 +19,11 @@ double end_correction(const std::vector<double>& profile, double lower_wall, dou
 }  // namespace
 
 template <int D>
-double flow_rate(const std::vector<double>& row_velocities, const WallVelocity& walls, const Domain<D>& domain) {
+double flow_rate(const std::vector<double>& row_velocities, const WallVelocity& walls, const Domain<D>& domain,
+                 bool solid) {
   double sum = 0;
   for (const double velocity : row_velocities) sum += velocity;
+  if (solid) return sum;
   const auto rows = static_cast<int>(row_velocities.size());
   double corrected = sum;
   for (int axis = 1, apart = 1; axis < D; apart *= domain.size[axis++]) {
@@ -36,7 +38,7 @@ double flow_rate(const std::vector<double>& row_velocities, const WallVelocity& 
   return corrected;
 }
 
-template double flow_rate(const std::vector<double>&, const WallVelocity&, const Domain<2>&);
-template double flow_rate(const std::vector<double>&, const WallVelocity&, const Domain<3>&);
+template double flow_rate(const std::vector<double>&, const WallVelocity&, const Domain<2>&, bool);
+template double flow_rate(const std::vector<double>&, const WallVelocity&, const Domain<3>&, bool);
 
 }  // namespace rouleau::core

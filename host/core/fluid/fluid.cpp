@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <rouleau/dispatch.hpp>
+#include <stdexcept>
 #include <type_traits>
 
 #include "core/domain/exact_sum.hpp"
@@ -20,7 +21,7 @@ Fluid<T, Set>::Fluid(const FluidSetting<dimension>& setting, CollisionOperator c
       collision_(std::move(collision)),
       lattice_(setting.domain),
       last_walls_(setting.walls),
-      mask_(setting.domain) {
+      mask_(setting.domain, setting.solid.get()) {
   if constexpr (std::is_same_v<T, double>) {
     collide_ = collision_.table->collide_f64;
   } else {
@@ -45,6 +46,13 @@ Fluid<T, Set>::Fluid(const FluidSetting<dimension>& setting, CollisionOperator c
     std::fill_n(relaxation_rate_.row(row), nx(), static_cast<T>(rate_of_row(row)));
   }
   if (driven()) fill_body_force_rows();
+  if (setting.solid) {
+    if constexpr (dimension == 3) {
+      links_ = std::make_unique<SolidLinks<T, Set>>(lattice_, *setting.solid);
+    } else {
+      throw std::invalid_argument("solid nodes are computed in three dimensions only");
+    }
+  }
   if (ranks.several()) make_halos();
 }
 
@@ -52,9 +60,10 @@ namespace {
 
 /// Populations of halo nodes that cross the border of a block: of a node outside, those whose velocity points out of the
 /// block wherever the node lies outside, and whose origin the block holds. An even step sends them out, and what an odd
-/// step has put there goes home.
+/// step has put there goes home. Nothing crosses between solid nodes and others.
 template <class Set>
-std::vector<HaloCopy<Set::dimension>> population_copies(const Domain<Set::dimension>& domain) {
+std::vector<HaloCopy<Set::dimension>> population_copies(const Domain<Set::dimension>& domain,
+                                                        const SolidNodes<Set::dimension>* solid) {
   using Node = std::array<int, Set::dimension>;
   std::vector<HaloCopy<Set::dimension>> copies;
   for_halo_nodes(domain, 1, 1, [&](const Node& node, const Node& out) {
@@ -66,6 +75,7 @@ std::vector<HaloCopy<Set::dimension>> population_copies(const Domain<Set::dimens
         leaves = leaves && (out[k] == 0 || c == out[k]);
         origin[k] -= c;
       }
+      if (solid != nullptr && (solid->at(domain, node) || solid->at(domain, origin))) continue;
       if (leaves && domain.block.contains(origin)) copies.push_back({node, q});
     }
   });
@@ -94,7 +104,8 @@ void Fluid<T, Set>::make_halos() {
     return row;
   };
   population_halo_ = std::make_unique<Halo<T, dimension>>(
-      ranks_, population_copies<Set>, [this, block, row_of_node](const Node& node) {
+      ranks_, [this](const Domain<dimension>& domain) { return population_copies<Set>(domain, setting_.solid.get()); },
+      [this, block, row_of_node](const Node& node) {
         return lattice_.offset(node[0] - block.begin[0], row_of_node(node));
       });
   energetics_halo_ = std::make_unique<Halo<double, dimension>>(
@@ -148,6 +159,9 @@ std::size_t Fluid<T, Set>::bytes() const {
 template <class T, class Set>
 inline bool Fluid<T, Set>::reaches_border(int i, const Row& row) const {
   constexpr int width = Field<T, dimension>::halo;
+  if constexpr (dimension == 3) {
+    if (links_) return mask_.marked(i);  // spans do not tell of solid nodes
+  }
   bool near = false;
   for (int k = 1; k < dimension; ++k) near = near || row[k - 1] < width || row[k - 1] >= lattice_.size(k) - width;
   return mask_.at_side(i) || (near && mask_.any(i));
@@ -223,6 +237,14 @@ void Fluid<T, Set>::collide_row(int i, const Row& row, const T* (&in)[velocity_c
 }
 
 template <class T, class Set>
+void Fluid<T, Set>::rest_solid(int i, const Row& row) {
+  if (!setting_.membranes || !mask_.marked(i)) return;
+  mask_.for_solid(i, [&](int begin, int end) {
+    for (auto& component : force_) std::fill(component.row(row) + begin, component.row(row) + end, T(0));
+  });
+}
+
+template <class T, class Set>
 void Fluid<T, Set>::add_moving_frame(int i, const Row& row, T* (&out)[velocity_count]) {
   if constexpr (dimension == 2) {
     static const auto function = Dispatch<AddMovingFrame, const MovingFrameTask<T>*>::pick();
@@ -262,7 +284,14 @@ void Fluid<T, Set>::step(Range rows) {
     }
     last = row;
     if (even) receive_row(lattice_, row);
+    if constexpr (dimension == 3) {
+      if (links_ && !even) links_->before_odd_step(i);
+    }
     collide_row(i, row, in, out);
+    if constexpr (dimension == 3) {
+      if (links_ && !even) links_->after_odd_step(i);
+      if (links_) rest_solid(i, row);
+    }
     if (frame_moves) add_moving_frame(i, row, out);
     add_wall_momentum(lattice_, row, setting_.walls);
     if (even) send_row(lattice_, row);
@@ -274,6 +303,9 @@ void Fluid<T, Set>::step(Range rows) {
 
 template <class T, class Set>
 void Fluid<T, Set>::settle() {
+  if constexpr (dimension == 3) {
+    for (int i = 0; links_ && parity_ == Parity::odd && i < lattice_.rows(); ++i) links_->before_odd_step(i);
+  }
   if (parity_ != Parity::even) return;
   for (int i = 0; i < lattice_.rows(); ++i) receive_row(lattice_, lattice_.row(i));
 }
@@ -322,13 +354,12 @@ std::vector<double> Fluid<T, Set>::all_relaxation_rates() {
   std::vector<double> block;
   for (int i = 0; i < lattice_.rows(); ++i) {
     const Row row = lattice_.row(i);
+    const std::size_t first = block.size();
+    block.insert(block.end(), static_cast<std::size_t>(nx()), rate_of_row(row));
     mask_.for_spans(i, [&](const MaskSpan& span) {
-      if (span.active && setting_.viscosity_contrast) {
-        const T* const rates = relaxation_rate_.row(row);
-        block.insert(block.end(), rates + span.begin, rates + span.end);
-      } else {
-        block.insert(block.end(), static_cast<std::size_t>(span.end - span.begin), rate_of_row(row));
-      }
+      if (!span.active || !setting_.viscosity_contrast) return;
+      const T* const rates = relaxation_rate_.row(row);
+      std::copy(rates + span.begin, rates + span.end, block.begin() + static_cast<std::ptrdiff_t>(first) + span.begin);
     });
   }
   return gather(ranks_, std::move(block));
@@ -376,9 +407,11 @@ std::vector<double> Fluid<T, Set>::row_velocities_without_membranes() const {
         for (int x = 0; x < nx(); ++x) momentum[x] += along * static_cast<double>(in[q][x]);
       }
     });
-    for (const double j : momentum) sum.add(j);
+    mask_.for_fluid(i, [&](int begin, int end) {
+      for (int x = begin; x < end; ++x) sum.add(momentum[x] + (links_ ? setting_.body_force[0] / 2 : 0));
+    });
   });
-  for (double& mean : means) mean += setting_.body_force[0] / 2;
+  for (double& mean : means) mean += links_ ? 0 : setting_.body_force[0] / 2;
   return means;
 }
 
@@ -424,7 +457,7 @@ typename Fluid<T, Set>::MassAndSpeed Fluid<T, Set>::mass_and_speed() const {
 
 template <class T, class Set>
 typename Fluid<T, Set>::WallStress Fluid<T, Set>::wall_stress() const {
-  if (!walls_have_acted_) return {std::nan(""), std::nan("")};
+  if (!walls_have_acted_ || links_) return {std::nan(""), std::nan("")};
   // A population that leaves towards the wall and returns gives the wall c_q f_q - c_-q f_-q = c_q (f_q + f_-q); the
   // one that left is the one that came back plus the wall's own momentum: f_q = f_-q + 6 w_q c_q . u_wall.
   std::vector<ExactSum> sums(2);
@@ -530,20 +563,22 @@ void Fluid<T, Set>::take_over(Fluid& other, double factor) {
     const Row row = lattice_.row(i);
     const T* in[velocity_count];
     other.lattice_.row_pointers(other.parity_, row, in);
-    for (int x = 0; x < nx(); ++x) {
-      double density = 0;
-      std::array<double, dimension> momentum{}, scaled;
-      for (int q = 0; q < velocity_count; ++q) {
-        const double f = static_cast<double>(in[q][x]);
-        density += f;
-        for (int k = 0; k < dimension; ++k) momentum[k] += Set::velocity[q][k] * f;
+    mask_.for_fluid(i, [&](int begin, int end) {
+      for (int x = begin; x < end; ++x) {
+        double density = 0;
+        std::array<double, dimension> momentum{}, scaled;
+        for (int q = 0; q < velocity_count; ++q) {
+          const double f = static_cast<double>(in[q][x]);
+          density += f;
+          for (int k = 0; k < dimension; ++k) momentum[k] += Set::velocity[q][k] * f;
+        }
+        for (int k = 0; k < dimension; ++k) scaled[k] = factor * momentum[k];
+        for (int q = 0; q < velocity_count; ++q) {
+          const double rest = static_cast<double>(in[q][x]) - other.equilibrium(q, density, momentum);
+          lattice_.slot(q, row)[x] = static_cast<T>(equilibrium(q, factor * density, scaled) + factor * rest);
+        }
       }
-      for (int k = 0; k < dimension; ++k) scaled[k] = factor * momentum[k];
-      for (int q = 0; q < velocity_count; ++q) {
-        const double rest = static_cast<double>(in[q][x]) - other.equilibrium(q, density, momentum);
-        lattice_.slot(q, row)[x] = static_cast<T>(equilibrium(q, factor * density, scaled) + factor * rest);
-      }
-    }
+    });
     send_row(lattice_, row);
   }
 }
@@ -554,7 +589,12 @@ void Fluid<T, Set>::copy_populations(int q, std::vector<T>& values) const {
   for (int i = 0; i < lattice_.rows(); ++i) {
     const T* in[velocity_count];
     lattice_.row_pointers(parity_, lattice_.row(i), in);
+    const std::size_t first = values.size();
     values.insert(values.end(), in[q], in[q] + nx());
+    mask_.for_solid(i, [&](int begin, int end) {
+      const auto row = values.begin() + static_cast<std::ptrdiff_t>(first);
+      std::fill(row + begin, row + end, T(0));
+    });
   }
 }
 

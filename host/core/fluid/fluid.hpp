@@ -15,6 +15,7 @@
 #include "lattice.hpp"
 #include "node_mask.hpp"
 #include "periodic.hpp"
+#include "solid_links.hpp"
 #include "walls.hpp"
 
 namespace rouleau::core {
@@ -31,6 +32,8 @@ struct FluidSetting {
   std::array<double, D> body_force = {};  ///< force density everywhere
   bool membranes = false;                 ///< keep force and velocity where nodes are active
   bool viscosity_contrast = false;        ///< keep a relaxation rate where nodes are active
+  /// Walls of any shape, at rest; null: none. In three dimensions only.
+  std::shared_ptr<const SolidNodes<D>> solid = {};
 };
 
 /// Moments of one node before collision.
@@ -118,7 +121,7 @@ class Fluid {
   /// Of all nodes of the lattice, row after row, on the first rank; empty on the others.
   [[nodiscard]] std::vector<NodeMoments> all_moments() const;
   [[nodiscard]] std::vector<double> all_relaxation_rates();
-  /// Mean velocity along x of each row of the lattice (flow_rate.hpp).
+  /// Mean velocity along x of each row of the lattice (flow_rate.hpp), solid nodes counted as fluid at rest.
   [[nodiscard]] std::vector<double> row_velocities() const;
   /// The same without the half step that the membranes' forces have still to act, and so before these are known; after
   /// settle(). All of them together have no share in the mean.
@@ -133,7 +136,7 @@ class Fluid {
   /// Mean shear stress that the fluid has exerted on the lower and the upper wall across y in the last step, along +x, by momentum
   /// exchange. NaN
   /// between the start of a fluid at rest (or taken over) and its first step: walls that have just begun to move have
-  /// exchanged nothing yet.
+  /// exchanged nothing yet. NaN with solid nodes, too, which take the most of it.
   struct WallStress {
     double lower, upper;
   };
@@ -178,6 +181,8 @@ class Fluid {
   [[nodiscard]] bool reaches_border(int i, const Row& row) const;
   /// Pointers to the populations of row i, as Lattice::row_pointers gives them; they come back unchanged.
   void collide_row(int i, const Row& row, const T* (&in)[velocity_count], T* (&out)[velocity_count]);
+  /// Sets what membranes have spread to the solid nodes of row i to 0: their velocity.
+  void rest_solid(int i, const Row& row);
   void add_moving_frame(int i, const Row& row, T* (&out)[velocity_count]);
 
   void make_halos();
@@ -195,6 +200,7 @@ class Fluid {
   WallVelocity last_walls_;
   std::array<double, dimension> frame_ = {};
   NodeMask mask_;
+  std::unique_ptr<SolidLinks<T, Set>> links_;  ///< null without solid nodes
   VectorField<T, dimension> force_;
   Field<T, dimension> relaxation_rate_;
   std::vector<double> rate_of_row_;  ///< by height in the block; empty without layers

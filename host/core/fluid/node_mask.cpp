@@ -16,7 +16,11 @@ NodeMask::NodeMask(const Domain<1>& along_x, int rows)
 void NodeMask::clear(int first_row, int end_row) {
   std::fill(bits_.begin() + static_cast<std::ptrdiff_t>(words_) * first_row,
             bits_.begin() + static_cast<std::ptrdiff_t>(words_) * end_row, 0);
-  for (int y = first_row; y < end_row; ++y) spans_[y].assign(1, {0, nx_, false});
+  if (fluid_.empty()) {
+    for (int y = first_row; y < end_row; ++y) spans_[y].assign(1, {0, nx_, false});
+  } else {
+    for (int y = first_row; y < end_row; ++y) list_spans(y);
+  }
 }
 
 void NodeMask::mark(int y, int begin, int end) {
@@ -47,6 +51,20 @@ void NodeMask::list_spans(int y) {
     spans.push_back({x, end, on});
     x = end;
   }
+  if (!fluid_.empty()) leave_solid_out(y);
+}
+
+void NodeMask::leave_solid_out(int y) {
+  std::vector<MaskSpan>& spans = spans_[y];
+  const std::vector<MaskSpan> all = spans;
+  spans.clear();
+  for (const Run& run : fluid_[y]) {
+    for (const MaskSpan& span : all) {
+      const int begin = std::max(run.begin, span.begin), end = std::min(run.end, span.end);
+      if (begin < end) spans.push_back({begin, end, span.active});
+    }
+  }
+  if (spans.empty()) spans.push_back({0, 0, false});
 }
 
 double NodeMask::active_fraction() const {

@@ -1,11 +1,13 @@
 // Which nodes of the lattice feel a membrane: one bit for 16 nodes, read as spans.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <vector>
 
 #include "core/domain/domain.hpp"
+#include "solid_nodes.hpp"
 
 namespace rouleau::core {
 
@@ -15,17 +17,20 @@ struct MaskSpan {
   bool active;
 };
 
-/// Active nodes carry force, velocity and relaxation rate; the others are collided without.
+/// Active nodes carry force, velocity and relaxation rate; the others are collided without. Solid nodes are no part of
+/// any span.
 class NodeMask {
  public:
   static constexpr int nodes_per_bit = 16;
 
   NodeMask() = default;
-  /// Nothing is active.
+  /// Nothing is active. `solid`: null, or the solid nodes.
   template <int D>
-  explicit NodeMask(const Domain<D>& domain)
+  explicit NodeMask(const Domain<D>& domain, const SolidNodes<D>* solid = nullptr)
       : NodeMask({{domain.size[0]}, {domain.periodic[0]}, {{domain.block.begin[0]}, {domain.block.end[0]}}},
-                 row_count(domain.block)) {}
+                 row_count(domain.block)) {
+    if (solid != nullptr) keep_out(domain, *solid);
+  }
 
   /// Takes the marks of rows [first_row, end_row) away.
   void clear(int first_row, int end_row);
@@ -33,7 +38,8 @@ class NodeMask {
   /// outside the block are left out.
   void mark(int y, int begin, int end);
 
-  /// Calls function(MaskSpan) for the spans of row y, left to right, covering [0, nx) exactly.
+  /// Calls function(MaskSpan) for the spans of row y, left to right, covering [0, nx) exactly, but for solid nodes. A row
+  /// of nothing else has an empty span.
   template <class Function>
   void for_spans(int y, Function function) const {
     for (const MaskSpan& span : spans_[y]) function(span);
@@ -49,6 +55,27 @@ class NodeMask {
     return spans.front().active || spans.back().active;
   }
   [[nodiscard]] double active_fraction() const;
+  /// Calls function(begin, end) for the runs of fluid, or of solid nodes, of row y.
+  template <class Function>
+  void for_fluid(int y, Function function) const {
+    if (fluid_.empty()) return function(0, nx_);
+    for (const auto& [begin, end] : fluid_[y]) function(begin, end);
+  }
+  template <class Function>
+  void for_solid(int y, Function function) const {
+    if (fluid_.empty()) return;
+    int last = 0;
+    for (const auto& [begin, end] : fluid_[y]) {
+      if (last < begin) function(last, begin);
+      last = end;
+    }
+    if (last < nx_) function(last, nx_);
+  }
+  /// Whether any node of row y is marked, solid or not.
+  [[nodiscard]] bool marked(int y) const {
+    const auto row = bits_.begin() + static_cast<std::ptrdiff_t>(words_) * y;
+    return std::any_of(row, row + words_, [](std::uint64_t word) { return word != 0; });
+  }
 
  private:
   NodeMask(const Domain<1>& along_x, int rows);
@@ -69,8 +96,25 @@ class NodeMask {
   [[nodiscard]] int bit_of(int x) const { return (x + first_) / nodes_per_bit; }
   /// Nodes [begin, end) of the lattice.
   void mark_nodes(std::uint64_t* row, int begin, int end);
+  template <int D>
+  void keep_out(const Domain<D>& domain, const SolidNodes<D>& solid) {
+    fluid_.resize(static_cast<std::size_t>(ny_));
+    for (int y = 0; y < ny_; ++y) {
+      const auto row = row_of(domain.block, y);
+      std::array<int, D> node;
+      for (int k = 1; k < D; ++k) node[k] = domain.block.begin[k] + row[k - 1];
+      for (int x = 0, begin = 0; x <= nx_; ++x) {
+        node[0] = domain.block.begin[0] + x;
+        if (x < nx_ && !solid.at(node)) continue;
+        if (begin < x) fluid_[y].push_back({begin, x});
+        begin = x + 1;
+      }
+      list_spans(y);
+    }
+  }
   /// Lists the spans of row y anew from its bits.
   void list_spans(int y);
+  void leave_solid_out(int y);
 
   Domain<1> along_x_;
   int nx_ = 0, ny_ = 0;
@@ -79,6 +123,10 @@ class NodeMask {
   std::vector<std::uint64_t> bits_;
   /// Of each row: read several times a step, changed when a membrane has moved.
   std::vector<std::vector<MaskSpan>> spans_;
+  struct Run {
+    int begin, end;
+  };
+  std::vector<std::vector<Run>> fluid_;  ///< of each row; empty without solid nodes
 };
 
 }  // namespace rouleau::core

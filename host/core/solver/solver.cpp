@@ -25,6 +25,8 @@ FluidSetting<D> fluid_setting(const BasicSolverSetup<D>& setup, const CellNodes&
   if (!setup.domain.periodic[0]) throw std::invalid_argument("a lattice without walls along y is periodic along x");
   if (D == 3 && setup.domain.walled(D - 1) && setup.developed)
     throw std::invalid_argument("the developed flow between walls across z is not known");
+  if (setup.solid && (setup.solid->size() != setup.domain.size || setup.developed))
+    throw std::invalid_argument("solid nodes are those of the whole lattice, and their developed flow is not known");
   if (!setup.layers.empty() && !cells.cells.empty() && (setup.semi_implicit || setup.slip_correction))
     throw std::invalid_argument("cells in layers take neither the semi-implicit step nor the slip correction");
   if (!setup.layers.empty() && setup.developed && setup.oscillation.any())
@@ -36,7 +38,8 @@ FluidSetting<D> fluid_setting(const BasicSolverSetup<D>& setup, const CellNodes&
                           .inertia = setup.inertia,
                           .walls = setup.walls,
                           .membranes = !cells.cells.empty(),
-                          .viscosity_contrast = has_contrast(setup, cells)};
+                          .viscosity_contrast = has_contrast(setup, cells),
+                          .solid = setup.solid};
   const double body_force[] = {setup.body_force_x, setup.body_force_y, setup.body_force_z};
   std::copy_n(body_force, D, setting.body_force.begin());
   return setting;
@@ -198,9 +201,10 @@ template <class T, class Set>
 void Solver<T, Set>::keep_mean_velocity() {
   fluid_.settle();
   const Domain<dimension>& domain = setup_.domain;
-  const double rate = flow_rate(fluid_.row_velocities_without_membranes(), setup_.walls, domain);
-  double section = 1;
-  for (int k = 1; k < dimension; ++k) section *= domain.size[k];
+  const double rate =
+      flow_rate(fluid_.row_velocities_without_membranes(), setup_.walls, domain, setup_.solid != nullptr);
+  double section = setup_.solid ? static_cast<double>(setup_.solid->fluid_count()) / domain.size[0] : 1;
+  for (int k = 1; k < dimension && !setup_.solid; ++k) section *= domain.size[k];
   fluid_.set_drive(setup_.walls, flow_control_->follow(rate / section));
 }
 

@@ -1,6 +1,7 @@
 // All that a simulation is made of, as plain values in lattice units.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "core/contact/interaction_forces.hpp"
@@ -11,6 +12,7 @@
 #include "core/fluid/layers.hpp"
 #include "core/fluid/oscillation.hpp"
 #include "core/fluid/relaxation.hpp"
+#include "core/fluid/solid_nodes.hpp"
 #include "core/fluid/walls.hpp"
 #include "core/membrane/membrane_forces.hpp"
 #include "core/model/model.hpp"
@@ -30,6 +32,8 @@ template <int D>
 struct BasicSolverSetup {
   /// Periodic along x; along y and z periodic, or between walls.
   Domain<D> domain = {};
+  /// Walls of any shape, at rest, in three dimensions: solid nodes of the domain; null: none.
+  std::shared_ptr<const SolidNodes<D>> solid = {};
   /// Relaxation time of the suspending fluid in time steps; its kinematic viscosity is (tau - 1/2)/3.
   double tau = 1;
   /// Parts of the suspending fluid with another viscosity, which do not move. With cells, neither the semi-implicit step nor
@@ -44,7 +48,7 @@ struct BasicSolverSetup {
   double body_force_x = 0, body_force_y = 0, body_force_z = 0;
   /// Added to the walls and the body force.
   Oscillation oscillation = {};
-  /// Mean velocity along x, between walls at rest, that the body force is adapted to keep, from body_force_x on; 0: the
+  /// Mean velocity along x of the fluid nodes, between walls at rest, that the body force is adapted to keep, from body_force_x on; 0: the
   /// force is what it is.
   double mean_velocity = 0;
   /// Begin with the developed flow of the walls, the body force and their oscillation, not between walls across z; false:

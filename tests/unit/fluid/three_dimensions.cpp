@@ -41,9 +41,17 @@ void for_each_node(const Box<3>& box, Function function) {
   }
 }
 
+/// Single nodes, clusters, and some that meet their own images across periodic borders.
+std::shared_ptr<const SolidNodes<3>> some_solid(const Nodes& size) {
+  return std::make_shared<const SolidNodes<3>>(size, [](const Nodes& n) {
+    return (n[1] == 0 && n[2] < 2) || (n[0] + 2 * n[1] + 3 * n[2]) % 7 == 0 || (n[0] / 4 + n[1] + n[2]) % 5 == 0;
+  });
+}
+
 /// The textbook: collide into a copy, then move every population to its neighbour or bounce it back.
 struct TwoArrayFluid {
   Domain<3> domain;
+  std::shared_ptr<const SolidNodes<3>> solid;
   WallVelocity walls;
   CollisionOperator collision;
   std::vector<double> f;
@@ -53,7 +61,9 @@ struct TwoArrayFluid {
   }
   void step() {
     std::vector<double> after = f, streamed = f;
+    const auto is_solid = [&](const Nodes& node) { return solid && solid->at(domain, node); };
     for_each_node(domain.block, [&](int x, int y, int z) {
+      if (is_solid({x, y, z})) return;
       const double* in[19];
       double* out[19];
       for (int q = 0; q < 19; ++q) in[q] = &f[at(q, {x, y, z})], out[q] = &after[at(q, {x, y, z})];
@@ -65,12 +75,12 @@ struct TwoArrayFluid {
       collision.table->collide_f64(collision.self.get(), &block);
     });
     for_each_node(domain.block, [&](int x, int y, int z) {
-      for (int q = 0; q < 19; ++q) {
+      for (int q = 0; q < 19 && !is_solid({x, y, z}); ++q) {
         const auto& c = D3Q19::velocity[q];
         Nodes to{x + c[0], y + c[1], z + c[2]};
         double speed = 0;
         if (domain.wrapped(1, to[1]) < 0) speed = to[1] < 0 ? walls.lower : walls.upper;
-        bool wall = false;
+        bool wall = is_solid(to);
         for (int k = 0; k < 3; ++k) {
           to[k] = domain.wrapped(k, to[k]);
           wall = wall || to[k] < 0;
@@ -89,23 +99,29 @@ struct TwoArrayFluid {
 
 }  // namespace
 
-TEST_CASE("in three dimensions in-place streaming gives the same populations as two arrays, whatever closes y and z") {
+TEST_CASE(
+    "in three dimensions in-place streaming gives the same populations as two arrays, whatever closes y and z, and "
+    "with solid nodes") {
   const bool periodic_y = GENERATE(false, true), periodic_z = GENERATE(false, true);
   const int workers = GENERATE(1, 3);
+  const bool solid = GENERATE(false, true);
   const double tau = 0.8;
   const Domain<3> domain({18, 5, 4}, {true, periodic_y, periodic_z});
   FluidSetting<3> setting{.domain = domain, .relaxation_rate = 1 / tau, .inertia = true};
   if (!periodic_y) setting.walls = {-0.01, 0.02};
+  if (solid) setting.solid = some_solid(domain.size);
   Fluid3<double> fluid(setting, trt(tau, true));
   fluid.set_state(noisy_state<double>);
-  TwoArrayFluid plain{domain, setting.walls, trt(tau, true), std::vector<double>(18 * 5 * 4 * 19)};
+  TwoArrayFluid plain{domain, setting.solid, setting.walls, trt(tau, true), std::vector<double>(18 * 5 * 4 * 19)};
   fluid.settle();
   const auto each = [&](auto function) {
     for_each_node(domain.block, [&](int x, int y, int z) {
+      if (solid && setting.solid->at({x, y, z})) return;
       for (int q = 0; q < 19; ++q) function(plain.f[plain.at(q, {x, y, z})], fluid.population(q, x, {y, z}));
     });
   };
   each([](double& own, double other) { own = other; });
+  const double mass = fluid.mass();
   for (int step = 0; step < 7; ++step) {
     for (int w = workers - 1; w >= 0; --w) fluid.step(Worker{w, workers}.share(fluid.rows().end));
     fluid.end_step();
@@ -113,8 +129,9 @@ TEST_CASE("in three dimensions in-place streaming gives the same populations as 
     fluid.settle();
     double difference = 0;
     each([&](double own, double other) { difference = std::max(difference, std::abs(own - other)); });
-    CAPTURE(periodic_y, periodic_z, workers, step);
+    CAPTURE(periodic_y, periodic_z, workers, solid, step);
     REQUIRE(difference < 1e-16);
+    REQUIRE(fluid.mass() == Approx(mass).margin(1e-15));
   }
 }
 
@@ -159,6 +176,7 @@ void noisy_step(Fluid3<T>& fluid, int number) {
 TEMPLATE_TEST_CASE("a lattice of three dimensions cut into blocks has the same bits as in one piece, halo included", "",
                    double, float) {
   const bool periodic_y = GENERATE(false, true), periodic_z = GENERATE(false, true);
+  const bool solid = GENERATE(false, true);
   const Nodes parts = GENERATE(Nodes{2, 1, 1}, Nodes{1, 2, 3}, Nodes{3, 2, 2}, Nodes{1, 1, 6});
   const Domain<3> whole_domain({22, 7, 6}, {true, periodic_y, periodic_z});
   FluidSetting<3> setting{.domain = whole_domain,
@@ -168,6 +186,7 @@ TEMPLATE_TEST_CASE("a lattice of three dimensions cut into blocks has the same b
                           .membranes = true,
                           .viscosity_contrast = true};
   if (!periodic_y) setting.walls = {-0.01, 0.02};
+  if (solid) setting.solid = some_solid(whole_domain.size);
   const auto cut = Decomposition<3>::even(whole_domain, parts);
   const int steps = GENERATE(4, 5);
   const auto whole = noisy_fluid<TestType>(setting, whole_domain, {});
@@ -192,7 +211,7 @@ TEMPLATE_TEST_CASE("a lattice of three dimensions cut into blocks has the same b
     const Box<3>& box = block->setting().domain.block;
     for_each_node(box, [&](int x, int y, int z) {
       const Nodes at{x + box.begin[0], y + box.begin[1], z + box.begin[2]};
-      for (int q = 0; q < 19; ++q)
+      for (int q = 0; q < 19 && !(solid && setting.solid->at(at)); ++q)
         different += block->population(q, x, {y, z}) != whole->population(q, at[0], {at[1], at[2]}) ? 1 : 0;
       if (!whole->mask().active(at[0], at[1] + whole_domain.size[1] * at[2])) return;
       // What a stencil with this base node reads: each node of the halo is an image of one in the whole lattice, or lies
@@ -221,7 +240,7 @@ TEMPLATE_TEST_CASE("a lattice of three dimensions cut into blocks has the same b
       }
     });
   }
-  CAPTURE(periodic_y, periodic_z, parts[0], parts[1], parts[2], steps);
+  CAPTURE(periodic_y, periodic_z, solid, parts[0], parts[1], parts[2], steps);
   CHECK(different == 0);
   CHECK(velocities > 0);
   for (const double value : mass) CHECK(value == whole->mass());
@@ -278,4 +297,51 @@ TEST_CASE("the flow rate of a duct is exact for velocities that are parabolas fr
     rows.push_back(a * (1 - a) * b * (1 - b));
   }
   CHECK(flow_rate(rows, {}, domain) == Approx(12.0 * 7 / 36).epsilon(2e-4));  // the corrections' product is left out
+}
+
+TEST_CASE(
+    "solid nodes have no moments, no speed and no share in the mass, and count as nodes at rest in the flow rate") {
+  const Domain<3> domain({18, 5, 4}, {true, false, true});
+  FluidSetting<3> setting{.domain = domain, .relaxation_rate = 1.0, .body_force = {1e-3, 0, 0}};
+  setting.solid = some_solid(domain.size);
+  Fluid3<double> fluid(setting, trt(1, false));
+  fluid.set_state(noisy_state<double>);
+  for (int step = 0; step < 3; ++step) {
+    fluid.settle();
+    const auto moments = fluid.all_moments();
+    double mass = 0, square = 0, sum = 0, moved = 0;
+    for (int i = 0; i < row_count(domain.block); ++i) {
+      const auto [y, z] = row_of(domain.block, i);
+      for (int x = 0; x < 18; ++x) {
+        const Moments<3>& m = moments[static_cast<std::size_t>(18 * i + x)];
+        double own = 0;
+        for (const double u : m.velocity) own += u * u;
+        if (setting.solid->at({x, y, z})) moved += own + std::abs(m.density);
+        mass += m.density, square = std::max(square, own), sum += m.velocity[0];
+      }
+    }
+    CHECK(moved == 0);
+    const auto found = fluid.mass_and_speed();
+    CHECK(found.mass == Approx(mass).margin(1e-15));
+    CHECK(found.speed == Approx(std::sqrt(square)).epsilon(1e-14));
+    for (const auto& rows : {fluid.row_velocities(), fluid.row_velocities_without_membranes()})
+      CHECK(18 * flow_rate(rows, {}, domain, true) == Approx(sum).epsilon(1e-12));
+    CHECK(std::isnan(fluid.wall_stress().lower));
+    fluid.step(fluid.rows());
+    fluid.end_step();
+  }
+  std::vector<double> values;
+  fluid.copy_populations(3, values);
+  for (int i = 0; i < row_count(domain.block); ++i) {
+    const auto [y, z] = row_of(domain.block, i);
+    for (int x = 0; x < 18; ++x) {
+      if (setting.solid->at({x, y, z})) CHECK(values[static_cast<std::size_t>(18 * i + x)] == 0);
+    }
+  }
+}
+
+TEST_CASE("solid nodes in two dimensions are refused") {
+  FluidSetting<2> setting{.domain = {{8, 8}, {true, false}}, .relaxation_rate = 1};
+  setting.solid = std::make_shared<const SolidNodes<2>>(std::array{8, 8}, [](const auto&) { return false; });
+  CHECK_THROWS_AS(Fluid<double>(setting, make_collision("trt", {0.1875}, 1, false)), std::invalid_argument);
 }
