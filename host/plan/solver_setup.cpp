@@ -370,7 +370,10 @@ core::BasicSolverSetup<D> make_solver_setup(const Plan& plan, int index) {
       .area_correction = scene.numerics.area_correction,
       .time_step = stage.stage->density_factor,  // proportional to it
       .tension_unit = stage.units.unit(units::dimension::tension)};
-  if constexpr (D == 3) setup.solid = solid_nodes(scene);
+  if constexpr (D == 3) {
+    setup.solid = solid_nodes(scene);
+    setup.tube_radius = scene.domain.tube_radius.value_or(0) / lattice_spacing(scene);
+  }
   if (!plan.has_cells) return setup;
   for (std::size_t t = 0; t < scene.cell_types.size(); ++t) {
     core::CellType& type = setup.cell_types.emplace_back();

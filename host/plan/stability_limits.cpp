@@ -83,8 +83,8 @@ constexpr double most_layered_tau = 50.5;
 constexpr double fewest_steps_of_period(double tau) { return 350 * (tau - 0.5) * (tau - 0.5); }
 constexpr double thinnest_layer = 2.5;
 
-/// Of a tube, in spacings: below it the staircase of its wall may cost more than 5 % of the flow rate (tests/physics/tube.cpp).
-constexpr double least_tube_radius = 10;
+/// Of a tube, in spacings: below it the lattice may cost more than 1 % of the flow rate, 0.65 / R^2 (tests/physics/tube.cpp).
+constexpr double least_tube_radius = 8;
 
 // How many times stiffer membranes may be with the semi-implicit step, for tau from 0.6 to 5; below it gains nothing. A
 // single cell stays quiet at 80 times the stretching and 13 times the bending stiffness (docs/accuracy.md), two cells
@@ -295,10 +295,7 @@ std::vector<Limit> find_limits(const Plan& plan) {
     }
     if (scene.domain.tube_radius && stage.index == 0) {
       add("radius of the tube in lattice spacings", *scene.domain.tube_radius / stage.units.length, least_tube_radius,
-          false,
-          "raise the resolution: the wall is a staircase of nodes, and the flow rate is off by up to half a spacing over "
-          "the radius",
-          resolution);
+          false, "raise the resolution: the flow rate is off by up to 0.65 over the square of the radius", resolution);
     }
     if (stage.oscillation.any()) {
       const double frequency = stage.oscillation.frequency;

@@ -1,26 +1,19 @@
 #include "surface_wall_contacts.hpp"
 
 #include <algorithm>
-#include <array>
+#include <cmath>
 #include <stdexcept>
 
 #include "contact.hpp"
 
 namespace rouleau::core {
 
-namespace {
-
-const std::vector<double>& along(const Surfaces& surfaces, int axis) { return axis == 1 ? surfaces.y : surfaces.z; }
-std::vector<double>& force_along(Surfaces& surfaces, int axis) {
-  return axis == 1 ? surfaces.force_y : surfaces.force_z;
-}
-
-}  // namespace
-
-SurfaceWallContacts::SurfaceWallContacts(std::vector<WallInteraction> interactions, const Domain<3>& domain)
-    : interactions_(std::move(interactions)) {
+SurfaceWallContacts::SurfaceWallContacts(std::vector<WallInteraction> interactions, const Domain<3>& domain,
+                                         double tube_radius)
+    : interactions_(std::move(interactions)), middle_{(domain.size[1] - 1) / 2.0, (domain.size[2] - 1) / 2.0} {
+  if (tube_radius > 0) walls_.push_back({0, tube_radius, 0});
   for (const int axis : {1, 2}) {
-    if (!domain.walled(axis)) continue;
+    if (!domain.walled(axis) || tube_radius > 0) continue;
     walls_.push_back({axis, -0.5, 1});
     walls_.push_back({axis, domain.size[axis] - 0.5, -1});
   }
@@ -37,15 +30,25 @@ SurfaceWallContacts::SurfaceWallContacts(std::vector<WallInteraction> interactio
 
 void SurfaceWallContacts::measure(std::size_t interaction, int cell, const Wall& wall, const Surfaces& surfaces,
                                   bool energy, Contacts& contacts) const {
+  for (auto* values : {&contacts.distance, &contacts.away_y, &contacts.away_z}) values->clear();
   contacts.node.clear();
-  contacts.distance.clear();
   const CellRange& range = surfaces.cells[cell];
-  const double* place = along(surfaces, wall.axis).data();
-  for (int i = range.first; i < range.end(); ++i) {
-    const double distance = wall.outward * (place[i] - wall.place);
-    if (!(distance <= cutoffs_[interaction])) continue;
-    contacts.node.push_back(i);
+  const auto add = [&](int node, double distance, double away_y, double away_z) {
+    if (!(distance <= cutoffs_[interaction])) return;
+    contacts.node.push_back(node);
     contacts.distance.push_back(std::max(distance, ContactList::least_distance));
+    contacts.away_y.push_back(away_y);
+    contacts.away_z.push_back(away_z);
+  };
+  for (int i = range.first; i < range.end(); ++i) {
+    if (wall.axis == 1) {
+      add(i, wall.outward * (surfaces.y[i] - wall.place), wall.outward, 0);
+    } else if (wall.axis == 2) {
+      add(i, wall.outward * (surfaces.z[i] - wall.place), 0, wall.outward);
+    } else {
+      const double y = surfaces.y[i] - middle_[0], z = surfaces.z[i] - middle_[1], radius = std::sqrt(y * y + z * z);
+      if (radius > 0) add(i, wall.place - radius, -y / radius, -z / radius);
+    }
   }
   if (contacts.node.empty()) return;
   contacts.law.resize(contacts.node.size());
@@ -67,7 +70,7 @@ void SurfaceWallContacts::for_each(Range cells, const Surfaces& surfaces, bool e
       if (energy && !interactions_[k].potential.writes("energy")) continue;
       for (const Wall& wall : walls_) {
         measure(k, cell, wall, surfaces, energy, contacts);
-        if (!contacts.node.empty()) act(cell, wall);
+        if (!contacts.node.empty()) act(cell);
       }
     }
   }
@@ -75,19 +78,21 @@ void SurfaceWallContacts::for_each(Range cells, const Surfaces& surfaces, bool e
 
 void SurfaceWallContacts::run(Worker worker, Surfaces& surfaces) {
   Contacts contacts;
-  for_each(worker.share(surfaces.cell_count()), surfaces, false, contacts, [&](int cell, const Wall& wall) {
+  for_each(worker.share(surfaces.cell_count()), surfaces, false, contacts, [&](int cell) {
     const double* area = surfaces.type_of(cell).node_area.data();
     const int first = surfaces.cells[cell].first;
-    double* force = force_along(surfaces, wall.axis).data();
-    for (std::size_t i = 0; i < contacts.node.size(); ++i)
-      force[contacts.node[i]] += area[contacts.node[i] - first] * contacts.law[i] * wall.outward;
+    for (std::size_t i = 0; i < contacts.node.size(); ++i) {
+      const int node = contacts.node[i];
+      surfaces.force_y[node] += area[node - first] * contacts.law[i] * contacts.away_y[i];
+      surfaces.force_z[node] += area[node - first] * contacts.law[i] * contacts.away_z[i];
+    }
   });
 }
 
 double SurfaceWallContacts::energy(const Surfaces& surfaces, const Ranks<3>&) const {
   double sum = 0;
   Contacts contacts;
-  for_each({0, surfaces.cell_count()}, surfaces, true, contacts, [&](int cell, const Wall&) {
+  for_each({0, surfaces.cell_count()}, surfaces, true, contacts, [&](int cell) {
     const RestSurface& rest = surfaces.type_of(cell);
     for (std::size_t i = 0; i < contacts.node.size(); ++i)
       sum += rest.node_area[contacts.node[i] - surfaces.cells[cell].first] * contacts.law[i];
@@ -98,11 +103,10 @@ double SurfaceWallContacts::energy(const Surfaces& surfaces, const Ranks<3>&) co
 double SurfaceWallContacts::net_force(const Surfaces& surfaces) const {
   double sum = 0;
   Contacts contacts;
-  for_each({0, surfaces.cell_count()}, surfaces, false, contacts, [&](int cell, const Wall& wall) {
-    if (wall.axis != 1) return;
+  for_each({0, surfaces.cell_count()}, surfaces, false, contacts, [&](int cell) {
     const RestSurface& rest = surfaces.type_of(cell);
     for (std::size_t i = 0; i < contacts.node.size(); ++i)
-      sum += rest.node_area[contacts.node[i] - surfaces.cells[cell].first] * contacts.law[i] * wall.outward;
+      sum += rest.node_area[contacts.node[i] - surfaces.cells[cell].first] * contacts.law[i] * contacts.away_y[i];
   });
   return sum;
 }

@@ -12,41 +12,43 @@
 namespace rouleau::core {
 
 /// Node i with rest area A at distance r of a wall: energy A phi(r), force A f(r) away from the wall (WallContacts, in two
-/// dimensions). Walls lie across y and z. The wall takes the reaction, normal to itself.
+/// dimensions). Walls lie across y and z, or are a tube along x around the middle of the domain. The wall takes the reaction, normal to itself.
 class SurfaceWallContacts {
  public:
-  /// Throws std::invalid_argument without walls, and for potentials of more than the distance.
-  SurfaceWallContacts(std::vector<WallInteraction> interactions, const Domain<3>& domain);
+  /// tube_radius: in place of the domain's walls; 0: none. Throws std::invalid_argument without walls, and for potentials of
+  /// more than the distance.
+  SurfaceWallContacts(std::vector<WallInteraction> interactions, const Domain<3>& domain, double tube_radius = 0);
 
   /// Pass over cells: adds to the forces. A cell that no wall is near of costs a look at where its nodes lie.
   void run(Worker worker, Surfaces& surfaces);
 
   /// Energy at the present positions. Not a pass.
   [[nodiscard]] double energy(const Surfaces& surfaces, const Ranks<3>& ranks = {}) const;
-  /// What the walls across y together do to all cells, along y. Not a pass.
+  /// What the walls together do to all cells, along y. Not a pass.
   [[nodiscard]] double net_force(const Surfaces& surfaces) const;
   /// A potential that acts but tells no energy; empty: none.
   [[nodiscard]] std::string without_energy() const;
 
  private:
   struct Wall {
-    int axis;
-    double place, outward;  ///< of its surface; 1 where the fluid lies above it, -1 below
+    int axis;               ///< that it lies across; 0: a tube
+    double place, outward;  ///< of its surface; 1 where the fluid lies above it, -1 below. Of a tube: its radius
   };
-  /// Nodes of a cell within a cutoff of one wall, and the potential's force or energy for each.
+  /// Nodes of a cell within a cutoff of one wall, the direction away from it, and the potential's force or energy.
   struct Contacts {
     std::vector<int> node;
-    std::vector<double> distance, law;
+    std::vector<double> distance, away_y, away_z, law;
   };
   void measure(std::size_t interaction, int cell, const Wall& wall, const Surfaces& surfaces, bool energy,
                Contacts& contacts) const;
-  /// Calls act(cell, wall, contacts) for each interaction of a range of cells with each wall.
+  /// Calls act(cell) for each interaction of a range of cells with each wall, if there are contacts.
   template <class Act>
   void for_each(Range cells, const Surfaces& surfaces, bool energy, Contacts& contacts, Act act) const;
 
   std::vector<WallInteraction> interactions_;
   std::vector<double> cutoffs_;
   std::vector<Wall> walls_;
+  double middle_[2];  ///< of the domain, along y and z
 };
 
 }  // namespace rouleau::core

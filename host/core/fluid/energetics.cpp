@@ -261,11 +261,11 @@ typename Fluid<T, Set>::Energetics Fluid<T, Set>::energetics() const {
           }
           function(&part);
         });
-        // A link into a solid node counts twice, as one into any wall.
-        links_->for_links(i, [&](int x, int q) {
+        // A link into a wall counts with what left, too; beyond plane walls that has been taken for what came back.
+        links_->for_links(i, [&](int x, int q, double left, bool plane) {
           double change = 0;
           for (int k = 0; k < dimension; ++k) change += Set::velocity[q][k] * u[k][x];
-          sums[dissipation].add(-static_cast<double>(task.in[q][x]) * change);
+          sums[dissipation].add(-(plane ? left - static_cast<double>(task.in[q][x]) : left) * change);
         });
       }
     }

@@ -285,12 +285,11 @@ void Fluid<T, Set>::step(Range rows) {
     last = row;
     if (even) receive_row(lattice_, row);
     if constexpr (dimension == 3) {
-      if (links_ && !even) links_->before_odd_step(i);
+      if (links_) links_->before_step(parity_, i);
     }
     collide_row(i, row, in, out);
     if constexpr (dimension == 3) {
-      if (links_ && !even) links_->after_odd_step(i);
-      if (links_) rest_solid(i, row);
+      if (links_) links_->after_step(parity_, i), rest_solid(i, row);
     }
     if (frame_moves) add_moving_frame(i, row, out);
     add_wall_momentum(lattice_, row, setting_.walls);
@@ -303,11 +302,10 @@ void Fluid<T, Set>::step(Range rows) {
 
 template <class T, class Set>
 void Fluid<T, Set>::settle() {
+  for (int i = 0; parity_ == Parity::even && i < lattice_.rows(); ++i) receive_row(lattice_, lattice_.row(i));
   if constexpr (dimension == 3) {
-    for (int i = 0; links_ && parity_ == Parity::odd && i < lattice_.rows(); ++i) links_->before_odd_step(i);
+    for (int i = 0; links_ && i < lattice_.rows(); ++i) links_->before_step(parity_, i);
   }
-  if (parity_ != Parity::even) return;
-  for (int i = 0; i < lattice_.rows(); ++i) receive_row(lattice_, lattice_.row(i));
 }
 
 template <class T, class Set>
@@ -457,7 +455,7 @@ typename Fluid<T, Set>::MassAndSpeed Fluid<T, Set>::mass_and_speed() const {
 
 template <class T, class Set>
 typename Fluid<T, Set>::WallStress Fluid<T, Set>::wall_stress() const {
-  if (!walls_have_acted_ || links_) return {std::nan(""), std::nan("")};
+  if (!walls_have_acted_ || setting_.solid) return {std::nan(""), std::nan("")};
   // A population that leaves towards the wall and returns gives the wall c_q f_q - c_-q f_-q = c_q (f_q + f_-q); the
   // one that left is the one that came back plus the wall's own momentum: f_q = f_-q + 6 w_q c_q . u_wall.
   std::vector<ExactSum> sums(2);
@@ -537,6 +535,7 @@ void Fluid<T, Set>::set_state(const StateOfNode& state) {
     }
     send_row(lattice_, row);
   }
+  restart_links();
 }
 
 template <class T, class Set>
@@ -581,6 +580,14 @@ void Fluid<T, Set>::take_over(Fluid& other, double factor) {
     });
     send_row(lattice_, row);
   }
+  restart_links();
+}
+
+template <class T, class Set>
+void Fluid<T, Set>::restart_links() {
+  if constexpr (dimension == 3) {
+    if (links_) links_->restart();
+  }
 }
 
 template <class T, class Set>
@@ -609,6 +616,7 @@ void Fluid<T, Set>::restore(const std::function<std::vector<T>(int)>& population
     for (int i = 0; i < lattice_.rows(); ++i, from += nx()) std::copy_n(from, nx(), lattice_.slot(q, lattice_.row(i)));
   }
   for (int i = 0; i < lattice_.rows(); ++i) send_row(lattice_, lattice_.row(i));
+  restart_links();
 }
 
 template class Fluid<float>;

@@ -183,6 +183,8 @@ class Fluid {
   void collide_row(int i, const Row& row, const T* (&in)[velocity_count], T* (&out)[velocity_count]);
   /// Sets what membranes have spread to the solid nodes of row i to 0: their velocity.
   void rest_solid(int i, const Row& row);
+  /// The populations have been set.
+  void restart_links();
   void add_moving_frame(int i, const Row& row, T* (&out)[velocity_count]);
 
   void make_halos();

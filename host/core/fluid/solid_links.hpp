@@ -1,4 +1,4 @@
-// Half-way bounce-back at solid nodes inside a block.
+// Bounce-back at solid nodes inside a block.
 #pragma once
 
 #include <cstddef>
@@ -9,38 +9,74 @@
 
 namespace rouleau::core {
 
-/// The links of a block that lead from a fluid node to a solid one. Solid nodes are not collided, so the slots that would
-/// stream between the two are free: before an odd step of a row each of its links puts what comes back into the slot that
-/// the collision reads, and after it what has left into the slot that the next even step reads. No link touches what
-/// another one, or a collision, does.
+/// The links of a block that lead from a fluid node to a solid one. With velocity q away from the wall, w = -q towards it,
+/// and a wall at the share s of the link, what comes back to node x is
+///
+///     f_q(x, t + 1) = f'_w(x, t) + k (f_w(x, t + 1) - f'_q(x, t)),   k = (1 - 2 s)/(1 + 2 s),
+///
+/// f' after collision: half-way bounce-back for s = 1/2, and of second order for any s, from numbers of node x alone
+/// (central linear interpolation: Ginzburg, Verhaeghe, d'Humieres, Commun. Comput. Phys. 3, 427, 2008). Without a fluid
+/// node on the other side of x, k is 0.
+///
+/// Solid nodes are not collided, so the slots that would stream between them and x are free: before an odd step of a row
+/// each of its links puts what comes back into the slot that the collision reads. No link touches what another one, or a
+/// collision, does.
 template <class T, class Set>
 class SolidLinks {
  public:
   static constexpr int dimension = Set::dimension;
   SolidLinks(Lattice<T, Set>& lattice, const SolidNodes<dimension>& solid);
 
-  /// Around an odd step of row i. The first may be repeated: observers want it, too.
-  void before_odd_step(int i) const {
-    for (std::size_t k = first_[i]; k < first_[i + 1]; ++k) *links_[k].beyond = *links_[k].own;
+  /// The populations of an even step have been set, with what comes back among them.
+  void restart() {
+    for (Link& link : links_) link.left = *link.own, link.away = *link.toward;
   }
-  void after_odd_step(int i) const {
-    for (std::size_t k = first_[i]; k < first_[i + 1]; ++k) *links_[k].back = *links_[k].beyond;
+  /// Before row i is collided: after receive_row() in an even step. May be repeated.
+  void before_step(Parity parity, int i) {
+    const bool even = parity == Parity::even;
+    for_row(i, [&](Link& link) {
+      if (even) {
+        *link.own = link.left + link.factor * (*link.toward - link.away);
+      } else {
+        *link.back = link.left + link.factor * (*link.toward_streamed - link.away);
+      }
+    });
+  }
+  void after_step(Parity parity, int i) {
+    const bool even = parity == Parity::even;
+    for_row(i, [&](Link& link) {
+      link.left = even ? *link.own : *link.back;
+      link.away = even ? *link.toward : *link.toward_streamed;
+    });
   }
 
-  /// Calls function(x, q) for the links of row i, q the velocity that comes from the solid node.
+  /// Calls function(x, q, left, plane) for the links of row i: `left` is what has left along the link in the last step,
+  /// `plane` whether it leads out of the domain, not to a solid node.
   template <class Function>
   void for_links(int i, Function function) const {
-    for (std::size_t k = first_[i]; k < first_[i + 1]; ++k) function(links_[k].x, links_[k].q);
+    for (std::size_t k = first_[i]; k < first_[i + 1]; ++k) {
+      const Link& link = links_[k];
+      function(link.x, link.q, static_cast<double>(link.left), link.plane);
+    }
   }
   [[nodiscard]] std::size_t bytes() const { return links_.size() * sizeof(Link); }
 
  private:
   struct Link {
-    T* own;     ///< slot q of the fluid node
-    T* beyond;  ///< the opposite slot of the solid node, or of its image in the halo
-    T* back;  ///< as `own`, but of the image from which it comes home if the link crosses a periodic border of the block
-    int x, q;
+    T* own;                ///< slot q of x: f_q before an even step, f'_w after it
+    T* toward;             ///< slot w of x: f_w before an even step, f'_q after it
+    T* back;               ///< what an odd step reads as f_q and writes as f'_w
+    T* toward_streamed;    ///< what it reads as f_w and writes as f'_q
+    T factor, left, away;  ///< k; f'_w and f'_q of the last step
+    int x;
+    signed char q;
+    bool plane;
   };
+  template <class Function>
+  void for_row(int i, Function function) {
+    for (std::size_t k = first_[i]; k < first_[i + 1]; ++k) function(links_[k]);
+  }
+
   std::vector<Link> links_;
   std::vector<std::size_t> first_;  ///< of each row, and the end
 };

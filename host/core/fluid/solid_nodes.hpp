@@ -1,22 +1,30 @@
-// Walls of any shape: which nodes of the lattice are solid.
+// Walls of any shape: which nodes of the lattice are solid, and where between them and the fluid the wall is.
 #pragma once
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "core/domain/domain.hpp"
 
 namespace rouleau::core {
 
-/// A mark for every node of the whole lattice. Between a fluid node and a solid one lies a wall at rest, half way.
+/// A mark for every node of the whole lattice. Between a fluid node and a solid one lies a wall at rest.
 template <int D>
 class SolidNodes {
  public:
   using Node = std::array<int, D>;
-  SolidNodes(const Node& size, const std::function<bool(const Node&)>& is_solid) : size_(size) {
+  /// Share of the link from a fluid node to the one at `to - node` from it that lies in the fluid, in (0, 1].
+  using Cut = std::function<double(const Node& node, const Node& to)>;
+
+  /// Without `cut` walls are half way: no mass is lost, and velocities are of first order. With it they are interpolated,
+  /// of second order; then links that leave the domain are cut, too.
+  SolidNodes(const Node& size, const std::function<bool(const Node&)>& is_solid, Cut cut = {})
+      : size_(size), cut_(std::move(cut)) {
     const Box<D> all{{}, size};
     solid_.reserve(static_cast<std::size_t>(row_count(all)) * size[0]);
     for (int i = 0; i < row_count(all); ++i) {
@@ -44,20 +52,28 @@ class SolidNodes {
     }
     return at(node);
   }
+  [[nodiscard]] bool interpolated() const { return static_cast<bool>(cut_); }
+  [[nodiscard]] double cut(const Node& node, const Node& to) const { return cut_ ? cut_(node, to) : 0.5; }
   [[nodiscard]] long fluid_count() const { return fluid_count_; }
 
  private:
   Node size_;
+  Cut cut_;
   std::vector<bool> solid_;
   long fluid_count_ = 0;
 };
 
 /// A tube along x through the middle of the lattice; its radius in spacings.
 inline SolidNodes<3> tube_nodes(const std::array<int, 3>& size, double radius) {
-  return {size, [&](const std::array<int, 3>& node) {
-            double square = 0;
-            for (int k = 1; k < 3; ++k) square += (node[k] - (size[k] - 1) / 2.0) * (node[k] - (size[k] - 1) / 2.0);
-            return square >= radius * radius;
+  using Node = SolidNodes<3>::Node;
+  const double y = (size[1] - 1) / 2.0, z = (size[2] - 1) / 2.0, square = radius * radius;
+  return {size,
+          [=](const Node& node) { return (node[1] - y) * (node[1] - y) + (node[2] - z) * (node[2] - z) >= square; },
+          [=](const Node& node, const Node& to) {
+            // From p to p + c the circle is where |p + share c| = radius.
+            const double a = to[1] * to[1] + to[2] * to[2], b = to[1] * (node[1] - y) + to[2] * (node[2] - z);
+            const double c = (node[1] - y) * (node[1] - y) + (node[2] - z) * (node[2] - z) - square;
+            return std::clamp((std::sqrt(b * b - a * c) - b) / a, 0.0, 1.0);
           }};
 }
 

@@ -27,6 +27,9 @@ FluidSetting<D> fluid_setting(const BasicSolverSetup<D>& setup, const CellNodes&
     throw std::invalid_argument("the developed flow between walls across z is not known");
   if (setup.solid && (setup.solid->size() != setup.domain.size || setup.developed))
     throw std::invalid_argument("solid nodes are those of the whole lattice, and their developed flow is not known");
+  const auto move = [](const WallVelocity& walls) { return walls.lower != 0 || walls.upper != 0; };
+  if (setup.solid && (move(setup.walls) || move(setup.oscillation.walls)))
+    throw std::invalid_argument("walls of a domain with solid nodes are at rest");
   if (!setup.layers.empty() && !cells.cells.empty() && (setup.semi_implicit || setup.slip_correction))
     throw std::invalid_argument("cells in layers take neither the semi-implicit step nor the slip correction");
   if (!setup.layers.empty() && setup.developed && setup.oscillation.any())

@@ -62,6 +62,8 @@ struct BasicSolverSetup {
   std::vector<Interaction> interactions = {};
   /// Only between walls, not where y is periodic.
   std::vector<WallInteraction> wall_interactions = {};
+  /// Of a tube along x around the middle, from whose wall these act in place of planes; 0: none. `solid` is what holds its fluid.
+  double tube_radius = 0;
   std::vector<SelfInteraction> self_interactions = {};
   /// The step of stiff membranes (SemiImplicitFilter).
   bool semi_implicit = false;

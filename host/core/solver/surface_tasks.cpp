@@ -68,7 +68,7 @@ SurfaceTasks<T>::SurfaceTasks(const BasicSolverSetup<3>& setup, Surfaces& surfac
   if (!setup.interactions.empty())
     interactions_ = std::make_unique<SurfaceInteractions>(surfaces_, setup.interactions, setup.domain);
   if (!setup.wall_interactions.empty())
-    wall_contacts_ = std::make_unique<SurfaceWallContacts>(setup.wall_interactions, setup.domain);
+    wall_contacts_ = std::make_unique<SurfaceWallContacts>(setup.wall_interactions, setup.domain, setup.tube_radius);
   coupling_.reserve(surfaces_);
   coupling_.locate(Worker{}, surfaces_);
 }

@@ -48,6 +48,39 @@ TEST_CASE("a sphere beside a wall has the energy of the zones of its surface") {
   CHECK(walls().energy(sphere(8, radius, {3, 9, 10})) == 0);
 }
 
+TEST_CASE("the wall of a tube acts along its radius") {
+  // A sphere around the axis has, at the distance s from its equator's plane, the gap R - sqrt(a^2 - s^2).
+  constexpr double radius = 8, of_sphere = 7;
+  SurfaceWallContacts tube({{0, test::spring_potential(stiffness, rest, cutoff)}}, domain, radius);
+  double exact = 0;
+  constexpr int zones = 4000;
+  for (int i = 0; i < zones; ++i) {
+    const double s = of_sphere * ((i + 0.5) / zones * 2 - 1), r = radius - std::sqrt(of_sphere * of_sphere - s * s);
+    const double there = cutoff - rest, here = r - rest;
+    if (r < cutoff)
+      exact += stiffness / 2 * (here * here - there * there) * 2 * std::numbers::pi * of_sphere * 2 * of_sphere / zones;
+  }
+  Surfaces s = sphere(16, of_sphere, {3, 9.5, 10.5});
+  CHECK(tube.energy(s) == Approx(exact).epsilon(0.01));
+  for (double& y : s.y) y += 0.7;
+  act(tube, s);
+  const Surfaces at = s;
+  constexpr double h = 1e-5;
+  for (int i = 0; i < s.node_count(); i += 29) {
+    CHECK(s.force_x[i] == 0);
+    for (const auto& [places, found] : {std::pair(&s.y, &at.force_y), {&s.z, &at.force_z}}) {
+      const double here = (*places)[i];
+      (*places)[i] = here + h;
+      const double above = tube.energy(s);
+      (*places)[i] = here - h;
+      const double below = tube.energy(s);
+      (*places)[i] = here;
+      CHECK(std::abs((below - above) / (2 * h) - (*found)[i]) < 1e-7);
+    }
+  }
+  CHECK(tube.net_force(s) < 0);
+}
+
 TEST_CASE("forces of walls on surfaces are minus the gradient of their energy, whatever the number of workers") {
   Surfaces s = sphere(6, 4, {3, 4.3, 17.1});  // in a corner
   SurfaceWallContacts contacts = walls();
