@@ -15,8 +15,9 @@ namespace rouleau::plan {
 
 namespace {
 
+constexpr double wasteful = 0.01;            ///< efficiency; nobody would start as many
 constexpr double slower = 1.3;               ///< than the fastest: more ranks will not help
-constexpr std::size_t many_cells = 100'000;  ///< cells; powers of four have to do, each takes seconds
+constexpr std::size_t many_cells = 100'000;  ///< cells; powers of eight have to do, each takes seconds
 
 double step_time(const std::vector<RankCost>& ranks, const Network& network, double scale) {
   double computing = 0, messages = 0;
@@ -77,10 +78,10 @@ RankTimes rank_times(const Plan& plan, const std::vector<RankCost>& asked, const
   const double scale = one_step_s > 0 ? one_step_s / by_estimate : 1;
   double least = steps[1] = by_estimate * scale;
   steps[wanted] = step_time(asked, network, scale);
-  const int factor = plan.scene->cells.size() > many_cells ? 4 : 2;
+  const int factor = plan.scene->cells.size() > many_cells ? 8 : 2;
   for (int ranks = factor; ranks <= most / factor * factor; ranks *= factor) {
     if (ranks != wanted) steps[ranks] = step_time(rank_costs(plan, make_blocks(plan, ranks)), network, scale);
-    if (steps[ranks] > slower * least) break;
+    if (steps[ranks] > slower * least || steps[1] < wasteful * ranks * steps[ranks]) break;
     least = std::min(least, steps[ranks]);
     if (ranks > most / factor) break;
   }

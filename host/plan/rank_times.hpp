@@ -38,7 +38,8 @@ struct RankTimes {
   NLOHMANN_DEFINE_TYPE_INTRUSIVE(RankTimes, of, fastest, economical)
 };
 
-/// By the ranks asked for, whose costs are known, and by powers of two until more do not help or have no room.
+/// By the ranks asked for, whose costs are known, and by powers of two (of eight with very many cells) until more do not
+/// help, have no room, or are a waste.
 /// `one_step_s`: of a step by one rank, where it was measured; 0: by plan::step_cost.
 RankTimes rank_times(const Plan& plan, const std::vector<RankCost>& asked, const Network& network,
                      double one_step_s = 0);

@@ -3,7 +3,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
+#include <numeric>
+#include <span>
 #include <string>
 
 #include "base/error.hpp"
@@ -36,8 +39,9 @@ core::RestShape rest_shape(const scene::CellType& type, double spacing) {
 /// Everything that a message about a place in the scene needs.
 class Checker {
  public:
-  Checker(const scene::Scene& scene, const core::Membranes& membranes, double spacing)
-      : scene_(scene), membranes_(membranes), spacing_(spacing), domain_(lattice_domain(scene)) {}
+  /// `cells`: which of the scene's cells the membranes are; empty: all of them.
+  Checker(const scene::Scene& scene, const core::Membranes& membranes, double spacing, std::span<const int> cells = {})
+      : scene_(scene), membranes_(membranes), spacing_(spacing), cells_(cells), domain_(lattice_domain(scene)) {}
 
   void check() const {
     for (std::size_t i = 0; i < membranes_.cells.size(); ++i) check_fits(i);
@@ -46,7 +50,7 @@ class Checker {
 
  private:
   [[noreturn]] void refuse(std::size_t cell, const std::string& problem) const {
-    const std::string& pointer = scene_.cells[cell].pointer;
+    const std::string& pointer = placement(cell).pointer;
     const Place place = scene_.document ? scene_.place(pointer) : Place{"", pointer};
     throw Error(Cause::bad_input, place, problem);
   }
@@ -55,21 +59,23 @@ class Checker {
     std::snprintf(text, sizeof text, "%.3g um", spacings * spacing_ * 1e6);
     return text;
   }
-  [[nodiscard]] std::string name(int cell) const {
-    return "cell " + std::to_string(cell) + " (" + scene::origin_of(scene_.cells[cell]) + ")";
+  [[nodiscard]] int number_of(std::size_t cell) const { return cells_.empty() ? static_cast<int>(cell) : cells_[cell]; }
+  [[nodiscard]] const scene::CellPlacement& placement(std::size_t cell) const { return scene_.cells[number_of(cell)]; }
+  [[nodiscard]] std::string name(std::size_t cell) const {
+    return "cell " + std::to_string(number_of(cell)) + " (" + scene::origin_of(placement(cell)) + ")";
   }
 
   void check_fits(std::size_t cell) const {
     const core::Bounds extent = core::bounds(membranes_, membranes_.cells[cell]);
-    const std::string who = name(static_cast<int>(cell));
+    const auto who = [&] { return name(cell); };
     const double width = extent.x_max - extent.x_min, height = extent.y_max - extent.y_min;
     if (!(width < domain_.period(0))) {
-      refuse(cell, who + " is " + micrometres(width) + " wide, more than the periodic length of the domain, " +
+      refuse(cell, who() + " is " + micrometres(width) + " wide, more than the periodic length of the domain, " +
                        micrometres(domain_.period(0)) + "; make the domain longer.");
     }
     if (domain_.periodic[1]) {
       if (!(height < domain_.period(1))) {
-        refuse(cell, who + " is " + micrometres(height) + " high, more than the periodic height of the domain, " +
+        refuse(cell, who() + " is " + micrometres(height) + " high, more than the periodic height of the domain, " +
                          micrometres(domain_.period(1)) + "; make the domain higher.");
       }
       return;
@@ -79,7 +85,7 @@ class Checker {
     if (!(above < 0)) stick_out(cell, "upper", above);
   }
   [[noreturn]] void stick_out(std::size_t cell, const char* wall, double amount) const {
-    refuse(cell, name(static_cast<int>(cell)) + " sticks through the " + wall + " wall by " + micrometres(amount) +
+    refuse(cell, name(cell) + " sticks through the " + wall + " wall by " + micrometres(amount) +
                      "; move it away from the wall.");
   }
 
@@ -112,6 +118,7 @@ class Checker {
   const scene::Scene& scene_;
   const core::Membranes& membranes_;
   double spacing_;
+  std::span<const int> cells_;
   core::Domain<2> domain_;
 };
 
@@ -332,9 +339,56 @@ core::Surfaces make_surfaces(const scene::Scene& scene, double spacing) {
   return surfaces;
 }
 
-void try_cells(const scene::Scene& scene) {
+namespace {
+
+/// Places many cells strip by strip, so that memory need not hold all of them: each strip has so many, and those that
+/// reach into it from above.
+void try_in_strips(const scene::Scene& scene, double spacing, std::size_t of_strip) {
+  require_room(scene);
+  require_distance(scene);
+  const core::Domain<2> domain = lattice_domain(scene);
+  std::vector<core::RestShape> shapes;
+  double reach = 0;  // of any outline from its centre, spacings
+  for (const scene::CellType& type : scene.cell_types) {
+    shapes.push_back(rest_shape(type, spacing));
+    for (std::size_t i = 0; i < shapes.back().x.size(); ++i)
+      reach = std::max(reach, std::hypot(shapes.back().x[i], shapes.back().y[i]));
+  }
+  const double period = domain.period(1);
+  std::vector<double> height;
+  for (const scene::CellPlacement& cell : scene.cells) {
+    const double y = cell.center.y() / spacing;
+    height.push_back(period > 0 ? y - std::floor(y / period) * period : y);
+  }
+  std::vector<int> order(scene.cells.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(),
+            [&](int a, int b) { return std::pair(height[a], a) < std::pair(height[b], b); });
+  for (std::size_t first = 0; first < order.size(); first += of_strip) {
+    const std::size_t end = std::min(first + of_strip, order.size());
+    const double top = height[order[end - 1]] + 2 * reach;
+    std::vector<int> cells(order.begin() + static_cast<std::ptrdiff_t>(first),
+                           order.begin() + static_cast<std::ptrdiff_t>(end));
+    for (std::size_t i = end; i < order.size() && height[order[i]] <= top; ++i) cells.push_back(order[i]);
+    for (std::size_t i = 0; period > 0 && i < first && height[order[i]] + period <= top; ++i) cells.push_back(order[i]);
+    std::sort(cells.begin(), cells.end());
+    core::Membranes membranes;
+    for (const int c : cells) {
+      const scene::CellPlacement& cell = scene.cells[c];
+      core::add_cell(membranes, cell.type, shapes[cell.type], cell.center.x() / spacing - 0.5,
+                     cell.center.y() / spacing - 0.5, cell.angle);
+    }
+    Checker(scene, membranes, spacing, cells).check();
+  }
+}
+
+}  // namespace
+
+void try_cells(const scene::Scene& scene, std::size_t of_strip) {
   if (scene.domain.depth) {
     make_cells<3>(scene);
+  } else if (scene.cells.size() > of_strip) {
+    try_in_strips(scene, lattice_spacing(scene), of_strip);
   } else {
     make_cells<2>(scene);
   }

@@ -40,8 +40,8 @@ auto make_cells(const scene::Scene& scene) {
   }
 }
 
-/// Throws what making the cells does.
-void try_cells(const scene::Scene& scene);
+/// Throws what making the cells does, without room for all of them: in two dimensions so many are made at a time.
+void try_cells(const scene::Scene& scene, std::size_t of_strip = 20'000);
 
 /// All of stage `index` of a scene of D dimensions in lattice units, with instances of its active models. Throws Error(plugin_refused) for a model
 /// that cannot be made.

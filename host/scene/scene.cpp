@@ -14,7 +14,7 @@
 namespace rouleau::scene {
 namespace {
 
-constexpr std::int64_t most_nodes = std::int64_t{1} << 28;
+constexpr std::int64_t most_nodes = std::int64_t{1} << 30;
 constexpr std::int64_t most_membrane_nodes = 100'000'000;
 /// How far the spacings along x and y may differ: far above rounding of the text's digits, far below any effect.
 constexpr double spacing_tolerance = 1e-9;

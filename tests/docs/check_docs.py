@@ -28,7 +28,7 @@ TUTORIAL = "sdk/README.md"
 COMMANDS = [c for page, text in TEXTS.items() if page != TUTORIAL for c in commands_of(page, text)]
 # Options of programs that are not Rouleau's and that pages name in the text.
 FOREIGN = {"--component", "--prefix", "--preset", "--build", "--install", "--parallel", "--pkg-config", "--cflags", "--libs",
-           "--tool", "--allow-run-as-root", "--oversubscribe", "--mca"}
+           "--tool", "--allow-run-as-root", "--oversubscribe", "--mca", "--bind-to"}
 # Words that readers had to read twice, and what is meant. Prose and messages do without them; names of keys are not prose.
 STUMBLING = {
     r"told": "reported, given", r"dearer": "slower, more expensive", r"knobs?": "setting", r"lone": "single",

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "base/error.hpp"
 #include "plan/solver_setup.hpp"
 
 using namespace rouleau;
@@ -70,4 +71,34 @@ TEST_CASE("a million cells in a row on top of each other are refused before memo
   }
   CHECK_THROWS_WITH(plan::make_membranes(scene, 1e-7),
                     Contains("(/cells/0) overlap: their centres are 1e-06 um apart; move them apart."));
+}
+
+TEST_CASE("cells that are tried strip by strip are refused where all at once are") {
+  const auto seed = Catch::rngSeed();
+  INFO("seed " << seed);
+  std::mt19937 random(seed);
+  int refused = 0, right = 0;
+  const auto says = [](auto function) -> std::string {
+    try {
+      function();
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return {};
+  };
+  for (int scene_count = 0; scene_count < 300; ++scene_count) {
+    const bool periodic = scene_count % 2 == 0;
+    scene::Scene scene = scene_of_circles(periodic);
+    std::uniform_real_distribution<double> x(-20e-6, 40e-6), y(periodic ? -10e-6 : 0.3e-6, periodic ? 20e-6 : 9.7e-6);
+    for (int i = 0; i < 9; ++i)
+      scene.cells.push_back({static_cast<int>(random() % 2), {x(random), y(random)}, 0, "/cells/0"});
+    const std::string at_once = says([&] { plan::make_membranes(scene, 1e-7); });
+    for (const std::size_t of_strip : {1, 2, 5}) {
+      const std::string in_strips = says([&] { plan::try_cells(scene, of_strip); });
+      REQUIRE(in_strips.empty() == at_once.empty());
+    }
+    (at_once.empty() ? right : refused) += 1;
+  }
+  CHECK(refused > 30);
+  CHECK(right > 30);
 }

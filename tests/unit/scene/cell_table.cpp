@@ -1,7 +1,11 @@
-// Cells from a CSV file.
+// Cells from CSV and HDF5 files.
 #include "scene/cell_table.hpp"
 
+#include <hdf5.h>
+
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <functional>
 
 #include "base/error.hpp"
 #include "scratch_folder.hpp"
@@ -103,4 +107,129 @@ TEST_CASE("a fault of a table names line, column, value and remedy") {
   is(fault("type,x_um,y_um\n"), "0:0", "no cells", "header");
   is(fault(""), "0:0", "empty", "type,x_um,y_um,angle_deg");
   CHECK_THROWS_AS(read_cell_table("/nowhere/cells.csv", types({"rbc"}), units::Units(), "/cells"), Error);
+}
+
+TEST_CASE("in three dimensions a table has places along z and axes") {
+  const auto cells = read("x_um,y_um,z_um,axis_x,axis_y,axis_z,angle_deg\n1,2,3,0,3,4,90\n", {"rbc"});
+  REQUIRE(cells.size() == 1);
+  CHECK(cells[0].z == Approx(3e-6));
+  REQUIRE(cells[0].axis);
+  CHECK((*cells[0].axis - Eigen::Vector3d(0, 0.6, 0.8)).norm() < 1e-15);
+  CHECK(fault("type,x_um,y_um,axis_x,axis_z\nrbc,1,2,0,1\n").second.find("no \"axis_y\"") != std::string::npos);
+  CHECK_THAT(fault("type,x_um,y_um,axis_x,axis_y,axis_z\nrbc,1,2,0,0,0\n").second, Contains("has no direction"));
+  CHECK(fault("type,x_um,y_um,axis_x,axis_y,axis_z\nrbc,1,2,0,up,0\n").first == "2:11");
+}
+
+namespace {
+
+/// A file of datasets of one dimension.
+class Datasets {
+ public:
+  explicit Datasets(const std::filesystem::path& file)
+      : file_(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT)) {}
+  Datasets(const Datasets&) = delete;
+  Datasets& operator=(const Datasets&) = delete;
+  ~Datasets() { H5Fclose(file_); }
+  Datasets& add(const char* name, const std::vector<double>& values) {
+    return add(name, H5T_NATIVE_DOUBLE, values.size(), values.data());
+  }
+  Datasets& add(const char* name, const std::vector<std::string>& values, bool variable) {
+    const hid_t type = H5Tcopy(H5T_C_S1);
+    H5Tset_size(type, variable ? H5T_VARIABLE : 8);
+    std::vector<const char*> words;
+    std::string letters;
+    for (const std::string& value : values) {
+      words.push_back(value.c_str());
+      letters += value + std::string(8 - value.size(), '\0');
+    }
+    add(name, type, values.size(), variable ? static_cast<const void*>(words.data()) : letters.data());
+    H5Tclose(type);
+    return *this;
+  }
+  Datasets& add(const char* name, hid_t type, hsize_t count, const void* values) {
+    const hid_t space = H5Screate_simple(1, &count, nullptr);
+    const hid_t dataset = H5Dcreate2(file_, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    if (count > 0) H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values);
+    H5Dclose(dataset);
+    H5Sclose(space);
+    return *this;
+  }
+
+ private:
+  hid_t file_;
+};
+
+}  // namespace
+
+TEST_CASE("cells of HDF5 datasets are those of a CSV file with the same columns") {
+  const test::ScratchFolder folder;
+  const auto all = types({"rbc", "capsule"});
+  const auto csv =
+      read_cell_table(folder.write("cells.csv",
+                                   "step,type,x_um,y_um,z_um,axis_x,axis_y,axis_z,angle_deg\n1,rbc,9,9,9,1,0,0,0\n"
+                                   "2,rbc,1.5,2.25,3,0,1,2,30\n2,capsule,4,5,6,1,0,0,-45\n"),
+                      all, units::Units(), "/cells");
+  for (const bool variable : {true, false}) {
+    const auto file = folder.path() / "cells.h5";
+    Datasets(file)
+        .add("step", {1, 2, 2})
+        .add("type", {"rbc", "rbc", "capsule"}, variable)
+        .add("x_um", {9, 1.5, 4})
+        .add("y_um", {9, 2.25, 5})
+        .add("z_um", {9, 3, 6})
+        .add("axis_x", {1, 0, 1})
+        .add("axis_y", {0, 1, 0})
+        .add("axis_z", {0, 2, 0})
+        .add("angle_deg", {0, 30, -45})
+        .add("colour", {"red", "red", "blue"}, variable);
+    const auto cells = read_cell_table(file, all, units::Units(), "/cells");
+    REQUIRE(cells.size() == csv.size());
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      CHECK(cells[i].type == csv[i].type);
+      CHECK(cells[i].center == csv[i].center);
+      CHECK(cells[i].z == csv[i].z);
+      CHECK(cells[i].axis == csv[i].axis);
+      CHECK(cells[i].angle == csv[i].angle);
+      CHECK(cells[i].line == static_cast<int>(i) + 2);
+    }
+  }
+}
+
+TEST_CASE("a fault of HDF5 datasets names file, dataset, row, value and remedy") {
+  const test::ScratchFolder folder;
+  const auto file = folder.path() / "cells.h5";
+  const auto says = [&](const std::function<void(Datasets&)>& fill) -> std::string {
+    {
+      Datasets datasets(file);
+      fill(datasets);
+    }
+    try {
+      (void)read_cell_table(file, types({"rbc", "capsule"}), units::Units(), "/cells");
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return {};
+  };
+  const auto with = [&](const std::vector<std::string>& names, const std::vector<double>& x,
+                        const std::vector<double>& y) {
+    return says([&](Datasets& to) { to.add("type", names, true).add("x_um", x).add("y_um", y); });
+  };
+  CHECK(with({"rbc", "rbc"}, {1, 9}, {2, 2}).empty());
+  CHECK_THAT(with({"rbc", "rcb"}, {1, 9}, {2, 2}),
+             Contains("cells.h5") && Contains("\"type\", row 2") && Contains("did you mean \"rbc\"?"));
+  CHECK_THAT(with({"rbc", "rbc"}, {1, std::nan("")}, {2, 2}), Contains("\"x_um\", row 2") && Contains("no number"));
+  CHECK_THAT(with({"rbc", "rbc"}, {1, 9}, {2e7, 2}),
+             Contains("\"y_um\", row 1") && Contains("\"20000000\" um is out of range"));
+  CHECK_THAT(with({"rbc", "rbc"}, {1, 9}, {2}),
+             Contains("it has 2 values, and others have 1") || Contains("it has 1 values, and others have 2"));
+  CHECK_THAT(with({}, {}, {}), Contains("no cells"));
+  CHECK_THAT(says([](Datasets& to) { to.add("x_um", {1}); }), Contains("no column y") && Contains("x_um"));
+  CHECK_THAT(says([](Datasets& to) { to.add("x_um", {1}).add("y_s", {1}); }), Contains("a time"));
+  CHECK_THAT(says([](Datasets& to) { to.add("x_um", {1}).add("y_um", {1}).add("type", {1}); }),
+             Contains("no names of cell types"));
+  CHECK_THAT(says([](Datasets& to) { to.add("x_um", {"a"}, true).add("y_um", {1}).add("type", {"rbc"}, true); }),
+             Contains("no numbers"));
+  // Cut off.
+  std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
+  CHECK_THROWS_AS(read_cell_table(file, types({"rbc"}), units::Units(), "/cells"), Error);
 }
