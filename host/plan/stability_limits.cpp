@@ -13,6 +13,7 @@
 #include "core/fluid/relaxation.hpp"
 #include "core/membrane/node_mobility.hpp"
 #include "core/membrane/stiffness.hpp"
+#include "flow_start.hpp"
 #include "plan.hpp"
 #include "plugin/handles.hpp"
 #include "potential_shape.hpp"
@@ -85,6 +86,10 @@ constexpr double thinnest_layer = 2.5;
 
 /// Of a tube, in spacings: below it the lattice may cost more than 1 % of the flow rate, 0.65 / R^2 (tests/physics/tube.cpp).
 constexpr double least_tube_radius = 8;
+
+// Of a flow that starts at rest, where no target says otherwise: that share of a strain or of a value (docs/accuracy.md). Beyond
+// the capillary number relaxations were not measured.
+constexpr double largest_error_by_start = 0.01, largest_measured_capillary = 0.2;
 
 // How many times stiffer membranes may be with the semi-implicit step, for tau from 0.6 to 5; below it gains nothing. A
 // single cell stays quiet at 80 times the stretching and 13 times the bending stiffness (docs/accuracy.md), two cells
@@ -208,6 +213,38 @@ double prestress_compression(const Plan& plan, const StageSetting& stage) {
   return most;
 }
 
+/// Whether a run is about when things happen, which is late by as much as the flow: cells that turn over or meet others. A round
+/// cell alone becomes steady and forgets its start. `auto` is told which.
+bool reports_moments(const Plan& plan) {
+  if (plan.numerics_choice) return plan.has_cells && !plan.numerics_choice->steady;
+  if (plan.scene->cells.size() != 1) return plan.has_cells;
+  const scene::Shape& shape = plan.scene->cell_types[plan.scene->cells.front().type].shape;
+  return !std::holds_alternative<scene::Circle>(shape) && !std::holds_alternative<scene::Sphere>(shape);
+}
+
+/// Strain within which the cell type that takes longest comes to its steady shape.
+double slowest_relaxation(const Plan& plan, const StageSetting& stage) {
+  const plugin::ModelSetting setting = stage.model_setting(plan.scene->fluid.inertia);
+  const double viscosity = core::viscosity_of(stage.tau);
+  const double rate = scene::mean_shear_rate(*stage.stage, *plan.scene) * stage.units.time;
+  double slowest = 0;
+  for (std::size_t t = 0; t < plan.membranes.size(); ++t) {
+    const scene::CellType& cell = plan.scene->cell_types[t];
+    double stiffness = 0;
+    for (const PlannedModel& law : plan.membranes[t]) {
+      if (law.active())
+        stiffness +=
+            core::stretching_stiffness(plugin::make_membrane_law(*law.manifest, law.parameters.values, setting), {1.0});
+    }
+    const double radius = shape::shape_radius(cell.shape) / stage.units.length;
+    // Of a neo-Hookean membrane the stiffness is three times the shear modulus.
+    const double capillary = stiffness > 0 ? 3 * viscosity * rate * radius / stiffness : largest_measured_capillary;
+    slowest = std::max(slowest, capsule_relaxation(std::min(capillary, largest_measured_capillary),
+                                                   cell.interior_viscosity / plan.scene->fluid.viscosity));
+  }
+  return slowest;
+}
+
 /// Of the developed flow between walls at rest, lattice units.
 double fastest_driven_speed(const StageSetting& stage, const scene::Scene& scene) {
   const double height = scene.domain.nodes[1], viscosity = core::viscosity_of(scene.numerics.tau);
@@ -309,18 +346,28 @@ std::vector<Limit> find_limits(const Plan& plan) {
           std::max(0.0, stage.stage->density_factor - 1) * delay, 0.1, true,
           lower + ": the fluid is simulated heavier than it is and lags behind what drives it", density);
     }
-    if (!plan.has_cells) continue;
     const double rate = scene::mean_shear_rate(*stage.stage, scene);
+    const double strain = static_cast<double>(stage.max_steps) * stage.units.time * rate;
+    if (const FlowStart start = flow_start(scene, stage.index); start.delay > 0 && strain > 0) {
+      const double allowed = plan.numerics_choice ? plan.numerics_choice->target : largest_error_by_start;
+      const std::string remedy = "let it start \"developed\", or " + lower;
+      if (reports_moments(plan)) {
+        add("strain that the start of the flow costs, over that of the stage" + where, start.delay / strain, allowed,
+            true, remedy, density);
+      } else {
+        double left = start.left_at(strain);
+        if (plan.has_cells) left = capsule_left(start, slowest_relaxation(plan, stage), strain);
+        add("what the start of the flow leaves at the end of the stage, over the whole" + where, left, allowed, true,
+            remedy, density);
+        add("what the start of the flow leaves in the relative viscosity" + where, start.left_of_viscosity(strain),
+            allowed, true, remedy, density);
+      }
+    }
+    if (!plan.has_cells) continue;
     if (rate > 0) {
       add("compression of cells by the shear" + where, compression_by_shear(most_viscous_tau, rate * stage.units.time),
           largest_compression_by_shear, true, lower + " or numerics.tau: pressure compresses the lattice's fluid",
           density);
-    }
-    const double late = stage.stage->density_factor * scene::start_up_strain(*stage.stage, scene);
-    const double strain = static_cast<double>(stage.max_steps) * stage.units.time * rate;
-    if (late > 0 && strain > 0 && !scene.fluid.inertia) {  // with it the start is part of what is computed
-      add("strain that the start of the flow costs, over that of the stage" + where, late / strain, 0.1, true,
-          "let it start \"developed\", or " + lower, density);
     }
     const CellTravel travel = cell_travel(scene, stage);
     if (scene.domain.depth && travel.mean > 0) {

@@ -1,0 +1,79 @@
+#include "flow_start.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+#include "scene/driving_flow.hpp"
+
+namespace rouleau::plan {
+
+namespace {
+
+constexpr double square_of_pi = std::numbers::pi * std::numbers::pi;
+constexpr int modes = 60;  // of the first instants, when all of them are there
+
+bool driven_alike(const scene::Stage& a, const scene::Stage& b) {
+  return a.shear_rate == b.shear_rate && a.mean_wall_speed == b.mean_wall_speed && a.mean_velocity == b.mean_velocity &&
+         a.pressure_gradient == b.pressure_gradient && !a.oscillates() && !b.oscillates();
+}
+
+}  // namespace
+
+// Between walls that move the n-th mode has amplitude 2 (-1)^n and T/n^2, and delay = T pi^2/6; the flow rate of a channel has modes
+// of amplitude 96/(pi n)^4 with odd n and T/n^2, and delay = T pi^2/10.
+double FlowStart::decay() const { return delay * (driven ? 10 : 6) / square_of_pi; }
+
+double FlowStart::rate_at(double strain) const {
+  if (!(delay > 0)) return 1;
+  if (!(strain > 0)) return 0;
+  double rate = 1;
+  for (int n = 1; n <= modes; n += driven ? 2 : 1) {
+    const double left = std::exp(-n * n * strain / decay());
+    if (left < 1e-17) break;
+    rate += driven ? -96 / (square_of_pi * square_of_pi) / std::pow(n, 4) * left : (n % 2 == 0 ? 2 : -2) * left;
+  }
+  return std::clamp(rate, 0.0, 1.0);
+}
+
+double FlowStart::left_at(double strain) const {
+  return delay > 0 ? std::min(1.0, (driven ? 1 : 2) * std::exp(-strain / decay())) : 0;
+}
+
+double FlowStart::left_of_viscosity(double strain) const {
+  if (!(delay > 0)) return 0;
+  const double part = strain / decay();
+  return (driven ? 2 : 4) / part * std::exp(-part / 2);
+}
+
+FlowStart flow_start(const scene::Scene& scene, int index) {
+  const scene::Stage& stage = scene.stages[index];
+  if (index > 0 && driven_alike(stage, scene.stages[index - 1])) return {};
+  return {std::max(0.0, stage.density_factor - 1) * scene::start_up_strain(stage, scene), stage.shear_rate == 0};
+}
+
+double capsule_relaxation(double capillary_number, double viscosity_ratio) {
+  return 0.566 * std::pow(capillary_number / 0.05, 0.4) * (viscosity_ratio + 1.68) / 2.68;
+}
+
+double capsule_left(const FlowStart& start, double relaxation, double strain) {
+  if (!(start.delay > 0)) return 0;
+  using Complex = std::complex<double>;
+  // Of either z the exact solution over a short step with constant g.
+  const double step = std::min({relaxation, start.delay, strain}) / 20;
+  const long steps = std::min(100000L, static_cast<long>(std::ceil(strain / step)));
+  const double h = strain / static_cast<double>(steps);
+  const auto advanced = [&](Complex z, double g) {
+    const Complex rate(1 / relaxation, -g), steady = g / relaxation / rate;
+    return steady + (z - steady) * std::exp(-rate * h);
+  };
+  Complex late, developed;
+  for (long i = 0; i < steps; ++i) {
+    late = advanced(late, start.rate_at((static_cast<double>(i) + 0.5) * h));
+    developed = advanced(developed, 1);
+  }
+  return std::abs(late - developed) / std::abs(developed);
+}
+
+}  // namespace rouleau::plan

@@ -1,0 +1,36 @@
+// What a start of the walls or of a driving force at rest costs, in a fluid that is simulated denser than it is.
+#pragma once
+
+#include "scene/scene.hpp"
+
+namespace rouleau::plan {
+
+/// A flow that starts at rest, in strains: its shear rate g(s) over that of the developed flow is 1 - A exp(-s/T) in the end.
+struct FlowStart {
+  double delay = 0;     ///< by which everything is late for good, the integral of 1 - g; 0: nothing to say
+  bool driven = false;  ///< by a force rather than by walls
+
+  [[nodiscard]] double decay() const;  ///< T, of the slowest mode
+  /// g in the middle between the walls, or of the flow rate of a channel.
+  [[nodiscard]] double rate_at(double strain) const;
+  /// What the slowest mode leaves of 1 - g.
+  [[nodiscard]] double left_at(double strain) const;
+  /// Of the relative viscosity, its mean over the second half of this strain: walls that start pull harder, and a flow
+  /// that has not come up yet looks as if it were viscous.
+  [[nodiscard]] double left_of_viscosity(double strain) const;
+};
+
+/// Of the stage with this index, by what its fluid is denser than the true one, whose own start is part of what is simulated. A
+/// stage that is driven as the one before it begins with that one's flow.
+FlowStart flow_start(const scene::Scene& scene, int index);
+
+/// Strain within which a round capsule comes to its steady shape, for its capillary number mu g a/Es: from the
+/// angles of the boundary integrals in tests/reference/capsule_channel.json, where tan(2 angle) = 1/relaxation.
+double capsule_relaxation(double capillary_number, double viscosity_ratio);
+
+/// How far a round capsule that has been started with the flow is from one in the developed flow after this strain, relative
+/// to the latter's deformation. Both obey dz/ds = -z/relaxation + i g z + g/relaxation, where |z| is the deformation over
+/// a constant and arg z twice the angle: small deformations that relax, are turned by the vorticity and made by the shear.
+double capsule_left(const FlowStart& start, double relaxation, double strain);
+
+}  // namespace rouleau::plan
