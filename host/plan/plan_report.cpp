@@ -7,6 +7,7 @@
 #include "base/text.hpp"
 #include "cell_travel.hpp"
 #include "core/solver/schedule.hpp"
+#include "flow_start.hpp"
 #include "scene/driving_flow.hpp"
 #include "shape/extent.hpp"
 #include "shape/outline.hpp"
@@ -324,11 +325,10 @@ std::vector<LateStart> late_starts(const Plan& plan) {
   std::vector<LateStart> found;
   if (!plan.has_cells) return found;  // how the flow starts is what is computed
   for (const StageSetting& stage : plan.stages) {
-    const double late = stage.stage->density_factor * scene::start_up_strain(*stage.stage, *plan.scene);
+    const double late = flow_start(*plan.scene, stage.index).delay;
     const double strain =
         static_cast<double>(stage.max_steps) * stage.units.time * scene::mean_shear_rate(*stage.stage, *plan.scene);
-    if (stage.stage->density_factor > 1 && late > slight * strain && strain > 0)
-      found.push_back({stage.stage->name, late, strain});
+    if (late > slight * strain && strain > 0) found.push_back({stage.stage->name, late, strain});
   }
   return found;
 }

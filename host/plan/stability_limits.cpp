@@ -352,8 +352,13 @@ std::vector<Limit> find_limits(const Plan& plan) {
       const double allowed = plan.numerics_choice ? plan.numerics_choice->target : largest_error_by_start;
       const std::string remedy = "let it start \"developed\", or " + lower;
       if (reports_moments(plan)) {
-        add("strain that the start of the flow costs, over that of the stage" + where, start.delay / strain, allowed,
-            true, remedy, density);
+        // Who writes "impulsive" means it; the plan's text says what it costs all the same.
+        const bool meant =
+            scene.document->root().contains(nlohmann::json::json_pointer(stage.stage->pointer + "/start"));
+        if (!meant || plan.numerics_choice) {
+          add("strain that the start of the flow costs, over that of the stage" + where, start.delay / strain, allowed,
+              true, remedy, density);
+        }
       } else {
         double left = start.left_at(strain);
         if (plan.has_cells) left = capsule_left(start, slowest_relaxation(plan, stage), strain);

@@ -45,7 +45,7 @@ TEST_CASE("a plan says by how much a start from rest makes a stage late") {
   const auto found = late({});
   REQUIRE(found.size() == 1);
   CHECK(found[0].stage == "shear");
-  CHECK(found[0].strain == Approx(3000 * 20 * 25.088e-6 * 25.088e-6 / (24 * 1.2e-6)).epsilon(1e-6));
+  CHECK(found[0].strain == Approx(2999 * 20 * 25.088e-6 * 25.088e-6 / (24 * 1.2e-6)).epsilon(1e-6));
   CHECK(found[0].stage_strain == Approx(15).epsilon(1e-3));
   CHECK_THAT(in_words(found[0]), Contains("in stage shear") && Contains("strain of 1.31 (of 15)"));
   CHECK(late({"/stages/1/start=developed"}).empty());
