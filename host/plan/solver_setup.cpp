@@ -3,7 +3,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
+#include <limits>
 #include <string>
 
 #include "base/error.hpp"
@@ -310,6 +312,17 @@ core::Surfaces make_surfaces(const scene::Scene& scene, double spacing) {
   return surfaces;
 }
 
+double gap_to_tube(const scene::Scene& scene) {
+  double gap = std::numeric_limits<double>::infinity();
+  if (!scene.domain.tube_radius || scene.cells.empty()) return gap;
+  const core::Surfaces surfaces = make_cells<3>(scene);
+  const core::Domain<3> domain = lattice_domain<3>(scene);
+  const double radius = *scene.domain.tube_radius / lattice_spacing(scene);
+  for (int cell = 0; cell < surfaces.cell_count(); ++cell)
+    gap = std::min(gap, radius - core::farthest_from_axis(surfaces, cell, domain));
+  return gap;
+}
+
 void try_cells(const scene::Scene& scene) {
   if (scene.domain.depth) {
     make_cells<3>(scene);
@@ -348,7 +361,13 @@ core::BasicSolverSetup<D> make_solver_setup(const Plan& plan, int index) {
       .area_correction = scene.numerics.area_correction,
       .time_step = stage.stage->density_factor,  // proportional to it
       .tension_unit = stage.units.unit(units::dimension::tension)};
-  if constexpr (D == 3) setup.solid = solid_nodes(scene);
+  if constexpr (D == 3) {
+    setup.solid = solid_nodes(scene);
+    // The mean over the tube's true section, when the solver goes by that over its nodes.
+    if (setup.solid)
+      setup.mean_velocity *= scene.domain.content() / std::pow(lattice_spacing(scene), 3) /
+                             static_cast<double>(setup.solid->fluid_count());
+  }
   if (!plan.has_cells) return setup;
   for (std::size_t t = 0; t < scene.cell_types.size(); ++t) {
     core::CellType& type = setup.cell_types.emplace_back();

@@ -34,6 +34,9 @@ auto make_cells(const scene::Scene& scene) {
   }
 }
 
+/// Smallest distance of the cells, as placed, to the wall of the tube in lattice spacings; infinite without either.
+double gap_to_tube(const scene::Scene& scene);
+
 /// Throws what making the cells does.
 void try_cells(const scene::Scene& scene);
 

@@ -86,6 +86,10 @@ constexpr double thinnest_layer = 2.5;
 /// Of a tube, in spacings: below it the lattice may cost more than 1 % of the flow rate, 0.65 / R^2 (tests/physics/tube.cpp).
 constexpr double least_tube_radius = 8;
 
+/// To the wall of a tube, beyond which velocities are read as 0: in spacings times the shear rate, membranes then move too
+/// fast by at most 0.006 at 1.5, 0.04 at 1, 0.13 at 0.5 and 0.32 on the wall (sums of peskin4's weights, wherever nodes are).
+constexpr double least_gap_to_tube = 1;
+
 // How many times stiffer membranes may be with the semi-implicit step, for tau from 0.6 to 5; below it gains nothing. A
 // single cell stays quiet at 80 times the stretching and 13 times the bending stiffness (docs/accuracy.md), two cells
 // that are sheared and come to rest in contact at 20 times the former. There are two exceptions: with the slip
@@ -406,6 +410,12 @@ std::vector<Limit> find_limits(const Plan& plan) {
       const double segment = spacing_of_type[cell.type] / stage.units.length;
       shortest = std::min(shortest, segment);
       longest = std::max(longest, segment);
+    }
+    if (const double gap = gap_to_tube(scene); std::isfinite(gap)) {
+      add("gap between cells, as placed, and the wall of the tube in lattice spacings", gap, least_gap_to_tube, false,
+          "raise the resolution, or move cells towards the axis: nearer than that they move too fast, on the wall by a third "
+          "of a spacing times the shear rate",
+          resolution);
     }
     add("cell radius in lattice spacings", shape::smallest_radius(scene) / stage.units.length, 10, false,
         "raise the resolution; results are converged from about 20", resolution);
