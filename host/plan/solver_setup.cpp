@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <numeric>
 #include <span>
 #include <string>
@@ -339,6 +340,17 @@ core::Surfaces make_surfaces(const scene::Scene& scene, double spacing) {
   return surfaces;
 }
 
+double gap_to_tube(const scene::Scene& scene) {
+  double gap = std::numeric_limits<double>::infinity();
+  if (!scene.domain.tube_radius || scene.cells.empty()) return gap;
+  const core::Surfaces surfaces = make_cells<3>(scene);
+  const core::Domain<3> domain = lattice_domain<3>(scene);
+  const double radius = *scene.domain.tube_radius / lattice_spacing(scene);
+  for (int cell = 0; cell < surfaces.cell_count(); ++cell)
+    gap = std::min(gap, radius - core::farthest_from_axis(surfaces, cell, domain));
+  return gap;
+}
+
 namespace {
 
 /// Places many cells strip by strip, so that memory need not hold all of them: each strip has so many, and those that
@@ -427,6 +439,10 @@ core::BasicSolverSetup<D> make_solver_setup(const Plan& plan, int index) {
   if constexpr (D == 3) {
     setup.solid = solid_nodes(scene);
     setup.tube_radius = scene.domain.tube_radius.value_or(0) / lattice_spacing(scene);
+    // The mean over the tube's true section, when the solver goes by that over its nodes.
+    if (setup.solid)
+      setup.mean_velocity *= scene.domain.content() / std::pow(lattice_spacing(scene), 3) /
+                             static_cast<double>(setup.solid->fluid_count());
   }
   if (!plan.has_cells) return setup;
   for (std::size_t t = 0; t < scene.cell_types.size(); ++t) {

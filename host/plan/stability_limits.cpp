@@ -87,6 +87,10 @@ constexpr double thinnest_layer = 2.5;
 /// Of a tube, in spacings: below it the lattice may cost more than 1 % of the flow rate, 0.65 / R^2 (tests/physics/tube.cpp).
 constexpr double least_tube_radius = 8;
 
+/// To the wall of a tube, beyond which velocities are read as 0: in spacings times the shear rate, membranes then move too
+/// fast by at most 0.006 at 1.5, 0.04 at 1, 0.13 at 0.5 and 0.32 on the wall (sums of peskin4's weights, wherever nodes are).
+constexpr double least_gap_to_tube = 1;
+
 // Of a flow that starts at rest, where no target says otherwise: that share of a strain or of a value (docs/accuracy.md). Beyond
 // the capillary number relaxations were not measured.
 constexpr double largest_error_by_start = 0.01, largest_measured_capillary = 0.2;
@@ -458,6 +462,12 @@ std::vector<Limit> find_limits(const Plan& plan) {
       const double segment = spacing_of_type[cell.type] / stage.units.length;
       shortest = std::min(shortest, segment);
       longest = std::max(longest, segment);
+    }
+    if (const double gap = gap_to_tube(scene); std::isfinite(gap)) {
+      add("gap between cells, as placed, and the wall of the tube in lattice spacings", gap, least_gap_to_tube, false,
+          "raise the resolution, or move cells towards the axis: nearer than that they move too fast, on the wall by a third "
+          "of a spacing times the shear rate",
+          resolution);
     }
     add("cell radius in lattice spacings", shape::smallest_radius(scene) / stage.units.length, 10, false,
         "raise the resolution; results are converged from about 20", resolution);
