@@ -4,12 +4,12 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <numbers>
 #include <optional>
 
 #include "base/text.hpp"
 #include "core/fluid/relaxation.hpp"
 #include "estimate.hpp"
+#include "flow_start.hpp"
 #include "json/document.hpp"
 #include "json/json_pointer.hpp"
 #include "scene/driving_flow.hpp"
@@ -108,11 +108,18 @@ class Problem {
   };
   [[nodiscard]] std::vector<std::array<int, 2>> lattices() const;
   [[nodiscard]] bool meets_target(const Trial& trial) const { return trial.error.total() <= target_ * (1 + 1e-9); }
+  [[nodiscard]] bool good_enough(const Trial& trial) const { return trial.error.total() <= goal() * (1 + 1e-9); }
+  /// The target; where stages with factors of their own take most of it already, half of it on top of theirs: no lattice makes
+  /// up for them.
+  [[nodiscard]] double goal() const { return std::max(target_, target_ / 2 + inertia_error(0) + start_error(0)); }
   [[nodiscard]] bool better(const Trial& a, const Trial& b) const;
   [[nodiscard]] Trial tried(const std::array<int, 2>& nodes, double tau) const;
   [[nodiscard]] double resolution_error(double spacing, double tau) const;
-  [[nodiscard]] double inertia_error(double reynolds) const;
+  /// With this factor in all stages that have none of their own.
+  [[nodiscard]] double inertia_error(double density_factor) const;
   [[nodiscard]] double start_error(double density_factor) const;
+  /// Seconds of the scene over the factor of each stage, with this one in stages that have none of their own.
+  [[nodiscard]] double duration(double density_factor) const;
   /// The largest density factor with which inertia and start together leave at most this error.
   [[nodiscard]] double most_density_factor(double error) const;
   [[nodiscard]] double decay() const {
@@ -138,8 +145,13 @@ class Problem {
   struct Start {
     double lag, strain;  ///< for each unit of density factor (scene::start_up_strain), and of the stage
     bool driven;         ///< by a pressure gradient rather than by walls
+    double own_factor;   ///< of the stage; 0: it has none
   };
   std::vector<Start> starts_;  ///< of flows that begin at rest
+  double free_rate_ = 0;       ///< largest shear rate, 1/s, in stages without a factor of their own
+  double own_rate_ = 0;        ///< largest product of shear rate and factor in the others, 1/s
+  double free_s_ = 0;          ///< duration of stages without a factor of their own
+  double own_s_ = 0;           ///< of the others, over their factors
   double reynolds_ = 0;        ///< of the true fluid, with the cells' radius or, without cells, half the height
 };
 
@@ -165,12 +177,20 @@ Problem::Problem(const scene::Scene& draft, const Json& written, const NumericsB
     mean_wall_speed_ =
         std::max(mean_wall_speed_, std::abs(stage.mean_wall_speed) + std::abs(stage.oscillation.mean_wall_speed));
     const double rate = scene::mean_shear_rate(stage, scene_);
+    const double own_factor = stage.has_own_density_factor() ? stage.density_factor : 0;
+    const double by_strain = stage.strain && rate > 0 ? *stage.strain / rate : INFINITY;
+    const double seconds = std::min(by_strain, stage.duration.value_or(INFINITY));
+    if (std::isfinite(seconds)) (own_factor > 0 ? own_s_ : free_s_) += seconds / (own_factor > 0 ? own_factor : 1);
+    if (own_factor > 0)
+      own_rate_ = std::max(own_rate_, rate * own_factor);
+    else
+      free_rate_ = std::max(free_rate_, rate);
     if (rate == 0) continue;
     shear_rate_ = std::max(shear_rate_, rate);
     const double strain = stage.strain.value_or(stage.duration.value_or(0) * rate);
     strain_ = std::max(strain_, strain);
     if (const double lag = scene::start_up_strain(stage, scene_); lag > 0)
-      starts_.push_back({lag, strain, stage.shear_rate == 0});
+      starts_.push_back({lag, strain, stage.shear_rate == 0, own_factor});
   }
   const double length = has_cells_ ? radius_ : scene_.domain.size.y() / 2;
   reynolds_ = scene_.fluid.density * shear_rate_ * length * length / scene::viscosity_range(scene_.fluid).least;
@@ -199,8 +219,8 @@ std::vector<std::array<int, 2>> Problem::lattices() const {
 
 /// The cheaper one of those that meet the target; before them, the nearer one.
 bool Problem::better(const Trial& a, const Trial& b) const {
-  if (meets_target(a) != meets_target(b)) return meets_target(a);
-  return meets_target(a) ? a.cost < b.cost : a.error.total() < b.error.total();
+  if (good_enough(a) != good_enough(b)) return good_enough(a);
+  return good_enough(a) ? a.cost < b.cost : a.error.total() < b.error.total();
 }
 
 NumericsChoice Problem::solve() const {
@@ -230,24 +250,24 @@ Problem::Trial Problem::tried(const std::array<int, 2>& nodes, double tau) const
   const double true_step = core::time_step(tau, spacing, scene_.fluid.viscosity / scene_.fluid.density);  // of factor 1
   if (const Json factor = pinned("density_factor"); !factor.is_null()) {
     trial.density_factor = factor.get<double>();
-  } else if (shear_rate_ == 0 && mean_wall_speed_ == 0) {
+  } else if (free_rate_ == 0 && mean_wall_speed_ == 0) {
     trial.density_factor = has_cells_ ? std::min(density_factor_at_rest, bounds_.most_density_factor) : 1;
   } else {
     // Walls at shear_rate x height / 2 around their mean in units of the spacing over the time step.
-    const double wall_mach = std::sqrt(3.0) * shear_rate_ * scene_.domain.size.y() / 2 / spacing * true_step +
+    const double wall_mach = std::sqrt(3.0) * free_rate_ * scene_.domain.size.y() / 2 / spacing * true_step +
                              std::sqrt(3.0) * mean_wall_speed_ / spacing * true_step;
-    const double allowed = most_density_factor(target_ - trial.error.resolution);
+    const double allowed = most_density_factor(goal() - trial.error.resolution);
     // Without cells what is computed is how the fluid's own inertia lets a flow start.
     const double wanted = has_cells_ ? allowed : 1;
-    const double pressed = has_cells_ ? compression_by_shear(most_viscous_tau, shear_rate_ * true_step) : 0;
+    const double pressed = has_cells_ ? compression_by_shear(most_viscous_tau, free_rate_ * true_step) : 0;
     trial.density_factor =
         std::max(1.0, std::min({wanted, nearly * scene::largest_wall_mach(scene_.fluid.inertia) / wall_mach,
                                 nearly * largest_compression_by_shear / pressed, bounds_.most_density_factor}));
   }
-  trial.error.inertia = inertia_error(reynolds_ * trial.density_factor);
+  trial.error.inertia = inertia_error(trial.density_factor);
   trial.error.start = start_error(trial.density_factor);
   trial.cost = step_cost(static_cast<double>(nodes[0]) * nodes[1], perimeters_ / spacing, scene_.numerics.precision) /
-               (true_step * trial.density_factor);
+               true_step * duration(trial.density_factor);
   return trial;
 }
 
@@ -270,28 +290,29 @@ double Problem::resolution_error(double spacing, double tau) const {
   return largest;
 }
 
-double Problem::inertia_error(double reynolds) const {
-  if (!has_cells_ || !(reynolds > 0)) return 0;
+double Problem::inertia_error(double density_factor) const {
+  const double rate = std::max(free_rate_ * density_factor, own_rate_);  // of the fluid as dense as it is
+  if (!has_cells_ || !(rate > 0)) return 0;
+  const double reynolds = reynolds_ / shear_rate_ * rate;
   return steady_ ? steady_amplitude * std::exp(-decay() / std::sqrt(reynolds)) : motion_by_reynolds * reynolds;
 }
 
 /// Of the stage where it is largest. Events of a motion come late by the lag. The steady state misses what the slowest
-/// mode of the start has left: amplitude 2 of the shear rate in the middle and H^2/(4 pi^2 nu) between moving walls,
-/// amplitude 1 and H^2/(pi^2 nu) in a channel.
+/// mode of the start has left, in the flow and in the relative viscosity.
 double Problem::start_error(double density_factor) const {
   if (!has_cells_) return 0;
   double largest = 0;
   for (const Start& start : starts_) {
-    const double lag = density_factor * start.lag, pi = std::numbers::pi;
-    const double decay = lag * (start.driven ? 10 : 6) / (pi * pi);
-    largest =
-        std::max(largest, steady_ ? (start.driven ? 1 : 2) * std::exp(-start.strain / decay) : lag / start.strain);
+    const FlowStart flow{(start.own_factor > 0 ? start.own_factor : density_factor) * start.lag, start.driven};
+    if (!(flow.delay > 0)) continue;
+    largest = std::max(largest, steady_ ? std::max(flow.left_at(start.strain), flow.left_of_viscosity(start.strain))
+                                        : flow.delay / start.strain);
   }
   return largest;
 }
 
 double Problem::most_density_factor(double error) const {
-  const auto left = [&](double factor) { return inertia_error(reynolds_ * factor) + start_error(factor); };
+  const auto left = [&](double factor) { return inertia_error(factor) + start_error(factor); };
   if (!(error > 0)) return 0;
   double low = 1e-6, high = 1e12;  // both errors grow with the factor
   if (left(high) <= error) return high;
@@ -300,6 +321,11 @@ double Problem::most_density_factor(double error) const {
     (left(middle) <= error ? low : high) = middle;
   }
   return low;
+}
+
+double Problem::duration(double density_factor) const {
+  const double all = own_s_ + free_s_ / density_factor;
+  return all > 0 ? all : 1 / density_factor;  // a scene that says how long only by `until`
 }
 
 std::string Problem::why_density_factor(const Trial& best) const {

@@ -109,7 +109,7 @@ ReadScene read_within_limits(const std::filesystem::path& file, const std::vecto
   }
   for (int tries = 0; tries < most_tries && read.numerics_choice; ++tries) {
     const plugin::Catalog catalog = catalog_of(read.scene);
-    const NumericsBounds tighter = tightened(bounds, make_plan(read.scene, catalog));
+    const NumericsBounds tighter = tightened(bounds, make_plan(read.scene, catalog, read.numerics_choice));
     if (tighter == bounds) break;
     bounds = tighter;
     read = read_unpacked_scene(file, overrides, bounds);

@@ -301,7 +301,7 @@ std::vector<Limit> find_limits(const Plan& plan) {
     const double margin = upper ? (value > 0 ? limit / value : std::numeric_limits<double>::infinity()) : value / limit;
     limits.push_back({name, value, limit, margin, remedy, remedied_by});
   };
-  constexpr RemediedBy density = RemediedBy::density_factor, resolution = RemediedBy::resolution;
+  constexpr RemediedBy resolution = RemediedBy::resolution;
   const double tau = scene.numerics.tau;
   constexpr double least = 0.005;  // of tau - 1/2
   add("tau - 1/2", tau - 0.5, least, false, "raise numerics.tau above 0.505");
@@ -322,6 +322,8 @@ std::vector<Limit> find_limits(const Plan& plan) {
   for (const StageSetting& stage : plan.stages) {
     const std::string where = " (stage " + stage.stage->name + ")";
     const std::string lower = "lower " + stage.stage->density_factor_key;
+    // A factor of the stage's own is not auto's to change.
+    const RemediedBy density = stage.stage->has_own_density_factor() ? RemediedBy::nothing : RemediedBy::density_factor;
     const plugin::ModelSetting setting = stage.model_setting(scene.fluid.inertia);
     if (stage.fastest_wall() != 0) {
       const std::string what = stage.stage->mean_wall_speed != 0 ? "the walls' speeds" : "shear_rate";
@@ -354,6 +356,8 @@ std::vector<Limit> find_limits(const Plan& plan) {
     const double strain = static_cast<double>(stage.max_steps) * stage.units.time * rate;
     if (const FlowStart start = flow_start(scene, stage.index); start.delay > 0 && strain > 0) {
       const double allowed = plan.numerics_choice ? plan.numerics_choice->target : largest_error_by_start;
+      // auto has counted it already.
+      const RemediedBy by = plan.numerics_choice ? RemediedBy::nothing : density;
       const std::string remedy = "let it start \"developed\", or " + lower;
       if (reports_moments(plan)) {
         // Who writes "impulsive" means it; the plan's text says what it costs all the same.
@@ -361,15 +365,15 @@ std::vector<Limit> find_limits(const Plan& plan) {
             scene.document->root().contains(nlohmann::json::json_pointer(stage.stage->pointer + "/start"));
         if (!meant || plan.numerics_choice) {
           add("strain that the start of the flow costs, over that of the stage" + where, start.delay / strain, allowed,
-              true, remedy, density);
+              true, remedy, by);
         }
       } else {
         double left = start.left_at(strain);
         if (plan.has_cells) left = capsule_left(start, slowest_relaxation(plan, stage), strain);
         add("what the start of the flow leaves at the end of the stage, over the whole" + where, left, allowed, true,
-            remedy, density);
+            remedy, by);
         add("what the start of the flow leaves in the relative viscosity" + where, start.left_of_viscosity(strain),
-            allowed, true, remedy, density);
+            allowed, true, remedy, by);
       }
     }
     if (!plan.has_cells) continue;

@@ -178,10 +178,12 @@ struct Stage {
       Eigen::Vector2d::Zero();          ///< force per volume that drives the flow, Pa/m, along x
   std::optional<double> mean_velocity;  ///< m/s, of the fluid in a channel: the pressure gradient is what it takes
   Oscillation oscillation;
-  double density_factor;  ///< Numerics::density_factor unless the stage has its own
-  std::string density_factor_key = "numerics.density_factor";  ///< what to change for another one
+  double density_factor;                                   ///< Numerics::density_factor unless the stage has its own
+  std::string density_factor_key = common_density_factor;  ///< what to change for another one
   std::string pointer;
 
+  static constexpr const char* common_density_factor = "numerics.density_factor";
+  [[nodiscard]] bool has_own_density_factor() const { return density_factor_key != common_density_factor; }
   [[nodiscard]] bool oscillates() const { return oscillation.frequency != 0; }
   /// Whether its walls shear at one rate: strain is counted by it.
   [[nodiscard]] bool shears_steadily() const { return shear_rate != 0 && !oscillates(); }

@@ -45,6 +45,55 @@ TEST_CASE("a smaller target error costs more, and the error that is expected is 
         2 * estimated_cost(chosen_scene({"/numerics/auto/error=0.05"})));
 }
 
+TEST_CASE(
+    "a smaller target is not cheaper, whichever stage has a density factor of its own, and its lattice is not coarser") {
+  const std::string demo = "/../../../scenes/four-cells-shear.json", at_rest = "/stages/0/start=impulsive";
+  struct Case {
+    std::string scene;
+    std::vector<std::string> overrides;
+  };
+  const std::vector<Case> cases{
+      {"/auto-capsule.json", {at_rest}},
+      {"/auto-capsule.json", {at_rest, "/stages/0/density_factor=200"}},
+      {"/auto-capsule.json", {at_rest, "/stages/0/density_factor=3000"}},
+      {"/auto-capsule.json",
+       {R"(/stages/-={"name": "slow", "shear_rate": "10 1/s", "strain": 5, "density_factor": 500})"}},
+      {demo, {}},
+      {demo, {"/stages/1/density_factor=1000"}},
+      {demo, {"/stages/1/density_factor=6000"}},
+  };
+  for (const Case& c : cases) {
+    for (const char* of : {"steady", "motion"}) {
+      double cost = 1e300;
+      int rows = 1 << 30;
+      for (const char* target : {"0.005", "0.01", "0.02", "0.05", "0.1"}) {
+        std::vector<std::string> overrides{std::string(R"(/numerics={"auto": {"error": )") + target + R"(, "of": ")" +
+                                           of + "\"}}"};
+        overrides.insert(overrides.end(), c.overrides.begin(), c.overrides.end());
+        if (c.scene == demo) {
+          overrides.emplace_back(
+              R"(/domain={"size": ["50.176 um", "25.088 um"], "y": {"lower": {"wall": {}}, "upper": {"wall": {}}}})");
+        }
+        const Scene scene = chosen(overrides, c.scene).scene;
+        INFO(c.scene << " " << (c.overrides.empty() ? "" : c.overrides.back()) << " " << of << " " << target);
+        CHECK(estimated_cost(scene) <= cost * 1.02);  // factors are rounded to three digits
+        CHECK(scene.domain.nodes[1] <= rows);
+        cost = estimated_cost(scene);
+        rows = scene.domain.nodes[1];
+      }
+    }
+  }
+}
+
+TEST_CASE("a factor of a stage's own that takes the target leaves half of it to the lattice, and that is said") {
+  const auto [scene, choice] = chosen({R"(/numerics={"auto": {"error": 0.01}})", "/stages/0/density_factor=6250"});
+  REQUIRE(choice);
+  CHECK(choice->expected.inertia == Approx(0.024 * 1.6667).epsilon(1e-3));
+  CHECK(choice->expected.resolution <= 0.005);
+  CHECK(choice->expected.resolution > 0.003);
+  CHECK_THAT(choice->doubt, Contains("more than the target of 1 %"));
+}
+
 TEST_CASE("what a scene gives is not chosen") {
   const auto [scene, choice] = chosen({"/numerics/tau=0.8", "/numerics/density_factor=1000", "/domain/nodes=[160,80]",
                                        "/cell_types/capsule/segments=90", "/numerics/slip_correction=false"});

@@ -55,7 +55,8 @@ TEST_CASE("limits know the relaxation times of layers, and a driven channel its 
 TEST_CASE("attraction has a limit by compression, and one where nothing keeps a cell's own faces apart") {
   const Catalog catalog({ROULEAU_PLUGINS});
   const auto limits_of = [&](std::vector<std::string> overrides) {
-    overrides.emplace_back(R"(/stages=[{"name": "rest", "duration": "1 s", "density_factor": 6000}])");
+    overrides.emplace_back(R"(/stages=[{"name": "rest", "duration": "1 s"}])");
+    overrides.emplace_back("/numerics/density_factor=6000");
     overrides.emplace_back(R"(/interactions/0/parameters/depth="3e-6 J/m2")");
     overrides.emplace_back("/output={}");
     return find_limits(
