@@ -102,10 +102,9 @@ TEST_CASE("a plan warns where a start at rest leaves more than the target, or 1 
   // A cell that turns over passes every angle late.
   const std::string ellipse = R"(/cell_types/capsule/shape={"ellipse": {"semi_axes": ["5 um", "3 um"]}})";
   CHECK_FALSE(limit_of(left, with({ellipse})));
-  const std::string unsaid = R"(/stages/0={"name": "shear", "shear_rate": "20 1/s", "strain": 20})";
-  CHECK(limit_of(costs, with({ellipse, unsaid}))->value == Approx(1.6667 * 40.96 / 24 / 20).epsilon(1e-3));
-  // Who asks for such a start by name is not warned of it.
-  CHECK_FALSE(limit_of(costs, with({ellipse, strain20})));
+  CHECK(limit_of(costs, with({ellipse, strain20}))->value == Approx(1.6667 * 40.96 / 24 / 20).epsilon(1e-3));
+  CHECK(limit_of(costs, with({ellipse, strain20}))->limit == 0.1);
+  CHECK_FALSE(limit_of(costs, with({ellipse, strain20, "/fluid/inertia=true"})));
 }
 
 TEST_CASE("the target of auto is the limit of what a start costs") {
