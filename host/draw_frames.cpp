@@ -138,7 +138,7 @@ class Run {
   [[nodiscard]] bool flow_holds(std::size_t output) const { return stages_[flow_.read_output()] == stages_[output]; }
   /// "shear: strain 7.5, a rouleau of 3 cells and 1 single cell".
   [[nodiscard]] std::string caption(std::size_t output, std::size_t firsts) const {
-    const std::string instant = stages_[output] + ": " + words(output, grows(output));
+    std::string instant = stages_[output] + ": " + words(output, grows(output));
     const auto sizes = sizes_.find(steps_[output]);
     if (firsts < 3 || sizes == sizes_.end()) return instant;
     return instant + ", " + rouleau::observe::aggregates_in_words(sizes->second);

@@ -9,7 +9,7 @@ std::string aggregates_in_words(std::vector<std::size_t> sizes) {
   std::sort(sizes.begin(), sizes.end(), std::greater<>());
   const auto single = std::find_if(sizes.begin(), sizes.end(), [](std::size_t size) { return size < 2; });
   const auto rouleaux = static_cast<std::size_t>(single - sizes.begin()), singles = sizes.size() - rouleaux;
-  const std::string alone = std::to_string(singles) + (singles == 1 ? " single cell" : " single cells");
+  std::string alone = std::to_string(singles) + (singles == 1 ? " single cell" : " single cells");
   if (rouleaux == 0) return alone;
   const auto size = [&](std::size_t rouleau) { return std::to_string(sizes[rouleau]); };
   std::string words = rouleaux == 1 ? "a rouleau of " + size(0) : "rouleaux of " + size(0);
