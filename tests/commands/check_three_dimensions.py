@@ -88,9 +88,32 @@ class Case(unittest.TestCase):
         self.assertIn(done.returncode, (0,), done.stderr)
         return self.folder / out
 
-    def series(self, folder):
-        with open(folder / "series.csv", newline="") as file:
+    def rows(self, folder, name):
+        with open(folder / name, newline="") as file:
             return list(csv.DictReader(file))
+
+    def series(self, folder):
+        return self.rows(folder, "series.csv")
+
+    def cells(self, folder):
+        return self.rows(folder, "cells.csv")
+
+    def assert_same_bits(self, scene, pause, *tables):
+        """One thread, three, and a run that is cut short after pause(steps) steps and goes on with two have the same tables."""
+        for precision in ("f64", "f32"):
+            scene = changed(scene, numerics__precision=precision)
+            one = self.run_scene(scene, "one" + precision)
+            many = self.run_scene(scene, "many" + precision, "--threads", 3)
+            paused = self.folder / ("paused" + precision)
+            steps = json.loads((one / "summary.json").read_text())["steps"]
+            for options in (("--max-steps", pause(steps)), ("--resume", "--threads", 2)):
+                done = self.rouleau("run", self.folder / "scene.json", "--out", paused, "--quiet", *options)
+                self.assertEqual(done.returncode, 0, done.stderr)
+            for other in (many, paused):
+                for name in tables:
+                    own, others = self.rows(one, name), self.rows(other, name)
+                    known = {row["step"] for row in own}
+                    self.assertEqual(own, [row for row in others if row["step"] in known])
 
 
 class A_run_in_three_dimensions(Case):
@@ -130,10 +153,6 @@ class A_run_in_three_dimensions(Case):
                     seen += 1
             self.assertGreater(seen, 5)
 
-    def cells(self, folder):
-        with open(folder / "cells.csv", newline="") as file:
-            return list(csv.DictReader(file))
-
     def test_of_cells_has_its_own_columns_and_surfaces(self):
         folder = self.run_scene(SHEARED, "cells")
         first, *_, last = self.cells(folder)
@@ -160,19 +179,7 @@ class A_run_in_three_dimensions(Case):
             self.assertEqual(frame["curvature"].shape, (84,))
 
     def test_of_cells_has_the_same_bits_for_any_number_of_threads_and_when_it_goes_on_after_a_pause(self):
-        for precision in ("f64", "f32"):
-            scene = changed(SHEARED, numerics__precision=precision)
-            one = self.run_scene(scene, "one" + precision)
-            many = self.run_scene(scene, "many" + precision, "--threads", 3)
-            paused = self.folder / ("paused" + precision)
-            steps = json.loads((one / "summary.json").read_text())["steps"]
-            for options in (("--max-steps", 2 * steps // 3), ("--resume", "--threads", 2)):
-                done = self.rouleau("run", self.folder / "scene.json", "--out", paused, "--quiet", *options)
-                self.assertEqual(done.returncode, 0, done.stderr)
-            for other in (many, paused):
-                own, others = self.cells(one), self.cells(other)
-                known = {row["step"] for row in own}
-                self.assertEqual(own, [row for row in others if row["step"] in known])
+        self.assert_same_bits(SHEARED, lambda steps: 2 * steps // 3, "cells.csv")
 
     def test_of_cells_that_attract_each_other_loses_energy_at_rest_and_joins_them(self):
         attraction = [{"between": ["capsule", "capsule"], "model": "morse",
@@ -264,10 +271,6 @@ class A_run_in_three_dimensions(Case):
 
 
 class A_tube(Case):
-    def rows(self, folder, name):
-        with open(folder / name, newline="") as file:
-            return list(csv.DictReader(file))
-
     def test_carries_a_cell_at_the_mean_velocity_that_is_kept_and_its_fluid_rests_in_the_wall(self):
         folder = self.run_scene(TUBE, "tube")
         flow = [row for row in self.rows(folder, "series.csv") if row["stage_name"] == "flow"][-1]
@@ -298,20 +301,7 @@ class A_tube(Case):
         self.assertGreater(float(velocity[~solid][:, :, 0].min()), 0)
 
     def test_has_the_same_bits_for_any_number_of_threads_and_when_it_goes_on_after_a_pause(self):
-        for precision in ("f64", "f32"):
-            scene = changed(TUBE, numerics__precision=precision)
-            one = self.run_scene(scene, "one" + precision)
-            many = self.run_scene(scene, "many" + precision, "--threads", 3)
-            paused = self.folder / ("paused" + precision)
-            steps = json.loads((one / "summary.json").read_text())["steps"]
-            for options in (("--max-steps", steps // 3 + 1), ("--resume", "--threads", 2)):
-                done = self.rouleau("run", self.folder / "scene.json", "--out", paused, "--quiet", *options)
-                self.assertEqual(done.returncode, 0, done.stderr)
-            for other in (many, paused):
-                for name in ("series.csv", "cells.csv"):
-                    own, others = self.rows(one, name), self.rows(other, name)
-                    known = {row["step"] for row in own}
-                    self.assertEqual(own, [row for row in others if row["step"] in known])
+        self.assert_same_bits(TUBE, lambda steps: steps // 3 + 1, "series.csv", "cells.csv")
 
     def test_is_planned_with_its_own_numbers(self):
         text = self.rouleau("plan", self.write(TUBE)).stdout

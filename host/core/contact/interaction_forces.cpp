@@ -3,16 +3,14 @@
 #include <algorithm>
 #include <string>
 
+#include "distance_law.hpp"
+
 namespace rouleau::core {
 
 std::vector<double> cutoffs_of(const std::vector<Interaction>& interactions) {
   std::vector<double> cutoffs;
   cutoffs.reserve(interactions.size());
-  for (const Interaction& interaction : interactions) {
-    const Potential& potential = interaction.potential;
-    cutoffs.push_back(
-        call_foreign(potential.id, "cutoff", [&] { return potential.table->cutoff(potential.self.get()); }));
-  }
+  for (const Interaction& interaction : interactions) cutoffs.push_back(cutoff_of(interaction.potential));
   return cutoffs;
 }
 

@@ -7,6 +7,7 @@
 
 #include "contact.hpp"
 #include "core/domain/exact_sum.hpp"
+#include "distance_law.hpp"
 
 namespace rouleau::core {
 
@@ -20,10 +21,9 @@ SelfContacts::SelfContacts(const Membranes& membranes, std::vector<SelfInteracti
     : interactions_(std::move(interactions)), contacts_(membranes.cells.size()) {
   for (const SelfInteraction& interaction : interactions_) {
     const Potential& potential = interaction.potential;
-    if (!potential.state.empty() || potential.reads("normal_velocity") || potential.reads("tangential_velocity"))
+    if (!is_of_distance_alone(potential))
       throw std::invalid_argument("a potential within a membrane depends on the distance alone: " + potential.id);
-    const double cutoff =
-        call_foreign(potential.id, "cutoff", [&] { return potential.table->cutoff(potential.self.get()); });
+    const double cutoff = cutoff_of(potential);
     Kind& kind = kinds_.emplace_back(Kind{cutoff, potential.writes("energy"), {}});
     kind.reach.resize(membranes.x.size(), {0, 0});
     const double apart = std::numbers::pi / 2 * cutoff;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "distance_law.hpp"
+
 namespace rouleau::core {
 
 SurfaceInteractions::SurfaceInteractions(const Surfaces& surfaces, std::vector<Interaction> interactions,
@@ -13,7 +15,7 @@ SurfaceInteractions::SurfaceInteractions(const Surfaces& surfaces, std::vector<I
       scratch_(surfaces.cells.size()),
       reactions_(surfaces.cells.size()) {
   for (const auto& [between, potential] : interactions_) {
-    if (!potential.state.empty() || potential.reads("normal_velocity") || potential.reads("tangential_velocity"))
+    if (!is_of_distance_alone(potential))
       throw std::invalid_argument("\"" + potential.id +
                                   "\" acts by more than the distance, which surfaces do not tell");
   }
@@ -60,14 +62,7 @@ void SurfaceInteractions::evaluate(int cell, const Surfaces& surfaces, bool ener
       scratch.contact.push_back(static_cast<int>(c));
     }
     if (scratch.distance.empty()) continue;
-    scratch.law.resize(scratch.distance.size());
-    rouleau_interaction_block block{};
-    block.struct_size = sizeof block;
-    block.count = static_cast<std::uint32_t>(scratch.distance.size());
-    block.time_step = 1;
-    block.distance = scratch.distance.data();
-    (energy ? block.energy : block.force) = scratch.law.data();
-    model.compute(&block);
+    core::evaluate(model, scratch.distance, energy, scratch.law);
     for (std::size_t i = 0; i < scratch.law.size(); ++i) scratch.result[scratch.contact[i]] += scratch.law[i];
   }
 }

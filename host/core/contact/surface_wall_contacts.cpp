@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "contact.hpp"
+#include "distance_law.hpp"
 
 namespace rouleau::core {
 
@@ -20,11 +21,10 @@ SurfaceWallContacts::SurfaceWallContacts(std::vector<WallInteraction> interactio
   if (walls_.empty()) throw std::invalid_argument("a potential between cells and walls needs walls");
   for (const WallInteraction& interaction : interactions_) {
     const Potential& potential = interaction.potential;
-    if (!potential.state.empty() || potential.reads("normal_velocity") || potential.reads("tangential_velocity"))
+    if (!is_of_distance_alone(potential))
       throw std::invalid_argument("\"" + potential.id +
                                   "\" acts by more than the distance, which surfaces do not tell");
-    cutoffs_.push_back(
-        call_foreign(potential.id, "cutoff", [&] { return potential.table->cutoff(potential.self.get()); }));
+    cutoffs_.push_back(cutoff_of(potential));
   }
 }
 
@@ -51,14 +51,7 @@ void SurfaceWallContacts::measure(std::size_t interaction, int cell, const Wall&
     }
   }
   if (contacts.node.empty()) return;
-  contacts.law.resize(contacts.node.size());
-  rouleau_interaction_block block{};
-  block.struct_size = sizeof block;
-  block.count = static_cast<std::uint32_t>(contacts.node.size());
-  block.time_step = 1;
-  block.distance = contacts.distance.data();
-  (energy ? block.energy : block.force) = contacts.law.data();
-  interactions_[interaction].potential.compute(&block);
+  evaluate(interactions_[interaction].potential, contacts.distance, energy, contacts.law);
 }
 
 template <class Act>

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "contact.hpp"
+#include "distance_law.hpp"
 
 namespace rouleau::core {
 
@@ -24,9 +25,7 @@ WallContacts::WallContacts(Membranes& membranes, std::vector<WallInteraction> in
     // Friction would be part of the walls' stress and power.
     if (potential.reads("tangential_velocity"))
       throw std::invalid_argument("a potential with walls reads no tangential velocity: " + potential.id);
-    const double cutoff =
-        call_foreign(potential.id, "cutoff", [&] { return potential.table->cutoff(potential.self.get()); });
-    traits_.push_back({cutoff, potential.reads("normal_velocity"), potential.writes("energy")});
+    traits_.push_back({cutoff_of(potential), potential.reads("normal_velocity"), potential.writes("energy")});
     std::vector<std::size_t>& variables = variables_.emplace_back();
     for (const StateVariable& declared : potential.state) {
       membranes.wall_contacts.of_cell.resize(membranes.cells.size());
