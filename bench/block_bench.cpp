@@ -118,7 +118,11 @@ void block_table(const std::string& file, int ranks, int rank, double seconds) {
   const scene::Scene scene = plan::read_scene(file, {});
   const plugin::Catalog catalog({ROULEAU_PLUGINS});
   const plan::Plan plan = plan::make_plan(scene, catalog);
-  const core::Decomposition<2> blocks = plan::make_blocks(plan, ranks);
+  if (scene.domain.depth) {
+    throw Error(Cause::bad_input, scene.place("/domain/size"), "blocks of three dimensions are not measured",
+                {"give a scene of two dimensions"});
+  }
+  const auto blocks = std::get<core::Decomposition<2>>(plan::make_blocks(plan, ranks));
   if (rank < 0 || rank >= ranks)
     throw Error(Cause::bad_input, "--rank " + std::to_string(rank) + ": there is no such rank",
                 {"ranks count from 0 to " + std::to_string(ranks - 1)});

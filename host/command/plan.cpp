@@ -71,15 +71,21 @@ class PlannedRanks {
     nlohmann::json object{{"balance", plan::balance(costs_)}, {"network", network_}, {"times", times_}};
     if (rank_) {
       object["rank"] = costs_[*rank_];
-      object["rank"]["first_node"] = block().begin;
-      object["rank"]["size"] = {block().size(0), block().size(1)};
+      std::visit(
+          [&](const auto& blocks) {
+            const auto block = blocks.domain(*rank_).block;
+            object["rank"]["first_node"] = block.begin;
+            for (std::size_t k = 0; k < block.begin.size(); ++k)
+              object["rank"]["size"].push_back(block.end[k] - block.begin[k]);
+          },
+          blocks_);
     } else {
       object["of_each"] = costs_;
     }
     return object;
   }
   [[nodiscard]] std::string text() const {
-    return (rank_ ? plan::to_text(costs_[*rank_], *rank_, block()) : plan::to_text(costs_)) +
+    return (rank_ ? plan::to_text(costs_[*rank_], *rank_, blocks_) : plan::to_text(costs_)) +
            plan::to_text(times_, network_);
   }
 
@@ -94,11 +100,10 @@ class PlannedRanks {
     }
     throw Error(Cause::bad_input, "--step: the time of a step is above zero");
   }
-  [[nodiscard]] core::Box<2> block() const { return blocks_.domain(*rank_).block; }
 
   std::optional<int> rank_;
   plan::Network network_;
-  core::Decomposition<2> blocks_;
+  plan::Blocks blocks_;
   std::vector<plan::RankCost> costs_;
   plan::RankTimes times_;
 };

@@ -47,10 +47,14 @@ std::vector<Crew::Fact> facts_of(const PlannedScene& planned) {
 /// This process' part. `directory`: null on all ranks but the first.
 run::Summary take_part(const PlannedScene& planned, run::RunOptions options, files::RunDirectory* directory,
                        const std::filesystem::path& folder, const std::string& again) {
-  core::Ranks<2> ranks;
+  run::Ranks ranks;
   if (Crew* const crew = Crew::present()) {
     options.message_library = crew->library();
-    ranks = {&*planned.blocks, &crew->transport()};
+    std::visit(
+        [&]<int D>(const core::Decomposition<D>& blocks) {
+          ranks = core::Ranks<D>{&blocks, &crew->transport()};
+        },
+        *planned.blocks);
   }
   try {
     return run::simulate(planned.plan, planned.report, options, directory, ranks);

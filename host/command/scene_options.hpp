@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/domain/decomposition.hpp"
+#include "plan/blocks.hpp"
 #include "plan/plan.hpp"
 #include "plan/plan_report.hpp"
 #include "plan/read_scene.hpp"
@@ -44,7 +44,7 @@ struct PlannedScene {
   const plugin::Catalog catalog;
   const plan::Plan plan;
   const plan::PlanReport report;
-  const std::optional<core::Decomposition<2>> blocks;  ///< none where this process is alone
+  const std::optional<plan::Blocks> blocks;  ///< none where this process is alone
 };
 
 }  // namespace rouleau::command

@@ -1,16 +1,21 @@
 // How the lattice of a scene is cut for several ranks.
 #pragma once
 
+#include <variant>
+
 #include "core/domain/decomposition.hpp"
 #include "plan.hpp"
 
 namespace rouleau::plan {
+
+/// In two dimensions or in three, as the scene.
+using Blocks = std::variant<core::Decomposition<2>, core::Decomposition<3>>;
 
 /// How many ranks a lattice has room for.
 int most_blocks(const Plan& plan);
 
 /// Blocks of about the same cost, one for each rank, for the cells' first places. Throws Error(bad_input) for more ranks
 /// than the lattice has room for.
-core::Decomposition<2> make_blocks(const Plan& plan, int ranks);
+Blocks make_blocks(const Plan& plan, int ranks);
 
 }  // namespace rouleau::plan

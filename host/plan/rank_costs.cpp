@@ -4,13 +4,15 @@
 #include <array>
 #include <cstdio>
 #include <functional>
-#include <rouleau/d2q9.hpp>
 #include <set>
+#include <type_traits>
 
+#include "core/contact/interaction_forces.hpp"
 #include "core/domain/halo.hpp"
+#include "core/fluid/velocity_set.hpp"
 #include "core/membrane/membranes.hpp"
 #include "core/membrane/rounding.hpp"
-#include "core/solver/cell_exchange.hpp"
+#include "core/solver/ghost_cells.hpp"
 #include "estimate.hpp"
 #include "solver_setup.hpp"
 
@@ -18,53 +20,55 @@ namespace rouleau::plan {
 
 namespace {
 
-using Blocks = core::Decomposition<2>;
-
 /// What the cut costs, s: measured (docs/scaling.md).
 namespace cost_of_sharing {
-constexpr double number = 5e-9;     ///< that goes to a neighbour: packing it, and unpacking one
-constexpr double beside = 65e-9;    ///< a membrane node of another rank's cell that shares rows: spreading tries it
-constexpr double anywhere = 23e-9;  ///< any membrane node: finding, packing and unpacking it
+constexpr double number = 5e-9;  ///< that goes to a neighbour: packing it, and unpacking one
+constexpr double ghost = 65e-9;  ///< a node of a ghost: unpacking it, finding where it touches the lattice, spreading
+constexpr double shown = 23e-9;  ///< a node that is told to another rank
 }  // namespace cost_of_sharing
 
+template <int D>
+using SetOf = std::conditional_t<D == 2, core::D2Q9, core::D3Q19>;
+
 /// The ranks whose blocks lie within two nodes of a rank's own, itself included, across periodic borders too.
-std::vector<int> ranks_near(const Blocks& blocks, int rank) {
-  const core::Domain<2> domain = blocks.domain(rank);
-  constexpr int reach = 2;
+template <int D>
+std::vector<int> ranks_near(const core::Decomposition<D>& blocks, int rank) {
+  const core::Domain<D> domain = blocks.domain(rank);
+  core::BoundingBox<D> box;
+  for (int k = 0; k < D; ++k) box.least[k] = domain.block.begin[k], box.most[k] = domain.block.end[k] - 1;
   std::set<int> near;
-  const auto shifts = [&](int k) { return domain.periodic[k] ? std::vector<int>{-1, 0, 1} : std::vector<int>{0}; };
-  for (const int y : shifts(1)) {
-    for (const int x : shifts(0)) {
-      core::Box<2> box = domain.block;
-      for (int k = 0; k < 2; ++k) {
-        const int shift = (k == 0 ? x : y) * domain.size[k];
-        box.begin[k] += shift - reach, box.end[k] += shift + reach;
-      }
-      const std::vector<int> met = blocks.meeting(box);
-      near.insert(met.begin(), met.end());
-    }
-  }
+  core::for_nodes_near(box, 2, 1, domain, [&](const core::Box<D>& nodes) {
+    const std::vector<int> met = blocks.meeting(nodes);
+    near.insert(met.begin(), met.end());
+  });
   return {near.begin(), near.end()};
 }
 
 /// Populations of a halo node that cross the border: as core/fluid/fluid.cpp has them.
-int crossing(const core::Domain<2>& domain, const std::array<int, 2>& node, const std::array<int, 2>& out) {
+template <int D>
+int crossing(const core::Domain<D>& domain, const std::array<int, D>& node, const std::array<int, D>& out) {
   int count = 0;
-  for (int q = 1; q < 9; ++q) {
-    const int cx = d2q9::velocity[q][0], cy = d2q9::velocity[q][1];
-    const bool leaves = (out[0] == 0 || cx == out[0]) && (out[1] == 0 || cy == out[1]);
-    if (leaves && domain.block.contains({node[0] - cx, node[1] - cy})) ++count;
+  for (int q = 1; q < SetOf<D>::velocity_count; ++q) {
+    bool leaves = true;
+    std::array<int, D> from = node;
+    for (int k = 0; k < D; ++k) {
+      const int c = SetOf<D>::velocity[q][k];
+      leaves = leaves && (out[k] == 0 || c == out[k]);
+      from[k] -= c;
+    }
+    if (leaves && domain.block.contains(from)) ++count;
   }
   return count;
 }
 
-void add_halos(const Plan& plan, const Blocks& blocks, std::vector<RankCost>& ranks) {
+template <int D>
+void add_halos(const Plan& plan, const core::Decomposition<D>& blocks, std::vector<RankCost>& ranks) {
   const double number = plan.scene->numerics.precision == scene::Precision::f64 ? 8 : 4;
   for (int rank = 0; rank < blocks.ranks(); ++rank) {
-    const core::Domain<2> domain = blocks.domain(rank);
+    const core::Domain<D> domain = blocks.domain(rank);
     const std::vector<int> near = ranks_near(blocks, rank);
-    const auto owner = [&](std::array<int, 2> node) {
-      for (int k = 0; k < 2; ++k) node[k] = domain.wrapped(k, node[k]);
+    const auto owner = [&](std::array<int, D> node) {
+      for (int k = 0; k < D; ++k) node[k] = domain.wrapped(k, node[k]);
       return *std::find_if(near.begin(), near.end(), [&](int r) { return blocks.domain(r).block.contains(node); });
     };
     const auto send = [&](double RankCost::*bytes, int from, int to, double count) {
@@ -72,8 +76,8 @@ void add_halos(const Plan& plan, const Blocks& blocks, std::vector<RankCost>& ra
       ranks[to].received_bytes += count;
     };
     std::set<int> neighbours;
-    core::for_halo_nodes(domain, 1, 1, [&](const std::array<int, 2>& node, const std::array<int, 2>& out) {
-      const double bytes = crossing(domain, node, out) * number;
+    core::for_halo_nodes(domain, 1, 1, [&](const std::array<int, D>& node, const std::array<int, D>& out) {
+      const double bytes = crossing<D>(domain, node, out) * number;
       const int other = owner(node);
       if (other != rank) neighbours.insert(other);
       send(&RankCost::population_bytes, rank, other, bytes / 2);  // home after odd steps,
@@ -84,84 +88,114 @@ void add_halos(const Plan& plan, const Blocks& blocks, std::vector<RankCost>& ra
     ranks[rank].waits = 1;
     if (!plan.has_cells) continue;
     ranks[rank].messages *= 2;
-    core::for_halo_nodes(domain, 1, 2, [&](const std::array<int, 2>& node, const std::array<int, 2>&) {
-      send(&RankCost::velocity_bytes, owner(node), rank, 2 * number);
+    core::for_halo_nodes(domain, 1, 2, [&](const std::array<int, D>& node, const std::array<int, D>&) {
+      send(&RankCost::velocity_bytes, owner(node), rank, D * number);
     });
   }
 }
 
-/// How many membrane nodes have cells that meet each row: what spreading goes through in the blocks of these rows.
-class RowsOfCells {
- public:
-  explicit RowsOfCells(const core::Domain<2>& domain)
-      : domain_(domain), first_(static_cast<std::size_t>(domain.size[1])), change_(first_) {}
-  void add(int first, int last, int nodes) {
-    const int height = domain_.size[1];
-    if (last - first >= height - 1) return everywhere_ += nodes, void();
-    first = domain_.periodic[1] ? domain_.wrapped(1, first) : std::clamp(first, 0, height - 1);
-    last = domain_.periodic[1] ? domain_.wrapped(1, last) : std::clamp(last, 0, height - 1);
-    first_[first] += nodes;
-    change_[first] += nodes;
-    if (last + 1 < height) change_[last + 1] -= nodes;
-    if (last < first) change_[0] += nodes;
-  }
-  void finish() {
-    for (std::size_t y = 1; y < change_.size(); ++y) change_[y] += change_[y - 1], first_[y] += first_[y - 1];
-  }
-  [[nodiscard]] double nodes(int begin, int end) const {
-    return static_cast<double>(everywhere_ + change_[begin] + first_[end - 1] - first_[begin]);
-  }
+/// Up to which distance cells act on each other, with room for lists; 0: they do not.
+template <int D>
+double contact_reach(const Plan& plan) {
+  if (!plan.has_interactions) return 0;
+  core::Cutoffs cutoffs(1);
+  const auto setup = make_solver_setup<D>(plan, 0);
+  if (setup.interactions.empty()) return 0;
+  for (const double cutoff : core::cutoffs_of(setup.interactions)) cutoffs.raise(0, 0, cutoff);
+  return core::list_reach(cutoffs);
+}
 
- private:
-  core::Domain<2> domain_;
-  std::vector<long> first_;  ///< nodes of the cells that begin in a row; by finish() up to it
-  std::vector<long>
-      change_;  ///< nodes of the cells that meet it, less those of the row below; by finish() those that do
-  long everywhere_ = 0;
-};
-
-void add_cells(const Plan& plan, const Blocks& blocks, std::vector<RankCost>& ranks) {
-  const core::Domain<2> domain = blocks.domain(0);
-  const double others = blocks.ranks() - 1;
-  constexpr double word = sizeof(double), positions = 4 * word, forces = 2 * word, velocities = 2 * word;
-  RowsOfCells rows(domain);
-  double of_positions = 0, of_forces = 0, nodes_of_all = 0;
-  for_each_outline(*plan.scene, lattice_spacing(*plan.scene), [&](std::size_t, const core::Membranes& outline) {
-    const core::CellRange& cell = outline.cells.front();
-    const int rank = core::CellExchange::owners_by_place(outline, blocks).front();
+template <int D>
+void add_cells(const Plan& plan, const core::Decomposition<D>& blocks, std::vector<RankCost>& ranks) {
+  using Ghosts = core::GhostCells<D>;
+  const core::Domain<D> domain = blocks.domain(0);
+  constexpr double word = sizeof(double), of_node = D * word;
+  std::vector<core::BoundingBox<D>> boxes;
+  std::vector<int> owner, nodes;
+  std::vector<std::vector<int>> reached;  // by each cell: other ranks whose blocks it may touch
+  for_each_cell<D>(*plan.scene, lattice_spacing(*plan.scene), [&](std::size_t, const Cells<D>& cell) {
+    const core::BoundingBox<D> box = core::box_of<D>(cell, 0);
+    const int rank = Ghosts::owner_by_place(box, blocks);
     RankCost& own = ranks[rank];
     ++own.cells;
-    own.membrane_nodes += cell.count;
-    own.position_bytes += others * (cell.count * positions + word);
-    own.force_bytes += others * cell.count * forces;
-    of_positions += cell.count * positions + word, of_forces += cell.count * forces, nodes_of_all += cell.count;
-    const core::Bounds bounds = core::bounds(outline, cell);
-    const core::Box<2> block = blocks.domain(rank).block;
-    const std::array<int, 2> first{core::floor_int(bounds.x_min), core::floor_int(bounds.y_min)},
-        last{core::floor_int(bounds.x_max), core::floor_int(bounds.y_max)};
-    rows.add(first[1] - 1, last[1] + 2, cell.count);
-    if (block.contains(first) && block.contains(last)) return;
-    for (int i = 0; i < cell.count; ++i) {
+    own.membrane_nodes += cell.node_count();
+    std::vector<int>& others = reached.emplace_back(Ghosts::reached_by(box, blocks, core::lattice_reach));
+    std::erase(others, rank);
+    const core::Box<D> block = blocks.domain(rank).block;
+    const std::vector<double>* const places[] = {&cell.x, &cell.y, &cell.z};
+    for (int i = 0; i < cell.node_count() && !others.empty(); ++i) {
       // Whose block has the stencil's first node, sends the node's velocity.
-      const std::array<int, 2> node{domain.wrapped(0, core::floor_int(outline.x[i])),
-                                    domain.wrapped(1, core::floor_int(outline.y[i]))};
-      if (node[1] < 0 || block.contains(node)) continue;
-      ranks[blocks.owner(node)].node_velocity_bytes += velocities;
-      own.received_bytes += velocities;
+      std::array<int, D> node;
+      for (int k = 0; k < D; ++k) node[k] = domain.wrapped(k, core::floor_int((*places[k])[i]));
+      if (*std::min_element(node.begin(), node.end()) < 0 || block.contains(node)) continue;
+      ranks[blocks.owner(node)].node_velocity_bytes += of_node;
+      own.received_bytes += of_node;
     }
+    own.force_bytes += static_cast<double>(others.size()) * cell.node_count() * of_node;
+    for (const int other : others) ranks[other].received_bytes += cell.node_count() * of_node;
+    boxes.push_back(box);
+    owner.push_back(rank);
+    nodes.push_back(cell.node_count());
   });
-  rows.finish();
-  const long rounds = plan.has_interactions ? 4 : 3;  // positions, forces, velocities, and reactions
-  for (int r = 0; r < blocks.ranks(); ++r) {
-    RankCost& rank = ranks[r];
-    rank.messages += rounds * (blocks.ranks() - 1);
-    rank.waits += others > 0 ? rounds : 0;
-    if (others > 0) rank.received_bytes += of_positions + of_forces - (rank.position_bytes + rank.force_bytes) / others;
-    const core::Box<2> block = blocks.domain(r).block;
-    const double beside =
-        std::max(0.0, rows.nodes(block.begin[1], block.end[1]) - static_cast<double>(rank.membrane_nodes));
-    rank.sharing_s += others > 0 ? beside * cost_of_sharing::beside + nodes_of_all * cost_of_sharing::anywhere : 0;
+  // Who knows a cell, and with whom ranks speak of cells.
+  std::vector<std::set<int>> spread_with(ranks.size()), act_with(ranks.size());
+  std::vector<std::vector<int>> known = reached;
+  for (std::size_t c = 0; c < boxes.size(); ++c) {
+    for (const int rank : reached[c]) spread_with[owner[c]].insert(rank), spread_with[rank].insert(owner[c]);
   }
+  Ghosts::for_touching(
+      boxes, domain, contact_reach<D>(plan), [](int) { return true; },
+      [&](int c, int other) {
+        if (owner[c] == owner[other]) return;
+        known[c].push_back(owner[other]);
+        act_with[owner[c]].insert(owner[other]);
+      });
+  for (std::size_t c = 0; c < boxes.size(); ++c) {
+    std::sort(known[c].begin(), known[c].end());
+    known[c].erase(std::unique(known[c].begin(), known[c].end()), known[c].end());
+    const double bytes = nodes[c] * of_node + word;
+    RankCost& own = ranks[owner[c]];
+    own.position_bytes += static_cast<double>(known[c].size()) * bytes;
+    own.sharing_s += static_cast<double>(known[c].size()) * nodes[c] * cost_of_sharing::shown;
+    for (const int rank : known[c]) {
+      ranks[rank].received_bytes += bytes;
+      ranks[rank].ghost_nodes += nodes[c];
+    }
+  }
+  long rounds = 0;  // in which all ranks agree
+  for (int far = 1; far < blocks.ranks(); far *= 2) ++rounds;
+  for (std::size_t r = 0; r < ranks.size(); ++r) {
+    RankCost& rank = ranks[r];
+    const auto spread = static_cast<long>(spread_with[r].size()), act = static_cast<long>(act_with[r].size());
+    std::set<int> tell = spread_with[r];
+    tell.insert(act_with[r].begin(), act_with[r].end());
+    rank.messages += static_cast<long>(tell.size()) + 2 * spread + act + rounds;
+    rank.waits += rounds + (tell.empty() ? 0 : 1) + (spread > 0 ? 2 : 0) + (act > 0 ? 1 : 0);
+    const double agreed = static_cast<double>(rounds) * 4 * word;
+    rank.position_bytes += agreed;
+    rank.received_bytes += agreed;
+    rank.sharing_s += static_cast<double>(rank.ghost_nodes) * cost_of_sharing::ghost;
+  }
+}
+
+template <int D>
+std::vector<RankCost> costs_of(const Plan& plan, const core::Decomposition<D>& blocks) {
+  const scene::Scene& scene = *plan.scene;
+  std::vector<RankCost> ranks(static_cast<std::size_t>(blocks.ranks()));
+  add_halos(plan, blocks, ranks);
+  if (plan.has_cells) add_cells(plan, blocks, ranks);
+  const double membranes = membrane_memory(scene), lattice = estimate(plan).memory_bytes - membranes;
+  const double word = scene.numerics.precision == scene::Precision::f64 ? 8 : 4;
+  for (int rank = 0; rank < blocks.ranks(); ++rank) {
+    const core::Box<D> block = blocks.domain(rank).block;
+    RankCost& cost = ranks[rank];
+    cost.nodes = static_cast<long>(core::row_count(block)) * block.size(0);
+    const double nodes = static_cast<double>(cost.nodes), all = static_cast<double>(blocks.domain(rank).nodes());
+    cost.memory_bytes = lattice * nodes / all + membranes;  // every rank has room for all cells
+    cost.sharing_s += cost.lattice_bytes() / word * cost_of_sharing::number;
+    cost.step_s = step_cost(nodes, static_cast<double>(cost.membrane_nodes), scene.numerics.precision, D);
+  }
+  return ranks;
 }
 
 std::string in_line(const char* name, const std::vector<RankCost>& ranks,
@@ -180,22 +214,7 @@ std::string in_line(const char* name, const std::vector<RankCost>& ranks,
 }  // namespace
 
 std::vector<RankCost> rank_costs(const Plan& plan, const Blocks& blocks) {
-  const scene::Scene& scene = *plan.scene;
-  std::vector<RankCost> ranks(static_cast<std::size_t>(blocks.ranks()));
-  add_halos(plan, blocks, ranks);
-  if (plan.has_cells) add_cells(plan, blocks, ranks);
-  const double membranes = membrane_memory(scene), lattice = estimate(plan).memory_bytes - membranes;
-  for (int rank = 0; rank < blocks.ranks(); ++rank) {
-    const core::Box<2> block = blocks.domain(rank).block;
-    RankCost& cost = ranks[rank];
-    cost.nodes = static_cast<long>(block.size(0)) * block.size(1);
-    const double nodes = static_cast<double>(cost.nodes), all = static_cast<double>(blocks.domain(rank).nodes());
-    cost.memory_bytes = lattice * nodes / all + membranes;  // every rank holds all cells
-    const double word = scene.numerics.precision == scene::Precision::f64 ? 8 : 4;
-    cost.sharing_s += cost.lattice_bytes() / word * cost_of_sharing::number;
-    cost.step_s = step_cost(nodes, static_cast<double>(cost.membrane_nodes), scene.numerics.precision);
-  }
-  return ranks;
+  return std::visit([&](const auto& of_lattice) { return costs_of(plan, of_lattice); }, blocks);
 }
 
 double balance(const std::vector<RankCost>& ranks) {
@@ -222,6 +241,7 @@ std::string to_text(const std::vector<RankCost>& ranks) {
   out += in_line("nodes of the block", ranks, number(&RankCost::nodes), whole);
   out += in_line("cells", ranks, number(&RankCost::cells), whole);
   out += in_line("membrane nodes", ranks, number(&RankCost::membrane_nodes), whole);
+  out += in_line("membrane nodes of ghosts", ranks, number(&RankCost::ghost_nodes), whole);
   out += in_line("neighbours", ranks, number(&RankCost::neighbours), whole);
   out += in_line("messages of a step", ranks, number(&RankCost::messages), whole);
   out += in_line("populations, kB a step", ranks, scaled(&RankCost::population_bytes, 1e-3), decimal);
@@ -238,16 +258,26 @@ std::string to_text(const std::vector<RankCost>& ranks) {
   return out + text.data();
 }
 
-std::string to_text(const RankCost& cost, int rank, const core::Box<2>& block) {
+std::string to_text(const RankCost& cost, int rank, const Blocks& blocks) {
+  std::string place;
+  std::visit(
+      [&](const auto& of_lattice) {
+        const auto block = of_lattice.domain(rank).block;
+        for (std::size_t k = 0; k < block.begin.size(); ++k)
+          place += (k == 0 ? " nodes " : ", ") + std::to_string(block.begin[k]) + " to " +
+                   std::to_string(block.end[k] - 1) + " along " + "xyz"[k];
+      },
+      blocks);
   std::array<char, 1024> text{};
   std::snprintf(text.data(), text.size(),
-                "\nRank %d: nodes %d to %d along x, %d to %d along y\n"
-                "  %-34s %12ld\n  %-34s %12ld\n  %-34s %12ld\n  %-34s %12ld\n  %-34s %12ld\n"
+                "\nRank %d:%s\n"
+                "  %-34s %12ld\n  %-34s %12ld\n  %-34s %12ld\n  %-34s %12ld\n  %-34s %12ld\n  %-34s %12ld\n"
                 "  %-34s %12.2f\n  %-34s %12.2f\n  %-34s %12.2f\n  %-34s %12.2f\n  %-34s %12.2f\n"
                 "  %-34s %12.2f\n  %-34s %12.2f\n  %-34s %12.2f\n  %-34s %12.2f\n",
-                rank, block.begin[0], block.end[0] - 1, block.begin[1], block.end[1] - 1,  //
+                rank, place.c_str(),  //
                 "nodes of the block", cost.nodes, "cells", cost.cells, "membrane nodes", cost.membrane_nodes,
-                "neighbours", cost.neighbours, "messages of a step", cost.messages,  //
+                "membrane nodes of ghosts", cost.ghost_nodes, "neighbours", cost.neighbours, "messages of a step",
+                cost.messages,  //
                 "populations, kB a step", cost.population_bytes / 1e3, "velocities, kB", cost.velocity_bytes / 1e3,
                 "positions of cells, kB", cost.position_bytes / 1e3, "forces of cells, kB", cost.force_bytes / 1e3,
                 "velocities of cells, kB", cost.node_velocity_bytes / 1e3,  //

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/domain/decomposition.hpp"
+#include "blocks.hpp"
 #include "plan.hpp"
 
 namespace rouleau::plan {
@@ -16,11 +16,12 @@ struct RankCost {
   long nodes = 0;  ///< of its block
   long cells = 0;  ///< that it owns
   long membrane_nodes = 0;
-  long neighbours = 0;  ///< ranks that it shares a border with
+  long ghost_nodes = 0;  ///< of other ranks' cells that it knows, and that spread forces in its block or act on its own
+  long neighbours = 0;   ///< ranks that it shares a border with
   long messages = 0;
   long waits = 0;                                   ///< how often in a step it waits for others
   double population_bytes = 0, velocity_bytes = 0;  ///< of the lattice, to neighbours
-  double position_bytes = 0, force_bytes = 0;       ///< of its membranes, to all
+  double position_bytes = 0, force_bytes = 0;       ///< of its membranes, to the ranks that know them
   double node_velocity_bytes = 0;                   ///< of membranes in its block, to their owners
   double received_bytes = 0;
   double memory_bytes = 0;
@@ -29,12 +30,12 @@ struct RankCost {
   [[nodiscard]] double lattice_bytes() const { return population_bytes + velocity_bytes; }
   [[nodiscard]] double membrane_bytes() const { return position_bytes + force_bytes + node_velocity_bytes; }
   [[nodiscard]] double sent_bytes() const { return lattice_bytes() + membrane_bytes(); }
-  NLOHMANN_DEFINE_TYPE_INTRUSIVE(RankCost, nodes, cells, membrane_nodes, neighbours, messages, waits, population_bytes,
-                                 velocity_bytes, position_bytes, force_bytes, node_velocity_bytes, received_bytes,
-                                 memory_bytes, step_s, sharing_s)
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(RankCost, nodes, cells, membrane_nodes, ghost_nodes, neighbours, messages, waits,
+                                 population_bytes, velocity_bytes, position_bytes, force_bytes, node_velocity_bytes,
+                                 received_bytes, memory_bytes, step_s, sharing_s)
 };
 
-std::vector<RankCost> rank_costs(const Plan& plan, const core::Decomposition<2>& blocks);
+std::vector<RankCost> rank_costs(const Plan& plan, const Blocks& blocks);
 
 /// Mean step_s over the largest: the part of the time in which ranks would compute if messages took none.
 double balance(const std::vector<RankCost>& ranks);
@@ -42,6 +43,6 @@ double balance(const std::vector<RankCost>& ranks);
 /// For people: least, mean and most of all ranks.
 std::string to_text(const std::vector<RankCost>& ranks);
 /// One of them.
-std::string to_text(const RankCost& cost, int rank, const core::Box<2>& block);
+std::string to_text(const RankCost& cost, int rank, const Blocks& blocks);
 
 }  // namespace rouleau::plan

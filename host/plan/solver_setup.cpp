@@ -188,7 +188,8 @@ void require_distance(const scene::Scene& scene) {
 
 }  // namespace
 
-void for_each_outline(const scene::Scene& scene, double spacing,
+template <>
+void for_each_cell<2>(const scene::Scene& scene, double spacing,
                       const std::function<void(std::size_t, const core::Membranes&)>& function) {
   std::vector<core::RestShape> shapes;
   std::vector<core::Membranes> outlines;
@@ -241,6 +242,11 @@ Eigen::Matrix3d rotation_of(const scene::CellPlacement& cell) {
   if (!cell.axis) return AngleAxisd(cell.angle, Vector3d::UnitZ()).toRotationMatrix();
   const Eigen::Quaterniond turned = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitY(), *cell.axis);
   return (turned * AngleAxisd(cell.angle, Vector3d::UnitY())).toRotationMatrix();
+}
+
+void add_placed(core::Surfaces& surfaces, const scene::CellPlacement& cell, double spacing) {
+  const core::Vec<3> center(cell.center.x() / spacing - 0.5, cell.center.y() / spacing - 0.5, cell.z / spacing - 0.5);
+  core::add_cell(surfaces, cell.type, center, rotation_of(cell));
 }
 
 /// Refuses surfaces that stick through walls, are longer than a period, or overlap.
@@ -332,12 +338,23 @@ core::Surfaces make_surfaces(const scene::Scene& scene, double spacing) {
   core::Surfaces surfaces;
   for (const scene::CellType& type : scene.cell_types)
     surfaces.types.push_back(std::make_shared<const core::RestSurface>(rest_surface(type, spacing)));
-  for (const scene::CellPlacement& cell : scene.cells) {
-    const core::Vec<3> center(cell.center.x() / spacing - 0.5, cell.center.y() / spacing - 0.5, cell.z / spacing - 0.5);
-    core::add_cell(surfaces, cell.type, center, rotation_of(cell));
-  }
+  for (const scene::CellPlacement& cell : scene.cells) add_placed(surfaces, cell, spacing);
   SurfaceChecker(scene, surfaces, spacing).check();
   return surfaces;
+}
+
+template <>
+void for_each_cell<3>(const scene::Scene& scene, double spacing,
+                      const std::function<void(std::size_t, const core::Surfaces&)>& function) {
+  std::vector<std::shared_ptr<const core::RestSurface>> types;
+  for (const scene::CellType& type : scene.cell_types)
+    types.push_back(std::make_shared<const core::RestSurface>(rest_surface(type, spacing)));
+  for (std::size_t c = 0; c < scene.cells.size(); ++c) {
+    core::Surfaces surface;
+    surface.types = types;
+    add_placed(surface, scene.cells[c], spacing);
+    function(c, surface);
+  }
 }
 
 double gap_to_tube(const scene::Scene& scene) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <type_traits>
 
 #include "core/membrane/membranes.hpp"
 #include "core/solver/solver_setup.hpp"
@@ -26,10 +27,14 @@ std::vector<core::Layer> lattice_layers(const scene::Scene& scene);
 core::Membranes make_membranes(const scene::Scene& scene, double spacing);
 /// The same in three dimensions; overlaps are found where one cell's node lies inside another.
 core::Surfaces make_surfaces(const scene::Scene& scene, double spacing);
-/// Calls function(c, outline) with each cell by itself, as it would be placed and without a check: for who does not need
+/// All cells of a scene of D dimensions, or one of them.
+template <int D>
+using Cells = std::conditional_t<D == 2, core::Membranes, core::Surfaces>;
+/// Calls function(c, cell) with each cell by itself, as it would be placed and without a check: for who does not need
 /// all of them at once.
-void for_each_outline(const scene::Scene& scene, double spacing,
-                      const std::function<void(std::size_t cell, const core::Membranes& outline)>& function);
+template <int D>
+void for_each_cell(const scene::Scene& scene, double spacing,
+                   const std::function<void(std::size_t c, const Cells<D>& cell)>& function);
 /// Either, on the scene's own lattice.
 template <int D>
 auto make_cells(const scene::Scene& scene) {

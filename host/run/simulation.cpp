@@ -469,17 +469,23 @@ class Simulation {
 }  // namespace
 
 Summary simulate(const plan::Plan& plan, const plan::PlanReport& report, const RunOptions& options,
-                 files::RunDirectory* directory, const core::Ranks<2>& ranks, const std::vector<int>& owner) {
+                 files::RunDirectory* directory, const Ranks& ranks, const std::vector<int>& owner) {
   try {
-    const auto in = [&]<class Set>(Set, const core::Ranks<Set::dimension>& of_lattice) {
+    const auto in = [&]<class Set>(Set) {
+      const auto* given = std::get_if<core::Ranks<Set::dimension>>(&ranks);
+      const core::Ranks<Set::dimension> of_lattice = given != nullptr ? *given : core::Ranks<Set::dimension>{};
       if (plan.scene->numerics.precision == scene::Precision::f64) {
         return Simulation<double, Set>(plan, report, options, directory, of_lattice, owner).run();
       }
       return Simulation<float, Set>(plan, report, options, directory, of_lattice, owner).run();
     };
-    return plan.scene->domain.depth ? in(core::D3Q19{}, {}) : in(core::D2Q9{}, ranks);
+    return plan.scene->domain.depth ? in(core::D3Q19{}) : in(core::D2Q9{});
   } catch (...) {
-    if (ranks.several()) ranks.transport->abandon();
+    std::visit(
+        [](const auto& of_lattice) {
+          if (of_lattice.several()) of_lattice.transport->abandon();
+        },
+        ranks);
     throw;
   }
 }

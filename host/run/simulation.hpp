@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "core/domain/ranks.hpp"
@@ -20,6 +21,9 @@ struct RunOptions {
   std::string message_library = {};                ///< that ranks speak over; empty: there are no others
 };
 
+/// In two dimensions or in three, as the scene; none: this process is alone.
+using Ranks = std::variant<core::Ranks<2>, core::Ranks<3>>;
+
 /// Runs a plan and writes into `directory`, going on from its checkpoint if it resumes; the summary has been written
 /// when it returns, with the plan's report in it: an empty one will do where nobody reads that. Throws
 /// Error(input_output), and Error(bad_input) where the checkpoint belongs to another run.
@@ -28,6 +32,6 @@ struct RunOptions {
 /// owners of cells (core::Solver), and come to the same end; the first one has the directory, null is given to the
 /// others, who only read its checkpoint. Where one of them throws the others throw core::RankLost.
 Summary simulate(const plan::Plan& plan, const plan::PlanReport& report, const RunOptions& options,
-                 files::RunDirectory* directory, const core::Ranks<2>& ranks = {}, const std::vector<int>& owner = {});
+                 files::RunDirectory* directory, const Ranks& ranks = {}, const std::vector<int>& owner = {});
 
 }  // namespace rouleau::run

@@ -80,20 +80,76 @@ inline std::vector<Case> scenes_to_cut() {
       {"bonds with a wall, too", four_cells, {shear, bonds, bonds_too, middle("46.648", "4.4")}}};
 }
 
+/// A cut, who owns the cells (none: by place), and with how many threads each rank works.
+template <int D>
+struct Cut {
+  std::string what;
+  core::Decomposition<D> blocks;
+  std::vector<int> owner;
+  int threads;
+};
+
+/// Two cells that stick together and one alone in a channel, which drift by up to 0.05 spacings a step over the border.
+inline std::vector<Case> travelling_cells() {
+  const std::string quick = R"(/stages=[{"name": "driven", "pressure_gradient": "4e5 Pa/m", "duration": "1 s",
+      "start": "developed"}])",
+                    cells = R"(/cells=[{"type": "rbc", "row": {"count": 2, "spacing": "3.2 um", "axis": "y",
+      "center": ["5 um", "6.2 um"]}}, {"type": "rbc", "angle": "70 deg", "at": ["17 um", "6 um"]}])",
+                    size = R"(/domain/size=["25.088 um", "12.544 um"])", nodes = "/domain/nodes=[128, 64]",
+                    density = "/numerics/density_factor=250";
+  return {{"travelling, slip and area correction",
+           four_cells,
+           {quick, cells, size, nodes, density, "/output={}", contrast, "/numerics/slip_correction=true",
+            "/numerics/area_correction=true"}},
+          {"travelling with convection, f32",
+           four_cells,
+           {quick, cells, size, nodes, density, "/output={}", contrast, "/fluid/inertia=true",
+            "/numerics/precision=\"f32\""}}};
+}
+/// Cuts across the way that they take, with one thread for each rank.
+inline std::vector<Cut<2>> cuts_for_travellers(const core::Domain<2>& domain) {
+  using Blocks = core::Decomposition<2>;
+  return {{"4x1", Blocks::even(domain, {4, 1}), {}, 1}, {"3x2", Blocks::even(domain, {3, 2}), {5, 0, 2}, 1}};
+}
+
+/// Cells in three dimensions: over borders, between walls, in a tube.
+inline std::vector<Case> scenes_in_space() {
+  const std::string doublet = ROULEAU_SCENES "/doublet-3d.json", capsule = ROULEAU_SCENES "/capsule-3d.json",
+                    f64 = "/numerics/precision=\"f64\"";
+  const std::string held = R"(/interactions=[{"between": ["wall", "capsule"], "model": "morse", "parameters": {
+    "depth": "1e-7 J/m2"}}])";
+  return {
+      {"doublet over a corner, f32",
+       doublet,
+       {"/cell_types/rbc/interior_viscosity=\"6 cP\"", "/cells/0/row/center=[\"11.5 um\", \"0.4 um\", \"11.8 um\"]"}},
+      {"capsule near a wall",
+       capsule,
+       {f64, held, "/domain/size=[\"15 um\", \"12 um\", \"13.5 um\"]", "/domain/nodes=[40, 32, 36]",
+        "/cell_types/capsule/interior_viscosity=\"6 cP\"",
+        R"(/cells=[{"type": "capsule", "at": ["14.6 um", "3.6 um", "13 um"]}])"}},
+      {"in a tube",
+       capsule,
+       {f64, R"(/domain={"size": ["12 um", "12 um", "12 um"], "nodes": [32, 32, 32],
+                         "walls": {"tube": {"radius": "6 um"}}})",
+        R"(/stages=[{"name": "driven", "pressure_gradient": "1e5 Pa/m", "duration": "1 s"}])", "/output={}",
+        R"(/cells=[{"type": "capsule", "at": ["0.6 um", "6.3 um", "7.2 um"]}])"}}};
+}
+
 inline const plugin::Catalog& catalog() {
   static const plugin::Catalog all({ROULEAU_PLUGINS});
   return all;
 }
 
 /// Cuts by bisection at random places.
-inline core::Decomposition<2> random_cuts(const core::Domain<2>& domain, int cuts, std::mt19937& random) {
-  std::vector<core::Box<2>> blocks{domain.block};
+template <int D>
+core::Decomposition<D> random_cuts(const core::Domain<D>& domain, int cuts, std::mt19937& random) {
+  std::vector<core::Box<D>> blocks{domain.block};
   while (cuts > 0) {
-    core::Box<2>& block = blocks[std::uniform_int_distribution<std::size_t>(0, blocks.size() - 1)(random)];
-    const int axis = std::uniform_int_distribution<int>(0, 1)(random);
+    core::Box<D>& block = blocks[std::uniform_int_distribution<std::size_t>(0, blocks.size() - 1)(random)];
+    const int axis = std::uniform_int_distribution<int>(0, D - 1)(random);
     if (block.size(axis) < 2) continue;
     const int at = block.begin[axis] + std::uniform_int_distribution<int>(1, block.size(axis) - 1)(random);
-    core::Box<2> upper = block;
+    core::Box<D> upper = block;
     upper.begin[axis] = at;
     block.end[axis] = at;
     blocks.push_back(upper);
@@ -102,26 +158,27 @@ inline core::Decomposition<2> random_cuts(const core::Domain<2>& domain, int cut
   return {domain, blocks};
 }
 
-/// A cut, who owns the cells (none: by place), and with how many threads each rank works.
-struct Cut {
-  std::string what;
-  core::Decomposition<2> blocks;
-  std::vector<int> owner;
-  int threads;
-};
-
 /// One block with two threads, even and uneven cuts, random ones with owners at random.
-inline std::vector<Cut> cuts_of(const core::Domain<2>& domain, int cells) {
-  using Blocks = core::Decomposition<2>;
-  const auto [nx, ny] = domain.size;
-  const core::Box<2> strip{{0, 0}, {nx / 5, ny}}, floor{{nx / 5, 0}, {nx, 3}}, rest{{nx / 5, 3}, {nx, ny}};
-  std::vector<Cut> cuts{
-      {"1", Blocks::even(domain, {1, 1}), {}, 2},   {"2x1", Blocks::even(domain, {2, 1}), {}, 1},
-      {"1x3", Blocks::even(domain, {1, 3}), {}, 2}, {"4x4", Blocks::even(domain, {4, 4}), {}, 1},
-      {"8x1", Blocks::even(domain, {8, 1}), {}, 1}, {"uneven", Blocks(domain, {strip, floor, rest}), {}, 2}};
+template <int D>
+std::vector<Cut<D>> cuts_of(const core::Domain<D>& domain, int cells) {
+  using Blocks = core::Decomposition<D>;
+  std::vector<Cut<D>> cuts;
+  if constexpr (D == 2) {
+    const auto [nx, ny] = domain.size;
+    const core::Box<2> strip{{0, 0}, {nx / 5, ny}}, floor{{nx / 5, 0}, {nx, 3}}, rest{{nx / 5, 3}, {nx, ny}};
+    cuts = {{"1", Blocks::even(domain, {1, 1}), {}, 2},   {"2x1", Blocks::even(domain, {2, 1}), {}, 1},
+            {"1x3", Blocks::even(domain, {1, 3}), {}, 2}, {"4x4", Blocks::even(domain, {4, 4}), {}, 1},
+            {"8x1", Blocks::even(domain, {8, 1}), {}, 1}, {"uneven", Blocks(domain, {strip, floor, rest}), {}, 2}};
+  } else {
+    cuts = {{"1", Blocks::even(domain, {1, 1, 1}), {}, 2},
+            {"2x1x1", Blocks::even(domain, {2, 1, 1}), {}, 1},
+            {"1x3x1", Blocks::even(domain, {1, 3, 1}), {}, 2},
+            {"1x1x2", Blocks::even(domain, {1, 1, 2}), {}, 1},
+            {"2x3x2", Blocks::even(domain, {2, 3, 2}), {}, 1}};
+  }
   auto random = generator(static_cast<unsigned>(std::random_device()()));
   for (int trial = 0; trial < 2; ++trial) {
-    Cut cut{"random", random_cuts(domain, 2 + trial * 3, random), {}, 1 + trial};
+    Cut<D> cut{"random", random_cuts(domain, 2 + trial * 3, random), {}, 1 + trial};
     for (int i = 0; i < cells; ++i) {
       cut.owner.push_back(std::uniform_int_distribution<int>(0, cut.blocks.ranks() - 1)(random));
     }
@@ -132,15 +189,15 @@ inline std::vector<Cut> cuts_of(const core::Domain<2>& domain, int cells) {
 
 /// Calls function(ranks) for every rank of a cut, each in a thread of its own. Throws what the first rank that has
 /// thrown anything but RankLost has thrown.
-template <class Function>
-void on_all_ranks(const core::Decomposition<2>& blocks, Function function) {
+template <int D, class Function>
+void on_all_ranks(const core::Decomposition<D>& blocks, Function function) {
   const auto ends = core::make_loopback(blocks.ranks());
   std::vector<std::exception_ptr> thrown(ends.size());
   std::vector<std::thread> threads;
   for (std::size_t rank = 0; rank < ends.size(); ++rank) {
     threads.emplace_back([&, rank] {
       try {
-        function(core::Ranks<2>{&blocks, ends[rank].get()});
+        function(core::Ranks<D>{&blocks, ends[rank].get()});
       } catch (const core::RankLost&) {
         // The rank that was lost says why.
       } catch (...) {

@@ -36,10 +36,22 @@ constexpr bool others_watch = false;
   while (true) ::syscall(SYS_exit_group, code);
 }
 
+std::atomic<pid_t> last_words_of{0};  // the thread that has said why the process ends
+
+/// Of threads that come to their end together one speaks; it ends the process while the others wait.
+void let_first_speak() {
+  const pid_t own = static_cast<pid_t>(::syscall(SYS_gettid));
+  pid_t first = 0;
+  if (last_words_of.compare_exchange_strong(first, own) || first == own) return;
+  timespec enough{.tv_sec = 10, .tv_nsec = 0};
+  ::nanosleep(&enough, nullptr);
+}
+
 const char* speaker = nullptr;  // before a rank's last words; null: of all that there are, or of the first rank
 
 /// Only calls that are allowed in a handler.
 void say(std::initializer_list<const char*> parts) {
+  let_first_speak();
   if (speaker != nullptr) {
     // Where all ranks come to the same end the launcher ends this one meanwhile, and there is one message.
     timespec while_first_speaks{.tv_sec = 2, .tv_nsec = 0};

@@ -8,13 +8,13 @@ namespace rouleau::core {
 
 namespace {
 
-constexpr int most_bins = 1024;  // along an axis: more would cost memory and save no time
-
 double middle(double least, double most) { return 0.5 * (least + most); }
 
 }  // namespace
 
-CellGrid::Axis CellGrid::make_axis(double least, double most, double width, double period) {
+template <int D>
+typename CellGrid<D>::Axis CellGrid<D>::make_axis(double least, double most, double width, double period) {
+  constexpr int most_bins = D == 2 ? 1024 : 128;  // more would cost memory and save no time
   Axis axis;
   axis.periodic = period > 0;
   axis.origin = axis.periodic ? 0 : least;
@@ -25,15 +25,17 @@ CellGrid::Axis CellGrid::make_axis(double least, double most, double width, doub
   return axis;
 }
 
-int CellGrid::Axis::bin(double middle) const {
+template <int D>
+int CellGrid<D>::Axis::bin(double middle) const {
   const double place = std::floor((middle - origin) / width);
   if (!periodic) return static_cast<int>(std::clamp(place, 0.0, count - 1.0));
   const int rest = static_cast<int>(std::fmod(place, count));
   return rest < 0 ? rest + count : rest;
 }
 
+template <int D>
 template <class Function>
-void CellGrid::for_around(const Axis& axis, int bin, Function function) {
+void CellGrid<D>::for_around(const Axis& axis, int bin, Function function) {
   if (axis.count <= 3) {
     for (int k = 0; k < axis.count; ++k) function(k);
     return;
@@ -47,48 +49,59 @@ void CellGrid::for_around(const Axis& axis, int bin, Function function) {
   }
 }
 
-CellGrid::CellGrid(const std::vector<Bounds>& bounds, double reach, const Domain<2>& domain) : bin_(bounds.size(), -1) {
+template <int D>
+CellGrid<D>::CellGrid(const std::vector<BoundingBox<D>>& boxes, double reach, const Domain<D>& domain)
+    : bin_(boxes.size(), -1) {
   const double far = std::numeric_limits<double>::infinity();
-  Bounds middles{far, -far, far, -far};
-  double width = 0, height = 0;
-  for (const Bounds& b : bounds) {
-    if (!b.usable()) continue;
-    const double x = middle(b.x_min, b.x_max), y = middle(b.y_min, b.y_max);
-    middles = {std::min(middles.x_min, x), std::max(middles.x_max, x), std::min(middles.y_min, y),
-               std::max(middles.y_max, y)};
-    width = std::max(width, b.x_max - b.x_min);
-    height = std::max(height, b.y_max - b.y_min);
-  }
   // Room for rounding: a pair at exactly the reach must not fall between two bins.
   const double room = reach * (1 + 1e-9) + 1e-6;
-  x_ = make_axis(middles.x_min, middles.x_max, width + room, domain.period(0));
-  y_ = make_axis(middles.y_min, middles.y_max, height + room, domain.period(1));
-
-  begin_.assign(static_cast<std::size_t>(x_.count) * y_.count + 1, 0);
-  for (std::size_t c = 0; c < bounds.size(); ++c) {
-    const Bounds& b = bounds[c];
-    if (!b.usable()) continue;
-    bin_[c] = y_.bin(middle(b.y_min, b.y_max)) * x_.count + x_.bin(middle(b.x_min, b.x_max));
-    ++begin_[static_cast<std::size_t>(bin_[c]) + 1];
+  std::size_t bins = 1;
+  for (int k = 0; k < D; ++k) {
+    double least = far, most = -far, width = 0;
+    for (const BoundingBox<D>& box : boxes) {
+      if (!box.usable()) continue;
+      const double place = middle(box.least[k], box.most[k]);
+      least = std::min(least, place), most = std::max(most, place);
+      width = std::max(width, box.most[k] - box.least[k]);
+    }
+    axes_[k] = make_axis(least, most, width + room, domain.period(k));
+    bins *= static_cast<std::size_t>(axes_[k].count);
+  }
+  begin_.assign(bins + 1, 0);
+  for (std::size_t c = 0; c < boxes.size(); ++c) {
+    if (!boxes[c].usable()) continue;
+    int bin = 0;
+    for (int k = D - 1; k >= 0; --k)
+      bin = bin * axes_[k].count + axes_[k].bin(middle(boxes[c].least[k], boxes[c].most[k]));
+    bin_[c] = bin;
+    ++begin_[static_cast<std::size_t>(bin) + 1];
   }
   for (std::size_t k = 1; k < begin_.size(); ++k) begin_[k] += begin_[k - 1];
   cells_.resize(static_cast<std::size_t>(begin_.back()));
   std::vector<int> next(begin_.begin(), begin_.end() - 1);
-  for (std::size_t c = 0; c < bounds.size(); ++c) {
+  for (std::size_t c = 0; c < boxes.size(); ++c) {
     if (bin_[c] >= 0) cells_[next[bin_[c]]++] = static_cast<int>(c);
   }
 }
 
-void CellGrid::find(int cell, std::vector<int>& near) const {
+template <int D>
+void CellGrid<D>::find(int cell, std::vector<int>& near) const {
   near.clear();
-  const int own = bin_[cell];
-  if (own < 0) return;
-  for_around(y_, own / x_.count, [&](int y) {
-    for_around(x_, own % x_.count, [&](int x) {
-      const auto bin = static_cast<std::size_t>(y * x_.count + x);
-      near.insert(near.end(), cells_.begin() + begin_[bin], cells_.begin() + begin_[bin + 1]);
-    });
+  if (bin_[cell] >= 0) append(D - 1, bin_[cell], 0, near);
+}
+
+template <int D>
+void CellGrid<D>::append(int axis, int bin, int first, std::vector<int>& near) const {
+  int below = 1;  // bins of one of this axis
+  for (int k = 0; k < axis; ++k) below *= axes_[k].count;
+  for_around(axes_[axis], bin / below, [&](int k) {
+    const int at = first + k * below;
+    if (axis > 0) return append(axis - 1, bin % below, at, near);
+    near.insert(near.end(), cells_.begin() + begin_[at], cells_.begin() + begin_[at + 1]);
   });
 }
+
+template class CellGrid<2>;
+template class CellGrid<3>;
 
 }  // namespace rouleau::core

@@ -41,6 +41,12 @@ class InteractionForces {
   /// Pass over cells: phases 0, 1, 2 with a barrier after each. Adds to force_x and force_y and advances the state of
   /// the contacts by one step.
   void run(Worker worker, int phase, Membranes& membranes);
+  /// Between steps, with other ranks: whether lists of cells that are near each other are out of date (DisplacementWatch).
+  [[nodiscard]] DisplacementWatch& watch() { return contacts_.neighbours().watch(); }
+  /// Cells do not act on each other from further away, with lists that are as old as they may be.
+  [[nodiscard]] double reach() const { return list_reach(contacts_.neighbours().cutoffs()); }
+  /// Whether potentials want to know velocities.
+  [[nodiscard]] bool needs_velocities() const { return needs_velocities_; }
   /// True if there is nothing to do: run() may be left out.
   [[nodiscard]] bool empty() const { return interactions_.empty(); }
 

@@ -73,6 +73,8 @@ double suitable_skin(const CellNodes& cells) {
   return std::min(skin, thickest_skin);
 }
 
+double list_reach(const Cutoffs& cutoffs) { return cutoffs.largest() + 2 * thickest_skin; }
+
 void Cutoffs::raise(int a, int b, double cutoff) {
   const double value = std::max((*this)(a, b), cutoff);
   cutoff_[static_cast<std::size_t>(a) * types_ + b] = value;
@@ -106,7 +108,7 @@ void NeighbourList::refresh(Worker worker, const Membranes& membranes, const Seg
   const Range cells = worker.share(membranes.cell_count());
   const double skin = suitable_skin(membranes);
   // Every worker sorts all cells: that is quicker than to wait for one who does.
-  const CellGrid grid(segments.bounds, cutoffs_.largest() + 2 * skin, domain_);
+  const CellGrid<2> grid(segments.bounds, cutoffs_.largest() + 2 * skin, domain_);
   for (int cell = cells.begin; cell < cells.end; ++cell) {
     CandidateList& list = lists_[cell];
     list.pairs.clear();
@@ -120,8 +122,8 @@ void NeighbourList::refresh(Worker worker, const Membranes& membranes, const Seg
   if (worker.first()) ++renewals_;
 }
 
-void NeighbourList::list_pairs(const Membranes& membranes, int cell, const CellGrid& grid, const SegmentTable& segments,
-                               double skin) {
+void NeighbourList::list_pairs(const Membranes& membranes, int cell, const CellGrid<2>& grid,
+                               const SegmentTable& segments, double skin) {
   CandidateList& list = lists_[cell];
   const int type = membranes.cells[cell].type;
   const Bounds& own = segments.bounds[cell];

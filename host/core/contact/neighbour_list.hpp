@@ -27,6 +27,8 @@ class Cutoffs {
 
 /// Skin for lists that are made now, by the speed at which nodes move.
 double suitable_skin(const CellNodes& cells);
+/// The largest distance between nodes at which lists with the thickest skin are made.
+double list_reach(const Cutoffs& cutoffs);
 
 /// Ordered pair: nodes of a cell against the outline of `other` moved by `shift` periods.
 struct CellPair {
@@ -78,6 +80,8 @@ class NeighbourList {
 
   /// Pass 1: has a node moved too far?
   void measure(Worker worker, const Membranes& membranes) { watch_.measure(worker, membranes); }
+  /// With other ranks, before that: they agree on it.
+  [[nodiscard]] DisplacementWatch& watch() { return watch_; }
   /// Pass 2: if one has, makes the lists of this worker's cells anew. `segments` are those of the present positions.
   void refresh(Worker worker, const Membranes& membranes, const SegmentTable& segments);
   /// Pass 3: if the lists are new, finds the opposite pairs of this worker's cells.
@@ -92,7 +96,7 @@ class NeighbourList {
   [[nodiscard]] long renewals() const { return renewals_; }
 
  private:
-  void list_pairs(const Membranes& membranes, int cell, const CellGrid& grid, const SegmentTable& segments,
+  void list_pairs(const Membranes& membranes, int cell, const CellGrid<2>& grid, const SegmentTable& segments,
                   double skin);
   void list_candidates(const Membranes& membranes, int cell, Pair& pair, const SegmentTable& segments, double skin);
 

@@ -1,6 +1,7 @@
 #include "segment_cache.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <rouleau/dispatch.hpp>
 
 namespace rouleau::core {
@@ -58,6 +59,11 @@ void SegmentTable::update(Worker worker, const Membranes& membranes) {
   static const auto function = Dispatch<Update, UpdateTask*>::pick();
   const Range cells = worker.share(static_cast<int>(membranes.cells.size()));
   for (int c = cells.begin; c < cells.end; ++c) {
+    if (!membranes.knows(c)) {  // it is near nothing
+      constexpr double none = std::numeric_limits<double>::quiet_NaN();
+      bounds[c] = {none, none, none, none};
+      continue;
+    }
     const CellRange& cell = membranes.cells[c];
     UpdateTask task{membranes.x.data(), membranes.y.data(),    x.data(),   y.data(),   along_x.data(),
                     along_y.data(),     inverse_square.data(), cell.first, cell.end(), Bounds{}};

@@ -37,6 +37,7 @@ class SurfaceContacts::Bins {
     double largest = 0;
     std::vector<Entry> entries;
     for (int cell = 0; cell < surfaces.cell_count(); ++cell) {
+      if (!surfaces.knows(cell)) continue;
       const Nodes nodes = surfaces.nodes(cell);
       int triangle = 0;
       for (const auto& [i, j, k] : surfaces.type_of(cell).mesh.triangles()) {
@@ -129,6 +130,7 @@ SurfaceContacts SurfaceContacts::within(double reach, const Surfaces& surfaces, 
     for (int b = 0; b <= a; ++b) cutoffs.raise(a, b, reach);
   }
   SurfaceContacts contacts(surfaces, std::move(cutoffs), domain);
+  contacts.of_all_ = true;
   contacts.measure({}, surfaces);
   contacts.refresh({}, surfaces);
   return contacts;
@@ -163,7 +165,7 @@ void SurfaceContacts::refresh(Worker worker, const Surfaces& surfaces) {
   // Every worker sorts all triangles: that is quicker than to wait for one who does.
   const Bins bins(surfaces, cutoffs_.largest() + 2 * skin, domain_);
   for (int cell = cells.begin; cell < cells.end; ++cell) {
-    list_candidates(cell, surfaces, bins, skin);
+    if (of_all_ || surfaces.owns(cell)) list_candidates(cell, surfaces, bins, skin);
     watch_.remember(cell, surfaces, skin);
   }
   if (worker.first()) ++renewals_;

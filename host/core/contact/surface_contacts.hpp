@@ -37,16 +37,18 @@ class SurfaceContacts {
  public:
   SurfaceContacts(const Surfaces& surfaces, Cutoffs cutoffs, const Domain<3>& domain);
 
-  /// Of all cells within one reach, whatever their types, at the present positions: find() may be called.
+  /// Of all cells within one reach, whatever their types and owners, at the present positions: find() may be called.
   static SurfaceContacts within(double reach, const Surfaces& surfaces, const Domain<3>& domain);
 
   /// Pass over cells: whether a node has moved too far for the lists.
   void measure(Worker worker, const Surfaces& surfaces);
   /// Pass over cells, after a barrier: their lists, if they have to be made anew.
   void refresh(Worker worker, const Surfaces& surfaces);
-  /// Then: the contacts of a cell, by node, then by the other cell and its image. A cell's by one worker at a time.
+  /// Then: the contacts of a cell of this rank, by node, then by the other cell and its image. A cell's by one worker at a time.
   void find(int cell, const Surfaces& surfaces, std::vector<SurfaceContact>& contacts) const;
 
+  /// With other ranks, before measure(): they agree on whether a node has moved too far.
+  [[nodiscard]] DisplacementWatch& watch() { return watch_; }
   /// How often lists were made.
   [[nodiscard]] long renewals() const { return renewals_; }
   [[nodiscard]] const Cutoffs& cutoffs() const { return cutoffs_; }
@@ -76,6 +78,7 @@ class SurfaceContacts {
   Cutoffs cutoffs_;
   Domain<3> domain_;
   DisplacementWatch watch_;
+  bool of_all_ = false;       // lists of other ranks' cells, too
   std::vector<double> path_;  // of each cell since its list was made: no node has a longer one; infinite: unknown
   std::vector<std::uint8_t> renewed_;         // of each cell: its list was made in this step
   mutable std::vector<CandidateList> lists_;  // of which distances are mutable

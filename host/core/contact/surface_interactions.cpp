@@ -27,6 +27,8 @@ void SurfaceInteractions::run(Worker worker, int phase, Surfaces& surfaces) {
   if (phase == 1) {
     contacts_.refresh(worker, surfaces);
     for (int cell = cells.begin; cell < cells.end; ++cell) {
+      reactions_[cell].clear();
+      if (!surfaces.owns(cell)) continue;
       Scratch& scratch = scratch_[cells.begin];
       contacts_.find(cell, surfaces, scratch.contacts);
       evaluate(cell, surfaces, false, scratch);
@@ -38,7 +40,7 @@ void SurfaceInteractions::run(Worker worker, int phase, Surfaces& surfaces) {
   const Range own = surfaces.node_share(worker);
   for (const std::vector<Reaction>& of_cell : reactions_) {
     for (const Reaction& reaction : of_cell) {
-      if (reaction.node < own.begin || reaction.node >= own.end) continue;
+      if (reaction.node < own.begin || reaction.node >= own.end || !surfaces.owns(reaction.cell)) continue;
       surfaces.force_x[reaction.node] += reaction.force.x();
       surfaces.force_y[reaction.node] += reaction.force.y();
       surfaces.force_z[reaction.node] += reaction.force.z();
@@ -70,7 +72,6 @@ void SurfaceInteractions::evaluate(int cell, const Surfaces& surfaces, bool ener
 void SurfaceInteractions::act(int cell, Surfaces& surfaces, const Scratch& scratch) {
   const RestSurface& rest = surfaces.type_of(cell);
   const int first = surfaces.cells[cell].first;
-  reactions_[cell].clear();
   for (std::size_t c = 0; c < scratch.contacts.size(); ++c) {
     const SurfaceContact& contact = scratch.contacts[c];
     if (scratch.result[c] == 0) continue;
@@ -79,22 +80,25 @@ void SurfaceInteractions::act(int cell, Surfaces& surfaces, const Scratch& scrat
     surfaces.force_y[contact.node] += force.y();
     surfaces.force_z[contact.node] += force.z();
     for (std::size_t k = 0; k < 3; ++k) {
-      if (contact.weight[k] != 0) reactions_[cell].push_back({contact.corner[k], -contact.weight[k] * force});
+      if (contact.weight[k] != 0)
+        reactions_[cell].push_back({contact.other, contact.corner[k], -contact.weight[k] * force});
     }
   }
 }
 
-double SurfaceInteractions::energy(const Surfaces& surfaces, const Ranks<3>&) const {
-  double sum = 0;
+double SurfaceInteractions::energy(const Surfaces& surfaces, const Ranks<3>& ranks) const {
+  std::vector<ExactSum> sum(1);
   Scratch scratch;
   for (int cell = 0; cell < surfaces.cell_count(); ++cell) {
+    if (!surfaces.owns(cell)) continue;
     contacts_.find(cell, surfaces, scratch.contacts);
     evaluate(cell, surfaces, true, scratch);
     const RestSurface& rest = surfaces.type_of(cell);
     for (std::size_t c = 0; c < scratch.contacts.size(); ++c)
-      sum += 0.5 * rest.node_area[scratch.contacts[c].node - surfaces.cells[cell].first] * scratch.result[c];
+      sum.front().add(0.5 * rest.node_area[scratch.contacts[c].node - surfaces.cells[cell].first] * scratch.result[c]);
   }
-  return sum;
+  add_up(ranks, sum);
+  return sum.front().value();
 }
 
 std::string SurfaceInteractions::without_energy() const {

@@ -23,18 +23,25 @@ class SurfaceInteractions {
   /// Pass over cells: phases 0, 1, 2 with a barrier after each. Adds to the forces; the sums do not depend on the workers.
   void run(Worker worker, int phase, Surfaces& surfaces);
 
-  /// Energy of the contacts at the present positions, for which run() has made the lists. Not a pass.
+  /// With other ranks: InteractionForces.
+  [[nodiscard]] DisplacementWatch& watch() { return contacts_.watch(); }
+  [[nodiscard]] double reach() const { return list_reach(contacts_.cutoffs()); }
+  [[nodiscard]] bool needs_velocities() const { return false; }
+  /// What one cell does to a node of another.
+  struct Reaction {
+    int cell, node;  ///< `node` of Surfaces belongs to `cell`
+    Vec<3> force;
+  };
+  /// After phase 1: what a cell does to others; of another rank's cell that is to be put there before phase 2.
+  [[nodiscard]] std::vector<Reaction>& reactions(int cell) { return reactions_[cell]; }
+
+  /// Energy of the contacts at the present positions, for which run() has made the lists, of all ranks' cells. Not a pass.
   [[nodiscard]] double energy(const Surfaces& surfaces, const Ranks<3>& ranks = {}) const;
   /// A potential that acts but tells no energy; empty: none.
   [[nodiscard]] std::string without_energy() const;
   [[nodiscard]] const SurfaceContacts& contacts() const { return contacts_; }
 
  private:
-  /// What one cell does to a node of another.
-  struct Reaction {
-    int node;
-    Vec<3> force;
-  };
   struct Scratch {
     std::vector<SurfaceContact> contacts;
     std::vector<double> result;         // of each contact: sum over the potentials

@@ -72,6 +72,7 @@ void SurfaceWallContacts::for_each(Range cells, const Surfaces& surfaces, bool e
 void SurfaceWallContacts::run(Worker worker, Surfaces& surfaces) {
   Contacts contacts;
   for_each(worker.share(surfaces.cell_count()), surfaces, false, contacts, [&](int cell) {
+    if (!surfaces.owns(cell)) return;
     const double* area = surfaces.type_of(cell).node_area.data();
     const int first = surfaces.cells[cell].first;
     for (std::size_t i = 0; i < contacts.node.size(); ++i) {

@@ -221,9 +221,10 @@ void Coupling<T>::reserve(const Membranes& membranes) {
 }
 
 template <class T>
-void Coupling<T>::locate(Worker worker, const Membranes& membranes, NodeVectors position) {
+void Coupling<T>::locate(Worker worker, const Membranes& membranes, NodeVectors position, Whose whose) {
   const Range cells = worker.share(membranes.cell_count());
   for (int c = cells.begin; c < cells.end; ++c) {
+    if (!membranes.is(c, whose)) continue;
     const CellRange& cell = membranes.cells[c];
     LocateTask<T> task{.to = {column_.data(), row_.data(), p_x_.data(), q_x_.data(), p_y_.data(), q_y_.data()},
                        .x = position.x,
@@ -258,6 +259,7 @@ void Coupling<T>::spread(Range rows, const Membranes& membranes, NodeVectors nod
                      .stride = stride};
   const auto for_cells = [&](auto function) {
     for (std::size_t c = 0; c < rows_.size(); ++c) {
+      if (!membranes.reaches(static_cast<int>(c))) continue;
       const BaseRows& base = rows_[c];
       const bool whole = base.lowest >= 1 && base.highest + 3 <= domain_.size[1];  // no stencil reaches over a border
       if (!whole || (base.highest + 3 > task.row_begin && base.lowest - 1 < task.row_end)) function(membranes.cells[c]);
@@ -287,17 +289,23 @@ void Coupling<T>::interpolate(Worker worker, Membranes& membranes, const VectorF
   const Range nodes = membranes.node_share(worker);
   const std::ptrdiff_t stride = velocity[0].stride(1);
   const std::ptrdiff_t first = domain_.block.begin[1] * stride + domain_.block.begin[0];
-  const InterpolateTask<T> task{{column_.data(), row_.data(), p_x_.data(), q_x_.data(), p_y_.data(), q_y_.data()},
-                                membranes.velocity_x.data(),
-                                membranes.velocity_y.data(),
-                                nodes.begin,
-                                nodes.end,
-                                velocity[0].row(0) - first,
-                                velocity[1].row(0) - first,
-                                stride,
-                                velocity[0].bytes() > large_field,
-                                domain_.whole() ? nullptr : &domain_.block};
-  loops_->interpolate(&task);
+  InterpolateTask<T> task{{column_.data(), row_.data(), p_x_.data(), q_x_.data(), p_y_.data(), q_y_.data()},
+                          membranes.velocity_x.data(),
+                          membranes.velocity_y.data(),
+                          nodes.begin,
+                          nodes.end,
+                          velocity[0].row(0) - first,
+                          velocity[1].row(0) - first,
+                          stride,
+                          velocity[0].bytes() > large_field,
+                          domain_.whole() ? nullptr : &domain_.block};
+  if (domain_.whole()) return loops_->interpolate(&task);
+  const Range cells = worker.share(membranes.cell_count());
+  for (int c = cells.begin; c < cells.end; ++c) {
+    if (!membranes.reaches(c)) continue;
+    task.begin = membranes.cells[c].first, task.end = membranes.cells[c].end();
+    loops_->interpolate(&task);
+  }
 }
 
 template <class T>

@@ -24,11 +24,11 @@ class Coupling {
   void reserve(const Membranes& membranes);
 
   /// Pass over cells: weights for these positions, the membranes' own or where a correction puts their forces.
-  void locate(Worker worker, const Membranes& membranes, NodeVectors position);
+  void locate(Worker worker, const Membranes& membranes, NodeVectors position, Whose whose = Whose::own);
   /// Pass over rows of the block: adds the forces of all nodes to the force density there. The sums do not depend on how
   /// rows are shared out, nor on the block.
   void spread(Range rows, const Membranes& membranes, NodeVectors node_force, VectorField<T, 2>& force) const;
-  /// Pass over cells: sets velocity_x and velocity_y of the nodes whose base node lies in the block.
+  /// Pass over cells: sets velocity_x and velocity_y of the nodes whose base node lies in the block, of cells that reach it.
   void interpolate(Worker worker, Membranes& membranes, const VectorField<T, 2>& velocity) const;
 
   /// The node of the lattice below a membrane node: that of the block which computes its velocity.

@@ -26,7 +26,7 @@ void InteriorField<T>::cover(Worker worker, const Surfaces& surfaces) {
   const Range cells = worker.share(surfaces.cell_count());
   std::vector<double> scratch;
   for (int c = cells.begin; c < cells.end; ++c) {
-    if (!watch_.moved(c)) continue;
+    if (!watch_.moved(c)) continue;  // or not known
     if (differs(surfaces.cells[c].type)) {
       core::cover(surfaces.type_of(c).mesh, surfaces.nodes(c), fraction_[c]);
       smooth(fraction_[c], scratch);
@@ -92,11 +92,11 @@ template <class T>
 template <class Function>
 void InteriorField<T>::for_rows(const int (&first)[2], const int (&size)[2], Range own, Function function) const {
   for (int k = 0; k < size[1]; ++k) {
-    const int z = domain_.wrapped(2, first[1] + k);
-    if (z < 0) continue;
+    const int z = domain_.wrapped(2, first[1] + k) - domain_.block.begin[2];  // of the block
+    if (z < 0 || z >= domain_.block.size(2)) continue;
     for (int j = 0; j < size[0]; ++j) {
-      const int y = domain_.wrapped(1, first[0] + j), row = y + domain_.size[1] * z;
-      if (y >= 0 && row >= own.begin && row < own.end) function(row, j, k);
+      const int y = domain_.wrapped(1, first[0] + j) - domain_.block.begin[1], row = y + domain_.block.size(1) * z;
+      if (y >= 0 && y < domain_.block.size(1) && row >= own.begin && row < own.end) function(row, j, k);
     }
   }
 }
@@ -106,7 +106,9 @@ void InteriorField<T>::update(Worker worker, const Surfaces& surfaces, Field<T, 
   const Range own = worker.share(row_count(domain_.block));
   if (varies_) set_rates(surfaces, own, relaxation_rate);
   mask.clear(own.begin, own.end);
-  for (const Rows& reach : reach_) {
+  for (std::size_t c = 0; c < reach_.size(); ++c) {
+    if (!surfaces.reaches(static_cast<int>(c))) continue;
+    const Rows& reach = reach_[c];
     for_rows(reach.first, reach.size, own, [&](int row, int j, int k) {
       const Interval& columns = reach.at(j, k);
       if (columns.begin < columns.end) mask.mark(row, columns.begin, columns.end);
@@ -119,7 +121,8 @@ void InteriorField<T>::set_rates(const Surfaces& surfaces, Range own, Field<T, 3
   // The field holds the sum over cells of (ratio - 1) I until every cell has been added. Cells that do not overlap may
   // share the columns between them, which are made plain again first and count once.
   const int width = domain_.size[0];
-  const auto row_of = [&](int row) { return rate.row(row % domain_.size[1], row / domain_.size[1]); };
+  const Box<3>& block = domain_.block;
+  const auto row_of = [&](int row) { return rate.row(row % block.size(1), row / block.size(1)); };
   for (int row = own.begin; row < own.end; ++row) {
     for (const Interval& columns : changed_[row])
       std::fill(row_of(row) + columns.begin, row_of(row) + columns.end, static_cast<T>(plain_rate_));
@@ -127,6 +130,7 @@ void InteriorField<T>::set_rates(const Surfaces& surfaces, Range own, Field<T, 3
   }
   const auto for_pieces = [&](const auto& function) {
     for (std::size_t c = 0; c < fraction_.size(); ++c) {
+      if (!surfaces.reaches(static_cast<int>(c))) continue;
       const VolumeFraction& fraction = fraction_[c];
       const int first[2] = {fraction.first[1], fraction.first[2]}, size[2] = {fraction.size[1], fraction.size[2]};
       const double excess = ratio_[surfaces.cells[c].type] - 1;
@@ -134,7 +138,9 @@ void InteriorField<T>::set_rates(const Surfaces& surfaces, Range own, Field<T, 3
         for (int begin = 0; begin < fraction.size[0];) {
           const int x = domain_.wrapped(0, fraction.first[0] + begin);
           const int end = std::min(fraction.size[0], begin + width - x);
-          function(row, x, fraction.row(j, k) + begin, end - begin, excess);
+          const int from = std::max(x, block.begin[0]), to = std::min(x + end - begin, block.end[0]);
+          if (from < to)
+            function(row, from - block.begin[0], fraction.row(j, k) + begin + (from - x), to - from, excess);
           begin = end;
         }
       });

@@ -13,7 +13,7 @@
 namespace rouleau::core {
 
 /// tau = 1/2 + (tau_outside - 1/2) (1 + sum over cells (ratio - 1) I), kept as 1/tau: I of a node's cube lies inside a
-/// cell. Of a lattice in one block. Where nodes have moved all that the cells cover is computed again.
+/// cell. Where nodes have moved all that the cells cover is computed again.
 template <class T>
 class InteriorField {
  public:
@@ -37,6 +37,8 @@ class InteriorField {
 
   /// What relaxation rate and mask were made from, for checkpoints.
   [[nodiscard]] const DisplacementWatch::Memory& memory() const { return watch_.memory(); }
+  /// The same for other ranks.
+  [[nodiscard]] DisplacementWatch& watch() { return watch_; }
   /// Not a pass: makes them again as they were, in place of those of a new stage.
   void restore(const DisplacementWatch::Memory& memory, const Surfaces& surfaces, Field<T, 3>& relaxation_rate,
                NodeMask& mask);
@@ -58,7 +60,7 @@ class InteriorField {
 
   [[nodiscard]] bool differs(int type) const { return ratio_[type] != 1; }
   void find_reach(const Surfaces& surfaces, int cell);
-  /// Calls function(row, j, k) for those rows (j, k) of a box that fall on rows `own` of the lattice.
+  /// Calls function(row, j, k) for those rows (j, k) of a box that fall on rows `own` of the block.
   template <class Function>
   void for_rows(const int (&first)[2], const int (&size)[2], Range own, Function function) const;
   void set_rates(const Surfaces& surfaces, Range own, Field<T, 3>& rate);
@@ -70,7 +72,7 @@ class InteriorField {
   DisplacementWatch watch_;
   std::vector<VolumeFraction> fraction_;  // of each cell; empty if its viscosity does not differ
   std::vector<Rows> reach_;               // of each cell: where its nodes may spread or interpolate, and what it covers
-  std::vector<std::vector<Interval>> changed_;  // of each row of the lattice: where the rate is not the plain one
+  std::vector<std::vector<Interval>> changed_;  // of each row of the block: where the rate is not the plain one
 };
 
 extern template class InteriorField<float>;

@@ -145,10 +145,12 @@ SlipCorrection::SlipCorrection(const Membranes& membranes, std::vector<Type> typ
 }
 
 template <class Loop>
-void SlipCorrection::run(Worker worker, const Membranes& membranes, double* velocity_x, double* velocity_y) {
+void SlipCorrection::run(Worker worker, const Membranes& membranes, double* velocity_x, double* velocity_y,
+                         Whose whose) {
   static const auto function = Dispatch<Loop, const SlipTask*>::pick();
   const Range cells = worker.share(membranes.cell_count());
   for (int c = cells.begin; c < cells.end; ++c) {
+    if (!membranes.is(c, whose)) continue;
     const CellRange& cell = membranes.cells[c];
     const SlipConstants& constants = types_[cell.type].constants;
     const SlipTask task{cell.first,
@@ -188,22 +190,26 @@ double SlipCorrection::largest_shift() const {
   return largest;
 }
 
-void SlipCorrection::measure(Worker worker, const Membranes& membranes) {
-  run<Measure>(worker, membranes, nullptr, nullptr);
+void SlipCorrection::measure(Worker worker, const Membranes& membranes, Whose whose) {
+  run<Measure>(worker, membranes, nullptr, nullptr, whose);
 }
 
 void SlipCorrection::complete(Worker worker, const Membranes& membranes) {
-  run<Couple>(worker, membranes, nullptr, nullptr);
-  run<Slip>(worker, membranes, nullptr, nullptr);
-  const Range nodes = membranes.node_share(worker);
-  for (auto i = static_cast<std::size_t>(nodes.begin); i < static_cast<std::size_t>(nodes.end); ++i) {
-    force_x_[i] = membranes.force_x[i] + force_x_[i];
-    force_y_[i] = membranes.force_y[i] + force_y_[i];
+  run<Couple>(worker, membranes, nullptr, nullptr, Whose::own);
+  run<Slip>(worker, membranes, nullptr, nullptr, Whose::own);
+  const Range cells = worker.share(membranes.cell_count());
+  for (int c = cells.begin; c < cells.end; ++c) {
+    if (!membranes.owns(c)) continue;
+    const CellRange& cell = membranes.cells[c];
+    for (auto i = static_cast<std::size_t>(cell.first); i < static_cast<std::size_t>(cell.end()); ++i) {
+      force_x_[i] = membranes.force_x[i] + force_x_[i];
+      force_y_[i] = membranes.force_y[i] + force_y_[i];
+    }
   }
 }
 
 void SlipCorrection::correct(Worker worker, Membranes& membranes) {
-  run<Correct>(worker, membranes, membranes.velocity_x.data(), membranes.velocity_y.data());
+  run<Correct>(worker, membranes, membranes.velocity_x.data(), membranes.velocity_y.data(), Whose::own);
 }
 
 }  // namespace rouleau::core

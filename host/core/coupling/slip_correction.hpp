@@ -26,7 +26,7 @@ class SlipCorrection {
   SlipCorrection(const Membranes& membranes, std::vector<Type> types, double viscosity);
 
   /// Pass over cells: directions at the present positions, and where the nodes touch the lattice.
-  void measure(Worker worker, const Membranes& membranes);
+  void measure(Worker worker, const Membranes& membranes, Whose whose = Whose::own);
   /// Pass over cells, once the forces on them are complete: the slip, and what is to be spread, forces(). Both are made of
   /// all forces on a node: where these balance, everything comes to rest.
   void complete(Worker worker, const Membranes& membranes);
@@ -43,7 +43,7 @@ class SlipCorrection {
 
  private:
   template <class Loop>
-  void run(Worker worker, const Membranes& membranes, double* velocity_x, double* velocity_y);
+  void run(Worker worker, const Membranes& membranes, double* velocity_x, double* velocity_y, Whose whose);
 
   std::vector<Type> types_;
   double viscosity_;

@@ -56,8 +56,8 @@ struct SurfaceSpread {
   const double* force[3];
   int begin, end;  // nodes of one cell
   const Domain<3>* domain;
-  int row_begin, row_end;
-  T* origin[3];  // of node (0, 0, 0)
+  int row_begin, row_end;  // of the block
+  T* origin[3];            // where node (0, 0, 0) of the lattice lies, or would lie if it belonged to the block
   std::ptrdiff_t stride_y, stride_z;
 };
 
@@ -93,11 +93,13 @@ struct SpreadSurface {
  private:
   using Four = Pack<T, 4>;
   ROULEAU_ALWAYS_INLINE static void spread(const SurfaceSpread<T>& t, int i) {
-    const std::array<int, 3>& size = t.domain->size;
+    const Box<3>& block = t.domain->block;
+    const int height = block.size(1);
     const int x = t.at.base[0][i] - 1, y = t.at.base[1][i] - 1, z = t.at.base[2][i] - 1;
-    const bool inside = x >= 0 && x + 4 <= size[0] && y >= 0 && y + 4 <= size[1] && z >= 0 && z + 4 <= size[2];
+    const bool inside = x >= block.begin[0] && x + 4 <= block.end[0] && y >= block.begin[1] && y + 4 <= block.end[1] &&
+                        z >= block.begin[2] && z + 4 <= block.end[2];
     if (!inside) return spread_at_border(t, i);
-    const int first = y + size[1] * z, last = y + 3 + size[1] * (z + 3);
+    const int first = y - block.begin[1] + height * (z - block.begin[2]), last = first + 3 + 3 * height;
     if (last < t.row_begin || first >= t.row_end) return;
     const StencilWeights<T, Kernel> weights(t.at, i);
     const Four fx = weights.along_x * Four(t.force[0][i]), fy = weights.along_x * Four(t.force[1][i]),
@@ -105,7 +107,7 @@ struct SpreadSurface {
     const bool whole = first >= t.row_begin && last < t.row_end;
     for (int m = 0; m < 4; ++m) {
       for (int l = 0; l < 4; ++l) {
-        const int row = first + l + size[1] * m;
+        const int row = first + l + height * m;
         if (!whole && (row < t.row_begin || row >= t.row_end)) continue;
         const std::ptrdiff_t at = (z + m) * t.stride_z + (y + l) * t.stride_y + x;
         const Four& weight = weights.row[m][l];
@@ -124,20 +126,31 @@ struct SpreadSurface {
     const int wrapped = domain.wrapped(axis, node);
     return wrapped >= 0 ? Image{wrapped, 1} : Image{mirrored(node, domain.size[axis]), -1};
   }
-  /// The same sums, number by number: of a stencil that reaches over the border of the lattice.
+  /// The same sums, number by number: of a stencil that reaches over the border of the lattice or of the block.
   [[gnu::noinline, gnu::cold]] static void spread_at_border(const SurfaceSpread<T>& t, int i) {
     if (t.at.base[2][i] == outside) return;
     const Domain<3>& domain = *t.domain;
+    const Box<3>& block = domain.block;
+    for (int k = 0; k < 3; ++k) {
+      bool reaches = false;
+      for (int m = 0; m < 4; ++m) {
+        const int node = image(domain, k, t.at.base[k][i] - 1 + m).node;
+        reaches = reaches || (node >= block.begin[k] && node < block.end[k]);
+      }
+      if (!reaches) return;
+    }
     const StencilWeights<T, Kernel> weights(t.at, i);
     for (int m = 0; m < 4; ++m) {
       const Image z = image(domain, 2, t.at.base[2][i] - 1 + m);
       for (int l = 0; l < 4; ++l) {
         const Image y = image(domain, 1, t.at.base[1][i] - 1 + l);
-        const int row = y.node + domain.size[1] * z.node;
+        if (y.node < block.begin[1] || y.node >= block.end[1]) continue;
+        const int row = y.node - block.begin[1] + block.size(1) * (z.node - block.begin[2]);
         if (row < t.row_begin || row >= t.row_end) continue;
         const T weight = static_cast<T>(y.sign * z.sign) * weights.row[m][l].vector[0];
         for (int k = 0; k < 4; ++k) {
           const Image x = image(domain, 0, t.at.base[0][i] - 1 + k);
+          if (x.node < block.begin[0] || x.node >= block.end[0]) continue;
           const std::ptrdiff_t at = z.node * t.stride_z + y.node * t.stride_y + x.node;
           for (int c = 0; c < 3; ++c) {
             t.origin[c][at] +=
@@ -156,6 +169,7 @@ struct SurfaceInterpolate {
   int begin, end;
   const T* origin[3];
   std::ptrdiff_t stride_y, stride_z;
+  const Box<3>* block;  // nodes above others are left alone; null: there are no others
 };
 
 template <class T, class Kernel>
@@ -169,6 +183,9 @@ struct InterpolateSurface {
         for (double* velocity : t.velocity) velocity[i] = 0;
         continue;
       }
+      if (t.block != nullptr && !t.block->contains({std::max(t.at.base[0][i], 0), std::max(t.at.base[1][i], 0),
+                                                    std::max(t.at.base[2][i], 0)}))
+        continue;
       const StencilWeights<T, Kernel> weights(t.at, i);
       Four u = T(0), v = T(0), w = T(0);
       const std::ptrdiff_t first =
@@ -230,10 +247,11 @@ void SurfaceCoupling<T>::reserve(const Surfaces& surfaces) {
 }
 
 template <class T>
-void SurfaceCoupling<T>::locate(Worker worker, const Surfaces& surfaces) {
+void SurfaceCoupling<T>::locate(Worker worker, const Surfaces& surfaces, Whose whose) {
   const Range cells = worker.share(surfaces.cell_count());
   const double* const place[3] = {surfaces.x.data(), surfaces.y.data(), surfaces.z.data()};
   for (int c = cells.begin; c < cells.end; ++c) {
+    if (!surfaces.is(c, whose)) continue;
     const CellRange& cell = surfaces.cells[c];
     for (int k = 0; k < 3; ++k) {
       const LocatePart<T> part{place[k], base_[k].data(), p_[k].data(), q_[k].data(), cell.first, cell.end()};
@@ -261,21 +279,26 @@ void SurfaceCoupling<T>::locate(Worker worker, const Surfaces& surfaces) {
 
 template <class T>
 void SurfaceCoupling<T>::spread(Range rows, const Surfaces& surfaces, VectorField<T, 3>& force) const {
+  const Box<3>& block = domain_.block;
   SurfaceSpread<T> task{};
+  task.stride_y = force[0].stride(1), task.stride_z = force[0].stride(2);
+  const std::ptrdiff_t first = first_of_block(task.stride_y, task.stride_z);
   for (int k = 0; k < 3; ++k) {
     task.at.base[k] = base_[k].data(), task.at.p[k] = p_[k].data(), task.at.q[k] = q_[k].data();
-    task.origin[k] = force[k].row(0, 0);
+    task.origin[k] = force[k].row(0, 0) - first;
   }
   task.force[0] = surfaces.force_x.data(), task.force[1] = surfaces.force_y.data();
   task.force[2] = surfaces.force_z.data();
   task.domain = &domain_;
   task.row_begin = rows.begin, task.row_end = rows.end;
-  task.stride_y = force[0].stride(1), task.stride_z = force[0].stride(2);
+  // Planes of the lattice that these rows lie in.
+  const int height = block.size(1), plane_begin = block.begin[2] + rows.begin / height,
+            plane_end = block.begin[2] + (rows.end + height - 1) / height;
   for (std::size_t c = 0; c < planes_.size(); ++c) {
+    if (!surfaces.reaches(static_cast<int>(c))) continue;
     const auto [lowest, highest] = planes_[c];
     const bool inside = lowest >= 1 && highest + 3 <= domain_.size[2];
-    if (inside && ((highest + 3) * domain_.size[1] <= rows.begin || (lowest - 1) * domain_.size[1] >= rows.end))
-      continue;
+    if (inside && (highest + 3 <= plane_begin || lowest - 1 >= plane_end)) continue;
     task.begin = surfaces.cells[c].first, task.end = surfaces.cells[c].end();
     loops_->spread(&task);
   }
@@ -284,16 +307,21 @@ void SurfaceCoupling<T>::spread(Range rows, const Surfaces& surfaces, VectorFiel
 template <class T>
 void SurfaceCoupling<T>::interpolate(Worker worker, Surfaces& surfaces, const VectorField<T, 3>& velocity) const {
   SurfaceInterpolate<T> task{};
+  task.stride_y = velocity[0].stride(1), task.stride_z = velocity[0].stride(2);
+  const std::ptrdiff_t first = first_of_block(task.stride_y, task.stride_z);
   for (int k = 0; k < 3; ++k) {
     task.at.base[k] = base_[k].data(), task.at.p[k] = p_[k].data(), task.at.q[k] = q_[k].data();
-    task.origin[k] = velocity[k].row(0, 0);
+    task.origin[k] = velocity[k].row(0, 0) - first;
   }
   task.velocity[0] = surfaces.velocity_x.data(), task.velocity[1] = surfaces.velocity_y.data();
   task.velocity[2] = surfaces.velocity_z.data();
-  task.stride_y = velocity[0].stride(1), task.stride_z = velocity[0].stride(2);
-  const Range nodes = surfaces.node_share(worker);
-  task.begin = nodes.begin, task.end = nodes.end;
-  loops_->interpolate(&task);
+  task.block = domain_.whole() ? nullptr : &domain_.block;
+  const Range cells = worker.share(surfaces.cell_count());
+  for (int c = cells.begin; c < cells.end; ++c) {
+    if (!surfaces.reaches(c)) continue;
+    task.begin = surfaces.cells[c].first, task.end = surfaces.cells[c].end();
+    loops_->interpolate(&task);
+  }
 }
 
 template <class T>

@@ -1,6 +1,8 @@
 // Carries the forces of surfaces to a lattice in three dimensions and its velocity to them, with the same weights.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <vector>
 
 #include "base/worker.hpp"
@@ -11,7 +13,7 @@
 
 namespace rouleau::core {
 
-/// Immersed-boundary coupling in three dimensions. Rows lie along x: row y + height z holds the nodes (., y, z). Forces go
+/// Immersed-boundary coupling in three dimensions. Rows lie along x, as row_of() counts them in the block. Forces go
 /// to the nodes of the lattice that a stencil's are images of; velocities are read from the halo, too, two nodes wide,
 /// which the fluid fills.
 template <class T>
@@ -23,12 +25,19 @@ class SurfaceCoupling {
   void reserve(const Surfaces& surfaces);
 
   /// Pass over cells: weights for the present positions.
-  void locate(Worker worker, const Surfaces& surfaces);
-  /// Pass over rows: adds the forces of all nodes to the force density there. The sums do not depend on how rows are
-  /// shared out.
+  void locate(Worker worker, const Surfaces& surfaces, Whose whose = Whose::own);
+  /// Pass over rows of the block: adds the forces of all nodes to the force density there. The sums do not depend on how
+  /// rows are shared out, nor on the block.
   void spread(Range rows, const Surfaces& surfaces, VectorField<T, 3>& force) const;
-  /// Pass over cells: sets the nodes' velocities.
+  /// Pass over cells: sets the velocities of the nodes whose base node lies in the block, of cells that reach it.
   void interpolate(Worker worker, Surfaces& surfaces, const VectorField<T, 3>& velocity) const;
+
+  /// The node of the lattice below a node: that of the block which computes its velocity.
+  [[nodiscard]] std::array<int, 3> base(int node) const {
+    std::array<int, 3> below;
+    for (int k = 0; k < 3; ++k) below[k] = std::max(base_[k][node], 0);
+    return below;
+  }
 
   /// First node whose stencil left the lattice or whose position is not a number at the last locate(); -1: none.
   /// Such a node neither spreads nor is moved.
@@ -37,6 +46,11 @@ class SurfaceCoupling {
 
  private:
   struct Loops;
+  /// From where node (0, 0, 0) of the lattice would lie in a field to the block's first node.
+  [[nodiscard]] std::ptrdiff_t first_of_block(std::ptrdiff_t stride_y, std::ptrdiff_t stride_z) const {
+    const std::array<int, 3>& begin = domain_.block.begin;
+    return begin[2] * stride_z + begin[1] * stride_y + begin[0];
+  }
 
   const Loops* loops_;
   Domain<3> domain_;

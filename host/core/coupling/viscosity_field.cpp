@@ -128,7 +128,9 @@ void ViscosityField<T>::update(Worker worker, const Membranes& membranes, Field<
     set_rates(membranes, own, relaxation_rate);
   }
   mask.clear(own.begin, own.end);
-  for (const Reach& reach : cells_) {
+  for (std::size_t c = 0; c < cells_.size(); ++c) {
+    if (!membranes.reaches(static_cast<int>(c))) continue;
+    const Reach& reach = cells_[c];
     for_rows(reach.reached, own, [&](int y, Interval columns, int) { mask.mark(y, columns.begin, columns.end); });
   }
 }
@@ -175,7 +177,7 @@ void ViscosityField<T>::set_rates(const Membranes& membranes, Range own, Field<T
   }
   for (std::size_t c = 0; c < cells_.size(); ++c) {
     const int type = membranes.cells[c].type;
-    if (!differs(type)) continue;
+    if (!differs(type) || !membranes.reaches(static_cast<int>(c))) continue;
     const double inside = averaged(ratio_[type]);
     const AreaFraction& fraction = cells_[c].fraction;
     for_rows(cells_[c].covered, own, [&](int y, Interval columns, int place) {

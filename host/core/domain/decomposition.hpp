@@ -77,7 +77,7 @@ class Decomposition {
     std::vector<int> ranks;
     for_squares(box, [&](int square) {
       for (const int rank : index_[square]) {
-        if (overlap(blocks_[rank], box)) ranks.push_back(rank);
+        if (blocks_[rank].meets(box)) ranks.push_back(rank);
       }
     });
     std::sort(ranks.begin(), ranks.end());
@@ -160,12 +160,6 @@ class Decomposition {
     for (const auto& point : points) (lower.contains(point) ? below : above).push_back(point);
     bisect(lower, lower_parts, std::move(below), point_cost, blocks);
     bisect(upper, upper_parts, std::move(above), point_cost, blocks);
-  }
-  static bool overlap(const Box<D>& a, const Box<D>& b) {
-    for (int k = 0; k < D; ++k) {
-      if (a.end[k] <= b.begin[k] || b.end[k] <= a.begin[k]) return false;
-    }
-    return true;
   }
   Domain<D> whole_;
   std::vector<Box<D>> blocks_;

@@ -17,6 +17,13 @@ struct Box {
     }
     return true;
   }
+  /// Whether a node lies in both.
+  [[nodiscard]] bool meets(const Box& other) const {
+    for (int k = 0; k < D; ++k) {
+      if (end[k] <= other.begin[k] || other.end[k] <= begin[k]) return false;
+    }
+    return true;
+  }
   friend bool operator==(const Box&, const Box&) = default;
 };
 

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstring>
 #include <span>
 #include <string>
@@ -57,22 +59,44 @@ std::vector<std::vector<V>> all_of(const Ranks<D>& ranks, std::vector<V> mine) {
   return all;
 }
 
+/// The largest of all ranks' values, one by one; infinite where one is no number. In as many rounds as the number of
+/// ranks has binary digits: after round k everybody knows of 2^k ranks below (dissemination).
+template <std::size_t count, int D>
+std::array<double, count> largest(const Ranks<D>& ranks, std::array<double, count> values) {
+  for (double& value : values) value = std::isnan(value) ? INFINITY : value;
+  if (!ranks.several()) return values;
+  const int own = ranks.transport->rank(), all = ranks.blocks->ranks();
+  for (int far = 1; far < all; far *= 2) {
+    ranks.transport->send((own + far) % all, message_of(std::span<const double>(values)));
+    const std::vector<double> others = values_of<double>(ranks.transport->receive((own + all - far) % all));
+    for (std::size_t k = 0; k < count; ++k) values[k] = std::max(values[k], others[k]);
+  }
+  return values;
+}
+
 /// Whether it is so on any rank.
 template <int D>
 bool any(const Ranks<D>& ranks, bool mine) {
-  if (!ranks.several()) return mine;
-  bool found = false;
-  for (const std::vector<char>& other : all_of(ranks, std::vector<char>{mine})) found = found || other.front() != 0;
-  return found;
+  return largest(ranks, std::array{mine ? 1.0 : 0.0}).front() > 0;
 }
 
-/// Each sum over what all ranks have.
+/// Each sum over what all ranks have: up a binary tree of ranks to the first, and down again.
 template <int D>
 void add_up(const Ranks<D>& ranks, std::vector<ExactSum>& sums) {
   if (!ranks.several()) return;
-  const auto all = all_of(ranks, std::exchange(sums, std::vector<ExactSum>(sums.size())));
-  for (const std::vector<ExactSum>& parts : all) {
+  const int own = ranks.transport->rank(), all = ranks.blocks->ranks();
+  int step = 1;
+  for (; step < all && own % (2 * step) == 0; step *= 2) {
+    if (own + step >= all) continue;
+    const std::vector<ExactSum> parts = values_of<ExactSum>(ranks.transport->receive(own + step));
     for (std::size_t k = 0; k < sums.size(); ++k) sums[k].add(parts[k]);
+  }
+  if (own != 0) {
+    ranks.transport->send(own - step, message_of(std::span<const ExactSum>(sums)));
+    sums = values_of<ExactSum>(ranks.transport->receive(own - step));
+  }
+  for (step /= 2; step > 0; step /= 2) {
+    if (own + step < all) ranks.transport->send(own + step, message_of(std::span<const ExactSum>(sums)));
   }
 }
 

@@ -1,10 +1,12 @@
 // The nodes of all cells of a scene, whatever joins them: one structure of arrays, in lattice units.
 #pragma once
 
-#include <cstdint>
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "base/worker.hpp"
+#include "core/domain/bounding_box.hpp"
 #include "topology.hpp"
 
 namespace rouleau::core {
@@ -15,6 +17,16 @@ struct CellRange : Segments {
   double rest_area = 0;       ///< of an outline, enclosed as created: the fluid inside cannot leave
   double rest_perimeter = 0;  ///< of an outline: sum of the rest lengths
 };
+
+/// What one rank has to do with a cell.
+struct CellPart {
+  bool owned;     ///< it computes the cell's forces and moves it
+  bool known;     ///< it knows where the cell is; the arrays hold something old else
+  bool reaching;  ///< the cell's nodes may touch this rank's block
+};
+
+/// Which cells a pass is over: those that this rank owns, or what it knows of others'.
+enum class Whose { own, others };
 
 /// Positions are not wrapped into the periodic box, so that cells stay whole. The first node of the lattice lies at the
 /// origin, walls half a spacing outside the first and the last one. What is along z is empty in two dimensions.
@@ -27,11 +39,13 @@ struct CellNodes {
                                                            ///< empty: unknown
   std::vector<double> area_leakage;                        ///< of each cell, over its rest area: area that the area
                                                            ///< correction has kept from leaving it; empty: none
-  std::vector<std::uint8_t> owned;                         ///< of each cell: whether this rank computes its forces and
-                                                           ///< moves it; of others it knows where they are; empty: all
+  std::vector<CellPart> part;                              ///< of this rank in each cell; empty: all of every cell
 
   [[nodiscard]] int node_count() const { return static_cast<int>(x.size()); }
-  [[nodiscard]] bool owns(int cell) const { return owned.empty() || owned[cell] != 0; }
+  [[nodiscard]] bool owns(int cell) const { return part.empty() || part[cell].owned; }
+  [[nodiscard]] bool knows(int cell) const { return part.empty() || part[cell].known; }
+  [[nodiscard]] bool reaches(int cell) const { return part.empty() || part[cell].reaching; }
+  [[nodiscard]] bool is(int cell, Whose whose) const { return knows(cell) && owns(cell) == (whose == Whose::own); }
   [[nodiscard]] int cell_count() const { return static_cast<int>(cells.size()); }
   /// The nodes of a worker's cells, worker.share(cell_count()).
   [[nodiscard]] Range node_share(Worker worker) const {
@@ -40,5 +54,23 @@ struct CellNodes {
     return {first(share.begin), first(share.end)};
   }
 };
+
+/// The box around a cell's nodes; its numbers are none where one of theirs is.
+template <int D>
+BoundingBox<D> box_of(const CellNodes& nodes, int cell) {
+  const std::vector<double>* const places[] = {&nodes.x, &nodes.y, &nodes.z};
+  const CellRange& range = nodes.cells[cell];
+  BoundingBox<D> box;
+  for (int k = 0; k < D; ++k) {
+    double least = INFINITY, most = -INFINITY, zero = 0;  // zero becomes NaN with the first place that is not finite
+    for (int i = range.first; i < range.end(); ++i) {
+      const double place = (*places[k])[i];
+      least = std::min(least, place), most = std::max(most, place);
+      zero += place - place;
+    }
+    box.least[k] = least + zero, box.most[k] = most + zero;
+  }
+  return box;
+}
 
 }  // namespace rouleau::core

@@ -35,21 +35,36 @@ DisplacementWatch::DisplacementWatch(const CellNodes& cells)
       moved_(cells.cells.size(), 1) {}
 
 void DisplacementWatch::measure(Worker worker, const CellNodes& nodes) {
+  if (agreed_) return;
   const Range cells = worker.share(nodes.cell_count());
-  const bool unknown = nodes.largest_step.empty();
   for (int c = cells.begin; c < cells.end; ++c) {
-    const auto at = static_cast<std::size_t>(c);
-    double& bound = memory_.bound[at];
-    bound = unknown ? std::numeric_limits<double>::infinity() : bound + nodes.largest_step[at];
-    if (!(bound <= memory_.limit[at])) {
-      const CellRange& cell = nodes.cells[at];
-      bound = largest_displacement(nodes, memory_, {cell.first, cell.end()});
-    }
-    moved_[at] = !(bound <= memory_.limit[at]);
+    moved_[c] = 0;
+    if (nodes.knows(c)) measure_cell(c, nodes);
   }
 }
 
+bool DisplacementWatch::measure_own(const CellNodes& nodes) {
+  bool moved = false;
+  for (int c = 0; c < nodes.cell_count(); ++c) {
+    if (!nodes.owns(c)) continue;
+    measure_cell(c, nodes);
+    moved = moved || moved_[c] != 0;
+  }
+  return moved;
+}
+
+void DisplacementWatch::measure_cell(int cell, const CellNodes& nodes) {
+  double& bound = memory_.bound[cell];
+  bound = nodes.largest_step.empty() ? std::numeric_limits<double>::infinity() : bound + nodes.largest_step[cell];
+  if (!(bound <= memory_.limit[cell])) {
+    const CellRange& range = nodes.cells[cell];
+    bound = largest_displacement(nodes, memory_, {range.first, range.end()});
+  }
+  moved_[cell] = !(bound <= memory_.limit[cell]);
+}
+
 bool DisplacementWatch::exceeded() const {
+  if (agreed_) return *agreed_;
   return std::any_of(moved_.begin(), moved_.end(), [](std::uint8_t moved) { return moved != 0; });
 }
 

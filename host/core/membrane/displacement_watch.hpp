@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -27,12 +28,16 @@ class DisplacementWatch {
   DisplacementWatch() = default;
   explicit DisplacementWatch(const CellNodes& cells);
 
-  /// Pass over cells, once a step. A barrier must lie between it and the next two.
+  /// Pass over cells, once a step, of those that this rank knows; nothing once ranks have agreed on what comes of it. A
+  /// barrier must lie between it and the next ones.
   void measure(Worker worker, const CellNodes& nodes);
   /// True if a node of the cell had moved further than its limit (or is not a number) at the last measure().
   [[nodiscard]] bool moved(int cell) const { return moved_[cell] != 0; }
-  /// True if any cell has moved.
+  /// True if any cell has moved, on any rank where these have agreed.
   [[nodiscard]] bool exceeded() const;
+  /// One worker, in place of measure(): whether a cell has moved that this rank owns. Then all ranks agree.
+  [[nodiscard]] bool measure_own(const CellNodes& nodes);
+  void agree(bool exceeded) { agreed_ = exceeded; }
   /// Remembers the present positions of a cell and how far its nodes may move from there. Does not change moved().
   void remember(int cell, const CellNodes& nodes, double limit);
 
@@ -42,11 +47,15 @@ class DisplacementWatch {
     std::vector<double> bound;  ///< of each cell: upper bound of its nodes' displacements
   };
   [[nodiscard]] const Memory& memory() const { return memory_; }
+  [[nodiscard]] Memory& memory() { return memory_; }
   /// Goes on from another watch's memory of the same cells.
   void recall(Memory memory) { memory_ = std::move(memory); }
 
  private:
+  void measure_cell(int cell, const CellNodes& nodes);
+
   Memory memory_;
+  std::optional<bool> agreed_;
   std::vector<std::uint8_t> moved_;  // one per cell, so that the answer does not depend on the workers
 };
 

@@ -69,16 +69,24 @@ void move_nodes(Worker worker, CellNodes& cells) {
   }
 }
 
-std::array<double, 3> mean_velocity(const CellNodes& cells) {
-  const double nodes = std::max(1, cells.node_count());
-  std::array<double, 3> mean{};
+template <int D>
+std::array<double, 3> mean_velocity(const CellNodes& cells, const Ranks<D>& ranks) {
   const std::vector<double>* const velocities[] = {&cells.velocity_x, &cells.velocity_y, &cells.velocity_z};
-  for (std::size_t k = 0; k < 3; ++k) {
-    for (const double u : *velocities[k]) mean[k] += u;
-    mean[k] /= nodes;
+  std::vector<ExactSum> sums(D);
+  for (int c = 0; c < cells.cell_count(); ++c) {
+    if (!cells.owns(c)) continue;
+    const CellRange& cell = cells.cells[c];
+    for (std::size_t k = 0; k < D; ++k)
+      sums[k].add(velocities[k]->data() + cell.first, static_cast<std::size_t>(cell.count));
   }
+  add_up(ranks, sums);
+  std::array<double, 3> mean{};
+  for (std::size_t k = 0; k < D; ++k) mean[k] = sums[k].value() / std::max(1, cells.node_count());
   return mean;
 }
+
+template std::array<double, 3> mean_velocity(const CellNodes&, const Ranks<2>&);
+template std::array<double, 3> mean_velocity(const CellNodes&, const Ranks<3>&);
 
 FarthestNode farthest_node(const CellNodes& cells) {
   FarthestNode farthest{0, -1};

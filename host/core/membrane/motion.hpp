@@ -5,6 +5,7 @@
 
 #include "base/worker.hpp"
 #include "cell_nodes.hpp"
+#include "core/domain/ranks.hpp"
 
 namespace rouleau::core {
 
@@ -12,8 +13,10 @@ namespace rouleau::core {
 /// which must have one value for each cell; NaN where a velocity is no number.
 void move_nodes(Worker worker, CellNodes& cells);
 
-/// Mean of the displacements of all nodes in the last step; 0 without nodes. The same on all ranks.
-std::array<double, 3> mean_velocity(const CellNodes& cells);
+/// Mean of the displacements of all nodes in the last step, of each by its owner; 0 without nodes. The same on all ranks,
+/// which must ask together.
+template <int D>
+std::array<double, 3> mean_velocity(const CellNodes& cells, const Ranks<D>& ranks);
 
 /// The node with the largest step, for messages.
 struct FarthestNode {

@@ -1,34 +1,35 @@
 #include "cell_exchange.hpp"
 
+#include <algorithm>
 #include <cstring>
-
-#include "core/membrane/geometry.hpp"
-#include "core/membrane/rounding.hpp"
+#include <numeric>
 
 namespace rouleau::core {
 
-namespace {
-
-class Packer {
+/// Values one after another, copied bit by bit.
+template <int D>
+class CellExchange<D>::Packer {
  public:
-  void put(const double* values, std::size_t count) {
+  template <class V>
+  void operator()(const V* values, std::size_t count) {
     const std::size_t at = message_.size();
-    message_.resize(at + count * sizeof(double));
-    std::memcpy(message_.data() + at, values, count * sizeof(double));
+    message_.resize(at + count * sizeof(V));
+    if (count > 0) std::memcpy(message_.data() + at, values, count * sizeof(V));
   }
-  void put(double value) { put(&value, 1); }
   [[nodiscard]] Message take() { return std::move(message_); }
 
  private:
   Message message_;
 };
 
-class Unpacker {
+template <int D>
+class CellExchange<D>::Unpacker {
  public:
   explicit Unpacker(Message message) : message_(std::move(message)) {}
-  void get(double* values, std::size_t count) {
-    std::memcpy(values, message_.data() + at_, count * sizeof(double));
-    at_ += count * sizeof(double);
+  template <class V>
+  void operator()(V* values, std::size_t count) {
+    if (count > 0) std::memcpy(static_cast<void*>(values), message_.data() + at_, count * sizeof(V));
+    at_ += count * sizeof(V);
   }
 
  private:
@@ -36,148 +37,280 @@ class Unpacker {
   std::size_t at_ = 0;
 };
 
+namespace {
+
+template <class Transfer>
+void transfer_nodes(std::vector<double>& values, const CellRange& cell, Transfer transfer) {
+  transfer(values.data() + cell.first, static_cast<std::size_t>(cell.count));
+}
+
 }  // namespace
 
-std::vector<int> CellExchange::owners_by_place(const Membranes& membranes, const Decomposition<2>& blocks) {
-  const Domain<2> domain = blocks.domain(0);
-  std::vector<int> owner;
-  for (const CellRange& cell : membranes.cells) {
-    const Bounds box = bounds(membranes, cell);
-    const auto node = [&](int axis, double least, double most) {
-      const int middle = floor_int((least + most) / 2 + 0.5);
-      const int wrapped = domain.wrapped(axis, middle);
-      return wrapped >= 0 ? wrapped : (middle < 0 ? 0 : domain.size[axis] - 1);
-    };
-    owner.push_back(box.usable() ? blocks.owner({node(0, box.x_min, box.x_max), node(1, box.y_min, box.y_max)}) : 0);
+template <int D>
+CellExchange<D>::CellExchange(const Ranks<D>& ranks, Cells& cells, std::vector<int> owner, GhostReach reach,
+                              bool velocities)
+    : ranks_(ranks),
+      ghosts_(
+          ranks,
+          [&] {
+            for (int c = static_cast<int>(owner.size()); c < cells.cell_count(); ++c)
+              owner.push_back(GhostCells<D>::owner_by_place(box_of<D>(cells, c), *ranks.blocks));
+            return owner;
+          }(),
+          reach),
+      velocities_(velocities),
+      path_(cells.cells.size(), 0.0) {
+  std::vector<BoundingBox<D>> boxes;
+  for (int c = 0; c < cells.cell_count(); ++c) boxes.push_back(box_of<D>(cells, c));
+  ghosts_.renew(boxes);
+  cells.part.assign(cells.cells.size(), {});
+  set_parts(cells);
+  for (CellPart& part : cells.part) part.known = true;
+}
+
+template <int D>
+auto CellExchange<D>::places(Cells& cells) -> Vectors {
+  if constexpr (D == 2) return {&cells.x, &cells.y};
+  if constexpr (D == 3) return {&cells.x, &cells.y, &cells.z};
+}
+template <int D>
+auto CellExchange<D>::velocities(Cells& cells) -> Vectors {
+  if constexpr (D == 2) return {&cells.velocity_x, &cells.velocity_y};
+  if constexpr (D == 3) return {&cells.velocity_x, &cells.velocity_y, &cells.velocity_z};
+}
+template <int D>
+auto CellExchange<D>::forces(Cells& cells) -> Vectors {
+  if constexpr (D == 2) return {&cells.force_x, &cells.force_y};
+  if constexpr (D == 3) return {&cells.force_x, &cells.force_y, &cells.force_z};
+}
+
+template <int D>
+void CellExchange<D>::set_parts(Cells& cells) const {
+  for (int c = 0; c < cells.cell_count(); ++c)
+    cells.part[c] = {.owned = ghosts_.owns(c), .known = ghosts_.knows(c), .reaching = ghosts_.reaches(c)};
+}
+
+template <int D>
+std::vector<BoundingBox<D>> CellExchange<D>::boxes_of_all(const Cells& cells) const {
+  std::vector<BoundingBox<D>> mine, all(cells.cells.size());
+  for (int c = 0; c < cells.cell_count(); ++c) {
+    if (ghosts_.owns(c)) mine.push_back(box_of<D>(cells, c));
   }
-  return owner;
-}
-
-template <class Function>
-void CellExchange::send(Function pack) const {
-  for (int to = 0; to < ranks_.blocks->ranks(); ++to) {
-    if (to == rank()) continue;
-    Packer packer;
-    pack(to, packer);
-    ranks_.transport->send(to, packer.take());
+  const auto of_ranks = all_of(ranks_, std::move(mine));
+  std::vector<std::size_t> next(of_ranks.size());
+  for (int c = 0; c < cells.cell_count(); ++c) {
+    const int owner = ghosts_.owner(c);
+    all[c] = of_ranks[owner][next[owner]++];
   }
+  return all;
 }
 
-template <class Function>
-void CellExchange::receive(Function unpack) const {
-  for (int from = 0; from < ranks_.blocks->ranks(); ++from) {
-    if (from == rank()) continue;
-    Unpacker unpacker(ranks_.transport->receive(from));
-    unpack(from, unpacker);
+template <int D>
+template <class Transfer>
+void CellExchange<D>::transfer_motion(Cells& cells, int cell, Transfer transfer) const {
+  for (auto* along : places(cells)) transfer_nodes(*along, cells.cells[cell], transfer);
+  for (auto* along : velocities(cells)) {
+    if (velocities_) transfer_nodes(*along, cells.cells[cell], transfer);
   }
+  transfer(&cells.largest_step[cell], 1);
 }
 
-void CellExchange::share_positions(Membranes& membranes) const {
-  std::vector<double>* const values[] = {&membranes.x, &membranes.y, &membranes.velocity_x, &membranes.velocity_y};
-  send([&](int, Packer& message) {
-    for (int c = 0; c < membranes.cell_count(); ++c) {
-      const CellRange& cell = membranes.cells[c];
-      if (owner_[c] != rank()) continue;
-      for (const auto* array : values) message.put(array->data() + cell.first, static_cast<std::size_t>(cell.count));
-      message.put(membranes.largest_step[c]);
-    }
-  });
-  receive([&](int from, Unpacker& message) {
-    for (int c = 0; c < membranes.cell_count(); ++c) {
-      const CellRange& cell = membranes.cells[c];
-      if (owner_[c] != from) continue;
-      for (auto* array : values) message.get(array->data() + cell.first, static_cast<std::size_t>(cell.count));
-      message.get(&membranes.largest_step[c], 1);
-    }
-  });
+template <int D>
+template <class Transfer>
+void CellExchange<D>::transfer_memory(Cells& cells, DisplacementWatch& watch, int cell, Transfer transfer) {
+  DisplacementWatch::Memory& memory = watch.memory();
+  transfer_nodes(memory.x, cells.cells[cell], transfer);
+  transfer_nodes(memory.y, cells.cells[cell], transfer);
+  if (D == 3) transfer_nodes(memory.z, cells.cells[cell], transfer);
+  transfer(&memory.limit[cell], 1);
+  transfer(&memory.bound[cell], 1);
 }
 
-void CellExchange::share_reactions(InteractionForces& forces) const {
-  const auto for_slices = [&](int actor, int target, auto function) {
-    for (int c = 0; c < static_cast<int>(owner_.size()); ++c) {
-      if (owner_[c] != actor) continue;
-      forces.for_reactions(c, [&](int other, double* x, double* y, std::size_t count) {
-        if (owner_[other] == target) function(x, count), function(y, count);
-      });
+template <int D>
+bool CellExchange<D>::share_positions(Cells& cells, DisplacementWatch& viscosity, DisplacementWatch* lists,
+                                      bool escaped) {
+  const auto raise = [](double& largest, double value) {
+    if (!(value <= largest) && !std::isnan(largest)) largest = value;
+  };
+  double step = 0, path = 0;
+  for (int c = 0; c < cells.cell_count(); ++c) {
+    if (!ghosts_.owns(c)) continue;
+    path_[c] += cells.largest_step[c];
+    raise(step, cells.largest_step[c]);
+    raise(path, path_[c]);
+  }
+  const bool expired = lists != nullptr && lists->measure_own(cells);
+  const auto [all_step, all_path, all_escaped, all_expired] =
+      largest(ranks_, std::array{step, path, escaped ? 1.0 : 0.0, expired ? 1.0 : 0.0});
+  const bool compare = !(all_path <= GhostCells<D>::skin);
+  if (compare) {
+    ghosts_.renew(boxes_of_all(cells));
+    std::fill(path_.begin(), path_.end(), 0.0);
+  }
+  if (lists != nullptr) lists->agree(compare || all_expired > 0);
+  set_parts(cells);
+  const auto transfer = [&](const std::vector<int>& of_peer, auto& message) {
+    for (const int c : of_peer) {
+      transfer_motion(cells, c, std::ref(message));
+      if (compare) transfer_memory(cells, viscosity, c, std::ref(message));
     }
   };
-  send([&](int to, Packer& message) {
-    for_slices(rank(), to, [&](const double* values, std::size_t count) { message.put(values, count); });
-  });
-  receive([&](int from, Unpacker& message) {
-    for_slices(from, rank(), [&](double* values, std::size_t count) { message.get(values, count); });
-  });
+  for (const auto& [rank, peer] : ghosts_.peers()) {
+    if (peer.mine.empty()) continue;
+    Packer message;
+    transfer(peer.mine, message);
+    ranks_.transport->send(rank, message.take());
+  }
+  for (const auto& [rank, peer] : ghosts_.peers()) {
+    if (peer.theirs.empty()) continue;
+    Unpacker message(ranks_.transport->receive(rank));
+    transfer(peer.theirs, message);
+  }
+  for (int c = 0; c < cells.cell_count(); ++c) {
+    if (!ghosts_.knows(c)) cells.largest_step[c] = all_step;  // no node of any cell has moved further
+  }
+  return all_escaped > 0;
 }
 
-void CellExchange::share_forces(const Membranes& membranes, double* force_x, double* force_y) const {
-  const auto for_cells = [&](int of, auto function) {
-    for (int c = 0; c < membranes.cell_count(); ++c) {
-      if (owner_[c] != of) continue;
-      const CellRange& cell = membranes.cells[c];
-      for (double* force : {force_x, force_y}) function(force + cell.first, static_cast<std::size_t>(cell.count));
-    }
-  };
-  send([&](int, Packer& message) {
-    for_cells(rank(), [&](const double* values, std::size_t count) { message.put(values, count); });
-  });
-  receive([&](int from, Unpacker& message) {
-    for_cells(from, [&](double* values, std::size_t count) { message.get(values, count); });
-  });
-}
-
-void CellExchange::share_state(Membranes& membranes) const {
-  const auto for_cells = [&](int of, auto& message, auto transfer) {
-    for (int c = 0; c < membranes.cell_count(); ++c) {
-      if (owner_[c] != of) continue;
-      const CellRange& cell = membranes.cells[c];
-      const auto of_nodes = [&](std::vector<double>& values) {
-        transfer(message, values.data() + cell.first, static_cast<std::size_t>(cell.count));
-      };
-      of_nodes(membranes.force_x), of_nodes(membranes.force_y);
-      for (ElementState& state : membranes.state) of_nodes(state.value);
-      if (!membranes.area_leakage.empty()) transfer(message, &membranes.area_leakage[c], 1);
-      for (ContactMemory* memory : {&membranes.contacts, &membranes.wall_contacts}) {
-        if (memory->of_cell.empty()) continue;
-        std::vector<ContactState>& contacts = memory->of_cell[c];
-        double size = static_cast<double>(contacts.size());
-        transfer(message, &size, 1);
-        contacts.resize(static_cast<std::size_t>(size));
-        for (ContactState& contact : contacts) {
-          double place[4] = {static_cast<double>(contact.variable), 1.0 * contact.other, 1.0 * contact.shift.x,
-                             1.0 * contact.shift.y};
-          transfer(message, place, 4);
-          contact.variable = static_cast<std::size_t>(place[0]);
-          contact.other = static_cast<int>(place[1]);
-          contact.shift = {static_cast<int>(place[2]), static_cast<int>(place[3])};
-          contact.value.resize(static_cast<std::size_t>(cell.count));
-          transfer(message, contact.value.data(), contact.value.size());
+template <int D>
+void CellExchange<D>::share_reactions(const Cells& cells, Interactions& interactions) const {
+  for (const auto& [rank, peer] : ghosts_.peers()) {
+    if (!peer.touch) continue;
+    Packer message;
+    for (const int c : peer.mine) {
+      if constexpr (D == 2) {
+        interactions.for_reactions(c, [&, to = rank](int other, double* x, double* y, std::size_t count) {
+          if (ghosts_.owner(other) == to) message(x, count), message(y, count);
+        });
+      } else {
+        std::vector<SurfaceInteractions::Reaction> there;
+        for (const auto& reaction : interactions.reactions(c)) {
+          if (ghosts_.owner(reaction.cell) == rank) there.push_back(reaction);
         }
+        const std::size_t count = there.size();
+        message(&count, 1);
+        message(there.data(), count);
       }
     }
-  };
-  send([&](int, Packer& message) {
-    for_cells(rank(), message, [](Packer& to, const double* from, std::size_t count) { to.put(from, count); });
-  });
-  receive([&](int rank, Unpacker& message) {
-    for_cells(rank, message, [](Unpacker& from, double* to, std::size_t count) { from.get(to, count); });
-  });
+    ranks_.transport->send(rank, message.take());
+  }
+  for (const auto& [rank, peer] : ghosts_.peers()) {
+    if (!peer.touch) continue;
+    Unpacker message(ranks_.transport->receive(rank));
+    for (const int c : peer.theirs) {
+      if constexpr (D == 2) {
+        interactions.for_reactions(c, [&](int other, double* x, double* y, std::size_t count) {
+          if (cells.owns(other)) message(x, count), message(y, count);
+        });
+      } else {
+        std::size_t count = 0;
+        message(&count, 1);
+        interactions.reactions(c).resize(count);
+        message(interactions.reactions(c).data(), count);
+      }
+    }
+  }
 }
 
-void CellExchange::collect_velocities(Membranes& membranes,
-                                      const std::function<std::array<int, 2>(int node)>& base) const {
-  const auto for_nodes = [&](int owner, int reader, auto function) {
-    const Box<2> block = ranks_.blocks->domain(reader).block;
-    for (int c = 0; c < membranes.cell_count(); ++c) {
-      if (owner_[c] != owner) continue;
-      for (int i = membranes.cells[c].first; i < membranes.cells[c].end(); ++i) {
+template <int D>
+void CellExchange<D>::share_forces(const Cells& cells, const std::array<double*, D>& force) const {
+  const auto transfer = [&](const std::vector<int>& of_peer, auto& message) {
+    for (const int c : of_peer) {
+      const CellRange& cell = cells.cells[c];
+      for (double* along : force) message(along + cell.first, static_cast<std::size_t>(cell.count));
+    }
+  };
+  for (const auto& [rank, peer] : ghosts_.peers()) {
+    if (peer.mine_there.empty()) continue;
+    Packer message;
+    transfer(peer.mine_there, message);
+    ranks_.transport->send(rank, message.take());
+  }
+  for (const auto& [rank, peer] : ghosts_.peers()) {
+    if (peer.theirs_here.empty()) continue;
+    Unpacker message(ranks_.transport->receive(rank));
+    transfer(peer.theirs_here, message);
+  }
+}
+
+template <int D>
+void CellExchange<D>::collect_velocities(Cells& cells, const std::function<std::array<int, D>(int node)>& base) const {
+  const auto transfer = [&](const std::vector<int>& of_peer, int reader, auto& message) {
+    const Box<D> block = ranks_.blocks->domain(reader).block;
+    for (const int c : of_peer) {
+      for (int i = cells.cells[c].first; i < cells.cells[c].end(); ++i) {
         if (!block.contains(base(i))) continue;
-        function(&membranes.velocity_x[i]);
-        function(&membranes.velocity_y[i]);
+        for (auto* along : velocities(cells)) message(along->data() + i, 1);
       }
     }
   };
-  send([&](int to, Packer& message) { for_nodes(to, rank(), [&](const double* value) { message.put(*value); }); });
-  receive([&](int from, Unpacker& message) { for_nodes(rank(), from, [&](double* value) { message.get(value, 1); }); });
+  for (const auto& [rank, peer] : ghosts_.peers()) {
+    if (peer.theirs_here.empty()) continue;
+    Packer message;
+    transfer(peer.theirs_here, ranks_.transport->rank(), message);
+    ranks_.transport->send(rank, message.take());
+  }
+  for (const auto& [rank, peer] : ghosts_.peers()) {
+    if (peer.mine_there.empty()) continue;
+    Unpacker message(ranks_.transport->receive(rank));
+    transfer(peer.mine_there, rank, message);
+  }
 }
+
+/// What laws and potentials remember, and what has leaked.
+template <int D>
+template <class Transfer>
+void CellExchange<D>::transfer_state(Cells& cells, int cell, Transfer transfer) {
+  const CellRange& range = cells.cells[cell];
+  for (auto* along : forces(cells)) transfer_nodes(*along, range, transfer);
+  if (!cells.area_leakage.empty()) transfer(&cells.area_leakage[cell], 1);
+  if constexpr (D == 2) {
+    for (ElementState& state : cells.state) transfer_nodes(state.value, range, transfer);
+    for (ContactMemory* memory : {&cells.contacts, &cells.wall_contacts}) {
+      if (memory->of_cell.empty()) continue;
+      std::vector<ContactState>& contacts = memory->of_cell[cell];
+      std::size_t size = contacts.size();
+      transfer(&size, 1);
+      contacts.resize(size);
+      for (ContactState& contact : contacts) {
+        transfer(&contact.variable, 1);
+        transfer(&contact.other, 1);
+        transfer(&contact.shift, 1);
+        contact.value.resize(static_cast<std::size_t>(range.count));
+        transfer(contact.value.data(), contact.value.size());
+      }
+    }
+  }
+}
+
+template <int D>
+void CellExchange<D>::share_state(Cells& cells, DisplacementWatch& watch) const {
+  const auto transfer = [&](int rank, auto& message) {
+    for (int c = 0; c < cells.cell_count(); ++c) {
+      if (ghosts_.owner(c) != rank) continue;
+      for (auto* along : places(cells)) transfer_nodes(*along, cells.cells[c], std::ref(message));
+      for (auto* along : velocities(cells)) transfer_nodes(*along, cells.cells[c], std::ref(message));
+      message(&cells.largest_step[c], 1);
+      transfer_memory(cells, watch, c, std::ref(message));
+      transfer_state(cells, c, std::ref(message));
+    }
+  };
+  const int own = ranks_.transport->rank(), all = ranks_.blocks->ranks();
+  Packer packer;
+  transfer(own, packer);
+  const Message mine = packer.take();
+  for (int to = 0; to < all; ++to) {
+    if (to != own) ranks_.transport->send(to, mine);
+  }
+  for (int from = 0; from < all; ++from) {
+    if (from == own) continue;
+    Unpacker message(ranks_.transport->receive(from));
+    transfer(from, message);
+  }
+  for (CellPart& part : cells.part) part.known = true;
+}
+
+template class CellExchange<2>;
+template class CellExchange<3>;
 
 }  // namespace rouleau::core

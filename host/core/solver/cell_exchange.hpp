@@ -3,49 +3,69 @@
 
 #include <array>
 #include <functional>
+#include <type_traits>
 #include <vector>
 
 #include "core/contact/interaction_forces.hpp"
-#include "core/domain/halo.hpp"
+#include "core/contact/surface_interactions.hpp"
+#include "core/membrane/displacement_watch.hpp"
 #include "core/membrane/membranes.hpp"
+#include "core/surface/surfaces.hpp"
+#include "ghost_cells.hpp"
 
 namespace rouleau::core {
 
-/// Every cell has one owner, the rank that computes its forces and moves it; it enters no formula, so that any rank will
-/// do. All ranks know where all cells are. Each call is one worker's, between two barriers, and all ranks make the same
-/// calls.
+/// The messages of a step about cells, and those with which all ranks get to know everything of all of them. Each call is
+/// one worker's, between two barriers, and all ranks make the same calls.
+template <int D>
 class CellExchange {
  public:
-  /// `owner[c]`: rank of cell c.
-  CellExchange(const Ranks<2>& ranks, std::vector<int> owner) : ranks_(ranks), owner_(std::move(owner)) {}
+  using Cells = std::conditional_t<D == 2, Membranes, Surfaces>;
+  using Interactions = std::conditional_t<D == 2, InteractionForces, SurfaceInteractions>;
 
-  /// The rank whose block holds the middle of each cell's bounds.
-  static std::vector<int> owners_by_place(const Membranes& membranes, const Decomposition<2>& blocks);
+  /// Sets what this rank's part in the cells is, all of which it knows to begin with. `owner`: empty: by place.
+  /// `velocities`: ghosts' are wanted, too.
+  CellExchange(const Ranks<D>& ranks, Cells& cells, std::vector<int> owner, GhostReach reach, bool velocities);
 
-  /// Positions, last displacements and the largest of them in each cell: from owners to all.
-  void share_positions(Membranes& membranes) const;
+  /// After the nodes have moved: what owners have found of them, then positions and largest steps of ghosts. Sets whether
+  /// lists of cells that act on each other are out of date, if there are such lists (null: none), and returns whether a
+  /// node has left the domain, on any rank. New ghosts come with what the viscosity's watch remembers of them.
+  bool share_positions(Cells& cells, DisplacementWatch& viscosity, DisplacementWatch* lists, bool escaped);
   /// The reactions of potentials, to the owners of the cells that they act on.
-  void share_reactions(InteractionForces& forces) const;
-  /// Two components for every node: from owners to all.
-  void share_forces(const Membranes& membranes, double* force_x, double* force_y) const;
-  /// What is looked at and kept between steps beside positions and velocities: forces, what laws and potentials
-  /// remember, leaked areas. From owners to all.
-  void share_state(Membranes& membranes) const;
+  void share_reactions(const Cells& cells, Interactions& interactions) const;
+  /// A component along each axis for every node, to those whose blocks it may reach.
+  void share_forces(const Cells& cells, const std::array<double*, D>& force) const;
   /// Velocities from the ranks that have interpolated them to the owners. `base(node)`: the node of the lattice below a
-  /// membrane node, whose rank is the one.
-  void collect_velocities(Membranes& membranes, const std::function<std::array<int, 2>(int node)>& base) const;
+  /// node, whose rank is the one.
+  void collect_velocities(Cells& cells, const std::function<std::array<int, D>(int node)>& base) const;
+  /// All of all cells, to all ranks: positions, velocities, forces, what laws and potentials remember, leaked areas, and
+  /// the watch's memory. Until the next share_positions() every rank knows every cell.
+  void share_state(Cells& cells, DisplacementWatch& watch) const;
 
  private:
-  [[nodiscard]] int rank() const { return ranks_.transport->rank(); }
-  /// Sends what function(rank, message) packs to every other rank.
-  template <class Function>
-  void send(Function pack) const;
-  /// Gives what has come from every other rank to function(rank, reader).
-  template <class Function>
-  void receive(Function unpack) const;
+  class Packer;
+  class Unpacker;
+  using Vectors = std::array<std::vector<double>*, D>;
+  static Vectors places(Cells& cells);
+  static Vectors velocities(Cells& cells);
+  static Vectors forces(Cells& cells);
+  void set_parts(Cells& cells) const;
+  [[nodiscard]] std::vector<BoundingBox<D>> boxes_of_all(const Cells& cells) const;
+  /// All that a step wants to know of one cell.
+  template <class Transfer>
+  void transfer_motion(Cells& cells, int cell, Transfer transfer) const;
+  template <class Transfer>
+  static void transfer_memory(Cells& cells, DisplacementWatch& watch, int cell, Transfer transfer);
+  template <class Transfer>
+  static void transfer_state(Cells& cells, int cell, Transfer transfer);
 
-  Ranks<2> ranks_;
-  std::vector<int> owner_;
+  Ranks<D> ranks_;
+  GhostCells<D> ghosts_;
+  bool velocities_;
+  std::vector<double> path_;  // of this rank's cells since boxes were compared: no node has a longer one
 };
+
+extern template class CellExchange<2>;
+extern template class CellExchange<3>;
 
 }  // namespace rouleau::core

@@ -31,6 +31,7 @@ OutlineTasks<T>::OutlineTasks(const SolverSetup& setup, Membranes& membranes, Fl
     : setup_(setup),
       membranes_(membranes),
       fluid_(fluid),
+      ranks_(ranks),
       slip_correction_(make_slip_correction()),
       membrane_forces_(membranes, forces_setup()),
       viscosity_field_(membranes, viscosity_ratios(),
@@ -38,12 +39,6 @@ OutlineTasks<T>::OutlineTasks(const SolverSetup& setup, Membranes& membranes, Fl
                        slip_correction_ ? slip_correction_->largest_shift() : 0.0, 1 / setup.tau, setup.domain,
                        fluid.setting().viscosity_of_rows),
       coupling_(setup.kernel, setup.domain) {
-  if (ranks.several()) {
-    if (owner.empty()) owner = CellExchange::owners_by_place(membranes, *ranks.blocks);
-    membranes_.owned.clear();
-    for (const int rank : owner) membranes_.owned.push_back(rank == ranks.transport->rank() ? 1 : 0);
-    exchange_ = std::make_unique<CellExchange>(ranks, std::move(owner));
-  }
   membranes_.largest_step.resize(membranes_.cells.size(), 0.0);
   if (setup.area_correction) membranes_.area_leakage.resize(membranes_.cells.size(), 0.0);  // earlier leakage stays
   if (!setup.interactions.empty()) {
@@ -56,7 +51,14 @@ OutlineTasks<T>::OutlineTasks(const SolverSetup& setup, Membranes& membranes, Fl
     self_contacts_ = std::make_unique<SelfContacts>(membranes_, setup.self_interactions);
   }
   coupling_.reserve(membranes_);
-  locate(Worker{});
+  if (ranks.several()) {
+    const GhostReach reach{.lattice = lattice_reach + (slip_correction_ ? slip_correction_->largest_shift() : 0.0),
+                           .contact = interaction_forces_ ? interaction_forces_->reach() : 0.0};
+    exchange_ = std::make_unique<CellExchange<2>>(ranks, membranes_, std::move(owner), reach,
+                                                  interaction_forces_ && interaction_forces_->needs_velocities());
+  }
+  locate(Worker{}, Whose::own);
+  locate(Worker{}, Whose::others);
 }
 
 template <class T>
@@ -120,7 +122,7 @@ void OutlineTasks<T>::run(Task task, Worker worker) {
       viscosity_field_.measure(worker, membranes_);
       return viscosity_field_.cover(worker, membranes_);
     case Task::follow_cells:
-      if (worker.first()) follow(mean_velocity(membranes_));
+      if (worker.first()) follow(mean_velocity());
       return;
     case Task::set_viscosity:
       if (viscosity_field_.due()) viscosity_field_.update(worker, membranes_, fluid_.relaxation_rate(), fluid_.mask());
@@ -134,7 +136,9 @@ void OutlineTasks<T>::run(Task task, Worker worker) {
     case Task::move:
       return core::move_nodes(worker, membranes_);
     case Task::locate:
-      return locate(worker);
+      return locate(worker, Whose::own);
+    case Task::locate_ghosts:
+      return locate(worker, Whose::others);
     case Task::share_reactions:
     case Task::share_forces:
     case Task::collect_velocities:
@@ -149,16 +153,25 @@ void OutlineTasks<T>::run(Task task, Worker worker) {
 template <class T>
 void OutlineTasks<T>::exchange(Task task) {
   if (task == Task::share_reactions) {
-    exchange_->share_reactions(*interaction_forces_);
+    exchange_->share_reactions(membranes_, *interaction_forces_);
   } else if (task == Task::share_forces) {
-    const auto [x, y] = slip_correction_ ? slip_correction_->forces_of_all()
-                                         : std::array{membranes_.force_x.data(), membranes_.force_y.data()};
-    exchange_->share_forces(membranes_, x, y);
+    exchange_->share_forces(membranes_, slip_correction_
+                                            ? slip_correction_->forces_of_all()
+                                            : std::array{membranes_.force_x.data(), membranes_.force_y.data()});
   } else if (task == Task::collect_velocities) {
     exchange_->collect_velocities(membranes_, [this](int node) { return coupling_.base(node); });
   } else {
-    exchange_->share_positions(membranes_);
+    escaped_ = exchange_->share_positions(membranes_, viscosity_field_.watch(),
+                                          interaction_forces_ ? &interaction_forces_->watch() : nullptr,
+                                          coupling_.any_escaped());
   }
+}
+
+template <class T>
+void OutlineTasks<T>::share_state() {
+  if (!exchange_) return;
+  exchange_->share_state(membranes_, viscosity_field_.watch());
+  locate(Worker{}, Whose::others);  // of all, now
 }
 
 template <class T>
@@ -168,9 +181,10 @@ void OutlineTasks<T>::follow(const std::array<double, 3>& velocity) {
 
 /// Pass over cells: where the nodes touch the lattice.
 template <class T>
-void OutlineTasks<T>::locate(Worker worker) {
-  if (slip_correction_) slip_correction_->measure(worker, membranes_);
-  coupling_.locate(worker, membranes_, slip_correction_ ? slip_correction_->positions() : membranes_.positions());
+void OutlineTasks<T>::locate(Worker worker, Whose whose) {
+  if (slip_correction_) slip_correction_->measure(worker, membranes_, whose);
+  coupling_.locate(worker, membranes_, slip_correction_ ? slip_correction_->positions() : membranes_.positions(),
+                   whose);
 }
 
 template <class T>

@@ -11,6 +11,7 @@
 #include "core/coupling/viscosity_field.hpp"
 #include "core/fluid/fluid.hpp"
 #include "core/membrane/membranes.hpp"
+#include "core/membrane/motion.hpp"
 #include "schedule.hpp"
 #include "solver_setup.hpp"
 
@@ -39,9 +40,9 @@ class OutlineTasks {
   /// The frame of the fluid's unsteady term gets the cells' velocity, as far as the walls allow, if the setup wants that.
   void follow(const std::array<double, 3>& velocity);
   /// One worker, between steps or where the state may be observed: tells all ranks what only the owners of cells know.
-  void share_state() {
-    if (exchange_) exchange_->share_state(membranes_);
-  }
+  void share_state();
+  /// Mean velocity of all ranks' nodes, which must ask together.
+  [[nodiscard]] std::array<double, 3> mean_velocity() const { return core::mean_velocity(membranes_, ranks_); }
   /// Between two steps: as a solver was whose viscosity field was last renewed so.
   void restore(const DisplacementWatch::Memory& viscosity) {
     viscosity_field_.restore(viscosity, membranes_, fluid_.relaxation_rate(), fluid_.mask());
@@ -49,7 +50,7 @@ class OutlineTasks {
 
   /// First node that has left the domain; -1: none.
   [[nodiscard]] int escaped_node() const { return coupling_.escaped(); }
-  [[nodiscard]] bool escaped() const { return coupling_.any_escaped(); }
+  [[nodiscard]] bool escaped() const { return exchange_ ? escaped_ : coupling_.any_escaped(); }
   [[nodiscard]] MembraneForces& forces() { return membrane_forces_; }
   /// What it takes to stretch all membranes by 0.1 %, and to bend them by as much.
   [[nodiscard]] double slight_energy() const;
@@ -71,12 +72,14 @@ class OutlineTasks {
   [[nodiscard]] MembraneForcesSetup forces_setup() const;
   [[nodiscard]] std::vector<double> viscosity_ratios() const;
   void exchange(Task task);
-  void locate(Worker worker);
+  void locate(Worker worker, Whose whose);
 
   const SolverSetup& setup_;
   Membranes& membranes_;
   Fluid<T>& fluid_;
-  std::unique_ptr<CellExchange> exchange_;  ///< null without other ranks
+  Ranks<2> ranks_;
+  std::unique_ptr<CellExchange<2>> exchange_;  ///< null without other ranks
+  bool escaped_ = false;                       ///< with other ranks: of any rank's cells
   std::unique_ptr<SlipCorrection> slip_correction_;
   MembraneForces membrane_forces_;
   std::unique_ptr<InteractionForces> interaction_forces_;

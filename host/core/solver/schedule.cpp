@@ -43,9 +43,10 @@ Schedule make_schedule(const StepFeatures& has) {
   add(cells, Task::interpolate, "interpolate", ranks ? Meeting::all : Meeting::none);
   add(cells && ranks, Task::collect_velocities, "ranks", Meeting::all);
   add(corrected, Task::correct_velocities, "corrections", Meeting::none);
-  add(cells, Task::move, "move", ranks ? Meeting::all : Meeting::none);
+  add(cells, Task::move, "move", Meeting::none);
+  add(cells, Task::locate, "move", ranks ? Meeting::all : Meeting::none);
   add(cells && ranks, Task::share_positions, "ranks", Meeting::all);
-  add(cells, Task::locate, "move", Meeting::none);
+  add(cells && ranks, Task::locate_ghosts, "move", Meeting::none);
   return schedule;
 }
 

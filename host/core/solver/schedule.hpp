@@ -21,7 +21,7 @@ enum class Task {
   complete_forces,     ///< cells: corrections of what is spread, made of all forces on a node
   find_nodes,          ///< cells: the area fraction of lattice nodes, and which nodes feel a membrane
   follow_cells,        ///< one worker: the frame of the fluid's unsteady term
-  share_forces,        ///< one worker: of all nodes, to the ranks that spread them
+  share_forces,        ///< one worker: to the ranks that spread them
   set_viscosity,       ///< rows: the relaxation rate in and around the cells that have moved
   clear_force,         ///< rows
   spread,              ///< rows: forces to the lattice (Peskin, Acta Numerica 11, 2002)
@@ -32,8 +32,9 @@ enum class Task {
   collect_velocities,  ///< one worker: of own nodes above other ranks' blocks
   correct_velocities,  ///< cells: neither slip nor leaks
   move,                ///< cells: X(t + 1) = X(t) + U
-  share_positions,     ///< one worker: of all nodes, to all ranks
-  locate               ///< cells: where the nodes touch the lattice
+  locate,              ///< cells: where the nodes touch the lattice
+  share_positions,     ///< one worker: of nodes that other ranks have to know of
+  locate_ghosts        ///< cells: locate, of other ranks' cells
 };
 
 /// A task and what happens between the workers after it.

@@ -164,7 +164,7 @@ void Solver<T, Set>::start(Solver* former) {
   } else if (former != nullptr) {
     faster = setup_.time_step / former->setup_.time_step;
     if (cell_tasks_) {
-      const auto [u, v, w] = mean_velocity(cells_);
+      const auto [u, v, w] = cell_tasks_->mean_velocity();
       former->cell_tasks_->follow({u, v, w});
       cell_tasks_->follow({faster * u, faster * v, faster * w});
     }

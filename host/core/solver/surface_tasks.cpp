@@ -9,14 +9,13 @@ namespace rouleau::core {
 
 namespace {
 
-void check(const BasicSolverSetup<3>& setup, const Ranks<3>& ranks) {
+void check(const BasicSolverSetup<3>& setup) {
   if (!setup.self_interactions.empty())
     throw std::invalid_argument("interactions within a cell are computed in two dimensions only");
   if (setup.slip_correction || setup.area_correction)
     throw std::invalid_argument("corrections of the coupling are made in two dimensions only");
   if (setup.semi_implicit) throw std::invalid_argument("the semi-implicit step is taken in two dimensions only");
   if (!setup.layers.empty()) throw std::invalid_argument("cells in layers are computed in two dimensions only");
-  if (ranks.several()) throw std::invalid_argument("cells in three dimensions are computed in one process");
 }
 
 std::vector<MembraneLaws> laws_of(const BasicSolverSetup<3>& setup) {
@@ -54,12 +53,13 @@ double energy_of_strain(const std::shared_ptr<const RestSurface>& rest, const Me
 
 template <class T>
 SurfaceTasks<T>::SurfaceTasks(const BasicSolverSetup<3>& setup, Surfaces& surfaces, Fluid<T, D3Q19>& fluid,
-                              const Ranks<3>& ranks, const std::vector<int>&)
+                              const Ranks<3>& ranks, std::vector<int> owner)
     : surfaces_(surfaces),
       fluid_(fluid),
-      forces_((check(setup, ranks), surfaces), laws_of(setup)),
+      forces_((check(setup), surfaces), laws_of(setup)),
       viscosity_field_(surfaces, ratios_of(setup), 1 / setup.tau, setup.domain),
-      coupling_(setup.kernel, setup.domain) {
+      coupling_(setup.kernel, setup.domain),
+      ranks_(ranks) {
   surfaces_.largest_step.resize(surfaces_.cells.size(), 0.0);
   std::vector<double> of_type;
   for (std::size_t t = 0; t < surfaces.types.size(); ++t)
@@ -70,7 +70,11 @@ SurfaceTasks<T>::SurfaceTasks(const BasicSolverSetup<3>& setup, Surfaces& surfac
   if (!setup.wall_interactions.empty())
     wall_contacts_ = std::make_unique<SurfaceWallContacts>(setup.wall_interactions, setup.domain, setup.tube_radius);
   coupling_.reserve(surfaces_);
-  coupling_.locate(Worker{}, surfaces_);
+  if (ranks.several()) {
+    const GhostReach reach{.lattice = lattice_reach, .contact = interactions_ ? interactions_->reach() : 0.0};
+    exchange_ = std::make_unique<CellExchange<3>>(ranks, surfaces_, std::move(owner), reach, false);
+  }
+  for (const Whose whose : {Whose::own, Whose::others}) coupling_.locate(Worker{}, surfaces_, whose);
 }
 
 template <class T>
@@ -97,10 +101,39 @@ void SurfaceTasks<T>::run(Task task, Worker worker) {
     case Task::move:
       return core::move_nodes(worker, surfaces_);
     case Task::locate:
-      return coupling_.locate(worker, surfaces_);
+      return coupling_.locate(worker, surfaces_, Whose::own);
+    case Task::locate_ghosts:
+      return coupling_.locate(worker, surfaces_, Whose::others);
+    case Task::share_reactions:
+    case Task::share_forces:
+    case Task::collect_velocities:
+    case Task::share_positions:
+      if (worker.first()) exchange(task);
+      return;
     default:
       return;  // of the fluid
   }
+}
+
+template <class T>
+void SurfaceTasks<T>::exchange(Task task) {
+  if (task == Task::share_reactions) {
+    exchange_->share_reactions(surfaces_, *interactions_);
+  } else if (task == Task::share_forces) {
+    exchange_->share_forces(surfaces_, {surfaces_.force_x.data(), surfaces_.force_y.data(), surfaces_.force_z.data()});
+  } else if (task == Task::collect_velocities) {
+    exchange_->collect_velocities(surfaces_, [this](int node) { return coupling_.base(node); });
+  } else {
+    escaped_ = exchange_->share_positions(surfaces_, viscosity_field_.watch(),
+                                          interactions_ ? &interactions_->watch() : nullptr, coupling_.any_escaped());
+  }
+}
+
+template <class T>
+void SurfaceTasks<T>::share_state() {
+  if (!exchange_) return;
+  exchange_->share_state(surfaces_, viscosity_field_.watch());
+  coupling_.locate(Worker{}, surfaces_, Whose::others);  // of all, now
 }
 
 template class SurfaceTasks<float>;

@@ -5,12 +5,14 @@
 #include <memory>
 #include <vector>
 
+#include "cell_exchange.hpp"
 #include "core/contact/surface_interactions.hpp"
 #include "core/contact/surface_wall_contacts.hpp"
 #include "core/coupling/interior_field.hpp"
 #include "core/coupling/surface_coupling.hpp"
 #include "core/domain/ranks.hpp"
 #include "core/fluid/fluid.hpp"
+#include "core/membrane/motion.hpp"
 #include "core/surface/surface_forces.hpp"
 #include "schedule.hpp"
 #include "solver_setup.hpp"
@@ -24,10 +26,11 @@ class SurfaceTasks {
   using Cells = Surfaces;
 
   /// The setup, the surfaces, of which there is at least one, and the fluid belong to the solver, and outlive this.
+  /// `owner[c]`: the rank of cell c; none: by place.
   /// Throws std::invalid_argument for what surfaces do not have: interactions within cells, corrections, the semi-implicit step,
-  /// layers, other ranks.
+  /// layers.
   SurfaceTasks(const BasicSolverSetup<3>& setup, Surfaces& surfaces, Fluid<T, D3Q19>& fluid, const Ranks<3>& ranks,
-               const std::vector<int>& owner);
+               std::vector<int> owner);
 
   /// Adds what a step of these cells takes.
   void describe(StepFeatures& features) const {
@@ -41,8 +44,10 @@ class SurfaceTasks {
   void spread(Range rows) { coupling_.spread(rows, surfaces_, fluid_.force()); }
   /// The fluid's unsteady term has no frame in three dimensions.
   void follow(const std::array<double, 3>&) {}
-  /// There are no other ranks.
-  void share_state() {}
+  /// One worker, between steps or where the state may be observed: tells all ranks what only the owners of cells know.
+  void share_state();
+  /// Mean velocity of all ranks' nodes, which must ask together.
+  [[nodiscard]] std::array<double, 3> mean_velocity() const { return core::mean_velocity(surfaces_, ranks_); }
   /// Between two steps: as a solver was whose relaxation rates were last renewed so.
   void restore(const DisplacementWatch::Memory& viscosity) {
     viscosity_field_.restore(viscosity, surfaces_, fluid_.relaxation_rate(), fluid_.mask());
@@ -50,7 +55,7 @@ class SurfaceTasks {
 
   /// First node that has left the domain; -1: none.
   [[nodiscard]] int escaped_node() const { return coupling_.escaped(); }
-  [[nodiscard]] bool escaped() const { return coupling_.any_escaped(); }
+  [[nodiscard]] bool escaped() const { return exchange_ ? escaped_ : coupling_.any_escaped(); }
   [[nodiscard]] SurfaceForces& forces() { return forces_; }
   /// What it takes to stretch all membranes by 0.1 % along x, the volume law left aside.
   [[nodiscard]] double slight_energy() const { return slight_energy_; }
@@ -67,6 +72,8 @@ class SurfaceTasks {
   [[nodiscard]] const InteriorField<T>& viscosity_field() const { return viscosity_field_; }
 
  private:
+  void exchange(Task task);
+
   Surfaces& surfaces_;
   Fluid<T, D3Q19>& fluid_;
   SurfaceForces forces_;
@@ -74,6 +81,9 @@ class SurfaceTasks {
   std::unique_ptr<SurfaceWallContacts> wall_contacts_;
   InteriorField<T> viscosity_field_;
   SurfaceCoupling<T> coupling_;
+  Ranks<3> ranks_;
+  std::unique_ptr<CellExchange<3>> exchange_;  ///< null without other ranks
+  bool escaped_ = false;                       ///< with other ranks: of any rank's cells
   double slight_energy_ = 0;
 };
 

@@ -304,6 +304,7 @@ void SurfaceForces::run(Worker worker, Surfaces& surfaces) {
   if (cells.begin == cells.end) return;
   Scratch& s = scratch_of(cells.begin);
   for (int c = cells.begin; c < cells.end; ++c) {
+    if (!surfaces.owns(c)) continue;
     const CellRange& cell = surfaces.cells[c];
     const Type& type = types_[cell.type];
     Whole whole = measure(type, surfaces.nodes(c), s);

@@ -123,7 +123,7 @@ void run_whole(const Planned& planned, long steps, const std::filesystem::path& 
   run::simulate(planned.plan, planned.report, options(steps, 1), &directory);
 }
 
-void run_cut(const Planned& planned, const Cut& cut, const run::RunOptions& options,
+void run_cut(const Planned& planned, const Cut<2>& cut, const run::RunOptions& options,
              const std::filesystem::path& folder, files::FormerRun former = files::FormerRun::keep) {
   on_all_ranks(cut.blocks, [&](const Ranks<2>& ranks) {
     try {
@@ -155,7 +155,7 @@ TEST_CASE("a run cut into any blocks writes the same directory") {
     const Planned planned(c);
     const ScratchFolder folder;
     run_whole(planned, steps, folder.path() / "whole");
-    for (const Cut& cut : cuts_of(planned.domain(), static_cast<int>(planned.scene.cells.size()))) {
+    for (const Cut<2>& cut : cuts_of(planned.domain(), static_cast<int>(planned.scene.cells.size()))) {
       CAPTURE(c.what, cut.what, cut.owner);
       run_cut(planned, cut, options(steps, cut.threads), folder.path() / "cut");
       compare(folder.path() / "whole", folder.path() / "cut");
@@ -178,7 +178,7 @@ TEST_CASE("a run that fails, fails the same in any blocks") {
   const nlohmann::json expected = summary(folder.path() / "whole");
   REQUIRE(expected.at("failure").at("reason") == row.first);
   REQUIRE(expected.at("stages").size() == 2);
-  for (const Cut& cut : cuts_of(planned.domain(), 4)) {
+  for (const Cut<2>& cut : cuts_of(planned.domain(), 4)) {
     CAPTURE(cut.what, cut.owner);
     run_cut(planned, cut, options(200, cut.threads), folder.path() / "cut");
     CHECK(summary(folder.path() / "cut") == expected);
@@ -194,7 +194,7 @@ TEST_CASE("any cut goes on from the checkpoint of any other") {
     const ScratchFolder folder;
     const auto cut = folder.path() / "cut";
     run_whole(planned, steps, folder.path() / "whole");
-    const std::vector<Cut> cuts = cuts_of(planned.domain(), static_cast<int>(planned.scene.cells.size()));
+    const std::vector<Cut<2>> cuts = cuts_of(planned.domain(), static_cast<int>(planned.scene.cells.size()));
     planned.scene.output.checkpoint_seconds = 0.02;  // some in between, when a clock says so
     run_cut(planned, cuts[1], options(steps / 3, 1), cut);
     run_cut(planned, cuts[2], options(steps * 2 / 3, 2), cut, files::FormerRun::resume);
@@ -207,7 +207,7 @@ TEST_CASE("any cut goes on from the checkpoint of any other") {
 TEST_CASE("all ranks stop at the same step when one of them is asked to") {
   const Planned planned(two_stages);
   const ScratchFolder folder;
-  const Cut cut = cuts_of(planned.domain(), 4)[2];
+  const Cut<2> cut = cuts_of(planned.domain(), 4)[2];
   const std::atomic<bool> asked = true;
   std::vector<run::Summary> ends(3);
   on_all_ranks(cut.blocks, [&](const Ranks<2>& ranks) {
@@ -227,7 +227,7 @@ TEST_CASE("all ranks stop at the same step when one of them is asked to") {
 TEST_CASE("a rank that throws ends the others, whatever they wait for") {
   const Planned planned(two_stages);
   const ScratchFolder folder;
-  for (const Cut& cut : cuts_of(planned.domain(), 4)) {
+  for (const Cut<2>& cut : cuts_of(planned.domain(), 4)) {
     if (cut.blocks.ranks() == 1) continue;
     CAPTURE(cut.what);
     files::RunDirectory directory(folder.path() / "run", planned.scene, files::FormerRun::replace);

@@ -44,7 +44,7 @@ TEST_CASE("ranks send as many bytes in a step as the plan says, within a tenth")
       CAPTURE(changed.what, ranks);
       const scene::Scene read = plan::read_scene(changed.file, changed.overrides);
       const plan::Plan plan = plan::make_plan(read, test::catalog());
-      const core::Decomposition<2> blocks = plan::make_blocks(plan, ranks);
+      const auto blocks = std::get<core::Decomposition<2>>(plan::make_blocks(plan, ranks));
       const std::vector<plan::RankCost> planned = plan::rank_costs(plan, blocks);
       constexpr int steps = 4;
       std::vector<double> counted(static_cast<std::size_t>(ranks));

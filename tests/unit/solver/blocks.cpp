@@ -12,29 +12,30 @@ using namespace rouleau::test;
 
 namespace {
 
+template <int D>
 struct Planned {
   explicit Planned(const Case& c)
       : scene(plan::read_scene(c.file, c.overrides)), plan(plan::make_plan(scene, catalog())) {
-    setup = plan::make_solver_setup(plan, 0);
-    membranes = plan::make_membranes(scene, plan::lattice_spacing(scene));
+    setup = plan::make_solver_setup<D>(plan, 0);
+    cells = plan::make_cells<D>(scene);
   }
   scene::Scene scene;
   plan::Plan plan;
-  SolverSetup setup;
-  Membranes membranes;
+  BasicSolverSetup<D> setup;
+  decltype(plan::make_cells<D>(scene)) cells;
 };
 
 /// What a rank is left with.
-template <class T>
+template <class T, class Set>
 struct End {
-  Domain<2> domain;
-  Membranes membranes;
-  std::vector<T> populations[9];
+  Domain<Set::dimension> domain;
+  typename Solver<T, Set>::Cells cells;
+  std::vector<T> populations[Set::velocity_count];
 };
 
 /// Runs the steps with several workers.
-template <class T>
-void run(Solver<T>& solver, long steps, int workers) {
+template <class T, class Set>
+void run(Solver<T, Set>& solver, long steps, int workers) {
   Barrier barrier(workers);
   std::vector<std::thread> threads;
   for (int w = 0; w < workers; ++w) {
@@ -50,80 +51,101 @@ void run(Solver<T>& solver, long steps, int workers) {
   for (std::thread& thread : threads) thread.join();
 }
 
-template <class T>
-End<T> simulate(const Planned& planned, const Domain<2>& domain, const Ranks<2>& ranks, const std::vector<int>& owner,
-                long steps, int workers) {
-  End<T> end{.domain = domain, .membranes = planned.membranes, .populations = {}};
-  SolverSetup setup = planned.setup;
+/// `look`: every so many steps all ranks tell each other everything.
+template <class T, class Set>
+End<T, Set> simulate(const Planned<Set::dimension>& planned, const Domain<Set::dimension>& domain,
+                     const Ranks<Set::dimension>& ranks, const std::vector<int>& owner, long steps, int workers,
+                     long look) {
+  End<T, Set> end{.domain = domain, .cells = planned.cells, .populations = {}};
+  auto setup = planned.setup;
   setup.domain = domain;
-  Solver<T> solver(std::move(setup), end.membranes, ranks, owner);
+  Solver<T, Set> solver(std::move(setup), end.cells, ranks, owner);
   solver.start();
-  run(solver, steps, workers);
+  for (long done = 0; done < steps; done += look) {
+    run(solver, std::min(look, steps - done), workers);
+    solver.cell_tasks()->share_state();
+  }
   REQUIRE_FALSE(solver.escaped());
   solver.fluid().settle();
-  for (int q = 0; q < 9; ++q) solver.fluid().copy_populations(q, end.populations[q]);
+  for (int q = 0; q < Set::velocity_count; ++q) solver.fluid().copy_populations(q, end.populations[q]);
   return end;
 }
 
-template <class T>
-void compare(const End<T>& whole, const End<T>& block) {
-  const int width = whole.domain.size[0];
-  const Box<2>& box = block.domain.block;
+void compare_memory(const Membranes& whole, const Membranes& block) {
+  for (std::size_t k = 0; k < whole.state.size(); ++k) CHECK((block.state[k].value == whole.state[k].value));
+  for (const auto memory : {&Membranes::contacts, &Membranes::wall_contacts}) {
+    for (std::size_t c = 0; c < (whole.*memory).of_cell.size(); ++c) {
+      const std::vector<ContactState>&of_whole = (whole.*memory).of_cell[c], &of_block = (block.*memory).of_cell[c];
+      REQUIRE(of_block.size() == of_whole.size());
+      for (std::size_t k = 0; k < of_whole.size(); ++k) CHECK((of_block[k].value == of_whole[k].value));
+    }
+  }
+}
+void compare_memory(const Surfaces&, const Surfaces&) {}
+
+template <class T, class Set>
+void compare(const End<T, Set>& whole, const End<T, Set>& block) {
+  const auto& size = whole.domain.size;
+  const Box<Set::dimension>& box = block.domain.block;
   long different = 0;
-  for (int q = 0; q < 9; ++q) {
-    for (int y = 0; y < box.size(1); ++y) {
-      for (int x = 0; x < box.size(0); ++x) {
-        const T mine = block.populations[q][y * box.size(0) + x];
-        different += mine != whole.populations[q][(y + box.begin[1]) * width + x + box.begin[0]] ? 1 : 0;
-      }
+  for (int q = 0; q < Set::velocity_count; ++q) {
+    auto mine = block.populations[q].begin();
+    for (int i = 0; i < row_count(box); ++i) {
+      const auto row = row_of(box, i);
+      std::ptrdiff_t at = 0;
+      for (int k = Set::dimension - 1; k > 0; --k) at = at * size[k] + box.begin[k] + row[k - 1];
+      auto expected = whole.populations[q].begin() + at * size[0] + box.begin[0];
+      for (int x = 0; x < box.size(0); ++x) different += *mine++ != *expected++ ? 1 : 0;
     }
   }
   CHECK(different == 0);
-  // Every rank knows where all cells are; what they remember and carry, only their owner.
-  CHECK((block.membranes.x == whole.membranes.x));
-  CHECK((block.membranes.y == whole.membranes.y));
-  CHECK((block.membranes.velocity_x == whole.membranes.velocity_x));
-  CHECK((block.membranes.largest_step == whole.membranes.largest_step));
-  for (int c = 0; c < whole.membranes.cell_count(); ++c) {
-    if (!block.membranes.owns(c)) continue;
-    const CellRange& cell = whole.membranes.cells[c];
-    for (int i = cell.first; i < cell.end(); ++i) {
-      different += block.membranes.force_x[i] != whole.membranes.force_x[i] ? 1 : 0;
-      for (std::size_t k = 0; k < whole.membranes.state.size(); ++k) {
-        different += block.membranes.state[k].value[i] != whole.membranes.state[k].value[i] ? 1 : 0;
-      }
-    }
-    if (!whole.membranes.area_leakage.empty())
-      CHECK(block.membranes.area_leakage[c] == whole.membranes.area_leakage[c]);
-  }
-  CHECK(different == 0);
+  // Every rank knows all of all cells now.
+  for (const auto values : {&CellNodes::x, &CellNodes::y, &CellNodes::z, &CellNodes::velocity_x, &CellNodes::velocity_y,
+                            &CellNodes::velocity_z, &CellNodes::force_x, &CellNodes::force_y, &CellNodes::force_z,
+                            &CellNodes::largest_step, &CellNodes::area_leakage})
+    CHECK((block.cells.*values == whole.cells.*values));
+  compare_memory(whole.cells, block.cells);
 }
 
-template <class T>
-void compare_cuts(const Case& c) {
-  const Planned planned(c);
-  const Domain<2> domain = planned.setup.domain;
-  const long steps = block_steps(40);
-  const End<T> whole = simulate<T>(planned, domain, {}, {}, steps, 1);
-  for (const Cut& cut : cuts_of(domain, planned.membranes.cell_count())) {
+template <class T, class Set>
+void compare_cuts(const Case& c, const std::vector<Cut<Set::dimension>>& cuts, const Planned<Set::dimension>& planned,
+                  long steps, long look) {
+  const End<T, Set> whole = simulate<T, Set>(planned, planned.setup.domain, {}, {}, steps, 1, look);
+  for (const Cut<Set::dimension>& cut : cuts) {
     CAPTURE(c.what, cut.what, cut.owner);
-    std::vector<End<T>> ends(static_cast<std::size_t>(cut.blocks.ranks()));
-    on_all_ranks(cut.blocks, [&](const Ranks<2>& ranks) {
+    std::vector<End<T, Set>> ends(static_cast<std::size_t>(cut.blocks.ranks()));
+    on_all_ranks(cut.blocks, [&](const Ranks<Set::dimension>& ranks) {
       const int rank = ranks.transport->rank();
-      ends[rank] = simulate<T>(planned, cut.blocks.domain(rank), ranks, cut.owner, steps, cut.threads);
+      ends[rank] = simulate<T, Set>(planned, cut.blocks.domain(rank), ranks, cut.owner, steps, cut.threads, look);
     });
-    for (const End<T>& block : ends) compare(whole, block);
+    for (const End<T, Set>& block : ends) compare(whole, block);
+  }
+}
+
+/// `look`: every so many steps all ranks tell each other everything. `cuts`: none: all kinds.
+template <class Set>
+void compare_cuts(const Case& c, long steps, long look = 1000, std::vector<Cut<Set::dimension>> cuts = {}) {
+  const Planned<Set::dimension> planned(c);
+  if (cuts.empty()) cuts = cuts_of(planned.setup.domain, planned.cells.cell_count());
+  if (planned.scene.numerics.precision == scene::Precision::f64) {
+    compare_cuts<double, Set>(c, cuts, planned, steps, look);
+  } else {
+    compare_cuts<float, Set>(c, cuts, planned, steps, look);
   }
 }
 
 }  // namespace
 
 TEST_CASE("any blocks give the same bits as the whole lattice") {
-  for (const Case& c : scenes_to_cut()) {
-    if (c.what.find("f32") == std::string::npos) {
-      compare_cuts<double>(c);
-    } else {
-      compare_cuts<float>(c);
-    }
-  }
+  for (const Case& c : scenes_to_cut()) compare_cuts<D2Q9>(c, block_steps(40));
+}
+
+TEST_CASE("any blocks give the same bits while cells come and go") {
+  // Cells travel so far that ranks get to know them and forget them again.
+  for (const Case& c : travelling_cells())
+    compare_cuts<D2Q9>(c, block_steps(700), 450, cuts_for_travellers(Planned<2>(c).setup.domain));
+}
+
+TEST_CASE("any blocks give the same bits as the whole lattice in three dimensions") {
+  for (const Case& c : scenes_in_space()) compare_cuts<D3Q19>(c, block_steps(30));
 }

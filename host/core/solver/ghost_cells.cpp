@@ -1,0 +1,92 @@
+#include "ghost_cells.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "core/fluid/node_mask.hpp"
+#include "core/membrane/rounding.hpp"
+
+namespace rouleau::core {
+
+template <int D>
+GhostCells<D>::GhostCells(const Ranks<D>& ranks, std::vector<int> owner, GhostReach reach)
+    : ranks_(ranks), owner_(std::move(owner)), reach_(reach), known_(owner_.size()), reaching_(owner_.size()) {}
+
+template <int D>
+int GhostCells<D>::owner_by_place(const BoundingBox<D>& box, const Decomposition<D>& blocks) {
+  if (!box.usable()) return 0;
+  const Domain<D> domain = blocks.domain(0);
+  std::array<int, D> node;
+  for (int k = 0; k < D; ++k) {
+    const int middle = floor_int((box.least[k] + box.most[k]) / 2 + 0.5), wrapped = domain.wrapped(k, middle);
+    node[k] = wrapped >= 0 ? wrapped : (middle < 0 ? 0 : domain.size[k] - 1);
+  }
+  return blocks.owner(node);
+}
+
+template <int D>
+std::vector<int> GhostCells<D>::reached_by(const BoundingBox<D>& box, const Decomposition<D>& blocks, double reach) {
+  std::vector<int> ranks;
+  if (box.usable()) {
+    for_nodes_near(box, reach + skin, NodeMask::nodes_per_bit, blocks.domain(0), [&](const Box<D>& nodes) {
+      const std::vector<int> of_part = blocks.meeting(nodes);
+      ranks.insert(ranks.end(), of_part.begin(), of_part.end());
+    });
+    std::sort(ranks.begin(), ranks.end());
+    ranks.erase(std::unique(ranks.begin(), ranks.end()), ranks.end());
+  } else {  // what blows up may be anywhere
+    ranks.resize(static_cast<std::size_t>(blocks.ranks()));
+    std::iota(ranks.begin(), ranks.end(), 0);
+  }
+  return ranks;
+}
+
+template <int D>
+void GhostCells<D>::renew(const std::vector<BoundingBox<D>>& boxes) {
+  const int own = ranks_.transport->rank(), cells = static_cast<int>(owner_.size());
+  const Domain<D> domain = ranks_.blocks->domain(own);
+  peers_.clear();
+  for (int c = 0; c < cells; ++c) {
+    bool here = !boxes[c].usable();
+    if (owner_[c] == own) {
+      for (const int rank : reached_by(boxes[c], *ranks_.blocks, reach_.lattice)) {
+        here = here || rank == own;
+        if (rank != own) peers_[rank].mine_there.push_back(c);
+      }
+    } else if (!here) {
+      for_nodes_near(boxes[c], reach_.lattice + skin, NodeMask::nodes_per_bit, domain,
+                     [&](const Box<D>& nodes) { here = here || nodes.meets(domain.block); });
+    }
+    reaching_[c] = here;
+    known_[c] = owner_[c] == own || here;
+  }
+  std::map<int, std::vector<int>> near;  // of each rank: cells of this one that are near some of its own
+  for_touching(
+      boxes, domain, reach_.contact, [&](int c) { return owner_[c] == own; },
+      [&](int c, int other) {
+        if (owner_[other] == own) return;
+        known_[other] = 1;
+        near[owner_[other]].push_back(c);
+      });
+  for (auto& [rank, of_mine] : near) {
+    Peer& peer = peers_[rank];
+    peer.touch = true;
+    peer.mine = std::move(of_mine);
+  }
+  for (auto& [rank, peer] : peers_) {
+    peer.mine.insert(peer.mine.end(), peer.mine_there.begin(), peer.mine_there.end());
+    std::sort(peer.mine.begin(), peer.mine.end());
+    peer.mine.erase(std::unique(peer.mine.begin(), peer.mine.end()), peer.mine.end());
+  }
+  for (int c = 0; c < cells; ++c) {
+    if (owner_[c] == own || known_[c] == 0) continue;
+    Peer& peer = peers_[owner_[c]];
+    peer.theirs.push_back(c);
+    if (reaching_[c] != 0) peer.theirs_here.push_back(c);
+  }
+}
+
+template class GhostCells<2>;
+template class GhostCells<3>;
+
+}  // namespace rouleau::core
