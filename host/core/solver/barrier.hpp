@@ -11,8 +11,8 @@
 namespace rouleau::core {
 
 /// Barrier for a handful of threads that meet every few microseconds. It spins, since sleeping and waking takes longer
-/// than most passes (OpenMP's barrier enters the kernel even for one thread), and lets others run when it has spun in
-/// vain: two of our threads may share a core.
+/// than most passes (OpenMP's barrier enters the kernel even for one thread), lets others run when it has spun in vain,
+/// as two of our threads may share a core, and sleeps in the end: somebody may wait for another rank.
 class Barrier {
  public:
   explicit Barrier(int workers) : workers_(workers) {}
@@ -31,6 +31,7 @@ class Barrier {
     if (arrived_.fetch_add(1, std::memory_order_acq_rel) + 1 == workers_) {
       arrived_.store(0, std::memory_order_relaxed);
       round_.store(round + 1, std::memory_order_release);
+      round_.notify_all();
     }
     return round;
   }
@@ -41,16 +42,24 @@ class Barrier {
       if (abandoned_.load(std::memory_order_relaxed)) throw Abandoned{};
       if (spins < patience) {
         pause();
-      } else {
+      } else if (spins < patience + kindness) {
         std::this_thread::yield();
+      } else {
+        round_.wait(round, std::memory_order_acquire);
       }
     }
+    if (abandoned_.load(std::memory_order_relaxed)) throw Abandoned{};  // that is how sleepers are woken
   }
   /// A worker will not come any more. Returns whether it is the first to say so.
-  bool abandon() { return !abandoned_.exchange(true); }
+  bool abandon() {
+    const bool first = !abandoned_.exchange(true);
+    round_.fetch_add(1, std::memory_order_release);
+    round_.notify_all();
+    return first;
+  }
 
  private:
-  static constexpr int patience = 1000;
+  static constexpr int patience = 1000, kindness = 100;
   static void pause() {
 #if defined(__x86_64__)
     _mm_pause();

@@ -28,7 +28,6 @@ struct Planned {
     scene.checks.every_steps = 16;
     report = plan::make_report(plan);
   }
-  [[nodiscard]] Domain<2> domain() const { return plan::lattice_domain(scene); }
   scene::Scene scene;
   plan::Plan plan;
   plan::PlanReport report;
@@ -123,9 +122,10 @@ void run_whole(const Planned& planned, long steps, const std::filesystem::path& 
   run::simulate(planned.plan, planned.report, options(steps, 1), &directory);
 }
 
-void run_cut(const Planned& planned, const Cut<2>& cut, const run::RunOptions& options,
+template <int D>
+void run_cut(const Planned& planned, const Cut<D>& cut, const run::RunOptions& options,
              const std::filesystem::path& folder, files::FormerRun former = files::FormerRun::keep) {
-  on_all_ranks(cut.blocks, [&](const Ranks<2>& ranks) {
+  on_all_ranks(cut.blocks, [&](const Ranks<D>& ranks) {
     try {
       std::optional<files::RunDirectory> directory;
       if (ranks.first()) directory.emplace(folder, planned.scene, former);
@@ -135,6 +135,41 @@ void run_cut(const Planned& planned, const Cut<2>& cut, const run::RunOptions& o
       throw;
     }
   });
+}
+
+template <int D>
+std::vector<Cut<D>> cuts_of(const Planned& planned) {
+  return test::cuts_of(plan::lattice_domain<D>(planned.scene), static_cast<int>(planned.scene.cells.size()));
+}
+
+/// Into any blocks, and then on from the checkpoint of some in others.
+template <int D>
+void compare_cuts(const Case& c, long steps) {
+  const Planned planned(c);
+  const ScratchFolder folder;
+  run_whole(planned, steps, folder.path() / "whole");
+  for (const Cut<D>& cut : cuts_of<D>(planned)) {
+    CAPTURE(c.what, cut.what, cut.owner);
+    run_cut(planned, cut, options(steps, cut.threads), folder.path() / "cut");
+    compare(folder.path() / "whole", folder.path() / "cut");
+    CHECK((bytes_of(folder.path() / "whole/frames.h5") == bytes_of(folder.path() / "cut/frames.h5")));
+    std::filesystem::remove_all(folder.path() / "cut");
+  }
+}
+
+template <int D>
+void compare_continued(const Case& c, long steps) {
+  Planned planned(c);
+  const ScratchFolder folder;
+  const auto cut = folder.path() / "cut";
+  run_whole(planned, steps, folder.path() / "whole");
+  const std::vector<Cut<D>> cuts = cuts_of<D>(planned);
+  planned.scene.output.checkpoint_seconds = 0.02;  // some in between, when a clock says so
+  run_cut(planned, cuts[1], options(steps / 3, 1), cut);
+  run_cut(planned, cuts[2], options(steps * 2 / 3, 2), cut, files::FormerRun::resume);
+  run_cut(planned, cuts.back(), options(steps, 1), cut, files::FormerRun::resume);
+  CAPTURE(c.what);
+  compare(folder.path() / "whole", cut);
 }
 
 /// The four cells at rest, then in shear with another time step.
@@ -150,18 +185,13 @@ TEST_CASE("a run cut into any blocks writes the same directory") {
   std::vector<Case> cases = scenes_to_cut();
   cases.push_back(two_stages);
   cases.push_back({"no cells", four_cells, {driven, "/output={}", "/cells=[]", "/interactions=[]"}});
-  const long steps = block_steps(130);
-  for (const Case& c : cases) {
-    const Planned planned(c);
-    const ScratchFolder folder;
-    run_whole(planned, steps, folder.path() / "whole");
-    for (const Cut<2>& cut : cuts_of(planned.domain(), static_cast<int>(planned.scene.cells.size()))) {
-      CAPTURE(c.what, cut.what, cut.owner);
-      run_cut(planned, cut, options(steps, cut.threads), folder.path() / "cut");
-      compare(folder.path() / "whole", folder.path() / "cut");
-      CHECK((bytes_of(folder.path() / "whole/frames.h5") == bytes_of(folder.path() / "cut/frames.h5")));
-      std::filesystem::remove_all(folder.path() / "cut");
-    }
+  for (const Case& c : cases) compare_cuts<2>(c, block_steps(130));
+}
+
+TEST_CASE("a run in three dimensions cut into any blocks writes the same directory") {
+  for (const Case& c : scenes_in_space()) {
+    compare_cuts<3>(c, block_steps(20));
+    compare_continued<3>(c, block_steps(20));
   }
 }
 
@@ -178,7 +208,7 @@ TEST_CASE("a run that fails, fails the same in any blocks") {
   const nlohmann::json expected = summary(folder.path() / "whole");
   REQUIRE(expected.at("failure").at("reason") == row.first);
   REQUIRE(expected.at("stages").size() == 2);
-  for (const Cut<2>& cut : cuts_of(planned.domain(), 4)) {
+  for (const Cut<2>& cut : cuts_of<2>(planned)) {
     CAPTURE(cut.what, cut.owner);
     run_cut(planned, cut, options(200, cut.threads), folder.path() / "cut");
     CHECK(summary(folder.path() / "cut") == expected);
@@ -187,27 +217,16 @@ TEST_CASE("a run that fails, fails the same in any blocks") {
 }
 
 TEST_CASE("any cut goes on from the checkpoint of any other") {
-  const long steps = block_steps(130);
   for (const Case& c : {two_stages, scenes_to_cut()[7], scenes_to_cut()[9], scenes_to_cut()[12], scenes_to_cut()[13],
                         scenes_to_cut()[16]}) {
-    Planned planned(c);
-    const ScratchFolder folder;
-    const auto cut = folder.path() / "cut";
-    run_whole(planned, steps, folder.path() / "whole");
-    const std::vector<Cut<2>> cuts = cuts_of(planned.domain(), static_cast<int>(planned.scene.cells.size()));
-    planned.scene.output.checkpoint_seconds = 0.02;  // some in between, when a clock says so
-    run_cut(planned, cuts[1], options(steps / 3, 1), cut);
-    run_cut(planned, cuts[2], options(steps * 2 / 3, 2), cut, files::FormerRun::resume);
-    run_cut(planned, cuts[6], options(steps, 1), cut, files::FormerRun::resume);
-    CAPTURE(c.what);
-    compare(folder.path() / "whole", cut);
+    compare_continued<2>(c, block_steps(130));
   }
 }
 
 TEST_CASE("all ranks stop at the same step when one of them is asked to") {
   const Planned planned(two_stages);
   const ScratchFolder folder;
-  const Cut<2> cut = cuts_of(planned.domain(), 4)[2];
+  const Cut<2> cut = cuts_of<2>(planned)[2];
   const std::atomic<bool> asked = true;
   std::vector<run::Summary> ends(3);
   on_all_ranks(cut.blocks, [&](const Ranks<2>& ranks) {
@@ -227,7 +246,7 @@ TEST_CASE("all ranks stop at the same step when one of them is asked to") {
 TEST_CASE("a rank that throws ends the others, whatever they wait for") {
   const Planned planned(two_stages);
   const ScratchFolder folder;
-  for (const Cut<2>& cut : cuts_of(planned.domain(), 4)) {
+  for (const Cut<2>& cut : cuts_of<2>(planned)) {
     if (cut.blocks.ranks() == 1) continue;
     CAPTURE(cut.what);
     files::RunDirectory directory(folder.path() / "run", planned.scene, files::FormerRun::replace);
