@@ -134,6 +134,11 @@ class Same_bytes(Case):
     def test_of_cells_with_all_that_models_remember_in_two_stages(self):
         self.assert_same(KINETICS_RUN, [(2, 1), (3, 2), (4, 1)])
 
+    def test_of_cells_that_stick_together_in_three_dimensions(self):
+        scene = [SOURCE / "scenes" / "doublet-3d.json", "--max-steps", "25", "--set", '/output/cells={"seconds": "1e-4 s"}',
+                 "--set", '/output/fields={"seconds": "5e-4 s", "quantities": ["velocity"]}']
+        self.assert_same([*map(str, scene)], [(2, 2), (3, 1)])
+
     def test_of_a_driven_channel_over_borders_in_single_precision(self):
         scene = [SOURCE / "tests" / "resume" / "scenes" / "driven.json", "--set", '/numerics/precision="f32"',
                  "--max-steps", "150"]

@@ -1,9 +1,11 @@
 // Numbers that blocks keep for each other, and the only way across the border between two blocks.
 #pragma once
 
+#include <algorithm>
 #include <cstring>
 #include <functional>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "ranks.hpp"
@@ -34,12 +36,16 @@ class Halo {
     const int own = transport_->rank();
     for (int rank = 0; rank < blocks.ranks(); ++rank) {
       const Domain<D> domain = blocks.domain(rank);
-      for (const HaloCopy<D>& copy : copies(domain)) {
+      std::vector<HaloCopy<D>> of_rank = copies(domain);
+      // One component after another: along rows of the lattice numbers then lie beside each other.
+      std::stable_sort(of_rank.begin(), of_rank.end(),
+                       [](const HaloCopy<D>& a, const HaloCopy<D>& b) { return a.component < b.component; });
+      for (const HaloCopy<D>& copy : of_rank) {
         std::array<int, D> node = copy.node;
         for (int k = 0; k < D; ++k) node[k] = domain.wrapped(k, node[k]);
         const int owner = blocks.owner(node);
-        if (owner == own) peers_[rank].owned.push_back({copy.component, offset(node)});
-        if (rank == own) peers_[owner].copies.push_back({copy.component, offset(copy.node)});
+        if (owner == own) peers_[rank].owned.add(copy.component, offset(node));
+        if (rank == own) peers_[owner].copies.add(copy.component, offset(copy.node));
       }
     }
   }
@@ -47,46 +53,69 @@ class Halo {
   /// Sends what goes this way. `arrays[c]`: where component c of the node with offset 0 lies.
   void begin(Way way, std::span<T* const> arrays) {
     for (std::size_t rank = 0; rank < peers_.size(); ++rank) {
-      const std::vector<Place>& from = way == Way::out ? peers_[rank].owned : peers_[rank].copies;
-      if (from.empty()) continue;
-      Message message(from.size() * sizeof(T));
-      std::byte* to = message.data();
-      for (const Place& place : from) {
-        std::memcpy(to, arrays[place.component] + place.offset, sizeof(T));
-        to += sizeof(T);
-      }
+      const Places& from = way == Way::out ? peers_[rank].owned : peers_[rank].copies;
+      if (from.count == 0) continue;
+      Message message(from.count * sizeof(T));
+      from.for_runs(message.data(), [&](std::byte* to, const Run& run, auto count) {
+        std::memcpy(to, arrays[run.component] + run.offset, count * sizeof(T));
+      });
       transport_->send(static_cast<int>(rank), std::move(message));
     }
   }
   /// Waits for what goes this way, and puts it where it belongs.
   void end(Way way, std::span<T* const> arrays) {
     for (std::size_t rank = 0; rank < peers_.size(); ++rank) {
-      const std::vector<Place>& to = way == Way::out ? peers_[rank].copies : peers_[rank].owned;
-      if (to.empty()) continue;
+      const Places& to = way == Way::out ? peers_[rank].copies : peers_[rank].owned;
+      if (to.count == 0) continue;
       const Message message = transport_->receive(static_cast<int>(rank));
-      const std::byte* from = message.data();
-      for (const Place& place : to) {
-        std::memcpy(arrays[place.component] + place.offset, from, sizeof(T));
-        from += sizeof(T);
-      }
+      to.for_runs(message.data(), [&](const std::byte* from, const Run& run, auto count) {
+        std::memcpy(arrays[run.component] + run.offset, from, count * sizeof(T));
+      });
     }
   }
 
   /// How many numbers this rank keeps for others.
   [[nodiscard]] std::size_t size() const {
     std::size_t copies = 0;
-    for (const Peer& peer : peers_) copies += peer.copies.size();
+    for (const Peer& peer : peers_) copies += peer.copies.count;
     return copies;
   }
 
  private:
-  struct Place {
-    int component;
+  /// Numbers that lie beside each other.
+  struct Run {
+    int component, count;
     std::ptrdiff_t offset;
   };
+  struct Places {
+    std::vector<Run> runs;
+    std::size_t count = 0;
+
+    void add(int component, std::ptrdiff_t offset) {
+      ++count;
+      if (!runs.empty() && runs.back().component == component && runs.back().offset + runs.back().count == offset) {
+        ++runs.back().count;
+      } else {
+        runs.push_back({component, 1, offset});
+      }
+    }
+    /// Calls function(bytes, run, run.count) for all runs and where they lie in a message. A number alone is common, and
+    /// cheaper when the compiler knows it.
+    template <class Bytes, class Function>
+    void for_runs(Bytes* bytes, Function function) const {
+      for (const Run& run : runs) {
+        if (run.count == 1) {
+          function(bytes, run, std::integral_constant<std::size_t, 1>{});
+        } else {
+          function(bytes, run, static_cast<std::size_t>(run.count));
+        }
+        bytes += static_cast<std::size_t>(run.count) * sizeof(T);
+      }
+    }
+  };
   struct Peer {
-    std::vector<Place> owned;   // by this rank, of which the peer keeps copies
-    std::vector<Place> copies;  // kept here of what the peer owns
+    Places owned;   // by this rank, of which the peer keeps copies
+    Places copies;  // kept here of what the peer owns
   };
   Transport* transport_;
   std::vector<Peer> peers_;  // of each rank
