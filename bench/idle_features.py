@@ -18,7 +18,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-FEW, MORE = 50, 450  # steps; two checks fall between them (every 200 steps), no output does
+FEW, MORE = 50, 250  # steps; a check falls between them (every 200 steps), no output does
 LIMIT = 0.01
 
 

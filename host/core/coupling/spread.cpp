@@ -41,7 +41,11 @@ struct Spread {
     const int row = t.at.row[i] - 1, column = t.at.column[i] - 1;
     const bool whole = row >= 0 && row + 4 <= inside.height;
     if (whole && (row + 4 <= inside.row_begin || row >= inside.row_end)) return;
-    if (column < inside.column_begin || column + 4 > inside.column_end || !whole) return spread_at_border(t, i);
+    if (column < inside.column_begin || column + 4 > inside.column_end || !whole) {
+      const bool within = column >= 0 && column + 4 <= t.domain->size[0];
+      if (within && (column + 4 <= inside.column_begin || column >= inside.column_end)) return;
+      return spread_at_border(t, i);
+    }
     const Four wx = KernelWeights<Kernel, T>(t.at.p_x[i], t.at.q_x[i]).weight;
     const SpreadWeights<Kernel, T> wy(t.at.p_y[i], t.at.q_y[i]);
     const Four fx = wx * Four(t.force_x[i]), fy = wx * Four(t.force_y[i]);

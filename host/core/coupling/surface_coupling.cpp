@@ -98,7 +98,14 @@ struct SpreadSurface {
     const int x = t.at.base[0][i] - 1, y = t.at.base[1][i] - 1, z = t.at.base[2][i] - 1;
     const bool inside = x >= block.begin[0] && x + 4 <= block.end[0] && y >= block.begin[1] && y + 4 <= block.end[1] &&
                         z >= block.begin[2] && z + 4 <= block.end[2];
-    if (!inside) return spread_at_border(t, i);
+    if (!inside) {
+      const int from[] = {x, y, z};
+      for (int k = 0; k < 3; ++k) {
+        const bool within = from[k] >= 0 && from[k] + 4 <= t.domain->size[k];
+        if (within && (from[k] + 4 <= block.begin[k] || from[k] >= block.end[k])) return;
+      }
+      return spread_at_border(t, i);
+    }
     const int first = y - block.begin[1] + height * (z - block.begin[2]), last = first + 3 + 3 * height;
     if (last < t.row_begin || first >= t.row_end) return;
     const StencilWeights<T, Kernel> weights(t.at, i);
@@ -131,14 +138,6 @@ struct SpreadSurface {
     if (t.at.base[2][i] == outside) return;
     const Domain<3>& domain = *t.domain;
     const Box<3>& block = domain.block;
-    for (int k = 0; k < 3; ++k) {
-      bool reaches = false;
-      for (int m = 0; m < 4; ++m) {
-        const int node = image(domain, k, t.at.base[k][i] - 1 + m).node;
-        reaches = reaches || (node >= block.begin[k] && node < block.end[k]);
-      }
-      if (!reaches) return;
-    }
     const StencilWeights<T, Kernel> weights(t.at, i);
     for (int m = 0; m < 4; ++m) {
       const Image z = image(domain, 2, t.at.base[2][i] - 1 + m);
