@@ -5,6 +5,7 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 
 #include "base/faults.hpp"
@@ -96,13 +97,59 @@ class Session {
   std::unique_ptr<Simulation> simulation_;
 };
 
+/// The components of a vector at all nodes; the last is empty in two dimensions.
+using Components = std::array<std::vector<double>*, 3>;
+Components places(core::CellNodes& nodes) { return {&nodes.x, &nodes.y, &nodes.z}; }
+Components velocities(core::CellNodes& nodes) { return {&nodes.velocity_x, &nodes.velocity_y, &nodes.velocity_z}; }
+Components forces(core::CellNodes& nodes) { return {&nodes.force_x, &nodes.force_y, &nodes.force_z}; }
+
 /// Nodes times two, of two arrays that lie anywhere: one step along the second axis leads from the one to the other.
-py::array pairs(const py::object& owner, std::vector<double>& x, std::vector<double>& y, bool writeable) {
-  const auto apart = reinterpret_cast<char*>(y.data()) - reinterpret_cast<char*>(x.data());
-  py::array view(py::dtype::of<double>(), {static_cast<py::ssize_t>(x.size()), py::ssize_t{2}},
-                 {static_cast<py::ssize_t>(sizeof(double)), static_cast<py::ssize_t>(apart)}, x.data(), owner);
-  if (!writeable) view.attr("setflags")(py::arg("write") = false);
-  return view;
+py::array pairs(const py::object& owner, const Components& of) {
+  const auto apart = reinterpret_cast<char*>(of[1]->data()) - reinterpret_cast<char*>(of[0]->data());
+  return {py::dtype::of<double>(),
+          {static_cast<py::ssize_t>(of[0]->size()), py::ssize_t{2}},
+          {static_cast<py::ssize_t>(sizeof(double)), static_cast<py::ssize_t>(apart)},
+          of[0]->data(),
+          owner};
+}
+
+/// In two dimensions a view, in three a copy: three arrays that lie anywhere have no common step.
+py::array shown(const py::object& owner, const core::CellNodes& nodes, const Components& of) {
+  py::array array;
+  if (nodes.z.empty()) {
+    array = pairs(owner, of);
+  } else {
+    py::array_t<double> copy({static_cast<py::ssize_t>(of[0]->size()), py::ssize_t{3}});
+    auto to = copy.mutable_unchecked<2>();
+    for (py::ssize_t i = 0; i < to.shape(0); ++i) {
+      for (py::ssize_t k = 0; k < 3; ++k) to(i, k) = (*of[k])[static_cast<std::size_t>(i)];
+    }
+    array = copy;
+  }
+  array.attr("setflags")(py::arg("write") = false);
+  return array;
+}
+
+/// What asks `callback` for forces, and adds them.
+std::function<void()> asking(const py::object& callback, core::CellNodes& nodes) {
+  if (nodes.z.empty()) {
+    // The view that the callback may write to keeps nothing alive: the session that holds it does.
+    return [callback, force = pairs(py::none(), forces(nodes))] {
+      const py::gil_scoped_acquire interpreter;
+      callback(force);
+    };
+  }
+  return [callback, &nodes] {
+    const py::gil_scoped_acquire interpreter;
+    py::array_t<double> added({static_cast<py::ssize_t>(nodes.x.size()), py::ssize_t{3}});
+    std::fill_n(added.mutable_data(), added.size(), 0.0);
+    callback(added);
+    const auto from = added.unchecked<2>();
+    const Components to = forces(nodes);
+    for (py::ssize_t i = 0; i < from.shape(0); ++i) {
+      for (py::ssize_t k = 0; k < 3; ++k) (*to[k])[static_cast<std::size_t>(i)] += from(i, k);
+    }
+  };
 }
 
 py::array_t<double> array_of(const std::vector<double>& values, std::vector<py::ssize_t> shape) {
@@ -114,8 +161,10 @@ py::array_t<double> array_of(const std::vector<double>& values, std::vector<py::
 py::dict fluid(Session& session) {
   const FluidFields fields = guarded([&] { return session.simulation().fluid(); });
   py::dict result;
-  result["velocity"] = array_of(fields.velocity, {fields.ny, fields.nx, 2});
-  result["density"] = array_of(fields.density, {fields.ny, fields.nx});
+  std::vector<py::ssize_t> shape(fields.size.rbegin(), fields.size.rend());
+  result["density"] = array_of(fields.density, shape);
+  shape.push_back(static_cast<py::ssize_t>(fields.size.size()));
+  result["velocity"] = array_of(fields.velocity, shape);
   return result;
 }
 
@@ -148,7 +197,8 @@ py::dict stage(Session& session) {
   result["most_steps"] = setting.max_steps;
   result["length"] = setting.units.length;
   result["time"] = setting.units.time;
-  result["force"] = setting.units.unit(units::dimension::tension);
+  const double tension = setting.units.unit(units::dimension::tension);
+  result["force"] = simulation.scene().domain.depth ? tension * setting.units.length : tension;
   return result;
 }
 
@@ -165,42 +215,36 @@ PYBIND11_MODULE(_core, module) {
       .def("step", &Session::step)
       .def("positions",
            [](const py::object& self) {
-             core::Membranes& m = self.cast<Session&>().simulation().membranes();
-             return pairs(self, m.x, m.y, false);
+             core::CellNodes& nodes = self.cast<Session&>().simulation().nodes();
+             return shown(self, nodes, places(nodes));
            })
       .def("velocities",
            [](const py::object& self) {
-             core::Membranes& m = self.cast<Session&>().simulation().membranes();
-             return pairs(self, m.velocity_x, m.velocity_y, false);
+             core::CellNodes& nodes = self.cast<Session&>().simulation().nodes();
+             return shown(self, nodes, velocities(nodes));
            })
       .def("forces",
            [](const py::object& self) {
-             Session& session = self.cast<Session&>();
-             guarded([&] { session.simulation().compute_forces(); });
-             core::Membranes& m = session.simulation().membranes();
-             return pairs(self, m.force_x, m.force_y, false);
+             Simulation& simulation = self.cast<Session&>().simulation();
+             guarded([&] { simulation.compute_forces(); });
+             return shown(self, simulation.nodes(), forces(simulation.nodes()));
            })
       .def("cell_nodes",
            [](Session& session) {
+             const core::CellNodes& nodes = session.simulation().nodes();
              std::vector<long> first;
-             for (const core::CellRange& cell : session.simulation().membranes().cells) first.push_back(cell.first);
-             first.push_back(session.simulation().membranes().node_count());
+             for (const core::CellRange& cell : nodes.cells) first.push_back(cell.first);
+             first.push_back(nodes.node_count());
              return first;
            })
-      .def("set_force",
-           [](const py::object& self, const py::object& callback) {
-             Simulation& simulation = self.cast<Session&>().simulation();
-             if (callback.is_none()) return guarded([&] { simulation.set_force({}); });
-             // The view that the callback may write to keeps nothing alive: the session that holds it does.
-             core::Membranes& m = simulation.membranes();
-             const py::object force = pairs(py::none(), m.force_x, m.force_y, true);
-             guarded([&] {
-               simulation.set_force([callback, force] {
-                 const py::gil_scoped_acquire interpreter;
-                 callback(force);
-               });
-             });
-           })
+      .def(
+          "set_force",
+          [](Session& session, const py::object& callback) {
+            Simulation& simulation = session.simulation();
+            guarded([&] {
+              simulation.set_force(callback.is_none() ? std::function<void()>{} : asking(callback, simulation.nodes()));
+            });
+          })
       .def("fluid", &fluid)
       .def("cells", &cells)
       .def("stage", &stage)

@@ -26,20 +26,24 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What a checkpoint has of the membranes that forces change before the step is over.
+/// What a checkpoint has of the cells that forces change before the step is over: of surfaces nothing.
 struct Remembered {
   std::vector<core::ElementState> state;
   core::ContactMemory contacts, wall_contacts;
 };
 
-/// T: of the populations. The order of what happens in a step is that of run/simulation.cpp, so that the bits are the same.
-template <class T>
+/// T: of the populations; Set: D2Q9 or D3Q19. The order of what happens in a step is that of run/simulation.cpp, so that the bits are the same.
+template <class T, class Set>
 class SimulationOf final : public Simulation {
  public:
+  static constexpr int dimension = Set::dimension;
+  using Solver = core::Solver<T, Set>;
+
   SimulationOf(plan::ReadScene read, plugin::Catalog catalog)
       : Simulation(std::move(read), std::move(catalog)),
-        state_(observe::Observer(scene(), membranes_)),
-        course_(plan_, state_, membranes_) {
+        cells_(plan_.has_cells ? plan::make_cells<dimension>(scene()) : plan::Cells<dimension>{}),
+        state_(observe::Observer(scene(), cells_)),
+        course_(plan_, state_, cells_) {
     start_stage(nullptr);
   }
 
@@ -73,13 +77,12 @@ class SimulationOf final : public Simulation {
 
   FluidFields fluid() override {
     compute_forces();
-    core::Fluid<T>& fluid = solver_->fluid();
-    fluid.settle();
-    const std::vector<core::Moments<2>> moments = fluid.all_moments();
-    FluidFields fields{scene().domain.nodes[0], scene().domain.nodes[1], {}, {}};
+    solver_->fluid().settle();
+    FluidFields fields;
+    for (const int nodes : plan::lattice_domain<dimension>(scene()).size) fields.size.push_back(nodes);
     const double speed = stage().units.unit(units::dimension::velocity);
-    for (const core::Moments<2>& node : moments) {
-      fields.velocity.insert(fields.velocity.end(), {node.velocity[0] * speed, node.velocity[1] * speed});
+    for (const auto& node : solver_->fluid().all_moments()) {
+      for (const double component : node.velocity) fields.velocity.push_back(component * speed);
       fields.density.push_back(node.density);
     }
     return fields;
@@ -87,7 +90,7 @@ class SimulationOf final : public Simulation {
 
   observe::Snapshot observe() override {
     compute_forces();
-    observe::Snapshot snapshot = state_.observer.observe(*solver_, stage(), membranes_, false);
+    observe::Snapshot snapshot = state_.observer.observe(*solver_, stage(), cells_, false);
     course_.date(snapshot);
     return snapshot;
   }
@@ -116,7 +119,7 @@ class SimulationOf final : public Simulation {
     try {
       files::RunDirectory to(directory, scene(), files::FormerRun::replace);
       run::Checkpoints checkpoints(scene(), &to);
-      checkpoints.write(plan_, 1, state_, membranes_, *solver_);
+      checkpoints.write(plan_, 1, state_, cells_, *solver_);
       checkpoints.settle(true);
     } catch (...) {
       back();
@@ -129,10 +132,10 @@ class SimulationOf final : public Simulation {
     run::Resumption resumption = run::open_checkpoint(directory, plan_, false);
     const std::shared_ptr<const files::CheckpointReader> reader = std::move(resumption.checkpoint);
     whole_ = false;
-    run::RunState state(observe::Observer(scene(), membranes_));
-    auto restored = run::restore<T>(reader, plan_, plan::lattice_domain(scene()).block, state, membranes_);
+    run::RunState state(observe::Observer(scene(), cells_));
+    auto restored = run::restore<T, Set>(reader, plan_, plan::lattice_domain<dimension>(scene()).block, state, cells_);
     state_ = std::move(state);
-    solver_ = std::make_unique<core::Solver<T>>(plan::make_solver_setup(plan_, state_.stage), membranes_);
+    solver_ = std::make_unique<Solver>(plan::make_solver_setup<dimension>(plan_, state_.stage), cells_);
     solver_->start(restored.solver);
     next_attention_ = state_.stage_step;
     ending_ = run::Ending::none;
@@ -147,6 +150,7 @@ class SimulationOf final : public Simulation {
   [[nodiscard]] double time() const override { return state_.time_at(stage()); }
   [[nodiscard]] double strain() const override { return state_.strain_at(stage()); }
   [[nodiscard]] const plan::StageSetting& stage() const override { return course_.setting(); }
+  [[nodiscard]] core::CellNodes& nodes() override { return cells_; }
 
  private:
   void require_whole() const {
@@ -155,16 +159,20 @@ class SimulationOf final : public Simulation {
                 {"load the last checkpoint, or make the simulation anew"});
   }
 
-  void remember() { remembered_ = {membranes_.state, membranes_.contacts, membranes_.wall_contacts}; }
-  /// The membranes get what they remembered before the forces of the next step, and the other way round.
+  void remember() {
+    if constexpr (dimension == 2) remembered_ = {cells_.state, cells_.contacts, cells_.wall_contacts};
+  }
+  /// The cells get what they remembered before the forces of the next step, and the other way round.
   void exchange_memories() {
-    std::swap(membranes_.state, remembered_.state);
-    std::swap(membranes_.contacts, remembered_.contacts);
-    std::swap(membranes_.wall_contacts, remembered_.wall_contacts);
+    if constexpr (dimension == 2) {
+      std::swap(cells_.state, remembered_.state);
+      std::swap(cells_.contacts, remembered_.contacts);
+      std::swap(cells_.wall_contacts, remembered_.wall_contacts);
+    }
   }
 
-  void start_stage(core::Solver<T>* former) {
-    auto next = std::make_unique<core::Solver<T>>(plan::make_solver_setup(plan_, state_.stage), membranes_);
+  void start_stage(Solver* former) {
+    auto next = std::make_unique<Solver>(plan::make_solver_setup<dimension>(plan_, state_.stage), cells_);
     next->start(former);
     course_.begin();
     next_attention_ = 0;
@@ -240,7 +248,7 @@ class SimulationOf final : public Simulation {
 
   /// The last step must not be followed by another; all workers come to the same answer.
   [[nodiscard]] bool wants_a_look() const {
-    return !(core::largest_step(membranes_) <= scene().checks.node_step) || solver_->escaped();
+    return !(core::largest_step(cells_) <= scene().checks.node_step) || solver_->escaped();
   }
 
   void before_forces(long step) {
@@ -251,12 +259,12 @@ class SimulationOf final : public Simulation {
 
   void after_forces(long step, bool attended) {
     course_.count_to(step);
-    if (auto failure = monitor::check_nodes(membranes_, scene().checks.node_step, solver_->escaped_node(), stage()))
+    if (auto failure = monitor::check_nodes(cells_, scene().checks.node_step, solver_->escaped_node(), stage()))
       fail(std::move(*failure));
     if (!attended) return;
     const long every = scene().checks.every_steps;
     if (step % every == 0 || due_ending_ != run::Ending::none) {
-      if (auto failure = monitor::check_state(state_.observer, *solver_, stage(), membranes_, scene()))
+      if (auto failure = monitor::check_state(state_.observer, *solver_, stage(), cells_, scene()))
         fail(std::move(*failure));
     }
     ending_ = due_ending_;
@@ -269,9 +277,10 @@ class SimulationOf final : public Simulation {
     throw Diverged{std::move(failure)};
   }
 
+  plan::Cells<dimension> cells_;
   run::RunState state_;
   run::StageCourse course_;
-  std::unique_ptr<core::Solver<T>> solver_;
+  std::unique_ptr<Solver> solver_;
   std::function<void()> add_force_;
   Remembered remembered_;    ///< before the forces that are ready were computed
   long next_attention_ = 0;  ///< step of the stage at which something is due
@@ -286,17 +295,10 @@ class SimulationOf final : public Simulation {
 Simulation::Simulation(plan::ReadScene read, plugin::Catalog catalog)
     : read_(std::move(read)),
       catalog_(std::move(catalog)),
-      plan_(plan::make_plan(read_.scene, catalog_, read_.numerics_choice)),
-      membranes_(plan_.has_cells ? plan::make_membranes(read_.scene, plan::lattice_spacing(read_.scene))
-                                 : core::Membranes{}) {}
+      plan_(plan::make_plan(read_.scene, catalog_, read_.numerics_choice)) {}
 
 std::unique_ptr<Simulation> make_simulation(const SceneChoice& choice) {
   const auto catalog_of = [&](const scene::Scene& scene) {
-    if (scene.domain.depth) {
-      throw Error(Cause::bad_input, scene.place("/domain/size"),
-                  "rouleau.Simulation steps two dimensions only so far, and this scene has three",
-                  {"run it whole, with rouleau.run"});
-    }
     plugin::Catalog catalog(plugin::plugin_search_path(choice.plugins, scene.plugin_dirs));
     const fs::path lock = plugin::lock_beside(choice.file);
     std::error_code ignored;
@@ -307,9 +309,13 @@ std::unique_ptr<Simulation> make_simulation(const SceneChoice& choice) {
   };
   plan::ReadScene read = plan::read_within_limits(choice.file, choice.overrides, catalog_of);
   plugin::Catalog catalog = catalog_of(read.scene);
+  const bool space = read.scene.domain.depth.has_value();
+  const auto make = [&]<class T, class Set>(T, Set) -> std::unique_ptr<Simulation> {
+    return std::make_unique<SimulationOf<T, Set>>(std::move(read), std::move(catalog));
+  };
   if (read.scene.numerics.precision == scene::Precision::f32)
-    return std::make_unique<SimulationOf<float>>(std::move(read), std::move(catalog));
-  return std::make_unique<SimulationOf<double>>(std::move(read), std::move(catalog));
+    return space ? make(float{}, core::D3Q19{}) : make(float{}, core::D2Q9{});
+  return space ? make(double{}, core::D3Q19{}) : make(double{}, core::D2Q9{});
 }
 
 }  // namespace rouleau::python

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/membrane/membranes.hpp"
+#include "core/membrane/cell_nodes.hpp"
 #include "monitor/failure.hpp"
 #include "observe/snapshot.hpp"
 #include "plan/plan.hpp"
@@ -26,10 +26,10 @@ struct Diverged {
   monitor::Failure failure;
 };
 
-/// The mean state of the fluid in its nodes, row by row from below, x fastest; SI.
+/// The mean state of the fluid in its nodes, row by row from below, x fastest, then y; SI.
 struct FluidFields {
-  int nx = 0, ny = 0;
-  std::vector<double> velocity;  ///< m/s, x and y of each node
+  std::vector<int> size;         ///< nodes along x, y and, in three dimensions, z
+  std::vector<double> velocity;  ///< m/s, all components of each node
   std::vector<double> density;   ///< relative deviation from the fluid's density
 };
 
@@ -59,7 +59,8 @@ class Simulation {
   [[nodiscard]] virtual double time() const = 0;  ///< s
   [[nodiscard]] virtual double strain() const = 0;
   [[nodiscard]] virtual const plan::StageSetting& stage() const = 0;
-  [[nodiscard]] core::Membranes& membranes() { return membranes_; }
+  /// Of all cells; what is along z is empty in two dimensions.
+  [[nodiscard]] virtual core::CellNodes& nodes() = 0;
   [[nodiscard]] const scene::Scene& scene() const { return read_.scene; }
 
  protected:
@@ -68,7 +69,6 @@ class Simulation {
   plan::ReadScene read_;
   plugin::Catalog catalog_;
   plan::Plan plan_;
-  core::Membranes membranes_;
 };
 
 /// Reads and plans the scene as the program does. Throws Error.

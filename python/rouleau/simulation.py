@@ -35,10 +35,12 @@ def _error(faults: Sequence[tuple[str, str, str, str, int, int]], exit_code: int
 class FluidField(NamedTuple):
     """A quantity of the fluid in the nodes of the lattice."""
 
-    values: Doubles  #: rows from below, nodes of a row from the left: (rows, nodes) or, of a vector, (rows, nodes, 2)
+    values: Doubles  #: rows from below, nodes of a row from the left: (rows, nodes) or, of a vector, (rows, nodes, 2);
+    #: in three dimensions (layers, rows, nodes) or (layers, rows, nodes, 3)
     x: Doubles  #: places of the nodes of a row, m, shape (nodes,)
     y: Doubles  #: places of the rows, m, shape (rows,)
     unit: str  #: of the values; "1" for a number
+    z: Doubles | None = None  #: places of the layers, m, shape (layers,); None in two dimensions
 
 
 class Simulation:
@@ -54,8 +56,8 @@ class Simulation:
             print(sim.strain, sim.cells()["deformation"].mean())
 
     Nothing is written but by save(). Arrays that are called views show the simulation's own memory: they change with
-    every step, cannot be written to, and keep the simulation alive. They are in lattice units; `spacing`, `time_step`
-    and `force_unit` have what these are in SI.
+    every step, cannot be written to, and keep the simulation alive. In three dimensions they are copies instead, of three
+    components for two. They are in lattice units; `spacing`, `time_step` and `force_unit` have what these are in SI.
     """
 
     def __init__(self, scene: SceneLike, *, threads: int = 1, plugins: Sequence[Union[str, os.PathLike[str]]] = (),
@@ -127,43 +129,45 @@ class Simulation:
 
     @property
     def force_unit(self) -> float:
-        """Unit of forces in the present stage, N/m: newtons on a node for each metre of depth."""
+        """Unit of forces in the present stage, N/m: newtons on a node for each metre of depth; in three dimensions N."""
         return float(self._core.stage()["force"])
 
     @property
     def positions(self) -> Doubles:
-        """View of the membrane nodes' positions, shape (nodes, 2), spacings; not wrapped into the periodic box."""
+        """View of the membrane nodes' positions, shape (nodes, 2) or (nodes, 3), spacings; not wrapped into the
+        periodic box."""
         return self._core.positions()
 
     @property
     def velocities(self) -> Doubles:
-        """View of the membrane nodes' displacements in the last step, shape (nodes, 2), spacings."""
+        """View of the membrane nodes' displacements in the last step, shape (nodes, 2) or (nodes, 3), spacings."""
         return self._core.velocities()
 
     @property
     def forces(self) -> Doubles:
-        """View of the forces on the membrane nodes at the present positions, shape (nodes, 2), in force_unit. Asking
-        for it computes them, once; the next step does not compute them again."""
+        """View of the forces on the membrane nodes at the present positions, shape (nodes, 2) or (nodes, 3), in
+        force_unit. Asking for it computes them, once; the next step does not compute them again."""
         return self._core.forces()
 
     @property
     def cell_nodes(self) -> list[slice]:
-        """Which nodes each cell has: `sim.positions[sim.cell_nodes[0]]` is the first cell's outline."""
+        """Which nodes each cell has: `sim.positions[sim.cell_nodes[0]]` is the first cell's outline,
+        or its surface."""
         first = self._core.cell_nodes()
         return [slice(begin, end) for begin, end in zip(first[:-1], first[1:])]
 
     def velocity(self) -> FluidField:
-        """Velocity of the fluid, m/s, shape (rows, nodes, 2): a copy. Needs the forces of the next step."""
+        """Velocity of the fluid, m/s: a copy. Needs the forces of the next step."""
         return self._field("velocity", "m/s")
 
     def density(self) -> FluidField:
-        """Density of the fluid over its mean less one, shape (rows, nodes): a copy. Needs the forces of the next step."""
+        """Density of the fluid over its mean less one: a copy. Needs the forces of the next step."""
         return self._field("density", "1")
 
     def _field(self, name: str, unit: str) -> FluidField:
-        values = self._core.fluid()[name]
-        rows, nodes = values.shape[:2]
-        return FluidField(values, (np.arange(nodes) + 0.5) * self._spacing, (np.arange(rows) + 0.5) * self._spacing, unit)
+        fields = self._core.fluid()
+        places = [(np.arange(count) + 0.5) * self._spacing for count in reversed(fields["density"].shape)]
+        return FluidField(fields[name], places[0], places[1], unit, *places[2:])
 
     def cells(self) -> pandas.DataFrame:
         """One row for each cell, with the columns of cells.csv: deformation, area_m2, min_gap_m, ..."""
@@ -173,7 +177,7 @@ class Simulation:
 
     def add_force(self, force: Callable[[Simulation], npt.ArrayLike] | None) -> None:
         """Adds a force of your own to the membrane nodes, every step: `force(simulation)` returns newtons for each metre
-        of depth, shape (nodes, 2) or what can be broadcast to it. None takes it away.
+        of depth, shape (nodes, 2), or newtons, shape (nodes, 3), or what can be broadcast to it. None takes it away.
 
         It is asked when the forces of the models are known, and reads positions and velocities. Python is entered once
         a step: that costs some 14 us for 48 nodes, beside 17 us for a step of the smallest scene and 0.3 ms for one of

@@ -42,6 +42,13 @@ SMALL["at_rest"] = {"window": "2 ms", "displacement": "20 um"}
 SMALL["output"] = {"cells": {"strain": 0.1}, "checkpoint": {"seconds": 600}}
 
 
+# A stiff capsule in shear, in three dimensions.
+SPACE = json.loads((SOURCE / "scenes/capsule-3d.json").read_text())
+SPACE["domain"] |= {"size": ["12 um", "9.6 um", "10.8 um"], "nodes": [40, 32, 36]}
+SPACE["cells"] = [{"type": "capsule", "at": ["5 um", "4.8 um", "5.4 um"]}]
+SPACE["cell_types"]["capsule"]["interior_viscosity"] = "6 cP"
+
+
 class Case(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -97,6 +104,55 @@ class It_computes_what_the_program_does(Case):
         last, cell = run.cells.iloc[-1], simulation.cells().iloc[-1]
         for name in set(run.cells) - {"type", "aggregate", "stage", "stage_name"}:
             numpy.testing.assert_allclose(float(cell[name]), float(last[name]), rtol=1e-6, err_msg=name)
+
+
+class In_three_dimensions(Case):
+    def setUp(self):
+        super().setUp()
+        self.scene.write_text(json.dumps(SPACE))
+
+    def test_it_computes_what_the_program_does_and_saves_what_goes_on(self):
+        out = self.path / "run"
+        self.program("--out", out, "--max-steps", 40)
+        simulation = rouleau.Simulation(self.scene, threads=2)
+        simulation.step(25)
+        simulation.forces
+        simulation.save(self.path / "saved")
+        for part in (simulation, rouleau.Simulation.load(self.path / "saved")):
+            part.step(15)
+            self.assert_same_state(part, rouleau.Simulation.load(out))
+
+    def test_shapes_and_places(self):
+        simulation = rouleau.Simulation(SPACE, **{"stages/0/shear_rate": "50 1/s"})
+        nodes = simulation.cell_nodes[0].stop
+        for array in (simulation.positions, simulation.velocities, simulation.forces):
+            self.assertEqual(array.shape, (nodes, 3))
+            self.assertFalse(array.flags.writeable)
+        middle = (simulation.positions.mean(axis=0) + 0.5) * simulation.spacing
+        numpy.testing.assert_allclose(middle, [5e-6, 4.8e-6, 5.4e-6], rtol=1e-6)
+        velocity, density = simulation.velocity(), simulation.density()
+        self.assertEqual((velocity.values.shape, density.values.shape), ((36, 32, 40, 3), (36, 32, 40)))
+        self.assertEqual([len(axis) for axis in (velocity.x, velocity.y, velocity.z)], [40, 32, 36])
+        # Couette flow from the start: the walls' speed is half the rate times the height.
+        numpy.testing.assert_allclose(velocity.values[0, :, 0, 0], 50 * (velocity.y - 4.8e-6), atol=1e-9)
+        self.assertEqual(simulation.cells()["volume_m3"].size, 1)
+
+    def test_a_force_of_ones_own_is_newtons_and_moves_the_cell_as_it_points(self):
+        rest = {"stages": [{"name": "rest", "duration": "1 s"}], "output": {}}
+        pulled, alone = (rouleau.Simulation(SPACE | rest) for _ in range(2))
+        nodes = len(pulled.positions)
+        pulled.add_force(lambda simulation: [0, 0, 1e-12 / nodes])
+        for simulation in (pulled, alone):
+            simulation.step(20)
+        self.assertGreater(pulled.positions[:, 2].mean(), alone.positions[:, 2].mean() + 1e-6)
+        added = (pulled.forces - alone.forces).sum(axis=0) * pulled.force_unit
+        numpy.testing.assert_allclose(added, [0, 0, 1e-12], atol=1e-15)  # what models do sums up to nothing
+
+    def test_too_many_numbers_are_refused(self):
+        simulation = rouleau.Simulation(SPACE)
+        simulation.add_force(lambda simulation: numpy.zeros((3, 2)))
+        with self.assertRaises(ValueError):
+            simulation.step(1)
 
 
 class A_checkpoint(Case):
