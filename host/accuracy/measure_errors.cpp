@@ -4,6 +4,7 @@
 #include <chrono>
 #include <iostream>
 #include <memory>
+#include <optional>
 
 #include "base/error.hpp"
 #include "files/file_lock.hpp"
@@ -33,6 +34,10 @@ struct Ended {
   double wall_s = 0;
 };
 
+double seconds_since(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
 /// A companion's scene; what it says of files is said from where the run's scene was.
 scene::Scene read(const Companion& companion, const std::string& file) {
   Faults faults;
@@ -44,47 +49,75 @@ scene::Scene read(const Companion& companion, const std::string& file) {
   return scene;
 }
 
+/// A companion with its plan, which refers to scene and catalog: they stay where they are.
+struct Prepared {
+  const plugin::Catalog& catalog;
+  std::optional<scene::Scene> scene;
+  std::optional<plan::Plan> plan;  ///< none: the companion is refused
+  std::string refused;             ///< why
+  double wall_s = 0;
+
+  void read_and_plan(const Companion& companion, const std::string& scene_file) {
+    const auto begin = std::chrono::steady_clock::now();
+    plan.reset();
+    refused.clear();
+    try {
+      scene.emplace(read(companion, scene_file));
+      plan.emplace(plan::make_plan(*scene, catalog));
+    } catch (const Error& error) {
+      if (error.cause() == Cause::input_output) throw;
+      refused = error.problem();
+    }
+    wall_s += seconds_since(begin);
+  }
+};
+
+/// All companions with their plans. If one of them takes the semi-implicit step, all do: on a coarse lattice its own
+/// error shows, and pairs would differ by it.
+std::vector<std::unique_ptr<Prepared>> prepare(Companions& companions, const std::string& scene_file,
+                                               const plugin::Catalog& catalog) {
+  std::vector<std::unique_ptr<Prepared>> all;
+  for (const Companion& companion : companions.runs) {
+    all.push_back(std::make_unique<Prepared>(catalog));
+    all.back()->read_and_plan(companion, scene_file);
+  }
+  const auto semi_implicit = [](const auto& one) { return one->plan && one->plan->semi_implicit; };
+  if (std::none_of(all.begin(), all.end(), semi_implicit)) return all;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (semi_implicit(all[i])) continue;
+    companions.runs[i].scene["numerics"]["coupling"] = "semi-implicit";
+    all[i]->read_and_plan(companions.runs[i], scene_file);
+  }
+  return all;
+}
+
 /// Runs a companion, or finds that it has been run.
-Ended run_companion(const Companion& companion, const std::string& scene_file, const fs::path& folder,
+Ended run_companion(const Companion& companion, const Prepared& prepared, const fs::path& folder,
                     const MeasureOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
-  Ended ended{"completed", {}, folder / name_of(companion.role)};
+  Ended ended{"refused", prepared.refused, folder / name_of(companion.role)};
   try {
-    const scene::Scene scene = read(companion, scene_file);
-    if (finished_run(ended.directory, scene) != Finished::no) {
-      ended.wall_s = trial::read_summary(ended.directory).at("wall_s");
-      return ended;
+    if (prepared.scene && finished_run(ended.directory, *prepared.scene) != Finished::no) {
+      return {"completed", {}, ended.directory, trial::read_summary(ended.directory).at("wall_s")};
     }
     if (!options.quiet) std::cerr << "error bar: " << companion.differs << std::endl;
-    const plugin::Catalog catalog = options.catalog_of(scene);
-    const plan::Plan plan = plan::make_plan(scene, catalog);
-    run::RunOptions run{.threads = std::clamp(scene.domain.nodes[1] / 4, 1, options.threads), .quiet = true};
-    run.interrupted = options.interrupted;
-    files::RunDirectory directory(ended.directory, scene, files::FormerRun::replace, files::DataFiles::tables);
-    const run::Summary summary = run::simulate(plan, {}, run, &directory);
-    ended.end = summary.status;
-    if (summary.failure) ended.message = summary.failure->message;
+    if (prepared.plan) {
+      run::RunOptions run{.threads = std::clamp(prepared.scene->domain.nodes[1] / 4, 1, options.threads),
+                          .quiet = true};
+      run.interrupted = options.interrupted;
+      files::RunDirectory directory(ended.directory, *prepared.scene, files::FormerRun::replace,
+                                    files::DataFiles::tables);
+      const run::Summary summary = run::simulate(*prepared.plan, {}, run, &directory);
+      ended.end = summary.status;
+      if (summary.failure) ended.message = summary.failure->message;
+    }
   } catch (const Error& error) {
     if (error.cause() == Cause::input_output) throw;
     ended.end = "refused";
     ended.message = error.problem();
   }
-  ended.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  ended.wall_s = prepared.wall_s + seconds_since(begin);
   return ended;
-}
-
-/// If one of them takes the semi-implicit step, all do: on a coarse lattice its own error shows, and pairs would differ by it.
-void share_coupling(Companions& companions, const std::string& scene_file, const MeasureOptions& options) {
-  const auto semi_implicit = [&](const Companion& companion) {
-    try {
-      const scene::Scene scene = read(companion, scene_file);
-      return plan::make_plan(scene, options.catalog_of(scene)).semi_implicit;
-    } catch (const Error&) {
-      return false;  // said when it runs
-    }
-  };
-  if (std::none_of(companions.runs.begin(), companions.runs.end(), semi_implicit)) return;
-  for (Companion& companion : companions.runs) companion.scene["numerics"]["coupling"] = "semi-implicit";
 }
 
 /// Why a companion says nothing; empty: it does.
@@ -123,13 +156,15 @@ MeasuredErrors measure_errors(const fs::path& directory, const scene::Scene& sce
   std::vector<Quantity> quantities = reported_quantities(directory);
   cost.moments = std::any_of(quantities.begin(), quantities.end(), [](const Quantity& q) { return q.moment; });
   Companions companions = choose_companions(scene, cost);
-  share_coupling(companions, scene.document->file(), options);
+  const plugin::Catalog catalog = options.catalog_of(scene);  // companions name the same models
+  const auto prepared = prepare(companions, scene.document->file(), catalog);
   MeasuredErrors errors;
   errors.missing = companions.why_none;
   Json told = Json::array();
   std::vector<Measured> measured;
-  for (const Companion& companion : companions.runs) {
-    const Ended ended = run_companion(companion, scene.document->file(), folder, options);
+  for (std::size_t i = 0; i < companions.runs.size(); ++i) {
+    const Companion& companion = companions.runs[i];
+    const Ended ended = run_companion(companion, *prepared[i], folder, options);
     if (ended.end == "interrupted") {
       errors.interrupted = true;
       errors.missing = "interrupted";

@@ -13,7 +13,7 @@
 namespace rouleau::accuracy {
 
 struct MeasureOptions {
-  std::function<plugin::Catalog(const scene::Scene&)> catalog_of;  ///< finds the plugins of a companion's scene
+  std::function<plugin::Catalog(const scene::Scene&)> catalog_of;  ///< finds the plugins of a scene
   int threads = 1;
   bool quiet = false;
   const std::atomic<bool>* interrupted = nullptr;  ///< set by a signal handler

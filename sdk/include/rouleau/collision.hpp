@@ -111,10 +111,29 @@ struct Node {
     if constexpr (Forced) {
       S gained[dimension];
       for (int k = 0; k < dimension; ++k) gained[k] = rate * momentum[k] + force[k];
-      return 3.0 * weight[q] * project(q, gained);
+      return odd_weight(q) * project(q, gained);
     } else {
-      return rate * (3.0 * weight[q]) * project(q, momentum);
+      return odd_weight(q, rate) * project(q, momentum);
     }
+  }
+
+ private:
+  /// 3 w_q as S holds it, and rate times that. The momentum that all q take up is rate u, exactly: in single precision
+  /// the velocities of one length have 2/3 of it, rounded, and those of the other what is left. With 1/3 and 1/12 rounded
+  /// on their own a fluid gains 3e-8 to 6e-8 of its momentum in each step, and the stress on the walls of a channel that
+  /// is 128 nodes high sinks by 3e-4 to 5e-4.
+  static constexpr bool exact = sizeof(typename S::Number) == 4;
+  static constexpr int major = dimension == 2 ? 1 : 5;  ///< a velocity that has more of it: along an axis, between two
+  static constexpr double majors = dimension == 2 ? 2 : 8,
+                          minors = dimension == 2 ? 4 : 2;  ///< velocities with c_x != 0
+  static constexpr double odd_weight(int q) {
+    if (!exact) return 3.0 * weight[q];
+    const auto of_major = static_cast<float>(3.0 * weight[major]);
+    return weight[q] == weight[major] ? of_major : (1 - majors * of_major) / minors;
+  }
+  ROULEAU_ALWAYS_INLINE static S odd_weight(int q, const S& rate) {
+    const S of_major = rate * (3.0 * weight[exact ? major : q]);
+    return !exact || weight[q] == weight[major] ? of_major : (rate - majors * of_major) * (1 / minors);
   }
 };
 
