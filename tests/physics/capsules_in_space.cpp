@@ -57,3 +57,25 @@ TEST_CASE("capsules in three dimensions deform and turn as the boundary integral
   CHECK(run.summary["conservation"]["area_drift_max"].get<double>() < 1e-3);
   CHECK(run.summary["conservation"]["momentum_residual"].get<double>() < 1e-10);
 }
+
+TEST_CASE("in three dimensions sheared cells come to rest in the shape that they had, with their volume", "[space]") {
+  const SceneRun run =
+      run_scene(scenes + "/at-rest-3d.json", {R"(/stages/1/duration="0.12 s")", R"(/output/cells/seconds="0.02 s")"});
+  REQUIRE(run.summary["status"] == "completed");
+  for (const int cell : {0, 1}) {
+    const auto first_and_last = [&](const char* name) {
+      const std::vector<double> values = run.column(name, cell);
+      return std::pair(values.front(), values.back());
+    };
+    const auto [volume, volume_at_end] = first_and_last("volume_m3");
+    const auto [area, area_at_end] = first_and_last("surface_area_m2");
+    const auto [deformation, deformation_at_end] = first_and_last("deformation");
+    std::cout << "cell " << cell << ": volume " << volume_at_end / volume - 1 << ", area " << area_at_end / area - 1
+              << ", deformation " << deformation_at_end - deformation << "\n";
+    CHECK(volume_at_end == Approx(volume).epsilon(2e-4));
+    CHECK(area_at_end == Approx(area).epsilon(2e-4));
+    CHECK(deformation_at_end == Approx(deformation).margin(0.003));
+    CHECK(run.column("stretch_min", cell).back() > 0.99);
+    CHECK(run.column("stretch_max", cell).back() < 1.01);
+  }
+}

@@ -1,0 +1,68 @@
+// The place where a smooth function is least, near a start.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <vector>
+
+namespace rouleau::test {
+
+struct Minimising {
+  double gradient_at_end;  ///< the search ends when no component is larger
+  double longest_step;     ///< of any component, at once
+  double rounding = 1e-9;  ///< of values, and how far they may jump without a gradient that says so
+};
+
+/// Limited-memory BFGS with halved steps (Nocedal and Wright, Numerical Optimization, algorithms 7.4 and 7.5; where values
+/// are too close to be compared, slopes are: Hager and Zhang, SIAM J. Optim. 16, 170, 2005). `value_of(place, gradient)`
+/// sets the gradient and returns the value. Returns the largest component of the gradient that is left.
+template <class ValueOf>
+double minimise(Eigen::VectorXd& place, const Minimising& how, ValueOf value_of) {
+  struct Pair {
+    Eigen::VectorXd step, change;
+    double product;
+  };
+  constexpr int most_steps = 20000;
+  constexpr double least_length = 1e-12, decrease = 1e-4;
+  std::deque<Pair> pairs;
+  Eigen::VectorXd gradient, next, next_gradient;
+  double value = value_of(place, gradient);
+  for (int steps = 0; steps < most_steps && gradient.lpNorm<Eigen::Infinity>() > how.gradient_at_end; ++steps) {
+    Eigen::VectorXd direction = -gradient;
+    std::vector<double> share(pairs.size());
+    for (std::size_t k = pairs.size(); k-- > 0;) {
+      share[k] = pairs[k].step.dot(direction) / pairs[k].product;
+      direction -= share[k] * pairs[k].change;
+    }
+    if (!pairs.empty()) direction *= pairs.back().product / pairs.back().change.squaredNorm();
+    for (std::size_t k = 0; k < pairs.size(); ++k)
+      direction += (share[k] - pairs[k].change.dot(direction) / pairs[k].product) * pairs[k].step;
+    const double slope = direction.dot(gradient);
+    double length = std::min(1.0, how.longest_step / direction.lpNorm<Eigen::Infinity>());
+    const auto enough = [&](double there) {
+      return there <= value + decrease * length * slope ||
+             (there <= value + how.rounding && direction.dot(next_gradient) <= (2 * decrease - 1) * slope);
+    };
+    next = place + length * direction;
+    double next_value = value_of(next, next_gradient);
+    while (!enough(next_value) && length > least_length) {
+      length /= 2;
+      next = place + length * direction;
+      next_value = value_of(next, next_gradient);
+    }
+    if (length <= least_length) break;
+    const Eigen::VectorXd step = next - place, change = next_gradient - gradient;
+    const double product = step.dot(change);
+    if (product > 1e-10 * step.norm() * change.norm()) pairs.push_back({step, change, product});
+    if (pairs.size() > 30) pairs.pop_front();
+    place = next;
+    gradient = next_gradient;
+    value = next_value;
+  }
+  value_of(place, gradient);
+  return gradient.lpNorm<Eigen::Infinity>();
+}
+
+}  // namespace rouleau::test
