@@ -6,6 +6,7 @@
 #include <functional>
 #include <set>
 #include <type_traits>
+#include <utility>
 
 #include "core/contact/interaction_forces.hpp"
 #include "core/domain/halo.hpp"
@@ -105,6 +106,13 @@ double contact_reach(const Plan& plan) {
   return core::list_reach(cutoffs);
 }
 
+/// A cell and a rank, or two ranks.
+using Pairs = std::vector<std::pair<int, int>>;
+void make_unique(Pairs& pairs) {
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+}
+
 template <int D>
 void add_cells(const Plan& plan, const core::Decomposition<D>& blocks, std::vector<RankCost>& ranks) {
   using Ghosts = core::GhostCells<D>;
@@ -112,18 +120,26 @@ void add_cells(const Plan& plan, const core::Decomposition<D>& blocks, std::vect
   constexpr double word = sizeof(double), of_node = D * word;
   std::vector<core::BoundingBox<D>> boxes;
   std::vector<int> owner, nodes;
-  std::vector<std::vector<int>> reached;  // by each cell: other ranks whose blocks it may touch
-  for_each_cell<D>(*plan.scene, lattice_spacing(*plan.scene), [&](std::size_t, const Cells<D>& cell) {
+  Pairs known;        // cells, and ranks that are told where they are
+  Pairs spread, act;  // ranks that speak of forces and velocities, and of reactions
+  for_each_cell<D>(*plan.scene, lattice_spacing(*plan.scene), [&](std::size_t c, const Cells<D>& cell) {
     const core::BoundingBox<D> box = core::box_of<D>(cell, 0);
     const int rank = Ghosts::owner_by_place(box, blocks);
     RankCost& own = ranks[rank];
     ++own.cells;
     own.membrane_nodes += cell.node_count();
-    std::vector<int>& others = reached.emplace_back(Ghosts::reached_by(box, blocks, core::lattice_reach));
-    std::erase(others, rank);
+    bool crosses = false;
+    for (const int other : Ghosts::reached_by(box, blocks, core::lattice_reach)) {
+      if (other == rank) continue;
+      crosses = true;
+      known.emplace_back(static_cast<int>(c), other);
+      spread.emplace_back(rank, other), spread.emplace_back(other, rank);
+      own.force_bytes += cell.node_count() * of_node;
+      ranks[other].received_bytes += cell.node_count() * of_node;
+    }
     const core::Box<D> block = blocks.domain(rank).block;
     const std::vector<double>* const places[] = {&cell.x, &cell.y, &cell.z};
-    for (int i = 0; i < cell.node_count() && !others.empty(); ++i) {
+    for (int i = 0; i < cell.node_count() && crosses; ++i) {
       // Whose block has the stencil's first node, sends the node's velocity.
       std::array<int, D> node;
       for (int k = 0; k < D; ++k) node[k] = domain.wrapped(k, core::floor_int((*places[k])[i]));
@@ -131,47 +147,44 @@ void add_cells(const Plan& plan, const core::Decomposition<D>& blocks, std::vect
       ranks[blocks.owner(node)].node_velocity_bytes += of_node;
       own.received_bytes += of_node;
     }
-    own.force_bytes += static_cast<double>(others.size()) * cell.node_count() * of_node;
-    for (const int other : others) ranks[other].received_bytes += cell.node_count() * of_node;
     boxes.push_back(box);
     owner.push_back(rank);
     nodes.push_back(cell.node_count());
   });
-  // Who knows a cell, and with whom ranks speak of cells.
-  std::vector<std::set<int>> spread_with(ranks.size()), act_with(ranks.size());
-  std::vector<std::vector<int>> known = reached;
-  for (std::size_t c = 0; c < boxes.size(); ++c) {
-    for (const int rank : reached[c]) spread_with[owner[c]].insert(rank), spread_with[rank].insert(owner[c]);
-  }
   Ghosts::for_touching(
       boxes, domain, contact_reach<D>(plan), [](int) { return true; },
       [&](int c, int other) {
         if (owner[c] == owner[other]) return;
-        known[c].push_back(owner[other]);
-        act_with[owner[c]].insert(owner[other]);
+        known.emplace_back(c, owner[other]);
+        act.emplace_back(owner[c], owner[other]);
       });
-  for (std::size_t c = 0; c < boxes.size(); ++c) {
-    std::sort(known[c].begin(), known[c].end());
-    known[c].erase(std::unique(known[c].begin(), known[c].end()), known[c].end());
+  for (Pairs* pairs : {&known, &spread, &act}) make_unique(*pairs);
+  for (const auto& [c, rank] : known) {
     const double bytes = nodes[c] * of_node + word;
     RankCost& own = ranks[owner[c]];
-    own.position_bytes += static_cast<double>(known[c].size()) * bytes;
-    own.sharing_s += static_cast<double>(known[c].size()) * nodes[c] * cost_of_sharing::shown;
-    for (const int rank : known[c]) {
-      ranks[rank].received_bytes += bytes;
-      ranks[rank].ghost_nodes += nodes[c];
+    own.position_bytes += bytes;
+    own.sharing_s += nodes[c] * cost_of_sharing::shown;
+    ranks[rank].received_bytes += bytes;
+    ranks[rank].ghost_nodes += nodes[c];
+  }
+  // A message to each in each round, and the ranks wait once for each round: for positions, forces and velocities, reactions.
+  Pairs tell = spread;
+  tell.insert(tell.end(), act.begin(), act.end());
+  make_unique(tell);
+  for (const auto& [of, rounds] : {std::pair{&tell, 1}, std::pair{&spread, 2}, std::pair{&act, 1}}) {
+    int last = -1;
+    for (const auto& [rank, other] : *of) {
+      ranks[rank].messages += rounds;
+      if (rank != last) ranks[rank].waits += rounds;
+      last = rank;
     }
   }
-  long rounds = 0;  // in which all ranks agree
-  for (int far = 1; far < blocks.ranks(); far *= 2) ++rounds;
-  for (std::size_t r = 0; r < ranks.size(); ++r) {
-    RankCost& rank = ranks[r];
-    const auto spread = static_cast<long>(spread_with[r].size()), act = static_cast<long>(act_with[r].size());
-    std::set<int> tell = spread_with[r];
-    tell.insert(act_with[r].begin(), act_with[r].end());
-    rank.messages += static_cast<long>(tell.size()) + 2 * spread + act + rounds;
-    rank.waits += rounds + (tell.empty() ? 0 : 1) + (spread > 0 ? 2 : 0) + (act > 0 ? 1 : 0);
-    const double agreed = static_cast<double>(rounds) * 4 * word;
+  long agreements = 0;  // rounds in which all ranks agree
+  for (int far = 1; far < blocks.ranks(); far *= 2) ++agreements;
+  for (RankCost& rank : ranks) {
+    rank.messages += agreements;
+    rank.waits += agreements;
+    const double agreed = static_cast<double>(agreements) * 4 * word;
     rank.position_bytes += agreed;
     rank.received_bytes += agreed;
     rank.sharing_s += static_cast<double>(rank.ghost_nodes) * cost_of_sharing::ghost;

@@ -15,7 +15,7 @@ namespace rouleau::plan {
 
 namespace {
 
-constexpr double wasteful = 0.01;            ///< efficiency; nobody would start as many
+constexpr double wasteful = 0.1;             ///< efficiency; nobody would start as many
 constexpr double slower = 1.3;               ///< than the fastest: more ranks will not help
 constexpr std::size_t many_cells = 100'000;  ///< cells; powers of eight have to do, each takes seconds
 
