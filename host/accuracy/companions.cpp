@@ -31,11 +31,10 @@ constexpr double outputs_of_tables = 0.5;  ///< what they cost over those of a r
 
 constexpr double to_the_coarsest = 1.25;  ///< spacing of the companion for the order over that for the lattice
 constexpr double least_to_the_coarsest = 1.15, most_to_the_coarsest = 1.4;
-/// Half the density is nearer to the truth, and keeps the relaxation time, with which the lattice's share of a viscosity
-/// changes. Where moments are reported (whose errors grow with the time step, too, while viscosities are beside the
-/// point) the companion keeps its time step instead, for the relaxation time makes up for its density: it shows nothing
-/// of the step's own error, which is the lattice's, and costs less. Where that would want a relaxation time beyond this
-/// one, whose own error is large, it is twice the density. In the plain scheme slip and leak change with tau.
+/// Half the density is nearer to the truth. The companion keeps its time step, for the relaxation time makes up for its
+/// density: half a step would show the step's own error too, which on a coarse lattice with stiff cells is ten times that
+/// of the density and belongs to the lattice. Where that would want a relaxation time beyond this one, whose own error is
+/// large, it is twice the density. In the plain scheme slip and leak change with tau, and it keeps that instead.
 constexpr double light = 0.5, dense = 2, largest_tau = 3;
 /// A start that makes a stage late by less than this share of its strain changes in proportion to the density, and the
 /// companion for inertia shows it.
@@ -209,7 +208,7 @@ struct Changes {
 Changes choose_changes(const scene::Scene& scene, double densest, bool moments, bool corrected) {
   Changes changes{start_matters(scene), densest > 1, std::max(light, 1 / densest), scene.numerics.tau, moments};
   const auto tau_of_same_step = [&](double density) { return 0.5 + (scene.numerics.tau - 0.5) / density; };
-  if (!moments || !corrected) return changes;
+  if (!corrected) return changes;
   if (tau_of_same_step(changes.density) > largest_tau) changes.density = dense;
   changes.tau = tau_of_same_step(changes.density);
   return changes;

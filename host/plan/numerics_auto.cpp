@@ -113,6 +113,7 @@ class Problem {
   /// up for them.
   [[nodiscard]] double goal() const { return std::max(target_, target_ / 2 + inertia_error(0) + start_error(0)); }
   [[nodiscard]] bool better(const Trial& a, const Trial& b) const;
+  [[nodiscard]] Trial cheapest() const;
   [[nodiscard]] Trial tried(const std::array<int, 2>& nodes, double tau) const;
   [[nodiscard]] double resolution_error(double spacing, double tau) const;
   /// With this factor in all stages that have none of their own.
@@ -126,6 +127,7 @@ class Problem {
     return steady_rate * strain_ / std::sqrt(0.5 + 0.5 * std::max(1.0, viscosity_ratio_));
   }
   [[nodiscard]] std::string why_density_factor(const Trial& best) const;
+  [[nodiscard]] std::string gain_by_developed_start(const Trial& best) const;
   [[nodiscard]] NumericsChoice chosen(const Trial& best) const;
   [[nodiscard]] Json pinned(const char* key) const { return numerics_.contains(key) ? numerics_.at(key) : Json(); }
 
@@ -223,7 +225,9 @@ bool Problem::better(const Trial& a, const Trial& b) const {
   return good_enough(a) ? a.cost < b.cost : a.error.total() < b.error.total();
 }
 
-NumericsChoice Problem::solve() const {
+NumericsChoice Problem::solve() const { return chosen(cheapest()); }
+
+Problem::Trial Problem::cheapest() const {
   std::vector<double> taus(relaxation_times.begin(), relaxation_times.end());
   // In layers of little viscosity tau is nearer to 1/2.
   const double thinnest = scene::viscosity_range(scene_.fluid).least / scene_.fluid.viscosity;
@@ -237,7 +241,7 @@ NumericsChoice Problem::solve() const {
       if (!best || better(trial, *best)) best = trial;
     }
   }
-  return chosen(*best);
+  return *best;
 }
 
 /// The densest fluid that the error leaves room for, and what it costs.
@@ -335,9 +339,22 @@ std::string Problem::why_density_factor(const Trial& best) const {
   if (shear_rate_ == 0) return "at rest, as large as the limits of the membranes' stiffness allow";
   std::string why = "simulated Reynolds number " + number(reynolds_ * best.density_factor, 3) + ": " +
                     number(100 * best.error.inertia, 2) + " % of error";
-  if (best.error.start > 0) why += ", and " + number(100 * best.error.start, 2) + " % by the start of the flow";
+  if (best.error.start > 0) {
+    why += ", and " + number(100 * best.error.start, 2) + " % by the start of the flow" + gain_by_developed_start(best);
+  }
   if (best.density_factor >= bounds_.most_density_factor * 0.99) why += "; more is beyond a limit of the plan";
   return why;
+}
+
+/// What flows that are developed from the start would save; empty: little.
+std::string Problem::gain_by_developed_start(const Trial& best) const {
+  constexpr double little = 0.8;
+  Problem developed = *this;
+  developed.starts_.clear();
+  const Trial other = developed.cheapest();
+  if (!good_enough(best) || !developed.meets_target(other) || other.cost > little * best.cost) return {};
+  return ", without which (\"start\": \"developed\") the run would take " + number(other.cost / best.cost, 2) +
+         " times as long";
 }
 
 NumericsChoice Problem::chosen(const Trial& best) const {

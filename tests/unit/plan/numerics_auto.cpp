@@ -94,6 +94,23 @@ TEST_CASE("a factor of a stage's own that takes the target leaves half of it to 
   CHECK_THAT(choice->doubt, Contains("more than the target of 1 %"));
 }
 
+TEST_CASE("where a developed start is cheaper for the same target, the choice says by how much") {
+  const auto why_factor = [](const ReadScene& read) {
+    for (const ChosenValue& value : read.numerics_choice->values)
+      if (value.pointer == "/numerics/density_factor") return value.why;
+    return std::string();
+  };
+  const std::vector<std::string> motion{"/numerics/auto/of=motion"},
+      at_rest{"/numerics/auto/of=motion", "/stages/0/start=impulsive"};
+  const ReadScene late = chosen(at_rest), developed = chosen(motion);
+  const std::string why = why_factor(late), words = "(\"start\": \"developed\") the run would take ";
+  INFO(why);
+  REQUIRE_THAT(why, Contains(words) && Contains(" times as long"));
+  const double said = std::stod(why.substr(why.find(words) + words.size()));
+  CHECK(said == Approx(estimated_cost(developed.scene) / estimated_cost(late.scene)).epsilon(0.1));
+  CHECK_THAT(why_factor(developed), !Contains("developed"));
+}
+
 TEST_CASE("what a scene gives is not chosen") {
   const auto [scene, choice] = chosen({"/numerics/tau=0.8", "/numerics/density_factor=1000", "/domain/nodes=[160,80]",
                                        "/cell_types/capsule/segments=90", "/numerics/slip_correction=false"});
