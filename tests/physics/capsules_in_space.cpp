@@ -79,3 +79,31 @@ TEST_CASE("in three dimensions sheared cells come to rest in the shape that they
     CHECK(run.column("stretch_max", cell).back() < 1.01);
   }
 }
+
+TEST_CASE("in three dimensions a stiff spheroid turns with Jeffery's period", "[space]") {
+  // Proc. R. Soc. A 102, 161 (1922): half a turn of a spheroid with the ratio r of its axes takes a strain of pi (r + 1/r).
+  const double exact = std::numbers::pi * (2 + 0.5);
+  double error[2];
+  for (const int fine : {0, 1}) {
+    const SceneRun run =
+        run_scene(scenes + "/spheroid.json",
+                  fine == 0 ? std::vector<std::string>{}
+                            : std::vector<std::string>{R"(/domain/size=["20.25 um", "20.25 um", "12 um"])",
+                                                       "/domain/nodes=[54, 54, 32]"});
+    REQUIRE(run.summary["status"] == "completed");
+    const std::vector<double> strain = run.column("strain"), angle = run.column("angle_rad");
+    const auto strain_at = [&](double passed) {  // the angle is followed beyond half a turn, and falls
+      std::size_t i = 1;
+      while (i + 1 < angle.size() && angle[i] > passed) ++i;
+      REQUIRE((angle[i - 1] > passed && angle[i] <= passed));
+      return strain[i] - (passed - angle[i]) / (angle[i - 1] - angle[i]) * (strain[i] - strain[i - 1]);
+    };
+    const double half_turn = strain_at(-0.75 * std::numbers::pi) - strain_at(0.25 * std::numbers::pi);
+    error[fine] = half_turn / exact - 1;
+    std::cout << "half a turn of a spheroid, long semi-axis of " << (fine == 0 ? 6 : 8) << " spacings: strain "
+              << half_turn << " (" << exact << ")\n";
+    for (const double deformation : run.column("deformation")) CHECK(deformation == Approx(1.0 / 3).margin(0.003));
+  }
+  CHECK(std::abs(error[1]) < 0.05);
+  CHECK(std::abs(error[1]) < std::abs(error[0]) * 6 / 8);
+}
