@@ -82,8 +82,8 @@ class Error_bars(Case):
         self.assertNotIn("error_bars", self.summary())
 
     def test_that_miss_the_target_are_followed_by_a_finer_run_and_the_first_run_stays(self):
-        # A strain of 1 is the middle of the start, which the density of auto's motion delays by far more than it expects.
-        command = ("run", self.scene("auto-capsule.json", strain=1), "--out", self.run_directory, "--quiet",
+        # A strain of 1.5 is in the middle of the start, which the density of auto's motion delays by far more than it expects.
+        command = ("run", self.scene("auto-capsule.json", strain=1.5), "--out", self.run_directory, "--quiet",
                    "--set", '/numerics={"auto": {"error": 0.05}}')
         told = rouleau(*command)
         self.assertEqual(told.returncode, 0, told.stderr)

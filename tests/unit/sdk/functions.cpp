@@ -86,9 +86,12 @@ double ulps(T value, long double exact) {
   if (std::isnan(exact) || std::isnan(value)) return std::isnan(exact) == std::isnan(value) ? 0 : 1e300;
   if (std::abs(exact) > largest && std::isinf(value)) return std::signbit(value) == std::signbit(exact) ? 0 : 1e300;
   if (std::isinf(value)) return 1e300;
-  const T size = static_cast<T>(std::min(std::abs(exact), largest));
-  const T below = std::nextafter(size, T(0)),
-          ulp = size - below > 0 ? size - below : std::numeric_limits<T>::denorm_min();
+  const long double wanted = std::min(std::abs(exact), largest);
+  const T size = static_cast<T>(wanted), below = std::nextafter(size, T(0));
+  // At a power of two the numbers above it are twice as far apart as those below.
+  const bool above = wanted > size && size < static_cast<T>(largest);
+  const T apart = above ? std::nextafter(size, static_cast<T>(largest)) - size : size - below,
+          ulp = apart > 0 ? apart : std::numeric_limits<T>::denorm_min();
   return static_cast<double>(std::abs(static_cast<long double>(value) - exact) / ulp);
 }
 
