@@ -26,7 +26,7 @@ std::vector<core::Bounds> all_bounds(const core::Membranes& m) {
 template <class Visit>
 void for_each_near(const std::vector<core::Bounds>& boxes, const std::vector<int>& cells, double reach,
                    const core::Domain<2>& domain, Visit visit) {
-  const core::CellGrid<2> grid(boxes, reach, domain);
+  const core::CellGrid<2> grid(core::boxes_of(boxes), reach, domain);
   std::vector<int> near;
   for (const int cell : cells) {
     grid.find(cell, near);

@@ -157,7 +157,7 @@ class Same_bytes(Case):
 
     def test_of_numerics_that_are_chosen_of_error_bars_and_of_the_finer_run_that_follows(self):
         scene = json.loads((SOURCE / "tests" / "physics" / "scenes" / "auto-capsule.json").read_text())
-        scene["stages"][0]["strain"] = 1
+        scene["stages"][0]["strain"] = 1.5
         scene["output"] = {"cells": {"strain": 0.25}, "checkpoint": "never"}
         scene["numerics"] = {"auto": {"error": 0.05}}
         (self.path / "scene.json").write_text(json.dumps(scene))

@@ -17,8 +17,6 @@ class CellGrid {
  public:
   /// Boxes that are not usable() are near nothing.
   CellGrid(const std::vector<BoundingBox<D>>& boxes, double reach, const Domain<D>& domain);
-  CellGrid(const std::vector<Bounds>& bounds, double reach, const Domain<D>& domain) requires(D == 2)
-      : CellGrid(boxes_of(bounds), reach, domain) {}
 
   /// Sets `near` to the cells in the bins around that of `cell`, itself included, each once, in no particular order.
   void find(int cell, std::vector<int>& near) const;
@@ -30,12 +28,6 @@ class CellGrid {
     bool periodic = false;
     [[nodiscard]] int bin(double middle) const;
   };
-  static std::vector<BoundingBox<2>> boxes_of(const std::vector<Bounds>& bounds) {
-    std::vector<BoundingBox<2>> boxes;
-    boxes.reserve(bounds.size());
-    for (const Bounds& b : bounds) boxes.push_back({{b.x_min, b.y_min}, {b.x_max, b.y_max}});
-    return boxes;
-  }
   static Axis make_axis(double least, double most, double width, double period);
   /// Calls function(bin) for the bins around `bin` along an axis, each once.
   template <class Function>
@@ -48,6 +40,8 @@ class CellGrid {
   std::vector<int> begin_;  // of each bin: its first place in cells_, and one more
   std::vector<int> cells_;  // bin by bin
 };
+
+std::vector<BoundingBox<2>> boxes_of(const std::vector<Bounds>& bounds);
 
 extern template class CellGrid<2>;
 extern template class CellGrid<3>;

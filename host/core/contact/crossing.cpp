@@ -120,7 +120,7 @@ std::optional<Crossing> find_crossing(const Membranes& membranes, const Domain<2
   for (const CellRange& cell : membranes.cells) extent.push_back(core::bounds(membranes, cell));
   PairCheck check(membranes, domain);
   std::optional<Crossing> found;
-  const CellGrid<2> grid(extent, 0.0, domain);
+  const CellGrid<2> grid(boxes_of(extent), 0.0, domain);
   const int count = static_cast<int>(membranes.cells.size());
   std::vector<int> near;
   for (int a = 0; a < count && !found; ++a) {

@@ -108,7 +108,7 @@ void NeighbourList::refresh(Worker worker, const Membranes& membranes, const Seg
   const Range cells = worker.share(membranes.cell_count());
   const double skin = suitable_skin(membranes);
   // Every worker sorts all cells: that is quicker than to wait for one who does.
-  const CellGrid<2> grid(segments.bounds, cutoffs_.largest() + 2 * skin, domain_);
+  const CellGrid<2> grid(boxes_of(segments.bounds), cutoffs_.largest() + 2 * skin, domain_);
   for (int cell = cells.begin; cell < cells.end; ++cell) {
     CandidateList& list = lists_[cell];
     list.pairs.clear();

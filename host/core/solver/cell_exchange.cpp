@@ -14,7 +14,7 @@ class CellExchange<D>::Packer {
   void operator()(const V* values, std::size_t count) {
     const std::size_t at = message_.size();
     message_.resize(at + count * sizeof(V));
-    if (count > 0) std::memcpy(message_.data() + at, values, count * sizeof(V));
+    if (count > 0) std::memcpy(message_.data() + at, static_cast<const void*>(values), count * sizeof(V));
   }
   [[nodiscard]] Message take() { return std::move(message_); }
 
@@ -61,6 +61,7 @@ CellExchange<D>::CellExchange(const Ranks<D>& ranks, Cells& cells, std::vector<i
       velocities_(velocities),
       path_(cells.cells.size(), 0.0) {
   std::vector<BoundingBox<D>> boxes;
+  boxes.reserve(cells.cells.size());
   for (int c = 0; c < cells.cell_count(); ++c) boxes.push_back(box_of<D>(cells, c));
   ghosts_.renew(boxes);
   cells.part.assign(cells.cells.size(), {});

@@ -181,7 +181,7 @@ TEST_CASE("bins find every cell and image within reach, in boxes of any size, ov
       bounds.push_back({x, x + largest * uniform(random), y, y + largest * uniform(random)});
     }
     bounds[17].x_min = std::nan("");
-    const CellGrid<2> grid(bounds, reach, domain);
+    const CellGrid<2> grid(boxes_of(bounds), reach, domain);
     std::vector<int> near;
     for (int a = 0; a < 60; ++a) {
       grid.find(a, near);
