@@ -51,6 +51,8 @@ scene::Scene read(const Companion& companion, const std::string& file) {
 
 /// A companion with its plan, which refers to scene and catalog: they stay where they are.
 struct Prepared {
+  explicit Prepared(const plugin::Catalog& models) : catalog(models) {}
+
   const plugin::Catalog& catalog;
   std::optional<scene::Scene> scene;
   std::optional<plan::Plan> plan;  ///< none: the companion is refused
