@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <numeric>
 
 namespace rouleau::core {
 
@@ -42,6 +41,24 @@ namespace {
 template <class Transfer>
 void transfer_nodes(std::vector<double>& values, const CellRange& cell, Transfer transfer) {
   transfer(values.data() + cell.first, static_cast<std::size_t>(cell.count));
+}
+
+/// Gives each peer what transfer(rank, cells, message) packs of the cells in one of its lists, and takes what it unpacks of
+/// those in the other; peers with an empty list are left out.
+template <class Packer, class Unpacker, int D, class Transfer>
+void swap_with_peers(const GhostCells<D>& ghosts, Transport& transport, std::vector<int> GhostCells<D>::Peer::*given,
+                     std::vector<int> GhostCells<D>::Peer::*taken, Transfer transfer) {
+  for (const auto& [rank, peer] : ghosts.peers()) {
+    if ((peer.*given).empty()) continue;
+    Packer message;
+    transfer(transport.rank(), peer.*given, message);
+    transport.send(rank, message.take());
+  }
+  for (const auto& [rank, peer] : ghosts.peers()) {
+    if ((peer.*taken).empty()) continue;
+    Unpacker message(transport.receive(rank));
+    transfer(rank, peer.*taken, message);
+  }
 }
 
 }  // namespace
@@ -150,23 +167,14 @@ bool CellExchange<D>::share_positions(Cells& cells, DisplacementWatch& viscosity
   }
   if (lists != nullptr) lists->agree(compare || all_expired > 0);
   set_parts(cells);
-  const auto transfer = [&](const std::vector<int>& of_peer, auto& message) {
+  const auto transfer = [&](int, const std::vector<int>& of_peer, auto& message) {
     for (const int c : of_peer) {
       transfer_motion(cells, c, std::ref(message));
       if (compare) transfer_memory(cells, viscosity, c, std::ref(message));
     }
   };
-  for (const auto& [rank, peer] : ghosts_.peers()) {
-    if (peer.mine.empty()) continue;
-    Packer message;
-    transfer(peer.mine, message);
-    ranks_.transport->send(rank, message.take());
-  }
-  for (const auto& [rank, peer] : ghosts_.peers()) {
-    if (peer.theirs.empty()) continue;
-    Unpacker message(ranks_.transport->receive(rank));
-    transfer(peer.theirs, message);
-  }
+  swap_with_peers<Packer, Unpacker>(ghosts_, *ranks_.transport, &GhostCells<D>::Peer::mine,
+                                    &GhostCells<D>::Peer::theirs, transfer);
   for (int c = 0; c < cells.cell_count(); ++c) {
     if (!ghosts_.knows(c)) cells.largest_step[c] = all_step;  // no node of any cell has moved further
   }
@@ -215,28 +223,19 @@ void CellExchange<D>::share_reactions(const Cells& cells, Interactions& interact
 
 template <int D>
 void CellExchange<D>::share_forces(const Cells& cells, const std::array<double*, D>& force) const {
-  const auto transfer = [&](const std::vector<int>& of_peer, auto& message) {
+  const auto transfer = [&](int, const std::vector<int>& of_peer, auto& message) {
     for (const int c : of_peer) {
       const CellRange& cell = cells.cells[c];
       for (double* along : force) message(along + cell.first, static_cast<std::size_t>(cell.count));
     }
   };
-  for (const auto& [rank, peer] : ghosts_.peers()) {
-    if (peer.mine_there.empty()) continue;
-    Packer message;
-    transfer(peer.mine_there, message);
-    ranks_.transport->send(rank, message.take());
-  }
-  for (const auto& [rank, peer] : ghosts_.peers()) {
-    if (peer.theirs_here.empty()) continue;
-    Unpacker message(ranks_.transport->receive(rank));
-    transfer(peer.theirs_here, message);
-  }
+  swap_with_peers<Packer, Unpacker>(ghosts_, *ranks_.transport, &GhostCells<D>::Peer::mine_there,
+                                    &GhostCells<D>::Peer::theirs_here, transfer);
 }
 
 template <int D>
 void CellExchange<D>::collect_velocities(Cells& cells, const std::function<std::array<int, D>(int node)>& base) const {
-  const auto transfer = [&](const std::vector<int>& of_peer, int reader, auto& message) {
+  const auto transfer = [&](int reader, const std::vector<int>& of_peer, auto& message) {
     const Box<D> block = ranks_.blocks->domain(reader).block;
     for (const int c : of_peer) {
       for (int i = cells.cells[c].first; i < cells.cells[c].end(); ++i) {
@@ -245,17 +244,8 @@ void CellExchange<D>::collect_velocities(Cells& cells, const std::function<std::
       }
     }
   };
-  for (const auto& [rank, peer] : ghosts_.peers()) {
-    if (peer.theirs_here.empty()) continue;
-    Packer message;
-    transfer(peer.theirs_here, ranks_.transport->rank(), message);
-    ranks_.transport->send(rank, message.take());
-  }
-  for (const auto& [rank, peer] : ghosts_.peers()) {
-    if (peer.mine_there.empty()) continue;
-    Unpacker message(ranks_.transport->receive(rank));
-    transfer(peer.mine_there, rank, message);
-  }
+  swap_with_peers<Packer, Unpacker>(ghosts_, *ranks_.transport, &GhostCells<D>::Peer::theirs_here,
+                                    &GhostCells<D>::Peer::mine_there, transfer);
 }
 
 /// What laws and potentials remember, and what has leaked.
