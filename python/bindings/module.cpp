@@ -97,7 +97,7 @@ class Session {
   std::unique_ptr<Simulation> simulation_;
 };
 
-/// The components of a vector at all nodes; the last is empty in two dimensions.
+/// The components of a vector at all nodes; in two dimensions the last has none.
 using Components = std::array<std::vector<double>*, 3>;
 Components places(core::CellNodes& nodes) { return {&nodes.x, &nodes.y, &nodes.z}; }
 Components velocities(core::CellNodes& nodes) { return {&nodes.velocity_x, &nodes.velocity_y, &nodes.velocity_z}; }
@@ -114,9 +114,9 @@ py::array pairs(const py::object& owner, const Components& of) {
 }
 
 /// In two dimensions a view, in three a copy: three arrays that lie anywhere have no common step.
-py::array shown(const py::object& owner, const core::CellNodes& nodes, const Components& of) {
+py::array shown(const py::object& owner, bool in_space, const Components& of) {
   py::array array;
-  if (nodes.z.empty()) {
+  if (!in_space) {
     array = pairs(owner, of);
   } else {
     py::array_t<double> copy({static_cast<py::ssize_t>(of[0]->size()), py::ssize_t{3}});
@@ -131,8 +131,9 @@ py::array shown(const py::object& owner, const core::CellNodes& nodes, const Com
 }
 
 /// What asks `callback` for forces, and adds them.
-std::function<void()> asking(const py::object& callback, core::CellNodes& nodes) {
-  if (nodes.z.empty()) {
+std::function<void()> asking(const py::object& callback, Simulation& simulation) {
+  core::CellNodes& nodes = simulation.nodes();
+  if (!simulation.in_space()) {
     // The view that the callback may write to keeps nothing alive: the session that holds it does.
     return [callback, force = pairs(py::none(), forces(nodes))] {
       const py::gil_scoped_acquire interpreter;
@@ -198,7 +199,7 @@ py::dict stage(Session& session) {
   result["length"] = setting.units.length;
   result["time"] = setting.units.time;
   const double tension = setting.units.unit(units::dimension::tension);
-  result["force"] = simulation.scene().domain.depth ? tension * setting.units.length : tension;
+  result["force"] = simulation.in_space() ? tension * setting.units.length : tension;
   return result;
 }
 
@@ -215,19 +216,19 @@ PYBIND11_MODULE(_core, module) {
       .def("step", &Session::step)
       .def("positions",
            [](const py::object& self) {
-             core::CellNodes& nodes = self.cast<Session&>().simulation().nodes();
-             return shown(self, nodes, places(nodes));
+             Simulation& simulation = self.cast<Session&>().simulation();
+             return shown(self, simulation.in_space(), places(simulation.nodes()));
            })
       .def("velocities",
            [](const py::object& self) {
-             core::CellNodes& nodes = self.cast<Session&>().simulation().nodes();
-             return shown(self, nodes, velocities(nodes));
+             Simulation& simulation = self.cast<Session&>().simulation();
+             return shown(self, simulation.in_space(), velocities(simulation.nodes()));
            })
       .def("forces",
            [](const py::object& self) {
              Simulation& simulation = self.cast<Session&>().simulation();
              guarded([&] { simulation.compute_forces(); });
-             return shown(self, simulation.nodes(), forces(simulation.nodes()));
+             return shown(self, simulation.in_space(), forces(simulation.nodes()));
            })
       .def("cell_nodes",
            [](Session& session) {
@@ -237,14 +238,13 @@ PYBIND11_MODULE(_core, module) {
              first.push_back(nodes.node_count());
              return first;
            })
-      .def(
-          "set_force",
-          [](Session& session, const py::object& callback) {
-            Simulation& simulation = session.simulation();
-            guarded([&] {
-              simulation.set_force(callback.is_none() ? std::function<void()>{} : asking(callback, simulation.nodes()));
-            });
-          })
+      .def("set_force",
+           [](Session& session, const py::object& callback) {
+             Simulation& simulation = session.simulation();
+             guarded([&] {
+               simulation.set_force(callback.is_none() ? std::function<void()>{} : asking(callback, simulation));
+             });
+           })
       .def("fluid", &fluid)
       .def("cells", &cells)
       .def("stage", &stage)

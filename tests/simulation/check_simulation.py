@@ -148,6 +148,11 @@ class In_three_dimensions(Case):
         added = (pulled.forces - alone.forces).sum(axis=0) * pulled.force_unit
         numpy.testing.assert_allclose(added, [0, 0, 1e-12], atol=1e-15)  # what models do sums up to nothing
 
+    def test_without_cells_there_are_no_nodes_in_three_dimensions(self):
+        empty = rouleau.Simulation({key: value for key, value in SPACE.items() if key not in ("cells", "cell_types")})
+        self.assertEqual(empty.step(3), 3)
+        self.assertEqual(empty.positions.shape, (0, 3))
+
     def test_too_many_numbers_are_refused(self):
         simulation = rouleau.Simulation(SPACE)
         simulation.add_force(lambda simulation: numpy.zeros((3, 2)))
