@@ -1,6 +1,7 @@
 #include "blocks.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <string>
 
 #include "base/error.hpp"
@@ -16,32 +17,48 @@ namespace {
 
 constexpr int least_width = 16, least_height = 4;  // smaller blocks are mostly border
 
+/// Membrane nodes on the lattice. Of very many a part is enough.
+template <int D>
+class Points {
+ public:
+  Points(const core::Domain<D>& domain, double nodes) : domain_(domain), every_(1 + static_cast<int>(nodes / most)) {
+    points_.reserve(static_cast<std::size_t>(nodes / every_) + 1);
+  }
+  void add(const core::CellNodes& cells) {
+    const std::vector<double>* const places[] = {&cells.x, &cells.y, &cells.z};
+    for (int i = 0; i < cells.node_count(); i += every_) {
+      std::array<int, D> node;
+      for (int k = 0; k < D; ++k) node[k] = domain_.wrapped(k, core::floor_int((*places[k])[i]));
+      if (*std::min_element(node.begin(), node.end()) >= 0) points_.push_back(node);
+    }
+  }
+  [[nodiscard]] const std::vector<std::array<int, D>>& all() const { return points_; }
+  /// How much more than a node of the lattice one of them costs.
+  [[nodiscard]] double cost(scene::Precision precision) const {
+    if (points_.empty()) return 0;
+    const double count = static_cast<double>(domain_.nodes()), nodes = static_cast<double>(points_.size()) * every_,
+                 of_fluid = step_cost(count, 0, precision, D), of_all = step_cost(count, nodes, precision, D);
+    return (of_all - of_fluid) / nodes / (of_fluid / count) * every_;
+  }
+
+ private:
+  static constexpr double most = 1e7;
+  core::Domain<D> domain_;
+  int every_;
+  std::vector<std::array<int, D>> points_;
+};
+
 template <int D>
 core::Decomposition<D> cut(const Plan& plan, int ranks) {
   const scene::Scene& scene = *plan.scene;
   const core::Domain<D> domain = lattice_domain<D>(scene);
-  std::vector<std::array<int, D>> points;  // membrane nodes; of very many a part is enough
-  constexpr double most_points = 1e7;
-  int every = 1;
+  double nodes = 0;
+  for (const scene::CellPlacement& cell : scene.cells) nodes += shape::node_count(scene.cell_types[cell.type]);
+  Points<D> points(domain, nodes);
   if (plan.has_cells) {
-    double nodes = 0;
-    for (const scene::CellPlacement& cell : scene.cells) nodes += shape::node_count(scene.cell_types[cell.type]);
-    every += static_cast<int>(nodes / most_points);
-    points.reserve(static_cast<std::size_t>(nodes / every));
-    for_each_cell<D>(scene, lattice_spacing(scene), [&](std::size_t, const auto& cell) {
-      const std::vector<double>* const places[] = {&cell.x, &cell.y, &cell.z};
-      for (int i = 0; i < cell.node_count(); i += every) {
-        std::array<int, D> node;
-        for (int k = 0; k < D; ++k) node[k] = domain.wrapped(k, core::floor_int((*places[k])[i]));
-        if (*std::min_element(node.begin(), node.end()) >= 0) points.push_back(node);
-      }
-    });
+    for_each_cell<D>(scene, lattice_spacing(scene), [&](std::size_t, const auto& cell) { points.add(cell); });
   }
-  const double count = static_cast<double>(domain.nodes()), of_points = static_cast<double>(points.size()) * every;
-  const double of_fluid = step_cost(count, 0, scene.numerics.precision, D),
-               of_all = step_cost(count, of_points, scene.numerics.precision, D);
-  const double point_cost = points.empty() ? 0 : (of_all - of_fluid) / of_points / (of_fluid / count) * every;
-  return core::Decomposition<D>::bisected(domain, ranks, points, point_cost);
+  return core::Decomposition<D>::bisected(domain, ranks, points.all(), points.cost(scene.numerics.precision));
 }
 
 }  // namespace
@@ -67,5 +84,32 @@ Blocks make_blocks(const Plan& plan, int ranks) {
   if (scene.domain.depth) return cut<3>(plan, ranks);
   return cut<2>(plan, ranks);
 }
+
+template <int D>
+core::Decomposition<D> cut_again(const Plan& plan, const core::Decomposition<D>& blocks, const core::CellNodes& cells,
+                                 const std::vector<double>& seconds) {
+  const core::Domain<D> domain = lattice_domain<D>(*plan.scene);
+  Points<D> points(domain, cells.node_count());
+  points.add(cells);
+  const double point_cost = points.cost(plan.scene->numerics.precision);
+  std::vector<double> expected(seconds.size());
+  for (int rank = 0; rank < blocks.ranks(); ++rank) {
+    const core::Box<D> block = blocks.domain(rank).block;
+    expected[rank] = static_cast<double>(core::row_count(block)) * block.size(0);
+  }
+  for (const std::array<int, D>& point : points.all()) expected[blocks.owner(point)] += point_cost;
+  typename core::Decomposition<D>::Measured measured{.blocks = &blocks, .factor = {}};
+  const bool known = std::all_of(seconds.begin(), seconds.end(), [](double s) { return s > 0; });
+  for (std::size_t rank = 0; rank < seconds.size(); ++rank)
+    measured.factor.push_back(known ? seconds[rank] / expected[rank] : 1);
+  const double mean = std::accumulate(measured.factor.begin(), measured.factor.end(), 0.0) / blocks.ranks();
+  for (double& factor : measured.factor) factor /= mean;
+  return core::Decomposition<D>::bisected(domain, blocks.ranks(), points.all(), point_cost, measured);
+}
+
+template core::Decomposition<2> cut_again(const Plan&, const core::Decomposition<2>&, const core::CellNodes&,
+                                          const std::vector<double>&);
+template core::Decomposition<3> cut_again(const Plan&, const core::Decomposition<3>&, const core::CellNodes&,
+                                          const std::vector<double>&);
 
 }  // namespace rouleau::plan

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <variant>
+#include <vector>
 
 #include "core/domain/decomposition.hpp"
+#include "core/membrane/cell_nodes.hpp"
 #include "plan.hpp"
 
 namespace rouleau::plan {
@@ -17,5 +19,11 @@ int most_blocks(const Plan& plan);
 /// Blocks of about the same cost, one for each rank, for the cells' first places. Throws Error(bad_input) for more ranks
 /// than the lattice has room for.
 Blocks make_blocks(const Plan& plan, int ranks);
+
+/// The same for where the cells are now; `seconds[r]`: what rank r of the present blocks has been measured to take for
+/// its own, in the same time as the others.
+template <int D>
+core::Decomposition<D> cut_again(const Plan& plan, const core::Decomposition<D>& blocks, const core::CellNodes& cells,
+                                 const std::vector<double>& seconds);
 
 }  // namespace rouleau::plan

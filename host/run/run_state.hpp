@@ -28,6 +28,12 @@ class PassCosts {
     found->wall_s += wall_s;
     found->calls += calls;
   }
+  /// Of a pass; 0 of one that has not been added.
+  [[nodiscard]] double wall_s(const std::string& pass) const {
+    const auto found =
+        std::find_if(passes_.begin(), passes_.end(), [&](const PassCost& cost) { return cost.name == pass; });
+    return found == passes_.end() ? 0 : found->wall_s;
+  }
   /// In the order in which they were first added.
   [[nodiscard]] const std::vector<PassCost>& passes() const { return passes_; }
   NLOHMANN_DEFINE_TYPE_INTRUSIVE(PassCosts, passes_)

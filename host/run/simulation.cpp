@@ -18,10 +18,12 @@
 #include "checkpoint.hpp"
 #include "checkpoint_match.hpp"
 #include "core/membrane/motion.hpp"
+#include "load_balance.hpp"
 #include "monitor/energy_check.hpp"
 #include "monitor/failure_mode.hpp"
 #include "monitor/node_checks.hpp"
 #include "monitor/state_checks.hpp"
+#include "plan/blocks.hpp"
 #include "plan/output_schedule.hpp"
 #include "plan/solver_setup.hpp"
 #include "progress.hpp"
@@ -140,11 +142,17 @@ class Simulation {
     return ranks_.several() ? ranks_.blocks->domain(ranks_.transport->rank()) : plan::lattice_domain<dimension>(scene_);
   }
 
+  /// Of the present stage, for this rank's block.
+  [[nodiscard]] std::unique_ptr<core::Solver<T, Set>> make_solver(std::vector<int> owner) {
+    core::BasicSolverSetup<dimension> setup = plan::make_solver_setup<dimension>(plan_, state_.stage);
+    setup.domain = domain();
+    return std::make_unique<core::Solver<T, Set>>(std::move(setup), cells_, ranks_, std::move(owner));
+  }
+
   void run_stages(std::optional<core::SolverState<T>> former) {
     for (; state_.stage < static_cast<int>(plan_.stages.size()) && !stopped_; ++state_.stage) {
-      core::BasicSolverSetup<dimension> setup = plan::make_solver_setup<dimension>(plan_, state_.stage);
-      setup.domain = domain();
-      auto next = std::make_unique<core::Solver<T, Set>>(std::move(setup), cells_, ranks_, owner_);
+      const auto start = Clock::now();
+      auto next = make_solver(owner_);
       if (former) {
         next->start(*std::exchange(former, std::nullopt));
       } else {
@@ -152,6 +160,7 @@ class Simulation {
         start_stage();
       }
       solver_ = std::move(next);
+      cut_s_ = seconds_since(start);
       run_stage();
     }
   }
@@ -169,7 +178,10 @@ class Simulation {
     const plan::OutputSchedule cells(scene_.output.cells, setting, true), fields(scene_.output.fields, setting, false);
     next_attention_ = state_.stage_step;
     clock_ = Clock::now();
-    step_loop(cells, fields);
+    computed_s_ = computed_s();
+    last_cut_ = state_.stage_step;
+    cut_at_ = never;
+    for (step_loop(cells, fields); cut_due_; step_loop(cells, fields)) cut_again();
     take_time();
     state_.end_stage(setting, ending_);
     log("stage_ended", {{"name", setting.stage->name},
@@ -185,6 +197,66 @@ class Simulation {
     clock_ = Clock::now();
     state_.wall += passed;
     state_.stage_wall += passed;
+  }
+
+  /// What this rank has computed for, waiting for others and what is done alone left out.
+  [[nodiscard]] double computed_s() const {
+    double sum = 0;
+    std::set<std::string> counted;
+    for (const core::Pass& pass : solver_->passes()) {
+      if (pass.name != "ranks" && counted.insert(pass.name).second) sum += state_.costs.wall_s(pass.name);
+    }
+    return sum;
+  }
+
+  /// One thread, at a check: whether some ranks wait so long for others that they get new blocks before the next step.
+  void look_at_balance(long step) {
+    if (!ranks_.several()) return;
+    const double computed = computed_s(), own = computed - std::exchange(computed_s_, computed);
+    window_s_ = own;
+    std::vector<core::ExactSum> sum(1);
+    sum.front().add(own);
+    core::add_up(ranks_, sum);
+    const auto [slowest, cut] = core::largest(ranks_, std::array{own, cut_s_});
+    balance_.look(slowest, sum.front().value() / ranks_.blocks->ranks(), cut);
+    if (balance_.due() || (options_.cut_every > 0 && step >= last_cut_ + options_.cut_every)) cut_at_ = step + 1;
+  }
+
+  /// All ranks, between two steps, all states of cells shared: other blocks for the same state.
+  void cut_again() {
+    const auto start = Clock::now();
+    std::vector<double> seconds;
+    for (const std::vector<double>& of_rank : core::all_of(ranks_, std::vector<double>{window_s_}))
+      seconds.push_back(of_rank.front());
+    const core::Ranks<dimension> before = ranks_;
+    auto blocks = std::make_unique<const core::Decomposition<dimension>>(
+        plan::cut_again<dimension>(plan_, *before.blocks, cells_, seconds));
+    ranks_.blocks = blocks.get();
+    core::Fluid<T, Set>& fluid = solver_->fluid();
+    fluid.settle();
+    core::SolverState<T> state{.populations =
+                                   [&](int q) {
+                                     std::vector<T> values;
+                                     fluid.copy_populations(q, values);
+                                     return core::rearrange(before, *blocks, values);
+                                   },
+                               .walls_have_acted = fluid.walls_have_acted(),
+                               .steps = state_.stage_step,
+                               .flow_control = {},
+                               .viscosity = {}};
+    if (const auto& control = solver_->flow_control()) state.flow_control = control->state();
+    if (const auto* tasks = solver_->cell_tasks()) state.viscosity = tasks->viscosity_field().memory();
+    auto next = make_solver({});
+    next->start(state);
+    solver_ = std::move(next);
+    blocks_ = std::move(blocks);
+    cut_s_ = seconds_since(start);
+    state_.costs.add("cut", cut_s_, 1);
+    log("cut", {{"step", state_.steps}, {"slowest_over_mean", balance_.slowest_over_mean()}, {"wall_s", cut_s_}});
+    balance_.begin_again();
+    last_cut_ = next_attention_ = state_.stage_step;
+    cut_at_ = never;
+    cut_due_ = false;
   }
 
   /// The steps of a stage, by all workers of this rank.
@@ -238,6 +310,7 @@ class Simulation {
           attend_at_.store(never, std::memory_order_relaxed);
           before_forces(step);
         });
+        if (cut_due_) break;
       }
       run(0, rows);
       if (attend || wants_a_look()) {
@@ -281,6 +354,11 @@ class Simulation {
   /// One thread, before the forces of a step: whether the stage ends here, and the checkpoint.
   void before_forces(long step) {
     course_.count_to(step);
+    if (step >= cut_at_) {
+      share_state();
+      cut_due_ = true;
+      return;
+    }
     due_ending_ = next_ending();
     const bool stops = due_ending_ == Ending::interrupted || due_ending_ == Ending::max_steps;
     const bool ends = due_ending_ != Ending::none && (course_.is_last() || stops);
@@ -319,7 +397,10 @@ class Simulation {
         fail(std::move(*failure));
         return;
       }
-      if (check_due) state_.growth.check(state_.steps, cells_);
+      if (check_due) {
+        state_.growth.check(state_.steps, cells_);
+        look_at_balance(step);
+      }
       if (cells_due || fields_due || last) {
         const bool with_fields = fields_due || (last && !scene_.output.fields.never());
         if (auto failure = write(with_fields)) {
@@ -335,7 +416,7 @@ class Simulation {
     ending_ = due_ending_;
     course_.look(*solver_);
     const long check = (step / scene_.checks.every_steps + 1) * scene_.checks.every_steps;
-    next_attention_ = std::min({cells.next(step), fields.next(step), check, course_.next()});
+    next_attention_ = std::min({cells.next(step), fields.next(step), check, course_.next(), cut_at_});
     if (options_.max_steps >= 0) next_attention_ = std::min(next_attention_, options_.max_steps - state_.steps_before);
   }
 
@@ -455,9 +536,18 @@ class Simulation {
   StageCourse course_;
   Progress progress_;
 
+  std::unique_ptr<const core::Decomposition<dimension>> blocks_;  ///< that ranks_ has, once they have been cut again
+  LoadBalance balance_;
+  double cut_s_ = 0;       ///< what making a solver for other blocks takes
+  double computed_s_ = 0;  ///< by the stage when the balance was last looked at
+  double window_s_ = 0;    ///< between the last two looks
+  long last_cut_ = 0;      ///< step of the stage
+
   static constexpr long never = std::numeric_limits<long>::max();
   long next_attention_ = 0;             ///< step of the stage before which nothing is due
   std::atomic<long> attend_at_{never};  ///< step that somebody has asked for
+  long cut_at_ = never;                 ///< before whose forces ranks get other blocks
+  bool cut_due_ = false;                ///< the step loop has stopped for that
   Ending due_ending_ = Ending::none, ending_ = Ending::none;
   bool stopped_ = false;
   std::optional<monitor::Failure> failure_;

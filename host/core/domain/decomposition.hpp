@@ -53,13 +53,17 @@ class Decomposition {
   /// As many blocks as wanted, by cutting the longest side of what is left again and again so that both parts cost what
   /// the numbers of their blocks ask for: a node 1, and each of the points `point_cost` more. Along the first axis cuts
   /// lie at multiples of 16 nodes where there is room for that. Throws std::invalid_argument for more blocks than blocks
-  /// of 16 nodes have room.
+  /// of 16 nodes have room. `measured`: in each block of an earlier cut all costs so many times as much; none: once.
+  struct Measured {
+    const Decomposition* blocks = nullptr;
+    std::vector<double> factor = {};
+  };
   static Decomposition bisected(const Domain<D>& whole, int ranks, const std::vector<std::array<int, D>>& points = {},
-                                double point_cost = 0) {
+                                double point_cost = 0, const Measured& measured = {}) {
     if (ranks < 1 || whole.nodes() / least_nodes < ranks)
       throw std::invalid_argument("more blocks than there is room for");
     std::vector<Box<D>> blocks;
-    bisect({{}, whole.size}, ranks, points, point_cost, blocks);
+    bisect({{}, whole.size}, ranks, points, point_cost, measured, blocks);
     return {whole, std::move(blocks)};
   }
   static constexpr long least_nodes = 16;  ///< of a block, by bisection
@@ -124,8 +128,33 @@ class Decomposition {
     for (int k = 0; k < D; ++k) product *= box.size(k);
     return product;
   }
+  /// What the slices of a box across an axis cost.
+  static std::vector<double> slice_costs(const Box<D>& box, int axis, const std::vector<std::array<int, D>>& points,
+                                         double point_cost, const Measured& measured) {
+    std::vector<double> costs(static_cast<std::size_t>(box.size(axis)));
+    const auto add = [&](const Box<D>& part, double factor) {
+      const double slice = static_cast<double>(volume(part)) / part.size(axis) * factor;
+      for (int i = part.begin[axis]; i < part.end[axis]; ++i) costs[i - box.begin[axis]] += slice;
+    };
+    if (measured.blocks == nullptr) {
+      add(box, 1);
+      for (const auto& point : points) costs[point[axis] - box.begin[axis]] += point_cost;
+      return costs;
+    }
+    for (const int rank : measured.blocks->meeting(box)) {
+      Box<D> common = measured.blocks->blocks_[rank];
+      for (int k = 0; k < D; ++k) {
+        common.begin[k] = std::max(box.begin[k], common.begin[k]);
+        common.end[k] = std::min(box.end[k], common.end[k]);
+      }
+      add(common, measured.factor[rank]);
+    }
+    for (const auto& point : points)
+      costs[point[axis] - box.begin[axis]] += point_cost * measured.factor[measured.blocks->owner(point)];
+    return costs;
+  }
   static void bisect(const Box<D>& box, int parts, std::vector<std::array<int, D>> points, double point_cost,
-                     std::vector<Box<D>>& blocks) {
+                     const Measured& measured, std::vector<Box<D>>& blocks) {
     if (parts == 1) {
       blocks.push_back(box);
       return;
@@ -136,8 +165,7 @@ class Decomposition {
     }
     const int size = box.size(axis), lower_parts = parts / 2, upper_parts = parts - lower_parts;
     const double slice = static_cast<double>(volume(box)) / size;
-    std::vector<double> cost(static_cast<std::size_t>(size), slice);
-    for (const auto& point : points) cost[point[axis] - box.begin[axis]] += point_cost;
+    const std::vector<double> cost = slice_costs(box, axis, points, point_cost, measured);
     double all = 0;
     for (const double c : cost) all += c;
     const double wanted = all * lower_parts / parts;
@@ -158,8 +186,8 @@ class Decomposition {
     lower.end[axis] = upper.begin[axis] = box.begin[axis] + at;
     std::vector<std::array<int, D>> below, above;
     for (const auto& point : points) (lower.contains(point) ? below : above).push_back(point);
-    bisect(lower, lower_parts, std::move(below), point_cost, blocks);
-    bisect(upper, upper_parts, std::move(above), point_cost, blocks);
+    bisect(lower, lower_parts, std::move(below), point_cost, measured, blocks);
+    bisect(upper, upper_parts, std::move(above), point_cost, measured, blocks);
   }
   Domain<D> whole_;
   std::vector<Box<D>> blocks_;

@@ -133,4 +133,47 @@ std::vector<V> gather(const Ranks<D>& ranks, std::vector<V> block) {
   return whole;
 }
 
+/// The nodes of two boxes, row after row: calls function(at, count) for each row of what they have in common, `at` being
+/// where it begins among the nodes of the first.
+template <int D, class Function>
+void for_common_rows(const Box<D>& box, const Box<D>& other, Function function) {
+  for (int i = 0; i < row_count(box); ++i) {
+    const std::array<int, D - 1> row = row_of(box, i);
+    bool common = true;
+    for (int k = 1; k < D; ++k) {
+      const int at = box.begin[k] + row[k - 1];
+      common = common && at >= other.begin[k] && at < other.end[k];
+    }
+    const int begin = std::max(box.begin[0], other.begin[0]), end = std::min(box.end[0], other.end[0]);
+    if (common && begin < end)
+      function(static_cast<std::ptrdiff_t>(i) * box.size(0) + begin - box.begin[0], end - begin);
+  }
+}
+
+/// From the values of each block's nodes, row after row, those of each block of another cut of the same lattice.
+template <class V, int D>
+std::vector<V> rearrange(const Ranks<D>& ranks, const Decomposition<D>& blocks, const std::vector<V>& values) {
+  const int own = ranks.transport->rank();
+  const Box<D> before = ranks.blocks->domain(own).block, after = blocks.domain(own).block;
+  for (const int to : blocks.meeting(before)) {
+    std::vector<V> part;
+    for_common_rows(before, blocks.domain(to).block, [&](std::ptrdiff_t at, int count) {
+      part.insert(part.end(), values.begin() + at, values.begin() + at + count);
+    });
+    ranks.transport->send(to, message_of(std::span<const V>(part)));
+  }
+  long nodes = 1;
+  for (int k = 0; k < D; ++k) nodes *= after.size(k);
+  std::vector<V> rearranged(static_cast<std::size_t>(nodes));
+  for (const int from : ranks.blocks->meeting(after)) {
+    const std::vector<V> part = values_of<V>(ranks.transport->receive(from));
+    auto next = part.begin();
+    for_common_rows(after, ranks.blocks->domain(from).block, [&](std::ptrdiff_t at, int count) {
+      std::copy_n(next, count, rearranged.begin() + at);
+      next += count;
+    });
+  }
+  return rearranged;
+}
+
 }  // namespace rouleau::core

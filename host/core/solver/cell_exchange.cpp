@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <map>
 
 namespace rouleau::core {
 
@@ -161,8 +162,11 @@ bool CellExchange<D>::share_positions(Cells& cells, DisplacementWatch& viscosity
   const auto [all_step, all_path, all_escaped, all_expired] =
       largest(ranks_, std::array{step, path, escaped ? 1.0 : 0.0, expired ? 1.0 : 0.0});
   const bool compare = !(all_path <= GhostCells<D>::skin);
+  took_over_ = false;
   if (compare) {
-    ghosts_.renew(boxes_of_all(cells));
+    const std::vector<BoundingBox<D>> boxes = boxes_of_all(cells);
+    hand_over(cells, viscosity, boxes);
+    ghosts_.renew(boxes);
     std::fill(path_.begin(), path_.end(), 0.0);
   }
   if (lists != nullptr) lists->agree(compare || all_expired > 0);
@@ -179,6 +183,26 @@ bool CellExchange<D>::share_positions(Cells& cells, DisplacementWatch& viscosity
     if (!ghosts_.knows(c)) cells.largest_step[c] = all_step;  // no node of any cell has moved further
   }
   return all_escaped > 0;
+}
+
+template <int D>
+void CellExchange<D>::hand_over(Cells& cells, DisplacementWatch& viscosity, const std::vector<BoundingBox<D>>& boxes) {
+  const int own = ranks_.transport->rank();
+  std::map<int, Packer> to;
+  std::map<int, Unpacker> from;
+  const auto handovers = ghosts_.change_owners(boxes);
+  for (const auto& handover : handovers) {
+    if (handover.from == own) transfer_cell(cells, viscosity, handover.cell, std::ref(to[handover.to]));
+  }
+  for (auto& [rank, message] : to) ranks_.transport->send(rank, message.take());
+  for (const auto& handover : handovers) {
+    if (handover.to != own) continue;
+    auto message = from.find(handover.from);
+    if (message == from.end())
+      message = from.emplace(handover.from, Unpacker(ranks_.transport->receive(handover.from))).first;
+    transfer_cell(cells, viscosity, handover.cell, std::ref(message->second));
+    took_over_ = true;
+  }
 }
 
 template <int D>
@@ -275,15 +299,21 @@ void CellExchange<D>::transfer_state(Cells& cells, int cell, Transfer transfer) 
 }
 
 template <int D>
+template <class Transfer>
+void CellExchange<D>::transfer_cell(Cells& cells, DisplacementWatch& watch, int cell, Transfer transfer) {
+  for (auto* along : places(cells)) transfer_nodes(*along, cells.cells[cell], transfer);
+  for (auto* along : velocities(cells)) transfer_nodes(*along, cells.cells[cell], transfer);
+  transfer(&cells.largest_step[cell], 1);
+  transfer_memory(cells, watch, cell, transfer);
+  transfer_state(cells, cell, transfer);
+}
+
+template <int D>
 void CellExchange<D>::share_state(Cells& cells, DisplacementWatch& watch) const {
   const auto transfer = [&](int rank, auto& message) {
     for (int c = 0; c < cells.cell_count(); ++c) {
       if (ghosts_.owner(c) != rank) continue;
-      for (auto* along : places(cells)) transfer_nodes(*along, cells.cells[c], std::ref(message));
-      for (auto* along : velocities(cells)) transfer_nodes(*along, cells.cells[c], std::ref(message));
-      message(&cells.largest_step[c], 1);
-      transfer_memory(cells, watch, c, std::ref(message));
-      transfer_state(cells, c, std::ref(message));
+      transfer_cell(cells, watch, c, std::ref(message));
     }
   };
   const int own = ranks_.transport->rank(), all = ranks_.blocks->ranks();

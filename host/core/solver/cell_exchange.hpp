@@ -29,8 +29,11 @@ class CellExchange {
 
   /// After the nodes have moved: what owners have found of them, then positions and largest steps of ghosts. Sets whether
   /// lists of cells that act on each other are out of date, if there are such lists (null: none), and returns whether a
-  /// node has left the domain, on any rank. New ghosts come with what the viscosity's watch remembers of them.
+  /// node has left the domain, on any rank. New ghosts come with what the viscosity's watch remembers of them, and cells
+  /// that change hands with all that is known of them.
   bool share_positions(Cells& cells, DisplacementWatch& viscosity, DisplacementWatch* lists, bool escaped);
+  /// Whether the last share_positions() has given this rank cells that it did not own before.
+  [[nodiscard]] bool took_over() const { return took_over_; }
   /// The reactions of potentials, to the owners of the cells that they act on.
   void share_reactions(const Cells& cells, Interactions& interactions) const;
   /// A component along each axis for every node, to those whose blocks it may reach.
@@ -58,10 +61,15 @@ class CellExchange {
   static void transfer_memory(Cells& cells, DisplacementWatch& watch, int cell, Transfer transfer);
   template <class Transfer>
   static void transfer_state(Cells& cells, int cell, Transfer transfer);
+  /// All that there is.
+  template <class Transfer>
+  static void transfer_cell(Cells& cells, DisplacementWatch& watch, int cell, Transfer transfer);
+  void hand_over(Cells& cells, DisplacementWatch& viscosity, const std::vector<BoundingBox<D>>& boxes);
 
   Ranks<D> ranks_;
   GhostCells<D> ghosts_;
   bool velocities_;
+  bool took_over_ = false;
   std::vector<double> path_;  // of this rank's cells since boxes were compared: no node has a longer one
 };
 

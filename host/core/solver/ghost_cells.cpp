@@ -42,6 +42,26 @@ std::vector<int> GhostCells<D>::reached_by(const BoundingBox<D>& box, const Deco
 }
 
 template <int D>
+auto GhostCells<D>::change_owners(const std::vector<BoundingBox<D>>& boxes) -> std::vector<Handover> {
+  std::vector<Handover> handovers;
+  for (int c = 0; c < static_cast<int>(boxes.size()); ++c) {
+    if (!boxes[c].usable()) continue;
+    const int place = owner_by_place(boxes[c], *ranks_.blocks);
+    if (place == owner_[c]) continue;
+    const Domain<D> of_owner = ranks_.blocks->domain(owner_[c]);
+    BoundingBox<D> middle = boxes[c];
+    for (int k = 0; k < D; ++k) middle.least[k] = middle.most[k] = (boxes[c].least[k] + boxes[c].most[k]) / 2;
+    bool near = false;
+    for_nodes_near(middle, margin, 1, of_owner,
+                   [&](const Box<D>& nodes) { near = near || nodes.meets(of_owner.block); });
+    if (near) continue;
+    handovers.push_back({c, owner_[c], place});
+    owner_[c] = place;
+  }
+  return handovers;
+}
+
+template <int D>
 void GhostCells<D>::renew(const std::vector<BoundingBox<D>>& boxes) {
   const int own = ranks_.transport->rank(), cells = static_cast<int>(owner_.size());
   const Domain<D> domain = ranks_.blocks->domain(own);

@@ -17,7 +17,8 @@ struct GhostReach {
 };
 
 /// Every cell has one owner, the rank that computes its forces and moves it; it enters no formula, so that any rank will
-/// do. Other ranks know a cell, as a ghost, whose blocks it may reach or with whose cells it may act, while no node has
+/// do. The one whose block the cell is above hears of it least, so that cells which travel change hands. Other ranks know a
+/// cell, as a ghost, whose blocks it may reach or with whose cells it may act, while no node has
 /// moved further than the skin since the boxes of all cells were last compared. All ranks find the same from the same
 /// boxes, so that nobody has to say which cells a message is about.
 constexpr double lattice_reach = 8;  ///< a stencil reaches two nodes, marks and viscosity a few more, and what is
@@ -55,6 +56,15 @@ class GhostCells {
       }
     }
   }
+
+  /// A cell that changes hands.
+  struct Handover {
+    int cell, from, to;
+  };
+  /// Gives cells whose middle has come `margin` away from their owner's block to the ranks above whose blocks it lies, and
+  /// says which; all ranks find the same. Until renew() peers are the old ones.
+  std::vector<Handover> change_owners(const std::vector<BoundingBox<D>>& boxes);
+  static constexpr double margin = 4;  ///< spacings: a cell that sways over a border stays where it is
 
   /// Finds the ghosts anew, from the boxes of all cells.
   void renew(const std::vector<BoundingBox<D>>& boxes);

@@ -138,7 +138,9 @@ void OutlineTasks<T>::run(Task task, Worker worker) {
     case Task::locate:
       return locate(worker, Whose::own);
     case Task::locate_ghosts:
-      return locate(worker, Whose::others);
+      locate(worker, Whose::others);
+      if (exchange_->took_over()) locate(worker, Whose::own);
+      return;
     case Task::share_reactions:
     case Task::share_forces:
     case Task::collect_velocities:

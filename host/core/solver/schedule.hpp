@@ -34,7 +34,7 @@ enum class Task {
   move,                ///< cells: X(t + 1) = X(t) + U
   locate,              ///< cells: where the nodes touch the lattice
   share_positions,     ///< one worker: of nodes that other ranks have to know of
-  locate_ghosts        ///< cells: locate, of other ranks' cells
+  locate_ghosts        ///< cells: locate, of other ranks' cells and of those that have just become own ones
 };
 
 /// A task and what happens between the workers after it.

@@ -103,7 +103,9 @@ void SurfaceTasks<T>::run(Task task, Worker worker) {
     case Task::locate:
       return coupling_.locate(worker, surfaces_, Whose::own);
     case Task::locate_ghosts:
-      return coupling_.locate(worker, surfaces_, Whose::others);
+      coupling_.locate(worker, surfaces_, Whose::others);
+      if (exchange_->took_over()) coupling_.locate(worker, surfaces_, Whose::own);
+      return;
     case Task::share_reactions:
     case Task::share_forces:
     case Task::collect_velocities:

@@ -52,6 +52,19 @@ TEST_CASE("blocks that have to hold the same cost do, within the columns and row
   }
 }
 
+TEST_CASE("blocks that were measured to be slow become smaller") {
+  // The left block computes at a third of the right one's pace.
+  const Domain<2> domain({512, 384}, {true, false});
+  const auto blocks = Decomposition<2>::bisected(domain, 2);
+  const auto again = Decomposition<2>::bisected(domain, 2, {}, 0, {.blocks = &blocks, .factor = {3, 1}});
+  // 3 of 4 parts of the cost lie in the left half, of which the left block keeps two thirds.
+  CHECK(std::abs(again.domain(0).block.size(0) - 512.0 / 3) <= 8);
+  // A point costs there what it does elsewhere times the factor.
+  Points points(100, {500, 7});
+  const auto heavy = Decomposition<2>::bisected(domain, 2, points, 384, {.blocks = &blocks, .factor = {1, 1}});
+  CHECK(heavy.domain(0).block.size(0) == 304);  // (512 + 100) / 2 = 306, at multiples of 16
+}
+
 TEST_CASE("cuts along rows of memory lie at multiples of 16 nodes where there is room for them") {
   const auto blocks = Decomposition<2>::bisected(Domain<2>({200, 40}, {true, true}), 5);
   for (int rank = 0; rank < 5; ++rank) CHECK(blocks.domain(rank).block.begin[0] % 16 == 0);

@@ -195,6 +195,43 @@ TEST_CASE("a run in three dimensions cut into any blocks writes the same directo
   }
 }
 
+namespace {
+
+/// At every check ranks get other blocks, which depend on how long they have computed.
+template <int D>
+void compare_cut_again(const Case& c, const Cut<D>& cut, long steps) {
+  const Planned planned(c);
+  const ScratchFolder folder;
+  CAPTURE(c.what, cut.what);
+  run_whole(planned, steps, folder.path() / "whole");
+  run::RunOptions chosen = options(steps, cut.threads);
+  chosen.cut_every = 1;
+  run_cut(planned, cut, chosen, folder.path() / "cut");
+  compare(folder.path() / "whole", folder.path() / "cut");
+  const std::string log = bytes_of(folder.path() / "cut/log.jsonl");
+  CHECK(log.find("\"event\":\"cut\"") != std::string::npos);
+}
+
+}  // namespace
+
+TEST_CASE("a run whose ranks get other blocks on the way writes the same directory") {
+  std::vector<Case> cases = scenes_to_cut();
+  cases.push_back(two_stages);
+  cases.push_back({"no cells", four_cells, {driven, "/output={}", "/cells=[]", "/interactions=[]"}});
+  for (const Case& c : cases) {
+    const core::Domain<2> domain = plan::lattice_domain<2>(Planned(c).scene);
+    const auto [nx, ny] = domain.size;
+    const core::Box<2> strip{{0, 0}, {nx / 5, ny}}, floor{{nx / 5, 0}, {nx, 3}}, rest{{nx / 5, 3}, {nx, ny}};
+    compare_cut_again<2>(c, {"uneven", Decomposition<2>(domain, {strip, floor, rest}), {}, 1}, block_steps(70));
+  }
+}
+
+TEST_CASE("a run in three dimensions whose ranks get other blocks on the way writes the same directory") {
+  const Case c = scenes_in_space().front();
+  const core::Domain<3> domain = plan::lattice_domain<3>(Planned(c).scene);
+  compare_cut_again<3>(c, {"even", Decomposition<3>::even(domain, {1, 3, 1}), {}, 2}, block_steps(40));
+}
+
 TEST_CASE("a run that fails, fails the same in any blocks") {
   using Row = std::pair<std::string, std::vector<std::string>>;
   const Row row = GENERATE(Row{"mach", {"/checks/mach=0.04"}},

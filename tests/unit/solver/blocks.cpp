@@ -107,9 +107,30 @@ void compare(const End<T, Set>& whole, const End<T, Set>& block) {
   compare_memory(whole.cells, block.cells);
 }
 
+/// Each cell has one owner, whose block its middle is not far from.
+template <class T, class Set>
+void check_owners(const std::vector<End<T, Set>>& ends) {
+  constexpr int D = Set::dimension;
+  for (int c = 0; c < ends.front().cells.cell_count(); ++c) {
+    int owners = 0;
+    for (const End<T, Set>& end : ends) {
+      if (!end.cells.owns(c)) continue;
+      ++owners;
+      const BoundingBox<D> box = box_of<D>(end.cells, c);
+      BoundingBox<D> middle;
+      for (int k = 0; k < D; ++k) middle.least[k] = middle.most[k] = (box.least[k] + box.most[k]) / 2;
+      bool near = false;
+      for_nodes_near(middle, GhostCells<D>::margin + GhostCells<D>::skin, 1, end.domain,
+                     [&](const Box<D>& nodes) { near = near || nodes.meets(end.domain.block); });
+      CHECK(near);
+    }
+    CHECK(owners == 1);
+  }
+}
+
 template <class T, class Set>
 void compare_cuts(const Case& c, const std::vector<Cut<Set::dimension>>& cuts, const Planned<Set::dimension>& planned,
-                  long steps, long look) {
+                  long steps, long look, bool travel) {
   const End<T, Set> whole = simulate<T, Set>(planned, planned.setup.domain, {}, {}, steps, 1, look);
   for (const Cut<Set::dimension>& cut : cuts) {
     CAPTURE(c.what, cut.what, cut.owner);
@@ -119,18 +140,21 @@ void compare_cuts(const Case& c, const std::vector<Cut<Set::dimension>>& cuts, c
       ends[rank] = simulate<T, Set>(planned, cut.blocks.domain(rank), ranks, cut.owner, steps, cut.threads, look);
     });
     for (const End<T, Set>& block : ends) compare(whole, block);
+    if (travel) check_owners(ends);
   }
 }
 
-/// `look`: every so many steps all ranks tell each other everything. `cuts`: none: all kinds.
+/// `look`: every so many steps all ranks tell each other everything. `cuts`: none: all kinds; else cells travel over them,
+/// and change hands.
 template <class Set>
 void compare_cuts(const Case& c, long steps, long look = 1000, std::vector<Cut<Set::dimension>> cuts = {}) {
+  const bool travel = !cuts.empty() && steps > look;
   const Planned<Set::dimension> planned(c);
   if (cuts.empty()) cuts = cuts_of(planned.setup.domain, planned.cells.cell_count());
   if (planned.scene.numerics.precision == scene::Precision::f64) {
-    compare_cuts<double, Set>(c, cuts, planned, steps, look);
+    compare_cuts<double, Set>(c, cuts, planned, steps, look, travel);
   } else {
-    compare_cuts<float, Set>(c, cuts, planned, steps, look);
+    compare_cuts<float, Set>(c, cuts, planned, steps, look, travel);
   }
 }
 
@@ -144,6 +168,11 @@ TEST_CASE("any blocks give the same bits while cells come and go") {
   // Cells travel so far that ranks get to know them and forget them again.
   for (const Case& c : travelling_cells())
     compare_cuts<D2Q9>(c, block_steps(700), 450, cuts_for_travellers(Planned<2>(c).setup.domain));
+}
+
+TEST_CASE("any blocks give the same bits while cells come and go in three dimensions") {
+  const Case c = travelling_in_space();
+  compare_cuts<D3Q19>(c, block_steps(260), 130, cuts_for_travellers(Planned<3>(c).setup.domain));
 }
 
 TEST_CASE("any blocks give the same bits as the whole lattice in three dimensions") {
