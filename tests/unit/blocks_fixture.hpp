@@ -114,14 +114,16 @@ inline std::vector<Cut<2>> cuts_for_travellers(const core::Domain<2>& domain) {
 
 /// Two capsules that repel each other, in a channel whose flow takes them over the border.
 inline Case travelling_in_space() {
-  return {"travelling in space",
-          ROULEAU_SCENES "/capsule-3d.json",
-          {"/numerics/precision=\"f64\"", R"(/domain={"size": ["15 um", "12 um", "12 um"], "nodes": [40, 32, 32]})",
-           R"(/stages=[{"name": "driven", "pressure_gradient": "1e6 Pa/m", "duration": "1 s", "start": "developed"}])",
-           "/output={}", "/cell_types/capsule/interior_viscosity=\"6 cP\"",
-           R"(/interactions=[{"between": ["capsule", "capsule"], "model": "morse", "parameters": {
+  return {
+      "travelling in space",
+      ROULEAU_SCENES "/capsule-3d.json",
+      {"/numerics/precision=\"f64\"",
+       R"(/domain={"size": ["15 um", "12 um", "12 um"], "nodes": [40, 32, 32], "y": {"lower": {"wall": {}}, "upper": {"wall": {}}}})",
+       R"(/stages=[{"name": "driven", "pressure_gradient": "1e6 Pa/m", "duration": "1 s", "start": "developed"}])",
+       "/output={}", "/cell_types/capsule/interior_viscosity=\"6 cP\"",
+       R"(/interactions=[{"between": ["capsule", "capsule"], "model": "morse", "parameters": {
              "depth": "1e-7 J/m2"}}])",
-           R"(/cells=[{"type": "capsule", "at": ["4 um", "6 um", "3 um"]},
+       R"(/cells=[{"type": "capsule", "at": ["4 um", "6 um", "3 um"]},
                       {"type": "capsule", "at": ["5 um", "6.4 um", "9 um"]}])"}};
 }
 /// Cuts across the way that they take, with one thread for each rank.
