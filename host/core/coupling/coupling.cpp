@@ -285,7 +285,8 @@ void Coupling<T>::warm(const CellRange& cell, NodeVectors vectors) const {
 }
 
 template <class T>
-void Coupling<T>::interpolate(Worker worker, Membranes& membranes, const VectorField<T, 2>& velocity) const {
+void Coupling<T>::interpolate(Worker worker, Membranes& membranes, const VectorField<T, 2>& velocity,
+                              Whose whose) const {
   const Range nodes = membranes.node_share(worker);
   const std::ptrdiff_t stride = velocity[0].stride(1);
   const std::ptrdiff_t first = domain_.block.begin[1] * stride + domain_.block.begin[0];
@@ -302,7 +303,7 @@ void Coupling<T>::interpolate(Worker worker, Membranes& membranes, const VectorF
   if (domain_.whole()) return loops_->interpolate(&task);
   const Range cells = worker.share(membranes.cell_count());
   for (int c = cells.begin; c < cells.end; ++c) {
-    if (!membranes.reaches(c)) continue;
+    if (!membranes.reaches(c) || !membranes.is(c, whose)) continue;
     task.begin = membranes.cells[c].first, task.end = membranes.cells[c].end();
     loops_->interpolate(&task);
   }

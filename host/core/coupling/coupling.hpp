@@ -29,7 +29,8 @@ class Coupling {
   /// rows are shared out, nor on the block.
   void spread(Range rows, const Membranes& membranes, NodeVectors node_force, VectorField<T, 2>& force) const;
   /// Pass over cells: sets velocity_x and velocity_y of the nodes whose base node lies in the block, of cells that reach it.
-  void interpolate(Worker worker, Membranes& membranes, const VectorField<T, 2>& velocity) const;
+  void interpolate(Worker worker, Membranes& membranes, const VectorField<T, 2>& velocity,
+                   Whose whose = Whose::own) const;
 
   /// The node of the lattice below a membrane node: that of the block which computes its velocity.
   [[nodiscard]] std::array<int, 2> base(int node) const { return {column_[node], std::max(row_[node], 0)}; }

@@ -304,7 +304,8 @@ void SurfaceCoupling<T>::spread(Range rows, const Surfaces& surfaces, VectorFiel
 }
 
 template <class T>
-void SurfaceCoupling<T>::interpolate(Worker worker, Surfaces& surfaces, const VectorField<T, 3>& velocity) const {
+void SurfaceCoupling<T>::interpolate(Worker worker, Surfaces& surfaces, const VectorField<T, 3>& velocity,
+                                     Whose whose) const {
   SurfaceInterpolate<T> task{};
   task.stride_y = velocity[0].stride(1), task.stride_z = velocity[0].stride(2);
   const std::ptrdiff_t first = first_of_block(task.stride_y, task.stride_z);
@@ -317,7 +318,7 @@ void SurfaceCoupling<T>::interpolate(Worker worker, Surfaces& surfaces, const Ve
   task.block = domain_.whole() ? nullptr : &domain_.block;
   const Range cells = worker.share(surfaces.cell_count());
   for (int c = cells.begin; c < cells.end; ++c) {
-    if (!surfaces.reaches(c)) continue;
+    if (!surfaces.reaches(c) || !surfaces.is(c, whose)) continue;
     task.begin = surfaces.cells[c].first, task.end = surfaces.cells[c].end();
     loops_->interpolate(&task);
   }

@@ -30,7 +30,8 @@ class SurfaceCoupling {
   /// rows are shared out, nor on the block.
   void spread(Range rows, const Surfaces& surfaces, VectorField<T, 3>& force) const;
   /// Pass over cells: sets the velocities of the nodes whose base node lies in the block, of cells that reach it.
-  void interpolate(Worker worker, Surfaces& surfaces, const VectorField<T, 3>& velocity) const;
+  void interpolate(Worker worker, Surfaces& surfaces, const VectorField<T, 3>& velocity,
+                   Whose whose = Whose::own) const;
 
   /// The node of the lattice below a node: that of the block which computes its velocity.
   [[nodiscard]] std::array<int, 3> base(int node) const {

@@ -29,8 +29,10 @@ class Halo {
  public:
   /// `copies(domain)`: those that the block of a domain keeps, in an order of its own; nodes beyond walls have none.
   /// `offset(node)`: of a node, in or around this block, in the arrays that begin() and end() are given.
+  /// `early(node)`: whether its numbers are known before the others; none: all are known at once.
   Halo(const Ranks<D>& ranks, const std::function<std::vector<HaloCopy<D>>(const Domain<D>&)>& copies,
-       const std::function<std::ptrdiff_t(const std::array<int, D>& node)>& offset)
+       const std::function<std::ptrdiff_t(const std::array<int, D>& node)>& offset,
+       const std::function<bool(const std::array<int, D>& node)>& early = {})
       : transport_(ranks.transport), peers_(static_cast<std::size_t>(ranks.blocks->ranks())) {
     const Decomposition<D>& blocks = *ranks.blocks;
     const int own = transport_->rank();
@@ -46,13 +48,20 @@ class Halo {
         const int owner = blocks.owner(node);
         if (owner == own) peers_[rank].owned.add(copy.component, offset(node));
         if (rank == own) peers_[owner].copies.add(copy.component, offset(copy.node));
+        if (owner == own) peers_[rank].early = peers_[rank].early && early && early(node);
+        if (rank == own) peers_[owner].early = peers_[owner].early && early && early(copy.node);
       }
     }
   }
 
-  /// Sends what goes this way. `arrays[c]`: where component c of the node with offset 0 lies.
-  void begin(Way way, std::span<T* const> arrays) {
+  /// Whether all that a rank is sent is known early.
+  [[nodiscard]] bool early(std::size_t rank) const { return peers_[rank].early; }
+  /// Sends what goes this way, to the ranks that `wanted` holds for. `arrays[c]`: where component c of the node with offset
+  /// 0 lies.
+  template <class Wanted>
+  void begin(Way way, std::span<T* const> arrays, Wanted wanted) {
     for (std::size_t rank = 0; rank < peers_.size(); ++rank) {
+      if (!wanted(rank)) continue;
       const Places& from = way == Way::out ? peers_[rank].owned : peers_[rank].copies;
       if (from.count == 0) continue;
       Message message(from.count * sizeof(T));
@@ -61,6 +70,9 @@ class Halo {
       });
       transport_->send(static_cast<int>(rank), std::move(message));
     }
+  }
+  void begin(Way way, std::span<T* const> arrays) {
+    begin(way, arrays, [](std::size_t) { return true; });
   }
   /// Waits for what goes this way, and puts it where it belongs.
   void end(Way way, std::span<T* const> arrays) {
@@ -116,6 +128,7 @@ class Halo {
   struct Peer {
     Places owned;   // by this rank, of which the peer keeps copies
     Places copies;  // kept here of what the peer owns
+    bool early = true;
   };
   Transport* transport_;
   std::vector<Peer> peers_;  // of each rank

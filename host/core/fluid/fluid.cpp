@@ -103,11 +103,13 @@ void Fluid<T, Set>::make_halos() {
     for (int k = 1; k < dimension; ++k) row[k - 1] = node[k] - block.begin[k];
     return row;
   };
+  const auto early = [this](const Node& node) { return in_end_rows(node[dimension - 1]); };
   population_halo_ = std::make_unique<Halo<T, dimension>>(
       ranks_, [this](const Domain<dimension>& domain) { return population_copies<Set>(domain, setting_.solid.get()); },
       [this, block, row_of_node](const Node& node) {
         return lattice_.offset(node[0] - block.begin[0], row_of_node(node));
-      });
+      },
+      early);
   energetics_halo_ = std::make_unique<Halo<double, dimension>>(
       ranks_, [](const Domain<dimension>& domain) { return velocity_copies(domain, 1); },
       [block](const Node& node) {  // VelocityRows, energetics.cpp
@@ -121,17 +123,41 @@ void Fluid<T, Set>::make_halos() {
       ranks_, [](const Domain<dimension>& domain) { return velocity_copies(domain, 2); },
       [this, block, row_of_node](const Node& node) {
         return force_[0].row(row_of_node(node)) + (node[0] - block.begin[0]) - force_[0].row(Row{});
-      });
+      },
+      early);
 }
 
-/// Calls function(halo, way, arrays) for what goes across the border after a step.
+template <class T, class Set>
+EndRows Fluid<T, Set>::end_rows() const {
+  if (!ranks_.several()) return {};
+  const Domain<dimension>& domain = setting_.domain;
+  constexpr int axis = dimension - 1;
+  const int layers = domain.block.size(axis), rows = lattice_.rows() / layers;  // of a layer
+  const bool others = !domain.wraps(axis);
+  // Others keep what they read of the layers of a block: its lowest two and its highest.
+  const int below = others && !domain.wall_below(axis) ? std::min(2, layers) : 0;
+  const int above = others && !domain.wall_above(axis) ? std::min(1, layers - below) : 0;
+  return {below * rows, above * rows};
+}
+
+/// Whether the rows of a layer of nodes, in or around the block, are taken first.
+template <class T, class Set>
+bool Fluid<T, Set>::in_end_rows(int layer) const {
+  constexpr int axis = dimension - 1;
+  const Box<dimension>& block = setting_.domain.block;
+  const EndRows ends = end_rows();
+  const int rows = lattice_.rows() / block.size(axis), above = block.end[axis] - ends.above / rows;
+  return layer < block.begin[axis] + ends.below / rows || layer >= above;
+}
+
+/// Calls function(halo, way, arrays) for what goes across the border after a step of this parity.
 template <class T, class Set>
 template <class Function>
-void Fluid<T, Set>::with_arrays(Function function) {
+void Fluid<T, Set>::with_arrays(Parity parity, Function function) {
   if (!population_halo_) return;
   T* slots[velocity_count];
   for (int q = 0; q < velocity_count; ++q) slots[q] = lattice_.slot(q, Row{});
-  function(*population_halo_, parity_ == Parity::odd ? Way::out : Way::home, slots);
+  function(*population_halo_, parity == Parity::even ? Way::out : Way::home, slots);
   if (!velocity_halo_) return;
   T* velocity[dimension];
   for (int k = 0; k < dimension; ++k) velocity[k] = force_[k].row(Row{});
@@ -139,13 +165,29 @@ void Fluid<T, Set>::with_arrays(Function function) {
 }
 
 template <class T, class Set>
+void Fluid<T, Set>::send_halo(Parity parity, bool early) {
+  with_arrays(parity, [this, early](Halo<T, dimension>& halo, Way way, auto& arrays) {
+    halo.begin(way, arrays, [this, early](std::size_t rank) {
+      return early == (ends_sent_ && population_halo_->early(rank) && (!velocity_halo_ || velocity_halo_->early(rank)));
+    });
+  });
+}
+
+template <class T, class Set>
+void Fluid<T, Set>::begin_halo_of_ends() {
+  ends_sent_ = true;
+  send_halo(parity_, true);
+}
+
+template <class T, class Set>
 void Fluid<T, Set>::begin_halo() {
-  with_arrays([](Halo<T, dimension>& halo, Way way, auto& arrays) { halo.begin(way, arrays); });
+  send_halo(next(parity_), false);
+  ends_sent_ = false;
 }
 
 template <class T, class Set>
 void Fluid<T, Set>::end_halo() {
-  with_arrays([](Halo<T, dimension>& halo, Way way, auto& arrays) { halo.end(way, arrays); });
+  with_arrays(next(parity_), [](Halo<T, dimension>& halo, Way way, auto& arrays) { halo.end(way, arrays); });
   if (velocity_halo_) mirror_velocity<T, dimension>(force_, setting_.domain, setting_.walls);
 }
 

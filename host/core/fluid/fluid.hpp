@@ -43,6 +43,11 @@ struct Moments {
   std::array<double, D> velocity;  ///< with half the force
 };
 
+/// So many rows of a block, from its first one on and up to its last one.
+struct EndRows {
+  int below = 0, above = 0;
+};
+
 template <class T, class Set = D2Q9>
 class Fluid {
  public:
@@ -106,7 +111,12 @@ class Fluid {
     walls_have_acted_ = true;
     last_walls_ = setting_.walls;
   }
-  /// One worker, after end_step(): sends what other blocks want of this step. Nothing without other blocks.
+  /// Rows of which other blocks want something: when they have been stepped before the others, and none but them,
+  /// begin_halo_of_ends() may be called. None without other blocks.
+  [[nodiscard]] EndRows end_rows() const;
+  /// One worker, before end_step(): sends to other blocks, of whose borders these rows have all, what they want of this step.
+  void begin_halo_of_ends();
+  /// One worker, after end_step(): sends what other blocks still want of it. Nothing without other blocks.
   void begin_halo();
   /// One worker, before the velocity is read or the next step is taken: takes what they have sent.
   void end_halo();
@@ -188,8 +198,10 @@ class Fluid {
   void add_moving_frame(int i, const Row& row, T* (&out)[velocity_count]);
 
   void make_halos();
+  [[nodiscard]] bool in_end_rows(int layer) const;
   template <class Function>
-  void with_arrays(Function function);
+  void with_arrays(Parity parity, Function function);
+  void send_halo(Parity parity, bool early);
 
   using Block = std::conditional_t<std::is_same_v<T, double>, rouleau_collision_block_f64, rouleau_collision_block_f32>;
   FluidSetting<dimension> setting_;
@@ -208,6 +220,7 @@ class Fluid {
   std::vector<double> rate_of_row_;  ///< by height in the block; empty without layers
   std::unique_ptr<Halo<T, dimension>> population_halo_, velocity_halo_;  ///< null without other blocks
   std::unique_ptr<Halo<double, dimension>> energetics_halo_;             ///< of velocities, one node deep
+  bool ends_sent_ = false;                                               ///< of this step
   std::array<std::vector<T>, dimension> body_force_row_;                 ///< constant; empty without a body force
 };
 

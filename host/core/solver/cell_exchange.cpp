@@ -44,17 +44,24 @@ void transfer_nodes(std::vector<double>& values, const CellRange& cell, Transfer
   transfer(values.data() + cell.first, static_cast<std::size_t>(cell.count));
 }
 
-/// Gives each peer what transfer(rank, cells, message) packs of the cells in one of its lists, and takes what it unpacks of
-/// those in the other; peers with an empty list are left out.
-template <class Packer, class Unpacker, int D, class Transfer>
-void swap_with_peers(const GhostCells<D>& ghosts, Transport& transport, std::vector<int> GhostCells<D>::Peer::*given,
-                     std::vector<int> GhostCells<D>::Peer::*taken, Transfer transfer) {
+/// One of the lists of a peer's cells.
+template <int D>
+using Listed = std::vector<int> GhostCells<D>::Peer::*;
+
+/// Gives each peer what transfer(rank, cells, message) packs of the cells in one of its lists; those with an empty list are
+/// left out.
+template <class Packer, int D, class Transfer>
+void send_to_peers(const GhostCells<D>& ghosts, Transport& transport, Listed<D> given, Transfer transfer) {
   for (const auto& [rank, peer] : ghosts.peers()) {
     if ((peer.*given).empty()) continue;
     Packer message;
     transfer(transport.rank(), peer.*given, message);
     transport.send(rank, message.take());
   }
+}
+/// Takes from each peer what transfer(rank, cells, message) unpacks of those in one of its lists.
+template <class Unpacker, int D, class Transfer>
+void receive_from_peers(const GhostCells<D>& ghosts, Transport& transport, Listed<D> taken, Transfer transfer) {
   for (const auto& [rank, peer] : ghosts.peers()) {
     if ((peer.*taken).empty()) continue;
     Unpacker message(transport.receive(rank));
@@ -177,8 +184,8 @@ bool CellExchange<D>::share_positions(Cells& cells, DisplacementWatch& viscosity
       if (compare) transfer_memory(cells, viscosity, c, std::ref(message));
     }
   };
-  swap_with_peers<Packer, Unpacker>(ghosts_, *ranks_.transport, &GhostCells<D>::Peer::mine,
-                                    &GhostCells<D>::Peer::theirs, transfer);
+  send_to_peers<Packer>(ghosts_, *ranks_.transport, &GhostCells<D>::Peer::mine, transfer);
+  receive_from_peers<Unpacker>(ghosts_, *ranks_.transport, &GhostCells<D>::Peer::theirs, transfer);
   for (int c = 0; c < cells.cell_count(); ++c) {
     if (!ghosts_.knows(c)) cells.largest_step[c] = all_step;  // no node of any cell has moved further
   }
@@ -206,7 +213,7 @@ void CellExchange<D>::hand_over(Cells& cells, DisplacementWatch& viscosity, cons
 }
 
 template <int D>
-void CellExchange<D>::share_reactions(const Cells& cells, Interactions& interactions) const {
+void CellExchange<D>::send_reactions(Interactions& interactions) const {
   for (const auto& [rank, peer] : ghosts_.peers()) {
     if (!peer.touch) continue;
     Packer message;
@@ -227,6 +234,10 @@ void CellExchange<D>::share_reactions(const Cells& cells, Interactions& interact
     }
     ranks_.transport->send(rank, message.take());
   }
+}
+
+template <int D>
+void CellExchange<D>::receive_reactions(const Cells& cells, Interactions& interactions) const {
   for (const auto& [rank, peer] : ghosts_.peers()) {
     if (!peer.touch) continue;
     Unpacker message(ranks_.transport->receive(rank));
@@ -246,30 +257,56 @@ void CellExchange<D>::share_reactions(const Cells& cells, Interactions& interact
 }
 
 template <int D>
-void CellExchange<D>::share_forces(const Cells& cells, const std::array<double*, D>& force) const {
-  const auto transfer = [&](int, const std::vector<int>& of_peer, auto& message) {
-    for (const int c : of_peer) {
-      const CellRange& cell = cells.cells[c];
-      for (double* along : force) message(along + cell.first, static_cast<std::size_t>(cell.count));
-    }
-  };
-  swap_with_peers<Packer, Unpacker>(ghosts_, *ranks_.transport, &GhostCells<D>::Peer::mine_there,
-                                    &GhostCells<D>::Peer::theirs_here, transfer);
+template <class Message>
+void CellExchange<D>::transfer_forces(const Cells& cells, const std::array<double*, D>& force,
+                                      const std::vector<int>& of_peer, Message& message) {
+  for (const int c : of_peer) {
+    const CellRange& cell = cells.cells[c];
+    for (double* along : force) message(along + cell.first, static_cast<std::size_t>(cell.count));
+  }
 }
 
 template <int D>
-void CellExchange<D>::collect_velocities(Cells& cells, const std::function<std::array<int, D>(int node)>& base) const {
-  const auto transfer = [&](int reader, const std::vector<int>& of_peer, auto& message) {
-    const Box<D> block = ranks_.blocks->domain(reader).block;
-    for (const int c : of_peer) {
-      for (int i = cells.cells[c].first; i < cells.cells[c].end(); ++i) {
-        if (!block.contains(base(i))) continue;
-        for (auto* along : velocities(cells)) message(along->data() + i, 1);
-      }
+void CellExchange<D>::send_forces(const Cells& cells, const std::array<double*, D>& force) const {
+  send_to_peers<Packer>(
+      ghosts_, *ranks_.transport, &GhostCells<D>::Peer::mine_there,
+      [&](int, const auto& of_peer, auto& message) { transfer_forces(cells, force, of_peer, message); });
+}
+
+template <int D>
+void CellExchange<D>::receive_forces(const Cells& cells, const std::array<double*, D>& force) const {
+  receive_from_peers<Unpacker>(
+      ghosts_, *ranks_.transport, &GhostCells<D>::Peer::theirs_here,
+      [&](int, const auto& of_peer, auto& message) { transfer_forces(cells, force, of_peer, message); });
+}
+
+template <int D>
+template <class Message>
+void CellExchange<D>::transfer_velocities(Cells& cells, const Base& base, int reader, const std::vector<int>& of_peer,
+                                          Message& message) const {
+  const Box<D> block = ranks_.blocks->domain(reader).block;
+  for (const int c : of_peer) {
+    for (int i = cells.cells[c].first; i < cells.cells[c].end(); ++i) {
+      if (!block.contains(base(i))) continue;
+      for (auto* along : velocities(cells)) message(along->data() + i, 1);
     }
-  };
-  swap_with_peers<Packer, Unpacker>(ghosts_, *ranks_.transport, &GhostCells<D>::Peer::theirs_here,
-                                    &GhostCells<D>::Peer::mine_there, transfer);
+  }
+}
+
+template <int D>
+void CellExchange<D>::send_velocities(Cells& cells, const Base& base) const {
+  send_to_peers<Packer>(ghosts_, *ranks_.transport, &GhostCells<D>::Peer::theirs_here,
+                        [&](int reader, const auto& of_peer, auto& message) {
+                          transfer_velocities(cells, base, reader, of_peer, message);
+                        });
+}
+
+template <int D>
+void CellExchange<D>::receive_velocities(Cells& cells, const Base& base) const {
+  receive_from_peers<Unpacker>(ghosts_, *ranks_.transport, &GhostCells<D>::Peer::mine_there,
+                               [&](int reader, const auto& of_peer, auto& message) {
+                                 transfer_velocities(cells, base, reader, of_peer, message);
+                               });
 }
 
 /// What laws and potentials remember, and what has leaked.

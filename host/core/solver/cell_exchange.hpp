@@ -34,13 +34,18 @@ class CellExchange {
   bool share_positions(Cells& cells, DisplacementWatch& viscosity, DisplacementWatch* lists, bool escaped);
   /// Whether the last share_positions() has given this rank cells that it did not own before.
   [[nodiscard]] bool took_over() const { return took_over_; }
+  // Messages in two halves, with no other message between them.
   /// The reactions of potentials, to the owners of the cells that they act on.
-  void share_reactions(const Cells& cells, Interactions& interactions) const;
+  void send_reactions(Interactions& interactions) const;
+  void receive_reactions(const Cells& cells, Interactions& interactions) const;
   /// A component along each axis for every node, to those whose blocks it may reach.
-  void share_forces(const Cells& cells, const std::array<double*, D>& force) const;
+  void send_forces(const Cells& cells, const std::array<double*, D>& force) const;
+  void receive_forces(const Cells& cells, const std::array<double*, D>& force) const;
   /// Velocities from the ranks that have interpolated them to the owners. `base(node)`: the node of the lattice below a
   /// node, whose rank is the one.
-  void collect_velocities(Cells& cells, const std::function<std::array<int, D>(int node)>& base) const;
+  using Base = std::function<std::array<int, D>(int node)>;
+  void send_velocities(Cells& cells, const Base& base) const;
+  void receive_velocities(Cells& cells, const Base& base) const;
   /// All of all cells, to all ranks: positions, velocities, forces, what laws and potentials remember, leaked areas, and
   /// the watch's memory. Until the next share_positions() every rank knows every cell.
   void share_state(Cells& cells, DisplacementWatch& watch) const;
@@ -54,6 +59,12 @@ class CellExchange {
   static Vectors forces(Cells& cells);
   void set_parts(Cells& cells) const;
   [[nodiscard]] std::vector<BoundingBox<D>> boxes_of_all(const Cells& cells) const;
+  template <class Message>
+  static void transfer_forces(const Cells& cells, const std::array<double*, D>& force, const std::vector<int>& of_peer,
+                              Message& message);
+  template <class Message>
+  void transfer_velocities(Cells& cells, const Base& base, int reader, const std::vector<int>& of_peer,
+                           Message& message) const;
   /// All that a step wants to know of one cell.
   template <class Transfer>
   void transfer_motion(Cells& cells, int cell, Transfer transfer) const;

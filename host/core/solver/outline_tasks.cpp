@@ -128,7 +128,9 @@ void OutlineTasks<T>::run(Task task, Worker worker) {
       if (viscosity_field_.due()) viscosity_field_.update(worker, membranes_, fluid_.relaxation_rate(), fluid_.mask());
       return;
     case Task::interpolate:
-      return coupling_.interpolate(worker, membranes_, fluid_.velocity());
+      return coupling_.interpolate(worker, membranes_, fluid_.velocity(), Whose::own);
+    case Task::interpolate_ghosts:
+      return coupling_.interpolate(worker, membranes_, fluid_.velocity(), Whose::others);
     case Task::correct_velocities:
       if (slip_correction_) slip_correction_->correct(worker, membranes_);
       if (setup_.area_correction) core::keep_areas(worker, membranes_);
@@ -141,9 +143,12 @@ void OutlineTasks<T>::run(Task task, Worker worker) {
       locate(worker, Whose::others);
       if (exchange_->took_over()) locate(worker, Whose::own);
       return;
-    case Task::share_reactions:
-    case Task::share_forces:
-    case Task::collect_velocities:
+    case Task::send_reactions:
+    case Task::receive_reactions:
+    case Task::send_forces:
+    case Task::receive_forces:
+    case Task::send_velocities:
+    case Task::receive_velocities:
     case Task::share_positions:
       if (worker.first()) exchange(task);
       return;
@@ -154,18 +159,28 @@ void OutlineTasks<T>::run(Task task, Worker worker) {
 
 template <class T>
 void OutlineTasks<T>::exchange(Task task) {
-  if (task == Task::share_reactions) {
-    exchange_->share_reactions(membranes_, *interaction_forces_);
-  } else if (task == Task::share_forces) {
-    exchange_->share_forces(membranes_, slip_correction_
-                                            ? slip_correction_->forces_of_all()
-                                            : std::array{membranes_.force_x.data(), membranes_.force_y.data()});
-  } else if (task == Task::collect_velocities) {
-    exchange_->collect_velocities(membranes_, [this](int node) { return coupling_.base(node); });
-  } else {
-    escaped_ = exchange_->share_positions(membranes_, viscosity_field_.watch(),
-                                          interaction_forces_ ? &interaction_forces_->watch() : nullptr,
-                                          coupling_.any_escaped());
+  const auto base = [this](int node) { return coupling_.base(node); };
+  const auto forces = [this] {
+    return slip_correction_ ? slip_correction_->forces_of_all()
+                            : std::array{membranes_.force_x.data(), membranes_.force_y.data()};
+  };
+  switch (task) {
+    case Task::send_reactions:
+      return exchange_->send_reactions(*interaction_forces_);
+    case Task::receive_reactions:
+      return exchange_->receive_reactions(membranes_, *interaction_forces_);
+    case Task::send_forces:
+      return exchange_->send_forces(membranes_, forces());
+    case Task::receive_forces:
+      return exchange_->receive_forces(membranes_, forces());
+    case Task::send_velocities:
+      return exchange_->send_velocities(membranes_, base);
+    case Task::receive_velocities:
+      return exchange_->receive_velocities(membranes_, base);
+    default:
+      escaped_ = exchange_->share_positions(membranes_, viscosity_field_.watch(),
+                                            interaction_forces_ ? &interaction_forces_->watch() : nullptr,
+                                            coupling_.any_escaped());
   }
 }
 

@@ -29,6 +29,8 @@ struct Pass {
   /// Instead of `run`, of a pass over rows: any rows of the block. Such passes one after another, with no meeting
   /// between them, are run band by band, so that a band is still in the cache when the next pass wants it.
   std::function<void(Range rows)> run_rows = {};
+  /// Of a pass over rows: one worker, when all have passed those at the ends of the block and before the others (RowBands).
+  std::function<void()> after_ends = {};
   Meeting meeting = Meeting::all;
 };
 
@@ -37,15 +39,33 @@ struct RowBands {
   int rows = 0;         ///< of the block
   int height = 1;       ///< rows of a band
   bool upwards = true;  ///< the order in which a worker takes its bands
+  int below = 0;        ///< rows at the lower end, which other blocks wait for
+  int above = 0;        ///< at the upper end
 
   /// Calls function(rows) for the bands of a worker.
   template <class Function>
   void for_each(Worker worker, Function function) const {
-    const Range share = worker.share(rows);
+    for_bands({0, rows}, worker, function);
+  }
+  /// Of the rows at the ends alone, and of all but these.
+  template <class Function>
+  void for_ends(Worker worker, Function function) const {
+    for_bands({0, below}, worker, function);
+    for_bands({rows - above, rows}, worker, function);
+  }
+  template <class Function>
+  void for_middle(Worker worker, Function function) const {
+    for_bands({below, rows - above}, worker, function);
+  }
+
+ private:
+  template <class Function>
+  void for_bands(Range all, Worker worker, Function function) const {
+    const Range share = worker.share(all.end - all.begin);
     const int count = (share.end - share.begin + height - 1) / height;
     for (int i = 0; i < count; ++i) {
       const int begin = share.begin + (upwards ? i : count - 1 - i) * height;
-      function(Range{begin, std::min(begin + height, share.end)});
+      function(Range{all.begin + begin, all.begin + std::min(begin + height, share.end)});
     }
   }
 };
@@ -83,12 +103,21 @@ inline void run_passes(const std::vector<Pass>& passes, std::size_t first, std::
     std::size_t end = i + 1;
     if (over_rows(i)) {
       while (end < last && over_rows(end) && passes[end - 1].meeting == Meeting::none) ++end;
-      bands.for_each(worker, [&](Range rows) {
+      const auto take = [&](Range rows) {
         for (std::size_t k = i; k < end; ++k) {
           passes[k].run_rows(rows);
           lap(k);
         }
-      });
+      };
+      if (const auto& after_ends = passes[end - 1].after_ends; after_ends && bands.below + bands.above > 0) {
+        bands.for_ends(worker, take);
+        const unsigned ends = barrier.arrive();
+        if (worker.first()) barrier.wait(ends), after_ends();
+        bands.for_middle(worker, take);
+        barrier.wait(ends);
+      } else {
+        bands.for_each(worker, take);
+      }
     } else {
       passes[i].run(worker);
     }

@@ -23,25 +23,36 @@ Schedule make_schedule(const StepFeatures& has) {
   add(cells, Task::membrane_forces, "membrane", walls || self ? Meeting::none : own_cells);
   add(walls, Task::wall_forces, "interaction", self ? Meeting::none : own_cells);
   add(self, Task::self_forces, "interaction", own_cells);
-  add(touch, Task::interaction_forces, "interaction", Meeting::announce);
+  // What ranks tell each other is on its way during the task after it is sent.
+  add(touch, Task::interaction_forces, "interaction", ranks ? Meeting::all : Meeting::announce);
   add(corrected && !touch, Task::complete_forces, "corrections", Meeting::none);
-  add(cells, Task::find_nodes, mark, touch ? Meeting::await : Meeting::all);
-  add(cells && has.moving_frame, Task::follow_cells, "fluid", Meeting::all);
-  add(touch && ranks, Task::share_reactions, "ranks", Meeting::all);
+  add(cells && has.moving_frame, Task::follow_cells, "fluid", Meeting::none);
+  add(touch && ranks, Task::send_reactions, "ranks", Meeting::none);
+  if (cells && ranks && !touch) {
+    schedule.steps.back().meeting = Meeting::all;
+    add(true, Task::send_forces, "ranks", Meeting::none);
+  }
+  const Meeting alone = touch ? Meeting::await : Meeting::all, several = touch ? Meeting::none : Meeting::all;
+  add(cells, Task::find_nodes, mark, ranks ? several : alone);
+  add(touch && ranks, Task::receive_reactions, "ranks", Meeting::all);
   add(touch, Task::take_reactions, "interaction", corrected ? Meeting::none : Meeting::all);
   add(corrected && touch, Task::complete_forces, "corrections", Meeting::all);
-  add(cells && ranks, Task::share_forces, "ranks", Meeting::all);
+  add(touch && ranks, Task::send_forces, "ranks", Meeting::none);
   add(cells, Task::set_viscosity, mark, Meeting::none);
+  add(cells && ranks, Task::receive_forces, "ranks", Meeting::all);
   schedule.rows = schedule.steps.size();
   add(cells, Task::clear_force, "spread", Meeting::none);
   add(cells, Task::spread, "spread", Meeting::none);
   schedule.observable = schedule.steps.size();
   add(true, Task::collide_and_stream, "fluid", Meeting::all);
-  add(true, Task::end_step, "fluid", cells && !ranks ? Meeting::none : Meeting::all);
-  add(ranks, Task::exchange_halo, "ranks", Meeting::all);
+  add(true, Task::end_step, "fluid", cells || ranks ? Meeting::none : Meeting::all);
+  add(ranks, Task::send_halo, "ranks", Meeting::none);
+  add(ranks, Task::receive_halo, "ranks", Meeting::all);
+  add(cells && ranks, Task::interpolate_ghosts, "interpolate", Meeting::all);
+  add(cells && ranks, Task::send_velocities, "ranks", Meeting::none);
   // The next step begins with the same cells; its first barrier serves these tasks, too.
-  add(cells, Task::interpolate, "interpolate", ranks ? Meeting::all : Meeting::none);
-  add(cells && ranks, Task::collect_velocities, "ranks", Meeting::all);
+  add(cells, Task::interpolate, "interpolate", Meeting::none);
+  add(cells && ranks, Task::receive_velocities, "ranks", Meeting::all);
   add(corrected, Task::correct_velocities, "corrections", Meeting::none);
   add(cells, Task::move, "move", Meeting::none);
   add(cells, Task::locate, "move", ranks ? Meeting::all : Meeting::none);

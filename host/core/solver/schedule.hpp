@@ -16,20 +16,25 @@ enum class Task {
   wall_forces,         ///< cells: F = -dE/dX of the potentials between cells and walls
   self_forces,         ///< cells: F = -dE/dX of the potentials between parts of one membrane
   interaction_forces,  ///< cells: F = -dE/dX of the potentials, on own nodes
-  share_reactions,     ///< one worker: what own nodes do to other ranks' cells
+  send_reactions,      ///< one worker: what own nodes do to other ranks' cells
+  receive_reactions,   ///< one worker
   take_reactions,      ///< cells: what other cells' nodes do to this one's
   complete_forces,     ///< cells: corrections of what is spread, made of all forces on a node
   find_nodes,          ///< cells: the area fraction of lattice nodes, and which nodes feel a membrane
   follow_cells,        ///< one worker: the frame of the fluid's unsteady term
-  share_forces,        ///< one worker: to the ranks that spread them
+  send_forces,         ///< one worker: to the ranks that spread them
+  receive_forces,      ///< one worker
   set_viscosity,       ///< rows: the relaxation rate in and around the cells that have moved
   clear_force,         ///< rows
   spread,              ///< rows: forces to the lattice (Peskin, Acta Numerica 11, 2002)
   collide_and_stream,  ///< rows: lattice Boltzmann with the force of Guo, Zheng and Shi, Phys. Rev. E 65, 2002
   end_step,            ///< one worker: the lattice's parity
-  exchange_halo,       ///< one worker: populations and velocities between blocks
+  send_halo,           ///< one worker: populations and velocities to other blocks, as far as that is still to be done
+  receive_halo,        ///< one worker
   interpolate,         ///< cells: velocities of the nodes, with the kernel that has spread their forces
-  collect_velocities,  ///< one worker: of own nodes above other ranks' blocks
+  interpolate_ghosts,  ///< cells: interpolate, of other ranks' nodes
+  send_velocities,     ///< one worker: of other ranks' nodes, to these
+  receive_velocities,  ///< one worker
   correct_velocities,  ///< cells: neither slip nor leaks
   move,                ///< cells: X(t + 1) = X(t) + U
   locate,              ///< cells: where the nodes touch the lattice

@@ -76,6 +76,8 @@ Solver<T, Set>::Solver(Setup setup, Cells& cells, const Ranks<dimension>& ranks,
     Pass& pass = passes_.emplace_back(Pass{.name = step.name, .run = {}, .meeting = step.meeting});
     if (over_rows(step.task)) {
       pass.run_rows = [this, task = step.task](Range rows) { run_rows(task, rows); };
+      if (step.task == Task::collide_and_stream && ranks.several())
+        pass.after_ends = [this] { fluid_.begin_halo_of_ends(); };
     } else {
       pass.run = [this, task = step.task](Worker worker) { run(task, worker); };
     }
@@ -105,8 +107,11 @@ void Solver<T, Set>::run(Task task, Worker worker) {
     case Task::end_step:
       if (worker.first()) fluid_.end_step(), ++steps_;
       return;
-    case Task::exchange_halo:
-      if (worker.first()) fluid_.begin_halo(), fluid_.end_halo();
+    case Task::send_halo:
+      if (worker.first()) fluid_.begin_halo();
+      return;
+    case Task::receive_halo:
+      if (worker.first()) fluid_.end_halo();
       return;
     default:
       return cell_tasks_->run(task, worker);
@@ -132,7 +137,8 @@ RowBands Solver<T, Set>::bands() const {
   const int rows = row_count(setup_.domain.block), columns = setup_.domain.block.size(0);
   const int active = std::clamp(active_per_node * cells_.node_count() / rows, 1, columns);  // of a row
   const int height = std::max(8, cache / (active * static_cast<int>(dimension * sizeof(T))));
-  return {.rows = rows, .height = height, .upwards = fluid_.sweeps_up()};
+  const EndRows ends = fluid_.end_rows();
+  return {.rows = rows, .height = height, .upwards = fluid_.sweeps_up(), .below = ends.below, .above = ends.above};
 }
 
 template <class T, class Set>

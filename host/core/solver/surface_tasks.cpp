@@ -97,7 +97,9 @@ void SurfaceTasks<T>::run(Task task, Worker worker) {
       if (viscosity_field_.due()) viscosity_field_.update(worker, surfaces_, fluid_.relaxation_rate(), fluid_.mask());
       return;
     case Task::interpolate:
-      return coupling_.interpolate(worker, surfaces_, fluid_.velocity());
+      return coupling_.interpolate(worker, surfaces_, fluid_.velocity(), Whose::own);
+    case Task::interpolate_ghosts:
+      return coupling_.interpolate(worker, surfaces_, fluid_.velocity(), Whose::others);
     case Task::move:
       return core::move_nodes(worker, surfaces_);
     case Task::locate:
@@ -106,9 +108,12 @@ void SurfaceTasks<T>::run(Task task, Worker worker) {
       coupling_.locate(worker, surfaces_, Whose::others);
       if (exchange_->took_over()) coupling_.locate(worker, surfaces_, Whose::own);
       return;
-    case Task::share_reactions:
-    case Task::share_forces:
-    case Task::collect_velocities:
+    case Task::send_reactions:
+    case Task::receive_reactions:
+    case Task::send_forces:
+    case Task::receive_forces:
+    case Task::send_velocities:
+    case Task::receive_velocities:
     case Task::share_positions:
       if (worker.first()) exchange(task);
       return;
@@ -119,15 +124,26 @@ void SurfaceTasks<T>::run(Task task, Worker worker) {
 
 template <class T>
 void SurfaceTasks<T>::exchange(Task task) {
-  if (task == Task::share_reactions) {
-    exchange_->share_reactions(surfaces_, *interactions_);
-  } else if (task == Task::share_forces) {
-    exchange_->share_forces(surfaces_, {surfaces_.force_x.data(), surfaces_.force_y.data(), surfaces_.force_z.data()});
-  } else if (task == Task::collect_velocities) {
-    exchange_->collect_velocities(surfaces_, [this](int node) { return coupling_.base(node); });
-  } else {
-    escaped_ = exchange_->share_positions(surfaces_, viscosity_field_.watch(),
-                                          interactions_ ? &interactions_->watch() : nullptr, coupling_.any_escaped());
+  const auto base = [this](int node) { return coupling_.base(node); };
+  const auto forces = [this] {
+    return std::array{surfaces_.force_x.data(), surfaces_.force_y.data(), surfaces_.force_z.data()};
+  };
+  switch (task) {
+    case Task::send_reactions:
+      return exchange_->send_reactions(*interactions_);
+    case Task::receive_reactions:
+      return exchange_->receive_reactions(surfaces_, *interactions_);
+    case Task::send_forces:
+      return exchange_->send_forces(surfaces_, forces());
+    case Task::receive_forces:
+      return exchange_->receive_forces(surfaces_, forces());
+    case Task::send_velocities:
+      return exchange_->send_velocities(surfaces_, base);
+    case Task::receive_velocities:
+      return exchange_->receive_velocities(surfaces_, base);
+    default:
+      escaped_ = exchange_->share_positions(surfaces_, viscosity_field_.watch(),
+                                            interactions_ ? &interactions_->watch() : nullptr, coupling_.any_escaped());
   }
 }
 
