@@ -252,7 +252,7 @@ class Simulation {
     blocks_ = std::move(blocks);
     cut_s_ = seconds_since(start);
     state_.costs.add("cut", cut_s_, 1);
-    log("cut", {{"step", state_.steps}, {"slowest_over_mean", balance_.slowest_over_mean()}, {"wall_s", cut_s_}});
+    log("cut", {{"step", state_.steps}, {"slowest_over_mean", balance_.slowest_over_mean()}, {"wall_s_of_cut", cut_s_}});
     balance_.begin_again();
     last_cut_ = next_attention_ = state_.stage_step;
     cut_at_ = never;
