@@ -26,14 +26,18 @@ Schedule make_schedule(const StepFeatures& has) {
   // What ranks tell each other is on its way during the task after it is sent.
   add(touch, Task::interaction_forces, "interaction", ranks ? Meeting::all : Meeting::announce);
   add(corrected && !touch, Task::complete_forces, "corrections", Meeting::none);
-  add(cells && has.moving_frame, Task::follow_cells, "fluid", Meeting::none);
+  // The frame is found from the velocities of all cells: when all workers have left the last step, and no message is on its way.
+  const bool frame = cells && has.moving_frame;
+  add(frame && touch, Task::follow_cells, "fluid", Meeting::none);
   add(touch && ranks, Task::send_reactions, "ranks", Meeting::none);
   if (cells && ranks && !touch) {
     schedule.steps.back().meeting = Meeting::all;
+    add(frame, Task::follow_cells, "fluid", Meeting::none);
     add(true, Task::send_forces, "ranks", Meeting::none);
   }
   const Meeting alone = touch ? Meeting::await : Meeting::all, several = touch ? Meeting::none : Meeting::all;
   add(cells, Task::find_nodes, mark, ranks ? several : alone);
+  add(frame && !touch && !ranks, Task::follow_cells, "fluid", Meeting::all);
   add(touch && ranks, Task::receive_reactions, "ranks", Meeting::all);
   add(touch, Task::take_reactions, "interaction", corrected ? Meeting::none : Meeting::all);
   add(corrected && touch, Task::complete_forces, "corrections", Meeting::all);

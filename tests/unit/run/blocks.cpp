@@ -216,6 +216,11 @@ void compare_cut_again(const Case& c, const Cut<D>& cut, long steps) {
 
 TEST_CASE("a run whose ranks get other blocks on the way writes the same directory") {
   std::vector<Case> cases = scenes_to_cut();
+  std::erase_if(cases, [](const Case& c) {  // one for each kind of state
+    return c.what != "slip and area correction" && c.what != "memory" && c.what != "bonds with a wall, too" &&
+           c.what != "oscillating" && c.what != "mean velocity" && c.what != "over x and y";
+  });
+  REQUIRE(cases.size() == 6);
   cases.push_back(two_stages);
   cases.push_back({"no cells", four_cells, {driven, "/output={}", "/cells=[]", "/interactions=[]"}});
   for (const Case& c : cases) {
