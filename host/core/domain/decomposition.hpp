@@ -50,8 +50,8 @@ class Decomposition {
     return {whole, std::move(blocks)};
   }
 
-  /// As many blocks as wanted, by cutting the longest side of what is left again and again so that both parts cost what
-  /// the numbers of their blocks ask for: a node 1, and each of the points `point_cost` more. Along the first axis cuts
+  /// As many blocks as wanted, by cutting what is left again and again, where the border costs least, so that both parts cost
+  /// what the numbers of their blocks ask for: a node 1, and each of the points `point_cost` more. Along the first axis cuts
   /// lie at multiples of 16 nodes where there is room for that. Throws std::invalid_argument for more blocks than blocks
   /// of 16 nodes have room. `measured`: in each block of an earlier cut all costs so many times as much; none: once.
   struct Measured {
@@ -128,6 +128,13 @@ class Decomposition {
     for (int k = 0; k < D; ++k) product *= box.size(k);
     return product;
   }
+  /// What a cut across an axis costs both sides, as a step of so many nodes does: numbers beside each other in memory are sent
+  /// at little cost, those of a border across rows lie alone (measured: docs/scaling.md); and points near it are known twice.
+  static double border_cost(const Box<D>& box, int axis, double points, double point_cost) {
+    constexpr double alone = 100, beside = 10, known = 30;  // `known`: spacings
+    const double nodes = static_cast<double>(volume(box));
+    return nodes / box.size(axis) * ((axis == 0 ? alone : beside) + known * points * point_cost / nodes);
+  }
   /// What the slices of a box across an axis cost.
   static std::vector<double> slice_costs(const Box<D>& box, int axis, const std::vector<std::array<int, D>>& points,
                                          double point_cost, const Measured& measured) {
@@ -160,8 +167,9 @@ class Decomposition {
       return;
     }
     int axis = 0;
+    const auto cost_of = [&](int k) { return border_cost(box, k, static_cast<double>(points.size()), point_cost); };
     for (int k = 1; k < D; ++k) {
-      if (box.size(k) > box.size(axis)) axis = k;
+      if (box.size(k) > 1 && (box.size(axis) == 1 || cost_of(k) <= cost_of(axis))) axis = k;
     }
     const int size = box.size(axis), lower_parts = parts / 2, upper_parts = parts - lower_parts;
     const double slice = static_cast<double>(volume(box)) / size;

@@ -38,9 +38,10 @@ TEST_CASE("an empty lattice is cut into equal blocks, whose number is a power of
 TEST_CASE("blocks that have to hold the same cost do, within the columns and rows that a cut can choose") {
   auto random = test::generator(static_cast<unsigned>(std::random_device()()));
   const Domain<2> domain({512, 384}, {true, false});
-  Points points;  // twice as many in the left half
-  std::uniform_int_distribution<int> left(0, 255), right(256, 511), row(0, 383);
-  for (int i = 0; i < 3000; ++i) points.push_back({i % 3 == 0 ? right(random) : left(random), row(random)});
+  Points points;  // twice as many in the left half and in the lower one
+  std::uniform_int_distribution<int> left(0, 255), right(256, 511), low(0, 191), high(192, 383);
+  for (int i = 0; i < 3000; ++i)
+    points.push_back({i % 3 == 0 ? right(random) : left(random), i / 3 % 3 == 0 ? high(random) : low(random)});
   const double point_cost = 200;
   for (const int ranks : {2, 3, 5, 8, 12}) {
     CAPTURE(ranks);
@@ -53,16 +54,27 @@ TEST_CASE("blocks that have to hold the same cost do, within the columns and row
 }
 
 TEST_CASE("blocks that were measured to be slow become smaller") {
-  // The left block computes at a third of the right one's pace.
+  // The lower block computes at a third of the upper one's pace.
   const Domain<2> domain({512, 384}, {true, false});
   const auto blocks = Decomposition<2>::bisected(domain, 2);
   const auto again = Decomposition<2>::bisected(domain, 2, {}, 0, {.blocks = &blocks, .factor = {3, 1}});
-  // 3 of 4 parts of the cost lie in the left half, of which the left block keeps two thirds.
-  CHECK(std::abs(again.domain(0).block.size(0) - 512.0 / 3) <= 8);
+  // 3 of 4 parts of the cost lie in the lower half, of which the lower block keeps two thirds.
+  CHECK(std::abs(again.domain(0).block.size(1) - 384.0 / 3) <= 1);
   // A point costs there what it does elsewhere times the factor.
   Points points(100, {500, 7});
-  const auto heavy = Decomposition<2>::bisected(domain, 2, points, 384, {.blocks = &blocks, .factor = {1, 1}});
-  CHECK(heavy.domain(0).block.size(0) == 304);  // (512 + 100) / 2 = 306, at multiples of 16
+  const auto heavy = Decomposition<2>::bisected(domain, 2, points, 512, {.blocks = &blocks, .factor = {1, 1}});
+  CHECK(heavy.domain(0).block.size(1) == (384 + 100) / 2 - 100);
+}
+
+TEST_CASE("cuts go where the border costs least") {
+  // Numbers beside each other in memory cost little: along rows, unless the lattice is ten times as wide as it is high.
+  CHECK(Decomposition<2>::bisected(Domain<2>({512, 128}, {true, false}), 2).domain(0).block.size(1) == 64);
+  CHECK(Decomposition<2>::bisected(Domain<2>({2048, 128}, {true, false}), 2).domain(0).block.size(0) == 1024);
+  CHECK(Decomposition<3>::bisected(Domain<3>({64, 64, 64}, {true, true, true}), 2).domain(0).block.size(2) == 32);
+  // Many points near it cost as much across any axis, so that the shorter border is the better one.
+  Points points;
+  for (int i = 0; i < 10000; ++i) points.push_back({i % 512, i * 7 % 128});
+  CHECK(Decomposition<2>::bisected(Domain<2>({512, 128}, {true, false}), 2, points, 30).domain(0).block.size(0) == 256);
 }
 
 TEST_CASE("cuts along rows of memory lie at multiples of 16 nodes where there is room for them") {
