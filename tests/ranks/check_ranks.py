@@ -2,7 +2,8 @@
 
 usage: check_ranks.py ROULEAU MPIRUN SOURCE LONELY_TRANSPORT
 
-Ranks share the cores of this machine. ROULEAU_KILLS=200 in the environment kills more of them. Python's standard library, and h5py where it is installed.
+Ranks share the cores of this machine. In the environment ROULEAU_KILLS=200 kills more of them, and ROULEAU_RANKS="6 8" runs what must be the same
+on so many, too. Python's standard library, and h5py where it is installed.
 """
 
 import json
@@ -32,6 +33,7 @@ KINETICS = SOURCE / "tests" / "resume" / "scenes" / "kinetics.json"
 SHORT = ["--set", '/stages/0/duration="8 ms"', "--set", "/stages/1/strain=0.06", "--set", "/output/cells/strain=0.02",
          "--set", "/output/fields/strain=0.05", "--set", '/output/checkpoint={"seconds": 600}']
 KINETICS_RUN = [str(KINETICS), *SHORT]
+MORE_RANKS = [(int(count), 1) for count in os.environ.get("ROULEAU_RANKS", "").split()]
 KILLS = int(os.environ.get("ROULEAU_KILLS", 3))
 FAULTY = PROGRAM.parent.parent / "tests" / "faulty" / "plugins" / "compute"
 ENVIRONMENT = {k: v for k, v in os.environ.items() if not k.startswith(("OMPI_", "PMI", "SLURM_"))}
@@ -120,7 +122,7 @@ class Same_bytes(Case):
     def assert_same(self, scene, cuts):
         alone = self.path / "alone"
         self.run_well([str(PROGRAM), "run", *scene, "--out", str(alone), "--quiet"])
-        for count, threads in cuts:
+        for count, threads in cuts + MORE_RANKS:
             with self.subTest(ranks=count, threads=threads):
                 together = self.path / f"{count}-{threads}"
                 self.run_well(ranks(count, "run", *scene, "--out", together, "--quiet", "--threads", threads))
