@@ -128,12 +128,17 @@ class Decomposition {
     for (int k = 0; k < D; ++k) product *= box.size(k);
     return product;
   }
-  /// What a cut across an axis costs both sides, as a step of so many nodes does: numbers beside each other in memory are sent
-  /// at little cost, those of a border across rows lie alone (measured: docs/scaling.md); and points near it are known twice.
-  static double border_cost(const Box<D>& box, int axis, double points, double point_cost) {
-    constexpr double alone = 100, beside = 10, known = 30;  // `known`: spacings
-    const double nodes = static_cast<double>(volume(box));
-    return nodes / box.size(axis) * ((axis == 0 ? alone : beside) + known * points * point_cost / nodes);
+  /// What a cut costs both sides, as a step of so many nodes does: numbers beside each other in memory are sent at little
+  /// cost, those of a border across rows lie alone, and more so where blocks are larger than a cache (measured:
+  /// docs/scaling.md); and points near it are known twice.
+  static double border_cost(const Box<D>& box, int axis, int at, const std::vector<std::array<int, D>>& points,
+                            double point_cost, int parts) {
+    constexpr double in_cache = 1e5, beside = 10;  // nodes of a block
+    constexpr int near = 15;                       // spacings: half a cell, and what it reaches
+    const double nodes = static_cast<double>(volume(box)), alone = nodes / parts < in_cache ? 30 : 100;
+    long known = 0;
+    for (const auto& point : points) known += std::abs(point[axis] - box.begin[axis] - at) < near ? 1 : 0;
+    return nodes / box.size(axis) * (axis == 0 ? alone : beside) + static_cast<double>(known) * point_cost;
   }
   /// What the slices of a box across an axis cost.
   static std::vector<double> slice_costs(const Box<D>& box, int axis, const std::vector<std::array<int, D>>& points,
@@ -160,35 +165,47 @@ class Decomposition {
       costs[point[axis] - box.begin[axis]] += point_cost * measured.factor[measured.blocks->owner(point)];
     return costs;
   }
+  struct Place {
+    int at;            ///< slices from the box's beginning
+    double off_share;  ///< by how much the cost below misses what is wanted there
+  };
+  /// Where a cut across an axis lies. Each part has room for its blocks where whole slices allow; and the cut a round place,
+  /// where there is one.
+  static Place place_of_cut(const Box<D>& box, int axis, int lower_parts, int upper_parts,
+                            const std::vector<double>& cost) {
+    const int size = box.size(axis), parts = lower_parts + upper_parts;
+    double all = 0;
+    for (const double c : cost) all += c;
+    const double wanted = all * lower_parts / parts, slice = static_cast<double>(volume(box)) / size;
+    const auto slices = [&](int blocks_of) { return static_cast<int>(std::ceil(blocks_of * least_nodes / slice)); };
+    const int first = slices(lower_parts), last = size - slices(upper_parts);
+    Place place{static_cast<int>(std::lround(static_cast<double>(size) * lower_parts / parts)), INFINITY};
+    for (const int grain : {axis == 0 ? 16 : 1, 1}) {
+      double below = 0;
+      for (int i = 1; i <= last; ++i) {
+        below += cost[i - 1];
+        if (i < first || (box.begin[axis] + i) % grain != 0) continue;
+        if (std::abs(below - wanted) < place.off_share) place = {i, std::abs(below - wanted)};
+      }
+      if (std::isfinite(place.off_share)) break;
+    }
+    return place;
+  }
   static void bisect(const Box<D>& box, int parts, std::vector<std::array<int, D>> points, double point_cost,
                      const Measured& measured, std::vector<Box<D>>& blocks) {
     if (parts == 1) {
       blocks.push_back(box);
       return;
     }
-    int axis = 0;
-    const auto cost_of = [&](int k) { return border_cost(box, k, static_cast<double>(points.size()), point_cost); };
-    for (int k = 1; k < D; ++k) {
-      if (box.size(k) > 1 && (box.size(axis) == 1 || cost_of(k) <= cost_of(axis))) axis = k;
-    }
-    const int size = box.size(axis), lower_parts = parts / 2, upper_parts = parts - lower_parts;
-    const double slice = static_cast<double>(volume(box)) / size;
-    const std::vector<double> cost = slice_costs(box, axis, points, point_cost, measured);
-    double all = 0;
-    for (const double c : cost) all += c;
-    const double wanted = all * lower_parts / parts;
-    // Each part has room for its blocks where whole slices allow; and the cut a round place, where there is one.
-    const auto slices = [&](int blocks_of) { return static_cast<int>(std::ceil(blocks_of * least_nodes / slice)); };
-    const int first = slices(lower_parts), last = size - slices(upper_parts);
-    int at = static_cast<int>(std::lround(static_cast<double>(size) * lower_parts / parts));
-    for (const int grain : {axis == 0 ? 16 : 1, 1}) {
-      double below = 0, least = INFINITY;
-      for (int i = 1; i <= last; ++i) {
-        below += cost[i - 1];
-        if (i < first || (box.begin[axis] + i) % grain != 0) continue;
-        if (std::abs(below - wanted) < least) least = std::abs(below - wanted), at = i;
-      }
-      if (std::isfinite(least)) break;
+    const int lower_parts = parts / 2, upper_parts = parts - lower_parts;
+    int axis = 0, at = 0;
+    double least = INFINITY;
+    for (int k = 0; k < D; ++k) {
+      if (box.size(k) < 2) continue;
+      const Place place =
+          place_of_cut(box, k, lower_parts, upper_parts, slice_costs(box, k, points, point_cost, measured));
+      const double cost = place.off_share + border_cost(box, k, place.at, points, point_cost, parts);
+      if (at == 0 || cost <= least) least = cost, axis = k, at = place.at;
     }
     Box<D> lower = box, upper = box;
     lower.end[axis] = upper.begin[axis] = box.begin[axis] + at;

@@ -67,14 +67,16 @@ TEST_CASE("blocks that were measured to be slow become smaller") {
 }
 
 TEST_CASE("cuts go where the border costs least") {
-  // Numbers beside each other in memory cost little: along rows, unless the lattice is ten times as wide as it is high.
-  CHECK(Decomposition<2>::bisected(Domain<2>({512, 128}, {true, false}), 2).domain(0).block.size(1) == 64);
-  CHECK(Decomposition<2>::bisected(Domain<2>({2048, 128}, {true, false}), 2).domain(0).block.size(0) == 1024);
+  // Numbers beside each other in memory cost little: along rows, unless the lattice is three times as wide as it is high, or
+  // ten times where blocks are larger than a cache.
+  CHECK(Decomposition<2>::bisected(Domain<2>({320, 128}, {true, false}), 2).domain(0).block.size(1) == 64);
+  CHECK(Decomposition<2>::bisected(Domain<2>({512, 128}, {true, false}), 2).domain(0).block.size(0) == 256);
+  CHECK(Decomposition<2>::bisected(Domain<2>({4096, 512}, {true, false}), 2).domain(0).block.size(1) == 256);
   CHECK(Decomposition<3>::bisected(Domain<3>({64, 64, 64}, {true, true, true}), 2).domain(0).block.size(2) == 32);
   // Many points near it cost as much across any axis, so that the shorter border is the better one.
   Points points;
-  for (int i = 0; i < 10000; ++i) points.push_back({i % 512, i * 7 % 128});
-  CHECK(Decomposition<2>::bisected(Domain<2>({512, 128}, {true, false}), 2, points, 30).domain(0).block.size(0) == 256);
+  for (int i = 0; i < 10000; ++i) points.push_back({i % 320, i * 7 % 128});
+  CHECK(Decomposition<2>::bisected(Domain<2>({320, 128}, {true, false}), 2, points, 30).domain(0).block.size(0) == 160);
 }
 
 TEST_CASE("cuts along rows of memory lie at multiples of 16 nodes where there is room for them") {
