@@ -3,28 +3,31 @@
 
 namespace rouleau::run {
 
-/// All ranks measure how long they compute from one look to the next, look at the same steps with the same numbers, and so
-/// come to the same answer.
+/// All ranks measure how long they compute, look at the same steps with the same numbers, and so come to the same answer.
 class LoadBalance {
  public:
   static constexpr double tolerance = 1.15;  ///< of the slowest rank's time over the mean
-  static constexpr double patience = 10;     ///< what waiting has cost since the last cut, over what a cut takes
+  static constexpr double patience = 10;     ///< what waiting has cost, over what a cut takes
+  static constexpr int period = 16;          ///< looks: what a machine does for a moment is no reason
 
-  /// Since the last look the slowest rank has computed for so long, and ranks on the average; cutting the lattice anew takes
-  /// `cut`. Seconds.
+  /// Since begin() the slowest rank has computed for so long, and ranks on the average; cutting the lattice anew takes `cut`.
+  /// Seconds.
   void look(double slowest, double mean, double cut) {
     slowest_ = slowest, mean_ = mean;
-    lost_ += slowest - mean;
-    due_ = slowest > tolerance * mean && lost_ > patience * cut;
+    ++looks_;
+    due_ = slowest > tolerance * mean && slowest - mean > patience * cut;
   }
   [[nodiscard]] bool due() const { return due_; }
-  /// At the last look: 1 where nobody waits.
+  /// Nobody has waited for long, and the next period may begin.
+  [[nodiscard]] bool over() const { return looks_ >= period && !(slowest_ > tolerance * mean_); }
+  /// 1 where nobody waits.
   [[nodiscard]] double slowest_over_mean() const { return mean_ > 0 ? slowest_ / mean_ : 1; }
-  /// The lattice has been cut anew.
-  void begin_again() { due_ = false, lost_ = 0; }
+  /// All begin to measure.
+  void begin() { *this = {}; }
 
  private:
-  double slowest_ = 0, mean_ = 0, lost_ = 0;
+  double slowest_ = 0, mean_ = 0;
+  int looks_ = 0;
   bool due_ = false;
 };
 

@@ -178,7 +178,7 @@ class Simulation {
     const plan::OutputSchedule cells(scene_.output.cells, setting, true), fields(scene_.output.fields, setting, false);
     next_attention_ = state_.stage_step;
     clock_ = Clock::now();
-    computed_s_ = computed_s();
+    begin_balance();
     last_cut_ = state_.stage_step;
     cut_at_ = never;
     for (step_loop(cells, fields); cut_due_; step_loop(cells, fields)) cut_again();
@@ -209,16 +209,22 @@ class Simulation {
     return sum;
   }
 
+  void begin_balance() {
+    computed_s_ = computed_s();
+    balance_.begin();
+  }
+
   /// One thread, at a check: whether some ranks wait so long for others that they get new blocks before the next step.
   void look_at_balance(long step) {
     if (!ranks_.several()) return;
-    const double computed = computed_s(), own = computed - std::exchange(computed_s_, computed);
-    window_s_ = own;
+    const double computed = computed_s(), own = computed - computed_s_;
     std::vector<core::ExactSum> sum(1);
     sum.front().add(own);
     core::add_up(ranks_, sum);
     const auto [slowest, cut] = core::largest(ranks_, std::array{own, cut_s_});
     balance_.look(slowest, sum.front().value() / ranks_.blocks->ranks(), cut);
+    measured_s_ = own;
+    if (balance_.over()) begin_balance();
     if (balance_.due() || (options_.cut_every > 0 && step >= last_cut_ + options_.cut_every)) cut_at_ = step + 1;
   }
 
@@ -226,7 +232,7 @@ class Simulation {
   void cut_again() {
     const auto start = Clock::now();
     std::vector<double> seconds;
-    for (const std::vector<double>& of_rank : core::all_of(ranks_, std::vector<double>{window_s_}))
+    for (const std::vector<double>& of_rank : core::all_of(ranks_, std::vector<double>{measured_s_}))
       seconds.push_back(of_rank.front());
     const core::Ranks<dimension> before = ranks_;
     auto blocks = std::make_unique<const core::Decomposition<dimension>>(
@@ -252,8 +258,9 @@ class Simulation {
     blocks_ = std::move(blocks);
     cut_s_ = seconds_since(start);
     state_.costs.add("cut", cut_s_, 1);
-    log("cut", {{"step", state_.steps}, {"slowest_over_mean", balance_.slowest_over_mean()}, {"wall_s_of_cut", cut_s_}});
-    balance_.begin_again();
+    log("cut",
+        {{"step", state_.steps}, {"slowest_over_mean", balance_.slowest_over_mean()}, {"wall_s_of_cut", cut_s_}});
+    begin_balance();
     last_cut_ = next_attention_ = state_.stage_step;
     cut_at_ = never;
     cut_due_ = false;
@@ -539,8 +546,8 @@ class Simulation {
   std::unique_ptr<const core::Decomposition<dimension>> blocks_;  ///< that ranks_ has, once they have been cut again
   LoadBalance balance_;
   double cut_s_ = 0;       ///< what making a solver for other blocks takes
-  double computed_s_ = 0;  ///< by the stage when the balance was last looked at
-  double window_s_ = 0;    ///< between the last two looks
+  double computed_s_ = 0;  ///< when it began to measure
+  double measured_s_ = 0;  ///< by this rank since then, at the last look
   long last_cut_ = 0;      ///< step of the stage
 
   static constexpr long never = std::numeric_limits<long>::max();
