@@ -181,7 +181,7 @@ const Case two_stages{"two stages",
 
 }  // namespace
 
-TEST_CASE("a run cut into any blocks writes the same directory") {
+TEST_CASE("a run cut into any blocks writes the same directory", "[whole-runs]") {
   std::vector<Case> cases = scenes_to_cut();
   cases.push_back(two_stages);
   cases.push_back({"no cells", four_cells, {driven, "/output={}", "/cells=[]", "/interactions=[]"}});
