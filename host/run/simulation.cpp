@@ -179,7 +179,6 @@ class Simulation {
     next_attention_ = state_.stage_step;
     clock_ = Clock::now();
     begin_balance();
-    last_cut_ = state_.stage_step;
     cut_at_ = never;
     for (step_loop(cells, fields); cut_due_; step_loop(cells, fields)) cut_again();
     take_time();
@@ -217,22 +216,21 @@ class Simulation {
   /// One thread, at a check: whether some ranks wait so long for others that they get new blocks before the next step.
   void look_at_balance(long step) {
     if (!ranks_.several()) return;
-    const double computed = computed_s(), own = computed - computed_s_;
+    const double own = computed_s() - computed_s_;
     std::vector<core::ExactSum> sum(1);
     sum.front().add(own);
     core::add_up(ranks_, sum);
     const auto [slowest, cut] = core::largest(ranks_, std::array{own, cut_s_});
     balance_.look(slowest, sum.front().value() / ranks_.blocks->ranks(), cut);
-    measured_s_ = own;
     if (balance_.over()) begin_balance();
-    if (balance_.due() || (options_.cut_every > 0 && step >= last_cut_ + options_.cut_every)) cut_at_ = step + 1;
+    if (balance_.due() || options_.cut_at_checks) cut_at_ = step + 1;
   }
 
   /// All ranks, between two steps, all states of cells shared: other blocks for the same state.
   void cut_again() {
     const auto start = Clock::now();
     std::vector<double> seconds;
-    for (const std::vector<double>& of_rank : core::all_of(ranks_, std::vector<double>{measured_s_}))
+    for (const std::vector<double>& of_rank : core::all_of(ranks_, std::vector<double>{computed_s() - computed_s_}))
       seconds.push_back(of_rank.front());
     const core::Ranks<dimension> before = ranks_;
     auto blocks = std::make_unique<const core::Decomposition<dimension>>(
@@ -261,7 +259,7 @@ class Simulation {
     log("cut",
         {{"step", state_.steps}, {"slowest_over_mean", balance_.slowest_over_mean()}, {"wall_s_of_cut", cut_s_}});
     begin_balance();
-    last_cut_ = next_attention_ = state_.stage_step;
+    next_attention_ = state_.stage_step;
     cut_at_ = never;
     cut_due_ = false;
   }
@@ -547,8 +545,6 @@ class Simulation {
   LoadBalance balance_;
   double cut_s_ = 0;       ///< what making a solver for other blocks takes
   double computed_s_ = 0;  ///< when it began to measure
-  double measured_s_ = 0;  ///< by this rank since then, at the last look
-  long last_cut_ = 0;      ///< step of the stage
 
   static constexpr long never = std::numeric_limits<long>::max();
   long next_attention_ = 0;             ///< step of the stage before which nothing is due

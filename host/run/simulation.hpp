@@ -19,7 +19,7 @@ struct RunOptions {
   bool force = false;                              ///< go on from a checkpoint in spite of differences that are safe
   const std::atomic<bool>* interrupted = nullptr;  ///< set by a signal handler: stop at the next step
   std::string message_library = {};                ///< that ranks speak over; empty: there are no others
-  long cut_every = 0;  ///< steps after which ranks get new blocks, whoever waits; 0: when some wait for others
+  bool cut_at_checks = false;  ///< ranks get new blocks at every check, not only when some wait for others
 };
 
 /// In two dimensions or in three, as the scene; none: this process is alone.

@@ -50,14 +50,15 @@ class Decomposition {
     return {whole, std::move(blocks)};
   }
 
-  /// As many blocks as wanted, by cutting what is left again and again, where the border costs least, so that both parts cost
-  /// what the numbers of their blocks ask for: a node 1, and each of the points `point_cost` more. Along the first axis cuts
-  /// lie at multiples of 16 nodes where there is room for that. Throws std::invalid_argument for more blocks than blocks
-  /// of 16 nodes have room. `measured`: in each block of an earlier cut all costs so many times as much; none: once.
+  /// In each block of an earlier cut all costs so many times as much; without one, once.
   struct Measured {
     const Decomposition* blocks = nullptr;
     std::vector<double> factor = {};
   };
+  /// As many blocks as wanted, by cutting what is left again and again, where the border costs least, so that both parts cost
+  /// what the numbers of their blocks ask for: a node 1, and each of the points `point_cost` more. Along the first axis cuts
+  /// lie at multiples of 16 nodes where there is room for that. Throws std::invalid_argument for more blocks than blocks
+  /// of 16 nodes have room.
   static Decomposition bisected(const Domain<D>& whole, int ranks, const std::vector<std::array<int, D>>& points = {},
                                 double point_cost = 0, const Measured& measured = {}) {
     if (ranks < 1 || whole.nodes() / least_nodes < ranks)
@@ -128,42 +129,44 @@ class Decomposition {
     for (int k = 0; k < D; ++k) product *= box.size(k);
     return product;
   }
-  /// What a cut costs both sides, as a step of so many nodes does: numbers beside each other in memory are sent at little
-  /// cost, those of a border across rows lie alone, and more so where blocks are larger than a cache (measured:
-  /// docs/scaling.md); and points near it are known twice.
-  static double border_cost(const Box<D>& box, int axis, int at, const std::vector<std::array<int, D>>& points,
-                            double point_cost, int parts) {
-    constexpr double in_cache = 1e5, beside = 10;  // nodes of a block
-    constexpr int near = 15;                       // spacings: half a cell, and what it reaches
-    const double nodes = static_cast<double>(volume(box)), alone = nodes / parts < in_cache ? 30 : 100;
-    long known = 0;
-    for (const auto& point : points) known += std::abs(point[axis] - box.begin[axis] - at) < near ? 1 : 0;
-    return nodes / box.size(axis) * (axis == 0 ? alone : beside) + static_cast<double>(known) * point_cost;
-  }
-  /// What the slices of a box across an axis cost.
-  static std::vector<double> slice_costs(const Box<D>& box, int axis, const std::vector<std::array<int, D>>& points,
-                                         double point_cost, const Measured& measured) {
-    std::vector<double> costs(static_cast<std::size_t>(box.size(axis)));
+  /// Slices of a box across an axis: what they cost, and how many points they have.
+  struct Slices {
+    std::vector<double> cost;
+    std::vector<long> points;
+  };
+  static Slices slices_of(const Box<D>& box, int axis, const std::vector<std::array<int, D>>& points, double point_cost,
+                          const Measured& measured) {
+    const auto size = static_cast<std::size_t>(box.size(axis));
+    Slices slices{std::vector<double>(size), std::vector<long>(size)};
     const auto add = [&](const Box<D>& part, double factor) {
       const double slice = static_cast<double>(volume(part)) / part.size(axis) * factor;
-      for (int i = part.begin[axis]; i < part.end[axis]; ++i) costs[i - box.begin[axis]] += slice;
+      for (int i = part.begin[axis]; i < part.end[axis]; ++i) slices.cost[i - box.begin[axis]] += slice;
     };
     if (measured.blocks == nullptr) {
       add(box, 1);
-      for (const auto& point : points) costs[point[axis] - box.begin[axis]] += point_cost;
-      return costs;
+    } else {
+      for (const int rank : measured.blocks->meeting(box))
+        add(box.common(measured.blocks->blocks_[rank]), measured.factor[rank]);
     }
-    for (const int rank : measured.blocks->meeting(box)) {
-      Box<D> common = measured.blocks->blocks_[rank];
-      for (int k = 0; k < D; ++k) {
-        common.begin[k] = std::max(box.begin[k], common.begin[k]);
-        common.end[k] = std::min(box.end[k], common.end[k]);
-      }
-      add(common, measured.factor[rank]);
+    for (const auto& point : points) {
+      const int i = point[axis] - box.begin[axis];
+      const double factor = measured.blocks == nullptr ? 1 : measured.factor[measured.blocks->owner(point)];
+      slices.cost[i] += point_cost * factor;
+      ++slices.points[i];
     }
-    for (const auto& point : points)
-      costs[point[axis] - box.begin[axis]] += point_cost * measured.factor[measured.blocks->owner(point)];
-    return costs;
+    return slices;
+  }
+  /// What a cut costs both sides, as a step of so many nodes does: numbers beside each other in memory are sent at little
+  /// cost, those of a border across rows lie alone, and more so where blocks are larger than a cache (measured:
+  /// docs/scaling.md); and points near it are known twice.
+  static double border_cost(const Box<D>& box, int axis, int at, const std::vector<long>& points, double point_cost,
+                            int parts) {
+    constexpr int near = 15;          // spacings: half a cell, and what it reaches
+    constexpr double in_cache = 1e5;  // nodes of a block
+    const double nodes = static_cast<double>(volume(box)), alone = nodes / parts < in_cache ? 30 : 100, beside = 10;
+    long known = 0;
+    for (int i = std::max(at - near + 1, 0); i < std::min(at + near, box.size(axis)); ++i) known += points[i];
+    return nodes / box.size(axis) * (axis == 0 ? alone : beside) + static_cast<double>(known) * point_cost;
   }
   struct Place {
     int at;            ///< slices from the box's beginning
@@ -202,9 +205,9 @@ class Decomposition {
     double least = INFINITY;
     for (int k = 0; k < D; ++k) {
       if (box.size(k) < 2) continue;
-      const Place place =
-          place_of_cut(box, k, lower_parts, upper_parts, slice_costs(box, k, points, point_cost, measured));
-      const double cost = place.off_share + border_cost(box, k, place.at, points, point_cost, parts);
+      const Slices slices = slices_of(box, k, points, point_cost, measured);
+      const Place place = place_of_cut(box, k, lower_parts, upper_parts, slices.cost);
+      const double cost = place.off_share + border_cost(box, k, place.at, slices.points, point_cost, parts);
       if (at == 0 || cost <= least) least = cost, axis = k, at = place.at;
     }
     Box<D> lower = box, upper = box;

@@ -24,6 +24,15 @@ struct Box {
     }
     return true;
   }
+  /// The nodes that lie in both; where there are none, a box that ends before it begins.
+  [[nodiscard]] Box common(const Box& other) const {
+    Box both;
+    for (int k = 0; k < D; ++k) {
+      both.begin[k] = begin[k] > other.begin[k] ? begin[k] : other.begin[k];
+      both.end[k] = end[k] < other.end[k] ? end[k] : other.end[k];
+    }
+    return both;
+  }
   friend bool operator==(const Box&, const Box&) = default;
 };
 

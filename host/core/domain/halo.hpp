@@ -46,10 +46,12 @@ class Halo {
         std::array<int, D> node = copy.node;
         for (int k = 0; k < D; ++k) node[k] = domain.wrapped(k, node[k]);
         const int owner = blocks.owner(node);
-        if (owner == own) peers_[rank].owned.add(copy.component, offset(node));
-        if (rank == own) peers_[owner].copies.add(copy.component, offset(copy.node));
-        if (owner == own) peers_[rank].early = peers_[rank].early && early && early(node);
-        if (rank == own) peers_[owner].early = peers_[owner].early && early && early(copy.node);
+        const auto add = [&](Peer& peer, Places& places, const std::array<int, D>& at) {
+          places.add(copy.component, offset(at));
+          peer.early = peer.early && early && early(at);
+        };
+        if (owner == own) add(peers_[rank], peers_[rank].owned, node);
+        if (rank == own) add(peers_[owner], peers_[owner].copies, copy.node);
       }
     }
   }

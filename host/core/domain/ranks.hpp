@@ -108,6 +108,20 @@ std::string text_of_first(const Ranks<D>& ranks, const std::string& text) {
   return {first.begin(), first.end()};
 }
 
+/// Calls function(at, count) for each row of what a box has in common with another, in their order: where it begins among
+/// the nodes of the box, row after row, and how long it is.
+template <int D, class Function>
+void for_common_rows(const Box<D>& box, const Box<D>& other, Function function) {
+  if (!box.meets(other)) return;
+  const Box<D> common = box.common(other);
+  for (int i = 0; i < row_count(common); ++i) {
+    const std::array<int, D - 1> row = row_of(common, i);
+    std::ptrdiff_t at = 0;
+    for (int k = D - 1; k > 0; --k) at = at * box.size(k) + common.begin[k] + row[k - 1] - box.begin[k];
+    function(at * box.size(0) + common.begin[0] - box.begin[0], common.size(0));
+  }
+}
+
 /// From the values of each block's nodes, row after row, those of the whole lattice, on the first rank; nothing on the
 /// others.
 template <class V, int D>
@@ -117,37 +131,17 @@ std::vector<V> gather(const Ranks<D>& ranks, std::vector<V> block) {
     ranks.transport->send(0, message_of(std::span<const V>(block)));
     return {};
   }
-  const std::array<int, D> size = ranks.blocks->domain(0).size;
+  const Box<D> lattice{{}, ranks.blocks->domain(0).size};
   std::vector<V> whole(static_cast<std::size_t>(ranks.blocks->domain(0).nodes()));
   for (int rank = 0; rank < ranks.blocks->ranks(); ++rank) {
     if (rank != 0) block = values_of<V>(ranks.transport->receive(rank));
-    const Box<D> box = ranks.blocks->domain(rank).block;
     auto from = block.begin();
-    for (int i = 0; i < row_count(box); ++i, from += box.size(0)) {
-      const std::array<int, D - 1> row = row_of(box, i);
-      std::ptrdiff_t at = 0;
-      for (int k = D - 1; k > 0; --k) at = at * size[k] + box.begin[k] + row[k - 1];
-      std::copy_n(from, box.size(0), whole.begin() + at * size[0] + box.begin[0]);
-    }
+    for_common_rows(lattice, ranks.blocks->domain(rank).block, [&](std::ptrdiff_t at, int count) {
+      std::copy_n(from, count, whole.begin() + at);
+      from += count;
+    });
   }
   return whole;
-}
-
-/// The nodes of two boxes, row after row: calls function(at, count) for each row of what they have in common, `at` being
-/// where it begins among the nodes of the first.
-template <int D, class Function>
-void for_common_rows(const Box<D>& box, const Box<D>& other, Function function) {
-  for (int i = 0; i < row_count(box); ++i) {
-    const std::array<int, D - 1> row = row_of(box, i);
-    bool common = true;
-    for (int k = 1; k < D; ++k) {
-      const int at = box.begin[k] + row[k - 1];
-      common = common && at >= other.begin[k] && at < other.end[k];
-    }
-    const int begin = std::max(box.begin[0], other.begin[0]), end = std::min(box.end[0], other.end[0]);
-    if (common && begin < end)
-      function(static_cast<std::ptrdiff_t>(i) * box.size(0) + begin - box.begin[0], end - begin);
-  }
 }
 
 /// From the values of each block's nodes, row after row, those of each block of another cut of the same lattice.

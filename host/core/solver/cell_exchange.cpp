@@ -153,7 +153,30 @@ void CellExchange<D>::transfer_memory(Cells& cells, DisplacementWatch& watch, in
 }
 
 template <int D>
-bool CellExchange<D>::share_positions(Cells& cells, DisplacementWatch& viscosity, DisplacementWatch* lists,
+void CellExchange<D>::run(Task task, const Parts& parts) {
+  switch (task) {
+    case Task::send_reactions:
+      return send_reactions(*parts.interactions);
+    case Task::receive_reactions:
+      return receive_reactions(parts.cells, *parts.interactions);
+    case Task::send_forces:
+      return send_forces(parts.cells, parts.force);
+    case Task::receive_forces:
+      return receive_forces(parts.cells, parts.force);
+    case Task::send_velocities:
+      return send_velocities(parts.cells, parts.base);
+    case Task::receive_velocities:
+      return receive_velocities(parts.cells, parts.base);
+    case Task::share_positions:
+      return share_positions(parts.cells, parts.viscosity,
+                             parts.interactions != nullptr ? &parts.interactions->watch() : nullptr, parts.escaped());
+    default:
+      return;
+  }
+}
+
+template <int D>
+void CellExchange<D>::share_positions(Cells& cells, DisplacementWatch& viscosity, DisplacementWatch* lists,
                                       bool escaped) {
   const auto raise = [](double& largest, double value) {
     if (!(value <= largest) && !std::isnan(largest)) largest = value;
@@ -189,7 +212,7 @@ bool CellExchange<D>::share_positions(Cells& cells, DisplacementWatch& viscosity
   for (int c = 0; c < cells.cell_count(); ++c) {
     if (!ghosts_.knows(c)) cells.largest_step[c] = all_step;  // no node of any cell has moved further
   }
-  return all_escaped > 0;
+  escaped_ = all_escaped > 0;
 }
 
 template <int D>

@@ -12,6 +12,7 @@
 #include "core/membrane/membranes.hpp"
 #include "core/surface/surfaces.hpp"
 #include "ghost_cells.hpp"
+#include "schedule.hpp"
 
 namespace rouleau::core {
 
@@ -27,25 +28,24 @@ class CellExchange {
   /// `velocities`: ghosts' are wanted, too.
   CellExchange(const Ranks<D>& ranks, Cells& cells, std::vector<int> owner, GhostReach reach, bool velocities);
 
-  /// After the nodes have moved: what owners have found of them, then positions and largest steps of ghosts. Sets whether
-  /// lists of cells that act on each other are out of date, if there are such lists (null: none), and returns whether a
-  /// node has left the domain, on any rank. New ghosts come with what the viscosity's watch remembers of them, and cells
-  /// that change hands with all that is known of them.
-  bool share_positions(Cells& cells, DisplacementWatch& viscosity, DisplacementWatch* lists, bool escaped);
-  /// Whether the last share_positions() has given this rank cells that it did not own before.
-  [[nodiscard]] bool took_over() const { return took_over_; }
-  // Messages in two halves, with no other message between them.
-  /// The reactions of potentials, to the owners of the cells that they act on.
-  void send_reactions(Interactions& interactions) const;
-  void receive_reactions(const Cells& cells, Interactions& interactions) const;
-  /// A component along each axis for every node, to those whose blocks it may reach.
-  void send_forces(const Cells& cells, const std::array<double*, D>& force) const;
-  void receive_forces(const Cells& cells, const std::array<double*, D>& force) const;
-  /// Velocities from the ranks that have interpolated them to the owners. `base(node)`: the node of the lattice below a
-  /// node, whose rank is the one.
+  /// The node of the lattice below a membrane node: the rank with this one interpolates the other's velocity.
   using Base = std::function<std::array<int, D>(int node)>;
-  void send_velocities(Cells& cells, const Base& base) const;
-  void receive_velocities(Cells& cells, const Base& base) const;
+  /// What messages are about.
+  struct Parts {
+    Cells& cells;
+    Interactions* interactions;  ///< null: none
+    DisplacementWatch& viscosity;
+    std::array<double*, D> force;  ///< what is spread: a component along each axis for every node
+    Base base;
+    std::function<bool()> escaped;  ///< whether a node of own cells has left the domain
+  };
+  /// Tasks of schedule.hpp that are messages about cells; nothing for others. Between the two halves of one lies no other
+  /// message.
+  void run(Task task, const Parts& parts);
+  /// At the last share_positions: whether a node has left the domain, on any rank.
+  [[nodiscard]] bool escaped() const { return escaped_; }
+  /// And whether it has given this rank cells that it did not own before.
+  [[nodiscard]] bool took_over() const { return took_over_; }
   /// All of all cells, to all ranks: positions, velocities, forces, what laws and potentials remember, leaked areas, and
   /// the watch's memory. Until the next share_positions() every rank knows every cell.
   void share_state(Cells& cells, DisplacementWatch& watch) const;
@@ -59,6 +59,20 @@ class CellExchange {
   static Vectors forces(Cells& cells);
   void set_parts(Cells& cells) const;
   [[nodiscard]] std::vector<BoundingBox<D>> boxes_of_all(const Cells& cells) const;
+  /// After the nodes have moved: what owners have found of them, then positions and largest steps of ghosts. Says whether
+  /// lists of cells that act on each other are out of date, if there are such lists (null: none), and whether a node has
+  /// left the domain. New ghosts come with what the viscosity's watch remembers of them, and cells that change hands with
+  /// all that is known of them.
+  void share_positions(Cells& cells, DisplacementWatch& viscosity, DisplacementWatch* lists, bool escaped);
+  /// The reactions of potentials, to the owners of the cells that they act on.
+  void send_reactions(Interactions& interactions) const;
+  void receive_reactions(const Cells& cells, Interactions& interactions) const;
+  /// To those whose blocks they may reach.
+  void send_forces(const Cells& cells, const std::array<double*, D>& force) const;
+  void receive_forces(const Cells& cells, const std::array<double*, D>& force) const;
+  /// From the ranks that have interpolated them to the owners.
+  void send_velocities(Cells& cells, const Base& base) const;
+  void receive_velocities(Cells& cells, const Base& base) const;
   template <class Message>
   static void transfer_forces(const Cells& cells, const std::array<double*, D>& force, const std::vector<int>& of_peer,
                               Message& message);
@@ -80,7 +94,7 @@ class CellExchange {
   Ranks<D> ranks_;
   GhostCells<D> ghosts_;
   bool velocities_;
-  bool took_over_ = false;
+  bool escaped_ = false, took_over_ = false;
   std::vector<double> path_;  // of this rank's cells since boxes were compared: no node has a longer one
 };
 

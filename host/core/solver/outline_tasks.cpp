@@ -143,45 +143,21 @@ void OutlineTasks<T>::run(Task task, Worker worker) {
       locate(worker, Whose::others);
       if (exchange_->took_over()) locate(worker, Whose::own);
       return;
-    case Task::send_reactions:
-    case Task::receive_reactions:
-    case Task::send_forces:
-    case Task::receive_forces:
-    case Task::send_velocities:
-    case Task::receive_velocities:
-    case Task::share_positions:
-      if (worker.first()) exchange(task);
+    default:  // messages; the fluid's own tasks are none
+      if (exchange_ && worker.first()) exchange_->run(task, parts());
       return;
-    default:
-      return;  // of the fluid
   }
 }
 
 template <class T>
-void OutlineTasks<T>::exchange(Task task) {
-  const auto base = [this](int node) { return coupling_.base(node); };
-  const auto forces = [this] {
-    return slip_correction_ ? slip_correction_->forces_of_all()
-                            : std::array{membranes_.force_x.data(), membranes_.force_y.data()};
-  };
-  switch (task) {
-    case Task::send_reactions:
-      return exchange_->send_reactions(*interaction_forces_);
-    case Task::receive_reactions:
-      return exchange_->receive_reactions(membranes_, *interaction_forces_);
-    case Task::send_forces:
-      return exchange_->send_forces(membranes_, forces());
-    case Task::receive_forces:
-      return exchange_->receive_forces(membranes_, forces());
-    case Task::send_velocities:
-      return exchange_->send_velocities(membranes_, base);
-    case Task::receive_velocities:
-      return exchange_->receive_velocities(membranes_, base);
-    default:
-      escaped_ = exchange_->share_positions(membranes_, viscosity_field_.watch(),
-                                            interaction_forces_ ? &interaction_forces_->watch() : nullptr,
-                                            coupling_.any_escaped());
-  }
+CellExchange<2>::Parts OutlineTasks<T>::parts() {
+  return {.cells = membranes_,
+          .interactions = interaction_forces_.get(),
+          .viscosity = viscosity_field_.watch(),
+          .force = slip_correction_ ? slip_correction_->forces_of_all()
+                                    : std::array{membranes_.force_x.data(), membranes_.force_y.data()},
+          .base = [this](int node) { return coupling_.base(node); },
+          .escaped = [this] { return coupling_.any_escaped(); }};
 }
 
 template <class T>

@@ -50,7 +50,7 @@ class OutlineTasks {
 
   /// First node that has left the domain; -1: none.
   [[nodiscard]] int escaped_node() const { return coupling_.escaped(); }
-  [[nodiscard]] bool escaped() const { return exchange_ ? escaped_ : coupling_.any_escaped(); }
+  [[nodiscard]] bool escaped() const { return exchange_ ? exchange_->escaped() : coupling_.any_escaped(); }
   [[nodiscard]] MembraneForces& forces() { return membrane_forces_; }
   /// What it takes to stretch all membranes by 0.1 %, and to bend them by as much.
   [[nodiscard]] double slight_energy() const;
@@ -71,7 +71,7 @@ class OutlineTasks {
   [[nodiscard]] std::unique_ptr<SlipCorrection> make_slip_correction() const;
   [[nodiscard]] MembraneForcesSetup forces_setup() const;
   [[nodiscard]] std::vector<double> viscosity_ratios() const;
-  void exchange(Task task);
+  [[nodiscard]] typename CellExchange<2>::Parts parts();
   void locate(Worker worker, Whose whose);
 
   const SolverSetup& setup_;
@@ -79,7 +79,6 @@ class OutlineTasks {
   Fluid<T>& fluid_;
   Ranks<2> ranks_;
   std::unique_ptr<CellExchange<2>> exchange_;  ///< null without other ranks
-  bool escaped_ = false;                       ///< with other ranks: of any rank's cells
   std::unique_ptr<SlipCorrection> slip_correction_;
   MembraneForces membrane_forces_;
   std::unique_ptr<InteractionForces> interaction_forces_;

@@ -108,43 +108,20 @@ void SurfaceTasks<T>::run(Task task, Worker worker) {
       coupling_.locate(worker, surfaces_, Whose::others);
       if (exchange_->took_over()) coupling_.locate(worker, surfaces_, Whose::own);
       return;
-    case Task::send_reactions:
-    case Task::receive_reactions:
-    case Task::send_forces:
-    case Task::receive_forces:
-    case Task::send_velocities:
-    case Task::receive_velocities:
-    case Task::share_positions:
-      if (worker.first()) exchange(task);
+    default:  // messages; the fluid's own tasks are none
+      if (exchange_ && worker.first()) exchange_->run(task, parts());
       return;
-    default:
-      return;  // of the fluid
   }
 }
 
 template <class T>
-void SurfaceTasks<T>::exchange(Task task) {
-  const auto base = [this](int node) { return coupling_.base(node); };
-  const auto forces = [this] {
-    return std::array{surfaces_.force_x.data(), surfaces_.force_y.data(), surfaces_.force_z.data()};
-  };
-  switch (task) {
-    case Task::send_reactions:
-      return exchange_->send_reactions(*interactions_);
-    case Task::receive_reactions:
-      return exchange_->receive_reactions(surfaces_, *interactions_);
-    case Task::send_forces:
-      return exchange_->send_forces(surfaces_, forces());
-    case Task::receive_forces:
-      return exchange_->receive_forces(surfaces_, forces());
-    case Task::send_velocities:
-      return exchange_->send_velocities(surfaces_, base);
-    case Task::receive_velocities:
-      return exchange_->receive_velocities(surfaces_, base);
-    default:
-      escaped_ = exchange_->share_positions(surfaces_, viscosity_field_.watch(),
-                                            interactions_ ? &interactions_->watch() : nullptr, coupling_.any_escaped());
-  }
+CellExchange<3>::Parts SurfaceTasks<T>::parts() {
+  return {.cells = surfaces_,
+          .interactions = interactions_.get(),
+          .viscosity = viscosity_field_.watch(),
+          .force = std::array{surfaces_.force_x.data(), surfaces_.force_y.data(), surfaces_.force_z.data()},
+          .base = [this](int node) { return coupling_.base(node); },
+          .escaped = [this] { return coupling_.any_escaped(); }};
 }
 
 template <class T>

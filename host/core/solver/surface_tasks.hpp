@@ -55,7 +55,7 @@ class SurfaceTasks {
 
   /// First node that has left the domain; -1: none.
   [[nodiscard]] int escaped_node() const { return coupling_.escaped(); }
-  [[nodiscard]] bool escaped() const { return exchange_ ? escaped_ : coupling_.any_escaped(); }
+  [[nodiscard]] bool escaped() const { return exchange_ ? exchange_->escaped() : coupling_.any_escaped(); }
   [[nodiscard]] SurfaceForces& forces() { return forces_; }
   /// What it takes to stretch all membranes by 0.1 % along x, the volume law left aside.
   [[nodiscard]] double slight_energy() const { return slight_energy_; }
@@ -72,7 +72,7 @@ class SurfaceTasks {
   [[nodiscard]] const InteriorField<T>& viscosity_field() const { return viscosity_field_; }
 
  private:
-  void exchange(Task task);
+  [[nodiscard]] typename CellExchange<3>::Parts parts();
 
   Surfaces& surfaces_;
   Fluid<T, D3Q19>& fluid_;
@@ -83,7 +83,6 @@ class SurfaceTasks {
   SurfaceCoupling<T> coupling_;
   Ranks<3> ranks_;
   std::unique_ptr<CellExchange<3>> exchange_;  ///< null without other ranks
-  bool escaped_ = false;                       ///< with other ranks: of any rank's cells
   double slight_energy_ = 0;
 };
 

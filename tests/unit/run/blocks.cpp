@@ -205,7 +205,7 @@ void compare_cut_again(const Case& c, const Cut<D>& cut, long steps) {
   CAPTURE(c.what, cut.what);
   run_whole(planned, steps, folder.path() / "whole");
   run::RunOptions chosen = options(steps, cut.threads);
-  chosen.cut_every = 1;
+  chosen.cut_at_checks = true;
   run_cut(planned, cut, chosen, folder.path() / "cut");
   compare(folder.path() / "whole", folder.path() / "cut");
   const std::string log = bytes_of(folder.path() / "cut/log.jsonl");
