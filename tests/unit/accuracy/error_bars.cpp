@@ -26,7 +26,7 @@ Companions three_companions() {
   return companions;
 }
 
-std::vector<Measured> measured(const std::string& name, double lattice, double start, double inertia) {
+std::vector<Measured> three_measured(const std::string& name, double lattice, double start, double inertia) {
   return {{Role::lattice, "coarse", {quantity(name, lattice)}},
           {Role::start, "developed", {quantity(name, start)}},
           {Role::inertia, "light", {quantity(name, inertia)}}};
@@ -42,7 +42,7 @@ TEST_CASE("a bar holds an error of second order in the spacing, of the start, an
       for (const double d : {0.0, 0.01, -0.02}) {
         const std::vector<ErrorBar> bars =
             error_bars({quantity("deformation", truth + c + s + d)}, three_companions(),
-                       measured("deformation", truth + 4 * c + s + d, truth + 4 * c + d, truth + 4 * c + d / 2));
+                       three_measured("deformation", truth + 4 * c + s + d, truth + 4 * c + d, truth + 4 * c + d / 2));
         REQUIRE(bars.size() == 1);
         CHECK(bars[0].shares.lattice == Approx(c).margin(1e-12));
         CHECK(bars[0].shares.start == Approx(s).margin(1e-12));

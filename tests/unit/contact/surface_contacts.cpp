@@ -43,13 +43,16 @@ void run(SurfaceInteractions& forces, Surfaces& s, int workers = 1) {
   }
 }
 
-/// Over all triangles of another cell's image, one by one.
-double distance_to(const Surfaces& s, const Vec<3>& place, int other, const std::array<int, 3>& shift) {
+/// Over all triangles of another cell's image, one by one, but those with a corner so far away that all of them is farther
+/// than the cutoff: no edge here is 2 long.
+double distance_to(const Surfaces& s, const Vec<3>& place, int other, const std::array<int, 3>& shift, double cutoff) {
   Vec<3> moved = place;
   for (int k = 0; k < 3; ++k) moved[k] -= shift[k] * box[k];
   double nearest = 1e300;
+  const Nodes nodes = s.nodes(other);
   for (const auto& [i, j, k] : s.type_of(other).mesh.triangles()) {
-    const Nodes nodes = s.nodes(other);
+    const double x = moved.x() - nodes.x[i], y = moved.y() - nodes.y[i], z = moved.z() - nodes.z[i];
+    if (x * x + y * y + z * z > (cutoff + 2) * (cutoff + 2)) continue;
     nearest = std::min(nearest, (moved - closest_point(moved, nodes[i], nodes[j], nodes[k]).place).norm());
   }
   return nearest;
@@ -117,7 +120,7 @@ TEST_CASE("contacts of surfaces are the closest of all triangles, while cells mo
               for (int z = -2; z <= 1; ++z) {
                 const std::array<int, 3> shift{x, 0, z};
                 if (other == cell && x == 0 && z == 0) continue;
-                const double distance = distance_to(s, place, other, shift);
+                const double distance = distance_to(s, place, other, shift, cutoff);
                 if (distance > cutoff) continue;
                 REQUIRE(next < list.size());
                 REQUIRE(list[next].node == node);

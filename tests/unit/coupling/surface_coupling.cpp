@@ -10,6 +10,7 @@
 using namespace rouleau;
 using namespace rouleau::core;
 using namespace rouleau::test;
+using core::Domain;
 
 namespace {
 

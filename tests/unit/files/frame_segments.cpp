@@ -115,13 +115,13 @@ std::set<std::string> names_in(const std::filesystem::path& folder) {
 /// A run that was never stopped, and what its frames are.
 struct Whole {
   ScratchFolder folder;
-  std::string content, xdmf;
+  std::string bytes, xdmf;
   Whole() {
     const auto file = folder.path() / "frames.h5";
     FrameWriter writer(file, small_scene());
     write_frames(writer, 0, frames_in_all);
     writer.close();
-    content = ::content(file);
+    bytes = content(file);
     xdmf = writer.xdmf();
   }
 };
@@ -147,7 +147,7 @@ struct Interrupted {
     FrameWriter writer(file, small_scene(), from);
     write_frames(writer, static_cast<int>(from.frames()), frames_in_all);
     writer.close();
-    CHECK(content(file) == whole.content);
+    CHECK(content(file) == whole.bytes);
     CHECK(writer.xdmf() == whole.xdmf);
     const std::size_t more = from.frames() < frames_in_all ? 1 : 0;
     CHECK(names_in(folder.path()) == closed(from.segments.size() + more));
@@ -174,7 +174,7 @@ TEST_CASE("what frames.h5 holds does not depend on the number of segments") {
   for (const auto& seals : std::vector<std::vector<int>>{{1}, {4}, {5}, {1, 2, 3, 4, 5, 6, 7}, {2, 5, 8}}) {
     CAPTURE(seals);
     const Interrupted run(seals, frames_in_all, true);
-    CHECK(content(run.file) == whole.content);
+    CHECK(content(run.file) == whole.bytes);
     const std::size_t more = seals.back() < frames_in_all ? 1 : 0;
     CHECK(names_in(run.folder.path()) == closed(seals.size() + more));
   }
@@ -243,7 +243,7 @@ TEST_CASE("frames.h5 leads to its segments wherever the run's folder is moved") 
   const ScratchFolder elsewhere;
   std::filesystem::copy(run.folder.path(), elsewhere.path() / "moved");
   for (const auto& name : names_in(run.folder.path())) std::filesystem::remove(run.folder.path() / name);
-  CHECK(content(elsewhere.path() / "moved" / "frames.h5") == whole.content);
+  CHECK(content(elsewhere.path() / "moved" / "frames.h5") == whole.bytes);
 }
 
 TEST_CASE("a run that is resumed, killed, closed and resumed again still has the same frames") {
