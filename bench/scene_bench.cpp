@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "files/run_directory.hpp"
+#include "plan/estimate.hpp"
 #include "plan/read_scene.hpp"
 #include "run/simulation.hpp"
 
@@ -28,8 +29,16 @@ class Scratch {
   std::filesystem::path path_;
 };
 
-run::Summary run(const std::vector<std::string>& overrides, int threads, long max_steps) {
-  const scene::Scene scene = plan::read_scene(ROULEAU_SCENES "/four-cells-shear.json", overrides);
+/// A scene that is taken apart by pass.
+struct Subject {
+  const char *title, *file;
+};
+const Subject four_cells{"Four cells in shear, viscosity ratio 5, Morse potential",
+                         ROULEAU_SCENES "/four-cells-shear.json"};
+const Subject doublet{"Two red cells that stick together, in three dimensions", ROULEAU_SCENES "/doublet-3d.json"};
+
+run::Summary run(const Subject& subject, const std::vector<std::string>& overrides, int threads, long max_steps) {
+  const scene::Scene scene = plan::read_scene(subject.file, overrides);
   const plugin::Catalog catalog({ROULEAU_PLUGINS});
   const plan::Plan plan = plan::make_plan(scene, catalog);
   const Scratch scratch;
@@ -51,22 +60,17 @@ double microseconds(const run::Summary& s, const std::string& pass) {
   return 0;
 }
 
-}  // namespace
-
-void scene_table(bool whole) {
-  std::printf("\nFour cells in shear, viscosity ratio 5, Morse potential (%s), microseconds a step\n",
-              whole ? "the whole scene: contact, tumbling, separation" : "its first 20 000 steps");
+/// `steps`: -1: the whole run. The runs, with one and two threads in both precisions.
+std::vector<run::Summary> pass_table(const Subject& subject, const char* part, long steps) {
+  std::printf("\n%s (%s), microseconds a step\n", subject.title, part);
   struct Column {
     const char* precision;
     int threads;
   };
   const std::vector<Column> columns{{"f64", 1}, {"f32", 1}, {"f64", 2}, {"f32", 2}};
   std::vector<run::Summary> runs;
-  for (const Column& column : columns) {
-    runs.push_back(run({std::string("/numerics/precision=") + column.precision}, column.threads, whole ? -1 : 20000));
-    // The answer, too: how many aggregates the scene ends with is known when it has run to its end.
-    if (whole && runs.back().aggregates_final != 4) throw std::runtime_error("the rouleau did not break up");
-  }
+  for (const Column& column : columns)
+    runs.push_back(run(subject, {std::string("/numerics/precision=") + column.precision}, column.threads, steps));
   std::printf("  %-20s", "pass");
   for (const Column& column : columns)
     std::printf("  %s, %d thread%s", column.precision, column.threads, column.threads > 1 ? "s" : " ");
@@ -81,11 +85,26 @@ void scene_table(bool whole) {
   std::printf("\n  %-20s", "run, s");
   for (const run::Summary& s : runs) std::printf("  %14.2f", s.wall_s);
   std::printf("\n  %-20s", "ns/node, not fluid");
-  for (const run::Summary& s : runs) std::printf("  %14.1f", (microseconds(s) - microseconds(s, "fluid")) / 400 * 1e3);
+  const double nodes = plan::membrane_nodes(plan::read_scene(subject.file, {}));
+  for (const run::Summary& s : runs)
+    std::printf("  %14.1f", (microseconds(s) - microseconds(s, "fluid")) / nodes * 1e3);
   std::printf("\n  speed-up by the second thread: f64 %.2f, f32 %.2f; peak memory of the process %.1f MB\n",
               runs[0].wall_s / runs[2].wall_s, runs[1].wall_s / runs[3].wall_s,
               static_cast<double>(runs.back().peak_rss_bytes) / 1e6);
   std::fflush(stdout);
+  return runs;
+}
+
+}  // namespace
+
+void scene_table(bool whole) {
+  const auto runs = whole ? pass_table(four_cells, "the whole scene: contact, tumbling, separation", -1)
+                          : pass_table(four_cells, "its first 20 000 steps", 20000);
+  // The answer, too: how many aggregates the scene ends with is known when it has run to its end.
+  for (const run::Summary& s : runs) {
+    if (whole && s.aggregates_final != 4) throw std::runtime_error("the rouleau did not break up");
+  }
+  pass_table(doublet, "its first 1 000 steps", 1000);
 }
 
 void cells_table() {
@@ -121,11 +140,11 @@ void cells_table() {
           "/cells=[{\"type\":\"rbc\",\"list\":[" + list + "]}]",
           "/stages=[{\"name\":\"shear\",\"shear_rate\":\"" + std::to_string(shear) + " 1/s\",\"strain\":50}]",
           R"(/output={"checkpoint":"never"})"};
-      const run::Summary s = run(changes, 1, tiles.steps);
+      const run::Summary s = run(four_cells, changes, 1, tiles.steps);
       // What an output takes: of a run that writes one after every step, the first and what it sets up left out.
       changes.back() = R"(/output={"checkpoint":"never","cells":{"seconds":"1 ns"}})";
       const auto observed = [&](long steps) {
-        return microseconds(run(changes, 1, steps), "observe and check") * static_cast<double>(steps);
+        return microseconds(run(four_cells, changes, 1, steps), "observe and check") * static_cast<double>(steps);
       };
       constexpr long few = 5, more = 25;
       const double output = (observed(more) - observed(few)) / static_cast<double>(more - few);

@@ -4,7 +4,7 @@
 namespace rouleau::bench {
 
 /// The four-cell scene by pass, in both precisions, with one and two threads; `whole`: to its end, through tumbling and
-/// separation, else its first 20 000 steps.
+/// separation, else its first 20 000 steps. Then two cells in three dimensions, their first 1 000 steps.
 void scene_table(bool whole);
 
 /// Cost of a step with 1 to 1024 cells at the same volume fraction.

@@ -102,12 +102,30 @@ Failure crossing_failure(int cell, int other, bool inside, const scene::Stage& s
                  "lower " + stage.density_factor_key + " or the attraction, raise the resolution, or stiffen bending");
 }
 
+/// The cell whose area, or volume, has changed most, or would have without the correction.
+struct Drift {
+  int cell = -1;
+  double share = 0;
+  bool corrected = false;
+};
+template <class Cells>
+Drift largest_drift(observe::Observer& observer, const Cells& cells) {
+  Drift largest;
+  largest.share = observer.follow_area(cells, &largest.cell);
+  // Where areas are kept, the correction that this took is the leak.
+  int leaking = -1;
+  const double leakage = observe::Observer::area_leakage(cells, &leaking);
+  if (leakage > largest.share) largest = {leaking, leakage, true};
+  return largest;
+}
+
 /// What an area or a volume that drifts means, and what to do about it.
-Failure drift_failure(const char* measure, std::array<double, 2> place, int cell, double drift, bool corrected,
+Failure drift_failure(const char* measure, std::array<double, 2> place, const Drift& drift,
                       const std::string& first_remedy, const plan::StageSetting& setting, const scene::Scene& scene) {
   const std::string changed = std::string("changed its ") + measure + " by more than the limit";
-  const std::string said = corrected ? "would have " + changed + " without numerics.area_correction" : "has " + changed;
-  return failure("area_drift", place, cell, drift, scene.checks.area_drift,
+  const std::string said =
+      drift.corrected ? "would have " + changed + " without numerics.area_correction" : "has " + changed;
+  return failure("area_drift", place, drift.cell, drift.share, scene.checks.area_drift,
                  "a cell " + said + ": fluid leaks through its membrane or is compressed",
                  first_remedy + "lower " + setting.stage->density_factor_key +
                      ", raise the resolution, or raise checks.area_drift if this error is acceptable");
@@ -119,14 +137,9 @@ std::optional<Failure> check_cells(observe::Observer& observer, const plan::Stag
     return std::array<double, 2>{units::coordinate(at.x(), setting.units.length),
                                  units::coordinate(at.y(), setting.units.length)};
   };
-  int cell = -1, leaking = -1;
-  double drift = observer.follow_area(membranes, &cell);
-  // Where areas are kept, the correction that this took is the leak.
-  const double leakage = observe::Observer::area_leakage(membranes, &leaking);
-  if (leakage > drift) drift = leakage, cell = leaking;
-  if (!(drift <= scene.checks.area_drift)) {
-    const core::CellRange& drifting = membranes.cells[cell];
-    return drift_failure("area", place(core::centroid(membranes, drifting)), cell, drift, drift == leakage,
+  if (const Drift drift = largest_drift(observer, membranes); !(drift.share <= scene.checks.area_drift)) {
+    const core::CellRange& drifting = membranes.cells[drift.cell];
+    return drift_failure("area", place(core::centroid(membranes, drifting)), drift,
                          leak_remedy(core::perimeter(membranes, drifting) / drifting.count), setting, scene);
   }
   if (auto uneven = check_stretch(membranes, scene, *setting.stage, setting.units)) return uneven;
@@ -149,10 +162,8 @@ std::optional<Failure> check_cells(observe::Observer& observer, const plan::Stag
   const auto middle = [&](int cell) {
     return core::inertia_ellipsoid(surfaces.type_of(cell).mesh, surfaces.nodes(cell)).center;
   };
-  int cell = -1;
-  const double drift = observer.follow_area(surfaces, &cell);
-  if (!(drift <= scene.checks.area_drift))
-    return at(drift_failure("volume", {}, cell, drift, false, "", setting, scene), middle(cell));
+  if (const Drift drift = largest_drift(observer, surfaces); !(drift.share <= scene.checks.area_drift))
+    return at(drift_failure("volume", {}, drift, "", setting, scene), middle(drift.cell));
   for (int k = 0; k < surfaces.cell_count(); ++k) {
     const auto* sphere = std::get_if<scene::Sphere>(&scene.cell_types[surfaces.cells[k].type].shape);
     const double placed = sphere != nullptr ? sphere->prestretch : 1.0;

@@ -332,8 +332,8 @@ Table series_table() {
            .chart = "Relative mass drift"},
           {.name = "area_leakage_max",
            .unit = "",
-           .doc = "of all cells, the largest change of area that `numerics.area_correction` has prevented so far, over "
-                  "the area; `nan` without it",
+           .doc = "of all cells, the largest change of area, in three dimensions of volume, that "
+                  "`numerics.area_correction` has prevented so far, over the area or volume; `nan` without it",
            .value = output<&Snapshot::area_leakage_max>,
            .chart = "Largest area kept from leaking, relative"},
           {.name = "flow_rate",

@@ -49,14 +49,6 @@ Counts count_outputs(const scene::Scene& scene, const StageSetting& stage) {
   return counts;
 }
 
-double membrane_nodes_of(const scene::Scene& scene) {
-  std::vector<double> of_type;
-  for (const scene::CellType& type : scene.cell_types) of_type.push_back(shape::node_count(type));
-  double nodes = 0;
-  for (const scene::CellPlacement& cell : scene.cells) nodes += of_type[cell.type];
-  return nodes;
-}
-
 OutputEstimate estimate_output(const scene::Scene& scene, const std::vector<StageSetting>& stages) {
   OutputEstimate estimate;
   for (const StageSetting& stage : stages) {
@@ -68,7 +60,7 @@ OutputEstimate estimate_output(const scene::Scene& scene, const std::vector<Stag
   if (!stages.empty() && OutputSchedule(scene.output.fields, stages.front(), false).due(0)) ++estimate.field_outputs;
 
   const auto cells = static_cast<double>(scene.cells.size());
-  const double membrane_nodes = membrane_nodes_of(scene);
+  const double membrane = membrane_nodes(scene);
   const scene::FieldStorage& storage = scene.output.field_storage;
   estimate.fields_compressed = storage.compression > 0 && estimate.field_outputs > 0;
   const double nodes = static_cast<double>(storage.count(0, scene.domain.nodes[0])) *
@@ -82,7 +74,7 @@ OutputEstimate estimate_output(const scene::Scene& scene, const std::vector<Stag
       estimate.field_outputs * nodes * components * (storage.precision == scene::Precision::f64 ? 8 : 4);
   estimate.frames_bytes = hdf5::file + estimate.outputs * hdf5::frame + estimate.fields_bytes;
   if (cells > 0)
-    estimate.frames_bytes += estimate.outputs * (hdf5::membranes + membrane_nodes * per_node) + membrane_nodes * 8 +
+    estimate.frames_bytes += estimate.outputs * (hdf5::membranes + membrane * per_node) + membrane * 8 +
                              cells * 8;  // and the topology, once
   estimate.frames_bytes += estimate.field_outputs *
                            (hdf5::fields + static_cast<double>(scene.output.quantities.size()) *
@@ -100,15 +92,21 @@ OutputEstimate estimate_output(const scene::Scene& scene, const std::vector<Stag
 
 }  // namespace
 
+double membrane_nodes(const scene::Scene& scene) {
+  std::vector<double> of_type;
+  for (const scene::CellType& type : scene.cell_types) of_type.push_back(shape::node_count(type));
+  double nodes = 0;
+  for (const scene::CellPlacement& cell : scene.cells) nodes += of_type[cell.type];
+  return nodes;
+}
+
 double step_cost(double lattice_nodes, double membrane_nodes, scene::Precision precision, int dimension) {
   const bool f64 = precision == scene::Precision::f64;
   const double of_node = dimension == 2 ? (f64 ? 1.5e-9 : 0.85e-9) : (f64 ? 13e-9 : 7e-9);
   return lattice_nodes * of_node + membrane_nodes * (dimension == 2 ? 50e-9 : 200e-9);
 }
 
-double membrane_memory(const scene::Scene& scene) {
-  return membrane_nodes_of(scene) * (scene.domain.depth ? 1200 : 400);
-}
+double membrane_memory(const scene::Scene& scene) { return membrane_nodes(scene) * (scene.domain.depth ? 1200 : 400); }
 
 void require_memory(double bytes, const std::string& what) {
   const double left = available_memory();
@@ -123,11 +121,11 @@ Estimate estimate(const Plan& plan) {
   const scene::Scene& scene = *plan.scene;
   const double nodes = scene.domain.node_count();
   const int dimension = scene.domain.dimension(), velocities = dimension == 2 ? 9 : 19;
-  const double membrane_nodes = membrane_nodes_of(scene);
+  const double membrane = membrane_nodes(scene);
   const double word = scene.numerics.precision == scene::Precision::f64 ? 8 : 4;
   Estimate estimate;
   for (const StageSetting& stage : plan.stages) estimate.steps += static_cast<double>(stage.max_steps);
-  estimate.wall_s = estimate.steps * step_cost(nodes, membrane_nodes, scene.numerics.precision, dimension);
+  estimate.wall_s = estimate.steps * step_cost(nodes, membrane, scene.numerics.precision, dimension);
   estimate.memory_bytes = nodes * word *
                               (velocities + (plan.has_cells ? dimension : 0) +
                                (plan.viscosity_contrast || !scene.fluid.layers.empty() ? 1 : 0)) +

@@ -36,7 +36,9 @@ Estimate estimate(const Plan& plan);
 /// sentence: "the run".
 void require_memory(double bytes, const std::string& what);
 
-/// What the membranes of a scene take, bytes.
+/// Nodes of all membranes of a scene.
+double membrane_nodes(const scene::Scene& scene);
+/// What these take, bytes.
 double membrane_memory(const scene::Scene& scene);
 
 }  // namespace rouleau::plan

@@ -173,8 +173,9 @@ std::vector<PlannedPass> planned_passes(const Plan& plan) {
       {"membrane", std::to_string(scene.cells.size()) + " cells resist deformation" +
                        (plan.semi_implicit ? "; semi-implicit step" : "")},
       {"interaction", "an active potential acts " + listed(parties)},
-      {"corrections",
-       slip ? (area ? "membranes neither slip nor leak" : "membranes do not slip") : "cells keep their areas"},
+      {"corrections", slip                 ? (area ? "membranes neither slip nor leak" : "membranes do not slip")
+                      : scene.domain.depth ? "cells keep their volumes"
+                                           : "cells keep their areas"},
       {"indicator", "inside and outside of a cell have different viscosities"},
       {"activity", "marks the nodes near membranes, which alone carry force and velocity"},
       {"spread", "membrane forces act on the fluid"},

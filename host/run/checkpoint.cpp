@@ -30,7 +30,8 @@ void read(const files::CheckpointReader& reader, const std::string& path, std::v
   reader.array(path, values.size(), values.data());
 }
 
-constexpr const char *contacts_array = "/membranes/contacts", *wall_contacts_array = "/membranes/wall_contacts";
+constexpr const char *contacts_array = "/membranes/contacts", *wall_contacts_array = "/membranes/wall_contacts",
+                     *leakage_array = "/membranes/area_leakage";
 
 Json described(const core::ElementState& s) {
   return {{"cell_type", s.cell_type}, {"law", s.law}, {"model", s.model}, {"name", s.name}, {"unit_si", s.unit}};
@@ -96,11 +97,12 @@ void restore_contacts(const files::CheckpointReader& reader, const Json& saved, 
 /// Writes the arrays, and returns what belongs into the file's /state.
 Json save(files::CheckpointWriter& writer, const core::Surfaces& surfaces) {
   for (const auto& [path, values] : arrays(surfaces)) writer.array(path, *values);
-  return Json::object();
+  writer.array(leakage_array, surfaces.area_leakage);
+  return {{"leakage", surfaces.area_leakage.size()}};
 }
 Json save(files::CheckpointWriter& writer, const core::Membranes& m) {
   for (const auto& [path, values] : arrays(m)) writer.array(path, *values);
-  writer.array("/membranes/area_leakage", m.area_leakage);
+  writer.array(leakage_array, m.area_leakage);
   Json states = Json::array();
   for (std::size_t k = 0; k < m.state.size(); ++k) {
     states.push_back(described(m.state[k]));
@@ -144,18 +146,23 @@ Json save(files::CheckpointWriter* writer, core::Solver<T, Set>& solver) {
   return saved;
 }
 
-void restore_cells(const files::CheckpointReader& reader, const Json&, core::Surfaces& surfaces) {
+void restore_leakage(const files::CheckpointReader& reader, const Json& saved, core::CellNodes& cells) {
+  const Json& leakage = saved.at("leakage");
+  require(leakage == 0 || leakage == cells.cells.size(), reader, "leakages of another number of cells");
+  cells.area_leakage.resize(leakage);
+  read(reader, leakage_array, cells.area_leakage);
+}
+
+void restore_cells(const files::CheckpointReader& reader, const Json& saved, core::Surfaces& surfaces) {
   surfaces.largest_step.resize(surfaces.cells.size());
   for (const auto& [path, values] : arrays(surfaces)) read(reader, path, *values);
+  restore_leakage(reader, saved, surfaces);
 }
 
 void restore_cells(const files::CheckpointReader& reader, const Json& saved, core::Membranes& m) {
   m.largest_step.resize(m.cells.size());
   for (const auto& [path, values] : arrays(m)) read(reader, path, *values);
-  const Json& leakage = saved.at("leakage");
-  require(leakage == 0 || leakage == m.cells.size(), reader, "leakages of another number of cells");
-  m.area_leakage.resize(leakage);
-  read(reader, "/membranes/area_leakage", m.area_leakage);
+  restore_leakage(reader, saved, m);
   m.state.clear();
   for (const Json& description : saved.at("state")) {
     m.state.push_back(element_state(description));

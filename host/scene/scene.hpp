@@ -83,7 +83,7 @@ struct Numerics {
   Precision precision = Precision::f64;
   std::string coupling = "explicit";  ///< or "semi-implicit", or "auto": the limits of the plan decide
   bool slip_correction = false;       ///< take the tangential slip of the immersed boundary out
-  bool area_correction = false;       ///< keep the cells' areas, and report what would have leaked
+  bool area_correction = false;       ///< keep the cells' areas or volumes, and report what would have leaked
 };
 
 struct Biconcave {

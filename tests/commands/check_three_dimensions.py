@@ -333,8 +333,7 @@ class Three_dimensions_refuse(Case):
         self.refused(scene | {"interactions": acting}, "/interactions/0/between", "two dimensions only")
         bonds = [{"between": ["capsule", "capsule"], "model": "bridging", "parameters": {}}]
         self.refused(scene | {"interactions": bonds}, "/interactions/0/model", "three dimensions")
-        for key in ("slip_correction", "area_correction"):
-            self.refused(changed(scene, **{"numerics__" + key: True}), "/numerics/" + key, "three dimensions")
+        self.refused(changed(scene, numerics__slip_correction=True), "/numerics/slip_correction", "three dimensions")
         self.refused(changed(scene, numerics__coupling="semi-implicit"), "/numerics/coupling", "explicit")
         laws = [{"model": "hooke", "parameters": {"shear_modulus": "1e-6 N/m"}}]
         self.refused(changed(scene, **{capsule + "membrane": laws}), "/cell_types/capsule/membrane/0/model",

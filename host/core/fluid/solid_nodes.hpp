@@ -18,7 +18,7 @@ template <int D>
 class SolidNodes {
  public:
   using Node = std::array<int, D>;
-  /// Share of the link from a fluid node to the one at `to - node` from it that lies in the fluid, in (0, 1].
+  /// Share of the link from a fluid node to the solid one at `node + to` that lies in the fluid, in (0, 1].
   using Cut = std::function<double(const Node& node, const Node& to)>;
 
   /// Without `cut` walls are half way: no mass is lost, and velocities are of first order. With it they are interpolated,

@@ -38,7 +38,8 @@ struct CellNodes {
   std::vector<double> largest_step;                        ///< of each cell: no node moved further in the last step;
                                                            ///< empty: unknown
   std::vector<double> area_leakage;                        ///< of each cell, over its rest area: area that the area
-                                                           ///< correction has kept from leaving it; empty: none
+                                                           ///< correction has kept from leaving it, in three dimensions
+                                                           ///< volume over rest volume; empty: none
   std::vector<CellPart> part;                              ///< of this rank in each cell; empty: all of every cell
 
   [[nodiscard]] int node_count() const { return static_cast<int>(x.size()); }

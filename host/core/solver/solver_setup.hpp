@@ -69,7 +69,7 @@ struct BasicSolverSetup {
   bool semi_implicit = false;
   /// Takes the tangential slip of the immersed boundary out.
   bool slip_correction = false;
-  /// Keeps the cells' areas.
+  /// Keeps the areas that cells enclose, in three dimensions their volumes.
   bool area_correction = false;
 
   /// Time step in any unit that all setups of a run share: velocities carried from one to the next scale with it.

@@ -12,8 +12,7 @@ namespace {
 void check(const BasicSolverSetup<3>& setup) {
   if (!setup.self_interactions.empty())
     throw std::invalid_argument("interactions within a cell are computed in two dimensions only");
-  if (setup.slip_correction || setup.area_correction)
-    throw std::invalid_argument("corrections of the coupling are made in two dimensions only");
+  if (setup.slip_correction) throw std::invalid_argument("the slip correction is made in two dimensions only");
   if (setup.semi_implicit) throw std::invalid_argument("the semi-implicit step is taken in two dimensions only");
   if (!setup.layers.empty()) throw std::invalid_argument("cells in layers are computed in two dimensions only");
 }
@@ -69,6 +68,10 @@ SurfaceTasks<T>::SurfaceTasks(const BasicSolverSetup<3>& setup, Surfaces& surfac
     interactions_ = std::make_unique<SurfaceInteractions>(surfaces_, setup.interactions, setup.domain);
   if (!setup.wall_interactions.empty())
     wall_contacts_ = std::make_unique<SurfaceWallContacts>(setup.wall_interactions, setup.domain, setup.tube_radius);
+  if (setup.area_correction) {
+    volume_correction_ = std::make_unique<VolumeCorrection>(surfaces_);
+    surfaces_.area_leakage.resize(surfaces_.cells.size(), 0.0);  // earlier leakage stays
+  }
   coupling_.reserve(surfaces_);
   if (ranks.several()) {
     const GhostReach reach{.lattice = lattice_reach, .contact = interactions_ ? interactions_->reach() : 0.0};
@@ -90,6 +93,8 @@ void SurfaceTasks<T>::run(Task task, Worker worker) {
       return interactions_->run(worker, 1, surfaces_);
     case Task::take_reactions:
       return interactions_->run(worker, 2, surfaces_);
+    case Task::complete_forces:
+      return volume_correction_->take_out_pressures(worker, surfaces_);
     case Task::find_nodes:
       viscosity_field_.measure(worker, surfaces_);
       return viscosity_field_.cover(worker, surfaces_);
@@ -100,6 +105,8 @@ void SurfaceTasks<T>::run(Task task, Worker worker) {
       return coupling_.interpolate(worker, surfaces_, fluid_.velocity(), Whose::own);
     case Task::interpolate_ghosts:
       return coupling_.interpolate(worker, surfaces_, fluid_.velocity(), Whose::others);
+    case Task::correct_velocities:
+      return volume_correction_->keep_volumes(worker, surfaces_);
     case Task::move:
       return core::move_nodes(worker, surfaces_);
     case Task::locate:

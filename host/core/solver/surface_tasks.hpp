@@ -14,6 +14,7 @@
 #include "core/fluid/fluid.hpp"
 #include "core/membrane/motion.hpp"
 #include "core/surface/surface_forces.hpp"
+#include "core/surface/volume_correction.hpp"
 #include "schedule.hpp"
 #include "solver_setup.hpp"
 
@@ -27,8 +28,8 @@ class SurfaceTasks {
 
   /// The setup, the surfaces, of which there is at least one, and the fluid belong to the solver, and outlive this.
   /// `owner[c]`: the rank of cell c; none: by place.
-  /// Throws std::invalid_argument for what surfaces do not have: interactions within cells, corrections, the semi-implicit step,
-  /// layers.
+  /// Throws std::invalid_argument for what surfaces do not have: interactions within cells, the slip correction, the
+  /// semi-implicit step, layers.
   SurfaceTasks(const BasicSolverSetup<3>& setup, Surfaces& surfaces, Fluid<T, D3Q19>& fluid, const Ranks<3>& ranks,
                std::vector<int> owner);
 
@@ -37,6 +38,7 @@ class SurfaceTasks {
     features.cells = true;
     features.interactions = interactions_ != nullptr;
     features.wall_interactions = wall_contacts_ != nullptr;
+    features.area_correction = volume_correction_ != nullptr;
   }
   /// A worker's share of a task of schedule.hpp that is not one over rows; what the fluid does alone is left out.
   void run(Task task, Worker worker);
@@ -59,8 +61,8 @@ class SurfaceTasks {
   [[nodiscard]] SurfaceForces& forces() { return forces_; }
   /// What it takes to stretch all membranes by 0.1 % along x, the volume law left aside.
   [[nodiscard]] double slight_energy() const { return slight_energy_; }
-  /// Nodes move as the lattice's fluid at their places does.
-  [[nodiscard]] bool corrects_motion() const { return false; }
+  /// Whether nodes do not move exactly as the lattice's fluid at their places does.
+  [[nodiscard]] bool corrects_motion() const { return volume_correction_ != nullptr; }
   /// Null without such interactions.
   [[nodiscard]] const SurfaceWallContacts* wall_contacts() const { return wall_contacts_.get(); }
   /// Calls function(forces) for the kinds of interactions that there are: between cells, and with walls.
@@ -79,6 +81,7 @@ class SurfaceTasks {
   SurfaceForces forces_;
   std::unique_ptr<SurfaceInteractions> interactions_;
   std::unique_ptr<SurfaceWallContacts> wall_contacts_;
+  std::unique_ptr<VolumeCorrection> volume_correction_;  ///< null: volumes are left to the coupling
   InteriorField<T> viscosity_field_;
   SurfaceCoupling<T> coupling_;
   Ranks<3> ranks_;
