@@ -80,6 +80,33 @@ TEST_CASE("in three dimensions sheared cells come to rest in the shape that they
   }
 }
 
+TEST_CASE("cells whose membranes stay under stress keep their volumes with the area correction, and leak without",
+          "[space]") {
+  // A capsule stretched all over and a red cell bent away from the plane that its membrane would like to be.
+  const auto rest = [](const char* corrected) {
+    return run_scene(scenes + "/at-rest-3d.json",
+                     {"/cell_types/capsule/shape/sphere/prestretch=1.009",
+                      "/cell_types/rbc/membrane/1/parameters/rest_curvature=\"zero\"",
+                      R"(/stages=[{"name": "rest", "duration": "0.2 s"}])", R"(/output/cells/seconds="0.1 s")",
+                      std::string("/numerics/area_correction=") + corrected});
+  };
+  const SceneRun kept = rest("true"), plain = rest("false");
+  for (const int cell : {0, 1}) {
+    const auto change = [cell](const SceneRun& run, const char* name) {
+      const std::vector<double> values = run.column(name, cell);
+      return values.back() / values.front() - 1;
+    };
+    std::cout << "cell " << cell << ": volume " << change(kept, "volume_m3") << ", without correction "
+              << change(plain, "volume_m3") << ", leak kept back " << kept.summary["conservation"]["area_leakage_max"]
+              << "\n";
+    CHECK(std::abs(change(kept, "volume_m3")) < 1e-10);
+    CHECK(std::abs(change(plain, "volume_m3")) > 5e-4);
+  }
+  CHECK(kept.summary["conservation"]["area_leakage_max"].get<double>() < 5e-4);
+  // No pressure acts on the lattice that would let the sphere's stretch relax.
+  CHECK(std::abs(kept.column("surface_area_m2", 1).back() / kept.column("surface_area_m2", 1).front() - 1) < 1e-5);
+}
+
 TEST_CASE("in three dimensions a stiff spheroid turns with Jeffery's period", "[space]") {
   // Proc. R. Soc. A 102, 161 (1922): half a turn of a spheroid with the ratio r of its axes takes a strain of pi (r + 1/r).
   const double exact = std::numbers::pi * (2 + 0.5);

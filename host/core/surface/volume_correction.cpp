@@ -54,13 +54,15 @@ void VolumeCorrection::keep_volumes(Worker worker, Surfaces& surfaces) {
     const CellRange& range = surfaces.cells[cell];
     const RestSurface& rest = surfaces.type_of(cell);
     const double square = find_gradient(surfaces, cell);
-    double gain = 0;  // of volume in this step without the correction
+    const double x = surfaces.x[range.first], y = surfaces.y[range.first], z = surfaces.z[range.first];
+    double gain = 0, thrice = 0;  // of volume in this step without the correction; three volumes, for A.X is as much
     for (int i = range.first; i < range.end(); ++i) {
       gain += surfaces.velocity_x[i] * along_x_[i] + surfaces.velocity_y[i] * along_y_[i] +
               surfaces.velocity_z[i] * along_z_[i];
+      thrice +=
+          (surfaces.x[i] - x) * along_x_[i] + (surfaces.y[i] - y) * along_y_[i] + (surfaces.z[i] - z) * along_z_[i];
     }
-    const double missing = rest.rest_volume - enclosed_volume(rest.mesh, surfaces.nodes(cell));
-    const double factor = square > 0 ? (missing / relaxation - gain) / square : 0;
+    const double factor = square > 0 ? ((rest.rest_volume - thrice / 3) / relaxation - gain) / square : 0;
     for (int i = range.first; i < range.end(); ++i) {
       surfaces.velocity_x[i] += factor * along_x_[i];
       surfaces.velocity_y[i] += factor * along_y_[i];
