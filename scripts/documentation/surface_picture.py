@@ -20,18 +20,23 @@ def shaded(corners, tone):
 
 
 def draw(panels, path):
-    """panels: {caption: rouleau frame}. The eye looks along z, y is up, as in the two-dimensional pictures."""
+    """panels: {caption: rouleau frame}, all to one scale. The eye looks along z, y is up, as in the two-dimensional pictures."""
+    def centred(frame):
+        points = [1e6 * numpy.asarray(cell.outline) for cell in frame.cells]
+        middle = numpy.concatenate(points).mean(axis=0)
+        return [place_um - middle for place_um in points]
+
+    # Axes in three dimensions leave a margin of a fifth.
+    half = 0.79 * max(abs(points[:, :2]).max() for frame in panels.values() for points in centred(frame))
     figure = pyplot.figure(figsize=(2.2 * len(panels), 2.4))
     for place, (caption, frame) in enumerate(panels.items()):
         axes = figure.add_subplot(1, len(panels), place + 1, projection="3d", proj_type="ortho")
-        points = [1e6 * numpy.asarray(cell.outline) for cell in frame.cells]
-        middle = numpy.concatenate(points).mean(axis=0)
-        for number, (cell, place_um) in enumerate(zip(frame.cells, points)):
-            corners = (place_um - middle)[:, [0, 2, 1]] * [1, -1, 1]  # a right-handed turn: y goes up
+        for number, (cell, place_um) in enumerate(zip(frame.cells, centred(frame))):
+            corners = place_um[:, [0, 2, 1]] * [1, -1, 1]  # a right-handed turn: y goes up
             triangles = corners[numpy.asarray(cell.triangles)]
             tones = shaded(triangles, TONES[number % 2])
             axes.add_collection3d(Poly3DCollection(triangles, facecolors=tones, edgecolors=tones, linewidths=0.2))
-        axes.set(xlim=(-3.1, 3.1), ylim=(-3.1, 3.1), zlim=(-3.1, 3.1), box_aspect=(1, 1, 1))
+        axes.set(xlim=(-half, half), ylim=(-half, half), zlim=(-half, half), box_aspect=(1, 1, 1))
         axes.view_init(elev=22, azim=-70)
         axes.set_axis_off()
         axes.set_title(caption, fontsize=10, y=-0.02)
