@@ -92,6 +92,10 @@ std::string progress_line(const ProgressState& state, double rate, double remain
       .substr(0, width);
 }
 
+double remaining_s(const ProgressState& state, long steps_so_far, double seconds) {
+  return steps_so_far > 0 ? seconds * state.steps_left / static_cast<double>(steps_so_far) : NAN;
+}
+
 Progress::Progress(bool quiet)
     : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) == 1), start_(std::chrono::steady_clock::now()), last_(start_) {}
 
@@ -100,15 +104,11 @@ void Progress::update(const ProgressState& state) {
   const auto now = std::chrono::steady_clock::now();
   if (!drawn_ && first_step_ < 0) {  // a resumed run begins at a later step; its speed must not count the earlier ones
     first_step_ = last_step_ = state.step;
-    first_fraction_ = state.fraction;
   }
   const double since_last = Seconds(now - last_).count();
   if (since_last < (terminal_ ? 0.1 : 10.0)) return;
 
-  const double elapsed = Seconds(now - start_).count();
-  const double fraction = within_one(state.fraction);
-  const double gained = fraction - first_fraction_;
-  const double remaining = gained > 0 ? elapsed * (1 - fraction) / gained : NAN;
+  const double remaining = remaining_s(state, state.step - first_step_, Seconds(now - start_).count());
   // The terminal shows the speed of the last second or so, a pipe that of the last line's interval.
   const double rate = static_cast<double>(state.step - last_step_) / since_last;
   rate_ = rate_ > 0 && terminal_ ? 0.9 * rate_ + 0.1 * rate : rate;

@@ -14,8 +14,12 @@ struct ProgressState {
   std::string stage;
   double strain;
   double mach_max, area_drift;
-  int rouleaux;  ///< aggregates of two cells or more
+  int rouleaux;           ///< aggregates of two cells or more
+  double steps_left = 0;  ///< at most; a stage that ends early takes none of what it had left
 };
+
+/// What the rest takes at the speed of the steps so far; not a number before the first.
+double remaining_s(const ProgressState& state, long steps_so_far, double seconds);
 
 /// One line of at most `width` characters for a terminal. Where all of it has no room, what says least is left out: first
 /// the Mach number, then the area drift, the speed, the rouleaux, and the bar after these.
@@ -34,7 +38,7 @@ class Progress {
   bool quiet_, terminal_, drawn_ = false;
   std::chrono::steady_clock::time_point start_, last_;
   long first_step_ = -1, last_step_ = 0;
-  double first_fraction_ = 0, rate_ = 0;  ///< at the first update; steps per second, smoothed
+  double rate_ = 0;  ///< steps per second, smoothed
 };
 
 }  // namespace rouleau::run

@@ -502,9 +502,11 @@ class Simulation {
       if (s.index < setting.index) before += static_cast<double>(s.max_steps);
       all += static_cast<double>(s.max_steps);
     }
-    double fraction = all > 0 ? (before + static_cast<double>(state_.stage_step)) / all : 1.0;
+    const double done = before + static_cast<double>(state_.stage_step);
+    double fraction = all > 0 ? done / all : 1.0, left = all - done;
     if (options_.max_steps > 0) {
       fraction = std::max(fraction, static_cast<double>(state_.steps) / static_cast<double>(options_.max_steps));
+      left = std::min(left, static_cast<double>(options_.max_steps - state_.steps));
     }
     return {state_.steps,
             fraction,
@@ -512,7 +514,8 @@ class Simulation {
             state_.strain_at(setting),
             state_.observer.mach_max(),
             state_.observer.area_drift_max(),
-            state_.history.rouleaux()};
+            state_.history.rouleaux(),
+            left};
   }
 
   /// Adds to the summary what is known behind the last step.

@@ -44,3 +44,12 @@ TEST_CASE("what is not known yet does not spoil a line of progress") {
   CHECK(
       shows(line, "    0%  ETA         ?  strain  0.00      0 steps/s  Mach     nan  area drift     nan   1 rouleau"));
 }
+
+TEST_CASE("the time that is left is that of the steps that are left, also when a stage ends early") {
+  // 6 000 of 95 000 steps are taken in 60 s when a stage ends 60 000 steps before its time.
+  const ProgressState early{6000, 0.69, "shear", 0, 0, 0, 1, 29000};
+  CHECK(remaining_s(early, 6000, 60) == Approx(290));
+  // Resumed at step 5 000.
+  CHECK(remaining_s(early, 1000, 10) == Approx(290));
+  CHECK(std::isnan(remaining_s(early, 0, 10)));
+}
