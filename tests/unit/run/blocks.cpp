@@ -188,7 +188,7 @@ TEST_CASE("a run cut into any blocks writes the same directory", "[whole-runs]")
   for (const Case& c : cases) compare_cuts<2>(c, block_steps(130));
 }
 
-TEST_CASE("a run in three dimensions cut into any blocks writes the same directory") {
+TEST_CASE("a run in three dimensions cut into any blocks writes the same directory", "[whole-runs]") {
   for (const Case& c : scenes_in_space()) {
     compare_cuts<3>(c, block_steps(20));
     compare_continued<3>(c, block_steps(20));
