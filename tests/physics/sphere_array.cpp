@@ -59,11 +59,10 @@ TEST_CASE("the drag of a sphere in a simple cubic array is Hasimoto's, to second
   // Hasimoto, J. Fluid Mech. 5 (1959) 317: the velocity at a given force over that of a sphere alone. Zick and Homsy,
   // J. Fluid Mech. 115 (1982) 13, have the same at this share and 7.442 at 0.216. By how much the lattice's drag differs
   // depends on how the sphere meets its nodes: the order is that of the bound.
-  const auto side_for = [](double share, double radius) { return std::cbrt(4 * pi / (3 * share)) * radius; };
   for (const double share : {0.02, 0.216}) {
     const double exact = share > 0.1 ? 7.442 : 1 / (1 - 1.7601 * std::cbrt(share) + share - 1.5593 * share * share);
     for (const int side : share > 0.1 ? std::array{14, 20, 32} : std::array{16, 24, 36}) {
-      const double radius = side / side_for(share, 1);
+      const double radius = side * std::cbrt(3 * share / (4 * pi));
       const ArrayFlow flow = array_flow(side, radius);
       std::cout << "spheres of " << radius << " spacings, share " << share << ": drag " << flow.drag << " (" << exact
                 << "), off by " << flow.drag / exact - 1 << ", mass " << flow.mass << "\n";

@@ -43,8 +43,8 @@ void run(SurfaceInteractions& forces, Surfaces& s, int workers = 1) {
   }
 }
 
-/// Over all triangles of another cell's image, one by one, but those with a corner so far away that all of them is farther
-/// than the cutoff: no edge here is 2 long.
+/// Over all triangles of another cell's image, one by one, but those with a corner so far away that all of the triangle is
+/// farther than the cutoff: no edge here is 2 long.
 double distance_to(const Surfaces& s, const Vec<3>& place, int other, const std::array<int, 3>& shift, double cutoff) {
   Vec<3> moved = place;
   for (int k = 0; k < 3; ++k) moved[k] -= shift[k] * box[k];
