@@ -2,6 +2,7 @@
 
 #include <array>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include "checkpoint_match.hpp"
@@ -95,12 +96,8 @@ void restore_contacts(const files::CheckpointReader& reader, const Json& saved, 
 }
 
 /// Writes the arrays, and returns what belongs into the file's /state.
-Json save(files::CheckpointWriter& writer, const core::Surfaces& surfaces) {
-  for (const auto& [path, values] : arrays(surfaces)) writer.array(path, *values);
-  writer.array(leakage_array, surfaces.area_leakage);
-  return {{"leakage", surfaces.area_leakage.size()}};
-}
-Json save(files::CheckpointWriter& writer, const core::Membranes& m) {
+template <class Cells>
+Json save(files::CheckpointWriter& writer, const Cells& m) {
   for (const auto& [path, values] : arrays(m)) writer.array(path, *values);
   writer.array(leakage_array, m.area_leakage);
   Json states = Json::array();
@@ -108,11 +105,12 @@ Json save(files::CheckpointWriter& writer, const core::Membranes& m) {
     states.push_back(described(m.state[k]));
     writer.array(state_name(k), m.state[k].value);
   }
-  Json saved{{"leakage", m.area_leakage.size()},
-             {"state", states},
-             {"contacts", save_contacts(writer, contacts_array, m.contacts)}};
-  if (!m.wall_contacts.variables.empty())
-    saved["wall_contacts"] = save_contacts(writer, wall_contacts_array, m.wall_contacts);
+  Json saved{{"leakage", m.area_leakage.size()}, {"state", states}};
+  if constexpr (std::is_same_v<Cells, core::Membranes>) {
+    saved["contacts"] = save_contacts(writer, contacts_array, m.contacts);
+    if (!m.wall_contacts.variables.empty())
+      saved["wall_contacts"] = save_contacts(writer, wall_contacts_array, m.wall_contacts);
+  }
   return saved;
 }
 
@@ -153,25 +151,22 @@ void restore_leakage(const files::CheckpointReader& reader, const Json& saved, c
   read(reader, leakage_array, cells.area_leakage);
 }
 
-void restore_cells(const files::CheckpointReader& reader, const Json& saved, core::Surfaces& surfaces) {
-  surfaces.largest_step.resize(surfaces.cells.size());
-  for (const auto& [path, values] : arrays(surfaces)) read(reader, path, *values);
-  restore_leakage(reader, saved, surfaces);
-}
-
-void restore_cells(const files::CheckpointReader& reader, const Json& saved, core::Membranes& m) {
+template <class Cells>
+void restore_cells(const files::CheckpointReader& reader, const Json& saved, Cells& m) {
   m.largest_step.resize(m.cells.size());
   for (const auto& [path, values] : arrays(m)) read(reader, path, *values);
   restore_leakage(reader, saved, m);
   m.state.clear();
-  for (const Json& description : saved.at("state")) {
+  for (const Json& description : saved.value("state", Json::array())) {
     m.state.push_back(element_state(description));
     m.state.back().value.resize(m.x.size());
     read(reader, state_name(m.state.size() - 1), m.state.back().value);
   }
-  restore_contacts(reader, saved.at("contacts"), contacts_array, m.cells.size(), m, m.contacts);
-  if (saved.contains("wall_contacts"))
-    restore_contacts(reader, saved["wall_contacts"], wall_contacts_array, 2, m, m.wall_contacts);
+  if constexpr (std::is_same_v<Cells, core::Membranes>) {
+    restore_contacts(reader, saved.at("contacts"), contacts_array, m.cells.size(), m, m.contacts);
+    if (saved.contains("wall_contacts"))
+      restore_contacts(reader, saved["wall_contacts"], wall_contacts_array, 2, m, m.wall_contacts);
+  }
 }
 
 /// What a block has of an array with a row for each of the lattice's rows.

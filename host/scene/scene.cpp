@@ -111,8 +111,6 @@ void check_space(const SceneFields& fields, const Scene& scene) {
   const bool cells = !scene.cells.empty();
   in_plane_only("/numerics/slip_correction", cells && scene.numerics.slip_correction,
                 "set it to false, or leave it out");
-  in_plane_only("/numerics/coupling", cells && scene.numerics.coupling == "semi-implicit",
-                "take \"explicit\", or leave it out");
   in_plane_only("/fluid/layers", cells && !scene.fluid.layers.empty(), "leave the layers or the cells out");
   if (scene.domain.tube_radius && !scene.fluid.layers.empty()) {
     fields.attempt([&] {

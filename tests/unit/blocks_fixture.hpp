@@ -120,7 +120,7 @@ inline Case travelling_in_space() {
       {"/numerics/precision=\"f64\"",
        R"(/domain={"size": ["15 um", "12 um", "12 um"], "nodes": [40, 32, 32], "y": {"lower": {"wall": {}}, "upper": {"wall": {}}}})",
        R"(/stages=[{"name": "driven", "pressure_gradient": "1e6 Pa/m", "duration": "1 s", "start": "developed"}])",
-       "/output={}", "/cell_types/capsule/interior_viscosity=\"6 cP\"", "/numerics/area_correction=true",
+       "/output={}", "/cell_types/capsule/interior_viscosity=\"6 cP\"", "/numerics/area_correction=true", semi_implicit,
        R"(/interactions=[{"between": ["capsule", "capsule"], "model": "morse", "parameters": {
              "depth": "1e-7 J/m2"}}])",
        R"(/cells=[{"type": "capsule", "at": ["4 um", "6 um", "3 um"]},
@@ -142,7 +142,7 @@ inline std::vector<Case> scenes_in_space() {
       {"doublet over a corner, f32",
        doublet,
        {"/cell_types/rbc/interior_viscosity=\"6 cP\"", "/cells/0/row/center=[\"11.5 um\", \"0.4 um\", \"11.8 um\"]"}},
-      {"volumes kept", doublet, {f64, "/numerics/area_correction=true"}},
+      {"volumes kept, semi-implicit", doublet, {f64, semi_implicit, "/numerics/area_correction=true"}},
       {"capsule near a wall",
        capsule,
        {f64, held, "/domain/size=[\"15 um\", \"12 um\", \"13.5 um\"]", "/domain/nodes=[40, 32, 36]",

@@ -7,6 +7,7 @@
 
 #include "base/worker.hpp"
 #include "core/domain/bounding_box.hpp"
+#include "element_state.hpp"
 #include "topology.hpp"
 
 namespace rouleau::core {
@@ -40,6 +41,7 @@ struct CellNodes {
   std::vector<double> area_leakage;                        ///< of each cell, over its rest area: area that the area
                                                            ///< correction has kept from leaving it, in three dimensions
                                                            ///< volume over rest volume; empty: none
+  std::vector<ElementState> state;                         ///< what laws and the method remember; empty where none does
   std::vector<CellPart> part;                              ///< of this rank in each cell; empty: all of every cell
 
   [[nodiscard]] int node_count() const { return static_cast<int>(x.size()); }

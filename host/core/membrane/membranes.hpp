@@ -18,7 +18,6 @@ struct Membranes : CellNodes {
   std::vector<double> rest_length;     ///< of segment i
   std::vector<double> rest_weight;     ///< (rest_length[i - 1] + rest_length[i]) / 2: rest measure of node i
   std::vector<double> rest_curvature;  ///< turning angle over rest_weight in the shape it was created with
-  std::vector<ElementState> state;     ///< what laws remember; empty where none does
   ContactMemory contacts;              ///< what interactions between cells remember
   ContactMemory wall_contacts;         ///< what interactions with walls remember
 

@@ -13,15 +13,19 @@ constexpr double steps_held = 8;
 
 }  // namespace
 
+double newest_share_of_mean(double largest_eigenvalue, double viscosity) {
+  return 1 / (1 + steps_held * std::max(1.0, 1 / (6 * viscosity)) * largest_eigenvalue);
+}
+
 SemiImplicitFilter::SemiImplicitFilter(int count, double length, double gain, double viscosity, double stretching,
                                        double bending)
     : band_(static_cast<std::size_t>(count) - 2) {
-  const double mobility = 0.5 * gain / length;
+  const double mobility = node_mobility * gain / length;
   const double second = mobility * stretching / length, fourth = mobility * bending / (length * length * length);
   const double diagonal = 1 + 2 * second + 6 * fourth;
   near_ = -second - 4 * fourth;
   far_ = fourth;
-  share_ = 1 / (1 + steps_held * std::max(1.0, 1 / (6 * viscosity)) * (4 * second + 16 * fourth));
+  share_ = newest_share_of_mean(4 * second + 16 * fourth, viscosity);
 
   const std::size_t n = band_;
   for (auto* values : {&lower_, &lowest_, &inverse_, &border_second_, &border_last_}) values->assign(n, 0.0);

@@ -339,8 +339,8 @@ void CellExchange<D>::transfer_state(Cells& cells, int cell, Transfer transfer) 
   const CellRange& range = cells.cells[cell];
   for (auto* along : forces(cells)) transfer_nodes(*along, range, transfer);
   if (!cells.area_leakage.empty()) transfer(&cells.area_leakage[cell], 1);
+  for (ElementState& state : cells.state) transfer_nodes(state.value, range, transfer);
   if constexpr (D == 2) {
-    for (ElementState& state : cells.state) transfer_nodes(state.value, range, transfer);
     for (ContactMemory* memory : {&cells.contacts, &cells.wall_contacts}) {
       if (memory->of_cell.empty()) continue;
       std::vector<ContactState>& contacts = memory->of_cell[cell];

@@ -13,7 +13,6 @@ void check(const BasicSolverSetup<3>& setup) {
   if (!setup.self_interactions.empty())
     throw std::invalid_argument("interactions within a cell are computed in two dimensions only");
   if (setup.slip_correction) throw std::invalid_argument("the slip correction is made in two dimensions only");
-  if (setup.semi_implicit) throw std::invalid_argument("the semi-implicit step is taken in two dimensions only");
   if (!setup.layers.empty()) throw std::invalid_argument("cells in layers are computed in two dimensions only");
 }
 
@@ -60,6 +59,7 @@ SurfaceTasks<T>::SurfaceTasks(const BasicSolverSetup<3>& setup, Surfaces& surfac
       coupling_(setup.kernel, setup.domain),
       ranks_(ranks) {
   surfaces_.largest_step.resize(surfaces_.cells.size(), 0.0);
+  if (setup.semi_implicit) forces_.take_semi_implicit_steps(surfaces_, setup.viscosity(), setup.tension_unit);
   std::vector<double> of_type;
   for (std::size_t t = 0; t < surfaces.types.size(); ++t)
     of_type.push_back(energy_of_strain(surfaces.types[t], setup.cell_types[t].laws, 1e-3));

@@ -28,8 +28,8 @@ class SurfaceTasks {
 
   /// The setup, the surfaces, of which there is at least one, and the fluid belong to the solver, and outlive this.
   /// `owner[c]`: the rank of cell c; none: by place.
-  /// Throws std::invalid_argument for what surfaces do not have: interactions within cells, the slip correction, the
-  /// semi-implicit step, layers.
+  /// Throws std::invalid_argument for what surfaces do not have: interactions within cells, the slip correction,
+  /// layers.
   SurfaceTasks(const BasicSolverSetup<3>& setup, Surfaces& surfaces, Fluid<T, D3Q19>& fluid, const Ranks<3>& ranks,
                std::vector<int> owner);
 

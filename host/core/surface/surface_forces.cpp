@@ -5,6 +5,7 @@
 #include <rouleau/dispatch.hpp>
 #include <stdexcept>
 
+#include "core/membrane/stiffness.hpp"
 #include "surface_kernels.hpp"
 
 namespace rouleau::core {
@@ -104,6 +105,24 @@ SurfaceForces::Type SurfaceForces::prepare(const RestSurface& rest, const Membra
 SurfaceForces::SurfaceForces(const Surfaces& surfaces, const std::vector<MembraneLaws>& laws)
     : scratch_(surfaces.cells.size()) {
   for (std::size_t t = 0; t < surfaces.types.size(); ++t) types_.push_back(prepare(*surfaces.types[t], laws[t]));
+}
+
+void SurfaceForces::take_semi_implicit_steps(Surfaces& surfaces, double viscosity, double tension_unit) {
+  constexpr std::array names{"held_force_x", "held_force_y", "held_force_z"};
+  for (std::size_t t = 0; t < types_.size(); ++t) {
+    Type& type = types_[t];
+    double stretching = 0, bending = 0;
+    for (const Law& law : type.laws) {
+      stretching += stretching_stiffness(law.model);
+      bending += bending_stiffness(law.model);
+    }
+    type.filter.emplace(*surfaces.types[t], viscosity, stretching, bending);
+    for (std::size_t k = 0; k < 3; ++k) {
+      // Over the spacing, which all stages share, a force has the unit of a tension.
+      type.held_force[k] =
+          keep_state(surfaces.state, {static_cast<int>(t), -1, "", names[k], tension_unit, {}}, 0, surfaces.x.size());
+    }
+  }
 }
 
 SurfaceForces::Scratch& SurfaceForces::scratch_of(int first_cell) {
@@ -307,7 +326,7 @@ void SurfaceForces::run(Worker worker, Surfaces& surfaces) {
     if (!surfaces.owns(c)) continue;
     const CellRange& cell = surfaces.cells[c];
     const Type& type = types_[cell.type];
-    Whole whole = measure(type, surfaces.nodes(c), s);
+    Whole whole = measure(type, type.filter ? look_ahead(surfaces, cell, s) : surfaces.nodes(c), s);
     apply(type, *surfaces.types[cell.type], s, whole, nullptr);
     act(type, whole, s);
     double* const force[3] = {&surfaces.force_x[cell.first], &surfaces.force_y[cell.first],
@@ -319,7 +338,26 @@ void SurfaceForces::run(Worker worker, Surfaces& surfaces) {
       }
       for (int component = 0; component < 3; ++component) force[component][i] = sum[component];
     }
+    if (type.filter) soften(type, surfaces, cell, s);
   }
+}
+
+Nodes SurfaceForces::look_ahead(const Surfaces& surfaces, const CellRange& cell, Scratch& s) {
+  const std::vector<double>*const place[3] = {&surfaces.x, &surfaces.y, &surfaces.z}, *const step[3] = {
+                                                                                          &surfaces.velocity_x,
+                                                                                          &surfaces.velocity_y,
+                                                                                          &surfaces.velocity_z};
+  for (int k = 0; k < 3; ++k) {
+    s.ahead[k].resize(s.curvature.size());
+    for (int i = 0; i < cell.count; ++i) s.ahead[k][i] = (*place[k])[cell.first + i] + (*step[k])[cell.first + i];
+  }
+  return {s.ahead[0].data(), s.ahead[1].data(), s.ahead[2].data()};
+}
+
+void SurfaceForces::soften(const Type& type, Surfaces& surfaces, const CellRange& cell, Scratch& s) {
+  const auto held = [&](int component) { return &surfaces.state[type.held_force[component]].value[cell.first]; };
+  type.filter->apply({&surfaces.force_x[cell.first], &surfaces.force_y[cell.first], &surfaces.force_z[cell.first]},
+                     {held(0), held(1), held(2)}, s.filtered);
 }
 
 MembraneEnergy SurfaceForces::energies(const Surfaces& surfaces) {

@@ -1,12 +1,15 @@
 // Forces of the membrane laws on the nodes of surfaces: minus the gradient of the laws' energies.
 #pragma once
 
+#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/worker.hpp"
 #include "core/membrane/membrane_forces.hpp"
 #include "core/model/model.hpp"
+#include "surface_filter.hpp"
 #include "surfaces.hpp"
 
 namespace rouleau::core {
@@ -19,6 +22,11 @@ class SurfaceForces {
   /// `laws`: of each cell type, as they are in three dimensions. Throws std::invalid_argument for a law that remembers or
   /// gives a viscosity, which surfaces do not have yet.
   SurfaceForces(const Surfaces& surfaces, const std::vector<MembraneLaws>& laws);
+
+  /// From now on the forces are those of the semi-implicit step (SurfaceFilter), with the laws' own stiffness. What it holds is
+  /// in surfaces.state. `viscosity`: kinematic, of the suspending fluid; lattice units. `tension_unit`: SI size of the
+  /// lattice unit of tension, for what is kept from one stage to the next.
+  void take_semi_implicit_steps(Surfaces& surfaces, double viscosity, double tension_unit);
 
   /// Pass over cells: sets the forces.
   void run(Worker worker, Surfaces& surfaces);
@@ -48,8 +56,10 @@ class SurfaceForces {
     std::vector<int> corner[3], triangle_edge[3];
     std::vector<int> edge_node[2], edge_triangle[2];
     std::vector<double> inverse[3], rest_area, inverse_node_area;
-    std::vector<double> area_share;  // of nodes: rest area over three times the area that area_ratio is over
-    Mesh::Rings corners;             // entries are k * padded triangles + t
+    std::vector<double> area_share;       // of nodes: rest area over three times the area that area_ratio is over
+    Mesh::Rings corners;                  // entries are k * padded triangles + t
+    std::optional<SurfaceFilter> filter;  // of a semi-implicit step
+    std::array<std::size_t, 3> held_force = {0, 0, 0};  // of the filter: in Surfaces::state
   };
   /// One worker's arrays, for one cell after another.
   struct Scratch {
@@ -57,6 +67,7 @@ class SurfaceForces {
     std::vector<double> force[3];  // on the first corners of all triangles, then on the second and third ones
     std::vector<double> along[3], normals[6], turned_length, edge_turn;
     std::vector<double> curvature, area_ratio, node_moment, node_pull, law[2], energy;
+    std::vector<double> ahead[3], filtered;  // of a semi-implicit step
   };
   struct Whole {
     double volume = 0, surface_area = 0, pressure = 0, surface_tension = 0;
@@ -69,6 +80,10 @@ class SurfaceForces {
   static Whole measure(const Type& type, Nodes nodes, Scratch& scratch);
   static void apply(const Type& type, const RestSurface& rest, Scratch& scratch, Whole& whole, MembraneEnergy* energy);
   static void act(const Type& type, const Whole& whole, Scratch& scratch);
+  /// Where the nodes of a cell will be after another step like the last one.
+  static Nodes look_ahead(const Surfaces& surfaces, const CellRange& cell, Scratch& scratch);
+  /// Makes the forces those of the semi-implicit step.
+  static void soften(const Type& type, Surfaces& surfaces, const CellRange& cell, Scratch& scratch);
 
   std::vector<Type> types_;
   std::vector<Scratch> scratch_;  // of the first cell of each worker's share

@@ -1,0 +1,43 @@
+// The semi-implicit step of stiff surfaces: SemiImplicitFilter's, on a mesh.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "surfaces.hpp"
+
+namespace rouleau::core {
+
+/// What SemiImplicitFilter does for outlines, with the stiffness of a surface: C is the mesh's Laplacian at rest times -1 (weights
+/// of cotangents; Pinkall and Polthier, Experimental Mathematics 2, 15, 1993), A the areas of the nodes, and
+///
+///     F = H + (I + K A^-1/2)^-1 (F(X + V) - H),   K = k_s C + k_b C A^-1 C.
+///
+/// All three components have the same stiffness, the largest there is along the surface and across it, so that the filter
+/// does not know how the cell is turned. The sum of the forces stays what it is, for C has no sum; their torque need not.
+class SurfaceFilter {
+ public:
+  /// `stretching`: k_s = d tension / d stretch along one direction, the other held; `bending`: k_b = d moment / d curvature;
+  /// `viscosity`: kinematic, of the fluid around the cell. Lattice units.
+  SurfaceFilter(const RestSurface& rest, double viscosity, double stretching, double bending);
+
+  /// Replaces a cell's forces F(X + V) by F, after taking them into their means `held`.
+  /// `work`: room of this call's own, 3 numbers a node.
+  void apply(const std::array<double*, 3>& force, const std::array<double*, 3>& held, std::vector<double>& work) const;
+
+  /// Largest eigenvalue of (K A^-1)/2, waves left aside that are shorter than the lattice feels.
+  [[nodiscard]] double largest_eigenvalue() const { return largest_; }
+
+ private:
+  void solve(double* rows) const;
+
+  // A + K/2 = P' L D L' P, L without its diagonal of ones, column by column.
+  std::vector<int> place_;         // of node i: its row after the permutation P
+  std::vector<int> first_, row_;   // entries [first_[j], first_[j + 1]) belong to column j
+  std::vector<double> entry_;      // of L
+  std::vector<double> inverse_;    // 1/D
+  std::vector<double> area_;       // of the nodes
+  double largest_, newest_share_;  // of K A^-1/2; of the newest force in the mean
+};
+
+}  // namespace rouleau::core
