@@ -101,8 +101,10 @@ constexpr double largest_share_of_strain = 0.1;
 // single cell stays quiet at 80 times the stretching and 13 times the bending stiffness (docs/accuracy.md), two cells
 // that are sheared and come to rest in contact at 20 times the former. There are two exceptions: with the slip
 // correction and tau below 0.9 two cells bear 5 but not 10 times, for the slip of so stiff a membrane varies faster
-// than the correction can follow; at tau 10 a cell with segments of two spacings bears 4 times.
-constexpr double stretching_gain = 20, cautious_stretching_gain = 4, least_corrected_tau = 0.9, most_tau = 5;
+// than the correction can follow; at tau 10 a cell with segments of two spacings bears 4 times. In three dimensions one
+// cell bears 400 and 90 times, two cells in contact 24 times the stretching stiffness at tau 1, but 10 and not 13 times at tau 0.6
+// (docs/stability.md).
+constexpr double stretching_gain = 20, cautious_stretching_gain = 4, least_tau_of_full_gain = 0.9, most_tau = 5;
 constexpr double bending_gain = 10, least_semi_implicit_tau = 0.6;
 
 constexpr std::array<KernelFacts, 4> kernels{{
@@ -268,7 +270,8 @@ double fastest_driven_speed(const StageSetting& stage, const scene::Scene& scene
 
 double stretching_gain_of(const scene::Scene& scene) {
   const scene::Numerics& n = scene.numerics;
-  const bool cautious = (n.slip_correction && n.tau < least_corrected_tau) || n.tau > most_tau;
+  const bool thin = n.tau < least_tau_of_full_gain && (n.slip_correction || scene.domain.depth);
+  const bool cautious = thin || n.tau > most_tau;
   return cautious ? cautious_stretching_gain : stretching_gain;
 }
 

@@ -26,7 +26,7 @@ struct CellType {
   double viscosity_ratio = 1;
 };
 
-/// In D dimensions: two, or three, where there are no cells yet. Lattice units: spacing, time step and density of the fluid
+/// In D dimensions: two or three. Lattice units: spacing, time step and density of the fluid
 /// are 1.
 template <int D>
 struct BasicSolverSetup {
@@ -65,7 +65,7 @@ struct BasicSolverSetup {
   /// Of a tube along x around the middle, from whose wall these act in place of planes; 0: none. `solid` is what holds its fluid.
   double tube_radius = 0;
   std::vector<SelfInteraction> self_interactions = {};
-  /// The step of stiff membranes (SemiImplicitFilter).
+  /// The step of stiff membranes (SemiImplicitFilter, SurfaceFilter).
   bool semi_implicit = false;
   /// Takes the tangential slip of the immersed boundary out.
   bool slip_correction = false;
