@@ -6,6 +6,7 @@
 #include "base/process.hpp"
 #include "base/text.hpp"
 #include "output_schedule.hpp"
+#include "plugin/handles.hpp"
 #include "shape/extent.hpp"
 
 namespace rouleau::plan {
@@ -47,6 +48,20 @@ Counts count_outputs(const scene::Scene& scene, const StageSetting& stage) {
   ++counts.cells;
   if (!scene.output.fields.never()) ++counts.fields;
   return counts;
+}
+
+/// Up to which distance cells act on each other, lattice spacings; 0: they do not.
+double largest_cutoff(const Plan& plan) {
+  double largest = 0;
+  for (std::size_t i = 0; i < plan.interactions.size(); ++i) {
+    const PlannedModel& model = plan.interactions[i];
+    const scene::Interaction& between = plan.scene->interactions[i];
+    if (!model.active() || between.with_wall() || between.with_self()) continue;
+    const plugin::ModelInstance potential(*model.manifest, model.parameters.values,
+                                          plan.stages.front().model_setting(plan.scene->fluid.inertia));
+    largest = std::max(largest, potential.interaction().cutoff(potential.self()));
+  }
+  return largest;
 }
 
 OutputEstimate estimate_output(const scene::Scene& scene, const std::vector<StageSetting>& stages) {
@@ -100,10 +115,13 @@ double membrane_nodes(const scene::Scene& scene) {
   return nodes;
 }
 
-double step_cost(double lattice_nodes, double membrane_nodes, scene::Precision precision, int dimension) {
+double step_cost(double lattice_nodes, double membrane_nodes, scene::Precision precision, int dimension,
+                 double cutoff) {
   const bool f64 = precision == scene::Precision::f64;
   const double of_node = dimension == 2 ? (f64 ? 1.5e-9 : 0.85e-9) : (f64 ? 13e-9 : 7e-9);
-  return lattice_nodes * of_node + membrane_nodes * (dimension == 2 ? 50e-9 : 200e-9);
+  // In space the triangles within the cutoff are as many as its square says.
+  const double of_membrane_node = dimension == 2 ? 50e-9 : 170e-9 + 2.2e-9 * cutoff * cutoff;
+  return lattice_nodes * of_node + membrane_nodes * of_membrane_node;
 }
 
 double membrane_memory(const scene::Scene& scene) { return membrane_nodes(scene) * (scene.domain.depth ? 1200 : 400); }
@@ -125,7 +143,8 @@ Estimate estimate(const Plan& plan) {
   const double word = scene.numerics.precision == scene::Precision::f64 ? 8 : 4;
   Estimate estimate;
   for (const StageSetting& stage : plan.stages) estimate.steps += static_cast<double>(stage.max_steps);
-  estimate.wall_s = estimate.steps * step_cost(nodes, membrane, scene.numerics.precision, dimension);
+  estimate.wall_s =
+      estimate.steps * step_cost(nodes, membrane, scene.numerics.precision, dimension, largest_cutoff(plan));
   estimate.memory_bytes = nodes * word *
                               (velocities + (plan.has_cells ? dimension : 0) +
                                (plan.viscosity_contrast || !scene.fluid.layers.empty() ? 1 : 0)) +

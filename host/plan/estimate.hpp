@@ -8,8 +8,10 @@
 namespace rouleau::plan {
 
 /// Seconds of one step on one core, as measured with AVX-512 (docs/performance.md); other machines differ by their
-/// memory and vector width.
-double step_cost(double lattice_nodes, double membrane_nodes, scene::Precision precision, int dimension = 2);
+/// memory and vector width. `cutoff`: in three dimensions, of the interactions between cells, spacings; left out, what makes
+/// a membrane node cost 200 ns.
+double step_cost(double lattice_nodes, double membrane_nodes, scene::Precision precision, int dimension = 2,
+                 double cutoff = 3.7);
 
 /// At most: stages that end at rest or at a fault write less. HDF5's own share was measured (tests/commands).
 struct OutputEstimate {
