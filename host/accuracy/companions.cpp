@@ -8,8 +8,9 @@
 
 #include "base/text.hpp"
 #include "json/document.hpp"
+#include "plan/error_model.hpp"
 #include "plan/estimate.hpp"
-#include "plan/numerics_auto.hpp"
+#include "plan/lattice_size.hpp"
 #include "plan/stage_scales.hpp"
 #include "scene/driving_flow.hpp"
 #include "shape/extent.hpp"
@@ -76,13 +77,8 @@ double membrane_nodes(const scene::Scene& scene) {
   return nodes;
 }
 
-/// Numbers of nodes along each side: two, or three.
-using LatticeSize = std::vector<int>;
-LatticeSize lattice_size(const scene::Domain& domain) {
-  LatticeSize size{domain.nodes[0], domain.nodes[1]};
-  if (domain.depth) size.push_back(domain.depth->nodes);
-  return size;
-}
+using plan::LatticeSize, plan::lattice_size;
+
 std::string in_words(const LatticeSize& size) {
   std::string words;
   for (const int nodes : size) words += (words.empty() ? "" : " x ") + std::to_string(nodes);

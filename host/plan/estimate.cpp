@@ -5,6 +5,7 @@
 #include "base/error.hpp"
 #include "base/process.hpp"
 #include "base/text.hpp"
+#include "lattice_size.hpp"
 #include "output_schedule.hpp"
 #include "plugin/handles.hpp"
 #include "shape/extent.hpp"
@@ -144,7 +145,8 @@ Estimate estimate(const Plan& plan) {
   Estimate estimate;
   for (const StageSetting& stage : plan.stages) estimate.steps += static_cast<double>(stage.max_steps);
   estimate.wall_s =
-      estimate.steps * step_cost(nodes, membrane, scene.numerics.precision, dimension, largest_cutoff(plan));
+      estimate.steps * step_cost(fluid_nodes(scene.domain), membrane, scene.numerics.precision, dimension,
+                                 largest_cutoff(plan));
   estimate.memory_bytes = nodes * word *
                               (velocities + (plan.has_cells ? dimension : 0) +
                                (plan.viscosity_contrast || !scene.fluid.layers.empty() ? 1 : 0)) +

@@ -8,12 +8,15 @@
 
 #include "base/text.hpp"
 #include "core/fluid/relaxation.hpp"
+#include "error_model.hpp"
 #include "estimate.hpp"
 #include "flow_start.hpp"
 #include "json/document.hpp"
 #include "json/json_pointer.hpp"
+#include "lattice_size.hpp"
 #include "scene/driving_flow.hpp"
 #include "scene/scene_reader.hpp"
+#include "shape/extent.hpp"
 #include "shape/outline.hpp"
 #include "shape/random_cells.hpp"
 #include "stability_limits.hpp"
@@ -33,58 +36,6 @@ constexpr double finest_radius = 80;      ///< spacings; more is never chosen
 constexpr int fewest_rows = 16;           ///< of a lattice without cells
 // Without a flow inertia only decides how membranes come to rest. The limits of the plan lower it where they must.
 constexpr double density_factor_at_rest = 13000;
-constexpr int most_coarse_rows = 4096;
-
-/// A lattice with the same spacing along both axes; none when the ratio of the sides is not one of whole numbers.
-std::optional<std::array<int, 2>> coarsest_lattice(const Eigen::Vector2d& size) {
-  constexpr double tolerance = 1e-9;
-  for (int ny = 4; ny <= most_coarse_rows; ++ny) {
-    const double nx = ny * size.x() / size.y();
-    if (nx > 3.5 && nx < 65536.5 && std::abs(nx - std::round(nx)) < tolerance * nx) {
-      return std::array{static_cast<int>(std::lround(nx)), ny};
-    }
-  }
-  return {};
-}
-
-// What was measured (docs/accuracy.md, "The error model of auto"). Errors are relative, lengths in spacings.
-
-/// Error of a shape at ten spacings a radius and tau 1, and the power of the spacing with which it falls.
-struct ShapeError {
-  double at_ten, order;
-};
-constexpr double measured_ratio = 5;  ///< viscosity ratio of the second of each pair
-constexpr ShapeError round_cell[2] = {{0.010, 2}, {0.021, 2}};
-constexpr ShapeError biconcave_cell[2] = {{0.040, 3}, {0.039, 2}};
-constexpr double growth_with_tau = 0.2;  ///< of that error, for each unit of tau above 1
-// Without slip correction the tangential slip of the membrane, of first order, comes on top.
-constexpr double slip_at_ten[2] = {0.014, 0.025};
-
-// A fluid that is simulated denser: strains at which things happen are wrong by this share of the Reynolds number.
-constexpr double motion_by_reynolds = 0.024;
-// Disturbances of the steady state die out as 0.7 exp(-1.35 strain / sqrt(Reynolds number)).
-constexpr double steady_amplitude = 0.7, steady_rate = 1.35;
-
-/// Start-up of Couette and Poiseuille flow without cells: this times ((tau - 1/2)/rows)^2.
-constexpr double start_up_error = 1.2;
-
-/// How far a viscosity ratio is from 1, with the measured one at 1.
-double distance_from_one(double viscosity_ratio) {
-  return std::abs(std::log(viscosity_ratio)) / std::log(measured_ratio);
-}
-
-/// Value between those at viscosity ratio 1 and 5, by the ratio's logarithm; beyond, extrapolated.
-double between(double at_one, double at_measured, double viscosity_ratio) {
-  return at_one + distance_from_one(viscosity_ratio) * (at_measured - at_one);
-}
-double order_between(const ShapeError (&pair)[2], double viscosity_ratio) {
-  return std::clamp(between(pair[0].order, pair[1].order, viscosity_ratio), 2.0, 3.0);
-}
-double between(const ShapeError (&pair)[2], double viscosity_ratio, double radius) {
-  return between(pair[0].at_ten, pair[1].at_ten, viscosity_ratio) *
-         std::pow(10 / radius, order_between(pair, viscosity_ratio));
-}
-bool is_thin(const scene::CellType& type) { return std::holds_alternative<scene::Biconcave>(type.shape); }
 
 /// What a person would write: three digits, rounded down. Whole numbers stay whole.
 Json three_digits_below(double value) {
@@ -102,11 +53,11 @@ class Problem {
 
  private:
   struct Trial {
-    std::array<int, 2> nodes{};
+    LatticeSize nodes;
     double tau = 1, density_factor = 1, cost = 0;
     ErrorShares error;
   };
-  [[nodiscard]] std::vector<std::array<int, 2>> lattices() const;
+  [[nodiscard]] std::vector<LatticeSize> lattices() const;
   [[nodiscard]] bool meets_target(const Trial& trial) const { return trial.error.total() <= target_ * (1 + 1e-9); }
   [[nodiscard]] bool good_enough(const Trial& trial) const { return trial.error.total() <= goal() * (1 + 1e-9); }
   /// The target; where stages with factors of their own take most of it already, half of it on top of theirs: no lattice makes
@@ -114,18 +65,26 @@ class Problem {
   [[nodiscard]] double goal() const { return std::max(target_, target_ / 2 + inertia_error(0) + start_error(0)); }
   [[nodiscard]] bool better(const Trial& a, const Trial& b) const;
   [[nodiscard]] Trial cheapest() const;
-  [[nodiscard]] Trial tried(const std::array<int, 2>& nodes, double tau) const;
+  [[nodiscard]] Trial tried(const LatticeSize& nodes, double tau) const;
+  [[nodiscard]] double spacing_of(const LatticeSize& nodes) const { return scene_.domain.size.y() / nodes[1]; }
+  /// Half of the narrowest side that decides the lattice of a flow without cells, m.
+  [[nodiscard]] double half_width() const;
+  /// Of all cells.
+  [[nodiscard]] double membrane_nodes(double spacing) const;
   [[nodiscard]] double resolution_error(double spacing, double tau) const;
   /// With this factor in all stages that have none of their own.
   [[nodiscard]] double inertia_error(double density_factor) const;
   [[nodiscard]] double start_error(double density_factor) const;
   /// Seconds of the scene over the factor of each stage, with this one in stages that have none of their own.
   [[nodiscard]] double duration(double density_factor) const;
+  /// The largest density factor that the limits of the plan leave at this relaxation time.
+  [[nodiscard]] double most_by_limits(double tau) const {
+    const auto found = bounds_.most_density_factor_at.find(tau);
+    return std::min(bounds_.most_density_factor,
+                    found != bounds_.most_density_factor_at.end() ? found->second : INFINITY);
+  }
   /// The largest density factor with which inertia and start together leave at most this error.
   [[nodiscard]] double most_density_factor(double error) const;
-  [[nodiscard]] double decay() const {
-    return steady_rate * strain_ / std::sqrt(0.5 + 0.5 * std::max(1.0, viscosity_ratio_));
-  }
   [[nodiscard]] std::string why_density_factor(const Trial& best) const;
   [[nodiscard]] std::string gain_by_developed_start(const Trial& best) const;
   [[nodiscard]] NumericsChoice chosen(const Trial& best) const;
@@ -138,8 +97,13 @@ class Problem {
   double target_ = default_target;
   bool steady_ = false, corrected_ = true;
   bool has_cells_ = false;
-  std::vector<const scene::CellType*> used_types_;
-  double perimeters_ = 0;       ///< of all cells together, m
+  struct UsedType {
+    const scene::CellType* type;
+    int cells;
+    double radius;         ///< that a lattice must resolve, m
+    double nodes_of_cell;  ///< of a surface that does not follow the lattice; else 0
+  };
+  std::vector<UsedType> used_types_;
   double radius_ = 0;           ///< of the smallest cell, m
   double viscosity_ratio_ = 1;  ///< the furthest from 1
   double shear_rate_ = 0, strain_ = 0;
@@ -162,7 +126,8 @@ Problem::Problem(const scene::Scene& draft, const Json& written, const NumericsB
   const Json wanted = numerics_.at("auto");
   target_ = wanted.value("error", default_target);
   steady_ = wanted.value("of", "motion") == "steady";
-  corrected_ = numerics_.value("slip_correction", bounds_.slip_correction && scene_.fluid.layers.empty());
+  corrected_ = numerics_.value("slip_correction",
+                               bounds_.slip_correction && scene_.fluid.layers.empty() && !scene_.domain.depth);
   has_cells_ = !scene_.cells.empty();
   radius_ = shape::smallest_radius(scene_);
   std::vector<int> placed(scene_.cell_types.size());
@@ -170,8 +135,9 @@ Problem::Problem(const scene::Scene& draft, const Json& written, const NumericsB
   for (std::size_t i = 0; i < placed.size(); ++i) {
     if (placed[i] == 0) continue;
     const scene::CellType& type = scene_.cell_types[i];
-    used_types_.push_back(&type);
-    perimeters_ += placed[i] * shape::shape_perimeter(type.shape);
+    const bool fixed = std::holds_alternative<scene::MeshFile>(type.shape) ||
+                       written_.at("cell_types").at(type.name).contains("triangles");
+    used_types_.push_back({&type, placed[i], resolved_radius(type.shape), fixed ? shape::node_count(type) : 0});
     const double ratio = type.interior_viscosity / scene_.fluid.viscosity;
     if (std::abs(std::log(ratio)) > std::abs(std::log(viscosity_ratio_))) viscosity_ratio_ = ratio;
   }
@@ -194,29 +160,52 @@ Problem::Problem(const scene::Scene& draft, const Json& written, const NumericsB
     if (const double lag = scene::start_up_strain(stage, scene_); lag > 0)
       starts_.push_back({lag, strain, stage.shear_rate == 0, own_factor});
   }
-  const double length = has_cells_ ? radius_ : scene_.domain.size.y() / 2;
+  const double length = has_cells_ ? radius_ : scene_.domain.height() / 2;
   reynolds_ = scene_.fluid.density * shear_rate_ * length * length / scene::viscosity_range(scene_.fluid).least;
 }
 
-std::vector<std::array<int, 2>> Problem::lattices() const {
+std::vector<LatticeSize> Problem::lattices() const {
   const Json nodes = written_.at("domain").value("nodes", Json());
-  if (!nodes.is_null()) return {nodes.get<std::array<int, 2>>()};
-  const auto coarsest = *coarsest_lattice(scene_.domain.size);  // the draft has found one
+  if (!nodes.is_null()) return {nodes.get<LatticeSize>()};
+  const LatticeSize coarsest = *coarsest_lattice(sides(scene_.domain));  // the draft has found one
   // Beyond the finest lattice the plan's limits may be exceeded, and it warns.
   const double least = has_cells_ ? std::min(bounds_.least_radius, finest_radius) : fewest_rows / 2.0;
-  std::vector<std::array<int, 2>> found;
-  std::array<int, 2> finest = coarsest;
+  std::vector<LatticeSize> found;
+  LatticeSize finest = coarsest;
   for (int factor = 1;; ++factor) {
-    const std::array nodes_tried{coarsest[0] * factor, coarsest[1] * factor};
-    if (nodes_tried[0] > 65536 || nodes_tried[1] > 65536) break;
-    const double spacing = scene_.domain.size.y() / nodes_tried[1];
-    const double size = has_cells_ ? radius_ / spacing : std::min(nodes_tried[0], nodes_tried[1]) / 2.0;
-    finest = nodes_tried;
-    if (size >= least * (1 - 1e-9)) found.push_back(nodes_tried);
-    if (size >= finest_radius) break;
+    const std::optional<LatticeSize> nodes_tried = refined(coarsest, factor);
+    if (!nodes_tried) break;
+    const double size = (has_cells_ ? radius_ : half_width()) / spacing_of(*nodes_tried);
+    finest = *nodes_tried;
+    if (size >= least * (1 - 1e-9)) found.push_back(finest);
+    if (size >= finest_radius * (1 - 1e-9)) break;
   }
   if (found.empty()) found.push_back(finest);
   return found;
+}
+
+/// In three dimensions a few layers with periodic sides stand for a plane flow: what counts is how far walls are apart.
+double Problem::half_width() const {
+  const scene::Domain& domain = scene_.domain;
+  const std::vector<double> lengths = sides(domain);
+  const double narrowest = *std::min_element(lengths.begin(), lengths.end());
+  if (!domain.depth || (domain.periodic_y && domain.depth->periodic)) return narrowest / 2;
+  double apart = domain.periodic_y ? INFINITY : domain.height();
+  if (domain.is_duct() && !domain.tube_radius) apart = std::min(apart, domain.depth->size);
+  return apart / 2;
+}
+
+double Problem::membrane_nodes(double spacing) const {
+  double all = 0;
+  for (const UsedType& used : used_types_) {
+    double nodes = used.nodes_of_cell;
+    if (!scene_.domain.depth)
+      nodes = shape::shape_perimeter(used.type->shape) / spacing;
+    else if (nodes == 0)
+      nodes = shape::surface_nodes(scene::triangles_about(used.type->shape, spacing));
+    all += used.cells * nodes;
+  }
+  return all;
 }
 
 /// The cheaper one of those that meet the target; before them, the nearer one.
@@ -245,9 +234,9 @@ Problem::Trial Problem::cheapest() const {
 }
 
 /// The densest fluid that the error leaves room for, and what it costs.
-Problem::Trial Problem::tried(const std::array<int, 2>& nodes, double tau) const {
+Problem::Trial Problem::tried(const LatticeSize& nodes, double tau) const {
   Trial trial{nodes, tau, 1, 0, {}};
-  const double spacing = scene_.domain.size.y() / nodes[1];
+  const double spacing = spacing_of(nodes);
   const double most_viscous_tau = core::relaxation_time_of(scene::viscosity_range(scene_.fluid).most /
                                                            scene_.fluid.viscosity * core::viscosity_of(tau));
   trial.error.resolution = resolution_error(spacing, most_viscous_tau);
@@ -255,10 +244,10 @@ Problem::Trial Problem::tried(const std::array<int, 2>& nodes, double tau) const
   if (const Json factor = pinned("density_factor"); !factor.is_null()) {
     trial.density_factor = factor.get<double>();
   } else if (free_rate_ == 0 && mean_wall_speed_ == 0) {
-    trial.density_factor = has_cells_ ? std::min(density_factor_at_rest, bounds_.most_density_factor) : 1;
+    trial.density_factor = has_cells_ ? std::min(density_factor_at_rest, most_by_limits(tau)) : 1;
   } else {
     // Walls at shear_rate x height / 2 around their mean in units of the spacing over the time step.
-    const double wall_mach = std::sqrt(3.0) * free_rate_ * scene_.domain.size.y() / 2 / spacing * true_step +
+    const double wall_mach = std::sqrt(3.0) * free_rate_ * scene_.domain.height() / 2 / spacing * true_step +
                              std::sqrt(3.0) * mean_wall_speed_ / spacing * true_step;
     const double allowed = most_density_factor(goal() - trial.error.resolution);
     // Without cells what is computed is how the fluid's own inertia lets a flow start.
@@ -266,39 +255,33 @@ Problem::Trial Problem::tried(const std::array<int, 2>& nodes, double tau) const
     const double pressed = has_cells_ ? compression_by_shear(most_viscous_tau, free_rate_ * true_step) : 0;
     trial.density_factor =
         std::max(1.0, std::min({wanted, nearly * scene::largest_wall_mach(scene_.fluid.inertia) / wall_mach,
-                                nearly * largest_compression_by_shear / pressed, bounds_.most_density_factor}));
+                                nearly * largest_compression_by_shear / pressed, most_by_limits(tau)}));
   }
   trial.error.inertia = inertia_error(trial.density_factor);
   trial.error.start = start_error(trial.density_factor);
-  trial.cost = step_cost(static_cast<double>(nodes[0]) * nodes[1], perimeters_ / spacing, scene_.numerics.precision) /
+  trial.cost = step_cost(fluid_nodes(with_lattice(scene_.domain, nodes)), membrane_nodes(spacing),
+                         scene_.numerics.precision, scene_.domain.dimension()) /
                true_step * duration(trial.density_factor);
   return trial;
 }
 
-/// That of the cell type for which it is largest.
+/// That of the cell type for which it is largest, and that of the flow.
 double Problem::resolution_error(double spacing, double tau) const {
-  if (!has_cells_) {
-    const double shape = (tau - 0.5) * spacing / scene_.domain.size.y();
-    return start_up_error * shape * shape;
-  }
+  const scene::Domain& domain = scene_.domain;
   double largest = 0;
-  for (const scene::CellType* type : used_types_) {
-    const auto* ellipse = std::get_if<scene::Ellipse>(&type->shape);
-    const double radius =
-        (ellipse != nullptr ? ellipse->semi_axes.minCoeff() : shape::shape_radius(type->shape)) / spacing;
-    double error = between(is_thin(*type) ? biconcave_cell : round_cell, viscosity_ratio_, radius) *
-                   (1 + growth_with_tau * std::max(0.0, tau - 1));
-    if (!corrected_) error += between(slip_at_ten[0], slip_at_ten[1], viscosity_ratio_) * 10 / radius;
-    largest = std::max(largest, error);
-  }
-  return largest;
+  for (const UsedType& used : used_types_)
+    largest = std::max(largest, lattice_error(used.type->shape, used.radius / spacing, viscosity_ratio_, tau,
+                                              domain.dimension(), corrected_));
+  if (!has_cells_) largest = flow_start_error(domain, spacing, tau);
+  return largest + steady_flow_error(domain, spacing);
 }
 
 double Problem::inertia_error(double density_factor) const {
   const double rate = std::max(free_rate_ * density_factor, own_rate_);  // of the fluid as dense as it is
   if (!has_cells_ || !(rate > 0)) return 0;
   const double reynolds = reynolds_ / shear_rate_ * rate;
-  return steady_ ? steady_amplitude * std::exp(-decay() / std::sqrt(reynolds)) : motion_by_reynolds * reynolds;
+  const int dimension = scene_.domain.dimension();
+  return steady_ ? steady_error(reynolds, strain_, viscosity_ratio_, dimension) : motion_error(reynolds, dimension);
 }
 
 /// Of the stage where it is largest. Events of a motion come late by the lag. The steady state misses what the slowest
@@ -342,7 +325,7 @@ std::string Problem::why_density_factor(const Trial& best) const {
   if (best.error.start > 0) {
     why += ", and " + number(100 * best.error.start, 2) + " % by the start of the flow" + gain_by_developed_start(best);
   }
-  if (best.density_factor >= bounds_.most_density_factor * 0.99) why += "; more is beyond a limit of the plan";
+  if (best.density_factor >= most_by_limits(best.tau) * 0.99) why += "; more is beyond a limit of the plan";
   return why;
 }
 
@@ -363,7 +346,8 @@ NumericsChoice Problem::chosen(const Trial& best) const {
     choice.values.push_back({pointer, value, why});
   };
   const auto percent = [](double share) { return number(100 * share, 2) + " %"; };
-  const double spacing = scene_.domain.size.y() / best.nodes[1];
+  const double spacing = spacing_of(best.nodes);
+  const bool in_space = scene_.domain.depth.has_value();
   if (!written_.at("domain").contains("nodes")) {
     choose("/domain/nodes", best.nodes,
            has_cells_ ? "the smallest cell's radius is " + number(radius_ / spacing, 3) +
@@ -371,7 +355,7 @@ NumericsChoice Problem::chosen(const Trial& best) const {
                       : std::to_string(best.nodes[1]) + " rows: " + percent(best.error.resolution) + " of error");
   }
   for (const scene::CellType& type : scene_.cell_types) {
-    if (written_.at("cell_types").at(type.name).contains("segments")) continue;
+    if (in_space || written_.at("cell_types").at(type.name).contains("segments")) continue;
     const double segments = std::clamp(std::round(shape::shape_perimeter(type.shape) / spacing), 8.0, 100000.0);
     choose("/cell_types/" + type.name + "/segments", static_cast<int>(segments), "one for each spacing");
   }
@@ -384,9 +368,10 @@ NumericsChoice Problem::chosen(const Trial& best) const {
     set("coupling", "auto", "explicit or semi-implicit, by the limits of the membranes' stiffness");
     set("slip_correction", corrected_,
         corrected_ ? "takes the first-order error of the immersed boundary out"
+        : in_space ? "there is none in three dimensions"
                    : "left out, for plasma between cells drains with it, and some that attract each other strongly "
                      "then become so thin that they cross themselves");
-    set("area_correction", true, "cells keep their areas");
+    set("area_correction", true, in_space ? "cells keep their volumes" : "cells keep their areas");
   }
   if (!meets_target(best)) {
     choice.doubt = "numerics.auto: the expected error is " + percent(best.error.total()) +
@@ -421,27 +406,34 @@ void spell_out_numerics(json::Document& document) {
 void put_draft_numerics(json::Document& document) {
   const Json root = document.root();
   const scene::SceneFields fields(document);
-  if (root.at("domain").at("size").size() == 3) {
-    fields.refuse_key("/numerics",
-                      "\"auto\" chooses numerics in two dimensions only so far\ngive domain.nodes and numerics.tau, "
-                      "numerics.density_factor, or leave numerics out");
-  }
+  const bool in_space = root.at("domain").at("size").size() == 3;
   if (!root.at("domain").contains("nodes")) {
     const Eigen::Vector2d size = fields.quantities("/domain/size", "m", scene::range::length);
-    const auto lattice = coarsest_lattice(size);
+    std::vector<double> lengths{size.x(), size.y()};
+    if (in_space) lengths.push_back(fields.quantity("/domain/size/2", "m", scene::range::length));
+    const auto lattice = coarsest_lattice(lengths);
     if (!lattice) {
+      const std::string most = std::to_string(most_coarse_rows);
       fields.refuse("/domain/size",
-                    "the ratio of these sides is not one of whole numbers up to " + std::to_string(most_coarse_rows) +
-                        ", so that no lattice with the same spacing along both can be chosen\n"
-                        "write sides with a simple ratio, such as [\"50 um\", \"25 um\"], or give nodes");
+                    in_space
+                        ? "the ratios of these sides are not those of whole numbers up to " + most +
+                              ", or want more nodes than can be computed (" + std::to_string(scene::most_nodes) +
+                              "), so that no lattice with the same spacing along all three can be chosen\n"
+                              "write sides with simple ratios, such as [\"50 um\", \"25 um\", \"25 um\"], or give nodes"
+                        : "the ratio of these sides is not one of whole numbers up to " + most +
+                              ", so that no lattice with the same spacing along both can be chosen\n"
+                              "write sides with a simple ratio, such as [\"50 um\", \"25 um\"], or give nodes");
     }
     // As fine as a lattice that might be chosen: a region of output must hold nodes.
-    const int factor = std::max(1, 1024 / std::max((*lattice)[0], (*lattice)[1]));
-    document.put("/domain/nodes", Json{(*lattice)[0] * factor, (*lattice)[1] * factor}, origin);
+    const int factor = std::max(1, 1024 / *std::max_element(lattice->begin(), lattice->end()));
+    document.put("/domain/nodes", refined(*lattice, factor).value(), origin);
   }
   const Json types = root.value("cell_types", Json::object());
   for (const auto& [name, type] : types.items()) {
-    if (!type.contains("segments")) document.put(json::child_pointer("/cell_types", name) + "/segments", 64, origin);
+    const std::string cell = json::child_pointer("/cell_types", name);
+    if (in_space && !type.contains("triangles") && !type.at("shape").contains("mesh"))
+      document.put(cell + "/triangles", 320, origin);
+    if (!in_space && !type.contains("segments")) document.put(cell + "/segments", 64, origin);
   }
 }
 
@@ -457,18 +449,6 @@ Json to_json(const std::optional<NumericsChoice>& choice) {
           {"of", choice->steady ? "steady" : "motion"},
           {"values", choice->values},
           {"expected_error", choice->expected}};
-}
-
-double order_of_lattice_error(const scene::Scene& scene) {
-  if (scene.cells.empty()) return 2;
-  if (!scene.numerics.slip_correction) return 1;
-  double least = biconcave_cell[0].order;
-  for (const scene::CellPlacement& cell : scene.cells) {
-    const scene::CellType& type = scene.cell_types[cell.type];
-    const double ratio = type.interior_viscosity / scene.fluid.viscosity;
-    least = std::min(least, order_between(is_thin(type) ? biconcave_cell : round_cell, ratio));
-  }
-  return least;
 }
 
 std::optional<NumericsChoice> fill_in_numerics(json::Document& document, const NumericsBounds& bounds) {

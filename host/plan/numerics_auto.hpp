@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -46,6 +47,9 @@ nlohmann::json to_json(const std::optional<NumericsChoice>& choice);
 /// What the limits of a plan ask for beyond the target error.
 struct NumericsBounds {
   double most_density_factor = std::numeric_limits<double>::infinity();
+  /// By relaxation time. The explicit step bears stiffness by the square of tau - 1/2, so that what is too much at one may do at
+  /// another.
+  std::map<double, double> most_density_factor_at = {};
   double least_radius = 10;  ///< of the smallest cell, lattice spacings
   bool slip_correction = true;
   bool operator==(const NumericsBounds&) const = default;
@@ -57,9 +61,5 @@ struct NumericsBounds {
 /// with faults gets values with which it can be read, and nothing is chosen. Throws Error(bad_input) when no lattice fits
 /// the domain.
 std::optional<NumericsChoice> fill_in_numerics(json::Document& document, const NumericsBounds& bounds = {});
-
-/// The power of the spacing with which the lattice's error was measured to fall: 2, and for biconcave cells with the fluid's own
-/// viscosity inside 3 (docs/accuracy.md, "The error model of auto"); without slip correction 1.
-double order_of_lattice_error(const scene::Scene& scene);
 
 }  // namespace rouleau::plan

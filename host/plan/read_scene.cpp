@@ -40,8 +40,12 @@ NumericsBounds tightened(NumericsBounds bounds, const Plan& plan) {
   for (const Limit& limit : find_limits(plan)) {
     if (limit.margin >= 1 || !(limit.margin > 0)) continue;
     if (limit.remedied_by == RemediedBy::density_factor) {
-      const double kept = plan.scene->numerics.density_factor * limit.margin / to_spare;
-      bounds.most_density_factor = std::min(bounds.most_density_factor, kept);
+      const scene::Numerics& numerics = plan.scene->numerics;
+      const double kept = numerics.density_factor * limit.margin / to_spare;
+      double& most = plan.scene->domain.depth
+                         ? bounds.most_density_factor_at.try_emplace(numerics.tau, kept).first->second
+                         : bounds.most_density_factor;
+      most = std::min(most, kept);
     } else if (limit.remedied_by == RemediedBy::resolution) {
       const double radius = shape::smallest_radius(*plan.scene) / lattice_spacing(*plan.scene);
       bounds.least_radius = std::max(bounds.least_radius, radius / limit.margin);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "base/text.hpp"
 #include "embedded_schemas.hpp"
@@ -14,7 +15,6 @@
 namespace rouleau::scene {
 namespace {
 
-constexpr std::int64_t most_nodes = std::int64_t{1} << 30;
 constexpr std::int64_t most_membrane_nodes = 100'000'000;
 /// How far the spacings along x and y may differ: far above rounding of the text's digits, far below any effect.
 constexpr double spacing_tolerance = 1e-9;
@@ -29,14 +29,15 @@ std::string spacing_remedy(const Domain& domain) {
   std::string remedy =
       "write size [" + in_micrometres(domain.size.x()) + ", " + in_micrometres(spacing.x() * domain.nodes[1]) + ']';
   const double nodes = domain.size.y() / spacing.x();
-  if (std::abs(nodes - std::round(nodes)) < spacing_tolerance * nodes && nodes > 3.5 && nodes < 65536.5) {
+  if (std::abs(nodes - std::round(nodes)) < spacing_tolerance * nodes && nodes > 3.5 &&
+      nodes < most_nodes_of_side + 0.5) {
     remedy += " or nodes [" + std::to_string(domain.nodes[0]) + ", " + number(std::round(nodes), 12) + ']';
   }
   return remedy;
 }
 
-/// The third number of size and nodes, and what is at both ends along z; none: two dimensions.
-std::optional<Depth> read_depth(const SceneFields& fields) {
+/// The third number of size and nodes, and what is at both ends along z.
+void read_depth(const SceneFields& fields, Domain& domain) {
   const auto has_third = [&](const std::string& key) { return fields.has(key) && fields.count(key) == 3; };
   const bool size = has_third("/domain/size"), nodes = has_third("/domain/nodes");
   if (!size && nodes) {
@@ -48,16 +49,17 @@ std::optional<Depth> read_depth(const SceneFields& fields) {
       fields.refuse_key("/domain/z",
                         "there is no z in two dimensions\ngive size and nodes three numbers, or leave z out");
     }
-    return std::nullopt;
+    return;
   }
-  fields.require("/domain", "nodes", "and in three dimensions nothing chooses them");
-  if (!nodes) {
+  domain.depth->size = fields.quantity("/domain/size/2", "m", range::length);
+  fields.attempt([&] {
+    if (fields.has("/domain/z")) domain.depth->periodic = fields.value<nlohmann::json>("/domain/z").is_string();
+  });
+  if (fields.has("/domain/nodes") && !nodes) {
     fields.refuse("/domain/nodes",
                   "size has three numbers and nodes two\ngive both three, for three dimensions, or both two");
   }
-  Depth depth{fields.quantity("/domain/size/2", "m", range::length), fields.value<int>("/domain/nodes/2")};
-  if (fields.has("/domain/z")) depth.periodic = fields.value<nlohmann::json>("/domain/z").is_string();
-  return depth;
+  if (nodes) domain.depth->nodes = fields.value<int>("/domain/nodes/2");
 }
 
 /// The radius of a tube, which closes y and z; none: planes do, or nothing.
@@ -144,13 +146,17 @@ void check_space(const SceneFields& fields, const Scene& scene) {
   }
 }
 
-Domain read_domain(const SceneFields& fields) {
-  Domain domain{};
+/// It has as many dimensions as its size has numbers, whatever is wrong with them.
+void read_domain(const SceneFields& fields, Domain& domain) {
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  domain.nodes = {};
+  domain.size.setConstant(unknown);
+  if (fields.has("/domain/size/2")) domain.depth = Depth{unknown, 0};
   domain.size = fields.quantities("/domain/size", "m", range::length);
   fields.attempt([&] {
     if (fields.has("/domain/y")) domain.periodic_y = fields.value<nlohmann::json>("/domain/y").is_string();
   });
-  fields.attempt([&] { domain.depth = read_depth(fields); });
+  fields.attempt([&] { read_depth(fields, domain); });
   fields.attempt([&] {
     fields.require("/domain", "nodes", "or \"numerics\": \"auto\" chooses them");
     domain.nodes = fields.value<std::array<int, 2>>("/domain/nodes");
@@ -183,7 +189,6 @@ Domain read_domain(const SceneFields& fields) {
     domain.tube_radius = read_tube(fields, domain);
     if (domain.tube_radius) domain.depth->periodic = false;
   });
-  return domain;
 }
 
 /// In order of height; refuses layers that lie beyond the domain or on top of each other.
@@ -407,7 +412,7 @@ Scene read_scene(std::shared_ptr<const json::Document> document, Faults& faults)
   part([&] {
     if (fields.has("/title")) scene.title = fields.line("/title");
   });
-  part([&] { scene.domain = read_domain(fields); });
+  part([&] { read_domain(fields, scene.domain); });
   if (scene.domain.size.allFinite()) fields.bound_lengths(scene.domain.size);
   part([&] { scene.fluid = read_fluid(fields, scene.domain); });
   part([&] { scene.numerics = read_numerics(fields); });

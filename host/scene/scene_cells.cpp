@@ -87,10 +87,7 @@ int read_triangles(const SceneFields& fields, const std::string& pointer, const 
   }
   if (!fields.has(key)) {
     if (!is_known(domain)) return 20;  // any number that is one
-    const double spacing = domain.size.x() / domain.nodes[0];
-    const double n = std::round(std::sqrt(surface_area(type.shape) / (4 * std::numbers::pi)) / spacing);
-    if (!std::isfinite(n)) return 20;  // what is wrong with the size has been said
-    return 20 * static_cast<int>(std::pow(std::clamp(n, 2.0, 200.0), 2));
+    return triangles_about(type.shape, domain.size.x() / domain.nodes[0]);
   }
   const int triangles = fields.value<int>(key);
   const int n = static_cast<int>(std::floor(std::sqrt(triangles / 20.0)));
@@ -289,6 +286,12 @@ std::vector<CellType> read_cell_types(const SceneFields& fields, double fluid_vi
     });
   }
   return types;
+}
+
+int triangles_about(const Shape& shape, double spacing) {
+  const double n = std::round(std::sqrt(surface_area(shape) / (4 * std::numbers::pi)) / spacing);
+  if (!std::isfinite(n)) return 20;  // what is wrong with the size has been said
+  return 20 * static_cast<int>(std::pow(std::clamp(n, 2.0, 200.0), 2));
 }
 
 std::vector<CellPlacement> read_cells(const SceneFields& fields, const std::vector<CellType>& types,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -137,14 +138,20 @@ class SceneFields {
   std::optional<Eigen::Vector2d> box_;
 };
 
-/// More cannot be computed.
+// More cannot be computed.
 inline constexpr long most_cells = 1'000'000;
+inline constexpr std::int64_t most_nodes = std::int64_t{1} << 30;  ///< of a lattice
+inline constexpr int most_nodes_of_side = 65536;
 
 /// Could the domain be read? Only then something can be said that depends on it.
-inline bool is_known(const Domain& domain) { return domain.size.allFinite() && domain.nodes[0] > 0; }
+inline bool is_known(const Domain& domain) {
+  return domain.size.allFinite() && domain.nodes[0] > 0 && (!domain.depth || domain.depth->nodes > 0);
+}
 
 /// The parts of a scene, each in a file of its own.
 std::vector<CellType> read_cell_types(const SceneFields& fields, double fluid_viscosity, const Domain& domain);
+/// Triangles with which the nodes of a surface lie about so far apart, m: 20 n^2. Not of a mesh, whose file has them.
+int triangles_about(const Shape& shape, double spacing);
 /// Cells as placed by hand. What is wanted at random goes into `packings`.
 std::vector<CellPlacement> read_cells(const SceneFields& fields, const std::vector<CellType>& types,
                                       const Domain& domain, std::vector<RandomPacking>& packings);

@@ -21,10 +21,11 @@ double enclosed_by(const scene::CellType& type) {
   return area_of(make_outline(type.shape, type.segments));
 }
 
+int surface_nodes(int triangles) { return triangles / 2 + 2; }
+
 double node_count(const scene::CellType& type) {
   if (!is_surface(type)) return type.segments;
-  const int nodes = type.triangles / 2 + 2;  // of a sphere that is cut into triangles
-  if (type.triangles > 0) return nodes;
+  if (type.triangles > 0) return surface_nodes(type.triangles);
   return static_cast<double>(make_surface(type).nodes.size());
 }
 

@@ -7,6 +7,8 @@ namespace rouleau::shape {
 
 /// What a cell of this type encloses as placed: m2 of an outline, m3 of a surface.
 double enclosed_by(const scene::CellType& type);
+/// Nodes of a closed surface without holes, by Euler's formula.
+int surface_nodes(int triangles);
 /// Nodes of its membrane.
 double node_count(const scene::CellType& type);
 /// Mean length of its segments, or of its edges, m.

@@ -306,6 +306,50 @@ class A_plan_in_three_dimensions(Case):
         self.assertIn("z = 0.125 um to", self.rouleau("plan", self.write(changed(SPACE, output__fields__stride=3))).stdout)
 
 
+class Numerics_auto(Case):
+    SCENE = changed(SHEARED, domain={"size": ["1.8 um", "1.8 um", "1.8 um"], "y": WALLS}, interactions=[],
+                    cells=[{"type": "capsule", "at": ["0.9 um", "0.9 um", "0.9 um"]}],
+                    numerics={"auto": {"error": 0.1, "of": "steady"}, "precision": "f32"},
+                    stages=[{"name": "shear", "shear_rate": "1000 1/s", "strain": 2, "start": "developed"}],
+                    output={"cells": {"strain": 0.1}})
+
+    def setUp(self):
+        super().setUp()
+        self.scene = copy.deepcopy(self.SCENE)
+        del self.scene["cell_types"]["capsule"]["triangles"]
+
+    def test_chooses_a_lattice_that_plan_explains_and_a_run_measures_its_errors(self):
+        plan = self.rouleau("plan", self.write(self.scene))
+        self.assertRegex(plan.stdout, r"/domain/nodes +\[(\d+),\1,\1\]")
+        done = self.rouleau("run", self.write(self.scene), "--out", self.folder / "out", "--quiet")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        summary = json.loads((self.folder / "out/summary.json").read_text())
+        choice = summary["numerics_choice"]
+        self.assertIsNotNone(summary["error_bars"]["deformation"]["error"], summary["error_bars"]["deformation"]["how"])
+        self.assertEqual(choice["measured_error"] > 0.1, "has missed its target" in done.stdout, done.stdout)
+        written = json.loads((self.folder / "out/scene.json").read_text())
+        nodes = written["domain"]["nodes"]
+        self.assertEqual(len(set(nodes)), 1)
+        self.assertGreaterEqual(nodes[0] * 0.45 / 1.8, 10)
+        self.assertTrue(written["numerics"]["area_correction"])
+
+    def test_chooses_in_a_tube_too(self):
+        scene = changed(TUBE, domain={"size": ["3 um", "3 um", "3.5 um"], "walls": TUBE["domain"]["walls"]},
+                        numerics={"auto": {"error": 0.1}})
+        plan = json.loads(self.rouleau("plan", self.write(scene), "--json").stdout)
+        values = {value["pointer"]: value["value"] for value in plan["numerics_choice"]["values"]}
+        nodes = values["/domain/nodes"]
+        self.assertEqual([nodes[0], 7 * nodes[0]], [nodes[1], 6 * nodes[2]])
+
+    def test_says_what_to_write_where_no_lattice_fits(self):
+        for command in ("plan", "run"):
+            done = self.rouleau(command, self.write(changed(self.scene, domain__size=["1.8 um", "1.8 um", "1.7345678912 um"])))
+            self.assertEqual(done.returncode, 2)
+            self.assertIn("/domain/size", done.stderr)
+            self.assertIn("along all three can be chosen", done.stderr)
+            self.assertNotIn("sphere", done.stderr)
+
+
 class Three_dimensions_refuse(Case):
     def refused(self, scene, pointer, *words, code=2):
         for command in ("plan", "run"):
@@ -371,7 +415,6 @@ class Three_dimensions_refuse(Case):
         fields = {"seconds": "1 ms", "quantities": ["velocity"],
                   "region": {"from": ["0 um", "0 um"], "to": ["2 um", "2 um"]}}
         self.refused(changed(SPACE, output__fields=fields), "/output/fields/region", "whole lattice")
-        self.refused(changed(SPACE, numerics="auto"), "/numerics", "two dimensions only")
         self.refused(changed(SPACE, domain__z=WALLS, stages__0__start="developed"), "/stages/0/start", "two walls")
 
     def test_an_operator_whose_manifest_names_d2q9_alone(self):

@@ -60,6 +60,21 @@ TEST_CASE("auto meets the target error of a turning biconcave cell", "[auto]") {
   }
 }
 
+TEST_CASE("auto meets the target error of a steady capsule in three dimensions", "[auto][space]") {
+  // Own boundary integral without bending, on 1 442 nodes (docs/three-dimensions.md).
+  constexpr double deformation = 0.2717, angle = 0.172 * std::numbers::pi;
+  const double target = GENERATE(0.1, 0.05);
+  const SceneRun run = run_scene(scenes + "/auto-capsule-3d.json", {"/numerics/auto/error=" + std::to_string(target)});
+  REQUIRE(run.summary["status"] == "completed");
+  CHECK(run.summary["warnings"].empty());
+  const double shape = run.column("deformation").back() / deformation - 1,
+               turned = run.column("angle_rad").back() / angle - 1;
+  std::cout << "auto, capsule in three dimensions, target " << 100 * target << " %: error of the deformation "
+            << 100 * shape << " %, of the angle " << 100 * turned << " % (" << choice_of(run) << ")\n";
+  CHECK(std::abs(shape) < target);
+  CHECK(std::abs(turned) < target);
+}
+
 TEST_CASE("without convective inertia a capsule's shape does not depend on the walls' Mach number", "[auto]") {
   // What lets plan and auto go up to 0.2. Long after the start, so that the relaxed density has no part in it.
   const auto deformation = [](double density_factor, double& mach) {

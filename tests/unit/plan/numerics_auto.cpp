@@ -1,10 +1,13 @@
 // What "numerics": "auto" chooses: pins hold, errors that are asked for decide, limits of the plan prevail.
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <fstream>
 
 #include "json/document.hpp"
 #include "plan/plan_report.hpp"
 #include "plan/read_scene.hpp"
+#include "scratch_folder.hpp"
 
 using namespace rouleau::plan;
 using namespace rouleau::plugin;
@@ -205,4 +208,141 @@ TEST_CASE("a mean speed of the walls counts among what the Mach number bounds") 
   CHECK(mach(R"({"name": "carry", "duration": "1 s", "walls": {"lower": "5 mm/s", "upper": "5 mm/s"}})") < 0.2);
   CHECK(mach(R"({"name": "carry", "duration": "1 s", "start": "developed",
                  "walls": {"lower": "20 mm/s", "upper": "20.5 mm/s"}})") < 0.2);
+}
+
+namespace {
+
+const std::string in_space = "/auto-capsule-3d.json";
+
+std::string target_of(double error, const std::string& of) {
+  return R"(/numerics={"auto": {"error": )" + std::to_string(error) + R"(, "of": ")" + of +
+         R"("}, "precision": "f32"})";
+}
+std::vector<int> lattice_of(const Scene& scene) {
+  return {scene.domain.nodes[0], scene.domain.nodes[1], scene.domain.depth->nodes};
+}
+std::string domain_of(const std::string& size, const std::string& walls) {
+  return "/domain={\"size\": " + size + ", " + walls + "}";
+}
+const std::string tube = R"("walls": {"tube": {"radius": "8 um"}})";
+const std::vector<std::string> in_tube{
+    domain_of(R"(["24 um", "18 um", "18 um"])", tube), R"(/cells/0/at=["12 um", "9 um", "9 um"])",
+    R"(/stages=[{"name": "flow", "pressure_gradient": "1e5 Pa/m", "duration": "0.1 s"}])",
+    R"(/output/cells={"seconds": "10 ms"})"};
+
+}  // namespace
+
+TEST_CASE(
+    "in three dimensions a smaller target costs more on a lattice that is not coarser, and its error is below it") {
+  const std::string shape = "/cell_types/capsule/shape=", wide = R"(["24 um", "18 um", "12 um"])",
+                    walls = R"("y": {"lower": {"wall": {}}, "upper": {"wall": {}}})",
+                    inside = R"(/cells/0/at=["12 um", "9 um", "6 um"])";
+  const std::vector<std::vector<std::string>> cases{
+      {},
+      {"/stages/0/start=impulsive"},
+      {"/cell_types/capsule/interior_viscosity=\"6 cP\""},
+      {shape + R"({"biconcave": {"radius": "3.91 um"}})"},
+      {shape + R"({"ellipsoid": {"semi_axes": ["4 um", "3 um", "2.5 um"]}})", domain_of(wide, walls), inside},
+      in_tube};
+  for (const auto& changes : cases) {
+    for (const char* of : {"steady", "motion"}) {
+      double cost = 0;
+      int rows = 0;
+      for (const double target : {0.1, 0.05, 0.03, 0.02}) {
+        std::vector<std::string> overrides{target_of(target, of)};
+        overrides.insert(overrides.end(), changes.begin(), changes.end());
+        const auto [scene, choice] = chosen(overrides, in_space);
+        INFO((changes.empty() ? "" : changes.front()) << " " << of << " " << target);
+        CHECK(choice->expected.total() <= target);
+        CHECK(choice->doubt.empty());
+        CHECK(estimated_cost(scene) >= cost * 0.98);  // factors are rounded to three digits
+        CHECK(scene.domain.nodes[1] >= rows);
+        CHECK(scene.numerics.area_correction);
+        CHECK_FALSE(scene.numerics.slip_correction);
+        cost = estimated_cost(scene);
+        rows = scene.domain.nodes[1];
+      }
+    }
+  }
+}
+
+TEST_CASE("a lattice of three dimensions has the ratios of its domain, and nodes that a scene gives stay") {
+  const std::string walls = R"("y": {"lower": {"wall": {}}, "upper": {"wall": {}}})";
+  const std::string sides = domain_of(R"(["24 um", "12 um", "18 um"])", walls),
+                    inside = R"(/cells/0/at=["12 um", "6 um", "9 um"])";
+  const std::vector<int> chosen_nodes = lattice_of(chosen({sides, inside}, in_space).scene);
+  CHECK(chosen_nodes[0] == 2 * chosen_nodes[1]);
+  CHECK(2 * chosen_nodes[2] == 3 * chosen_nodes[1]);
+  const std::string more = R"("nodes": [96, 48, 72], )";
+  const auto [scene, choice] = chosen({domain_of(R"(["24 um", "12 um", "18 um"])", more + walls), inside,
+                                       "/numerics/tau=1.5", "/cell_types/capsule/triangles=2880"},
+                                      in_space);
+  CHECK(lattice_of(scene) == std::vector<int>{96, 48, 72});
+  CHECK(scene.numerics.tau == 1.5);
+  CHECK(scene.cell_types[0].triangles == 2880);
+  for (const ChosenValue& value : choice->values) CHECK(value.pointer.starts_with("/numerics/"));
+  const auto again =
+      chosen({"/numerics=" + scene.document->root()["numerics"].dump(),
+              "/domain=" + scene.document->root()["domain"].dump(), inside, "/cell_types/capsule/triangles=2880"},
+             in_space);
+  CHECK(again.scene.document->root() == scene.document->root());
+  CHECK(again.numerics_choice->values.empty());
+}
+
+TEST_CASE("without cells a lattice of three dimensions resolves what lies between its walls") {
+  const std::string thin = R"(["2.5 um", "20 um", "20 um"])",
+                    flow = R"(/stages=[{"name": "flow", "pressure_gradient": "1e4 Pa/m", "duration": "0.4 s"}])",
+                    output = R"(/output/cells={"seconds": "0.1 s"})",
+                    wall = R"({"lower": {"wall": {}}, "upper": {"wall": {}}})";
+  const auto of = [&](const std::string& walls, double target) {
+    const ReadScene read =
+        chosen({target_of(target, "motion"), domain_of(thin, walls), "/cells=[]", flow, output}, in_space);
+    CHECK(read.numerics_choice->expected.total() <= target);
+    CHECK(read.numerics_choice->doubt.empty());
+    CHECK(read.scene.numerics.density_factor == 1);
+    return lattice_of(read.scene);
+  };
+  CHECK(of("\"y\": " + wall + ", \"z\": " + wall, 0.01) == std::vector<int>{4, 32, 32});
+  // A tube's radius has eight spacings at least, more where its flow rate asks for them (0.65 over the square of the radius).
+  const std::string round = R"("walls": {"tube": {"radius": "10 um"}})";
+  CHECK(of(round, 0.05)[1] >= 16);
+  CHECK(of(round, 0.005)[1] >= 2 * std::sqrt(0.65 / 0.005));
+}
+
+TEST_CASE("auto leaves a surface from a file its triangles") {
+  const rouleau::test::ScratchFolder folder;
+  const std::filesystem::path file = folder.path() / "cube.off";
+  std::ofstream(file) << "OFF\n8 12 0\n-1 -1 -1\n1 -1 -1\n1 1 -1\n-1 1 -1\n-1 -1 1\n1 -1 1\n1 1 1\n-1 1 1\n"
+                      << "3 0 2 1\n3 0 3 2\n3 4 5 6\n3 4 6 7\n3 0 1 5\n3 0 5 4\n3 2 3 7\n3 2 7 6\n3 1 2 6\n3 1 6 5\n"
+                      << "3 0 4 7\n3 0 7 3\n";
+  const std::string mesh =
+      R"(/cell_types/capsule/shape={"mesh": {"file": ")" + file.string() + R"(", "unit": "3 um"}})";
+  const auto [scene, choice] = chosen({mesh}, in_space);
+  CHECK(scene.cell_types[0].triangles == 0);
+  CHECK(choice->expected.total() <= 0.05);
+}
+
+TEST_CASE("limits of the plan bound the choice in three dimensions, where cells step explicitly") {
+  const Scene stiff = chosen({"/cell_types/capsule/membrane/0/parameters/shear_modulus=2.4e-3"}, in_space).scene;
+  const Catalog catalog = shipped_plugins(stiff);
+  const Plan plan = make_plan(stiff, catalog);
+  CHECK_FALSE(plan.semi_implicit);
+  for (const Limit& limit : find_limits(plan))
+    if (limit.remedied_by != RemediedBy::nothing) CHECK(limit.margin >= 1);
+}
+
+TEST_CASE("without a lattice that fits three sides auto says what to write, and nothing else is wrong") {
+  const auto message = [](const std::string& size) {
+    try {
+      chosen({"/domain/size=" + size}, in_space);
+    } catch (const rouleau::Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  for (const char* size : {R"(["24 um", "24 um", "17.3456789123 um"])", R"(["24.01 um", "24 um", "24 um"])",
+                           R"(["24 um", "24.01 um", "24 um"])"}) {
+    CHECK_THAT(message(size), Contains("/domain/size") && Contains("along all three") && Contains("or give nodes") &&
+                                  !Contains("sphere"));
+  }
 }
