@@ -109,10 +109,6 @@ void choose_coupling(Plan& plan) {
         "fluid.layers has others";
     return;
   }
-  if (plan.scene->domain.depth) {
-    plan.coupling = "explicit, chosen by \"auto\": the semi-implicit step is taken in two dimensions only so far";
-    return;
-  }
   const double margin = explicit_margin(plan);
   const bool stiff = margin < comfortable_margin;
   plan.semi_implicit = stiff && semi_implicit_gains(plan);
