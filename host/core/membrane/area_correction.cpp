@@ -8,8 +8,6 @@ namespace rouleau::core {
 
 namespace {
 
-constexpr double relaxation = 50;  // steps in which a difference of area goes by a factor e
-
 template <class S>
 ROULEAU_ALWAYS_INLINE double lane_sum(const S& values) {
   double total = 0;
@@ -41,7 +39,7 @@ struct KeepArea {
     });
     area /= 4, gain /= 2, square /= 4;
     task->gain = gain;
-    const double factor = square > 0 ? 0.5 * ((t.rest_area - area) / relaxation - gain) / square : 0;
+    const double factor = square > 0 ? 0.5 * ((t.rest_area - area) / area_relaxation_steps - gain) / square : 0;
     for_closed_outline<register_bytes>(t.begin, t.end, [&](auto tag, int i, int before, int after) {
       using S = decltype(tag);
       const S ax = S::load(t.y + after) - S::load(t.y + before), ay = S::load(t.x + before) - S::load(t.x + after);

@@ -6,6 +6,9 @@
 
 namespace rouleau::core {
 
+/// Steps in which a difference of area, in three dimensions of volume, goes by a factor e.
+inline constexpr double area_relaxation_steps = 50;
+
 /// Pass over cells, once the forces on them are complete: takes the part along dA/dX out of each cell's forces, F_i -= p A_i
 /// with p = (F . A)/(A . A). Only the pressure in the cell would feel it; on the lattice it would leak. What is left is the
 /// adjoint of keep_areas(), and has the same sum and the same torque.

@@ -2,13 +2,9 @@
 
 #include <algorithm>
 
+#include "core/membrane/area_correction.hpp"
+
 namespace rouleau::core {
-
-namespace {
-
-constexpr double relaxation = 50;  // steps in which a difference of volume goes by a factor e
-
-}  // namespace
 
 VolumeCorrection::VolumeCorrection(const Surfaces& surfaces)
     : along_x_(surfaces.x.size()), along_y_(surfaces.x.size()), along_z_(surfaces.x.size()) {}
@@ -62,7 +58,7 @@ void VolumeCorrection::keep_volumes(Worker worker, Surfaces& surfaces) {
       thrice +=
           (surfaces.x[i] - x) * along_x_[i] + (surfaces.y[i] - y) * along_y_[i] + (surfaces.z[i] - z) * along_z_[i];
     }
-    const double factor = square > 0 ? ((rest.rest_volume - thrice / 3) / relaxation - gain) / square : 0;
+    const double factor = square > 0 ? ((rest.rest_volume - thrice / 3) / area_relaxation_steps - gain) / square : 0;
     for (int i = range.first; i < range.end(); ++i) {
       surfaces.velocity_x[i] += factor * along_x_[i];
       surfaces.velocity_y[i] += factor * along_y_[i];
