@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Scenes of three dimensions from JSON to files, what is refused there, and that threads and pauses change no bit.
 
-usage: check_three_dimensions.py ROULEAU SCENE_OF_A_DUCT
+usage: check_three_dimensions.py ROULEAU SCENE_OF_A_DUCT [--no-whole-runs]
 """
 import copy
 import csv
@@ -13,6 +13,7 @@ import unittest
 from pathlib import Path
 
 PROGRAM, DUCT = Path(sys.argv[1]).resolve(), json.loads(Path(sys.argv[2]).read_text())
+WITHOUT_WHOLE_RUNS = "--no-whole-runs" in sys.argv  # where the program is ten times slower
 WALLS = {"lower": {"wall": {}}, "upper": {"wall": {}}}
 PLANE = {
     "rouleau": 1,
@@ -318,6 +319,7 @@ class Numerics_auto(Case):
         self.scene = copy.deepcopy(self.SCENE)
         del self.scene["cell_types"]["capsule"]["triangles"]
 
+    @unittest.skipIf(WITHOUT_WHOLE_RUNS, "whole runs")
     def test_chooses_a_lattice_that_plan_explains_and_a_run_measures_its_errors(self):
         plan = self.rouleau("plan", self.write(self.scene))
         self.assertRegex(plan.stdout, r"/domain/nodes +\[(\d+),\1,\1\]")
@@ -333,6 +335,7 @@ class Numerics_auto(Case):
         self.assertGreaterEqual(nodes[0] * 0.45 / 1.8, 10)
         self.assertTrue(written["numerics"]["area_correction"])
 
+    @unittest.skipIf(WITHOUT_WHOLE_RUNS, "whole runs")
     def test_that_misses_its_target_is_followed_by_a_finer_run(self):
         # At a strain of 0.7 the fluid's unsteady term delays the shape by more than auto's motion expects.
         scene = changed(self.scene, numerics={"auto": {"error": 0.08}, "precision": "f32"}, stages__0__strain=0.7)
