@@ -51,9 +51,10 @@ Counts count_outputs(const scene::Scene& scene, const StageSetting& stage) {
   return counts;
 }
 
-/// Up to which distance cells act on each other, lattice spacings; 0: they do not.
+/// Up to which distance cells in space act on each other, lattice spacings; 0: they do not.
 double largest_cutoff(const Plan& plan) {
   double largest = 0;
+  if (!plan.scene->domain.depth) return largest;  // there a step's cost knows of none
   for (std::size_t i = 0; i < plan.interactions.size(); ++i) {
     const PlannedModel& model = plan.interactions[i];
     const scene::Interaction& between = plan.scene->interactions[i];
@@ -144,9 +145,8 @@ Estimate estimate(const Plan& plan) {
   const double word = scene.numerics.precision == scene::Precision::f64 ? 8 : 4;
   Estimate estimate;
   for (const StageSetting& stage : plan.stages) estimate.steps += static_cast<double>(stage.max_steps);
-  estimate.wall_s =
-      estimate.steps * step_cost(fluid_nodes(scene.domain), membrane, scene.numerics.precision, dimension,
-                                 largest_cutoff(plan));
+  estimate.wall_s = estimate.steps * step_cost(fluid_nodes(scene.domain), membrane, scene.numerics.precision, dimension,
+                                               largest_cutoff(plan));
   estimate.memory_bytes = nodes * word *
                               (velocities + (plan.has_cells ? dimension : 0) +
                                (plan.viscosity_contrast || !scene.fluid.layers.empty() ? 1 : 0)) +
