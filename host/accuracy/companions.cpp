@@ -13,7 +13,6 @@
 #include "plan/lattice_size.hpp"
 #include "plan/stage_scales.hpp"
 #include "scene/driving_flow.hpp"
-#include "shape/extent.hpp"
 #include "shape/outline.hpp"
 
 namespace rouleau::accuracy {
@@ -71,12 +70,6 @@ bool start_matters(const scene::Scene& scene) {
   });
 }
 
-double membrane_nodes(const scene::Scene& scene) {
-  double nodes = 0;
-  for (const scene::CellPlacement& cell : scene.cells) nodes += shape::node_count(scene.cell_types[cell.type]);
-  return nodes;
-}
-
 using plan::LatticeSize, plan::lattice_size;
 
 std::string in_words(const LatticeSize& size) {
@@ -90,7 +83,7 @@ double share_of(const scene::Scene& scene, double coarser) {
   const LatticeSize size = lattice_size(scene.domain);
   const double nodes = std::accumulate(size.begin(), size.end(), 1.0, std::multiplies<>());
   const int dimension = static_cast<int>(size.size());
-  const double membranes = membrane_nodes(scene);
+  const double membranes = plan::membrane_nodes(scene);
   const auto cost = [&](double by) {
     const double of_membranes = membranes / std::pow(by, dimension - 1);
     return plan::step_cost(nodes / std::pow(by, dimension), of_membranes, scene.numerics.precision, dimension) /

@@ -8,7 +8,6 @@
 #include "core/membrane/membranes.hpp"
 #include "core/membrane/rounding.hpp"
 #include "estimate.hpp"
-#include "shape/extent.hpp"
 #include "solver_setup.hpp"
 
 namespace rouleau::plan {
@@ -52,9 +51,7 @@ template <int D>
 core::Decomposition<D> cut(const Plan& plan, int ranks) {
   const scene::Scene& scene = *plan.scene;
   const core::Domain<D> domain = lattice_domain<D>(scene);
-  double nodes = 0;
-  for (const scene::CellPlacement& cell : scene.cells) nodes += shape::node_count(scene.cell_types[cell.type]);
-  Points<D> points(domain, nodes);
+  Points<D> points(domain, membrane_nodes(scene));
   if (plan.has_cells) {
     for_each_cell<D>(scene, lattice_spacing(scene), [&](std::size_t, const auto& cell) { points.add(cell); });
   }

@@ -161,17 +161,14 @@ Stiffness membrane_stiffness(const Plan& plan, const plugin::ModelSetting& setti
       factor = core::stiffening(core::slip_constants(kernel.kind, ratio).shift,
                                 shape::node_spacing(cell) / setting.units.length);
     }
-    double stretching = 0, bending = 0;
+    core::Stiffness stiffness;
     for (const PlannedModel& law : plan.membranes[t]) {
-      if (!law.active()) continue;
-      const core::MembraneLaw instance = plugin::make_membrane_law(*law.manifest, law.parameters.values, setting);
-      stretching += core::stretching_stiffness(instance);
-      bending += core::bending_stiffness(instance);
+      if (law.active()) stiffness += plugin::make_membrane_law(*law.manifest, law.parameters.values, setting);
     }
-    nearest.stretching.narrow(
-        {factor * stretching, kernel.stretch_limit * limit_between(stretch_limit, scene, cell.interior_viscosity)});
-    nearest.bending.narrow(
-        {factor * bending, kernel.bending_limit * limit_between(bending_limit, scene, cell.interior_viscosity)});
+    nearest.stretching.narrow({factor * stiffness.stretching,
+                               kernel.stretch_limit * limit_between(stretch_limit, scene, cell.interior_viscosity)});
+    nearest.bending.narrow({factor * stiffness.bending,
+                            kernel.bending_limit * limit_between(bending_limit, scene, cell.interior_viscosity)});
   }
   return nearest;
 }

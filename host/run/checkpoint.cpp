@@ -157,7 +157,7 @@ void restore_cells(const files::CheckpointReader& reader, const Json& saved, Cel
   for (const auto& [path, values] : arrays(m)) read(reader, path, *values);
   restore_leakage(reader, saved, m);
   m.state.clear();
-  for (const Json& description : saved.value("state", Json::array())) {
+  for (const Json& description : saved.at("state")) {
     m.state.push_back(element_state(description));
     m.state.back().value.resize(m.x.size());
     read(reader, state_name(m.state.size() - 1), m.state.back().value);

@@ -80,13 +80,11 @@ void MembraneForces::make_filters(const Membranes& membranes, double viscosity) 
   for (const CellRange& cell : membranes.cells) {
     Type& type = types_[cell.type];
     if (type.filter) continue;
-    double stretching = 0, bending = 0;
-    for (const Law& law : type.laws) {
-      stretching += stretching_stiffness(law.model);
-      bending += bending_stiffness(law.model);
-    }
+    Stiffness stiffness;
+    for (const Law& law : type.laws) stiffness += law.model;
     const double length = cell.rest_perimeter / cell.count;
-    type.filter.emplace(cell.count, length, stiffening(type.mobility.shift, length), viscosity, stretching, bending);
+    type.filter.emplace(cell.count, length, stiffening(type.mobility.shift, length), viscosity, stiffness.stretching,
+                        stiffness.bending);
   }
 }
 

@@ -18,4 +18,14 @@ double tension_at(const MembraneLaw& law, double stretch);
 /// other laws. Lattice units.
 double bending_stiffness(const MembraneLaw& law);
 
+/// Both, as above; of several laws they add up.
+struct Stiffness {
+  double stretching = 0, bending = 0;
+  Stiffness& operator+=(const MembraneLaw& law) {
+    stretching += stretching_stiffness(law);
+    bending += bending_stiffness(law);
+    return *this;
+  }
+};
+
 }  // namespace rouleau::core

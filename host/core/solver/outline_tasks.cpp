@@ -11,15 +11,9 @@ namespace rouleau::core {
 
 namespace {
 
-struct Stiffness {
-  double stretching = 0, bending = 0;
-};
 Stiffness stiffness_of(const MembraneLaws& laws) {
   Stiffness sum;
-  for (const MembraneLaw& law : laws) {
-    sum.stretching += core::stretching_stiffness(law);
-    sum.bending += core::bending_stiffness(law);
-  }
+  for (const MembraneLaw& law : laws) sum += law;
   return sum;
 }
 

@@ -111,12 +111,9 @@ void SurfaceForces::take_semi_implicit_steps(Surfaces& surfaces, double viscosit
   constexpr std::array names{"held_force_x", "held_force_y", "held_force_z"};
   for (std::size_t t = 0; t < types_.size(); ++t) {
     Type& type = types_[t];
-    double stretching = 0, bending = 0;
-    for (const Law& law : type.laws) {
-      stretching += stretching_stiffness(law.model);
-      bending += bending_stiffness(law.model);
-    }
-    type.filter.emplace(*surfaces.types[t], viscosity, stretching, bending);
+    Stiffness stiffness;
+    for (const Law& law : type.laws) stiffness += law.model;
+    type.filter.emplace(*surfaces.types[t], viscosity, stiffness.stretching, stiffness.bending);
     for (std::size_t k = 0; k < 3; ++k) {
       // Over the spacing, which all stages share, a force has the unit of a tension.
       type.held_force[k] =
@@ -343,14 +340,13 @@ void SurfaceForces::run(Worker worker, Surfaces& surfaces) {
 }
 
 Nodes SurfaceForces::look_ahead(const Surfaces& surfaces, const CellRange& cell, Scratch& s) {
-  const std::vector<double>*const place[3] = {&surfaces.x, &surfaces.y, &surfaces.z}, *const step[3] = {
-                                                                                          &surfaces.velocity_x,
-                                                                                          &surfaces.velocity_y,
-                                                                                          &surfaces.velocity_z};
-  for (int k = 0; k < 3; ++k) {
-    s.ahead[k].resize(s.curvature.size());
-    for (int i = 0; i < cell.count; ++i) s.ahead[k][i] = (*place[k])[cell.first + i] + (*step[k])[cell.first + i];
-  }
+  const auto add = [&](const std::vector<double>& place, const std::vector<double>& step, std::vector<double>& to) {
+    to.resize(s.curvature.size());
+    for (int i = 0; i < cell.count; ++i) to[i] = place[cell.first + i] + step[cell.first + i];
+  };
+  add(surfaces.x, surfaces.velocity_x, s.ahead[0]);
+  add(surfaces.y, surfaces.velocity_y, s.ahead[1]);
+  add(surfaces.z, surfaces.velocity_z, s.ahead[2]);
   return {s.ahead[0].data(), s.ahead[1].data(), s.ahead[2].data()};
 }
 
