@@ -13,6 +13,7 @@
 #include "plan/solver_setup.hpp"
 #include "shape/extent.hpp"
 #include "shape/packing.hpp"
+#include "shape/rigid_surface.hpp"
 #include "shape/surface.hpp"
 
 using rouleau::core::closest_point;
@@ -295,12 +296,51 @@ TEST_CASE("no cell is packed into a larger one, nor around a smaller one") {
     const CellPlacement& cell = packed.scene.cells[i];
     CHECK((Vec<3>(cell.center.x(), cell.center.y(), cell.z) - Vec<3>::Constant(12 * um)).norm() > 9.9 * um);
   }
-  Packed around({48, 48, 48}, true, true, {Sphere{9 * um}, Sphere{1 * um}});
-  around.scene.cells.push_back({1, {12 * um, 12 * um}, 0, "/cells", 0, 12 * um});
-  around.count(0, 1, 4, 0.1e-6).run();
+  Packed around({48, 48, 48}, true, true, {Sphere{2.2 * um}, Sphere{0.5 * um}});
+  for (int i = 0; i < 64; ++i) {
+    around.scene.cells.push_back({1, {(3 + 6 * (i % 4)) * um, (3 + 6 * (i / 4 % 4)) * um}, 0, "/cells"});
+    around.scene.cells.back().z = (3 + 6 * (i / 16)) * um;
+  }
+  around.count(0, 30, 4, 0.1e-6).run();
   REQUIRE_FALSE(around.shortfall);
-  CHECK(smallest_gap_of_all(around.scene, 0.2e-6) >= 0.1e-6);
   CHECK_NOTHROW(make_surfaces(around.scene, spacing));
+}
+
+TEST_CASE("rigid surfaces keep the gap that is asked for, and hardly more") {
+  // The second comes down a line until it is refused.
+  const double gap = 0.05 * um;
+  Packed pair({60, 60, 60}, true, true, {Biconcave{3 * um}, Ellipsoid{{1 * um, 2 * um, 3 * um}}});
+  pair.scene.cell_types[0].triangles = 320;
+  pair.scene.cell_types[1].triangles = 20;  // corners and long edges
+  const RigidSurface disc(pair.scene.cell_types[0], um, gap / um), solid(pair.scene.cell_types[1], um, gap / um);
+  const double allowance = std::max(disc.allowance(), solid.allowance());
+  std::seed_seq seeds{1};
+  RandomNumbers numbers(seeds);
+  for (int i = 0; i < 40; ++i) {
+    RigidBody<RigidSurface> a{i % 2 == 0 ? &disc : &solid, {}, RigidSurface::drawn(numbers)};
+    RigidBody<RigidSurface> b{i % 4 < 2 ? &disc : &solid, {}, RigidSurface::drawn(numbers)};
+    double kept = 8, refused = 0;
+    while (kept - refused > 1e-4) {
+      b.center[0] = 0.5 * (kept + refused);
+      (keep_apart(a, b, {}, gap / um + allowance) ? kept : refused) = b.center[0];
+    }
+    b.center[0] = kept;
+    std::array<Placed, 2> cells;
+    for (const int k : {0, 1}) {
+      const RigidBody<RigidSurface>& body = k == 0 ? a : b;
+      cells[k].surface = make_surface(pair.scene.cell_types[body.solid == &disc ? 0 : 1]);
+      CellPlacement cell{};
+      RigidSurface::put(body.orientation, cell);
+      for (Vec<3>& node : cells[k].surface.nodes) {
+        node = Vec<3>(body.center[0] * um, 0, 0) + rotation_of(cell) * node;
+        cells[k].box.extend(node);
+      }
+    }
+    const double found = distance(cells[0], cells[1], Vec<3>::Zero(), 10 * gap + 4 * allowance * um);
+    CHECK(found >= gap);
+    // Where the map is too coarse to say on which side a point lies, it is denied: up to half of a cube's diagonal.
+    CHECK(found <= std::max(gap + allowance * um, 0.867 / 40 * 3 * um) + 2e-3 * um);
+  }
 }
 
 TEST_CASE("cells stay in their region of space") {
