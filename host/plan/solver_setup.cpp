@@ -236,17 +236,9 @@ core::RestSurface rest_surface(const scene::CellType& type, double spacing) {
   return shape::rest_surface(surface, sphere != nullptr ? sphere->prestretch : 1.0);
 }
 
-/// Turned about z, or so that the shape's y axis becomes the axis wanted, and about that.
-Eigen::Matrix3d rotation_of(const scene::CellPlacement& cell) {
-  using Eigen::AngleAxisd, Eigen::Vector3d;
-  if (!cell.axis) return AngleAxisd(cell.angle, Vector3d::UnitZ()).toRotationMatrix();
-  const Eigen::Quaterniond turned = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitY(), *cell.axis);
-  return (turned * AngleAxisd(cell.angle, Vector3d::UnitY())).toRotationMatrix();
-}
-
 void add_placed(core::Surfaces& surfaces, const scene::CellPlacement& cell, double spacing) {
   const core::Vec<3> center(cell.center.x() / spacing - 0.5, cell.center.y() / spacing - 0.5, cell.z / spacing - 0.5);
-  core::add_cell(surfaces, cell.type, center, rotation_of(cell));
+  core::add_cell(surfaces, cell.type, center, shape::rotation_of(cell));
 }
 
 /// Refuses surfaces that stick through walls, are longer than a period, or overlap.

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -52,6 +53,8 @@ struct Domain {
     if (tube_radius) return std::numbers::pi * *tube_radius * *tube_radius * size.x();
     return size.prod() * (depth ? depth->size : 1);
   }
+  /// From corner to corner, m.
+  [[nodiscard]] double diagonal() const { return std::hypot(size.norm(), depth ? depth->size : 0); }
   /// Whether walls close it along z, too.
   [[nodiscard]] bool is_duct() const { return depth && !depth->periodic; }
   /// From wall to wall, m.
@@ -139,9 +142,10 @@ struct RandomPacking {
   std::optional<double> hematocrit;  ///< asked for, a share of the region; empty: a number of cells was
   double reached;                    ///< share of the region that the cells fill at rest
   std::uint32_t seed;
-  double gap;                    ///< m, kept from other cells, their images and walls
-  Eigen::Vector2d lower, upper;  ///< m, corners of the region that holds the cells
-  std::string pointer;           ///< entry of /cells
+  double gap;                       ///< m, kept from other cells, their images and walls
+  Eigen::Vector2d lower, upper;     ///< m, corners of the region that holds the cells
+  std::string pointer;              ///< entry of /cells
+  double lower_z = 0, upper_z = 0;  ///< m, likewise, in three dimensions
 };
 
 /// Stand for both walls, and for other parts of the same membrane, where an interaction names what it acts between; no

@@ -190,11 +190,6 @@ class Placements {
   }
 
   void read_random(int type, const std::string& entry) {
-    if (domain_.depth) {
-      fields_.refuse_key(entry + "/random",
-                         "cells are placed at random in two dimensions only so far\nplace them by \"at\", a \"row\", a "
-                         "\"list\" or a \"file\"");
-    }
     RandomPacking packing = read_packing(fields_, entry, type, domain_);
     packing.first = static_cast<int>(cells_.size());
     packings_.push_back(std::move(packing));

@@ -1,11 +1,12 @@
-// Cells sorted by the squares in which their centres lie, while a packing moves them about.
+// Cells sorted by the squares, or cubes, in which their centres lie, while a packing moves them about.
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
-#include "rigid_outline.hpp"
+#include "rigid_body.hpp"
 
 namespace rouleau::shape {
 
@@ -22,37 +23,36 @@ struct Axis {
   }
 };
 
+template <int D>
 class CenterGrid {
  public:
-  /// Squares at least as wide as `width`, or one across the whole box.
-  CenterGrid(const Axis& x, const Axis& y, double width) : x_(x, width), y_(y, width) {
-    cells_.resize(static_cast<std::size_t>(x_.count) * static_cast<std::size_t>(y_.count));
+  /// Squares or cubes at least as wide as `width`, or one across the whole box.
+  CenterGrid(const std::array<Axis, D>& box, double width) {
+    std::size_t total = 1;
+    for (int k = 0; k < D; ++k) {
+      squares_[k] = Squares(box[k], width);
+      total *= static_cast<std::size_t>(squares_[k].count);
+    }
+    cells_.resize(total);
   }
-  void add(std::size_t cell, Pair center) { cells_[square(center)].push_back(cell); }
-  void remove(std::size_t cell, Pair center) {
+  void add(std::size_t cell, const Place<D>& center) { cells_[square(center)].push_back(cell); }
+  void remove(std::size_t cell, const Place<D>& center) {
     auto& list = cells_[square(center)];
     *std::find(list.begin(), list.end(), cell) = list.back();
     list.pop_back();
   }
   /// Whether `test(cell)` holds for all cells with a centre within the width of a square, each asked once.
   template <class Test>
-  [[nodiscard]] bool all_near(Pair center, Test test) const {
-    const int i = x_.index(center.x), j = y_.index(center.y);
-    for (int dj = y_.first(); dj <= y_.last(); ++dj) {
-      for (int di = x_.first(); di <= x_.last(); ++di) {
-        const int column = x_.neighbour(i + di), row = y_.neighbour(j + dj);
-        if (column < 0 || row < 0) continue;
-        const auto& list = cells_[row * x_.count + column];
-        if (!std::all_of(list.begin(), list.end(), test)) return false;
-      }
-    }
-    return true;
+  [[nodiscard]] bool all_near(const Place<D>& center, const Test& test) const {
+    return all_near<D - 1>(center, 0, test);
   }
 
  private:
   struct Squares {
+    static constexpr int most = D == 2 ? 2000 : 100;
+    Squares() = default;
     Squares(const Axis& whole, double width)
-        : axis(whole), count(std::clamp(static_cast<int>(whole.length() / width), 1, 2000)) {}
+        : axis(whole), count(std::clamp(static_cast<int>(whole.length() / width), 1, most)) {}
     [[nodiscard]] int index(double value) const {
       const double place = (axis.wrapped(value) - axis.lower) / axis.length() * count;
       return static_cast<int>(std::clamp(place, 0.0, count - 0.5));
@@ -66,12 +66,31 @@ class CenterGrid {
       return i < count ? i : -1;
     }
     Axis axis;
-    int count;
+    int count = 1;
   };
-  [[nodiscard]] std::size_t square(Pair center) const {
-    return static_cast<std::size_t>(y_.index(center.y) * x_.count + x_.index(center.x));
+  [[nodiscard]] std::size_t square(const Place<D>& center) const {
+    std::size_t found = 0;
+    for (int k = D - 1; k >= 0; --k) found = found * squares_[k].count + squares_[k].index(center[k]);
+    return found;
   }
-  Squares x_, y_;
+  template <int K, class Test>
+  [[nodiscard]] bool all_near(const Place<D>& center, std::size_t above, const Test& test) const {
+    const Squares& along = squares_[K];
+    const int middle = along.index(center[K]);
+    for (int way = along.first(); way <= along.last(); ++way) {
+      const int i = along.neighbour(middle + way);
+      if (i < 0) continue;
+      const std::size_t found = above * along.count + i;
+      if constexpr (K > 0) {
+        if (!all_near<K - 1>(center, found, test)) return false;
+      } else if (!std::all_of(cells_[found].begin(), cells_[found].end(), test)) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  std::array<Squares, D> squares_;
   std::vector<std::vector<std::size_t>> cells_;
 };
 

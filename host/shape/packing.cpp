@@ -4,18 +4,17 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
-#include <numbers>
-#include <random>
 
 #include "center_grid.hpp"
+#include "extent.hpp"
 #include "outline.hpp"
 #include "rigid_outline.hpp"
+#include "rigid_surface.hpp"
 
 namespace rouleau::shape {
 
 namespace {
 
-constexpr std::uint32_t whole_turn = 1U << 20;
 constexpr int tries_at_a_size = 30;
 constexpr double shrinking = 0.9, fastest_growth = 0.1, smallest_scale = 0.01;
 constexpr int fewest_sweeps = 50;
@@ -23,56 +22,53 @@ constexpr int fewest_sweeps = 50;
 constexpr int patience = 1000, most_sweeps = 20000;
 constexpr double least_progress = 0.05;
 
-/// Uniform numbers with the same bits everywhere: std::uniform_real_distribution is each library's own.
-class RandomNumbers {
- public:
-  explicit RandomNumbers(std::seed_seq& seeds) : engine_(seeds) {}
-  double below_one() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }
-  double either_side(double most) { return most * (2 * below_one() - 1); }
-  std::uint32_t angle() { return static_cast<std::uint32_t>(engine_() >> 44); }
-
- private:
-  std::mt19937_64 engine_;
-};
-
-double region_area(const scene::RandomPacking& packing) {
-  return (packing.upper.x() - packing.lower.x()) * (packing.upper.y() - packing.lower.y());
+/// In a tube a region is a piece of it.
+double region_content(const scene::RandomPacking& packing, const scene::Domain& domain) {
+  const Eigen::Vector2d size = packing.upper - packing.lower;
+  if (domain.tube_radius) return domain.content() * size.x() / domain.size.x();
+  return size.x() * size.y() * (domain.depth ? packing.upper_z - packing.lower_z : 1);
 }
 
-double cell_area(const scene::CellType& type) { return area_of(make_outline(type.shape, type.segments)); }
-
 /// Where the cells of one packing may be, and how near to others.
+template <int D>
 struct Territory {
-  Axis x, y;   ///< outlines stay between lower and upper unless periodic
-  double gap;  ///< to walls, obstacles and cells of the same packing; allowances included
+  std::array<Axis, D> axes;  ///< nodes stay between lower and upper unless periodic
+  double gap;                ///< to walls, obstacles and cells of the same packing; allowances included
+  double radius = 0;         ///< in a tube: how far from its axis nodes may be
 };
 
+/// Solid: RigidOutline or RigidSurface.
+template <class Solid>
 class Packer {
+  static constexpr int D = Solid::dimension;
+  using Body = RigidBody<Solid>;
+
  public:
   Packer(const scene::Domain& domain, const std::vector<scene::CellType>& types,
          const std::vector<scene::RandomPacking>& packings, std::vector<scene::CellPlacement>& cells, double unit)
-      : packings_(packings), cells_(cells), unit_(unit), numbers_(make_numbers(packings)) {
-    box_x_ = {0, domain.size.x() / unit, true};
-    box_y_ = {0, domain.size.y() / unit, domain.periodic_y};
+      : domain_(domain), packings_(packings), cells_(cells), unit_(unit), numbers_(make_numbers(packings)) {
+    box_[0] = {0, domain.size.x() / unit, true};
+    box_[1] = {0, domain.size.y() / unit, domain.periodic_y};
+    if constexpr (D == 3) box_[2] = {0, domain.depth->size / unit, domain.depth->periodic};
+    double least_gap = packings.front().gap;
+    for (const scene::RandomPacking& packing : packings) least_gap = std::min(least_gap, packing.gap);
     for (const scene::CellPlacement& cell : cells) {
-      const scene::CellType& type = types[cell.type];
-      const auto [outline, is_new] = outlines_.try_emplace(cell.type, type.shape, type.segments, unit);
+      const auto [solid, is_new] = solids_.try_emplace(cell.type, types[cell.type], unit, least_gap / unit);
       if (!is_new) continue;
-      allowance_ = std::max(allowance_, outline->second.allowance());
-      largest_ = std::max(largest_, outline->second.radius());
+      allowance_ = std::max(allowance_, solid->second.allowance());
+      largest_ = std::max(largest_, solid->second.radius());
     }
     double gap = 0;
     for (const scene::RandomPacking& packing : packings) {
       territories_.push_back(territory(packing));
       gap = std::max(gap, territories_.back().gap);
     }
-    grid_.emplace(box_x_, box_y_, 2 * largest_ + gap);
+    grid_.emplace(box_, 2 * largest_ + gap);
     owner_.assign(cells.size(), obstacle);
     for (std::size_t k = 0; k < packings.size(); ++k) {
       for (int i = 0; i < packings[k].count; ++i) owner_[packings[k].first + i] = static_cast<int>(k);
     }
     bodies_.resize(cells.size());
-    angle_.assign(cells.size(), 0);
   }
 
   std::optional<PackingShortfall> pack() {
@@ -85,8 +81,9 @@ class Packer {
     if (const auto stuck = grow()) return shortfall(*stuck);
     for (std::size_t i = 0; i < cells_.size(); ++i) {
       if (owner_[i] == obstacle) continue;
-      cells_[i].center = {bodies_[i].center.x * unit_, bodies_[i].center.y * unit_};
-      cells_[i].angle = angle_[i] * (2 * std::numbers::pi / whole_turn);
+      cells_[i].center = {bodies_[i].center[0] * unit_, bodies_[i].center[1] * unit_};
+      if constexpr (D == 3) cells_[i].z = bodies_[i].center[2] * unit_;
+      Solid::put(bodies_[i].orientation, cells_[i]);
     }
     return std::nullopt;
   }
@@ -102,7 +99,7 @@ class Packer {
     return RandomNumbers(sequence);
   }
 
-  [[nodiscard]] Territory territory(const scene::RandomPacking& packing) const {
+  [[nodiscard]] Territory<D> territory(const scene::RandomPacking& packing) const {
     const double gap = packing.gap / unit_ + allowance_;
     const auto axis = [&](double lower, double upper, const Axis& box) {
       const bool whole = lower <= 0 && upper / unit_ >= box.upper;
@@ -112,29 +109,30 @@ class Packer {
       if (!box.periodic) own = {std::max(own.lower, gap), std::min(own.upper, box.upper - gap), false};
       return own;
     };
-    return {axis(packing.lower.x(), packing.upper.x(), box_x_), axis(packing.lower.y(), packing.upper.y(), box_y_),
-            gap};
+    Territory<D> own{{}, gap};
+    own.axes[0] = axis(packing.lower.x(), packing.upper.x(), box_[0]);
+    own.axes[1] = axis(packing.lower.y(), packing.upper.y(), box_[1]);
+    if constexpr (D == 3) own.axes[2] = axis(packing.lower_z, packing.upper_z, box_[2]);
+    if (domain_.tube_radius) own.radius = std::max(*domain_.tube_radius / unit_ - gap, 0.0);
+    return own;
   }
 
   void set_obstacle(std::size_t i) {
     const scene::CellPlacement& cell = cells_[i];
-    bodies_[i] = {&outlines_.at(cell.type),
-                  {box_x_.wrapped(cell.center.x() / unit_), box_y_.wrapped(cell.center.y() / unit_)},
-                  direction_of(cell.angle),
-                  1};
-    grid_->add(i, bodies_[i].center);
+    Body& body = bodies_[i];
+    body = {&solids_.at(cell.type), {}, Solid::of(cell), 1};
+    for (int k = 0; k < D; ++k) body.center[k] = box_[k].wrapped((k < 2 ? cell.center[k] : cell.z) / unit_);
+    grid_->add(i, body.center);
   }
 
   /// Draws places for a new cell, smaller and smaller, until one is free.
   bool insert(std::size_t i) {
-    const Territory& own = territories_[owner_[i]];
-    RigidBody body{&outlines_.at(cells_[i].type), {}, {}, 1};
+    const Territory<D>& own = territories_[owner_[i]];
+    Body body{&solids_.at(cells_[i].type), {}, {}, 1};
     for (; body.scale > smallest_scale; body.scale *= shrinking) {
       for (int trial = 0; trial < tries_at_a_size; ++trial) {
-        body.center = {own.x.lower + own.x.length() * numbers_.below_one(),
-                       own.y.lower + own.y.length() * numbers_.below_one()};
-        angle_[i] = numbers_.angle();
-        body.direction = direction_of(angle_[i] * (2 * std::numbers::pi / whole_turn));
+        for (int k = 0; k < D; ++k) body.center[k] = own.axes[k].lower + own.axes[k].length() * numbers_.below_one();
+        body.orientation = Solid::drawn(numbers_);
         if (!is_free(i, body)) continue;
         bodies_[i] = body;
         grid_->add(i, body.center);
@@ -165,9 +163,9 @@ class Packer {
       if (owner_[i] == obstacle) continue;
       ++tried;
       if (move(i)) ++moved;
-      RigidBody& body = bodies_[i];
+      Body& body = bodies_[i];
       if (body.scale < 1) {
-        RigidBody larger = body;
+        Body larger = body;
         larger.scale = std::min(1.0, body.scale * (1 + fastest_growth * numbers_.below_one()));
         if (is_free(i, larger)) body.scale = larger.scale;
       }
@@ -177,24 +175,20 @@ class Packer {
   }
 
   bool move(std::size_t i) {
-    const Territory& own = territories_[owner_[i]];
-    RigidBody body = bodies_[i];
-    body.center = {own.x.wrapped(body.center.x + numbers_.either_side(stride_)),
-                   own.y.wrapped(body.center.y + numbers_.either_side(stride_))};
-    const double turn = numbers_.either_side(std::min(0.5, stride_ / largest_ / (2 * std::numbers::pi)));
-    const auto angle =
-        static_cast<std::uint32_t>(angle_[i] + static_cast<std::int64_t>(turn * whole_turn)) % whole_turn;
-    body.direction = direction_of(angle * (2 * std::numbers::pi / whole_turn));
+    const Territory<D>& own = territories_[owner_[i]];
+    Body body = bodies_[i];
+    for (int k = 0; k < D; ++k) body.center[k] = own.axes[k].wrapped(body.center[k] + numbers_.either_side(stride_));
+    const double most = std::min(0.5, stride_ / largest_ / (2 * std::numbers::pi));
+    body.orientation = Solid::turned(body.orientation, most, numbers_);
     if (!is_free(i, body)) return false;
     grid_->remove(i, bodies_[i].center);
     bodies_[i] = body;
-    angle_[i] = angle;
     grid_->add(i, body.center);
     return true;
   }
 
-  [[nodiscard]] bool is_free(std::size_t i, const RigidBody& body) const {
-    const Territory& own = territories_[owner_[i]];
+  [[nodiscard]] bool is_free(std::size_t i, const Body& body) const {
+    const Territory<D>& own = territories_[owner_[i]];
     if (!within(body, own)) return false;
     if (!images_keep_apart(body, body, true, own.gap)) return false;
     return grid_->all_near(body.center, [&](std::size_t j) {
@@ -205,37 +199,50 @@ class Packer {
     });
   }
 
-  [[nodiscard]] bool images_keep_apart(const RigidBody& a, const RigidBody& b, bool itself, double gap) const {
+  [[nodiscard]] bool images_keep_apart(const Body& a, const Body& b, bool itself, double gap) const {
     const double reach = a.radius() + b.radius() + gap;
-    const auto images = [&](double distance, const Axis& axis) -> std::array<int, 2> {
-      if (!axis.periodic) return {0, 0};
-      return {static_cast<int>(std::ceil((-reach - distance) / axis.length())),
-              static_cast<int>(std::floor((reach - distance) / axis.length()))};
-    };
-    const auto [x_first, x_last] = images(b.center.x - a.center.x, box_x_);
-    const auto [y_first, y_last] = images(b.center.y - a.center.y, box_y_);
-    for (int y = y_first; y <= y_last; ++y) {
-      for (int x = x_first; x <= x_last; ++x) {
-        if (itself && x == 0 && y == 0) continue;
-        if (!keep_apart(a, b, {x * box_x_.length(), y * box_y_.length()}, gap)) return false;
-      }
+    std::array<int, D> first{}, last{};
+    for (int k = 0; k < D; ++k) {
+      if (!box_[k].periodic) continue;
+      const double distance = b.center[k] - a.center[k];
+      first[k] = static_cast<int>(std::ceil((-reach - distance) / box_[k].length()));
+      last[k] = static_cast<int>(std::floor((reach - distance) / box_[k].length()));
+      if (first[k] > last[k]) return true;
     }
-    return true;
+    for (std::array<int, D> image = first;;) {
+      Place<D> shift;
+      for (int k = 0; k < D; ++k) shift[k] = image[k] * box_[k].length();
+      if (!(itself && image == std::array<int, D>{}) && !keep_apart(a, b, shift, gap)) return false;
+      int k = 0;
+      while (k < D && image[k] == last[k]) {
+        image[k] = first[k];
+        ++k;
+      }
+      if (k == D) return true;
+      ++image[k];
+    }
   }
 
-  static bool within(const RigidBody& body, const Territory& own) {
+  [[nodiscard]] bool within(const Body& body, const Territory<D>& own) const {
     const double radius = body.radius();
-    const auto surely = [&](double center, const Axis& axis) {
-      return axis.periodic || (center - radius >= axis.lower && center + radius <= axis.upper);
-    };
-    const auto between = [](double value, const Axis& axis) {
-      return axis.periodic || (value >= axis.lower && value <= axis.upper);
-    };
-    if (surely(body.center.x, own.x) && surely(body.center.y, own.y)) return true;
-    return std::all_of(body.outline->nodes().begin(), body.outline->nodes().end(), [&](Pair node) {
-      const double c = body.direction.x, s = body.direction.y;
-      return between(body.center.x + body.scale * (c * node.x - s * node.y), own.x) &&
-             between(body.center.y + body.scale * (s * node.x + c * node.y), own.y);
+    bool surely = true;
+    for (int k = 0; k < D; ++k) {
+      const Axis& axis = own.axes[k];
+      surely =
+          surely && (axis.periodic || (body.center[k] - radius >= axis.lower && body.center[k] + radius <= axis.upper));
+    }
+    if (surely && !domain_.tube_radius) return true;
+    return std::all_of(body.solid->nodes().begin(), body.solid->nodes().end(), [&](const auto& node) {
+      Place<D> place = rotated(body.orientation, node);
+      for (int k = 0; k < D; ++k) {
+        place[k] = body.center[k] + body.scale * place[k];
+        if (!own.axes[k].periodic && !(place[k] >= own.axes[k].lower && place[k] <= own.axes[k].upper)) return false;
+      }
+      if constexpr (D == 3) {
+        const double y = place[1] - 0.5 * box_[1].upper, z = place[2] - 0.5 * box_[2].upper;
+        if (domain_.tube_radius && y * y + z * z > own.radius * own.radius) return false;
+      }
+      return true;
     });
   }
 
@@ -247,55 +254,61 @@ class Packer {
     return least;
   }
   [[nodiscard]] double smallest() const { return bodies_[smallest_cell()].scale; }
-  /// Area of the cells as they are, and as they shall be.
+  /// What a cell encloses as it is.
+  [[nodiscard]] static double grown(const Body& body) {
+    double content = body.solid->content();
+    for (int k = 0; k < D; ++k) content = body.scale * content;
+    return content;
+  }
+  /// What all cells enclose as they are, and as they shall.
   [[nodiscard]] double grown() const {
-    double area = 0;
+    double content = 0;
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
-      if (owner_[i] != obstacle) area += bodies_[i].scale * bodies_[i].scale * bodies_[i].outline->area();
+      if (owner_[i] != obstacle) content += grown(bodies_[i]);
     }
-    return area;
+    return content;
   }
   [[nodiscard]] double wanted() const {
-    double area = 0;
+    double content = 0;
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
-      if (owner_[i] != obstacle) area += bodies_[i].outline->area();
+      if (owner_[i] != obstacle) content += bodies_[i].solid->content();
     }
-    return area;
+    return content;
   }
 
   [[nodiscard]] PackingShortfall shortfall(std::size_t cell) const {
     const auto index = static_cast<std::size_t>(owner_[cell]);
-    double area = 0;
+    double content = 0;
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
-      if (owner_[i] != owner_[cell] || bodies_[i].outline == nullptr) continue;
-      area += bodies_[i].scale * bodies_[i].scale * bodies_[i].outline->area();
+      if (owner_[i] == owner_[cell] && bodies_[i].solid != nullptr) content += grown(bodies_[i]);
     }
-    return {index, area * unit_ * unit_ / region_area(packings_[index])};
+    return {index, content * std::pow(unit_, D) / region_content(packings_[index], domain_)};
   }
 
+  const scene::Domain& domain_;
   const std::vector<scene::RandomPacking>& packings_;
   std::vector<scene::CellPlacement>& cells_;
   double unit_;  ///< m; all lengths below are multiples of it
   RandomNumbers numbers_;
-  Axis box_x_, box_y_;
-  std::map<int, RigidOutline> outlines_;  ///< by type, of those that have cells
+  std::array<Axis, D> box_;
+  std::map<int, Solid> solids_;  ///< by type, of those that have cells
   double allowance_ = 0, largest_ = 0;
-  std::vector<Territory> territories_;  ///< by packing
-  std::optional<CenterGrid> grid_;
+  std::vector<Territory<D>> territories_;  ///< by packing
+  std::optional<CenterGrid<D>> grid_;
   std::vector<int> owner_;  ///< of each cell: its packing, or `obstacle`
-  std::vector<RigidBody> bodies_;
-  std::vector<std::uint32_t> angle_;  ///< in parts of a whole turn
-  double stride_ = 0.3;               ///< largest move along each axis
+  std::vector<Body> bodies_;
+  double stride_ = 0.3;  ///< largest move along each axis
 };
 
 }  // namespace
 
-double cells_for(double hematocrit, const scene::CellType& type, const scene::RandomPacking& packing) {
-  return std::round(hematocrit * region_area(packing) / cell_area(type));
+double cells_for(double hematocrit, const scene::CellType& type, const scene::RandomPacking& packing,
+                 const scene::Domain& domain) {
+  return std::round(hematocrit * region_content(packing, domain) / enclosed_by(type));
 }
 
-double hematocrit_of(const scene::RandomPacking& packing, const scene::CellType& type) {
-  return packing.count * cell_area(type) / region_area(packing);
+double hematocrit_of(const scene::RandomPacking& packing, const scene::CellType& type, const scene::Domain& domain) {
+  return packing.count * enclosed_by(type) / region_content(packing, domain);
 }
 
 std::optional<PackingShortfall> pack(const scene::Domain& domain, const std::vector<scene::CellType>& types,
@@ -304,10 +317,9 @@ std::optional<PackingShortfall> pack(const scene::Domain& domain, const std::vec
   if (packings.empty()) return std::nullopt;
   // Of the types that have cells: one that has none may be so large that rounding would deform the others.
   double unit = 0;
-  for (const scene::CellPlacement& cell : cells) {
-    unit = std::max(unit, shape_radius(types[cell.type].shape));
-  }
-  return Packer(domain, types, packings, cells, unit).pack();
+  for (const scene::CellPlacement& cell : cells) unit = std::max(unit, shape_radius(types[cell.type].shape));
+  if (domain.depth) return Packer<RigidSurface>(domain, types, packings, cells, unit).pack();
+  return Packer<RigidOutline>(domain, types, packings, cells, unit).pack();
 }
 
 }  // namespace rouleau::shape

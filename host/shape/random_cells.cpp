@@ -1,5 +1,7 @@
 #include "random_cells.hpp"
 
+#include <cmath>
+
 #include "base/text.hpp"
 #include "outline.hpp"
 #include "packing.hpp"
@@ -11,10 +13,10 @@ namespace {
 std::string percent(double share) { return number(100 * share, 4) + " %"; }
 
 /// How many cells of this type fill the share of the region that is asked for.
-int count_for_share(const scene::SceneFields& fields, const scene::RandomPacking& packing,
-                    const scene::CellType& type) {
+int count_for_share(const scene::SceneFields& fields, const scene::RandomPacking& packing, const scene::CellType& type,
+                    const scene::Domain& domain) {
   const auto pointer = packing.pointer + "/random/hematocrit";
-  const double count = cells_for(*packing.hematocrit, type, packing);
+  const double count = cells_for(*packing.hematocrit, type, packing, domain);
   if (count < 1) {
     fields.refuse(pointer,
                   "that is less than half a cell in this region; ask for more, for a "
@@ -29,7 +31,8 @@ int count_for_share(const scene::SceneFields& fields, const scene::RandomPacking
 
 /// Refuses what is hopeless before it is tried: pack() takes its time, and looks at every periodic image that is near.
 void check_lengths(const scene::SceneFields& fields, const scene::RandomPacking& packing, const scene::CellType& type) {
-  const double across = (packing.upper - packing.lower).norm(), length = 2 * shape_radius(type.shape);
+  const double across = std::hypot((packing.upper - packing.lower).norm(), packing.upper_z - packing.lower_z);
+  const double length = 2 * shape_radius(type.shape);
   const auto micrometres = [](double metres) { return number(metres * 1e6) + " um"; };
   const auto room = micrometres(across) + " from corner to corner";
   if (length > across) {
@@ -56,8 +59,8 @@ void add_random_cells(scene::Scene& scene) {
   int added = 0;
   for (scene::RandomPacking& packing : scene.packings) {
     const scene::CellType& type = scene.cell_types[packing.type];
-    if (packing.hematocrit) packing.count = count_for_share(fields, packing, type);
-    packing.reached = hematocrit_of(packing, type);
+    if (packing.hematocrit) packing.count = count_for_share(fields, packing, type, scene.domain);
+    packing.reached = hematocrit_of(packing, type, scene.domain);
     check_lengths(fields, packing, type);
     fields.require_room(scene.cells.size(), static_cast<std::size_t>(packing.count), packing.pointer + "/random");
     packing.first += added;
@@ -70,7 +73,7 @@ void add_random_cells(scene::Scene& scene) {
 
 void pack_cells(scene::Scene& scene) {
   if (scene.packings.empty()) return;
-  const double across = scene.domain.size.norm();
+  const double across = scene.domain.diagonal();
   for (const scene::CellPlacement& cell : scene.cells) {
     const scene::CellType& type = scene.cell_types[cell.type];
     if (2 * shape_radius(type.shape) <= across) continue;

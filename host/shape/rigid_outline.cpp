@@ -11,7 +11,7 @@ namespace {
 
 constexpr int map_squares = 128;  ///< along each side of the map of distances
 
-double rounded(double value) { return std::ldexp(std::round(std::ldexp(value, 24)), -24); }
+using Body = RigidBody<RigidOutline>;
 
 /// Component of `point` along a direction and across it: the point as seen in a body that is turned that far.
 Pair turned_back(Pair point, Pair direction) {
@@ -19,25 +19,23 @@ Pair turned_back(Pair point, Pair direction) {
 }
 
 /// Whether all nodes of `a` keep their distance from the outline of `b` moved by `shift`.
-bool nodes_keep_apart(const RigidBody& a, const RigidBody& b, Pair shift, double gap) {
-  const Pair between{a.center.x - b.center.x - shift.x, a.center.y - b.center.y - shift.y};
+bool nodes_keep_apart(const Body& a, const Body& b, const Place<2>& shift, double gap) {
+  const Pair between{a.center[0] - b.center[0] - shift[0], a.center[1] - b.center[1] - shift[1]};
   const double ratio = a.scale / b.scale, least = gap / b.scale;
-  Pair offset = turned_back(between, b.direction);
+  Pair offset = turned_back(between, b.orientation.direction);
   offset = {offset.x / b.scale, offset.y / b.scale};
-  const Pair relative = turned_back(a.direction, b.direction);
+  const Pair relative = turned_back(a.orientation.direction, b.orientation.direction);
   const double c = ratio * relative.x, s = ratio * relative.y;
-  return std::all_of(a.outline->nodes().begin(), a.outline->nodes().end(), [&](Pair node) {
-    return b.outline->keeps({offset.x + c * node.x - s * node.y, offset.y + s * node.x + c * node.y}, least);
+  return std::all_of(a.solid->nodes().begin(), a.solid->nodes().end(), [&](Pair node) {
+    return b.solid->keeps({offset.x + c * node.x - s * node.y, offset.y + s * node.x + c * node.y}, least);
   });
 }
 
 }  // namespace
 
-Pair direction_of(double angle) { return {rounded(std::cos(angle)), rounded(std::sin(angle))}; }
-
-RigidOutline::RigidOutline(const scene::Shape& shape, int segments, double unit) {
-  const Outline all = make_outline(shape, segments);
-  const Outline few = segments > most_nodes ? make_outline(shape, most_nodes) : all;
+RigidOutline::RigidOutline(const scene::CellType& type, double unit, double /*gap*/) {
+  const Outline all = make_outline(type.shape, type.segments);
+  const Outline few = type.segments > most_nodes ? make_outline(type.shape, most_nodes) : all;
   for (const auto& node : few.nodes) nodes_.push_back({rounded(node.x() / unit), rounded(node.y() / unit)});
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     const Pair from = nodes_[i], to = nodes_[(i + 1) % nodes_.size()];
@@ -84,11 +82,11 @@ double RigidOutline::distance(Pair point) const {
   return winding != 0 ? -std::sqrt(square) : std::sqrt(square);
 }
 
-bool keep_apart(const RigidBody& a, const RigidBody& b, Pair shift, double gap) {
-  const double x = b.center.x + shift.x - a.center.x, y = b.center.y + shift.y - a.center.y;
+bool keep_apart(const Body& a, const Body& b, const Place<2>& shift, double gap) {
+  const double x = b.center[0] + shift[0] - a.center[0], y = b.center[1] + shift[1] - a.center[1];
   const double reach = a.radius() + b.radius() + gap;
   if (x * x + y * y >= reach * reach) return true;
-  return nodes_keep_apart(a, b, shift, gap) && nodes_keep_apart(b, a, {-shift.x, -shift.y}, gap);
+  return nodes_keep_apart(a, b, shift, gap) && nodes_keep_apart(b, a, {-shift[0], -shift[1]}, gap);
 }
 
 }  // namespace rouleau::shape

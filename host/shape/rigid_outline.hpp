@@ -1,36 +1,40 @@
 // The outline of a cell as a rigid body that can be turned and scaled, and whether two of them keep a distance.
 #pragma once
 
-#include <cmath>
 #include <vector>
 
+#include "rigid_body.hpp"
 #include "scene/scene.hpp"
 
 namespace rouleau::shape {
 
-// Everything here is made of additions, products, quotients and square roots of numbers that were rounded to multiples
-// of a power of two, and compiled without contraction: the same on every machine, whatever its libm and instruction set
-// (a cosine's last digit differs between libraries). Plain pairs instead of Eigen's vectors, whose functions the linker
-// may take from a file that was compiled with contraction.
-
-struct Pair {
-  double x, y;
-};
-
-/// Cosine and sine rounded to multiples of 2^-24.
-Pair direction_of(double angle);
-
 /// A closed polygon, counter-clockwise, about the origin at angle 0, in a unit of length of the caller's choice.
 class RigidOutline {
  public:
-  /// Outline of a shape with this many segments. A polygon of more than `most_nodes` is replaced by a coarser one and
-  /// allowance() says by how much gaps may be smaller than they seem.
-  RigidOutline(const scene::Shape& shape, int segments, double unit);
+  static constexpr int dimension = 2;
+  struct Orientation {
+    std::uint32_t angle;
+    Pair direction;
+  };
+  static Orientation orientation(std::uint32_t angle) { return {angle, direction_of(radians(angle))}; }
+  static Orientation drawn(RandomNumbers& numbers) { return orientation(numbers.angle()); }
+  /// Turned at random by a part `most` of a whole turn at most.
+  static Orientation turned(const Orientation& from, double most, RandomNumbers& numbers) {
+    return orientation(turned_by(from.angle, numbers.either_side(most)));
+  }
+  static Orientation of(const scene::CellPlacement& cell) { return {0, direction_of(cell.angle)}; }
+  static void put(const Orientation& orientation, scene::CellPlacement& cell) {
+    cell.angle = radians(orientation.angle);
+  }
+
+  /// Outline of a cell type. A polygon of more than `most_nodes` is replaced by a coarser one and allowance() says by how
+  /// much gaps may be smaller than they seem.
+  RigidOutline(const scene::CellType& type, double unit, double gap);
   static constexpr int most_nodes = 200;
 
   [[nodiscard]] const std::vector<Pair>& nodes() const { return nodes_; }
   [[nodiscard]] double radius() const { return radius_; }        ///< of the circle about the origin that holds it
-  [[nodiscard]] double area() const { return area_; }            ///< enclosed, of the polygon with all its segments
+  [[nodiscard]] double content() const { return area_; }         ///< enclosed, of the polygon with all its segments
   [[nodiscard]] double allowance() const { return allowance_; }  ///< rounding included
 
   /// Distance of a point to the polygon, negative inside.
@@ -58,16 +62,14 @@ class RigidOutline {
   std::vector<double> map_;
 };
 
-/// An outline somewhere: point p of it lies at center + scale (turned p).
-struct RigidBody {
-  const RigidOutline* outline;
-  Pair center, direction;
-  double scale = 1;
-  [[nodiscard]] double radius() const { return scale * outline->radius(); }
-};
+/// A node of the outline as it lies from the centre of a body of size 1.
+inline Place<2> rotated(const RigidOutline::Orientation& orientation, Pair node) {
+  const double c = orientation.direction.x, s = orientation.direction.y;
+  return {c * node.x - s * node.y, s * node.x + c * node.y};
+}
 
 /// Whether the outlines of two bodies, the second moved by `shift`, keep the distance `gap` (above 0) and none lies in
 /// the other. Exact for polygons whose thinnest place is wider than a segment is long.
-bool keep_apart(const RigidBody& a, const RigidBody& b, Pair shift, double gap);
+bool keep_apart(const RigidBody<RigidOutline>& a, const RigidBody<RigidOutline>& b, const Place<2>& shift, double gap);
 
 }  // namespace rouleau::shape

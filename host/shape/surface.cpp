@@ -1,5 +1,6 @@
 #include "surface.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -118,6 +119,13 @@ TriangleSurface make_surface(const scene::CellType& type) {
   if (const auto* disc = std::get_if<scene::Biconcave>(&type.shape)) return biconcave_disc(n, disc->radius);
   if (const auto* solid = std::get_if<scene::Ellipsoid>(&type.shape)) return ellipsoid(n, solid->semi_axes);
   return ellipsoid(n, Vec<3>::Constant(std::get<scene::Sphere>(type.shape).radius));
+}
+
+Eigen::Matrix3d rotation_of(const scene::CellPlacement& cell) {
+  using Eigen::AngleAxisd, Eigen::Vector3d;
+  if (!cell.axis) return AngleAxisd(cell.angle, Vector3d::UnitZ()).toRotationMatrix();
+  const Eigen::Quaterniond turned = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitY(), *cell.axis);
+  return (turned * AngleAxisd(cell.angle, Vector3d::UnitY())).toRotationMatrix();
 }
 
 core::RestSurface rest_surface(const TriangleSurface& surface, double prestretch) {

@@ -246,6 +246,27 @@ class A_run_in_three_dimensions(Case):
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertIn("cell.off", done.stderr)
 
+    def test_begins_with_cells_at_random(self):
+        random = {"hematocrit": 0.2, "seed": 3, "gap": "0.1 um"}
+        scene = changed(SHEARED, stages=SHEARED["stages"][:1], output={"cells": {"seconds": "0.02 ms"}},
+                        cells=[{"type": "capsule", "at": ["2 um", "2 um", "1.5 um"]}, {"type": "capsule", "random": random}])
+        done = self.rouleau("plan", self.write(scene))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stdout, r"\d+ of type capsule, hematocrit 0\.\d+ of 0\.2 asked, gap 0\.1 um, seed 3")
+        folders = [self.run_scene(scene, f"threads{n}", "--threads", n, "--max-steps", 20) for n in (1, 3)]
+        packing, = json.loads((folders[0] / "summary.json").read_text())["packings"]
+        first, *_ = rows = self.cells(folders[0])
+        volume = float(first["volume_m3"])
+        self.assertEqual(packing["count"], round(0.2 * 48e-18 / volume))
+        self.assertEqual(packing["cells"], [1, packing["count"]])
+        self.assertAlmostEqual(packing["hematocrit"], packing["count"] * volume / 48e-18, delta=1e-6)
+        self.assertEqual(float(first["x_m"]), 2e-6)
+        begun = [row for row in rows if row["step"] == first["step"]]
+        self.assertEqual(len(begun), 1 + packing["count"])
+        self.assertGreaterEqual(min(float(row["min_gap_m"]) for row in begun), 0.1e-6)
+        self.assertGreater(len({row["axis_y"] for row in begun}), 1)
+        self.assertEqual(rows, self.cells(folders[1]))
+
     def test_opens_as_a_volume(self):
         folder = self.run_scene(changed(SPACE, domain__z=WALLS, output__fields__stride=2), "volume")
         xdmf = (folder / "frames.xmf").read_text()
@@ -384,8 +405,14 @@ class Three_dimensions_refuse(Case):
         self.refused(changed(scene, cells__0__axis=[0, 0, 0]), "/cells/0/axis", "no direction")
         two = [{"type": "capsule", "at": ["2 um", "2 um", "0.1 um"]}, {"type": "capsule", "at": ["2.3 um", "2 um", "0.9 um"]}]
         self.refused(scene | {"cells": two}, "/cells/1", "overlap")
-        self.refused(changed(scene, cells=[{"type": "capsule", "random": {"count": 2, "seed": 1}}]), "/cells/0/random",
-                     "two dimensions only")
+        def random(**keys):
+            return changed(scene, cells=[{"type": "capsule", "random": {"count": 2, "seed": 1} | keys}])
+
+        self.refused(random(count=2, gap="1 um"), "/cells/0/random", "came to a standstill", "a gap smaller than 1 um")
+        self.refused(random(count=120), "/cells/0/random", "would fill", "ask for fewer cells")
+        self.refused(random(region={"lower": ["0 um", "0 um"], "upper": ["2 um", "2 um"]}), "/cells/0/random/region/lower", "three lengths")
+        self.refused(random(region={"lower": ["0 um"] * 3, "upper": ["2 um", "2 um", "1.5 um"]}), "/cells/0/random/region/upper/2",
+                     "size along z is 1 um")
         acting = [{"between": ["capsule", "self"], "model": "morse", "parameters": {"depth": "1e-8 J/m2"}}]
         self.refused(scene | {"interactions": acting}, "/interactions/0/between", "two dimensions only")
         bonds = [{"between": ["capsule", "capsule"], "model": "bridging", "parameters": {}}]

@@ -182,6 +182,11 @@ def domain_of_a_tube(test, block):
     test.plan(scene)
 
 
+def cells_in_space(test, block):
+    scene = json.loads((SOURCE / "scenes/suspension-3d.json").read_text())
+    test.plan(scene | json.loads("{" + block.text.strip().rstrip(",") + "}"))
+
+
 def other_settings(test, block):
     """Keys that replace those of the whole scene; more than one setting of a key stands for alternatives."""
     for text in re.split(r"\n\s*\n", block.text):
@@ -274,6 +279,7 @@ BLOCKS = [
     ("docs/study-quantities.md", '{"name": "deformation"', quantity_of_a_study),
     ("docs/three-dimensions.md", '{\n  "rouleau": 1', lambda test, block: test.plan(block.text.split("\n\nrouleau run")[0])),
     ("docs/three-dimensions.md", '"domain": {', domain_of_a_tube),
+    ("docs/three-dimensions.md", '"cells": [', cells_in_space),
     ("docs/three-dimensions.md", '"cell_types": {', "of scenes/capsule-3d.json, which tests/physics runs"),
     ("docs/first-run.md", "import rouleau", lambda test, block: ast.parse(block.text)),
     ("docs/output.md", "import h5py", lambda test, block: ast.parse(block.text)),

@@ -24,8 +24,9 @@ inline bool is_small(const scene::Scene& scene) {
   constexpr int most_cells = 200, most_packed = 8;
   constexpr long most_membrane_nodes = 20'000;
   long nodes = 0;
-  for (const auto& type : scene.cell_types) nodes += type.segments;
-  for (const auto& cell : scene.cells) nodes += scene.cell_types[static_cast<std::size_t>(cell.type)].segments;
+  const auto nodes_of = [](const scene::CellType& type) { return type.segments + type.triangles / 2; };
+  for (const auto& type : scene.cell_types) nodes += nodes_of(type);
+  for (const auto& cell : scene.cells) nodes += nodes_of(scene.cell_types[static_cast<std::size_t>(cell.type)]);
   int packed = 0;
   for (const auto& packing : scene.packings) packed += packing.count;
   return scene.cells.size() <= most_cells && packed <= most_packed && nodes <= most_membrane_nodes;

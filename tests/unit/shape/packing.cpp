@@ -49,7 +49,8 @@ struct Packed {
   Packed& hematocrit(int type, double share, std::uint32_t seed, double gap) {
     RandomPacking& packing = add(type, seed, gap);
     packing.hematocrit = share;
-    packing.count = static_cast<int>(cells_for(share, scene.cell_types[static_cast<std::size_t>(type)], packing));
+    packing.count =
+        static_cast<int>(cells_for(share, scene.cell_types[static_cast<std::size_t>(type)], packing, scene.domain));
     return *this;
   }
   Packed& count(int type, int number, std::uint32_t seed, double gap) {
@@ -247,7 +248,7 @@ TEST_CASE("cells stay in their region") {
   RandomPacking& packing = packed.add(0, 9, 0.3e-6);
   packing.lower = {10 * um, 8 * um};
   packing.upper = {40 * um, 24 * um};
-  packing.count = static_cast<int>(cells_for(0.4, packed.scene.cell_types[0], packing));
+  packing.count = static_cast<int>(cells_for(0.4, packed.scene.cell_types[0], packing, packed.scene.domain));
   packed.run();
   REQUIRE_FALSE(packed.shortfall);
   for (const Points& outline : outlines(packed.scene)) {

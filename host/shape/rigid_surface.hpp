@@ -1,0 +1,109 @@
+// The surface of a cell as a rigid body that can be turned and scaled, and whether two of them keep a distance.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "rigid_body.hpp"
+#include "scene/scene.hpp"
+
+namespace rouleau::shape {
+
+/// Balls within balls, each around a part of a set of points or triangles.
+class BallTree {
+ public:
+  /// Of items whose balls these are.
+  BallTree() = default;
+  BallTree(const std::vector<Place<3>>& centers, const std::vector<double>& radii);
+
+  /// Whether visit(item) holds for all items, in an order that the tree has; those within a ball for which
+  /// skip(center, radius) holds are not asked.
+  template <class Skip, class Visit>
+  bool all(const Skip& skip, const Visit& visit) const {
+    // Balls stand before those within them, so that `next` is where to go on behind all of these.
+    for (std::size_t k = 0; k < balls_.size();) {
+      const Ball& ball = balls_[k];
+      if (skip(ball.center, ball.radius)) {
+        k = ball.next;
+        continue;
+      }
+      for (int i = ball.first; i < ball.end; ++i) {
+        if (!visit(order_[i])) return false;
+      }
+      ++k;
+    }
+    return true;
+  }
+
+ private:
+  struct Ball {
+    Place<3> center;
+    double radius;
+    int first, end;  ///< in order_: its items; none if it has balls
+    std::size_t next;
+  };
+  void add(const std::vector<Place<3>>& centers, const std::vector<double>& radii, int first, int end);
+
+  std::vector<int> order_;
+  std::vector<Ball> balls_;
+};
+
+/// A closed surface of triangles about the origin as it is at angle 0, in a unit of length of the caller's choice.
+class RigidSurface {
+ public:
+  static constexpr int dimension = 3;
+  struct Orientation {
+    std::array<Place<3>, 3> rows;  ///< of the matrix that turns
+    Place<3> axis;                 ///< what the y axis is turned to
+    std::uint32_t angle;           ///< about it
+  };
+  /// Uniform: of the axis on the sphere, and of the angle.
+  static Orientation drawn(RandomNumbers& numbers);
+  /// Axis and angle turned at random by a part `most` of a whole turn at most. The way back is as likely.
+  static Orientation turned(const Orientation& from, double most, RandomNumbers& numbers);
+  static Orientation of(const scene::CellPlacement& cell);
+  static void put(const Orientation& orientation, scene::CellPlacement& cell);
+
+  /// Surface of a cell type with its triangles, for gaps of at least `gap`.
+  RigidSurface(const scene::CellType& type, double unit, double gap);
+
+  [[nodiscard]] const std::vector<Place<3>>& nodes() const { return nodes_; }
+  [[nodiscard]] double radius() const { return radius_; }  ///< of the sphere about the origin that holds it
+  [[nodiscard]] double content() const { return volume_; }
+  /// By how much two surfaces may be nearer to each other than keep_apart() is asked for.
+  [[nodiscard]] double allowance() const { return allowance_; }
+  /// Points of the surface, nodes among them.
+  [[nodiscard]] const std::vector<Place<3>>& samples() const { return samples_; }
+  [[nodiscard]] const BallTree& sample_tree() const { return sample_tree_; }
+
+  /// Whether a point lies outside and at least that far from the surface, from a map of distances where that suffices, else
+  /// from the triangles. A point outside that is as near as the map is coarse may be denied.
+  [[nodiscard]] bool keeps(const Place<3>& point, double least) const;
+  /// The same by the map alone: false where that does not suffice.
+  [[nodiscard]] bool surely_keeps(const Place<3>& point, double least) const;
+
+ private:
+  [[nodiscard]] double distance(const Place<3>& point, double at_most) const;
+  /// Distance in the middle of the map's cube that holds the point, negative inside; none where there is no map.
+  [[nodiscard]] const float* mapped(const Place<3>& point) const;
+  void make_samples(double gap);
+  void make_map();
+
+  std::vector<Place<3>> nodes_, samples_;
+  std::vector<std::array<int, 3>> triangles_;
+  BallTree sample_tree_, triangle_tree_;
+  double radius_ = 0, volume_ = 0, allowance_ = 0;
+  std::array<int, 3> count_{};
+  Place<3> least_{}, most_{}, lower_{};  ///< corners of the box around the surface; lower one of the map
+  double step_ = 0, half_diagonal_ = 0;
+  std::vector<float> map_;
+};
+
+/// A point of the surface as it lies from the centre of a body of size 1.
+Place<3> rotated(const RigidSurface::Orientation& orientation, const Place<3>& point);
+
+/// Whether the surfaces of two bodies, the second moved by `shift`, keep the distance `gap` (above 0), up to their
+/// allowance, and none lies in the other.
+bool keep_apart(const RigidBody<RigidSurface>& a, const RigidBody<RigidSurface>& b, const Place<3>& shift, double gap);
+
+}  // namespace rouleau::shape
