@@ -344,6 +344,7 @@ class Simulation {
   /// Whether a signal or a clock wants the loop to attend to a step soon.
   [[nodiscard]] bool wants_attention(long step) const {
     if (ranks_.several() && step % steps_between_questions != 0) return false;
+    solver_->end_messages();
     return core::any(ranks_, interrupted() || checkpoints_.due());
   }
 
@@ -359,6 +360,7 @@ class Simulation {
   /// One thread, before the forces of a step: whether the stage ends here, and the checkpoint.
   void before_forces(long step) {
     course_.count_to(step);
+    solver_->end_messages();
     if (step >= cut_at_) {
       share_state();
       cut_due_ = true;

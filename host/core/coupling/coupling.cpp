@@ -111,27 +111,50 @@ template <class T, class Kernel>
 struct Interpolate {
   template <int register_bytes>
   ROULEAU_ALWAYS_INLINE static void run(const InterpolateTask<T>* task) {
-    const InterpolateTask<T> t = *task;
-    if (t.block != nullptr) return run_in_block(t);
-    int i = t.begin;
-    for (; i + 2 <= t.end; i += 2) {
-      if (t.fetch_ahead && i + lead + 2 <= t.end) {
-        fetch(t, i + lead);
-        fetch(t, i + lead + 1);
-      }
-      Four u[2], v[2];
-      for (int k = 0; k < 2; ++k) weigh(t, i + k, u[k], v[k]);
-      const Four sums = sum(u[0], u[1], v[0], v[1]);
-      for (int k = 0; k < 2; ++k) {
-        t.velocity_x[i + k] = sums.vector[k];
-        t.velocity_y[i + k] = sums.vector[2 + k];
-      }
+    if (task->block == nullptr) {
+      run_all<false>(*task);
+    } else {
+      run_all<true>(*task);
     }
-    if (i < t.end) interpolate(t, i);
   }
 
  private:
   using Four = Pack<T, 4>;
+  /// `in_block`: only nodes above the block.
+  template <bool in_block>
+  ROULEAU_ALWAYS_INLINE static void run_all(const InterpolateTask<T>& task) {
+    const InterpolateTask<T> t = task;
+    int i = t.begin;
+    if (in_block && t.fetch_ahead) {
+      for (; i < std::min(t.begin + lead, t.end); ++i) fetch<in_block>(t, i);
+      i = t.begin;
+    }
+    for (; i + 2 <= t.end; i += 2) {
+      if (t.fetch_ahead && i + lead + 2 <= t.end) {
+        fetch<in_block>(t, i + lead);
+        fetch<in_block>(t, i + lead + 1);
+      }
+      if (!in_block || (here(t, i) && here(t, i + 1))) {
+        interpolate_two(t, i);
+      } else {
+        if (here(t, i)) interpolate(t, i);
+        if (here(t, i + 1)) interpolate(t, i + 1);
+      }
+    }
+    if (i < t.end && (!in_block || here(t, i))) interpolate(t, i);
+  }
+  ROULEAU_ALWAYS_INLINE static bool here(const InterpolateTask<T>& t, int i) {
+    return t.block->contains({t.at.column[i], std::max(t.at.row[i], 0)});
+  }
+  ROULEAU_ALWAYS_INLINE static void interpolate_two(const InterpolateTask<T>& t, int i) {
+    Four u[2], v[2];
+    for (int k = 0; k < 2; ++k) weigh(t, i + k, u[k], v[k]);
+    const Four sums = sum(u[0], u[1], v[0], v[1]);
+    for (int k = 0; k < 2; ++k) {
+      t.velocity_x[i + k] = sums.vector[k];
+      t.velocity_y[i + k] = sums.vector[2 + k];
+    }
+  }
   ROULEAU_ALWAYS_INLINE static void interpolate(const InterpolateTask<T>& t, int i) {
     Four u, v;
     weigh(t, i, u, v);
@@ -139,14 +162,10 @@ struct Interpolate {
     t.velocity_x[i] = sums.vector[0];
     t.velocity_y[i] = sums.vector[2];
   }
-  ROULEAU_ALWAYS_INLINE static void run_in_block(const InterpolateTask<T>& t) {
-    for (int i = t.begin; i < t.end; ++i) {
-      if (t.block->contains({t.at.column[i], std::max(t.at.row[i], 0)})) interpolate(t, i);
-    }
-  }
   static constexpr int lead = 16;  // nodes from the fetched one to the present one
+  template <bool in_block>
   ROULEAU_ALWAYS_INLINE static void fetch(const InterpolateTask<T>& t, int i) {
-    if (t.at.row[i] == outside) return;
+    if (t.at.row[i] == outside || (in_block && !here(t, i))) return;
     const std::ptrdiff_t at = (t.at.row[i] - 1) * t.stride + t.at.column[i];
     for (int k = 0; k < 4; ++k) {
       __builtin_prefetch(t.origin_x + at + k * t.stride);

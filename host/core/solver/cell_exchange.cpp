@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 #include <map>
+#include <utility>
 
 namespace rouleau::core {
 
@@ -167,17 +168,29 @@ void CellExchange<D>::run(Task task, const Parts& parts) {
       return send_velocities(parts.cells, parts.base);
     case Task::receive_velocities:
       return receive_velocities(parts.cells, parts.base);
-    case Task::share_positions:
-      return share_positions(parts.cells, parts.viscosity,
-                             parts.interactions != nullptr ? &parts.interactions->watch() : nullptr, parts.escaped());
+    case Task::send_positions:
+      return send_positions(parts.cells, parts.viscosity,
+                            parts.interactions != nullptr ? &parts.interactions->watch() : nullptr, parts.escaped());
+    case Task::receive_positions:
+      return receive_positions(parts.cells, parts.viscosity);
     default:
       return;
   }
 }
 
 template <int D>
-void CellExchange<D>::share_positions(Cells& cells, DisplacementWatch& viscosity, DisplacementWatch* lists,
-                                      bool escaped) {
+template <class Message>
+void CellExchange<D>::transfer_positions(Cells& cells, DisplacementWatch& viscosity, const std::vector<int>& of_peer,
+                                         Message& message) const {
+  for (const int c : of_peer) {
+    transfer_motion(cells, c, std::ref(message));
+    if (with_memory_) transfer_memory(cells, viscosity, c, std::ref(message));
+  }
+}
+
+template <int D>
+void CellExchange<D>::send_positions(Cells& cells, DisplacementWatch& viscosity, DisplacementWatch* lists,
+                                     bool escaped) {
   const auto raise = [](double& largest, double value) {
     if (!(value <= largest) && !std::isnan(largest)) largest = value;
   };
@@ -191,28 +204,34 @@ void CellExchange<D>::share_positions(Cells& cells, DisplacementWatch& viscosity
   const bool expired = lists != nullptr && lists->measure_own(cells);
   const auto [all_step, all_path, all_escaped, all_expired] =
       largest(ranks_, std::array{step, path, escaped ? 1.0 : 0.0, expired ? 1.0 : 0.0});
-  const bool compare = !(all_path <= GhostCells<D>::skin);
+  with_memory_ = !(all_path <= GhostCells<D>::skin);
   took_over_ = false;
-  if (compare) {
+  if (with_memory_) {
     const std::vector<BoundingBox<D>> boxes = boxes_of_all(cells);
     hand_over(cells, viscosity, boxes);
     ghosts_.renew(boxes);
     std::fill(path_.begin(), path_.end(), 0.0);
   }
-  if (lists != nullptr) lists->agree(compare || all_expired > 0);
+  if (lists != nullptr) lists->agree(with_memory_ || all_expired > 0);
   set_parts(cells);
-  const auto transfer = [&](int, const std::vector<int>& of_peer, auto& message) {
-    for (const int c : of_peer) {
-      transfer_motion(cells, c, std::ref(message));
-      if (compare) transfer_memory(cells, viscosity, c, std::ref(message));
-    }
-  };
-  send_to_peers<Packer>(ghosts_, *ranks_.transport, &GhostCells<D>::Peer::mine, transfer);
-  receive_from_peers<Unpacker>(ghosts_, *ranks_.transport, &GhostCells<D>::Peer::theirs, transfer);
   for (int c = 0; c < cells.cell_count(); ++c) {
     if (!ghosts_.knows(c)) cells.largest_step[c] = all_step;  // no node of any cell has moved further
   }
   escaped_ = all_escaped > 0;
+  send_to_peers<Packer>(ghosts_, *ranks_.transport, &GhostCells<D>::Peer::mine,
+                        [&](int, const std::vector<int>& of_peer, Packer& message) {
+                          transfer_positions(cells, viscosity, of_peer, message);
+                        });
+  on_their_way_ = true;
+}
+
+template <int D>
+void CellExchange<D>::receive_positions(Cells& cells, DisplacementWatch& viscosity) {
+  if (!std::exchange(on_their_way_, false)) return;
+  receive_from_peers<Unpacker>(ghosts_, *ranks_.transport, &GhostCells<D>::Peer::theirs,
+                               [&](int, const std::vector<int>& of_peer, Unpacker& message) {
+                                 transfer_positions(cells, viscosity, of_peer, message);
+                               });
 }
 
 template <int D>
@@ -369,7 +388,8 @@ void CellExchange<D>::transfer_cell(Cells& cells, DisplacementWatch& watch, int 
 }
 
 template <int D>
-void CellExchange<D>::share_state(Cells& cells, DisplacementWatch& watch) const {
+void CellExchange<D>::share_state(Cells& cells, DisplacementWatch& watch) {
+  receive_positions(cells, watch);
   const auto transfer = [&](int rank, auto& message) {
     for (int c = 0; c < cells.cell_count(); ++c) {
       if (ghosts_.owner(c) != rank) continue;

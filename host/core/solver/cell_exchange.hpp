@@ -42,13 +42,16 @@ class CellExchange {
   /// Tasks of schedule.hpp that are messages about cells; nothing for others. Between the two halves of one lies no other
   /// message.
   void run(Task task, const Parts& parts);
-  /// At the last share_positions: whether a node has left the domain, on any rank.
+  /// Takes positions that are still on their way, before ranks speak of something else between two steps. Other workers
+  /// may have begun with the next one.
+  void receive_positions(Cells& cells, DisplacementWatch& viscosity);
+  /// At the last send_positions: whether a node has left the domain, on any rank.
   [[nodiscard]] bool escaped() const { return escaped_; }
   /// And whether it has given this rank cells that it did not own before.
   [[nodiscard]] bool took_over() const { return took_over_; }
   /// All of all cells, to all ranks: positions, velocities, forces, what laws and potentials remember, leaked areas, and
-  /// the watch's memory. Until the next share_positions() every rank knows every cell.
-  void share_state(Cells& cells, DisplacementWatch& watch) const;
+  /// the watch's memory. Until the next send_positions every rank knows every cell.
+  void share_state(Cells& cells, DisplacementWatch& watch);
 
  private:
   class Packer;
@@ -63,7 +66,11 @@ class CellExchange {
   /// lists of cells that act on each other are out of date, if there are such lists (null: none), and whether a node has
   /// left the domain. New ghosts come with what the viscosity's watch remembers of them, and cells that change hands with
   /// all that is known of them.
-  void share_positions(Cells& cells, DisplacementWatch& viscosity, DisplacementWatch* lists, bool escaped);
+  void send_positions(Cells& cells, DisplacementWatch& viscosity, DisplacementWatch* lists, bool escaped);
+  /// One message about positions.
+  template <class Message>
+  void transfer_positions(Cells& cells, DisplacementWatch& viscosity, const std::vector<int>& of_peer,
+                          Message& message) const;
   /// The reactions of potentials, to the owners of the cells that they act on.
   void send_reactions(Interactions& interactions) const;
   void receive_reactions(const Cells& cells, Interactions& interactions) const;
@@ -95,7 +102,9 @@ class CellExchange {
   GhostCells<D> ghosts_;
   bool velocities_;
   bool escaped_ = false, took_over_ = false;
-  std::vector<double> path_;  // of this rank's cells since boxes were compared: no node has a longer one
+  bool on_their_way_ = false;  // positions have been sent, and not been received
+  bool with_memory_ = false;   // as those of new ghosts are
+  std::vector<double> path_;   // of this rank's cells since boxes were compared: no node has a longer one
 };
 
 extern template class CellExchange<2>;

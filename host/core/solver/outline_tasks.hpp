@@ -39,6 +39,11 @@ class OutlineTasks {
   }
   /// The frame of the fluid's unsteady term gets the cells' velocity, as far as the walls allow, if the setup wants that.
   void follow(const std::array<double, 3>& velocity);
+  /// One worker, between steps, before ranks speak of something else than the next step does, which other workers may have
+  /// begun: takes the messages of the last one.
+  void end_messages() {
+    if (exchange_) exchange_->receive_positions(membranes_, viscosity_field_.watch());
+  }
   /// One worker, between steps or where the state may be observed: tells all ranks what only the owners of cells know.
   void share_state();
   /// Mean velocity of all ranks' nodes, which must ask together.

@@ -12,25 +12,29 @@ Schedule make_schedule(const StepFeatures& has) {
     if (wanted) schedule.steps.push_back({task, name, meeting});
   };
   const bool cells = has.cells, ranks = has.ranks, corrected = has.slip_correction || has.area_correction;
+  const bool ghosts = cells && ranks;
   const bool touch = has.interactions, walls = has.wall_interactions, self = has.self_interactions;
   const char* const mark = has.viscosity_contrast ? "indicator" : "activity";
   // Where a worker would wait for the others it goes on with its own cells: announce, await.
-  const Meeting own_cells = touch ? Meeting::await : Meeting::none;
+  const Meeting own_cells = ghosts ? Meeting::all : touch ? Meeting::await : Meeting::none;
 
   // The last step has left the lattice to itself; with cells a later meeting tells all workers before they take rows.
   add(has.changing_drive, Task::set_drive, "fluid", cells ? Meeting::none : Meeting::all);
-  add(touch, Task::find_contacts, "interaction", Meeting::announce);
+  add(touch && !ghosts, Task::find_contacts, "interaction", Meeting::announce);
   add(cells, Task::membrane_forces, "membrane", walls || self ? Meeting::none : own_cells);
   add(walls, Task::wall_forces, "interaction", self ? Meeting::none : own_cells);
   add(self, Task::self_forces, "interaction", own_cells);
-  // What ranks tell each other is on its way during the task after it is sent.
+  // What ranks tell each other is on its way during the task after it is sent: positions since the last step.
+  add(ghosts, Task::receive_positions, "ranks", Meeting::all);
+  add(ghosts, Task::locate_ghosts, "move", Meeting::none);
+  add(touch && ghosts, Task::find_contacts, "interaction", Meeting::all);
   add(touch, Task::interaction_forces, "interaction", ranks ? Meeting::all : Meeting::announce);
   add(corrected && !touch, Task::complete_forces, "corrections", Meeting::none);
   // The frame is found from the velocities of all cells: when all workers have left the last step, and no message is on its way.
   const bool frame = cells && has.moving_frame;
   add(frame && touch, Task::follow_cells, "fluid", Meeting::none);
   add(touch && ranks, Task::send_reactions, "ranks", Meeting::none);
-  if (cells && ranks && !touch) {
+  if (ghosts && !touch) {
     schedule.steps.back().meeting = Meeting::all;
     add(frame, Task::follow_cells, "fluid", Meeting::none);
     add(true, Task::send_forces, "ranks", Meeting::none);
@@ -43,7 +47,7 @@ Schedule make_schedule(const StepFeatures& has) {
   add(corrected && touch, Task::complete_forces, "corrections", Meeting::all);
   add(touch && ranks, Task::send_forces, "ranks", Meeting::none);
   add(cells, Task::set_viscosity, mark, Meeting::none);
-  add(cells && ranks, Task::receive_forces, "ranks", Meeting::all);
+  add(ghosts, Task::receive_forces, "ranks", Meeting::all);
   schedule.rows = schedule.steps.size();
   add(cells, Task::clear_force, "spread", Meeting::none);
   add(cells, Task::spread, "spread", Meeting::none);
@@ -52,16 +56,15 @@ Schedule make_schedule(const StepFeatures& has) {
   add(true, Task::end_step, "fluid", cells || ranks ? Meeting::none : Meeting::all);
   add(ranks, Task::send_halo, "ranks", Meeting::none);
   add(ranks, Task::receive_halo, "ranks", Meeting::all);
-  add(cells && ranks, Task::interpolate_ghosts, "interpolate", Meeting::all);
-  add(cells && ranks, Task::send_velocities, "ranks", Meeting::none);
+  add(ghosts, Task::interpolate_ghosts, "interpolate", Meeting::all);
+  add(ghosts, Task::send_velocities, "ranks", Meeting::none);
   // The next step begins with the same cells; its first barrier serves these tasks, too.
   add(cells, Task::interpolate, "interpolate", Meeting::none);
-  add(cells && ranks, Task::receive_velocities, "ranks", Meeting::all);
+  add(ghosts, Task::receive_velocities, "ranks", Meeting::all);
   add(corrected, Task::correct_velocities, "corrections", Meeting::none);
   add(cells, Task::move, "move", Meeting::none);
   add(cells, Task::locate, "move", ranks ? Meeting::all : Meeting::none);
-  add(cells && ranks, Task::share_positions, "ranks", Meeting::all);
-  add(cells && ranks, Task::locate_ghosts, "move", Meeting::none);
+  add(ghosts, Task::send_positions, "ranks", Meeting::all);
   return schedule;
 }
 

@@ -11,10 +11,12 @@ namespace rouleau::core {
 /// What a time step may do. A pass over cells gives each worker cells, one over rows gives it rows of the lattice.
 enum class Task {
   set_drive,           ///< one worker: walls and body force that change with time
-  find_contacts,       ///< cells: the closest point of other outlines to each node
   membrane_forces,     ///< cells: F = -dE/dX of the membrane laws
   wall_forces,         ///< cells: F = -dE/dX of the potentials between cells and walls
   self_forces,         ///< cells: F = -dE/dX of the potentials between parts of one membrane
+  receive_positions,   ///< one worker: of other ranks' nodes that this one has to know of
+  locate_ghosts,       ///< cells: locate, of other ranks' cells and of those that have just become own ones
+  find_contacts,       ///< cells: the closest point of other outlines to each node
   interaction_forces,  ///< cells: F = -dE/dX of the potentials, on own nodes
   send_reactions,      ///< one worker: what own nodes do to other ranks' cells
   receive_reactions,   ///< one worker
@@ -38,8 +40,7 @@ enum class Task {
   correct_velocities,  ///< cells: neither slip nor leaks
   move,                ///< cells: X(t + 1) = X(t) + U
   locate,              ///< cells: where the nodes touch the lattice
-  share_positions,     ///< one worker: of nodes that other ranks have to know of
-  locate_ghosts        ///< cells: locate, of other ranks' cells and of those that have just become own ones
+  send_positions       ///< one worker: what all ranks agree on, then nodes that others have to know of in the next step
 };
 
 /// A task and what happens between the workers after it.

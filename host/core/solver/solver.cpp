@@ -102,7 +102,7 @@ void Solver<T, Set>::run(Task task, Worker worker) {
     case Task::set_drive:
       if (!worker.first()) return;
       oscillate(steps_);
-      if (flow_control_ && flow_control_->due(steps_)) keep_mean_velocity();
+      if (flow_control_ && flow_control_->due(steps_)) end_messages(), keep_mean_velocity();
       return;
     case Task::end_step:
       if (worker.first()) fluid_.end_step(), ++steps_;
@@ -220,6 +220,7 @@ void Solver<T, Set>::keep_mean_velocity() {
 template <class T, class Set>
 void Solver<T, Set>::step(long count) {
   for (; count > 0; --count) run_alone(0, passes_.size());
+  end_messages();
 }
 
 template <class T, class Set>
@@ -230,6 +231,7 @@ void Solver<T, Set>::compute_forces() {
 template <class T, class Set>
 void Solver<T, Set>::advance() {
   run_alone(observable_pass_, passes_.size());
+  end_messages();
 }
 
 template <class T, class Set>

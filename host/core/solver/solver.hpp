@@ -58,6 +58,11 @@ class Solver {
 
   /// Takes time steps with one worker. Between steps nodes are where the last step has moved them to.
   void step(long count = 1);
+  /// Ranks are done with the messages of the last step; who calls passes() calls this between two steps before all ranks
+  /// speak of something else. The other workers may have begun with the next step.
+  void end_messages() {
+    if (cell_tasks_) cell_tasks_->end_messages();
+  }
   /// The two halves of a step, with one worker: forces at the present positions, after which the state may be observed;
   /// then fluid, interpolation and motion.
   void compute_forces();

@@ -46,6 +46,11 @@ class SurfaceTasks {
   void spread(Range rows) { coupling_.spread(rows, surfaces_, fluid_.force()); }
   /// The fluid's unsteady term has no frame in three dimensions.
   void follow(const std::array<double, 3>&) {}
+  /// One worker, between steps, before ranks speak of something else than the next step does, which other workers may have
+  /// begun: takes the messages of the last one.
+  void end_messages() {
+    if (exchange_) exchange_->receive_positions(surfaces_, viscosity_field_.watch());
+  }
   /// One worker, between steps or where the state may be observed: tells all ranks what only the owners of cells know.
   void share_state();
   /// Mean velocity of all ranks' nodes, which must ask together.

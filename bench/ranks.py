@@ -1,0 +1,112 @@
+#!/usr/bin/python3
+"""A step by ranks, by as many threads, and by one: measured in turn, beside what `rouleau plan --ranks` expects.
+
+usage: ranks.py [--build build/release] [--cases NAME,...] [--ranks 2,4] [--rounds 5] [--seconds 2] [--prefix "chrt -f 5"]
+A line for each case and number of ranks: microseconds a step, least of all rounds, outputs and checks left out; the speed of
+ranks over that of threads, least over least and the median of the rounds; the model, which is given the step of one process
+and the network as they were measured, and knows nothing of ranks that share a processor. Open MPI.
+"""
+
+import argparse
+import json
+import os
+import re
+import statistics
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+SPACING = 0.1955  # um
+OUTSIDE = ("observe and check", "checkpoint", "cut")  # passes that are no part of a step
+
+
+def scene(nodes, cells):
+    """Cells at 40 % or the four of the paper in shear, viscosity ratio 5, f64; or the fluid alone."""
+    base = json.loads((HERE.parent / "scenes" / ("four-cells-shear.json" if cells == 4 else "suspension.json")).read_text())
+    base["numerics"]["precision"] = "f64"
+    base["output"] = {"checkpoint": "never"}
+    base["stages"] = [{"name": "shear", "shear_rate": "20 1/s", "strain": 1000}]
+    base["checks"] = {"every_steps": 1000}
+    if cells != 4:
+        base["domain"]["nodes"] = nodes
+        base["domain"]["size"] = [f"{count * SPACING} um" for count in nodes]
+        base["cells"] = [{"type": "rbc", "random": {"hematocrit": 0.4, "seed": 1, "gap": "0.2 um"}}] if cells else []
+        base["interactions"] = base["interactions"] if cells else []
+    return base
+
+
+CASES = {
+    "fluid": scene([2048, 1024], 0),
+    "1000 cells": scene([960, 960], 1000),
+    "60 cells": scene([272, 240], 60),
+    "4 cells": scene(None, 4),
+}
+
+
+class Bench:
+    def __init__(self, chosen, folder):
+        self.program, self.tool = chosen.build / "bin/rouleau", chosen.build / "bin/rouleau-bench"
+        self.prefix, self.seconds, self.folder = chosen.prefix.split(), chosen.seconds, Path(folder)
+        self.environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+
+    def call(self, *words):
+        done = subprocess.run([str(word) for word in words], env=self.environment, capture_output=True, text=True)
+        if done.returncode not in (0, 130):
+            sys.exit(f"{' '.join(map(str, words))}: exit code {done.returncode}\n{done.stdout}{done.stderr}")
+        return done.stdout
+
+    def mpirun(self, ranks):
+        return [*self.prefix, "mpirun", "--oversubscribe", "--bind-to", "none", "-n", ranks]
+
+    def network(self):
+        words = self.call(*self.mpirun(2), self.tool, "--only", "network")
+        return re.search(r'--network "([^"]*)"', words)[1]
+
+    def step_us(self, file, steps, ranks=1, threads=1):
+        out = self.folder / "run"
+        before = self.mpirun(ranks) if ranks > 1 else self.prefix
+        self.call(*before, self.program, "run", file, "--out", out, "--overwrite", "--quiet", "--threads", threads,
+                  "--max-steps", steps)
+        summary = json.loads((out / "summary.json").read_text())
+        return 1e6 * sum(p["wall_s"] for p in summary["passes"] if p["name"] not in OUTSIDE) / summary["steps"]
+
+    def plan(self, file, ranks, one_us, network):
+        report = json.loads(self.call(self.program, "plan", file, "--ranks", ranks, "--json", "--step", f"{one_us} us",
+                                      "--network", network))
+        return next(1e6 * time["step_s"] for time in report["ranks"]["times"]["of"] if time["ranks"] == ranks)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--build", type=Path, default=HERE.parent / "build/release")
+    parser.add_argument("--cases", default=",".join(CASES))
+    parser.add_argument("--ranks", default="2")
+    parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--seconds", type=float, default=2, help="that a run by one process takes")
+    parser.add_argument("--prefix", default="", help='of every command, such as "chrt -f 5": others wait')
+    chosen = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        bench = Bench(chosen, folder)
+        network = bench.network()
+        print(f"network: {network}")
+        print(f"{'case':12} {'ranks':>5} {'one':>9} {'threads':>9} {'ranks':>9} {'ratio':>6} {'median':>6} {'model':>9} {'model/measured':>14}")
+        for name in chosen.cases.split(","):
+            file = bench.folder / "scene.json"
+            file.write_text(json.dumps(CASES[name]))
+            steps = max(20, int(1e6 * chosen.seconds / bench.step_us(file, 20)))
+            for ranks in map(int, chosen.ranks.split(",")):
+                one, threads, several = [], [], []
+                for _ in range(chosen.rounds):
+                    one.append(bench.step_us(file, steps))
+                    threads.append(bench.step_us(file, steps, threads=ranks))
+                    several.append(bench.step_us(file, steps, ranks=ranks))
+                model = bench.plan(file, ranks, min(one), network)
+                median = statistics.median(t / r for t, r in zip(threads, several))
+                print(f"{name:12} {ranks:5} {min(one):9.1f} {min(threads):9.1f} {min(several):9.1f} "
+                      f"{min(threads) / min(several):6.2f} {median:6.2f} {model:9.1f} {model / min(several):14.2f}", flush=True)
+
+
+if __name__ == "__main__":
+    main()
