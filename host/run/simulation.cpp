@@ -175,6 +175,8 @@ class Simulation {
   void run_stage() {
     const plan::StageSetting& setting = this->setting();
     ending_ = Ending::none;
+    for (const std::string& pass : solver_->pass_names())
+      state_.costs.add(pass, 0, 0);  // ranks do not change their order
     const plan::OutputSchedule cells(scene_.output.cells, setting, true), fields(scene_.output.fields, setting, false);
     next_attention_ = state_.stage_step;
     clock_ = Clock::now();

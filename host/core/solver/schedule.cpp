@@ -1,5 +1,7 @@
 #include "schedule.hpp"
 
+#include <algorithm>
+
 namespace rouleau::core {
 
 bool over_rows(Task task) {
@@ -66,6 +68,15 @@ Schedule make_schedule(const StepFeatures& has) {
   add(cells, Task::locate, "move", ranks ? Meeting::all : Meeting::none);
   add(ghosts, Task::send_positions, "ranks", Meeting::all);
   return schedule;
+}
+
+std::vector<std::string> pass_names(StepFeatures features) {
+  features.ranks = false;
+  std::vector<std::string> names;
+  for (const Step& step : make_schedule(features).steps) {
+    if (std::find(names.begin(), names.end(), step.name) == names.end()) names.emplace_back(step.name);
+  }
+  return names;
 }
 
 }  // namespace rouleau::core

@@ -79,4 +79,7 @@ struct Schedule {
 };
 Schedule make_schedule(const StepFeatures& features);
 
+/// The passes of a step, each name once, as one process has them; other ranks change the order of the tasks.
+std::vector<std::string> pass_names(StepFeatures features);
+
 }  // namespace rouleau::core

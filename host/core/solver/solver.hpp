@@ -81,6 +81,7 @@ class Solver {
   /// A step, for several workers. Before pass [observable_pass()], after a barrier, the state may be observed; who does
   /// not want to runs the passes from rows_pass() on without a stop.
   [[nodiscard]] const std::vector<Pass>& passes() const { return passes_; }
+  [[nodiscard]] std::vector<std::string> pass_names() const { return core::pass_names(features()); }
   [[nodiscard]] std::size_t rows_pass() const { return rows_pass_; }
   [[nodiscard]] std::size_t observable_pass() const { return observable_pass_; }
   /// How this step cuts rows.
