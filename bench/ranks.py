@@ -22,26 +22,27 @@ SPACING = 0.1955  # um
 OUTSIDE = ("observe and check", "checkpoint", "cut")  # passes that are no part of a step
 
 
-def scene(nodes, cells):
-    """Cells at 40 % or the four of the paper in shear, viscosity ratio 5, f64; or the fluid alone."""
-    base = json.loads((HERE.parent / "scenes" / ("four-cells-shear.json" if cells == 4 else "suspension.json")).read_text())
+def scene(file, nodes=None, hematocrit=0.4):
+    """A scene of scenes/ in shear, f64, without outputs; with nodes as large as these, and filled with cells at random."""
+    base = json.loads((HERE.parent / "scenes" / file).read_text())
     base["numerics"]["precision"] = "f64"
     base["output"] = {"checkpoint": "never"}
     base["stages"] = [{"name": "shear", "shear_rate": "20 1/s", "strain": 1000}]
     base["checks"] = {"every_steps": 1000}
-    if cells != 4:
+    if nodes:
         base["domain"]["nodes"] = nodes
         base["domain"]["size"] = [f"{count * SPACING} um" for count in nodes]
-        base["cells"] = [{"type": "rbc", "random": {"hematocrit": 0.4, "seed": 1, "gap": "0.2 um"}}] if cells else []
-        base["interactions"] = base["interactions"] if cells else []
+        base["cells"] = [{"type": "rbc", "random": {"hematocrit": hematocrit, "seed": 1, "gap": "0.2 um"}}]
+        if not hematocrit:
+            base["cells"] = base["interactions"] = []
     return base
 
 
 CASES = {
-    "fluid": scene([2048, 1024], 0),
-    "1000 cells": scene([960, 960], 1000),
-    "60 cells": scene([272, 240], 60),
-    "4 cells": scene(None, 4),
+    "fluid": scene("suspension.json", [2048, 1024], 0),
+    "1036 cells": scene("suspension.json", [960, 960]),
+    "73 cells": scene("suspension.json", [272, 240]),
+    "4 cells": scene("four-cells-shear.json"),
 }
 
 

@@ -181,7 +181,15 @@ struct SurfaceContacts::Neighbours {
     double around;  ///< reach plus the triangle's own radius
     [[nodiscard]] auto order() const { return std::tie(other, shift, triangle); }
   };
-  std::vector<Triangle> triangles;      // sorted
+  /// The triangles [begin, end) of one image of a cell.
+  struct Image {
+    int other;
+    std::array<int, 3> shift;
+    std::size_t begin, end;
+    Eigen::AlignedBox3d reached;  ///< holds all places that one of them is near
+  };
+  std::vector<Triangle> triangles;  // sorted
+  std::vector<Image> images;
   std::vector<double> x, y, z, square;  // their middles, and squares of `around`
   std::vector<unsigned char> near;      // of a node: which of them
 
@@ -215,6 +223,12 @@ struct SurfaceContacts::Neighbours {
     });
     std::sort(triangles.begin(), triangles.end(), [](const auto& a, const auto& b) { return a.order() < b.order(); });
     for (const Triangle& triangle : triangles) {
+      const std::size_t t = x.size();
+      if (images.empty() || images.back().other != triangle.other || images.back().shift != triangle.shift)
+        images.push_back({triangle.other, triangle.shift, t, t, {}});
+      images.back().end = t + 1;
+      images.back().reached.extend(triangle.middle - Vec<3>::Constant(triangle.around));
+      images.back().reached.extend(triangle.middle + Vec<3>::Constant(triangle.around));
       x.push_back(triangle.middle.x());
       y.push_back(triangle.middle.y());
       z.push_back(triangle.middle.z());
@@ -223,12 +237,12 @@ struct SurfaceContacts::Neighbours {
     near.resize(triangles.size());
   }
 
-  /// Sets near for a place.
-  void look(const Vec<3>& place) {
+  /// Sets near for a place, of an image's triangles.
+  void look(const Vec<3>& place, const Image& image) {
     const double at_x = place.x(), at_y = place.y(), at_z = place.z();
     const double *const px = x.data(), *const py = y.data(), *const pz = z.data(), *const most = square.data();
     unsigned char* const result = near.data();
-    for (std::size_t t = 0; t < near.size(); ++t) {
+    for (std::size_t t = image.begin; t < image.end; ++t) {
       const double dx = at_x - px[t], dy = at_y - py[t], dz = at_z - pz[t];
       result[t] = dx * dx + dy * dy + dz * dz <= most[t];
     }
@@ -246,26 +260,20 @@ void SurfaceContacts::list_candidates(int cell, const Surfaces& surfaces, const 
     if (usable(place_of(node))) box.extend(place_of(node));
   if (box.isEmpty()) return;
   Neighbours neighbours(cell, box, surfaces, bins, cutoffs_, domain_, skin);
-  Eigen::AlignedBox3d reached;
-  for (const Neighbours::Triangle& there : neighbours.triangles) {
-    reached.extend(there.middle - Vec<3>::Constant(there.around));
-    reached.extend(there.middle + Vec<3>::Constant(there.around));
-  }
   for (int node = own.first; node < own.end(); ++node) {
     const Vec<3> place = place_of(node);
-    if (!usable(place) || !reached.contains(place)) continue;
-    neighbours.look(place);
-    for (std::size_t t = 0; t < neighbours.triangles.size();) {
-      const auto& [other, shift, triangle, middle, around] = neighbours.triangles[t];
+    if (!usable(place)) continue;
+    for (const Neighbours::Image& image : neighbours.images) {
+      if (!image.reached.contains(place)) continue;
+      neighbours.look(place, image);
+      const int other = image.other;
       const int first = static_cast<int>(list.candidates.size());
       const double reach = cutoffs_(own.type, surfaces.cells[other].type) + 2 * skin;
-      const Vec<3> near = place - moved_by(shift, domain_);
+      const Vec<3> near = place - moved_by(image.shift, domain_);
       const Nodes nodes = surfaces.nodes(other);
       const auto& corners = surfaces.type_of(other).mesh.triangles();
       double nearest = reach;
-      for (; t < neighbours.triangles.size() && neighbours.triangles[t].other == other &&
-             neighbours.triangles[t].shift == shift;
-           ++t) {
+      for (std::size_t t = image.begin; t < image.end; ++t) {
         if (neighbours.near[t] == 0) continue;
         const auto& [i, j, k] = corners[neighbours.triangles[t].triangle];
         const double distance = (near - closest_point(near, nodes[i], nodes[j], nodes[k]).place).norm();
@@ -283,7 +291,7 @@ void SurfaceContacts::list_candidates(int cell, const Surfaces& surfaces, const 
       std::sort(list.candidates.begin() + first, list.candidates.end(), [](const Candidate& a, const Candidate& b) {
         return std::tie(a.distance, a.triangle) < std::tie(b.distance, b.triangle);
       });
-      list.groups.push_back({node, other, shift, first, static_cast<int>(list.candidates.size())});
+      list.groups.push_back({node, other, image.shift, first, static_cast<int>(list.candidates.size())});
     }
   }
 }
