@@ -249,7 +249,7 @@ TEST_CASE("a seed packs the same bits in space on every machine") {
   CHECK(hash_of(packed.scene) == 0x105474e761ec90b5U);
 }
 
-TEST_CASE("moves keep axes uniform in space") {
+TEST_CASE("moves keep axes uniform in space", "[many-cells]") {
   // At this hematocrit cells are placed smaller, and grow while they are moved.
   Packed packed({120, 120, 120}, true, true);
   packed.hematocrit(0.25, 3, 0.2e-6);
@@ -287,7 +287,7 @@ TEST_CASE("other cells are obstacles in space and several packings share the roo
   CHECK(smallest_gap_of_all(spheres, 0.8e-6) >= 0.4e-6);
 }
 
-TEST_CASE("no cell is packed into a larger one, nor around a smaller one") {
+TEST_CASE("no cell is packed into a larger one, nor around a smaller one", "[many-cells]") {
   Packed packed({48, 48, 48}, true, true, {Sphere{9 * um}, Sphere{1 * um}});
   packed.scene.cells.push_back({0, {12 * um, 12 * um}, 0, "/cells", 0, 12 * um});
   packed.count(1, 200, 4, 0.1e-6).run();
