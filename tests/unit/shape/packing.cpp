@@ -1,32 +1,30 @@
 // Cells packed at random: what must hold is looked at by brute force over all nodes, segments and images.
-#include "shape/packing.hpp"
-
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
-#include <chrono>
 #include <cmath>
-#include <cstring>
 #include <iostream>
 #include <numbers>
 
 #include "core/membrane/membranes.hpp"
 #include "plan/solver_setup.hpp"
 #include "shape/outline.hpp"
+#include "unit/shape/packing_fixture.hpp"
 
 using namespace rouleau::core;
 using namespace rouleau::plan;
 using namespace rouleau::scene;
 using namespace rouleau::shape;
+using rouleau::test::chi_square;
+using rouleau::test::HashOfBits;
+using rouleau::test::PackedScene;
+using rouleau::test::part;
 
 namespace {
 
 constexpr double um = 1e-6, spacing = 0.2e-6;
 
-/// A box with packings in it, placed as read_scene places them.
-struct Packed {
-  Scene scene;
-  std::optional<PackingShortfall> shortfall;
-
+/// A box in two dimensions.
+struct Packed : PackedScene<Packed> {
   Packed(int nx, int ny, bool periodic_y, std::vector<Shape> shapes = {Biconcave{3.91 * um}}, int segments = 80) {
     scene.domain = {{nx * spacing, ny * spacing}, {nx, ny}, periodic_y, {}};
     for (Shape& shape : shapes) {
@@ -35,36 +33,6 @@ struct Packed {
   }
   void obstacle(int type, double x, double y, double angle) {
     scene.cells.push_back({type, {x * um, y * um}, angle, "/cells"});
-  }
-  RandomPacking& add(int type, std::uint32_t seed, double gap) {
-    RandomPacking packing{};
-    packing.type = type;
-    packing.seed = seed;
-    packing.gap = gap;
-    packing.lower = Eigen::Vector2d::Zero();
-    packing.upper = scene.domain.size;
-    scene.packings.push_back(packing);
-    return scene.packings.back();
-  }
-  Packed& hematocrit(int type, double share, std::uint32_t seed, double gap) {
-    RandomPacking& packing = add(type, seed, gap);
-    packing.hematocrit = share;
-    packing.count =
-        static_cast<int>(cells_for(share, scene.cell_types[static_cast<std::size_t>(type)], packing, scene.domain));
-    return *this;
-  }
-  Packed& count(int type, int number, std::uint32_t seed, double gap) {
-    add(type, seed, gap).count = number;
-    return *this;
-  }
-  Packed& run() {
-    for (RandomPacking& packing : scene.packings) {
-      packing.first = static_cast<int>(scene.cells.size());
-      for (int i = 0; i < packing.count; ++i)
-        scene.cells.push_back({packing.type, Eigen::Vector2d::Zero(), 0, "/cells"});
-    }
-    shortfall = pack(scene.domain, scene.cell_types, scene.packings, scene.cells);
-    return *this;
   }
 };
 
@@ -127,18 +95,6 @@ bool same_places(const Scene& a, const Scene& b) {
   return true;
 }
 
-/// Sum of (found - expected)^2 / expected over equal bins of a number in [0, 1).
-double chi_square(const std::vector<double>& values, int bins) {
-  std::vector<double> found(static_cast<std::size_t>(bins), 0.0);
-  for (const double v : values) found[static_cast<std::size_t>(v * bins)] += 1;
-  double sum = 0;
-  const double expected = static_cast<double>(values.size()) / bins;
-  for (const double f : found) sum += (f - expected) * (f - expected) / expected;
-  return sum;
-}
-
-double part(double value, double whole) { return value / whole - std::floor(value / whole); }
-
 }  // namespace
 
 TEST_CASE("packed cells keep their gap from each other, from images and from walls") {
@@ -174,23 +130,17 @@ TEST_CASE("a seed packs the same bits on every machine") {
   Packed packed(160, 100, false);
   packed.hematocrit(0, 0.4, 1, 0.3e-6).run();
   REQUIRE_FALSE(packed.shortfall);
-  std::uint64_t hash = 14695981039346656037U;  // FNV-1a over the bits of centres and angles
+  HashOfBits hash;
   for (const CellPlacement& cell : packed.scene.cells) {
-    for (const double value : {cell.center.x(), cell.center.y(), cell.angle}) {
-      std::uint64_t bits = 0;
-      std::memcpy(&bits, &value, sizeof bits);
-      hash = (hash ^ bits) * 1099511628211U;
-    }
+    for (const double value : {cell.center.x(), cell.center.y(), cell.angle}) hash.add(value);
   }
-  CHECK(hash == 0xca1fb4f7a0dfca19U);
+  CHECK(hash.value() == 0xca1fb4f7a0dfca19U);
 }
 
 TEST_CASE("500 cells fill 40 % of a channel, and no direction of the box is preferred where there are no walls") {
   for (const bool periodic : {false, true}) {
     Packed packed(1024, 416, periodic);
-    const auto start = std::chrono::steady_clock::now();
-    packed.hematocrit(0, 0.4, 3, 0.3e-6).run();
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const double seconds = packed.hematocrit(0, 0.4, 3, 0.3e-6).seconds_of_run();
     REQUIRE_FALSE(packed.shortfall);
     CHECK(packed.scene.cells.size() >= 500);
     CHECK(smallest_gap_of_all(packed.scene) >= 0.3e-6);

@@ -3,34 +3,33 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
-#include <chrono>
 #include <cmath>
-#include <cstring>
 #include <iostream>
 #include <numbers>
 
 #include "core/contact/triangle_distance.hpp"
 #include "plan/solver_setup.hpp"
 #include "shape/extent.hpp"
-#include "shape/packing.hpp"
 #include "shape/rigid_surface.hpp"
 #include "shape/surface.hpp"
+#include "unit/shape/packing_fixture.hpp"
 
 using rouleau::core::closest_point;
 using rouleau::core::Vec;
 using namespace rouleau::plan;
 using namespace rouleau::scene;
 using namespace rouleau::shape;
+using rouleau::test::chi_square;
+using rouleau::test::HashOfBits;
+using rouleau::test::PackedScene;
+using rouleau::test::part;
 
 namespace {
 
 constexpr double um = 1e-6, spacing = 0.5e-6;
 
-/// A box with packings in it, placed as read_scene places them.
-struct Packed {
-  Scene scene;
-  std::optional<PackingShortfall> shortfall;
-
+/// A box in three dimensions.
+struct Packed : PackedScene<Packed> {
   Packed(std::array<int, 3> nodes, bool periodic_y, bool periodic_z,
          const std::vector<Shape>& shapes = {Biconcave{3.91 * um}}) {
     scene.domain = {{nodes[0] * spacing, nodes[1] * spacing},
@@ -42,35 +41,6 @@ struct Packed {
       type.triangles = 1280;
       scene.cell_types.push_back(type);
     }
-  }
-  RandomPacking& add(int type, std::uint32_t seed, double gap) {
-    RandomPacking packing{};
-    packing.type = type;
-    packing.seed = seed;
-    packing.gap = gap;
-    packing.lower = Eigen::Vector2d::Zero();
-    packing.upper = scene.domain.size;
-    packing.upper_z = scene.domain.depth->size;
-    scene.packings.push_back(packing);
-    return scene.packings.back();
-  }
-  Packed& hematocrit(double share, std::uint32_t seed, double gap) {
-    RandomPacking& packing = add(0, seed, gap);
-    packing.count = static_cast<int>(cells_for(share, scene.cell_types[0], packing, scene.domain));
-    return *this;
-  }
-  Packed& count(int type, int number, std::uint32_t seed, double gap) {
-    add(type, seed, gap).count = number;
-    return *this;
-  }
-  Packed& run() {
-    for (RandomPacking& packing : scene.packings) {
-      packing.first = static_cast<int>(scene.cells.size());
-      for (int i = 0; i < packing.count; ++i)
-        scene.cells.push_back({packing.type, Eigen::Vector2d::Zero(), 0, "/cells"});
-    }
-    shortfall = pack(scene.domain, scene.cell_types, scene.packings, scene.cells);
-    return *this;
   }
 };
 
@@ -154,37 +124,15 @@ double smallest_gap_of_all(const Scene& scene, double most) {
   return least;
 }
 
-double seconds_of(Packed& packed) {
-  const auto start = std::chrono::steady_clock::now();
-  packed.run();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-/// FNV-1a over the bits of places and orientations.
 std::uint64_t hash_of(const Scene& scene) {
-  std::uint64_t hash = 14695981039346656037U;
+  HashOfBits hash;
   for (const CellPlacement& cell : scene.cells) {
     for (const double value :
-         {cell.center.x(), cell.center.y(), cell.z, cell.axis->x(), cell.axis->y(), cell.axis->z(), cell.angle}) {
-      std::uint64_t bits = 0;
-      std::memcpy(&bits, &value, sizeof bits);
-      hash = (hash ^ bits) * 1099511628211U;
-    }
+         {cell.center.x(), cell.center.y(), cell.z, cell.axis->x(), cell.axis->y(), cell.axis->z(), cell.angle})
+      hash.add(value);
   }
-  return hash;
+  return hash.value();
 }
-
-/// Sum of (found - expected)^2 / expected over equal bins of a number in [0, 1).
-double chi_square(const std::vector<double>& values, int bins) {
-  std::vector<double> found(static_cast<std::size_t>(bins), 0.0);
-  for (const double v : values) found[static_cast<std::size_t>(v * bins)] += 1;
-  double sum = 0;
-  const double expected = static_cast<double>(values.size()) / bins;
-  for (const double f : found) sum += (f - expected) * (f - expected) / expected;
-  return sum;
-}
-
-double part(double value, double whole) { return value / whole - std::floor(value / whole); }
 
 }  // namespace
 
@@ -192,7 +140,7 @@ TEST_CASE("cells packed in space keep their gap from each other, from images and
   const auto [share, gap, periodic_y, periodic_z] = GENERATE(table<double, double, bool, bool>(
       {{0.1, 0.5e-6, false, true}, {0.3, 0.3e-6, true, true}, {0.25, 0.2e-6, false, false}}));
   Packed packed({50, 44, 40}, periodic_y, periodic_z);
-  packed.hematocrit(share, 7, gap).run();
+  packed.hematocrit(0, share, 7, gap).run();
   REQUIRE_FALSE(packed.shortfall);
   CHECK(make_surfaces(packed.scene, spacing).cell_count() == static_cast<int>(packed.scene.cells.size()));
   CHECK(smallest_gap_of_all(packed.scene, 2 * gap) >= gap);
@@ -211,9 +159,9 @@ TEST_CASE("cells packed in space keep their gap from each other, from images and
 
 TEST_CASE("the same seed packs the same cells in space and another seed others") {
   Packed one({40, 40, 40}, false, true), same = one, other = one;
-  one.hematocrit(0.2, 11, 0.3e-6).run();
-  same.hematocrit(0.2, 11, 0.3e-6).run();
-  other.hematocrit(0.2, 12, 0.3e-6).run();
+  one.hematocrit(0, 0.2, 11, 0.3e-6).run();
+  same.hematocrit(0, 0.2, 11, 0.3e-6).run();
+  other.hematocrit(0, 0.2, 12, 0.3e-6).run();
   CHECK(hash_of(one.scene) == hash_of(same.scene));
   CHECK(hash_of(one.scene) != hash_of(other.scene));
 }
@@ -244,7 +192,7 @@ TEST_CASE("at a low hematocrit places, axes and angles are uniform in space") {
 TEST_CASE("a seed packs the same bits in space on every machine") {
   // The one number here that this program computed itself: that another machine finds it is what is claimed.
   Packed packed({44, 44, 44}, false, true);
-  packed.hematocrit(0.25, 1, 0.3e-6).run();
+  packed.hematocrit(0, 0.25, 1, 0.3e-6).run();
   REQUIRE_FALSE(packed.shortfall);
   CHECK(hash_of(packed.scene) == 0x105474e761ec90b5U);
 }
@@ -252,8 +200,8 @@ TEST_CASE("a seed packs the same bits in space on every machine") {
 TEST_CASE("moves keep axes uniform in space", "[many-cells]") {
   // At this hematocrit cells are placed smaller, and grow while they are moved.
   Packed packed({120, 120, 120}, true, true);
-  packed.hematocrit(0.25, 3, 0.2e-6);
-  const double seconds = seconds_of(packed);
+  packed.hematocrit(0, 0.25, 3, 0.2e-6);
+  const double seconds = packed.seconds_of_run();
   REQUIRE_FALSE(packed.shortfall);
   // Of n independent axes (a b' + b a')/2 - I/3 has components with variances of 4/45/n and 1/15/n; neighbours side by side
   // make fewer of them, as in two dimensions.
@@ -366,7 +314,7 @@ TEST_CASE("cells stay in their region of space") {
 TEST_CASE("cells are packed into a tube, whose volume the hematocrit counts") {
   Packed packed({40, 44, 44}, false, false);
   packed.scene.domain.tube_radius = 10 * um;
-  packed.hematocrit(0.2, 9, 0.3e-6).run();
+  packed.hematocrit(0, 0.2, 9, 0.3e-6).run();
   REQUIRE_FALSE(packed.shortfall);
   const double cell = enclosed_by(packed.scene.cell_types[0]);
   CHECK(std::abs(static_cast<double>(packed.scene.cells.size()) * cell -
@@ -389,7 +337,7 @@ TEST_CASE("a box in which a cell meets its own images in space is packed too") {
 
 TEST_CASE("what does not fit in space is said, with the hematocrit that was reached") {
   Packed packed({24, 24, 24}, false, false);
-  const double seconds = seconds_of(packed.hematocrit(0.8, 1, 0.3e-6));
+  const double seconds = packed.hematocrit(0, 0.8, 1, 0.3e-6).seconds_of_run();
   std::cout << packed.scene.cells.size() << " cells that do not fit: " << seconds << " s\n";
   REQUIRE(packed.shortfall);
   CHECK(packed.shortfall->packing == 0);
