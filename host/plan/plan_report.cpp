@@ -182,16 +182,15 @@ std::vector<PlannedPass> planned_passes(const Plan& plan) {
       {"fluid", "collision and streaming"},
       {"interpolate", "membranes move with the fluid"},
       {"move", "new positions of membrane nodes"}};
+  const core::StepFeatures features{.cells = plan.has_cells,
+                                    .interactions = plan.has_interactions,
+                                    .wall_interactions = plan.has_wall_interactions,
+                                    .self_interactions = plan.has_self_interactions,
+                                    .viscosity_contrast = plan.viscosity_contrast,
+                                    .slip_correction = plan.has_cells && slip,
+                                    .area_correction = plan.has_cells && area};
   std::vector<PlannedPass> passes;
-  for (const std::string& name : core::pass_names({.cells = plan.has_cells,
-                                 .interactions = plan.has_interactions,
-                                 .wall_interactions = plan.has_wall_interactions,
-                                 .self_interactions = plan.has_self_interactions,
-                                 .viscosity_contrast = plan.viscosity_contrast,
-                                 .slip_correction = plan.has_cells && slip,
-                                 .area_correction = plan.has_cells && area})) {
-    passes.push_back({name, reasons.at(name)});
-  }
+  for (const std::string& name : core::pass_names(features)) passes.push_back({name, reasons.at(name)});
   return passes;
 }
 

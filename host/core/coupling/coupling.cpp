@@ -124,11 +124,10 @@ struct Interpolate {
   template <bool in_block>
   ROULEAU_ALWAYS_INLINE static void run_all(const InterpolateTask<T>& task) {
     const InterpolateTask<T> t = task;
-    int i = t.begin;
-    if (in_block && t.fetch_ahead) {
-      for (; i < std::min(t.begin + lead, t.end); ++i) fetch<in_block>(t, i);
-      i = t.begin;
+    if (in_block && t.fetch_ahead) {  // a call for each cell
+      for (int first = t.begin; first < std::min(t.begin + lead, t.end); ++first) fetch<in_block>(t, first);
     }
+    int i = t.begin;
     for (; i + 2 <= t.end; i += 2) {
       if (t.fetch_ahead && i + lead + 2 <= t.end) {
         fetch<in_block>(t, i + lead);
