@@ -31,6 +31,10 @@ T from_bits(std::uint64_t wide, std::uint32_t narrow) {
 }
 
 bool untouched(double value) { return std::bit_cast<std::uint64_t>(value) == unwritten_bits; }
+/// NaNs are alike.
+bool same_bits(double x, double y) {
+  return std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y) || (std::isnan(x) && std::isnan(y));
+}
 bool untouched(float value) { return std::bit_cast<std::uint32_t>(value) == unwritten_bits_single; }
 
 /// The memory of one compute call.
@@ -309,6 +313,7 @@ Values compute_as(const Subject& subject, const plugin::ModelInstance& instance,
   Values outputs;
   for (const auto& [name, array] : arrays.out) {
     auto& values = outputs[name];
+    values.reserve(count);
     for (std::size_t i = 0; i < count; ++i) {
       values.push_back(untouched(array[i]) ? std::bit_cast<double>(unwritten_bits) : static_cast<double>(array[i]));
     }
@@ -323,6 +328,24 @@ Values compute(const Subject& subject, const plugin::ModelInstance& instance, co
                      : compute_as<double>(subject, instance, inputs, call);
 }
 
+std::function<bool()> repeated_call(const Subject& subject, const plugin::ModelInstance& instance, const Values& inputs,
+                                    const Values& expected) {
+  const Call call;
+  const std::size_t count = inputs.begin()->second.size();
+  const auto memory = std::make_shared<Memory>(call);
+  return [&subject, &instance, &expected, call, count, memory,
+          arrays = place<double>(*memory, subject, inputs, call, count)] {
+    for (const auto& [name, array] : arrays.out) std::fill_n(array, count, std::bit_cast<double>(unwritten_bits));
+    Memory structs(call);
+    call_block(structs, subject, instance, arrays, 0, static_cast<std::uint32_t>(count), call);
+    return std::all_of(arrays.out.begin(), arrays.out.end(), [&](const auto& output) {
+      const auto& values = expected.at(output.first);
+      return std::memcmp(values.data(), output.second, count * sizeof(double)) == 0 ||
+             std::equal(values.begin(), values.end(), output.second, same_bits);
+    });
+  };
+}
+
 bool is_unwritten(double value) { return untouched(value); }
 
 std::string first_difference(const Values& a, const Values& b) {
@@ -331,8 +354,7 @@ std::string first_difference(const Values& a, const Values& b) {
     if (other == b.end()) continue;
     for (std::size_t i = 0; i < std::min(values.size(), other->second.size()); ++i) {
       const double x = values[i], y = other->second[i];
-      if (std::isnan(x) && std::isnan(y)) continue;
-      if (std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y)) continue;
+      if (same_bits(x, y)) continue;
       return name + '[' + std::to_string(i) + "]: " + number(x, 17) + " and " + number(y, 17);
     }
   }

@@ -1,6 +1,7 @@
 // Calls a model's compute function in every way that the interface allows, with its arrays wherever a check wants them.
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <optional>
 #include <set>
@@ -48,6 +49,12 @@ struct Call {
 /// floating-point environment is put back after each call. Throws Fault when an exception leaves the model.
 Values compute(const Subject& subject, const plugin::ModelInstance& instance, const Values& inputs,
                const Call& call = {});
+
+/// The same call again and again, in memory that is laid out once, so that most of its time is the model's: each call says
+/// whether the outputs are `expected`, bit for bit, and throws as compute does. In double precision. Subject, instance and
+/// `expected` outlive what is returned.
+std::function<bool()> repeated_call(const Subject& subject, const plugin::ModelInstance& instance, const Values& inputs,
+                                    const Values& expected);
 
 /// What compute's outputs hold where the model wrote nothing.
 bool is_unwritten(double value);

@@ -1,6 +1,6 @@
 """Ends runs at random moments and lets them go on: the results must be those of a run that nobody disturbed.
 
-usage: check_kills.py ROULEAU [--kills N] [--seed N] SCENE...
+usage: check_kills.py ROULEAU [--kills N] [--seed N] [--set POINTER=VALUE]... SCENE...
 
 For each scene one run is left alone. Others are killed (SIGKILL) or asked to stop (SIGINT, SIGTERM, SIGHUP) again and
 again, each time going on with --resume and another number of threads, until one comes to its end. Then the tables must
@@ -74,8 +74,9 @@ def differences(left_alone, disturbed):
 
 
 class Trial:
-    def __init__(self, program, scene, folder, chance):
+    def __init__(self, program, scene, changes, folder, chance):
         self.program, self.scene, self.chance = program, scene, chance
+        self.changes = [word for change in changes for word in ("--set", change)]
         self.left_alone, self.folder = folder / "left-alone", folder
         started = time.monotonic()
         self.run(self.left_alone)
@@ -83,7 +84,7 @@ class Trial:
         self.kills = Counter()
 
     def command(self, directory, *options):
-        return [self.program, "run", str(self.scene), "--out", str(directory), "--quiet", *options]
+        return [self.program, "run", str(self.scene), "--out", str(directory), "--quiet", *self.changes, *options]
 
     def run(self, directory, *options):
         result = subprocess.run(self.command(directory, *options), capture_output=True, text=True, timeout=300)
@@ -116,6 +117,7 @@ def main():
     parser.add_argument("program", type=Path)
     parser.add_argument("scenes", nargs="+", type=Path)
     parser.add_argument("--kills", type=int, default=10, help="at least so many for each scene")
+    parser.add_argument("--set", action="append", default=[], help="of each scene")
     parser.add_argument("--seed", type=int, default=int.from_bytes(os.urandom(4), "little"))
     arguments = parser.parse_args()
     chance = random.Random(arguments.seed)
@@ -123,7 +125,7 @@ def main():
     failures = 0
     for scene in arguments.scenes:
         with tempfile.TemporaryDirectory() as folder:
-            trial = Trial(arguments.program.resolve(), scene, Path(folder), chance)
+            trial = Trial(arguments.program.resolve(), scene, arguments.set, Path(folder), chance)
             runs = 0
             while trial.kills.total() < arguments.kills:
                 found = trial.disturb(runs)

@@ -29,7 +29,8 @@ void for_each_collision(const Subject& subject,
   for (const Trial& trial : collision_trials(subject, random)) {
     const Values inputs = subject.random_inputs(trial.instance, nodes, random);
     const Values outputs = compute(subject, trial.instance, inputs);
-    for (std::size_t i = 0; i < nodes; ++i) see(trial, node_of(inputs, i, trial), node_of(outputs, i, trial));
+    const CollisionNodes before(inputs, trial), after(outputs, trial);
+    for (std::size_t i = 0; i < nodes; ++i) see(trial, before[i], after[i]);
   }
 }
 
@@ -97,9 +98,10 @@ double change_of_equilibria(const Subject& subject, const Trial& trial, double s
   Call call;
   call.absent = {"force"};
   const Values outputs = compute(subject, trial.instance, inputs, call);
+  const CollisionNodes all_before(inputs, trial), all_after(outputs, trial);
   double most = 0;
   for (std::size_t i = 0; i < nodes; ++i) {
-    const CollisionNode before = node_of(inputs, i, trial), after = node_of(outputs, i, trial);
+    const CollisionNode before = all_before[i], after = all_after[i];
     for (std::size_t q = 0; q < before.set->count(); ++q) {
       const double change = std::abs(after.f[q] - before.f[q]);
       if (!(change <= most)) most = change;
@@ -148,11 +150,12 @@ Finding stress_relaxation(const Subject& subject) {
       Call call;
       call.absent = absent;
       const Values outputs = compute(subject, trial.instance, inputs, call);
+      const CollisionNodes all_before(inputs, trial), all_after(outputs, trial);
       for (std::size_t i = 0; i < nodes; ++i) {
-        CollisionNode before = node_of(inputs, i, trial);
+        CollisionNode before = all_before[i];
         if (absent.contains("force")) before.force = {};
         if (absent.contains("relaxation_rate")) before.relaxation_rate = trial.setting.relaxation_rate;
-        const CollisionNode after = node_of(outputs, i, trial);
+        const CollisionNode after = all_after[i];
         const auto is = after.shear_stress(), was = before.shear_stress();
         const auto equilibrium = before.equilibrium_stress(), source = before.source_stress();
         const auto names = before.stress_names();
@@ -221,13 +224,15 @@ Finding symmetry(const Subject& subject) {
   for (const Trial& trial : collision_trials(subject, random)) {
     const Values inputs = subject.random_inputs(trial.instance, nodes, random);
     const Values outputs = compute(subject, trial.instance, inputs);
+    const CollisionNodes before(inputs, trial), after(outputs, trial);
     for (const LatticeSymmetry& image : symmetries) {
       Values turned = inputs;
-      for (std::size_t i = 0; i < nodes; ++i) image(node_of(inputs, i, trial)).store(turned, i);
+      for (std::size_t i = 0; i < nodes; ++i) image(before[i]).store(turned, i);
       const Values results = compute(subject, trial.instance, turned);
+      const CollisionNodes after_turned(results, trial);
       for (std::size_t i = 0; i < nodes; ++i) {
-        const CollisionNode expected = image(node_of(outputs, i, trial)), found = node_of(results, i, trial);
-        const double limit = rounding * (expected.size() + node_of(inputs, i, trial).size());
+        const CollisionNode expected = image(after[i]), found = after_turned[i];
+        const double limit = rounding * (expected.size() + before[i].size());
         worst.add(found.distance(expected), limit,
                   [&] { return "where " + image.words(dimension) + " a node's result differs by" + trial.words; });
       }
@@ -239,9 +244,10 @@ Finding symmetry(const Subject& subject) {
 /// The same nodes computed in two ways that must agree to rounding.
 void compare(Worst& worst, const Trial& trial, const Values& inputs, const Values& a, const Values& b, double limit,
              const std::string& words) {
+  const CollisionNodes before(inputs, trial), ones(a, trial), others(b, trial);
   for (std::size_t i = 0; i < a.begin()->second.size(); ++i) {
-    const CollisionNode one = node_of(a, i, trial), other = node_of(b, i, trial);
-    worst.add(one.distance(other), limit * (node_of(inputs, i, trial).size() + one.size()),
+    const CollisionNode one = ones[i];
+    worst.add(one.distance(others[i]), limit * (before[i].size() + one.size()),
               [&] { return words + ", a result differs by" + trial.words; });
   }
 }
@@ -269,8 +275,9 @@ Finding reductions(const Subject& subject) {
     }
     if (!trial.setting.inertia) continue;
     // The momentum is taken away: what is left of the velocity is rounding.
+    const CollisionNodes before(inputs, trial);
     for (std::size_t i = 0; i < nodes; ++i) {
-      CollisionNode node = node_of(inputs, i, trial);
+      CollisionNode node = before[i];
       node.remove_momentum();
       node.store(inputs, i);
     }

@@ -142,21 +142,44 @@ struct CollisionNode {
   }
 };
 
-/// Node i of inputs or outputs; what they do not hold is 0, the relaxation rate that of the setup.
-inline CollisionNode node_of(const Values& values, std::size_t i, const Trial& trial) {
-  CollisionNode node(VelocitySet::of(trial.setting.dimension));
-  const auto get = [&](const std::string& name, double otherwise) {
-    const auto found = values.find(name);
-    return found == values.end() ? otherwise : found->second[i];
-  };
-  for (std::size_t q = 0; q < node.set->count(); ++q) node.f[q] = get("populations." + std::to_string(q), 0);
-  for (std::size_t k = 0; k < node.set->dimension; ++k) {
-    node.force[k] = get("force." + std::to_string(k), 0);
-    node.velocity[k] = get("velocity." + std::to_string(k), 0);
+/// The nodes of inputs or outputs, which outlive this; what they do not hold is 0, the relaxation rate that of the setup.
+class CollisionNodes {
+ public:
+  CollisionNodes(const Values& values, const Trial& trial)
+      : set_(&VelocitySet::of(trial.setting.dimension)),
+        setup_rate_(trial.setting.relaxation_rate),
+        inertia_(trial.setting.inertia) {
+    const auto array = [&](const std::string& name) {
+      const auto found = values.find(name);
+      return found == values.end() ? nullptr : found->second.data();
+    };
+    for (std::size_t q = 0; q < set_->count(); ++q) f_[q] = array("populations." + std::to_string(q));
+    for (std::size_t k = 0; k < set_->dimension; ++k) {
+      force_[k] = array("force." + std::to_string(k));
+      velocity_[k] = array("velocity." + std::to_string(k));
+    }
+    relaxation_rate_ = array("relaxation_rate");
   }
-  node.relaxation_rate = get("relaxation_rate", trial.setting.relaxation_rate);
-  node.inertia = trial.setting.inertia;
-  return node;
-}
+  [[nodiscard]] CollisionNode operator[](std::size_t i) const {
+    CollisionNode node(*set_);
+    const auto get = [i](const double* array, double otherwise) { return array == nullptr ? otherwise : array[i]; };
+    for (std::size_t q = 0; q < set_->count(); ++q) node.f[q] = get(f_[q], 0);
+    for (std::size_t k = 0; k < set_->dimension; ++k) {
+      node.force[k] = get(force_[k], 0);
+      node.velocity[k] = get(velocity_[k], 0);
+    }
+    node.relaxation_rate = get(relaxation_rate_, setup_rate_);
+    node.inertia = inertia_;
+    return node;
+  }
+
+ private:
+  const VelocitySet* set_;
+  double setup_rate_;
+  bool inertia_;
+  std::array<const double*, 19> f_{};
+  std::array<const double*, 3> force_{}, velocity_{};
+  const double* relaxation_rate_;
+};
 
 }  // namespace rouleau::conform

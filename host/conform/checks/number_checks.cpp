@@ -197,9 +197,10 @@ Finding bias(const Subject& subject) {
     call.single = true;
     const Values outputs = compute(subject, trial.instance, inputs, call);
     std::array<double, 3> sum{}, squares{};
+    const CollisionNodes all_before(inputs, trial), all_after(outputs, trial);
     double size = 0;
     for (std::size_t i = 0; i < count; ++i) {
-      const CollisionNode before = node_of(inputs, i, trial), after = node_of(outputs, i, trial);
+      const CollisionNode before = all_before[i], after = all_after[i];
       const std::array<double, 3> off = {after.density() - before.density(),
                                          after.momentum(0) - before.momentum(0) - before.force[0],
                                          after.momentum(1) - before.momentum(1) - before.force[1]};
