@@ -28,37 +28,38 @@ struct Times {
   }
 };
 
-/// The figures of a network, as the first rank finds them.
+/// The figures of a network, as the first rank finds them while all ranks speak, in pairs of neighbours: they share what
+/// their machine has, its processors, too, where there are more of them.
 class Network {
  public:
   /// Every figure takes so many seconds.
   Network(core::Transport& transport, const core::Ranks<1>& ranks, double seconds)
       : transport_(transport), ranks_(ranks), seconds_(seconds) {}
 
-  /// Half a round trip of a message between the first two ranks; the others wait for the end.
+  /// Half a round trip of a message between the ranks of a pair.
   Times half_round(std::size_t bytes) {
     return repeated(
         [&](bool first) {
           if (first) {
-            transport_.send(1, core::Message(bytes));
-            return transport_.receive(1).size();
+            transport_.send(other_, core::Message(bytes));
+            return transport_.receive(other_).size();
           }
-          transport_.send(0, transport_.receive(0));
+          transport_.send(other_, transport_.receive(other_));
           return bytes;
         },
         2);
   }
-  /// Each of many small messages that the first rank sends without waiting.
+  /// Each of many small messages that one rank of a pair sends without waiting.
   Times in_a_row() {
     constexpr int count = 100;
     return repeated(
         [&](bool first) {
           if (first) {
-            for (int i = 0; i < count; ++i) transport_.send(1, core::Message(64));
-            return transport_.receive(1).size();
+            for (int i = 0; i < count; ++i) transport_.send(other_, core::Message(64));
+            return transport_.receive(other_).size();
           }
-          for (int i = 0; i < count; ++i) static_cast<void>(transport_.receive(0));
-          transport_.send(0, core::Message(1));
+          for (int i = 0; i < count; ++i) static_cast<void>(transport_.receive(other_));
+          transport_.send(other_, core::Message(1));
           return std::size_t{1};
         },
         count);
@@ -69,10 +70,10 @@ class Network {
   }
 
  private:
-  /// Times of function(whether it is the first rank), over `parts`. Of the first two ranks, or of all.
+  /// Times of function(whether it is the first of its pair), over `parts`. Of all pairs, or of all ranks.
   template <class Function>
   Times repeated(Function function, double parts, bool of_all = false) {
-    const bool first = transport_.rank() == 0, takes_part = of_all || transport_.rank() < 2;
+    const bool first = transport_.rank() % 2 == 0, takes_part = of_all || other_ < transport_.ranks();
     std::vector<double> times;
     const auto begin = Clock::now();
     for (int i = 0; i < 5; ++i) {  // connections are made by the first messages
@@ -94,6 +95,7 @@ class Network {
   core::Transport& transport_;
   const core::Ranks<1>& ranks_;
   double seconds_;
+  int other_ = transport_.rank() ^ 1;  // of the pair; the last of an odd number has none
 };
 
 void measure_network(core::Transport& transport, const std::string& library, double seconds) {
@@ -105,7 +107,7 @@ void measure_network(core::Transport& transport, const std::string& library, dou
   const bool prints = transport.rank() == 0;
   const unsigned processors = std::thread::hardware_concurrency();
   if (prints) {
-    std::printf("\nMessages between the first two of %d ranks, %s, %u processors\n", count, library.c_str(),
+    std::printf("\nMessages between the pairs of %d ranks, all at once, %s, %u processors\n", count, library.c_str(),
                 processors);
     std::printf("  %-34s %10s %10s %10s %12s\n", "microseconds", "best", "median", "1 of 100", "MB/s");
   }

@@ -3,11 +3,13 @@
 
 usage: ranks.py [--build build/release] [--cases NAME,...] [--ranks 2,4] [--rounds 5] [--seconds 2] [--prefix "chrt -f 5"]
 A line for each case and number of ranks: microseconds a step, least of all rounds, outputs and checks left out; the speed of
-ranks over that of threads, least over least and the median of the rounds; the model, which is given the step of one process
-and the network as they were measured, and knows nothing of ranks that share a processor. Open MPI.
+ranks over that of threads, least over least and the median of the rounds; the model, which is given the network as so many
+ranks measure it, all at once, and the step of one process while as many run beside each other: they share memory and
+processors as ranks do. Open MPI.
 """
 
 import argparse
+import concurrent.futures
 import json
 import os
 import re
@@ -61,17 +63,22 @@ class Bench:
     def mpirun(self, ranks):
         return [*self.prefix, "mpirun", "--oversubscribe", "--bind-to", "none", "-n", ranks]
 
-    def network(self):
-        words = self.call(*self.mpirun(2), self.tool, "--only", "network")
+    def network(self, ranks):
+        words = self.call(*self.mpirun(ranks), self.tool, "--only", "network")
         return re.search(r'--network "([^"]*)"', words)[1]
 
-    def step_us(self, file, steps, ranks=1, threads=1):
-        out = self.folder / "run"
+    def step_us(self, file, steps, ranks=1, threads=1, name="run"):
+        out = self.folder / name
         before = self.mpirun(ranks) if ranks > 1 else self.prefix
         self.call(*before, self.program, "run", file, "--out", out, "--overwrite", "--quiet", "--threads", threads,
                   "--max-steps", steps)
         summary = json.loads((out / "summary.json").read_text())
         return 1e6 * sum(p["wall_s"] for p in summary["passes"] if p["name"] not in OUTSIDE) / summary["steps"]
+
+    def beside_each_other_us(self, file, steps, count):
+        """The mean of so many processes, each with a run of its own."""
+        with concurrent.futures.ThreadPoolExecutor(count) as pool:
+            return statistics.mean(pool.map(lambda k: self.step_us(file, steps, name=f"run{k}"), range(count)))
 
     def plan(self, file, ranks, one_us, network):
         report = json.loads(self.call(self.program, "plan", file, "--ranks", ranks, "--json", "--step", f"{one_us} us",
@@ -90,22 +97,24 @@ def main():
     chosen = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         bench = Bench(chosen, folder)
-        network = bench.network()
-        print(f"network: {network}")
-        print(f"{'case':12} {'ranks':>5} {'one':>9} {'threads':>9} {'ranks':>9} {'ratio':>6} {'median':>6} {'model':>9} {'model/measured':>14}")
+        network = {int(ranks): bench.network(ranks) for ranks in chosen.ranks.split(",")}
+        for ranks, words in network.items():
+            print(f"network, {ranks} ranks: {words}")
+        print(f"{'case':12} {'ranks':>5} {'one':>9} {'beside':>9} {'threads':>9} {'ranks':>9} {'ratio':>6} {'median':>6} {'model':>9} {'model/measured':>14}")
         for name in chosen.cases.split(","):
             file = bench.folder / "scene.json"
             file.write_text(json.dumps(CASES[name]))
             steps = max(20, int(1e6 * chosen.seconds / bench.step_us(file, 20)))
             for ranks in map(int, chosen.ranks.split(",")):
-                one, threads, several = [], [], []
+                one, beside, threads, several = [], [], [], []
                 for _ in range(chosen.rounds):
                     one.append(bench.step_us(file, steps))
+                    beside.append(bench.beside_each_other_us(file, steps, ranks))
                     threads.append(bench.step_us(file, steps, threads=ranks))
                     several.append(bench.step_us(file, steps, ranks=ranks))
-                model = bench.plan(file, ranks, min(one), network)
+                model = bench.plan(file, ranks, min(beside), network[ranks])
                 median = statistics.median(t / r for t, r in zip(threads, several))
-                print(f"{name:12} {ranks:5} {min(one):9.1f} {min(threads):9.1f} {min(several):9.1f} "
+                print(f"{name:12} {ranks:5} {min(one):9.1f} {min(beside):9.1f} {min(threads):9.1f} {min(several):9.1f} "
                       f"{min(threads) / min(several):6.2f} {median:6.2f} {model:9.1f} {model / min(several):14.2f}", flush=True)
 
 

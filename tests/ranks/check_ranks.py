@@ -219,7 +219,7 @@ class Network(Case):
     def test_it_is_measured_by_all_ranks_and_shown_once(self):
         result = call(ranks(3, "--only", "network", "--seconds", 0.01, program=BENCH))
         self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertEqual(result.stdout.count("Messages between the first two of 3 ranks, Open MPI v"), 1, result.stdout)
+        self.assertEqual(result.stdout.count("Messages between the pairs of 3 ranks, all at once, Open MPI v"), 1, result.stdout)
         shown = re.search(r'--network "([0-9.]+) us,(\d+) MB/s,([0-9.]+) us"', result.stdout)
         self.assertIsNotNone(shown, result.stdout)
         latency, bandwidth, each = map(float, shown.groups())
