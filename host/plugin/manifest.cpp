@@ -134,11 +134,10 @@ Manifest read_manifest(const json::Document& document, const fs::path& file, con
   manifest.stands_for = without_own_keys(root.value("stands_for", Json()));
   manifest.claims = without_own_keys(root.value("claims", Json::object()));
   manifest.checks = root.value("checks", Json::array());
-  // A potential of the distance alone is one of energy per area, whatever the dimension; older manifests do not say so.
-  const bool of_distance = manifest.kind == ModelKind::interaction && manifest.state.empty() &&
-                           std::all_of(manifest.needs.begin(), manifest.needs.end(),
-                                       [](const std::string& name) { return name == "distance"; });
-  manifest.dimensions = root.value("dimensions", of_distance ? std::vector{2, 3} : manifest.dimensions);
+  // A potential is an energy per area, whatever the dimension, unless it wants to know in which direction surfaces slide;
+  // older manifests do not say so.
+  const bool of_both = manifest.kind == ModelKind::interaction && !manifest.needs_input("tangential_velocity");
+  manifest.dimensions = root.value("dimensions", of_both ? std::vector{2, 3} : manifest.dimensions);
   if (root.contains("lattices")) manifest.dimensions = dimensions_of(words_of(root, "lattices"));
   if (root.contains("in_3d")) {
     const Json& surface = root["in_3d"];

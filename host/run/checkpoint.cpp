@@ -60,6 +60,7 @@ Json save_contacts(files::CheckpointWriter& writer, const char* array, const cor
   for (std::size_t cell = 0; cell < memory.of_cell.size(); ++cell) {
     for (const core::ContactState& s : memory.of_cell[cell]) {
       pairs.push_back({cell, s.variable, s.other, s.shift.x, s.shift.y, s.value.size()});
+      if (s.shift.z != 0) pairs.back().push_back(s.shift.z);
       values.insert(values.end(), s.value.begin(), s.value.end());
     }
   }
@@ -74,11 +75,11 @@ void require(bool fits, const files::CheckpointReader& reader, const char* what)
 
 /// `others`: how many there are that a cell may be in contact with.
 void restore_contacts(const files::CheckpointReader& reader, const Json& saved, const char* array, std::size_t others,
-                      const core::Membranes& membranes, core::ContactMemory& memory) {
+                      const core::CellNodes& nodes, core::ContactMemory& memory) {
   memory.variables.clear();
   for (const Json& variable : saved.at("variables")) memory.variables.push_back(contact_variable(variable));
   const Json& cells = saved.at("cells");
-  require(cells == 0 || cells == membranes.cells.size(), reader, "contacts of another number of cells");
+  require(cells == 0 || cells == nodes.cells.size(), reader, "contacts of another number of cells");
   memory.of_cell.assign(cells, {});
   std::vector<double> values = reader.array(array);
   auto next = values.begin();
@@ -89,8 +90,9 @@ void restore_contacts(const files::CheckpointReader& reader, const Json& saved, 
     require(cell < memory.of_cell.size() && variable < memory.variables.size() && other >= 0 &&
                 other < static_cast<int>(others),
             reader, "a contact of a cell or of a variable that is not there");
-    require(count == membranes.cells[cell].count && count <= values.end() - next, reader, "a contact without values");
-    memory.of_cell[cell].push_back({variable, other, {pair.at(3), pair.at(4)}, {next, next + count}});
+    require(count == nodes.cells[cell].count && count <= values.end() - next, reader, "a contact without values");
+    const int z = pair.size() > 6 ? pair.at(6).get<int>() : 0;
+    memory.of_cell[cell].push_back({variable, other, {pair.at(3), pair.at(4), z}, {next, next + count}});
     next += count;
   }
 }
@@ -106,11 +108,10 @@ Json save(files::CheckpointWriter& writer, const Cells& m) {
     writer.array(state_name(k), m.state[k].value);
   }
   Json saved{{"leakage", m.area_leakage.size()}, {"state", states}};
-  if constexpr (std::is_same_v<Cells, core::Membranes>) {
+  if (std::is_same_v<Cells, core::Membranes> || !m.contacts.variables.empty())
     saved["contacts"] = save_contacts(writer, contacts_array, m.contacts);
-    if (!m.wall_contacts.variables.empty())
-      saved["wall_contacts"] = save_contacts(writer, wall_contacts_array, m.wall_contacts);
-  }
+  if (!m.wall_contacts.variables.empty())
+    saved["wall_contacts"] = save_contacts(writer, wall_contacts_array, m.wall_contacts);
   return saved;
 }
 
@@ -162,11 +163,10 @@ void restore_cells(const files::CheckpointReader& reader, const Json& saved, Cel
     m.state.back().value.resize(m.x.size());
     read(reader, state_name(m.state.size() - 1), m.state.back().value);
   }
-  if constexpr (std::is_same_v<Cells, core::Membranes>) {
+  if (std::is_same_v<Cells, core::Membranes> || saved.contains("contacts"))
     restore_contacts(reader, saved.at("contacts"), contacts_array, m.cells.size(), m, m.contacts);
-    if (saved.contains("wall_contacts"))
-      restore_contacts(reader, saved["wall_contacts"], wall_contacts_array, 2, m, m.wall_contacts);
-  }
+  if (saved.contains("wall_contacts"))
+    restore_contacts(reader, saved["wall_contacts"], wall_contacts_array, 4, m, m.wall_contacts);
 }
 
 /// What a block has of an array with a row for each of the lattice's rows.

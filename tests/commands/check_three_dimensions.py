@@ -183,6 +183,19 @@ class A_run_in_three_dimensions(Case):
     def test_of_cells_has_the_same_bits_for_any_number_of_threads_and_when_it_goes_on_after_a_pause(self):
         self.assert_same_bits(changed(SHEARED, numerics__coupling="semi-implicit"), 40, 60, "cells.csv")
 
+    def test_of_cells_with_bonds_keeps_them_over_a_pause_and_a_stage_with_another_time_step(self):
+        def bonds(whom):
+            return {"between": ["capsule", whom], "model": "bridging",
+                    "parameters": {"site_density": "1e14 1/m2", "bond_stiffness": "1e-6 N/m", "zero_force_distance": "0.3 um",
+                                   "on_rate": "2e4 1/s", "off_rate": "100 1/s", "cutoff": "0.8 um"}}
+        scene = changed(SHEARED, interactions=[bonds("capsule"), bonds("wall")],
+                        cells=[{"type": "capsule", "at": ["1.2 um", "0.8 um", "2.8 um"]}, {"type": "capsule", "at": ["2.3 um", "0.9 um", "0.2 um"]}])
+        self.assert_same_bits(scene, 40, 60, "cells.csv", "series.csv")
+        alone = self.run_scene(changed(scene, interactions=[]), "alone", "--max-steps", 60)
+        last, without = (self.cells(folder)[-1] for folder in (self.folder / "onef32", alone))
+        self.assertLess(float(last["wall_gap_m"]), float(without["wall_gap_m"]) - 1e-9)  # held by the wall
+        self.assertGreater(float(last["min_gap_m"]), 0)
+
     def test_of_cells_that_attract_each_other_loses_energy_at_rest_and_joins_them(self):
         attraction = [{"between": ["capsule", "capsule"], "model": "morse",
                        "parameters": {"depth": "1e-6 J/m2", "zero_force_distance": "0.5 um", "cutoff": "1.5 um"}}]
@@ -415,8 +428,6 @@ class Three_dimensions_refuse(Case):
                      "size along z is 1 um")
         acting = [{"between": ["capsule", "self"], "model": "morse", "parameters": {"depth": "1e-8 J/m2"}}]
         self.refused(scene | {"interactions": acting}, "/interactions/0/between", "two dimensions only")
-        bonds = [{"between": ["capsule", "capsule"], "model": "bridging", "parameters": {}}]
-        self.refused(scene | {"interactions": bonds}, "/interactions/0/model", "three dimensions")
         self.refused(changed(scene, numerics__slip_correction=True), "/numerics/slip_correction", "three dimensions")
         laws = [{"model": "hooke", "parameters": {"shear_modulus": "1e-6 N/m"}}]
         self.refused(changed(scene, **{capsule + "membrane": laws}), "/cell_types/capsule/membrane/0/model",

@@ -136,12 +136,24 @@ inline std::vector<Cut<3>> cuts_for_travellers(const core::Domain<3>& domain) {
 inline std::vector<Case> scenes_in_space() {
   const std::string doublet = ROULEAU_SCENES "/doublet-3d.json", capsule = ROULEAU_SCENES "/capsule-3d.json",
                     f64 = "/numerics/precision=\"f64\"";
+  const auto bonds_between = [](const std::string& whom, const std::string& at = "0") {
+    return "/interactions/" + at + R"(={"model": "bridging", "parameters": {"site_density": "1e12 1/m2",
+      "bond_stiffness": "1e-7 N/m", "zero_force_distance": "0.49 um", "on_rate": "2000 1/s", "off_rate": "10 1/s",
+      "cutoff": "1.5 um"}, "between": )" +
+           whom + "}";
+  };
   const std::string held = R"(/interactions=[{"between": ["wall", "capsule"], "model": "morse", "parameters": {
     "depth": "1e-7 J/m2"}}])";
   return {
       {"doublet over a corner, f32",
        doublet,
        {"/cell_types/rbc/interior_viscosity=\"6 cP\"", "/cells/0/row/center=[\"11.5 um\", \"0.4 um\", \"11.8 um\"]"}},
+      {"bonds between cells and with walls",
+       doublet,
+       {f64, R"(/domain/y={"lower": {"wall": {}}, "upper": {"wall": {}}})",
+        R"(/domain/size=["12.5 um", "8 um", "12.5 um"])", "/domain/nodes=[50, 32, 50]",
+        "/cells/0/row/center=[\"11.5 um\", \"4 um\", \"11.8 um\"]", bonds_between("[\"rbc\", \"rbc\"]"),
+        bonds_between("[\"rbc\", \"wall\"]", "-")}},
       {"volumes kept, semi-implicit", doublet, {f64, semi_implicit, "/numerics/area_correction=true"}},
       {"capsule near a wall",
        capsule,

@@ -5,6 +5,7 @@
 #include <rouleau/interaction.hpp>
 #include <rouleau/membrane.hpp>
 #include <stdexcept>
+#include <string>
 
 #include "core/model/compiled_in.hpp"
 
@@ -39,6 +40,16 @@ struct SpringBetween {
   template <class S>
   S energy(const S& distance) const {
     return 0.5 * stiffness * ((distance - rest) * (distance - rest) - (end - rest) * (end - rest));
+  }
+};
+/// Damps what moves along the line to the other, and says so by its needs.
+struct Damper {
+  double viscosity, end;
+  explicit Damper(const Parameters& given) : viscosity{given["viscosity"]}, end{given["cutoff"]} {}
+  double cutoff() const { return end; }
+  template <class S>
+  Pair<S> operator()(const Contact<S>& contact) const {
+    return {S(0.0), -viscosity * contact.normal_velocity, S(0.0)};
   }
 };
 /// A tension that is no number.
@@ -78,6 +89,13 @@ inline core::Potential spring_potential(double stiffness, double rest, double cu
   return core::potential(interaction<SpringBetween>("spring", "1"),
                          {.parameters = {{"stiffness", stiffness}, {"rest", rest}, {"cutoff", cutoff}},
                           .needs = {"distance"},
+                          .gives = {"force", "energy", "force_by_distance"}});
+}
+/// `velocity`: the one that it says it needs.
+inline core::Potential damper(double viscosity, double cutoff, const std::string& velocity) {
+  return core::potential(interaction<Damper>("damper", "1"),
+                         {.parameters = {{"viscosity", viscosity}, {"cutoff", cutoff}},
+                          .needs = {"distance", velocity},
                           .gives = {"force", "energy", "force_by_distance"}});
 }
 

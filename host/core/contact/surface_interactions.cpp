@@ -1,25 +1,36 @@
 #include "surface_interactions.hpp"
 
 #include <algorithm>
-#include <stdexcept>
-
-#include "distance_law.hpp"
 
 namespace rouleau::core {
 
-SurfaceInteractions::SurfaceInteractions(const Surfaces& surfaces, std::vector<Interaction> interactions,
+SurfaceInteractions::SurfaceInteractions(Surfaces& surfaces, std::vector<Interaction> interactions,
                                          const Domain<3>& domain)
     : interactions_(std::move(interactions)),
-      cutoffs_(cutoffs_of(interactions_)),
-      contacts_(surfaces, pair_cutoffs(surfaces, interactions_, cutoffs_), domain),
+      contacts_(surfaces, pair_cutoffs(surfaces, interactions_, cutoffs_of(interactions_)), domain),
       scratch_(surfaces.cells.size()),
       reactions_(surfaces.cells.size()) {
-  for (const auto& [between, potential] : interactions_) {
-    if (!is_of_distance_alone(potential))
-      throw std::invalid_argument("\"" + potential.id +
-                                  "\" acts by more than the distance, which surfaces do not tell");
+  for (std::size_t p = 0; p < interactions_.size(); ++p) {
+    const SurfaceLaw& law =
+        laws_.emplace_back(interactions_[p].potential, static_cast<int>(p), surfaces.contacts, surfaces.cells.size());
+    remembers_ = remembers_ || law.remembers();
+    needs_velocities_ = needs_velocities_ || law.reads_velocity();
   }
 }
+
+namespace {
+
+/// Of a contact, by the nodes' velocities in the last step.
+double normal_velocity(const SurfaceContact& contact, const Surfaces& surfaces) {
+  const auto of = [&](int node) {
+    return Vec<3>(surfaces.velocity_x[node], surfaces.velocity_y[node], surfaces.velocity_z[node]);
+  };
+  Vec<3> apart = of(contact.node);
+  for (std::size_t k = 0; k < 3; ++k) apart -= contact.weight[k] * of(contact.corner[k]);
+  return apart.dot(contact.direction);
+}
+
+}  // namespace
 
 void SurfaceInteractions::run(Worker worker, int phase, Surfaces& surfaces) {
   const Range cells = worker.share(surfaces.cell_count());
@@ -31,8 +42,10 @@ void SurfaceInteractions::run(Worker worker, int phase, Surfaces& surfaces) {
       if (!surfaces.owns(cell)) continue;
       Scratch& scratch = scratch_[cells.begin];
       contacts_.find(cell, surfaces, scratch.contacts);
-      evaluate(cell, surfaces, false, scratch);
+      scratch.state.clear();
+      evaluate(cell, surfaces, false, &scratch.state, scratch);
       act(cell, surfaces, scratch);
+      if (remembers_) surfaces.contacts.of_cell[cell].swap(scratch.state);
     }
     return;
   }
@@ -48,23 +61,30 @@ void SurfaceInteractions::run(Worker worker, int phase, Surfaces& surfaces) {
   }
 }
 
-void SurfaceInteractions::evaluate(int cell, const Surfaces& surfaces, bool energy, Scratch& scratch) const {
+void SurfaceInteractions::evaluate(int cell, const Surfaces& surfaces, bool energy, std::vector<ContactState>* next,
+                                   Scratch& scratch) const {
   scratch.result.assign(scratch.contacts.size(), 0.0);
-  const int type = surfaces.cells[cell].type;
-  for (std::size_t p = 0; p < interactions_.size(); ++p) {
-    const Potential& model = interactions_[p].potential;
-    if (energy && !model.writes("energy")) continue;
-    scratch.distance.clear();
+  const CellRange& own = surfaces.cells[cell];
+  for (std::size_t p = 0; p < laws_.size(); ++p) {
+    const SurfaceLaw& law = laws_[p];
+    if (energy && !law.has_energy()) continue;
+    scratch.inputs.clear();
     scratch.contact.clear();
     for (std::size_t c = 0; c < scratch.contacts.size(); ++c) {
       const SurfaceContact& contact = scratch.contacts[c];
-      if (contact.distance > cutoffs_[p] || !acts_between(interactions_[p], type, surfaces.cells[contact.other].type))
+      if (contact.distance > law.cutoff() ||
+          !acts_between(interactions_[p], own.type, surfaces.cells[contact.other].type))
         continue;
-      scratch.distance.push_back(contact.distance);
+      scratch.inputs.distance.push_back(contact.distance);
+      if (law.reads_velocity()) scratch.inputs.normal_velocity.push_back(normal_velocity(contact, surfaces));
+      if (law.remembers()) {
+        const auto& [x, y, z] = contact.shift;
+        scratch.inputs.key.push_back({contact.node - own.first, contact.other, {x, y, z}});
+      }
       scratch.contact.push_back(static_cast<int>(c));
     }
-    if (scratch.distance.empty()) continue;
-    core::evaluate(model, scratch.distance, energy, scratch.law);
+    if (scratch.contact.empty()) continue;
+    law.evaluate(own, states_of(surfaces.contacts, cell), scratch.inputs, energy, next, scratch.law);
     for (std::size_t i = 0; i < scratch.law.size(); ++i) scratch.result[scratch.contact[i]] += scratch.law[i];
   }
 }
@@ -92,7 +112,7 @@ double SurfaceInteractions::energy(const Surfaces& surfaces, const Ranks<3>& ran
   for (int cell = 0; cell < surfaces.cell_count(); ++cell) {
     if (!surfaces.owns(cell)) continue;
     contacts_.find(cell, surfaces, scratch.contacts);
-    evaluate(cell, surfaces, true, scratch);
+    evaluate(cell, surfaces, true, nullptr, scratch);
     const RestSurface& rest = surfaces.type_of(cell);
     for (std::size_t c = 0; c < scratch.contacts.size(); ++c)
       sum.front().add(0.5 * rest.node_area[scratch.contacts[c].node - surfaces.cells[cell].first] * scratch.result[c]);

@@ -9,6 +9,7 @@
 #include "core/surface/surfaces.hpp"
 #include "interaction_forces.hpp"
 #include "surface_contacts.hpp"
+#include "surface_law.hpp"
 
 namespace rouleau::core {
 
@@ -17,16 +18,18 @@ namespace rouleau::core {
 /// exact gradient of the energy, with neither net force nor net torque (InteractionForces, in two dimensions).
 class SurfaceInteractions {
  public:
-  /// Throws std::invalid_argument for potentials that remember or want velocities, which surfaces do not have.
-  SurfaceInteractions(const Surfaces& surfaces, std::vector<Interaction> interactions, const Domain<3>& domain);
+  /// Adds what potentials remember to `surfaces.contacts`, as far as it is not there from an earlier stage. Throws
+  /// std::invalid_argument for potentials that read a tangential velocity.
+  SurfaceInteractions(Surfaces& surfaces, std::vector<Interaction> interactions, const Domain<3>& domain);
 
-  /// Pass over cells: phases 0, 1, 2 with a barrier after each. Adds to the forces; the sums do not depend on the workers.
+  /// Pass over cells: phases 0, 1, 2 with a barrier after each. Adds to the forces and advances the state of the contacts by
+  /// one step; the sums do not depend on the workers.
   void run(Worker worker, int phase, Surfaces& surfaces);
 
   /// With other ranks: InteractionForces.
   [[nodiscard]] DisplacementWatch& watch() { return contacts_.watch(); }
   [[nodiscard]] double reach() const { return list_reach(contacts_.cutoffs()); }
-  [[nodiscard]] bool needs_velocities() const { return false; }
+  [[nodiscard]] bool needs_velocities() const { return needs_velocities_; }
   /// What one cell does to a node of another.
   struct Reaction {
     int cell, node;  ///< `node` of Surfaces belongs to `cell`
@@ -35,7 +38,8 @@ class SurfaceInteractions {
   /// After phase 1: what a cell does to others; of another rank's cell that is to be put there before phase 2.
   [[nodiscard]] std::vector<Reaction>& reactions(int cell) { return reactions_[cell]; }
 
-  /// Energy of the contacts at the present positions, for which run() has made the lists, of all ranks' cells. Not a pass.
+  /// Energy of the contacts at the present positions, for which run() has made the lists, in their present state, of all
+  /// ranks' cells. Not a pass.
   [[nodiscard]] double energy(const Surfaces& surfaces, const Ranks<3>& ranks = {}) const;
   /// A potential that acts but tells no energy; empty: none.
   [[nodiscard]] std::string without_energy() const;
@@ -44,16 +48,21 @@ class SurfaceInteractions {
  private:
   struct Scratch {
     std::vector<SurfaceContact> contacts;
-    std::vector<double> result;         // of each contact: sum over the potentials
-    std::vector<double> distance, law;  // of one potential's contacts
-    std::vector<int> contact;           // which those are
+    std::vector<double> result;       // of each contact: sum over the potentials
+    SurfaceLawInputs inputs;          // of one potential's contacts
+    std::vector<double> law;          // of these
+    std::vector<int> contact;         // which those are
+    std::vector<ContactState> state;  // of the cell's contacts after the step
   };
-  /// Sets scratch.result to the sum of the potentials' forces, or energies, at the contacts of a cell.
-  void evaluate(int cell, const Surfaces& surfaces, bool energy, Scratch& scratch) const;
+  /// Sets scratch.result to the sum of the potentials' forces, or energies, at the contacts of a cell. `next`: as SurfaceLaw
+  /// has it.
+  void evaluate(int cell, const Surfaces& surfaces, bool energy, std::vector<ContactState>* next,
+                Scratch& scratch) const;
   void act(int cell, Surfaces& surfaces, const Scratch& scratch);
 
   std::vector<Interaction> interactions_;
-  std::vector<double> cutoffs_;
+  std::vector<SurfaceLaw> laws_;  // of these
+  bool remembers_ = false, needs_velocities_ = false;
   SurfaceContacts contacts_;
   std::vector<Scratch> scratch_;                  // of the workers, each at the place of its first cell
   std::vector<std::vector<Reaction>> reactions_;  // of each cell's contacts, in their order

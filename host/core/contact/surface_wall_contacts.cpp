@@ -5,13 +5,12 @@
 #include <stdexcept>
 
 #include "contact.hpp"
-#include "distance_law.hpp"
 
 namespace rouleau::core {
 
-SurfaceWallContacts::SurfaceWallContacts(std::vector<WallInteraction> interactions, const Domain<3>& domain,
-                                         double tube_radius)
-    : interactions_(std::move(interactions)), middle_{(domain.size[1] - 1) / 2.0, (domain.size[2] - 1) / 2.0} {
+SurfaceWallContacts::SurfaceWallContacts(Surfaces& surfaces, const std::vector<WallInteraction>& interactions,
+                                         const Domain<3>& domain, double tube_radius)
+    : middle_{(domain.size[1] - 1) / 2.0, (domain.size[2] - 1) / 2.0} {
   if (tube_radius > 0) walls_.push_back({0, tube_radius, 0});
   for (const int axis : {1, 2}) {
     if (!domain.walled(axis) || tube_radius > 0) continue;
@@ -19,95 +18,106 @@ SurfaceWallContacts::SurfaceWallContacts(std::vector<WallInteraction> interactio
     walls_.push_back({axis, domain.size[axis] - 0.5, -1});
   }
   if (walls_.empty()) throw std::invalid_argument("a potential between cells and walls needs walls");
-  for (const WallInteraction& interaction : interactions_) {
-    const Potential& potential = interaction.potential;
-    if (!is_of_distance_alone(potential))
-      throw std::invalid_argument("\"" + potential.id +
-                                  "\" acts by more than the distance, which surfaces do not tell");
-    cutoffs_.push_back(cutoff_of(potential));
+  for (const auto& [type, potential] : interactions) {
+    laws_.push_back(
+        {type, SurfaceLaw(potential, static_cast<int>(laws_.size()), surfaces.wall_contacts, surfaces.cells.size())});
+    remembers_ = remembers_ || laws_.back().law.remembers();
   }
 }
 
-void SurfaceWallContacts::measure(std::size_t interaction, int cell, const Wall& wall, const Surfaces& surfaces,
-                                  bool energy, Contacts& contacts) const {
-  for (auto* values : {&contacts.distance, &contacts.away_y, &contacts.away_z}) values->clear();
+void SurfaceWallContacts::measure(const SurfaceLaw& law, int cell, int wall, const Surfaces& surfaces, bool energy,
+                                  std::vector<ContactState>* next, Contacts& contacts) const {
+  for (auto* values : {&contacts.away_y, &contacts.away_z}) values->clear();
   contacts.node.clear();
+  contacts.inputs.clear();
   const CellRange& range = surfaces.cells[cell];
   const auto add = [&](int node, double distance, double away_y, double away_z) {
-    if (!(distance <= cutoffs_[interaction])) return;
+    if (!(distance <= law.cutoff())) return;
     contacts.node.push_back(node);
-    contacts.distance.push_back(std::max(distance, ContactList::least_distance));
     contacts.away_y.push_back(away_y);
     contacts.away_z.push_back(away_z);
+    contacts.inputs.distance.push_back(std::max(distance, ContactList::least_distance));
+    if (law.remembers()) contacts.inputs.key.push_back({node - range.first, wall, {}});
+    if (law.reads_velocity())  // the wall moves along itself
+      contacts.inputs.normal_velocity.push_back(away_y * surfaces.velocity_y[node] +
+                                                away_z * surfaces.velocity_z[node]);
   };
+  const auto& [axis, place, outward] = walls_[wall];
   for (int i = range.first; i < range.end(); ++i) {
-    if (wall.axis == 1) {
-      add(i, wall.outward * (surfaces.y[i] - wall.place), wall.outward, 0);
-    } else if (wall.axis == 2) {
-      add(i, wall.outward * (surfaces.z[i] - wall.place), 0, wall.outward);
+    if (axis == 1) {
+      add(i, outward * (surfaces.y[i] - place), outward, 0);
+    } else if (axis == 2) {
+      add(i, outward * (surfaces.z[i] - place), 0, outward);
     } else {
       const double y = surfaces.y[i] - middle_[0], z = surfaces.z[i] - middle_[1], radius = std::sqrt(y * y + z * z);
-      if (radius > 0) add(i, wall.place - radius, -y / radius, -z / radius);
+      if (radius > 0) add(i, place - radius, -y / radius, -z / radius);
     }
   }
   if (contacts.node.empty()) return;
-  evaluate(interactions_[interaction].potential, contacts.distance, energy, contacts.law);
+  law.evaluate(range, states_of(surfaces.wall_contacts, cell), contacts.inputs, energy, next, contacts.law);
 }
 
 template <class Act>
-void SurfaceWallContacts::for_each(Range cells, const Surfaces& surfaces, bool energy, Contacts& contacts,
-                                   Act act) const {
-  for (int cell = cells.begin; cell < cells.end; ++cell) {
-    for (std::size_t k = 0; k < interactions_.size(); ++k) {
-      if (interactions_[k].type != surfaces.cells[cell].type) continue;
-      if (energy && !interactions_[k].potential.writes("energy")) continue;
-      for (const Wall& wall : walls_) {
-        measure(k, cell, wall, surfaces, energy, contacts);
-        if (!contacts.node.empty()) act(cell);
-      }
+void SurfaceWallContacts::for_each(int cell, const Surfaces& surfaces, bool energy, std::vector<ContactState>* next,
+                                   Contacts& contacts, Act act) const {
+  for (const auto& [type, law] : laws_) {
+    if (type != surfaces.cells[cell].type || (energy && !law.has_energy())) continue;
+    for (int wall = 0; wall < static_cast<int>(walls_.size()); ++wall) {
+      measure(law, cell, wall, surfaces, energy, next, contacts);
+      if (!contacts.node.empty()) act();
     }
   }
 }
 
 void SurfaceWallContacts::run(Worker worker, Surfaces& surfaces) {
   Contacts contacts;
-  for_each(worker.share(surfaces.cell_count()), surfaces, false, contacts, [&](int cell) {
-    if (!surfaces.owns(cell)) return;
+  std::vector<ContactState> next;
+  const Range cells = worker.share(surfaces.cell_count());
+  for (int cell = cells.begin; cell < cells.end; ++cell) {
+    if (!surfaces.owns(cell)) continue;
     const double* area = surfaces.type_of(cell).node_area.data();
     const int first = surfaces.cells[cell].first;
-    for (std::size_t i = 0; i < contacts.node.size(); ++i) {
-      const int node = contacts.node[i];
-      surfaces.force_y[node] += area[node - first] * contacts.law[i] * contacts.away_y[i];
-      surfaces.force_z[node] += area[node - first] * contacts.law[i] * contacts.away_z[i];
-    }
-  });
+    next.clear();
+    for_each(cell, surfaces, false, &next, contacts, [&] {
+      for (std::size_t i = 0; i < contacts.node.size(); ++i) {
+        const int node = contacts.node[i];
+        surfaces.force_y[node] += area[node - first] * contacts.law[i] * contacts.away_y[i];
+        surfaces.force_z[node] += area[node - first] * contacts.law[i] * contacts.away_z[i];
+      }
+    });
+    if (remembers_) surfaces.wall_contacts.of_cell[cell].swap(next);
+  }
 }
 
 double SurfaceWallContacts::energy(const Surfaces& surfaces, const Ranks<3>&) const {
   double sum = 0;
   Contacts contacts;
-  for_each({0, surfaces.cell_count()}, surfaces, true, contacts, [&](int cell) {
+  for (int cell = 0; cell < surfaces.cell_count(); ++cell) {
     const RestSurface& rest = surfaces.type_of(cell);
-    for (std::size_t i = 0; i < contacts.node.size(); ++i)
-      sum += rest.node_area[contacts.node[i] - surfaces.cells[cell].first] * contacts.law[i];
-  });
+    for_each(cell, surfaces, true, nullptr, contacts, [&] {
+      for (std::size_t i = 0; i < contacts.node.size(); ++i)
+        sum += rest.node_area[contacts.node[i] - surfaces.cells[cell].first] * contacts.law[i];
+    });
+  }
   return sum;
 }
 
 double SurfaceWallContacts::net_force(const Surfaces& surfaces) const {
   double sum = 0;
   Contacts contacts;
-  for_each({0, surfaces.cell_count()}, surfaces, false, contacts, [&](int cell) {
+  for (int cell = 0; cell < surfaces.cell_count(); ++cell) {
     const RestSurface& rest = surfaces.type_of(cell);
-    for (std::size_t i = 0; i < contacts.node.size(); ++i)
-      sum += rest.node_area[contacts.node[i] - surfaces.cells[cell].first] * contacts.law[i] * contacts.away_y[i];
-  });
+    for_each(cell, surfaces, false, nullptr, contacts, [&] {
+      for (std::size_t i = 0; i < contacts.node.size(); ++i)
+        sum += rest.node_area[contacts.node[i] - surfaces.cells[cell].first] * contacts.law[i] * contacts.away_y[i];
+    });
+  }
   return sum;
 }
 
 std::string SurfaceWallContacts::without_energy() const {
-  for (const WallInteraction& interaction : interactions_)
-    if (!interaction.potential.writes("energy")) return interaction.potential.id;
+  for (const auto& [type, law] : laws_)
+    if (!law.has_energy()) return law.potential().id;
   return {};
 }
 

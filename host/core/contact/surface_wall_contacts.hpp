@@ -7,6 +7,7 @@
 #include "base/worker.hpp"
 #include "core/domain/ranks.hpp"
 #include "core/surface/surfaces.hpp"
+#include "surface_law.hpp"
 #include "wall_contacts.hpp"
 
 namespace rouleau::core {
@@ -15,11 +16,14 @@ namespace rouleau::core {
 /// dimensions). Walls lie across y and z, or are a tube along x around the middle of the domain. The wall takes the reaction, normal to itself.
 class SurfaceWallContacts {
  public:
-  /// tube_radius: in place of the domain's walls; 0: none. Throws std::invalid_argument without walls, and for potentials of
-  /// more than the distance.
-  SurfaceWallContacts(std::vector<WallInteraction> interactions, const Domain<3>& domain, double tube_radius = 0);
+  /// Adds what potentials remember to `surfaces.wall_contacts`, as far as it is not there from an earlier stage. tube_radius:
+  /// in place of the domain's walls; 0: none. Throws std::invalid_argument without walls, and for potentials that read a
+  /// tangential velocity.
+  SurfaceWallContacts(Surfaces& surfaces, const std::vector<WallInteraction>& interactions, const Domain<3>& domain,
+                      double tube_radius = 0);
 
-  /// Pass over cells: adds to the forces. A cell that no wall is near of costs a look at where its nodes lie.
+  /// Pass over cells: adds to the forces, and advances the state of the contacts by one step. A cell that no wall is near of
+  /// costs a look at where its nodes lie.
   void run(Worker worker, Surfaces& surfaces);
 
   /// Energy at the present positions. Not a pass.
@@ -37,16 +41,23 @@ class SurfaceWallContacts {
   /// Nodes of a cell within a cutoff of one wall, the direction away from it, and the potential's force or energy.
   struct Contacts {
     std::vector<int> node;
-    std::vector<double> distance, away_y, away_z, law;
+    std::vector<double> away_y, away_z, law;
+    SurfaceLawInputs inputs;
   };
-  void measure(std::size_t interaction, int cell, const Wall& wall, const Surfaces& surfaces, bool energy,
-               Contacts& contacts) const;
-  /// Calls act(cell) for each interaction of a range of cells with each wall, if there are contacts.
+  /// `next`: as SurfaceLaw has it.
+  void measure(const SurfaceLaw& law, int cell, int wall, const Surfaces& surfaces, bool energy,
+               std::vector<ContactState>* next, Contacts& contacts) const;
+  /// Calls act() for each interaction of a cell with each wall, if there are contacts.
   template <class Act>
-  void for_each(Range cells, const Surfaces& surfaces, bool energy, Contacts& contacts, Act act) const;
+  void for_each(int cell, const Surfaces& surfaces, bool energy, std::vector<ContactState>* next, Contacts& contacts,
+                Act act) const;
 
-  std::vector<WallInteraction> interactions_;
-  std::vector<double> cutoffs_;
+  struct OfType {
+    int type;
+    SurfaceLaw law;
+  };
+  std::vector<OfType> laws_;
+  bool remembers_ = false;
   std::vector<Wall> walls_;
   double middle_[2];  ///< of the domain, along y and z
 };

@@ -19,11 +19,11 @@ struct Bounds {
   }
 };
 
-/// An image of a cell: shifted by x periods along x and y periods along y.
+/// An image of a cell: shifted by x periods along x, y along y, and in three dimensions z along z.
 struct ImageShift {
-  int x = 0, y = 0;
+  int x = 0, y = 0, z = 0;
   friend bool operator==(const ImageShift&, const ImageShift&) = default;
-  [[nodiscard]] ImageShift operator-() const { return {-x, -y}; }
+  [[nodiscard]] ImageShift operator-() const { return {-x, -y, -z}; }
 };
 
 /// Calls `visit(ImageShift)` for every image of `b` whose bounds come within `reach` of the bounds of `a`, in a fixed
@@ -47,7 +47,7 @@ void for_each_image(const Bounds& a, const Bounds& b, double reach, const Domain
   }
   const int x_first = first(a.x_min, b.x_max, domain.period(0)), x_last = last(a.x_max, b.x_min, domain.period(0));
   for (int y = y_first; y <= y_last; ++y) {
-    for (int x = x_first; x <= x_last; ++x) visit(ImageShift{x, y});
+    for (int x = x_first; x <= x_last; ++x) visit(ImageShift{x, y, 0});
   }
 }
 

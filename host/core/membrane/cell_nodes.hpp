@@ -42,6 +42,8 @@ struct CellNodes {
                                                            ///< correction has kept from leaving it, in three dimensions
                                                            ///< volume over rest volume; empty: none
   std::vector<ElementState> state;                         ///< what laws and the method remember; empty where none does
+  ContactMemory contacts;                                  ///< what interactions between cells remember
+  ContactMemory wall_contacts;                             ///< what interactions with walls remember
   std::vector<CellPart> part;                              ///< of this rank in each cell; empty: all of every cell
 
   [[nodiscard]] int node_count() const { return static_cast<int>(x.size()); }

@@ -40,7 +40,8 @@ struct ContactVariable {
 /// lattice units; initial where a node is not within the cutoff.
 struct ContactState {
   std::size_t variable;  ///< in ContactMemory::variables
-  int other;             ///< a cell; of contacts with walls 0: the lower, 1: the upper
+  int other;             ///< a cell; of contacts with walls 0: the lower, 1: the upper, in three dimensions also 2, 3:
+                         ///< those across z; a tube is 0
   ImageShift shift;
   std::vector<double> value;  ///< of the cell's nodes, from its first on
 };

@@ -18,8 +18,6 @@ struct Membranes : CellNodes {
   std::vector<double> rest_length;     ///< of segment i
   std::vector<double> rest_weight;     ///< (rest_length[i - 1] + rest_length[i]) / 2: rest measure of node i
   std::vector<double> rest_curvature;  ///< turning angle over rest_weight in the shape it was created with
-  ContactMemory contacts;              ///< what interactions between cells remember
-  ContactMemory wall_contacts;         ///< what interactions with walls remember
 
   [[nodiscard]] NodeVectors positions() const { return {x.data(), y.data()}; }
   [[nodiscard]] NodeVectors forces() const { return {force_x.data(), force_y.data()}; }

@@ -359,20 +359,18 @@ void CellExchange<D>::transfer_state(Cells& cells, int cell, Transfer transfer) 
   for (auto* along : forces(cells)) transfer_nodes(*along, range, transfer);
   if (!cells.area_leakage.empty()) transfer(&cells.area_leakage[cell], 1);
   for (ElementState& state : cells.state) transfer_nodes(state.value, range, transfer);
-  if constexpr (D == 2) {
-    for (ContactMemory* memory : {&cells.contacts, &cells.wall_contacts}) {
-      if (memory->of_cell.empty()) continue;
-      std::vector<ContactState>& contacts = memory->of_cell[cell];
-      std::size_t size = contacts.size();
-      transfer(&size, 1);
-      contacts.resize(size);
-      for (ContactState& contact : contacts) {
-        transfer(&contact.variable, 1);
-        transfer(&contact.other, 1);
-        transfer(&contact.shift, 1);
-        contact.value.resize(static_cast<std::size_t>(range.count));
-        transfer(contact.value.data(), contact.value.size());
-      }
+  for (ContactMemory* memory : {&cells.contacts, &cells.wall_contacts}) {
+    if (memory->of_cell.empty()) continue;
+    std::vector<ContactState>& contacts = memory->of_cell[cell];
+    std::size_t size = contacts.size();
+    transfer(&size, 1);
+    contacts.resize(size);
+    for (ContactState& contact : contacts) {
+      transfer(&contact.variable, 1);
+      transfer(&contact.other, 1);
+      transfer(&contact.shift, 1);
+      contact.value.resize(static_cast<std::size_t>(range.count));
+      transfer(contact.value.data(), contact.value.size());
     }
   }
 }

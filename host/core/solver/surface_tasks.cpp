@@ -67,7 +67,8 @@ SurfaceTasks<T>::SurfaceTasks(const BasicSolverSetup<3>& setup, Surfaces& surfac
   if (!setup.interactions.empty())
     interactions_ = std::make_unique<SurfaceInteractions>(surfaces_, setup.interactions, setup.domain);
   if (!setup.wall_interactions.empty())
-    wall_contacts_ = std::make_unique<SurfaceWallContacts>(setup.wall_interactions, setup.domain, setup.tube_radius);
+    wall_contacts_ =
+        std::make_unique<SurfaceWallContacts>(surfaces_, setup.wall_interactions, setup.domain, setup.tube_radius);
   if (setup.area_correction) {
     volume_correction_ = std::make_unique<VolumeCorrection>(surfaces_);
     surfaces_.area_leakage.resize(surfaces_.cells.size(), 0.0);  // earlier leakage stays
@@ -75,7 +76,8 @@ SurfaceTasks<T>::SurfaceTasks(const BasicSolverSetup<3>& setup, Surfaces& surfac
   coupling_.reserve(surfaces_);
   if (ranks.several()) {
     const GhostReach reach{.lattice = lattice_reach, .contact = interactions_ ? interactions_->reach() : 0.0};
-    exchange_ = std::make_unique<CellExchange<3>>(ranks, surfaces_, std::move(owner), reach, false);
+    exchange_ = std::make_unique<CellExchange<3>>(ranks, surfaces_, std::move(owner), reach,
+                                                  interactions_ && interactions_->needs_velocities());
   }
   for (const Whose whose : {Whose::own, Whose::others}) coupling_.locate(Worker{}, surfaces_, whose);
 }

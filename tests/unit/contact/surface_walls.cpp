@@ -23,7 +23,8 @@ Surfaces sphere(int n, double radius, const Vec<3>& center) {
   add_cell(s, 0, center, Eigen::AngleAxisd(0.4, Vec<3>(3, 1, 2).normalized()).toRotationMatrix());
   return s;
 }
-SurfaceWallContacts walls() { return {{{0, test::spring_potential(stiffness, rest, cutoff)}}, domain}; }
+SurfaceWallContacts walls(Surfaces& s) { return {s, {{0, test::spring_potential(stiffness, rest, cutoff)}}, domain}; }
+double energy(Surfaces s) { return walls(s).energy(s); }
 
 void act(SurfaceWallContacts& contacts, Surfaces& s, int workers = 1) {
   for (auto* force : {&s.force_x, &s.force_y, &s.force_z}) std::fill(force->begin(), force->end(), 0.0);
@@ -41,17 +42,16 @@ TEST_CASE("a sphere beside a wall has the energy of the zones of its surface") {
   for (const Vec<3>& center : {Vec<3>(3, -0.5 + gap + radius, 10), Vec<3>(3, 19.5 - gap - radius, 10),
                                Vec<3>(3, 9, -0.5 + gap + radius), Vec<3>(3, 9, 21.5 - gap - radius)}) {
     std::vector<double> errors;
-    for (const int n : {8, 16}) errors.push_back(std::abs(walls().energy(sphere(n, radius, center)) / exact - 1));
+    for (const int n : {8, 16}) errors.push_back(std::abs(energy(sphere(n, radius, center)) / exact - 1));
     CHECK(errors[1] < 0.01);
     CHECK(errors[1] < errors[0] / 2.5);
   }
-  CHECK(walls().energy(sphere(8, radius, {3, 9, 10})) == 0);
+  CHECK(energy(sphere(8, radius, {3, 9, 10})) == 0);
 }
 
 TEST_CASE("the wall of a tube acts along its radius") {
   // A sphere around the axis has, at the distance s from its equator's plane, the gap R - sqrt(a^2 - s^2).
   constexpr double radius = 8, of_sphere = 7;
-  SurfaceWallContacts tube({{0, test::spring_potential(stiffness, rest, cutoff)}}, domain, radius);
   double exact = 0;
   constexpr int zones = 4000;
   for (int i = 0; i < zones; ++i) {
@@ -61,6 +61,7 @@ TEST_CASE("the wall of a tube acts along its radius") {
       exact += stiffness / 2 * (here * here - there * there) * 2 * std::numbers::pi * of_sphere * 2 * of_sphere / zones;
   }
   Surfaces s = sphere(16, of_sphere, {3, 9.5, 10.5});
+  SurfaceWallContacts tube(s, {{0, test::spring_potential(stiffness, rest, cutoff)}}, domain, radius);
   CHECK(tube.energy(s) == Approx(exact).epsilon(0.01));
   for (double& y : s.y) y += 0.7;
   act(tube, s);
@@ -83,7 +84,7 @@ TEST_CASE("the wall of a tube acts along its radius") {
 
 TEST_CASE("forces of walls on surfaces are minus the gradient of their energy, whatever the number of workers") {
   Surfaces s = sphere(6, 4, {3, 4.3, 17.1});  // in a corner
-  SurfaceWallContacts contacts = walls();
+  SurfaceWallContacts contacts = walls(s);
   act(contacts, s);
   const Surfaces at = s;
   double largest = 0, along_y = 0;
@@ -111,7 +112,30 @@ TEST_CASE("forces of walls on surfaces are minus the gradient of their energy, w
   CHECK(s.force_z == at.force_z);
 }
 
-TEST_CASE("walls act on surfaces where there are walls, by the distance alone") {
-  CHECK_THROWS_AS(SurfaceWallContacts({{0, test::spring_potential(1, 1, 2)}}, Domain<3>{{8, 8, 8}, {true, true, true}}),
+TEST_CASE("walls act on surfaces where there are walls, and do not rub") {
+  Surfaces s = sphere(4, 3, {4, 4, 4});
+  CHECK_THROWS_AS(
+      SurfaceWallContacts(s, {{0, test::spring_potential(1, 1, 2)}}, Domain<3>{{8, 8, 8}, {true, true, true}}),
+      std::invalid_argument);
+  CHECK_THROWS_AS(SurfaceWallContacts(s, {{0, test::damper(3, 2, "tangential_velocity")}}, domain),
                   std::invalid_argument);
+}
+
+TEST_CASE("a potential is given the velocity at which a surface leaves the wall that it is near") {
+  Surfaces s = sphere(6, 4, {3, 4.3, 17.1});  // in a corner, above y = -0.5 and below z = 21.5
+  std::fill(s.velocity_x.begin(), s.velocity_x.end(), 0.5);
+  std::fill(s.velocity_y.begin(), s.velocity_y.end(), 0.01);
+  std::fill(s.velocity_z.begin(), s.velocity_z.end(), 0.02);
+  SurfaceWallContacts contacts(s, {{0, test::damper(3, 2, "normal_velocity")}}, domain);
+  act(contacts, s);
+  const std::vector<double>& area = s.type_of(0).node_area;
+  double size_y = 0, size_z = 0;
+  for (int i = 0; i < s.node_count(); ++i) {
+    CHECK(s.force_x[i] == 0);
+    CHECK(s.force_y[i] == Approx(s.y[i] + 0.5 <= 2 ? -3 * 0.01 * area[i] : 0));  // against the motion
+    CHECK(s.force_z[i] == Approx(21.5 - s.z[i] <= 2 ? -3 * 0.02 * area[i] : 0));
+    size_y += std::abs(s.force_y[i]), size_z += std::abs(s.force_z[i]);
+  }
+  CHECK(size_y > 0.1);
+  CHECK(size_z > 0.1);
 }

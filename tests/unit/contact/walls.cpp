@@ -59,23 +59,6 @@ std::vector<std::array<double, 2>> box(int width, double bottom, int height) {
   return nodes;
 }
 
-/// Damps what moves along the line to the other, and says so by its needs.
-struct Damper {
-  double viscosity, end;
-  explicit Damper(const rouleau::Parameters& given) : viscosity{given["viscosity"]}, end{given["cutoff"]} {}
-  double cutoff() const { return end; }
-  template <class S>
-  rouleau::Pair<S> operator()(const rouleau::Contact<S>& contact) const {
-    return {S(0.0), -viscosity * contact.normal_velocity, S(0.0)};
-  }
-};
-core::Potential damper(double viscosity, double cutoff, const std::string& velocity) {
-  return core::potential(rouleau::interaction<Damper>("damper", "1"),
-                         {.parameters = {{"viscosity", viscosity}, {"cutoff", cutoff}},
-                          .needs = {"distance", velocity},
-                          .gives = {"force", "energy", "force_by_distance"}});
-}
-
 }  // namespace
 
 TEST_CASE("forces of walls are minus the gradient of their energy, at either wall and where both are near") {

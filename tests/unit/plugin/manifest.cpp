@@ -285,6 +285,14 @@ TEST_CASE("a membrane law says in which dimensions it works, and what its elemen
   CHECK(unit_of(read(), "energy") == "J");
 
   Json pair = good_manifest();
+  pair.erase("dimensions");
+  const auto works_in_space = [&] { return read_manifest(folder.write("pair.json", pair), Units()).works_in(3); };
+  CHECK(works_in_space());
+  pair["needs"] = {"distance", "normal_velocity"};
+  CHECK(works_in_space());
+  pair["needs"] = {"distance", "tangential_velocity"};
+  CHECK(!works_in_space());
+  pair["needs"] = {"distance"};
   pair["dimensions"] = {2, 3};
   CHECK_NOTHROW(read_manifest(folder.write("pair.json", pair), Units()));
   pair["needs"] = {"distance", "tangential_velocity"};
