@@ -33,10 +33,12 @@ class Points {
   }
   [[nodiscard]] const std::vector<std::array<int, D>>& all() const { return points_; }
   /// How much more than a node of the lattice one of them costs.
-  [[nodiscard]] double cost(scene::Precision precision) const {
+  [[nodiscard]] double cost(const Plan& plan) const {
     if (points_.empty()) return 0;
+    const scene::Precision precision = plan.scene->numerics.precision;
     const double count = static_cast<double>(domain_.nodes()), nodes = static_cast<double>(points_.size()) * every_,
-                 of_fluid = step_cost(count, 0, precision, D), of_all = step_cost(count, nodes, precision, D);
+                 of_fluid = step_cost(count, 0, precision, D),
+                 of_all = step_cost(count, nodes, precision, D, largest_cutoff(plan));
     return (of_all - of_fluid) / nodes / (of_fluid / count) * every_;
   }
 
@@ -55,7 +57,7 @@ core::Decomposition<D> cut(const Plan& plan, int ranks) {
   if (plan.has_cells) {
     for_each_cell<D>(scene, lattice_spacing(scene), [&](std::size_t, const auto& cell) { points.add(cell); });
   }
-  return core::Decomposition<D>::bisected(domain, ranks, points.all(), points.cost(scene.numerics.precision));
+  return core::Decomposition<D>::bisected(domain, ranks, points.all(), points.cost(plan));
 }
 
 }  // namespace
@@ -88,7 +90,7 @@ core::Decomposition<D> cut_again(const Plan& plan, const core::Decomposition<D>&
   const core::Domain<D> domain = lattice_domain<D>(*plan.scene);
   Points<D> points(domain, cells.node_count());
   points.add(cells);
-  const double point_cost = points.cost(plan.scene->numerics.precision);
+  const double point_cost = points.cost(plan);
   std::vector<double> expected(seconds.size());
   for (int rank = 0; rank < blocks.ranks(); ++rank) {
     const core::Box<D> block = blocks.domain(rank).block;

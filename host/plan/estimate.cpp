@@ -51,21 +51,6 @@ Counts count_outputs(const scene::Scene& scene, const StageSetting& stage) {
   return counts;
 }
 
-/// Up to which distance cells in space act on each other, lattice spacings; 0: they do not.
-double largest_cutoff(const Plan& plan) {
-  double largest = 0;
-  if (!plan.scene->domain.depth) return largest;  // there a step's cost knows of none
-  for (std::size_t i = 0; i < plan.interactions.size(); ++i) {
-    const PlannedModel& model = plan.interactions[i];
-    const scene::Interaction& between = plan.scene->interactions[i];
-    if (!model.active() || between.with_wall() || between.with_self()) continue;
-    const plugin::ModelInstance potential(*model.manifest, model.parameters.values,
-                                          plan.stages.front().model_setting(plan.scene->fluid.inertia));
-    largest = std::max(largest, potential.interaction().cutoff(potential.self()));
-  }
-  return largest;
-}
-
 OutputEstimate estimate_output(const scene::Scene& scene, const std::vector<StageSetting>& stages) {
   OutputEstimate estimate;
   for (const StageSetting& stage : stages) {
@@ -124,6 +109,20 @@ double step_cost(double lattice_nodes, double membrane_nodes, scene::Precision p
   // In space the triangles within the cutoff are as many as its square says.
   const double of_membrane_node = dimension == 2 ? 50e-9 : 170e-9 + 2.2e-9 * cutoff * cutoff;
   return lattice_nodes * of_node + membrane_nodes * of_membrane_node;
+}
+
+double largest_cutoff(const Plan& plan) {
+  double largest = 0;
+  if (!plan.scene->domain.depth) return largest;  // there a step's cost knows of none
+  for (std::size_t i = 0; i < plan.interactions.size(); ++i) {
+    const PlannedModel& model = plan.interactions[i];
+    const scene::Interaction& between = plan.scene->interactions[i];
+    if (!model.active() || between.with_wall() || between.with_self()) continue;
+    const plugin::ModelInstance potential(*model.manifest, model.parameters.values,
+                                          plan.stages.front().model_setting(plan.scene->fluid.inertia));
+    largest = std::max(largest, potential.interaction().cutoff(potential.self()));
+  }
+  return largest;
 }
 
 double membrane_memory(const scene::Scene& scene) { return membrane_nodes(scene) * (scene.domain.depth ? 1200 : 400); }

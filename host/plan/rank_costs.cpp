@@ -198,7 +198,7 @@ std::vector<RankCost> costs_of(const Plan& plan, const core::Decomposition<D>& b
   add_halos(plan, blocks, ranks);
   if (plan.has_cells) add_cells(plan, blocks, ranks);
   const double membranes = membrane_memory(scene), lattice = estimate(plan).memory_bytes - membranes;
-  const double word = scene.numerics.precision == scene::Precision::f64 ? 8 : 4;
+  const double word = scene.numerics.precision == scene::Precision::f64 ? 8 : 4, cutoff = largest_cutoff(plan);
   for (int rank = 0; rank < blocks.ranks(); ++rank) {
     const core::Box<D> block = blocks.domain(rank).block;
     RankCost& cost = ranks[rank];
@@ -206,7 +206,7 @@ std::vector<RankCost> costs_of(const Plan& plan, const core::Decomposition<D>& b
     const double nodes = static_cast<double>(cost.nodes), all = static_cast<double>(blocks.domain(rank).nodes());
     cost.memory_bytes = lattice * nodes / all + membranes;  // every rank has room for all cells
     cost.sharing_s += cost.lattice_bytes() / word * cost_of_sharing::number;
-    cost.step_s = step_cost(nodes, static_cast<double>(cost.membrane_nodes), scene.numerics.precision, D);
+    cost.step_s = step_cost(nodes, static_cast<double>(cost.membrane_nodes), scene.numerics.precision, D, cutoff);
   }
   return ranks;
 }
