@@ -32,10 +32,11 @@ KIND is collision, membrane or interaction. NAME is the model's id, a reverse do
 a plain name; folder and files have the name of its last part. Nothing is ever overwritten.
 
 With the KIND scene: writes NAME.json, a scene that runs as it is, with notes on what to change. TEMPLATE is
-  demo        two red cells gather and are sheared (what is taken when left out)
-  channel     red cells in a channel that a pressure gradient drives
-  suspension  red cells packed at random between walls that shear them
-  capsule     one circular capsule in shear flow
+  demo           two red cells gather and are sheared (what is taken when left out)
+  channel        red cells in a channel that a pressure gradient drives
+  suspension     red cells packed at random between walls that shear them
+  suspension-3d  the same in three dimensions
+  capsule        one circular capsule in shear flow
 
 Example:
   rouleau new interaction org.example.yukawa
@@ -181,7 +182,7 @@ int new_command(const std::vector<std::string>& arguments) {
                             "KIND (collision, membrane, interaction or scene)");
   description.add_options()("name", options::value(&id)->required(), "NAME");
   description.add_options()("template", options::value(&scene_template),
-                            "TEMPLATE (demo, channel, suspension or capsule)");
+                            "TEMPLATE (demo, channel, suspension, suspension-3d or capsule)");
   description.add_options()("dir", options::value(&directory)->value_name("DIR")->notifier(not_empty("--dir")),
                             "make folder or scene in this folder instead of the working directory");
   positional.add("kind", 1).add("name", 1).add("template", 1);

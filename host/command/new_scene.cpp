@@ -26,6 +26,7 @@ const std::array scene_templates{
     SceneTemplate{"demo", demo_scene},
     SceneTemplate{"channel", channel_scene},
     SceneTemplate{"suspension", suspension_scene},
+    SceneTemplate{"suspension-3d", suspension_3d_scene},
     SceneTemplate{"capsule", capsule_scene},
 };
 

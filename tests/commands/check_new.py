@@ -122,7 +122,7 @@ class New_makes_a_model(Case):
 
 
 class New_scene(Case):
-    TEMPLATES = ("demo", "channel", "suspension", "capsule")
+    TEMPLATES = ("demo", "channel", "suspension", "suspension-3d", "capsule")
 
     def test_of_each_template_plans_and_runs_as_it_is(self):
         for template in self.TEMPLATES:
