@@ -10,4 +10,5 @@ double cutoff_of(const Potential& potential);
 
 /// Whether it neither remembers nor reads velocities.
 bool is_of_distance_alone(const Potential& potential);
+
 }  // namespace rouleau::core

@@ -4,20 +4,6 @@
 
 namespace rouleau::core {
 
-SurfaceInteractions::SurfaceInteractions(Surfaces& surfaces, std::vector<Interaction> interactions,
-                                         const Domain<3>& domain)
-    : interactions_(std::move(interactions)),
-      contacts_(surfaces, pair_cutoffs(surfaces, interactions_, cutoffs_of(interactions_)), domain),
-      scratch_(surfaces.cells.size()),
-      reactions_(surfaces.cells.size()) {
-  for (std::size_t p = 0; p < interactions_.size(); ++p) {
-    const SurfaceLaw& law =
-        laws_.emplace_back(interactions_[p].potential, static_cast<int>(p), surfaces.contacts, surfaces.cells.size());
-    remembers_ = remembers_ || law.remembers();
-    needs_velocities_ = needs_velocities_ || law.reads_velocity();
-  }
-}
-
 namespace {
 
 /// Of a contact, by the nodes' velocities in the last step.
@@ -31,6 +17,20 @@ double normal_velocity(const SurfaceContact& contact, const Surfaces& surfaces) 
 }
 
 }  // namespace
+
+SurfaceInteractions::SurfaceInteractions(Surfaces& surfaces, std::vector<Interaction> interactions,
+                                         const Domain<3>& domain)
+    : interactions_(std::move(interactions)),
+      contacts_(surfaces, pair_cutoffs(surfaces, interactions_, cutoffs_of(interactions_)), domain),
+      scratch_(surfaces.cells.size()),
+      reactions_(surfaces.cells.size()) {
+  for (std::size_t p = 0; p < interactions_.size(); ++p) {
+    const SurfaceLaw& law =
+        laws_.emplace_back(interactions_[p].potential, static_cast<int>(p), surfaces.contacts, surfaces.cells.size());
+    remembers_ = remembers_ || law.remembers();
+    needs_velocities_ = needs_velocities_ || law.reads_velocity();
+  }
+}
 
 void SurfaceInteractions::run(Worker worker, int phase, Surfaces& surfaces) {
   const Range cells = worker.share(surfaces.cell_count());
