@@ -185,7 +185,7 @@ TEST_CASE("a run cut into any blocks writes the same directory", "[whole-runs]")
   std::vector<Case> cases = scenes_to_cut();
   cases.push_back(two_stages);
   cases.push_back({"no cells", four_cells, {driven, "/output={}", "/cells=[]", "/interactions=[]"}});
-  for (const Case& c : cases) compare_cuts<2>(c, block_steps(130));
+  for (const Case& c : cases) compare_cuts<2>(c, block_steps(75));
 }
 
 TEST_CASE("a run in three dimensions cut into any blocks writes the same directory", "[whole-runs]") {
