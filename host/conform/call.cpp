@@ -31,11 +31,12 @@ T from_bits(std::uint64_t wide, std::uint32_t narrow) {
 }
 
 bool untouched(double value) { return std::bit_cast<std::uint64_t>(value) == unwritten_bits; }
+bool untouched(float value) { return std::bit_cast<std::uint32_t>(value) == unwritten_bits_single; }
+
 /// NaNs are alike.
 bool same_bits(double x, double y) {
   return std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y) || (std::isnan(x) && std::isnan(y));
 }
-bool untouched(float value) { return std::bit_cast<std::uint32_t>(value) == unwritten_bits_single; }
 
 /// The memory of one compute call.
 class Memory {

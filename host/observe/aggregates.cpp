@@ -66,17 +66,15 @@ std::vector<CellContact> find_touching_cells(const core::Membranes& m, const cor
 std::vector<CellContact> find_touching_cells(const core::Surfaces& s, const core::Domain<3>& domain, double reach) {
   const core::SurfaceContacts all = core::SurfaceContacts::within(reach, s, domain);
   std::vector<core::SurfaceContact> of_cell;
-  std::map<std::tuple<int, int, std::array<int, 3>>, CellContact> found;
+  std::map<std::tuple<int, int, core::ImageShift>, CellContact> found;
   for (int cell = 0; cell < s.cell_count(); ++cell) {
     all.find(cell, s, of_cell);
     for (const core::SurfaceContact& contact : of_cell) {
       // A pair is known by its first cell and the image of the second; a cell and its own image are seen from both sides.
-      std::array<int, 3> shift = contact.shift;
-      const bool turned = contact.other < cell || (contact.other == cell && shift < std::array<int, 3>{});
-      if (turned) shift = {-shift[0], -shift[1], -shift[2]};
+      const bool turned = contact.other < cell || (contact.other == cell && contact.shift < core::ImageShift{});
+      const core::ImageShift image = turned ? -contact.shift : contact.shift;
       const int a = turned ? contact.other : cell, b = turned ? cell : contact.other;
-      CellContact& pair =
-          found.try_emplace({a, b, shift}, CellContact{a, b, {shift[0], shift[1]}, reach, 0, shift[2]}).first->second;
+      CellContact& pair = found.try_emplace({a, b, image}, CellContact{a, b, image, reach, 0}).first->second;
       pair.gap = std::min(pair.gap, contact.distance);
       if (!turned) pair.contact_length += s.type_of(cell).node_area[contact.node - s.cells[cell].first];
     }
@@ -150,7 +148,7 @@ Aggregates find_aggregates(int cells, const std::vector<CellContact>& contacts) 
   }
   std::vector<bool> crossed(static_cast<std::size_t>(cells), false);
   for (const CellContact& c : contacts) {
-    if (!(c.image == core::ImageShift{}) || c.image_z != 0) crossed[result.label[c.cell_a]] = true;
+    if (!(c.image == core::ImageShift{})) crossed[result.label[c.cell_a]] = true;
   }
   result.through_image.resize(static_cast<std::size_t>(cells));
   for (int i = 0; i < cells; ++i) {

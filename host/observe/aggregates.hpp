@@ -15,7 +15,6 @@ struct CellContact {
   core::ImageShift image;  ///< of b
   double gap;              ///< smallest distance between the two polygons or surfaces, lattice units
   double contact_length;   ///< rest length of a's nodes nearer to b than `reach`; of surfaces, their rest area
-  int image_z = 0;         ///< of b, periods along z
 };
 
 /// All pairs nearer than `reach` (lattice units).

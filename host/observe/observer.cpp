@@ -215,7 +215,7 @@ void Observer::observe_cells(const core::Surfaces& surfaces, const units::Lattic
   for (const CellContact& c : contacts) {
     snapshot.contacts.push_back({c.cell_a,
                                  c.cell_b,
-                                 {c.image.x, c.image.y, c.image_z},
+                                 {c.image.x, c.image.y, c.image.z},
                                  c.gap * length,
                                  std::nan(""),
                                  c.contact_length * length * length});

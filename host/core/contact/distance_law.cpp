@@ -10,4 +10,15 @@ bool is_of_distance_alone(const Potential& potential) {
   return potential.state.empty() && !potential.reads("normal_velocity") && !potential.reads("tangential_velocity");
 }
 
+std::vector<std::size_t> keep_state(const Potential& potential, std::size_t place, ContactMemory& memory,
+                                    std::size_t cells) {
+  std::vector<std::size_t> variables;
+  for (const StateVariable& declared : potential.state) {
+    memory.of_cell.resize(cells);
+    variables.push_back(
+        memory.keep({static_cast<int>(place), potential.id, declared.name, declared.unit, declared.initial}));
+  }
+  return variables;
+}
+
 }  // namespace rouleau::core

@@ -37,17 +37,16 @@ InteractionForces::InteractionForces(Membranes& membranes, std::vector<Interacti
       cutoffs_(cutoffs_of(interactions_)),
       contacts_(membranes, pair_cutoffs(membranes, interactions_, cutoffs_), domain),
       scratch_(membranes.cells.size()),
-      reactions_(membranes.cells.size()),
-      variables_(interactions_.size()) {
-  for (const Interaction& interaction : interactions_) {
-    const Potential& potential = interaction.potential;
+      reactions_(membranes.cells.size()) {
+  for (std::size_t p = 0; p < interactions_.size(); ++p) {
+    const Potential& potential = interactions_[p].potential;
+    variables_.push_back(keep_state(potential, p, membranes.contacts, membranes.cells.size()));
     has_state_ = has_state_ || !potential.state.empty();
     needs_velocities_ =
         needs_velocities_ || potential.reads("normal_velocity") || potential.reads("tangential_velocity");
     traits_.push_back(
         {potential.reads("normal_velocity"), potential.reads("tangential_velocity"), potential.writes("energy")});
   }
-  keep_state(membranes);
 }
 
 void InteractionForces::run(Worker worker, int phase, Membranes& membranes) {

@@ -67,7 +67,6 @@ class InteractionForces {
   [[nodiscard]] const Contacts& contacts() const { return contacts_; }
 
  private:
-  void keep_state(Membranes& membranes);
   /// The contacts of the cell that a worker is at, and what is computed of them.
   struct Scratch {
     ContactList contacts;
@@ -122,7 +121,7 @@ class InteractionForces {
   Contacts contacts_;
   std::vector<Scratch> scratch_;                     // of the workers, each at the place of its first cell
   std::vector<Reactions> reactions_;                 // of the cells
-  std::vector<std::vector<std::size_t>> variables_;  // of the potentials, in ContactMemory::variables once kept
+  std::vector<std::vector<std::size_t>> variables_;  // of the potentials, in ContactMemory::variables
   bool has_state_ = false, needs_velocities_ = false;
 };
 

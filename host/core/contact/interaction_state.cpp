@@ -1,22 +1,9 @@
-// Interactions that remember: where their state is found, and how it is stepped.
+// Interactions that remember: where a contact's state is found, and how it is stepped.
 #include <algorithm>
 
 #include "interaction_forces.hpp"
 
 namespace rouleau::core {
-
-void InteractionForces::keep_state(Membranes& membranes) {
-  if (!has_state_) return;
-  ContactMemory& memory = membranes.contacts;
-  memory.of_cell.resize(membranes.cells.size());
-  for (std::size_t p = 0; p < interactions_.size(); ++p) {
-    const Potential& potential = interactions_[p].potential;
-    for (const StateVariable& declared : potential.state) {
-      variables_[p].push_back(
-          memory.keep({static_cast<int>(p), potential.id, declared.name, declared.unit, declared.initial}));
-    }
-  }
-}
 
 // A node's value is found by the other cell and its image, for the closest place moves along that cell as it likes.
 void InteractionForces::apply_with_state(std::size_t potential, int cell, std::size_t pair, const Membranes& membranes,

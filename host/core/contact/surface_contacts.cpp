@@ -340,7 +340,7 @@ void SurfaceContacts::find(int cell, const Surfaces& surfaces, std::vector<Surfa
     const auto& [i, j, k] = triangles[closest];
     SurfaceContact contact{group.node,
                            group.other,
-                           group.shift,
+                           {group.shift[0], group.shift[1], group.shift[2]},
                            {other.first + i, other.first + j, other.first + k},
                            point.weight,
                            std::max(root, SurfaceContact::least_distance),

@@ -7,6 +7,7 @@
 
 #include "base/worker.hpp"
 #include "core/domain/domain.hpp"
+#include "core/domain/images.hpp"
 #include "core/membrane/displacement_watch.hpp"
 #include "core/surface/surfaces.hpp"
 #include "neighbour_list.hpp"
@@ -17,7 +18,7 @@ namespace rouleau::core {
 struct SurfaceContact {
   int node;                   ///< index in Surfaces
   int other;                  ///< cell; the cell itself, for one of its images
-  std::array<int, 3> shift;   ///< periods by which that image is moved
+  ImageShift shift;           ///< of that image
   std::array<int, 3> corner;  ///< of the triangle that P is on: indices in Surfaces
   std::array<double, 3> weight;
   double distance;   ///< |X - P|, at least least_distance

@@ -25,8 +25,7 @@ SurfaceInteractions::SurfaceInteractions(Surfaces& surfaces, std::vector<Interac
       scratch_(surfaces.cells.size()),
       reactions_(surfaces.cells.size()) {
   for (std::size_t p = 0; p < interactions_.size(); ++p) {
-    const SurfaceLaw& law =
-        laws_.emplace_back(interactions_[p].potential, static_cast<int>(p), surfaces.contacts, surfaces.cells.size());
+    const SurfaceLaw& law = laws_.emplace_back(interactions_[p].potential, p, surfaces.contacts, surfaces.cells.size());
     remembers_ = remembers_ || law.remembers();
     needs_velocities_ = needs_velocities_ || law.reads_velocity();
   }
@@ -77,10 +76,7 @@ void SurfaceInteractions::evaluate(int cell, const Surfaces& surfaces, bool ener
         continue;
       scratch.inputs.distance.push_back(contact.distance);
       if (law.reads_velocity()) scratch.inputs.normal_velocity.push_back(normal_velocity(contact, surfaces));
-      if (law.remembers()) {
-        const auto& [x, y, z] = contact.shift;
-        scratch.inputs.key.push_back({contact.node - own.first, contact.other, {x, y, z}});
-      }
+      if (law.remembers()) scratch.inputs.key.push_back({contact.node - own.first, contact.other, contact.shift});
       scratch.contact.push_back(static_cast<int>(c));
     }
     if (scratch.contact.empty()) continue;

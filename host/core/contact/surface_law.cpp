@@ -22,18 +22,15 @@ std::size_t find(const std::vector<ContactState>& states, std::size_t variable, 
 
 }  // namespace
 
-SurfaceLaw::SurfaceLaw(Potential potential, int place, ContactMemory& memory, std::size_t cells)
+SurfaceLaw::SurfaceLaw(Potential potential, std::size_t place, ContactMemory& memory, std::size_t cells)
     : potential_(std::move(potential)),
       cutoff_(cutoff_of(potential_)),
       reads_velocity_(potential_.reads("normal_velocity")),
       has_energy_(potential_.writes("energy")) {
   if (potential_.reads("tangential_velocity"))
     throw std::invalid_argument("\"" + potential_.id + "\" reads a tangential velocity, which has no sign on surfaces");
-  for (const StateVariable& declared : potential_.state) {
-    memory.of_cell.resize(cells);
-    const std::size_t kept = memory.keep({place, potential_.id, declared.name, declared.unit, declared.initial});
+  for (const std::size_t kept : keep_state(potential_, place, memory, cells))
     variables_.push_back({kept, memory.variables[kept].initial});
-  }
 }
 
 void SurfaceLaw::evaluate(const CellRange& cell, const std::vector<ContactState>& known, const SurfaceLawInputs& inputs,

@@ -28,7 +28,7 @@ class SurfaceLaw {
  public:
   /// Adds what the potential, the `place`-th of those that share the memory, remembers of so many cells. Throws
   /// std::invalid_argument if it reads a tangential velocity, which has no sign here.
-  SurfaceLaw(Potential potential, int place, ContactMemory& memory, std::size_t cells);
+  SurfaceLaw(Potential potential, std::size_t place, ContactMemory& memory, std::size_t cells);
 
   [[nodiscard]] const Potential& potential() const { return potential_; }
   [[nodiscard]] double cutoff() const { return cutoff_; }

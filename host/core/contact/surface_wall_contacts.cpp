@@ -19,8 +19,7 @@ SurfaceWallContacts::SurfaceWallContacts(Surfaces& surfaces, const std::vector<W
   }
   if (walls_.empty()) throw std::invalid_argument("a potential between cells and walls needs walls");
   for (const auto& [type, potential] : interactions) {
-    laws_.push_back(
-        {type, SurfaceLaw(potential, static_cast<int>(laws_.size()), surfaces.wall_contacts, surfaces.cells.size())});
+    laws_.push_back({type, SurfaceLaw(potential, laws_.size(), surfaces.wall_contacts, surfaces.cells.size())});
     remembers_ = remembers_ || laws_.back().law.remembers();
   }
 }

@@ -26,12 +26,7 @@ WallContacts::WallContacts(Membranes& membranes, std::vector<WallInteraction> in
     if (potential.reads("tangential_velocity"))
       throw std::invalid_argument("a potential with walls reads no tangential velocity: " + potential.id);
     traits_.push_back({cutoff_of(potential), potential.reads("normal_velocity"), potential.writes("energy")});
-    std::vector<std::size_t>& variables = variables_.emplace_back();
-    for (const StateVariable& declared : potential.state) {
-      membranes.wall_contacts.of_cell.resize(membranes.cells.size());
-      variables.push_back(membranes.wall_contacts.keep(
-          {static_cast<int>(k), potential.id, declared.name, declared.unit, declared.initial}));
-    }
+    variables_.push_back(keep_state(potential, k, membranes.wall_contacts, membranes.cells.size()));
   }
 }
 

@@ -76,9 +76,8 @@ void set_bonds(const SurfaceInteractions& forces, Surfaces& s) {
     forces.contacts().find(cell, s, contacts);
     for (ContactState& state : s.contacts.of_cell[cell]) {
       for (const SurfaceContact& contact : contacts) {
-        const auto& [x, y, z] = contact.shift;
         const int node = contact.node - s.cells[cell].first;
-        if (contact.other == state.other && state.shift == ImageShift{x, y, z})
+        if (contact.other == state.other && state.shift == contact.shift)
           state.value[node] = contact.distance < cutoff - 0.5 ? 0.5 + 0.01 * node : 0;
       }
     }
@@ -98,9 +97,8 @@ TEST_CASE("bonds between surfaces at a fixed distance follow the solution of the
       forces.contacts().find(cell, s, contacts);
       std::set<int> images;
       for (const SurfaceContact& contact : contacts) {
-        const auto& [x, y, z] = contact.shift;
-        images.insert(z);
-        REQUIRE(value_at(s.contacts.of_cell[cell], contact.node - s.cells[cell].first, contact.other, {x, y, z}) ==
+        images.insert(contact.shift.z);
+        REQUIRE(value_at(s.contacts.of_cell[cell], contact.node - s.cells[cell].first, contact.other, contact.shift) ==
                 Approx(bonds_after(steps, contact.distance)).epsilon(1e-11));
       }
       REQUIRE(contacts.size() > 40);
@@ -124,10 +122,9 @@ TEST_CASE("bonds of surfaces stay with a node while the other one slides past, a
   forces.contacts().find(0, s, contacts);
   int kept = 0;
   for (const SurfaceContact& contact : contacts) {
-    const auto& [x, y, z] = contact.shift;
-    const double was = value_at(before, contact.node, contact.other, {x, y, z});
+    const double was = value_at(before, contact.node, contact.other, contact.shift);
     if (was <= 0 || contact.distance > cutoff - 1) continue;
-    CHECK(value_at(s.contacts.of_cell[0], contact.node, contact.other, {x, y, z}) == was);
+    CHECK(value_at(s.contacts.of_cell[0], contact.node, contact.other, contact.shift) == was);
     ++kept;
   }
   CHECK(kept > 10);

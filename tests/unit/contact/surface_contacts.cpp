@@ -125,7 +125,7 @@ TEST_CASE("contacts of surfaces are the closest of all triangles, while cells mo
                 REQUIRE(next < list.size());
                 REQUIRE(list[next].node == node);
                 REQUIRE(list[next].other == other);
-                REQUIRE(list[next].shift == shift);
+                REQUIRE(list[next].shift == ImageShift{x, 0, z});
                 REQUIRE(list[next].distance == Approx(distance).epsilon(1e-12));
                 ++next, ++found;
               }
