@@ -280,7 +280,11 @@ std::string difference(const std::string& a, const std::string& b) {
 }
 
 Finding surroundings(const Subject& subject) {
-  const std::string here = outputs_of_process(subject, 0), there = outputs_of_process(subject, world::all);
+  const std::string here = outputs_of_process(subject, 0);
+  std::string there = outputs_of_process(subject, world::all);
+  // Where a library lies is drawn at random: one draw may agree with the fixed place in the bits that a plugin uses.
+  constexpr int draws = 3;
+  for (int k = 0; k < draws && here == there; ++k) there = outputs_of_process(subject, world::addresses);
   for (const std::string& text : {here, there}) {
     if (const auto finding = nlohmann::json::parse(text, nullptr, false); finding.is_object())
       return finding_from(finding);
@@ -289,7 +293,7 @@ Finding surroundings(const Subject& subject) {
                              "; what it gives must not depend on it");
     }
   }
-  if (here == there) return Finding::passed("the same bits in two processes with other surroundings");
+  if (here == there) return Finding::passed("the same bits in processes with other surroundings");
   std::vector<std::string> reasons;
   for (const auto& [other, name] :
        {std::pair{world::memory, "what was in new memory or on the stack before"},
