@@ -204,7 +204,7 @@ std::optional<Failure> check_state(observe::Observer& observer, core::Solver<T, 
     if constexpr (Set::dimension == 3) found.place_z = units::coordinate(node[2], units.length);
     return found;
   }
-  if (cells.cells.empty()) return std::nullopt;
+  if (cells.cells.empty() || !solver.ranks().first()) return std::nullopt;
   return check_cells(observer, setting, cells, scene);
 }
 

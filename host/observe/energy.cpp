@@ -16,6 +16,12 @@ double given_away(const core::CellNodes& m) {
   return power;
 }
 
+/// Of all membranes, on the first rank, which alone knows all.
+template <class Solver>
+core::MembraneEnergy membrane_energy(Solver& solver) {
+  return solver.ranks().first() ? solver.cell_tasks()->forces().energies(solver.cells()) : core::MembraneEnergy{};
+}
+
 std::string without_energy(const char* kind, const std::string& model) {
   return std::string(kind) + " " + model + " gives no energy";
 }
@@ -28,7 +34,7 @@ CellEnergy cell_energy(core::Solver<T, Set>& solver) {
   auto* tasks = solver.cell_tasks();
   if (tasks == nullptr) return energy;
   const auto add = [&](double part) { energy.sum += part, energy.magnitude += std::abs(part); };
-  const core::MembraneEnergy membrane = tasks->forces().energies(solver.cells());
+  const core::MembraneEnergy membrane = membrane_energy(solver);
   add(membrane.tension + membrane.cell);
   add(membrane.bending);
   if (!membrane.unknown.empty()) energy.unknown = without_energy("membrane law", membrane.unknown);
@@ -73,7 +79,7 @@ EnergySnapshot observe_energy(core::Solver<T, Set>& solver, const units::Lattice
     energy.body_force_power = power * watt;
   }
   if (auto* tasks = solver.cell_tasks()) {
-    const core::MembraneEnergy membrane = tasks->forces().energies(solver.cells());
+    const core::MembraneEnergy membrane = membrane_energy(solver);
     energy.elastic = (membrane.tension + membrane.cell) * joule;
     energy.bending = membrane.bending * joule;
     energy.membrane_dissipation = membrane.dissipation * watt;

@@ -11,6 +11,8 @@
 
 namespace rouleau::observe {
 
+// All ranks call these together; what is about cells is the first rank's alone.
+
 /// Energy of membranes and interactions, lattice units. The forces of the present positions have been computed.
 struct CellEnergy {
   double sum = 0, magnitude = 0;  ///< of elastic, bending and interaction energy: their sum, that of their magnitudes

@@ -312,7 +312,7 @@ Snapshot Observer::observe(core::Solver<T, Set>& solver, const plan::StageSettin
     snapshot.pressure_gradient =
         units.to_si(fluid.setting().body_force[0], units::dimension::force_density) - scene_->fluid.body_force.x();
   }
-  if (!cells.cells.empty()) {
+  if (!cells.cells.empty() && solver.ranks().first()) {
     if constexpr (Set::dimension == 2) {
       if (!scene_->domain.periodic_y) {
         const auto layer = cell_free_layer(cells, domain_);

@@ -29,7 +29,8 @@ class Observer {
   /// Mass is compared within a stage: a new density factor rescales the populations.
   void start_stage();
 
-  /// State before the next step of `solver`, whose forces must have been computed. `with_fields`: fields are due.
+  /// State before the next step of `solver`, whose forces must have been computed. `with_fields`: fields are due. All
+  /// ranks together; what is about cells, and the fields, on the first alone.
   template <class T, class Set>
   Snapshot observe(core::Solver<T, Set>& solver, const plan::StageSetting& setting,
                    const typename core::Solver<T, Set>::Cells& cells, bool with_fields);

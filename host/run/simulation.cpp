@@ -41,8 +41,9 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 /// How many steps ranks take from one time that they ask each other whether somebody wants them to attend to the next.
 constexpr long steps_between_questions = 16;
 
-/// The stages of a run one after another, and the steps of each: what one rank does of it. All ranks know the same of
-/// the whole and decide the same; what one of them alone sees, its clock and its signals, they tell each other first.
+/// The stages of a run one after another, and the steps of each: what one rank does of it. All ranks decide the same. What
+/// one of them alone sees, its clock and its signals, they tell each other first; the first one alone sees all cells, and
+/// tells the others what follows from that.
 /// T: of the populations; Set: D2Q9 or D3Q19.
 template <class T, class Set>
 class Simulation {
@@ -60,7 +61,8 @@ class Simulation {
         owner_(owner),
         cells_(plan.has_cells ? plan::make_cells<dimension>(scene_) : Cells{}),
         state_(observe::Observer(scene_, cells_)),
-        course_(plan, state_, cells_),
+        course_(plan, state_, cells_,
+                [this](double found) { return core::of_first(ranks_, std::vector<double>{found}).front(); }),
         progress_(options.quiet || directory == nullptr),
         checkpoints_(scene_, directory),
         summary_(describe(plan, report, options.threads)) {
@@ -114,7 +116,11 @@ class Simulation {
     return std::move(restored->solver);
   }
 
-  /// All ranks know what owners of cells know; before the state is observed.
+  /// The first rank knows what owners of cells know; before the state is observed or written.
+  void gather_state() {
+    if (solver_->cell_tasks() != nullptr) solver_->cell_tasks()->gather_state();
+  }
+  /// All ranks do; before cells get other owners.
   void share_state() {
     if (solver_->cell_tasks() != nullptr) solver_->cell_tasks()->share_state();
   }
@@ -152,6 +158,7 @@ class Simulation {
   void run_stages(std::optional<core::SolverState<T>> former) {
     for (; state_.stage < static_cast<int>(plan_.stages.size()) && !stopped_; ++state_.stage) {
       const auto start = Clock::now();
+      if (solver_) share_state();
       auto next = make_solver(owner_);
       if (former) {
         next->start(*std::exchange(former, std::nullopt));
@@ -179,6 +186,7 @@ class Simulation {
       state_.costs.add(pass, 0, 0);  // ranks do not change their order
     const plan::OutputSchedule cells(scene_.output.cells, setting, true), fields(scene_.output.fields, setting, false);
     next_attention_ = state_.stage_step;
+    growth_level_ = state_.growth.level();
     clock_ = Clock::now();
     begin_balance();
     cut_at_ = never;
@@ -355,8 +363,7 @@ class Simulation {
   /// Whether the last step must not be followed by another, or was faster than any before; all workers come to the same
   /// answer.
   [[nodiscard]] bool wants_a_look() const {
-    return !(core::largest_step(cells_) <= std::min(scene_.checks.node_step, state_.growth.level())) ||
-           solver_->escaped();
+    return !(core::largest_step(cells_) <= std::min(scene_.checks.node_step, growth_level_)) || solver_->escaped();
   }
 
   /// One thread, before the forces of a step: whether the stage ends here, and the checkpoint.
@@ -374,7 +381,7 @@ class Simulation {
     if (core::any(ranks_, checkpoints_.due()) || (checkpoints_.wanted() && ends)) {
       take_time();
       const auto start = Clock::now();
-      share_state();
+      gather_state();
       checkpoints_.write(plan_, options_.threads, state_, cells_, *solver_);
       state_.costs.add("checkpoint", seconds_since(start), 1);
     }
@@ -385,12 +392,9 @@ class Simulation {
     const auto start = Clock::now();
     const plan::StageSetting& setting = this->setting();
     course_.count_to(step);
-    share_state();
-    if (auto failure = monitor::check_nodes(cells_, scene_.checks.node_step, solver_->escaped_node(), setting)) {
-      fail(std::move(*failure));
-      return;
-    }
-    if (core::largest_step(cells_) > state_.growth.level()) state_.growth.note(state_.steps, cells_);
+    gather_state();
+    if (fails(check_nodes())) return;
+    if (ranks_.first() && core::largest_step(cells_) > state_.growth.level()) state_.growth.note(state_.steps, cells_);
     if (checkpoints_.pending()) {
       observe::Observer look = state_.observer;  // one that leaves no trace
       checkpoints_.settle(!monitor::check_state(look, *solver_, setting, cells_, scene_));
@@ -402,26 +406,21 @@ class Simulation {
     const bool check_due = step % scene_.checks.every_steps == 0;
     const bool last = due_ending_ != Ending::none;
     if (cells_due || fields_due || check_due || last) {
-      if (auto failure = monitor::check_state(state_.observer, *solver_, setting, cells_, scene_)) {
-        fail(std::move(*failure));
-        return;
-      }
+      if (fails(monitor::check_state(state_.observer, *solver_, setting, cells_, scene_))) return;
       if (check_due) {
-        state_.growth.check(state_.steps, cells_);
+        if (ranks_.first()) state_.growth.check(state_.steps, cells_);
         look_at_balance(step);
       }
-      if (cells_due || fields_due || last) {
-        const bool with_fields = fields_due || (last && !scene_.output.fields.never());
-        if (auto failure = write(with_fields)) {
-          fail(std::move(*failure));
-          return;
-        }
+      if ((cells_due || fields_due || last) && fails(write(fields_due || (last && !scene_.output.fields.never()))))
+        return;
+      if (ranks_.first()) {
+        state_.momentum_residual =
+            std::max(state_.momentum_residual, observe::Observer::momentum_residual(cells_, force_from_walls()));
+        progress_.update(progress(setting));
       }
-      state_.momentum_residual =
-          std::max(state_.momentum_residual, observe::Observer::momentum_residual(cells_, force_from_walls()));
-      progress_.update(progress(setting));
       state_.costs.add("observe and check", seconds_since(start), 1);
     }
+    growth_level_ = core::of_first(ranks_, std::vector<double>{state_.growth.level()}).front();
     ending_ = due_ending_;
     course_.look(*solver_);
     const long check = (step / scene_.checks.every_steps + 1) * scene_.checks.every_steps;
@@ -431,6 +430,7 @@ class Simulation {
 
   /// What ends the stage before the forces of this step.
   [[nodiscard]] Ending next_ending() {
+    if (course_.compares_positions()) gather_state();
     const Ending by_scene = course_.end();
     if (core::any(ranks_, interrupted())) return Ending::interrupted;
     if (by_scene != Ending::none) return by_scene;
@@ -438,12 +438,20 @@ class Simulation {
     return Ending::none;
   }
 
-  void fail(monitor::Failure failure) {
-    course_.date(failure);
-    tell_mode(failure);
-    log("diverged", {{"reason", failure.reason}, {"step", failure.step}, {"message", failure.message}});
-    failure_ = std::move(failure);
+  [[nodiscard]] std::optional<monitor::Failure> check_nodes() const {
+    if (!ranks_.first()) return std::nullopt;
+    return monitor::check_nodes(cells_, scene_.checks.node_step, solver_->escaped_node(), setting());
+  }
+
+  /// Whether the first rank has found a failure, with which the run ends on all of them; the others do not know which.
+  [[nodiscard]] bool fails(std::optional<monitor::Failure> found) {
+    if (!core::any(ranks_, found.has_value())) return false;
+    failure_ = std::move(found).value_or(monitor::Failure{});
+    course_.date(*failure_);
+    tell_mode(*failure_);
+    log("diverged", {{"reason", failure_->reason}, {"step", failure_->step}, {"message", failure_->message}});
     ending_ = Ending::failed;
+    return true;
   }
 
   /// How much of the fluid's motion about a place is every other node's.
@@ -474,6 +482,7 @@ class Simulation {
     const std::array<double, 2> place{units::place_on_lattice(failure.place[0], spacing),
                                       units::place_on_lattice(failure.place[1], spacing)};
     const double oscillation = lattice_oscillation(place, failure.place_z);
+    if (!ranks_.first()) return;
     if constexpr (dimension == 2) {
       monitor::find_mode(failure, cells_, state_.growth, state_.observer.domain(), place, oscillation, failure.step);
     } else {
@@ -488,6 +497,7 @@ class Simulation {
   /// Writes the present state, unless it has gained energy that nothing gave it: that failure is returned.
   std::optional<monitor::Failure> write(bool with_fields) {
     observe::Snapshot snapshot = state_.observer.observe(*solver_, setting(), cells_, with_fields);
+    if (!ranks_.first()) return std::nullopt;
     course_.date(snapshot);
     const units::LatticeUnits& units = setting().units;
     state_.energy.follow(snapshot, setting().is_driven(),
@@ -556,6 +566,7 @@ class Simulation {
   static constexpr long never = std::numeric_limits<long>::max();
   long next_attention_ = 0;             ///< step of the stage before which nothing is due
   std::atomic<long> attend_at_{never};  ///< step that somebody has asked for
+  double growth_level_ = 0;             ///< largest step of a node beyond which the first rank wants a look
   long cut_at_ = never;                 ///< before whose forces ranks get other blocks
   bool cut_due_ = false;                ///< the step loop has stopped for that
   Ending due_ending_ = Ending::none, ending_ = Ending::none;

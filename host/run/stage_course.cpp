@@ -18,9 +18,15 @@ void StageCourse::begin() {
   state_.equilibrium.start();
 }
 
+bool StageCourse::compares_positions() const {
+  return setting().stage->until_at_rest && state_.stage_step >= state_.rest_watch.end(rest_window());
+}
+
 Ending StageCourse::ending() const {
   const scene::Stage& stage = *setting().stage;
-  if (stage.until_at_rest && at_rest()) return Ending::at_rest;
+  if (compares_positions() &&
+      agree_(state_.rest_watch.moved(membranes_)) < plan_.scene->at_rest.displacement / setting().units.length)
+    return Ending::at_rest;
   if (stage.until_equilibrium && state_.equilibrium.reached()) return Ending::equilibrium;
   if (state_.stage_step < setting().max_steps) return Ending::none;
   const bool by_strain =
@@ -31,8 +37,7 @@ Ending StageCourse::ending() const {
 Ending StageCourse::end() {
   const Ending found = ending();
   // The window by which a stage has ended stays: a checkpoint of this step ends it again.
-  const bool window_over = found == Ending::none && state_.stage_step >= state_.rest_watch.end(rest_window());
-  if (setting().stage->until_at_rest && window_over) state_.rest_watch.start(state_.stage_step, membranes_);
+  if (found == Ending::none && compares_positions()) state_.rest_watch.start(state_.stage_step, membranes_);
   return found;
 }
 
@@ -46,7 +51,7 @@ void StageCourse::look(core::Solver<T, Set>& solver) {
                 "there is no energy to watch, since " + energy.unknown,
                 {"end the stage by \"at_rest\" or by duration"});
   }
-  state_.equilibrium.note(state_.stage_step, energy.sum, energy.magnitude + solver.slight_energy(),
+  state_.equilibrium.note(state_.stage_step, agree_(energy.sum), agree_(energy.magnitude) + solver.slight_energy(),
                           plan_.scene->equilibrium.rate * setting.units.time);
 }
 
@@ -64,11 +69,6 @@ long StageCourse::next() const {
     next = std::min(next, reached ? state_.stage_step + 1 : state_.equilibrium.next(energy_window()));
   }
   return next;
-}
-
-bool StageCourse::at_rest() const {
-  return state_.stage_step >= state_.rest_watch.end(rest_window()) &&
-         state_.rest_watch.moved(membranes_) < plan_.scene->at_rest.displacement / setting().units.length;
 }
 
 long StageCourse::steps_of(double seconds) const { return std::max(1L, std::lround(setting().steps_of(seconds))); }

@@ -1,6 +1,8 @@
 // The course of a stage, step by step: what has been taken of it, and when its scene ends it.
 #pragma once
 
+#include <functional>
+
 #include "core/solver/solver.hpp"
 #include "plan/plan.hpp"
 #include "run_state.hpp"
@@ -11,9 +13,14 @@ namespace rouleau::run {
 /// step that next() has asked for, and look() once they are known; ending() may be asked for at any time.
 class StageCourse {
  public:
+  /// What whoever knows all cells has found, for those who do not.
+  using Agree = std::function<double(double found)>;
+
   /// All three must outlive it.
-  StageCourse(const plan::Plan& plan, RunState& state, const core::CellNodes& membranes)
-      : plan_(plan), state_(state), membranes_(membranes) {}
+  StageCourse(
+      const plan::Plan& plan, RunState& state, const core::CellNodes& membranes,
+      Agree agree = [](double found) { return found; })
+      : plan_(plan), state_(state), membranes_(membranes), agree_(std::move(agree)) {}
 
   [[nodiscard]] const plan::StageSetting& setting() const { return plan_.stages[state_.stage]; }
   [[nodiscard]] bool is_last() const { return state_.stage + 1 == static_cast<int>(plan_.stages.size()); }
@@ -25,6 +32,8 @@ class StageCourse {
     state_.stage_step = step;
     state_.steps = state_.steps_before + step;
   }
+  /// Whether ending() and end() compare where all cells are with where they were.
+  [[nodiscard]] bool compares_positions() const;
   /// What ends the stage here: at_rest, equilibrium, strain, duration or none.
   [[nodiscard]] Ending ending() const;
   /// The same, before the forces of a step: where a window of rest is over the next one begins.
@@ -45,7 +54,6 @@ class StageCourse {
   }
 
  private:
-  [[nodiscard]] bool at_rest() const;
   [[nodiscard]] long steps_of(double seconds) const;
   [[nodiscard]] long rest_window() const { return steps_of(plan_.scene->at_rest.window); }
   [[nodiscard]] long energy_window() const { return steps_of(plan_.scene->equilibrium.window); }
@@ -53,6 +61,7 @@ class StageCourse {
   const plan::Plan& plan_;
   RunState& state_;
   const core::CellNodes& membranes_;
+  Agree agree_;
 };
 
 }  // namespace rouleau::run

@@ -156,6 +156,22 @@ class Same_bytes(Case):
         (self.path / "fluid.json").write_text(json.dumps(scene))
         self.assert_same([str(self.path / "fluid.json")], [(4, 1)])
 
+    def test_of_cells_that_come_to_rest_where_not_every_rank_knows_them(self):
+        scene = {"rouleau": 1, "domain": {"size": ["80 um", "16 um"], "nodes": [160, 32], "y": {
+            "lower": {"wall": {}}, "upper": {"wall": {}}}}, "fluid": {"density": "1 g/cm3", "viscosity": "1.2 cP"},
+            "numerics": {"density_factor": 3000},
+            "cell_types": {"rbc": {"shape": {"biconcave": {"radius": "3.91 um"}}, "segments": 60, "membrane": [
+                {"model": "neo-hookean", "parameters": {"shear_modulus": "6e-3 dyn/cm"}},
+                {"model": "bending", "parameters": {"modulus": "3.6e-12 dyn cm", "rest_curvature": "zero"}}]}},
+            "cells": [{"type": "rbc", "at": ["10 um", "8 um"]}, {"type": "rbc", "at": ["50 um", "8 um"], "angle": "90 deg"}],
+            "stages": [{"name": "rest", "duration": "0.5 s", "until": "at_rest"},
+                       {"name": "shear", "shear_rate": "20 1/s", "strain": 0.2}],
+            "at_rest": {"window": "0.02 s", "displacement": "20 nm"},
+            "output": {"cells": {"seconds": "0.05 s"}, "checkpoint": {"seconds": 600}}}
+        (self.path / "rest.json").write_text(json.dumps(scene))
+        self.assert_same([str(self.path / "rest.json")], [(4, 1), (2, 2)])
+        summary = json.loads((self.path / "4-1" / "summary.json").read_text())
+        self.assertEqual(summary["stages"][0]["ended_by"], "at_rest")
 
     def test_of_numerics_that_are_chosen_of_error_bars_and_of_the_finer_run_that_follows(self):
         scene = json.loads((SOURCE / "tests" / "physics" / "scenes" / "auto-capsule.json").read_text())
@@ -276,11 +292,16 @@ class One_voice(Case):
         self.assertEqual(json.loads((self.path / "run" / "summary.json").read_text())["instruction_set"], "baseline")
 
     def test_a_run_that_diverges_ends_all_with_1_and_one_report(self):
-        words = [*KINETICS_RUN, "--set", "/checks/mach=1e-9", "--out", self.path / "run", "--quiet"]
-        result = call(ranks(3, "run", *words))
-        self.assertEqual(result.returncode, 1, result.stderr)
-        self.assertEqual(result.stderr.count("limit 1e-09"), 1, result.stderr)
-        self.assertEqual(json.loads((self.path / "run" / "summary.json").read_text())["status"], "diverged")
+        # Of the fluid, which all ranks see; of areas and of nodes, which the first one alone does.
+        for check in ("mach", "area_drift", "node_step"):
+            alone, together = self.path / f"{check}-alone", self.path / check
+            words = [*KINETICS_RUN, "--set", f"/checks/{check}=1e-9", "--quiet", "--out"]
+            result = call(ranks(3, "run", *words, together))
+            self.assertEqual(result.returncode, 1, result.stderr)
+            self.assertEqual(result.stderr.count("limit 1e-09"), 1, result.stderr)
+            self.assertEqual(call([str(PROGRAM), "run", *words, str(alone)]).returncode, 1)
+            ends = [json.loads((run / "summary.json").read_text()) for run in (alone, together)]
+            self.assertEqual(*([end[key] for key in ("status", "steps", "failure")] for end in ends))
 
     @unittest.skipUnless(FAULTY.exists(), "faulty plugins are built optimised")
     def test_a_plugin_that_ends_the_program_on_all_ranks_is_named_once(self):

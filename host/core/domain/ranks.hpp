@@ -80,7 +80,21 @@ bool any(const Ranks<D>& ranks, bool mine) {
   return largest(ranks, std::array{mine ? 1.0 : 0.0}).front() > 0;
 }
 
-/// Each sum over what all ranks have: up a binary tree of ranks to the first, and down again.
+/// The values of the first rank, on all: down a binary tree of ranks.
+template <class V, int D>
+std::vector<V> of_first(const Ranks<D>& ranks, std::vector<V> mine) {
+  if (!ranks.several()) return mine;
+  const int own = ranks.transport->rank(), all = ranks.blocks->ranks();
+  int step = 1;
+  while (step < all && own % (2 * step) == 0) step *= 2;
+  if (own != 0) mine = values_of<V>(ranks.transport->receive(own - step));
+  for (step /= 2; step > 0; step /= 2) {
+    if (own + step < all) ranks.transport->send(own + step, message_of(std::span<const V>(mine)));
+  }
+  return mine;
+}
+
+/// Each sum over what all ranks have: up the tree to the first, and down again.
 template <int D>
 void add_up(const Ranks<D>& ranks, std::vector<ExactSum>& sums) {
   if (!ranks.several()) return;
@@ -91,20 +105,14 @@ void add_up(const Ranks<D>& ranks, std::vector<ExactSum>& sums) {
     const std::vector<ExactSum> parts = values_of<ExactSum>(ranks.transport->receive(own + step));
     for (std::size_t k = 0; k < sums.size(); ++k) sums[k].add(parts[k]);
   }
-  if (own != 0) {
-    ranks.transport->send(own - step, message_of(std::span<const ExactSum>(sums)));
-    sums = values_of<ExactSum>(ranks.transport->receive(own - step));
-  }
-  for (step /= 2; step > 0; step /= 2) {
-    if (own + step < all) ranks.transport->send(own + step, message_of(std::span<const ExactSum>(sums)));
-  }
+  if (own != 0) ranks.transport->send(own - step, message_of(std::span<const ExactSum>(sums)));
+  sums = of_first(ranks, std::move(sums));
 }
 
 /// The text of the first rank, on all.
 template <int D>
 std::string text_of_first(const Ranks<D>& ranks, const std::string& text) {
-  if (!ranks.several()) return text;
-  const std::vector<char> first = all_of(ranks, std::vector<char>(text.begin(), text.end())).front();
+  const std::vector<char> first = of_first(ranks, std::vector<char>(text.begin(), text.end()));
   return {first.begin(), first.end()};
 }
 

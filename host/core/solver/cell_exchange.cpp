@@ -386,26 +386,44 @@ void CellExchange<D>::transfer_cell(Cells& cells, DisplacementWatch& watch, int 
 }
 
 template <int D>
+Message CellExchange<D>::pack_own(Cells& cells, DisplacementWatch& watch) const {
+  Packer message;
+  for (int c = 0; c < cells.cell_count(); ++c) {
+    if (ghosts_.owns(c)) transfer_cell(cells, watch, c, std::ref(message));
+  }
+  return message.take();
+}
+
+template <int D>
+void CellExchange<D>::receive_all_of(int rank, Cells& cells, DisplacementWatch& watch) const {
+  Unpacker message(ranks_.transport->receive(rank));
+  for (int c = 0; c < cells.cell_count(); ++c) {
+    if (ghosts_.owner(c) == rank) transfer_cell(cells, watch, c, std::ref(message));
+  }
+}
+
+template <int D>
 void CellExchange<D>::share_state(Cells& cells, DisplacementWatch& watch) {
   receive_positions(cells, watch);
-  const auto transfer = [&](int rank, auto& message) {
-    for (int c = 0; c < cells.cell_count(); ++c) {
-      if (ghosts_.owner(c) != rank) continue;
-      transfer_cell(cells, watch, c, std::ref(message));
-    }
-  };
+  const Message mine = pack_own(cells, watch);
   const int own = ranks_.transport->rank(), all = ranks_.blocks->ranks();
-  Packer packer;
-  transfer(own, packer);
-  const Message mine = packer.take();
   for (int to = 0; to < all; ++to) {
     if (to != own) ranks_.transport->send(to, mine);
   }
   for (int from = 0; from < all; ++from) {
-    if (from == own) continue;
-    Unpacker message(ranks_.transport->receive(from));
-    transfer(from, message);
+    if (from != own) receive_all_of(from, cells, watch);
   }
+  for (CellPart& part : cells.part) part.known = true;
+}
+
+template <int D>
+void CellExchange<D>::gather_state(Cells& cells, DisplacementWatch& watch) {
+  receive_positions(cells, watch);
+  if (!ranks_.first()) {
+    ranks_.transport->send(0, pack_own(cells, watch));
+    return;
+  }
+  for (int from = 1; from < ranks_.blocks->ranks(); ++from) receive_all_of(from, cells, watch);
   for (CellPart& part : cells.part) part.known = true;
 }
 

@@ -52,6 +52,8 @@ class CellExchange {
   /// All of all cells, to all ranks: positions, velocities, forces, what laws and potentials remember, leaked areas, and
   /// the watch's memory. Until the next send_positions every rank knows every cell.
   void share_state(Cells& cells, DisplacementWatch& watch);
+  /// The same, to the first rank alone.
+  void gather_state(Cells& cells, DisplacementWatch& watch);
 
  private:
   class Packer;
@@ -96,6 +98,9 @@ class CellExchange {
   /// All that there is.
   template <class Transfer>
   static void transfer_cell(Cells& cells, DisplacementWatch& watch, int cell, Transfer transfer);
+  /// Of all cells that a rank owns.
+  [[nodiscard]] Message pack_own(Cells& cells, DisplacementWatch& watch) const;
+  void receive_all_of(int rank, Cells& cells, DisplacementWatch& watch) const;
   void hand_over(Cells& cells, DisplacementWatch& viscosity, const std::vector<BoundingBox<D>>& boxes);
 
   Ranks<D> ranks_;

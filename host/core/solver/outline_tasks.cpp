@@ -155,6 +155,13 @@ CellExchange<2>::Parts OutlineTasks<T>::parts() {
 }
 
 template <class T>
+void OutlineTasks<T>::gather_state() {
+  if (!exchange_) return;
+  exchange_->gather_state(membranes_, viscosity_field_.watch());
+  if (ranks_.first()) locate(Worker{}, Whose::others);  // of all, now
+}
+
+template <class T>
 void OutlineTasks<T>::share_state() {
   if (!exchange_) return;
   exchange_->share_state(membranes_, viscosity_field_.watch());

@@ -134,6 +134,13 @@ CellExchange<3>::Parts SurfaceTasks<T>::parts() {
 }
 
 template <class T>
+void SurfaceTasks<T>::gather_state() {
+  if (!exchange_) return;
+  exchange_->gather_state(surfaces_, viscosity_field_.watch());
+  if (ranks_.first()) coupling_.locate(Worker{}, surfaces_, Whose::others);  // of all, now
+}
+
+template <class T>
 void SurfaceTasks<T>::share_state() {
   if (!exchange_) return;
   exchange_->share_state(surfaces_, viscosity_field_.watch());

@@ -51,7 +51,9 @@ class SurfaceTasks {
   void end_messages() {
     if (exchange_) exchange_->receive_positions(surfaces_, viscosity_field_.watch());
   }
-  /// One worker, between steps or where the state may be observed: tells all ranks what only the owners of cells know.
+  /// One worker, between steps or where the state may be observed: tells the first rank what only the owners of cells know.
+  void gather_state();
+  /// The same, to all ranks.
   void share_state();
   /// Mean velocity of all ranks' nodes, which must ask together.
   [[nodiscard]] std::array<double, 3> mean_velocity() const { return core::mean_velocity(surfaces_, ranks_); }
