@@ -2,6 +2,9 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <vector>
 
 namespace rouleau {
 
@@ -24,6 +27,23 @@ struct Worker {
   }
   [[nodiscard]] bool first() const { return index == 0; }
   [[nodiscard]] bool last() const { return index == count - 1; }
+};
+
+/// Working memory of each worker, made when it is first asked for. However many workers there are, no two have the same
+/// first item.
+template <class T>
+class WorkerScratch {
+ public:
+  explicit WorkerScratch(std::size_t items) : made_(items) {}
+  /// That of the worker whose share of the items begins here.
+  [[nodiscard]] T& of(int first) {
+    std::unique_ptr<T>& own = made_[static_cast<std::size_t>(first)];
+    if (!own) own = std::make_unique<T>();
+    return *own;
+  }
+
+ private:
+  std::vector<std::unique_ptr<T>> made_;
 };
 
 }  // namespace rouleau

@@ -281,6 +281,7 @@ class Explainer {
           pointer, true,
           in_quotes(key) + " cannot stand here together with the other keys\nallowed beside them: " + listed(allowed)};
     }
+    if (ask_ == Ask::whether) return {pointer, true, {}};  // looking for it elsewhere takes time
     const auto here = did_you_mean(key, allowed);
     return {pointer, true,
             "unknown key " + in_quotes(key) + (here.empty() ? known_elsewhere(key) : here) +

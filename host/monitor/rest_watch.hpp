@@ -15,10 +15,10 @@ namespace rouleau::monitor {
 /// Compares positions with those at the start of the window; windows follow one another.
 class RestWatch {
  public:
-  /// A window begins.
-  void start(long step, const core::CellNodes& cells) {
+  /// A window begins. `cells`: null for who will not ask how far they have moved.
+  void start(long step, const core::CellNodes* cells) {
     step_ = step;
-    old_ = {cells.x, cells.y, cells.z};
+    if (cells != nullptr) old_ = {cells->x, cells->y, cells->z};
   }
   /// First step at which a window of so many steps has ended.
   [[nodiscard]] long end(long window) const { return step_ + window; }

@@ -67,6 +67,7 @@ void for_each_contact(const Snapshot& output, const std::function<void(const Row
   for (const CellSnapshot& cell : output.cells) {
     AggregateMembers& aggregate = aggregates.try_emplace(cell.aggregate).first->second;
     aggregate.label = cell.aggregate;
+    ++aggregate.count;
     aggregate.members += (aggregate.members.empty() ? "" : "+") + std::to_string(cell.cell);
     aggregate.through_image = aggregate.through_image || cell.through_image;
     label_of[cell.cell] = cell.aggregate;
@@ -216,6 +217,15 @@ Table cells_table() {
       for_each_cell};
 }
 
+/// In every row of many contacts the file would grow with the square of the number of cells.
+Value members_of_aggregate(const Row& row) {
+  constexpr int few = 16;
+  const AggregateMembers& aggregate = *row.aggregate;
+  const bool first = row.contact == nullptr || row.contact == aggregate.contacts.front();
+  if (aggregate.count > few && !first) return std::string();
+  return aggregate.members;
+}
+
 Table aggregates_table() {
   return {
       "aggregates",
@@ -230,8 +240,8 @@ Table aggregates_table() {
            .value = aggregate<&AggregateMembers::label>},
           {.name = "members",
            .unit = "",
-           .doc = "its cells, joined by `+`",
-           .value = aggregate<&AggregateMembers::members>},
+           .doc = "its cells, joined by `+`; of an aggregate of more than 16 cells they stand in its first row alone",
+           .value = members_of_aggregate},
           {.name = "through_image",
            .unit = "",
            .doc = "1 where it is held together through the periodic border",

@@ -18,7 +18,8 @@ namespace rouleau::observe {
 /// Cells that hang together, and where that is so.
 struct AggregateMembers {
   int label;            ///< smallest of its cells
-  std::string members;  ///< joined by "+"
+  int count = 0;        ///< of its cells
+  std::string members;  ///< these, joined by "+"
   bool through_image = false;
   std::vector<const ContactSnapshot*> contacts;
 };

@@ -1,7 +1,10 @@
 #include "rotation.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
+#include <tuple>
 
 namespace rouleau::observe {
 
@@ -48,8 +51,40 @@ Unwrapping unwrap(const std::vector<CellContact>& contacts, const Aggregates& ag
   return result;
 }
 
+/// Indices of points among which the two are that lie farthest apart, in their order: the corners of the convex hull, by
+/// its lower and its upper chain (Andrew 1979), and all of few.
+std::vector<std::size_t> outermost(const std::vector<Eigen::Vector2d>& points) {
+  constexpr std::size_t few = 32;
+  std::vector<std::size_t> order(points.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  if (points.size() <= few) return order;
+  std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) {
+    return std::tuple(points[i].x(), points[i].y(), i) < std::tuple(points[j].x(), points[j].y(), j);
+  });
+  std::vector<std::size_t> corners;
+  const auto add_chain = [&](auto begin, auto end) {
+    const std::size_t first = corners.size();
+    for (auto next = begin; next != end; ++next) {
+      const auto turns_back = [&] {
+        const Eigen::Vector2d &a = points[corners.end()[-2]], &b = points[corners.back()];
+        const Eigen::Vector2d along = b - a, on = points[*next] - b;
+        return along.x() * on.y() - along.y() * on.x() <= 0;
+      };
+      while (corners.size() >= first + 2 && turns_back()) corners.pop_back();
+      corners.push_back(*next);
+    }
+  };
+  add_chain(order.begin(), order.end());
+  add_chain(order.rbegin(), order.rend());
+  std::sort(corners.begin(), corners.end());
+  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  return corners;
+}
+
 /// Angle of the line through the two points that lie farthest apart, in (-pi/2, pi/2].
-double angle_of_longest(const std::vector<Eigen::Vector2d>& points) {
+double angle_of_longest(const std::vector<Eigen::Vector2d>& all) {
+  std::vector<Eigen::Vector2d> points;
+  for (const std::size_t i : outermost(all)) points.push_back(all[i]);
   Eigen::Vector2d longest = Eigen::Vector2d::Zero();
   for (std::size_t i = 0; i < points.size(); ++i) {
     for (std::size_t j = i + 1; j < points.size(); ++j) {

@@ -28,6 +28,22 @@ constexpr double ghost = 65e-9;  ///< a node of a ghost: unpacking it, finding w
 constexpr double shown = 23e-9;  ///< a node that is told to another rank
 }  // namespace cost_of_sharing
 
+/// Bytes that a rank takes besides its block: measured (docs/scaling.md).
+namespace memory {
+constexpr double of_process = 30e6;    ///< the program, its libraries and MPI
+constexpr double of_each_cell = 2000;  ///< of the scene: as it was read, where it begins, what lists of it are empty
+/// Of each node of the scene: in two dimensions its state of rest. The first rank is given all of all cells.
+template <int D>
+constexpr double of_each_node(bool first) {
+  return (D == 2 ? 24 : 0) + (first ? (D == 2 ? 95 : 500) : 0);
+}
+/// Of a rank's own nodes and those of its ghosts, of which surfaces keep no lists. Pages hold several outlines.
+template <int D>
+constexpr double of_known(double own, double ghosts) {
+  return D == 2 ? 520 * (own + ghosts) : 1200 * own + 250 * ghosts;
+}
+}  // namespace memory
+
 template <int D>
 using SetOf = std::conditional_t<D == 2, core::D2Q9, core::D3Q19>;
 
@@ -197,14 +213,20 @@ std::vector<RankCost> costs_of(const Plan& plan, const core::Decomposition<D>& b
   std::vector<RankCost> ranks(static_cast<std::size_t>(blocks.ranks()));
   add_halos(plan, blocks, ranks);
   if (plan.has_cells) add_cells(plan, blocks, ranks);
-  const double membranes = membrane_memory(scene), lattice = estimate(plan).memory_bytes - membranes;
+  const double lattice = estimate(plan).memory_bytes - membrane_memory(scene);
   const double word = scene.numerics.precision == scene::Precision::f64 ? 8 : 4, cutoff = largest_cutoff(plan);
   for (int rank = 0; rank < blocks.ranks(); ++rank) {
     const core::Box<D> block = blocks.domain(rank).block;
     RankCost& cost = ranks[rank];
     cost.nodes = static_cast<long>(core::row_count(block)) * block.size(0);
     const double nodes = static_cast<double>(cost.nodes), all = static_cast<double>(blocks.domain(rank).nodes());
-    cost.memory_bytes = lattice * nodes / all + membranes;  // every rank has room for all cells
+    cost.memory_bytes = memory::of_process + lattice * nodes / all;
+    if (plan.has_cells) {
+      cost.memory_bytes +=
+          memory::of_known<D>(static_cast<double>(cost.membrane_nodes), static_cast<double>(cost.ghost_nodes)) +
+          membrane_nodes(scene) * memory::of_each_node<D>(rank == 0) +
+          static_cast<double>(scene.cells.size()) * memory::of_each_cell;
+    }
     cost.sharing_s += cost.lattice_bytes() / word * cost_of_sharing::number;
     cost.step_s = step_cost(nodes, static_cast<double>(cost.membrane_nodes), scene.numerics.precision, D, cutoff);
   }

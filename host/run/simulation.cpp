@@ -61,7 +61,7 @@ class Simulation {
         owner_(owner),
         cells_(plan.has_cells ? plan::make_cells<dimension>(scene_) : Cells{}),
         state_(observe::Observer(scene_, cells_)),
-        course_(plan, state_, cells_,
+        course_(plan, state_, ranks_.first() ? &cells_ : nullptr,
                 [this](double found) { return core::of_first(ranks_, std::vector<double>{found}).front(); }),
         progress_(options.quiet || directory == nullptr),
         checkpoints_(scene_, directory),
@@ -119,6 +119,10 @@ class Simulation {
   /// The first rank knows what owners of cells know; before the state is observed or written.
   void gather_state() {
     if (solver_->cell_tasks() != nullptr) solver_->cell_tasks()->gather_state();
+  }
+  /// And goes on with what it has to know.
+  void leave_to_owners() {
+    if (solver_->cell_tasks() != nullptr) solver_->cell_tasks()->leave_to_owners();
   }
   /// All ranks do; before cells get other owners.
   void share_state() {
@@ -383,16 +387,23 @@ class Simulation {
       const auto start = Clock::now();
       gather_state();
       checkpoints_.write(plan_, options_.threads, state_, cells_, *solver_);
+      leave_to_owners();
       state_.costs.add("checkpoint", seconds_since(start), 1);
     }
   }
 
   /// One thread, forces computed: outputs, checks, and whether the stage ends here.
   void after_forces(long step, const plan::OutputSchedule& cells, const plan::OutputSchedule& fields) {
-    const auto start = Clock::now();
-    const plan::StageSetting& setting = this->setting();
     course_.count_to(step);
     gather_state();
+    look(step, cells, fields);
+    leave_to_owners();
+  }
+
+  /// The same, all cells gathered.
+  void look(long step, const plan::OutputSchedule& cells, const plan::OutputSchedule& fields) {
+    const auto start = Clock::now();
+    const plan::StageSetting& setting = this->setting();
     if (fails(check_nodes())) return;
     if (ranks_.first() && core::largest_step(cells_) > state_.growth.level()) state_.growth.note(state_.steps, cells_);
     if (checkpoints_.pending()) {
@@ -430,8 +441,10 @@ class Simulation {
 
   /// What ends the stage before the forces of this step.
   [[nodiscard]] Ending next_ending() {
-    if (course_.compares_positions()) gather_state();
+    const bool compares = course_.compares_positions();
+    if (compares) gather_state();
     const Ending by_scene = course_.end();
+    if (compares) leave_to_owners();
     if (core::any(ranks_, interrupted())) return Ending::interrupted;
     if (by_scene != Ending::none) return by_scene;
     if (options_.max_steps >= 0 && state_.steps >= options_.max_steps) return Ending::max_steps;

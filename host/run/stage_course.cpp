@@ -14,7 +14,7 @@ void StageCourse::begin() {
   state_.stage_step = 0;
   state_.steps_before = state_.steps;
   state_.stage_wall = 0;
-  state_.rest_watch.start(0, membranes_);
+  state_.rest_watch.start(0, cells_);
   state_.equilibrium.start();
 }
 
@@ -24,8 +24,8 @@ bool StageCourse::compares_positions() const {
 
 Ending StageCourse::ending() const {
   const scene::Stage& stage = *setting().stage;
-  if (compares_positions() &&
-      agree_(state_.rest_watch.moved(membranes_)) < plan_.scene->at_rest.displacement / setting().units.length)
+  if (compares_positions() && agree_(cells_ != nullptr ? state_.rest_watch.moved(*cells_) : 0) <
+                                  plan_.scene->at_rest.displacement / setting().units.length)
     return Ending::at_rest;
   if (stage.until_equilibrium && state_.equilibrium.reached()) return Ending::equilibrium;
   if (state_.stage_step < setting().max_steps) return Ending::none;
@@ -37,7 +37,7 @@ Ending StageCourse::ending() const {
 Ending StageCourse::end() {
   const Ending found = ending();
   // The window by which a stage has ended stays: a checkpoint of this step ends it again.
-  if (found == Ending::none && compares_positions()) state_.rest_watch.start(state_.stage_step, membranes_);
+  if (found == Ending::none && compares_positions()) state_.rest_watch.start(state_.stage_step, cells_);
   return found;
 }
 

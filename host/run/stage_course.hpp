@@ -13,14 +13,14 @@ namespace rouleau::run {
 /// step that next() has asked for, and look() once they are known; ending() may be asked for at any time.
 class StageCourse {
  public:
-  /// What whoever knows all cells has found, for those who do not.
+  /// What the one has found who sees all cells, for everybody.
   using Agree = std::function<double(double found)>;
 
-  /// All three must outlive it.
+  /// `cells`: null for who does not see all of them. All three must outlive it.
   StageCourse(
-      const plan::Plan& plan, RunState& state, const core::CellNodes& membranes,
+      const plan::Plan& plan, RunState& state, const core::CellNodes* cells,
       Agree agree = [](double found) { return found; })
-      : plan_(plan), state_(state), membranes_(membranes), agree_(std::move(agree)) {}
+      : plan_(plan), state_(state), cells_(cells), agree_(std::move(agree)) {}
 
   [[nodiscard]] const plan::StageSetting& setting() const { return plan_.stages[state_.stage]; }
   [[nodiscard]] bool is_last() const { return state_.stage + 1 == static_cast<int>(plan_.stages.size()); }
@@ -60,7 +60,7 @@ class StageCourse {
 
   const plan::Plan& plan_;
   RunState& state_;
-  const core::CellNodes& membranes_;
+  const core::CellNodes* cells_;
   Agree agree_;
 };
 

@@ -43,7 +43,7 @@ class SimulationOf final : public Simulation {
       : Simulation(std::move(read), std::move(catalog)),
         cells_(plan_.has_cells ? plan::make_cells<dimension>(scene()) : plan::Cells<dimension>{}),
         state_(observe::Observer(scene(), cells_)),
-        course_(plan_, state_, cells_) {
+        course_(plan_, state_, &cells_) {
     start_stage(nullptr);
   }
 

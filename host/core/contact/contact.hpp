@@ -40,6 +40,12 @@ class Contacts {
   /// they would leave the cache before they are read.
   void find(int cell, const Membranes& membranes, ContactList& list) const;
 
+  /// Takes no memory for these nodes.
+  void forget(std::span<const Range> nodes) {
+    neighbours_.watch().forget(nodes);
+    segments_.forget(nodes);
+  }
+
   [[nodiscard]] NeighbourList& neighbours() { return neighbours_; }
   [[nodiscard]] const NeighbourList& neighbours() const { return neighbours_; }
 

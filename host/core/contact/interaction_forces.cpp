@@ -62,8 +62,8 @@ void InteractionForces::run(Worker worker, int phase, Membranes& membranes) {
           make_room_for_reactions(cell);
           continue;
         }
-        compute_forces(cell, membranes, scratch_[cells.begin]);
-        act(cell, membranes, scratch_[cells.begin]);
+        compute_forces(cell, membranes, scratch_.of(cells.begin));
+        act(cell, membranes, scratch_.of(cells.begin));
       }
       break;
     default:

@@ -43,6 +43,8 @@ class InteractionForces {
   void run(Worker worker, int phase, Membranes& membranes);
   /// Between steps, with other ranks: whether lists of cells that are near each other are out of date (DisplacementWatch).
   [[nodiscard]] DisplacementWatch& watch() { return contacts_.neighbours().watch(); }
+  /// Takes no memory for these nodes.
+  void forget(std::span<const Range> nodes) { contacts_.forget(nodes); }
   /// Cells do not act on each other from further away, with lists that are as old as they may be.
   [[nodiscard]] double reach() const { return list_reach(contacts_.neighbours().cutoffs()); }
   /// Whether potentials want to know velocities.
@@ -119,7 +121,7 @@ class InteractionForces {
   std::vector<double> cutoffs_;  // of the potentials
   std::vector<Traits> traits_;   // of the potentials
   Contacts contacts_;
-  std::vector<Scratch> scratch_;                     // of the workers, each at the place of its first cell
+  WorkerScratch<Scratch> scratch_;
   std::vector<Reactions> reactions_;                 // of the cells
   std::vector<std::vector<std::size_t>> variables_;  // of the potentials, in ContactMemory::variables
   bool has_state_ = false, needs_velocities_ = false;

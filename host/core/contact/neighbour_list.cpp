@@ -88,6 +88,7 @@ NeighbourList::NeighbourList(const Membranes& membranes, Cutoffs cutoffs, Domain
       domain_(domain),
       watch_(membranes),
       rank_(membranes.cells.size()),
+      workspaces_(membranes.cells.size()),
       lists_(membranes.cells.size()) {
   std::vector<int> order(membranes.cells.size());
   std::iota(order.begin(), order.end(), 0);
@@ -96,11 +97,7 @@ NeighbourList::NeighbourList(const Membranes& membranes, Cutoffs cutoffs, Domain
   for (std::size_t k = 0; k < order.size(); ++k) rank_[order[k]] = static_cast<int>(k);
   int most = 0;
   for (const CellRange& cell : membranes.cells) most = std::max(most, cell.count);
-  const auto stride = static_cast<std::size_t>(most + SegmentTable::margin);
-  for (CandidateList& list : lists_) {
-    list.square.resize(stride * group);
-    list.excess.resize(stride);
-  }
+  stride_ = static_cast<std::size_t>(most + SegmentTable::margin);
 }
 
 void NeighbourList::refresh(Worker worker, const Membranes& membranes, const SegmentTable& segments) {
@@ -111,25 +108,32 @@ void NeighbourList::refresh(Worker worker, const Membranes& membranes, const Seg
   const CellGrid<2> grid(boxes_of(segments.bounds), cutoffs_.largest() + 2 * skin, domain_);
   for (int cell = cells.begin; cell < cells.end; ++cell) {
     CandidateList& list = lists_[cell];
+    if (!membranes.knows(cell)) {
+      list = {};
+      continue;
+    }
+    Workspace& workspace = workspaces_.of(cells.begin);
+    workspace.square.resize(stride_ * group);
+    workspace.excess.resize(stride_);
     list.pairs.clear();
     list.groups.clear();
     list.runs.clear();
     list.touched = 0;
-    list_pairs(membranes, cell, grid, segments, skin);
-    for (Pair& pair : list.pairs) list_candidates(membranes, cell, pair, segments, skin);
+    list_pairs(membranes, cell, grid, segments, skin, workspace.near);
+    for (Pair& pair : list.pairs) list_candidates(membranes, cell, pair, segments, skin, workspace);
     watch_.remember(cell, membranes, skin);
   }
   if (worker.first()) ++renewals_;
 }
 
 void NeighbourList::list_pairs(const Membranes& membranes, int cell, const CellGrid<2>& grid,
-                               const SegmentTable& segments, double skin) {
+                               const SegmentTable& segments, double skin, std::vector<int>& near) {
   CandidateList& list = lists_[cell];
   const int type = membranes.cells[cell].type;
   const Bounds& own = segments.bounds[cell];
-  grid.find(cell, list.near);
-  std::sort(list.near.begin(), list.near.end(), [&](int a, int b) { return rank_[a] < rank_[b]; });
-  for (const int other : list.near) {
+  grid.find(cell, near);
+  std::sort(near.begin(), near.end(), [&](int a, int b) { return rank_[a] < rank_[b]; });
+  for (const int other : near) {
     const double cutoff = cutoffs_(type, membranes.cells[other].type);
     if (!(cutoff > 0)) continue;
     core::for_each_image(own, segments.bounds[other], cutoff + 2 * skin, domain_, [&](ImageShift shift) {
@@ -139,7 +143,7 @@ void NeighbourList::list_pairs(const Membranes& membranes, int cell, const CellG
 }
 
 void NeighbourList::list_candidates(const Membranes& membranes, int cell, Pair& pair, const SegmentTable& segments,
-                                    double skin) {
+                                    double skin, Workspace& workspace) {
   static const auto candidates = Dispatch<Candidates, const CandidateTask*>::pick();
   CandidateList& list = lists_[cell];
   const CellRange& own = membranes.cells[cell];
@@ -158,8 +162,8 @@ void NeighbourList::list_candidates(const Membranes& membranes, int cell, Pair& 
                            group,
                            skin,
                            cutoff,
-                           list.square.data(),
-                           list.excess.data()};
+                           workspace.square.data(),
+                           workspace.excess.data()};
   pair.group_begin = static_cast<int>(list.groups.size());
   const std::size_t first_run = list.runs.size();
   for (int first = own.first; first < own.end(); first += group) {
@@ -176,7 +180,7 @@ void NeighbourList::list_candidates(const Membranes& membranes, int cell, Pair& 
     candidates(&task);
     const auto run_begin = static_cast<int>(list.runs.size());
     for (int k = 0; k < other.count; ++k) {
-      if (!(list.excess[k] <= 0)) continue;
+      if (!(workspace.excess[k] <= 0)) continue;
       // Few long runs cost less than many short ones.
       if (static_cast<int>(list.runs.size()) > run_begin && k - list.runs.back().end < bridged) {
         list.runs.back().end = k + 1;

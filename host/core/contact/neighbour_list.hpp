@@ -70,10 +70,7 @@ class NeighbourList {
     std::vector<Pair> pairs;  ///< ordered by type of the other cell, then by the other cell, then by shift
     std::vector<Group> groups;
     std::vector<SegmentRun> runs;
-    int touched;                 ///< number of nodes of other cells that the pairs touch
-    std::vector<int> near;       ///< while the list is made: cells that may be near
-    std::vector<double> square;  ///< while the list is made: [group][segment] square distances
-    std::vector<double> excess;  ///< while the list is made: how far each segment is from being a candidate
+    int touched = 0;  ///< number of nodes of other cells that the pairs touch
   };
 
   NeighbourList(const Membranes& membranes, Cutoffs cutoffs, Domain<2> domain);
@@ -96,14 +93,23 @@ class NeighbourList {
   [[nodiscard]] long renewals() const { return renewals_; }
 
  private:
+  /// While a list is made.
+  struct Workspace {
+    std::vector<int> near;       ///< cells that may be near
+    std::vector<double> square;  ///< [group][segment] square distances
+    std::vector<double> excess;  ///< how far each segment is from being a candidate
+  };
   void list_pairs(const Membranes& membranes, int cell, const CellGrid<2>& grid, const SegmentTable& segments,
-                  double skin);
-  void list_candidates(const Membranes& membranes, int cell, Pair& pair, const SegmentTable& segments, double skin);
+                  double skin, std::vector<int>& near);
+  void list_candidates(const Membranes& membranes, int cell, Pair& pair, const SegmentTable& segments, double skin,
+                       Workspace& workspace);
 
   Cutoffs cutoffs_;
   Domain<2> domain_;
   DisplacementWatch watch_;
-  std::vector<int> rank_;  // of each cell: its place when they are ordered by type, then by number
+  std::vector<int> rank_;   // of each cell: its place when they are ordered by type, then by number
+  std::size_t stride_ = 0;  // of a workspace: segments of any cell, with a margin
+  WorkerScratch<Workspace> workspaces_;
   std::vector<CandidateList> lists_;
   long renewals_ = 0;
 };

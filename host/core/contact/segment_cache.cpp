@@ -52,7 +52,7 @@ struct Update {
 
 SegmentTable::SegmentTable(const Membranes& membranes) : bounds(membranes.cells.size(), Bounds{}) {
   const std::size_t size = membranes.x.size() + margin;
-  for (auto* values : {&x, &y, &along_x, &along_y, &inverse_square}) values->assign(size, 0.0);
+  for (auto* values : {&x, &y, &along_x, &along_y, &inverse_square}) *values = PagedArray<double>(size);
 }
 
 void SegmentTable::update(Worker worker, const Membranes& membranes) {

@@ -19,10 +19,15 @@ class SegmentTable {
   /// Pass over cells.
   void update(Worker worker, const Membranes& membranes);
 
-  std::vector<double> x, y;              ///< positions of the nodes
-  std::vector<double> along_x, along_y;  ///< from the node to the next one
-  std::vector<double> inverse_square;    ///< 1 / length^2 of the segment; 0 if it has no length
-  std::vector<Bounds> bounds;            ///< of the cells
+  /// Takes no memory for these nodes.
+  void forget(std::span<const Range> nodes) {
+    for (auto* values : {&x, &y, &along_x, &along_y, &inverse_square}) release(*values, nodes);
+  }
+
+  PagedArray<double> x, y;              ///< positions of the nodes
+  PagedArray<double> along_x, along_y;  ///< from the node to the next one
+  PagedArray<double> inverse_square;    ///< 1 / length^2 of the segment; 0 if it has no length
+  std::vector<Bounds> bounds;           ///< of the cells
 };
 
 /// From the closest point of a segment to a node; `along` is the segment's coordinate of that point in [0, 1].

@@ -50,7 +50,7 @@ void SelfContacts::run(Worker worker, Membranes& membranes) {
   for (int cell = cells.begin; cell < cells.end; ++cell) {
     if (!membranes.owns(cell)) continue;
     const CellRange& range = membranes.cells[cell];
-    Contacts& contacts = contacts_[cells.begin];
+    Contacts& contacts = contacts_.of(cells.begin);
     for (std::size_t k = 0; k < interactions_.size(); ++k) {
       if (interactions_[k].type != range.type) continue;
       measure(k, cell, membranes, false, contacts);

@@ -64,7 +64,7 @@ class SelfContacts {
 
   std::vector<SelfInteraction> interactions_;
   std::vector<Kind> kinds_;
-  std::vector<Contacts> contacts_;  // of the workers, each at the place of its first cell
+  WorkerScratch<Contacts> contacts_;
 };
 
 }  // namespace rouleau::core

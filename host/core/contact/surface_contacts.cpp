@@ -165,8 +165,12 @@ void SurfaceContacts::refresh(Worker worker, const Surfaces& surfaces) {
   // Every worker sorts all triangles: that is quicker than to wait for one who does.
   const Bins bins(surfaces, cutoffs_.largest() + 2 * skin, domain_);
   for (int cell = cells.begin; cell < cells.end; ++cell) {
-    if (of_all_ || surfaces.owns(cell)) list_candidates(cell, surfaces, bins, skin);
-    watch_.remember(cell, surfaces, skin);
+    if (of_all_ || surfaces.owns(cell)) {
+      list_candidates(cell, surfaces, bins, skin);
+    } else {
+      lists_[cell] = {};
+    }
+    if (surfaces.knows(cell)) watch_.remember(cell, surfaces, skin);
   }
   if (worker.first()) ++renewals_;
 }

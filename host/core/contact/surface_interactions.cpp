@@ -39,7 +39,7 @@ void SurfaceInteractions::run(Worker worker, int phase, Surfaces& surfaces) {
     for (int cell = cells.begin; cell < cells.end; ++cell) {
       reactions_[cell].clear();
       if (!surfaces.owns(cell)) continue;
-      Scratch& scratch = scratch_[cells.begin];
+      Scratch& scratch = scratch_.of(cells.begin);
       contacts_.find(cell, surfaces, scratch.contacts);
       scratch.state.clear();
       evaluate(cell, surfaces, false, &scratch.state, scratch);

@@ -28,6 +28,8 @@ class SurfaceInteractions {
 
   /// With other ranks: InteractionForces.
   [[nodiscard]] DisplacementWatch& watch() { return contacts_.watch(); }
+  /// Takes no memory for these nodes.
+  void forget(std::span<const Range> nodes) { contacts_.watch().forget(nodes); }
   [[nodiscard]] double reach() const { return list_reach(contacts_.cutoffs()); }
   [[nodiscard]] bool needs_velocities() const { return needs_velocities_; }
   /// What one cell does to a node of another.
@@ -64,7 +66,7 @@ class SurfaceInteractions {
   std::vector<SurfaceLaw> laws_;  // of these
   bool remembers_ = false, needs_velocities_ = false;
   SurfaceContacts contacts_;
-  std::vector<Scratch> scratch_;                  // of the workers, each at the place of its first cell
+  WorkerScratch<Scratch> scratch_;
   std::vector<std::vector<Reaction>> reactions_;  // of each cell's contacts, in their order
 };
 

@@ -36,7 +36,7 @@ void WallContacts::run(Worker worker, Membranes& membranes) {
   double* force = membranes.force_y.data();
   for (int cell = cells.begin; cell < cells.end; ++cell) {
     if (!membranes.owns(cell)) continue;
-    Contacts& contacts = contacts_[cells.begin];
+    Contacts& contacts = contacts_.of(cells.begin);
     for (std::size_t k = 0; k < interactions_.size(); ++k) {
       if (interactions_[k].type != membranes.cells[cell].type) continue;
       measure(k, cell, membranes, Wanted::step, contacts);

@@ -64,7 +64,7 @@ class WallContacts {
   std::vector<Traits> traits_;
   std::vector<std::vector<std::size_t>> variables_;  // of the interactions, in ContactMemory::variables
   double lower_, upper_;                             // where the walls are
-  std::vector<Contacts> contacts_;                   // of the workers, each at the place of its first cell
+  WorkerScratch<Contacts> contacts_;
 };
 
 }  // namespace rouleau::core

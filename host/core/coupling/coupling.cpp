@@ -232,10 +232,9 @@ Coupling<T>::Coupling(KernelKind kernel, const Domain<2>& domain) : loops_(Loops
 template <class T>
 void Coupling<T>::reserve(const Membranes& membranes) {
   const auto nodes = static_cast<std::size_t>(membranes.node_count());
-  column_.assign(nodes, 0);
-  row_.assign(nodes, outside);
-  for (auto* values : {&p_x_, &q_x_, &p_y_, &q_y_}) values->assign(nodes, T(0));
-  rows_.assign(membranes.cells.size(), {outside, outside});
+  for (auto* values : {&column_, &row_}) *values = PagedArray<int>(nodes);
+  for (auto* values : {&p_x_, &q_x_, &p_y_, &q_y_}) *values = PagedArray<T>(nodes);
+  rows_.assign(membranes.cells.size(), {0, 0});
 }
 
 template <class T>
@@ -335,6 +334,12 @@ bool Coupling<T>::any_escaped() const {
 template <class T>
 int Coupling<T>::escaped() const {
   return any_escaped() ? static_cast<int>(std::find(row_.begin(), row_.end(), outside) - row_.begin()) : -1;
+}
+
+template <class T>
+void Coupling<T>::forget(std::span<const Range> nodes) {
+  for (auto* values : {&column_, &row_}) release(*values, nodes);
+  for (auto* values : {&p_x_, &q_x_, &p_y_, &q_y_}) release(*values, nodes);
 }
 
 template class Coupling<float>;

@@ -39,6 +39,8 @@ class Coupling {
   /// Such a node neither spreads nor is moved.
   [[nodiscard]] int escaped() const;
   [[nodiscard]] bool any_escaped() const;
+  /// Takes no memory for these nodes until they are located again.
+  void forget(std::span<const Range> nodes);
 
  private:
   struct Loops;
@@ -47,12 +49,12 @@ class Coupling {
 
   const Loops* loops_;
   Domain<2> domain_;
-  std::vector<int> column_, row_;         // base node of the lattice; row `outside` for an escaped node
-  std::vector<T> p_x_, q_x_, p_y_, q_y_;  // what is kept of the weights (kernel.hpp)
+  PagedArray<int> column_, row_;         // base node of the lattice; row `outside` for an escaped node
+  PagedArray<T> p_x_, q_x_, p_y_, q_y_;  // what is kept of the weights (kernel.hpp)
   struct BaseRows {
     int lowest, highest;
   };
-  std::vector<BaseRows> rows_;  // of each cell's nodes; the lowest is `outside` if one has escaped
+  std::vector<BaseRows> rows_;  // of each located cell's nodes; the lowest is `outside` if one has escaped
 };
 
 extern template class Coupling<float>;

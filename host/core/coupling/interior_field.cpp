@@ -26,7 +26,7 @@ void InteriorField<T>::cover(Worker worker, const Surfaces& surfaces) {
   const Range cells = worker.share(surfaces.cell_count());
   std::vector<double> scratch;
   for (int c = cells.begin; c < cells.end; ++c) {
-    if (!watch_.moved(c)) continue;  // or not known
+    if (!watch_.moved(c) || !surfaces.knows(c)) continue;
     if (differs(surfaces.cells[c].type)) {
       core::cover(surfaces.type_of(c).mesh, surfaces.nodes(c), fraction_[c]);
       smooth(fraction_[c], scratch);
@@ -170,10 +170,9 @@ void InteriorField<T>::restore(const DisplacementWatch::Memory& memory, const Su
                                Field<T, 3>& relaxation_rate, NodeMask& mask) {
   const bool updated = !memory.x.empty() && !std::isnan(memory.x.front());
   if (updated) {
-    Surfaces at_update = surfaces;
-    at_update.x = memory.x;
-    at_update.y = memory.y;
-    at_update.z = memory.z;
+    Surfaces at_update;
+    at_update.cells = surfaces.cells, at_update.part = surfaces.part, at_update.types = surfaces.types;
+    at_update.x = memory.x, at_update.y = memory.y, at_update.z = memory.z;
     cover(Worker{}, at_update);
     update(Worker{}, at_update, relaxation_rate, mask);
   }

@@ -140,7 +140,14 @@ SlipCorrection::SlipCorrection(const Membranes& membranes, std::vector<Type> typ
   }
   for (auto* values : {&tangent_x_, &tangent_y_, &inverse_chord_, &touch_x_, &touch_y_, &force_x_, &force_y_, &slip_,
                        &scratch_x_, &scratch_y_}) {
-    values->assign(membranes.x.size(), 0.0);
+    *values = PagedArray<double>(membranes.x.size());
+  }
+}
+
+void SlipCorrection::forget(std::span<const Range> nodes) {
+  for (auto* values : {&tangent_x_, &tangent_y_, &inverse_chord_, &touch_x_, &touch_y_, &force_x_, &force_y_, &slip_,
+                       &scratch_x_, &scratch_y_}) {
+    release(*values, nodes);
   }
 }
 

@@ -37,6 +37,8 @@ class SlipCorrection {
   [[nodiscard]] std::vector<NodeMobility> mobility() const;
   /// Largest |d| of the types, spacings.
   [[nodiscard]] double largest_shift() const;
+  /// Takes no memory for these nodes until they are measured again.
+  void forget(std::span<const Range> nodes);
   [[nodiscard]] NodeVectors positions() const { return {touch_x_.data(), touch_y_.data()}; }
   [[nodiscard]] std::array<double*, 2> forces_of_all() { return {force_x_.data(), force_y_.data()}; }
   [[nodiscard]] NodeVectors forces() const { return {force_x_.data(), force_y_.data()}; }
@@ -47,13 +49,13 @@ class SlipCorrection {
 
   std::vector<Type> types_;
   double viscosity_;
-  std::vector<int> smoothings_;                // of each cell's slip
-  std::vector<double> tangent_x_, tangent_y_;  // along the chord from the node before to the node after
-  std::vector<double> inverse_chord_;          // 1 / its length
-  std::vector<double> touch_x_, touch_y_;
-  std::vector<double> force_x_, force_y_;  // of the couples; in the end all that is spread
-  std::vector<double> slip_;               // velocity along the tangent
-  std::vector<double> scratch_x_, scratch_y_;
+  std::vector<int> smoothings_;               // of each cell's slip
+  PagedArray<double> tangent_x_, tangent_y_;  // along the chord from the node before to the node after
+  PagedArray<double> inverse_chord_;          // 1 / its length
+  PagedArray<double> touch_x_, touch_y_;
+  PagedArray<double> force_x_, force_y_;  // of the couples; in the end all that is spread
+  PagedArray<double> slip_;               // velocity along the tangent
+  PagedArray<double> scratch_x_, scratch_y_;
 };
 
 }  // namespace rouleau::core

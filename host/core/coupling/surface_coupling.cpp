@@ -238,11 +238,10 @@ SurfaceCoupling<T>::SurfaceCoupling(KernelKind kernel, const Domain<3>& domain)
 template <class T>
 void SurfaceCoupling<T>::reserve(const Surfaces& surfaces) {
   for (int k = 0; k < 3; ++k) {
-    base_[k].assign(surfaces.x.size(), outside);
-    p_[k].assign(surfaces.x.size(), T(0));
-    q_[k].assign(surfaces.x.size(), T(0));
+    base_[k] = PagedArray<int>(surfaces.x.size());
+    for (auto* values : {&p_[k], &q_[k]}) *values = PagedArray<T>(surfaces.x.size());
   }
-  planes_.assign(surfaces.cells.size(), {outside, outside});
+  planes_.assign(surfaces.cells.size(), {0, 0});
 }
 
 template <class T>
@@ -333,6 +332,14 @@ template <class T>
 int SurfaceCoupling<T>::escaped() const {
   if (!any_escaped()) return -1;
   return static_cast<int>(std::find(base_[2].begin(), base_[2].end(), outside) - base_[2].begin());
+}
+
+template <class T>
+void SurfaceCoupling<T>::forget(std::span<const Range> nodes) {
+  for (int k = 0; k < 3; ++k) {
+    release(base_[k], nodes);
+    for (auto* values : {&p_[k], &q_[k]}) release(*values, nodes);
+  }
 }
 
 template class SurfaceCoupling<float>;

@@ -44,6 +44,8 @@ class SurfaceCoupling {
   /// Such a node neither spreads nor is moved.
   [[nodiscard]] int escaped() const;
   [[nodiscard]] bool any_escaped() const;
+  /// Takes no memory for these nodes until they are located again.
+  void forget(std::span<const Range> nodes);
 
  private:
   struct Loops;
@@ -55,12 +57,12 @@ class SurfaceCoupling {
 
   const Loops* loops_;
   Domain<3> domain_;
-  std::vector<int> base_[3];    // base node of the lattice; z is `outside` for an escaped node
-  std::vector<T> p_[3], q_[3];  // what is kept of the weights (kernel.hpp)
+  PagedArray<int> base_[3];    // base node of the lattice; z is `outside` for an escaped node
+  PagedArray<T> p_[3], q_[3];  // what is kept of the weights (kernel.hpp)
   struct BasePlanes {
     int lowest, highest;
   };
-  std::vector<BasePlanes> planes_;  // of each cell's nodes; the lowest is `outside` if one has escaped
+  std::vector<BasePlanes> planes_;  // of each located cell's nodes; the lowest is `outside` if one has escaped
 };
 
 extern template class SurfaceCoupling<float>;

@@ -59,7 +59,7 @@ void ViscosityField<T>::cover(Worker worker, const Membranes& membranes) {
   const Range cells = worker.share(membranes.cell_count());
   std::vector<double> scratch;
   for (int c = cells.begin; c < cells.end; ++c) {
-    if (!watch_.moved(c)) continue;
+    if (!watch_.moved(c) || !membranes.knows(c)) continue;
     const CellRange& cell = membranes.cells[c];
     Reach& reach = cells_[c];
     std::swap(reach.covered, reach.covered_before);
@@ -140,9 +140,9 @@ void ViscosityField<T>::restore(const DisplacementWatch::Memory& memory, const M
                                 Field<T, 2>& relaxation_rate, NodeMask& mask) {
   const bool updated = !memory.x.empty() && !std::isnan(memory.x.front());
   if (updated) {
-    Membranes at_update = membranes;
-    at_update.x = memory.x;
-    at_update.y = memory.y;
+    Membranes at_update;
+    at_update.cells = membranes.cells, at_update.part = membranes.part;
+    at_update.x = memory.x, at_update.y = memory.y;
     cover(Worker{}, at_update);
     update(Worker{}, at_update, relaxation_rate, mask);
   }

@@ -8,6 +8,7 @@
 #include "base/worker.hpp"
 #include "core/domain/bounding_box.hpp"
 #include "element_state.hpp"
+#include "paged_array.hpp"
 #include "topology.hpp"
 
 namespace rouleau::core {
@@ -58,6 +59,11 @@ struct CellNodes {
     const auto first = [this](int cell) { return cell < cell_count() ? cells[cell].first : node_count(); };
     return {first(share.begin), first(share.end)};
   }
+
+  /// Nodes of the cells that this rank does not know, in runs.
+  [[nodiscard]] std::vector<Range> unknown_nodes() const;
+  /// Takes no memory for what is known of these nodes and for what their cells remember; both is gone.
+  void forget(std::span<const Range> nodes);
 };
 
 /// The box around a cell's nodes; its numbers are none where one of theirs is.

@@ -48,6 +48,10 @@ class DisplacementWatch {
   };
   [[nodiscard]] const Memory& memory() const { return memory_; }
   [[nodiscard]] Memory& memory() { return memory_; }
+  /// What was remembered of these nodes is gone, and takes no memory.
+  void forget(std::span<const Range> nodes) {
+    for (auto* places : {&memory_.x, &memory_.y, &memory_.z}) release(*places, nodes);
+  }
   /// Goes on from another watch's memory of the same cells.
   void recall(Memory memory) { memory_ = std::move(memory); }
 

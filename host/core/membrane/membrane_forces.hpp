@@ -70,27 +70,29 @@ class MembraneForces {
     bool tension, moment, pressure, perimeter_tension, energy, tension_by_rate;                         // its outputs
     std::vector<std::size_t> state;  // in Membranes::state, once kept
   };
+  static constexpr int pack_margin = 8;  ///< doubles in the widest pack
+  /// Constants of the cells of a type: from pack_margin on, with room on both sides for packs that run over the end.
+  struct Rest {
+    std::vector<double> inverse_length, inverse_weight, curvature;
+  };
   struct Type {
     std::vector<Law> laws;
     bool rate = false, tension = false, moment = false, cell = false;  // what the laws need or give, all together
     bool tension_by_rate = false;
     std::size_t rate_tension = 0;  // in Membranes::state, if there is a tension by rate
     NodeMobility mobility;
+    Rest rest;
     std::optional<SemiImplicitFilter> filter;  // of a semi-implicit step
     std::size_t held_force[2] = {0, 0};        // of the filter, x and y: in Membranes::state
-  };
-  /// Constants of every cell: cell c from offset(c) on, with room on both sides for packs that run over its end.
-  struct Rest {
-    std::vector<double> inverse_length, inverse_weight, curvature;
   };
   /// One cell's working arrays, with room for ghost nodes too. A worker uses those of its first cell for all its cells,
   /// one after the other, so that they stay in its cache: the room of all its cells is as large as any of them.
   struct Scratch {
-    std::vector<double> x, y, u, v;
-    std::vector<double> tangent_x, tangent_y, inverse_length, stretch, rate, curvature;
-    std::vector<double> tension, moment, law, energy;  // sums; one law's contribution and its energy
-    std::vector<double> segment_force_x, segment_force_y;
-    std::vector<double> by_rate, law_by_rate;  // d tension / d rate: sum, one law's; only if a law gives it
+    PagedArray<double> x, y, u, v;
+    PagedArray<double> tangent_x, tangent_y, inverse_length, stretch, rate, curvature;
+    PagedArray<double> tension, moment, law, energy;  // sums; one law's contribution and its energy
+    PagedArray<double> segment_force_x, segment_force_y;
+    PagedArray<double> by_rate, law_by_rate;  // d tension / d rate: sum, one law's; only if a law gives it
   };
   struct CellState {
     double area = 0, perimeter = 0, pressure = 0, perimeter_tension = 0;
@@ -109,7 +111,7 @@ class MembraneForces {
                        MembraneEnergy* energy);
   void apply_law(const Law& law, const Membranes& membranes, int cell, std::size_t at, std::vector<ElementState>* next,
                  CellState& sums, bool first_tension, bool first_moment, double* energy);
-  void give_inputs(const Law& law, const CellRange& range, int cell, std::size_t at, const CellState& sums,
+  void give_inputs(const Law& law, const CellRange& range, std::size_t at, const CellState& sums,
                    rouleau_membrane_block& block) const;
   void add_energy(const Law& law, const Membranes& membranes, int cell, std::size_t at, const CellState& sums,
                   const double* tension, MembraneEnergy& energy) const;
@@ -124,7 +126,6 @@ class MembraneForces {
 
   std::vector<Type> types_;
   std::vector<std::size_t> offset_;  // of each cell's node 0
-  Rest rest_;
   Scratch scratch_;
 };
 

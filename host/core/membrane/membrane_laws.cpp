@@ -7,11 +7,7 @@
 
 namespace rouleau::core {
 
-namespace {
-
-constexpr int pack_margin = 8;  // doubles in the widest pack
-
-}  // namespace
+namespace {}  // namespace
 
 MembraneForces::Law MembraneForces::describe(const MembraneLaw& model) {
   return {.model = model,
@@ -57,21 +53,24 @@ void MembraneForces::allocate(const Membranes& membranes) {
     size += static_cast<std::size_t>(cell.count + pack_margin) / pack_margin * pack_margin + 2 * pack_margin;
   }
   Scratch& s = scratch_;
-  for (auto* values : {&rest_.inverse_length, &rest_.inverse_weight, &rest_.curvature, &s.x, &s.y, &s.u, &s.v,
-                       &s.tangent_x, &s.tangent_y, &s.inverse_length, &s.stretch, &s.rate, &s.curvature, &s.tension,
-                       &s.moment, &s.law, &s.energy, &s.segment_force_x, &s.segment_force_y}) {
-    values->assign(size, 0.0);
+  for (auto* values :
+       {&s.x, &s.y, &s.u, &s.v, &s.tangent_x, &s.tangent_y, &s.inverse_length, &s.stretch, &s.rate, &s.curvature,
+        &s.tension, &s.moment, &s.law, &s.energy, &s.segment_force_x, &s.segment_force_y}) {
+    *values = PagedArray<double>(size);
   }
   if (std::any_of(types_.begin(), types_.end(), [](const Type& type) { return type.tension_by_rate; })) {
-    for (auto* values : {&s.by_rate, &s.law_by_rate}) values->assign(size, 0.0);
+    for (auto* values : {&s.by_rate, &s.law_by_rate}) *values = PagedArray<double>(size);
   }
-  for (std::size_t c = 0; c < membranes.cells.size(); ++c) {
-    const CellRange& cell = membranes.cells[c];
+  for (const CellRange& cell : membranes.cells) {
+    Rest& rest = types_[cell.type].rest;
+    if (!rest.curvature.empty()) continue;
+    for (auto* values : {&rest.inverse_length, &rest.inverse_weight, &rest.curvature})
+      values->assign(static_cast<std::size_t>(cell.count + 3 * pack_margin), 0.0);
     for (int k = 0; k < cell.count; ++k) {
-      const auto i = static_cast<std::size_t>(cell.first + k), at = offset_[c] + static_cast<std::size_t>(k);
-      rest_.inverse_length[at] = 1 / membranes.rest_length[i];
-      rest_.inverse_weight[at] = 1 / membranes.rest_weight[i];
-      rest_.curvature[at] = membranes.rest_curvature[i];
+      const auto i = static_cast<std::size_t>(cell.first + k), at = static_cast<std::size_t>(pack_margin + k);
+      rest.inverse_length[at] = 1 / membranes.rest_length[i];
+      rest.inverse_weight[at] = 1 / membranes.rest_weight[i];
+      rest.curvature[at] = membranes.rest_curvature[i];
     }
   }
 }

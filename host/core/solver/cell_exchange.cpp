@@ -92,7 +92,6 @@ CellExchange<D>::CellExchange(const Ranks<D>& ranks, Cells& cells, std::vector<i
   ghosts_.renew(boxes);
   cells.part.assign(cells.cells.size(), {});
   set_parts(cells);
-  for (CellPart& part : cells.part) part.known = true;
 }
 
 template <int D>
@@ -213,10 +212,13 @@ void CellExchange<D>::send_positions(Cells& cells, DisplacementWatch& viscosity,
     std::fill(path_.begin(), path_.end(), 0.0);
   }
   if (lists != nullptr) lists->agree(with_memory_ || all_expired > 0);
-  set_parts(cells);
+  lost_sight_ = false;
   for (int c = 0; c < cells.cell_count(); ++c) {
-    if (!ghosts_.knows(c)) cells.largest_step[c] = all_step;  // no node of any cell has moved further
+    if (ghosts_.knows(c)) continue;
+    lost_sight_ = lost_sight_ || cells.part[c].known;
+    cells.largest_step[c] = all_step;  // no node of any cell has moved further
   }
+  set_parts(cells);
   escaped_ = all_escaped > 0;
   send_to_peers<Packer>(ghosts_, *ranks_.transport, &GhostCells<D>::Peer::mine,
                         [&](int, const std::vector<int>& of_peer, Packer& message) {

@@ -24,7 +24,8 @@ class CellExchange {
   using Cells = std::conditional_t<D == 2, Membranes, Surfaces>;
   using Interactions = std::conditional_t<D == 2, InteractionForces, SurfaceInteractions>;
 
-  /// Sets what this rank's part in the cells is, all of which it knows to begin with. `owner`: empty: by place.
+  /// Sets what this rank's part in the cells is. It is given all of them; what it does not know from now on may be
+  /// forgotten. `owner`: empty: by place.
   /// `velocities`: ghosts' are wanted, too.
   CellExchange(const Ranks<D>& ranks, Cells& cells, std::vector<int> owner, GhostReach reach, bool velocities);
 
@@ -49,11 +50,14 @@ class CellExchange {
   [[nodiscard]] bool escaped() const { return escaped_; }
   /// And whether it has given this rank cells that it did not own before.
   [[nodiscard]] bool took_over() const { return took_over_; }
+  /// And whether there are cells that this rank does not know any more.
+  [[nodiscard]] bool lost_sight() const { return lost_sight_; }
   /// All of all cells, to all ranks: positions, velocities, forces, what laws and potentials remember, leaked areas, and
   /// the watch's memory. Until the next send_positions every rank knows every cell.
   void share_state(Cells& cells, DisplacementWatch& watch);
-  /// The same, to the first rank alone.
+  /// The same, to the first rank alone, which knows every cell until it leaves the others to their owners.
   void gather_state(Cells& cells, DisplacementWatch& watch);
+  void leave_to_owners(Cells& cells) const { set_parts(cells); }
 
  private:
   class Packer;
@@ -106,7 +110,7 @@ class CellExchange {
   Ranks<D> ranks_;
   GhostCells<D> ghosts_;
   bool velocities_;
-  bool escaped_ = false, took_over_ = false;
+  bool escaped_ = false, took_over_ = false, lost_sight_ = false;
   bool on_their_way_ = false;  // positions have been sent, and not been received
   bool with_memory_ = false;   // as those of new ghosts are
   std::vector<double> path_;   // of this rank's cells since boxes were compared: no node has a longer one

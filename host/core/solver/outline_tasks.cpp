@@ -53,6 +53,7 @@ OutlineTasks<T>::OutlineTasks(const SolverSetup& setup, Membranes& membranes, Fl
   }
   locate(Worker{}, Whose::own);
   locate(Worker{}, Whose::others);
+  forget_unknown();
 }
 
 template <class T>
@@ -138,7 +139,9 @@ void OutlineTasks<T>::run(Task task, Worker worker) {
       if (exchange_->took_over()) locate(worker, Whose::own);
       return;
     default:  // messages; the fluid's own tasks are none
-      if (exchange_ && worker.first()) exchange_->run(task, parts());
+      if (!exchange_ || !worker.first()) return;
+      exchange_->run(task, parts());
+      if (task == Task::send_positions && exchange_->lost_sight()) forget_unknown();
       return;
   }
 }
@@ -158,7 +161,25 @@ template <class T>
 void OutlineTasks<T>::gather_state() {
   if (!exchange_) return;
   exchange_->gather_state(membranes_, viscosity_field_.watch());
-  if (ranks_.first()) locate(Worker{}, Whose::others);  // of all, now
+}
+
+template <class T>
+int OutlineTasks<T>::escaped_node() {
+  if (!escaped()) return -1;
+  if (exchange_) locate(Worker{}, Whose::others);  // of all, for now
+  return coupling_.escaped();
+}
+
+template <class T>
+void OutlineTasks<T>::forget_unknown() {
+  if (!exchange_) return;
+  const std::vector<Range> nodes = membranes_.unknown_nodes();
+  if (nodes.empty()) return;
+  membranes_.forget(nodes);
+  viscosity_field_.watch().forget(nodes);
+  coupling_.forget(nodes);
+  if (slip_correction_) slip_correction_->forget(nodes);
+  if (interaction_forces_) interaction_forces_->forget(nodes);
 }
 
 template <class T>

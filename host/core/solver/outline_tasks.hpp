@@ -46,6 +46,10 @@ class OutlineTasks {
   }
   /// One worker, between steps or where the state may be observed: tells the first rank what only the owners of cells know.
   void gather_state();
+  /// The first rank has looked at it, and goes on with what it has to know.
+  void leave_to_owners() {
+    if (exchange_) exchange_->leave_to_owners(membranes_);
+  }
   /// The same, to all ranks.
   void share_state();
   /// Mean velocity of all ranks' nodes, which must ask together.
@@ -53,10 +57,11 @@ class OutlineTasks {
   /// Between two steps: as a solver was whose viscosity field was last renewed so.
   void restore(const DisplacementWatch::Memory& viscosity) {
     viscosity_field_.restore(viscosity, membranes_, fluid_.relaxation_rate(), fluid_.mask());
+    forget_unknown();
   }
 
-  /// First node that has left the domain; -1: none.
-  [[nodiscard]] int escaped_node() const { return coupling_.escaped(); }
+  /// First node that has left the domain; -1: none. With several ranks the first one finds it, the state gathered.
+  [[nodiscard]] int escaped_node();
   [[nodiscard]] bool escaped() const { return exchange_ ? exchange_->escaped() : coupling_.any_escaped(); }
   [[nodiscard]] MembraneForces& forces() { return membrane_forces_; }
   /// What it takes to stretch all membranes by 0.1 %, and to bend them by as much.
@@ -75,6 +80,8 @@ class OutlineTasks {
   }
 
  private:
+  /// What this rank does not know takes no memory.
+  void forget_unknown();
   [[nodiscard]] std::unique_ptr<SlipCorrection> make_slip_correction() const;
   [[nodiscard]] MembraneForcesSetup forces_setup() const;
   [[nodiscard]] std::vector<double> viscosity_ratios() const;

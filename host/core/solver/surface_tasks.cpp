@@ -80,6 +80,7 @@ SurfaceTasks<T>::SurfaceTasks(const BasicSolverSetup<3>& setup, Surfaces& surfac
                                                   interactions_ && interactions_->needs_velocities());
   }
   for (const Whose whose : {Whose::own, Whose::others}) coupling_.locate(Worker{}, surfaces_, whose);
+  forget_unknown();
 }
 
 template <class T>
@@ -118,7 +119,9 @@ void SurfaceTasks<T>::run(Task task, Worker worker) {
       if (exchange_->took_over()) coupling_.locate(worker, surfaces_, Whose::own);
       return;
     default:  // messages; the fluid's own tasks are none
-      if (exchange_ && worker.first()) exchange_->run(task, parts());
+      if (!exchange_ || !worker.first()) return;
+      exchange_->run(task, parts());
+      if (task == Task::send_positions && exchange_->lost_sight()) forget_unknown();
       return;
   }
 }
@@ -137,7 +140,25 @@ template <class T>
 void SurfaceTasks<T>::gather_state() {
   if (!exchange_) return;
   exchange_->gather_state(surfaces_, viscosity_field_.watch());
-  if (ranks_.first()) coupling_.locate(Worker{}, surfaces_, Whose::others);  // of all, now
+}
+
+template <class T>
+int SurfaceTasks<T>::escaped_node() {
+  if (!escaped()) return -1;
+  if (exchange_) coupling_.locate(Worker{}, surfaces_, Whose::others);  // of all, for now
+  return coupling_.escaped();
+}
+
+template <class T>
+void SurfaceTasks<T>::forget_unknown() {
+  if (!exchange_) return;
+  const std::vector<Range> nodes = surfaces_.unknown_nodes();
+  if (nodes.empty()) return;
+  surfaces_.forget(nodes);
+  viscosity_field_.watch().forget(nodes);
+  coupling_.forget(nodes);
+  if (volume_correction_) volume_correction_->forget(nodes);
+  if (interactions_) interactions_->forget(nodes);
 }
 
 template <class T>

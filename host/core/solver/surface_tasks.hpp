@@ -53,6 +53,10 @@ class SurfaceTasks {
   }
   /// One worker, between steps or where the state may be observed: tells the first rank what only the owners of cells know.
   void gather_state();
+  /// The first rank has looked at it, and goes on with what it has to know.
+  void leave_to_owners() {
+    if (exchange_) exchange_->leave_to_owners(surfaces_);
+  }
   /// The same, to all ranks.
   void share_state();
   /// Mean velocity of all ranks' nodes, which must ask together.
@@ -60,10 +64,11 @@ class SurfaceTasks {
   /// Between two steps: as a solver was whose relaxation rates were last renewed so.
   void restore(const DisplacementWatch::Memory& viscosity) {
     viscosity_field_.restore(viscosity, surfaces_, fluid_.relaxation_rate(), fluid_.mask());
+    forget_unknown();
   }
 
-  /// First node that has left the domain; -1: none.
-  [[nodiscard]] int escaped_node() const { return coupling_.escaped(); }
+  /// First node that has left the domain; -1: none. With several ranks the first one finds it, the state gathered.
+  [[nodiscard]] int escaped_node();
   [[nodiscard]] bool escaped() const { return exchange_ ? exchange_->escaped() : coupling_.any_escaped(); }
   [[nodiscard]] SurfaceForces& forces() { return forces_; }
   /// What it takes to stretch all membranes by 0.1 % along x, the volume law left aside.
@@ -81,6 +86,8 @@ class SurfaceTasks {
   [[nodiscard]] const InteriorField<T>& viscosity_field() const { return viscosity_field_; }
 
  private:
+  /// What this rank does not know takes no memory.
+  void forget_unknown();
   [[nodiscard]] typename CellExchange<3>::Parts parts();
 
   Surfaces& surfaces_;

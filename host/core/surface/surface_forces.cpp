@@ -123,7 +123,7 @@ void SurfaceForces::take_semi_implicit_steps(Surfaces& surfaces, double viscosit
 }
 
 SurfaceForces::Scratch& SurfaceForces::scratch_of(int first_cell) {
-  Scratch& s = scratch_[first_cell];
+  Scratch& s = scratch_.of(first_cell);
   if (!s.energy.empty()) return s;
   std::size_t triangles = 0, edges = 0, nodes = 0;
   for (const Type& type : types_) {

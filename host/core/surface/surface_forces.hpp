@@ -86,7 +86,7 @@ class SurfaceForces {
   static void soften(const Type& type, Surfaces& surfaces, const CellRange& cell, Scratch& scratch);
 
   std::vector<Type> types_;
-  std::vector<Scratch> scratch_;  // of the first cell of each worker's share
+  WorkerScratch<Scratch> scratch_;
 };
 
 }  // namespace rouleau::core

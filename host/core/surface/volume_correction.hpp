@@ -22,12 +22,16 @@ class VolumeCorrection {
   /// value within 50 steps. What V alone would have changed is the leakage; it is added to area_leakage, which must have
   /// one value for each cell, positive where the cell would have lost volume.
   void keep_volumes(Worker worker, Surfaces& surfaces);
+  /// Takes no memory for these nodes.
+  void forget(std::span<const Range> nodes) {
+    for (auto* values : {&along_x_, &along_y_, &along_z_}) release(*values, nodes);
+  }
 
  private:
   /// The gradient at a cell's nodes, in `along_`; the square of its length.
   double find_gradient(const Surfaces& surfaces, int cell);
 
-  std::vector<double> along_x_, along_y_, along_z_;  ///< A of each node; cells share nothing
+  PagedArray<double> along_x_, along_y_, along_z_;  ///< A of each node; cells share nothing
 };
 
 }  // namespace rouleau::core

@@ -1,6 +1,7 @@
 // The table of observables: one entry makes a column of a file, and all that is said about it.
 #include "observe/observables.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <set>
 
@@ -120,4 +121,27 @@ TEST_CASE("a history that was kept without one of the means does not fit") {
   auto& values = kept.at("stages_").at(0).at("instants").at(0).at("values");
   values.erase(values.begin());
   CHECK_FALSE(kept.get<RheologyHistory>().fits());
+}
+
+TEST_CASE(
+    "the members of a large aggregate stand in its first row alone, so that the file does not grow with their square") {
+  for (const int cells : {16, 17}) {
+    Snapshot chain;
+    for (int k = 0; k < cells; ++k) {
+      chain.cells.emplace_back();
+      chain.cells.back().cell = k;
+      if (k > 0) chain.contacts.push_back({k - 1, k, {0, 0}, 1e-7, 1e-6});
+    }
+    const Table& aggregates = table("aggregates");
+    const auto members = std::find_if(aggregates.observables.begin(), aggregates.observables.end(),
+                                      [](const Observable& observable) { return observable.name == "members"; });
+    int rows = 0;
+    aggregates.for_each_row(chain, [&](const Row& row) {
+      const std::string text = std::get<std::string>(members->value(row));
+      CHECK(text.empty() == (cells > 16 && rows > 0));
+      if (!text.empty()) CHECK(text.starts_with("0+1+2+"));
+      ++rows;
+    });
+    CHECK(rows == cells - 1);
+  }
 }

@@ -1,10 +1,12 @@
 // The angle of aggregates: outermost cells, images, and continuation over turns.
 #include "observe/rotation.hpp"
 #include "unit/periodic_box.hpp"
+#include "unit/random.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
+#include <random>
 
 using namespace rouleau;
 using namespace rouleau::core;
@@ -40,6 +42,27 @@ TEST_CASE("an aggregate's angle is that of the line through its outermost cells,
     const auto found = angles(rotation, links, chain(angle));
     REQUIRE(found.size() == 1);
     CHECK(found.at(0) == Approx(angle).margin(1e-14));
+  }
+}
+
+TEST_CASE("of many cells the outermost ones are those of all pairs") {
+  std::mt19937 random = test::generator(7);
+  std::uniform_real_distribution<double> across(10, 90), up(20, 60);
+  for (const bool on_a_grid : {false, true}) {
+    std::vector<Eigen::Vector2d> centers;
+    std::vector<CellContact> chained;
+    for (int k = 0; k < 400; ++k) {
+      const double x = across(random), y = up(random);
+      centers.emplace_back(on_a_grid ? std::round(x) : x, on_a_grid ? std::round(y) : y);
+      if (k > 0) chained.push_back(contact(k - 1, k));
+    }
+    Eigen::Vector2d longest = Eigen::Vector2d::Zero();
+    for (const Eigen::Vector2d& a : centers) {
+      for (const Eigen::Vector2d& b : centers)
+        if ((b - a).squaredNorm() > longest.squaredNorm()) longest = b - a;
+    }
+    Rotation rotation;
+    CHECK(angles(rotation, chained, centers).at(0) == Approx(std::remainder(std::atan2(longest.y(), longest.x()), pi)));
   }
 }
 

@@ -65,8 +65,9 @@ End<T, Set> simulate(const Planned<Set::dimension>& planned, const Domain<Set::d
   for (long done = 0; done < steps; done += look) {
     run(solver, std::min(look, steps - done), workers);
     solver.cell_tasks()->gather_state();
+    if (ranks.first()) end.seen_by_first = end.cells;
+    solver.cell_tasks()->leave_to_owners();
   }
-  if (ranks.first()) end.seen_by_first = end.cells;
   solver.cell_tasks()->share_state();
   REQUIRE_FALSE(solver.escaped());
   solver.fluid().settle();

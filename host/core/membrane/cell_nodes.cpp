@@ -1,0 +1,27 @@
+#include "cell_nodes.hpp"
+
+namespace rouleau::core {
+
+std::vector<Range> CellNodes::unknown_nodes() const {
+  std::vector<Range> runs;
+  for (int c = 0; c < cell_count(); ++c) {
+    if (knows(c)) continue;
+    const CellRange& cell = cells[c];
+    if (runs.empty() || runs.back().end != cell.first) runs.push_back({cell.first, cell.first});
+    runs.back().end = cell.end();
+  }
+  return runs;
+}
+
+void CellNodes::forget(std::span<const Range> nodes) {
+  for (auto* values : {&x, &y, &z, &force_x, &force_y, &force_z, &velocity_x, &velocity_y, &velocity_z})
+    release(*values, nodes);
+  for (ElementState& of_all : state) release(of_all.value, nodes);
+  for (ContactMemory* memory : {&contacts, &wall_contacts}) {
+    for (std::size_t c = 0; c < memory->of_cell.size(); ++c) {
+      if (!knows(static_cast<int>(c))) memory->of_cell[c] = {};
+    }
+  }
+}
+
+}  // namespace rouleau::core
