@@ -94,22 +94,22 @@ void MembraneForces::measure(const Membranes& membranes, int cell, std::size_t a
   arrays.x = &s.x[at], arrays.y = &s.y[at], arrays.u = &s.u[at], arrays.v = &s.v[at];
   arrays.tangent_x = &s.tangent_x[at], arrays.tangent_y = &s.tangent_y[at];
   arrays.inverse_length = &s.inverse_length[at], arrays.stretch = &s.stretch[at], arrays.rate = &s.rate[at];
-  arrays.inverse_rest_length = &type.rest.inverse_length[pack_margin];
-  arrays.inverse_rest_weight = &type.rest.inverse_weight[pack_margin];
+  arrays.inverse_rest_length = &rest_of(cell).inverse_length[pack_margin];
+  arrays.inverse_rest_weight = &rest_of(cell).inverse_weight[pack_margin];
   arrays.curvature = &s.curvature[at];
   arrays.with_rate = type.rate, arrays.with_moment = type.moment;
   run_loop<MeasureCell>(arrays);
 }
 
-void MembraneForces::give_inputs(const Law& law, const CellRange& range, std::size_t at, const CellState& sums,
-                                 rouleau_membrane_block& block) const {
+void MembraneForces::give_inputs(const Law& law, const CellRange& range, int cell, std::size_t at,
+                                 const CellState& sums, rouleau_membrane_block& block) const {
   const bool whole_cell = law.pressure || law.perimeter_tension;
   block.struct_size = sizeof block;
   block.count = whole_cell ? 1 : static_cast<std::uint32_t>(range.count);
   if (law.stretch) block.stretch = &scratch_.stretch[at];
   if (law.stretch_rate) block.stretch_rate = &scratch_.rate[at];
   if (law.curvature) block.curvature = &scratch_.curvature[at];
-  if (law.rest_curvature) block.rest_curvature = &types_[range.type].rest.curvature[pack_margin];
+  if (law.rest_curvature) block.rest_curvature = &rest_of(cell).curvature[pack_margin];
   if (law.area) block.area = &sums.area;
   if (law.rest_area) block.rest_area = &range.rest_area;
   if (law.perimeter) block.perimeter = &sums.perimeter;
@@ -123,7 +123,7 @@ void MembraneForces::apply_law(const Law& law, const Membranes& membranes, int c
   const CellRange& range = membranes.cells[cell];
   double pressure = 0, perimeter_tension = 0;
   rouleau_membrane_block block{};
-  give_inputs(law, range, at, sums, block);
+  give_inputs(law, range, cell, at, sums, block);
   block.time_step = next != nullptr ? 1 : 0;
   if (law.tension) block.tension = first_tension ? &s.tension[at] : &s.law[at];
   if (law.moment) block.moment = first_moment ? &s.moment[at] : &s.law[at];
@@ -211,7 +211,7 @@ double MembraneForces::relaxed_energy(const Law& law, const Membranes& membranes
   }
   for (std::size_t k = 0; k < values.size(); ++k) state[k] = new_state[k] = values[k].data();
   rouleau_membrane_block block{};
-  give_inputs(law, range, at, sums, block);
+  give_inputs(law, range, cell, at, sums, block);
   if (law.stretch_rate) block.stretch_rate = still.data();
   block.energy = energy.data();
   block.state = state.data();
@@ -257,7 +257,7 @@ void MembraneForces::add_rate_tension(const Membranes& membranes, int cell, std:
     solve({range.count,
            &s.tangent_x[at],
            &s.tangent_y[at],
-           &types_[range.type].rest.inverse_length[pack_margin],
+           &rest_of(cell).inverse_length[pack_margin],
            &s.rate[at],
            &s.by_rate[at],
            rate_mobility(length) + type.mobility.slip / length,

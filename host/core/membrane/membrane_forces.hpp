@@ -71,8 +71,9 @@ class MembraneForces {
     std::vector<std::size_t> state;  // in Membranes::state, once kept
   };
   static constexpr int pack_margin = 8;  ///< doubles in the widest pack
-  /// Constants of the cells of a type: from pack_margin on, with room on both sides for packs that run over the end.
+  /// Constants of cells that rest alike: from pack_margin on, with room on both sides for packs that run over the end.
   struct Rest {
+    int cell;  ///< one of them
     std::vector<double> inverse_length, inverse_weight, curvature;
   };
   struct Type {
@@ -81,7 +82,6 @@ class MembraneForces {
     bool tension_by_rate = false;
     std::size_t rate_tension = 0;  // in Membranes::state, if there is a tension by rate
     NodeMobility mobility;
-    Rest rest;
     std::optional<SemiImplicitFilter> filter;  // of a semi-implicit step
     std::size_t held_force[2] = {0, 0};        // of the filter, x and y: in Membranes::state
   };
@@ -100,9 +100,11 @@ class MembraneForces {
 
   static Law describe(const MembraneLaw& model);
   void allocate(const Membranes& membranes);
+  void find_rests(const Membranes& membranes);
   void make_filters(const Membranes& membranes, double viscosity);
   void keep_state(Membranes& membranes, double tension_unit);
   [[nodiscard]] std::size_t offset(int cell) const { return offset_[cell]; }
+  [[nodiscard]] const Rest& rest_of(int cell) const { return rests_[rest_of_[cell]]; }
   // `at`: where the working arrays begin.
   // `ahead`: where the nodes will be after another step like the last one.
   void measure(const Membranes& membranes, int cell, std::size_t at, bool ahead);
@@ -111,7 +113,7 @@ class MembraneForces {
                        MembraneEnergy* energy);
   void apply_law(const Law& law, const Membranes& membranes, int cell, std::size_t at, std::vector<ElementState>* next,
                  CellState& sums, bool first_tension, bool first_moment, double* energy);
-  void give_inputs(const Law& law, const CellRange& range, std::size_t at, const CellState& sums,
+  void give_inputs(const Law& law, const CellRange& range, int cell, std::size_t at, const CellState& sums,
                    rouleau_membrane_block& block) const;
   void add_energy(const Law& law, const Membranes& membranes, int cell, std::size_t at, const CellState& sums,
                   const double* tension, MembraneEnergy& energy) const;
@@ -126,6 +128,8 @@ class MembraneForces {
 
   std::vector<Type> types_;
   std::vector<std::size_t> offset_;  // of each cell's node 0
+  std::vector<Rest> rests_;
+  std::vector<int> rest_of_;  // of each cell: which of these
   Scratch scratch_;
 };
 

@@ -7,8 +7,6 @@
 
 namespace rouleau::core {
 
-namespace {}  // namespace
-
 MembraneForces::Law MembraneForces::describe(const MembraneLaw& model) {
   return {.model = model,
           .stretch = model.reads("stretch"),
@@ -61,17 +59,35 @@ void MembraneForces::allocate(const Membranes& membranes) {
   if (std::any_of(types_.begin(), types_.end(), [](const Type& type) { return type.tension_by_rate; })) {
     for (auto* values : {&s.by_rate, &s.law_by_rate}) *values = PagedArray<double>(size);
   }
-  for (const CellRange& cell : membranes.cells) {
-    Rest& rest = types_[cell.type].rest;
-    if (!rest.curvature.empty()) continue;
-    for (auto* values : {&rest.inverse_length, &rest.inverse_weight, &rest.curvature})
-      values->assign(static_cast<std::size_t>(cell.count + 3 * pack_margin), 0.0);
-    for (int k = 0; k < cell.count; ++k) {
-      const auto i = static_cast<std::size_t>(cell.first + k), at = static_cast<std::size_t>(pack_margin + k);
-      rest.inverse_length[at] = 1 / membranes.rest_length[i];
-      rest.inverse_weight[at] = 1 / membranes.rest_weight[i];
-      rest.curvature[at] = membranes.rest_curvature[i];
+  find_rests(membranes);
+}
+
+/// Cells of a type rest alike as a rule; each is compared with the last one of its type.
+void MembraneForces::find_rests(const Membranes& membranes) {
+  std::vector<int> last(types_.size(), -1);
+  for (int c = 0; c < membranes.cell_count(); ++c) {
+    const CellRange& cell = membranes.cells[c];
+    const auto alike = [&](const CellRange& other, const std::vector<double>& values) {
+      return std::equal(values.begin() + cell.first, values.begin() + cell.end(), values.begin() + other.first,
+                        values.begin() + other.end());
+    };
+    int& rest_of = last[cell.type];
+    const CellRange* known = rest_of >= 0 ? &membranes.cells[rests_[rest_of].cell] : nullptr;
+    if (known == nullptr || !alike(*known, membranes.rest_length) || !alike(*known, membranes.rest_weight) ||
+        !alike(*known, membranes.rest_curvature)) {
+      rest_of = static_cast<int>(rests_.size());
+      Rest& rest = rests_.emplace_back();
+      rest.cell = c;
+      for (auto* values : {&rest.inverse_length, &rest.inverse_weight, &rest.curvature})
+        values->assign(static_cast<std::size_t>(cell.count + 3 * pack_margin), 0.0);
+      for (int k = 0; k < cell.count; ++k) {
+        const auto i = static_cast<std::size_t>(cell.first + k), at = static_cast<std::size_t>(pack_margin + k);
+        rest.inverse_length[at] = 1 / membranes.rest_length[i];
+        rest.inverse_weight[at] = 1 / membranes.rest_weight[i];
+        rest.curvature[at] = membranes.rest_curvature[i];
+      }
     }
+    rest_of_.push_back(rest_of);
   }
 }
 
