@@ -61,8 +61,7 @@ class Simulation {
         owner_(owner),
         cells_(plan.has_cells ? plan::make_cells<dimension>(scene_) : Cells{}),
         state_(observe::Observer(scene_, cells_)),
-        course_(plan, state_, ranks_.first() ? &cells_ : nullptr,
-                [this](double found) { return core::of_first(ranks_, std::vector<double>{found}).front(); }),
+        course_(plan, state_, ranks_.first() ? &cells_ : nullptr, [this](double found) { return of_first(found); }),
         progress_(options.quiet || directory == nullptr),
         checkpoints_(scene_, directory),
         summary_(describe(plan, report, options.threads)) {
@@ -116,6 +115,10 @@ class Simulation {
     return std::move(restored->solver);
   }
 
+  /// What the first rank has found.
+  [[nodiscard]] double of_first(double found) const {
+    return core::of_first(ranks_, std::vector<double>{found}).front();
+  }
   /// The first rank knows what owners of cells know; before the state is observed or written.
   void gather_state() {
     if (solver_->cell_tasks() != nullptr) solver_->cell_tasks()->gather_state();
@@ -394,16 +397,16 @@ class Simulation {
 
   /// One thread, forces computed: outputs, checks, and whether the stage ends here.
   void after_forces(long step, const plan::OutputSchedule& cells, const plan::OutputSchedule& fields) {
-    course_.count_to(step);
-    gather_state();
-    look(step, cells, fields);
+    observe_and_check(step, cells, fields);
     leave_to_owners();
   }
 
-  /// The same, all cells gathered.
-  void look(long step, const plan::OutputSchedule& cells, const plan::OutputSchedule& fields) {
+  /// The same; gathers all cells, and leaves them so.
+  void observe_and_check(long step, const plan::OutputSchedule& cells, const plan::OutputSchedule& fields) {
     const auto start = Clock::now();
     const plan::StageSetting& setting = this->setting();
+    course_.count_to(step);
+    gather_state();
     if (fails(check_nodes())) return;
     if (ranks_.first() && core::largest_step(cells_) > state_.growth.level()) state_.growth.note(state_.steps, cells_);
     if (checkpoints_.pending()) {
@@ -431,7 +434,7 @@ class Simulation {
       }
       state_.costs.add("observe and check", seconds_since(start), 1);
     }
-    growth_level_ = core::of_first(ranks_, std::vector<double>{state_.growth.level()}).front();
+    growth_level_ = of_first(state_.growth.level());
     ending_ = due_ending_;
     course_.look(*solver_);
     const long check = (step / scene_.checks.every_steps + 1) * scene_.checks.every_steps;
