@@ -7,6 +7,7 @@
 //     target_link_libraries(core PRIVATE Rouleau::core)
 #include <cmath>
 #include <cstdio>
+#include <memory>
 #include <numbers>
 #include <rouleau/collision.hpp>
 #include <rouleau/core.hpp>
@@ -50,7 +51,8 @@ int main() {
     x.push_back(12 * std::cos(angle)), y.push_back(12 * std::sin(angle));
   }
   rouleau::Membranes capsules;
-  for (const double at : {32.0, 96.0}) add_cell(capsules, 0, rouleau::core::make_rest_shape(x, y), at, 31.5, 0);
+  capsules.types = {std::make_shared<const rouleau::core::RestShape>(rouleau::core::make_rest_shape(x, y))};
+  for (const double at : {32.0, 96.0}) add_cell(capsules, 0, at, 31.5, 0);
 
   rouleau::Solver<double> solver(setup, capsules);
   solver.start();

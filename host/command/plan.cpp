@@ -5,10 +5,10 @@
 #include "base/error.hpp"
 #include "command/process/command_line.hpp"
 #include "commands.hpp"
-#include "plan/blocks.hpp"
 #include "plan/plan_report.hpp"
-#include "plan/rank_costs.hpp"
-#include "plan/rank_times.hpp"
+#include "plan/ranks/blocks.hpp"
+#include "plan/ranks/rank_costs.hpp"
+#include "plan/ranks/rank_times.hpp"
 #include "scene_options.hpp"
 #include "units/units.hpp"
 

@@ -4,8 +4,8 @@
 #include "command/process/crew.hpp"
 #include "core/membrane/membranes.hpp"
 #include "lock_scene.hpp"
-#include "plan/blocks.hpp"
-#include "plan/solver_setup.hpp"
+#include "plan/placed_cells.hpp"
+#include "plan/ranks/blocks.hpp"
 
 namespace rouleau::command {
 

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "plan/blocks.hpp"
 #include "plan/plan.hpp"
 #include "plan/plan_report.hpp"
+#include "plan/ranks/blocks.hpp"
 #include "plan/read_scene.hpp"
 
 namespace rouleau::command {

@@ -80,10 +80,11 @@ std::optional<Failure> check_stretch(const core::Membranes& membranes, const sce
     const core::CellRange& cell = membranes.cells[k];
     const auto* circle = std::get_if<scene::Circle>(&scene.cell_types[cell.type].shape);
     const double placed = circle != nullptr ? circle->prestretch : 1.0;
+    const std::vector<double>& rest_length = membranes.type_of(cell).rest_length;
     for (int i = cell.first; i < cell.end(); ++i) {
       const auto from = static_cast<std::size_t>(i), to = static_cast<std::size_t>(cell.next(i));
       const double dx = membranes.x[to] - membranes.x[from], dy = membranes.y[to] - membranes.y[from];
-      const double stretch = std::hypot(dx, dy) / (placed * membranes.rest_length[from]);
+      const double stretch = std::hypot(dx, dy) / (placed * rest_length[i - cell.first]);
       if (stretch <= limit && stretch * limit >= 1) continue;
       Failure found = uneven_failure("a segment", static_cast<int>(k), stretch, limit, stage);
       found.place = {units::coordinate(membranes.x[from], units.length),

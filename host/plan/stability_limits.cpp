@@ -1,4 +1,5 @@
 #include "stability_limits.hpp"
+#include "placed_cells.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,5 @@
 #include "simulation.hpp"
+#include "plan/placed_cells.hpp"
 
 #include <omp.h>
 
@@ -23,8 +24,8 @@
 #include "monitor/failure_mode.hpp"
 #include "monitor/node_checks.hpp"
 #include "monitor/state_checks.hpp"
-#include "plan/blocks.hpp"
 #include "plan/output_schedule.hpp"
+#include "plan/ranks/blocks.hpp"
 #include "plan/solver_setup.hpp"
 #include "progress.hpp"
 #include "provenance.hpp"

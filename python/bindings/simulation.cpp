@@ -1,4 +1,5 @@
 #include "simulation.hpp"
+#include "plan/placed_cells.hpp"
 
 #include <omp.h>
 

@@ -4,9 +4,9 @@
 #include <algorithm>
 
 #include "core/membrane/membranes.hpp"
+#include "plan/placed_cells.hpp"
 #include "plan/plan_report.hpp"
 #include "plan/read_scene.hpp"
-#include "plan/solver_setup.hpp"
 #include "shape/random_cells.hpp"
 #include "target.hpp"
 

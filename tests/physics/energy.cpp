@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "core/membrane/geometry.hpp"
+#include "plan/placed_cells.hpp"
 #include "scene_run.hpp"
 #include "solver_fixture.hpp"
 

@@ -3,6 +3,7 @@
 
 #include "core/solver/solver.hpp"
 #include "flow_fixture.hpp"
+#include "plan/placed_cells.hpp"
 #include "plan/read_scene.hpp"
 #include "plan/solver_setup.hpp"
 

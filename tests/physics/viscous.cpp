@@ -21,7 +21,7 @@ double stretch_amplitude(const Membranes& m) {
   for (int i = 0; i < m.node_count(); ++i) {
     const auto k = static_cast<std::size_t>(i), n = static_cast<std::size_t>(m.cells[0].next(i));
     const double q = 2 * std::numbers::pi * (i + 0.5) / count;
-    sum += std::log(std::hypot(m.x[n] - m.x[k], m.y[n] - m.y[k]) / m.rest_length[k]) * std::cos(2 * q);
+    sum += std::log(std::hypot(m.x[n] - m.x[k], m.y[n] - m.y[k]) / m.types[0]->rest_length[k]) * std::cos(2 * q);
   }
   return 2 * sum / count;
 }

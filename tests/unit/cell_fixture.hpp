@@ -8,7 +8,7 @@
 #include "base/worker.hpp"
 #include "core/domain/images.hpp"
 #include "core/membrane/membranes.hpp"
-#include "plan/solver_setup.hpp"
+#include "plan/placed_cells.hpp"
 #include "plugin/catalog.hpp"
 #include "plugin/handles.hpp"
 #include "unit/periodic_box.hpp"
@@ -58,43 +58,32 @@ inline Scene biconcave_scene(const std::vector<Placed>& places, core::Domain<2> 
 
 /// The same cells, wherever they are and whatever they cross.
 inline Membranes biconcave_cells(const std::vector<Placed>& places, int segments = 100) {
-  const core::Domain<2> far = periodic_box(1000000);
   Membranes all;
-  for (const Placed& place : places) {
-    const Membranes one = plan::make_membranes(biconcave_scene({{0, 1000, 0}}, far, 2000, segments), 1.0);
-    CellRange range = one.cells[0];
-    range.first = all.node_count();
-    all.cells.push_back(range);
-    const double c = std::cos(place.angle), s = std::sin(place.angle);
-    for (std::size_t i = 0; i < one.x.size(); ++i) {
-      const double x = one.x[i], y = one.y[i] - 1000;
-      all.x.push_back(place.x + c * x - s * y);
-      all.y.push_back(place.y + s * x + c * y);
-    }
-    all.rest_length.insert(all.rest_length.end(), one.rest_length.begin(), one.rest_length.end());
-    all.rest_weight.insert(all.rest_weight.end(), one.rest_weight.begin(), one.rest_weight.end());
-    all.rest_curvature.insert(all.rest_curvature.end(), one.rest_curvature.begin(), one.rest_curvature.end());
-  }
-  for (auto* values : {&all.force_x, &all.force_y, &all.velocity_x, &all.velocity_y}) values->assign(all.x.size(), 0.0);
+  all.types = plan::make_membranes(biconcave_scene({{0, 1000, 0}}, periodic_box(1000000), 2000, segments), 1.0).types;
+  all.types.resize(4, all.types.front());  // for cells that are given another type
+  for (const Placed& place : places) add_cell(all, 0, place.x, place.y, place.angle);
   return all;
 }
 
-/// Two circles of `radius` and radius + gap about one centre, the inner one turned; both with as many segments.
-inline Membranes mating_circles(double radius, double gap, int segments, double angle) {
+/// Adds a cell of a type of its own, as it is given.
+inline void add_shape(Membranes& membranes, RestShape shape) {
+  membranes.types.push_back(std::make_shared<const RestShape>(std::move(shape)));
+  add_cell(membranes, static_cast<int>(membranes.types.size()) - 1, 0, 0, 0);
+}
+
+/// Two circles of `radius` and radius + gap about one centre, the inner one turned, of one type each; both with as many
+/// segments. `prestretch`: their lengths over those at rest.
+inline Membranes mating_circles(double radius, double gap, int segments, double angle, double prestretch = 1) {
   Membranes m;
   for (const double r : {radius, radius + gap}) {
-    const double turn = 2 * 3.141592653589793 / segments, length = 2 * r * std::sin(turn / 2);
-    m.cells.push_back({{m.node_count(), segments}, 0, 3.141592653589793 * r * r, segments * length});
+    std::vector<double> x, y;
     for (int i = 0; i < segments; ++i) {
-      const double at = i * turn + (r == radius ? angle : 0);
-      m.x.push_back(r * std::cos(at));
-      m.y.push_back(r * std::sin(at));
-      m.rest_length.push_back(length);
-      m.rest_weight.push_back(length);
-      m.rest_curvature.push_back(turn / length);
+      const double at = i * 2 * 3.141592653589793 / segments + (r == radius ? angle : 0);
+      x.push_back(r * std::cos(at));
+      y.push_back(r * std::sin(at));
     }
+    add_shape(m, make_rest_shape(std::move(x), std::move(y), prestretch));
   }
-  for (auto* values : {&m.force_x, &m.force_y, &m.velocity_x, &m.velocity_y}) values->assign(m.x.size(), 0.0);
   return m;
 }
 

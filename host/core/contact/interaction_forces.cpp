@@ -188,7 +188,9 @@ void InteractionForces::make_room_for_reactions(int cell) {
 void InteractionForces::act(int cell, Membranes& membranes, const Scratch& scratch) {
   const ContactList& list = scratch.contacts;
   const std::vector<NeighbourList::Pair>& pairs = contacts_.neighbours().list(cell).pairs;
-  const double *force = scratch.force.data(), *weight = membranes.rest_weight.data(), *along = list.along.data();
+  const CellRange& own = membranes.cells[cell];
+  const double* weight = membranes.type_of(own).rest_weight.data();
+  const double *force = scratch.force.data(), *along = list.along.data();
   double *force_x = membranes.force_x.data(), *force_y = membranes.force_y.data();
   const int *node = list.node.data(), *segment = list.segment.data();
   const double *direction_x = list.direction_x.data(), *direction_y = list.direction_y.data();
@@ -197,7 +199,7 @@ void InteractionForces::act(int cell, Membranes& membranes, const Scratch& scrat
     const int to_touched = pair.reaction - pair.touched.begin - membranes.cells[pair.other].first;
     double *reaction_x = reactions_[cell].x.data(), *reaction_y = reactions_[cell].y.data();
     const auto act_at = [&](int i) {
-      const double f = 0.5 * weight[node[i]] * force[i], fx = f * direction_x[i], fy = f * direction_y[i];
+      const double f = 0.5 * weight[node[i] - own.first] * force[i], fx = f * direction_x[i], fy = f * direction_y[i];
       const int begin = segment[i] + to_touched;
       force_x[node[i]] += fx;
       force_y[node[i]] += fy;
@@ -245,7 +247,8 @@ double InteractionForces::energy(const Membranes& membranes, const Ranks<2>& ran
     const ContactList& list = scratch.contacts;
     find_contacts(cell, membranes, scratch);
     std::vector<double> energy(list.node.size(), 0.0);
-    const int type = membranes.cells[cell].type;
+    const CellRange& own = membranes.cells[cell];
+    const int type = own.type;
     for (std::size_t pair = 0; pair < list.ranges.size();) {
       const std::size_t first_pair = pair;
       const TypeRange range = next_range(cell, list.ranges, membranes, pair);
@@ -257,7 +260,8 @@ double InteractionForces::energy(const Membranes& membranes, const Ranks<2>& ran
         }
       }
     }
-    for (int i = 0; i < list.count; ++i) sum.front().add(0.5 * membranes.rest_weight[list.node[i]] * energy[i]);
+    const double* weight = membranes.type_of(own).rest_weight.data();
+    for (int i = 0; i < list.count; ++i) sum.front().add(0.5 * weight[list.node[i] - own.first] * energy[i]);
   }
   add_up(ranks, sum);
   return sum.front().value();

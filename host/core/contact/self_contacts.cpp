@@ -25,22 +25,20 @@ SelfContacts::SelfContacts(const Membranes& membranes, std::vector<SelfInteracti
       throw std::invalid_argument("a potential within a membrane depends on the distance alone: " + potential.id);
     const double cutoff = cutoff_of(potential);
     Kind& kind = kinds_.emplace_back(Kind{cutoff, potential.writes("energy"), {}});
-    kind.reach.resize(membranes.x.size(), {0, 0});
+    const RestShape& rest = *membranes.types[interaction.type];
+    const int count = static_cast<int>(rest.x.size());
+    kind.reach.resize(rest.x.size(), {0, 0});
     const double apart = std::numbers::pi / 2 * cutoff;
-    for (const CellRange& cell : membranes.cells) {
-      if (cell.type != interaction.type) continue;
-      for (int node = cell.first; node < cell.end(); ++node) {
-        // Begins of segments that are far enough ahead, and ends of those that are far enough behind.
-        double along = 0;
-        int segment = 0, begin = 0, end = 0;
-        for (; segment < cell.count; ++segment) {
-          if (along < apart) begin = segment + 1;
-          along += membranes.rest_length[cell.first + (node - cell.first + segment) % cell.count];
-          if (cell.rest_perimeter - along >= apart) end = segment + 1;
-        }
-        const int own = node - cell.first;
-        if (begin < end) kind.reach[node] = {own + begin, own + end};
+    for (int node = 0; node < count; ++node) {
+      // Begins of segments that are far enough ahead, and ends of those that are far enough behind.
+      double along = 0;
+      int begin = 0, end = 0;
+      for (int segment = 0; segment < count; ++segment) {
+        if (along < apart) begin = segment + 1;
+        along += rest.rest_length[(node + segment) % count];
+        if (rest.rest_perimeter - along >= apart) end = segment + 1;
       }
+      if (begin < end) kind.reach[node] = {node + begin, node + end};
     }
   }
 }
@@ -50,6 +48,7 @@ void SelfContacts::run(Worker worker, Membranes& membranes) {
   for (int cell = cells.begin; cell < cells.end; ++cell) {
     if (!membranes.owns(cell)) continue;
     const CellRange& range = membranes.cells[cell];
+    const double* weight = membranes.type_of(range).rest_weight.data();
     Contacts& contacts = contacts_.of(cells.begin);
     for (std::size_t k = 0; k < interactions_.size(); ++k) {
       if (interactions_[k].type != range.type) continue;
@@ -57,7 +56,7 @@ void SelfContacts::run(Worker worker, Membranes& membranes) {
       for (int i = 0; i < contacts.count; ++i) {
         const int own = contacts.node[i], node = range.first + own;
         const int from = range.first + contacts.closest[own], to = range.next(from);
-        const double pull = membranes.rest_weight[node] * 0.5 * contacts.law[i] / contacts.distance[i];
+        const double pull = weight[own] * 0.5 * contacts.law[i] / contacts.distance[i];
         const double x = pull * contacts.toward_x[own], y = pull * contacts.toward_y[own], s = contacts.place[own];
         membranes.force_x[node] += x, membranes.force_y[node] += y;
         membranes.force_x[from] -= (1 - s) * x, membranes.force_y[from] -= (1 - s) * y;
@@ -109,7 +108,7 @@ void SelfContacts::find(std::size_t interaction, int cell, const Membranes& memb
       if (!(dx * dx + dy * dy <= reach * reach)) continue;
       for (int node = own.first; node < own.end; ++node) {
         // Counted from the node on, segments of the block may come before or after the first one of the cell.
-        const Reach allowed = kind.reach[range.first + node];
+        const Reach allowed = kind.reach[node];
         for (const int turn : {0, count})
           look(node, std::max(other.first, allowed.begin - turn), std::min(other.end, allowed.end - turn));
       }
@@ -145,7 +144,7 @@ double SelfContacts::energy(const Membranes& membranes, const Ranks<2>& ranks) c
     for (std::size_t k = 0; k < interactions_.size(); ++k) {
       if (interactions_[k].type != membranes.cells[cell].type || !kinds_[k].energy) continue;
       measure(k, cell, membranes, true, contacts);
-      const double* weight = membranes.rest_weight.data() + membranes.cells[cell].first;
+      const double* weight = membranes.type_of(membranes.cells[cell]).rest_weight.data();
       for (int i = 0; i < contacts.count; ++i) sum.front().add(weight[contacts.node[i]] * 0.5 * contacts.law[i]);
     }
   }

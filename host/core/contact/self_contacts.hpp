@@ -43,7 +43,7 @@ class SelfContacts {
   struct Kind {
     double cutoff;
     bool energy;
-    std::vector<Reach> reach;  ///< of all nodes; empty where the type is another
+    std::vector<Reach> reach;  ///< of the nodes of a cell
   };
   /// Consecutive segments and a circle that holds them.
   struct Block {

@@ -32,18 +32,19 @@ WallContacts::WallContacts(Membranes& membranes, std::vector<WallInteraction> in
 
 void WallContacts::run(Worker worker, Membranes& membranes) {
   const Range cells = worker.share(membranes.cell_count());
-  const double* weight = membranes.rest_weight.data();
   double* force = membranes.force_y.data();
   for (int cell = cells.begin; cell < cells.end; ++cell) {
     if (!membranes.owns(cell)) continue;
     Contacts& contacts = contacts_.of(cells.begin);
+    const CellRange& range = membranes.cells[cell];
+    const double* weight = membranes.type_of(range).rest_weight.data();
     for (std::size_t k = 0; k < interactions_.size(); ++k) {
-      if (interactions_[k].type != membranes.cells[cell].type) continue;
+      if (interactions_[k].type != range.type) continue;
       measure(k, cell, membranes, Wanted::step, contacts);
       if (!variables_[k].empty()) remember(k, cell, membranes, contacts);
       for (int i = 0; i < contacts.count; ++i) {
         const int node = contacts.node[i];
-        force[node] += weight[node] * contacts.law[i] * contacts.outward[i];
+        force[node] += weight[node - range.first] * contacts.law[i] * contacts.outward[i];
       }
     }
   }
@@ -146,11 +147,13 @@ double WallContacts::energy(const Membranes& membranes, const Ranks<2>& ranks) c
   Contacts contacts;
   for (int cell = 0; cell < membranes.cell_count(); ++cell) {
     if (!membranes.owns(cell)) continue;
+    const CellRange& range = membranes.cells[cell];
+    const double* weight = membranes.type_of(range).rest_weight.data();
     for (std::size_t k = 0; k < interactions_.size(); ++k) {
-      if (interactions_[k].type != membranes.cells[cell].type || !traits_[k].energy) continue;
+      if (interactions_[k].type != range.type || !traits_[k].energy) continue;
       measure(k, cell, membranes, Wanted::energy, contacts);
       for (int i = 0; i < contacts.count; ++i)
-        sum.front().add(membranes.rest_weight[contacts.node[i]] * contacts.law[i]);
+        sum.front().add(weight[contacts.node[i] - range.first] * contacts.law[i]);
     }
   }
   add_up(ranks, sum);
@@ -161,11 +164,13 @@ double WallContacts::net_force(const Membranes& membranes) const {
   double sum = 0;
   Contacts contacts;
   for (int cell = 0; cell < membranes.cell_count(); ++cell) {
+    const CellRange& range = membranes.cells[cell];
+    const double* weight = membranes.type_of(range).rest_weight.data();
     for (std::size_t k = 0; k < interactions_.size(); ++k) {
-      if (interactions_[k].type != membranes.cells[cell].type) continue;
+      if (interactions_[k].type != range.type) continue;
       measure(k, cell, membranes, Wanted::force, contacts);
       for (int i = 0; i < contacts.count; ++i)
-        sum += membranes.rest_weight[contacts.node[i]] * contacts.law[i] * contacts.outward[i];
+        sum += weight[contacts.node[i] - range.first] * contacts.law[i] * contacts.outward[i];
     }
   }
   return sum;

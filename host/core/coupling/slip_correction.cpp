@@ -128,15 +128,15 @@ int smoothings_of(double length, double mobility, double stiffness) {
 
 SlipCorrection::SlipCorrection(const Membranes& membranes, std::vector<Type> types, double viscosity)
     : types_(std::move(types)), viscosity_(viscosity) {
-  for (const CellRange& cell : membranes.cells) {
-    const Type& type = types_[cell.type];
+  for (std::size_t t = 0; t < types_.size(); ++t) {
+    const Type& type = types_[t];
+    const RestShape& rest = *membranes.types[t];
     // Sliding along a curved membrane changes its curvature too, by curvature x d slide / d length.
     double curvature = 0;
-    for (int k = cell.first; k < cell.end(); ++k) {
-      curvature = std::max(curvature, std::abs(membranes.rest_curvature[k]));
-    }
+    for (const double at_rest : rest.rest_curvature) curvature = std::max(curvature, std::abs(at_rest));
     const double stiffness = type.stretching_stiffness + type.bending_stiffness * curvature * curvature;
-    smoothings_.push_back(smoothings_of(cell.rest_perimeter / cell.count, type.constants.slip / viscosity, stiffness));
+    smoothings_.push_back(smoothings_of(rest.rest_perimeter / static_cast<double>(rest.x.size()),
+                                        type.constants.slip / viscosity, stiffness));
   }
   for (auto* values : {&tangent_x_, &tangent_y_, &inverse_chord_, &touch_x_, &touch_y_, &force_x_, &force_y_, &slip_,
                        &scratch_x_, &scratch_y_}) {
@@ -164,7 +164,7 @@ void SlipCorrection::run(Worker worker, const Membranes& membranes, double* velo
                         cell.end(),
                         constants.shift,
                         constants.slip / viscosity_,
-                        smoothings_[c],
+                        smoothings_[cell.type],
                         membranes.x.data(),
                         membranes.y.data(),
                         membranes.force_x.data(),

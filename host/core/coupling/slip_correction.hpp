@@ -49,7 +49,7 @@ class SlipCorrection {
 
   std::vector<Type> types_;
   double viscosity_;
-  std::vector<int> smoothings_;               // of each cell's slip
+  std::vector<int> smoothings_;               // of the slip of each type's cells
   PagedArray<double> tangent_x_, tangent_y_;  // along the chord from the node before to the node after
   PagedArray<double> inverse_chord_;          // 1 / its length
   PagedArray<double> touch_x_, touch_y_;

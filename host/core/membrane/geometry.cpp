@@ -58,9 +58,10 @@ double perimeter(const Membranes& membranes, const CellRange& cell) {
 
 StretchRange stretch_range(const Membranes& membranes, const CellRange& cell) {
   StretchRange range;
+  const std::vector<double>& rest_length = membranes.type_of(cell).rest_length;
   for (int i = cell.first; i < cell.end(); ++i) {
     const double length = (node(membranes, cell.next(i)) - node(membranes, i)).norm();
-    const double stretch = length / membranes.rest_length[i];
+    const double stretch = length / rest_length[i - cell.first];
     range.least = std::min(range.least, stretch);
     range.most = std::max(range.most, stretch);
   }
@@ -139,10 +140,11 @@ double facing_length(const Membranes& membranes, const CellRange& a, const CellR
                      const Domain<2>& domain, double reach) {
   const Vec<2> move(shift.x * domain.period(0), shift.y * domain.period(1));
   const Bounds bounds_b = bounds(membranes, b);
+  const std::vector<double>& weight = membranes.type_of(a).rest_weight;
   double length = 0;
   for (int i = a.first; i < a.end(); ++i) {
     const bool near = nearest(membranes, b, bounds_b, node(membranes, i) - move, reach * reach) < reach * reach;
-    if (near) length += membranes.rest_weight[i];
+    if (near) length += weight[i - a.first];
   }
   return length;
 }

@@ -33,15 +33,20 @@ double weighted_sum(const double* values, const double* weights, int count) {
 
 }  // namespace
 
+MembraneForces::Scratch& MembraneForces::scratch_of(int first_cell) {
+  Scratch& scratch = scratch_.of(first_cell);
+  if (scratch.x.count() < most_nodes_) scratch = Scratch(most_nodes_);
+  return scratch;
+}
+
 void MembraneForces::run(Worker worker, Membranes& membranes) {
   const Range cells = worker.share(membranes.cell_count());
   for (int cell = cells.begin; cell < cells.end; ++cell) {
     if (!membranes.owns(cell)) continue;
-    const std::size_t at = offset(cells.begin);
-    const CellRange& range = membranes.cells[cell];
-    const bool semi_implicit = types_[range.type].filter.has_value();
-    measure(membranes, cell, at, semi_implicit);
-    act(membranes, cell, at, apply_laws(membranes, cell, at, &membranes.state, nullptr));
+    Scratch& scratch = scratch_of(cells.begin);
+    const bool semi_implicit = types_[membranes.cells[cell].type].filter.has_value();
+    measure(membranes, cell, scratch, semi_implicit);
+    act(membranes, cell, scratch, apply_laws(membranes, cell, scratch, &membranes.state, nullptr));
     if (semi_implicit) soften(membranes, cell);
   }
 }
@@ -49,8 +54,8 @@ void MembraneForces::run(Worker worker, Membranes& membranes) {
 MembraneEnergy MembraneForces::energies(const Membranes& membranes) {
   MembraneEnergy energy;
   for (int cell = 0; cell < membranes.cell_count(); ++cell) {
-    measure(membranes, cell, offset(0), false);
-    apply_laws(membranes, cell, offset(0), nullptr, &energy);
+    measure(membranes, cell, scratch_of(0), false);
+    apply_laws(membranes, cell, scratch_of(0), nullptr, &energy);
   }
   return energy;
 }
@@ -59,30 +64,27 @@ void MembraneForces::tensions(const Membranes& membranes, std::vector<double>& t
   tension.resize(membranes.x.size());
   for (int cell = 0; cell < membranes.cell_count(); ++cell) {
     const CellRange& range = membranes.cells[cell];
-    measure(membranes, cell, offset(0), false);
-    const double uniform = apply_laws(membranes, cell, offset(0), nullptr, nullptr).perimeter_tension;
-    for (int k = 0; k < range.count; ++k) {
-      tension[range.first + k] = scratch_.tension[offset(0) + static_cast<std::size_t>(k)] + uniform;
-    }
+    Scratch& scratch = scratch_of(0);
+    measure(membranes, cell, scratch, false);
+    const double uniform = apply_laws(membranes, cell, scratch, nullptr, nullptr).perimeter_tension;
+    for (int k = 0; k < range.count; ++k) tension[range.first + k] = scratch.tension[k] + uniform;
   }
 }
 
-void MembraneForces::measure(const Membranes& membranes, int cell, std::size_t at, bool ahead) {
+void MembraneForces::measure(const Membranes& membranes, int cell, Scratch& s, bool ahead) const {
   const CellRange& range = membranes.cells[cell];
   const Type& type = types_[range.type];
-  Scratch& s = scratch_;
-  const auto copy_closed = [&](const std::vector<double>& from, PagedArray<double>& to) {
-    std::copy_n(from.data() + range.first, range.count, to.data() + at);
-    close(to.data() + at, range.count);
+  const auto copy_closed = [&](const std::vector<double>& from, Padded& to) {
+    std::copy_n(from.data() + range.first, range.count, to.data());
+    close(to.data(), range.count);
   };
   copy_closed(membranes.x, s.x);
   copy_closed(membranes.y, s.y);
   if (ahead) {
     for (int k = -1; k <= range.count; ++k) {
       const int node = range.first + (k < 0 ? range.count - 1 : k % range.count);
-      const std::size_t to = at + static_cast<std::size_t>(k);
-      s.x[to] += membranes.velocity_x[node];
-      s.y[to] += membranes.velocity_y[node];
+      s.x[k] += membranes.velocity_x[node];
+      s.y[k] += membranes.velocity_y[node];
     }
   }
   if (type.rate) {
@@ -91,45 +93,44 @@ void MembraneForces::measure(const Membranes& membranes, int cell, std::size_t a
   }
   CellArrays arrays{};
   arrays.count = range.count;
-  arrays.x = &s.x[at], arrays.y = &s.y[at], arrays.u = &s.u[at], arrays.v = &s.v[at];
-  arrays.tangent_x = &s.tangent_x[at], arrays.tangent_y = &s.tangent_y[at];
-  arrays.inverse_length = &s.inverse_length[at], arrays.stretch = &s.stretch[at], arrays.rate = &s.rate[at];
-  arrays.inverse_rest_length = &rest_of(cell).inverse_length[pack_margin];
-  arrays.inverse_rest_weight = &rest_of(cell).inverse_weight[pack_margin];
-  arrays.curvature = &s.curvature[at];
+  arrays.x = s.x.data(), arrays.y = s.y.data(), arrays.u = s.u.data(), arrays.v = s.v.data();
+  arrays.tangent_x = s.tangent_x.data(), arrays.tangent_y = s.tangent_y.data();
+  arrays.inverse_length = s.inverse_length.data(), arrays.stretch = s.stretch.data(), arrays.rate = s.rate.data();
+  arrays.inverse_rest_length = type.inverse_length.data();
+  arrays.inverse_rest_weight = type.inverse_weight.data();
+  arrays.curvature = s.curvature.data();
   arrays.with_rate = type.rate, arrays.with_moment = type.moment;
   run_loop<MeasureCell>(arrays);
 }
 
-void MembraneForces::give_inputs(const Law& law, const CellRange& range, int cell, std::size_t at,
-                                 const CellState& sums, rouleau_membrane_block& block) const {
+void MembraneForces::give_inputs(const Law& law, const CellRange& range, const Scratch& scratch, const CellState& sums,
+                                 rouleau_membrane_block& block) const {
   const bool whole_cell = law.pressure || law.perimeter_tension;
   block.struct_size = sizeof block;
   block.count = whole_cell ? 1 : static_cast<std::uint32_t>(range.count);
-  if (law.stretch) block.stretch = &scratch_.stretch[at];
-  if (law.stretch_rate) block.stretch_rate = &scratch_.rate[at];
-  if (law.curvature) block.curvature = &scratch_.curvature[at];
-  if (law.rest_curvature) block.rest_curvature = &rest_of(cell).curvature[pack_margin];
+  if (law.stretch) block.stretch = scratch.stretch.data();
+  if (law.stretch_rate) block.stretch_rate = scratch.rate.data();
+  if (law.curvature) block.curvature = scratch.curvature.data();
+  if (law.rest_curvature) block.rest_curvature = types_[range.type].curvature.data();
   if (law.area) block.area = &sums.area;
   if (law.rest_area) block.rest_area = &range.rest_area;
   if (law.perimeter) block.perimeter = &sums.perimeter;
   if (law.rest_perimeter) block.rest_perimeter = &range.rest_perimeter;
 }
 
-void MembraneForces::apply_law(const Law& law, const Membranes& membranes, int cell, std::size_t at,
+void MembraneForces::apply_law(const Law& law, const Membranes& membranes, int cell, Scratch& s,
                                std::vector<ElementState>* next, CellState& sums, bool first_tension, bool first_moment,
-                               double* energy) {
-  Scratch& s = scratch_;
+                               double* energy) const {
   const CellRange& range = membranes.cells[cell];
   double pressure = 0, perimeter_tension = 0;
   rouleau_membrane_block block{};
-  give_inputs(law, range, cell, at, sums, block);
+  give_inputs(law, range, s, sums, block);
   block.time_step = next != nullptr ? 1 : 0;
-  if (law.tension) block.tension = first_tension ? &s.tension[at] : &s.law[at];
-  if (law.moment) block.moment = first_moment ? &s.moment[at] : &s.law[at];
+  if (law.tension) block.tension = first_tension ? s.tension.data() : s.law.data();
+  if (law.moment) block.moment = first_moment ? s.moment.data() : s.law.data();
   if (law.pressure) block.pressure = &pressure;
   if (law.perimeter_tension) block.perimeter_tension = &perimeter_tension;
-  if (law.tension_by_rate) block.tension_by_rate = &s.law_by_rate[at];
+  if (law.tension_by_rate) block.tension_by_rate = s.law_by_rate.data();
   block.energy = energy;
   std::array<const double*, most_states> state;
   std::array<double*, most_states> new_state;
@@ -144,8 +145,8 @@ void MembraneForces::apply_law(const Law& law, const Membranes& membranes, int c
   }
   law.model.compute(&block);
 
-  const auto add = [&](const PagedArray<double>& from, PagedArray<double>& sum) {
-    for (std::size_t i = at; i < at + static_cast<std::size_t>(range.count); ++i) sum[i] += from[i];
+  const auto add = [&](const Padded& from, Padded& sum) {
+    for (int k = 0; k < range.count; ++k) sum[k] += from[k];
   };
   if (law.tension && !first_tension) add(s.law, s.tension);
   if (law.moment && !first_moment) add(s.law, s.moment);
@@ -154,8 +155,8 @@ void MembraneForces::apply_law(const Law& law, const Membranes& membranes, int c
   sums.perimeter_tension += perimeter_tension;
 }
 
-MembraneForces::CellState MembraneForces::apply_laws(const Membranes& membranes, int cell, std::size_t at,
-                                                     std::vector<ElementState>* next, MembraneEnergy* energy) {
+MembraneForces::CellState MembraneForces::apply_laws(const Membranes& membranes, int cell, Scratch& scratch,
+                                                     std::vector<ElementState>* next, MembraneEnergy* energy) const {
   const CellRange& range = membranes.cells[cell];
   const Type& type = types_[range.type];
   CellState sums;
@@ -163,40 +164,36 @@ MembraneForces::CellState MembraneForces::apply_laws(const Membranes& membranes,
     sums.area = enclosed_area(membranes, range);
     sums.perimeter = perimeter(membranes, range);
   }
-  if (type.tension_by_rate) std::fill_n(&scratch_.by_rate[at], range.count, 0.0);
+  if (type.tension_by_rate) std::fill_n(scratch.by_rate.data(), range.count, 0.0);
   bool tension = false, moment = false;
   for (const Law& law : type.laws) {
-    apply_law(law, membranes, cell, at, next, sums, !tension, !moment,
-              energy != nullptr && law.energy ? &scratch_.energy[at] : nullptr);
+    apply_law(law, membranes, cell, scratch, next, sums, !tension, !moment,
+              energy != nullptr && law.energy ? scratch.energy.data() : nullptr);
     if (energy != nullptr)
-      add_energy(law, membranes, cell, at, sums, tension ? &scratch_.law[at] : &scratch_.tension[at], *energy);
+      add_energy(law, membranes, cell, scratch, sums, tension ? scratch.law.data() : scratch.tension.data(), *energy);
     tension |= law.tension;
     moment |= law.moment;
   }
   // Where no law gives them, the arrays may hold those of another type's cell.
-  if (!tension) std::fill_n(&scratch_.tension[at], range.count, 0.0);
-  if (!moment) std::fill_n(&scratch_.moment[at], range.count, 0.0);
-  if (type.tension_by_rate) add_rate_tension(membranes, cell, at, next);
+  if (!tension) std::fill_n(scratch.tension.data(), range.count, 0.0);
+  if (!moment) std::fill_n(scratch.moment.data(), range.count, 0.0);
+  if (type.tension_by_rate) add_rate_tension(membranes, cell, scratch, next);
   if (type.tension_by_rate && energy != nullptr) {
-    const auto first = static_cast<std::size_t>(range.first);
-    const double* implicit = &membranes.state[type.rate_tension].value[first];
-    for (int k = 0; k < range.count; ++k) {
-      const auto i = static_cast<std::size_t>(k);
-      energy->dissipation += implicit[k] * scratch_.rate[at + i] * membranes.rest_length[first + i];
-    }
+    const double* implicit = &membranes.state[type.rate_tension].value[range.first];
+    const double* length = membranes.type_of(range).rest_length.data();
+    for (int k = 0; k < range.count; ++k) energy->dissipation += implicit[k] * scratch.rate[k] * length[k];
   }
   return sums;
 }
 
-double MembraneForces::integrated(const Law& law, const Membranes& membranes, const CellRange& range,
-                                  const double* energy) {
-  const auto first = static_cast<std::size_t>(range.first);
-  if (law.tension) return weighted_sum(energy, &membranes.rest_length[first], range.count);
-  if (law.moment) return weighted_sum(energy, &membranes.rest_weight[first], range.count);
+double MembraneForces::integrated(const Law& law, const RestShape& rest, const double* energy) {
+  const int count = static_cast<int>(rest.x.size());
+  if (law.tension) return weighted_sum(energy, rest.rest_length.data(), count);
+  if (law.moment) return weighted_sum(energy, rest.rest_weight.data(), count);
   return energy[0];
 }
 
-double MembraneForces::relaxed_energy(const Law& law, const Membranes& membranes, int cell, std::size_t at,
+double MembraneForces::relaxed_energy(const Law& law, const Membranes& membranes, int cell, const Scratch& scratch,
                                       const CellState& sums) const {
   const CellRange& range = membranes.cells[cell];
   const auto count = static_cast<std::size_t>(range.count);
@@ -211,7 +208,7 @@ double MembraneForces::relaxed_energy(const Law& law, const Membranes& membranes
   }
   for (std::size_t k = 0; k < values.size(); ++k) state[k] = new_state[k] = values[k].data();
   rouleau_membrane_block block{};
-  give_inputs(law, range, cell, at, sums, block);
+  give_inputs(law, range, scratch, sums, block);
   if (law.stretch_rate) block.stretch_rate = still.data();
   block.energy = energy.data();
   block.state = state.data();
@@ -221,67 +218,63 @@ double MembraneForces::relaxed_energy(const Law& law, const Membranes& membranes
   block.new_state = nullptr;
   block.time_step = 0;
   law.model.compute(&block);
-  return integrated(law, membranes, range, energy.data());
+  return integrated(law, membranes.type_of(range), energy.data());
 }
 
 /// `tension`: that of this law alone.
-void MembraneForces::add_energy(const Law& law, const Membranes& membranes, int cell, std::size_t at,
+void MembraneForces::add_energy(const Law& law, const Membranes& membranes, int cell, const Scratch& scratch,
                                 const CellState& sums, const double* tension, MembraneEnergy& energy) const {
   const CellRange& range = membranes.cells[cell];
   if (!law.energy) {
     // A law that only resists the rate of stretch stores nothing.
     bool stores = !law.tension_by_rate;
     for (int k = 0; k < range.count && !stores; ++k) {
-      const double by_rate = scratch_.law_by_rate[at + static_cast<std::size_t>(k)];
-      const double viscous = by_rate * scratch_.rate[at + static_cast<std::size_t>(k)];
+      const double viscous = scratch.law_by_rate[k] * scratch.rate[k];
       stores = std::abs(tension[k] - viscous) > 1e-12 * std::abs(viscous);
     }
     if (stores) energy.unknown = law.model.id;
     return;
   }
-  const double present = integrated(law, membranes, range, &scratch_.energy[at]);
+  const double present = integrated(law, membranes.type_of(range), scratch.energy.data());
   (law.tension ? energy.tension : law.moment ? energy.bending : energy.cell) += present;
-  if (!law.state.empty()) energy.dissipation += present - relaxed_energy(law, membranes, cell, at, sums);
+  if (!law.state.empty()) energy.dissipation += present - relaxed_energy(law, membranes, cell, scratch, sums);
 }
 
 /// T(stretch, rate) is taken apart into eta rate, for which the tension of the implicit step comes in, and the rest.
-void MembraneForces::add_rate_tension(const Membranes& membranes, int cell, std::size_t at,
-                                      std::vector<ElementState>* next) {
+void MembraneForces::add_rate_tension(const Membranes& membranes, int cell, Scratch& s,
+                                      std::vector<ElementState>* next) const {
   const CellRange& range = membranes.cells[cell];
   const Type& type = types_[range.type];
   const std::size_t variable = type.rate_tension;
   const double length = range.rest_perimeter / range.count;
   const auto first = static_cast<std::size_t>(range.first);
-  Scratch& s = scratch_;
   if (next != nullptr) {
     solve({range.count,
-           &s.tangent_x[at],
-           &s.tangent_y[at],
-           &rest_of(cell).inverse_length[pack_margin],
-           &s.rate[at],
-           &s.by_rate[at],
+           s.tangent_x.data(),
+           s.tangent_y.data(),
+           type.inverse_length.data(),
+           s.rate.data(),
+           s.by_rate.data(),
            rate_mobility(length) + type.mobility.slip / length,
            &(*next)[variable].value[first],
-           {&s.law[at], &s.law_by_rate[at], &s.segment_force_x[at], &s.segment_force_y[at]}});
+           {s.law.data(), s.law_by_rate.data(), s.segment_force_x.data(), s.segment_force_y.data()}});
   }
   const double* implicit = &membranes.state[variable].value[first];
   for (int k = 0; k < range.count; ++k) {
-    const std::size_t i = at + static_cast<std::size_t>(k);
-    s.tension[i] += implicit[k] - s.by_rate[i] * s.rate[i];
+    s.tension[k] += implicit[k] - s.by_rate[k] * s.rate[k];
   }
 }
 
-void MembraneForces::act(Membranes& membranes, int cell, std::size_t at, const CellState& state) {
+void MembraneForces::act(Membranes& membranes, int cell, Scratch& s, const CellState& state) const {
   const CellRange& range = membranes.cells[cell];
   const Type& type = types_[range.type];
-  Scratch& s = scratch_;
   CellArrays arrays{};
   arrays.count = range.count;
-  arrays.x = &s.x[at], arrays.y = &s.y[at];
-  arrays.tangent_x = &s.tangent_x[at], arrays.tangent_y = &s.tangent_y[at];
-  arrays.inverse_length = &s.inverse_length[at];
-  arrays.tension = &s.tension[at], arrays.moment = &s.moment[at];
-  arrays.segment_force_x = &s.segment_force_x[at], arrays.segment_force_y = &s.segment_force_y[at];
+  arrays.x = s.x.data(), arrays.y = s.y.data();
+  arrays.tangent_x = s.tangent_x.data(), arrays.tangent_y = s.tangent_y.data();
+  arrays.inverse_length = s.inverse_length.data();
+  arrays.tension = s.tension.data(), arrays.moment = s.moment.data();
+  arrays.segment_force_x = s.segment_force_x.data(), arrays.segment_force_y = s.segment_force_y.data();
   arrays.force_x = &membranes.force_x[range.first];
   arrays.force_y = &membranes.force_y[range.first];
   arrays.with_moment = type.moment, arrays.with_pressure = type.cell;

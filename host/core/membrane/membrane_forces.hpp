@@ -70,14 +70,24 @@ class MembraneForces {
     bool tension, moment, pressure, perimeter_tension, energy, tension_by_rate;                         // its outputs
     std::vector<std::size_t> state;  // in Membranes::state, once kept
   };
-  static constexpr int pack_margin = 8;  ///< doubles in the widest pack
-  /// Constants of cells that rest alike: from pack_margin on, with room on both sides for packs that run over the end.
-  struct Rest {
-    int cell;  ///< one of them
-    std::vector<double> inverse_length, inverse_weight, curvature;
+  /// Values of the nodes or segments of one cell, with room on both sides for ghost nodes and packs that run over the end.
+  class Padded {
+   public:
+    explicit Padded(int count = 0) : count_(count), values_(static_cast<std::size_t>(count + 3 * margin), 0.0) {}
+    [[nodiscard]] int count() const { return count_; }
+    [[nodiscard]] double* data() { return values_.data() + margin; }
+    [[nodiscard]] const double* data() const { return values_.data() + margin; }
+    double& operator[](int k) { return data()[k]; }
+    double operator[](int k) const { return data()[k]; }
+
+   private:
+    static constexpr int margin = 8;  ///< doubles in the widest pack
+    int count_;
+    std::vector<double> values_;
   };
   struct Type {
     std::vector<Law> laws;
+    Padded inverse_length, inverse_weight, curvature;                  // at rest
     bool rate = false, tension = false, moment = false, cell = false;  // what the laws need or give, all together
     bool tension_by_rate = false;
     std::size_t rate_tension = 0;  // in Membranes::state, if there is a tension by rate
@@ -85,52 +95,48 @@ class MembraneForces {
     std::optional<SemiImplicitFilter> filter;  // of a semi-implicit step
     std::size_t held_force[2] = {0, 0};        // of the filter, x and y: in Membranes::state
   };
-  /// One cell's working arrays, with room for ghost nodes too. A worker uses those of its first cell for all its cells,
-  /// one after the other, so that they stay in its cache: the room of all its cells is as large as any of them.
+  /// One worker's arrays, for one cell after another.
   struct Scratch {
-    PagedArray<double> x, y, u, v;
-    PagedArray<double> tangent_x, tangent_y, inverse_length, stretch, rate, curvature;
-    PagedArray<double> tension, moment, law, energy;  // sums; one law's contribution and its energy
-    PagedArray<double> segment_force_x, segment_force_y;
-    PagedArray<double> by_rate, law_by_rate;  // d tension / d rate: sum, one law's; only if a law gives it
+    explicit Scratch(int count = 0);
+    Padded x, y, u, v;
+    Padded tangent_x, tangent_y, inverse_length, stretch, rate, curvature;
+    Padded tension, moment, law, energy;  // sums; one law's contribution and its energy
+    Padded segment_force_x, segment_force_y;
+    Padded by_rate, law_by_rate;  // d tension / d rate: sum, one law's
   };
   struct CellState {
     double area = 0, perimeter = 0, pressure = 0, perimeter_tension = 0;
   };
 
   static Law describe(const MembraneLaw& model);
-  void allocate(const Membranes& membranes);
-  void find_rests(const Membranes& membranes);
   void make_filters(const Membranes& membranes, double viscosity);
   void keep_state(Membranes& membranes, double tension_unit);
-  [[nodiscard]] std::size_t offset(int cell) const { return offset_[cell]; }
-  [[nodiscard]] const Rest& rest_of(int cell) const { return rests_[rest_of_[cell]]; }
-  // `at`: where the working arrays begin.
+  /// The arrays of the worker whose first cell this is.
+  Scratch& scratch_of(int first_cell);
   // `ahead`: where the nodes will be after another step like the last one.
-  void measure(const Membranes& membranes, int cell, std::size_t at, bool ahead);
+  void measure(const Membranes& membranes, int cell, Scratch& scratch, bool ahead) const;
   // `next`: where the state after the step goes; null: someone looks, and there is no step.
-  CellState apply_laws(const Membranes& membranes, int cell, std::size_t at, std::vector<ElementState>* next,
-                       MembraneEnergy* energy);
-  void apply_law(const Law& law, const Membranes& membranes, int cell, std::size_t at, std::vector<ElementState>* next,
-                 CellState& sums, bool first_tension, bool first_moment, double* energy);
-  void give_inputs(const Law& law, const CellRange& range, int cell, std::size_t at, const CellState& sums,
+  CellState apply_laws(const Membranes& membranes, int cell, Scratch& scratch, std::vector<ElementState>* next,
+                       MembraneEnergy* energy) const;
+  void apply_law(const Law& law, const Membranes& membranes, int cell, Scratch& scratch,
+                 std::vector<ElementState>* next, CellState& sums, bool first_tension, bool first_moment,
+                 double* energy) const;
+  void give_inputs(const Law& law, const CellRange& range, const Scratch& scratch, const CellState& sums,
                    rouleau_membrane_block& block) const;
-  void add_energy(const Law& law, const Membranes& membranes, int cell, std::size_t at, const CellState& sums,
+  void add_energy(const Law& law, const Membranes& membranes, int cell, const Scratch& scratch, const CellState& sums,
                   const double* tension, MembraneEnergy& energy) const;
   // Of one law in one cell, from the values per rest length or per cell.
-  static double integrated(const Law& law, const Membranes& membranes, const CellRange& range, const double* energy);
+  static double integrated(const Law& law, const RestShape& rest, const double* energy);
   // What a law's energy will be after a step in which nothing moves.
-  double relaxed_energy(const Law& law, const Membranes& membranes, int cell, std::size_t at,
+  double relaxed_energy(const Law& law, const Membranes& membranes, int cell, const Scratch& scratch,
                         const CellState& sums) const;
-  void add_rate_tension(const Membranes& membranes, int cell, std::size_t at, std::vector<ElementState>* next);
-  void act(Membranes& membranes, int cell, std::size_t at, const CellState& state);
+  void add_rate_tension(const Membranes& membranes, int cell, Scratch& scratch, std::vector<ElementState>* next) const;
+  void act(Membranes& membranes, int cell, Scratch& scratch, const CellState& state) const;
   void soften(Membranes& membranes, int cell) const;
 
   std::vector<Type> types_;
-  std::vector<std::size_t> offset_;  // of each cell's node 0
-  std::vector<Rest> rests_;
-  std::vector<int> rest_of_;  // of each cell: which of these
-  Scratch scratch_;
+  int most_nodes_ = 0;  // of a cell
+  WorkerScratch<Scratch> scratch_;
 };
 
 }  // namespace rouleau::core

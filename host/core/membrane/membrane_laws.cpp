@@ -26,10 +26,12 @@ MembraneForces::Law MembraneForces::describe(const MembraneLaw& model) {
           .state = {}};
 }
 
-MembraneForces::MembraneForces(Membranes& membranes, const MembraneForcesSetup& setup) {
+MembraneForces::MembraneForces(Membranes& membranes, const MembraneForcesSetup& setup)
+    : scratch_(membranes.cells.size()) {
   for (const MembraneLaws& laws : setup.laws) {
+    const std::size_t index = types_.size();
     Type& type = types_.emplace_back();
-    if (!setup.mobility.empty()) type.mobility = setup.mobility[types_.size() - 1];
+    if (!setup.mobility.empty()) type.mobility = setup.mobility[index];
     for (const MembraneLaw& model : laws) {
       const Law& law = type.laws.emplace_back(describe(model));
       type.rate |= law.stretch_rate || law.tension_by_rate;
@@ -38,67 +40,37 @@ MembraneForces::MembraneForces(Membranes& membranes, const MembraneForcesSetup& 
       type.moment |= law.moment || law.curvature;
       type.cell |= law.pressure || law.perimeter_tension;
     }
+    const RestShape& rest = *membranes.types[index];
+    const int count = static_cast<int>(rest.x.size());
+    most_nodes_ = std::max(most_nodes_, count);
+    for (Padded* values : {&type.inverse_length, &type.inverse_weight, &type.curvature}) *values = Padded(count);
+    for (int k = 0; k < count; ++k) {
+      const auto i = static_cast<std::size_t>(k);
+      type.inverse_length[k] = 1 / rest.rest_length[i];
+      type.inverse_weight[k] = 1 / rest.rest_weight[i];
+      type.curvature[k] = rest.rest_curvature[i];
+    }
   }
-  allocate(membranes);
   if (setup.semi_implicit) make_filters(membranes, setup.viscosity);
   keep_state(membranes, setup.tension_unit);
 }
 
-void MembraneForces::allocate(const Membranes& membranes) {
-  std::size_t size = pack_margin;
-  for (const CellRange& cell : membranes.cells) {
-    offset_.push_back(size);
-    size += static_cast<std::size_t>(cell.count + pack_margin) / pack_margin * pack_margin + 2 * pack_margin;
-  }
-  Scratch& s = scratch_;
-  for (auto* values :
-       {&s.x, &s.y, &s.u, &s.v, &s.tangent_x, &s.tangent_y, &s.inverse_length, &s.stretch, &s.rate, &s.curvature,
-        &s.tension, &s.moment, &s.law, &s.energy, &s.segment_force_x, &s.segment_force_y}) {
-    *values = PagedArray<double>(size);
-  }
-  if (std::any_of(types_.begin(), types_.end(), [](const Type& type) { return type.tension_by_rate; })) {
-    for (auto* values : {&s.by_rate, &s.law_by_rate}) *values = PagedArray<double>(size);
-  }
-  find_rests(membranes);
-}
-
-/// Cells of a type rest alike as a rule; each is compared with the last one of its type.
-void MembraneForces::find_rests(const Membranes& membranes) {
-  std::vector<int> last(types_.size(), -1);
-  for (int c = 0; c < membranes.cell_count(); ++c) {
-    const CellRange& cell = membranes.cells[c];
-    const auto alike = [&](const CellRange& other, const std::vector<double>& values) {
-      return std::equal(values.begin() + cell.first, values.begin() + cell.end(), values.begin() + other.first,
-                        values.begin() + other.end());
-    };
-    int& rest_of = last[cell.type];
-    const CellRange* known = rest_of >= 0 ? &membranes.cells[rests_[rest_of].cell] : nullptr;
-    if (known == nullptr || !alike(*known, membranes.rest_length) || !alike(*known, membranes.rest_weight) ||
-        !alike(*known, membranes.rest_curvature)) {
-      rest_of = static_cast<int>(rests_.size());
-      Rest& rest = rests_.emplace_back();
-      rest.cell = c;
-      for (auto* values : {&rest.inverse_length, &rest.inverse_weight, &rest.curvature})
-        values->assign(static_cast<std::size_t>(cell.count + 3 * pack_margin), 0.0);
-      for (int k = 0; k < cell.count; ++k) {
-        const auto i = static_cast<std::size_t>(cell.first + k), at = static_cast<std::size_t>(pack_margin + k);
-        rest.inverse_length[at] = 1 / membranes.rest_length[i];
-        rest.inverse_weight[at] = 1 / membranes.rest_weight[i];
-        rest.curvature[at] = membranes.rest_curvature[i];
-      }
-    }
-    rest_of_.push_back(rest_of);
+MembraneForces::Scratch::Scratch(int count) {
+  for (Padded* values : {&x, &y, &u, &v, &tangent_x, &tangent_y, &inverse_length, &stretch, &rate, &curvature, &tension,
+                         &moment, &law, &energy, &segment_force_x, &segment_force_y, &by_rate, &law_by_rate}) {
+    *values = Padded(count);
   }
 }
 
 void MembraneForces::make_filters(const Membranes& membranes, double viscosity) {
-  for (const CellRange& cell : membranes.cells) {
-    Type& type = types_[cell.type];
-    if (type.filter) continue;
+  for (std::size_t t = 0; t < types_.size(); ++t) {
+    Type& type = types_[t];
+    const RestShape& rest = *membranes.types[t];
     Stiffness stiffness;
     for (const Law& law : type.laws) stiffness += law.model;
-    const double length = cell.rest_perimeter / cell.count;
-    type.filter.emplace(cell.count, length, stiffening(type.mobility.shift, length), viscosity, stiffness.stretching,
+    const int count = static_cast<int>(rest.x.size());
+    const double length = rest.rest_perimeter / count;
+    type.filter.emplace(count, length, stiffening(type.mobility.shift, length), viscosity, stiffness.stretching,
                         stiffness.bending);
   }
 }

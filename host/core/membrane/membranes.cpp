@@ -4,12 +4,6 @@
 
 namespace rouleau::core {
 
-namespace {
-
-void append(std::vector<double>& to, const std::vector<double>& from) { to.insert(to.end(), from.begin(), from.end()); }
-
-}  // namespace
-
 RestShape make_rest_shape(std::vector<double> x, std::vector<double> y, double prestretch) {
   RestShape shape;
   shape.x = std::move(x);
@@ -32,7 +26,8 @@ RestShape make_rest_shape(std::vector<double> x, std::vector<double> y, double p
   return shape;
 }
 
-void add_cell(Membranes& membranes, int type, const RestShape& shape, double x, double y, double angle) {
+void add_cell(Membranes& membranes, int type, double x, double y, double angle) {
+  const RestShape& shape = *membranes.types.at(type);
   membranes.cells.push_back({{.first = membranes.node_count(), .count = static_cast<int>(shape.x.size())},
                              type,
                              shape.rest_area,
@@ -42,9 +37,6 @@ void add_cell(Membranes& membranes, int type, const RestShape& shape, double x, 
     membranes.x.push_back(x + c * shape.x[i] - s * shape.y[i]);
     membranes.y.push_back(y + s * shape.x[i] + c * shape.y[i]);
   }
-  append(membranes.rest_length, shape.rest_length);
-  append(membranes.rest_weight, shape.rest_weight);
-  append(membranes.rest_curvature, shape.rest_curvature);
   for (auto* values : {&membranes.force_x, &membranes.force_y, &membranes.velocity_x, &membranes.velocity_y}) {
     values->resize(membranes.x.size(), 0.0);
   }

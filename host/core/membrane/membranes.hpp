@@ -1,6 +1,7 @@
 // All membranes of a scene in two dimensions: closed polygons, in lattice units.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "cell_nodes.hpp"
@@ -13,27 +14,29 @@ struct NodeVectors {
   const double *x, *y;
 };
 
-/// Closed polygons, nodes counter-clockwise; segment i joins node i and the next node.
-struct Membranes : CellNodes {
+/// A closed polygon and its state of rest, which the cells of a type share. Lattice units, around the origin. Nodes are
+/// counter-clockwise; segment i joins node i and the next node.
+struct RestShape {
+  std::vector<double> x, y;
   std::vector<double> rest_length;     ///< of segment i
   std::vector<double> rest_weight;     ///< (rest_length[i - 1] + rest_length[i]) / 2: rest measure of node i
   std::vector<double> rest_curvature;  ///< turning angle over rest_weight in the shape it was created with
-
-  [[nodiscard]] NodeVectors positions() const { return {x.data(), y.data()}; }
-  [[nodiscard]] NodeVectors forces() const { return {force_x.data(), force_y.data()}; }
-};
-
-/// A closed polygon and its state of rest, which the cells of a type share. Lattice units, around the origin.
-struct RestShape {
-  std::vector<double> x, y;
-  std::vector<double> rest_length, rest_weight, rest_curvature;  ///< as in Membranes
   double rest_area = 0, rest_perimeter = 0;
 };
 
 /// Nodes counter-clockwise, at least three; `prestretch`: length as given over rest length.
 RestShape make_rest_shape(std::vector<double> x, std::vector<double> y, double prestretch = 1);
 
+/// Closed polygons: the nodes of a cell are in the order of its type's shape.
+struct Membranes : CellNodes {
+  std::vector<std::shared_ptr<const RestShape>> types;
+
+  [[nodiscard]] const RestShape& type_of(const CellRange& cell) const { return *types[cell.type]; }
+  [[nodiscard]] NodeVectors positions() const { return {x.data(), y.data()}; }
+  [[nodiscard]] NodeVectors forces() const { return {force_x.data(), force_y.data()}; }
+};
+
 /// Adds a cell that rests, its shape's origin at (x, y), turned counter-clockwise by `angle`.
-void add_cell(Membranes& membranes, int type, const RestShape& shape, double x, double y, double angle);
+void add_cell(Membranes& membranes, int type, double x, double y, double angle);
 
 }  // namespace rouleau::core

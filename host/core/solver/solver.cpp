@@ -17,8 +17,21 @@ bool has_contrast(const BasicSolverSetup<D>& setup, const CellNodes& cells) {
                      [&](const CellRange& cell) { return setup.cell_types[cell.type].viscosity_ratio != 1; });
 }
 
-template <int D>
-FluidSetting<D> fluid_setting(const BasicSolverSetup<D>& setup, const CellNodes& cells) {
+/// A cell's type has laws in the setup and a state of rest among the cells'.
+template <int D, class Cells>
+void require_types(const BasicSolverSetup<D>& setup, const Cells& cells) {
+  if (cells.cells.empty()) return;
+  if (cells.types.size() < setup.cell_types.size())
+    throw std::invalid_argument("every cell type needs a state of rest");
+  for (const CellRange& cell : cells.cells) {
+    if (cell.type < 0 || cell.type >= static_cast<int>(setup.cell_types.size()))
+      throw std::invalid_argument("a cell is of a type that the setup does not have");
+  }
+}
+
+template <int D, class Cells>
+FluidSetting<D> fluid_setting(const BasicSolverSetup<D>& setup, const Cells& cells) {
+  require_types(setup, cells);
   for (const int nodes : setup.domain.size) {
     if (nodes < 1) throw std::invalid_argument("a lattice needs at least one node along every axis");
   }

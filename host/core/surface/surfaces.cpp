@@ -63,7 +63,7 @@ double farthest_from_axis(const Surfaces& surfaces, int cell, const Domain<3>& d
 }
 
 void add_cell(Surfaces& surfaces, int type, const Vec<3>& center, const Eigen::Matrix3d& rotation) {
-  const RestSurface& rest = *surfaces.types[type];
+  const RestSurface& rest = *surfaces.types.at(type);
   surfaces.cells.push_back({{.first = surfaces.node_count(), .count = rest.mesh.node_count()}, type});
   for (int i = 0; i < rest.mesh.node_count(); ++i) {
     const Vec<3> place = center + rotation * rest.nodes()[i];

@@ -21,7 +21,7 @@ core::Potential repulsion(double strength, double cutoff) { return potential("re
 
 Membranes polygon(std::vector<double> x, std::vector<double> y) {
   Membranes m;
-  add_cell(m, 0, make_rest_shape(std::move(x), std::move(y)), 0, 0, 0);
+  add_shape(m, make_rest_shape(std::move(x), std::move(y)));
   return m;
 }
 
@@ -77,8 +77,7 @@ TEST_CASE("the faces of a flat cell repel each other as those of two cells at th
   run(self, one);
   // The lower cell of two, whose upper face is as long.
   Membranes two = flat_cell(60, 20);
-  const Membranes upper = flat_cell(60, 20);
-  add_cell(two, 0, make_rest_shape(upper.x, upper.y), 0, 20 + apart, 0);
+  add_cell(two, 0, 0, 20 + apart, 0);
   InteractionForces other(two, {{{0, 0}, repulsion(0.3, 4)}}, periodic_box(1000));
   for (const int phase : {0, 1, 2}) run_pass(1, [&](Worker worker) { other.run(worker, phase, two); });
   const auto force_at = [](const Membranes& m, double x, double y) {

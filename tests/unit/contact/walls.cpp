@@ -31,13 +31,13 @@ core::Potential lennard_jones(double depth, double distance, double cutoff) {
 
 core::Potential bridging_of_walls() { return potential("bridging", {0.7, 0.3, 2.5, 0.02, 0.03, 0.4, 0.9, 8}); }
 
-/// Polygons as they are, with their sides as rest lengths.
+/// Polygons as they are, with their sides as rest lengths, each of a type of its own.
 Membranes polygons(const std::vector<std::vector<std::array<double, 2>>>& outlines) {
   Membranes m;
   for (const auto& outline : outlines) {
     std::vector<double> x, y;
     for (const auto& node : outline) x.push_back(node[0]), y.push_back(node[1]);
-    add_cell(m, 0, make_rest_shape(std::move(x), std::move(y)), 0, 0, 0);
+    add_shape(m, make_rest_shape(std::move(x), std::move(y)));
   }
   return m;
 }
@@ -85,7 +85,7 @@ TEST_CASE("a flat membrane holds with a wall what it holds with another membrane
   Membranes before_wall = polygons({box(40, -0.5 + gap, 12)});
   Membranes before_other = polygons({box(40, 30, 12), box(40, 30 - gap - 12, 12)});
   WallContacts wall(before_wall, {{0, held}}, channel(90));
-  InteractionForces other(before_other, {{{0, 0}, held}}, periodic_box(10000));
+  InteractionForces other(before_other, {{{0, 1}, held}}, periodic_box(10000));
   for (int phase = 0; phase < InteractionForces::phases; ++phase) other.run({}, phase, before_other);
   run(wall, before_wall);
   CHECK(wall.energy(before_wall) == Approx(other.energy(before_other)).epsilon(1e-13));
@@ -165,7 +165,8 @@ TEST_CASE("a potential is given the velocity at which a membrane leaves the wall
   double size = 0;
   for (int i = 0; i < m.node_count(); ++i) {
     const bool near = m.y[i] + 0.5 <= 8 || 63.5 - m.y[i] <= 8;
-    REQUIRE(m.force_y[i] == Approx(near ? -3 * 0.01 * m.rest_weight[i] : 0));  // against the motion at both walls
+    REQUIRE(m.force_y[i] ==
+            Approx(near ? -3 * 0.01 * m.types[0]->rest_weight[i % 100] : 0));  // against the motion at both walls
     REQUIRE(m.force_x[i] == 0);
     size += std::abs(m.force_y[i]);
   }
@@ -185,7 +186,7 @@ TEST_CASE("bonds of a flat membrane with a wall form and pull as those with anot
   Membranes before_wall = polygons({box(40, -0.5 + gap, 12)});
   Membranes before_other = polygons({box(40, 30, 12), box(40, 30 - gap - 12, 12)});
   WallContacts wall(before_wall, {{0, bond}}, channel(90));
-  InteractionForces other(before_other, {{{0, 0}, bond}}, periodic_box(10000));
+  InteractionForces other(before_other, {{{0, 1}, bond}}, periodic_box(10000));
   for (int step = 0; step < 20; ++step) {
     for (auto* m : {&before_wall, &before_other}) std::fill(m->force_y.begin(), m->force_y.end(), 0.0);
     for (int phase = 0; phase < InteractionForces::phases; ++phase) other.run({}, phase, before_other);

@@ -59,7 +59,7 @@ double friction(double width, int segments = 31) {
   double most = 0;
   for (int k = 0; k < places; ++k) {
     Membranes m = mating_circles(radius, gap, segments, 2 * 3.141592653589793 / segments * k / places);
-    InteractionForces forces(m, {{{0, 0}, morse(1, 2 / width, gap, 6)}}, periodic_box(10000));
+    InteractionForces forces(m, {{{0, 1}, morse(1, 2 / width, gap, 6)}}, periodic_box(10000));
     for (int phase = 0; phase < InteractionForces::phases; ++phase) forces.run({}, phase, m);
     double torque = 0;
     for (std::size_t i = 0; i < static_cast<std::size_t>(segments); ++i)

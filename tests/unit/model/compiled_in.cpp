@@ -25,9 +25,8 @@ double sum_of_sizes(const Membranes& m, const CellRange& cell) {
 }  // namespace
 
 TEST_CASE("a stretched ring of springs pulls every node inwards by twice the tension times the sine of half its turn") {
-  Membranes m = mating_circles(radius, gap, segments, 0);
-  for (double& length : m.rest_length) length /= 1.25;
-  MembraneForces forces(m, {.laws = {{fake_law<Spring>(0.4)}}});
+  Membranes m = mating_circles(radius, gap, segments, 0, 1.25);
+  MembraneForces forces(m, {.laws = {{fake_law<Spring>(0.4)}, {fake_law<Spring>(0.4)}}});
   forces.run({}, m);
   const double expected = 2 * 0.4 * 0.25 * std::sin(std::numbers::pi / segments);
   for (std::size_t i = 0; i < m.x.size(); ++i) {
@@ -39,10 +38,10 @@ TEST_CASE("a stretched ring of springs pulls every node inwards by twice the ten
 
 TEST_CASE("a constant potential between two rings presses on each with the force times their mean length") {
   Membranes m = mating_circles(radius, gap, segments, 0);
-  InteractionForces forces(m, {{{0, 0}, constant_force(0.3, 2 * gap)}}, periodic_box(1000));
+  InteractionForces forces(m, {{{0, 1}, constant_force(0.3, 2 * gap)}}, periodic_box(1000));
   for (int phase = 0; phase < InteractionForces::phases; ++phase) forces.run({}, phase, m);
   // Up to the corners of the polygons: (pi / segments)^2 / 2.
-  const double mean = segments * (m.rest_weight.front() + m.rest_weight.back()) / 2;
+  const double mean = segments * (m.types[0]->rest_weight[0] + m.types[1]->rest_weight[0]) / 2;
   for (const CellRange& cell : m.cells) CHECK(sum_of_sizes(m, cell) == Approx(0.3 * mean).epsilon(2e-3));
   CHECK(m.force_x[0] < 0);         // the inner ring's first node, at angle 0: inwards
   CHECK(m.force_x[segments] > 0);  // the outer ring's
@@ -50,7 +49,8 @@ TEST_CASE("a constant potential between two rings presses on each with the force
 
 TEST_CASE("a law without a number leaves no node with a force") {
   Membranes m = mating_circles(radius, gap, segments, 0);
-  MembraneForces forces(m, {.laws = {{fake_law<Spring>(0.4), fake_law<NoNumber>(0)}}});
+  const MembraneLaws laws = {fake_law<Spring>(0.4), fake_law<NoNumber>(0)};
+  MembraneForces forces(m, {.laws = {laws, laws}});
   forces.run({}, m);
   for (const double force : m.force_x) REQUIRE(std::isnan(force));
 }

@@ -19,16 +19,15 @@ namespace {
 
 /// Circles of radius 5 with n nodes at the given centres.
 Membranes circles(const std::vector<std::array<double, 2>>& centres, int n = 60) {
-  Membranes m;
-  for (const auto& c : centres) {
-    m.cells.push_back({{m.node_count(), n}, 0, 0, 0});
-    for (int i = 0; i < n; ++i) {
-      const double angle = 2 * std::numbers::pi * i / n;
-      m.x.push_back(c[0] + 5 * std::cos(angle));
-      m.y.push_back(c[1] + 5 * std::sin(angle));
-      m.rest_weight.push_back(10 * std::sin(std::numbers::pi / n));
-    }
+  std::vector<double> x, y;
+  for (int i = 0; i < n; ++i) {
+    const double angle = 2 * std::numbers::pi * i / n;
+    x.push_back(5 * std::cos(angle));
+    y.push_back(5 * std::sin(angle));
   }
+  Membranes m;
+  m.types.push_back(std::make_shared<const RestShape>(make_rest_shape(std::move(x), std::move(y))));
+  for (const auto& c : centres) add_cell(m, 0, c[0], c[1], 0);
   return m;
 }
 

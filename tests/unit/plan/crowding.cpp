@@ -6,7 +6,7 @@
 #include <random>
 
 #include "base/error.hpp"
-#include "plan/solver_setup.hpp"
+#include "plan/placed_cells.hpp"
 
 using namespace rouleau;
 using Catch::Matchers::Contains;

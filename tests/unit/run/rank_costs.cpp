@@ -1,12 +1,13 @@
 // What a plan says of ranks, against the bytes that they send.
-#include "plan/rank_costs.hpp"
+#include "plan/ranks/rank_costs.hpp"
+#include "plan/placed_cells.hpp"
 
 #include <atomic>
 #include <catch2/catch.hpp>
 
 #include "core/solver/solver.hpp"
-#include "plan/blocks.hpp"
 #include "plan/plan.hpp"
+#include "plan/ranks/blocks.hpp"
 #include "plan/solver_setup.hpp"
 #include "unit/blocks_fixture.hpp"
 

@@ -1,10 +1,10 @@
 // The model of a step by several ranks.
-#include "plan/rank_times.hpp"
+#include "plan/ranks/rank_times.hpp"
 
 #include <catch2/catch.hpp>
 
 #include "base/error.hpp"
-#include "plan/blocks.hpp"
+#include "plan/ranks/blocks.hpp"
 #include "plan/read_scene.hpp"
 #include "unit/blocks_fixture.hpp"
 

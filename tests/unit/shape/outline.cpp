@@ -1,5 +1,6 @@
 // Outlines of the shapes and the geometry read off them.
 #include "shape/outline.hpp"
+#include "plan/placed_cells.hpp"
 
 #include <catch2/catch.hpp>
 

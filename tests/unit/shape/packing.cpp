@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "core/membrane/membranes.hpp"
-#include "plan/solver_setup.hpp"
+#include "plan/placed_cells.hpp"
 #include "shape/outline.hpp"
 #include "unit/shape/packing_fixture.hpp"
 

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "core/contact/triangle_distance.hpp"
-#include "plan/solver_setup.hpp"
+#include "plan/placed_cells.hpp"
 #include "shape/extent.hpp"
 #include "shape/rigid_surface.hpp"
 #include "shape/surface.hpp"

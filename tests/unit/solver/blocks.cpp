@@ -3,6 +3,7 @@
 #include <thread>
 
 #include "core/solver/solver.hpp"
+#include "plan/placed_cells.hpp"
 #include "plan/solver_setup.hpp"
 #include "unit/blocks_fixture.hpp"
 

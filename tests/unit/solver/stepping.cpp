@@ -1,9 +1,10 @@
-// When something is due between two steps, and how workers wait for each other.
+// When something is due between two steps, how workers wait for each other, and cells that a solver does not take.
 #include <catch2/catch.hpp>
 #include <thread>
 #include <vector>
 
 #include "core/solver/barrier.hpp"
+#include "core/solver/solver.hpp"
 #include "plan/output_schedule.hpp"
 
 using namespace rouleau::plan;
@@ -56,4 +57,16 @@ TEST_CASE("nobody leaves a barrier before all have come") {
   }
   for (std::thread& thread : threads) thread.join();
   CHECK(wrong == 0);
+}
+
+TEST_CASE("a solver refuses cells whose type it has no laws for, or no state of rest") {
+  Membranes cells;
+  CHECK_THROWS_AS(add_cell(cells, 0, 8, 8, 0), std::out_of_range);
+  cells.types = {std::make_shared<const RestShape>(make_rest_shape({3, 0, -3}, {0, 5, 0}))};
+  add_cell(cells, 0, 8, 8, 0);
+  SolverSetup setup;
+  setup.domain = {{16, 16}, {true, true}};
+  CHECK_THROWS_WITH(Solver<double>(setup, cells), "a cell is of a type that the setup does not have");
+  setup.cell_types.resize(2);
+  CHECK_THROWS_WITH(Solver<double>(setup, cells), "every cell type needs a state of rest");
 }

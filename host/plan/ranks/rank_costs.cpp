@@ -14,8 +14,9 @@
 #include "core/membrane/membranes.hpp"
 #include "core/membrane/rounding.hpp"
 #include "core/solver/ghost_cells.hpp"
-#include "estimate.hpp"
-#include "solver_setup.hpp"
+#include "plan/estimate.hpp"
+#include "plan/placed_cells.hpp"
+#include "plan/solver_setup.hpp"
 
 namespace rouleau::plan {
 

@@ -6,7 +6,7 @@
 
 #include "core/domain/decomposition.hpp"
 #include "core/membrane/cell_nodes.hpp"
-#include "plan.hpp"
+#include "plan/plan.hpp"
 
 namespace rouleau::plan {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "blocks.hpp"
-#include "plan.hpp"
+#include "plan/plan.hpp"
 
 namespace rouleau::plan {
 

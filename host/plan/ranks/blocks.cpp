@@ -7,8 +7,9 @@
 #include "base/error.hpp"
 #include "core/membrane/membranes.hpp"
 #include "core/membrane/rounding.hpp"
-#include "estimate.hpp"
-#include "solver_setup.hpp"
+#include "plan/estimate.hpp"
+#include "plan/placed_cells.hpp"
+#include "plan/solver_setup.hpp"
 
 namespace rouleau::plan {
 
