@@ -32,7 +32,7 @@ Example:
 
 /// What is asked about several ranks.
 struct RankOptions {
-  std::optional<int> ranks, rank;
+  std::optional<int> ranks, rank, processors;
   std::string network, step;
 
   void add_to(boost::program_options::options_description& description) {
@@ -44,12 +44,17 @@ struct RankOptions {
         "with --ranks: of rank K alone, 0 to N - 1");
     add("network", options::value(&network)->value_name("LATENCY,BANDWIDTH[,EACH]"),
         "with --ranks: what messages take, as rouleau-bench --only network prints it; without \"2 us,10 GB/s,0.5 us\"");
+    add("processors", options::value<int>()->value_name("P")->notifier([this](int count) { processors = count; }),
+        "with --ranks: so many processors for all ranks, which take turns; without it each rank has its own");
     add("step", options::value(&step)->value_name("TIME"),
         "with --ranks: what a step by one process takes, as measured, such as \"90 us\"; without it is estimated");
   }
   void check() const {
-    if (!ranks && (rank || !network.empty() || !step.empty()))
-      throw Error(Cause::bad_input, "--rank, --network and --step are about several ranks", {"add --ranks N"});
+    if (!ranks && (rank || processors || !network.empty() || !step.empty()))
+      throw Error(Cause::bad_input, "--rank, --network, --processors and --step are about several ranks",
+                  {"add --ranks N"});
+    if (processors && *processors < 1)
+      throw Error(Cause::bad_input, "--processors " + std::to_string(*processors) + ": ranks need at least one");
     if (ranks && rank && (*rank < 0 || *rank >= *ranks)) {
       throw Error(Cause::bad_input, "--rank " + std::to_string(*rank) + ": there is no such rank",
                   {"ranks count from 0 to " + std::to_string(*ranks - 1)});
@@ -62,13 +67,16 @@ class PlannedRanks {
  public:
   PlannedRanks(const RankOptions& options, const plan::Plan& plan)
       : rank_(options.rank),
-        network_(options.network.empty() ? plan::Network{} : plan::read_network(options.network)),
+        machines_{.network = options.network.empty() ? plan::Network{} : plan::read_network(options.network),
+                  .processors = options.processors.value_or(0),
+                  .one_step_s = step_of(options.step)},
         blocks_(plan::make_blocks(plan, *options.ranks)),
         costs_(plan::rank_costs(plan, blocks_)),
-        times_(plan::rank_times(plan, costs_, network_, step_of(options.step))) {}
+        times_(plan::rank_times(plan, costs_, machines_)) {}
 
   [[nodiscard]] nlohmann::json json() const {
-    nlohmann::json object{{"balance", plan::balance(costs_)}, {"network", network_}, {"times", times_}};
+    nlohmann::json object{{"balance", plan::balance(costs_)}, {"network", machines_.network}, {"times", times_}};
+    if (machines_.processors > 0) object["processors"] = machines_.processors;
     if (rank_) {
       object["rank"] = costs_[*rank_];
       std::visit(
@@ -86,7 +94,7 @@ class PlannedRanks {
   }
   [[nodiscard]] std::string text() const {
     return (rank_ ? plan::to_text(costs_[*rank_], *rank_, blocks_) : plan::to_text(costs_)) +
-           plan::to_text(times_, network_);
+           plan::to_text(times_, machines_);
   }
 
  private:
@@ -102,7 +110,7 @@ class PlannedRanks {
   }
 
   std::optional<int> rank_;
-  plan::Network network_;
+  plan::Machines machines_;
   plan::Blocks blocks_;
   std::vector<plan::RankCost> costs_;
   plan::RankTimes times_;

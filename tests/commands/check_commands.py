@@ -327,11 +327,18 @@ class Commands_do_what_they_say(Case):
             one = json.loads(self.rouleau.run(*words, "--rank", number, "--json").stdout)["ranks"]
             self.assertEqual({**ranks["of_each"][number], **one["rank"]}, one["rank"])
             self.assertEqual(one["rank"]["size"][0] * one["rank"]["size"][1], one["rank"]["nodes"])
+        shared = json.loads(self.rouleau.run(*words, "--processors", 2, "--json").stdout)["ranks"]
+        self.assertEqual(shared["processors"], 2)
+        slower = {time["ranks"]: time["step_s"] for time in shared["times"]["of"]}
+        self.assertAlmostEqual(slower[2], times[2]["step_s"])
+        self.assertGreater(slower[6], 0.5e-3)
+        self.assertGreater(slower[6], 2 * times[6]["step_s"])
+        self.assertIn("with 2 processors for all ranks", self.rouleau.run(*words, "--processors", 2).stdout)
         text = self.rouleau.run(*words, "--rank", 5).stdout
         self.assertIn("Rank 5: nodes ", text)
         self.assertIn("   the fastest", text)
         for wrong, what in ((["--rank", 6], "from 0 to 5"), (["--rank", -1], "from 0 to 5"), (["--network", "2 us"], "1 values"),
-                            (["--network", "2 us,3 m"], "ends with B/s"), (["--step", "0 s"], "above zero"), (["--step", "1 m"], "length")):
+                            (["--network", "2 us,3 m"], "ends with B/s"), (["--step", "0 s"], "above zero"), (["--step", "1 m"], "length"), (["--processors", 0], "at least one")):
             self.assert_stops(self.rouleau.run("plan", SCENE, "--ranks", 6, *wrong), 2, what)
         self.assert_stops(self.rouleau.run("plan", SCENE, "--rank", 2), 2, "add --ranks N")
 

@@ -19,15 +19,6 @@ constexpr double wasteful = 0.1;             ///< efficiency; nobody would start
 constexpr double slower = 1.3;               ///< than the fastest: more ranks will not help
 constexpr std::size_t many_cells = 100'000;  ///< cells; powers of eight have to do, each takes seconds
 
-double step_time(const std::vector<RankCost>& ranks, const Network& network, double scale) {
-  double computing = 0, messages = 0;
-  for (const RankCost& rank : ranks) {
-    computing = std::max(computing, rank.step_s * scale + rank.sharing_s);
-    messages = std::max(messages, message_time(rank, network));
-  }
-  return computing + messages;  // who is done first waits: no message is behind computing
-}
-
 }  // namespace
 
 Network read_network(const std::string& text) {
@@ -71,16 +62,28 @@ double message_time(const RankCost& cost, const Network& network) {
          (cost.sent_bytes() + cost.received_bytes) / 2 / network.bandwidth;
 }
 
-RankTimes rank_times(const Plan& plan, const std::vector<RankCost>& asked, const Network& network, double one_step_s) {
+double step_time(const std::vector<RankCost>& ranks, const Machines& machines, double scale) {
+  double computing = 0, messages = 0, all = 0;
+  for (const RankCost& rank : ranks) {
+    const double computes = rank.step_s * scale + rank.sharing_s, speaks = message_time(rank, machines.network);
+    computing = std::max(computing, computes);
+    messages = std::max(messages, speaks);
+    all += computes + speaks;
+  }
+  const double alone = computing + messages;  // who is done first waits: no message is behind computing
+  return machines.processors > 0 ? std::max(alone, all / machines.processors) : alone;
+}
+
+RankTimes rank_times(const Plan& plan, const std::vector<RankCost>& asked, const Machines& machines) {
   const int most = most_blocks(plan), wanted = static_cast<int>(asked.size());
   std::map<int, double> steps;
-  const double by_estimate = step_time(rank_costs(plan, make_blocks(plan, 1)), network, 1);
-  const double scale = one_step_s > 0 ? one_step_s / by_estimate : 1;
+  const double by_estimate = step_time(rank_costs(plan, make_blocks(plan, 1)), machines, 1);
+  const double scale = machines.one_step_s > 0 ? machines.one_step_s / by_estimate : 1;
   double least = steps[1] = by_estimate * scale;
-  steps[wanted] = step_time(asked, network, scale);
+  steps[wanted] = step_time(asked, machines, scale);
   const int factor = plan.scene->cells.size() > many_cells ? 8 : 2;
   for (int ranks = factor; ranks <= most / factor * factor; ranks *= factor) {
-    if (ranks != wanted) steps[ranks] = step_time(rank_costs(plan, make_blocks(plan, ranks)), network, scale);
+    if (ranks != wanted) steps[ranks] = step_time(rank_costs(plan, make_blocks(plan, ranks)), machines, scale);
     if (steps[ranks] > slower * least || steps[1] < wasteful * ranks * steps[ranks]) break;
     least = std::min(least, steps[ranks]);
     if (ranks > most / factor) break;
@@ -94,13 +97,18 @@ RankTimes rank_times(const Plan& plan, const std::vector<RankCost>& asked, const
   return times;
 }
 
-std::string to_text(const RankTimes& times, const Network& network) {
+std::string to_text(const RankTimes& times, const Machines& machines) {
+  const Network& network = machines.network;
+  const std::string processors = machines.processors == 0 ? "a core for each rank"
+                                 : machines.processors == 1
+                                     ? "one processor for all ranks"
+                                     : std::to_string(machines.processors) + " processors for all ranks";
   std::array<char, 256> text{};
   std::snprintf(text.data(), text.size(),
-                "\nTime of a step, with a core for each rank, messages of %s us and %s GB/s\n"
+                "\nTime of a step, with %s, messages of %s us and %s GB/s\n"
                 "  %-12s %14s %12s\n",
-                number(network.latency_s * 1e6, 3).c_str(), number(network.bandwidth / 1e9, 3).c_str(), "ranks",
-                "a step, us", "efficiency");
+                processors.c_str(), number(network.latency_s * 1e6, 3).c_str(),
+                number(network.bandwidth / 1e9, 3).c_str(), "ranks", "a step, us", "efficiency");
   std::string out = text.data();
   for (const RankTime& time : times.of) {
     std::string remark = time.ranks == times.fastest ? "   the fastest" : "";

@@ -38,13 +38,23 @@ struct RankTimes {
   NLOHMANN_DEFINE_TYPE_INTRUSIVE(RankTimes, of, fastest, economical)
 };
 
+/// What ranks run on.
+struct Machines {
+  Network network;
+  int processors = 0;     ///< that all ranks share; 0: each has its own
+  double one_step_s = 0;  ///< a step by one rank, where it was measured; 0: by plan::step_cost
+};
+
+/// A step takes the longest computing and the longest messages of any rank. Ranks that share processors take at least what
+/// all of them together compute and do for messages, over the number of processors: a rank that waits lets others run, and
+/// has looked for its message before.
+double step_time(const std::vector<RankCost>& ranks, const Machines& machines, double scale);
+
 /// By the ranks asked for, whose costs are known, and by powers of two (of eight with very many cells) until more do not
 /// help, have no room, or are a waste.
-/// `one_step_s`: of a step by one rank, where it was measured; 0: by plan::step_cost.
-RankTimes rank_times(const Plan& plan, const std::vector<RankCost>& asked, const Network& network,
-                     double one_step_s = 0);
+RankTimes rank_times(const Plan& plan, const std::vector<RankCost>& asked, const Machines& machines);
 
 /// For people.
-std::string to_text(const RankTimes& times, const Network& network);
+std::string to_text(const RankTimes& times, const Machines& machines);
 
 }  // namespace rouleau::plan

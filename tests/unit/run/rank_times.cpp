@@ -39,12 +39,26 @@ TEST_CASE("messages take a latency for each wait, a moment for each further one,
   CHECK(message_time(RankCost{}, network) == 0);  // alone
 }
 
+TEST_CASE("ranks that share processors take at least what all of them do together") {
+  std::vector<RankCost> ranks(6);
+  for (RankCost& rank : ranks) rank.messages = rank.waits = 1;
+  for (std::size_t k = 0; k < ranks.size(); ++k) ranks[k].step_s = 1e-3 * static_cast<double>(k + 1);
+  ranks[0].sharing_s = 5e-4;
+  const Network network{.latency_s = 1e-4, .bandwidth = 1e30, .each_s = 1e-30};
+  // 21 ms of computing, 6 times 0.1 ms of messages, and 0.5 ms of sharing.
+  CHECK(step_time(ranks, {.network = network}, 1) == Approx(6.1e-3));
+  CHECK(step_time(ranks, {.network = network, .processors = 6}, 1) == Approx(6.1e-3));
+  CHECK(step_time(ranks, {.network = network, .processors = 2}, 1) == Approx((21e-3 + 0.6e-3 + 0.5e-3) / 2));
+  CHECK(step_time(ranks, {.network = network, .processors = 1}, 2) == Approx(42e-3 + 0.6e-3 + 0.5e-3));
+}
+
 TEST_CASE("a fluid alone is as efficient as its blocks are equal, but for what goes over their borders") {
   const scene::Scene scene =
       plan::read_scene(test::four_cells, {test::shear, "/cells=[]", "/interactions=[]"});  // 256 x 128
   const Plan plan = make_plan(scene, test::catalog());
   const Network none{.latency_s = 1e-30, .bandwidth = 1e30, .each_s = 1e-30};
-  const RankTimes times = rank_times(plan, rank_costs(plan, make_blocks(plan, 8)), none, 1e-3);
+  const RankTimes times =
+      rank_times(plan, rank_costs(plan, make_blocks(plan, 8)), {.network = none, .one_step_s = 1e-3});
   CHECK(times.of.size() == 10);  // to 512 blocks of 16 x 4
   for (const RankTime& time : times.of) {
     const std::vector<RankCost> costs = rank_costs(plan, make_blocks(plan, time.ranks));
