@@ -17,6 +17,7 @@
 #include "command/process/terminal.hpp"
 #include "commands.hpp"
 #include "plan/estimate.hpp"
+#include "plan/ranks/blocks.hpp"
 #include "ranked_run.hpp"
 #include "refined_run.hpp"
 #include "report/report.hpp"
@@ -166,10 +167,11 @@ bool read_request(const std::vector<std::string>& arguments, Request& request) {
 void prepare(Request& request, const TimeLimit& limit, std::optional<PlannedScene>& planned) {
   planned.emplace(request.scene);  // before a directory is made
   const auto& [scene, numerics_choice] = planned->read;
-  const int rows = scene.domain.nodes[1] * (scene.domain.depth ? scene.domain.depth->nodes : 1);
-  request.run.threads = std::min(request.run.threads, std::max(1, rows / 4));
+  const double rows = scene.domain.node_count() / scene.domain.nodes[0];
+  request.run.threads = static_cast<int>(std::min<double>(request.run.threads, std::max(1.0, rows / 4)));
   const Crew* const crew = Crew::present();
   const plan::PlanReport& report = planned->report;
+  plan::require_computable(scene, planned->blocks ? &*planned->blocks : nullptr);
   plan::require_memory(report.estimate.memory_bytes / (crew != nullptr ? crew->ranks() : 1), "the run");
   for (const std::string& warning : report.warnings) {
     {

@@ -163,23 +163,30 @@ void FrameWriter::write_fields(const std::string& frame, const observe::FieldSna
     }
     record.fields.emplace_back(name);
   };
-  if (!fields.velocity_x.empty()) {
-    std::vector<double> velocity(3 * fields.velocity_x.size(), 0.0);
-    for (std::size_t i = 0; i < fields.velocity_x.size(); ++i) {
-      velocity[3 * i] = fields.velocity_x[i];
-      velocity[3 * i + 1] = fields.velocity_y[i];
-      if (!fields.velocity_z.empty()) velocity[3 * i + 2] = fields.velocity_z[i];
+  const auto vector = [&](const char* name, const std::vector<double>& x, const std::vector<double>& y,
+                          const std::vector<double>& z, const char* unit) {
+    if (x.empty()) return;
+    std::vector<double> values(3 * x.size(), 0.0);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      values[3 * i] = x[i];
+      values[3 * i + 1] = y[i];
+      if (!z.empty()) values[3 * i + 2] = z[i];
     }
     std::vector<hsize_t> of_vectors = shape;
     of_vectors.push_back(3);
-    write("velocity", of_vectors, velocity, "m/s");
-  }
+    write(name, of_vectors, values, unit);
+  };
+  vector("velocity", fields.velocity_x, fields.velocity_y, fields.velocity_z, "m/s");
   const auto scalar = [&](const char* name, const std::vector<double>& values, const char* unit) {
     if (!values.empty()) write(name, shape, values, unit);
   };
   scalar("density", fields.density, "1");
   scalar("viscosity", fields.viscosity, "Pa s");
-  scalar("vorticity", fields.vorticity, "1/s");
+  if (domain_.depth) {
+    vector("vorticity", fields.vorticity_x, fields.vorticity_y, fields.vorticity_z, "1/s");
+  } else {
+    scalar("vorticity", fields.vorticity_z, "1/s");
+  }
 }
 
 FieldGrid FrameWriter::field_grid() const {
@@ -191,7 +198,7 @@ FieldGrid FrameWriter::field_grid() const {
     grid.spacing.push_back(storage_.stride * spacing);
   };
   for (const int axis : {0, 1}) add(axis, domain_.size[axis], domain_.nodes[axis], storage_.first[axis]);
-  if (domain_.depth) add(2, domain_.depth->size, domain_.depth->nodes, 0);
+  if (domain_.depth) add(2, domain_.depth->size, domain_.depth->nodes, storage_.first[2]);
   grid.bytes = storage_.precision == scene::Precision::f64 ? 8 : 4;
   return grid;
 }

@@ -14,7 +14,7 @@
 //     membranes/triangles  [m, 3] i32  nodes, counter-clockwise seen from outside
 //     fields/velocity      [ny, nx, 3] f32 or f64, m/s (third component 0: XDMF's vectors have three)
 //     fields/density, viscosity, vorticity [ny, nx] f32 or f64
-//                          in three dimensions [nz, ny, nx, 3] and [nz, ny, nx]
+//                          in three dimensions [nz, ny, nx, 3] (vorticity, too) and [nz, ny, nx]
 //
 // Every dataset has its unit as attribute "unit". Node (i, j) of the lattice lies at ((i + 1/2) dx, (j + 1/2) dx).
 // first, cell and connectivity or triangles are links to one dataset as long as they do not change, so that they cost nothing per

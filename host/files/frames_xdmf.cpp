@@ -79,7 +79,7 @@ std::string fields(const FrameRecord& frame, const std::string& group, const Fie
           triple(space ? grid.origin[2] : 0, grid.origin[1], grid.origin[0]) +
           triple(space ? grid.spacing[2] : grid.spacing[0], grid.spacing[1], grid.spacing[0]) + "</Geometry>\n";
   for (const auto& name : frame.fields) {
-    const bool vector = name == "velocity";
+    const bool vector = name == "velocity" || (name == "vorticity" && space);
     text += attribute(shown_name(name), vector ? "Vector" : "Scalar",
                       data_item(shape + (vector ? " 3" : ""), {"Float", grid.bytes}, group + "/" + name));
   }

@@ -63,7 +63,8 @@ struct FieldSnapshot {
   std::vector<double> velocity_x, velocity_y, velocity_z;  ///< m/s; the last is empty in two dimensions
   std::vector<double> density;                             ///< relative deviation from the mean
   std::vector<double> viscosity;                           ///< Pa s
-  std::vector<double> vorticity;                           ///< 1/s
+  std::vector<double> vorticity_x, vorticity_y;            ///< 1/s, empty in two dimensions
+  std::vector<double> vorticity_z;                         ///< 1/s
   [[nodiscard]] bool empty() const { return nx == 0; }
 };
 

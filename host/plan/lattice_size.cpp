@@ -51,7 +51,7 @@ std::optional<LatticeSize> refined(LatticeSize nodes, int factor) {
     if (of_side > scene::most_nodes_of_side / factor) return {};
     all *= of_side *= factor;
   }
-  if (all > static_cast<double>(scene::most_nodes)) return {};
+  if (all > static_cast<double>(scene::most_nodes_of_block)) return {};
   return nodes;
 }
 

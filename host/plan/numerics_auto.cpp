@@ -417,7 +417,7 @@ void put_draft_numerics(json::Document& document) {
       fields.refuse("/domain/size",
                     in_space
                         ? "the ratios of these sides are not those of whole numbers up to " + most +
-                              ", or want more nodes than can be computed (" + std::to_string(scene::most_nodes) +
+                              ", or want more nodes than can be computed (" + std::to_string(scene::most_nodes_of_block) +
                               "), so that no lattice with the same spacing along all three can be chosen\n"
                               "write sides with simple ratios, such as [\"50 um\", \"25 um\", \"25 um\"], or give nodes"
                         : "the ratio of these sides is not one of whole numbers up to " + most +

@@ -9,6 +9,7 @@
 #include "core/solver/schedule.hpp"
 #include "flow_start.hpp"
 #include "scene/driving_flow.hpp"
+#include "scene/scene_reader.hpp"
 #include "shape/extent.hpp"
 #include "shape/outline.hpp"
 
@@ -275,6 +276,11 @@ std::vector<std::string> warnings_of(const Plan& plan, const std::vector<Limit>&
                        number(acceleration, 3) +
                        " m/s every second for as long as the stage lasts; give domain.y walls, or leave out "
                        "fluid.body_force and pressure_gradient");
+  }
+  if (const double most = static_cast<double>(scene::most_nodes_of_block); scene.domain.node_count() > most) {
+    warnings.push_back("the lattice has " + number(scene.domain.node_count(), 12) + " nodes and one rank can compute " +
+                       number(most, 12) + "; start the run on " + number(std::ceil(scene.domain.node_count() / most)) +
+                       " ranks or more (docs/ranks.md)");
   }
   const double spacing = lattice_spacing(scene);
   for (const scene::FluidLayer& layer : scene.fluid.layers) {

@@ -86,7 +86,7 @@ void write_output(std::ostringstream& out, const scene::Scene& scene, const Outp
   };
   for (const int axis : {0, 1})
     write_axis(axis == 0 ? " x = " : ", y = ", storage.first[axis], storage.count(axis, scene.domain.nodes[axis]));
-  if (scene.domain.depth) write_axis(", z = ", 0, storage.count(2, scene.domain.depth->nodes));
+  if (scene.domain.depth) write_axis(", z = ", storage.first[2], storage.count(2, scene.domain.depth->nodes));
   out << ", " << formatted(storage.stride * spacing) << " um apart: lattice nodes inside the region"
       << (storage.stride > 1 ? " from its lower left corner" : "") << "\n";
 }

@@ -67,7 +67,7 @@ class Tracers {
       : grid_(grid), most_(std::min(most_each, most_in_all / outputs)) {}
   void add(const std::vector<double>& velocity) {
     for (std::size_t axis = 0; axis < 2; ++axis)
-      fields_[axis].push_back(block_means(velocity_component(velocity, grid_.nx, grid_.ny, axis), most_));
+      fields_[axis].push_back(block_means(component_of(velocity, grid_.nx, grid_.ny, axis), most_));
   }
   [[nodiscard]] Json to_json() const {
     double scale = 0;
@@ -147,9 +147,13 @@ Json field_data(const std::filesystem::path& frames, const std::vector<std::size
         vorticities.fields.push_back(
             block_means(vorticity(velocity, grid.nx, grid.ny, grid.spacing, grid.periodic), most));
     }
-    if (has_vorticity)
-      vorticities.fields.push_back(
-          block_means({grid.nx, grid.ny, grid.section(file, group_of(output) + "vorticity")}, most));
+    if (has_vorticity) {
+      const auto written = grid.section(file, group_of(output) + "vorticity");  // in three dimensions vectors
+      vorticities.fields.push_back(block_means(written.size() == grid.nx * grid.ny
+                                                   ? ScalarField{grid.nx, grid.ny, written}
+                                                   : component_of(written, grid.nx, grid.ny, 2),
+                                               most));
+    }
   }
   Json result{{"nx", vorticities.fields.front().nx},
               {"ny", vorticities.fields.front().ny},
@@ -163,9 +167,9 @@ Json field_data(const std::filesystem::path& frames, const std::vector<std::size
   return result;
 }
 
-ScalarField velocity_component(const std::vector<double>& velocity, std::size_t nx, std::size_t ny, std::size_t axis) {
+ScalarField component_of(const std::vector<double>& vectors, std::size_t nx, std::size_t ny, std::size_t axis) {
   ScalarField field{nx, ny, std::vector<double>(nx * ny)};
-  for (std::size_t i = 0; i < nx * ny; ++i) field.values[i] = velocity[3 * i + axis];
+  for (std::size_t i = 0; i < nx * ny; ++i) field.values[i] = vectors[3 * i + axis];
   return field;
 }
 

@@ -36,8 +36,8 @@ nlohmann::json field_data(const std::filesystem::path& frames, const std::vector
 ScalarField vorticity(const std::vector<double>& velocity, std::size_t nx, std::size_t ny,
                       const std::array<double, 2>& spacing, const std::array<bool, 2>& periodic);
 
-/// One component, 0 or 1, of `velocity`, which holds three per node.
-ScalarField velocity_component(const std::vector<double>& velocity, std::size_t nx, std::size_t ny, std::size_t axis);
+/// One component of vectors that have three for each node.
+ScalarField component_of(const std::vector<double>& vectors, std::size_t nx, std::size_t ny, std::size_t axis);
 
 /// Means over blocks of nodes, of which there are at most `most`; the blocks have the shape of the domain's nodes.
 ScalarField block_means(const ScalarField& field, std::size_t most);

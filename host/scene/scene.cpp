@@ -15,7 +15,7 @@
 namespace rouleau::scene {
 namespace {
 
-constexpr std::int64_t most_membrane_nodes = 100'000'000;
+constexpr std::int64_t most_membrane_nodes = 2'000'000'000;
 /// How far the spacings along x and y may differ: far above rounding of the text's digits, far below any effect.
 constexpr double spacing_tolerance = 1e-9;
 /// In the radius of a tube: below this there is hardly a node between its walls.
@@ -77,6 +77,9 @@ std::optional<double> read_tube(const SceneFields& fields, const Domain& domain)
     if (fields.has(key)) fields.refuse_key(key, "the tube closes y and z; leave this out, or the tube");
   }
   const std::string key = "/domain/walls/tube/radius";
+  if (domain.node_count() > static_cast<double>(most_nodes_of_block))  // every rank has a mark for each node
+    fields.refuse("/domain/nodes", number(domain.node_count(), 12) + " nodes are too many around a tube; at most " +
+                                       std::to_string(most_nodes_of_block) + " can be computed");
   const double radius = fields.quantity(key, "m", range::length);
   if (!is_known(domain) || !std::isfinite(radius)) return radius;
   const double most = std::min(domain.size.y(), domain.depth->size) / 2, spacing = domain.size.y() / domain.nodes[1];
@@ -119,22 +122,6 @@ void check_space(const SceneFields& fields, const Scene& scene) {
       fields.refuse("/fluid/layers", "layers lie along plane walls, and this domain is a tube\nleave the layers out");
     });
   }
-  if (fields.has("/output/fields/region")) {
-    fields.attempt([&] {
-      fields.refuse_key("/output/fields/region",
-                        "in three dimensions the fields of the whole lattice are written\nleave region out; "
-                        "\"stride\" makes them smaller");
-    });
-  }
-  const auto& quantities = scene.output.quantities;
-  const auto vorticity = std::find(quantities.begin(), quantities.end(), "vorticity");
-  if (vorticity != quantities.end()) {
-    fields.attempt([&] {
-      fields.refuse(json::child_pointer("/output/fields/quantities", std::size_t(vorticity - quantities.begin())),
-                    "vorticity is written in two dimensions only so far\nleave it out; ParaView makes it of the "
-                    "velocity");
-    });
-  }
   for (const Stage& stage : scene.stages) {
     if (stage.start != WallStart::developed || !scene.domain.is_duct()) continue;
     fields.attempt([&] {
@@ -166,6 +153,10 @@ void read_domain(const SceneFields& fields, Domain& domain) {
                                          " nodes are too many; at most " + std::to_string(most_nodes) +
                                          " can be computed");
     }
+    const double rows = domain.node_count() / domain.nodes[0];
+    if (rows > static_cast<double>(most_rows))
+      fields.refuse("/domain/nodes", number(rows, 12) + " rows of nodes along x are too many; at most " +
+                                         std::to_string(most_rows) + " can be computed");
   });
   fields.attempt([&] {
     if (!is_known(domain)) return;

@@ -202,13 +202,13 @@ struct Cadence {
 
 /// Which nodes of the lattice the fields in frames.h5 hold, and how.
 struct FieldStorage {
-  std::array<int, 2> first{0, 0};          ///< node along x and y
-  std::optional<std::array<int, 2>> last;  ///< none: to the lattice's end
+  std::array<int, 3> first{0, 0, 0};       ///< node along x, y and z
+  std::optional<std::array<int, 3>> last;  ///< none: to the lattice's end
   int stride = 1;                          ///< every so many nodes from the first
   Precision precision = Precision::f32;
   int compression = 1;  ///< level of deflate, behind a shuffle of the bytes; 0: none
   [[nodiscard]] bool whole() const { return !last && stride == 1; }
-  /// Nodes along an axis of a lattice that has `nodes` of them. Along z a region has them all.
+  /// Nodes along an axis of a lattice that has `nodes` of them.
   [[nodiscard]] int count(int axis, int nodes) const;
 };
 

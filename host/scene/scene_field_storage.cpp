@@ -14,10 +14,10 @@ std::string micrometres(double length) { return number(length * 1e6, 6) + " um";
 
 /// The nodes of a region along one axis; node i lies at (i + 1/2) spacings.
 std::array<int, 2> nodes_within(const SceneFields& fields, const Domain& domain, int axis, double from, double to) {
-  const std::string pointer = "/output/fields/region", along = axis == 0 ? " along x" : " along y";
+  const std::string pointer = "/output/fields/region", along = std::string(" along ") + "xyz"[axis];
   const std::string end = json::child_pointer(pointer + "/to", static_cast<std::size_t>(axis));
-  const int nodes = domain.nodes[axis];
-  const double size = domain.size[axis], spacing = size / nodes;
+  const int nodes = axis == 2 ? domain.depth->nodes : domain.nodes[axis];
+  const double size = axis == 2 ? domain.depth->size : domain.size[axis], spacing = size / nodes;
   constexpr double rounding = 1e-9;  // a border that is meant to lie on a node shall include it
   if (from < -rounding * size)
     fields.refuse(json::child_pointer(pointer + "/from", static_cast<std::size_t>(axis)),
@@ -27,7 +27,7 @@ std::array<int, 2> nodes_within(const SceneFields& fields, const Domain& domain,
                            micrometres(size));
   if (!(from < to))
     fields.refuse(end, "the region ends at " + micrometres(to) + along + " and begins at " + micrometres(from) +
-                           "; \"from\" is the lower left corner and \"to\" the upper right one");
+                           "; \"from\" is the lower corner and \"to\" the upper one");
   const int first = static_cast<int>(std::ceil(units::place_on_lattice(from, spacing) - rounding));
   const int last = static_cast<int>(std::floor(units::place_on_lattice(to, spacing) + rounding));
   if (first > last)
@@ -40,7 +40,6 @@ std::array<int, 2> nodes_within(const SceneFields& fields, const Domain& domain,
 }  // namespace
 
 int FieldStorage::count(int axis, int nodes) const {
-  if (axis == 2) return (nodes - 1) / stride + 1;
   const auto a = static_cast<std::size_t>(axis);
   return ((last ? (*last)[a] : nodes - 1) - first[a]) / stride + 1;
 }
@@ -50,13 +49,15 @@ FieldStorage read_field_storage(const SceneFields& fields, const Domain& domain)
   fields.attempt([&] {
     const std::string region = "/output/fields/region";
     if (!fields.has(region)) return;
-    const auto from = fields.quantities(region + "/from", "m", range::place);
-    const auto to = fields.quantities(region + "/to", "m", range::place);
     if (!fields.settled(region) || !is_known(domain)) return;
+    require_corners(fields, region, {"/from", "/to"}, domain);
     storage.last.emplace();
-    for (const int axis : {0, 1}) {
+    for (int axis = 0; axis < domain.dimension(); ++axis) {
       const auto a = static_cast<std::size_t>(axis);
-      const auto [first, last] = nodes_within(fields, domain, axis, from[axis], to[axis]);
+      const auto at = [&](const char* corner) {
+        return fields.quantity(json::child_pointer(region + corner, a), "m", range::place);
+      };
+      const auto [first, last] = nodes_within(fields, domain, axis, at("/from"), at("/to"));
       storage.first[a] = first;
       (*storage.last)[a] = last;
     }

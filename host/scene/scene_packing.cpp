@@ -21,6 +21,19 @@ void check_side(const SceneFields& fields, const std::string& pointer, int axis,
   }
 }
 
+}  // namespace
+
+void require_corners(const SceneFields& fields, const std::string& region, const std::array<const char*, 2>& corners,
+                     const Domain& domain) {
+  for (const char* const corner : corners) {
+    if (static_cast<int>(fields.count(region + corner)) == domain.dimension()) continue;
+    fields.refuse(region + corner, domain.depth ? "in three dimensions a corner has three lengths"
+                                                : "there is no z in two dimensions\ngive two lengths");
+  }
+}
+
+namespace {
+
 /// The region as written; the whole domain without one.
 void read_region(const SceneFields& fields, const std::string& pointer, const Domain& domain, RandomPacking& packing) {
   packing.lower = Eigen::Vector2d::Zero();
@@ -28,11 +41,7 @@ void read_region(const SceneFields& fields, const std::string& pointer, const Do
   packing.upper_z = domain.depth ? domain.depth->size : 0;
   if (!fields.has(pointer)) return;
   if (fields.settled(pointer) && is_known(domain)) {
-    for (const char* const corner : {"/lower", "/upper"}) {
-      if (static_cast<int>(fields.count(pointer + corner)) == domain.dimension()) continue;
-      fields.refuse(pointer + corner, domain.depth ? "in three dimensions a corner has three lengths"
-                                                   : "there is no z in two dimensions\ngive two lengths");
-    }
+    require_corners(fields, pointer, {"/lower", "/upper"}, domain);
   }
   packing.lower = fields.quantities(pointer + "/lower", "m", range::place);
   packing.upper = fields.quantities(pointer + "/upper", "m", range::place);

@@ -139,9 +139,11 @@ class SceneFields {
 };
 
 // More cannot be computed.
-inline constexpr long most_cells = 1'000'000;
-inline constexpr std::int64_t most_nodes = std::int64_t{1} << 30;  ///< of a lattice
-inline constexpr int most_nodes_of_side = 65536;
+inline constexpr long most_cells = 10'000'000;
+inline constexpr std::int64_t most_nodes = std::int64_t{1} << 40;           ///< of a lattice
+inline constexpr std::int64_t most_nodes_of_block = std::int64_t{1} << 30;  ///< of the part that one rank computes
+inline constexpr std::int64_t most_rows = std::int64_t{1} << 30;            ///< along x, of a lattice
+inline constexpr int most_nodes_of_side = 1 << 20;
 
 /// Could the domain be read? Only then something can be said that depends on it.
 inline bool is_known(const Domain& domain) {
@@ -159,6 +161,9 @@ std::vector<CellPlacement> read_cells(const SceneFields& fields, const std::vect
 RandomPacking read_packing(const SceneFields& fields, const std::string& entry, int type, const Domain& domain);
 std::vector<Stage> read_stages(const SceneFields& fields, const Scene& scene);
 Output read_output(const SceneFields& fields, const std::vector<Stage>& stages);
+/// Refuses corners of a region that have not a length along each axis.
+void require_corners(const SceneFields& fields, const std::string& region, const std::array<const char*, 2>& corners,
+                     const Domain& domain);
 FieldStorage read_field_storage(const SceneFields& fields, const Domain& domain);
 /// Refuses cells with more membrane nodes than can be computed.
 void check_membrane_nodes(const Scene& scene);

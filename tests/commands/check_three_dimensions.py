@@ -280,6 +280,19 @@ class A_run_in_three_dimensions(Case):
         self.assertGreater(len({row["axis_y"] for row in begun}), 1)
         self.assertEqual(rows, self.cells(folders[1]))
 
+    def test_writes_the_fields_of_a_region_and_vorticity_as_vectors(self):
+        fields = {"seconds": "1 ms", "quantities": ["vorticity", "velocity"],
+                  "region": {"from": ["1 um", "0 um", "0.3 um"], "to": ["5 um", "2 um", "0.7 um"]}}
+        scene = changed(SPACE, output__fields=fields)
+        self.assertIn("x = 1.125 um to 4.875 um (16 nodes), y = 0.125 um to 1.875 um (8 nodes), z = 0.375 um to 0.625 um (2 nodes)",
+                      self.rouleau("plan", self.write(scene)).stdout)
+        folder = self.run_scene(scene, "region", "--max-steps", 400)
+        xdmf = (folder / "frames.xmf").read_text()
+        self.assertIn('Dimensions="2 8 16"', xdmf)
+        self.assertIn('Name="vorticity (1/s)" AttributeType="Vector"', xdmf)
+        self.assertEqual(self.rouleau("report", folder).returncode, 0)
+        self.assertEqual(self.rouleau("verify", folder).returncode, 0)
+
     def test_opens_as_a_volume(self):
         folder = self.run_scene(changed(SPACE, domain__z=WALLS, output__fields__stride=2), "volume")
         xdmf = (folder / "frames.xmf").read_text()
@@ -460,12 +473,16 @@ class Three_dimensions_refuse(Case):
         layers = [{"from": "0 um", "to": "1 um", "viscosity": "3 cP"}]
         self.refused(changed(TUBE, fluid__layers=layers, cells=[]), "/fluid/layers", "a tube")
 
+    def test_regions_of_fields(self):
+        region = {"from": ["1 um", "0 um", "0.3 um"], "to": ["5 um", "2 um", "0.7 um"]}
+        fields = {"seconds": "1 ms", "quantities": ["velocity"], "region": region}
+        scene = changed(SPACE, output__fields=fields)
+        self.refused(changed(scene, output__fields__region__to=["5 um", "2 um"]), "/output/fields/region/to", "three lengths")
+        self.refused(changed(PLANE, output__fields=fields), "/output/fields/region/from", "two lengths")
+        self.refused(changed(scene, output__fields__region__to=["5 um", "2 um", "1.1 um"]), "/output/fields/region/to/2",
+                     "ends at 1.1 um along z, outside the domain, which ends at 1 um")
+
     def test_what_is_not_there_yet(self):
-        fields = {"seconds": "1 ms", "quantities": ["velocity", "vorticity"]}
-        self.refused(changed(SPACE, output__fields=fields), "/output/fields/quantities/1", "vorticity")
-        fields = {"seconds": "1 ms", "quantities": ["velocity"],
-                  "region": {"from": ["0 um", "0 um"], "to": ["2 um", "2 um"]}}
-        self.refused(changed(SPACE, output__fields=fields), "/output/fields/region", "whole lattice")
         self.refused(changed(SPACE, domain__z=WALLS, stages__0__start="developed"), "/stages/0/start", "two walls")
 
     def test_an_operator_whose_manifest_names_d2q9_alone(self):

@@ -111,6 +111,78 @@ class A_frame(Case):
         self.assert_refused("wants one of", RUN.frame, strain=1, index=0)
 
 
+class Fields_in_space(Case):
+    """Of a capsule between walls that move, and in a tube; the lattice of the former is periodic along z."""
+
+    SCENE = {
+        "rouleau": 1, "title": "space",
+        "domain": {"size": ["8 um", "6 um", "7 um"], "nodes": [16, 12, 14],
+                   "y": {"lower": {"wall": {}}, "upper": {"wall": {}}}},
+        "fluid": {"density": "1 g/cm3", "viscosity": "1.2 cP"},
+        "numerics": {"density_factor": 300},
+        "cell_types": {"capsule": {"shape": {"sphere": {"radius": "1.5 um"}}, "triangles": 180,
+                                   "membrane": [{"model": "neo-hookean", "parameters": {"shear_modulus": "1e-5 N/m"}}]}},
+        "cells": [{"type": "capsule", "at": ["4 um", "2.6 um", "3.3 um"]}],
+        "stages": [{"name": "flow", "walls": {"lower": "-0.2 mm/s", "upper": "0.5 mm/s"}, "duration": "2 ms"}],
+        "output": {"fields": {"seconds": "2 ms", "quantities": ["velocity", "vorticity"], "precision": "f64"}},
+    }
+
+    def last_frame(self, scene, out):
+        return rouleau.run(scene, f"{self.path}/{out}", progress=False).frame(index=-1, fields=True)
+
+    def vorticity(self, velocity, spacing, walls):
+        """By central differences of [nz, ny, nx, 3], periodic along x and z, walls along y."""
+        below, above = 2 * numpy.zeros((2, *velocity[:, :1].shape)) - velocity[:, [0, -1]].swapaxes(0, 1)[:, :, None]
+        below[..., 0] += 2 * walls[0]
+        above[..., 0] += 2 * walls[1]
+        tall = numpy.concatenate([below, velocity, above], axis=1)
+        along = {0: (numpy.roll(velocity, -1, 2) - numpy.roll(velocity, 1, 2)) / (2 * spacing),
+                 1: (tall[:, 2:] - tall[:, :-2]) / (2 * spacing),
+                 2: (numpy.roll(velocity, -1, 0) - numpy.roll(velocity, 1, 0)) / (2 * spacing)}
+        return numpy.stack([along[1][..., 2] - along[2][..., 1], along[2][..., 0] - along[0][..., 2],
+                            along[0][..., 1] - along[1][..., 0]], axis=-1)
+
+    def test_have_the_vorticity_of_their_velocity(self):
+        frame = self.last_frame(self.SCENE, "whole")
+        velocity, written = frame.field("velocity").values, frame.field("vorticity")
+        self.assertEqual((written.values.shape, written.unit), ((14, 12, 16, 3), "1/s"))
+        expected = self.vorticity(velocity, 0.5e-6, (-0.2e-3, 0.5e-3))
+        largest = abs(expected).max()
+        self.assertGreater(largest, 50)
+        for component in range(3):
+            self.assertGreater(abs(expected[..., component]).max(), 1e-2 * largest)
+        self.assertLess(abs(written.values - expected).max(), 1e-9 * largest)
+
+    def test_of_a_region_are_those_of_the_whole_lattice_there(self):
+        scene = json.loads(json.dumps(self.SCENE))
+        whole = self.last_frame(scene, "whole")
+        scene["output"]["fields"].update(region={"from": ["1 um", "2 um", "2.9 um"], "to": ["6 um", "6 um", "5.3 um"]}, stride=2)
+        part = self.last_frame(scene, "part")
+        for name in ("velocity", "vorticity"):
+            field = part.field(name)
+            # Nodes lie at 0.25, 0.75, ... um.
+            self.assertTrue((field.values == whole.field(name).values[6:11:2, 4:12:2, 2:12:2]).all())
+            for places, first in ((field.x, 1.25e-6), (field.y, 2.25e-6), (field.z, 3.25e-6)):
+                self.assertTrue(numpy.allclose(places, first + 1e-6 * numpy.arange(len(places)), atol=1e-15))
+
+    def test_vanish_in_the_wall_of_a_tube_and_turn_about_its_axis(self):
+        scene = json.loads(json.dumps(self.SCENE))
+        scene["domain"] = {"size": ["2 um", "8 um", "8 um"], "nodes": [8, 32, 32], "walls": {"tube": {"radius": "3.8 um"}}}
+        scene["cells"] = []
+        scene["stages"] = [{"name": "flow", "pressure_gradient": "1e5 Pa/m", "duration": "60 ms"}]
+        scene["output"]["fields"]["seconds"] = "60 ms"
+        frame = self.last_frame(scene, "tube")
+        field = frame.field("vorticity")
+        y, z = numpy.meshgrid(field.y - 4e-6, field.z - 4e-6)
+        radius = numpy.hypot(y, z)
+        inside = radius < 3.3e-6  # where neither neighbour is solid
+        # u = G (R^2 - r^2) / (4 mu): du/dy = -G y / (2 mu), du/dz likewise.
+        expected = numpy.stack([0 * y, -1e5 * z / 2.4e-3, 1e5 * y / 2.4e-3], axis=-1)
+        layer = field.values[:, :, 3]
+        self.assertTrue((layer[radius > 3.8e-6] == 0).all())
+        self.assertLess(abs(layer - expected)[inside].max(), 0.01 * abs(expected).max())
+
+
 class A_run_that_goes_on(Case):
     def setUp(self):
         super().setUp()

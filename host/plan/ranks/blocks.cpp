@@ -1,15 +1,18 @@
 #include "blocks.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <string>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "core/membrane/membranes.hpp"
 #include "core/membrane/rounding.hpp"
 #include "plan/estimate.hpp"
 #include "plan/placed_cells.hpp"
 #include "plan/solver_setup.hpp"
+#include "scene/scene_reader.hpp"
 
 namespace rouleau::plan {
 
@@ -67,6 +70,29 @@ int most_blocks(const Plan& plan) {
   const int least_depth = plan.scene->domain.depth ? least_height : 1;
   const double most = plan.scene->domain.node_count() / (least_width * least_height * least_depth);
   return static_cast<int>(std::min(most, 1e9));
+}
+
+int fewest_ranks(const scene::Scene& scene) {
+  return static_cast<int>(std::ceil(scene.domain.node_count() / static_cast<double>(scene::most_nodes_of_block)));
+}
+
+void require_computable(const scene::Scene& scene, const Blocks* blocks) {
+  double most = scene.domain.node_count();
+  int ranks = 1;
+  const auto look = [&](const auto& of_lattice) {
+    ranks = of_lattice.ranks(), most = 0;
+    for (int rank = 0; rank < ranks; ++rank) {
+      const auto block = of_lattice.domain(rank).block;
+      most = std::max(most, static_cast<double>(core::row_count(block)) * block.size(0));
+    }
+  };
+  if (blocks != nullptr) std::visit(look, *blocks);
+  if (most <= static_cast<double>(scene::most_nodes_of_block)) return;
+  const int enough = std::max(fewest_ranks(scene), ranks + 1);
+  throw Error(Cause::bad_input, scene.place("/domain/nodes"),
+              number(most, 12) + (ranks > 1 ? " nodes of a block" : " nodes") + " are more than the " +
+                  std::to_string(scene::most_nodes_of_block) + " that one rank can compute",
+              {"start the run on more ranks, at least " + std::to_string(enough) + " (docs/ranks.md)"});
 }
 
 Blocks make_blocks(const Plan& plan, int ranks) {

@@ -16,6 +16,11 @@ using Blocks = std::variant<core::Decomposition<2>, core::Decomposition<3>>;
 /// How many ranks a lattice has room for.
 int most_blocks(const Plan& plan);
 
+/// The fewest ranks that can compute a lattice.
+int fewest_ranks(const scene::Scene& scene);
+/// Throws Error(bad_input) where a rank would compute more nodes than it can. `blocks`: null, of one process.
+void require_computable(const scene::Scene& scene, const Blocks* blocks);
+
 /// Blocks of about the same cost, one for each rank, for the cells' first places. Throws Error(bad_input) for more ranks
 /// than the lattice has room for.
 Blocks make_blocks(const Plan& plan, int ranks);

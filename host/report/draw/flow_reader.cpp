@@ -33,8 +33,8 @@ const BlockVelocity* FlowReader::at(std::size_t output) {
   velocity_.first = grid.box().first;
   velocity_.size = grid.box().size;
   velocity_.periodic_x = grid.periodic[0];
-  velocity_.u = block_means(velocity_component(values, grid.nx, grid.ny, 0), most_blocks);
-  velocity_.v = block_means(velocity_component(values, grid.nx, grid.ny, 1), most_blocks);
+  velocity_.u = block_means(component_of(values, grid.nx, grid.ny, 0), most_blocks);
+  velocity_.v = block_means(component_of(values, grid.nx, grid.ny, 1), most_blocks);
   read_ = wanted;
   return &velocity_;
 }

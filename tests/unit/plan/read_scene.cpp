@@ -51,11 +51,11 @@ TEST_CASE("cells at random count where cells or membrane nodes are too many") {
            count + "}}]";
   };
   CHECK_THROWS_WITH(
-      plan::read_unpacked_scene(scene_file, {cells("1000000"), "/cell_types/rbc/shape/biconcave/radius=1 nm"}),
-      Contains("with these there would be 1000001 cells; at most 1000000 can be computed"));
-  CHECK_THROWS_WITH(plan::read_unpacked_scene(scene_file, {cells("1001"), "/cell_types/rbc/segments=100000",
+      plan::read_unpacked_scene(scene_file, {cells("10000000"), "/cell_types/rbc/shape/biconcave/radius=1 nm"}),
+      Contains("with these there would be 10000001 cells; at most 10000000 can be computed"));
+  CHECK_THROWS_WITH(plan::read_unpacked_scene(scene_file, {cells("20001"), "/cell_types/rbc/segments=100000",
                                                            "/cell_types/rbc/shape/biconcave/radius=1 nm"}),
-                    Contains("the cells have 100200000 membrane nodes together"));
+                    Contains("the cells have 2000200000 membrane nodes together"));
 }
 
 TEST_CASE("a scene with cells from a file says where the file is and what was in it, and refuses another one") {

@@ -140,7 +140,7 @@ TEST_CASE("a report carries the flow of the outputs that have one") {
       Snapshot snapshot = small_snapshot(step, step % 2 == 1);
       for (double& u : snapshot.fields.velocity_x) u = 3e-4f * static_cast<float>(step);
       for (double& v : snapshot.fields.velocity_y) v = 4e-4f * static_cast<float>(step);
-      snapshot.fields.vorticity.clear();
+      snapshot.fields.vorticity_z.clear();
       run.write(snapshot);
     }
     run.finish(to_json(small_summary()));
