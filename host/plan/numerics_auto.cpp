@@ -414,15 +414,15 @@ void put_draft_numerics(json::Document& document) {
     const auto lattice = coarsest_lattice(lengths);
     if (!lattice) {
       const std::string most = std::to_string(most_coarse_rows);
-      fields.refuse("/domain/size",
-                    in_space
-                        ? "the ratios of these sides are not those of whole numbers up to " + most +
-                              ", or want more nodes than can be computed (" + std::to_string(scene::most_nodes_of_block) +
-                              "), so that no lattice with the same spacing along all three can be chosen\n"
-                              "write sides with simple ratios, such as [\"50 um\", \"25 um\", \"25 um\"], or give nodes"
-                        : "the ratio of these sides is not one of whole numbers up to " + most +
-                              ", so that no lattice with the same spacing along both can be chosen\n"
-                              "write sides with a simple ratio, such as [\"50 um\", \"25 um\"], or give nodes");
+      fields.refuse(
+          "/domain/size",
+          in_space ? "the ratios of these sides are not those of whole numbers up to " + most +
+                         ", or want more nodes than can be computed (" + std::to_string(scene::most_nodes_of_block) +
+                         "), so that no lattice with the same spacing along all three can be chosen\n"
+                         "write sides with simple ratios, such as [\"50 um\", \"25 um\", \"25 um\"], or give nodes"
+                   : "the ratio of these sides is not one of whole numbers up to " + most +
+                         ", so that no lattice with the same spacing along both can be chosen\n"
+                         "write sides with a simple ratio, such as [\"50 um\", \"25 um\"], or give nodes");
     }
     // As fine as a lattice that might be chosen: a region of output must hold nodes.
     const int factor = std::max(1, 1024 / *std::max_element(lattice->begin(), lattice->end()));
