@@ -33,11 +33,9 @@ constexpr double shown = 23e-9;  ///< a node that is told to another rank
 namespace memory {
 constexpr double of_process = 30e6;    ///< the program, its libraries and MPI
 constexpr double of_each_cell = 2000;  ///< of the scene: as it was read, where it begins, what lists of it are empty
-/// Of each node of the scene: in two dimensions its state of rest. The first rank is given all of all cells.
+/// Of each node of the scene, on the first rank, which is given all of all cells.
 template <int D>
-constexpr double of_each_node(bool first) {
-  return (D == 2 ? 24 : 0) + (first ? (D == 2 ? 95 : 500) : 0);
-}
+constexpr double of_each_node = D == 2 ? 95 : 500;
 /// Of a rank's own nodes and those of its ghosts, of which surfaces keep no lists. Pages hold several outlines.
 template <int D>
 constexpr double of_known(double own, double ghosts) {
@@ -225,7 +223,7 @@ std::vector<RankCost> costs_of(const Plan& plan, const core::Decomposition<D>& b
     if (plan.has_cells) {
       cost.memory_bytes +=
           memory::of_known<D>(static_cast<double>(cost.membrane_nodes), static_cast<double>(cost.ghost_nodes)) +
-          membrane_nodes(scene) * memory::of_each_node<D>(rank == 0) +
+          (rank == 0 ? membrane_nodes(scene) * memory::of_each_node<D> : 0) +
           static_cast<double>(scene.cells.size()) * memory::of_each_cell;
     }
     cost.sharing_s += cost.lattice_bytes() / word * cost_of_sharing::number;
