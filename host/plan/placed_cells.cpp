@@ -330,11 +330,11 @@ core::Surfaces make_surfaces(const scene::Scene& scene, double spacing) {
 template <int D>
 void for_each_cell(const scene::Scene& scene, double spacing,
                    const std::function<void(std::size_t, const Cells<D>&)>& function) {
-  const Cells<D> none = without_cells<D>(scene, spacing);
+  Cells<D> cell = without_cells<D>(scene, spacing);
   for (std::size_t c = 0; c < scene.cells.size(); ++c) {
-    Cells<D> cell = none;
     add_placed(cell, scene.cells[c], spacing);
     function(c, cell);
+    cell.remove_cells();
   }
 }
 template void for_each_cell<2>(const scene::Scene&, double,

@@ -2,6 +2,12 @@
 
 namespace rouleau::core {
 
+void CellNodes::remove_cells() {
+  cells.clear();
+  for (auto* values : {&x, &y, &z, &force_x, &force_y, &force_z, &velocity_x, &velocity_y, &velocity_z})
+    values->clear();
+}
+
 std::vector<Range> CellNodes::unknown_nodes() const {
   std::vector<Range> runs;
   for (int c = 0; c < cell_count(); ++c) {

@@ -60,6 +60,8 @@ struct CellNodes {
     return {first(share.begin), first(share.end)};
   }
 
+  /// Takes all cells away, as they were added; the room for them stays.
+  void remove_cells();
   /// Nodes of the cells that this rank does not know, in runs.
   [[nodiscard]] std::vector<Range> unknown_nodes() const;
   /// Takes no memory for what is known of these nodes and for what their cells remember; both is gone.

@@ -17,6 +17,7 @@ namespace {
 
 constexpr double wasteful = 0.1;             ///< efficiency; nobody would start as many
 constexpr double slower = 1.3;               ///< than the fastest: more ranks will not help
+constexpr int largest_machine = 1 << 17;     ///< ranks; more are planned for when they are asked for
 constexpr std::size_t many_cells = 100'000;  ///< cells; powers of eight have to do, each takes seconds
 
 }  // namespace
@@ -82,12 +83,11 @@ RankTimes rank_times(const Plan& plan, const std::vector<RankCost>& asked, const
   double least = steps[1] = by_estimate * scale;
   steps[wanted] = step_time(asked, machines, scale);
   const int factor = plan.scene->cells.size() > many_cells ? 8 : 2;
-  for (int ranks = factor; ranks <= most / factor * factor; ranks *= factor) {
+  for (int ranks = factor; ranks <= std::min(most, largest_machine); ranks *= factor) {
     if (ranks < fewest_ranks(*plan.scene)) continue;
     if (ranks != wanted) steps[ranks] = step_time(rank_costs(plan, make_blocks(plan, ranks)), machines, scale);
     if (steps[ranks] > slower * least || steps[1] < wasteful * ranks * steps[ranks]) break;
     least = std::min(least, steps[ranks]);
-    if (ranks > most / factor) break;
   }
   RankTimes times;
   for (const auto& [ranks, step] : steps) {

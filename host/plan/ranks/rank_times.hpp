@@ -51,7 +51,7 @@ struct Machines {
 double step_time(const std::vector<RankCost>& ranks, const Machines& machines, double scale);
 
 /// By the ranks asked for, whose costs are known, and by powers of two (of eight with very many cells) until more do not
-/// help, have no room, or are a waste.
+/// help, have no room, are a waste, or are more than any machine has (2^17).
 RankTimes rank_times(const Plan& plan, const std::vector<RankCost>& asked, const Machines& machines);
 
 /// For people.
