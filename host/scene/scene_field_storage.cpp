@@ -1,5 +1,7 @@
 // Which part of the fluid's fields a scene wants written, and how.
+#include <array>
 #include <cmath>
+#include <vector>
 
 #include "base/text.hpp"
 #include "json/json_pointer.hpp"
@@ -49,17 +51,20 @@ FieldStorage read_field_storage(const SceneFields& fields, const Domain& domain)
   fields.attempt([&] {
     const std::string region = "/output/fields/region";
     if (!fields.has(region)) return;
+    std::array<std::vector<double>, 2> corners;
+    for (const std::size_t k : {0, 1}) {
+      const std::string corner = region + (k == 0 ? "/from" : "/to");
+      for (std::size_t axis = 0; fields.has(corner) && axis < fields.count(corner); ++axis)
+        corners[k].push_back(fields.quantity(json::child_pointer(corner, axis), "m", range::place));
+    }
     if (!fields.settled(region) || !is_known(domain)) return;
     require_corners(fields, region, {"/from", "/to"}, domain);
     storage.last.emplace();
-    for (int axis = 0; axis < domain.dimension(); ++axis) {
-      const auto a = static_cast<std::size_t>(axis);
-      const auto at = [&](const char* corner) {
-        return fields.quantity(json::child_pointer(region + corner, a), "m", range::place);
-      };
-      const auto [first, last] = nodes_within(fields, domain, axis, at("/from"), at("/to"));
-      storage.first[a] = first;
-      (*storage.last)[a] = last;
+    for (std::size_t axis = 0; axis < corners[0].size(); ++axis) {
+      const auto [first, last] =
+          nodes_within(fields, domain, static_cast<int>(axis), corners[0][axis], corners[1][axis]);
+      storage.first[axis] = first;
+      (*storage.last)[axis] = last;
     }
   });
   storage.stride = fields.value_or("/output/fields/stride", storage.stride);

@@ -140,7 +140,7 @@ class SceneFields {
 
 // More cannot be computed.
 inline constexpr long most_cells = 10'000'000;
-inline constexpr std::int64_t most_nodes = std::int64_t{1} << 40;           ///< of a lattice
+inline constexpr std::int64_t most_nodes = std::int64_t{1} << 38;           ///< of a lattice
 inline constexpr std::int64_t most_nodes_of_block = std::int64_t{1} << 30;  ///< of the part that one rank computes
 inline constexpr std::int64_t most_rows = std::int64_t{1} << 30;            ///< along x, of a lattice
 inline constexpr int most_nodes_of_side = 1 << 20;
