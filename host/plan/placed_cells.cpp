@@ -164,6 +164,7 @@ class SurfaceChecker {
   void check() const {
     for (int c = 0; c < surfaces_.cell_count(); ++c) check_fits(c);
     std::vector<core::BoundingBox<3>> boxes;
+    boxes.reserve(surfaces_.cells.size());
     for (int c = 0; c < surfaces_.cell_count(); ++c) boxes.push_back(core::box_of<3>(surfaces_, c));
     const core::CellGrid<3> grid(boxes, 0, domain_);
     std::vector<int> near;
