@@ -28,7 +28,7 @@ except ImportError:
 TABLES = ["cells.csv", "aggregates.csv", "series.csv", "aggregate_sizes.csv"]
 MEASURED = ["wall_s", "steps_per_s", "mlups", "peak_rss_bytes", "threads", "ranks", "message_library", "started",
             "resumed", "files", "summary_xxh3"]
-COSTS_ALONE = ["checkpoint", "ranks"]  # passes that only some of the runs have
+COSTS_ALONE = ["checkpoint", "ranks", "cut"]  # passes that only some of the runs have: blocks are cut again where a rank is slow
 INTERRUPTED = 130
 
 
