@@ -346,7 +346,7 @@ class The_end(Case):
             self.assertEqual(summary["checkpoint_step"], summary["steps"])
 
     def test_max_time_ends_all_ranks(self):
-        result = call(ranks(2, "run", KINETICS, "--out", self.path / "run", "--quiet", "--max-time", "1 s"))
+        result = call(ranks(2, "run", KINETICS, "--out", self.path / "run", "--quiet", "--max-time", "0.2 s"))
         self.assertEqual(result.returncode, 130, result.stderr)
         self.assertIn("ended by --max-time", result.stderr)
 
