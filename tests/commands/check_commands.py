@@ -342,6 +342,14 @@ class Commands_do_what_they_say(Case):
             self.assert_stops(self.rouleau.run("plan", SCENE, "--ranks", 6, *wrong), 2, what)
         self.assert_stops(self.rouleau.run("plan", SCENE, "--rank", 2), 2, "add --ranks N")
 
+    def test_a_lattice_that_one_rank_cannot_compute_is_planned_for_several_and_refused_to_one(self):
+        large = ["--set", "/domain/nodes=[65536, 32768]", "--set", '/domain/size=["12845.056 um", "6422.528 um"]']
+        plan = self.rouleau.run("plan", SCENE, *large, "--ranks", 4)
+        self.assertEqual(plan.returncode, 0, plan.stderr)
+        self.assertIn("2147483648 nodes and one rank can compute 1073741824; start the run on 2 ranks or more", plan.stdout)
+        self.assert_stops(self.rouleau.run("run", SCENE, *large, "--out", self.path / "none"), 2, "at least 2")
+        self.assertFalse((self.path / "none").exists())
+
     def test_conversions_and_limits_say_whose_they_are(self):
         scene = json.loads(SCENE.read_text())
         stiff = json.loads(json.dumps(scene["cell_types"]["rbc"]))
