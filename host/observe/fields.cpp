@@ -5,33 +5,35 @@
 #include <cmath>
 
 #include "core/fluid/relaxation.hpp"
-#include "vorticity.hpp"
 
 namespace rouleau::observe {
 
 namespace {
 
-/// Vorticity in three dimensions, by central differences over two spacings. Beyond a wall half a spacing away the velocity
-/// is such that its mean with that of the node before it is the wall's.
-class Curl {
+/// By central differences over two spacings. Beyond a wall half a spacing away the velocity is such that its mean with that
+/// of the node before it is the wall's.
+template <int D>
+class Vorticity {
  public:
-  Curl(const core::FluidSetting<3>& fluid, const core::WallVelocity& walls,
-       const std::vector<core::Moments<3>>& moments)
+  using Node = std::array<int, D>;
+  Vorticity(const core::FluidSetting<D>& fluid, const core::WallVelocity& walls,
+            const std::vector<core::Moments<D>>& moments)
       : domain_(fluid.domain), solid_(fluid.solid.get()), walls_(walls), moments_(moments) {}
 
-  /// At a node of the lattice, lattice units; 0 in the solid.
-  [[nodiscard]] std::array<double, 3> at(const std::array<int, 3>& node) const {
-    if (solid_ != nullptr && solid_->at(node)) return {0, 0, 0};
-    return {rise(node, 2, 1) - rise(node, 1, 2), rise(node, 0, 2) - rise(node, 2, 0),
-            rise(node, 1, 0) - rise(node, 0, 1)};
+  /// Along z, in three dimensions along x, y and z, at a node of the lattice, lattice units; 0 in the solid.
+  [[nodiscard]] std::array<double, D == 2 ? 1 : 3> at(const Node& node) const {
+    if (solid_ != nullptr && solid_->at(node)) return {};
+    const double along_z = rise(node, 1, 0) - rise(node, 0, 1);
+    if constexpr (D == 2) return {along_z};
+    if constexpr (D == 3) return {rise(node, 2, 1) - rise(node, 1, 2), rise(node, 0, 2) - rise(node, 2, 0), along_z};
   }
 
  private:
   /// d velocity[component] / d axis
-  [[nodiscard]] double rise(const std::array<int, 3>& node, std::size_t component, int axis) const {
+  [[nodiscard]] double rise(const Node& node, std::size_t component, int axis) const {
     return (beside(node, component, axis, 1) - beside(node, component, axis, -1)) / 2;
   }
-  [[nodiscard]] double beside(std::array<int, 3> node, std::size_t component, int axis, int step) const {
+  [[nodiscard]] double beside(Node node, std::size_t component, int axis, int step) const {
     const double own = velocity(node, component);
     const auto k = static_cast<std::size_t>(axis);
     node[k] = domain_.wrapped(axis, node[k] + step);
@@ -40,17 +42,17 @@ class Curl {
     if (solid_ != nullptr && solid_->at(node)) return -own;
     return velocity(node, component);
   }
-  [[nodiscard]] double velocity(const std::array<int, 3>& node, std::size_t component) const {
-    const auto row = static_cast<std::size_t>(node[2]) * static_cast<std::size_t>(domain_.size[1]) +
-                     static_cast<std::size_t>(node[1]);
-    return moments_[row * static_cast<std::size_t>(domain_.size[0]) + static_cast<std::size_t>(node[0])]
-        .velocity[component];
+  [[nodiscard]] double velocity(const Node& node, std::size_t component) const {
+    std::size_t place = 0;
+    for (std::size_t k = D; k-- > 0;)
+      place = place * static_cast<std::size_t>(domain_.size[k]) + static_cast<std::size_t>(node[k]);
+    return moments_[place].velocity[component];
   }
 
-  const core::Domain<3>& domain_;
-  const core::SolidNodes<3>* solid_;
+  const core::Domain<D>& domain_;
+  const core::SolidNodes<D>* solid_;
   core::WallVelocity walls_;
-  const std::vector<core::Moments<3>>& moments_;
+  const std::vector<core::Moments<D>>& moments_;
 };
 
 }  // namespace
@@ -86,17 +88,7 @@ FieldSnapshot observe_fields(core::Fluid<T, Set>& fluid, const scene::Scene& sce
         std::pair{vorticity && dimension == 3, &f.vorticity_y}, std::pair{vorticity, &f.vorticity_z}}) {
     if (want) values->reserve(nodes);
   }
-  // Beyond a wall lies a row of nodes whose velocities have the wall's as mean with those of the row before it.
-  const core::WallVelocity walls = fluid.walls_now();
-  const bool periodic_y = fluid.setting().domain.periodic[1];
-  const std::size_t below = periodic_y ? 0 : 1;
-  const VelocityGrid grid{nx, ny + 2 * below, {1, 1}, {true, periodic_y}};
-  const auto u = [&](std::size_t i, std::size_t j) {
-    if (!periodic_y && j == 0) return 2 * walls.lower - moments[i].velocity[0];
-    if (!periodic_y && j + 1 == grid.ny) return 2 * walls.upper - moments[node(i, ny - 1)].velocity[0];
-    return moments[node(i, j - below)].velocity[0];
-  };
-  const auto v = [&](std::size_t i, std::size_t j) { return moments[node(i, j - below)].velocity[1]; };
+  const Vorticity<dimension> curl(fluid.setting(), fluid.walls_now(), moments);
   for (int layer = 0; layer < f.nz; ++layer) {
     const int z = storage.first[2] + layer * storage.stride;
     const std::size_t first_of_layer = static_cast<std::size_t>(z) * nx * ny;
@@ -113,14 +105,13 @@ FieldSnapshot observe_fields(core::Fluid<T, Set>& fluid, const scene::Scene& sce
         }
         if (density) f.density.push_back(m.density);
         if (viscosity) f.viscosity.push_back(core::viscosity_of(1 / relaxation_rate[at]) * viscosity_unit);
-        if constexpr (dimension == 2) {
-          if (vorticity) f.vorticity_z.push_back(grid.vorticity(x, y + below, u, v) * rate);
-        } else if (vorticity) {
-          const auto along = Curl(fluid.setting(), walls, moments).at({static_cast<int>(x), static_cast<int>(y), z});
-          f.vorticity_x.push_back(along[0] * rate);
-          f.vorticity_y.push_back(along[1] * rate);
-          f.vorticity_z.push_back(along[2] * rate);
-        }
+        if (!vorticity) continue;
+        std::array<int, dimension> place{static_cast<int>(x), static_cast<int>(y)};
+        if constexpr (dimension == 3) place[2] = z;
+        const auto along = curl.at(place);
+        if constexpr (dimension == 3)
+          f.vorticity_x.push_back(along[0] * rate), f.vorticity_y.push_back(along[1] * rate);
+        f.vorticity_z.push_back(along.back() * rate);
       }
     }
   }

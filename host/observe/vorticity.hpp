@@ -1,4 +1,4 @@
-// Vorticity from the velocities at the nodes of a grid: of a simulated fluid and of a written field alike.
+// Vorticity from the velocities at the nodes of a grid that a file has.
 #pragma once
 
 #include <array>

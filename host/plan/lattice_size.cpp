@@ -55,4 +55,8 @@ std::optional<LatticeSize> refined(LatticeSize nodes, int factor) {
   return nodes;
 }
 
+int fewest_ranks(const scene::Domain& domain) {
+  return static_cast<int>(std::ceil(domain.node_count() / static_cast<double>(scene::most_nodes_of_block)));
+}
+
 }  // namespace rouleau::plan

@@ -27,4 +27,7 @@ std::optional<LatticeSize> coarsest_lattice(const std::vector<double>& sides);
 /// A lattice with so many times as many nodes along each side; none where that are more than can be computed.
 std::optional<LatticeSize> refined(LatticeSize nodes, int factor);
 
+/// That can compute a lattice.
+int fewest_ranks(const scene::Domain& domain);
+
 }  // namespace rouleau::plan

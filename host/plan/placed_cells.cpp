@@ -63,6 +63,15 @@ void add_placed(core::Surfaces& surfaces, const scene::CellPlacement& cell, doub
   core::add_cell(surfaces, cell.type, center, shape::rotation_of(cell));
 }
 
+/// Unchecked.
+template <int D>
+Cells<D> all_cells(const scene::Scene& scene, double spacing) {
+  require_memory(membrane_memory(scene), "placing the cells");
+  Cells<D> cells = without_cells<D>(scene, spacing);
+  for (const scene::CellPlacement& cell : scene.cells) add_placed(cells, cell, spacing);
+  return cells;
+}
+
 /// Refuses outlines that stick through walls, are longer than a period, or cross themselves or each other.
 class OutlineChecker {
  public:
@@ -165,7 +174,8 @@ class SurfaceChecker {
     for (int c = 0; c < surfaces_.cell_count(); ++c) check_fits(c);
     std::vector<core::BoundingBox<3>> boxes;
     boxes.reserve(surfaces_.cells.size());
-    for (int c = 0; c < surfaces_.cell_count(); ++c) boxes.push_back(core::box_of<3>(surfaces_, c));
+    for (const Eigen::AlignedBox3d& box : boxes_)
+      boxes.push_back({{box.min().x(), box.min().y(), box.min().z()}, {box.max().x(), box.max().y(), box.max().z()}});
     const core::CellGrid<3> grid(boxes, 0, domain_);
     std::vector<int> near;
     for (int c = 0; c < surfaces_.cell_count(); ++c) {
@@ -312,18 +322,14 @@ void try_in_strips(const scene::Scene& scene, double spacing, std::size_t of_str
 core::Membranes make_membranes(const scene::Scene& scene, double spacing) {
   require_room(scene);
   require_distance(scene);
-  require_memory(membrane_memory(scene), "placing the cells");
-  core::Membranes membranes = without_cells<2>(scene, spacing);
-  for (const scene::CellPlacement& cell : scene.cells) add_placed(membranes, cell, spacing);
+  core::Membranes membranes = all_cells<2>(scene, spacing);
   OutlineChecker(scene, membranes, spacing).check();
   return membranes;
 }
 
 core::Surfaces make_surfaces(const scene::Scene& scene, double spacing) {
   require_room(scene);
-  require_memory(membrane_memory(scene), "placing the cells");
-  core::Surfaces surfaces = without_cells<3>(scene, spacing);
-  for (const scene::CellPlacement& cell : scene.cells) add_placed(surfaces, cell, spacing);
+  core::Surfaces surfaces = all_cells<3>(scene, spacing);
   SurfaceChecker(scene, surfaces, spacing).check();
   return surfaces;
 }

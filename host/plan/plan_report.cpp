@@ -8,6 +8,7 @@
 #include "cell_travel.hpp"
 #include "core/solver/schedule.hpp"
 #include "flow_start.hpp"
+#include "lattice_size.hpp"
 #include "scene/driving_flow.hpp"
 #include "scene/scene_reader.hpp"
 #include "shape/extent.hpp"
@@ -277,9 +278,9 @@ std::vector<std::string> warnings_of(const Plan& plan, const std::vector<Limit>&
                        " m/s every second for as long as the stage lasts; give domain.y walls, or leave out "
                        "fluid.body_force and pressure_gradient");
   }
-  if (const double most = static_cast<double>(scene::most_nodes_of_block); scene.domain.node_count() > most) {
+  if (const int ranks = fewest_ranks(scene.domain); ranks > 1) {
     warnings.push_back("the lattice has " + number(scene.domain.node_count(), 12) + " nodes and one rank can compute " +
-                       number(most, 12) + "; start the run on " + number(std::ceil(scene.domain.node_count() / most)) +
+                       std::to_string(scene::most_nodes_of_block) + "; start the run on " + std::to_string(ranks) +
                        " ranks or more (docs/ranks.md)");
   }
   const double spacing = lattice_spacing(scene);

@@ -1,7 +1,6 @@
 #include "blocks.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <string>
 
@@ -10,6 +9,7 @@
 #include "core/membrane/membranes.hpp"
 #include "core/membrane/rounding.hpp"
 #include "plan/estimate.hpp"
+#include "plan/lattice_size.hpp"
 #include "plan/placed_cells.hpp"
 #include "plan/solver_setup.hpp"
 #include "scene/scene_reader.hpp"
@@ -72,10 +72,6 @@ int most_blocks(const Plan& plan) {
   return static_cast<int>(std::min(most, 1e9));
 }
 
-int fewest_ranks(const scene::Scene& scene) {
-  return static_cast<int>(std::ceil(scene.domain.node_count() / static_cast<double>(scene::most_nodes_of_block)));
-}
-
 void require_computable(const scene::Scene& scene, const Blocks* blocks) {
   double most = scene.domain.node_count();
   int ranks = 1;
@@ -88,7 +84,7 @@ void require_computable(const scene::Scene& scene, const Blocks* blocks) {
   };
   if (blocks != nullptr) std::visit(look, *blocks);
   if (most <= static_cast<double>(scene::most_nodes_of_block)) return;
-  const int enough = std::max(fewest_ranks(scene), ranks + 1);
+  const int enough = std::max(fewest_ranks(scene.domain), ranks + 1);
   throw Error(Cause::bad_input, scene.place("/domain/nodes"),
               number(most, 12) + (ranks > 1 ? " nodes of a block" : " nodes") + " are more than the " +
                   std::to_string(scene::most_nodes_of_block) + " that one rank can compute",

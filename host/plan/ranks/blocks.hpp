@@ -16,8 +16,6 @@ using Blocks = std::variant<core::Decomposition<2>, core::Decomposition<3>>;
 /// How many ranks a lattice has room for.
 int most_blocks(const Plan& plan);
 
-/// The fewest ranks that can compute a lattice.
-int fewest_ranks(const scene::Scene& scene);
 /// Throws Error(bad_input) where a rank would compute more nodes than it can. `blocks`: null, of one process.
 void require_computable(const scene::Scene& scene, const Blocks* blocks);
 
