@@ -194,6 +194,14 @@ void CheckpointReader::array(const std::string& path, std::size_t count, double*
   file_->hdf5.read(path, H5T_NATIVE_DOUBLE, values);
 }
 
+void CheckpointReader::part(const std::string& path, std::size_t count, std::size_t begin, std::size_t end,
+                            double* values) const {
+  file_->require(path_, path, count);
+  std::vector<hsize_t> first{begin}, last{end};
+  if (file_->hdf5.shape(path).size() == 2) first.insert(first.begin(), 0), last.insert(last.begin(), 1);
+  file_->hdf5.read(path, H5T_NATIVE_DOUBLE, first, last, values);
+}
+
 void CheckpointReader::block(const std::string& path, Pair size, Pair begin, Pair end, double* values) const {
   file_->read_block(path_, path, size, begin, end, H5T_NATIVE_DOUBLE, values);
 }

@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -36,9 +37,7 @@ class CheckpointWriter {
   /// An array of `rows` times `columns` values at "/name" or "/group/name"; groups are made.
   void array(const std::string& path, std::size_t rows, std::size_t columns, const double* values);
   void array(const std::string& path, std::size_t rows, std::size_t columns, const float* values);
-  void array(const std::string& path, const std::vector<double>& values) {
-    array(path, 1, values.size(), values.data());
-  }
+  void array(const std::string& path, std::span<const double> values) { array(path, 1, values.size(), values.data()); }
   /// Nothing can be added after it: the file is whole and on the disk, and still beside the checkpoint.
   void finish();
   /// After finish(): it becomes the directory's checkpoint, and that becomes the previous one.
@@ -72,6 +71,8 @@ class CheckpointReader {
   [[nodiscard]] std::vector<double> array(const std::string& path) const;
   /// An array that must have just so many values.
   void array(const std::string& path, std::size_t count, double* values) const;
+  /// Values [begin, end) of it.
+  void part(const std::string& path, std::size_t count, std::size_t begin, std::size_t end, double* values) const;
   /// Rows [begin[1], end[1]) and columns [begin[0], end[0]) of an array of size[1] times size[0] values.
   using Pair = std::array<int, 2>;
   void block(const std::string& path, Pair size, Pair begin, Pair end, double* values) const;

@@ -6,10 +6,6 @@
 
 #include "core/membrane/displacement_watch.hpp"
 
-namespace rouleau::core {
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(OldPlaces, x, y, z)
-}  // namespace rouleau::core
-
 namespace rouleau::monitor {
 
 /// Compares positions with those at the start of the window; windows follow one another.
@@ -24,7 +20,7 @@ class RestWatch {
   [[nodiscard]] long end(long window) const { return step_ + window; }
   /// Largest distance that a node has moved since the window began, spacings.
   [[nodiscard]] double moved(const core::CellNodes& cells) const {
-    return core::largest_displacement(cells, old_, {0, cells.node_count()});
+    return core::largest_displacement(cells, {old_.x.data(), old_.y.data(), old_.z.data()}, {0, cells.node_count()});
   }
   [[nodiscard]] bool fits(const core::CellNodes& cells) const {
     return step_ >= 0 && old_.x.size() == cells.x.size() && old_.y.size() == cells.y.size() &&
@@ -33,8 +29,12 @@ class RestWatch {
   NLOHMANN_DEFINE_TYPE_INTRUSIVE(RestWatch, step_, old_)
 
  private:
+  struct OldPlaces {
+    std::vector<double> x, y, z;
+    NLOHMANN_DEFINE_TYPE_INTRUSIVE(OldPlaces, x, y, z)
+  };
   long step_ = 0;
-  core::OldPlaces old_;
+  OldPlaces old_;
 };
 
 }  // namespace rouleau::monitor

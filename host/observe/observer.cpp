@@ -107,15 +107,16 @@ void draw(core::SurfaceTasks<T>& tasks, const core::Surfaces& surfaces, const un
 
 }  // namespace
 
+Observer::Observer(const scene::Scene& scene) : scene_(&scene), domain_(plan::lattice_domain(scene)) {}
+
 template <class Cells>
-Observer::Observer(const scene::Scene& scene, const Cells& cells)
-    : scene_(&scene), domain_(plan::lattice_domain(scene)) {
+void Observer::begin_with(const Cells& cells) {
   for (int k = 0; k < cells.cell_count(); ++k) {
+    angle_.push_back(scene_->cells[angle_.size()].angle);
+    tank_treading_angle_.push_back(0);
     initial_area_.push_back(enclosed(cells, k));
     if constexpr (std::is_same_v<Cells, core::Surfaces>) marker_.push_back(outermost(cells, k));
   }
-  for (const scene::CellPlacement& cell : scene.cells) angle_.push_back(cell.angle);
-  tank_treading_angle_.assign(cells.cells.size(), 0.0);
 }
 
 template <class Cells>
@@ -341,8 +342,8 @@ Snapshot Observer::observe(core::Solver<T, Set>& solver, const plan::StageSettin
 
 void Observer::start_stage() { initial_mass_ = std::nan(""); }
 
-template Observer::Observer(const scene::Scene&, const core::Membranes&);
-template Observer::Observer(const scene::Scene&, const core::Surfaces&);
+template void Observer::begin_with(const core::Membranes&);
+template void Observer::begin_with(const core::Surfaces&);
 template double Observer::follow_area(const core::Membranes&, int*);
 template double Observer::follow_area(const core::Surfaces&, int*);
 template Snapshot Observer::observe(core::Solver<float>&, const plan::StageSetting&, const core::Membranes&, bool);

@@ -22,9 +22,15 @@ namespace rouleau::observe {
 /// Follows angles over turns, and remembers what drifts are measured against; lives for the whole run.
 class Observer {
  public:
-  /// Of the cells as they are placed.
+  explicit Observer(const scene::Scene& scene);
+  /// Of all cells as they are placed.
   template <class Cells>
-  Observer(const scene::Scene& scene, const Cells& cells);
+  Observer(const scene::Scene& scene, const Cells& cells) : Observer(scene) {
+    begin_with(cells);
+  }
+  /// The next cells, as they are placed; in their order.
+  template <class Cells>
+  void begin_with(const Cells& cells);
 
   /// Mass is compared within a stage: a new density factor rescales the populations.
   void start_stage();

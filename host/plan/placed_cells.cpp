@@ -63,11 +63,19 @@ void add_placed(core::Surfaces& surfaces, const scene::CellPlacement& cell, doub
   core::add_cell(surfaces, cell.type, center, shape::rotation_of(cell));
 }
 
+/// Room for the scene's cells, and none of them yet.
+template <int D>
+Cells<D> room_for_cells(const scene::Scene& scene, double spacing) {
+  Cells<D> cells = without_cells<D>(scene, spacing);
+  cells.reserve(scene.cells.size(), static_cast<std::size_t>(membrane_nodes(scene)), D);
+  return cells;
+}
+
 /// Unchecked.
 template <int D>
 Cells<D> all_cells(const scene::Scene& scene, double spacing) {
   require_memory(membrane_memory(scene), "placing the cells");
-  Cells<D> cells = without_cells<D>(scene, spacing);
+  Cells<D> cells = room_for_cells<D>(scene, spacing);
   for (const scene::CellPlacement& cell : scene.cells) add_placed(cells, cell, spacing);
   return cells;
 }
@@ -348,6 +356,28 @@ template void for_each_cell<2>(const scene::Scene&, double,
                                const std::function<void(std::size_t, const core::Membranes&)>&);
 template void for_each_cell<3>(const scene::Scene&, double,
                                const std::function<void(std::size_t, const core::Surfaces&)>&);
+
+template <int D>
+Cells<D> make_known_cells(const scene::Scene& scene, const std::function<bool(int)>& known) {
+  constexpr int at_once = 1 << 16;  // nodes whose memory is given back together
+  const double spacing = lattice_spacing(scene);
+  Cells<D> cells = room_for_cells<D>(scene, spacing);
+  std::vector<Range> unknown;
+  int nodes = 0;
+  for (std::size_t c = 0; c < scene.cells.size(); ++c) {
+    add_placed(cells, scene.cells[c], spacing);
+    if (known(static_cast<int>(c))) continue;
+    const core::CellRange& cell = cells.cells.back();
+    if (unknown.empty() || unknown.back().end != cell.first) unknown.push_back({cell.first, cell.first});
+    unknown.back().end = cell.end();
+    if ((nodes += cell.count) < at_once) continue;
+    cells.forget(unknown);
+    unknown.clear(), nodes = 0;
+  }
+  return cells;
+}
+template core::Membranes make_known_cells<2>(const scene::Scene&, const std::function<bool(int)>&);
+template core::Surfaces make_known_cells<3>(const scene::Scene&, const std::function<bool(int)>&);
 
 double gap_to_tube(const scene::Scene& scene) {
   double gap = std::numeric_limits<double>::infinity();

@@ -16,19 +16,56 @@ using Json = nlohmann::json;
 std::string population_name(int q) { return "/populations/" + std::to_string(q); }
 std::string state_name(std::size_t k) { return "/membranes/state/" + std::to_string(k); }
 
-/// Arrays of the cells that have a value for each node or each cell.
+constexpr std::array places{"/membranes/x", "/membranes/y", "/membranes/z"};
+
+/// Arrays of the cells that have a value for each node, or for each cell.
 template <class Cells>
 auto arrays(Cells& m) {
-  std::vector all{std::pair{"/membranes/x", &m.x}, std::pair{"/membranes/y", &m.y},
+  std::vector all{std::pair{places[0], &m.x}, std::pair{places[1], &m.y},
                   std::pair{"/membranes/velocity_x", &m.velocity_x}, std::pair{"/membranes/velocity_y", &m.velocity_y},
                   std::pair{"/membranes/largest_step", &m.largest_step}};
   if (!m.z.empty())
-    all.insert(all.end(), {std::pair{"/membranes/z", &m.z}, std::pair{"/membranes/velocity_z", &m.velocity_z}});
+    all.insert(all.end(), {std::pair{places[2], &m.z}, std::pair{"/membranes/velocity_z", &m.velocity_z}});
   return all;
 }
 
 void read(const files::CheckpointReader& reader, const std::string& path, std::vector<double>& values) {
   reader.array(path, values.size(), values.data());
+}
+/// Of these parts of an array of all nodes.
+template <class Values>
+void read(const files::CheckpointReader& reader, const std::string& path, const std::vector<Range>& parts,
+          Values& values) {
+  for (const Range& part : parts) {
+    const auto begin = static_cast<std::size_t>(part.begin), end = static_cast<std::size_t>(part.end);
+    reader.part(path, values.size(), begin, end, values.data() + begin);
+  }
+}
+
+/// The boxes of all cells, whose nodes are not in memory all at once.
+template <int D>
+std::vector<core::BoundingBox<D>> read_boxes(const files::CheckpointReader& reader, const core::CellNodes& nodes) {
+  constexpr int at_once = 1 << 18;
+  std::vector<core::BoundingBox<D>> boxes;
+  boxes.reserve(nodes.cells.size());
+  core::CellNodes some;
+  std::vector<double>* const along[] = {&some.x, &some.y, &some.z};
+  for (int c = 0; c < nodes.cell_count();) {
+    const int first = nodes.cells[c].first;
+    some.cells.clear();
+    for (; c < nodes.cell_count() && (some.cells.empty() || nodes.cells[c].end() - first <= at_once); ++c) {
+      some.cells.push_back(nodes.cells[c]);
+      some.cells.back().first -= first;
+    }
+    const int count = some.cells.back().end();
+    for (int k = 0; k < D; ++k) {
+      along[k]->resize(static_cast<std::size_t>(count));
+      reader.part(places[k], nodes.x.size(), static_cast<std::size_t>(first), static_cast<std::size_t>(first + count),
+                  along[k]->data());
+    }
+    for (const core::BoundingBox<D>& box : core::boxes_of<D>(some)) boxes.push_back(box);
+  }
+  return boxes;
 }
 
 constexpr const char *contacts_array = "/membranes/contacts", *wall_contacts_array = "/membranes/wall_contacts",
@@ -154,14 +191,21 @@ void restore_leakage(const files::CheckpointReader& reader, const Json& saved, c
 
 template <class Cells>
 void restore_cells(const files::CheckpointReader& reader, const Json& saved, Cells& m) {
+  const std::vector<Range> known = m.known_nodes();
   m.largest_step.resize(m.cells.size());
-  for (const auto& [path, values] : arrays(m)) read(reader, path, *values);
+  for (const auto& [path, values] : arrays(m)) {
+    if (values == &m.largest_step) {
+      read(reader, path, *values);
+    } else {
+      read(reader, path, known, *values);
+    }
+  }
   restore_leakage(reader, saved, m);
   m.state.clear();
   for (const Json& description : saved.at("state")) {
     m.state.push_back(element_state(description));
     m.state.back().value.resize(m.x.size());
-    read(reader, state_name(m.state.size() - 1), m.state.back().value);
+    read(reader, state_name(m.state.size() - 1), known, m.state.back().value);
   }
   if (std::is_same_v<Cells, core::Membranes> || saved.contains("contacts"))
     restore_contacts(reader, saved.at("contacts"), contacts_array, m.cells.size(), m, m.contacts);
@@ -224,12 +268,14 @@ void Checkpoints::settle(bool sound) {
 template <class T, class Set>
 Restored<T> restore(const std::shared_ptr<const files::CheckpointReader>& reader, const plan::Plan& plan,
                     const core::Box<Set::dimension>& block, RunState& state,
-                    typename core::Solver<T, Set>::Cells& cells) {
+                    typename core::Solver<T, Set>::Cells& cells, const TakePart<Set::dimension>& take_part) {
   try {
     const Json saved = reader->state();
     saved.at("run").get_to(state);
     require(state.fits(plan, cells), *reader, "counts of another scene");
+    if (take_part) take_part(read_boxes<Set::dimension>(*reader, cells));
     restore_cells(*reader, saved.at("membranes"), cells);
+    cells.forget(cells.unknown_nodes());
     core::SolverState<T> solver{
         .populations = [reader, block, domain = plan.scene->domain](
                            int q) { return read_block<T>(*reader, population_name(q), block, domain); },
@@ -244,14 +290,11 @@ Restored<T> restore(const std::shared_ptr<const files::CheckpointReader>& reader
     }
     if (!cells.cells.empty()) {
       core::DisplacementWatch::Memory& memory = solver.viscosity;
-      for (auto* of_nodes : {&memory.x, &memory.y}) of_nodes->resize(cells.x.size());
-      for (auto* of_cells : {&memory.limit, &memory.bound}) of_cells->resize(cells.cells.size());
-      if (Set::dimension == 3) {
-        memory.z.resize(cells.z.size());
-        read(*reader, "/indicator/z", memory.z);
-      }
-      read(*reader, "/indicator/x", memory.x);
-      read(*reader, "/indicator/y", memory.y);
+      memory = core::DisplacementWatch::Memory(cells);
+      const std::vector<Range> known = cells.known_nodes();
+      if (Set::dimension == 3) read(*reader, "/indicator/z", known, memory.z);
+      read(*reader, "/indicator/x", known, memory.x);
+      read(*reader, "/indicator/y", known, memory.y);
       read(*reader, "/indicator/limit", memory.limit);
       read(*reader, "/indicator/bound", memory.bound);
     }
@@ -266,7 +309,7 @@ Restored<T> restore(const std::shared_ptr<const files::CheckpointReader>& reader
                                    const typename core::Solver<T, Set>::Cells&, core::Solver<T, Set>&);          \
   template Restored<T> restore<T, Set>(const std::shared_ptr<const files::CheckpointReader>&, const plan::Plan&, \
                                        const core::Box<Set::dimension>&, RunState&,                              \
-                                       typename core::Solver<T, Set>::Cells&);
+                                       typename core::Solver<T, Set>::Cells&, const TakePart<Set::dimension>&);
 ROULEAU_INSTANTIATE(float, core::D2Q9)
 ROULEAU_INSTANTIATE(double, core::D2Q9)
 ROULEAU_INSTANTIATE(float, core::D3Q19)

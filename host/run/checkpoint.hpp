@@ -5,6 +5,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -59,11 +60,15 @@ struct Restored {
   core::SolverState<T> solver;     ///< which keeps the file open
   files::DirectoryMark directory;  ///< how far the files of the directory had come
 };
-/// Into the state and the cells of the same scene; `block`: of the lattice, that the solver will compute. Throws
-/// Error(input_output) where the checkpoint does not fit.
+/// Finds this rank's part in the cells with these boxes, and tells the cells (GhostCells::set_parts).
+template <int D>
+using TakePart = std::function<void(const std::vector<core::BoundingBox<D>>& boxes)>;
+/// Into the state and the cells of the same scene; `block`: of the lattice, that the solver will compute; `take_part`: null
+/// without other ranks. No memory is taken for what others alone know of cells. Throws Error(input_output) where the
+/// checkpoint does not fit.
 template <class T, class Set = core::D2Q9>
 Restored<T> restore(const std::shared_ptr<const files::CheckpointReader>& reader, const plan::Plan& plan,
                     const core::Box<Set::dimension>& block, RunState& state,
-                    typename core::Solver<T, Set>::Cells& cells);
+                    typename core::Solver<T, Set>::Cells& cells, const TakePart<Set::dimension>& take_part = {});
 
 }  // namespace rouleau::run

@@ -51,6 +51,7 @@ class Simulation {
  public:
   static constexpr int dimension = Set::dimension;
   using Cells = typename core::Solver<T, Set>::Cells;
+  using Boxes = std::vector<core::BoundingBox<dimension>>;
 
   Simulation(const plan::Plan& plan, const plan::PlanReport& report, const RunOptions& options,
              files::RunDirectory* directory, const core::Ranks<dimension>& ranks, const std::vector<int>& owner)
@@ -60,14 +61,14 @@ class Simulation {
         directory_(directory),
         ranks_(ranks),
         owner_(owner),
-        cells_(plan.has_cells ? plan::make_cells<dimension>(scene_) : Cells{}),
-        state_(observe::Observer(scene_, cells_)),
+        state_(observe::Observer(scene_)),
         course_(plan, state_, ranks_.first() ? &cells_ : nullptr, [this](double found) { return of_first(found); }),
         progress_(options.quiet || directory == nullptr),
         checkpoints_(scene_, directory),
         summary_(describe(plan, report, options.threads)) {
     if (ranks_.several()) summary_.ranks = ranks_.blocks->ranks();
     summary_.message_library = options.message_library;
+    if (plan.has_cells) place_cells();
   }
 
   Summary run() {
@@ -90,15 +91,45 @@ class Simulation {
   /// Of the present stage.
   [[nodiscard]] const plan::StageSetting& setting() const { return course_.setting(); }
 
+  /// As the scene has them; with other ranks those that this one has to know.
+  void place_cells() {
+    if (!ranks_.several()) {
+      cells_ = plan::make_cells<dimension>(scene_);
+      state_.observer.begin_with(cells_);
+      return;
+    }
+    Boxes boxes;
+    boxes.reserve(scene_.cells.size());
+    plan::for_each_cell<dimension>(scene_, plan::lattice_spacing(scene_), [&](std::size_t, const Cells& cell) {
+      boxes.push_back(core::box_of<dimension>(cell, 0));
+      state_.observer.begin_with(cell);
+    });
+    part_ = find_part(boxes, owner_);
+    cells_ = plan::make_known_cells<dimension>(scene_, [this](int cell) { return part_->knows(cell); });
+    part_->set_parts(cells_);
+  }
+  /// This rank's part in the cells with these boxes, for a solver of the present stage.
+  [[nodiscard]] core::GhostCells<dimension> find_part(const Boxes& boxes, std::vector<int> owner) const {
+    const auto setup = plan::make_solver_setup<dimension>(plan_, state_.stage);
+    return {ranks_, boxes, core::ghost_reach(setup), std::move(owner)};
+  }
+
   /// Takes over what the directory's checkpoint says, if the run goes on from one. The rank that has the directory goes
   /// first, and tells the others which file it is.
   std::optional<core::SolverState<T>> go_on() {
     std::optional<Restored<T>> restored;
     std::string file;
+    TakePart<dimension> take_part;
+    if (ranks_.several() && plan_.has_cells) {
+      take_part = [this](const Boxes& boxes) {
+        part_ = find_part(boxes, owner_);
+        part_->set_parts(cells_);
+      };
+    }
     if (directory_ != nullptr && directory_->resumes()) {
       Resumption resumption = open_checkpoint(directory_->path(), plan_, options_.force);
       const std::shared_ptr<const files::CheckpointReader> reader = std::move(resumption.checkpoint);
-      restored = restore<T, Set>(reader, plan_, domain().block, state_, cells_);
+      restored = restore<T, Set>(reader, plan_, domain().block, state_, cells_, take_part);
       directory_->go_back(restored->directory);
       reader->take_place(directory_->path());
       file = files::checkpoint_file(directory_->path()).string();
@@ -110,7 +141,7 @@ class Simulation {
     file = core::text_of_first(ranks_, file);
     if (!restored && !file.empty()) {
       const auto reader = std::make_shared<const files::CheckpointReader>(file);
-      restored = restore<T, Set>(reader, plan_, domain().block, state_, cells_);
+      restored = restore<T, Set>(reader, plan_, domain().block, state_, cells_, take_part);
     }
     if (!restored) return std::nullopt;
     return std::move(restored->solver);
@@ -128,9 +159,11 @@ class Simulation {
   void leave_to_owners() {
     if (solver_->cell_tasks() != nullptr) solver_->cell_tasks()->leave_to_owners();
   }
-  /// All ranks do; before cells get other owners.
-  void share_state() {
-    if (solver_->cell_tasks() != nullptr) solver_->cell_tasks()->share_state();
+  /// The cells are handed on to where the next solver wants them, by ranks that may have other blocks by now; what
+  /// viscosities were made from, too.
+  core::DisplacementWatch::Memory pass_on(const Boxes& boxes, std::vector<int> owner) {
+    part_ = find_part(boxes, std::move(owner));
+    return solver_->cell_tasks()->pass_on(*part_);
   }
   /// What walls do to the cells along y.
   [[nodiscard]] double force_from_walls() const {
@@ -157,24 +190,25 @@ class Simulation {
   }
 
   /// Of the present stage, for this rank's block.
-  [[nodiscard]] std::unique_ptr<core::Solver<T, Set>> make_solver(std::vector<int> owner) {
+  [[nodiscard]] std::unique_ptr<core::Solver<T, Set>> make_solver() {
     core::BasicSolverSetup<dimension> setup = plan::make_solver_setup<dimension>(plan_, state_.stage);
     setup.domain = domain();
-    return std::make_unique<core::Solver<T, Set>>(std::move(setup), cells_, ranks_, std::move(owner));
+    return std::make_unique<core::Solver<T, Set>>(std::move(setup), cells_, ranks_, std::exchange(part_, std::nullopt));
   }
 
   void run_stages(std::optional<core::SolverState<T>> former) {
     for (; state_.stage < static_cast<int>(plan_.stages.size()) && !stopped_; ++state_.stage) {
       const auto start = Clock::now();
-      if (solver_) share_state();
-      auto next = make_solver(owner_);
+      if (solver_ && ranks_.several() && plan_.has_cells) pass_on(solver_->cell_tasks()->boxes_of_all(), owner_);
+      auto next = make_solver();
       if (former) {
         next->start(*std::exchange(former, std::nullopt));
+        solver_ = std::move(next);
       } else {
         next->start(solver_.get());
+        solver_ = std::move(next);
         start_stage();
       }
-      solver_ = std::move(next);
       cut_s_ = seconds_since(start);
       run_stage();
     }
@@ -184,7 +218,9 @@ class Simulation {
     const plan::StageSetting& setting = this->setting();
     log("stage",
         {{"name", setting.stage->name}, {"time_step_s", setting.units.time}, {"most_steps", setting.max_steps}});
+    gather_state();  // the first rank notes where all cells are
     course_.begin();
+    leave_to_owners();
   }
 
   void run_stage() {
@@ -244,7 +280,7 @@ class Simulation {
     if (balance_.due() || options_.cut_at_checks) cut_at_ = step + 1;
   }
 
-  /// All ranks, between two steps, all states of cells shared: other blocks for the same state.
+  /// All ranks, between two steps, whose messages have been taken: other blocks for the same state.
   void cut_again() {
     const auto start = Clock::now();
     std::vector<double> seconds;
@@ -252,7 +288,9 @@ class Simulation {
       seconds.push_back(of_rank.front());
     const core::Ranks<dimension> before = ranks_;
     auto blocks = std::make_unique<const core::Decomposition<dimension>>(
-        plan::cut_again<dimension>(plan_, *before.blocks, cells_, seconds));
+        plan::cut_again<dimension>(plan_, before, cells_, seconds));
+    auto* const tasks = solver_->cell_tasks();
+    const Boxes boxes = tasks != nullptr ? tasks->boxes_of_all() : Boxes{};
     ranks_.blocks = blocks.get();
     core::Fluid<T, Set>& fluid = solver_->fluid();
     fluid.settle();
@@ -267,9 +305,9 @@ class Simulation {
                                .flow_control = {},
                                .viscosity = {}};
     if (const auto& control = solver_->flow_control()) state.flow_control = control->state();
-    if (const auto* tasks = solver_->cell_tasks()) state.viscosity = tasks->viscosity_field().memory();
-    auto next = make_solver({});
-    next->start(state);
+    if (tasks != nullptr) state.viscosity = pass_on(boxes, {});
+    auto next = make_solver();
+    next->start(std::move(state));
     solver_ = std::move(next);
     blocks_ = std::move(blocks);
     cut_s_ = seconds_since(start);
@@ -379,7 +417,6 @@ class Simulation {
     course_.count_to(step);
     solver_->end_messages();
     if (step >= cut_at_) {
-      share_state();
       cut_due_ = true;
       return;
     }
@@ -570,6 +607,8 @@ class Simulation {
   core::Ranks<dimension> ranks_;
   const std::vector<int>& owner_;
   Cells cells_;
+  std::optional<core::GhostCells<dimension>>
+      part_;                                      ///< in the cells, that the next solver is given; none without ranks
   std::unique_ptr<core::Solver<T, Set>> solver_;  ///< of the present stage
   RunState state_;
   StageCourse course_;

@@ -137,7 +137,7 @@ class SimulationOf final : public Simulation {
     auto restored = run::restore<T, Set>(reader, plan_, plan::lattice_domain<dimension>(scene()).block, state, cells_);
     state_ = std::move(state);
     solver_ = std::make_unique<Solver>(plan::make_solver_setup<dimension>(plan_, state_.stage), cells_);
-    solver_->start(restored.solver);
+    solver_->start(std::move(restored.solver));
     next_attention_ = state_.stage_step;
     ending_ = run::Ending::none;
     ready_ = over_ = false;

@@ -14,6 +14,11 @@ std::vector<double> cutoffs_of(const std::vector<Interaction>& interactions) {
   return cutoffs;
 }
 
+double contact_reach(const std::vector<Interaction>& interactions) {
+  const std::vector<double> cutoffs = cutoffs_of(interactions);
+  return cutoffs.empty() ? 0 : list_reach(*std::max_element(cutoffs.begin(), cutoffs.end()));
+}
+
 Cutoffs pair_cutoffs(const CellNodes& cells, const std::vector<Interaction>& interactions,
                      const std::vector<double>& cutoffs) {
   int types = 1;

@@ -24,6 +24,8 @@ struct Interaction {
 
 /// Of the potentials, as their plugins say.
 std::vector<double> cutoffs_of(const std::vector<Interaction>& interactions);
+/// Cells do not act on each other from further away, with lists that are as old as they may be; 0: they do not at all.
+double contact_reach(const std::vector<Interaction>& interactions);
 /// The largest of them for each pair of types.
 Cutoffs pair_cutoffs(const CellNodes& cells, const std::vector<Interaction>& interactions,
                      const std::vector<double>& cutoffs);
@@ -45,8 +47,6 @@ class InteractionForces {
   [[nodiscard]] DisplacementWatch& watch() { return contacts_.neighbours().watch(); }
   /// Takes no memory for these nodes.
   void forget(std::span<const Range> nodes) { contacts_.forget(nodes); }
-  /// Cells do not act on each other from further away, with lists that are as old as they may be.
-  [[nodiscard]] double reach() const { return list_reach(contacts_.neighbours().cutoffs()); }
   /// Whether potentials want to know velocities.
   [[nodiscard]] bool needs_velocities() const { return needs_velocities_; }
   /// True if there is nothing to do: run() may be left out.

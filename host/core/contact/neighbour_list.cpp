@@ -73,7 +73,7 @@ double suitable_skin(const CellNodes& cells) {
   return std::min(skin, thickest_skin);
 }
 
-double list_reach(const Cutoffs& cutoffs) { return cutoffs.largest() + 2 * thickest_skin; }
+double list_reach(double cutoff) { return cutoff + 2 * thickest_skin; }
 
 void Cutoffs::raise(int a, int b, double cutoff) {
   const double value = std::max((*this)(a, b), cutoff);

@@ -27,8 +27,8 @@ class Cutoffs {
 
 /// Skin for lists that are made now, by the speed at which nodes move.
 double suitable_skin(const CellNodes& cells);
-/// The largest distance between nodes at which lists with the thickest skin are made.
-double list_reach(const Cutoffs& cutoffs);
+/// The largest distance between nodes at which lists with the thickest skin are made. `cutoff`: the largest one.
+double list_reach(double cutoff);
 
 /// Ordered pair: nodes of a cell against the outline of `other` moved by `shift` periods.
 struct CellPair {

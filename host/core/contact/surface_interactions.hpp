@@ -30,7 +30,6 @@ class SurfaceInteractions {
   [[nodiscard]] DisplacementWatch& watch() { return contacts_.watch(); }
   /// Takes no memory for these nodes.
   void forget(std::span<const Range> nodes) { contacts_.watch().forget(nodes); }
-  [[nodiscard]] double reach() const { return list_reach(contacts_.cutoffs()); }
   [[nodiscard]] bool needs_velocities() const { return needs_velocities_; }
   /// What one cell does to a node of another.
   struct Reaction {

@@ -166,17 +166,15 @@ void InteriorField<T>::set_rates(const Surfaces& surfaces, Range own, Field<T, 3
 }
 
 template <class T>
-void InteriorField<T>::restore(const DisplacementWatch::Memory& memory, const Surfaces& surfaces,
-                               Field<T, 3>& relaxation_rate, NodeMask& mask) {
-  const bool updated = !memory.x.empty() && !std::isnan(memory.x.front());
-  if (updated) {
-    Surfaces at_update;
-    at_update.cells = surfaces.cells, at_update.part = surfaces.part, at_update.types = surfaces.types;
-    at_update.x = memory.x, at_update.y = memory.y, at_update.z = memory.z;
-    cover(Worker{}, at_update);
-    update(Worker{}, at_update, relaxation_rate, mask);
+void InteriorField<T>::restore(DisplacementWatch::Memory memory, Surfaces& surfaces, Field<T, 3>& relaxation_rate,
+                               NodeMask& mask) {
+  if (memory.any(surfaces)) {
+    memory.exchange_places(surfaces);
+    cover(Worker{}, surfaces);
+    update(Worker{}, surfaces, relaxation_rate, mask);
+    memory.exchange_places(surfaces);
   }
-  watch_.recall(memory);
+  watch_.recall(std::move(memory));
 }
 
 template class InteriorField<float>;

@@ -39,9 +39,8 @@ class InteriorField {
   [[nodiscard]] const DisplacementWatch::Memory& memory() const { return watch_.memory(); }
   /// The same for other ranks.
   [[nodiscard]] DisplacementWatch& watch() { return watch_; }
-  /// Not a pass: makes them again as they were, in place of those of a new stage.
-  void restore(const DisplacementWatch::Memory& memory, const Surfaces& surfaces, Field<T, 3>& relaxation_rate,
-               NodeMask& mask);
+  /// Not a pass: makes them again as they were, in place of those of a new stage. Positions are the same afterwards.
+  void restore(DisplacementWatch::Memory memory, Surfaces& surfaces, Field<T, 3>& relaxation_rate, NodeMask& mask);
 
  private:
   /// Nodes may move this far before the next update; the marks allow for a whole spacing.

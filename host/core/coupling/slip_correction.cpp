@@ -191,12 +191,6 @@ std::vector<NodeMobility> SlipCorrection::mobility() const {
   return mobility;
 }
 
-double SlipCorrection::largest_shift() const {
-  double largest = 0;
-  for (const Type& type : types_) largest = std::max(largest, std::abs(type.constants.shift));
-  return largest;
-}
-
 void SlipCorrection::measure(Worker worker, const Membranes& membranes, Whose whose) {
   run<Measure>(worker, membranes, nullptr, nullptr, whose);
 }

@@ -35,8 +35,6 @@ class SlipCorrection {
 
   /// Of each cell type.
   [[nodiscard]] std::vector<NodeMobility> mobility() const;
-  /// Largest |d| of the types, spacings.
-  [[nodiscard]] double largest_shift() const;
   /// Takes no memory for these nodes until they are measured again.
   void forget(std::span<const Range> nodes);
   [[nodiscard]] NodeVectors positions() const { return {touch_x_.data(), touch_y_.data()}; }

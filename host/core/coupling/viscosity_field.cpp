@@ -136,17 +136,15 @@ void ViscosityField<T>::update(Worker worker, const Membranes& membranes, Field<
 }
 
 template <class T>
-void ViscosityField<T>::restore(const DisplacementWatch::Memory& memory, const Membranes& membranes,
-                                Field<T, 2>& relaxation_rate, NodeMask& mask) {
-  const bool updated = !memory.x.empty() && !std::isnan(memory.x.front());
-  if (updated) {
-    Membranes at_update;
-    at_update.cells = membranes.cells, at_update.part = membranes.part;
-    at_update.x = memory.x, at_update.y = memory.y;
-    cover(Worker{}, at_update);
-    update(Worker{}, at_update, relaxation_rate, mask);
+void ViscosityField<T>::restore(DisplacementWatch::Memory memory, Membranes& membranes, Field<T, 2>& relaxation_rate,
+                                NodeMask& mask) {
+  if (memory.any(membranes)) {
+    memory.exchange_places(membranes);
+    cover(Worker{}, membranes);
+    update(Worker{}, membranes, relaxation_rate, mask);
+    memory.exchange_places(membranes);
   }
-  watch_.recall(memory);
+  watch_.recall(std::move(memory));
 }
 
 template <class T>

@@ -48,9 +48,8 @@ class ViscosityField {
   [[nodiscard]] const DisplacementWatch::Memory& memory() const { return watch_.memory(); }
   /// The same for other ranks.
   [[nodiscard]] DisplacementWatch& watch() { return watch_; }
-  /// Not a pass: makes them again as they were, in place of those of a new stage.
-  void restore(const DisplacementWatch::Memory& memory, const Membranes& membranes, Field<T, 2>& relaxation_rate,
-               NodeMask& mask);
+  /// Not a pass: makes them again as they were, in place of those of a new stage. Positions are the same afterwards.
+  void restore(DisplacementWatch::Memory memory, Membranes& membranes, Field<T, 2>& relaxation_rate, NodeMask& mask);
 
  private:
   struct Interval {

@@ -2,16 +2,24 @@
 
 namespace rouleau::core {
 
+void CellNodes::reserve(std::size_t cell_count, std::size_t nodes, int dimension) {
+  cells.reserve(cell_count);
+  for (auto* values : {&x, &y, &force_x, &force_y, &velocity_x, &velocity_y}) values->reserve(nodes);
+  for (auto* values : {&z, &force_z, &velocity_z}) {
+    if (dimension == 3) values->reserve(nodes);
+  }
+}
+
 void CellNodes::remove_cells() {
   cells.clear();
   for (auto* values : {&x, &y, &z, &force_x, &force_y, &force_z, &velocity_x, &velocity_y, &velocity_z})
     values->clear();
 }
 
-std::vector<Range> CellNodes::unknown_nodes() const {
+std::vector<Range> CellNodes::nodes_in_runs(bool known) const {
   std::vector<Range> runs;
   for (int c = 0; c < cell_count(); ++c) {
-    if (knows(c)) continue;
+    if (knows(c) != known) continue;
     const CellRange& cell = cells[c];
     if (runs.empty() || runs.back().end != cell.first) runs.push_back({cell.first, cell.first});
     runs.back().end = cell.end();

@@ -60,12 +60,18 @@ struct CellNodes {
     return {first(share.begin), first(share.end)};
   }
 
+  /// Makes room for so many, without taking memory for it before they are there.
+  void reserve(std::size_t cell_count, std::size_t nodes, int dimension);
   /// Takes all cells away, as they were added; the room for them stays.
   void remove_cells();
-  /// Nodes of the cells that this rank does not know, in runs.
-  [[nodiscard]] std::vector<Range> unknown_nodes() const;
+  /// Nodes of the cells that this rank knows or does not know, in runs.
+  [[nodiscard]] std::vector<Range> known_nodes() const { return nodes_in_runs(true); }
+  [[nodiscard]] std::vector<Range> unknown_nodes() const { return nodes_in_runs(false); }
   /// Takes no memory for what is known of these nodes and for what their cells remember; both is gone.
   void forget(std::span<const Range> nodes);
+
+ private:
+  [[nodiscard]] std::vector<Range> nodes_in_runs(bool known) const;
 };
 
 /// The box around a cell's nodes; its numbers are none where one of theirs is.
@@ -84,6 +90,15 @@ BoundingBox<D> box_of(const CellNodes& nodes, int cell) {
     box.least[k] = least + zero, box.most[k] = most + zero;
   }
   return box;
+}
+
+/// The boxes of all cells.
+template <int D>
+std::vector<BoundingBox<D>> boxes_of(const CellNodes& nodes) {
+  std::vector<BoundingBox<D>> boxes;
+  boxes.reserve(nodes.cells.size());
+  for (int c = 0; c < nodes.cell_count(); ++c) boxes.push_back(box_of<D>(nodes, c));
+  return boxes;
 }
 
 }  // namespace rouleau::core

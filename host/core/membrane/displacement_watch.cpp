@@ -6,7 +6,8 @@
 
 namespace rouleau::core {
 
-double largest_displacement(const CellNodes& cells, const OldPlaces& old, Range nodes) {
+double largest_displacement(const CellNodes& cells, std::array<const double*, 3> old, Range nodes) {
+  const auto [old_x, old_y, old_z] = old;
   double square = 0, zero = 0;  // zero becomes NaN with the first position that is not finite
   const auto compare = [&](double s) {
     square = s > square ? s : square;
@@ -15,24 +16,51 @@ double largest_displacement(const CellNodes& cells, const OldPlaces& old, Range 
   const auto begin = static_cast<std::size_t>(nodes.begin), end = static_cast<std::size_t>(nodes.end);
   if (cells.z.empty()) {
     for (std::size_t i = begin; i < end; ++i) {
-      const double dx = cells.x[i] - old.x[i], dy = cells.y[i] - old.y[i];
+      const double dx = cells.x[i] - old_x[i], dy = cells.y[i] - old_y[i];
       compare(dx * dx + dy * dy);
     }
   } else {
     for (std::size_t i = begin; i < end; ++i) {
-      const double dx = cells.x[i] - old.x[i], dy = cells.y[i] - old.y[i], dz = cells.z[i] - old.z[i];
+      const double dx = cells.x[i] - old_x[i], dy = cells.y[i] - old_y[i], dz = cells.z[i] - old_z[i];
       compare(dx * dx + dy * dy + dz * dz);
     }
   }
   return std::sqrt(square) + zero;
 }
 
-DisplacementWatch::DisplacementWatch(const CellNodes& cells)
-    : memory_{{std::vector<double>(cells.x.size(), std::nan("")), std::vector<double>(cells.y.size(), std::nan("")),
-               std::vector<double>(cells.z.size(), std::nan(""))},
-              std::vector<double>(cells.cells.size(), 0.0),
-              std::vector<double>(cells.cells.size(), std::numeric_limits<double>::infinity())},
-      moved_(cells.cells.size(), 1) {}
+DisplacementWatch::Memory::Memory(const CellNodes& cells)
+    : x(cells.x.size()),
+      y(cells.y.size()),
+      z(cells.z.size()),
+      limit(cells.cells.size(), 0.0),
+      bound(cells.cells.size(), std::numeric_limits<double>::infinity()) {
+  for (int c = 0; c < cells.cell_count(); ++c) {
+    if (!cells.knows(c)) continue;
+    for (auto* along : {&x, &y, &z}) {
+      if (along->size() > 0) std::fill_n(along->data() + cells.cells[c].first, cells.cells[c].count, std::nan(""));
+    }
+  }
+}
+
+bool DisplacementWatch::Memory::any(const CellNodes& cells) const {
+  for (int c = 0; c < cells.cell_count(); ++c) {
+    if (cells.knows(c)) return !std::isnan(x[static_cast<std::size_t>(cells.cells[c].first)]);
+  }
+  return false;
+}
+
+void DisplacementWatch::Memory::exchange_places(CellNodes& cells) {
+  for (int c = 0; c < cells.cell_count(); ++c) {
+    if (!cells.knows(c)) continue;
+    const CellRange& cell = cells.cells[c];
+    const auto exchange = [&cell](std::vector<double>& now, PagedArray<double>& then) {
+      if (!now.empty()) std::swap_ranges(now.begin() + cell.first, now.begin() + cell.end(), then.data() + cell.first);
+    };
+    exchange(cells.x, x), exchange(cells.y, y), exchange(cells.z, z);
+  }
+}
+
+DisplacementWatch::DisplacementWatch(const CellNodes& cells) : memory_(cells), moved_(cells.cells.size(), 1) {}
 
 void DisplacementWatch::measure(Worker worker, const CellNodes& nodes) {
   if (agreed_) return;
@@ -58,7 +86,8 @@ void DisplacementWatch::measure_cell(int cell, const CellNodes& nodes) {
   bound = nodes.largest_step.empty() ? std::numeric_limits<double>::infinity() : bound + nodes.largest_step[cell];
   if (!(bound <= memory_.limit[cell])) {
     const CellRange& range = nodes.cells[cell];
-    bound = largest_displacement(nodes, memory_, {range.first, range.end()});
+    bound =
+        largest_displacement(nodes, {memory_.x.data(), memory_.y.data(), memory_.z.data()}, {range.first, range.end()});
   }
   moved_[cell] = !(bound <= memory_.limit[cell]);
 }
@@ -70,8 +99,8 @@ bool DisplacementWatch::exceeded() const {
 
 void DisplacementWatch::remember(int cell, const CellNodes& nodes, double limit) {
   const CellRange& range = nodes.cells[cell];
-  const auto copy = [&range](const std::vector<double>& from, std::vector<double>& to) {
-    std::copy(from.begin() + range.first, from.begin() + range.end(), to.begin() + range.first);
+  const auto copy = [&range](const std::vector<double>& from, PagedArray<double>& to) {
+    std::copy(from.begin() + range.first, from.begin() + range.end(), to.data() + range.first);
   };
   copy(nodes.x, memory_.x);
   copy(nodes.y, memory_.y);

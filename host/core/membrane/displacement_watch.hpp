@@ -1,6 +1,7 @@
 // Tells when nodes have moved so far that lists made from their old positions must be made anew.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <utility>
@@ -11,13 +12,9 @@
 
 namespace rouleau::core {
 
-/// Positions as they were.
-struct OldPlaces {
-  std::vector<double> x, y, z;  ///< of all nodes; the last is empty in two dimensions
-};
-
-/// Largest distance of nodes [nodes.begin, nodes.end) from where they were; NaN if a position is no number.
-double largest_displacement(const CellNodes& cells, const OldPlaces& old, Range nodes);
+/// Largest distance of nodes [nodes.begin, nodes.end) from where they were; NaN if a position is no number. `old`: x, y and z
+/// of all nodes; the last is not read in two dimensions.
+double largest_displacement(const CellNodes& cells, std::array<const double*, 3> old, Range nodes);
 
 /// Remembers positions and compares. After construction every cell counts as moved.
 ///
@@ -42,9 +39,18 @@ class DisplacementWatch {
   void remember(int cell, const CellNodes& nodes, double limit);
 
   /// What it knows from one step to the next.
-  struct Memory : OldPlaces {   // NaN: nothing remembered yet
-    std::vector<double> limit;  ///< of each cell
-    std::vector<double> bound;  ///< of each cell: upper bound of its nodes' displacements
+  struct Memory {
+    Memory() = default;
+    /// Nothing is remembered yet. What these do not know takes no memory.
+    explicit Memory(const CellNodes& cells);
+    /// Whether something is remembered of the cells that are known.
+    [[nodiscard]] bool any(const CellNodes& cells) const;
+    /// The known cells are where they were, and it remembers where they are now.
+    void exchange_places(CellNodes& cells);
+
+    PagedArray<double> x, y, z;  ///< of all nodes; the last is empty in two dimensions. NaN: nothing remembered
+    std::vector<double> limit;   ///< of each cell
+    std::vector<double> bound;   ///< of each cell: upper bound of its nodes' displacements
   };
   [[nodiscard]] const Memory& memory() const { return memory_; }
   [[nodiscard]] Memory& memory() { return memory_; }

@@ -3,6 +3,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <new>
@@ -43,7 +44,7 @@ void release_pages(void* first, std::size_t bytes, std::span<const Range> parts,
   if (!parts.empty()) advise(start, start + bytes, MADV_NOHUGEPAGE);
   for (const Range& part : parts) {
     advise(start + static_cast<std::uintptr_t>(part.begin) * bytes_of_element,
-           start + static_cast<std::uintptr_t>(part.end) * bytes_of_element, MADV_DONTNEED);
+           start + std::min(bytes, static_cast<std::uintptr_t>(part.end) * bytes_of_element), MADV_DONTNEED);
   }
 }
 

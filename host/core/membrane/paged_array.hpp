@@ -12,7 +12,7 @@ namespace rouleau::core {
 
 /// Gives back to the system the pages that lie wholly within parts [begin, end) of `bytes` bytes from `first` on, and
 /// keeps the others small, so that they can be given back one by one. What was there reads as zero, and takes memory again
-/// once it is written to.
+/// once it is written to. What is beyond the last byte is left alone.
 void release_pages(void* first, std::size_t bytes, std::span<const Range> parts, std::size_t bytes_of_element);
 
 /// The same for parts of an array, counted in elements.

@@ -40,8 +40,9 @@ class CellExchange<D>::Unpacker {
 
 namespace {
 
-template <class Transfer>
-void transfer_nodes(std::vector<double>& values, const CellRange& cell, Transfer transfer) {
+/// Values: an array of all nodes.
+template <class Values, class Transfer>
+void transfer_nodes(Values& values, const CellRange& cell, Transfer transfer) {
   transfer(values.data() + cell.first, static_cast<std::size_t>(cell.count));
 }
 
@@ -73,26 +74,11 @@ void receive_from_peers(const GhostCells<D>& ghosts, Transport& transport, Liste
 }  // namespace
 
 template <int D>
-CellExchange<D>::CellExchange(const Ranks<D>& ranks, Cells& cells, std::vector<int> owner, GhostReach reach,
-                              bool velocities)
-    : ranks_(ranks),
-      ghosts_(
-          ranks,
-          [&] {
-            for (int c = static_cast<int>(owner.size()); c < cells.cell_count(); ++c)
-              owner.push_back(GhostCells<D>::owner_by_place(box_of<D>(cells, c), *ranks.blocks));
-            return owner;
-          }(),
-          reach),
+CellExchange<D>::CellExchange(GhostCells<D> ghosts, bool velocities)
+    : ranks_(ghosts.ranks()),
+      ghosts_(std::move(ghosts)),
       velocities_(velocities),
-      path_(cells.cells.size(), 0.0) {
-  std::vector<BoundingBox<D>> boxes;
-  boxes.reserve(cells.cells.size());
-  for (int c = 0; c < cells.cell_count(); ++c) boxes.push_back(box_of<D>(cells, c));
-  ghosts_.renew(boxes);
-  cells.part.assign(cells.cells.size(), {});
-  set_parts(cells);
-}
+      path_(static_cast<std::size_t>(ghosts_.cell_count()), 0.0) {}
 
 template <int D>
 auto CellExchange<D>::places(Cells& cells) -> Vectors {
@@ -111,12 +97,6 @@ auto CellExchange<D>::forces(Cells& cells) -> Vectors {
 }
 
 template <int D>
-void CellExchange<D>::set_parts(Cells& cells) const {
-  for (int c = 0; c < cells.cell_count(); ++c)
-    cells.part[c] = {.owned = ghosts_.owns(c), .known = ghosts_.knows(c), .reaching = ghosts_.reaches(c)};
-}
-
-template <int D>
 std::vector<BoundingBox<D>> CellExchange<D>::boxes_of_all(const Cells& cells) const {
   std::vector<BoundingBox<D>> mine, all(cells.cells.size());
   for (int c = 0; c < cells.cell_count(); ++c) {
@@ -129,16 +109,6 @@ std::vector<BoundingBox<D>> CellExchange<D>::boxes_of_all(const Cells& cells) co
     all[c] = of_ranks[owner][next[owner]++];
   }
   return all;
-}
-
-template <int D>
-template <class Transfer>
-void CellExchange<D>::transfer_motion(Cells& cells, int cell, Transfer transfer) const {
-  for (auto* along : places(cells)) transfer_nodes(*along, cells.cells[cell], transfer);
-  for (auto* along : velocities(cells)) {
-    if (velocities_) transfer_nodes(*along, cells.cells[cell], transfer);
-  }
-  transfer(&cells.largest_step[cell], 1);
 }
 
 template <int D>
@@ -180,11 +150,32 @@ void CellExchange<D>::run(Task task, const Parts& parts) {
 template <int D>
 template <class Message>
 void CellExchange<D>::transfer_positions(Cells& cells, DisplacementWatch& viscosity, const std::vector<int>& of_peer,
-                                         Message& message) const {
+                                         Shown shown, Message& message) {
   for (const int c : of_peer) {
-    transfer_motion(cells, c, std::ref(message));
-    if (with_memory_) transfer_memory(cells, viscosity, c, std::ref(message));
+    for (auto* along : places(cells)) transfer_nodes(*along, cells.cells[c], std::ref(message));
+    for (auto* along : velocities(cells)) {
+      if (shown.velocities) transfer_nodes(*along, cells.cells[c], std::ref(message));
+    }
+    message(&cells.largest_step[c], 1);
+    if (shown.memory) transfer_memory(cells, viscosity, c, std::ref(message));
   }
+}
+
+template <int D>
+void CellExchange<D>::send_shown(const GhostCells<D>& ghosts, Cells& cells, DisplacementWatch& viscosity, Shown shown) {
+  send_to_peers<Packer>(ghosts, *ghosts.ranks().transport, &GhostCells<D>::Peer::mine,
+                        [&](int, const std::vector<int>& of_peer, Packer& message) {
+                          transfer_positions(cells, viscosity, of_peer, shown, message);
+                        });
+}
+
+template <int D>
+void CellExchange<D>::receive_shown(const GhostCells<D>& ghosts, Cells& cells, DisplacementWatch& viscosity,
+                                    Shown shown) {
+  receive_from_peers<Unpacker>(ghosts, *ghosts.ranks().transport, &GhostCells<D>::Peer::theirs,
+                               [&](int, const std::vector<int>& of_peer, Unpacker& message) {
+                                 transfer_positions(cells, viscosity, of_peer, shown, message);
+                               });
 }
 
 template <int D>
@@ -207,7 +198,7 @@ void CellExchange<D>::send_positions(Cells& cells, DisplacementWatch& viscosity,
   took_over_ = false;
   if (with_memory_) {
     const std::vector<BoundingBox<D>> boxes = boxes_of_all(cells);
-    hand_over(cells, viscosity, boxes);
+    hand_over(cells, viscosity, ghosts_.change_owners(boxes));
     ghosts_.renew(boxes);
     std::fill(path_.begin(), path_.end(), 0.0);
   }
@@ -218,30 +209,23 @@ void CellExchange<D>::send_positions(Cells& cells, DisplacementWatch& viscosity,
     lost_sight_ = lost_sight_ || cells.part[c].known;
     cells.largest_step[c] = all_step;  // no node of any cell has moved further
   }
-  set_parts(cells);
+  ghosts_.set_parts(cells);
   escaped_ = all_escaped > 0;
-  send_to_peers<Packer>(ghosts_, *ranks_.transport, &GhostCells<D>::Peer::mine,
-                        [&](int, const std::vector<int>& of_peer, Packer& message) {
-                          transfer_positions(cells, viscosity, of_peer, message);
-                        });
+  send_shown(ghosts_, cells, viscosity, {velocities_, with_memory_});
   on_their_way_ = true;
 }
 
 template <int D>
 void CellExchange<D>::receive_positions(Cells& cells, DisplacementWatch& viscosity) {
-  if (!std::exchange(on_their_way_, false)) return;
-  receive_from_peers<Unpacker>(ghosts_, *ranks_.transport, &GhostCells<D>::Peer::theirs,
-                               [&](int, const std::vector<int>& of_peer, Unpacker& message) {
-                                 transfer_positions(cells, viscosity, of_peer, message);
-                               });
+  if (std::exchange(on_their_way_, false)) receive_shown(ghosts_, cells, viscosity, {velocities_, with_memory_});
 }
 
 template <int D>
-void CellExchange<D>::hand_over(Cells& cells, DisplacementWatch& viscosity, const std::vector<BoundingBox<D>>& boxes) {
+void CellExchange<D>::hand_over(Cells& cells, DisplacementWatch& viscosity,
+                                const std::vector<typename GhostCells<D>::Handover>& handovers) {
   const int own = ranks_.transport->rank();
   std::map<int, Packer> to;
   std::map<int, Unpacker> from;
-  const auto handovers = ghosts_.change_owners(boxes);
   for (const auto& handover : handovers) {
     if (handover.from == own) transfer_cell(cells, viscosity, handover.cell, std::ref(to[handover.to]));
   }
@@ -405,17 +389,17 @@ void CellExchange<D>::receive_all_of(int rank, Cells& cells, DisplacementWatch& 
 }
 
 template <int D>
-void CellExchange<D>::share_state(Cells& cells, DisplacementWatch& watch) {
+void CellExchange<D>::pass_on(Cells& cells, DisplacementWatch& watch, const GhostCells<D>& next) {
   receive_positions(cells, watch);
-  const Message mine = pack_own(cells, watch);
-  const int own = ranks_.transport->rank(), all = ranks_.blocks->ranks();
-  for (int to = 0; to < all; ++to) {
-    if (to != own) ranks_.transport->send(to, mine);
+  std::vector<typename GhostCells<D>::Handover> handovers;
+  for (int c = 0; c < cells.cell_count(); ++c) {
+    if (next.owner(c) != ghosts_.owner(c)) handovers.push_back({c, ghosts_.owner(c), next.owner(c)});
   }
-  for (int from = 0; from < all; ++from) {
-    if (from != own) receive_all_of(from, cells, watch);
-  }
-  for (CellPart& part : cells.part) part.known = true;
+  hand_over(cells, watch, handovers);
+  constexpr Shown everything{.velocities = true, .memory = true};
+  send_shown(next, cells, watch, everything);
+  receive_shown(next, cells, watch, everything);
+  next.set_parts(cells);
 }
 
 template <int D>

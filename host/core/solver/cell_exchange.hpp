@@ -24,10 +24,8 @@ class CellExchange {
   using Cells = std::conditional_t<D == 2, Membranes, Surfaces>;
   using Interactions = std::conditional_t<D == 2, InteractionForces, SurfaceInteractions>;
 
-  /// Sets what this rank's part in the cells is. It is given all of them; what it does not know from now on may be
-  /// forgotten. `owner`: empty: by place.
-  /// `velocities`: ghosts' are wanted, too.
-  CellExchange(const Ranks<D>& ranks, Cells& cells, std::vector<int> owner, GhostReach reach, bool velocities);
+  /// `ghosts`: what this rank's part in the cells is. `velocities`: ghosts' are wanted, too.
+  CellExchange(GhostCells<D> ghosts, bool velocities);
 
   /// The node of the lattice below a membrane node: the rank with this one interpolates the other's velocity.
   using Base = std::function<std::array<int, D>(int node)>;
@@ -52,12 +50,15 @@ class CellExchange {
   [[nodiscard]] bool took_over() const { return took_over_; }
   /// And whether there are cells that this rank does not know any more.
   [[nodiscard]] bool lost_sight() const { return lost_sight_; }
-  /// All of all cells, to all ranks: positions, velocities, forces, what laws and potentials remember, leaked areas, and
-  /// the watch's memory. Until the next send_positions every rank knows every cell.
-  void share_state(Cells& cells, DisplacementWatch& watch);
-  /// The same, to the first rank alone, which knows every cell until it leaves the others to their owners.
+  /// All of all cells, to the first rank: positions, velocities, forces, what laws and potentials remember, leaked areas,
+  /// and the watch's memory. It knows every cell until it leaves the others to their owners.
   void gather_state(Cells& cells, DisplacementWatch& watch);
-  void leave_to_owners(Cells& cells) const { set_parts(cells); }
+  void leave_to_owners(Cells& cells) const { ghosts_.set_parts(cells); }
+  /// The boxes of all cells as they are now, on all ranks.
+  [[nodiscard]] std::vector<BoundingBox<D>> boxes_of_all(const Cells& cells) const;
+  /// Hands the cells on to their next owners, and shows them, with the watch's memory, to those who have to know them then.
+  /// What this rank will not know any more may be forgotten. No step can be taken after it.
+  void pass_on(Cells& cells, DisplacementWatch& watch, const GhostCells<D>& next);
 
  private:
   class Packer;
@@ -66,17 +67,21 @@ class CellExchange {
   static Vectors places(Cells& cells);
   static Vectors velocities(Cells& cells);
   static Vectors forces(Cells& cells);
-  void set_parts(Cells& cells) const;
-  [[nodiscard]] std::vector<BoundingBox<D>> boxes_of_all(const Cells& cells) const;
   /// After the nodes have moved: what owners have found of them, then positions and largest steps of ghosts. Says whether
   /// lists of cells that act on each other are out of date, if there are such lists (null: none), and whether a node has
   /// left the domain. New ghosts come with what the viscosity's watch remembers of them, and cells that change hands with
   /// all that is known of them.
   void send_positions(Cells& cells, DisplacementWatch& viscosity, DisplacementWatch* lists, bool escaped);
-  /// One message about positions.
+  /// What messages about positions are of.
+  struct Shown {
+    bool velocities;
+    bool memory;  ///< of the viscosity's watch
+  };
   template <class Message>
-  void transfer_positions(Cells& cells, DisplacementWatch& viscosity, const std::vector<int>& of_peer,
-                          Message& message) const;
+  static void transfer_positions(Cells& cells, DisplacementWatch& viscosity, const std::vector<int>& of_peer,
+                                 Shown shown, Message& message);
+  static void send_shown(const GhostCells<D>& ghosts, Cells& cells, DisplacementWatch& viscosity, Shown shown);
+  static void receive_shown(const GhostCells<D>& ghosts, Cells& cells, DisplacementWatch& viscosity, Shown shown);
   /// The reactions of potentials, to the owners of the cells that they act on.
   void send_reactions(Interactions& interactions) const;
   void receive_reactions(const Cells& cells, Interactions& interactions) const;
@@ -92,9 +97,6 @@ class CellExchange {
   template <class Message>
   void transfer_velocities(Cells& cells, const Base& base, int reader, const std::vector<int>& of_peer,
                            Message& message) const;
-  /// All that a step wants to know of one cell.
-  template <class Transfer>
-  void transfer_motion(Cells& cells, int cell, Transfer transfer) const;
   template <class Transfer>
   static void transfer_memory(Cells& cells, DisplacementWatch& watch, int cell, Transfer transfer);
   template <class Transfer>
@@ -105,7 +107,8 @@ class CellExchange {
   /// Of all cells that a rank owns.
   [[nodiscard]] Message pack_own(Cells& cells, DisplacementWatch& watch) const;
   void receive_all_of(int rank, Cells& cells, DisplacementWatch& watch) const;
-  void hand_over(Cells& cells, DisplacementWatch& viscosity, const std::vector<BoundingBox<D>>& boxes);
+  void hand_over(Cells& cells, DisplacementWatch& viscosity,
+                 const std::vector<typename GhostCells<D>::Handover>& handovers);
 
   Ranks<D> ranks_;
   GhostCells<D> ghosts_;

@@ -9,8 +9,20 @@
 namespace rouleau::core {
 
 template <int D>
-GhostCells<D>::GhostCells(const Ranks<D>& ranks, std::vector<int> owner, GhostReach reach)
-    : ranks_(ranks), owner_(std::move(owner)), reach_(reach), known_(owner_.size()), reaching_(owner_.size()) {}
+GhostCells<D>::GhostCells(const Ranks<D>& ranks, const std::vector<BoundingBox<D>>& boxes, GhostReach reach,
+                          std::vector<int> owner)
+    : ranks_(ranks), owner_(std::move(owner)), reach_(reach), known_(boxes.size()), reaching_(boxes.size()) {
+  owner_.reserve(boxes.size());
+  while (owner_.size() < boxes.size()) owner_.push_back(owner_by_place(boxes[owner_.size()], *ranks.blocks));
+  renew(boxes);
+}
+
+template <int D>
+void GhostCells<D>::set_parts(CellNodes& cells) const {
+  cells.part.resize(cells.cells.size());
+  for (int c = 0; c < cells.cell_count(); ++c)
+    cells.part[c] = {.owned = owns(c), .known = knows(c), .reaching = reaches(c)};
+}
 
 template <int D>
 int GhostCells<D>::owner_by_place(const BoundingBox<D>& box, const Decomposition<D>& blocks) {

@@ -7,30 +7,24 @@
 #include "core/contact/cell_grid.hpp"
 #include "core/domain/bounding_box.hpp"
 #include "core/domain/ranks.hpp"
+#include "core/membrane/cell_nodes.hpp"
+#include "ghost_reach.hpp"
 
 namespace rouleau::core {
-
-/// How near a cell has to come for another rank to be told of it, spacings.
-struct GhostReach {
-  double lattice;      ///< of its nodes to a block: stencil, marks and viscosity
-  double contact = 0;  ///< of its nodes to those of another cell; 0: cells do not act on each other
-};
 
 /// Every cell has one owner, the rank that computes its forces and moves it; it enters no formula, so that any rank will
 /// do. The one whose block the cell is above hears of it least, so that cells which travel change hands. Other ranks know a
 /// cell, as a ghost, whose blocks it may reach or with whose cells it may act, while no node has
 /// moved further than the skin since the boxes of all cells were last compared. All ranks find the same from the same
 /// boxes, so that nobody has to say which cells a message is about.
-constexpr double lattice_reach = 8;  ///< a stencil reaches two nodes, marks and viscosity a few more, and what is
-                                     ///< remembered of them is somewhat older
-
 template <int D>
 class GhostCells {
  public:
   static constexpr double skin = 1;  ///< spacings
 
-  /// `owner[c]`: rank of cell c.
-  GhostCells(const Ranks<D>& ranks, std::vector<int> owner, GhostReach reach);
+  /// By the boxes of all cells. `owner[c]`: rank of cell c, beyond its end by place.
+  GhostCells(const Ranks<D>& ranks, const std::vector<BoundingBox<D>>& boxes, GhostReach reach,
+             std::vector<int> owner = {});
 
   /// The rank whose block holds the middle of a cell's box; 0 of one that is none.
   static int owner_by_place(const BoundingBox<D>& box, const Decomposition<D>& blocks);
@@ -69,6 +63,10 @@ class GhostCells {
   /// Finds the ghosts anew, from the boxes of all cells.
   void renew(const std::vector<BoundingBox<D>>& boxes);
 
+  /// Says of all cells what this rank's part in them is.
+  void set_parts(CellNodes& cells) const;
+  [[nodiscard]] const Ranks<D>& ranks() const { return ranks_; }
+  [[nodiscard]] int cell_count() const { return static_cast<int>(owner_.size()); }
   [[nodiscard]] int owner(int cell) const { return owner_[cell]; }
   [[nodiscard]] bool owns(int cell) const { return owner_[cell] == ranks_.transport->rank(); }
   [[nodiscard]] bool knows(int cell) const { return known_[cell] != 0; }

@@ -20,18 +20,17 @@ Stiffness stiffness_of(const MembraneLaws& laws) {
 }  // namespace
 
 template <class T>
-OutlineTasks<T>::OutlineTasks(const SolverSetup& setup, Membranes& membranes, Fluid<T>& fluid, const Ranks<2>& ranks,
-                              std::vector<int> owner)
+OutlineTasks<T>::OutlineTasks(const SolverSetup& setup, Membranes& membranes, Fluid<T>& fluid,
+                              std::optional<GhostCells<2>> ghosts)
     : setup_(setup),
       membranes_(membranes),
       fluid_(fluid),
-      ranks_(ranks),
+      ranks_(fluid.ranks()),
       slip_correction_(make_slip_correction()),
       membrane_forces_(membranes, forces_setup()),
       viscosity_field_(membranes, viscosity_ratios(),
-                       slip_correction_ ? ViscosityMean::harmonic : ViscosityMean::arithmetic,
-                       slip_correction_ ? slip_correction_->largest_shift() : 0.0, 1 / setup.tau, setup.domain,
-                       fluid.setting().viscosity_of_rows),
+                       slip_correction_ ? ViscosityMean::harmonic : ViscosityMean::arithmetic, largest_shift(setup),
+                       1 / setup.tau, setup.domain, fluid.setting().viscosity_of_rows),
       coupling_(setup.kernel, setup.domain) {
   membranes_.largest_step.resize(membranes_.cells.size(), 0.0);
   if (setup.area_correction) membranes_.area_leakage.resize(membranes_.cells.size(), 0.0);  // earlier leakage stays
@@ -45,10 +44,8 @@ OutlineTasks<T>::OutlineTasks(const SolverSetup& setup, Membranes& membranes, Fl
     self_contacts_ = std::make_unique<SelfContacts>(membranes_, setup.self_interactions);
   }
   coupling_.reserve(membranes_);
-  if (ranks.several()) {
-    const GhostReach reach{.lattice = lattice_reach + (slip_correction_ ? slip_correction_->largest_shift() : 0.0),
-                           .contact = interaction_forces_ ? interaction_forces_->reach() : 0.0};
-    exchange_ = std::make_unique<CellExchange<2>>(ranks, membranes_, std::move(owner), reach,
+  if (ghosts) {
+    exchange_ = std::make_unique<CellExchange<2>>(*std::move(ghosts),
                                                   interaction_forces_ && interaction_forces_->needs_velocities());
   }
   locate(Worker{}, Whose::own);
@@ -180,13 +177,6 @@ void OutlineTasks<T>::forget_unknown() {
   coupling_.forget(nodes);
   if (slip_correction_) slip_correction_->forget(nodes);
   if (interaction_forces_) interaction_forces_->forget(nodes);
-}
-
-template <class T>
-void OutlineTasks<T>::share_state() {
-  if (!exchange_) return;
-  exchange_->share_state(membranes_, viscosity_field_.watch());
-  locate(Worker{}, Whose::others);  // of all, now
 }
 
 template <class T>

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "cell_exchange.hpp"
@@ -24,9 +25,8 @@ class OutlineTasks {
   using Cells = Membranes;
 
   /// The setup, the membranes, of which there is at least one, and the fluid belong to the solver, and outlive this.
-  /// `owner[c]`: the rank of cell c; none: by place.
-  OutlineTasks(const SolverSetup& setup, Membranes& membranes, Fluid<T>& fluid, const Ranks<2>& ranks,
-               std::vector<int> owner);
+  /// `ghosts`: this rank's part in the membranes, which these know of; null without other ranks.
+  OutlineTasks(const SolverSetup& setup, Membranes& membranes, Fluid<T>& fluid, std::optional<GhostCells<2>> ghosts);
 
   /// Adds what a step of these cells takes.
   void describe(StepFeatures& features) const;
@@ -50,13 +50,22 @@ class OutlineTasks {
   void leave_to_owners() {
     if (exchange_) exchange_->leave_to_owners(membranes_);
   }
-  /// The same, to all ranks.
-  void share_state();
+  /// One worker, between steps, on all ranks: the boxes of all membranes, with which others can find their part in them.
+  [[nodiscard]] std::vector<BoundingBox<2>> boxes_of_all() {
+    end_messages();
+    return exchange_->boxes_of_all(membranes_);
+  }
+  /// Leaves the membranes to a solver with another part in them, or of another setup, and what viscosities were made from. It
+  /// is not to take another step.
+  DisplacementWatch::Memory pass_on(const GhostCells<2>& next) {
+    exchange_->pass_on(membranes_, viscosity_field_.watch(), next);
+    return std::move(viscosity_field_.watch().memory());
+  }
   /// Mean velocity of all ranks' nodes, which must ask together.
   [[nodiscard]] std::array<double, 3> mean_velocity() const { return core::mean_velocity(membranes_, ranks_); }
   /// Between two steps: as a solver was whose viscosity field was last renewed so.
-  void restore(const DisplacementWatch::Memory& viscosity) {
-    viscosity_field_.restore(viscosity, membranes_, fluid_.relaxation_rate(), fluid_.mask());
+  void restore(DisplacementWatch::Memory viscosity) {
+    viscosity_field_.restore(std::move(viscosity), membranes_, fluid_.relaxation_rate(), fluid_.mask());
     forget_unknown();
   }
 

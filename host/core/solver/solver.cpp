@@ -77,9 +77,16 @@ double channel_viscosity(const BasicSolverSetup<D>& setup) {
 }  // namespace
 
 template <class T, class Set>
-Solver<T, Set>::Solver(Setup setup, Cells& cells, const Ranks<dimension>& ranks, std::vector<int> owner)
+Solver<T, Set>::Solver(Setup setup, Cells& cells, const Ranks<dimension>& ranks,
+                       std::optional<GhostCells<dimension>> ghosts)
     : setup_(std::move(setup)), cells_(cells), fluid_(fluid_setting(setup_, cells), setup_.collision, ranks) {
-  if (!cells.cells.empty()) cell_tasks_ = std::make_unique<CellTasks>(setup_, cells_, fluid_, ranks, std::move(owner));
+  if (!cells.cells.empty()) {
+    if (ranks.several()) {
+      if (!ghosts) ghosts.emplace(ranks, boxes_of<dimension>(cells), ghost_reach(setup_));
+      ghosts->set_parts(cells);
+    }
+    cell_tasks_ = std::make_unique<CellTasks>(setup_, cells_, fluid_, std::move(ghosts));
+  }
   if (setup_.mean_velocity != 0) {
     if (!setup_.domain.walled(1)) throw std::invalid_argument("a mean velocity is kept between walls");
     flow_control_.emplace(setup_.mean_velocity, setup_.body_force_x, channel_viscosity(setup_), setup_.domain.size[1]);
@@ -200,7 +207,7 @@ void Solver<T, Set>::start(Solver* former) {
 }
 
 template <class T, class Set>
-void Solver<T, Set>::start(const SolverState<T>& state) {
+void Solver<T, Set>::start(SolverState<T> state) {
   steps_ = state.steps;
   if (steps_ > 0) oscillate(steps_ - 1);
   if (flow_control_ && state.flow_control) {
@@ -208,7 +215,7 @@ void Solver<T, Set>::start(const SolverState<T>& state) {
     fluid_.set_drive(setup_.walls, state.flow_control->force);
   }
   fluid_.restore(state.populations, state.walls_have_acted);
-  if (cell_tasks_) cell_tasks_->restore(state.viscosity);
+  if (cell_tasks_) cell_tasks_->restore(std::move(state.viscosity));
 }
 
 /// Walls in the middle of the step and the force at its beginning make the scheme one of second order in time: a

@@ -46,15 +46,17 @@ class Solver {
 
   /// The fluid is at rest until start(); `cells` must outlive the solver. Throws std::invalid_argument for a setup
   /// without nodes or collision operator, and for cells with what their dimension does not have.
-  /// `ranks`: who computes the other blocks, if the domain's block is not the whole lattice, and `owner[c]` the rank of
-  /// cell c; none: by place. Every rank is given all cells.
-  Solver(Setup setup, Cells& cells, const Ranks<dimension>& ranks = {}, std::vector<int> owner = {});
+  /// `ranks`: who computes the other blocks, if the domain's block is not the whole lattice.
+  /// `ghosts`: of these ranks, with at least ghost_reach(setup): what this one is to know of the cells, of which no more is
+  /// read; none: it is given all of every cell, and owners are found by place.
+  Solver(Setup setup, Cells& cells, const Ranks<dimension>& ranks = {},
+         std::optional<GhostCells<dimension>> ghosts = {});
 
   /// The fluid that the setup asks for: developed, or what `former` left (null: there was none), rescaled with the time
   /// step: velocities and density deviations of the same flow scale like it. The nodes' velocities with it.
   void start(Solver* former = nullptr);
   /// Goes on from where a solver of this setup and these membranes was.
-  void start(const SolverState<T>& state);
+  void start(SolverState<T> state);
 
   /// Takes time steps with one worker. Between steps nodes are where the last step has moved them to.
   void step(long count = 1);

@@ -51,13 +51,13 @@ double energy_of_strain(const std::shared_ptr<const RestSurface>& rest, const Me
 
 template <class T>
 SurfaceTasks<T>::SurfaceTasks(const BasicSolverSetup<3>& setup, Surfaces& surfaces, Fluid<T, D3Q19>& fluid,
-                              const Ranks<3>& ranks, std::vector<int> owner)
+                              std::optional<GhostCells<3>> ghosts)
     : surfaces_(surfaces),
       fluid_(fluid),
       forces_((check(setup), surfaces), laws_of(setup)),
       viscosity_field_(surfaces, ratios_of(setup), 1 / setup.tau, setup.domain),
       coupling_(setup.kernel, setup.domain),
-      ranks_(ranks) {
+      ranks_(fluid.ranks()) {
   surfaces_.largest_step.resize(surfaces_.cells.size(), 0.0);
   if (setup.semi_implicit) forces_.take_semi_implicit_steps(surfaces_, setup.viscosity(), setup.tension_unit);
   std::vector<double> of_type;
@@ -74,10 +74,9 @@ SurfaceTasks<T>::SurfaceTasks(const BasicSolverSetup<3>& setup, Surfaces& surfac
     surfaces_.area_leakage.resize(surfaces_.cells.size(), 0.0);  // earlier leakage stays
   }
   coupling_.reserve(surfaces_);
-  if (ranks.several()) {
-    const GhostReach reach{.lattice = lattice_reach, .contact = interactions_ ? interactions_->reach() : 0.0};
-    exchange_ = std::make_unique<CellExchange<3>>(ranks, surfaces_, std::move(owner), reach,
-                                                  interactions_ && interactions_->needs_velocities());
+  if (ghosts) {
+    exchange_ =
+        std::make_unique<CellExchange<3>>(*std::move(ghosts), interactions_ && interactions_->needs_velocities());
   }
   for (const Whose whose : {Whose::own, Whose::others}) coupling_.locate(Worker{}, surfaces_, whose);
   forget_unknown();
@@ -159,13 +158,6 @@ void SurfaceTasks<T>::forget_unknown() {
   coupling_.forget(nodes);
   if (volume_correction_) volume_correction_->forget(nodes);
   if (interactions_) interactions_->forget(nodes);
-}
-
-template <class T>
-void SurfaceTasks<T>::share_state() {
-  if (!exchange_) return;
-  exchange_->share_state(surfaces_, viscosity_field_.watch());
-  coupling_.locate(Worker{}, surfaces_, Whose::others);  // of all, now
 }
 
 template class SurfaceTasks<float>;

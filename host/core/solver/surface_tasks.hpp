@@ -27,11 +27,11 @@ class SurfaceTasks {
   using Cells = Surfaces;
 
   /// The setup, the surfaces, of which there is at least one, and the fluid belong to the solver, and outlive this.
-  /// `owner[c]`: the rank of cell c; none: by place.
+  /// `ghosts`: this rank's part in the surfaces, which these know of; null without other ranks.
   /// Throws std::invalid_argument for what surfaces do not have: interactions within cells, the slip correction,
   /// layers.
-  SurfaceTasks(const BasicSolverSetup<3>& setup, Surfaces& surfaces, Fluid<T, D3Q19>& fluid, const Ranks<3>& ranks,
-               std::vector<int> owner);
+  SurfaceTasks(const BasicSolverSetup<3>& setup, Surfaces& surfaces, Fluid<T, D3Q19>& fluid,
+               std::optional<GhostCells<3>> ghosts);
 
   /// Adds what a step of these cells takes.
   void describe(StepFeatures& features) const {
@@ -57,13 +57,22 @@ class SurfaceTasks {
   void leave_to_owners() {
     if (exchange_) exchange_->leave_to_owners(surfaces_);
   }
-  /// The same, to all ranks.
-  void share_state();
+  /// One worker, between steps, on all ranks: the boxes of all surfaces, with which others can find their part in them.
+  [[nodiscard]] std::vector<BoundingBox<3>> boxes_of_all() {
+    end_messages();
+    return exchange_->boxes_of_all(surfaces_);
+  }
+  /// Leaves the surfaces to a solver with another part in them, or of another setup, and what viscosities were made from. It
+  /// is not to take another step.
+  DisplacementWatch::Memory pass_on(const GhostCells<3>& next) {
+    exchange_->pass_on(surfaces_, viscosity_field_.watch(), next);
+    return std::move(viscosity_field_.watch().memory());
+  }
   /// Mean velocity of all ranks' nodes, which must ask together.
   [[nodiscard]] std::array<double, 3> mean_velocity() const { return core::mean_velocity(surfaces_, ranks_); }
   /// Between two steps: as a solver was whose relaxation rates were last renewed so.
-  void restore(const DisplacementWatch::Memory& viscosity) {
-    viscosity_field_.restore(viscosity, surfaces_, fluid_.relaxation_rate(), fluid_.mask());
+  void restore(DisplacementWatch::Memory viscosity) {
+    viscosity_field_.restore(std::move(viscosity), surfaces_, fluid_.relaxation_rate(), fluid_.mask());
     forget_unknown();
   }
 

@@ -27,13 +27,23 @@ class Points {
   Points(const core::Domain<D>& domain, double nodes) : domain_(domain), every_(1 + static_cast<int>(nodes / most)) {
     points_.reserve(static_cast<std::size_t>(nodes / every_) + 1);
   }
+  /// Those of own cells.
   void add(const core::CellNodes& cells) {
     const std::vector<double>* const places[] = {&cells.x, &cells.y, &cells.z};
-    for (int i = 0; i < cells.node_count(); i += every_) {
-      std::array<int, D> node;
-      for (int k = 0; k < D; ++k) node[k] = domain_.wrapped(k, core::floor_int((*places[k])[i]));
-      if (*std::min_element(node.begin(), node.end()) >= 0) points_.push_back(node);
+    for (int c = 0; c < cells.cell_count(); ++c) {
+      const core::CellRange& cell = cells.cells[c];
+      for (int i = (cell.first + every_ - 1) / every_ * every_; i < cell.end() && cells.owns(c); i += every_) {
+        std::array<int, D> node;
+        for (int k = 0; k < D; ++k) node[k] = domain_.wrapped(k, core::floor_int((*places[k])[i]));
+        if (*std::min_element(node.begin(), node.end()) >= 0) points_.push_back(node);
+      }
     }
+  }
+  /// Those of all ranks.
+  void share(const core::Ranks<D>& ranks) {
+    const auto of_ranks = core::all_of(ranks, std::move(points_));
+    points_.clear();
+    for (const auto& of_rank : of_ranks) points_.insert(points_.end(), of_rank.begin(), of_rank.end());
   }
   [[nodiscard]] const std::vector<std::array<int, D>>& all() const { return points_; }
   /// How much more than a node of the lattice one of them costs.
@@ -108,11 +118,13 @@ Blocks make_blocks(const Plan& plan, int ranks) {
 }
 
 template <int D>
-core::Decomposition<D> cut_again(const Plan& plan, const core::Decomposition<D>& blocks, const core::CellNodes& cells,
+core::Decomposition<D> cut_again(const Plan& plan, const core::Ranks<D>& ranks, const core::CellNodes& cells,
                                  const std::vector<double>& seconds) {
+  const core::Decomposition<D>& blocks = *ranks.blocks;
   const core::Domain<D> domain = lattice_domain<D>(*plan.scene);
   Points<D> points(domain, cells.node_count());
   points.add(cells);
+  points.share(ranks);
   const double point_cost = points.cost(plan);
   std::vector<double> expected(seconds.size());
   for (int rank = 0; rank < blocks.ranks(); ++rank) {
@@ -129,9 +141,9 @@ core::Decomposition<D> cut_again(const Plan& plan, const core::Decomposition<D>&
   return core::Decomposition<D>::bisected(domain, blocks.ranks(), points.all(), point_cost, measured);
 }
 
-template core::Decomposition<2> cut_again(const Plan&, const core::Decomposition<2>&, const core::CellNodes&,
+template core::Decomposition<2> cut_again(const Plan&, const core::Ranks<2>&, const core::CellNodes&,
                                           const std::vector<double>&);
-template core::Decomposition<3> cut_again(const Plan&, const core::Decomposition<3>&, const core::CellNodes&,
+template core::Decomposition<3> cut_again(const Plan&, const core::Ranks<3>&, const core::CellNodes&,
                                           const std::vector<double>&);
 
 }  // namespace rouleau::plan

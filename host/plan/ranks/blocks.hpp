@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/domain/decomposition.hpp"
+#include "core/domain/ranks.hpp"
 #include "core/membrane/cell_nodes.hpp"
 #include "plan/plan.hpp"
 
@@ -23,10 +24,10 @@ void require_computable(const scene::Scene& scene, const Blocks* blocks);
 /// than the lattice has room for.
 Blocks make_blocks(const Plan& plan, int ranks);
 
-/// The same for where the cells are now; `seconds[r]`: what rank r of the present blocks has been measured to take for
-/// its own, in the same time as the others.
+/// The same for where the cells are now, of which each rank knows its own; all ranks together. `seconds[r]`: what rank r of
+/// the present blocks has been measured to take for its own, in the same time as the others.
 template <int D>
-core::Decomposition<D> cut_again(const Plan& plan, const core::Decomposition<D>& blocks, const core::CellNodes& cells,
+core::Decomposition<D> cut_again(const Plan& plan, const core::Ranks<D>& ranks, const core::CellNodes& cells,
                                  const std::vector<double>& seconds);
 
 }  // namespace rouleau::plan

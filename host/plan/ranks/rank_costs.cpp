@@ -110,17 +110,6 @@ void add_halos(const Plan& plan, const core::Decomposition<D>& blocks, std::vect
   }
 }
 
-/// Up to which distance cells act on each other, with room for lists; 0: they do not.
-template <int D>
-double contact_reach(const Plan& plan) {
-  if (!plan.has_interactions) return 0;
-  core::Cutoffs cutoffs(1);
-  const auto setup = make_solver_setup<D>(plan, 0);
-  if (setup.interactions.empty()) return 0;
-  for (const double cutoff : core::cutoffs_of(setup.interactions)) cutoffs.raise(0, 0, cutoff);
-  return core::list_reach(cutoffs);
-}
-
 /// A cell and a rank, or two ranks.
 using Pairs = std::vector<std::pair<int, int>>;
 void make_unique(Pairs& pairs) {
@@ -132,6 +121,7 @@ template <int D>
 void add_cells(const Plan& plan, const core::Decomposition<D>& blocks, std::vector<RankCost>& ranks) {
   using Ghosts = core::GhostCells<D>;
   const core::Domain<D> domain = blocks.domain(0);
+  const core::GhostReach reach = core::ghost_reach(make_solver_setup<D>(plan, 0));
   constexpr double word = sizeof(double), of_node = D * word;
   std::vector<core::BoundingBox<D>> boxes;
   std::vector<int> owner, nodes;
@@ -144,7 +134,7 @@ void add_cells(const Plan& plan, const core::Decomposition<D>& blocks, std::vect
     ++own.cells;
     own.membrane_nodes += cell.node_count();
     bool crosses = false;
-    for (const int other : Ghosts::reached_by(box, blocks, core::lattice_reach)) {
+    for (const int other : Ghosts::reached_by(box, blocks, reach.lattice)) {
       if (other == rank) continue;
       crosses = true;
       known.emplace_back(static_cast<int>(c), other);
@@ -167,7 +157,7 @@ void add_cells(const Plan& plan, const core::Decomposition<D>& blocks, std::vect
     nodes.push_back(cell.node_count());
   });
   Ghosts::for_touching(
-      boxes, domain, contact_reach<D>(plan), [](int) { return true; },
+      boxes, domain, reach.contact, [](int) { return true; },
       [&](int c, int other) {
         if (owner[c] == owner[other]) return;
         known.emplace_back(c, owner[other]);

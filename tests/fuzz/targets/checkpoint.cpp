@@ -50,9 +50,9 @@ void resume(const std::filesystem::path& directory) {
   core::Membranes membranes = run.membranes();
   run::RunState state{observe::Observer(run.scene, membranes)};
   const core::Box<2> whole = plan::lattice_domain(run.scene).block;
-  const auto restored = run::restore<double>(std::move(resumption.checkpoint), run.plan, whole, state, membranes);
+  auto restored = run::restore<double>(std::move(resumption.checkpoint), run.plan, whole, state, membranes);
   core::Solver<double> solver(plan::make_solver_setup(run.plan, state.stage), membranes);
-  solver.start(restored.solver);
+  solver.start(std::move(restored.solver));
   run::Summary summary;
   state.report(summary);
   run::to_json(summary).dump(-1, ' ', false, Json::error_handler_t::replace);

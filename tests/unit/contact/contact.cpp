@@ -121,7 +121,7 @@ TEST_CASE("closest points are those of brute force on moving, turning, deforming
       run(contacts, m, 1 + step % 3);
       compare(contacts, m, domain, tally);
       // Move by up to the skin since the lists were made, by rigid motion and by single nodes.
-      const OldPlaces old{m.x, m.y, {}};
+      const auto old_x = m.x, old_y = m.y;
       for (const CellRange& cell : m.cells) {
         const double vx = speed * 0.06 * uniform(random), vy = speed * 0.06 * uniform(random),
                      turn = speed * 0.003 * uniform(random);
@@ -133,7 +133,9 @@ TEST_CASE("closest points are those of brute force on moving, turning, deforming
           m.y[k] += vy + turn * rx + speed * 0.02 * uniform(random);
         }
       }
-      if (known) m.largest_step.assign(m.cells.size(), largest_displacement(m, old, {0, m.node_count()}));
+      if (known)
+        m.largest_step.assign(m.cells.size(),
+                              largest_displacement(m, {old_x.data(), old_y.data(), nullptr}, {0, m.node_count()}));
     }
     renewals += contacts.neighbours().renewals();
   }

@@ -9,6 +9,7 @@
 #include <cstdint>
 
 #include "core/membrane/cell_nodes.hpp"
+#include "core/membrane/displacement_watch.hpp"
 
 using namespace rouleau;
 using namespace rouleau::core;
@@ -55,6 +56,31 @@ TEST_CASE("parts of an array that are released take no memory, and the others st
   CHECK(std::all_of(values.begin(), values.end(), [](double value) { return value == 0 || value == 2; }));
   values[5000] = 3;
   CHECK(values[5000] == 3);
+}
+
+TEST_CASE("what lies behind an array is not released with it") {
+  std::vector<double> values(many, 2.0);
+  release_pages(values.data(), 1000 * sizeof(double), std::vector<Range>{{0, many}, {5000, many}}, sizeof(double));
+  CHECK(std::all_of(values.begin() + 1000, values.end(), [](double value) { return value == 2; }));
+}
+
+TEST_CASE("a watch takes memory for the cells that are known") {
+  constexpr int of_cell = many / 4;
+  CellNodes nodes;
+  for (int c = 0; c < 4; ++c) {
+    nodes.cells.push_back({{.first = c * of_cell, .count = of_cell}, 0});
+    nodes.part.push_back({.owned = false, .known = c == 2, .reaching = false});
+  }
+  nodes.x.assign(many, 4.0), nodes.y.assign(many, 5.0);
+  DisplacementWatch::Memory memory(nodes);
+  CHECK(resident_pages(memory.x.data(), 2 * of_cell) == 0);
+  CHECK(resident_pages(memory.x.data() + 3 * of_cell, of_cell) == 0);
+  CHECK_FALSE(memory.any(nodes));
+  std::fill_n(memory.x.data() + 2 * of_cell, of_cell, 1.0);
+  CHECK(memory.any(nodes));
+  memory.exchange_places(nodes);
+  CHECK((nodes.x[2 * of_cell] == 1 && memory.x[2 * of_cell] == 4));
+  CHECK((nodes.x[2 * of_cell - 1] == 4 && nodes.x[3 * of_cell] == 4));
 }
 
 TEST_CASE("a rank that does not know cells forgets their nodes, and what their contacts remember") {

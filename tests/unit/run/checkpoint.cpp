@@ -29,7 +29,7 @@ struct Reading {
 };
 
 nlohmann::json facts_of(const Reading& reading, int stage) {
-  RunState state{Observer(reading.scene, Membranes{})};
+  RunState state{Observer(reading.scene)};
   state.stage = stage;
   return checkpoint_facts(reading.plan, state, 1);
 }

@@ -1,0 +1,26 @@
+// How near a cell has to come for another rank to be told of it.
+#pragma once
+
+#include "solver_setup.hpp"
+
+namespace rouleau::core {
+
+/// Spacings.
+struct GhostReach {
+  double lattice;      ///< of its nodes to a block: stencil, marks and viscosity
+  double contact = 0;  ///< of its nodes to those of another cell; 0: cells do not act on each other
+};
+
+constexpr double lattice_reach = 8;  ///< a stencil reaches two nodes, marks and viscosity a few more, and what is
+                                     ///< remembered of them is somewhat older
+
+/// How far from a node its force may act besides the kernel's own reach, spacings.
+template <int D>
+double largest_shift(const BasicSolverSetup<D>& setup);
+
+template <int D>
+GhostReach ghost_reach(const BasicSolverSetup<D>& setup) {
+  return {.lattice = lattice_reach + largest_shift(setup), .contact = contact_reach(setup.interactions)};
+}
+
+}  // namespace rouleau::core
