@@ -11,6 +11,7 @@
 #include "block_bench.hpp"
 #include "fluid_bench.hpp"
 #include "network_bench.hpp"
+#include "rank_bench.hpp"
 #include "scene_bench.hpp"
 #include "space_bench.hpp"
 
@@ -89,6 +90,7 @@ int main(int argc, char** argv) {
     rouleau::bench::check_fluid();
     rouleau::bench::check_space();
     rouleau::bench::check_block();
+    rouleau::bench::check_rank();
     if (check) return 0;
     if (ranks != 0) {
       rouleau::bench::block_table(scene, ranks, rank, seconds);
