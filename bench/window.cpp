@@ -107,6 +107,14 @@ std::vector<core::Box<D>> sides_of(const core::Box<D>& block, const core::Box<D>
   return parts;
 }
 
+/// How far a cell lies from a block along some axis; 0: its box meets it.
+template <int D>
+double distance(const core::BoundingBox<D>& cell, const core::Box<D>& block) {
+  double far = 0;
+  for (int k = 0; k < D; ++k) far = std::max({far, block.begin[k] - cell.most[k], cell.least[k] - block.end[k]});
+  return far;
+}
+
 /// Adds the cell that is the only one of `one`, moved.
 template <int D>
 void append(plan::Cells<D>& cells, const plan::Cells<D>& one, const std::array<double, D>& by) {
@@ -172,12 +180,6 @@ Window<D> window_around(const plan::Plan& plan, const core::Decomposition<D>& bl
   const core::Box<D> block = parts[own];
   const core::Domain<D> domain(size, lattice.periodic);
 
-  plan::Cells<D> cells;
-  plan::for_each_cell<D>(scene, spacing, [&](std::size_t c, const plan::Cells<D>& cell) {
-    cells.types = cell.types;
-    if (const auto by = into(box, lattice, boxes[c])) append<D>(cells, cell, *by);
-  });
-
   typename Window<D>::Flow flow;
   if (lattice.walled(1) && !scene.domain.tube_radius) {
     const double height = lattice.size[1];
@@ -187,6 +189,26 @@ Window<D> window_around(const plan::Plan& plan, const core::Decomposition<D>& bl
             .half = height / 2,
             .bottom = static_cast<double>(box.begin[1])};
   }
+  const auto speed = [&](const core::BoundingBox<D>& cell) {
+    const double bottom = box.begin[1];
+    return std::max(std::abs(flow.velocity(cell.least[1] - bottom)), std::abs(flow.velocity(cell.most[1] - bottom)));
+  };
+  double fastest = 0, here = 0, farthest = 0;
+  int runner = -1;
+  plan::Cells<D> cells;
+  plan::for_each_cell<D>(scene, spacing, [&](std::size_t c, const plan::Cells<D>& cell) {
+    cells.types = cell.types;
+    fastest = std::max(fastest, speed(boxes[c]));
+    const auto by = into(box, lattice, boxes[c]);
+    if (!by) return;
+    here = std::max(here, speed(boxes[c]));
+    append<D>(cells, cell, *by);
+    const int last = cells.cell_count() - 1;
+    const double far = distance<D>(core::box_of<D>(cells, last), block);
+    if (far > farthest) farthest = far, runner = last;
+  });
+  if (fastest < 1.1 * here) runner = -1;
+
   setup.domain = domain;
   setup.solid = nullptr;
   setup.tube_radius = 0;
@@ -197,20 +219,15 @@ Window<D> window_around(const plan::Plan& plan, const core::Decomposition<D>& bl
   setup.walls = {flow.velocity(-0.5), flow.velocity(size[1] - 0.5)};
   if (scene.domain.tube_radius || !(lattice.walled(1) || lattice.walled(D - 1))) setup.wall_interactions.clear();
 
-  Window<D> window{.origin = box.begin,
-                   .blocks = {domain, std::move(parts)},
-                   .rank = own,
-                   .merged = merged,
-                   .cells = std::move(cells),
-                   .setup = std::move(setup),
-                   .slowest = INFINITY,
-                   .fastest = -INFINITY,
-                   .flow = flow};
-  for (int y = block.begin[1]; y < block.end[1]; ++y) {
-    window.slowest = std::min(window.slowest, flow.velocity(y));
-    window.fastest = std::max(window.fastest, flow.velocity(y));
-  }
-  return window;
+  return {.origin = box.begin,
+          .blocks = {domain, std::move(parts)},
+          .rank = own,
+          .merged = merged,
+          .cells = std::move(cells),
+          .setup = std::move(setup),
+          .fastest = fastest,
+          .runner = runner,
+          .flow = flow};
 }
 
 template Window<2> window_around(const plan::Plan&, const core::Decomposition<2>&, int);

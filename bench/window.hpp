@@ -23,7 +23,10 @@ struct Window {
   bool merged;                      ///< there would be very many others: one for each side, edge and corner
   plan::Cells<D> cells;             ///< in their order
   core::BasicSolverSetup<D> setup;  ///< of the first stage; the domain is the window in one piece
-  double slowest, fastest;          ///< velocity of the fluid along x that profile() has in the block
+  /// Of the fluid at the scene's cells. All ranks make their lists of what is near anew when any cell has gone some way, so
+  /// that one cell of the window, far from the block, is moved to and fro at this speed: -1: none has to.
+  double fastest = 0;
+  int runner = -1;
 
   /// Velocity of the fluid along x at a height of the window, and its slope: the first stage's developed flow without cells;
   /// between no walls across y it is at rest.
