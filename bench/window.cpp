@@ -207,7 +207,7 @@ Window<D> window_around(const plan::Plan& plan, const core::Decomposition<D>& bl
     const double far = distance<D>(core::box_of<D>(cells, last), block);
     if (far > farthest) farthest = far, runner = last;
   });
-  if (fastest < 1.1 * here) runner = -1;
+  if (!(fastest > 1.1 * here)) runner = -1;
 
   setup.domain = domain;
   setup.solid = nullptr;
