@@ -219,8 +219,7 @@ Window<D> window_around(const plan::Plan& plan, const core::Decomposition<D>& bl
   setup.walls = {flow.velocity(-0.5), flow.velocity(size[1] - 0.5)};
   if (scene.domain.tube_radius || !(lattice.walled(1) || lattice.walled(D - 1))) setup.wall_interactions.clear();
 
-  return {.origin = box.begin,
-          .blocks = {domain, std::move(parts)},
+  return {.blocks = {domain, std::move(parts)},
           .rank = own,
           .merged = merged,
           .cells = std::move(cells),

@@ -17,7 +17,6 @@ namespace rouleau::bench {
 /// an end.
 template <int D>
 struct Window {
-  std::array<int, D> origin;        ///< its first node, of the scene's lattice
   core::Decomposition<D> blocks;    ///< of the window
   int rank;                         ///< whose block is the scene's
   bool merged;                      ///< there would be very many others: one for each side, edge and corner
