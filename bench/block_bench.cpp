@@ -17,6 +17,7 @@
 #include "plan/read_scene.hpp"
 #include "plan/solver_setup.hpp"
 #include "plugin/handles.hpp"
+#include "rank_bench.hpp"
 
 namespace rouleau::bench {
 
@@ -108,7 +109,8 @@ void set_waves(core::Fluid<T, Set>& fluid, Size<Set> size) {
 }
 
 template <class T, class Set>
-void table(const plan::Plan& plan, const core::Decomposition<Set::dimension>& blocks, int rank, double seconds) {
+void table(const plan::Plan& plan, const core::Decomposition<Set::dimension>& blocks, int rank,
+           const plan::RankCost& cost, double seconds) {
   constexpr int D = Set::dimension;
   const auto setup = plan::make_solver_setup<D>(plan, 0);
   const core::Box<D> box = blocks.domain(rank).block;
@@ -137,7 +139,6 @@ void table(const plan::Plan& plan, const core::Decomposition<Set::dimension>& bl
   const auto timings = measure({{"with messages", [&](Worker) { step(*block.fluid), block.exchange(), ++steps; }, {}},
                                 {"alone", [&](Worker) { step(alone); }, {}}},
                                1, seconds);
-  const plan::RankCost cost = plan::rank_costs(plan, blocks)[rank];
   const double with = timings[0].median_s, without = timings[1].median_s;
   std::printf("\nRank %d of %d: %s nodes, its neighbours replaced by itself, no walls; the fluid of a step\n", rank,
               blocks.ranks(), sides.c_str());
@@ -151,9 +152,11 @@ void table(const plan::Plan& plan, const core::Decomposition<Set::dimension>& bl
 }
 
 template <class Set>
-void table(const plan::Plan& plan, const core::Decomposition<Set::dimension>& blocks, int rank, double seconds) {
-  if (plan.scene->numerics.precision == scene::Precision::f64) return table<double, Set>(plan, blocks, rank, seconds);
-  table<float, Set>(plan, blocks, rank, seconds);
+void table(const plan::Plan& plan, const core::Decomposition<Set::dimension>& blocks, int rank,
+           const plan::RankCost& cost, double seconds) {
+  if (plan.scene->numerics.precision == scene::Precision::f64)
+    return table<double, Set>(plan, blocks, rank, cost, seconds);
+  table<float, Set>(plan, blocks, rank, cost, seconds);
 }
 
 /// Throws unless a block whose neighbours are itself computes what a periodic lattice does.
@@ -192,11 +195,14 @@ void block_table(const std::string& file, int ranks, int rank, double seconds) {
   if (rank < 0 || rank >= ranks)
     throw Error(Cause::bad_input, "--rank " + std::to_string(rank) + ": there is no such rank",
                 {"ranks count from 0 to " + std::to_string(ranks - 1)});
+  const plan::RankCost cost = plan::rank_costs(plan, blocks)[rank];
   if (const auto* plane = std::get_if<core::Decomposition<2>>(&blocks)) {
-    table<core::D2Q9>(plan, *plane, rank, seconds);
+    table<core::D2Q9>(plan, *plane, rank, cost, seconds);
   } else {
-    table<core::D3Q19>(plan, std::get<core::Decomposition<3>>(blocks), rank, seconds);
+    table<core::D3Q19>(plan, std::get<core::Decomposition<3>>(blocks), rank, cost, seconds);
   }
+  std::fflush(stdout);
+  if (plan.has_cells) rank_table(plan, blocks, rank, cost, seconds);
 }
 
 void check_block() {

@@ -11,6 +11,7 @@
 #include "block_bench.hpp"
 #include "fluid_bench.hpp"
 #include "network_bench.hpp"
+#include "rank_bench.hpp"
 #include "scene_bench.hpp"
 #include "space_bench.hpp"
 
@@ -52,7 +53,7 @@ int main(int argc, char** argv) {
       "under mpirun");
   add("whole", options::bool_switch(&whole), "run the four-cell scene to its end (four times 10 s)");
   add("seconds", options::value(&seconds)->default_value(1)->value_name("S"),
-      "time for each fluid kernel, and each line of network");
+      "time for each fluid kernel, each line of network, and about each round of --ranks");
   add("kernel", options::value(&kernel)->value_name("NAME"), "run one fluid kernel (plugin, plain, move) for counting");
   add("steps", options::value(&steps)->default_value(0)->value_name("N"), "with --kernel: its steps");
   add("nx", options::value(&nx)->default_value(256), "with --kernel: nodes along x, a multiple of 16");
@@ -60,7 +61,7 @@ int main(int argc, char** argv) {
   add("f32", options::bool_switch(&f32), "with --kernel: single precision");
   add("force", options::bool_switch(&force), "with --kernel: every node has a force and writes its velocity");
   add("ranks", options::value(&ranks)->value_name("N"),
-      "the block of one rank of N, its neighbours replaced by itself: what a step of its fluid costs");
+      "one rank of N: what a step of its fluid costs, its neighbours replaced by itself, and a whole step with its cells");
   add("rank", options::value(&rank)->value_name("K"), "with --ranks: which, 0 to N - 1");
   add("scene",
       options::value(&scene)->value_name("FILE")->default_value(ROULEAU_SCENES "/four-cells-shear.json", "four cells"),
@@ -89,6 +90,7 @@ int main(int argc, char** argv) {
     rouleau::bench::check_fluid();
     rouleau::bench::check_space();
     rouleau::bench::check_block();
+    rouleau::bench::check_rank();
     if (check) return 0;
     if (ranks != 0) {
       rouleau::bench::block_table(scene, ranks, rank, seconds);

@@ -22,12 +22,7 @@ namespace rouleau::plan {
 
 namespace {
 
-/// What the cut costs, s: measured (docs/scaling.md).
-namespace cost_of_sharing {
-constexpr double number = 5e-9;  ///< that goes to a neighbour: packing it, and unpacking one
-constexpr double ghost = 65e-9;  ///< a node of a ghost: unpacking it, finding where it touches the lattice, spreading
-constexpr double shown = 23e-9;  ///< a node that is told to another rank
-}  // namespace cost_of_sharing
+constexpr CostOfSharing cost_of_sharing;
 
 /// Bytes that a rank takes besides its block: measured (docs/scaling.md).
 namespace memory {
@@ -168,7 +163,7 @@ void add_cells(const Plan& plan, const core::Decomposition<D>& blocks, std::vect
     const double bytes = nodes[c] * of_node + word;
     RankCost& own = ranks[owner[c]];
     own.position_bytes += bytes;
-    own.sharing_s += nodes[c] * cost_of_sharing::shown;
+    own.sharing_s += nodes[c] * cost_of_sharing.shown_s;
     ranks[rank].received_bytes += bytes;
     ranks[rank].ghost_nodes += nodes[c];
   }
@@ -192,7 +187,7 @@ void add_cells(const Plan& plan, const core::Decomposition<D>& blocks, std::vect
     const double agreed = static_cast<double>(agreements) * 4 * word;
     rank.position_bytes += agreed;
     rank.received_bytes += agreed;
-    rank.sharing_s += static_cast<double>(rank.ghost_nodes) * cost_of_sharing::ghost;
+    rank.sharing_s += static_cast<double>(rank.ghost_nodes) * cost_of_sharing.ghost_s;
   }
 }
 
@@ -216,7 +211,7 @@ std::vector<RankCost> costs_of(const Plan& plan, const core::Decomposition<D>& b
           (rank == 0 ? membrane_nodes(scene) * memory::of_each_node<D> : 0) +
           static_cast<double>(scene.cells.size()) * memory::of_each_cell;
     }
-    cost.sharing_s += cost.lattice_bytes() / word * cost_of_sharing::number;
+    cost.sharing_s += cost.lattice_bytes() / word * cost_of_sharing.number_s;
     cost.step_s = step_cost(nodes, static_cast<double>(cost.membrane_nodes), scene.numerics.precision, D, cutoff);
   }
   return ranks;
