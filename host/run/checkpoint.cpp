@@ -1,5 +1,6 @@
 #include "checkpoint.hpp"
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <type_traits>
@@ -196,6 +197,7 @@ void restore_cells(const files::CheckpointReader& reader, const Json& saved, Cel
   for (const auto& [path, values] : arrays(m)) {
     if (values == &m.largest_step) {
       read(reader, path, *values);
+      for (const double step : *values) m.largest_step_of_others = std::max(m.largest_step_of_others, step);
     } else {
       read(reader, path, known, *values);
     }

@@ -41,8 +41,8 @@ class Contacts {
   void find(int cell, const Membranes& membranes, ContactList& list) const;
 
   /// Takes no memory for these nodes.
-  void forget(std::span<const Range> nodes) {
-    neighbours_.watch().forget(nodes);
+  void forget(const Membranes& membranes, std::span<const Range> nodes) {
+    neighbours_.forget(membranes, nodes);
     segments_.forget(nodes);
   }
 

@@ -55,28 +55,35 @@ InteractionForces::InteractionForces(Membranes& membranes, std::vector<Interacti
 }
 
 void InteractionForces::run(Worker worker, int phase, Membranes& membranes) {
-  const Range cells = worker.share(static_cast<int>(membranes.cells.size()));
+  const CellNumbers cells = membranes.known_cells(worker);
   switch (phase) {
     case 0:
       contacts_.measure(worker, membranes);
       break;
     case 1:
       contacts_.refresh(worker, membranes);
-      for (int cell = cells.begin; cell < cells.end; ++cell) {
+      for (const int cell : cells) {
         if (!membranes.owns(cell)) {
           make_room_for_reactions(cell);
           continue;
         }
-        compute_forces(cell, membranes, scratch_.of(cells.begin));
-        act(cell, membranes, scratch_.of(cells.begin));
+        compute_forces(cell, membranes, scratch_.of(cells.first_place()));
+        act(cell, membranes, scratch_.of(cells.first_place()));
       }
       break;
     default:
       contacts_.neighbours().link(worker, membranes);
-      for (int cell = cells.begin; cell < cells.end; ++cell) {
+      for (const int cell : cells) {
         if (membranes.owns(cell)) take_reactions(cell, membranes);
       }
       break;
+  }
+}
+
+void InteractionForces::forget(const Membranes& membranes, std::span<const Range> nodes) {
+  contacts_.forget(membranes, nodes);
+  for (int cell = 0; cell < membranes.cell_count(); ++cell) {
+    if (!membranes.knows(cell)) reactions_[cell] = {};
   }
 }
 

@@ -45,8 +45,8 @@ class InteractionForces {
   void run(Worker worker, int phase, Membranes& membranes);
   /// Between steps, with other ranks: whether lists of cells that are near each other are out of date (DisplacementWatch).
   [[nodiscard]] DisplacementWatch& watch() { return contacts_.neighbours().watch(); }
-  /// Takes no memory for these nodes.
-  void forget(std::span<const Range> nodes) { contacts_.forget(nodes); }
+  /// Takes no memory for the cells that are not known, which have these nodes.
+  void forget(const Membranes& membranes, std::span<const Range> nodes);
   /// Whether potentials want to know velocities.
   [[nodiscard]] bool needs_velocities() const { return needs_velocities_; }
   /// True if there is nothing to do: run() may be left out.

@@ -69,8 +69,8 @@ double distance(const Bounds& a, const Bounds& b, double move_x, double move_y) 
 double suitable_skin(const CellNodes& cells) {
   if (cells.largest_step.empty()) return usual_skin;  // nobody keeps account of the steps
   double skin = thinnest_skin;                        // also where a step is no number: the run's own checks will tell
-  for (const double step : cells.largest_step) skin = std::max(skin, lifetime * step);
-  return std::min(skin, thickest_skin);
+  for (const int c : cells.known_cells()) skin = std::max(skin, lifetime * cells.largest_step[c]);
+  return std::min(std::max(skin, lifetime * cells.largest_step_of_others), thickest_skin);
 }
 
 double list_reach(double cutoff) { return cutoff + 2 * thickest_skin; }
@@ -102,36 +102,39 @@ NeighbourList::NeighbourList(const Membranes& membranes, Cutoffs cutoffs, Domain
 
 void NeighbourList::refresh(Worker worker, const Membranes& membranes, const SegmentTable& segments) {
   if (!renewed()) return;
-  const Range cells = worker.share(membranes.cell_count());
+  const CellNumbers cells = membranes.known_cells(worker);
   const double skin = suitable_skin(membranes);
   // Every worker sorts all cells: that is quicker than to wait for one who does.
-  const CellGrid<2> grid(boxes_of(segments.bounds), cutoffs_.largest() + 2 * skin, domain_);
-  for (int cell = cells.begin; cell < cells.end; ++cell) {
+  std::vector<BoundingBox<2>> boxes;
+  for (const int cell : membranes.known_cells()) {
+    const Bounds& b = segments.bounds[cell];
+    boxes.push_back({{b.x_min, b.y_min}, {b.x_max, b.y_max}});
+  }
+  const CellGrid<2> grid(boxes, cutoffs_.largest() + 2 * skin, domain_);
+  int place = cells.first_place();  // among the known cells
+  for (const int cell : cells) {
     CandidateList& list = lists_[cell];
-    if (!membranes.knows(cell)) {
-      list = {};
-      continue;
-    }
-    Workspace& workspace = workspaces_.of(cells.begin);
+    Workspace& workspace = workspaces_.of(cells.first_place());
     workspace.square.resize(stride_ * group);
     workspace.excess.resize(stride_);
     list.pairs.clear();
     list.groups.clear();
     list.runs.clear();
     list.touched = 0;
-    list_pairs(membranes, cell, grid, segments, skin, workspace.near);
+    grid.find(place++, workspace.near);
+    for (int& near : workspace.near) near = membranes.known_at(near);
+    list_pairs(membranes, cell, segments, skin, workspace.near);
     for (Pair& pair : list.pairs) list_candidates(membranes, cell, pair, segments, skin, workspace);
     watch_.remember(cell, membranes, skin);
   }
   if (worker.first()) ++renewals_;
 }
 
-void NeighbourList::list_pairs(const Membranes& membranes, int cell, const CellGrid<2>& grid,
-                               const SegmentTable& segments, double skin, std::vector<int>& near) {
+void NeighbourList::list_pairs(const Membranes& membranes, int cell, const SegmentTable& segments, double skin,
+                               std::vector<int>& near) {
   CandidateList& list = lists_[cell];
   const int type = membranes.cells[cell].type;
   const Bounds& own = segments.bounds[cell];
-  grid.find(cell, near);
   std::sort(near.begin(), near.end(), [&](int a, int b) { return rank_[a] < rank_[b]; });
   for (const int other : near) {
     const double cutoff = cutoffs_(type, membranes.cells[other].type);
@@ -201,10 +204,17 @@ void NeighbourList::list_candidates(const Membranes& membranes, int cell, Pair& 
   list.touched += pair.touched.end - pair.touched.begin;
 }
 
+void NeighbourList::forget(const Membranes& membranes, std::span<const Range> nodes) {
+  watch_.forget(membranes, nodes);
+  for (int cell = 0; cell < membranes.cell_count(); ++cell) {
+    if (!membranes.knows(cell)) lists_[cell] = {};
+  }
+}
+
 void NeighbourList::link(Worker worker, const Membranes& membranes) {
   if (!renewed()) return;
-  const Range cells = worker.share(static_cast<int>(membranes.cells.size()));
-  for (int cell = cells.begin; cell < cells.end; ++cell) {
+  const CellNumbers cells = membranes.known_cells(worker);
+  for (const int cell : cells) {
     for (Pair& pair : lists_[cell].pairs) {
       const std::vector<Pair>& others = lists_[pair.other].pairs;
       const auto opposite = std::find_if(others.begin(), others.end(), [&](const Pair& candidate) {

@@ -83,6 +83,8 @@ class NeighbourList {
   void refresh(Worker worker, const Membranes& membranes, const SegmentTable& segments);
   /// Pass 3: if the lists are new, finds the opposite pairs of this worker's cells.
   void link(Worker worker, const Membranes& membranes);
+  /// Takes no memory for the cells that are not known, which have these nodes.
+  void forget(const Membranes& membranes, std::span<const Range> nodes);
   /// Whether the lists are new in this step; the same for all workers from pass 2 on.
   [[nodiscard]] bool renewed() const { return watch_.exceeded(); }
 
@@ -99,8 +101,9 @@ class NeighbourList {
     std::vector<double> square;  ///< [group][segment] square distances
     std::vector<double> excess;  ///< how far each segment is from being a candidate
   };
-  void list_pairs(const Membranes& membranes, int cell, const CellGrid<2>& grid, const SegmentTable& segments,
-                  double skin, std::vector<int>& near);
+  /// `near`: cells that may be; in any order.
+  void list_pairs(const Membranes& membranes, int cell, const SegmentTable& segments, double skin,
+                  std::vector<int>& near);
   void list_candidates(const Membranes& membranes, int cell, Pair& pair, const SegmentTable& segments, double skin,
                        Workspace& workspace);
 

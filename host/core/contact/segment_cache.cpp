@@ -1,7 +1,6 @@
 #include "segment_cache.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <rouleau/dispatch.hpp>
 
 namespace rouleau::core {
@@ -57,13 +56,8 @@ SegmentTable::SegmentTable(const Membranes& membranes) : bounds(membranes.cells.
 
 void SegmentTable::update(Worker worker, const Membranes& membranes) {
   static const auto function = Dispatch<Update, UpdateTask*>::pick();
-  const Range cells = worker.share(static_cast<int>(membranes.cells.size()));
-  for (int c = cells.begin; c < cells.end; ++c) {
-    if (!membranes.knows(c)) {  // it is near nothing
-      constexpr double none = std::numeric_limits<double>::quiet_NaN();
-      bounds[c] = {none, none, none, none};
-      continue;
-    }
+  const CellNumbers cells = membranes.known_cells(worker);
+  for (const int c : cells) {
     const CellRange& cell = membranes.cells[c];
     UpdateTask task{membranes.x.data(), membranes.y.data(),    x.data(),   y.data(),   along_x.data(),
                     along_y.data(),     inverse_square.data(), cell.first, cell.end(), Bounds{}};

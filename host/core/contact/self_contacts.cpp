@@ -44,12 +44,12 @@ SelfContacts::SelfContacts(const Membranes& membranes, std::vector<SelfInteracti
 }
 
 void SelfContacts::run(Worker worker, Membranes& membranes) {
-  const Range cells = worker.share(membranes.cell_count());
-  for (int cell = cells.begin; cell < cells.end; ++cell) {
+  const CellNumbers cells = membranes.known_cells(worker);
+  for (const int cell : cells) {
     if (!membranes.owns(cell)) continue;
     const CellRange& range = membranes.cells[cell];
     const double* weight = membranes.type_of(range).rest_weight.data();
-    Contacts& contacts = contacts_.of(cells.begin);
+    Contacts& contacts = contacts_.of(cells.first_place());
     for (std::size_t k = 0; k < interactions_.size(); ++k) {
       if (interactions_[k].type != range.type) continue;
       measure(k, cell, membranes, false, contacts);

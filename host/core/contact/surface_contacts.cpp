@@ -36,8 +36,7 @@ class SurfaceContacts::Bins {
   Bins(const Surfaces& surfaces, double reach, const Domain<3>& domain) : domain_(domain) {
     double largest = 0;
     std::vector<Entry> entries;
-    for (int cell = 0; cell < surfaces.cell_count(); ++cell) {
-      if (!surfaces.knows(cell)) continue;
+    for (const int cell : surfaces.known_cells()) {
       const Nodes nodes = surfaces.nodes(cell);
       int triangle = 0;
       for (const auto& [i, j, k] : surfaces.type_of(cell).mesh.triangles()) {
@@ -138,8 +137,8 @@ SurfaceContacts SurfaceContacts::within(double reach, const Surfaces& surfaces, 
 
 void SurfaceContacts::measure(Worker worker, const Surfaces& surfaces) {
   watch_.measure(worker, surfaces);
-  const Range cells = worker.share(surfaces.cell_count());
-  for (int cell = cells.begin; cell < cells.end; ++cell) {
+  const CellNumbers cells = surfaces.known_cells(worker);
+  for (const int cell : cells) {
     if (renewed_[cell] != 0) path_[cell] = 0;
     path_[cell] +=
         surfaces.largest_step.empty() ? std::numeric_limits<double>::infinity() : surfaces.largest_step[cell];
@@ -158,21 +157,28 @@ double SurfaceContacts::travelled(int cell, int other) const {
 
 void SurfaceContacts::refresh(Worker worker, const Surfaces& surfaces) {
   const bool renew = watch_.exceeded();
-  const Range cells = worker.share(surfaces.cell_count());
-  for (int cell = cells.begin; cell < cells.end; ++cell) renewed_[cell] = renew;
+  const CellNumbers cells = surfaces.known_cells(worker);
+  for (const int cell : cells) renewed_[cell] = renew;
   if (!renew) return;
   const double skin = suitable_skin(surfaces);
   // Every worker sorts all triangles: that is quicker than to wait for one who does.
   const Bins bins(surfaces, cutoffs_.largest() + 2 * skin, domain_);
-  for (int cell = cells.begin; cell < cells.end; ++cell) {
+  for (const int cell : cells) {
     if (of_all_ || surfaces.owns(cell)) {
       list_candidates(cell, surfaces, bins, skin);
     } else {
       lists_[cell] = {};
     }
-    if (surfaces.knows(cell)) watch_.remember(cell, surfaces, skin);
+    watch_.remember(cell, surfaces, skin);
   }
   if (worker.first()) ++renewals_;
+}
+
+void SurfaceContacts::forget(const Surfaces& surfaces, std::span<const Range> nodes) {
+  watch_.forget(surfaces, nodes);
+  for (int cell = 0; cell < surfaces.cell_count(); ++cell) {
+    if (!surfaces.knows(cell)) lists_[cell] = {};
+  }
 }
 
 /// Images of other cells' triangles that may lie within the reach of some node of a cell.

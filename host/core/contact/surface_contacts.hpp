@@ -50,6 +50,8 @@ class SurfaceContacts {
 
   /// With other ranks, before measure(): they agree on whether a node has moved too far.
   [[nodiscard]] DisplacementWatch& watch() { return watch_; }
+  /// Takes no memory for the cells that are not known, which have these nodes.
+  void forget(const Surfaces& surfaces, std::span<const Range> nodes);
   /// How often lists were made.
   [[nodiscard]] long renewals() const { return renewals_; }
   [[nodiscard]] const Cutoffs& cutoffs() const { return cutoffs_; }

@@ -32,14 +32,14 @@ SurfaceInteractions::SurfaceInteractions(Surfaces& surfaces, std::vector<Interac
 }
 
 void SurfaceInteractions::run(Worker worker, int phase, Surfaces& surfaces) {
-  const Range cells = worker.share(surfaces.cell_count());
+  const CellNumbers cells = surfaces.known_cells(worker);
   if (phase == 0) return contacts_.measure(worker, surfaces);
   if (phase == 1) {
     contacts_.refresh(worker, surfaces);
-    for (int cell = cells.begin; cell < cells.end; ++cell) {
+    for (const int cell : cells) {
       reactions_[cell].clear();
       if (!surfaces.owns(cell)) continue;
-      Scratch& scratch = scratch_.of(cells.begin);
+      Scratch& scratch = scratch_.of(cells.first_place());
       contacts_.find(cell, surfaces, scratch.contacts);
       scratch.state.clear();
       evaluate(cell, surfaces, false, &scratch.state, scratch);
@@ -48,15 +48,22 @@ void SurfaceInteractions::run(Worker worker, int phase, Surfaces& surfaces) {
     }
     return;
   }
-  // All cells' reactions in their order, of which each worker takes those on its own cells.
+  // All cells' reactions in their order, of which each worker takes those on its share of the nodes.
   const Range own = surfaces.node_share(worker);
-  for (const std::vector<Reaction>& of_cell : reactions_) {
-    for (const Reaction& reaction : of_cell) {
+  for (const int cell : surfaces.known_cells()) {
+    for (const Reaction& reaction : reactions_[cell]) {
       if (reaction.node < own.begin || reaction.node >= own.end || !surfaces.owns(reaction.cell)) continue;
       surfaces.force_x[reaction.node] += reaction.force.x();
       surfaces.force_y[reaction.node] += reaction.force.y();
       surfaces.force_z[reaction.node] += reaction.force.z();
     }
+  }
+}
+
+void SurfaceInteractions::forget(const Surfaces& surfaces, std::span<const Range> nodes) {
+  contacts_.forget(surfaces, nodes);
+  for (int cell = 0; cell < surfaces.cell_count(); ++cell) {
+    if (!surfaces.knows(cell)) reactions_[cell] = {};
   }
 }
 

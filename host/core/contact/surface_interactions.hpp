@@ -28,8 +28,8 @@ class SurfaceInteractions {
 
   /// With other ranks: InteractionForces.
   [[nodiscard]] DisplacementWatch& watch() { return contacts_.watch(); }
-  /// Takes no memory for these nodes.
-  void forget(std::span<const Range> nodes) { contacts_.watch().forget(nodes); }
+  /// Takes no memory for the cells that are not known, which have these nodes.
+  void forget(const Surfaces& surfaces, std::span<const Range> nodes);
   [[nodiscard]] bool needs_velocities() const { return needs_velocities_; }
   /// What one cell does to a node of another.
   struct Reaction {

@@ -71,8 +71,8 @@ void SurfaceWallContacts::for_each(int cell, const Surfaces& surfaces, bool ener
 void SurfaceWallContacts::run(Worker worker, Surfaces& surfaces) {
   Contacts contacts;
   std::vector<ContactState> next;
-  const Range cells = worker.share(surfaces.cell_count());
-  for (int cell = cells.begin; cell < cells.end; ++cell) {
+  const CellNumbers cells = surfaces.known_cells(worker);
+  for (const int cell : cells) {
     if (!surfaces.owns(cell)) continue;
     const double* area = surfaces.type_of(cell).node_area.data();
     const int first = surfaces.cells[cell].first;

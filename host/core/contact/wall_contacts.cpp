@@ -31,11 +31,11 @@ WallContacts::WallContacts(Membranes& membranes, std::vector<WallInteraction> in
 }
 
 void WallContacts::run(Worker worker, Membranes& membranes) {
-  const Range cells = worker.share(membranes.cell_count());
+  const CellNumbers cells = membranes.known_cells(worker);
   double* force = membranes.force_y.data();
-  for (int cell = cells.begin; cell < cells.end; ++cell) {
+  for (const int cell : cells) {
     if (!membranes.owns(cell)) continue;
-    Contacts& contacts = contacts_.of(cells.begin);
+    Contacts& contacts = contacts_.of(cells.first_place());
     const CellRange& range = membranes.cells[cell];
     const double* weight = membranes.type_of(range).rest_weight.data();
     for (std::size_t k = 0; k < interactions_.size(); ++k) {

@@ -239,8 +239,8 @@ void Coupling<T>::reserve(const Membranes& membranes) {
 
 template <class T>
 void Coupling<T>::locate(Worker worker, const Membranes& membranes, NodeVectors position, Whose whose) {
-  const Range cells = worker.share(membranes.cell_count());
-  for (int c = cells.begin; c < cells.end; ++c) {
+  const CellNumbers cells = membranes.known_cells(worker);
+  for (const int c : cells) {
     if (!membranes.is(c, whose)) continue;
     const CellRange& cell = membranes.cells[c];
     LocateTask<T> task{.to = {column_.data(), row_.data(), p_x_.data(), q_x_.data(), p_y_.data(), q_y_.data()},
@@ -275,8 +275,8 @@ void Coupling<T>::spread(Range rows, const Membranes& membranes, NodeVectors nod
                      .origin_y = force[1].row(0) - first,
                      .stride = stride};
   const auto for_cells = [&](auto function) {
-    for (std::size_t c = 0; c < rows_.size(); ++c) {
-      if (!membranes.reaches(static_cast<int>(c))) continue;
+    for (const int c : membranes.known_cells()) {
+      if (!membranes.reaches(c)) continue;
       const BaseRows& base = rows_[c];
       const bool whole = base.lowest >= 1 && base.highest + 3 <= domain_.size[1];  // no stencil reaches over a border
       if (!whole || (base.highest + 3 > task.row_begin && base.lowest - 1 < task.row_end)) function(membranes.cells[c]);
@@ -318,8 +318,8 @@ void Coupling<T>::interpolate(Worker worker, Membranes& membranes, const VectorF
                           velocity[0].bytes() > large_field,
                           domain_.whole() ? nullptr : &domain_.block};
   if (domain_.whole()) return loops_->interpolate(&task);
-  const Range cells = worker.share(membranes.cell_count());
-  for (int c = cells.begin; c < cells.end; ++c) {
+  const CellNumbers cells = membranes.known_cells(worker);
+  for (const int c : cells) {
     if (!membranes.reaches(c) || !membranes.is(c, whose)) continue;
     task.begin = membranes.cells[c].first, task.end = membranes.cells[c].end();
     loops_->interpolate(&task);
@@ -327,13 +327,16 @@ void Coupling<T>::interpolate(Worker worker, Membranes& membranes, const VectorF
 }
 
 template <class T>
-bool Coupling<T>::any_escaped() const {
-  return std::any_of(rows_.begin(), rows_.end(), [](const BaseRows& rows) { return rows.lowest == outside; });
+bool Coupling<T>::any_escaped(const Membranes& membranes) const {
+  for (const int c : membranes.known_cells()) {
+    if (rows_[c].lowest == outside) return true;
+  }
+  return false;
 }
 
 template <class T>
-int Coupling<T>::escaped() const {
-  return any_escaped() ? static_cast<int>(std::find(row_.begin(), row_.end(), outside) - row_.begin()) : -1;
+int Coupling<T>::escaped(const Membranes& membranes) const {
+  return any_escaped(membranes) ? static_cast<int>(std::find(row_.begin(), row_.end(), outside) - row_.begin()) : -1;
 }
 
 template <class T>

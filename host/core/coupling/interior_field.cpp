@@ -23,10 +23,10 @@ InteriorField<T>::InteriorField(const Surfaces& surfaces, std::vector<double> vi
 
 template <class T>
 void InteriorField<T>::cover(Worker worker, const Surfaces& surfaces) {
-  const Range cells = worker.share(surfaces.cell_count());
+  const CellNumbers cells = surfaces.known_cells(worker);
   std::vector<double> scratch;
-  for (int c = cells.begin; c < cells.end; ++c) {
-    if (!watch_.moved(c) || !surfaces.knows(c)) continue;
+  for (const int c : cells) {
+    if (!watch_.moved(c)) continue;
     if (differs(surfaces.cells[c].type)) {
       core::cover(surfaces.type_of(c).mesh, surfaces.nodes(c), fraction_[c]);
       smooth(fraction_[c], scratch);
@@ -106,8 +106,8 @@ void InteriorField<T>::update(Worker worker, const Surfaces& surfaces, Field<T, 
   const Range own = worker.share(row_count(domain_.block));
   if (varies_) set_rates(surfaces, own, relaxation_rate);
   mask.clear(own.begin, own.end);
-  for (std::size_t c = 0; c < reach_.size(); ++c) {
-    if (!surfaces.reaches(static_cast<int>(c))) continue;
+  for (const int c : surfaces.known_cells()) {
+    if (!surfaces.reaches(c)) continue;
     const Rows& reach = reach_[c];
     for_rows(reach.first, reach.size, own, [&](int row, int j, int k) {
       const Interval& columns = reach.at(j, k);
@@ -129,8 +129,8 @@ void InteriorField<T>::set_rates(const Surfaces& surfaces, Range own, Field<T, 3
     changed_[row].clear();
   }
   const auto for_pieces = [&](const auto& function) {
-    for (std::size_t c = 0; c < fraction_.size(); ++c) {
-      if (!surfaces.reaches(static_cast<int>(c))) continue;
+    for (const int c : surfaces.known_cells()) {
+      if (!surfaces.reaches(c)) continue;
       const VolumeFraction& fraction = fraction_[c];
       const int first[2] = {fraction.first[1], fraction.first[2]}, size[2] = {fraction.size[1], fraction.size[2]};
       const double excess = ratio_[surfaces.cells[c].type] - 1;

@@ -155,8 +155,8 @@ template <class Loop>
 void SlipCorrection::run(Worker worker, const Membranes& membranes, double* velocity_x, double* velocity_y,
                          Whose whose) {
   static const auto function = Dispatch<Loop, const SlipTask*>::pick();
-  const Range cells = worker.share(membranes.cell_count());
-  for (int c = cells.begin; c < cells.end; ++c) {
+  const CellNumbers cells = membranes.known_cells(worker);
+  for (const int c : cells) {
     if (!membranes.is(c, whose)) continue;
     const CellRange& cell = membranes.cells[c];
     const SlipConstants& constants = types_[cell.type].constants;
@@ -198,8 +198,8 @@ void SlipCorrection::measure(Worker worker, const Membranes& membranes, Whose wh
 void SlipCorrection::complete(Worker worker, const Membranes& membranes) {
   run<Couple>(worker, membranes, nullptr, nullptr, Whose::own);
   run<Slip>(worker, membranes, nullptr, nullptr, Whose::own);
-  const Range cells = worker.share(membranes.cell_count());
-  for (int c = cells.begin; c < cells.end; ++c) {
+  const CellNumbers cells = membranes.known_cells(worker);
+  for (const int c : cells) {
     if (!membranes.owns(c)) continue;
     const CellRange& cell = membranes.cells[c];
     for (auto i = static_cast<std::size_t>(cell.first); i < static_cast<std::size_t>(cell.end()); ++i) {

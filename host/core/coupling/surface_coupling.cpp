@@ -246,9 +246,9 @@ void SurfaceCoupling<T>::reserve(const Surfaces& surfaces) {
 
 template <class T>
 void SurfaceCoupling<T>::locate(Worker worker, const Surfaces& surfaces, Whose whose) {
-  const Range cells = worker.share(surfaces.cell_count());
+  const CellNumbers cells = surfaces.known_cells(worker);
   const double* const place[3] = {surfaces.x.data(), surfaces.y.data(), surfaces.z.data()};
-  for (int c = cells.begin; c < cells.end; ++c) {
+  for (const int c : cells) {
     if (!surfaces.is(c, whose)) continue;
     const CellRange& cell = surfaces.cells[c];
     for (int k = 0; k < 3; ++k) {
@@ -292,8 +292,8 @@ void SurfaceCoupling<T>::spread(Range rows, const Surfaces& surfaces, VectorFiel
   // Planes of the lattice that these rows lie in.
   const int height = block.size(1), plane_begin = block.begin[2] + rows.begin / height,
             plane_end = block.begin[2] + (rows.end + height - 1) / height;
-  for (std::size_t c = 0; c < planes_.size(); ++c) {
-    if (!surfaces.reaches(static_cast<int>(c))) continue;
+  for (const int c : surfaces.known_cells()) {
+    if (!surfaces.reaches(c)) continue;
     const auto [lowest, highest] = planes_[c];
     const bool inside = lowest >= 1 && highest + 3 <= domain_.size[2];
     if (inside && (highest + 3 <= plane_begin || lowest - 1 >= plane_end)) continue;
@@ -315,8 +315,8 @@ void SurfaceCoupling<T>::interpolate(Worker worker, Surfaces& surfaces, const Ve
   task.velocity[0] = surfaces.velocity_x.data(), task.velocity[1] = surfaces.velocity_y.data();
   task.velocity[2] = surfaces.velocity_z.data();
   task.block = domain_.whole() ? nullptr : &domain_.block;
-  const Range cells = worker.share(surfaces.cell_count());
-  for (int c = cells.begin; c < cells.end; ++c) {
+  const CellNumbers cells = surfaces.known_cells(worker);
+  for (const int c : cells) {
     if (!surfaces.reaches(c) || !surfaces.is(c, whose)) continue;
     task.begin = surfaces.cells[c].first, task.end = surfaces.cells[c].end();
     loops_->interpolate(&task);
@@ -324,13 +324,16 @@ void SurfaceCoupling<T>::interpolate(Worker worker, Surfaces& surfaces, const Ve
 }
 
 template <class T>
-bool SurfaceCoupling<T>::any_escaped() const {
-  return std::any_of(planes_.begin(), planes_.end(), [](const BasePlanes& planes) { return planes.lowest == outside; });
+bool SurfaceCoupling<T>::any_escaped(const Surfaces& surfaces) const {
+  for (const int c : surfaces.known_cells()) {
+    if (planes_[c].lowest == outside) return true;
+  }
+  return false;
 }
 
 template <class T>
-int SurfaceCoupling<T>::escaped() const {
-  if (!any_escaped()) return -1;
+int SurfaceCoupling<T>::escaped(const Surfaces& surfaces) const {
+  if (!any_escaped(surfaces)) return -1;
   return static_cast<int>(std::find(base_[2].begin(), base_[2].end(), outside) - base_[2].begin());
 }
 

@@ -42,8 +42,8 @@ class SurfaceCoupling {
 
   /// First node whose stencil left the lattice or whose position is not a number at the last locate(); -1: none.
   /// Such a node neither spreads nor is moved.
-  [[nodiscard]] int escaped() const;
-  [[nodiscard]] bool any_escaped() const;
+  [[nodiscard]] int escaped(const Surfaces& surfaces) const;
+  [[nodiscard]] bool any_escaped(const Surfaces& surfaces) const;
   /// Takes no memory for these nodes until they are located again.
   void forget(std::span<const Range> nodes);
 

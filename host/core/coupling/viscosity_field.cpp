@@ -56,10 +56,10 @@ void ViscosityField<T>::for_pieces(Interval columns, Function function) const {
 
 template <class T>
 void ViscosityField<T>::cover(Worker worker, const Membranes& membranes) {
-  const Range cells = worker.share(membranes.cell_count());
+  const CellNumbers cells = membranes.known_cells(worker);
   std::vector<double> scratch;
-  for (int c = cells.begin; c < cells.end; ++c) {
-    if (!watch_.moved(c) || !membranes.knows(c)) continue;
+  for (const int c : cells) {
+    if (!watch_.moved(c)) continue;
     const CellRange& cell = membranes.cells[c];
     Reach& reach = cells_[c];
     std::swap(reach.covered, reach.covered_before);
@@ -124,12 +124,12 @@ void ViscosityField<T>::update(Worker worker, const Membranes& membranes, Field<
                                NodeMask& mask) {
   const Range own = worker.share(domain_.block.size(1));
   if (varies_) {
-    collect_changes(own);
+    collect_changes(membranes, own);
     set_rates(membranes, own, relaxation_rate);
   }
   mask.clear(own.begin, own.end);
-  for (std::size_t c = 0; c < cells_.size(); ++c) {
-    if (!membranes.reaches(static_cast<int>(c))) continue;
+  for (const int c : membranes.known_cells()) {
+    if (!membranes.reaches(c)) continue;
     const Reach& reach = cells_[c];
     for_rows(reach.reached, own, [&](int y, Interval columns, int) { mask.mark(y, columns.begin, columns.end); });
   }
@@ -148,7 +148,7 @@ void ViscosityField<T>::restore(DisplacementWatch::Memory memory, Membranes& mem
 }
 
 template <class T>
-void ViscosityField<T>::collect_changes(Range own) {
+void ViscosityField<T>::collect_changes(const Membranes& membranes, Range own) {
   for (int y = own.begin; y < own.end; ++y) changed_[y].clear();
   const auto include = [&](int y, Interval columns, int) {
     columns.end = std::min(columns.end, columns.begin + domain_.size[0]);
@@ -157,8 +157,8 @@ void ViscosityField<T>::collect_changes(Range own) {
       add_disjoint(changed_[y], {x, x + end - begin});
     });
   };
-  for (std::size_t c = 0; c < cells_.size(); ++c) {
-    if (!watch_.moved(static_cast<int>(c))) continue;
+  for (const int c : membranes.known_cells()) {
+    if (!watch_.moved(c)) continue;
     for_rows(cells_[c].covered_before, own, include);
     for_rows(cells_[c].covered, own, include);
   }
@@ -173,9 +173,9 @@ void ViscosityField<T>::set_rates(const Membranes& membranes, Range own, Field<T
     for (const Interval& interval : changed_[y])
       std::fill(rate.row(y) + interval.begin, rate.row(y) + interval.end, T(0));
   }
-  for (std::size_t c = 0; c < cells_.size(); ++c) {
+  for (const int c : membranes.known_cells()) {
     const int type = membranes.cells[c].type;
-    if (!differs(type) || !membranes.reaches(static_cast<int>(c))) continue;
+    if (!differs(type) || !membranes.reaches(c)) continue;
     const double inside = averaged(ratio_[type]);
     const AreaFraction& fraction = cells_[c].fraction;
     for_rows(cells_[c].covered, own, [&](int y, Interval columns, int place) {

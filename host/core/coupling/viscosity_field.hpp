@@ -80,7 +80,7 @@ class ViscosityField {
   /// Whether cells of a type are another fluid than that around them, anywhere.
   [[nodiscard]] bool differs(int type) const { return ratio_[type] != 1 || !viscosity_of_rows_.empty(); }
   void find_reach(const Membranes& membranes, const CellRange& cell, Reach& reach) const;
-  void collect_changes(Range own);
+  void collect_changes(const Membranes& membranes, Range own);
   void set_rates(const Membranes& membranes, Range own, Field<T, 2>& rate);
 
   std::vector<double> ratio_;

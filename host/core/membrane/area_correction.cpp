@@ -80,8 +80,8 @@ struct TakeOutPressure {
 
 void take_out_pressures(Worker worker, Membranes& membranes) {
   static const auto function = Dispatch<TakeOutPressure, const PressureTask*>::pick();
-  const Range cells = worker.share(membranes.cell_count());
-  for (int c = cells.begin; c < cells.end; ++c) {
+  const CellNumbers cells = membranes.known_cells(worker);
+  for (const int c : cells) {
     if (!membranes.owns(c)) continue;
     const CellRange& cell = membranes.cells[c];
     const PressureTask task{cell.first,
@@ -96,8 +96,8 @@ void take_out_pressures(Worker worker, Membranes& membranes) {
 
 void keep_areas(Worker worker, Membranes& membranes) {
   static const auto function = Dispatch<KeepArea, AreaTask*>::pick();
-  const Range cells = worker.share(membranes.cell_count());
-  for (int c = cells.begin; c < cells.end; ++c) {
+  const CellNumbers cells = membranes.known_cells(worker);
+  for (const int c : cells) {
     if (!membranes.owns(c)) continue;
     const CellRange& cell = membranes.cells[c];
     AreaTask task{cell.first,

@@ -1,5 +1,7 @@
 #include "cell_nodes.hpp"
 
+#include <numeric>
+
 namespace rouleau::core {
 
 void CellNodes::reserve(std::size_t cell_count, std::size_t nodes, int dimension) {
@@ -10,16 +12,22 @@ void CellNodes::reserve(std::size_t cell_count, std::size_t nodes, int dimension
   }
 }
 
+void CellNodes::know_all() {
+  for (CellPart& of_cell : part) of_cell.known = true;
+  known.resize(part.size());
+  std::iota(known.begin(), known.end(), 0);
+}
+
 void CellNodes::remove_cells() {
   cells.clear();
   for (auto* values : {&x, &y, &z, &force_x, &force_y, &force_z, &velocity_x, &velocity_y, &velocity_z})
     values->clear();
 }
 
-std::vector<Range> CellNodes::nodes_in_runs(bool known) const {
+std::vector<Range> CellNodes::nodes_in_runs(bool of_known) const {
   std::vector<Range> runs;
   for (int c = 0; c < cell_count(); ++c) {
-    if (knows(c) != known) continue;
+    if (knows(c) != of_known) continue;
     const CellRange& cell = cells[c];
     if (runs.empty() || runs.back().end != cell.first) runs.push_back({cell.first, cell.first});
     runs.back().end = cell.end();

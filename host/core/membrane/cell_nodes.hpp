@@ -30,6 +30,37 @@ struct CellPart {
 /// Which cells a pass is over: those that this rank owns, or what it knows of others'.
 enum class Whose { own, others };
 
+/// Numbers of cells in their order: those of a list, or all, at places [begin, end).
+class CellNumbers {
+ public:
+  /// `listed`: null: all.
+  CellNumbers(Range places, const int* listed) : places_(places), listed_(listed) {}
+  class Iterator {
+   public:
+    Iterator(int place, const int* listed) : place_(place), listed_(listed) {}
+    int operator*() const { return listed_ != nullptr ? listed_[place_] : place_; }
+    Iterator& operator++() {
+      ++place_;
+      return *this;
+    }
+    bool operator!=(const Iterator& other) const { return place_ != other.place_; }
+
+   private:
+    int place_;
+    const int* listed_;
+  };
+  [[nodiscard]] Iterator begin() const { return {places_.begin, listed_}; }
+  [[nodiscard]] Iterator end() const { return {places_.end, listed_}; }
+  [[nodiscard]] bool empty() const { return places_.begin == places_.end; }
+  [[nodiscard]] int size() const { return places_.end - places_.begin; }
+  /// Another one for every worker that has any.
+  [[nodiscard]] int first_place() const { return places_.begin; }
+
+ private:
+  Range places_;
+  const int* listed_;
+};
+
 /// Positions are not wrapped into the periodic box, so that cells stay whole. The first node of the lattice lies at the
 /// origin, walls half a spacing outside the first and the last one. What is along z is empty in two dimensions.
 struct CellNodes {
@@ -37,8 +68,9 @@ struct CellNodes {
   std::vector<double> x, y, z;                             ///< positions
   std::vector<double> force_x, force_y, force_z;           ///< on the nodes, set anew each step
   std::vector<double> velocity_x, velocity_y, velocity_z;  ///< displacement of the last step
-  std::vector<double> largest_step;                        ///< of each cell: no node moved further in the last step;
-                                                           ///< empty: unknown
+  std::vector<double> largest_step;                        ///< of each known cell: no node moved further in the last
+                                                           ///< step; empty: unknown
+  double largest_step_of_others = 0;                       ///< the same for all cells that are not known
   std::vector<double> area_leakage;                        ///< of each cell, over its rest area: area that the area
                                                            ///< correction has kept from leaving it, in three dimensions
                                                            ///< volume over rest volume; empty: none
@@ -46,6 +78,7 @@ struct CellNodes {
   ContactMemory contacts;                                  ///< what interactions between cells remember
   ContactMemory wall_contacts;                             ///< what interactions with walls remember
   std::vector<CellPart> part;                              ///< of this rank in each cell; empty: all of every cell
+  std::vector<int> known;                                  ///< the cells that it knows, if it has parts
 
   [[nodiscard]] int node_count() const { return static_cast<int>(x.size()); }
   [[nodiscard]] bool owns(int cell) const { return part.empty() || part[cell].owned; }
@@ -53,7 +86,17 @@ struct CellNodes {
   [[nodiscard]] bool reaches(int cell) const { return part.empty() || part[cell].reaching; }
   [[nodiscard]] bool is(int cell, Whose whose) const { return knows(cell) && owns(cell) == (whose == Whose::own); }
   [[nodiscard]] int cell_count() const { return static_cast<int>(cells.size()); }
-  /// The nodes of a worker's cells, worker.share(cell_count()).
+  /// The cells that this rank knows: what a step is about, however many there are. `worker`: its share of them.
+  [[nodiscard]] CellNumbers known_cells() const { return known_cells(Worker{}); }
+  [[nodiscard]] CellNumbers known_cells(Worker worker) const {
+    return part.empty() ? CellNumbers(worker.share(cell_count()), nullptr)
+                        : CellNumbers(worker.share(static_cast<int>(known.size())), known.data());
+  }
+  /// The one of them at a place.
+  [[nodiscard]] int known_at(int place) const { return part.empty() ? place : known[place]; }
+  /// This rank knows all of them.
+  void know_all();
+  /// A worker's share of all nodes.
   [[nodiscard]] Range node_share(Worker worker) const {
     const Range share = worker.share(cell_count());
     const auto first = [this](int cell) { return cell < cell_count() ? cells[cell].first : node_count(); };
@@ -71,7 +114,7 @@ struct CellNodes {
   void forget(std::span<const Range> nodes);
 
  private:
-  [[nodiscard]] std::vector<Range> nodes_in_runs(bool known) const;
+  [[nodiscard]] std::vector<Range> nodes_in_runs(bool of_known) const;
 };
 
 /// The box around a cell's nodes; its numbers are none where one of theirs is.

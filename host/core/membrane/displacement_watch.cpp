@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 namespace rouleau::core {
@@ -34,8 +35,7 @@ DisplacementWatch::Memory::Memory(const CellNodes& cells)
       z(cells.z.size()),
       limit(cells.cells.size(), 0.0),
       bound(cells.cells.size(), std::numeric_limits<double>::infinity()) {
-  for (int c = 0; c < cells.cell_count(); ++c) {
-    if (!cells.knows(c)) continue;
+  for (const int c : cells.known_cells()) {
     for (auto* along : {&x, &y, &z}) {
       if (along->size() > 0) std::fill_n(along->data() + cells.cells[c].first, cells.cells[c].count, std::nan(""));
     }
@@ -43,15 +43,12 @@ DisplacementWatch::Memory::Memory(const CellNodes& cells)
 }
 
 bool DisplacementWatch::Memory::any(const CellNodes& cells) const {
-  for (int c = 0; c < cells.cell_count(); ++c) {
-    if (cells.knows(c)) return !std::isnan(x[static_cast<std::size_t>(cells.cells[c].first)]);
-  }
-  return false;
+  const CellNumbers known = cells.known_cells();
+  return !known.empty() && !std::isnan(x[static_cast<std::size_t>(cells.cells[*known.begin()].first)]);
 }
 
 void DisplacementWatch::Memory::exchange_places(CellNodes& cells) {
-  for (int c = 0; c < cells.cell_count(); ++c) {
-    if (!cells.knows(c)) continue;
+  for (const int c : cells.known_cells()) {
     const CellRange& cell = cells.cells[c];
     const auto exchange = [&cell](std::vector<double>& now, PagedArray<double>& then) {
       if (!now.empty()) std::swap_ranges(now.begin() + cell.first, now.begin() + cell.end(), then.data() + cell.first);
@@ -60,20 +57,28 @@ void DisplacementWatch::Memory::exchange_places(CellNodes& cells) {
   }
 }
 
-DisplacementWatch::DisplacementWatch(const CellNodes& cells) : memory_(cells), moved_(cells.cells.size(), 1) {}
+DisplacementWatch::DisplacementWatch(const CellNodes& cells) : memory_(cells), moved_(cells.cells.size(), 0) {
+  for (const int c : cells.known_cells()) moved_[c] = 1;
+}
+
+void DisplacementWatch::forget(const CellNodes& cells, std::span<const Range> nodes) {
+  for (auto* places : {&memory_.x, &memory_.y, &memory_.z}) release(*places, nodes);
+  for (int c = 0; c < cells.cell_count(); ++c) {
+    if (!cells.knows(c)) moved_[c] = 0;
+  }
+}
 
 void DisplacementWatch::measure(Worker worker, const CellNodes& nodes) {
   if (agreed_) return;
-  const Range cells = worker.share(nodes.cell_count());
-  for (int c = cells.begin; c < cells.end; ++c) {
-    moved_[c] = 0;
-    if (nodes.knows(c)) measure_cell(c, nodes);
+  const CellNumbers cells = nodes.known_cells(worker);
+  for (const int c : cells) {
+    measure_cell(c, nodes);
   }
 }
 
 bool DisplacementWatch::measure_own(const CellNodes& nodes) {
   bool moved = false;
-  for (int c = 0; c < nodes.cell_count(); ++c) {
+  for (const int c : nodes.known_cells()) {
     if (!nodes.owns(c)) continue;
     measure_cell(c, nodes);
     moved = moved || moved_[c] != 0;
@@ -94,7 +99,7 @@ void DisplacementWatch::measure_cell(int cell, const CellNodes& nodes) {
 
 bool DisplacementWatch::exceeded() const {
   if (agreed_) return *agreed_;
-  return std::any_of(moved_.begin(), moved_.end(), [](std::uint8_t moved) { return moved != 0; });
+  return !moved_.empty() && std::memchr(moved_.data(), 1, moved_.size()) != nullptr;
 }
 
 void DisplacementWatch::remember(int cell, const CellNodes& nodes, double limit) {

@@ -54,10 +54,9 @@ class DisplacementWatch {
   };
   [[nodiscard]] const Memory& memory() const { return memory_; }
   [[nodiscard]] Memory& memory() { return memory_; }
-  /// What was remembered of these nodes is gone, and takes no memory.
-  void forget(std::span<const Range> nodes) {
-    for (auto* places : {&memory_.x, &memory_.y, &memory_.z}) release(*places, nodes);
-  }
+  /// What was remembered of cells that are not known, which have these nodes, is gone, and takes no memory. They have not
+  /// moved.
+  void forget(const CellNodes& cells, std::span<const Range> nodes);
   /// Goes on from another watch's memory of the same cells.
   void recall(Memory memory) { memory_ = std::move(memory); }
 
@@ -66,7 +65,7 @@ class DisplacementWatch {
 
   Memory memory_;
   std::optional<bool> agreed_;
-  std::vector<std::uint8_t> moved_;  // one per cell, so that the answer does not depend on the workers
+  std::vector<std::uint8_t> moved_;  // 0 or 1 for each cell, so that the answer does not depend on the workers
 };
 
 }  // namespace rouleau::core

@@ -40,10 +40,10 @@ MembraneForces::Scratch& MembraneForces::scratch_of(int first_cell) {
 }
 
 void MembraneForces::run(Worker worker, Membranes& membranes) {
-  const Range cells = worker.share(membranes.cell_count());
-  for (int cell = cells.begin; cell < cells.end; ++cell) {
+  const CellNumbers cells = membranes.known_cells(worker);
+  for (const int cell : cells) {
     if (!membranes.owns(cell)) continue;
-    Scratch& scratch = scratch_of(cells.begin);
+    Scratch& scratch = scratch_of(cells.first_place());
     const bool semi_implicit = types_[membranes.cells[cell].type].filter.has_value();
     measure(membranes, cell, scratch, semi_implicit);
     act(membranes, cell, scratch, apply_laws(membranes, cell, scratch, &membranes.state, nullptr));

@@ -44,11 +44,11 @@ struct Move {
 };
 
 template <int D>
-void move(Range cells, CellNodes& nodes) {
+void move(Worker worker, CellNodes& nodes) {
   static const auto function = Dispatch<Move<D>, MoveTask<D>*>::pick();
   std::vector<double>* const places[] = {&nodes.x, &nodes.y, &nodes.z};
   const std::vector<double>* const velocities[] = {&nodes.velocity_x, &nodes.velocity_y, &nodes.velocity_z};
-  for (int c = cells.begin; c < cells.end; ++c) {
+  for (const int c : nodes.known_cells(worker)) {
     if (!nodes.owns(c)) continue;
     const CellRange& cell = nodes.cells[c];
     MoveTask<D> task{.place = {}, .velocity = {}, .begin = cell.first, .end = cell.end(), .largest_square = 0};
@@ -61,11 +61,10 @@ void move(Range cells, CellNodes& nodes) {
 }  // namespace
 
 void move_nodes(Worker worker, CellNodes& cells) {
-  const Range share = worker.share(cells.cell_count());
   if (cells.z.empty()) {
-    move<2>(share, cells);
+    move<2>(worker, cells);
   } else {
-    move<3>(share, cells);
+    move<3>(worker, cells);
   }
 }
 
@@ -73,7 +72,7 @@ template <int D>
 std::array<double, 3> mean_velocity(const CellNodes& cells, const Ranks<D>& ranks) {
   const std::vector<double>* const velocities[] = {&cells.velocity_x, &cells.velocity_y, &cells.velocity_z};
   std::vector<ExactSum> sums(D);
-  for (int c = 0; c < cells.cell_count(); ++c) {
+  for (const int c : cells.known_cells()) {
     if (!cells.owns(c)) continue;
     const CellRange& cell = cells.cells[c];
     for (std::size_t k = 0; k < D; ++k)
@@ -101,8 +100,10 @@ FarthestNode farthest_node(const CellNodes& cells) {
 }
 
 double largest_step(const CellNodes& cells) {
-  double largest = 0;
-  for (const double step : cells.largest_step) {
+  double largest = cells.largest_step_of_others;
+  if (cells.largest_step.empty()) return largest;
+  for (const int c : cells.known_cells()) {
+    const double step = cells.largest_step[c];
     if (!(step <= largest)) largest = step;
     if (std::isnan(largest)) break;
   }

@@ -185,8 +185,8 @@ void CellExchange<D>::send_positions(Cells& cells, DisplacementWatch& viscosity,
     if (!(value <= largest) && !std::isnan(largest)) largest = value;
   };
   double step = 0, path = 0;
-  for (int c = 0; c < cells.cell_count(); ++c) {
-    if (!ghosts_.owns(c)) continue;
+  for (const int c : cells.known_cells()) {
+    if (!cells.owns(c)) continue;
     path_[c] += cells.largest_step[c];
     raise(step, cells.largest_step[c]);
     raise(path, path_[c]);
@@ -195,21 +195,17 @@ void CellExchange<D>::send_positions(Cells& cells, DisplacementWatch& viscosity,
   const auto [all_step, all_path, all_escaped, all_expired] =
       largest(ranks_, std::array{step, path, escaped ? 1.0 : 0.0, expired ? 1.0 : 0.0});
   with_memory_ = !(all_path <= GhostCells<D>::skin);
-  took_over_ = false;
+  cells.largest_step_of_others = all_step;
+  took_over_ = lost_sight_ = false;
   if (with_memory_) {
     const std::vector<BoundingBox<D>> boxes = boxes_of_all(cells);
     hand_over(cells, viscosity, ghosts_.change_owners(boxes));
     ghosts_.renew(boxes);
     std::fill(path_.begin(), path_.end(), 0.0);
+    for (const int c : cells.known_cells()) lost_sight_ = lost_sight_ || !ghosts_.knows(c);
+    ghosts_.set_parts(cells);
   }
   if (lists != nullptr) lists->agree(with_memory_ || all_expired > 0);
-  lost_sight_ = false;
-  for (int c = 0; c < cells.cell_count(); ++c) {
-    if (ghosts_.knows(c)) continue;
-    lost_sight_ = lost_sight_ || cells.part[c].known;
-    cells.largest_step[c] = all_step;  // no node of any cell has moved further
-  }
-  ghosts_.set_parts(cells);
   escaped_ = all_escaped > 0;
   send_shown(ghosts_, cells, viscosity, {velocities_, with_memory_});
   on_their_way_ = true;
@@ -410,7 +406,7 @@ void CellExchange<D>::gather_state(Cells& cells, DisplacementWatch& watch) {
     return;
   }
   for (int from = 1; from < ranks_.blocks->ranks(); ++from) receive_all_of(from, cells, watch);
-  for (CellPart& part : cells.part) part.known = true;
+  cells.know_all();
 }
 
 template class CellExchange<2>;

@@ -20,8 +20,11 @@ GhostCells<D>::GhostCells(const Ranks<D>& ranks, const std::vector<BoundingBox<D
 template <int D>
 void GhostCells<D>::set_parts(CellNodes& cells) const {
   cells.part.resize(cells.cells.size());
-  for (int c = 0; c < cells.cell_count(); ++c)
+  cells.known.clear();
+  for (int c = 0; c < cells.cell_count(); ++c) {
     cells.part[c] = {.owned = owns(c), .known = knows(c), .reaching = reaches(c)};
+    if (knows(c)) cells.known.push_back(c);
+  }
 }
 
 template <int D>

@@ -151,7 +151,7 @@ CellExchange<2>::Parts OutlineTasks<T>::parts() {
           .force = slip_correction_ ? slip_correction_->forces_of_all()
                                     : std::array{membranes_.force_x.data(), membranes_.force_y.data()},
           .base = [this](int node) { return coupling_.base(node); },
-          .escaped = [this] { return coupling_.any_escaped(); }};
+          .escaped = [this] { return coupling_.any_escaped(membranes_); }};
 }
 
 template <class T>
@@ -164,7 +164,7 @@ template <class T>
 int OutlineTasks<T>::escaped_node() {
   if (!escaped()) return -1;
   if (exchange_) locate(Worker{}, Whose::others);  // of all, for now
-  return coupling_.escaped();
+  return coupling_.escaped(membranes_);
 }
 
 template <class T>
@@ -173,10 +173,10 @@ void OutlineTasks<T>::forget_unknown() {
   const std::vector<Range> nodes = membranes_.unknown_nodes();
   if (nodes.empty()) return;
   membranes_.forget(nodes);
-  viscosity_field_.watch().forget(nodes);
+  viscosity_field_.watch().forget(membranes_, nodes);
   coupling_.forget(nodes);
   if (slip_correction_) slip_correction_->forget(nodes);
-  if (interaction_forces_) interaction_forces_->forget(nodes);
+  if (interaction_forces_) interaction_forces_->forget(membranes_, nodes);
 }
 
 template <class T>

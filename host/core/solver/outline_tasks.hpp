@@ -71,7 +71,7 @@ class OutlineTasks {
 
   /// First node that has left the domain; -1: none. With several ranks the first one finds it, the state gathered.
   [[nodiscard]] int escaped_node();
-  [[nodiscard]] bool escaped() const { return exchange_ ? exchange_->escaped() : coupling_.any_escaped(); }
+  [[nodiscard]] bool escaped() const { return exchange_ ? exchange_->escaped() : coupling_.any_escaped(membranes_); }
   [[nodiscard]] MembraneForces& forces() { return membrane_forces_; }
   /// What it takes to stretch all membranes by 0.1 %, and to bend them by as much.
   [[nodiscard]] double slight_energy() const;

@@ -196,14 +196,14 @@ void Solver<T, Set>::start(Solver* former) {
     }
     fluid_.take_over(former->fluid_, faster);
   }
-  for (int c = 0; c < cells_.cell_count(); ++c) {
-    if (!cells_.knows(c)) continue;
+  for (const int c : cells_.known_cells()) {
     const CellRange& cell = cells_.cells[c];
     for (auto* velocity : {&cells_.velocity_x, &cells_.velocity_y, &cells_.velocity_z}) {
       for (int i = cell.first; i < cell.end() && !velocity->empty(); ++i) (*velocity)[i] *= faster;
     }
   }
   std::fill(cells_.largest_step.begin(), cells_.largest_step.end(), 0.0);
+  cells_.largest_step_of_others = 0;
 }
 
 template <class T, class Set>

@@ -132,7 +132,7 @@ CellExchange<3>::Parts SurfaceTasks<T>::parts() {
           .viscosity = viscosity_field_.watch(),
           .force = std::array{surfaces_.force_x.data(), surfaces_.force_y.data(), surfaces_.force_z.data()},
           .base = [this](int node) { return coupling_.base(node); },
-          .escaped = [this] { return coupling_.any_escaped(); }};
+          .escaped = [this] { return coupling_.any_escaped(surfaces_); }};
 }
 
 template <class T>
@@ -145,7 +145,7 @@ template <class T>
 int SurfaceTasks<T>::escaped_node() {
   if (!escaped()) return -1;
   if (exchange_) coupling_.locate(Worker{}, surfaces_, Whose::others);  // of all, for now
-  return coupling_.escaped();
+  return coupling_.escaped(surfaces_);
 }
 
 template <class T>
@@ -154,10 +154,10 @@ void SurfaceTasks<T>::forget_unknown() {
   const std::vector<Range> nodes = surfaces_.unknown_nodes();
   if (nodes.empty()) return;
   surfaces_.forget(nodes);
-  viscosity_field_.watch().forget(nodes);
+  viscosity_field_.watch().forget(surfaces_, nodes);
   coupling_.forget(nodes);
   if (volume_correction_) volume_correction_->forget(nodes);
-  if (interactions_) interactions_->forget(nodes);
+  if (interactions_) interactions_->forget(surfaces_, nodes);
 }
 
 template class SurfaceTasks<float>;

@@ -78,7 +78,7 @@ class SurfaceTasks {
 
   /// First node that has left the domain; -1: none. With several ranks the first one finds it, the state gathered.
   [[nodiscard]] int escaped_node();
-  [[nodiscard]] bool escaped() const { return exchange_ ? exchange_->escaped() : coupling_.any_escaped(); }
+  [[nodiscard]] bool escaped() const { return exchange_ ? exchange_->escaped() : coupling_.any_escaped(surfaces_); }
   [[nodiscard]] SurfaceForces& forces() { return forces_; }
   /// What it takes to stretch all membranes by 0.1 % along x, the volume law left aside.
   [[nodiscard]] double slight_energy() const { return slight_energy_; }

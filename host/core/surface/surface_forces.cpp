@@ -316,10 +316,10 @@ void SurfaceForces::act(const Type& type, const Whole& whole, Scratch& s) {
 }
 
 void SurfaceForces::run(Worker worker, Surfaces& surfaces) {
-  const Range cells = worker.share(surfaces.cell_count());
-  if (cells.begin == cells.end) return;
-  Scratch& s = scratch_of(cells.begin);
-  for (int c = cells.begin; c < cells.end; ++c) {
+  const CellNumbers cells = surfaces.known_cells(worker);
+  if (cells.empty()) return;
+  Scratch& s = scratch_of(cells.first_place());
+  for (const int c : cells) {
     if (!surfaces.owns(c)) continue;
     const CellRange& cell = surfaces.cells[c];
     const Type& type = types_[cell.type];

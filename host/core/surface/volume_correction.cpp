@@ -25,8 +25,8 @@ double VolumeCorrection::find_gradient(const Surfaces& surfaces, int cell) {
 }
 
 void VolumeCorrection::take_out_pressures(Worker worker, Surfaces& surfaces) {
-  const Range cells = worker.share(surfaces.cell_count());
-  for (int cell = cells.begin; cell < cells.end; ++cell) {
+  const CellNumbers cells = surfaces.known_cells(worker);
+  for (const int cell : cells) {
     if (!surfaces.owns(cell)) continue;
     const CellRange& range = surfaces.cells[cell];
     const double square = find_gradient(surfaces, cell);
@@ -44,8 +44,8 @@ void VolumeCorrection::take_out_pressures(Worker worker, Surfaces& surfaces) {
 }
 
 void VolumeCorrection::keep_volumes(Worker worker, Surfaces& surfaces) {
-  const Range cells = worker.share(surfaces.cell_count());
-  for (int cell = cells.begin; cell < cells.end; ++cell) {
+  const CellNumbers cells = surfaces.known_cells(worker);
+  for (const int cell : cells) {
     if (!surfaces.owns(cell)) continue;
     const CellRange& range = surfaces.cells[cell];
     const RestSurface& rest = surfaces.type_of(cell);

@@ -44,7 +44,7 @@ TEST_CASE("force and torque on the lattice are those of the nodes") {
   Coupling<double> coupling(kernel, channel);
   coupling.reserve(m);
   coupling.locate({}, m, m.positions());
-  CHECK(coupling.escaped() == -1);
+  CHECK(coupling.escaped(m) == -1);
   auto force = field<double>(80, 64);
   coupling.spread({0, force[0].size(1)}, m, m.forces(), force);
   double fx = 0, fy = 0, torque = 0;
@@ -95,7 +95,7 @@ TEMPLATE_TEST_CASE("spreading and interpolation are adjoint, over periodic borde
   Coupling<TestType> coupling(kernel, domain);
   coupling.reserve(m);
   coupling.locate({}, m, m.positions());
-  REQUIRE(coupling.escaped() == -1);
+  REQUIRE(coupling.escaped(m) == -1);
   CHECK(std::abs(adjointness_error(coupling, m, domain, random)) < 100 * std::numeric_limits<TestType>::epsilon());
 }
 
@@ -141,7 +141,7 @@ TEST_CASE("a node beyond a wall, or nowhere, is reported and touches nothing") {
   Coupling<double> coupling(KernelKind::peskin4, channel);
   coupling.reserve(m);
   coupling.locate({}, m, m.positions());
-  CHECK(coupling.escaped() == 77);
+  CHECK(coupling.escaped(m) == 77);
   auto force = field<double>(80, 64);
   coupling.spread({0, force[0].size(1)}, m, m.forces(), force);
   double sum = 0, expected = 0;
@@ -161,7 +161,7 @@ TEST_CASE("nodes may lie on the outermost rows, half a spacing beyond the walls,
   m.x[2] = -1e-17;  // the fraction rounds to 1: the column wraps to the last
   m.x[3] = 80 - 1e-14;
   coupling.locate({}, m, m.positions());
-  CHECK(coupling.escaped() == -1);
+  CHECK(coupling.escaped(m) == -1);
   std::fill(m.force_x.begin(), m.force_x.end(), 1.0);
   auto random = generator(78);
   CHECK(std::abs(adjointness_error(coupling, m, channel, random)) < 1e-14);

@@ -116,7 +116,7 @@ TEST_CASE("beside a moving wall linear flow is interpolated exactly, by every ke
   Coupling<double> coupling(kernel, {{nx, ny}, {true, false}});
   coupling.reserve(m);
   coupling.locate({}, m, m.positions());
-  REQUIRE(coupling.escaped() == -1);
+  REQUIRE(coupling.escaped(m) == -1);
   coupling.interpolate({}, m, velocity);
   for (std::size_t i = 0; i < m.x.size(); ++i) {
     REQUIRE(m.velocity_x[i] == Approx(lower + rate * (m.y[i] + 0.5)).margin(1e-14));

@@ -75,7 +75,7 @@ TEMPLATE_TEST_CASE("in three dimensions spreading and interpolation are adjoint,
       SurfaceCoupling<TestType> coupling(kernel, domain);
       coupling.reserve(s);
       coupling.locate({}, s);
-      REQUIRE(coupling.escaped() == -1);
+      REQUIRE(coupling.escaped(s) == -1);
       VectorField<TestType, 3> force = field<TestType>(), u = field<TestType>();
       coupling.spread({0, box[1] * box[2]}, s, force);
       for_nodes([&](int x, int y, int z) {
@@ -187,7 +187,7 @@ TEST_CASE("a node of a surface beyond a wall, or nowhere, is reported and touche
       if (i != 17) lost.force_x[i] = lost.force_y[i] = lost.force_z[i] = 0;
     }
     coupling.locate({}, lost);
-    CHECK(coupling.escaped() == 17);
+    CHECK(coupling.escaped(lost) == 17);
     VectorField<double, 3> force = field<double>();
     coupling.spread({0, box[1] * box[2]}, lost, force);
     for_nodes([&](int x, int y, int z) { REQUIRE(force[0].row(y, z)[x] == 0); });

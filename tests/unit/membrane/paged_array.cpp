@@ -71,6 +71,7 @@ TEST_CASE("a watch takes memory for the cells that are known") {
     nodes.cells.push_back({{.first = c * of_cell, .count = of_cell}, 0});
     nodes.part.push_back({.owned = false, .known = c == 2, .reaching = false});
   }
+  nodes.known = {2};
   nodes.x.assign(many, 4.0), nodes.y.assign(many, 5.0);
   DisplacementWatch::Memory memory(nodes);
   CHECK(resident_pages(memory.x.data(), 2 * of_cell) == 0);
