@@ -36,6 +36,12 @@ class CheckpointWriter {
   /// An array of `rows` times `columns` values at "/name" or "/group/name"; groups are made.
   void array(const std::string& path, std::size_t rows, std::size_t columns, const double* values);
   void array(const std::string& path, std::size_t rows, std::size_t columns, const float* values);
+  /// Begins an array whose rows append() adds, the first ones first. T: double or float. Nothing else is written before
+  /// they are all there.
+  template <class T>
+  void begin_array(const std::string& path, std::size_t rows, std::size_t columns);
+  template <class T>
+  void append(const std::vector<T>& rows);
   void array(const std::string& path, const std::vector<double>& values) {
     array(path, 1, values.size(), values.data());
   }

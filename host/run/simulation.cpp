@@ -426,8 +426,7 @@ class Simulation {
         if (ranks_.first()) state_.growth.check(state_.steps, cells_);
         look_at_balance(step);
       }
-      if ((cells_due || fields_due || last) && fails(write(fields_due || (last && !scene_.output.fields.never()))))
-        return;
+      if ((cells_due || fields_due || last) && !write(fields_due || (last && !scene_.output.fields.never()))) return;
       if (ranks_.first()) {
         state_.momentum_residual =
             std::max(state_.momentum_residual, observe::Observer::momentum_residual(cells_, force_from_walls()));
@@ -511,20 +510,28 @@ class Simulation {
     if (!remedy.empty()) failure.remedy = remedy;
   }
 
-  /// Writes the present state, unless it has gained energy that nothing gave it: that failure is returned.
-  std::optional<monitor::Failure> write(bool with_fields) {
+  /// Writes the present state, unless it has gained energy that nothing gave it: then the run fails, and false is
+  /// returned.
+  bool write(bool with_fields) {
     observe::Snapshot snapshot = state_.observer.observe(*solver_, setting(), cells_, with_fields);
-    if (!ranks_.first()) return std::nullopt;
-    course_.date(snapshot);
-    const units::LatticeUnits& units = setting().units;
-    state_.energy.follow(snapshot, setting().is_driven(),
-                         units.to_si(solver_->slight_energy(), units::dimension::energy_per_depth) /
-                             (dimension == 3 ? scene_.domain.depth->nodes : 1));
-    if (auto failure = monitor::check_energy(state_.energy, cells_, plan_, setting())) return failure;
-    state_.history.follow(snapshot);
-    state_.rheology.follow(snapshot);
-    if (directory_ != nullptr) directory_->write(snapshot);
-    return std::nullopt;
+    std::optional<monitor::Failure> failure;
+    if (ranks_.first()) {
+      course_.date(snapshot);
+      const units::LatticeUnits& units = setting().units;
+      state_.energy.follow(snapshot, setting().is_driven(),
+                           units.to_si(solver_->slight_energy(), units::dimension::energy_per_depth) /
+                               (dimension == 3 ? scene_.domain.depth->nodes : 1));
+      failure = monitor::check_energy(state_.energy, cells_, plan_, setting());
+    }
+    if (fails(std::move(failure))) return false;
+    if (ranks_.first()) {
+      state_.history.follow(snapshot);
+      state_.rheology.follow(snapshot);
+      if (directory_ != nullptr) directory_->write(snapshot);
+    } else {
+      snapshot.fields.give_all();
+    }
+    return true;
   }
 
   ProgressState progress(const plan::StageSetting& setting) {
