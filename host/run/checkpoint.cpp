@@ -122,7 +122,7 @@ Json save(files::CheckpointWriter* writer, core::Solver<T, Set>& solver) {
   fluid.settle();
   const core::Domain<Set::dimension>& domain = fluid.setting().domain;
   const auto nx = static_cast<std::size_t>(domain.size[0]), rows = static_cast<std::size_t>(domain.nodes()) / nx;
-  const auto bands = core::bands_of_all<Set::dimension>(domain.size, core::rows_of_band(nx * sizeof(T)));
+  const auto bands = core::bands_of_all<Set::dimension>(domain.size, sizeof(T));
   for (int q = 0; q < Set::velocity_count; ++q) {
     if (writer != nullptr) writer->begin_array<T>(population_name(q), rows, nx);
     fluid.gather_populations(q, bands, [&](int, const std::vector<T>& values) { writer->append(values); });

@@ -473,23 +473,17 @@ class Simulation {
   /// How much of the fluid's motion about a place is every other node's.
   double lattice_oscillation(const std::array<double, 2>& place, std::optional<double> place_z) {
     solver_->fluid().settle();
-    std::vector<core::Moments<2>> section;
     const auto nearest = [](double coordinate, int nodes) {
       return static_cast<int>(std::lround(std::clamp(coordinate, -1.0 * nodes, 2.0 * nodes)));
     };
-    if constexpr (dimension == 2) {
-      section = solver_->fluid().all_moments();
-    } else {
-      const auto moments = solver_->fluid().all_moments();
-      const auto nodes = static_cast<std::size_t>(scene_.domain.nodes[0]) * scene_.domain.nodes[1];
-      const double z = units::place_on_lattice(place_z.value_or(0), setting().units.length);
-      const auto first = nodes * std::clamp(nearest(z, scene_.domain.depth->nodes), 0, scene_.domain.depth->nodes - 1);
-      for (std::size_t i = first; i < first + nodes && i < moments.size(); ++i)
-        section.push_back({moments[i].density, {moments[i].velocity[0], moments[i].velocity[1]}});
-    }
-    if (section.empty() || !std::isfinite(place[0]) || !std::isfinite(place[1])) return 0;
-    return monitor::lattice_oscillation(nearest(place[0], scene_.domain.nodes[0]),
-                                        nearest(place[1], scene_.domain.nodes[1]), section, state_.observer.domain());
+    const bool known = std::isfinite(place[0]) && std::isfinite(place[1]);
+    std::array<int, dimension> node{};
+    for (std::size_t k = 0; known && k < 2; ++k) node[k] = nearest(place[k], scene_.domain.nodes[k]);
+    if constexpr (dimension == 3)
+      node[2] =
+          nearest(units::place_on_lattice(place_z.value_or(0), setting().units.length), scene_.domain.depth->nodes);
+    const double found = monitor::lattice_oscillation(solver_->fluid(), node);
+    return known ? found : 0;
   }
 
   /// What the failure looks like, and what to do about that.

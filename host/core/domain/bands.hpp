@@ -49,9 +49,11 @@ Band<D> band_of_rows(const std::array<int, D>& size, const std::vector<int>& row
   return band;
 }
 
-/// The whole lattice, so many rows at a time.
+/// The whole lattice, some rows at a time: as many as make a band of values that take so many bytes in each node.
 template <int D>
-Bands<D> bands_of_all(const std::array<int, D>& size, int rows) {
+Bands<D> bands_of_all(const std::array<int, D>& size, std::size_t bytes_of_node,
+                      std::size_t bytes_of_band = band_bytes) {
+  const int rows = rows_of_band(static_cast<std::size_t>(size[0]) * bytes_of_node, bytes_of_band);
   const int all = row_count(Box<D>{{}, size});
   return {(all - 1) / rows + 1, [=](int b) {
             std::vector<int> wanted;

@@ -423,10 +423,9 @@ void Fluid<T, Set>::gather_populations(int q, const Bands<dimension>& bands, con
 
 template <class T, class Set>
 auto Fluid<T, Set>::all_moments() const -> std::vector<NodeMoments> {
-  const std::array<int, dimension>& size = setting_.domain.size;
   std::vector<NodeMoments> all;
   if (ranks_.first()) all.reserve(static_cast<std::size_t>(setting_.domain.nodes()));
-  gather_moments(bands_of_all<dimension>(size, rows_of_band(size[0] * sizeof(NodeMoments))),
+  gather_moments(bands_of_all<dimension>(setting_.domain.size, sizeof(NodeMoments)),
                  [&](int, const std::vector<NodeMoments>& band) { all.insert(all.end(), band.begin(), band.end()); });
   return all;
 }

@@ -95,7 +95,7 @@ void check_cuts(const Domain<D>& domain) {
     CAPTURE(count);
     for (const int each : {1, 2, 7, rows - 1, rows, 3 * rows}) {
       CAPTURE(each);
-      const Bands<D> all = bands_of_all<D>(domain.size, each);
+      const Bands<D> all = bands_of_all<D>(domain.size, 1, static_cast<std::size_t>(each) * domain.size[0]);
       REQUIRE(all.count == (rows + each - 1) / each);
       std::vector<long> nodes;
       for (int b = 0; b < all.count; ++b) {
@@ -144,7 +144,7 @@ TEST_CASE("no rank gives more than some bands before the first one has taken the
   int ahead = 0;
   on_ranks(blocks, [&](const Ranks<2>& ranks, const Domain<2>& own) {
     gather_bands<int>(
-        ranks, own, bands_of_all<2>(domain.size, 1),
+        ranks, own, bands_of_all<2>(domain.size, 1, 30),
         [&](int i, int* to) {
           std::fill_n(to, own.block.size(0), i);
           ++given[static_cast<std::size_t>(ranks.transport->rank())];
