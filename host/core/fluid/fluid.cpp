@@ -110,12 +110,11 @@ void Fluid<T, Set>::make_halos() {
         return lattice_.offset(node[0] - block.begin[0], row_of_node(node));
       },
       early);
+  edge_nodes_ = std::make_unique<const EdgeNodes<dimension>>(block);
   energetics_halo_ = std::make_unique<Halo<double, dimension>>(
       ranks_, [](const Domain<dimension>& domain) { return velocity_copies(domain, 1); },
-      [block](const Node& node) {  // VelocityRows, energetics.cpp
-        std::ptrdiff_t at = 0;
-        for (int k = dimension - 1; k >= 0; --k) at = at * (block.size(k) + 2) + node[k] - block.begin[k];
-        return at;
+      [this, block, row_of_node](const Node& node) {
+        return edge_nodes_->place(node[0] - block.begin[0], row_of_node(node));
       });
   if (!setting_.membranes) return;
   // What the stencils of nodes above the block's own reach.

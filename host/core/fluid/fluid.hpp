@@ -12,6 +12,7 @@
 #include "core/domain/domain.hpp"
 #include "core/domain/halo.hpp"
 #include "core/model/model.hpp"
+#include "edge_nodes.hpp"
 #include "field.hpp"
 #include "lattice.hpp"
 #include "node_mask.hpp"
@@ -230,7 +231,8 @@ class Fluid {
   Field<T, dimension> relaxation_rate_;
   std::vector<double> rate_of_row_;  ///< by height in the block; empty without layers
   std::unique_ptr<Halo<T, dimension>> population_halo_, velocity_halo_;  ///< null without other blocks
-  std::unique_ptr<Halo<double, dimension>> energetics_halo_;             ///< of velocities, one node deep
+  std::unique_ptr<const EdgeNodes<dimension>> edge_nodes_;               ///< null without other blocks
+  std::unique_ptr<Halo<double, dimension>> energetics_halo_;             ///< of velocities, between edge_nodes_
   bool ends_sent_ = false;                                               ///< of this step
   std::array<std::vector<T>, dimension> body_force_row_;                 ///< constant; empty without a body force
 };
