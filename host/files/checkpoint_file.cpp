@@ -6,9 +6,11 @@
 #include <array>
 #include <cerrno>
 #include <fstream>
+#include <optional>
 #include <sstream>
 #include <string_view>
 #include <system_error>
+#include <type_traits>
 
 #include "base/error.hpp"
 #include "checksum.hpp"
@@ -78,15 +80,25 @@ std::filesystem::path previous_checkpoint_file(const std::filesystem::path& dire
 
 struct CheckpointWriter::File {
   explicit File(const std::filesystem::path& file) : hdf5(file, Hdf5File::Mode::create, head_bytes) {}
-  void write(const std::string& path, const std::vector<hsize_t>& shape, hid_t stored, hid_t given, const void* data) {
+  template <class T>
+  Hdf5Rows begin(const std::string& path, std::size_t rows, std::size_t columns) {
     const std::string group = parent_group(path);
     if (!group.empty() && !hdf5.has(group)) hdf5.make_group(group);
-    hdf5.write(path, shape, stored, given, data, "lattice units");
+    const bool f64 = std::is_same_v<T, double>;
+    return hdf5.begin(path, {rows, columns}, false, f64 ? H5T_IEEE_F64LE : H5T_IEEE_F32LE,
+                      f64 ? H5T_NATIVE_DOUBLE : H5T_NATIVE_FLOAT, "lattice units");
+  }
+  template <class T>
+  void write(const std::string& path, std::size_t rows, std::size_t columns, const T* values) {
+    Hdf5Rows array = begin<T>(path, rows, columns);
+    if (!array.full()) array.append(values, rows);
   }
   void write_bytes(const std::string& path, const void* data, std::size_t count) {
     hdf5.write(path, {count}, H5T_STD_U8LE, H5T_NATIVE_UINT8, data, "1");
   }
   Hdf5File hdf5;
+  std::optional<Hdf5Rows> open;  ///< that append() adds to
+  std::size_t width = 0;         ///< its columns
 };
 
 CheckpointWriter::CheckpointWriter(std::filesystem::path directory)
@@ -111,12 +123,28 @@ void CheckpointWriter::state(const nlohmann::json& state) {
 }
 
 void CheckpointWriter::array(const std::string& path, std::size_t rows, std::size_t columns, const double* values) {
-  file_->write(path, {rows, columns}, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, values);
+  file_->write(path, rows, columns, values);
 }
 
 void CheckpointWriter::array(const std::string& path, std::size_t rows, std::size_t columns, const float* values) {
-  file_->write(path, {rows, columns}, H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, values);
+  file_->write(path, rows, columns, values);
 }
+
+template <class T>
+void CheckpointWriter::begin_array(const std::string& path, std::size_t rows, std::size_t columns) {
+  file_->open = file_->begin<T>(path, rows, columns);
+  file_->width = columns;
+}
+
+template <class T>
+void CheckpointWriter::append(const std::vector<T>& rows) {
+  file_->open->append(rows.data(), rows.size() / file_->width);
+}
+
+template void CheckpointWriter::begin_array<double>(const std::string&, std::size_t, std::size_t);
+template void CheckpointWriter::begin_array<float>(const std::string&, std::size_t, std::size_t);
+template void CheckpointWriter::append(const std::vector<double>&);
+template void CheckpointWriter::append(const std::vector<float>&);
 
 void CheckpointWriter::finish() {
   file_->hdf5.close();

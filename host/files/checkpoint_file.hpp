@@ -38,6 +38,12 @@ class CheckpointWriter {
   void array(const std::string& path, std::size_t rows, std::size_t columns, const double* values);
   void array(const std::string& path, std::size_t rows, std::size_t columns, const float* values);
   void array(const std::string& path, std::span<const double> values) { array(path, 1, values.size(), values.data()); }
+  /// Begins an array whose rows append() adds, the first ones first. T: double or float. Nothing else is written before
+  /// they are all there.
+  template <class T>
+  void begin_array(const std::string& path, std::size_t rows, std::size_t columns);
+  template <class T>
+  void append(const std::vector<T>& rows);
   /// Nothing can be added after it: the file is whole and on the disk, and still beside the checkpoint.
   void finish();
   /// After finish(): it becomes the directory's checkpoint, and that becomes the previous one.

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "base/error.hpp"
+
 namespace rouleau::files {
 
 FieldNodes::FieldNodes(const Hdf5File& file, const std::string& dataset) {
@@ -25,11 +27,22 @@ FieldNodes::Box FieldNodes::box() const {
   return {{first[0] - spacing[0] / 2, first[1] - spacing[1] / 2}, {spacing[0] * double(nx), spacing[1] * double(ny)}};
 }
 
-std::vector<double> FieldNodes::section(const Hdf5File& file, const std::string& dataset) const {
-  std::vector<double> values = file.read(dataset);
-  if (nz == 1) return values;
-  const auto each = static_cast<std::ptrdiff_t>(values.size() / nz), begin = each * static_cast<std::ptrdiff_t>(nz / 2);
-  return {values.begin() + begin, values.begin() + begin + each};
+std::vector<double> FieldNodes::rows(const Hdf5File& file, const std::string& dataset, std::size_t begin,
+                                     std::size_t end) const {
+  static_cast<void>(file.elements(dataset));  // refuses more than the file can hold
+  const auto shape = file.shape(dataset);
+  const std::size_t space = file.has_attribute("/", "periodic_z") ? 1 : 0;
+  const bool fits = shape.size() >= space + 2 && shape.size() <= space + 3 && shape[space] == ny &&
+                    shape[space + 1] == nx && (space == 0 || shape[0] == nz);
+  if (!fits)
+    throw Error(Cause::input_output, Place{file.path().string()},
+                dataset + " does not fit the nodes of other fields: the file is damaged; repeat the run");
+  std::vector<hsize_t> from(shape.size(), 0), to(shape.begin(), shape.end());
+  if (space == 1) from[0] = nz / 2, to[0] = nz / 2 + 1;
+  from[space] = begin, to[space] = end;
+  std::vector<double> values((end - begin) * nx * (shape.size() > space + 2 ? shape.back() : 1));
+  if (!values.empty()) file.read(dataset, H5T_NATIVE_DOUBLE, from, to, values.data());
+  return values;
 }
 
 }  // namespace rouleau::files

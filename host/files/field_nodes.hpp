@@ -19,8 +19,14 @@ struct FieldNodes {
     std::array<double, 2> first, size;
   };
   [[nodiscard]] Box box() const;
-  /// A field's values on these nodes; in three dimensions on those of the layer in the middle of z.
-  [[nodiscard]] std::vector<double> section(const Hdf5File& file, const std::string& dataset) const;
+  /// A field's values on rows [begin, end) of these nodes, a vector's components beside each other; in three dimensions of
+  /// the layer in the middle of z. Throws Error(input_output), also where the field is one of other nodes.
+  [[nodiscard]] std::vector<double> rows(const Hdf5File& file, const std::string& dataset, std::size_t begin,
+                                         std::size_t end) const;
+  /// Of all rows.
+  [[nodiscard]] std::vector<double> section(const Hdf5File& file, const std::string& dataset) const {
+    return rows(file, dataset, 0, ny);
+  }
   std::size_t nx = 0, ny = 0;
   std::size_t nz = 1;                        ///< layers that the field has
   std::array<double, 2> spacing{}, first{};  ///< m

@@ -147,45 +147,23 @@ void FrameWriter::write_topology(const observe::OutlineSnapshot& outlines) {
   first_ = first;
 }
 
-void FrameWriter::write_fields(const std::string& frame, const observe::FieldSnapshot& fields, FrameRecord& record) {
+void FrameWriter::write_fields(const std::string& frame, const observe::FieldSnapshot& snapshot, FrameRecord& record) {
   const std::string group = frame + "/fields";
   open_->make_group(group);
-  std::vector<hsize_t> shape{static_cast<hsize_t>(fields.ny), static_cast<hsize_t>(fields.nx)};
-  if (domain_.depth) shape.insert(shape.begin(), static_cast<hsize_t>(fields.nz));
-  const auto write = [&](const char* name, const std::vector<hsize_t>& of_values, const std::vector<double>& values,
-                         const char* unit) {
-    const std::string path = group + "/" + name;
-    if (storage_.precision == scene::Precision::f64) {
-      open_->write(path, of_values, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, values.data(), unit, storage_.compression);
-    } else {
-      const std::vector<float> single(values.begin(), values.end());
-      open_->write(path, of_values, H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, single.data(), unit, storage_.compression);
-    }
-    record.fields.emplace_back(name);
-  };
-  const auto vector = [&](const char* name, const std::vector<double>& x, const std::vector<double>& y,
-                          const std::vector<double>& z, const char* unit) {
-    if (x.empty()) return;
-    std::vector<double> values(3 * x.size(), 0.0);
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      values[3 * i] = x[i];
-      values[3 * i + 1] = y[i];
-      if (!z.empty()) values[3 * i + 2] = z[i];
-    }
-    std::vector<hsize_t> of_vectors = shape;
-    of_vectors.push_back(3);
-    write(name, of_vectors, values, unit);
-  };
-  vector("velocity", fields.velocity_x, fields.velocity_y, fields.velocity_z, "m/s");
-  const auto scalar = [&](const char* name, const std::vector<double>& values, const char* unit) {
-    if (!values.empty()) write(name, shape, values, unit);
-  };
-  scalar("density", fields.density, "1");
-  scalar("viscosity", fields.viscosity, "Pa s");
-  if (domain_.depth) {
-    vector("vorticity", fields.vorticity_x, fields.vorticity_y, fields.vorticity_z, "1/s");
-  } else {
-    scalar("vorticity", fields.vorticity_z, "1/s");
+  const bool layers = domain_.depth.has_value(), f64 = storage_.precision == scene::Precision::f64;
+  std::vector<float> single;
+  for (const observe::Field& field : snapshot.fields) {
+    std::vector<hsize_t> shape{static_cast<hsize_t>(snapshot.ny), static_cast<hsize_t>(snapshot.nx)};
+    if (layers) shape.insert(shape.begin(), static_cast<hsize_t>(snapshot.nz));
+    if (field.components > 1) shape.push_back(static_cast<hsize_t>(field.components));
+    Hdf5Rows rows = open_->begin(group + "/" + field.name, shape, layers, f64 ? H5T_IEEE_F64LE : H5T_IEEE_F32LE,
+                                 f64 ? H5T_NATIVE_DOUBLE : H5T_NATIVE_FLOAT, field.unit, storage_.compression);
+    const std::size_t numbers = static_cast<std::size_t>(snapshot.nx) * static_cast<std::size_t>(field.components);
+    field.give([&](const std::vector<double>& values) {
+      if (!f64) single.assign(values.begin(), values.end());
+      rows.append(f64 ? static_cast<const void*>(values.data()) : single.data(), values.size() / numbers);
+    });
+    record.fields.push_back(field.name);
   }
 }
 

@@ -62,7 +62,8 @@ class FrameWriter {
   /// after them is dropped.
   FrameWriter(std::filesystem::path file, const scene::Scene& scene, const FramesSaved& saved);
 
-  /// Adds a frame and hands it to the system, so that a crash later on mostly leaves a segment that can be read.
+  /// Adds a frame and hands it to the system, so that a crash later on mostly leaves a segment that can be read. Has the
+  /// fields given (observe::Field), in which all ranks take part.
   void write(const observe::Snapshot& snapshot);
   /// Closes the segment, synchronises it with the disk, and tells of all segments so far. The next frame begins
   /// another.
@@ -82,7 +83,7 @@ class FrameWriter {
   void write_header(Hdf5File& target) const;
   void write_membranes(const std::string& frame, const observe::Snapshot& snapshot, FrameRecord& record);
   void write_topology(const observe::OutlineSnapshot& outlines);
-  void write_fields(const std::string& frame, const observe::FieldSnapshot& fields, FrameRecord& record);
+  void write_fields(const std::string& frame, const observe::FieldSnapshot& snapshot, FrameRecord& record);
   [[nodiscard]] FieldGrid field_grid() const;
   void read_back(const std::filesystem::path& source, std::size_t frames);
   void link_segments() const;

@@ -3,6 +3,7 @@
 
 #include <hdf5.h>
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -36,6 +37,8 @@ class Hdf5Handle {
   Close close_ = nullptr;
 };
 
+class Hdf5Rows;
+
 /// Makes and reads what Rouleau's HDF5 files are made of. Every member throws Error(input_output) naming the file.
 class Hdf5File {
  public:
@@ -58,6 +61,10 @@ class Hdf5File {
   /// that level (1 to 9; level 4 takes twice as long as 1 for files 2 % smaller).
   void write(const std::string& path, const std::vector<hsize_t>& shape, hid_t stored, hid_t given, const void* data,
              const std::string& unit, int compression = 0);
+  /// The same dataset, byte for byte, from some of its rows at a time. They are counted over the first axis, in a dataset
+  /// of layers of rows over the second one and then the first. Nothing else is written to the file before it is full.
+  [[nodiscard]] Hdf5Rows begin(const std::string& path, const std::vector<hsize_t>& shape, bool layers, hid_t stored,
+                               hid_t given, const std::string& unit, int compression = 0);
   void write(const std::string& path, const std::vector<double>& values, const std::string& unit);
   void write(const std::string& path, const std::vector<int>& values, const std::string& unit);
   /// Names of a group's members, sorted.
@@ -97,6 +104,7 @@ class Hdf5File {
   void close();
 
  private:
+  friend class Hdf5Rows;
   void attribute(const std::string& path, const std::string& name, hid_t stored, hid_t given, hsize_t count,
                  const void* value);
   /// Refuses a number that the file cannot hold.
@@ -110,6 +118,40 @@ class Hdf5File {
   std::filesystem::path file_;
   Mode mode_;
   Hdf5Handle handle_;
+};
+
+/// A dataset that is being written, its first rows first. Belongs to its file, which must outlive it. Every member throws
+/// Error(input_output) naming the file.
+class Hdf5Rows {
+ public:
+  /// The next `count` rows. Of a compressed dataset rows are kept, a copy of them, until they fill a chunk: HDF5 would
+  /// compress one that is filled in two goes twice. With the last row the dataset is finished.
+  void append(const void* rows, std::size_t count);
+  [[nodiscard]] bool full() const { return written_ == all_; }
+
+ private:
+  friend class Hdf5File;
+  Hdf5Rows(Hdf5File& file, std::string path, std::vector<hsize_t> shape, bool layers, hid_t given, std::string unit)
+      : file_(&file),
+        path_(std::move(path)),
+        shape_(std::move(shape)),
+        layers_(layers),
+        given_(given),
+        unit_(std::move(unit)) {}
+  void put(const std::byte* rows, hsize_t count);
+  void finish();
+
+  Hdf5File* file_;
+  std::string path_;
+  std::vector<hsize_t> shape_;
+  bool layers_;
+  hid_t given_;
+  std::string unit_;
+  Hdf5Handle dataset_;
+  hsize_t all_ = 0, written_ = 0;   ///< rows
+  hsize_t together_ = 1;            ///< rows are written in multiples of this
+  std::size_t bytes_of_row_ = 0;    ///< as they are given
+  std::vector<std::byte> waiting_;  ///< rows that fill no chunk yet
 };
 
 }  // namespace rouleau::files

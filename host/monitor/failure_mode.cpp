@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <map>
+#include <vector>
 
 #include "membrane_wave.hpp"
 
@@ -100,14 +102,39 @@ double lattice_oscillation(int x, int y, const std::function<FluidSample(int x, 
   return most;
 }
 
-double lattice_oscillation(int x, int y, const std::vector<core::Moments<2>>& moments, const core::Domain<2>& domain) {
-  return lattice_oscillation(x, y, [&](int i, int j) -> FluidSample {
+template <class T, class Set>
+double lattice_oscillation(const core::Fluid<T, Set>& fluid, const std::array<int, Set::dimension>& node) {
+  using Moments = core::Moments<Set::dimension>;
+  const core::Domain<Set::dimension>& domain = fluid.setting().domain;
+  std::map<int, std::vector<Moments>> rows;  // that samples lie in, by y
+  for (int i = -oscillation_window; i <= oscillation_window; ++i) rows[domain.wrapped(1, node[1] + i)] = {};
+  rows.erase(-1);
+  int layer = 0;
+  if constexpr (Set::dimension == 3) layer = std::clamp(node[2], 0, domain.size[2] - 1) * domain.size[1];
+  int first = 0;  // row of the band
+  fluid.gather_moments(
+      core::bands_of_all<Set::dimension>(domain.size, sizeof(Moments)), [&](int, const std::vector<Moments>& band) {
+        const int end = first + static_cast<int>(band.size()) / domain.size[0];
+        for (auto& [y, row] : rows) {
+          if (layer + y < first || layer + y >= end) continue;
+          const auto begin = band.begin() + static_cast<std::ptrdiff_t>(layer + y - first) * domain.size[0];
+          row.assign(begin, begin + domain.size[0]);
+        }
+        first = end;
+      });
+  if (!fluid.ranks().first()) return 0;
+  return lattice_oscillation(node[0], node[1], [&](int i, int j) -> FluidSample {
     j = domain.wrapped(1, j);
     if (j < 0) return {std::nan(""), std::nan(""), std::nan("")};
-    const core::Moments<2>& m = moments[static_cast<std::size_t>(domain.size[0]) * j + domain.wrapped(0, i)];
+    const Moments& m = rows.at(j)[static_cast<std::size_t>(domain.wrapped(0, i))];
     return {m.velocity[0], m.velocity[1], m.density / std::sqrt(3.0)};
   });
 }
+
+template double lattice_oscillation(const core::Fluid<float>&, const std::array<int, 2>&);
+template double lattice_oscillation(const core::Fluid<double>&, const std::array<int, 2>&);
+template double lattice_oscillation(const core::Fluid<float, core::D3Q19>&, const std::array<int, 3>&);
+template double lattice_oscillation(const core::Fluid<double, core::D3Q19>&, const std::array<int, 3>&);
 
 void find_mode(monitor::Failure& failure, const core::Membranes& membranes, const GrowthWatch& growth,
                const core::Domain<2>& domain, std::array<double, 2> place, double oscillation, long step) {

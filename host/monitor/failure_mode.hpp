@@ -35,8 +35,10 @@ using FluidSample = std::array<double, 3>;
 /// numbers are left out.
 double lattice_oscillation(int x, int y, const std::function<FluidSample(int x, int y)>& sample);
 
-/// The same of the moments of all nodes, row after row.
-double lattice_oscillation(int x, int y, const std::vector<core::Moments<2>>& moments, const core::Domain<2>& domain);
+/// The same of the fluid about a node of the lattice or beside it, in three dimensions within its layer across z; on the
+/// first rank, which alone has to know the node, 0 on the others. All ranks together.
+template <class T, class Set>
+double lattice_oscillation(const core::Fluid<T, Set>& fluid, const std::array<int, Set::dimension>& node);
 
 /// Sets the mode of a failure whose reason and cell are known. `place` in lattice units; `oscillation`:
 /// lattice_oscillation there; `step`: the last one.

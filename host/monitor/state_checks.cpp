@@ -44,17 +44,20 @@ std::string leak_remedy(double segment) {
 /// it.
 template <class T, class Set>
 std::array<double, Set::dimension> extreme_node(const core::Fluid<T, Set>& fluid) {
-  std::size_t extreme = 0;
+  using Moments = core::Moments<Set::dimension>;
+  std::size_t extreme = 0, node = 0;
   double fastest = -1;
-  const std::vector<core::Moments<Set::dimension>> moments = fluid.all_moments();
-  for (std::size_t i = 0; i < moments.size(); ++i) {
-    double square = 0;
-    for (const double u : moments[i].velocity) square += u * u;
-    const bool finite = std::isfinite(square) && std::isfinite(moments[i].density);
-    if (!finite || square > fastest) extreme = i;
-    if (!finite) break;
-    fastest = std::max(fastest, square);
-  }
+  bool finite = true;
+  fluid.gather_moments(core::bands_of_all<Set::dimension>(fluid.setting().domain.size, sizeof(Moments)),
+                       [&](int, const std::vector<Moments>& moments) {
+                         for (auto m = moments.begin(); finite && m != moments.end(); ++m, ++node) {
+                           double square = 0;
+                           for (const double u : m->velocity) square += u * u;
+                           finite = std::isfinite(square) && std::isfinite(m->density);
+                           if (!finite || square > fastest) extreme = node;
+                           fastest = std::max(fastest, square);
+                         }
+                       });
   std::array<double, Set::dimension> place;
   for (int k = 0; k < Set::dimension; ++k) {
     const auto size = static_cast<std::size_t>(fluid.setting().domain.size[k]);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "core/fluid/relaxation.hpp"
 
@@ -10,119 +11,218 @@ namespace rouleau::observe {
 
 namespace {
 
+/// Which rows of the lattice the scene wants.
+template <int D>
+class StoredRows {
+ public:
+  using Row = std::array<int, D - 1>;
+  StoredRows(const core::Domain<D>& domain, const scene::FieldStorage& storage) : domain_(domain), storage_(storage) {}
+
+  [[nodiscard]] const core::Domain<D>& domain() const { return domain_; }
+  [[nodiscard]] int along(int axis) const { return storage_.count(axis, domain_.size[axis]); }
+  [[nodiscard]] int count() const { return along(1) * (D == 3 ? along(D - 1) : 1); }
+  /// The lattice's node along x of a stored one.
+  [[nodiscard]] int node(int column) const { return storage_.first[0] + column * storage_.stride; }
+  [[nodiscard]] Row row(int stored) const {
+    Row row{storage_.first[1] + stored % along(1) * storage_.stride};
+    if constexpr (D == 3) row[1] = storage_.first[2] + stored / along(1) * storage_.stride;
+    return row;
+  }
+  /// The number of a row in the lattice.
+  [[nodiscard]] int number(const Row& row) const {
+    if constexpr (D == 2) return row[0];
+    if constexpr (D == 3) return row[1] * domain_.size[1] + row[0];
+  }
+  /// The row a step further along an axis; -1: it lies beyond a wall.
+  [[nodiscard]] int beside(Row row, int axis, int step) const {
+    int& place = row[static_cast<std::size_t>(axis - 1)];
+    place = domain_.wrapped(axis, place + step);
+    return place < 0 ? -1 : number(row);
+  }
+  /// Rows of the lattice that stored rows [begin, end) need, in rising order; `around`: with those beside them.
+  [[nodiscard]] std::vector<int> needed(int begin, int end, bool around) const {
+    std::vector<int> rows;
+    for (int stored = begin; stored < end; ++stored) {
+      const Row row = this->row(stored);
+      rows.push_back(number(row));
+      for (int axis = 1; around && axis < D; ++axis) {
+        for (const int step : {-1, 1}) {
+          const int next = beside(row, axis, step);
+          if (next >= 0) rows.push_back(next);
+        }
+      }
+    }
+    std::sort(rows.begin(), rows.end());
+    rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
+    return rows;
+  }
+
+ private:
+  core::Domain<D> domain_;
+  scene::FieldStorage storage_;
+};
+
+/// A band of the lattice's rows and the values of their nodes.
+template <class V>
+struct KnownRows {
+  const std::vector<int>& rows;
+  const std::vector<V>& values;
+  /// The nodes of a row; null for -1.
+  [[nodiscard]] const V* at(int row) const {
+    if (row < 0) return nullptr;
+    const auto place = std::lower_bound(rows.begin(), rows.end(), row) - rows.begin();
+    return values.data() + place * static_cast<std::ptrdiff_t>(values.size() / rows.size());
+  }
+};
+
 /// By central differences over two spacings. Beyond a wall half a spacing away the velocity is such that its mean with that
 /// of the node before it is the wall's.
 template <int D>
 class Vorticity {
  public:
-  using Node = std::array<int, D>;
-  Vorticity(const core::FluidSetting<D>& fluid, const core::WallVelocity& walls,
-            const std::vector<core::Moments<D>>& moments)
-      : domain_(fluid.domain), solid_(fluid.solid.get()), walls_(walls), moments_(moments) {}
+  using Row = std::array<int, D - 1>;
+  Vorticity(const StoredRows<D>& rows, const core::SolidNodes<D>* solid, const core::WallVelocity& walls)
+      : rows_(rows), solid_(solid), walls_(walls) {}
 
-  /// Along z, in three dimensions along x, y and z, at a node of the lattice, lattice units; 0 in the solid.
-  [[nodiscard]] std::array<double, D == 2 ? 1 : 3> at(const Node& node) const {
-    if (solid_ != nullptr && solid_->at(node)) return {};
-    const double along_z = rise(node, 1, 0) - rise(node, 0, 1);
+  /// Of the nodes of a row, which is known as well as those beside it.
+  void begin(const Row& row, const KnownRows<core::Moments<D>>& known) {
+    row_ = row;
+    own_ = known.at(rows_.number(row));
+    for (int axis = 1; axis < D; ++axis) {
+      const auto k = static_cast<std::size_t>(axis);
+      below_[k] = known.at(rows_.beside(row, axis, -1));
+      above_[k] = known.at(rows_.beside(row, axis, 1));
+    }
+  }
+  /// Along z, in three dimensions along x, y and z, lattice units; 0 in the solid.
+  [[nodiscard]] std::array<double, D == 2 ? 1 : 3> at(int x) const {
+    if (solid(x, 0, 0)) return {};
+    const double along_z = rise(x, 1, 0) - rise(x, 0, 1);
     if constexpr (D == 2) return {along_z};
-    if constexpr (D == 3) return {rise(node, 2, 1) - rise(node, 1, 2), rise(node, 0, 2) - rise(node, 2, 0), along_z};
+    if constexpr (D == 3) return {rise(x, 2, 1) - rise(x, 1, 2), rise(x, 0, 2) - rise(x, 2, 0), along_z};
   }
 
  private:
   /// d velocity[component] / d axis
-  [[nodiscard]] double rise(const Node& node, std::size_t component, int axis) const {
-    return (beside(node, component, axis, 1) - beside(node, component, axis, -1)) / 2;
+  [[nodiscard]] double rise(int x, std::size_t component, int axis) const {
+    return (beside(x, component, axis, 1) - beside(x, component, axis, -1)) / 2;
   }
-  [[nodiscard]] double beside(Node node, std::size_t component, int axis, int step) const {
-    const double own = velocity(node, component);
+  [[nodiscard]] double beside(int x, std::size_t component, int axis, int step) const {
     const auto k = static_cast<std::size_t>(axis);
-    node[k] = domain_.wrapped(axis, node[k] + step);
+    const int column = axis == 0 ? rows_.domain().wrapped(0, x + step) : x;
+    const core::Moments<D>* const row = axis == 0 ? own_ : step > 0 ? above_[k] : below_[k];
+    const double own = own_[x].velocity[component];
     const double upper_or_lower = step > 0 ? walls_.upper : walls_.lower;
-    if (node[k] < 0) return 2 * (axis == 1 && component == 0 ? upper_or_lower : 0) - own;
-    if (solid_ != nullptr && solid_->at(node)) return -own;
-    return velocity(node, component);
+    if (column < 0 || row == nullptr) return 2 * (axis == 1 && component == 0 ? upper_or_lower : 0) - own;
+    if (solid(x, axis, step)) return -own;
+    return row[column].velocity[component];
   }
-  [[nodiscard]] double velocity(const Node& node, std::size_t component) const {
-    std::size_t place = 0;
-    for (std::size_t k = D; k-- > 0;)
-      place = place * static_cast<std::size_t>(domain_.size[k]) + static_cast<std::size_t>(node[k]);
-    return moments_[place].velocity[component];
+  /// Whether the node that is so many steps along an axis from one of the row is solid.
+  [[nodiscard]] bool solid(int x, int axis, int step) const {
+    if (solid_ == nullptr) return false;
+    std::array<int, D> node{x};
+    std::copy(row_.begin(), row_.end(), node.begin() + 1);
+    node[static_cast<std::size_t>(axis)] += step;
+    return solid_->at(rows_.domain(), node);
   }
 
-  const core::Domain<D>& domain_;
+  StoredRows<D> rows_;
   const core::SolidNodes<D>* solid_;
   core::WallVelocity walls_;
-  const std::vector<core::Moments<D>>& moments_;
+  Row row_{};
+  const core::Moments<D>* own_ = nullptr;
+  std::array<const core::Moments<D>*, D> below_{}, above_{};  ///< beside it along each axis but the first; null: a wall
 };
+
+/// Field::give of what `fill(row, known, to)` computes, so many numbers for each stored row, from the lattice's values that
+/// `gather(bands, take)` brings to the first rank: V of a node. `around`: rows need those beside them.
+template <class V, int D, class Gather, class Fill>
+auto giver(const StoredRows<D>& rows, bool around, std::size_t bytes, std::size_t numbers, Gather gather, Fill fill) {
+  return [=](const Field::Take& take) mutable {
+    const std::array<int, D>& size = rows.domain().size;
+    const int each = core::rows_of_band(static_cast<std::size_t>(size[0]) * sizeof(V), bytes), all = rows.count();
+    const auto needed = [&](int b) { return rows.needed(b * each, std::min((b + 1) * each, all), around); };
+    std::vector<double> values;
+    gather(core::Bands<D>{(all - 1) / each + 1, [&](int b) { return core::band_of_rows<D>(size, needed(b)); }},
+           [&](int b, const std::vector<V>& of_lattice) {
+             const std::vector<int> known = needed(b);
+             const int begin = b * each, end = std::min(begin + each, all);
+             values.resize(static_cast<std::size_t>(end - begin) * numbers);
+             double* to = values.data();
+             for (int stored = begin; stored < end; ++stored, to += numbers)
+               fill(rows.row(stored), KnownRows<V>{known, of_lattice}, to);
+             take(values);
+           });
+  };
+}
+
+template <class T, class Set>
+FieldSnapshot fields_of(const core::Fluid<T, Set>& fluid, const scene::Scene& scene, const units::LatticeUnits& units,
+                        std::size_t bytes) {
+  constexpr int dimension = Set::dimension;
+  using Moments = core::Moments<dimension>;
+  using Row = std::array<int, dimension - 1>;
+  const StoredRows<dimension> rows(fluid.setting().domain, scene.output.field_storage);
+  FieldSnapshot snapshot;
+  snapshot.nx = rows.along(0);
+  snapshot.ny = rows.along(1);
+  if constexpr (dimension == 3) snapshot.nz = rows.along(2);
+  const int columns = snapshot.nx;
+  const auto add = [&]<class V>(V, const char* name, const char* unit, int components, bool around, auto gather,
+                                auto fill) {
+    const auto& wanted = scene.output.quantities;
+    if (std::find(wanted.begin(), wanted.end(), name) == wanted.end()) return;
+    const auto numbers = static_cast<std::size_t>(columns) * static_cast<std::size_t>(components);
+    snapshot.fields.push_back({name, unit, components, giver<V>(rows, around, bytes, numbers, gather, fill)});
+  };
+  const auto moments = [&fluid](const auto& bands, const auto& take) { fluid.gather_moments(bands, take); };
+  const auto rates = [&fluid](const auto& bands, const auto& take) { fluid.gather_relaxation_rates(bands, take); };
+
+  const double speed = units.to_si(1, units::dimension::velocity), rate = units.to_si(1, units::dimension::rate);
+  add(Moments{}, "velocity", "m/s", 3, false, moments,
+      [=](const Row& row, const KnownRows<Moments>& known, double* to) {
+        const Moments* const nodes = known.at(rows.number(row));
+        for (int column = 0; column < columns; ++column) {
+          const Moments& m = nodes[rows.node(column)];
+          for (int k = 0; k < 3; ++k) *to++ = k < dimension ? m.velocity[k] * speed : 0;
+        }
+      });
+  add(Moments{}, "density", "1", 1, false, moments, [=](const Row& row, const KnownRows<Moments>& known, double* to) {
+    const Moments* const nodes = known.at(rows.number(row));
+    for (int column = 0; column < columns; ++column) *to++ = nodes[rows.node(column)].density;
+  });
+  const double viscosity_unit = units.to_si(1, units::dimension::viscosity);
+  add(double{}, "viscosity", "Pa s", 1, false, rates, [=](const Row& row, const KnownRows<double>& known, double* to) {
+    const double* const nodes = known.at(rows.number(row));
+    for (int column = 0; column < columns; ++column)
+      *to++ = core::viscosity_of(1 / nodes[rows.node(column)]) * viscosity_unit;
+  });
+  Vorticity<dimension> curl(rows, fluid.setting().solid.get(), fluid.walls_now());
+  add(Moments{}, "vorticity", "1/s", dimension == 2 ? 1 : 3, true, moments,
+      [=](const Row& row, const KnownRows<Moments>& known, double* to) mutable {
+        curl.begin(row, known);
+        for (int column = 0; column < columns; ++column) {
+          for (const double component : curl.at(rows.node(column))) *to++ = component * rate;
+        }
+      });
+  return snapshot;
+}
 
 }  // namespace
 
 template <class T, class Set>
-FieldSnapshot observe_fields(core::Fluid<T, Set>& fluid, const scene::Scene& scene, const units::LatticeUnits& units) {
-  constexpr int dimension = Set::dimension;
-  const auto wanted = [&](const char* name) {
-    const auto& q = scene.output.quantities;
-    return std::find(q.begin(), q.end(), name) != q.end();
-  };
-  const std::array<int, dimension>& size = fluid.setting().domain.size;
-  const scene::FieldStorage& storage = scene.output.field_storage;
-  const std::vector<core::Moments<dimension>> moments = fluid.all_moments();
-  const std::vector<double> relaxation_rate =
-      wanted("viscosity") ? fluid.all_relaxation_rates() : std::vector<double>{};
-  FieldSnapshot f;
-  if (moments.empty()) return f;
-  f.nx = storage.count(0, size[0]);
-  f.ny = storage.count(1, size[1]);
-  if constexpr (dimension == 3) f.nz = storage.count(2, size[2]);
-  const bool velocity = wanted("velocity"), density = wanted("density"), viscosity = wanted("viscosity");
-  const bool vorticity = wanted("vorticity");
-  const double speed = units.to_si(1, units::dimension::velocity), rate = units.to_si(1, units::dimension::rate);
-  const double viscosity_unit = units.to_si(1, units::dimension::viscosity);
-  const auto nodes = static_cast<std::size_t>(f.nx) * static_cast<std::size_t>(f.ny) * static_cast<std::size_t>(f.nz);
-  const auto nx = static_cast<std::size_t>(size[0]), ny = static_cast<std::size_t>(size[1]);
-  const auto node = [nx](std::size_t x, std::size_t y) { return nx * y + x; };
-  for (auto [want, values] :
-       {std::pair{velocity, &f.velocity_x}, std::pair{velocity, &f.velocity_y},
-        std::pair{velocity && dimension == 3, &f.velocity_z}, std::pair{density, &f.density},
-        std::pair{viscosity, &f.viscosity}, std::pair{vorticity && dimension == 3, &f.vorticity_x},
-        std::pair{vorticity && dimension == 3, &f.vorticity_y}, std::pair{vorticity, &f.vorticity_z}}) {
-    if (want) values->reserve(nodes);
-  }
-  const Vorticity<dimension> curl(fluid.setting(), fluid.walls_now(), moments);
-  for (int layer = 0; layer < f.nz; ++layer) {
-    const int z = storage.first[2] + layer * storage.stride;
-    const std::size_t first_of_layer = static_cast<std::size_t>(z) * nx * ny;
-    for (int row = 0; row < f.ny; ++row) {
-      for (int column = 0; column < f.nx; ++column) {
-        const auto x = static_cast<std::size_t>(storage.first[0] + column * storage.stride),
-                   y = static_cast<std::size_t>(storage.first[1] + row * storage.stride);
-        const std::size_t at = first_of_layer + node(x, y);
-        const core::Moments<dimension>& m = moments[at];
-        if (velocity) {
-          f.velocity_x.push_back(m.velocity[0] * speed);
-          f.velocity_y.push_back(m.velocity[1] * speed);
-          if constexpr (dimension == 3) f.velocity_z.push_back(m.velocity[2] * speed);
-        }
-        if (density) f.density.push_back(m.density);
-        if (viscosity) f.viscosity.push_back(core::viscosity_of(1 / relaxation_rate[at]) * viscosity_unit);
-        if (!vorticity) continue;
-        std::array<int, dimension> place{static_cast<int>(x), static_cast<int>(y)};
-        if constexpr (dimension == 3) place[2] = z;
-        const auto along = curl.at(place);
-        if constexpr (dimension == 3)
-          f.vorticity_x.push_back(along[0] * rate), f.vorticity_y.push_back(along[1] * rate);
-        f.vorticity_z.push_back(along.back() * rate);
-      }
-    }
-  }
-  return f;
+FieldSnapshot observe_fields(const core::Fluid<T, Set>& fluid, const scene::Scene& scene,
+                             const units::LatticeUnits& units, std::size_t bytes) {
+  return fields_of(fluid, scene, units, bytes);
 }
 
-template FieldSnapshot observe_fields(core::Fluid<float>&, const scene::Scene&, const units::LatticeUnits&);
-template FieldSnapshot observe_fields(core::Fluid<double>&, const scene::Scene&, const units::LatticeUnits&);
-template FieldSnapshot observe_fields(core::Fluid<float, core::D3Q19>&, const scene::Scene&,
-                                      const units::LatticeUnits&);
-template FieldSnapshot observe_fields(core::Fluid<double, core::D3Q19>&, const scene::Scene&,
-                                      const units::LatticeUnits&);
+#define ROULEAU_INSTANTIATE(T, Set)                                                                                  \
+  template FieldSnapshot observe_fields(const core::Fluid<T, Set>&, const scene::Scene&, const units::LatticeUnits&, \
+                                        std::size_t);
+ROULEAU_INSTANTIATE(float, core::D2Q9)
+ROULEAU_INSTANTIATE(double, core::D2Q9)
+ROULEAU_INSTANTIATE(float, core::D3Q19)
+ROULEAU_INSTANTIATE(double, core::D3Q19)
+#undef ROULEAU_INSTANTIATE
 
 }  // namespace rouleau::observe

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <limits>
 #include <map>
 #include <optional>
@@ -55,17 +56,28 @@ struct OutlineSnapshot {
   std::vector<std::array<int, 3>> triangles;  ///< nodes, counter-clockwise seen from outside
 };
 
-/// Fluid fields on the nodes that the scene wants (FieldStorage), row by row from below, x fastest, then y. Empty: not due
-/// or not wanted.
+/// A fluid field on the nodes that the scene wants (FieldStorage), given some rows at a time so that nobody holds all of it.
+struct Field {
+  /// Values of the next rows, x fastest; the components of a node beside each other.
+  using Take = std::function<void(const std::vector<double>& rows)>;
+  std::string name;    ///< velocity, density (relative deviation from the mean), viscosity or vorticity
+  std::string unit;    ///< m/s, 1, Pa s, 1/s
+  int components = 1;  ///< 3: a vector, whose last component is 0 in two dimensions
+  /// Calls take() on the first rank until it has had all rows, which count over y, then over z. All ranks together, and
+  /// before the next step of the fluid.
+  std::function<void(const Take& take)> give;
+};
+
+/// The fields that the scene wants. Empty: not due.
 struct FieldSnapshot {
   int nx = 0, ny = 0;
-  int nz = 1;                                              ///< 1 in two dimensions
-  std::vector<double> velocity_x, velocity_y, velocity_z;  ///< m/s; the last is empty in two dimensions
-  std::vector<double> density;                             ///< relative deviation from the mean
-  std::vector<double> viscosity;                           ///< Pa s
-  std::vector<double> vorticity_x, vorticity_y;            ///< 1/s, empty in two dimensions
-  std::vector<double> vorticity_z;                         ///< 1/s
+  int nz = 1;  ///< 1 in two dimensions
+  std::vector<Field> fields;
   [[nodiscard]] bool empty() const { return nx == 0; }
+  /// What ranks do that do not write: they give their part to the one that does.
+  void give_all() const {
+    for (const Field& field : fields) field.give([](const std::vector<double>&) {});
+  }
 };
 
 /// Energies and powers per depth, in three dimensions that of the domain along z (docs: physics, energy); NaN where the scene has no such thing, or nobody tells it.

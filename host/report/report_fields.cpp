@@ -4,7 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 
+#include "base/error.hpp"
 #include "files/field_nodes.hpp"
 #include "files/frames.hpp"
 #include "observe/vorticity.hpp"
@@ -63,12 +65,13 @@ Json box_um(const files::FieldNodes& grid) {
 /// The velocity for tracers, on a coarser grid: {nx, ny, scale, values}, of int8 pairs in base64.
 class Tracers {
  public:
-  Tracers(const files::FieldNodes& grid, std::size_t outputs)
-      : grid_(grid), most_(std::min(most_each, most_in_all / outputs)) {}
-  void add(const std::vector<double>& velocity) {
-    for (std::size_t axis = 0; axis < 2; ++axis)
-      fields_[axis].push_back(block_means(component_of(velocity, grid_.nx, grid_.ny, axis), most_));
+  explicit Tracers(std::size_t outputs) : most_(std::min(most_each, most_of_all / outputs)) {}
+  /// Of one output; on at most so many blocks.
+  void add(const ScalarField& u, const ScalarField& v) {
+    fields_[0].push_back(u);
+    fields_[1].push_back(v);
   }
+  [[nodiscard]] std::size_t most() const { return most_; }
   [[nodiscard]] Json to_json() const {
     double scale = 0;
     for (const auto& fields : fields_)
@@ -91,16 +94,94 @@ class Tracers {
   }
 
  private:
-  static constexpr std::size_t most_each = 2048, most_in_all = 120000;  ///< blocks: 0.3 MB of page
-  const files::FieldNodes& grid_;
+  static constexpr std::size_t most_each = 2048, most_of_all = 120000;  ///< blocks: 0.3 MB of page
   std::size_t most_;
   std::array<std::vector<ScalarField>, 2> fields_;
 };
 
-ScalarField speed(const std::vector<double>& velocity, std::size_t nx, std::size_t ny) {
-  ScalarField field{nx, ny, std::vector<double>(nx * ny)};
-  for (std::size_t i = 0; i < nx * ny; ++i) field.values[i] = std::hypot(velocity[3 * i], velocity[3 * i + 1]);
-  return field;
+/// A field of a file, read some rows at a time.
+class FieldRows {
+ public:
+  FieldRows(const files::Hdf5File& file, const files::FieldNodes& grid, std::string dataset)
+      : file_(file), grid_(grid), dataset_(std::move(dataset)) {}
+
+  /// Calls visit(y) for every row from below. at() then knows that row; `around`: also those that vorticity needs there.
+  template <class Visit>
+  void for_each(bool around, const Visit& visit) {
+    const std::size_t beside = around ? 2 : 0;
+    if (around && grid_.ny > 0) first_ = read(0, 1), last_ = read(grid_.ny - 1, grid_.ny);
+    for (std::size_t y = 0; y < grid_.ny;) {
+      const std::size_t end = std::min(grid_.ny, y + rows_at_once());
+      begin_ = y - std::min(y, beside);
+      end_ = std::min(grid_.ny, end + beside);
+      rows_ = read(begin_, end_);
+      for (; y < end; ++y) visit(y);
+    }
+  }
+  [[nodiscard]] std::size_t components() const { return components_; }
+  /// Of a node; of a scalar there is but one component.
+  [[nodiscard]] double at(std::size_t x, std::size_t y, std::size_t component) const {
+    const std::size_t place = components_ * x + std::min(component, components_ - 1);
+    if (y >= begin_ && y < end_) return rows_[(y - begin_) * components_ * grid_.nx + place];
+    return y == 0 ? first_[place] : last_[place];
+  }
+
+ private:
+  static constexpr std::size_t bytes = std::size_t{8} << 20;  ///< of the rows that are read at once
+  [[nodiscard]] std::size_t rows_at_once() const {
+    return std::max<std::size_t>(1, bytes / (3 * sizeof(double) * std::max<std::size_t>(1, grid_.nx)));
+  }
+  std::vector<double> read(std::size_t begin, std::size_t end) {
+    std::vector<double> values = grid_.rows(file_, dataset_, begin, end);
+    if (values.empty()) return values;
+    components_ = values.size() / ((end - begin) * grid_.nx);
+    if (components_ != 1 && components_ != 3)
+      throw Error(Cause::input_output, Place{file_.path().string()},
+                  dataset_ + " has no vectors of three components: the file is damaged; repeat the run");
+    return values;
+  }
+
+  const files::Hdf5File& file_;
+  const files::FieldNodes& grid_;
+  std::string dataset_;
+  std::size_t components_ = 1;
+  std::size_t begin_ = 0, end_ = 0;  ///< rows that rows_ has
+  std::vector<double> rows_, first_, last_;
+};
+
+/// Means over blocks of what a field of vectors tells.
+struct VelocityMeans {
+  ScalarField speed, vorticity;  ///< the latter empty where it is not wanted
+};
+VelocityMeans add_velocity(const files::Hdf5File& file, const files::FieldNodes& grid, const std::string& dataset,
+                           std::size_t most, bool with_vorticity, Tracers& tracers) {
+  const auto blocks = [&](std::size_t at_most) { return BlockMeans(grid.nx, grid.ny, at_most); };
+  BlockMeans speed = blocks(most), vorticity = blocks(most), u = blocks(tracers.most()), v = blocks(tracers.most());
+  FieldRows rows(file, grid, dataset);
+  const observe::VelocityGrid differences{grid.nx, grid.ny, grid.spacing, grid.periodic};
+  const auto component = [&rows](std::size_t k) {
+    return [&rows, k](std::size_t x, std::size_t y) { return rows.at(x, y, k); };
+  };
+  rows.for_each(with_vorticity, [&](std::size_t y) {
+    u.add_row([&](std::size_t x) { return rows.at(x, y, 0); });
+    v.add_row([&](std::size_t x) { return rows.at(x, y, 1); });
+    speed.add_row([&](std::size_t x) { return std::hypot(rows.at(x, y, 0), rows.at(x, y, 1)); });
+    if (with_vorticity)
+      vorticity.add_row([&](std::size_t x) { return differences.vorticity(x, y, component(0), component(1)); });
+  });
+  tracers.add(u.means(), v.means());
+  return {speed.means(), with_vorticity ? vorticity.means() : ScalarField{}};
+}
+
+/// Along z, which in three dimensions is the last of three components.
+ScalarField mean_vorticity(const files::Hdf5File& file, const files::FieldNodes& grid, const std::string& dataset,
+                           std::size_t most) {
+  BlockMeans means(grid.nx, grid.ny, most);
+  FieldRows rows(file, grid, dataset);
+  rows.for_each(false, [&](std::size_t y) {
+    means.add_row([&](std::size_t x) { return rows.at(x, y, rows.components() - 1); });
+  });
+  return means.means();
 }
 
 }  // namespace
@@ -135,25 +216,16 @@ Json field_data(const std::filesystem::path& frames, const std::vector<std::size
 
   Quantity speeds{"speed", "m/s", false, {}}, vorticities{"vorticity", "1/s", true, {}};
   const files::FieldNodes grid(file, group_of(with_fields.front()) + (has_velocity ? "velocity" : "vorticity"));
-  Tracers tracers(grid, with_fields.size());
+  Tracers tracers(with_fields.size());
   const std::size_t quantities = has_velocity ? 2 : 1;
   const std::size_t most = std::min(most_blocks, most_values / (quantities * with_fields.size()));
   for (const std::size_t output : with_fields) {
     if (has_velocity) {
-      const auto velocity = grid.section(file, group_of(output) + "velocity");
-      tracers.add(velocity);
-      speeds.fields.push_back(block_means(speed(velocity, grid.nx, grid.ny), most));
-      if (!has_vorticity)
-        vorticities.fields.push_back(
-            block_means(vorticity(velocity, grid.nx, grid.ny, grid.spacing, grid.periodic), most));
+      VelocityMeans means = add_velocity(file, grid, group_of(output) + "velocity", most, !has_vorticity, tracers);
+      speeds.fields.push_back(std::move(means.speed));
+      if (!has_vorticity) vorticities.fields.push_back(std::move(means.vorticity));
     }
-    if (has_vorticity) {
-      const auto written = grid.section(file, group_of(output) + "vorticity");  // in three dimensions vectors
-      vorticities.fields.push_back(block_means(written.size() == grid.nx * grid.ny
-                                                   ? ScalarField{grid.nx, grid.ny, written}
-                                                   : component_of(written, grid.nx, grid.ny, 2),
-                                               most));
-    }
+    if (has_vorticity) vorticities.fields.push_back(mean_vorticity(file, grid, group_of(output) + "vorticity", most));
   }
   Json result{{"nx", vorticities.fields.front().nx},
               {"ny", vorticities.fields.front().ny},
@@ -167,44 +239,37 @@ Json field_data(const std::filesystem::path& frames, const std::vector<std::size
   return result;
 }
 
-ScalarField component_of(const std::vector<double>& vectors, std::size_t nx, std::size_t ny, std::size_t axis) {
-  ScalarField field{nx, ny, std::vector<double>(nx * ny)};
-  for (std::size_t i = 0; i < nx * ny; ++i) field.values[i] = vectors[3 * i + axis];
-  return field;
-}
-
-ScalarField vorticity(const std::vector<double>& velocity, std::size_t nx, std::size_t ny,
-                      const std::array<double, 2>& spacing, const std::array<bool, 2>& periodic) {
-  ScalarField field{nx, ny, std::vector<double>(nx * ny)};
-  const auto u = [&](std::size_t x, std::size_t y) { return velocity[3 * (y * nx + x)]; };
-  const auto v = [&](std::size_t x, std::size_t y) { return velocity[3 * (y * nx + x) + 1]; };
-  const observe::VelocityGrid grid{nx, ny, spacing, periodic};
-  for (std::size_t y = 0; y < ny; ++y)
-    for (std::size_t x = 0; x < nx; ++x) field.values[y * nx + x] = grid.vorticity(x, y, u, v);
-  return field;
-}
-
-ScalarField block_means(const ScalarField& field, std::size_t most) {
+BlockMeans::BlockMeans(std::size_t nx, std::size_t ny, std::size_t most) : nx_(nx), ny_(ny), means_{nx, ny, {}} {
   most = std::max<std::size_t>(1, most);
-  if (field.values.size() <= most) return field;
-  ScalarField means;
+  if (nx * ny <= most) return;
   // A domain that is one block high cannot be thinned along y: the blocks grow until there are few enough.
-  for (double side = std::sqrt(double(field.values.size()) / double(most));; side *= 1.02) {
-    means.nx = std::max<std::size_t>(1, static_cast<std::size_t>(double(field.nx) / side));
-    means.ny = std::max<std::size_t>(1, static_cast<std::size_t>(double(field.ny) / side));
-    if (means.nx * means.ny <= most) break;
+  for (double side = std::sqrt(double(nx * ny) / double(most));; side *= 1.02) {
+    means_.nx = std::max<std::size_t>(1, static_cast<std::size_t>(double(nx) / side));
+    means_.ny = std::max<std::size_t>(1, static_cast<std::size_t>(double(ny) / side));
+    if (means_.nx * means_.ny <= most) break;
   }
-  for (std::size_t j = 0; j < means.ny; ++j) {
-    for (std::size_t i = 0; i < means.nx; ++i) {
-      double sum = 0;
-      std::size_t count = 0;
-      for (std::size_t y = j * field.ny / means.ny; y < (j + 1) * field.ny / means.ny; ++y)
-        for (std::size_t x = i * field.nx / means.nx; x < (i + 1) * field.nx / means.nx; ++x, ++count)
-          sum += field.values[y * field.nx + x];
-      means.values.push_back(sum / double(count));
-    }
+  sums_.resize(means_.nx);
+}
+
+void BlockMeans::end_row() {
+  const std::size_t j = means_.values.size() / means_.nx;  // of these blocks
+  if (++rows_ < (j + 1) * ny_ / means_.ny) return;
+  for (std::size_t i = 0; i < means_.nx; ++i) {
+    const std::size_t columns = (i + 1) * nx_ / means_.nx - i * nx_ / means_.nx;
+    means_.values.push_back(std::exchange(sums_[i], 0.0) / double(columns * (rows_ - rows_before_)));
   }
-  return means;
+  rows_before_ = rows_;
+}
+
+std::array<ScalarField, 2> mean_vectors(const files::Hdf5File& file, const files::FieldNodes& grid,
+                                        const std::string& dataset, std::size_t most) {
+  BlockMeans u(grid.nx, grid.ny, most), v = u;
+  FieldRows rows(file, grid, dataset);
+  rows.for_each(false, [&](std::size_t y) {
+    u.add_row([&](std::size_t x) { return rows.at(x, y, 0); });
+    v.add_row([&](std::size_t x) { return rows.at(x, y, 1); });
+  });
+  return {u.means(), v.means()};
 }
 
 std::vector<unsigned char> quantised(const std::vector<double>& values, double scale, bool is_signed) {

@@ -7,6 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "files/field_nodes.hpp"
+#include "files/hdf5_file.hpp"
+
 namespace rouleau::report {
 
 /// A scalar on a grid, row by row from below, x fastest.
@@ -31,16 +34,37 @@ std::vector<std::size_t> field_outputs(const std::filesystem::path& frames, std:
 ///   derived      vorticity was computed here, from the velocity
 nlohmann::json field_data(const std::filesystem::path& frames, const std::vector<std::size_t>& selection);
 
-/// dv/dx - du/dy by central differences; where the grid ends without going on periodically, one-sided ones of second
-/// order. `velocity` holds three components per node.
-ScalarField vorticity(const std::vector<double>& velocity, std::size_t nx, std::size_t ny,
-                      const std::array<double, 2>& spacing, const std::array<bool, 2>& periodic);
+/// Means over blocks of a field's nodes, of which there are at most `most`; the blocks have the shape of the domain's nodes.
+/// The field is given row by row, from below, so that nobody holds all of it.
+class BlockMeans {
+ public:
+  BlockMeans(std::size_t nx, std::size_t ny, std::size_t most);
+  /// The next row: value(x) for x = 0..nx-1.
+  template <class Value>
+  void add_row(const Value& value) {
+    if (whole()) {
+      for (std::size_t x = 0; x < nx_; ++x) means_.values.push_back(value(x));
+      return;
+    }
+    for (std::size_t i = 0; i < means_.nx; ++i)
+      for (std::size_t x = i * nx_ / means_.nx; x < (i + 1) * nx_ / means_.nx; ++x) sums_[i] += value(x);
+    end_row();
+  }
+  /// Of all rows, once they have been added.
+  [[nodiscard]] const ScalarField& means() const { return means_; }
 
-/// One component of vectors that have three for each node.
-ScalarField component_of(const std::vector<double>& vectors, std::size_t nx, std::size_t ny, std::size_t axis);
+ private:
+  [[nodiscard]] bool whole() const { return means_.nx == nx_ && means_.ny == ny_; }
+  void end_row();
+  std::size_t nx_, ny_;
+  std::size_t rows_ = 0, rows_before_ = 0;  ///< there have been; below the blocks that are being summed
+  ScalarField means_;
+  std::vector<double> sums_;  ///< of a row of blocks
+};
 
-/// Means over blocks of nodes, of which there are at most `most`; the blocks have the shape of the domain's nodes.
-ScalarField block_means(const ScalarField& field, std::size_t most);
+/// Means of the first two components of a field of vectors over at most `most` blocks. Throws Error(input_output).
+std::array<ScalarField, 2> mean_vectors(const files::Hdf5File& file, const files::FieldNodes& grid,
+                                        const std::string& dataset, std::size_t most);
 
 /// Bytes as described above.
 std::vector<unsigned char> quantised(const std::vector<double>& values, double scale, bool is_signed);

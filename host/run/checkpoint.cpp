@@ -158,13 +158,12 @@ template <class T, class Set>
 Json save(files::CheckpointWriter* writer, core::Solver<T, Set>& solver) {
   core::Fluid<T, Set>& fluid = solver.fluid();
   fluid.settle();
-  std::vector<T> values;
   const core::Domain<Set::dimension>& domain = fluid.setting().domain;
   const auto nx = static_cast<std::size_t>(domain.size[0]), rows = static_cast<std::size_t>(domain.nodes()) / nx;
+  const auto bands = core::bands_of_all<Set::dimension>(domain.size, sizeof(T));
   for (int q = 0; q < Set::velocity_count; ++q) {
-    fluid.copy_populations(q, values);
-    values = core::gather(solver.ranks(), std::move(values));
-    if (writer != nullptr) writer->array(population_name(q), rows, nx, values.data());
+    if (writer != nullptr) writer->begin_array<T>(population_name(q), rows, nx);
+    fluid.gather_populations(q, bands, [&](int, const std::vector<T>& values) { writer->append(values); });
   }
   if (solver.cell_tasks() != nullptr && writer != nullptr) {
     const core::DisplacementWatch::Memory& memory = solver.cell_tasks()->viscosity_field().memory();

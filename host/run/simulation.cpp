@@ -463,8 +463,7 @@ class Simulation {
         if (ranks_.first()) state_.growth.check(state_.steps, cells_);
         look_at_balance(step);
       }
-      if ((cells_due || fields_due || last) && fails(write(fields_due || (last && !scene_.output.fields.never()))))
-        return;
+      if ((cells_due || fields_due || last) && !write(fields_due || (last && !scene_.output.fields.never()))) return;
       if (ranks_.first()) {
         state_.momentum_residual =
             std::max(state_.momentum_residual, observe::Observer::momentum_residual(cells_, force_from_walls()));
@@ -511,23 +510,17 @@ class Simulation {
   /// How much of the fluid's motion about a place is every other node's.
   double lattice_oscillation(const std::array<double, 2>& place, std::optional<double> place_z) {
     solver_->fluid().settle();
-    std::vector<core::Moments<2>> section;
     const auto nearest = [](double coordinate, int nodes) {
       return static_cast<int>(std::lround(std::clamp(coordinate, -1.0 * nodes, 2.0 * nodes)));
     };
-    if constexpr (dimension == 2) {
-      section = solver_->fluid().all_moments();
-    } else {
-      const auto moments = solver_->fluid().all_moments();
-      const auto nodes = static_cast<std::size_t>(scene_.domain.nodes[0]) * scene_.domain.nodes[1];
-      const double z = units::place_on_lattice(place_z.value_or(0), setting().units.length);
-      const auto first = nodes * std::clamp(nearest(z, scene_.domain.depth->nodes), 0, scene_.domain.depth->nodes - 1);
-      for (std::size_t i = first; i < first + nodes && i < moments.size(); ++i)
-        section.push_back({moments[i].density, {moments[i].velocity[0], moments[i].velocity[1]}});
-    }
-    if (section.empty() || !std::isfinite(place[0]) || !std::isfinite(place[1])) return 0;
-    return monitor::lattice_oscillation(nearest(place[0], scene_.domain.nodes[0]),
-                                        nearest(place[1], scene_.domain.nodes[1]), section, state_.observer.domain());
+    const bool known = std::isfinite(place[0]) && std::isfinite(place[1]);
+    std::array<int, dimension> node{};
+    for (std::size_t k = 0; known && k < 2; ++k) node[k] = nearest(place[k], scene_.domain.nodes[k]);
+    if constexpr (dimension == 3)
+      node[2] =
+          nearest(units::place_on_lattice(place_z.value_or(0), setting().units.length), scene_.domain.depth->nodes);
+    const double found = monitor::lattice_oscillation(solver_->fluid(), node);
+    return known ? found : 0;
   }
 
   /// What the failure looks like, and what to do about that.
@@ -548,20 +541,28 @@ class Simulation {
     if (!remedy.empty()) failure.remedy = remedy;
   }
 
-  /// Writes the present state, unless it has gained energy that nothing gave it: that failure is returned.
-  std::optional<monitor::Failure> write(bool with_fields) {
+  /// Writes the present state, unless it has gained energy that nothing gave it: then the run fails, and false is
+  /// returned.
+  bool write(bool with_fields) {
     observe::Snapshot snapshot = state_.observer.observe(*solver_, setting(), cells_, with_fields);
-    if (!ranks_.first()) return std::nullopt;
-    course_.date(snapshot);
-    const units::LatticeUnits& units = setting().units;
-    state_.energy.follow(snapshot, setting().is_driven(),
-                         units.to_si(solver_->slight_energy(), units::dimension::energy_per_depth) /
-                             (dimension == 3 ? scene_.domain.depth->nodes : 1));
-    if (auto failure = monitor::check_energy(state_.energy, cells_, plan_, setting())) return failure;
-    state_.history.follow(snapshot);
-    state_.rheology.follow(snapshot);
-    if (directory_ != nullptr) directory_->write(snapshot);
-    return std::nullopt;
+    std::optional<monitor::Failure> failure;
+    if (ranks_.first()) {
+      course_.date(snapshot);
+      const units::LatticeUnits& units = setting().units;
+      state_.energy.follow(snapshot, setting().is_driven(),
+                           units.to_si(solver_->slight_energy(), units::dimension::energy_per_depth) /
+                               (dimension == 3 ? scene_.domain.depth->nodes : 1));
+      failure = monitor::check_energy(state_.energy, cells_, plan_, setting());
+    }
+    if (fails(std::move(failure))) return false;
+    if (ranks_.first()) {
+      state_.history.follow(snapshot);
+      state_.rheology.follow(snapshot);
+      if (directory_ != nullptr) directory_->write(snapshot);
+    } else {
+      snapshot.fields.give_all();
+    }
+    return true;
   }
 
   ProgressState progress(const plan::StageSetting& setting) {

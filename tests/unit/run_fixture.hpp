@@ -6,6 +6,8 @@
 #include <limits>
 #include <numbers>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "files/run_directory.hpp"
 #include "observe/snapshot.hpp"
@@ -27,6 +29,18 @@ inline Scene small_scene(const std::string& title = "two cells") {
   scene.domain.size = {20e-6, 10e-6};
   scene.domain.nodes = {8, 4};
   return scene;
+}
+
+/// A field whose values are known, given all at once.
+inline Field given_field(const char* name, const char* unit, int components, std::vector<double> values) {
+  return {name, unit, components, [values = std::move(values)](const Field::Take& take) { take(values); }};
+}
+
+/// All values of a field; in several bands as in one.
+inline std::vector<double> whole(const Field& field) {
+  std::vector<double> values;
+  field.give([&](const std::vector<double>& rows) { values.insert(values.end(), rows.begin(), rows.end()); });
+  return values;
 }
 
 /// Two round cells in contact, the second with `second_nodes` nodes; fields when asked for.
@@ -64,11 +78,10 @@ inline Snapshot small_snapshot(long step, bool with_fields = false, int second_n
     auto& fields = snapshot.fields;
     fields.nx = 8;
     fields.ny = 4;
-    for (int i = 0; i < 32; ++i) {
-      fields.velocity_x.push_back(static_cast<float>(i));
-      fields.velocity_y.push_back(static_cast<float>(-i));
-      fields.viscosity.push_back(1.2e-3f);
-    }
+    std::vector<double> velocity;
+    for (int i = 0; i < 32; ++i) velocity.insert(velocity.end(), {1.0 * i, -1.0 * i, 0.0});
+    fields.fields = {given_field("velocity", "m/s", 3, velocity),
+                     given_field("viscosity", "Pa s", 1, std::vector<double>(32, 1.2e-3f))};
   }
   return snapshot;
 }

@@ -130,28 +130,6 @@ void for_common_rows(const Box<D>& box, const Box<D>& other, Function function) 
   }
 }
 
-/// From the values of each block's nodes, row after row, those of the whole lattice, on the first rank; nothing on the
-/// others.
-template <class V, int D>
-std::vector<V> gather(const Ranks<D>& ranks, std::vector<V> block) {
-  if (!ranks.several()) return block;
-  if (!ranks.first()) {
-    ranks.transport->send(0, message_of(std::span<const V>(block)));
-    return {};
-  }
-  const Box<D> lattice{{}, ranks.blocks->domain(0).size};
-  std::vector<V> whole(static_cast<std::size_t>(ranks.blocks->domain(0).nodes()));
-  for (int rank = 0; rank < ranks.blocks->ranks(); ++rank) {
-    if (rank != 0) block = values_of<V>(ranks.transport->receive(rank));
-    auto from = block.begin();
-    for_common_rows(lattice, ranks.blocks->domain(rank).block, [&](std::ptrdiff_t at, int count) {
-      std::copy_n(from, count, whole.begin() + at);
-      from += count;
-    });
-  }
-  return whole;
-}
-
 /// From the values of each block's nodes, row after row, those of each block of another cut of the same lattice.
 template <class V, int D>
 std::vector<V> rearrange(const Ranks<D>& ranks, const Decomposition<D>& blocks, const std::vector<V>& values) {

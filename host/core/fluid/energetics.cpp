@@ -125,19 +125,19 @@ struct SumEnergy {
   }
 };
 
-/// Velocities of rows with a node more at both ends, and of those around the block: of all of them, or only of three
-/// layers, across the last axis, that follow each other.
+/// Velocities of rows with a node more at both ends, and of those around the block, of three layers across the last axis
+/// that follow each other.
 template <int D>
 class VelocityRows {
  public:
-  VelocityRows(const Box<D>& block, int layers) : layers_(layers) {
+  explicit VelocityRows(const Box<D>& block) {
     stride_[0] = 1;
     for (int k = 1; k < D; ++k) stride_[k] = stride_[k - 1] * (block.size(k - 1) + 2);
     for (auto& values : values_) values.resize(static_cast<std::size_t>(stride_[D - 1]) * layers);
   }
   /// Every component of a row, at x = 0; its coordinates in [-1, size].
   [[nodiscard]] std::array<double*, D> row(std::array<int, D - 1> row) {
-    row[D - 2] = (row[D - 2] + 1) % layers_ - 1;
+    row[D - 2] = (row[D - 2] + 1) % layers - 1;
     std::ptrdiff_t at = 1;
     for (int k = 1; k < D; ++k) at += stride_[k] * (row[k - 1] + 1);
     std::array<double*, D> u;
@@ -146,8 +146,8 @@ class VelocityRows {
   }
 
  private:
+  static constexpr int layers = 3;
   std::array<std::ptrdiff_t, D> stride_;
-  int layers_;
   std::array<std::vector<double>, D> values_;
 };
 
@@ -194,39 +194,68 @@ typename Fluid<T, Set>::Energetics Fluid<T, Set>::energetics() const {
   const Domain<dimension>& domain = setting_.domain;
   constexpr int last = dimension - 1;
   const int layers = lattice_.size(last), rows_of_layer = lattice_.rows() / layers;
-  // Where other blocks want velocities, those of all rows are found first.
-  const bool all_first = energetics_halo_ != nullptr;
-  VelocityRows<dimension> rows(domain.block, all_first ? layers + 2 : 3);
+  VelocityRows<dimension> rows(domain.block);
+  // Of the nodes at borders to other blocks, which tell each other of theirs before any row is summed up.
+  std::array<std::vector<double>, dimension> edge;
+  if (energetics_halo_) {
+    std::array<double*, dimension> edge_nodes;
+    for (int k = 0; k < dimension; ++k) {
+      edge[k].resize(edge_nodes_->count());
+      edge_nodes[k] = edge[k].data();
+    }
+    for (int i = 0; i < lattice_.rows(); ++i) {
+      const Row row = lattice_.row(i);
+      const bool whole = edge_nodes_->whole(row);
+      if (!whole && domain.wraps(0)) continue;
+      const std::array<double*, dimension> u = rows.row(row);  // for a moment
+      velocities(i, u);
+      for (int k = 0; k < dimension; ++k) {
+        double* const to = edge_nodes[k];
+        if (whole) {
+          std::copy_n(u[k], nx, to + edge_nodes_->place(0, row));
+        } else {
+          for (const int x : {0, nx - 1}) to[edge_nodes_->place(x, row)] = u[k][x];
+        }
+      }
+    }
+    energetics_halo_->begin(Way::out, edge_nodes);
+    energetics_halo_->end(Way::out, edge_nodes);
+  }
   const auto inside = [&](int axis, int place) {
     const int n = lattice_.size(axis);
     return domain.wraps(axis) ? (place + n) % n : (place < n ? place : -1);
   };
-  const auto find = [&](int layer) {
-    const int from = inside(last, layer);
-    if (from < 0) return;
-    if constexpr (dimension == 2) {
-      velocities(from, rows.row({layer}));
-    } else {
-      for (int y = -1; y <= lattice_.size(1); ++y) {
-        const int from_y = inside(1, y);
-        if (from_y >= 0) velocities(from_y + lattice_.size(1) * from, rows.row({y, layer}));
+  // A row of this block or, `from` negative, of others.
+  const auto find_row = [&](int from, const Row& row) {
+    const std::array<double*, dimension> u = rows.row(row);
+    if (from >= 0) velocities(from, u);
+    for (int k = 0; energetics_halo_ && k < dimension; ++k) {
+      const auto other = [&](int x) { return edge[k][static_cast<std::size_t>(edge_nodes_->place(x, row))]; };
+      if (from < 0) {
+        for (int x = -1; x <= nx; ++x) u[k][x] = other(x);
+      } else if (!domain.wraps(0)) {
+        u[k][-1] = other(-1), u[k][nx] = other(nx);
       }
     }
   };
-  if (all_first) {
-    for (int layer = -1; layer <= layers; ++layer) find(layer);
-    const std::array<double*, dimension> first_node = rows.row(Row{});
-    energetics_halo_->begin(Way::out, first_node);
-    energetics_halo_->end(Way::out, first_node);
-  } else {
-    find(-1), find(0);
-  }
+  const auto find = [&](int layer) {
+    const int from = inside(last, layer);
+    if constexpr (dimension == 2) {
+      find_row(from, {layer});
+    } else {
+      for (int y = -1; y <= lattice_.size(1); ++y) {
+        const int from_y = inside(1, y);
+        find_row(from < 0 || from_y < 0 ? -1 : from_y + lattice_.size(1) * from, {y, layer});
+      }
+    }
+  };
+  find(-1), find(0);
   enum { kinetic, membrane_power, dissipation, sum_of_velocity };
   std::vector<ExactSum> sums(sum_of_velocity + dimension);
   std::vector<double> power(static_cast<std::size_t>(nx));
   for (int i = 0; i < lattice_.rows(); ++i) {
     const Row row = lattice_.row(i);
-    if (!all_first && i % rows_of_layer == 0) find(row[last - 1] + 1);
+    if (i % rows_of_layer == 0) find(row[last - 1] + 1);
     Task task{};
     task.wall_speed[0] = last_walls_.lower, task.wall_speed[2] = last_walls_.upper;
     task.count = nx;

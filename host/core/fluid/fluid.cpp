@@ -110,12 +110,11 @@ void Fluid<T, Set>::make_halos() {
         return lattice_.offset(node[0] - block.begin[0], row_of_node(node));
       },
       early);
+  edge_nodes_ = std::make_unique<const EdgeNodes<dimension>>(block);
   energetics_halo_ = std::make_unique<Halo<double, dimension>>(
       ranks_, [](const Domain<dimension>& domain) { return velocity_copies(domain, 1); },
-      [block](const Node& node) {  // VelocityRows, energetics.cpp
-        std::ptrdiff_t at = 0;
-        for (int k = dimension - 1; k >= 0; --k) at = at * (block.size(k) + 2) + node[k] - block.begin[k];
-        return at;
+      [this, block, row_of_node](const Node& node) {
+        return edge_nodes_->place(node[0] - block.begin[0], row_of_node(node));
       });
   if (!setting_.membranes) return;
   // What the stencils of nodes above the block's own reach.
@@ -359,13 +358,19 @@ double Fluid<T, Set>::population(int q, int x, const Row& row) const {
 
 template <class T, class Set>
 void Fluid<T, Set>::moments(int i, std::vector<NodeMoments>& values) const {
+  values.resize(static_cast<std::size_t>(nx()));
+  copy_moments(i, values.data());
+}
+
+template <class T, class Set>
+void Fluid<T, Set>::copy_moments(int i, NodeMoments* to) const {
   const T* in[velocity_count];
   const Row row = lattice_.row(i);
   lattice_.row_pointers(parity_, row, in);
-  values.assign(static_cast<std::size_t>(nx()), NodeMoments{});
+  std::fill_n(to, nx(), NodeMoments{});
   mask_.for_spans(i, [&](const MaskSpan& span) {
     for (int x = span.begin; x < span.end; ++x) {
-      NodeMoments& m = values[x];
+      NodeMoments& m = to[x];
       for (int q = 0; q < velocity_count; ++q) {
         const double f = static_cast<double>(in[q][x]);
         m.density += f;
@@ -379,30 +384,49 @@ void Fluid<T, Set>::moments(int i, std::vector<NodeMoments>& values) const {
 }
 
 template <class T, class Set>
-auto Fluid<T, Set>::all_moments() const -> std::vector<NodeMoments> {
-  std::vector<NodeMoments> block, row;
-  block.reserve(static_cast<std::size_t>(nx()) * lattice_.rows());
-  for (int i = 0; i < lattice_.rows(); ++i) {
-    moments(i, row);
-    block.insert(block.end(), row.begin(), row.end());
-  }
-  return gather(ranks_, std::move(block));
+void Fluid<T, Set>::copy_relaxation_rates(int i, double* to) const {
+  const Row row = lattice_.row(i);
+  std::fill_n(to, nx(), rate_of_row(row));
+  mask_.for_spans(i, [&](const MaskSpan& span) {
+    if (!span.active || !setting_.viscosity_contrast) return;
+    const T* const rates = relaxation_rate_.row(row);
+    std::copy(rates + span.begin, rates + span.end, to + span.begin);
+  });
 }
 
 template <class T, class Set>
-std::vector<double> Fluid<T, Set>::all_relaxation_rates() {
-  std::vector<double> block;
-  for (int i = 0; i < lattice_.rows(); ++i) {
-    const Row row = lattice_.row(i);
-    const std::size_t first = block.size();
-    block.insert(block.end(), static_cast<std::size_t>(nx()), rate_of_row(row));
-    mask_.for_spans(i, [&](const MaskSpan& span) {
-      if (!span.active || !setting_.viscosity_contrast) return;
-      const T* const rates = relaxation_rate_.row(row);
-      std::copy(rates + span.begin, rates + span.end, block.begin() + static_cast<std::ptrdiff_t>(first) + span.begin);
-    });
-  }
-  return gather(ranks_, std::move(block));
+void Fluid<T, Set>::copy_population(int q, int i, T* to) const {
+  const T* in[velocity_count];
+  lattice_.row_pointers(parity_, lattice_.row(i), in);
+  std::copy_n(in[q], nx(), to);
+  mask_.for_solid(i, [&](int begin, int end) { std::fill(to + begin, to + end, T(0)); });
+}
+
+template <class T, class Set>
+void Fluid<T, Set>::gather_moments(const Bands<dimension>& bands, const Take<NodeMoments>& take) const {
+  gather_bands<NodeMoments>(
+      ranks_, setting_.domain, bands, [&](int i, NodeMoments* to) { copy_moments(i, to); }, take);
+}
+
+template <class T, class Set>
+void Fluid<T, Set>::gather_relaxation_rates(const Bands<dimension>& bands, const Take<double>& take) const {
+  gather_bands<double>(
+      ranks_, setting_.domain, bands, [&](int i, double* to) { copy_relaxation_rates(i, to); }, take);
+}
+
+template <class T, class Set>
+void Fluid<T, Set>::gather_populations(int q, const Bands<dimension>& bands, const Take<T>& take) const {
+  gather_bands<T>(
+      ranks_, setting_.domain, bands, [&](int i, T* to) { copy_population(q, i, to); }, take);
+}
+
+template <class T, class Set>
+auto Fluid<T, Set>::all_moments() const -> std::vector<NodeMoments> {
+  std::vector<NodeMoments> all;
+  if (ranks_.first()) all.reserve(static_cast<std::size_t>(setting_.domain.nodes()));
+  gather_moments(bands_of_all<dimension>(setting_.domain.size, sizeof(NodeMoments)),
+                 [&](int, const std::vector<NodeMoments>& band) { all.insert(all.end(), band.begin(), band.end()); });
+  return all;
 }
 
 template <class T, class Set>
@@ -634,17 +658,9 @@ void Fluid<T, Set>::restart_links() {
 
 template <class T, class Set>
 void Fluid<T, Set>::copy_populations(int q, std::vector<T>& values) const {
-  values.clear();
-  for (int i = 0; i < lattice_.rows(); ++i) {
-    const T* in[velocity_count];
-    lattice_.row_pointers(parity_, lattice_.row(i), in);
-    const std::size_t first = values.size();
-    values.insert(values.end(), in[q], in[q] + nx());
-    mask_.for_solid(i, [&](int begin, int end) {
-      const auto row = values.begin() + static_cast<std::ptrdiff_t>(first);
-      std::fill(row + begin, row + end, T(0));
-    });
-  }
+  values.resize(static_cast<std::size_t>(nx()) * static_cast<std::size_t>(lattice_.rows()));
+  for (int i = 0; i < lattice_.rows(); ++i)
+    copy_population(q, i, values.data() + static_cast<std::ptrdiff_t>(nx()) * i);
 }
 
 template <class T, class Set>

@@ -8,9 +8,11 @@
 #include <vector>
 
 #include "base/worker.hpp"
+#include "core/domain/bands.hpp"
 #include "core/domain/domain.hpp"
 #include "core/domain/halo.hpp"
 #include "core/model/model.hpp"
+#include "edge_nodes.hpp"
 #include "field.hpp"
 #include "lattice.hpp"
 #include "node_mask.hpp"
@@ -128,9 +130,15 @@ class Fluid {
   /// Moments of row i of the block, x = 0..nx-1, of the state before the next step. The force of that step must have
   /// been spread.
   void moments(int i, std::vector<NodeMoments>& values) const;
-  /// Of all nodes of the lattice, row after row, on the first rank; empty on the others.
+  /// Calls take(b, values) on the first rank with the values of one band of the lattice's nodes after another (gather_bands):
+  /// moments, 1/tau, or the populations of one velocity before the next collision, 0 in the solid. All ranks together.
+  template <class V>
+  using Take = std::function<void(int b, const std::vector<V>& values)>;
+  void gather_moments(const Bands<dimension>& bands, const Take<NodeMoments>& take) const;
+  void gather_relaxation_rates(const Bands<dimension>& bands, const Take<double>& take) const;
+  void gather_populations(int q, const Bands<dimension>& bands, const Take<T>& take) const;
+  /// Of all nodes of the lattice, row after row, on the first rank, which must have room for them; empty on the others.
   [[nodiscard]] std::vector<NodeMoments> all_moments() const;
-  [[nodiscard]] std::vector<double> all_relaxation_rates();
   /// Mean velocity along x of each row of the lattice (flow_rate.hpp), solid nodes counted as fluid at rest.
   [[nodiscard]] std::vector<double> row_velocities() const;
   /// The same without the half step that the membranes' forces have still to act, and so before these are known; after
@@ -164,14 +172,18 @@ class Fluid {
   [[nodiscard]] double population(int q, int x, int y) const requires(dimension == 2) {
     return population(q, x, Row{y});
   }
-  /// The block's populations of one velocity before the next collision, row after row, for checkpoints. After settle().
+  /// The block's populations of one velocity before the next collision, row after row. After settle().
   void copy_populations(int q, std::vector<T>& values) const;
   /// Whether the walls have exchanged momentum with this state of the fluid (WallStress).
   [[nodiscard]] bool walls_have_acted() const { return walls_have_acted_; }
-  /// Goes on from what copy_populations() gave: `populations(q)` returns it for every q.
+  /// Goes on from what copy_populations() or gather_populations() gave: `populations(q)` returns the block's for every q.
   void restore(const std::function<std::vector<T>(int q)>& populations, bool walls_have_acted);
 
  private:
+  /// Moments, 1/tau and populations of row i of the block, x = 0..nx-1.
+  void copy_moments(int i, NodeMoments* to) const;
+  void copy_relaxation_rates(int i, double* to) const;
+  void copy_population(int q, int i, T* to) const;
   /// Velocities of row i, x in [0, nx), and where the block wraps around in [-1, nx].
   void velocities(int i, const std::array<double*, dimension>& u) const;
   /// Nodes of the block along x.
@@ -219,7 +231,8 @@ class Fluid {
   Field<T, dimension> relaxation_rate_;
   std::vector<double> rate_of_row_;  ///< by height in the block; empty without layers
   std::unique_ptr<Halo<T, dimension>> population_halo_, velocity_halo_;  ///< null without other blocks
-  std::unique_ptr<Halo<double, dimension>> energetics_halo_;             ///< of velocities, one node deep
+  std::unique_ptr<const EdgeNodes<dimension>> edge_nodes_;               ///< null without other blocks
+  std::unique_ptr<Halo<double, dimension>> energetics_halo_;             ///< of velocities, between edge_nodes_
   bool ends_sent_ = false;                                               ///< of this step
   std::array<std::vector<T>, dimension> body_force_row_;                 ///< constant; empty without a body force
 };

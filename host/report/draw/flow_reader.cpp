@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include "files/field_nodes.hpp"
 #include "files/frames.hpp"
@@ -29,12 +30,12 @@ const BlockVelocity* FlowReader::at(std::size_t output) {
   if (!velocity_.u.values.empty() && read_ == wanted) return &velocity_;
   const std::string dataset = velocity_of(wanted);
   const files::FieldNodes grid(file_, dataset);
-  const std::vector<double> values = grid.section(file_, dataset);
   velocity_.first = grid.box().first;
   velocity_.size = grid.box().size;
   velocity_.periodic_x = grid.periodic[0];
-  velocity_.u = block_means(component_of(values, grid.nx, grid.ny, 0), most_blocks);
-  velocity_.v = block_means(component_of(values, grid.nx, grid.ny, 1), most_blocks);
+  auto [u, v] = mean_vectors(file_, grid, dataset, most_blocks);
+  velocity_.u = std::move(u);
+  velocity_.v = std::move(v);
   read_ = wanted;
   return &velocity_;
 }

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "files/hdf5_file.hpp"
+#include "observe/vorticity.hpp"
 #include "report/report.hpp"
 #include "report/report_data.hpp"
 #include "unit/run_fixture.hpp"
@@ -25,6 +26,26 @@ std::vector<double> sampled(std::size_t nx, std::size_t ny, Flow flow) {
       velocity.insert(velocity.end(), {u, v, 0.0});
     }
   return velocity;
+}
+
+/// Of velocities that are given whole.
+ScalarField vorticity(const std::vector<double>& velocity, std::size_t nx, std::size_t ny,
+                      const std::array<double, 2>& spacing, const std::array<bool, 2>& periodic) {
+  ScalarField field{nx, ny, {}};
+  const auto component = [&](std::size_t k) {
+    return [&, k](std::size_t x, std::size_t y) { return velocity[3 * (y * nx + x) + k]; };
+  };
+  const VelocityGrid grid{nx, ny, spacing, periodic};
+  for (std::size_t y = 0; y < ny; ++y)
+    for (std::size_t x = 0; x < nx; ++x) field.values.push_back(grid.vorticity(x, y, component(0), component(1)));
+  return field;
+}
+
+ScalarField block_means(const ScalarField& field, std::size_t most) {
+  BlockMeans means(field.nx, field.ny, most);
+  for (std::size_t y = 0; y < field.ny; ++y)
+    means.add_row([&](std::size_t x) { return field.values[y * field.nx + x]; });
+  return means.means();
 }
 
 std::vector<unsigned char> decoded(const std::string& text) {
@@ -83,6 +104,54 @@ TEST_CASE("the flow of a region of the domain lies where the region does") {
   for (std::size_t i = 0; i < 4; ++i) CHECK(box[i].get<double>() == Approx(wanted[i]));
 }
 
+TEST_CASE("the flow of a file that is read some rows at a time is that of all its nodes") {
+  // 20 MB of velocities, which are read in three parts; thinned to blocks of some two by two nodes.
+  constexpr std::size_t nx = 900, ny = 1001;
+  const bool periodic = GENERATE(true, false);
+  const ScratchFolder folder;
+  const auto path = folder.path() / "frames.h5";
+  const auto velocity = sampled(nx, ny, [](double x, double y) {
+    return std::pair(1e-4 * std::sin(0.02 * x + 0.03 * y), 1e-4 * std::cos(0.05 * x) * std::sin(0.01 * y));
+  });
+  {
+    Hdf5File file(path, Hdf5File::Mode::create);
+    file.attribute("/", "size_m", std::vector<double>{nx * 1e-6, ny * 1e-6});
+    file.attribute("/", "periodic_y", periodic ? 1L : 0L);
+    for (const char* group : {"/frames", "/frames/000000", "/frames/000000/fields"}) file.make_group(group);
+    file.write("/frames/000000/fields/velocity", {ny, nx, 3}, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, velocity.data(), "m/s",
+               1);
+  }
+  const auto quantities = field_data(path, {0})["quantities"];
+  const auto curl = vorticity(velocity, nx, ny, {1e-6, 1e-6}, {true, periodic});
+  ScalarField speed{nx, ny, {}};
+  for (std::size_t i = 0; i < nx * ny; ++i) speed.values.push_back(std::hypot(velocity[3 * i], velocity[3 * i + 1]));
+  for (const std::size_t k : {std::size_t{0}, std::size_t{1}}) {
+    CAPTURE(k, periodic);
+    const auto expected = block_means(k == 0 ? speed : curl, 32768);
+    CHECK(expected.ny > 100);
+    const auto found = decoded(quantities[k]["values"][0]);
+    CHECK(found == quantised(expected.values, quantities[k]["scale"].get<double>(), k == 1));
+  }
+}
+
+TEST_CASE("fields of other nodes than the first one's are refused") {
+  const ScratchFolder folder;
+  const auto path = folder.path() / "frames.h5";
+  {
+    Hdf5File file(path, Hdf5File::Mode::create);
+    file.attribute("/", "size_m", std::vector<double>{20e-6, 10e-6});
+    file.attribute("/", "periodic_y", 0L);
+    file.make_group("/frames");
+    for (const std::string frame : {"/frames/000000", "/frames/000001"}) {
+      for (const char* group : {"", "/fields"}) file.make_group(frame + group);
+      const std::vector<double> velocity(3 * 8 * 4, 1e-4);
+      file.write(frame + "/fields/velocity", {frame == "/frames/000000" ? hsize_t{4} : hsize_t{3}, 8, 3},
+                 H5T_IEEE_F32LE, H5T_NATIVE_DOUBLE, velocity.data(), "m/s");
+    }
+  }
+  CHECK_THROWS_WITH(field_data(path, {0, 1}), Catch::Contains("does not fit the nodes of other fields"));
+}
+
 TEST_CASE("the vorticity of a periodic wave converges with the square of the spacing") {
   const auto error = [](std::size_t n) {
     const double k = 2 * std::numbers::pi / double(n);
@@ -138,9 +207,12 @@ TEST_CASE("a report carries the flow of the outputs that have one") {
     RunDirectory run(folder.path(), scene);
     for (long step = 0; step < 6; ++step) {
       Snapshot snapshot = small_snapshot(step, step % 2 == 1);
-      for (double& u : snapshot.fields.velocity_x) u = 3e-4f * static_cast<float>(step);
-      for (double& v : snapshot.fields.velocity_y) v = 4e-4f * static_cast<float>(step);
-      snapshot.fields.vorticity_z.clear();
+      if (step % 2 == 1) {
+        std::vector<double> velocity;
+        for (int i = 0; i < 32; ++i)
+          velocity.insert(velocity.end(), {3e-4f * static_cast<float>(step), 4e-4f * static_cast<float>(step), 0});
+        snapshot.fields.fields.front() = given_field("velocity", "m/s", 3, velocity);
+      }
       run.write(snapshot);
     }
     run.finish(to_json(small_summary()));

@@ -224,12 +224,11 @@ Snapshot flow(const std::function<double(double y)>& u, double time, double scal
   s.relative_viscosity = s.area_drift_max = std::nan("");
   s.fields.nx = 8;
   s.fields.ny = 16;
+  std::vector<double> velocity;
   for (int j = 0; j < 16; ++j) {
-    for (int i = 0; i < 8; ++i) {
-      s.fields.velocity_x.push_back((1 + scale) * u((j + 0.5) * 20e-6 / 16));
-      s.fields.velocity_y.push_back(0);
-    }
+    for (int i = 0; i < 8; ++i) velocity.insert(velocity.end(), {(1 + scale) * u((j + 0.5) * 20e-6 / 16), 0.0, 0.0});
   }
+  s.fields.fields.push_back(given_field("velocity", "m/s", 3, velocity));
   return s;
 }
 
