@@ -16,21 +16,12 @@ namespace {
 constexpr double clear = 6;  ///< spacings between cells and an end of the window that the scene does not have
 constexpr int most_blocks = 48;
 
-/// As GhostReach has it.
-template <int D>
-double contact_reach(const core::BasicSolverSetup<D>& setup) {
-  if (setup.interactions.empty()) return 0;
-  core::Cutoffs cutoffs(1);
-  for (const double cutoff : core::cutoffs_of(setup.interactions)) cutoffs.raise(0, 0, cutoff);
-  return core::list_reach(cutoffs);
-}
-
 /// How far from a block the cells may reach that its rank hears of.
 template <int D>
-double margin_of(double contact, double longest_cell) {
+double margin_of(const core::GhostReach& reach, double longest_cell) {
   const double skin = core::GhostCells<D>::skin;
-  const double of_lattice = core::lattice_reach + skin + core::NodeMask::nodes_per_bit + longest_cell;
-  const double of_cells = contact > 0 ? 1.5 * longest_cell + contact + 2 * skin : 0;
+  const double of_lattice = reach.lattice + skin + core::NodeMask::nodes_per_bit + longest_cell;
+  const double of_cells = reach.contact > 0 ? 1.5 * longest_cell + reach.contact + 2 * skin : 0;
   return std::max(of_lattice, of_cells) + clear + 2;
 }
 
@@ -166,7 +157,7 @@ Window<D> window_around(const plan::Plan& plan, const core::Decomposition<D>& bl
     boxes.push_back(core::box_of<D>(cell, 0));
     for (int k = 0; k < D; ++k) longest = std::max(longest, boxes.back().most[k] - boxes.back().least[k]);
   });
-  const core::Box<D> box = box_around(lattice, lattice.block, margin_of<D>(contact_reach(setup), longest));
+  const core::Box<D> box = box_around(lattice, lattice.block, margin_of<D>(core::ghost_reach(setup), longest));
 
   std::vector<core::Box<D>> parts = blocks_within(blocks, rank, box);
   const bool merged = parts.size() > most_blocks;
