@@ -194,9 +194,10 @@ class Part {
     const auto run = [&](std::size_t first, std::size_t last) {
       core::run_passes(passes, first, last, solver_.bands(), Worker{}, nobody, nullptr);
     };
-    const std::size_t before_others_hear = passes.size() - 1;
-    if (runs() && before_others_hear > 0) {
-      run(0, before_others_hear), move_runner(), run(before_others_hear, passes.size());
+    if (runs() && passes.size() > 2) {
+      // Before its nodes are located: who reads their velocities goes by that, here and on other ranks.
+      const std::size_t moved = passes.size() - 2;
+      run(0, moved), move_runner(), run(moved, passes.size());
     } else {
       run(0, passes.size());
     }
@@ -485,7 +486,7 @@ void print_costs(const plan::Plan& plan, const core::Decomposition<Set::dimensio
   std::printf("  %-46s %12.2f\n", "whole step", whole * 1e6);
 
   const double word = plan.scene->numerics.precision == scene::Precision::f64 ? 8 : 4;
-  const plan::CostOfSharing by;
+  const plan::CostOfSharing by = plan::cost_of_sharing(D);
   const double plan_lattice = cost.lattice_bytes() / word * by.number_s,
                plan_ghosts = static_cast<double>(cost.ghost_nodes) * by.ghost_s,
                plan_shown = cost.sharing_s - plan_lattice - plan_ghosts;

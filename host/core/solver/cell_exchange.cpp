@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 #include <map>
+#include <stdexcept>
 #include <utility>
 
 namespace rouleau::core {
@@ -29,6 +30,7 @@ class CellExchange<D>::Unpacker {
   explicit Unpacker(Message message) : message_(std::move(message)) {}
   template <class V>
   void operator()(V* values, std::size_t count) {
+    if (count * sizeof(V) > message_.size() - at_) throw std::logic_error("a message about cells ends too early");
     if (count > 0) std::memcpy(static_cast<void*>(values), message_.data() + at_, count * sizeof(V));
     at_ += count * sizeof(V);
   }

@@ -22,15 +22,15 @@ namespace rouleau::plan {
 
 namespace {
 
-constexpr CostOfSharing cost_of_sharing;
-
 /// Bytes that a rank takes besides its block: measured (docs/scaling.md).
 namespace memory {
-constexpr double of_process = 30e6;    ///< the program, its libraries and MPI
-constexpr double of_each_cell = 2000;  ///< of the scene: as it was read, where it begins, what lists of it are empty
-/// Of each node of the scene, on the first rank, which is given all of all cells.
+constexpr double of_process = 30e6;   ///< the program, its libraries and MPI
+constexpr double of_each_cell = 600;  ///< of the scene: as it was read, where it begins, what lists of it are empty
+/// On the first rank, which is given all of all cells, and writes: of cells and nodes that it does not know otherwise.
 template <int D>
-constexpr double of_each_node = D == 2 ? 95 : 500;
+constexpr double of_writer(double cells, double nodes) {
+  return 10e6 + (D == 2 ? 3300 * cells + 80 * nodes : 500 * nodes);
+}
 /// Of a rank's own nodes and those of its ghosts, of which surfaces keep no lists. Pages hold several outlines.
 template <int D>
 constexpr double of_known(double own, double ghosts) {
@@ -163,7 +163,7 @@ void add_cells(const Plan& plan, const core::Decomposition<D>& blocks, std::vect
     const double bytes = nodes[c] * of_node + word;
     RankCost& own = ranks[owner[c]];
     own.position_bytes += bytes;
-    own.sharing_s += nodes[c] * cost_of_sharing.shown_s;
+    own.sharing_s += nodes[c] * cost_of_sharing(D).shown_s;
     ranks[rank].received_bytes += bytes;
     ranks[rank].ghost_nodes += nodes[c];
   }
@@ -187,7 +187,7 @@ void add_cells(const Plan& plan, const core::Decomposition<D>& blocks, std::vect
     const double agreed = static_cast<double>(agreements) * 4 * word;
     rank.position_bytes += agreed;
     rank.received_bytes += agreed;
-    rank.sharing_s += static_cast<double>(rank.ghost_nodes) * cost_of_sharing.ghost_s;
+    rank.sharing_s += static_cast<double>(rank.ghost_nodes) * cost_of_sharing(D).ghost_s;
   }
 }
 
@@ -204,14 +204,12 @@ std::vector<RankCost> costs_of(const Plan& plan, const core::Decomposition<D>& b
     RankCost& cost = ranks[rank];
     cost.nodes = static_cast<long>(core::row_count(block)) * block.size(0);
     const double nodes = static_cast<double>(cost.nodes), all = static_cast<double>(blocks.domain(rank).nodes());
+    const auto own = static_cast<double>(cost.membrane_nodes), ghosts = static_cast<double>(cost.ghost_nodes),
+               cells = static_cast<double>(scene.cells.size());
     cost.memory_bytes = memory::of_process + lattice * nodes / all;
-    if (plan.has_cells) {
-      cost.memory_bytes +=
-          memory::of_known<D>(static_cast<double>(cost.membrane_nodes), static_cast<double>(cost.ghost_nodes)) +
-          (rank == 0 ? membrane_nodes(scene) * memory::of_each_node<D> : 0) +
-          static_cast<double>(scene.cells.size()) * memory::of_each_cell;
-    }
-    cost.sharing_s += cost.lattice_bytes() / word * cost_of_sharing.number_s;
+    if (plan.has_cells) cost.memory_bytes += memory::of_known<D>(own, ghosts) + cells * memory::of_each_cell;
+    if (rank == 0) cost.memory_bytes += memory::of_writer<D>(cells, plan.has_cells ? membrane_nodes(scene) - own : 0);
+    cost.sharing_s += cost.lattice_bytes() / word * cost_of_sharing(D).number_s;
     cost.step_s = step_cost(nodes, static_cast<double>(cost.membrane_nodes), scene.numerics.precision, D, cutoff);
   }
   return ranks;
