@@ -182,7 +182,7 @@ class Part {
         solver_(setup_of(window, ranks), cells_, ranks) {
     solver_.start();
     solver_.fluid().set_profile([&](double y) { return window.flow.velocity(y); },
-                                [&](double y) { return window.flow.rate(y); });
+                                [&](double y) { return window.flow.slope(y); });
   }
   Part(const Part&) = delete;
   Part& operator=(const Part&) = delete;

@@ -172,14 +172,8 @@ Window<D> window_around(const plan::Plan& plan, const core::Decomposition<D>& bl
   const core::Domain<D> domain(size, lattice.periodic);
 
   typename Window<D>::Flow flow;
-  if (lattice.walled(1) && !scene.domain.tube_radius) {
-    const double height = lattice.size[1];
-    flow = {.mean = (setup.walls.lower + setup.walls.upper) / 2,
-            .slope = (setup.walls.upper - setup.walls.lower) / height,
-            .curvature = setup.body_force_x / setup.viscosity(),
-            .half = height / 2,
-            .bottom = static_cast<double>(box.begin[1])};
-  }
+  if (lattice.walled(1) && !scene.domain.tube_radius)
+    flow = {.of_scene = core::channel_flow(setup), .bottom = static_cast<double>(box.begin[1])};
   const auto speed = [&](const core::BoundingBox<D>& cell) {
     const double bottom = box.begin[1];
     return std::max(std::abs(flow.velocity(cell.least[1] - bottom)), std::abs(flow.velocity(cell.most[1] - bottom)));

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/domain/decomposition.hpp"
+#include "core/fluid/channel_flow.hpp"
 #include "core/solver/solver_setup.hpp"
 #include "plan/placed_cells.hpp"
 #include "plan/plan.hpp"
@@ -31,14 +32,10 @@ struct Window {
   /// Velocity of the fluid along x at a height of the window, and its slope: the first stage's developed flow without cells;
   /// between no walls across y it is at rest.
   struct Flow {
-    double mean = 0, slope = 0, curvature = 0;  ///< of walls and force, from the middle of the scene's lattice
-    double half = 0, bottom = 0;                ///< its height over 2, and where the window begins
-    [[nodiscard]] double from_middle(double y) const { return y + bottom - half + 0.5; }
-    [[nodiscard]] double velocity(double y) const {
-      const double s = from_middle(y);
-      return mean + slope * s + curvature * (half * half - s * s) / 2;
-    }
-    [[nodiscard]] double rate(double y) const { return slope - curvature * from_middle(y); }
+    core::ChannelFlow of_scene;
+    double bottom = 0;  ///< where the window begins
+    [[nodiscard]] double velocity(double y) const { return of_scene.velocity(y + bottom); }
+    [[nodiscard]] double slope(double y) const { return of_scene.slope(y + bottom); }
   } flow;
 };
 

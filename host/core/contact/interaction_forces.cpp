@@ -82,9 +82,7 @@ void InteractionForces::run(Worker worker, int phase, Membranes& membranes) {
 
 void InteractionForces::forget(const Membranes& membranes, std::span<const Range> nodes) {
   contacts_.forget(membranes, nodes);
-  for (int cell = 0; cell < membranes.cell_count(); ++cell) {
-    if (!membranes.knows(cell)) reactions_[cell] = {};
-  }
+  membranes.forget_unknown_of(reactions_);
 }
 
 // Pairs are listed by type of the other cell, so that a potential gets its distances in one piece.

@@ -106,10 +106,7 @@ void NeighbourList::refresh(Worker worker, const Membranes& membranes, const Seg
   const double skin = suitable_skin(membranes);
   // Every worker sorts all cells: that is quicker than to wait for one who does.
   std::vector<BoundingBox<2>> boxes;
-  for (const int cell : membranes.known_cells()) {
-    const Bounds& b = segments.bounds[cell];
-    boxes.push_back({{b.x_min, b.y_min}, {b.x_max, b.y_max}});
-  }
+  for (const int cell : membranes.known_cells()) boxes.push_back(box_of(segments.bounds[cell]));
   const CellGrid<2> grid(boxes, cutoffs_.largest() + 2 * skin, domain_);
   int place = cells.first_place();  // among the known cells
   for (const int cell : cells) {
@@ -206,9 +203,7 @@ void NeighbourList::list_candidates(const Membranes& membranes, int cell, Pair& 
 
 void NeighbourList::forget(const Membranes& membranes, std::span<const Range> nodes) {
   watch_.forget(membranes, nodes);
-  for (int cell = 0; cell < membranes.cell_count(); ++cell) {
-    if (!membranes.knows(cell)) lists_[cell] = {};
-  }
+  membranes.forget_unknown_of(lists_);
 }
 
 void NeighbourList::link(Worker worker, const Membranes& membranes) {

@@ -176,9 +176,7 @@ void SurfaceContacts::refresh(Worker worker, const Surfaces& surfaces) {
 
 void SurfaceContacts::forget(const Surfaces& surfaces, std::span<const Range> nodes) {
   watch_.forget(surfaces, nodes);
-  for (int cell = 0; cell < surfaces.cell_count(); ++cell) {
-    if (!surfaces.knows(cell)) lists_[cell] = {};
-  }
+  surfaces.forget_unknown_of(lists_);
 }
 
 /// Images of other cells' triangles that may lie within the reach of some node of a cell.

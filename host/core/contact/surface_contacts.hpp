@@ -54,7 +54,6 @@ class SurfaceContacts {
   void forget(const Surfaces& surfaces, std::span<const Range> nodes);
   /// How often lists were made.
   [[nodiscard]] long renewals() const { return renewals_; }
-  [[nodiscard]] const Cutoffs& cutoffs() const { return cutoffs_; }
 
  private:
   struct Candidate {

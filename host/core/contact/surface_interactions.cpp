@@ -62,9 +62,7 @@ void SurfaceInteractions::run(Worker worker, int phase, Surfaces& surfaces) {
 
 void SurfaceInteractions::forget(const Surfaces& surfaces, std::span<const Range> nodes) {
   contacts_.forget(surfaces, nodes);
-  for (int cell = 0; cell < surfaces.cell_count(); ++cell) {
-    if (!surfaces.knows(cell)) reactions_[cell] = {};
-  }
+  surfaces.forget_unknown_of(reactions_);
 }
 
 void SurfaceInteractions::evaluate(int cell, const Surfaces& surfaces, bool energy, std::vector<ContactState>* next,

@@ -168,13 +168,10 @@ void InteriorField<T>::set_rates(const Surfaces& surfaces, Range own, Field<T, 3
 template <class T>
 void InteriorField<T>::restore(DisplacementWatch::Memory memory, Surfaces& surfaces, Field<T, 3>& relaxation_rate,
                                NodeMask& mask) {
-  if (memory.any(surfaces)) {
-    memory.exchange_places(surfaces);
+  watch_.recall(std::move(memory), surfaces, [&] {
     cover(Worker{}, surfaces);
     update(Worker{}, surfaces, relaxation_rate, mask);
-    memory.exchange_places(surfaces);
-  }
-  watch_.recall(std::move(memory));
+  });
 }
 
 template class InteriorField<float>;

@@ -138,13 +138,10 @@ void ViscosityField<T>::update(Worker worker, const Membranes& membranes, Field<
 template <class T>
 void ViscosityField<T>::restore(DisplacementWatch::Memory memory, Membranes& membranes, Field<T, 2>& relaxation_rate,
                                 NodeMask& mask) {
-  if (memory.any(membranes)) {
-    memory.exchange_places(membranes);
+  watch_.recall(std::move(memory), membranes, [&] {
     cover(Worker{}, membranes);
     update(Worker{}, membranes, relaxation_rate, mask);
-    memory.exchange_places(membranes);
-  }
-  watch_.recall(std::move(memory));
+  });
 }
 
 template <class T>

@@ -39,11 +39,7 @@ void CellNodes::forget(std::span<const Range> nodes) {
   for (auto* values : {&x, &y, &z, &force_x, &force_y, &force_z, &velocity_x, &velocity_y, &velocity_z})
     release(*values, nodes);
   for (ElementState& of_all : state) release(of_all.value, nodes);
-  for (ContactMemory* memory : {&contacts, &wall_contacts}) {
-    for (std::size_t c = 0; c < memory->of_cell.size(); ++c) {
-      if (!knows(static_cast<int>(c))) memory->of_cell[c] = {};
-    }
-  }
+  for (ContactMemory* memory : {&contacts, &wall_contacts}) forget_unknown_of(memory->of_cell);
 }
 
 }  // namespace rouleau::core

@@ -52,7 +52,6 @@ class CellNumbers {
   [[nodiscard]] Iterator begin() const { return {places_.begin, listed_}; }
   [[nodiscard]] Iterator end() const { return {places_.end, listed_}; }
   [[nodiscard]] bool empty() const { return places_.begin == places_.end; }
-  [[nodiscard]] int size() const { return places_.end - places_.begin; }
   /// Another one for every worker that has any.
   [[nodiscard]] int first_place() const { return places_.begin; }
 
@@ -112,6 +111,13 @@ struct CellNodes {
   [[nodiscard]] std::vector<Range> unknown_nodes() const { return nodes_in_runs(false); }
   /// Takes no memory for what is known of these nodes and for what their cells remember; both is gone.
   void forget(std::span<const Range> nodes);
+  /// Makes nothing of what is kept of cells that this rank does not know. `of_cells`: one for each cell.
+  template <class V>
+  void forget_unknown_of(std::vector<V>& of_cells) const {
+    for (std::size_t c = 0; c < of_cells.size(); ++c) {
+      if (!knows(static_cast<int>(c))) of_cells[c] = {};
+    }
+  }
 
  private:
   [[nodiscard]] std::vector<Range> nodes_in_runs(bool of_known) const;

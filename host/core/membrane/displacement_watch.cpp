@@ -63,9 +63,7 @@ DisplacementWatch::DisplacementWatch(const CellNodes& cells) : memory_(cells), m
 
 void DisplacementWatch::forget(const CellNodes& cells, std::span<const Range> nodes) {
   for (auto* places : {&memory_.x, &memory_.y, &memory_.z}) release(*places, nodes);
-  for (int c = 0; c < cells.cell_count(); ++c) {
-    if (!cells.knows(c)) moved_[c] = 0;
-  }
+  cells.forget_unknown_of(moved_);
 }
 
 void DisplacementWatch::measure(Worker worker, const CellNodes& nodes) {

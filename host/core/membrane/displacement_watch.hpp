@@ -57,8 +57,17 @@ class DisplacementWatch {
   /// What was remembered of cells that are not known, which have these nodes, is gone, and takes no memory. They have not
   /// moved.
   void forget(const CellNodes& cells, std::span<const Range> nodes);
-  /// Goes on from another watch's memory of the same cells.
-  void recall(Memory memory) { memory_ = std::move(memory); }
+  /// Goes on from another watch's memory of the same cells. If something is remembered of them, renew() is called with the
+  /// known cells where they were: makes again what was made then.
+  template <class Renew>
+  void recall(Memory memory, CellNodes& cells, Renew renew) {
+    if (memory.any(cells)) {
+      memory.exchange_places(cells);
+      renew();
+      memory.exchange_places(cells);
+    }
+    memory_ = std::move(memory);
+  }
 
  private:
   void measure_cell(int cell, const CellNodes& nodes);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "core/fluid/channel_flow.hpp"
 #include "core/fluid/flow_rate.hpp"
 #include "core/membrane/motion.hpp"
 
@@ -171,22 +172,14 @@ void Solver<T, Set>::start(Solver* former) {
     const auto at = [&](double y) { return profile[static_cast<std::size_t>(y)]; };
     fluid_.set_profile([&](double y) { return at(y).velocity; }, [&](double y) { return at(y).slope; });
   } else if (setup_.developed) {
-    // Couette and Poiseuille flow and what oscillates around them, y from the middle of the channel.
-    const int height = setup_.domain.size[1];
-    const double half_height = height / 2.0, middle = half_height - 0.5;
-    const double rate = (setup_.walls.upper - setup_.walls.lower) / height;
-    const double mean = (setup_.walls.upper + setup_.walls.lower) / 2;
-    const double curvature = setup_.body_force_x / setup_.viscosity();
-    const auto oscillating = [&](double s) {
-      return setup_.oscillation.any() ? oscillating_profile(setup_.oscillation, setup_.viscosity(), height, s)
+    const ChannelFlow flow = channel_flow(setup_);
+    const auto oscillating = [&](double y) {
+      return setup_.oscillation.any() ? oscillating_profile(setup_.oscillation, setup_.viscosity(),
+                                                            setup_.domain.size[1], flow.from_middle(y))
                                       : ProfilePoint{0, 0};
     };
-    fluid_.set_profile(
-        [&](double y) {
-          const double s = y - middle;
-          return mean + rate * s + curvature * (half_height * half_height - s * s) / 2 + oscillating(s).velocity;
-        },
-        [&](double y) { return rate - curvature * (y - middle) + oscillating(y - middle).slope; });
+    fluid_.set_profile([&](double y) { return flow.velocity(y) + oscillating(y).velocity; },
+                       [&](double y) { return flow.slope(y) + oscillating(y).slope; });
   } else if (former != nullptr) {
     faster = setup_.time_step / former->setup_.time_step;
     if (cell_tasks_) {
