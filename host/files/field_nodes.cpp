@@ -13,11 +13,12 @@ FieldNodes::FieldNodes(const Hdf5File& file, const std::string& dataset) {
   ny = shape.at(space);
   nx = shape.at(space + 1);
   const bool part = file.has_attribute("/", "fields_first_m");
-  const std::array<std::size_t, 2> nodes{nx, ny};
-  for (std::size_t axis = 0; axis < 2; ++axis) {
+  const std::array<std::size_t, 3> nodes{nx, ny, nz};
+  for (std::size_t axis = 0; axis < 2 + space; ++axis) {
     const double length = file.read_attribute("/", "size_m", axis);
     spacing[axis] = part ? file.read_attribute("/", "fields_spacing_m", axis) : length / double(nodes[axis]);
     first[axis] = part ? file.read_attribute("/", "fields_first_m", axis) : spacing[axis] / 2;
+    if (axis == 2) break;
     const bool whole = std::abs(spacing[axis] * double(nodes[axis]) - length) < 1e-6 * length;
     periodic[axis] = whole && (axis == 0 || file.read_attribute("/", "periodic_y") != 0);
   }
@@ -29,6 +30,11 @@ FieldNodes::Box FieldNodes::box() const {
 
 std::vector<double> FieldNodes::rows(const Hdf5File& file, const std::string& dataset, std::size_t begin,
                                      std::size_t end) const {
+  return values(file, dataset, {nz / 2, nz / 2 + 1}, {begin, end});
+}
+
+std::vector<double> FieldNodes::values(const Hdf5File& file, const std::string& dataset, Range layers,
+                                       Range rows) const {
   static_cast<void>(file.elements(dataset));  // refuses more than the file can hold
   const auto shape = file.shape(dataset);
   const std::size_t space = file.has_attribute("/", "periodic_z") ? 1 : 0;
@@ -38,9 +44,10 @@ std::vector<double> FieldNodes::rows(const Hdf5File& file, const std::string& da
     throw Error(Cause::input_output, Place{file.path().string()},
                 dataset + " does not fit the nodes of other fields: the file is damaged; repeat the run");
   std::vector<hsize_t> from(shape.size(), 0), to(shape.begin(), shape.end());
-  if (space == 1) from[0] = nz / 2, to[0] = nz / 2 + 1;
-  from[space] = begin, to[space] = end;
-  std::vector<double> values((end - begin) * nx * (shape.size() > space + 2 ? shape.back() : 1));
+  if (space == 1) from[0] = layers[0], to[0] = layers[1];
+  from[space] = rows[0], to[space] = rows[1];
+  std::vector<double> values((layers[1] - layers[0]) * (rows[1] - rows[0]) * nx *
+                             (shape.size() > space + 2 ? shape.back() : 1));
   if (!values.empty()) file.read(dataset, H5T_NATIVE_DOUBLE, from, to, values.data());
   return values;
 }

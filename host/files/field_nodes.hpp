@@ -27,10 +27,19 @@ struct FieldNodes {
   [[nodiscard]] std::vector<double> section(const Hdf5File& file, const std::string& dataset) const {
     return rows(file, dataset, 0, ny);
   }
+  /// Of all rows of all layers.
+  [[nodiscard]] std::vector<double> all(const Hdf5File& file, const std::string& dataset) const {
+    return values(file, dataset, {0, nz}, {0, ny});
+  }
   std::size_t nx = 0, ny = 0;
   std::size_t nz = 1;                        ///< layers that the field has
-  std::array<double, 2> spacing{}, first{};  ///< m
+  std::array<double, 3> spacing{}, first{};  ///< m; along z 0 in two dimensions
   std::array<bool, 2> periodic{};
+
+ private:
+  using Range = std::array<std::size_t, 2>;
+  [[nodiscard]] std::vector<double> values(const Hdf5File& file, const std::string& dataset, Range layers,
+                                           Range rows) const;
 };
 
 }  // namespace rouleau::files

@@ -15,17 +15,11 @@ std::optional<VelocityField> last_velocity(const std::filesystem::path& frames) 
   VelocityField field{file.read_attribute(group, "time_s"),
                       static_cast<std::size_t>(file.read_attribute(group, "stage")),
                       nodes.nx,
-                      nodes.ny,
                       {},
                       {},
-                      {}};
-  for (std::size_t j = 0; j < nodes.ny; ++j)
-    field.y.push_back(nodes.first[1] + static_cast<double>(j) * nodes.spacing[1]);
-  const std::vector<double> vectors = nodes.section(file, dataset);
-  for (std::size_t i = 0; i + 2 < vectors.size(); i += 3) {
-    field.velocity_x.push_back(vectors[i]);
-    field.velocity_y.push_back(vectors[i + 1]);
-  }
+                      nodes.all(file, dataset)};
+  for (std::size_t j = 0; j < nodes.ny; ++j) field.y.push_back(nodes.first[1] + double(j) * nodes.spacing[1]);
+  for (std::size_t k = 0; k < nodes.nz; ++k) field.z.push_back(nodes.first[2] + double(k) * nodes.spacing[2]);
   return field;
 }
 

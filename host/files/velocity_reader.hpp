@@ -11,9 +11,9 @@ namespace rouleau::files {
 struct VelocityField {
   double time;        ///< s
   std::size_t stage;  ///< number of the scene's stage
-  std::size_t nx, ny;
-  std::vector<double> y;                       ///< heights of the rows, m
-  std::vector<double> velocity_x, velocity_y;  ///< m/s, x fastest
+  std::size_t nx;
+  std::vector<double> y, z;      ///< of the rows, m; in two dimensions one z, 0
+  std::vector<double> velocity;  ///< m/s, three components beside each other, then x, y, z
 };
 
 /// Nothing where no frame has a velocity. Throws Error(input_output).

@@ -117,7 +117,7 @@ double largest_cutoff(const Plan& plan) {
   for (std::size_t i = 0; i < plan.interactions.size(); ++i) {
     const PlannedModel& model = plan.interactions[i];
     const scene::Interaction& between = plan.scene->interactions[i];
-    if (!model.active() || between.with_wall() || between.with_self()) continue;
+    if (!model.active() || between.with_wall()) continue;
     const plugin::ModelInstance potential(*model.manifest, model.parameters.values,
                                           plan.stages.front().model_setting(plan.scene->fluid.inertia));
     largest = std::max(largest, potential.interaction().cutoff(potential.self()));

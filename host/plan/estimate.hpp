@@ -12,7 +12,7 @@ namespace rouleau::plan {
 /// a membrane node cost 200 ns.
 double step_cost(double lattice_nodes, double membrane_nodes, scene::Precision precision, int dimension = 2,
                  double cutoff = 3.7);
-/// Of the interactions between cells, spacings; 0 in two dimensions, where a step's cost knows of none.
+/// Of the interactions between cells and within them, spacings; 0 in two dimensions, where a step's cost knows of none.
 double largest_cutoff(const Plan& plan);
 
 /// At most: stages that end at rest or at a fault write less. HDF5's own share was measured (tests/commands).

@@ -167,6 +167,7 @@ std::vector<PackedCells> packed_cells(const scene::Scene& scene) {
 std::vector<PlannedPass> planned_passes(const Plan& plan) {
   const scene::Scene& scene = *plan.scene;
   const bool slip = scene.numerics.slip_correction, area = scene.numerics.area_correction;
+  const bool space = scene.domain.depth.has_value();
   std::vector<std::string> parties;
   if (plan.has_interactions) parties.emplace_back("between cells");
   if (plan.has_wall_interactions) parties.emplace_back("between cells and walls");
@@ -175,9 +176,9 @@ std::vector<PlannedPass> planned_passes(const Plan& plan) {
       {"membrane", std::to_string(scene.cells.size()) + " cells resist deformation" +
                        (plan.semi_implicit ? "; semi-implicit step" : "")},
       {"interaction", "an active potential acts " + listed(parties)},
-      {"corrections", slip                 ? (area ? "membranes neither slip nor leak" : "membranes do not slip")
-                      : scene.domain.depth ? "cells keep their volumes"
-                                           : "cells keep their areas"},
+      {"corrections", slip    ? (area ? "membranes neither slip nor leak" : "membranes do not slip")
+                      : space ? "cells keep their volumes"
+                              : "cells keep their areas"},
       {"indicator", "inside and outside of a cell have different viscosities"},
       {"activity", "marks the nodes near membranes, which alone carry force and velocity"},
       {"spread", "membrane forces act on the fluid"},
@@ -185,9 +186,9 @@ std::vector<PlannedPass> planned_passes(const Plan& plan) {
       {"interpolate", "membranes move with the fluid"},
       {"move", "new positions of membrane nodes"}};
   const core::StepFeatures features{.cells = plan.has_cells,
-                                    .interactions = plan.has_interactions,
+                                    .interactions = plan.has_interactions || (space && plan.has_self_interactions),
                                     .wall_interactions = plan.has_wall_interactions,
-                                    .self_interactions = plan.has_self_interactions,
+                                    .self_interactions = !space && plan.has_self_interactions,
                                     .viscosity_contrast = plan.viscosity_contrast,
                                     .slip_correction = plan.has_cells && slip,
                                     .area_correction = plan.has_cells && area};
@@ -220,7 +221,7 @@ std::vector<Omission> omissions(const Plan& plan) {
     if (!scene.numerics.area_correction)
       omit("area correction",
            std::string("numerics.area_correction is false: leaks show as ") + (space ? "volume" : "area") + " drift");
-    if (!plan.has_interactions) {
+    if (!plan.has_interactions && !(space && plan.has_self_interactions)) {
       const bool others = plan.has_wall_interactions || plan.has_self_interactions;
       omit("neighbour search", scene.interactions.empty() ? "the scene has no interaction"
                                : others                   ? "no interaction between cells is active"

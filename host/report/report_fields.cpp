@@ -158,7 +158,7 @@ VelocityMeans add_velocity(const files::Hdf5File& file, const files::FieldNodes&
   const auto blocks = [&](std::size_t at_most) { return BlockMeans(grid.nx, grid.ny, at_most); };
   BlockMeans speed = blocks(most), vorticity = blocks(most), u = blocks(tracers.most()), v = blocks(tracers.most());
   FieldRows rows(file, grid, dataset);
-  const observe::VelocityGrid differences{grid.nx, grid.ny, grid.spacing, grid.periodic};
+  const observe::VelocityGrid differences{grid.nx, grid.ny, {grid.spacing[0], grid.spacing[1]}, grid.periodic};
   const auto component = [&rows](std::size_t k) {
     return [&rows, k](std::size_t x, std::size_t y) { return rows.at(x, y, k); };
   };

@@ -99,24 +99,12 @@ std::optional<double> read_tube(const SceneFields& fields, const Domain& domain)
 /// What is there in two dimensions only, so far.
 void check_space(const SceneFields& fields, const Scene& scene) {
   if (!scene.domain.depth) return;
-  for (std::size_t i = 0; i < scene.interactions.size(); ++i) {
-    const Interaction& interaction = scene.interactions[i];
-    if (!interaction.with_self()) continue;
+  if (!scene.cells.empty() && scene.numerics.slip_correction) {
     fields.attempt([&] {
-      fields.refuse(json::child_pointer("/interactions", i) + "/between",
-                    "cells act on themselves in two dimensions only so far\nname two cell types, or leave this "
-                    "interaction out");
+      fields.refuse("/numerics/slip_correction",
+                    "there is no such thing in three dimensions yet\nset it to false, or leave it out");
     });
   }
-  const auto in_plane_only = [&](const char* key, bool asked_for, const char* instead) {
-    if (!asked_for) return;
-    fields.attempt(
-        [&] { fields.refuse(key, std::string("there is no such thing in three dimensions yet\n") + instead); });
-  };
-  const bool cells = !scene.cells.empty();
-  in_plane_only("/numerics/slip_correction", cells && scene.numerics.slip_correction,
-                "set it to false, or leave it out");
-  in_plane_only("/fluid/layers", cells && !scene.fluid.layers.empty(), "leave the layers or the cells out");
   if (scene.domain.tube_radius && !scene.fluid.layers.empty()) {
     fields.attempt([&] {
       fields.refuse("/fluid/layers", "layers lie along plane walls, and this domain is a tube\nleave the layers out");
@@ -124,11 +112,14 @@ void check_space(const SceneFields& fields, const Scene& scene) {
   }
   for (const Stage& stage : scene.stages) {
     if (stage.start != WallStart::developed || !scene.domain.is_duct()) continue;
+    const char* const unknown = stage.oscillates()            ? "an oscillation settles to in "
+                                : !scene.fluid.layers.empty() ? "layers settle to in "
+                                                              : nullptr;
+    if (unknown == nullptr) continue;
     fields.attempt([&] {
-      fields.refuse(stage.pointer + "/start",
-                    std::string("a developed flow is set between two walls only, and ") +
-                        (scene.domain.tube_radius ? "this domain is a tube" : "domain.z has walls, too") +
-                        "\nleave start out, and let the flow come to be");
+      fields.refuse(stage.pointer + "/start", std::string("the flow that ") + unknown +
+                                                  (scene.domain.tube_radius ? "a tube" : "a duct") +
+                                                  " is not known\nleave start out, and let the flow come to be");
     });
   }
 }

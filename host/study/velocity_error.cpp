@@ -1,6 +1,8 @@
 #include <cmath>
+#include <functional>
 #include <limits>
 
+#include "core/fluid/duct_flow.hpp"
 #include "exact_flow.hpp"
 #include "files/velocity_reader.hpp"
 #include "plan/read_scene.hpp"
@@ -19,9 +21,9 @@ Measured no_velocity_error(std::string why_not) {
 std::string why_no_exact_flow(const scene::Scene& scene) {
   if (!scene.cells.empty() || !scene.packings.empty())
     return "the scene has cells, and the exact flow is of the fluid alone";
-  if (scene.domain.depth) return "the exact flow is of two dimensions, and the scene has three";
   if (!scene.fluid.layers.empty()) return "the fluid has layers, and the exact flow is of one viscosity";
-  return scene.domain.periodic_y ? "the scene has no walls" : "";
+  if (!scene.domain.periodic_y) return "";
+  return scene.domain.is_duct() ? "the scene has no walls across y" : "the scene has no walls";
 }
 std::string why_no_exact_flow(const Quantity& quantity, const scene::Scene& scene, const scene::Stage& stage,
                               bool first) {
@@ -35,9 +37,40 @@ std::string why_no_exact_flow(const Quantity& quantity, const scene::Scene& scen
     return "a force drives the fluid in the stage " + stage.name;
   if (!quantity.steady && !first)
     return "the start-up is known of a fluid at rest, and the stage " + stage.name + " is not the first";
+  if (!quantity.steady && scene.domain.is_duct() && !scene.domain.tube_radius)
+    return "the start-up is known between two walls and in a tube, and the scene has a duct";
   if (!quantity.steady && !quantity.poiseuille && stage.start == scene::WallStart::developed)
     return "the stage " + stage.name + " starts with the developed flow";
   return "";
+}
+
+/// Velocity along x at a time; y and z from the lower walls, SI units.
+using ExactFlow = std::function<double(double y, double z)>;
+
+ExactFlow exact_flow(const Quantity& quantity, const scene::Scene& scene, const scene::Stage& stage, double time) {
+  const scene::Domain& domain = scene.domain;
+  const double viscosity = scene.fluid.viscosity, force = scene::driving_force(stage, scene).x() / viscosity;
+  const double kinematic = viscosity / (scene.fluid.density * stage.density_factor);  // as it is simulated
+  constexpr double long_ago = std::numeric_limits<double>::infinity();
+  const double height = domain.size.y(), half = height / 2, half_depth = domain.depth ? domain.depth->size / 2 : 0;
+  if (domain.tube_radius) {
+    const double radius = *domain.tube_radius, fastest = force * radius * radius / 4;
+    const double since = quantity.steady ? long_ago : time * kinematic / (radius * radius);
+    return
+        [=](double y, double z) { return fastest * tube_start(std::hypot(y - half, z - half_depth) / radius, since); };
+  }
+  if (domain.is_duct()) {
+    const double wall = stage.shear_rate * half;
+    const core::DuctFlow duct{height, 2 * half_depth, {-wall, wall}, force};
+    return [=](double y, double z) { return duct.at(y - half, z - half_depth).velocity; };
+  }
+  const double since = quantity.steady ? long_ago : time * kinematic / (height * height);
+  if (quantity.poiseuille) {
+    const double fastest = force * height * height / 8;
+    return [=](double y, double) { return fastest * poiseuille_start(y / height, since); };
+  }
+  const double fastest = stage.shear_rate * half;
+  return [=](double y, double) { return fastest * couette_start(y / height - 0.5, since); };
 }
 
 }  // namespace
@@ -51,22 +84,15 @@ Measured velocity_error(const Quantity& quantity, const std::filesystem::path& r
   if (const std::string why_not = why_no_exact_flow(quantity, scene, stage, field->stage == 0); !why_not.empty())
     return no_velocity_error(why_not);
 
-  const double height = scene.domain.size.y(), viscosity = scene.fluid.viscosity;
-  const double kinematic = viscosity / (scene.fluid.density * stage.density_factor);  // as it is simulated
-  const double time =
-      quantity.steady ? std::numeric_limits<double>::infinity() : field->time * kinematic / (height * height);
-  const double fastest = quantity.poiseuille
-                             ? scene::driving_force(stage, scene).x() * height * height / (8 * viscosity)
-                             : stage.shear_rate * height / 2;
-  std::vector<double> value = field->velocity_x, exact;
-  for (const double y : field->y) {
-    const double s = y / height;
-    const double u = fastest * (quantity.poiseuille ? poiseuille_start(s, time) : couette_start(s - 0.5, time));
-    exact.insert(exact.end(), field->nx, u);
+  const ExactFlow flow = exact_flow(quantity, scene, stage, field->time);
+  std::vector<double> exact;
+  for (const double z : field->z) {
+    for (const double y : field->y) {
+      const double u = flow(y, z);
+      for (std::size_t x = 0; x < field->nx; ++x) exact.insert(exact.end(), {u, 0, 0});  // nothing flows across
+    }
   }
-  value.insert(value.end(), field->velocity_y.begin(), field->velocity_y.end());
-  exact.resize(value.size(), 0.0);  // nothing flows across
-  const double error = relative_l2(value, exact);
+  const double error = relative_l2(field->velocity, exact);
   return std::isfinite(error) ? Measured{error, 0, ""} : no_velocity_error("the velocity in frames.h5 is not finite");
 }
 

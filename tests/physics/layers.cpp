@@ -5,6 +5,7 @@
 #include <iostream>
 #include <numbers>
 
+#include "scene_run.hpp"
 #include "solver_fixture.hpp"
 
 using namespace rouleau::core;
@@ -168,4 +169,23 @@ TEST_CASE("layers that a wall shakes follow the exact solution to second order",
   std::cout << "two layers, oscillating wall: errors " << errors[0] << " " << errors[1] << " " << errors[2] << "\n";
   CHECK(std::log2(errors[0] / errors[1]) > 1.95);
   CHECK(std::log2(errors[1] / errors[2]) > 1.95);
+}
+
+TEST_CASE("in three dimensions a layer that fills the domain is a fluid of its viscosity, with a capsule in it",
+          "[layers][space]") {
+  const std::string file = std::string(ROULEAU_SCENES) + "/capsule-3d.json";
+  const std::vector<std::string> small{"/domain/nodes=[24, 24, 24]", R"(/numerics/precision="f64")",
+                                       "/stages/0/strain=0.5", "/cell_types/capsule/triangles=320",
+                                       R"(/cell_types/capsule/interior_viscosity="6 cP")"};
+  auto layered = small, whole = small;
+  layered.push_back(R"(/fluid/layers=[{"from": "0 um", "to": "24 um", "viscosity": "2.4 cP"}])");
+  whole.push_back(R"(/fluid/viscosity="2.4 cP")");
+  whole.push_back("/numerics/tau=1.5");
+  const SceneRun one = run_scene(file, layered), other = run_scene(file, whole);
+  REQUIRE(one.summary["steps"] == other.summary["steps"]);
+  for (const char* column : {"deformation", "angle_rad", "volume_m3"}) {
+    const std::vector<double> a = one.column(column), b = other.column(column);
+    for (std::size_t i = 1; i < a.size(); ++i) CHECK(a[i] == Approx(b[i]).epsilon(1e-9));
+  }
+  CHECK(one.column("deformation").back() > 0.05);
 }

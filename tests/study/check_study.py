@@ -138,6 +138,28 @@ class A_study_runs_every_point(Case):
         self.run_study(self.study([TAU], scene="scenes/couette.json", set={"/stages/0/duration": "5 us"}))
         self.assertEqual([p["steps"] for p in self.result()["points"]], [144, 240])
 
+    def test_against_flows_that_are_exact_in_three_dimensions(self):
+        between = {"lower": {"wall": {}}, "upper": {"wall": {}}}
+        pressure, shear = {"pressure_gradient": "1e4 Pa/m"}, {"shear_rate": "100 1/s"}
+        for name, domain, stage, flow, steady, most in [
+                ("start in a tube", {"walls": {"tube": {"radius": "4 um"}}}, pressure, "poiseuille", False, 0.012),
+                ("tube", {"walls": {"tube": {"radius": "4 um"}}}, {**pressure, "start": "developed"}, "poiseuille", True, 0.002),
+                ("duct", {"y": between, "z": between}, {**pressure, "start": "developed"}, "poiseuille", True, 0.001),
+                ("duct that is sheared", {"y": between, "z": between}, {**shear, "start": "developed"}, "couette", True, 0.006),
+                ("start between walls", {"y": between}, shear, "couette", False, 0.001)]:
+            with self.subTest(name):
+                self.out = self.path / name.replace(" ", "-")
+                scene = {**SCENE, "domain": {"size": ["2 um", "8 um", "8 um"], "nodes": [4, 16, 16], **domain},
+                         "numerics": {"tau": 1.0, "density_factor": 1000},
+                         "stages": [{"name": "flow", "duration": "2 ms", **stage}],
+                         "output": {"fields": {"seconds": "2 ms", "quantities": ["velocity"], "precision": "f64"},
+                                    "checkpoint": "never"}}
+                self.run_study(self.study([ROWS], scene, quantities=[{**ERROR, "flow": flow, "steady": steady}]))
+                coarse, fine = (point["results"]["velocity"]["value"] for point in self.result()["points"])
+                self.assertLess(coarse, most)
+                self.assertLess(fine, 0.6 * coarse)
+                print(f"{name}: errors {coarse:.3g}, {fine:.3g}")
+
     def test_on_the_threads_that_an_axis_names(self):
         self.run_study(self.study([{"name": "threads", "threads": [1, 2]}]))
         points = self.result()["points"]

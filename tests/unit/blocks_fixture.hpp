@@ -154,6 +154,15 @@ inline std::vector<Case> scenes_in_space() {
         R"(/domain/size=["12.5 um", "8 um", "12.5 um"])", "/domain/nodes=[50, 32, 50]",
         "/cells/0/row/center=[\"11.5 um\", \"4 um\", \"11.8 um\"]", bonds_between("[\"rbc\", \"rbc\"]"),
         bonds_between("[\"rbc\", \"wall\"]", "-")}},
+      {"within cells, in layers",
+       doublet,
+       {f64, R"(/domain={"size": ["12.5 um", "8 um", "12.5 um"], "nodes": [50, 32, 50],
+                         "y": {"lower": {"wall": {}}, "upper": {"wall": {}}}})",
+        "/cells/0/row/center=[\"11.5 um\", \"4 um\", \"11.8 um\"]",
+        R"(/fluid/layers=[{"from": "2 um", "to": "4.1 um", "viscosity": "2 cP"}])",
+        R"(/interactions/-={"between": ["rbc", "self"], "model": "repulsion", "parameters": {"strength": "3e-6 J/m2",
+                            "cutoff": "1.5 um"}})",
+        R"(/stages/0={"name": "shear", "shear_rate": "20 1/s", "duration": "1 s", "start": "developed"})"}},
       {"volumes kept, semi-implicit", doublet, {f64, semi_implicit, "/numerics/area_correction=true"}},
       {"capsule near a wall",
        capsule,
@@ -164,8 +173,8 @@ inline std::vector<Case> scenes_in_space() {
        capsule,
        {f64, R"(/domain={"size": ["12 um", "12 um", "12 um"], "nodes": [32, 32, 32],
                          "walls": {"tube": {"radius": "6 um"}}})",
-        R"(/stages=[{"name": "driven", "pressure_gradient": "1e5 Pa/m", "duration": "1 s"}])", "/output={}",
-        R"(/cells=[{"type": "capsule", "at": ["0.6 um", "6.3 um", "7.2 um"]}])"}}};
+        R"(/stages=[{"name": "driven", "pressure_gradient": "1e5 Pa/m", "duration": "1 s", "start": "developed"}])",
+        "/output={}", R"(/cells=[{"type": "capsule", "at": ["0.6 um", "6.3 um", "7.2 um"]}])"}}};
 }
 
 inline const plugin::Catalog& catalog() {

@@ -114,13 +114,20 @@ class SurfaceContacts::Bins {
   std::vector<Entry> entries_;
 };
 
-SurfaceContacts::SurfaceContacts(const Surfaces& surfaces, Cutoffs cutoffs, const Domain<3>& domain)
+SurfaceContacts::SurfaceContacts(const Surfaces& surfaces, Cutoffs cutoffs, const Domain<3>& domain,
+                                 std::vector<double> self_cutoffs)
     : cutoffs_(std::move(cutoffs)),
+      self_cutoffs_(std::move(self_cutoffs)),
       domain_(domain),
       watch_(surfaces),
       path_(surfaces.cells.size(), 0.0),
       renewed_(surfaces.cells.size(), 0),
-      lists_(surfaces.cells.size()) {}
+      lists_(surfaces.cells.size()) {
+  for (std::size_t t = 0; t < self_cutoffs_.size(); ++t) {
+    self_reach_.push_back(self_cutoffs_[t] > 0 ? std::make_unique<const SelfReach>(*surfaces.types[t], self_cutoffs_[t])
+                                               : nullptr);
+  }
+}
 
 SurfaceContacts SurfaceContacts::within(double reach, const Surfaces& surfaces, const Domain<3>& domain) {
   const int types = static_cast<int>(surfaces.types.size());
@@ -162,7 +169,9 @@ void SurfaceContacts::refresh(Worker worker, const Surfaces& surfaces) {
   if (!renew) return;
   const double skin = suitable_skin(surfaces);
   // Every worker sorts all triangles: that is quicker than to wait for one who does.
-  const Bins bins(surfaces, cutoffs_.largest() + 2 * skin, domain_);
+  double largest = cutoffs_.largest();
+  for (const double cutoff : self_cutoffs_) largest = std::max(largest, cutoff);
+  const Bins bins(surfaces, largest + 2 * skin, domain_);
   for (const int cell : cells) {
     if (of_all_ || surfaces.owns(cell)) {
       list_candidates(cell, surfaces, bins, skin);
@@ -179,7 +188,7 @@ void SurfaceContacts::forget(const Surfaces& surfaces, std::span<const Range> no
   surfaces.forget_unknown_of(lists_);
 }
 
-/// Images of other cells' triangles that may lie within the reach of some node of a cell.
+/// Images of other cells' triangles, and a cell's own, that may lie within the reach of some node of the cell.
 struct SurfaceContacts::Neighbours {
   struct Triangle {
     int other;
@@ -195,6 +204,8 @@ struct SurfaceContacts::Neighbours {
     std::array<int, 3> shift;
     std::size_t begin, end;
     Eigen::AlignedBox3d reached;  ///< holds all places that one of them is near
+    /// Whether it is the cell's own surface.
+    [[nodiscard]] bool within(int cell) const { return other == cell && shift == std::array<int, 3>{}; }
   };
   std::vector<Triangle> triangles;  // sorted
   std::vector<Image> images;
@@ -202,9 +213,12 @@ struct SurfaceContacts::Neighbours {
   std::vector<unsigned char> near;      // of a node: which of them
 
   Neighbours(int cell, const Eigen::AlignedBox3d& box, const Surfaces& surfaces, const Bins& bins,
-             const Cutoffs& cutoffs, const Domain<3>& domain, double skin) {
+             const SurfaceContacts& contacts, double skin) {
+    const Domain<3>& domain = contacts.domain_;
     bins.for_near(box, [&](const Bins::Entry& entry) {
-      const double cutoff = cutoffs(surfaces.cells[cell].type, surfaces.cells[entry.cell].type);
+      if (const double within = contacts.cutoff(surfaces, cell, cell, true); entry.cell == cell && within > 0)
+        triangles.push_back({cell, {}, entry.triangle, entry.middle, within + 2 * skin + entry.radius});
+      const double cutoff = contacts.cutoff(surfaces, cell, entry.cell, false);
       if (!(cutoff > 0)) return;
       const double around = cutoff + 2 * skin + entry.radius;
       // All images that come so near: in a narrow box more than the nearest one.
@@ -267,7 +281,7 @@ void SurfaceContacts::list_candidates(int cell, const Surfaces& surfaces, const 
   for (int node = own.first; node < own.end(); ++node)
     if (usable(place_of(node))) box.extend(place_of(node));
   if (box.isEmpty()) return;
-  Neighbours neighbours(cell, box, surfaces, bins, cutoffs_, domain_, skin);
+  Neighbours neighbours(cell, box, surfaces, bins, *this, skin);
   for (int node = own.first; node < own.end(); ++node) {
     const Vec<3> place = place_of(node);
     if (!usable(place)) continue;
@@ -276,18 +290,21 @@ void SurfaceContacts::list_candidates(int cell, const Surfaces& surfaces, const 
       neighbours.look(place, image);
       const int other = image.other;
       const int first = static_cast<int>(list.candidates.size());
-      const double reach = cutoffs_(own.type, surfaces.cells[other].type) + 2 * skin;
+      const bool within = image.within(cell);
+      const double reach = cutoff(surfaces, cell, other, within) + 2 * skin;
       const Vec<3> near = place - moved_by(image.shift, domain_);
       const Nodes nodes = surfaces.nodes(other);
       const auto& corners = surfaces.type_of(other).mesh.triangles();
       double nearest = reach;
       for (std::size_t t = image.begin; t < image.end; ++t) {
         if (neighbours.near[t] == 0) continue;
-        const auto& [i, j, k] = corners[neighbours.triangles[t].triangle];
+        const int triangle = neighbours.triangles[t].triangle;
+        if (within && !self_reach_[own.type]->allows(node - own.first, triangle)) continue;
+        const auto& [i, j, k] = corners[triangle];
         const double distance = (near - closest_point(near, nodes[i], nodes[j], nodes[k]).place).norm();
         if (!(distance <= reach)) continue;
         nearest = std::min(nearest, distance);
-        list.candidates.push_back({distance, neighbours.triangles[t].triangle});
+        list.candidates.push_back({distance, triangle});
       }
       // Others stay farther away than the nearest one.
       const auto begin = list.candidates.begin() + first;
@@ -317,12 +334,12 @@ void SurfaceContacts::sort_in(Candidate* candidates, int count, int all) {
 void SurfaceContacts::find(int cell, const Surfaces& surfaces, std::vector<SurfaceContact>& contacts) const {
   contacts.clear();
   CandidateList& list = lists_[cell];
-  const int type = surfaces.cells[cell].type;
   for (const Group& group : list.groups) {
     const CellRange& other = surfaces.cells[group.other];
     const Nodes nodes = surfaces.nodes(group.other);
     const auto& triangles = surfaces.type_of(group.other).mesh.triangles();
-    const double cutoff = cutoffs_(type, other.type);
+    const bool within = group.other == cell && group.shift == std::array<int, 3>{};
+    const double cutoff = this->cutoff(surfaces, cell, group.other, within);
     constexpr double rounding = 1e-9;
     const double path = travelled(cell, group.other);
     const bool remembers = !surfaces.largest_step.empty();

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "base/worker.hpp"
@@ -11,13 +12,14 @@
 #include "core/membrane/displacement_watch.hpp"
 #include "core/surface/surfaces.hpp"
 #include "neighbour_list.hpp"
+#include "self_reach.hpp"
 
 namespace rouleau::core {
 
 /// A node X of a cell and the closest point P = sum of weight[k] X_corner[k] on another cell's image.
 struct SurfaceContact {
   int node;                   ///< index in Surfaces
-  int other;                  ///< cell; the cell itself, for one of its images
+  int other;                  ///< cell; the cell itself, for one of its images or, not shifted, for its own surface
   ImageShift shift;           ///< of that image
   std::array<int, 3> corner;  ///< of the triangle that P is on: indices in Surfaces
   std::array<double, 3> weight;
@@ -28,15 +30,18 @@ struct SurfaceContact {
   static constexpr double least_distance = 1e-12;
 };
 
-/// Exact closest points within the cutoffs, one for each node and each image of another cell. They depend on the present
-/// positions alone, not on when the lists of candidates were made.
+/// Exact closest points within the cutoffs, one for each node and each image of another cell, and one on those parts of its
+/// own surface that it may touch (SelfReach). They depend on the present positions alone, not on when the lists of candidates
+/// were made.
 ///
 /// Candidates stay complete while no node has moved further than the skin, for the reason that NeighbourList has; a
 /// triangle is a set of convex combinations of its corners, too. Of each the last known distance is kept, which has changed
 /// by no more than both cells' nodes have travelled since: nearest first, most need not be looked at.
 class SurfaceContacts {
  public:
-  SurfaceContacts(const Surfaces& surfaces, Cutoffs cutoffs, const Domain<3>& domain);
+  /// `self_cutoffs`: of each type, within a cell; 0, and where there are none: cells do not touch themselves.
+  SurfaceContacts(const Surfaces& surfaces, Cutoffs cutoffs, const Domain<3>& domain,
+                  std::vector<double> self_cutoffs = {});
 
   /// Of all cells within one reach, whatever their types and owners, at the present positions: find() may be called.
   static SurfaceContacts within(double reach, const Surfaces& surfaces, const Domain<3>& domain);
@@ -75,9 +80,18 @@ class SurfaceContacts {
 
   static void sort_in(Candidate* candidates, int count, int all);
   [[nodiscard]] double travelled(int cell, int other) const;
+  [[nodiscard]] double self_cutoff(int type) const {
+    return static_cast<std::size_t>(type) < self_cutoffs_.size() ? self_cutoffs_[type] : 0;
+  }
+  [[nodiscard]] double cutoff(const Surfaces& surfaces, int cell, int other, bool within) const {
+    const int type = surfaces.cells[cell].type;
+    return within ? self_cutoff(type) : cutoffs_(type, surfaces.cells[other].type);
+  }
   void list_candidates(int cell, const Surfaces& surfaces, const Bins& bins, double skin);
 
   Cutoffs cutoffs_;
+  std::vector<double> self_cutoffs_;
+  std::vector<std::unique_ptr<const SelfReach>> self_reach_;  // of each type that touches itself
   Domain<3> domain_;
   DisplacementWatch watch_;
   bool of_all_ = false;       // lists of other ranks' cells, too

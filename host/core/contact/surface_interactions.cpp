@@ -1,6 +1,9 @@
 #include "surface_interactions.hpp"
 
 #include <algorithm>
+#include <stdexcept>
+
+#include "distance_law.hpp"
 
 namespace rouleau::core {
 
@@ -16,14 +19,28 @@ double normal_velocity(const SurfaceContact& contact, const Surfaces& surfaces) 
   return apart.dot(contact.direction);
 }
 
+/// The largest of each type.
+std::vector<double> self_cutoffs(const Surfaces& surfaces, const std::vector<SelfInteraction>& within_cells) {
+  std::vector<double> cutoffs(within_cells.empty() ? 0 : surfaces.types.size(), 0.0);
+  for (const auto& [type, potential] : within_cells) {
+    if (!is_of_distance_alone(potential))
+      throw std::invalid_argument("a potential within a membrane depends on the distance alone: " + potential.id);
+    cutoffs[type] = std::max(cutoffs[type], cutoff_of(potential));
+  }
+  return cutoffs;
+}
+
 }  // namespace
 
 SurfaceInteractions::SurfaceInteractions(Surfaces& surfaces, std::vector<Interaction> interactions,
-                                         const Domain<3>& domain)
-    : interactions_(std::move(interactions)),
-      contacts_(surfaces, pair_cutoffs(surfaces, interactions_, cutoffs_of(interactions_)), domain),
+                                         const Domain<3>& domain, std::vector<SelfInteraction> within_cells)
+    : between_cells_(interactions.size()),
+      interactions_(std::move(interactions)),
+      contacts_(surfaces, pair_cutoffs(surfaces, interactions_, cutoffs_of(interactions_)), domain,
+                self_cutoffs(surfaces, within_cells)),
       scratch_(surfaces.cells.size()),
       reactions_(surfaces.cells.size()) {
+  for (SelfInteraction& own : within_cells) interactions_.push_back({{own.type, own.type}, std::move(own.potential)});
   for (std::size_t p = 0; p < interactions_.size(); ++p) {
     const SurfaceLaw& law = laws_.emplace_back(interactions_[p].potential, p, surfaces.contacts, surfaces.cells.size());
     remembers_ = remembers_ || law.remembers();
@@ -76,9 +93,7 @@ void SurfaceInteractions::evaluate(int cell, const Surfaces& surfaces, bool ener
     scratch.contact.clear();
     for (std::size_t c = 0; c < scratch.contacts.size(); ++c) {
       const SurfaceContact& contact = scratch.contacts[c];
-      if (contact.distance > law.cutoff() ||
-          !acts_between(interactions_[p], own.type, surfaces.cells[contact.other].type))
-        continue;
+      if (contact.distance > law.cutoff() || !acts_at(p, contact, cell, surfaces)) continue;
       scratch.inputs.distance.push_back(contact.distance);
       if (law.reads_velocity()) scratch.inputs.normal_velocity.push_back(normal_velocity(contact, surfaces));
       if (law.remembers()) scratch.inputs.key.push_back({contact.node - own.first, contact.other, contact.shift});
@@ -88,6 +103,13 @@ void SurfaceInteractions::evaluate(int cell, const Surfaces& surfaces, bool ener
     law.evaluate(own, states_of(surfaces.contacts, cell), scratch.inputs, energy, next, scratch.law);
     for (std::size_t i = 0; i < scratch.law.size(); ++i) scratch.result[scratch.contact[i]] += scratch.law[i];
   }
+}
+
+bool SurfaceInteractions::acts_at(std::size_t interaction, const SurfaceContact& contact, int cell,
+                                  const Surfaces& surfaces) const {
+  const bool within = contact.other == cell && contact.shift == ImageShift{};
+  return within == (interaction >= between_cells_) &&
+         acts_between(interactions_[interaction], surfaces.cells[cell].type, surfaces.cells[contact.other].type);
 }
 
 void SurfaceInteractions::act(int cell, Surfaces& surfaces, const Scratch& scratch) {

@@ -8,6 +8,7 @@
 #include "core/domain/ranks.hpp"
 #include "core/surface/surfaces.hpp"
 #include "interaction_forces.hpp"
+#include "self_contacts.hpp"
 #include "surface_contacts.hpp"
 #include "surface_law.hpp"
 
@@ -15,12 +16,16 @@ namespace rouleau::core {
 
 /// Node i with rest area A at distance r of its closest point on another cell: energy A/2 phi(r), force A/2 f(r) along the
 /// connecting line, the reaction shared by the corners of the triangle that the point lies on. With rest areas this is the
-/// exact gradient of the energy, with neither net force nor net torque (InteractionForces, in two dimensions).
+/// exact gradient of the energy, with neither net force nor net torque (InteractionForces, in two dimensions). Within a cell the
+/// closest point is one on the parts of its surface that the node may touch (SelfReach), for the largest cutoff of the cell's
+/// type; these potentials depend on the distance alone (SelfContacts, in two dimensions).
 class SurfaceInteractions {
  public:
   /// Adds what potentials remember to `surfaces.contacts`, as far as it is not there from an earlier stage. Throws
-  /// std::invalid_argument for potentials that read a tangential velocity.
-  SurfaceInteractions(Surfaces& surfaces, std::vector<Interaction> interactions, const Domain<3>& domain);
+  /// std::invalid_argument for potentials that read a tangential velocity, and within a cell for those that remember or read a
+  /// velocity.
+  SurfaceInteractions(Surfaces& surfaces, std::vector<Interaction> interactions, const Domain<3>& domain,
+                      std::vector<SelfInteraction> within_cells = {});
 
   /// Pass over cells: phases 0, 1, 2 with a barrier after each. Adds to the forces and advances the state of the contacts by
   /// one step; the sums do not depend on the workers.
@@ -60,7 +65,10 @@ class SurfaceInteractions {
   void evaluate(int cell, const Surfaces& surfaces, bool energy, std::vector<ContactState>* next,
                 Scratch& scratch) const;
   void act(int cell, Surfaces& surfaces, const Scratch& scratch);
+  [[nodiscard]] bool acts_at(std::size_t interaction, const SurfaceContact& contact, int cell,
+                             const Surfaces& surfaces) const;
 
+  std::size_t between_cells_;  // so many are that; the others act within one
   std::vector<Interaction> interactions_;
   std::vector<SurfaceLaw> laws_;  // of these
   bool remembers_ = false, needs_velocities_ = false;

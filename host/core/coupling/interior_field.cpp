@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/fluid/layers.hpp"
 #include "core/membrane/rounding.hpp"
 #include "disjoint.hpp"
 
@@ -10,9 +11,10 @@ namespace rouleau::core {
 
 template <class T>
 InteriorField<T>::InteriorField(const Surfaces& surfaces, std::vector<double> viscosity_ratio, double relaxation_rate,
-                                const Domain<3>& domain)
+                                const Domain<3>& domain, std::vector<double> viscosity_of_rows)
     : ratio_(std::move(viscosity_ratio)),
       plain_rate_(relaxation_rate),
+      viscosity_of_rows_(std::move(viscosity_of_rows)),
       domain_(domain),
       watch_(surfaces),
       fraction_(surfaces.cells.size()),
@@ -118,14 +120,15 @@ void InteriorField<T>::update(Worker worker, const Surfaces& surfaces, Field<T, 
 
 template <class T>
 void InteriorField<T>::set_rates(const Surfaces& surfaces, Range own, Field<T, 3>& rate) {
-  // The field holds the sum over cells of (ratio - 1) I until every cell has been added. Cells that do not overlap may
+  // The field holds the sum over cells of (ratio - r) I until every cell has been added. Cells that do not overlap may
   // share the columns between them, which are made plain again first and count once.
   const int width = domain_.size[0];
   const Box<3>& block = domain_.block;
   const auto row_of = [&](int row) { return rate.row(row % block.size(1), row / block.size(1)); };
+  const auto plain_rate = [&](int row) { return static_cast<T>(rate_of_layer(plain_rate_, viscosity_of_row(row))); };
   for (int row = own.begin; row < own.end; ++row) {
     for (const Interval& columns : changed_[row])
-      std::fill(row_of(row) + columns.begin, row_of(row) + columns.end, static_cast<T>(plain_rate_));
+      std::fill(row_of(row) + columns.begin, row_of(row) + columns.end, plain_rate(row));
     changed_[row].clear();
   }
   const auto for_pieces = [&](const auto& function) {
@@ -133,8 +136,9 @@ void InteriorField<T>::set_rates(const Surfaces& surfaces, Range own, Field<T, 3
       if (!surfaces.reaches(c)) continue;
       const VolumeFraction& fraction = fraction_[c];
       const int first[2] = {fraction.first[1], fraction.first[2]}, size[2] = {fraction.size[1], fraction.size[2]};
-      const double excess = ratio_[surfaces.cells[c].type] - 1;
+      const double inside = ratio_[surfaces.cells[c].type];
       for_rows(first, size, own, [&](int row, int j, int k) {
+        const double excess = inside - viscosity_of_row(row);
         for (int begin = 0; begin < fraction.size[0];) {
           const int x = domain_.wrapped(0, fraction.first[0] + begin);
           const int end = std::min(fraction.size[0], begin + width - x);
@@ -155,12 +159,14 @@ void InteriorField<T>::set_rates(const Surfaces& surfaces, Range own, Field<T, 3
     T* to = row_of(row) + x;
     for (int i = 0; i < count; ++i) to[i] += static_cast<T>(excess * value[i]);
   });
-  const T outside = static_cast<T>(1 / plain_rate_ - 0.5), plain = static_cast<T>(plain_rate_);
+  const T outside = static_cast<T>(1 / plain_rate_ - 0.5);
   for (int row = own.begin; row < own.end; ++row) {
+    if (changed_[row].empty()) continue;
+    const T plain = plain_rate(row), around = static_cast<T>(viscosity_of_row(row));
     T* to = row_of(row);
     for (const Interval& columns : changed_[row]) {
       for (int x = columns.begin; x < columns.end; ++x)
-        to[x] = to[x] == T(0) ? plain : T(1) / (T(0.5) + outside * (T(1) + to[x]));
+        to[x] = to[x] == T(0) ? plain : T(1) / (T(0.5) + outside * (around + to[x]));
     }
   }
 }

@@ -12,14 +12,16 @@
 
 namespace rouleau::core {
 
-/// tau = 1/2 + (tau_outside - 1/2) (1 + sum over cells (ratio - 1) I), kept as 1/tau: I of a node's cube lies inside a
-/// cell. Where nodes have moved all that the cells cover is computed again.
+/// tau = 1/2 + (tau_outside - 1/2) (r + sum over cells (ratio - r) I), kept as 1/tau: I of a node's cube lies inside a
+/// cell, and r is 1, in layers the viscosity at this height over the suspending one: what is inside a cell is the same wherever
+/// it swims. Where nodes have moved all that the cells cover is computed again.
 template <class T>
 class InteriorField {
  public:
-  /// `viscosity_ratio[t]`: interior over suspending viscosity of cell type t.
+  /// `viscosity_ratio[t]`: interior over suspending viscosity of cell type t. `viscosity_of_rows`: of the fluid around the
+  /// cells, as in FluidSetting.
   InteriorField(const Surfaces& surfaces, std::vector<double> viscosity_ratio, double relaxation_rate,
-                const Domain<3>& domain);
+                const Domain<3>& domain, std::vector<double> viscosity_of_rows = {});
 
   /// Whether a relaxation rate that varies in space is needed; if not, the passes only mark.
   [[nodiscard]] bool varies() const { return varies_; }
@@ -57,7 +59,12 @@ class InteriorField {
     [[nodiscard]] const Interval& at(int j, int k) const { return columns[static_cast<std::size_t>(size[0] * k + j)]; }
   };
 
-  [[nodiscard]] bool differs(int type) const { return ratio_[type] != 1; }
+  /// Viscosity around the cells in a row of the block, over the suspending fluid's.
+  [[nodiscard]] double viscosity_of_row(int row) const {
+    return viscosity_of_rows_.empty() ? 1 : viscosity_of_rows_[domain_.block.begin[1] + row % domain_.block.size(1)];
+  }
+  /// Whether cells of a type are another fluid than that around them, anywhere.
+  [[nodiscard]] bool differs(int type) const { return ratio_[type] != 1 || !viscosity_of_rows_.empty(); }
   void find_reach(const Surfaces& surfaces, int cell);
   /// Calls function(row, j, k) for those rows (j, k) of a box that fall on rows `own` of the block.
   template <class Function>
@@ -66,6 +73,7 @@ class InteriorField {
 
   std::vector<double> ratio_;
   double plain_rate_;
+  std::vector<double> viscosity_of_rows_;
   Domain<3> domain_;
   bool varies_ = false;
   DisplacementWatch watch_;

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "core/fluid/channel_flow.hpp"
+#include "core/fluid/duct_flow.hpp"
 #include "core/fluid/flow_rate.hpp"
 #include "core/membrane/motion.hpp"
 
@@ -37,10 +38,13 @@ FluidSetting<D> fluid_setting(const BasicSolverSetup<D>& setup, const Cells& cel
     if (nodes < 1) throw std::invalid_argument("a lattice needs at least one node along every axis");
   }
   if (!setup.domain.periodic[0]) throw std::invalid_argument("a lattice without walls along y is periodic along x");
-  if (D == 3 && setup.domain.walled(D - 1) && setup.developed)
-    throw std::invalid_argument("the developed flow between walls across z is not known");
-  if (setup.solid && (setup.solid->size() != setup.domain.size || setup.developed))
-    throw std::invalid_argument("solid nodes are those of the whole lattice, and their developed flow is not known");
+  if (D == 3 && setup.domain.walled(D - 1) && setup.developed && (setup.oscillation.any() || !setup.layers.empty()))
+    throw std::invalid_argument(
+        "between walls across z, the developed flow of layers or of an oscillation is not known");
+  if (setup.solid && setup.solid->size() != setup.domain.size)
+    throw std::invalid_argument("solid nodes are those of the whole lattice");
+  if (setup.solid && setup.developed && setup.tube_radius == 0)
+    throw std::invalid_argument("of walls of any shape the developed flow of a tube alone is known");
   const auto move = [](const WallVelocity& walls) { return walls.lower != 0 || walls.upper != 0; };
   if (setup.solid && (move(setup.walls) || move(setup.oscillation.walls)))
     throw std::invalid_argument("walls of a domain with solid nodes are at rest");
@@ -73,6 +77,27 @@ double channel_viscosity(const BasicSolverSetup<D>& setup) {
     sum += point.velocity;
   }
   return height * height * height / (12 * sum);
+}
+
+/// The developed flow of a duct or a tube.
+template <class T>
+void set_section_flow(Fluid<T, D3Q19>& fluid, const BasicSolverSetup<3>& setup) {
+  const auto& size = setup.domain.size;
+  const double force = setup.body_force_x / setup.viscosity();
+  const DuctFlow duct{static_cast<double>(size[1]), static_cast<double>(size[2]), setup.walls, force};
+  std::array<int, 2> known{-1, -1};  // a row has one velocity
+  SectionPoint point;
+  fluid.set_state([&](int, int y, int z) {
+    if (known != std::array{y, z}) {
+      const double from_y = y - (size[1] - 1) / 2.0, from_z = z - (size[2] - 1) / 2.0;
+      point = setup.tube_radius > 0 ? tube_flow(setup.tube_radius, force, from_y, from_z) : duct.at(from_y, from_z);
+      known = {y, z};
+    }
+    typename Fluid<T, D3Q19>::State state{};
+    state.velocity[0] = point.velocity;
+    state.gradient[1] = point.slope_y, state.gradient[2] = point.slope_z;
+    return state;
+  });
 }
 
 }  // namespace
@@ -166,7 +191,9 @@ template <class T, class Set>
 void Solver<T, Set>::start(Solver* former) {
   steps_ = 0;
   double faster = 0;  // what the membranes' last displacement is worth in the new time step
-  if (setup_.developed && !setup_.layers.empty()) {
+  if (setup_.developed && setup_.domain.walled(dimension - 1) && dimension == 3) {
+    if constexpr (dimension == 3) set_section_flow(fluid_, setup_);
+  } else if (setup_.developed && !setup_.layers.empty()) {
     const auto profile =
         layered_profile(fluid_.setting().viscosity_of_rows, setup_.viscosity(), setup_.walls, setup_.body_force_x);
     const auto at = [&](double y) { return profile[static_cast<std::size_t>(y)]; };

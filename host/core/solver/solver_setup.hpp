@@ -51,8 +51,8 @@ struct BasicSolverSetup {
   /// Mean velocity along x of the fluid nodes, between walls at rest, that the body force is adapted to keep, from body_force_x on; 0: the
   /// force is what it is.
   double mean_velocity = 0;
-  /// Begin with the developed flow of the walls, the body force and their oscillation, not between walls across z; false:
-  /// with a fluid at rest, or the one before.
+  /// Begin with the developed flow of the walls, the body force and, between plane walls across y alone, their
+  /// oscillation; false: with a fluid at rest, or the one before.
   bool developed = false;
   CollisionOperator collision = {};
 
@@ -62,7 +62,8 @@ struct BasicSolverSetup {
   std::vector<Interaction> interactions = {};
   /// Only between walls, not where y is periodic.
   std::vector<WallInteraction> wall_interactions = {};
-  /// Of a tube along x around the middle, from whose wall these act in place of planes; 0: none. `solid` is what holds its fluid.
+  /// Of a tube along x around the middle, from whose wall these act in place of planes; 0: none. `solid` is what holds
+  /// its fluid.
   double tube_radius = 0;
   std::vector<SelfInteraction> self_interactions = {};
   /// The step of stiff membranes (SemiImplicitFilter, SurfaceFilter).

@@ -10,10 +10,7 @@ namespace rouleau::core {
 namespace {
 
 void check(const BasicSolverSetup<3>& setup) {
-  if (!setup.self_interactions.empty())
-    throw std::invalid_argument("interactions within a cell are computed in two dimensions only");
   if (setup.slip_correction) throw std::invalid_argument("the slip correction is made in two dimensions only");
-  if (!setup.layers.empty()) throw std::invalid_argument("cells in layers are computed in two dimensions only");
 }
 
 std::vector<MembraneLaws> laws_of(const BasicSolverSetup<3>& setup) {
@@ -55,7 +52,7 @@ SurfaceTasks<T>::SurfaceTasks(const BasicSolverSetup<3>& setup, Surfaces& surfac
     : surfaces_(surfaces),
       fluid_(fluid),
       forces_((check(setup), surfaces), laws_of(setup)),
-      viscosity_field_(surfaces, ratios_of(setup), 1 / setup.tau, setup.domain),
+      viscosity_field_(surfaces, ratios_of(setup), 1 / setup.tau, setup.domain, fluid.setting().viscosity_of_rows),
       coupling_(setup.kernel, setup.domain),
       ranks_(fluid.ranks()) {
   surfaces_.largest_step.resize(surfaces_.cells.size(), 0.0);
@@ -64,8 +61,10 @@ SurfaceTasks<T>::SurfaceTasks(const BasicSolverSetup<3>& setup, Surfaces& surfac
   for (std::size_t t = 0; t < surfaces.types.size(); ++t)
     of_type.push_back(energy_of_strain(surfaces.types[t], setup.cell_types[t].laws, 1e-3));
   for (const CellRange& cell : surfaces.cells) slight_energy_ += of_type[cell.type];
-  if (!setup.interactions.empty())
-    interactions_ = std::make_unique<SurfaceInteractions>(surfaces_, setup.interactions, setup.domain);
+  if (!setup.interactions.empty() || !setup.self_interactions.empty()) {
+    interactions_ =
+        std::make_unique<SurfaceInteractions>(surfaces_, setup.interactions, setup.domain, setup.self_interactions);
+  }
   if (!setup.wall_interactions.empty())
     wall_contacts_ =
         std::make_unique<SurfaceWallContacts>(surfaces_, setup.wall_interactions, setup.domain, setup.tube_radius);

@@ -28,8 +28,7 @@ class SurfaceTasks {
 
   /// The setup, the surfaces, of which there is at least one, and the fluid belong to the solver, and outlive this.
   /// `ghosts`: this rank's part in the surfaces, which these know of; null without other ranks.
-  /// Throws std::invalid_argument for what surfaces do not have: interactions within cells, the slip correction,
-  /// layers.
+  /// Throws std::invalid_argument for the slip correction, which surfaces do not have.
   SurfaceTasks(const BasicSolverSetup<3>& setup, Surfaces& surfaces, Fluid<T, D3Q19>& fluid,
                std::optional<GhostCells<3>> ghosts);
 
@@ -86,7 +85,7 @@ class SurfaceTasks {
   [[nodiscard]] bool corrects_motion() const { return volume_correction_ != nullptr; }
   /// Null without such interactions.
   [[nodiscard]] const SurfaceWallContacts* wall_contacts() const { return wall_contacts_.get(); }
-  /// Calls function(forces) for the kinds of interactions that there are: between cells, and with walls.
+  /// Calls function(forces) for the kinds of interactions that there are: between and within cells, and with walls.
   template <class Function>
   void for_each_interaction(Function function) const {
     if (interactions_) function(*interactions_);

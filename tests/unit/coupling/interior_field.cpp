@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "core/coupling/interior_field.hpp"
+#include "core/fluid/layers.hpp"
 #include "core/fluid/relaxation.hpp"
 #include "shape/surface.hpp"
 #include "unit/random.hpp"
@@ -130,6 +131,42 @@ TEST_CASE("inside a surface the relaxation rate is that of its viscosity, across
       REQUIRE(rates.mask.active(x, y + box[1] * z));
     }
   }
+}
+
+TEST_CASE("in layers the inside of a surface keeps its viscosity, and what it leaves gets that of the layer again") {
+  const Domain<3> domain{box, {true, false, true}};
+  const double tau = 0.8;
+  const std::vector<double> rows = viscosity_of_rows({{0, 10.25, 3}}, box[1]);
+  const auto rate_of = [&](double viscosity) { return 1 / (0.5 + 0.3 * viscosity); };
+  const double ratio = GENERATE(5.0, 1.0, 3.0);  // that of no fluid around it, and of either
+  CAPTURE(ratio);
+  Surfaces s = ellipsoid_at({12, 10, 10});
+  Rates rates{.mask = NodeMask(domain)};
+  for (int z = 0; z < box[2]; ++z) {
+    for (int y = 0; y < box[1]; ++y) std::fill_n(rates.rate.row(y, z), box[0], rate_of_layer(1 / tau, rows[y]));
+  }
+  InteriorField<double> field(s, {ratio}, 1 / tau, domain, rows);
+  CHECK(field.varies());
+  const auto update = [&] {
+    field.measure({}, s);
+    field.cover({}, s);
+    REQUIRE(field.due());
+    field.update({}, s, rates.rate, rates.mask);
+  };
+  const auto is = [&](int x, int y, int z, double viscosity) {
+    return rates.rate.row(y, z)[x] == Approx(rate_of(viscosity)).epsilon(1e-14);
+  };
+  update();
+  CHECK(is(12, 9, 10, ratio));
+  CHECK(is(12, 11, 10, ratio));
+  CHECK(is(12, 2, 10, 3));
+  CHECK(is(12, 19, 10, 1));
+  CHECK(is(2, 10, 0, rows[10]));  // the row that the border cuts
+  for (double& z : s.z) z += 10;
+  update();
+  CHECK(is(12, 9, 0, ratio));
+  CHECK(is(12, 12, 0, ratio));
+  for (int y = 0; y < box[1]; ++y) REQUIRE(rates.rate.row(y, 10)[12] == rate_of_layer(1 / tau, rows[y]));
 }
 
 TEST_CASE("where a surface has been the fluid is the plain one again") {

@@ -275,6 +275,10 @@ TEST_CASE("the series of the start tend to the steady flows", "[quantity]") {
   CHECK(poiseuille_start(0.3, 10) == Approx(4 * 0.3 * 0.7));
   CHECK(couette_start(0.3, std::numeric_limits<double>::infinity()) == 0.6);
   CHECK(poiseuille_start(0.5, 1e-3) == Approx(8e-3).epsilon(1e-3));  // far from the walls: acceleration alone
+  CHECK(tube_start(0.3, std::numeric_limits<double>::infinity()) == 1 - 0.3 * 0.3);
+  CHECK(tube_start(0.3, 4) == Approx(1 - 0.3 * 0.3));
+  CHECK(tube_start(0.2, 1e-3) == Approx(4e-3).epsilon(1e-3));
+  CHECK(tube_start(1.5, 1) == 0);
 }
 
 TEST_CASE("a run without velocity says what to ask for", "[quantity]") {

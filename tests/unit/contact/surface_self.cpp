@@ -1,0 +1,227 @@
+// Potentials within a closed surface: which parts may touch, gradients, balances, and shapes that must not feel them.
+#include <Eigen/Geometry>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "core/contact/surface_interactions.hpp"
+#include "core/contact/triangle_distance.hpp"
+#include "shape/surface.hpp"
+#include "unit/fake_models.hpp"
+#include "unit/random.hpp"
+
+using namespace rouleau;
+using namespace rouleau::core;
+
+namespace {
+
+const Domain<3> domain{{40, 40, 40}, {true, true, true}};
+
+Surfaces of_shape(const shape::TriangleSurface& mesh) {
+  Surfaces s;
+  s.types.push_back(std::make_shared<const RestSurface>(shape::rest_surface(mesh)));
+  add_cell(s, 0, {20, 20, 20});
+  return s;
+}
+Surfaces sphere(double radius, int n) { return of_shape(shape::ellipsoid(n, Vec<3>::Constant(radius))); }
+
+SurfaceInteractions within(Surfaces& s, double stiffness, double rest, double cutoff) {
+  return {s, {}, domain, {{0, test::spring_potential(stiffness, rest, cutoff)}}};
+}
+
+void run(SurfaceInteractions& forces, Surfaces& s, int workers = 1) {
+  for (auto* force : {&s.force_x, &s.force_y, &s.force_z}) std::fill(force->begin(), force->end(), 0.0);
+  for (int phase = 0; phase < 3; ++phase) {
+    for (int worker = 0; worker < workers; ++worker) forces.run({worker, workers}, phase, s);
+  }
+}
+
+Vec<3> force_on(const Surfaces& s, int i) { return {s.force_x[i], s.force_y[i], s.force_z[i]}; }
+Vec<3> place_of(const Surfaces& s, int i) { return {s.x[i], s.y[i], s.z[i]}; }
+double largest_force(const Surfaces& s) {
+  double largest = 0;
+  for (int i = 0; i < s.node_count(); ++i) largest = std::max(largest, force_on(s, i).norm());
+  return largest;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "a node of a sphere may touch the triangles that are half a circle of the cutoff's width away, and no others") {
+  const double radius = 6, cutoff = GENERATE(2.0, 5.0, 9.0);
+  const int n = GENERATE(6, 9);
+  const Surfaces s = sphere(radius, n);
+  const SelfReach reach(s.type_of(0), cutoff);
+  const Nodes nodes = s.type_of(0).nodes();
+  const auto arc = [&](int i, int j) {
+    return radius * std::acos(std::clamp(nodes[i].dot(nodes[j]) / (nodes[i].norm() * nodes[j].norm()), -1.0, 1.0));
+  };
+  const double apart = std::numbers::pi / 2 * cutoff;
+  long allowed = 0, not_allowed = 0;
+  for (int node = 0; node < s.node_count(); ++node) {
+    int triangle = 0;
+    for (const auto& [i, j, k] : s.type_of(0).mesh.triangles()) {
+      const double nearest = std::min({arc(node, i), arc(node, j), arc(node, k)});
+      const bool may = reach.allows(node, triangle++);
+      (may ? allowed : not_allowed) += 1;
+      if (may) REQUIRE(nearest > 0.99 * apart);
+      if (!may) REQUIRE(nearest < 1.06 * apart);  // chords are shorter than arcs
+    }
+  }
+  CHECK(not_allowed > 0);
+  CHECK((allowed > 0) == (cutoff < 2 * radius / 1.04));
+}
+
+TEST_CASE(
+    "contacts within a surface are the closest of the triangles that may touch, while it moves and for any workers") {
+  const unsigned seed = GENERATE(31u, 32u);
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> any(-1, 1);
+  Surfaces s = of_shape(shape::biconcave_disc(8, 6));
+  s.largest_step.assign(1, 0.0);
+  const double cutoff = 2.5;
+  SurfaceContacts contacts(s, Cutoffs(1), domain, {cutoff}), shared(s, Cutoffs(1), domain, {cutoff});
+  const SelfReach reach(s.type_of(0), cutoff);
+  std::vector<SurfaceContact> found, by_three;
+  long touching = 0;
+  for (int step = 0; step < 40; ++step) {
+    contacts.measure({}, s);
+    contacts.refresh({}, s);
+    contacts.find(0, s, found);
+    for (int worker = 0; worker < 3; ++worker) shared.measure({worker, 3}, s);
+    for (int worker = 0; worker < 3; ++worker) shared.refresh({worker, 3}, s);
+    shared.find(0, s, by_three);
+    REQUIRE(found.size() == by_three.size());
+    std::size_t next = 0;
+    for (int node = 0; node < s.node_count(); ++node) {
+      double nearest = cutoff;
+      int triangle = 0;
+      const Nodes nodes = s.nodes(0);
+      for (const auto& [i, j, k] : s.type_of(0).mesh.triangles()) {
+        if (!reach.allows(node, triangle++)) continue;
+        nearest = std::min(
+            nearest, (place_of(s, node) - closest_point(place_of(s, node), nodes[i], nodes[j], nodes[k]).place).norm());
+      }
+      if (nearest >= cutoff) continue;
+      REQUIRE(next < found.size());
+      REQUIRE(found[next].node == node);
+      REQUIRE(found[next].other == 0);
+      REQUIRE(found[next].distance == Approx(nearest).epsilon(1e-12));
+      REQUIRE(by_three[next].distance == found[next].distance);
+      ++next;
+    }
+    REQUIRE(next == found.size());
+    touching += static_cast<long>(next);
+    // The faces come nearer to each other, with some noise.
+    double most = 0;
+    for (int i = 0; i < s.node_count(); ++i) {
+      const Vec<3> move(0.01 * any(random), -0.006 * (s.y[i] - 20) + 0.01 * any(random), 0.01 * any(random));
+      s.x[i] += move.x(), s.y[i] += move.y(), s.z[i] += move.z();
+      most = std::max(most, move.norm());
+    }
+    s.largest_step[0] = most;
+  }
+  CHECK(touching > 1000);
+  CHECK(contacts.renewals() < 20);
+}
+
+TEST_CASE(
+    "forces within a surface are minus the gradient of their energy, without net force or torque, for any workers") {
+  std::mt19937 random(22);
+  std::uniform_real_distribution<double> any(-1, 1);
+  Surfaces s = of_shape(shape::biconcave_disc(6, 5));
+  for (auto* places : {&s.x, &s.y, &s.z}) {
+    for (double& place : *places) place += 0.05 * any(random);
+  }
+  SurfaceInteractions forces = within(s, 0.03, 1.5, 2.5);
+  run(forces, s);
+  const Surfaces at = s;
+  const double largest = largest_force(s);
+  REQUIRE(largest > 1e-3);
+  Vec<3> force = Vec<3>::Zero(), torque = Vec<3>::Zero();
+  for (int i = 0; i < s.node_count(); ++i) force += force_on(s, i), torque += place_of(s, i).cross(force_on(s, i));
+  CHECK(force.norm() < 1e-12 * largest);
+  CHECK(torque.norm() < 1e-12 * largest * 40);
+  std::uniform_int_distribution<int> node(0, s.node_count() - 1);
+  for (int check = 0; check < 40; ++check) {
+    const int i = node(random);
+    constexpr double h = 1e-5;
+    std::vector<double>* const places[] = {&s.x, &s.y, &s.z};
+    for (int k = 0; k < 3; ++k) {
+      const double here = (*places[k])[i];
+      double energy[2];
+      for (int side = 0; side < 2; ++side) {
+        (*places[k])[i] = here + (side == 0 ? -h : h);
+        run(forces, s);
+        energy[side] = forces.energy(s);
+      }
+      (*places[k])[i] = here;
+      CHECK(std::abs(-(energy[1] - energy[0]) / (2 * h) - force_on(at, i)[k]) < 1e-7 * largest);
+    }
+  }
+  run(forces, s, 3);
+  CHECK(s.force_x == at.force_x);
+  CHECK(s.force_y == at.force_y);
+  CHECK(s.force_z == at.force_z);
+}
+
+TEST_CASE("a sphere wider than the cutoff does nothing to itself, and one that was squeezed is pushed open") {
+  Surfaces round = sphere(8, 8);
+  SurfaceInteractions none = within(round, 0.1, 15, 15);
+  run(none, round);
+  CHECK(largest_force(round) == 0);
+  CHECK(none.energy(round) == 0);
+  Surfaces squeezed = sphere(8, 8);
+  SurfaceInteractions some = within(squeezed, 0.1, 6, 6);
+  for (double& z : squeezed.z) z = 20 + 0.25 * (z - 20);  // 4 spacings thick in the middle
+  run(some, squeezed);
+  int pushed = 0;
+  for (int i = 0; i < squeezed.node_count(); ++i) {
+    const double height = squeezed.z[i] - 20;
+    if (std::hypot(squeezed.x[i] - 20, squeezed.y[i] - 20) > 4 || std::abs(height) < 1) continue;
+    REQUIRE(squeezed.force_z[i] * height > 0);
+    ++pushed;
+  }
+  CHECK(pushed > 50);
+}
+
+TEST_CASE("faces that are nearly flat push each other by their area times the potential's force") {
+  Surfaces s = sphere(8, 12);
+  SurfaceInteractions forces = within(s, 0.1, 2, 2);
+  for (double& z : s.z) z = 20 + 0.05 * (z - 20);  // 0.8 spacings thick in the middle
+  run(forces, s);
+  const RestSurface& rest = s.type_of(0);
+  double pushes = 0, springs = 0;
+  for (int i = 0; i < s.node_count(); ++i) {
+    const double height = s.z[i] - 20;
+    if (std::hypot(s.x[i] - 20, s.y[i] - 20) > 4 || height < 0) continue;
+    pushes += s.force_z[i];
+    springs += rest.node_area[i] * 0.1 * (2 - 2 * height);
+  }
+  CHECK(pushes == Approx(springs).epsilon(0.02));
+}
+
+TEST_CASE("a potential within surfaces acts on its type alone, beside others between cells, which do not act within") {
+  Surfaces s = of_shape(shape::biconcave_disc(6, 5));
+  s.types.push_back(s.types.front());
+  add_cell(s, 1, {20, 24, 20});
+  Surfaces within_alone = s, between_alone = s;
+  const Potential spring = test::spring_potential(0.03, 1.5, 2.5);
+  SurfaceInteractions both(s, {{{0, 1}, spring}}, domain, {{0, spring}});
+  SurfaceInteractions own(within_alone, {}, domain, {{0, spring}}), other(between_alone, {{{0, 1}, spring}}, domain);
+  run(both, s), run(own, within_alone), run(other, between_alone);
+  const double largest = largest_force(s);
+  REQUIRE(largest_force(within_alone) > 1e-3);
+  REQUIRE(largest_force(between_alone) > 1e-3);
+  for (int i = 0; i < s.node_count(); ++i) {
+    REQUIRE((force_on(s, i) - force_on(within_alone, i) - force_on(between_alone, i)).norm() < 1e-14 * largest);
+    if (i >= s.cells[1].first) REQUIRE(force_on(within_alone, i).norm() == 0);
+  }
+  CHECK(both.energy(s) == Approx(own.energy(within_alone) + other.energy(between_alone)).epsilon(1e-13));
+}
+
+TEST_CASE("what remembers or looks at velocities does not act within a surface") {
+  Surfaces s = sphere(6, 5);
+  const Potential damper = test::damper(0.1, 3, "normal_velocity");
+  CHECK_THROWS_WITH(SurfaceInteractions(s, {}, domain, {{0, damper}}), Catch::Matchers::Contains("damper"));
+}
