@@ -112,10 +112,11 @@ void choose_coupling(Plan& plan) {
   const double margin = explicit_margin(plan);
   const bool stiff = margin < comfortable_margin;
   plan.semi_implicit = stiff && semi_implicit_gains(plan);
-  plan.coupling = std::string(plan.semi_implicit ? "semi-implicit" : "explicit") +
-                  ", chosen by \"auto\": the explicit limit of the membranes' stiffness is " + number(margin, 3) +
-                  " times what they have, " + (stiff ? "below " : "at least ") + number(comfortable_margin, 2) +
-                  (stiff && !plan.semi_implicit ? "; at this numerics.tau the semi-implicit step would not help" : "");
+  plan.coupling =
+      std::string(plan.semi_implicit ? "semi-implicit" : "explicit") +
+      ", chosen by \"auto\": the explicit limit of the membranes' stiffness is " + number(margin, 3) +
+      " times what they have, " + (stiff ? "below " : "at least ") + number(comfortable_margin, 2) +
+      (stiff && !plan.semi_implicit ? "; with this numerics.tau and kernel the semi-implicit step would not help" : "");
 }
 
 }  // namespace

@@ -40,6 +40,7 @@ struct KernelFacts {
   double first_moment;   ///< largest |sum w (x - X)|, spacings
   double stretch_limit;  ///< largest stretching stiffness with explicit coupling over that of peskin4
   double bending_limit;  ///< the same for bending stiffness
+  bool semi_implicit;    ///< whether the semi-implicit step bears more; else it bears half as much as the explicit one
   const char* defect;    ///< what a user has to expect, for `plan`; empty: nothing
 };
 
@@ -51,7 +52,7 @@ const KernelFacts& kernel_named(const std::string& name);
 /// Infinite without membrane laws. Opens the libraries of active laws.
 double explicit_margin(const Plan& plan);
 
-/// Whether the semi-implicit step bears more than the explicit one at the scene's relaxation time.
+/// Whether the semi-implicit step bears more than the explicit one with the scene's kernel, at its relaxation time.
 bool semi_implicit_gains(const Plan& plan);
 
 /// With a margin below this one `"coupling": "auto"` takes the semi-implicit step.

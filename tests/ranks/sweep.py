@@ -3,8 +3,8 @@
 usage: sweep.py ROULEAU MPIRUN SOURCE [--only TEXT] [--whole] [--ranks "2 8"] [--threads "1"]
 
 Too long for CI (half an hour on two processors), where `ranks` does the same for a few scenes. Compared are the tables, summary.json, frames.h5 and
-the arrays of checkpoint.h5, which are all that a run goes on from. A scene takes its first steps (60, in three dimensions 15); --whole runs it to its
-end. Models are put into a scene of red cells in two dimensions (tests/resume/scenes/kinetics.json) and into one in three (scenes/doublet-3d.json).
+the arrays of checkpoint.h5, which are all that a run goes on from. Scenes are those of scenes/ and of tests/physics/scenes, where some choose their
+numerics (`auto`); each takes its first steps (60, in three dimensions 15), and --whole runs it to its end. Models are put into a scene of red cells in two dimensions (tests/resume/scenes/kinetics.json) and into one in three (scenes/doublet-3d.json).
 """
 
 import argparse
@@ -41,7 +41,8 @@ def scenes_of_models(root, folder):
         for base in KINETICS, DOUBLET:
             scene = json.loads((root / base).read_text())
             spatial = len(scene["domain"]["nodes"]) == 3
-            if (3 if spatial else 2) not in about.get("dimensions", [2, 3] if kind != "membrane" else [2]):
+            lattices = about.get("lattices", ["D2Q9"]) if kind == "collision" else []
+            if (3 if spatial else 2) not in about.get("dimensions", [2] if kind == "membrane" or lattices == ["D2Q9"] else [2, 3]):
                 continue
             entry = {"model": model, "parameters": parameters}
             membrane = next(iter(scene["cell_types"].values()))["membrane"]
@@ -60,7 +61,7 @@ def scenes_of_models(root, folder):
 
 
 def steps_of(file):
-    return 15 if len(json.loads(file.read_text())["domain"]["nodes"]) == 3 else 60
+    return 15 if len(json.loads(file.read_text())["domain"]["size"]) == 3 else 60
 
 
 def main():
@@ -83,13 +84,14 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         folder = Path(folder)
         (folder / "models").mkdir()
-        scenes = [*sorted((root / "scenes").rglob("*.json")), *scenes_of_models(root, folder / "models")]
+        shipped = sorted((root / "scenes").rglob("*.json")) + sorted((root / "tests/physics/scenes").glob("*.json"))
+        scenes = [*shipped, *scenes_of_models(root, folder / "models")]
         for scene in (s for s in scenes if arguments.only in str(s)):
             begin = time.monotonic()
             switches = [] if arguments.whole else ["--max-steps", str(steps_of(scene))]
 
             def run(before, directory, threads):
-                command = [*before, "run", str(scene), "--out", str(directory), "--quiet", "--overwrite", "--threads", str(threads), *switches]
+                command = [*before, "run", str(scene), "--out", str(directory), "--quiet", "--overwrite", "--no-error-bar", "--threads", str(threads), *switches]
                 return subprocess.run(command, capture_output=True, text=True, env=ENVIRONMENT)
 
             alone = folder / "alone"

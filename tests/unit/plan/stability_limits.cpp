@@ -84,3 +84,26 @@ TEST_CASE("attraction has a limit by compression, and one where nothing keeps a 
   CHECK(find(apart, "depth of morse") == apart.end());
   CHECK(find(apart, "contact stiffness of repulsion") != apart.end());
 }
+
+TEST_CASE("with kernels that let nodes zigzag the semi-implicit step bears less, and \"auto\" does not take it") {
+  // limits/kernels.json: stable up to 9.2e-6 N/m with the explicit step, 5.2e-6 with the semi-implicit one.
+  const Catalog catalog({ROULEAU_PLUGINS});
+  const auto limits = [&](const std::string& kernel, const std::string& coupling) {
+    const Scene scene = read_scene(std::string(ROULEAU_SCENES) + "/red-cell-3d.json",
+                                   {"/numerics/density_factor=3000", "/numerics/kernel=" + kernel, "/numerics/coupling=" + coupling});
+    const Plan plan = make_plan(scene, catalog);
+    const std::vector<Limit> all = find_limits(plan);
+    const auto found = std::find_if(all.begin(), all.end(),
+                                    [](const Limit& limit) { return limit.name.starts_with("stretching stiffness"); });
+    REQUIRE(found != all.end());
+    return std::pair{*found, plan.semi_implicit};
+  };
+  const auto [peskin, taken] = limits("peskin4", "auto");
+  CHECK(taken);
+  CHECK(peskin.margin > 1);
+  const auto [automatic, sharp_taken] = limits("roma3", "auto");
+  CHECK_FALSE(sharp_taken);
+  CHECK(automatic.margin < 1);
+  CHECK_THAT(automatic.remedy, Catch::Matchers::Contains("peskin4"));
+  CHECK(limits("roma3", "semi-implicit").first.limit == Approx(automatic.limit / 2));
+}
