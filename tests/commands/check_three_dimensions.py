@@ -305,6 +305,30 @@ class A_run_in_three_dimensions(Case):
         self.assert_same_bits(changed(SPACE, domain__z=WALLS), 70, 200, "series.csv")
 
 
+class Cells_in_layers_whose_faces_repel(Case):
+    SCENE = {**SHEARED, "fluid": {**SHEARED["fluid"], "layers": [{"from": "0 um", "to": "2 um", "viscosity": "3 cP"}]},
+             "interactions": [*SHEARED["interactions"],
+                              {"between": ["capsule", "self"], "model": "repulsion",
+                               "parameters": {"strength": "1e-7 J/m2", "cutoff": "0.5 um"}}]}
+
+    def test_have_the_same_bits_for_any_number_of_threads_and_when_they_go_on_after_a_pause(self):
+        self.assert_same_bits(self.SCENE, 35, 90, "series.csv", "cells.csv", "aggregates.csv")
+
+    def test_are_planned_and_have_the_viscosities_of_the_layers_around_them(self):
+        text = self.rouleau("plan", self.write(self.SCENE)).stdout
+        self.assertIn("an active potential acts between cells, within a membrane", text)
+        folder = self.run_scene(self.SCENE, "layers", "--max-steps", 20)
+        try:
+            import h5py
+        except ImportError:
+            return
+        with h5py.File(folder / "frames.h5") as file:
+            viscosity = next(frame["fields/viscosity"][:] for frame in file["frames"].values() if "fields" in frame)
+        self.assertAlmostEqual(float(viscosity[6, 2, 8]), 3e-3, delta=1e-8)
+        self.assertAlmostEqual(float(viscosity[6, 14, 8]), 1.2e-3, delta=1e-8)
+        self.assertAlmostEqual(float(viscosity[4, 6, 4]), 3e-3, delta=1e-8)  # inside the first capsule, which is of 3 cP
+
+
 class A_tube(Case):
     def test_carries_a_cell_at_the_mean_velocity_that_is_kept_and_its_fluid_rests_in_the_wall(self):
         folder = self.run_scene(TUBE, "tube")
@@ -337,6 +361,15 @@ class A_tube(Case):
 
     def test_has_the_same_bits_for_any_number_of_threads_and_when_it_goes_on_after_a_pause(self):
         self.assert_same_bits(TUBE, 35, 90, "series.csv", "cells.csv")
+
+    def test_begins_with_the_flow_that_it_would_have_without_cells(self):
+        scene = changed(TUBE, stages__0__start="developed", cells=[], stages__0__duration="0.5 ms", stages__1__duration="0.1 ms")
+        flow = [row for row in self.series(self.run_scene(scene, "tube")) if row["stage_name"] == "flow"]
+        for row in flow:  # of 5.8 spacings
+            self.assertAlmostEqual(float(row["relative_viscosity"]), 1, delta=0.02)
+        late = [row for row in self.series(self.run_scene(changed(scene, stages__0__start="impulsive"), "late"))
+                if row["stage_name"] == "flow"]
+        self.assertGreater(float(late[1]["relative_viscosity"]), 1.2)
 
     def test_is_planned_with_its_own_numbers(self):
         text = self.rouleau("plan", self.write(TUBE)).stdout
@@ -439,8 +472,10 @@ class Three_dimensions_refuse(Case):
         self.refused(random(region={"lower": ["0 um", "0 um"], "upper": ["2 um", "2 um"]}), "/cells/0/random/region/lower", "three lengths")
         self.refused(random(region={"lower": ["0 um"] * 3, "upper": ["2 um", "2 um", "1.5 um"]}), "/cells/0/random/region/upper/2",
                      "size along z is 1 um")
-        acting = [{"between": ["capsule", "self"], "model": "morse", "parameters": {"depth": "1e-8 J/m2"}}]
-        self.refused(scene | {"interactions": acting}, "/interactions/0/between", "two dimensions only")
+        bonds = {"site_density": "1e14 1/m2", "bond_stiffness": "1e-7 N/m", "zero_force_distance": "0.1 um", "on_rate": 20,
+                 "off_rate": 1, "cutoff": "0.3 um"}
+        acting = [{"between": ["capsule", "self"], "model": "bridging", "parameters": bonds}]
+        self.refused(scene | {"interactions": acting}, "/interactions/0/model", "cannot act within a membrane", "remembers")
         self.refused(changed(scene, numerics__slip_correction=True), "/numerics/slip_correction", "three dimensions")
         laws = [{"model": "hooke", "parameters": {"shear_modulus": "1e-6 N/m"}}]
         self.refused(changed(scene, **{capsule + "membrane": laws}), "/cell_types/capsule/membrane/0/model",
@@ -469,7 +504,6 @@ class Three_dimensions_refuse(Case):
         self.refused(changed(TUBE, cells__0__at=["1.5 um", "2.4 um", "2.4 um"]), "/cells/0", "the wall of the tube by 0.0874 um")
         self.refused(changed(TUBE, stages__1={"name": "s", "shear_rate": 1, "duration": 1}), "/stages/1/shear_rate",
                      "pressure_gradient or mean_velocity")
-        self.refused(changed(TUBE, stages__1__start="developed"), "/stages/1/start", "a tube")
         layers = [{"from": "0 um", "to": "1 um", "viscosity": "3 cP"}]
         self.refused(changed(TUBE, fluid__layers=layers, cells=[]), "/fluid/layers", "a tube")
 
@@ -482,8 +516,15 @@ class Three_dimensions_refuse(Case):
         self.refused(changed(scene, output__fields__region__to=["5 um", "2 um", "1.1 um"]), "/output/fields/region/to/2",
                      "ends at 1.1 um along z, outside the domain, which ends at 1 um")
 
-    def test_what_is_not_there_yet(self):
-        self.refused(changed(SPACE, domain__z=WALLS, stages__0__start="developed"), "/stages/0/start", "two walls")
+    def test_developed_flows_that_are_not_known(self):
+        shaken = {"name": "o", "pressure_gradient": 0, "oscillation": {"amplitude": "1e4 Pa/m", "frequency": "50 Hz"},
+                  "duration": "1 ms", "start": "developed"}
+        self.refused(changed(TUBE, stages__1=shaken), "/stages/1/start", "an oscillation settles to in a tube")
+        duct = changed(SPACE, domain__z=WALLS)
+        self.refused(changed(duct, stages__1=shaken), "/stages/1/start", "an oscillation settles to in a duct")
+        layers = [{"from": "0 um", "to": "1 um", "viscosity": "3 cP"}]
+        self.refused(changed(duct, fluid__layers=layers, stages__0__start="developed"), "/stages/0/start",
+                     "layers settle to in a duct")
 
     def test_an_operator_whose_manifest_names_d2q9_alone(self):
         self.refused(changed(SPACE, fluid__collision={"model": "central-moment"}), "/fluid/collision/model",

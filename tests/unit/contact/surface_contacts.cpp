@@ -5,14 +5,16 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/contact/surface_interactions.hpp"
 #include "core/contact/triangle_distance.hpp"
 #include "shape/surface.hpp"
+#include "surface_fixture.hpp"
 #include "unit/fake_models.hpp"
 #include "unit/random.hpp"
 
 using namespace rouleau;
 using namespace rouleau::core;
+using rouleau::test::check_gradient;
+using rouleau::test::run;
 
 namespace {
 
@@ -33,14 +35,6 @@ Surfaces pair(std::mt19937& random, double apart = 1.2) {
     for (double& place : *places) place += 0.05 * any(random);
   }
   return s;
-}
-
-/// A phase at a time, each by all workers, as barriers would have it.
-void run(SurfaceInteractions& forces, Surfaces& s, int workers = 1) {
-  for (auto* force : {&s.force_x, &s.force_y, &s.force_z}) std::fill(force->begin(), force->end(), 0.0);
-  for (int phase = 0; phase < 3; ++phase) {
-    for (int worker = 0; worker < workers; ++worker) forces.run({worker, workers}, phase, s);
-  }
 }
 
 /// Over all triangles of another cell's image, one by one, but those with a corner so far away that all of the triangle is
@@ -196,24 +190,7 @@ TEST_CASE(
     }
     REQUIRE(largest > 1e-4);
     for (const double sum : net) CHECK(std::abs(sum) < 1e-12 * largest);
-    std::uniform_int_distribution<int> node(0, s.node_count() - 1);
-    for (int check = 0; check < 40; ++check) {
-      const int i = node(random);
-      constexpr double h = 1e-5;
-      std::vector<double>* const places[] = {&s.x, &s.y, &s.z};
-      const std::vector<double>* const found[] = {&at.force_x, &at.force_y, &at.force_z};
-      for (int k = 0; k < 3; ++k) {
-        const double here = (*places[k])[i];
-        double energy[2];
-        for (int side = 0; side < 2; ++side) {
-          (*places[k])[i] = here + (side == 0 ? -h : h);
-          run(forces, s);
-          energy[side] = forces.energy(s);
-        }
-        (*places[k])[i] = here;
-        CHECK(std::abs(-(energy[1] - energy[0]) / (2 * h) - (*found[k])[i]) < 1e-7 * largest);
-      }
-    }
+    check_gradient(forces, s, largest, random);
     run(forces, s, 3);
     SurfaceInteractions fresh(s, {interaction}, domain);
     Surfaces again = s;

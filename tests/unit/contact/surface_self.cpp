@@ -4,14 +4,16 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/contact/surface_interactions.hpp"
 #include "core/contact/triangle_distance.hpp"
 #include "shape/surface.hpp"
+#include "surface_fixture.hpp"
 #include "unit/fake_models.hpp"
 #include "unit/random.hpp"
 
 using namespace rouleau;
 using namespace rouleau::core;
+using rouleau::test::check_gradient;
+using rouleau::test::run;
 
 namespace {
 
@@ -27,13 +29,6 @@ Surfaces sphere(double radius, int n) { return of_shape(shape::ellipsoid(n, Vec<
 
 SurfaceInteractions within(Surfaces& s, double stiffness, double rest, double cutoff) {
   return {s, {}, domain, {{0, test::spring_potential(stiffness, rest, cutoff)}}};
-}
-
-void run(SurfaceInteractions& forces, Surfaces& s, int workers = 1) {
-  for (auto* force : {&s.force_x, &s.force_y, &s.force_z}) std::fill(force->begin(), force->end(), 0.0);
-  for (int phase = 0; phase < 3; ++phase) {
-    for (int worker = 0; worker < workers; ++worker) forces.run({worker, workers}, phase, s);
-  }
 }
 
 Vec<3> force_on(const Surfaces& s, int i) { return {s.force_x[i], s.force_y[i], s.force_z[i]}; }
@@ -142,23 +137,7 @@ TEST_CASE(
   for (int i = 0; i < s.node_count(); ++i) force += force_on(s, i), torque += place_of(s, i).cross(force_on(s, i));
   CHECK(force.norm() < 1e-12 * largest);
   CHECK(torque.norm() < 1e-12 * largest * 40);
-  std::uniform_int_distribution<int> node(0, s.node_count() - 1);
-  for (int check = 0; check < 40; ++check) {
-    const int i = node(random);
-    constexpr double h = 1e-5;
-    std::vector<double>* const places[] = {&s.x, &s.y, &s.z};
-    for (int k = 0; k < 3; ++k) {
-      const double here = (*places[k])[i];
-      double energy[2];
-      for (int side = 0; side < 2; ++side) {
-        (*places[k])[i] = here + (side == 0 ? -h : h);
-        run(forces, s);
-        energy[side] = forces.energy(s);
-      }
-      (*places[k])[i] = here;
-      CHECK(std::abs(-(energy[1] - energy[0]) / (2 * h) - force_on(at, i)[k]) < 1e-7 * largest);
-    }
-  }
+  check_gradient(forces, s, largest, random);
   run(forces, s, 3);
   CHECK(s.force_x == at.force_x);
   CHECK(s.force_y == at.force_y);
