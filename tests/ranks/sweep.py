@@ -3,12 +3,13 @@
 usage: sweep.py ROULEAU MPIRUN SOURCE [--only TEXT] [--whole] [--ranks "2 8"] [--threads "1"]
 
 Too long for CI (half an hour on two processors), where `ranks` does the same for a few scenes. Compared are the tables, summary.json, frames.h5 and
-the arrays of checkpoint.h5, which are all that a run goes on from. Scenes are those of scenes/ and of tests/physics/scenes, where some choose their
+the arrays of checkpoint.h5, which are all that a run goes on from (HDF5 files where h5py is installed). Scenes are those of scenes/ and of tests/physics/scenes, where some choose their
 numerics (`auto`); each takes its first steps (60, in three dimensions 15), and --whole runs it to its end. Models are put into a scene of red cells in two dimensions (tests/resume/scenes/kinetics.json) and into one in three (scenes/doublet-3d.json).
 """
 
 import argparse
 import json
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -75,9 +76,10 @@ def main():
     parser.add_argument("--threads", default="1 2")
     arguments = parser.parse_args()
     root = arguments.source.resolve()
+    arguments.program, arguments.mpirun = (str(Path(shutil.which(name)).resolve()) for name in (arguments.program, arguments.mpirun))
     sys.argv[1:5] = [arguments.program, arguments.mpirun, str(root), ""]
     sys.path.insert(0, str(Path(__file__).parent))
-    from check_ranks import ENVIRONMENT, checkpoint, differences, own_words, ranks
+    from check_ranks import ENVIRONMENT, checkpoint, differences, h5py, own_words, ranks
 
     cuts = [(int(count), int(threads)) for count in arguments.ranks.split() for threads in arguments.threads.split()]
     failures, compared = [], 0
@@ -108,12 +110,12 @@ def main():
                     wrong.append(f"{count} x {threads}: {own_words(result.stderr).splitlines()[0]}")
                     continue
                 found = differences(alone, together)
-                if (alone / "checkpoint.h5").exists() and checkpoint(alone) != checkpoint(together):
+                if h5py is not None and (alone / "checkpoint.h5").exists() and checkpoint(alone) != checkpoint(together):
                     found.append("checkpoint.h5")
                 compared += 1
                 wrong += [f"{count} x {threads}: {found}"] if found else []
             failures += [f"{scene.name}: {what}" for what in wrong]
-            has = "checkpoint" if (alone / "checkpoint.h5").exists() else "no checkpoint"
+            has = "no h5py" if h5py is None else "checkpoint" if (alone / "checkpoint.h5").exists() else "no checkpoint"
             print(f"{scene.name}: {'; '.join(wrong) if wrong else 'same bytes'} ({has}, {time.monotonic() - begin:.0f} s)", flush=True)
     print(f"{compared} runs compared, {len(failures)} of them differ or failed")
     return bool(failures)
