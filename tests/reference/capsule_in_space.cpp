@@ -38,11 +38,11 @@ struct Mesh {
 /// Icosahedron whose faces are cut into n^2, put onto the unit sphere.
 Mesh geodesic_sphere(int n) {
   const double g = (1 + std::sqrt(5.0)) / 2;
-  const Vec corner[12] = {{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0}, {0, -1, g}, {0, 1, g},
-                          {0, -1, -g}, {0, 1, -g}, {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
-  constexpr int face[20][3] = {{0, 11, 5}, {0, 5, 1}, {0, 1, 7}, {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-                               {11, 10, 2}, {10, 7, 6}, {7, 1, 8}, {3, 9, 4}, {3, 4, 2}, {3, 2, 6}, {3, 6, 8},
-                               {3, 8, 9}, {4, 9, 5}, {2, 4, 11}, {6, 2, 10}, {8, 6, 7}, {9, 8, 1}};
+  const Vec corner[12] = {{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
+                          {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
+  constexpr int face[20][3] = {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+                               {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+                               {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
   Mesh mesh;
   std::map<std::array<long, 3>, int> known;
   const auto node = [&](const Vec& place) {
@@ -74,14 +74,17 @@ struct Point {
 };
 /// Dunavant's rules of degree 5 with 7 points, and of degree 2 with 3.
 const std::vector<Point>& points(bool near) {
-  static const std::vector<Point> three{{1.0 / 3, 1.0 / 6, 1.0 / 6}, {1.0 / 3, 2.0 / 3, 1.0 / 6}, {1.0 / 3, 1.0 / 6, 2.0 / 3}};
+  static const std::vector<Point> three{
+      {1.0 / 3, 1.0 / 6, 1.0 / 6}, {1.0 / 3, 2.0 / 3, 1.0 / 6}, {1.0 / 3, 1.0 / 6, 2.0 / 3}};
   static const std::vector<Point> many = [] {
     const double p = 0.470142064105115, q = 0.101286507323456, wp = 0.132394152788506, wq = 0.125939180544827;
-    const std::vector<Point> seven{{0.225, 1.0 / 3, 1.0 / 3}, {wp, p, p}, {wp, 1 - 2 * p, p}, {wp, p, 1 - 2 * p},
-                                   {wq, q, q}, {wq, 1 - 2 * q, q}, {wq, q, 1 - 2 * q}};
+    const std::vector<Point> seven{{0.225, 1.0 / 3, 1.0 / 3}, {wp, p, p}, {wp, 1 - 2 * p, p},
+                                   {wp, p, 1 - 2 * p},        {wq, q, q}, {wq, 1 - 2 * q, q},
+                                   {wq, q, 1 - 2 * q}};
     std::vector<Point> all;  // on four parts
     for (const Point& s : seven) {
-      for (const auto& [b, c] : {std::pair{0.0, 0.0}, {0.5, 0.0}, {0.0, 0.5}}) all.push_back({s.weight / 4, b + s.b / 2, c + s.c / 2});
+      for (const auto& [b, c] : {std::pair{0.0, 0.0}, {0.5, 0.0}, {0.0, 0.5}})
+        all.push_back({s.weight / 4, b + s.b / 2, c + s.c / 2});
       all.push_back({s.weight / 4, 0.5 - s.b / 2, 0.5 - s.c / 2});
     }
     return all;
@@ -119,14 +122,16 @@ struct Capsule {
       const double now = a.cross(b).norm() / 2;
       for (const int i : t) area[i] += now / 3, normal[i] += a.cross(b) / 6;
       const double g11 = a.dot(a), g12 = a.dot(b), g22 = b.dot(b);
-      double w11, w12, w22;  // derivative of the triangle's energy by its metric, w12 for both off the diagonal together
+      double w11, w12,
+          w22;  // derivative of the triangle's energy by its metric, w12 for both off the diagonal together
       if (law == "drop") {
         // Energy sqrt(g)/2 with the tension 1/Ca.
         const double f = 1 / ca / (4 * 2 * now);
         w11 = f * g22, w12 = -2 * f * g12, w22 = f * g11;
       } else {
         const Vec p = rest[t[1]] - rest[t[0]], q = rest[t[2]] - rest[t[0]];
-        const double r11 = p.dot(p), r12 = p.dot(q), r22 = q.dot(q), det = r11 * r22 - r12 * r12, at_rest = std::sqrt(det) / 2;
+        const double r11 = p.dot(p), r12 = p.dot(q), r22 = q.dot(q), det = r11 * r22 - r12 * r12,
+                     at_rest = std::sqrt(det) / 2;
         const double m11 = r22 / det, m12 = -r12 / det, m22 = r11 / det;  // inverse metric at rest
         const double i1 = m11 * g11 + 2 * m12 * g12 + m22 * g22 - 2, square = (g11 * g22 - g12 * g12) / det;
         double by_1, by_square;
@@ -165,7 +170,8 @@ struct Capsule {
         const double area = a.cross(b).norm() / 2;
         const bool near = (x[t[0]] - x[i]).squaredNorm() < 25 * area;
         for (const Point& p : own ? polar_points() : points(near)) {
-          const Vec r = x[t[0]] + p.b * a + p.c * b - x[i], f = (1 - p.b - p.c) * q[t[0]] + p.b * q[t[1]] + p.c * q[t[2]];
+          const Vec r = x[t[0]] + p.b * a + p.c * b - x[i],
+                    f = (1 - p.b - p.c) * q[t[0]] + p.b * q[t[1]] + p.c * q[t[2]];
           const double inverse = 1 / r.norm();
           sum += p.weight * area * inverse * (f + r * (r.dot(f) * inverse * inverse));
         }
@@ -201,9 +207,7 @@ struct Capsule {
     const Field at_first = driven(x);
     if (ratio == 1) return at_first;
     const long n = static_cast<long>(3 * x.size());
-    const auto flat = [&](const Field& f) {
-      return Eigen::Map<const Eigen::VectorXd>(f.front().data(), n);
-    };
+    const auto flat = [&](const Field& f) { return Eigen::Map<const Eigen::VectorXd>(f.front().data(), n); };
     tried.clear(), moved.clear();
     Field u = std::move(guess);
     for (int round = 0; round < 60; ++round) {
@@ -271,7 +275,8 @@ int main(int count, char** words) {
   for (long s = 0; s <= steps; ++s) {
     if (s % every == 0 || s == steps) {
       const Shape shape = shape_of(c, x);
-      std::printf("%.3f %.5f %.4f %.6f\n", static_cast<double>(s) * step, shape.deformation, shape.angle, shape.volume / volume);
+      std::printf("%.3f %.5f %.4f %.6f\n", static_cast<double>(s) * step, shape.deformation, shape.angle,
+                  shape.volume / volume);
       std::fflush(stdout);
     }
     u = c.velocity(x, u);

@@ -89,8 +89,9 @@ TEST_CASE("with kernels that let nodes zigzag the semi-implicit step bears less,
   // limits/kernels.json: stable up to 9.2e-6 N/m with the explicit step, 5.2e-6 with the semi-implicit one.
   const Catalog catalog({ROULEAU_PLUGINS});
   const auto limits = [&](const std::string& kernel, const std::string& coupling) {
-    const Scene scene = read_scene(std::string(ROULEAU_SCENES) + "/red-cell-3d.json",
-                                   {"/numerics/density_factor=3000", "/numerics/kernel=" + kernel, "/numerics/coupling=" + coupling});
+    const Scene scene =
+        read_scene(std::string(ROULEAU_SCENES) + "/red-cell-3d.json",
+                   {"/numerics/density_factor=3000", "/numerics/kernel=" + kernel, "/numerics/coupling=" + coupling});
     const Plan plan = make_plan(scene, catalog);
     const std::vector<Limit> all = find_limits(plan);
     const auto found = std::find_if(all.begin(), all.end(),
