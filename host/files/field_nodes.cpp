@@ -18,9 +18,8 @@ FieldNodes::FieldNodes(const Hdf5File& file, const std::string& dataset) {
     const double length = file.read_attribute("/", "size_m", axis);
     spacing[axis] = part ? file.read_attribute("/", "fields_spacing_m", axis) : length / double(nodes[axis]);
     first[axis] = part ? file.read_attribute("/", "fields_first_m", axis) : spacing[axis] / 2;
-    if (axis == 2) break;
     const bool whole = std::abs(spacing[axis] * double(nodes[axis]) - length) < 1e-6 * length;
-    periodic[axis] = whole && (axis == 0 || file.read_attribute("/", "periodic_y") != 0);
+    if (axis < periodic.size()) periodic[axis] = whole && (axis == 0 || file.read_attribute("/", "periodic_y") != 0);
   }
 }
 

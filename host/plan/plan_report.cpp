@@ -164,6 +164,11 @@ std::vector<PackedCells> packed_cells(const scene::Scene& scene) {
   return packed;
 }
 
+/// Closest points on others' membranes, in three dimensions on a cell's own, too.
+bool looks_for_neighbours(const Plan& plan) {
+  return plan.has_interactions || (plan.scene->domain.depth && plan.has_self_interactions);
+}
+
 std::vector<PlannedPass> planned_passes(const Plan& plan) {
   const scene::Scene& scene = *plan.scene;
   const bool slip = scene.numerics.slip_correction, area = scene.numerics.area_correction;
@@ -186,7 +191,7 @@ std::vector<PlannedPass> planned_passes(const Plan& plan) {
       {"interpolate", "membranes move with the fluid"},
       {"move", "new positions of membrane nodes"}};
   const core::StepFeatures features{.cells = plan.has_cells,
-                                    .interactions = plan.has_interactions || (space && plan.has_self_interactions),
+                                    .interactions = looks_for_neighbours(plan),
                                     .wall_interactions = plan.has_wall_interactions,
                                     .self_interactions = !space && plan.has_self_interactions,
                                     .viscosity_contrast = plan.viscosity_contrast,
@@ -221,7 +226,7 @@ std::vector<Omission> omissions(const Plan& plan) {
     if (!scene.numerics.area_correction)
       omit("area correction",
            std::string("numerics.area_correction is false: leaks show as ") + (space ? "volume" : "area") + " drift");
-    if (!plan.has_interactions && !(space && plan.has_self_interactions)) {
+    if (!looks_for_neighbours(plan)) {
       const bool others = plan.has_wall_interactions || plan.has_self_interactions;
       omit("neighbour search", scene.interactions.empty() ? "the scene has no interaction"
                                : others                   ? "no interaction between cells is active"

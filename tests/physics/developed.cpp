@@ -2,7 +2,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <iostream>
-#include <numbers>
 
 #include "core/fluid/duct_flow.hpp"
 #include "core/solver/solver.hpp"

@@ -31,6 +31,13 @@ REQUIRED = {  # parameters that have no default
 }
 
 
+def works_in_space(about):
+    """By its manifest."""
+    if about["kind"] == "collision":
+        return "D3Q19" in about.get("lattices", [])
+    return 3 in about.get("dimensions", [2] if about["kind"] == "membrane" else [2, 3])
+
+
 def scenes_of_models(root, folder):
     """A scene for each model and each number of dimensions that it says it has."""
     for manifest in sorted((root / "plugins").glob("*/*/*.json")):
@@ -42,8 +49,9 @@ def scenes_of_models(root, folder):
         for base in KINETICS, DOUBLET:
             scene = json.loads((root / base).read_text())
             spatial = len(scene["domain"]["nodes"]) == 3
-            lattices = about.get("lattices", ["D2Q9"]) if kind == "collision" else []
-            if (3 if spatial else 2) not in about.get("dimensions", [2] if kind == "membrane" or lattices == ["D2Q9"] else [2, 3]):
+            if spatial and not works_in_space(about):
+                continue
+            if not spatial and 2 not in about.get("dimensions", [2]):
                 continue
             entry = {"model": model, "parameters": parameters}
             membrane = next(iter(scene["cell_types"].values()))["membrane"]

@@ -47,7 +47,8 @@ std::vector<std::vector<Way>> ways_of(const RestSurface& rest) {
 }  // namespace
 
 SelfReach::SelfReach(const RestSurface& rest, double cutoff)
-    : triangles_(static_cast<std::size_t>(rest.mesh.triangle_count())),
+    : cutoff_(cutoff),
+      triangles_(static_cast<std::size_t>(rest.mesh.triangle_count())),
       allowed_(static_cast<std::size_t>(rest.mesh.node_count()) * triangles_, true) {
   constexpr double too_long = 1.04;
   const double apart = too_long * std::numbers::pi / 2 * cutoff;

@@ -15,11 +15,13 @@ class SelfReach {
  public:
   SelfReach(const RestSurface& rest, double cutoff);
 
+  [[nodiscard]] double cutoff() const { return cutoff_; }
   [[nodiscard]] bool allows(int node, int triangle) const {
     return allowed_[static_cast<std::size_t>(node) * triangles_ + static_cast<std::size_t>(triangle)];
   }
 
  private:
+  double cutoff_;
   std::size_t triangles_;
   std::vector<bool> allowed_;  // of each node, each triangle
 };

@@ -115,18 +115,24 @@ class SurfaceContacts::Bins {
 };
 
 SurfaceContacts::SurfaceContacts(const Surfaces& surfaces, Cutoffs cutoffs, const Domain<3>& domain,
-                                 std::vector<double> self_cutoffs)
+                                 const std::vector<double>& self_cutoffs)
     : cutoffs_(std::move(cutoffs)),
-      self_cutoffs_(std::move(self_cutoffs)),
       domain_(domain),
       watch_(surfaces),
       path_(surfaces.cells.size(), 0.0),
       renewed_(surfaces.cells.size(), 0),
       lists_(surfaces.cells.size()) {
-  for (std::size_t t = 0; t < self_cutoffs_.size(); ++t) {
-    self_reach_.push_back(self_cutoffs_[t] > 0 ? std::make_unique<const SelfReach>(*surfaces.types[t], self_cutoffs_[t])
-                                               : nullptr);
+  for (std::size_t t = 0; t < self_cutoffs.size(); ++t) {
+    self_reach_.push_back(self_cutoffs[t] > 0 ? std::make_unique<const SelfReach>(*surfaces.types[t], self_cutoffs[t])
+                                              : nullptr);
   }
+}
+
+/// Of a cell from another's image, or within it.
+double SurfaceContacts::cutoff(const Surfaces& surfaces, int cell, int other, bool within) const {
+  const int type = surfaces.cells[cell].type;
+  if (!within) return cutoffs_(type, surfaces.cells[other].type);
+  return !self_reach_.empty() && self_reach_[type] ? self_reach_[type]->cutoff() : 0;
 }
 
 SurfaceContacts SurfaceContacts::within(double reach, const Surfaces& surfaces, const Domain<3>& domain) {
@@ -170,7 +176,7 @@ void SurfaceContacts::refresh(Worker worker, const Surfaces& surfaces) {
   const double skin = suitable_skin(surfaces);
   // Every worker sorts all triangles: that is quicker than to wait for one who does.
   double largest = cutoffs_.largest();
-  for (const double cutoff : self_cutoffs_) largest = std::max(largest, cutoff);
+  for (const auto& own : self_reach_) largest = std::max(largest, own ? own->cutoff() : 0);
   const Bins bins(surfaces, largest + 2 * skin, domain_);
   for (const int cell : cells) {
     if (of_all_ || surfaces.owns(cell)) {
@@ -316,7 +322,7 @@ void SurfaceContacts::list_candidates(int cell, const Surfaces& surfaces, const 
       std::sort(list.candidates.begin() + first, list.candidates.end(), [](const Candidate& a, const Candidate& b) {
         return std::tie(a.distance, a.triangle) < std::tie(b.distance, b.triangle);
       });
-      list.groups.push_back({node, other, image.shift, first, static_cast<int>(list.candidates.size())});
+      list.groups.push_back({node, other, image.shift, within, first, static_cast<int>(list.candidates.size())});
     }
   }
 }
@@ -338,8 +344,7 @@ void SurfaceContacts::find(int cell, const Surfaces& surfaces, std::vector<Surfa
     const CellRange& other = surfaces.cells[group.other];
     const Nodes nodes = surfaces.nodes(group.other);
     const auto& triangles = surfaces.type_of(group.other).mesh.triangles();
-    const bool within = group.other == cell && group.shift == std::array<int, 3>{};
-    const double cutoff = this->cutoff(surfaces, cell, group.other, within);
+    const double cutoff = this->cutoff(surfaces, cell, group.other, group.within);
     constexpr double rounding = 1e-9;
     const double path = travelled(cell, group.other);
     const bool remembers = !surfaces.largest_step.empty();
@@ -366,6 +371,7 @@ void SurfaceContacts::find(int cell, const Surfaces& surfaces, std::vector<Surfa
     SurfaceContact contact{group.node,
                            group.other,
                            {group.shift[0], group.shift[1], group.shift[2]},
+                           group.within,
                            {other.first + i, other.first + j, other.first + k},
                            point.weight,
                            std::max(root, SurfaceContact::least_distance),

@@ -21,6 +21,7 @@ struct SurfaceContact {
   int node;                   ///< index in Surfaces
   int other;                  ///< cell; the cell itself, for one of its images or, not shifted, for its own surface
   ImageShift shift;           ///< of that image
+  bool within;                ///< it is the cell's own surface
   std::array<int, 3> corner;  ///< of the triangle that P is on: indices in Surfaces
   std::array<double, 3> weight;
   double distance;   ///< |X - P|, at least least_distance
@@ -41,7 +42,7 @@ class SurfaceContacts {
  public:
   /// `self_cutoffs`: of each type, within a cell; 0, and where there are none: cells do not touch themselves.
   SurfaceContacts(const Surfaces& surfaces, Cutoffs cutoffs, const Domain<3>& domain,
-                  std::vector<double> self_cutoffs = {});
+                  const std::vector<double>& self_cutoffs = {});
 
   /// Of all cells within one reach, whatever their types and owners, at the present positions: find() may be called.
   static SurfaceContacts within(double reach, const Surfaces& surfaces, const Domain<3>& domain);
@@ -69,6 +70,7 @@ class SurfaceContacts {
   struct Group {
     int node, other;
     std::array<int, 3> shift;
+    bool within;  ///< the cell's own surface
     int begin, end;
   };
   struct CandidateList {
@@ -80,18 +82,11 @@ class SurfaceContacts {
 
   static void sort_in(Candidate* candidates, int count, int all);
   [[nodiscard]] double travelled(int cell, int other) const;
-  [[nodiscard]] double self_cutoff(int type) const {
-    return static_cast<std::size_t>(type) < self_cutoffs_.size() ? self_cutoffs_[type] : 0;
-  }
-  [[nodiscard]] double cutoff(const Surfaces& surfaces, int cell, int other, bool within) const {
-    const int type = surfaces.cells[cell].type;
-    return within ? self_cutoff(type) : cutoffs_(type, surfaces.cells[other].type);
-  }
+  [[nodiscard]] double cutoff(const Surfaces& surfaces, int cell, int other, bool within) const;
   void list_candidates(int cell, const Surfaces& surfaces, const Bins& bins, double skin);
 
   Cutoffs cutoffs_;
-  std::vector<double> self_cutoffs_;
-  std::vector<std::unique_ptr<const SelfReach>> self_reach_;  // of each type that touches itself
+  std::vector<std::unique_ptr<const SelfReach>> self_reach_;  // of each type; null: it does not touch itself; or empty
   Domain<3> domain_;
   DisplacementWatch watch_;
   bool of_all_ = false;       // lists of other ranks' cells, too

@@ -107,8 +107,7 @@ void SurfaceInteractions::evaluate(int cell, const Surfaces& surfaces, bool ener
 
 bool SurfaceInteractions::acts_at(std::size_t interaction, const SurfaceContact& contact, int cell,
                                   const Surfaces& surfaces) const {
-  const bool within = contact.other == cell && contact.shift == ImageShift{};
-  return within == (interaction >= between_cells_) &&
+  return contact.within == (interaction >= between_cells_) &&
          acts_between(interactions_[interaction], surfaces.cells[cell].type, surfaces.cells[contact.other].type);
 }
 

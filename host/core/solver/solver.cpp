@@ -31,6 +31,12 @@ void require_types(const BasicSolverSetup<D>& setup, const Cells& cells) {
   }
 }
 
+/// Whether walls close the section of the flow all around: a duct, or a tube.
+template <int D>
+bool is_enclosed(const BasicSolverSetup<D>& setup) {
+  return D == 3 && setup.domain.walled(D - 1);
+}
+
 template <int D, class Cells>
 FluidSetting<D> fluid_setting(const BasicSolverSetup<D>& setup, const Cells& cells) {
   require_types(setup, cells);
@@ -38,7 +44,7 @@ FluidSetting<D> fluid_setting(const BasicSolverSetup<D>& setup, const Cells& cel
     if (nodes < 1) throw std::invalid_argument("a lattice needs at least one node along every axis");
   }
   if (!setup.domain.periodic[0]) throw std::invalid_argument("a lattice without walls along y is periodic along x");
-  if (D == 3 && setup.domain.walled(D - 1) && setup.developed && (setup.oscillation.any() || !setup.layers.empty()))
+  if (is_enclosed(setup) && setup.developed && (setup.oscillation.any() || !setup.layers.empty()))
     throw std::invalid_argument(
         "between walls across z, the developed flow of layers or of an oscillation is not known");
   if (setup.solid && setup.solid->size() != setup.domain.size)
@@ -191,7 +197,7 @@ template <class T, class Set>
 void Solver<T, Set>::start(Solver* former) {
   steps_ = 0;
   double faster = 0;  // what the membranes' last displacement is worth in the new time step
-  if (setup_.developed && setup_.domain.walled(dimension - 1) && dimension == 3) {
+  if (setup_.developed && is_enclosed(setup_)) {
     if constexpr (dimension == 3) set_section_flow(fluid_, setup_);
   } else if (setup_.developed && !setup_.layers.empty()) {
     const auto profile =
