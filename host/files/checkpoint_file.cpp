@@ -81,17 +81,17 @@ std::filesystem::path previous_checkpoint_file(const std::filesystem::path& dire
 struct CheckpointWriter::File {
   explicit File(const std::filesystem::path& file) : hdf5(file, Hdf5File::Mode::create, head_bytes) {}
   template <class T>
-  Hdf5Rows begin(const std::string& path, std::size_t rows, std::size_t columns) {
+  Hdf5Rows begin(const std::string& path, const std::vector<hsize_t>& shape) {
     const std::string group = parent_group(path);
     if (!group.empty() && !hdf5.has(group)) hdf5.make_group(group);
     const bool f64 = std::is_same_v<T, double>;
-    return hdf5.begin(path, {rows, columns}, false, f64 ? H5T_IEEE_F64LE : H5T_IEEE_F32LE,
+    return hdf5.begin(path, shape, false, f64 ? H5T_IEEE_F64LE : H5T_IEEE_F32LE,
                       f64 ? H5T_NATIVE_DOUBLE : H5T_NATIVE_FLOAT, "lattice units");
   }
   template <class T>
-  void write(const std::string& path, std::size_t rows, std::size_t columns, const T* values) {
-    Hdf5Rows array = begin<T>(path, rows, columns);
-    if (!array.full()) array.append(values, rows);
+  void write(const std::string& path, const std::vector<hsize_t>& shape, const T* values) {
+    Hdf5Rows array = begin<T>(path, shape);
+    if (!array.full()) array.append(values, shape.front());
   }
   void write_bytes(const std::string& path, const void* data, std::size_t count) {
     hdf5.write(path, {count}, H5T_STD_U8LE, H5T_NATIVE_UINT8, data, "1");
@@ -123,17 +123,26 @@ void CheckpointWriter::state(const nlohmann::json& state) {
 }
 
 void CheckpointWriter::array(const std::string& path, std::size_t rows, std::size_t columns, const double* values) {
-  file_->write(path, rows, columns, values);
+  file_->write(path, {rows, columns}, values);
 }
 
 void CheckpointWriter::array(const std::string& path, std::size_t rows, std::size_t columns, const float* values) {
-  file_->write(path, rows, columns, values);
+  file_->write(path, {rows, columns}, values);
+}
+
+void CheckpointWriter::array(const std::string& path, std::span<const double> values) {
+  file_->write(path, {values.size()}, values.data());
 }
 
 template <class T>
 void CheckpointWriter::begin_array(const std::string& path, std::size_t rows, std::size_t columns) {
-  file_->open = file_->begin<T>(path, rows, columns);
+  file_->open = file_->begin<T>(path, {rows, columns});
   file_->width = columns;
+}
+
+void CheckpointWriter::begin_array(const std::string& path, std::size_t count) {
+  file_->open = file_->begin<double>(path, {count});
+  file_->width = 1;
 }
 
 template <class T>

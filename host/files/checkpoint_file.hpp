@@ -37,11 +37,13 @@ class CheckpointWriter {
   /// An array of `rows` times `columns` values at "/name" or "/group/name"; groups are made.
   void array(const std::string& path, std::size_t rows, std::size_t columns, const double* values);
   void array(const std::string& path, std::size_t rows, std::size_t columns, const float* values);
-  void array(const std::string& path, std::span<const double> values) { array(path, 1, values.size(), values.data()); }
-  /// Begins an array whose rows append() adds, the first ones first. T: double or float. Nothing else is written before
-  /// they are all there.
+  /// One of so many values, without columns.
+  void array(const std::string& path, std::span<const double> values);
+  /// Begins an array whose rows, or values, append() adds, the first ones first. T: double or float. Nothing else is written
+  /// before they are all there.
   template <class T>
   void begin_array(const std::string& path, std::size_t rows, std::size_t columns);
+  void begin_array(const std::string& path, std::size_t count);
   template <class T>
   void append(const std::vector<T>& rows);
   /// Nothing can be added after it: the file is whole and on the disk, and still beside the checkpoint.

@@ -1,8 +1,7 @@
 #include "frames.hpp"
 
 #include <algorithm>
-#include <cstdio>
-#include <map>
+#include <numeric>
 
 #include "base/error.hpp"
 #include "middle_sections.hpp"
@@ -61,15 +60,42 @@ void FrameWriter::write(const observe::Snapshot& snapshot) {
   open_->attribute(frame, "stage_name", snapshot.stage_name);
   FrameRecord record;
   record.time = snapshot.time;
-  if (!snapshot.outlines.x.empty()) write_membranes(frame, snapshot, record);
+  if (!snapshot.membranes.empty()) write_membranes(frame, snapshot, record);
   if (!snapshot.fields.empty()) write_fields(frame, snapshot.fields, record);
   open_->flush();
   frames_.push_back(std::move(record));
 }
 
+namespace {
+
+/// How many nodes are written at once of what is not brought from elsewhere.
+constexpr std::size_t nodes_at_once = 1 << 20;
+
+/// A dataset of whole numbers that are made some at a time.
+class NumberRows {
+ public:
+  NumberRows(Hdf5File& file, const std::string& path, const std::vector<hsize_t>& shape)
+      : columns_(shape.size() > 1 ? shape[1] : 1),
+        rows_(file.begin(path, shape, false, H5T_STD_I32LE, H5T_NATIVE_INT, "1")) {}
+  /// Where the next ones go; write() looks whether they are many.
+  std::vector<int>& next() { return waiting_; }
+  void write(bool last = false) {
+    if (waiting_.empty() || (!last && waiting_.size() < nodes_at_once)) return;
+    rows_.append(waiting_.data(), waiting_.size() / columns_);
+    waiting_.clear();
+  }
+
+ private:
+  hsize_t columns_;
+  Hdf5Rows rows_;
+  std::vector<int> waiting_;
+};
+
+}  // namespace
+
 void FrameWriter::write_membranes(const std::string& frame, const observe::Snapshot& snapshot, FrameRecord& record) {
-  const auto& outlines = snapshot.outlines;
-  if (!topology_here_ || outlines.first != first_) write_topology(outlines);
+  const observe::MembraneSnapshot& membranes = snapshot.membranes;
+  if (!topology_here_ || membranes.first != first_) write_topology(membranes);
   record.nodes = topology_record_.nodes;
   record.cells = topology_record_.cells;
   record.connectivity = topology_record_.connectivity;
@@ -78,71 +104,75 @@ void FrameWriter::write_membranes(const std::string& frame, const observe::Snaps
 
   const std::string group = frame + "/membranes";
   open_->make_group(group);
-  const std::size_t components = record.surfaces ? 3 : 2;
-  std::vector<double> points;
-  points.reserve(components * outlines.x.size());
-  for (std::size_t i = 0; i < outlines.x.size(); ++i) {
-    points.push_back(outlines.x[i]);
-    points.push_back(outlines.y[i]);
-    if (record.surfaces) points.push_back(outlines.z[i]);
+  for (const observe::Field& field : membranes.fields) {
+    const auto components = static_cast<hsize_t>(field.components);
+    std::vector<hsize_t> shape{record.nodes};
+    if (components > 1) shape.push_back(components);
+    std::string path = group;
+    path.append("/").append(field.name);
+    Hdf5Rows rows = open_->begin(path, shape, false, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, field.unit);
+    field.give([&](const std::vector<double>& values) { rows.append(values.data(), values.size() / components); });
   }
-  open_->write(group + "/points", {outlines.x.size(), components}, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, points.data(),
-               "m");
-  // frames.xmf promises every attribute at every frame, so that ParaView can colour the whole animation.
-  auto tension = outlines.tension;
-  tension.resize(outlines.x.size(), 0.0);
-  open_->write(group + "/tension", tension, "N/m");
-  if (record.surfaces) open_->write(group + "/curvature", outlines.curvature, "1/m");
-
-  std::map<int, int> label;
-  for (const auto& cell : snapshot.cells) label[cell.cell] = cell.aggregate;
-  std::vector<int> aggregate(outlines.x.size());
-  for (std::size_t cell = 0; cell < record.cells; ++cell) {
-    const auto known = label.find(static_cast<int>(cell));
-    std::fill(aggregate.begin() + outlines.first[cell], aggregate.begin() + outlines.first[cell + 1],
-              known == label.end() ? static_cast<int>(cell) : known->second);
-  }
-  open_->write(group + "/aggregate", aggregate, "1");
+  std::vector<int> aggregate(record.cells);
+  std::iota(aggregate.begin(), aggregate.end(), 0);
+  for (const observe::CellSnapshot& cell : snapshot.cells) aggregate[cell.cell] = cell.aggregate;
+  write_of_cells(group + "/aggregate", membranes.first, [&](std::size_t cell) { return aggregate[cell]; });
   for (const char* shared : {"/first", "/cell", record.surfaces ? "/triangles" : "/connectivity"})
     open_->link(topology_ + shared, group + shared);
 }
 
-void FrameWriter::write_topology(const observe::OutlineSnapshot& outlines) {
-  const std::vector<int>& first = outlines.first;
+void FrameWriter::write_of_cells(const std::string& path, const std::vector<int>& first,
+                                 const std::function<int(std::size_t cell)>& number) {
+  NumberRows rows(*open_, path, {static_cast<hsize_t>(first.back())});
+  for (std::size_t cell = 0; cell + 1 < first.size(); ++cell) {
+    rows.next().insert(rows.next().end(), static_cast<std::size_t>(first[cell + 1] - first[cell]), number(cell));
+    rows.write();
+  }
+  rows.write(true);
+}
+
+void FrameWriter::write_topology(const observe::MembraneSnapshot& membranes) {
+  const std::vector<int>& first = membranes.first;
   constexpr int polyline = 2;  // XDMF's code in a mixed topology, followed by the number of nodes
   const std::size_t cells = first.size() - 1;
   topology_record_ = {};
   topology_record_.nodes = static_cast<std::size_t>(first.back());
   topology_record_.cells = cells;
   topology_record_.uniform = equal_cells(first);
-  topology_record_.surfaces = !outlines.z.empty();
-
-  std::vector<int> owner, connectivity;
+  topology_record_.surfaces = membranes.triangles != nullptr;
+  // Of a cell: an outline is closed by its first node.
+  const std::size_t per_outline = topology_record_.uniform ? 1 : 3;
   for (std::size_t cell = 0; cell < cells; ++cell) {
-    if (!topology_record_.uniform)
-      connectivity.insert(connectivity.end(), {polyline, first[cell + 1] - first[cell] + 1});
-    for (int node = first[cell]; node < first[cell + 1]; ++node) {
-      owner.push_back(static_cast<int>(cell));
-      connectivity.push_back(node);
-    }
-    connectivity.push_back(first[cell]);  // closes the outline
+    topology_record_.connectivity += topology_record_.surfaces
+                                         ? 3 * membranes.triangles(static_cast<int>(cell)).size()
+                                         : static_cast<std::size_t>(first[cell + 1] - first[cell]) + per_outline;
   }
-  if (topology_record_.surfaces) connectivity.clear();
-  for (const auto& corners : outlines.triangles)
-    connectivity.insert(connectivity.end(), corners.begin(), corners.end());
-  topology_record_.connectivity = connectivity.size();
 
   // A new segment repeats the topology that still holds, under its name.
   if (first != first_ || topologies_ == 0) topology_ = "/topology/" + std::to_string(topologies_++);
   topology_here_ = true;
   open_->make_group(topology_);
   open_->write(topology_ + "/first", first, "1");
-  open_->write(topology_ + "/cell", owner, "1");
+  write_of_cells(topology_ + "/cell", first, [](std::size_t cell) { return static_cast<int>(cell); });
   if (topology_record_.surfaces) {
-    open_->write(topology_ + "/triangles", {outlines.triangles.size(), 3}, H5T_STD_I32LE, H5T_NATIVE_INT,
-                 connectivity.data(), "1");
+    NumberRows rows(*open_, topology_ + "/triangles", {topology_record_.connectivity / 3, 3});
+    for (std::size_t cell = 0; cell < cells; ++cell) {
+      for (const auto& corners : membranes.triangles(static_cast<int>(cell))) {
+        for (const int corner : corners) rows.next().push_back(first[cell] + corner);
+      }
+      rows.write();
+    }
+    rows.write(true);
   } else {
-    open_->write(topology_ + "/connectivity", connectivity, "1");
+    NumberRows rows(*open_, topology_ + "/connectivity", {topology_record_.connectivity});
+    for (std::size_t cell = 0; cell < cells; ++cell) {
+      if (!topology_record_.uniform)
+        rows.next().insert(rows.next().end(), {polyline, first[cell + 1] - first[cell] + 1});
+      for (int node = first[cell]; node < first[cell + 1]; ++node) rows.next().push_back(node);
+      rows.next().push_back(first[cell]);
+      rows.write();
+    }
+    rows.write(true);
   }
   first_ = first;
 }

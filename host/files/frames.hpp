@@ -23,6 +23,7 @@
 
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -82,7 +83,10 @@ class FrameWriter {
   void open_segment();
   void write_header(Hdf5File& target) const;
   void write_membranes(const std::string& frame, const observe::Snapshot& snapshot, FrameRecord& record);
-  void write_topology(const observe::OutlineSnapshot& outlines);
+  void write_topology(const observe::MembraneSnapshot& membranes);
+  /// A number of each node, the same for all of a cell.
+  void write_of_cells(const std::string& path, const std::vector<int>& first,
+                      const std::function<int(std::size_t cell)>& number);
   void write_fields(const std::string& frame, const observe::FieldSnapshot& snapshot, FrameRecord& record);
   [[nodiscard]] FieldGrid field_grid() const;
   void read_back(const std::filesystem::path& source, std::size_t frames);

@@ -2,14 +2,16 @@
 
 #include <algorithm>
 
-#include "core/membrane/motion.hpp"
 #include "node_checks.hpp"
 
 namespace rouleau::monitor {
 
-std::optional<Failure> check_energy(const observe::EnergyHistory& energy, const core::CellNodes& membranes,
-                                    const plan::Plan& plan, const plan::StageSetting& setting) {
-  const double growth = energy.relative_growth(), limit = plan.scene->checks.energy_growth;
+template <int D>
+std::optional<Failure> check_energy(const observe::EnergyHistory& energy, const core::CellNodes& cells,
+                                    const core::Ranks<D>& ranks, const plan::Plan& plan,
+                                    const plan::StageSetting& setting) {
+  const double growth = core::of_first(ranks, std::vector<double>{energy.relative_growth()}).front();
+  const double limit = plan.scene->checks.energy_growth;
   if (growth <= limit) return std::nullopt;
   const bool bonds =
       std::any_of(plan.interactions.begin(), plan.interactions.end(),
@@ -24,9 +26,14 @@ std::optional<Failure> check_energy(const observe::EnergyHistory& energy, const 
   failure.remedy = "lower " + setting.stage->density_factor_key +
                    ", or take numerics.coupling \"explicit\" within its limits (the plan has "
                    "the margins), or raise checks.energy_growth if this error is acceptable";
-  const int fastest = core::farthest_node(membranes).node;
-  if (fastest >= 0) locate_failure(failure, membranes, fastest, setting.units.length);
+  const FoundNode fastest = farthest_node(cells, ranks);
+  if (fastest.node >= 0) locate_failure<D>(failure, fastest, setting.units.length);
   return failure;
 }
+
+template std::optional<Failure> check_energy(const observe::EnergyHistory&, const core::CellNodes&,
+                                             const core::Ranks<2>&, const plan::Plan&, const plan::StageSetting&);
+template std::optional<Failure> check_energy(const observe::EnergyHistory&, const core::CellNodes&,
+                                             const core::Ranks<3>&, const plan::Plan&, const plan::StageSetting&);
 
 }  // namespace rouleau::monitor

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <span>
 #include <vector>
 
 #include "membrane_wave.hpp"
@@ -30,21 +31,39 @@ double distance_to(const core::Membranes& m, const core::CellRange& cell, const 
 
 struct Surroundings {
   int cell = -1;  ///< nearest to the place, if within its neighbourhood
+  int rank = 0;   ///< who owns it
   bool contact = false;
 };
 
+/// `cell`: what is in question already; -1: nothing.
 Surroundings find_surroundings(int cell, const core::Membranes& m, const std::array<double, 2>& place,
-                               const core::Domain<2>& domain) {
-  Surroundings found{cell, false};
-  double nearest = membrane_neighbourhood;
-  int near = 0;
-  for (int c = 0; c < m.cell_count(); ++c) {
+                               const core::Domain<2>& domain, const core::Ranks<2>& ranks) {
+  struct Nearest {
+    double distance;
+    int cell, rank;
+  };
+  Nearest nearest{membrane_neighbourhood, -1, ranks.several() ? ranks.transport->rank() : 0};
+  std::vector<core::ExactSum> near(1);
+  for (const int c : m.known_cells()) {
+    if (!m.owns(c)) continue;
     const double distance = distance_to(m, m.cells[c], place, domain);
-    near += distance < contact_neighbourhood && c != cell ? 1 : 0;
-    if (cell < 0 && distance < nearest) nearest = distance, found.cell = c;
+    if (distance < contact_neighbourhood && c != cell) near.front().add(1);
+    if (cell < 0 ? distance < nearest.distance : c == cell) nearest.distance = distance, nearest.cell = c;
   }
-  found.contact = near > (cell < 0 ? 1 : 0);
-  return found;
+  nearest = core::best_of_all(ranks, nearest, [](const Nearest& a, const Nearest& b) {
+    if (a.cell < 0 || b.cell < 0) return a.cell > b.cell;
+    return a.distance != b.distance ? a.distance < b.distance : a.cell < b.cell;
+  });
+  core::add_up(ranks, near);
+  return {nearest.cell, nearest.rank, near.front().value() > (cell < 0 ? 1 : 0)};
+}
+
+/// What one rank has found, on all.
+FailureMode of_rank(const core::Ranks<2>& ranks, int rank, const FailureMode& mode) {
+  const std::vector<double> numbers = core::of_rank(
+      ranks, rank, std::vector<double>{mode.wavelength, mode.tangential_share, static_cast<double>(mode.step)});
+  const std::vector<char> name = core::of_rank(ranks, rank, std::vector<char>(mode.name.begin(), mode.name.end()));
+  return {{name.begin(), name.end()}, numbers[0], numbers[1], static_cast<long>(numbers[2])};
 }
 
 /// The first prominent wave of the cell, from what was noted of its growth or from its last step.
@@ -137,10 +156,12 @@ template double lattice_oscillation(const core::Fluid<float, core::D3Q19>&, cons
 template double lattice_oscillation(const core::Fluid<double, core::D3Q19>&, const std::array<int, 3>&);
 
 void find_mode(monitor::Failure& failure, const core::Membranes& membranes, const GrowthWatch& growth,
-               const core::Domain<2>& domain, std::array<double, 2> place, double oscillation, long step) {
-  const Surroundings around = find_surroundings(failure.cell, membranes, place, domain);
+               const core::Domain<2>& domain, std::array<double, 2> place, double oscillation, long step,
+               const core::Ranks<2>& ranks) {
+  const Surroundings around = find_surroundings(failure.cell, membranes, place, domain, ranks);
   FailureMode mode;
-  if (around.cell >= 0) mode = wave_of(around.cell, membranes, growth, step);
+  if (around.cell >= 0 && membranes.owns(around.cell)) mode = wave_of(around.cell, membranes, growth, step);
+  if (around.cell >= 0) mode = of_rank(ranks, around.rank, mode);
   const bool waves = mode.name != "none";
   if (failure.reason == "area_drift") {
     mode.name = "leakage";

@@ -41,9 +41,10 @@ template <class T, class Set>
 double lattice_oscillation(const core::Fluid<T, Set>& fluid, const std::array<int, Set::dimension>& node);
 
 /// Sets the mode of a failure whose reason and cell are known. `place` in lattice units; `oscillation`:
-/// lattice_oscillation there; `step`: the last one.
+/// lattice_oscillation there; `step`: the last one. All ranks together, and all find the same.
 void find_mode(Failure& failure, const core::Membranes& membranes, const GrowthWatch& growth,
-               const core::Domain<2>& domain, std::array<double, 2> place, double oscillation, long step);
+               const core::Domain<2>& domain, std::array<double, 2> place, double oscillation, long step,
+               const core::Ranks<2>& ranks = {});
 /// Of surfaces: leakage where a volume drifts, sound where the fluid oscillates or there are no cells, else none.
 void find_mode(Failure& failure, const core::Surfaces& surfaces, double oscillation);
 

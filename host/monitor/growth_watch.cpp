@@ -7,25 +7,40 @@
 
 namespace rouleau::monitor {
 
-void GrowthWatch::note(long step, const core::CellNodes& membranes) {
-  const double speed = core::largest_step(membranes);
+template <int D>
+void GrowthWatch::note(long step, const core::CellNodes& cells, const core::Ranks<D>& ranks) {
+  const double speed = core::largest_step(cells);
   if (!std::isfinite(speed)) return;
-  const auto fastest = std::max_element(membranes.largest_step.begin(), membranes.largest_step.end());
+  struct Fastest {
+    double step;
+    int cell, rank;
+  };
+  Fastest fastest{-1, -1, ranks.several() ? ranks.transport->rank() : 0};
+  for (const int c : cells.known_cells()) {
+    if (cells.owns(c) && cells.largest_step[c] > fastest.step) fastest.step = cells.largest_step[c], fastest.cell = c;
+  }
+  fastest = core::best_of_all(ranks, fastest, [](const Fastest& a, const Fastest& b) {
+    return a.step != b.step ? a.step > b.step : a.cell < b.cell;
+  });
   Excursion excursion;
   excursion.step = step;
-  excursion.cell = static_cast<int>(fastest - membranes.largest_step.begin());
+  excursion.cell = fastest.cell;
   excursion.speed = speed;
-  const core::CellRange& cell = membranes.cells[excursion.cell];
-  const auto part = [&cell](const std::vector<double>& values) {
-    return std::vector<double>(values.begin() + cell.first, values.begin() + cell.end());
+  const core::CellRange& cell = cells.cells[excursion.cell];
+  const auto part = [&](const std::vector<double>& values) {
+    return core::of_rank(ranks, fastest.rank,
+                         std::vector<double>(values.begin() + cell.first, values.begin() + cell.end()));
   };
-  excursion.x = part(membranes.x);
-  excursion.y = part(membranes.y);
-  excursion.velocity_x = part(membranes.velocity_x);
-  excursion.velocity_y = part(membranes.velocity_y);
+  excursion.x = part(cells.x);
+  excursion.y = part(cells.y);
+  excursion.velocity_x = part(cells.velocity_x);
+  excursion.velocity_y = part(cells.velocity_y);
   excursions_.push_back(std::move(excursion));
   level_ = 2 * speed;
 }
+
+template void GrowthWatch::note(long, const core::CellNodes&, const core::Ranks<2>&);
+template void GrowthWatch::note(long, const core::CellNodes&, const core::Ranks<3>&);
 
 void GrowthWatch::check(long step, const core::CellNodes& membranes) {
   if (membranes.largest_step.empty()) return;

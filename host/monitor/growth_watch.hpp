@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "core/domain/ranks.hpp"
 #include "core/membrane/cell_nodes.hpp"
 
 namespace rouleau::monitor {
@@ -24,8 +25,9 @@ class GrowthWatch {
  public:
   /// Largest step of a node beyond which note() is to be called, lattice spacings.
   [[nodiscard]] double level() const { return level_; }
-  /// The largest step has passed the level, which rises to twice that step.
-  void note(long step, const core::CellNodes& membranes);
+  /// The largest step has passed the level, which rises to twice that step. All ranks together, and all note the same.
+  template <int D = 2>
+  void note(long step, const core::CellNodes& cells, const core::Ranks<D>& ranks = {});
   /// At every regular check: what lies ten of them back is forgotten.
   void check(long step, const core::CellNodes& membranes);
   /// A stage begins: with another time step speeds are others.

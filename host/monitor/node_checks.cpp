@@ -7,38 +7,87 @@
 
 namespace rouleau::monitor {
 
-void locate_failure(Failure& f, const core::CellNodes& membranes, int node, double spacing) {
+namespace {
+
+/// The node of one of this rank's cells, before its last step; -1: none.
+FoundNode found(const core::CellNodes& cells, int node, double step) {
+  FoundNode found{.step = step, .node = node, .cell = -1, .place = {}};
+  if (node < 0) return found;
   const auto k = static_cast<std::size_t>(node);
-  f.place = {units::coordinate(membranes.x[k] - membranes.velocity_x[k], spacing),
-             units::coordinate(membranes.y[k] - membranes.velocity_y[k], spacing)};
-  if (!membranes.z.empty()) f.place_z = units::coordinate(membranes.z[k] - membranes.velocity_z[k], spacing);
-  for (std::size_t c = 0; c < membranes.cells.size(); ++c) {
-    if (node >= membranes.cells[c].first && node < membranes.cells[c].end()) f.cell = static_cast<int>(c);
+  found.place = {cells.x[k] - cells.velocity_x[k], cells.y[k] - cells.velocity_y[k],
+                 cells.z.empty() ? 0 : cells.z[k] - cells.velocity_z[k]};
+  for (const int c : cells.known_cells()) {
+    if (node >= cells.cells[c].first && node < cells.cells[c].end()) found.cell = c;
   }
+  return found;
 }
 
-std::optional<Failure> check_nodes(const core::CellNodes& membranes, double limit, int escaped,
+bool is_node(const FoundNode& found) { return found.node >= 0; }
+
+/// The first node that has left the domain.
+template <class T, class Set>
+FoundNode escaped_node(const core::Solver<T, Set>& solver) {
+  return core::best_of_all(
+      solver.ranks(), found(solver.cells(), solver.escaped_node(), 0),
+      [](const FoundNode& a, const FoundNode& b) { return is_node(a) && (!is_node(b) || a.node < b.node); });
+}
+
+}  // namespace
+
+template <int D>
+FoundNode farthest_node(const core::CellNodes& cells, const core::Ranks<D>& ranks) {
+  const core::FarthestNode own = core::farthest_node(cells);
+  // Of steps that are no numbers, and of equal ones, the first.
+  return core::best_of_all(ranks, found(cells, own.node, own.step), [](const FoundNode& a, const FoundNode& b) {
+    if (!is_node(a) || !is_node(b)) return is_node(a) && !is_node(b);
+    if (std::isnan(a.step) || std::isnan(b.step)) return std::isnan(a.step) && (!std::isnan(b.step) || a.node < b.node);
+    return a.step != b.step ? a.step > b.step : a.node < b.node;
+  });
+}
+
+template FoundNode farthest_node(const core::CellNodes&, const core::Ranks<2>&);
+template FoundNode farthest_node(const core::CellNodes&, const core::Ranks<3>&);
+
+template <int D>
+void locate_failure(Failure& f, const FoundNode& node, double spacing) {
+  f.place = {units::coordinate(node.place[0], spacing), units::coordinate(node.place[1], spacing)};
+  if (D == 3) f.place_z = units::coordinate(node.place[2], spacing);
+  f.cell = node.cell;
+}
+
+template void locate_failure<2>(Failure&, const FoundNode&, double);
+template void locate_failure<3>(Failure&, const FoundNode&, double);
+
+template <class T, class Set>
+std::optional<Failure> check_nodes(const core::Solver<T, Set>& solver, double limit,
                                    const plan::StageSetting& setting) {
-  if (membranes.cells.empty()) return std::nullopt;
+  const core::CellNodes& cells = solver.cells();
+  if (cells.cells.empty()) return std::nullopt;
   Failure f;
-  if (!(core::largest_step(membranes) <= limit)) {
-    const core::FarthestNode farthest = core::farthest_node(membranes);
+  if (!(core::largest_step(cells) <= limit)) {
+    const FoundNode farthest = farthest_node(cells, solver.ranks());
     const bool finite = std::isfinite(farthest.step);
     f.reason = finite ? "node_step" : "non_finite";
     f.value = farthest.step;
     f.limit = limit;
     f.message = finite ? "a membrane node moved further in one step than its limit (in lattice spacings)"
                        : "the velocity of a membrane node is no number";
-    locate_failure(f, membranes, farthest.node, setting.units.length);
-  } else if (escaped >= 0) {
+    locate_failure<Set::dimension>(f, farthest, setting.units.length);
+  } else if (solver.escaped()) {
     f.reason = "escaped";
     f.message = "a membrane node has left the domain through a wall";
-    locate_failure(f, membranes, escaped, setting.units.length);
+    locate_failure<Set::dimension>(f, escaped_node(solver), setting.units.length);
   } else {
     return std::nullopt;
   }
   f.remedy = blown_up_remedy(*setting.stage);
   return f;
 }
+
+template std::optional<Failure> check_nodes(const core::Solver<float>&, double, const plan::StageSetting&);
+template std::optional<Failure> check_nodes(const core::Solver<double>&, double, const plan::StageSetting&);
+template std::optional<Failure> check_nodes(const core::Solver<float, core::D3Q19>&, double, const plan::StageSetting&);
+template std::optional<Failure> check_nodes(const core::Solver<double, core::D3Q19>&, double,
+                                            const plan::StageSetting&);
 
 }  // namespace rouleau::monitor

@@ -1,9 +1,10 @@
 // What every step asks of the membrane nodes.
 #pragma once
 
+#include <array>
 #include <optional>
 
-#include "core/membrane/cell_nodes.hpp"
+#include "core/solver/solver.hpp"
 #include "failure.hpp"
 #include "plan/stage_scales.hpp"
 #include "scene/scene.hpp"
@@ -16,12 +17,24 @@ inline std::string blown_up_remedy(const scene::Stage& stage) {
          " (it divides every lattice stiffness and speed), or see the margins in the scene's plan";
 }
 
-/// Sets cell and place (before its last step) of a failure to those of a node. `spacing` in m.
-void locate_failure(Failure& failure, const core::CellNodes& membranes, int node, double spacing);
+/// A node, and where it was before its last step. Lattice units.
+struct FoundNode {
+  double step = 0;              ///< how far it moved; NaN: its velocity is no number
+  int node = -1, cell = -1;     ///< -1: there is none
+  std::array<double, 3> place;  ///< z is 0 in two dimensions
+};
+
+/// The node of any rank's cells that moved furthest in the last step. All ranks ask together, and get the same.
+template <int D>
+FoundNode farthest_node(const core::CellNodes& cells, const core::Ranks<D>& ranks);
+
+/// Sets cell and place of a failure to those of a node. `spacing` in m.
+template <int D>
+void locate_failure(Failure& failure, const FoundNode& node, double spacing);
 
 /// The first check that the last step failed, without its time: a node that moved further than `limit` lattice
-/// spacings, is nowhere, or (`escaped`, -1: none) has left the domain.
-std::optional<Failure> check_nodes(const core::CellNodes& membranes, double limit, int escaped,
-                                   const plan::StageSetting& setting);
+/// spacings, is nowhere, or has left the domain. All ranks ask together, and get the same.
+template <class T, class Set>
+std::optional<Failure> check_nodes(const core::Solver<T, Set>& solver, double limit, const plan::StageSetting& setting);
 
 }  // namespace rouleau::monitor

@@ -1,34 +1,76 @@
 // Whether the membranes have come to rest: no node has moved further than a limit within a window of time.
 #pragma once
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <vector>
 
 #include "core/membrane/displacement_watch.hpp"
+#include "core/solver/in_order.hpp"
 
 namespace rouleau::monitor {
 
-/// Compares positions with those at the start of the window; windows follow one another.
+/// Compares positions with those at the start of the window; windows follow one another. All ranks call it together; the first
+/// one remembers where all nodes were.
 class RestWatch {
  public:
-  /// A window begins. `cells`: null for who will not ask how far they have moved.
-  void start(long step, const core::CellNodes* cells) {
+  /// Nobody asks about rest.
+  void stop() { *this = {}; }
+  /// A window begins. `ghosts`: whose the cells are; null: this rank's.
+  template <int D>
+  void start(long step, const core::CellNodes& cells, const core::GhostCells<D>* ghosts) {
     step_ = step;
-    if (cells != nullptr) old_ = {cells->x, cells->y, cells->z};
+    old_ = {};
+    for_places(cells, ghosts, [this](Range, const core::CellNodes& some) {
+      old_.x.insert(old_.x.end(), some.x.begin(), some.x.end());
+      old_.y.insert(old_.y.end(), some.y.begin(), some.y.end());
+      old_.z.insert(old_.z.end(), some.z.begin(), some.z.end());
+    });
   }
   /// First step at which a window of so many steps has ended.
   [[nodiscard]] long end(long window) const { return step_ + window; }
-  /// Largest distance that a node has moved since the window began, spacings.
-  [[nodiscard]] double moved(const core::CellNodes& cells) const {
-    return core::largest_displacement(cells, {old_.x.data(), old_.y.data(), old_.z.data()}, {0, cells.node_count()});
+  /// Largest distance that a node has moved since the window began, spacings; on the first rank.
+  template <int D>
+  [[nodiscard]] double moved(const core::CellNodes& cells, const core::GhostCells<D>* ghosts) const {
+    double most = 0;
+    for_places(cells, ghosts, [&](Range nodes, const core::CellNodes& some) {
+      const double here =
+          core::largest_displacement(some, {&old_.x[nodes.begin], &old_.y[nodes.begin], old_.z.data() + nodes.begin},
+                                     {0, nodes.end - nodes.begin});
+      if (!(here <= most) && !std::isnan(most)) most = here;
+    });
+    return most;
   }
-  [[nodiscard]] bool fits(const core::CellNodes& cells) const {
-    return step_ >= 0 && old_.x.size() == cells.x.size() && old_.y.size() == cells.y.size() &&
-           old_.z.size() == cells.z.size();
+  /// Whether it can be asked about these cells, if anybody does.
+  [[nodiscard]] bool fits(const core::CellNodes& cells, bool asked) const {
+    const auto fit = [&](const std::vector<double>& old, const std::vector<double>& now) {
+      return old.size() == (asked ? now.size() : 0);
+    };
+    return step_ >= 0 && fit(old_.x, cells.x) && fit(old_.y, cells.y) && fit(old_.z, cells.z);
   }
   NLOHMANN_DEFINE_TYPE_INTRUSIVE(RestWatch, step_, old_)
 
  private:
+  /// Calls function(nodes, places of these) on the first rank for some nodes of all cells after others.
+  template <int D, class Function>
+  static void for_places(const core::CellNodes& cells, const core::GhostCells<D>* ghosts, Function function) {
+    const auto add = [&](int cell, std::vector<double>& values) {
+      for (int i = cells.cells[cell].first; i < cells.cells[cell].end(); ++i) {
+        values.push_back(cells.x[i]);
+        values.push_back(cells.y[i]);
+        if (D == 3) values.push_back(cells.z[i]);
+      }
+    };
+    core::give_in_order<double>(ghosts, cells, add, [&](Range run, const std::vector<double>& values) {
+      core::CellNodes some;
+      for (std::size_t i = 0; i < values.size(); i += D) {
+        some.x.push_back(values[i]);
+        some.y.push_back(values[i + 1]);
+        if (D == 3) some.z.push_back(values[i + 2]);
+      }
+      function(Range{cells.cells[run.begin].first, cells.cells[run.end - 1].end()}, some);
+    });
+  }
   struct OldPlaces {
     std::vector<double> x, y, z;
     NLOHMANN_DEFINE_TYPE_INTRUSIVE(OldPlaces, x, y, z)

@@ -8,6 +8,7 @@
 #include "core/contact/crossing.hpp"
 #include "core/contact/surface_crossing.hpp"
 #include "core/membrane/geometry.hpp"
+#include "first_failure.hpp"
 #include "node_checks.hpp"
 #include "plan/solver_setup.hpp"
 #include "plan/stability_limits.hpp"
@@ -40,8 +41,7 @@ std::string leak_remedy(double segment) {
   return text.data();
 }
 
-/// Node with the first value that is no number, else the one with the largest speed; on the first rank, which speaks of
-/// it.
+/// Node with the first value that is no number, else the one with the largest speed; on all ranks.
 template <class T, class Set>
 std::array<double, Set::dimension> extreme_node(const core::Fluid<T, Set>& fluid) {
   using Moments = core::Moments<Set::dimension>;
@@ -64,6 +64,8 @@ std::array<double, Set::dimension> extreme_node(const core::Fluid<T, Set>& fluid
     place[k] = static_cast<double>(extreme % size);
     extreme /= size;
   }
+  const std::vector<double> of_first = core::of_first(fluid.ranks(), std::vector<double>(place.begin(), place.end()));
+  std::copy(of_first.begin(), of_first.end(), place.begin());
   return place;
 }
 
@@ -76,10 +78,12 @@ Failure uneven_failure(const std::string& piece, int cell, double stretch, doubl
                      " or the load, stiffen the membrane, or raise checks.stretch if it is meant to give way so far");
 }
 
+/// The first of this rank's cells with an uneven segment.
 std::optional<Failure> check_stretch(const core::Membranes& membranes, const scene::Scene& scene,
                                      const scene::Stage& stage, const units::LatticeUnits& units) {
   const double limit = scene.checks.stretch;
-  for (std::size_t k = 0; k < membranes.cells.size(); ++k) {
+  for (const int k : membranes.known_cells()) {
+    if (!membranes.owns(k)) continue;
     const core::CellRange& cell = membranes.cells[k];
     const auto* circle = std::get_if<scene::Circle>(&scene.cell_types[cell.type].shape);
     const double placed = circle != nullptr ? circle->prestretch : 1.0;
@@ -89,7 +93,7 @@ std::optional<Failure> check_stretch(const core::Membranes& membranes, const sce
       const double dx = membranes.x[to] - membranes.x[from], dy = membranes.y[to] - membranes.y[from];
       const double stretch = std::hypot(dx, dy) / (placed * rest_length[i - cell.first]);
       if (stretch <= limit && stretch * limit >= 1) continue;
-      Failure found = uneven_failure("a segment", static_cast<int>(k), stretch, limit, stage);
+      Failure found = uneven_failure("a segment", k, stretch, limit, stage);
       found.place = {units::coordinate(membranes.x[from], units.length),
                      units::coordinate(membranes.y[from], units.length)};
       return found;
@@ -112,13 +116,13 @@ struct Drift {
   double share = 0;
   bool corrected = false;
 };
-template <class Cells>
-Drift largest_drift(observe::Observer& observer, const Cells& cells) {
+template <class Cells, int D>
+Drift largest_drift(observe::Observer& observer, const Cells& cells, const core::Ranks<D>& ranks) {
   Drift largest;
-  largest.share = observer.follow_area(cells, &largest.cell);
+  largest.share = observer.follow_area(cells, ranks, &largest.cell);
   // Where areas are kept, the correction that this took is the leak.
   int leaking = -1;
-  const double leakage = observe::Observer::area_leakage(cells, &leaking);
+  const double leakage = observe::Observer::area_leakage(cells, ranks, &leaking);
   if (leakage > largest.share) largest = {leaking, leakage, true};
   return largest;
 }
@@ -135,28 +139,45 @@ Failure drift_failure(const char* measure, std::array<double, 2> place, const Dr
                      ", raise the resolution, or raise checks.area_drift if this error is acceptable");
 }
 
+/// By the number of the cell, of which another rank has none.
+std::array<double, 2> by_cell(const std::optional<Failure>& found) {
+  return {found ? static_cast<double>(found->cell) : 0.0, 0.0};
+}
+
 std::optional<Failure> check_cells(observe::Observer& observer, const plan::StageSetting& setting,
-                                   const core::Membranes& membranes, const scene::Scene& scene) {
+                                   core::Surroundings<2>& around, const scene::Scene& scene) {
+  const core::Membranes& membranes = around.cells();
+  const core::Ranks<2> ranks = around.ranks();
   const auto place = [&](const core::Vec<2>& at) {
     return std::array<double, 2>{units::coordinate(at.x(), setting.units.length),
                                  units::coordinate(at.y(), setting.units.length)};
   };
-  if (const Drift drift = largest_drift(observer, membranes); !(drift.share <= scene.checks.area_drift)) {
-    const core::CellRange& drifting = membranes.cells[drift.cell];
-    return drift_failure("area", place(core::centroid(membranes, drifting)), drift,
-                         leak_remedy(core::perimeter(membranes, drifting) / drifting.count), setting, scene);
+  if (const Drift drift = largest_drift(observer, membranes, ranks); !(drift.share <= scene.checks.area_drift)) {
+    std::optional<Failure> found;
+    if (membranes.owns(drift.cell)) {
+      const core::CellRange& drifting = membranes.cells[drift.cell];
+      found = drift_failure("area", place(core::centroid(membranes, drifting)), drift,
+                            leak_remedy(core::perimeter(membranes, drifting) / drifting.count), setting, scene);
+    }
+    return first_failure(ranks, found, by_cell(found));
   }
-  if (auto uneven = check_stretch(membranes, scene, *setting.stage, setting.units)) return uneven;
+  const std::optional<Failure> uneven = check_stretch(membranes, scene, *setting.stage, setting.units);
+  if (const auto first = first_failure(ranks, uneven, by_cell(uneven))) return first;
+  std::optional<Failure> crosses;
+  std::array<double, 2> order{};
+  around.show(0);
   if (const auto crossing = core::find_crossing(membranes, observer.domain())) {
-    Failure found = crossing_failure(crossing->cell, crossing->other, crossing->inside, *setting.stage);
-    found.place = place(crossing->place);
-    return found;
+    crosses = crossing_failure(crossing->cell, crossing->other, crossing->inside, *setting.stage);
+    crosses->place = place(crossing->place);
+    order[0] = std::min(crossing->cell, crossing->other);
   }
-  return std::nullopt;
+  return first_failure(ranks, crosses, order);
 }
 
 std::optional<Failure> check_cells(observe::Observer& observer, const plan::StageSetting& setting,
-                                   const core::Surfaces& surfaces, const scene::Scene& scene) {
+                                   core::Surroundings<3>& around, const scene::Scene& scene) {
+  const core::Surfaces& surfaces = around.cells();
+  const core::Ranks<3> ranks = around.ranks();
   const double length = setting.units.length, limit = scene.checks.stretch;
   const auto at = [&](Failure found, const core::Vec<3>& place) {
     found.place = {units::coordinate(place.x(), length), units::coordinate(place.y(), length)};
@@ -166,23 +187,34 @@ std::optional<Failure> check_cells(observe::Observer& observer, const plan::Stag
   const auto middle = [&](int cell) {
     return core::inertia_ellipsoid(surfaces.type_of(cell).mesh, surfaces.nodes(cell)).center;
   };
-  if (const Drift drift = largest_drift(observer, surfaces); !(drift.share <= scene.checks.area_drift))
-    return at(drift_failure("volume", {}, drift, "", setting, scene), middle(drift.cell));
-  for (int k = 0; k < surfaces.cell_count(); ++k) {
+  if (const Drift drift = largest_drift(observer, surfaces, ranks); !(drift.share <= scene.checks.area_drift)) {
+    std::optional<Failure> found;
+    if (surfaces.owns(drift.cell))
+      found = at(drift_failure("volume", {}, drift, "", setting, scene), middle(drift.cell));
+    return first_failure(ranks, found, by_cell(found));
+  }
+  std::optional<Failure> uneven;
+  for (const int k : surfaces.known_cells()) {
+    if (uneven || !surfaces.owns(k)) continue;
     const auto* sphere = std::get_if<scene::Sphere>(&scene.cell_types[surfaces.cells[k].type].shape);
     const double placed = sphere != nullptr ? sphere->prestretch : 1.0;
     core::StretchRange stretch = core::stretch_range(surfaces, k);
     stretch.least /= placed, stretch.most /= placed;
     const bool shrunk = !(stretch.least * limit >= 1);
     if (!shrunk && stretch.most <= limit) continue;
-    return at(uneven_failure("an edge", k, shrunk ? stretch.least : stretch.most, limit, *setting.stage), middle(k));
+    uneven = at(uneven_failure("an edge", k, shrunk ? stretch.least : stretch.most, limit, *setting.stage), middle(k));
   }
+  if (const auto first = first_failure(ranks, uneven, by_cell(uneven))) return first;
+  std::optional<Failure> crosses;
+  std::array<double, 2> order{};
+  around.show(core::SurfaceCrossing::deepest);
   if (const auto crossing = core::find_crossing(surfaces, plan::lattice_domain<3>(scene))) {
     const auto node = static_cast<std::size_t>(crossing->node);
-    return at(crossing_failure(crossing->cell, crossing->other, false, *setting.stage),
-              {surfaces.x[node], surfaces.y[node], surfaces.z[node]});
+    crosses = at(crossing_failure(crossing->cell, crossing->other, false, *setting.stage),
+                 {surfaces.x[node], surfaces.y[node], surfaces.z[node]});
+    order = {-crossing->depth, static_cast<double>(crossing->cell)};
   }
-  return std::nullopt;
+  return first_failure(ranks, crosses, order);
 }
 
 }  // namespace
@@ -208,8 +240,9 @@ std::optional<Failure> check_state(observe::Observer& observer, core::Solver<T, 
     if constexpr (Set::dimension == 3) found.place_z = units::coordinate(node[2], units.length);
     return found;
   }
-  if (cells.cells.empty() || !solver.ranks().first()) return std::nullopt;
-  return check_cells(observer, setting, cells, scene);
+  if (cells.cells.empty()) return std::nullopt;
+  core::Surroundings<Set::dimension> around = solver.cell_tasks()->surroundings();
+  return check_cells(observer, setting, around, scene);
 }
 
 #define ROULEAU_INSTANTIATE(T, Set)                                                                                 \

@@ -12,7 +12,7 @@ namespace rouleau::monitor {
 
 /// The first check of the scene that the state fails, without its time: a value of the fluid that is no number, the Mach
 /// number, a cell's area or volume, the length of a segment or edge, membranes that cross. `observer` follows mass, Mach
-/// number and areas. All ranks together; cells are checked on the first alone.
+/// number and areas. All ranks together, and all find the same.
 template <class T, class Set>
 std::optional<Failure> check_state(observe::Observer& observer, core::Solver<T, Set>& solver,
                                    const plan::StageSetting& setting, const typename core::Solver<T, Set>::Cells& cells,

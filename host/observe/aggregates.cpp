@@ -15,38 +15,28 @@ namespace rouleau::observe {
 
 namespace {
 
-std::vector<core::Bounds> all_bounds(const core::Membranes& m) {
-  std::vector<core::Bounds> boxes;
-  for (const core::CellRange& cell : m.cells) boxes.push_back(core::bounds(m, cell));
-  return boxes;
-}
-
-/// Calls visit(a, cells) for each of `cells` with those that may come within `reach` of it, in ascending order: what is
-/// found must not depend on the grid.
-template <class Visit>
-void for_each_near(const std::vector<core::Bounds>& boxes, const std::vector<int>& cells, double reach,
-                   const core::Domain<2>& domain, Visit visit) {
+/// Calls visit(a, cells) for this rank's cells for which wanted(a) holds, with the cells it knows that may come within
+/// `reach` of it, both in ascending order: what is found must not depend on the grid.
+template <class Wanted, class Visit>
+void for_each_near(const core::Membranes& m, const std::vector<core::Bounds>& boxes, double reach,
+                   const core::Domain<2>& domain, Wanted wanted, Visit visit) {
   const core::CellGrid<2> grid(core::boxes_of(boxes), reach, domain);
   std::vector<int> near;
-  for (const int cell : cells) {
+  for (const int cell : m.known_cells()) {
+    if (!m.owns(cell) || !wanted(cell)) continue;
     grid.find(cell, near);
     std::sort(near.begin(), near.end());
     visit(cell, near);
   }
 }
 
-std::vector<int> numbered(std::size_t cells) {
-  std::vector<int> numbers(cells);
-  std::iota(numbers.begin(), numbers.end(), 0);
-  return numbers;
-}
-
 }  // namespace
 
 std::vector<CellContact> find_touching_cells(const core::Membranes& m, const core::Domain<2>& domain, double reach) {
   std::vector<CellContact> contacts;
-  const std::vector<core::Bounds> boxes = all_bounds(m);
-  for_each_near(boxes, numbered(boxes.size()), reach, domain, [&](int a, const std::vector<int>& near) {
+  const std::vector<core::Bounds> boxes = core::bounds_of_known(m);
+  const auto each = [](int) { return true; };
+  for_each_near(m, boxes, reach, domain, each, [&](int a, const std::vector<int>& near) {
     for (const int b : near) {
       if (b < a) continue;
       const core::CellRange &cell = m.cells[a], &other = m.cells[b];
@@ -67,7 +57,7 @@ std::vector<CellContact> find_touching_cells(const core::Surfaces& s, const core
   const core::SurfaceContacts all = core::SurfaceContacts::within(reach, s, domain);
   std::vector<core::SurfaceContact> of_cell;
   std::map<std::tuple<int, int, core::ImageShift>, CellContact> found;
-  for (int cell = 0; cell < s.cell_count(); ++cell) {
+  for (const int cell : s.known_cells()) {
     all.find(cell, s, of_cell);
     for (const core::SurfaceContact& contact : of_cell) {
       // A pair is known by its first cell and the image of the second; a cell and its own image are seen from both sides.
@@ -81,47 +71,62 @@ std::vector<CellContact> find_touching_cells(const core::Surfaces& s, const core
   }
   std::vector<CellContact> contacts;
   for (const auto& [key, contact] : found) {
-    if (contact.gap < reach) contacts.push_back(contact);
+    if (contact.gap < reach && s.owns(contact.cell_a)) contacts.push_back(contact);
   }
   return contacts;
 }
 
-std::vector<double> smallest_gaps(const core::Surfaces& s, const core::Domain<3>& domain) {
+namespace {
+
+/// Which gaps of own cells have not been found.
+std::vector<char> open_ones(const core::CellNodes& cells, const std::vector<double>& gaps) {
+  std::vector<char> open(gaps.size(), 0);
+  for (const int c : cells.known_cells()) {
+    if (cells.owns(c)) open[c] = std::isinf(gaps[c]) ? 1 : 0;
+  }
+  return open;
+}
+
+}  // namespace
+
+std::vector<double> smallest_gaps(core::Surroundings<3>& around, const core::Domain<3>& domain) {
+  const core::Surfaces& s = around.cells();
   double most = std::numeric_limits<double>::infinity();
   for (int k = 0; k < 3; ++k) {
     if (domain.periodic[k]) most = std::min(most, domain.period(k) / 2);
   }
   std::vector<double> gaps(s.cells.size(), std::numeric_limits<double>::infinity());
   std::vector<core::SurfaceContact> of_cell;
-  for (double reach = std::min(4.0, most);; reach = std::min(2 * reach, most)) {
+  for (double reach = std::min(4.0, most); around.show(reach, open_ones(s, gaps)); reach = std::min(2 * reach, most)) {
     const core::SurfaceContacts all = core::SurfaceContacts::within(reach, s, domain);
-    for (int cell = 0; cell < s.cell_count(); ++cell) {
+    for (const int cell : s.known_cells()) {
       all.find(cell, s, of_cell);
       for (const core::SurfaceContact& contact : of_cell) {  // which both cells feel
         gaps[cell] = std::min(gaps[cell], contact.distance);
         gaps[contact.other] = std::min(gaps[contact.other], contact.distance);
       }
     }
-    const bool open = std::any_of(gaps.begin(), gaps.end(), [](double gap) { return std::isinf(gap); });
-    if (!open || reach == most) break;
+    if (reach == most) break;
   }
   return gaps;
 }
 
-std::vector<double> smallest_gaps(const core::Membranes& m, const core::Domain<2>& domain) {
+std::vector<double> smallest_gaps(core::Surroundings<2>& around, const core::Domain<2>& domain) {
+  const core::Membranes& m = around.cells();
   std::vector<double> gaps(m.cells.size(), std::numeric_limits<double>::infinity());
-  const std::vector<core::Bounds> boxes = all_bounds(m);
-  std::vector<int> open = numbered(boxes.size());
   double first = 1;  // about the size of a cell, and not much of the box
-  for (const core::Bounds& b : boxes)
-    if (b.usable()) first = std::max({first, b.x_max - b.x_min, b.y_max - b.y_min});
+  for (const core::BoundingBox<2>& box : around.boxes())
+    if (box.usable()) first = std::max({first, box.most[0] - box.least[0], box.most[1] - box.least[1]});
   const double most = 2 * std::max(domain.period(0), domain.period(1));
-  for (double reach = std::min(first, domain.period(0) / 16); reach < most && !open.empty(); reach *= 2) {
-    for_each_near(boxes, open, reach, domain, [&](int a, const std::vector<int>& near) {
+  double reach = std::min(first, domain.period(0) / 16);
+  for (std::vector<char> open = open_ones(m, gaps); reach < most && around.show(reach, open); reach *= 2) {
+    const auto is_open = [&](int cell) { return open[cell] != 0; };
+    const std::vector<core::Bounds> boxes = core::bounds_of_known(m);
+    for_each_near(m, boxes, reach, domain, is_open, [&](int a, const std::vector<int>& near) {
       double& gap = gaps[a];
       for (const int b : near) gap = std::min(gap, core::smallest_gap(m, a, b, domain, std::min(gap, reach)));
     });
-    std::erase_if(open, [&](int a) { return std::isfinite(gaps[a]); });
+    open = open_ones(m, gaps);
   }
   return gaps;
 }

@@ -9,17 +9,26 @@ namespace rouleau::observe {
 namespace {
 
 /// Power that the membranes give away, at the velocities of their last step.
-double given_away(const core::CellNodes& m) {
-  double power = 0;
-  for (std::size_t i = 0; i < m.x.size(); ++i) power += m.force_x[i] * m.velocity_x[i] + m.force_y[i] * m.velocity_y[i];
-  for (std::size_t i = 0; i < m.z.size(); ++i) power += m.force_z[i] * m.velocity_z[i];
-  return power;
+template <int D>
+double given_away(const core::CellNodes& m, const core::Ranks<D>& ranks) {
+  std::vector<core::ExactSum> sum(1);
+  for (const int c : m.known_cells()) {
+    if (!m.owns(c)) continue;
+    double power = 0;
+    for (int i = m.cells[c].first; i < m.cells[c].end(); ++i) {
+      power += m.force_x[i] * m.velocity_x[i] + m.force_y[i] * m.velocity_y[i];
+      if (D == 3) power += m.force_z[i] * m.velocity_z[i];
+    }
+    sum.front().add(power);
+  }
+  core::add_up(ranks, sum);
+  return sum.front().value();
 }
 
-/// Of all membranes, on the first rank, which alone knows all.
+/// Of all membranes.
 template <class Solver>
 core::MembraneEnergy membrane_energy(Solver& solver) {
-  return solver.ranks().first() ? solver.cell_tasks()->forces().energies(solver.cells()) : core::MembraneEnergy{};
+  return solver.cell_tasks()->forces().energies(solver.cells(), solver.ranks());
 }
 
 std::string without_energy(const char* kind, const std::string& model) {
@@ -87,7 +96,7 @@ EnergySnapshot observe_energy(core::Solver<T, Set>& solver, const units::Lattice
     // What corrected nodes give away and the lattice does not get is lost in the layers beside the membranes, which the
     // lattice does not resolve and the correction stands for.
     if (tasks->corrects_motion())
-      energy.viscous_dissipation += (given_away(solver.cells()) - fluid.membrane_power) * watt;
+      energy.viscous_dissipation += (given_away(solver.cells(), solver.ranks()) - fluid.membrane_power) * watt;
     if (!membrane.unknown.empty()) energy.unknown = without_energy("membrane law", membrane.unknown);
     bool interact = false;
     tasks->for_each_interaction([&](const auto& forces) {

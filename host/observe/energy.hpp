@@ -11,7 +11,7 @@
 
 namespace rouleau::observe {
 
-// All ranks call these together; what is about cells is the first rank's alone.
+// All ranks call these together, and get the same.
 
 /// Energy of membranes and interactions, lattice units. The forces of the present positions have been computed.
 struct CellEnergy {

@@ -6,9 +6,9 @@
 #include <numbers>
 
 #include "core/fluid/relaxation.hpp"
-#include "core/membrane/geometry.hpp"
 #include "energy.hpp"
 #include "fields.hpp"
+#include "membrane_fields.hpp"
 #include "particle_stress.hpp"
 #include "plan/solver_setup.hpp"
 #include "rheology.hpp"
@@ -18,53 +18,9 @@ namespace rouleau::observe {
 
 namespace {
 
-/// A circle has no long axis: below this deformation its direction would be that of rounding errors.
-constexpr double roundest = 1e-6;
-
 /// The value nearest to `previous` that differs from `angle` by a multiple of `period`.
 double continued(double angle, double previous, double period) {
   return angle + period * std::round((previous - angle) / period);
-}
-
-double enclosed(const core::Membranes& membranes, int cell) {
-  return core::enclosed_area(membranes, membranes.cells[cell]);
-}
-double enclosed(const core::Surfaces& surfaces, int cell) {
-  return core::enclosed_volume(surfaces.type_of(cell).mesh, surfaces.nodes(cell));
-}
-
-/// The node of a surface farthest from the line along z through its centroid: its angle about that line is told best.
-int outermost(const core::Surfaces& surfaces, int cell) {
-  const core::Nodes nodes = surfaces.nodes(cell);
-  const core::Vec<3> center = core::inertia_ellipsoid(surfaces.type_of(cell).mesh, nodes).center;
-  int farthest = 0;
-  double distance = -1;
-  for (int i = 0; i < surfaces.cells[cell].count; ++i) {
-    const double here = std::hypot(nodes.x[i] - center.x(), nodes.y[i] - center.y());
-    if (here > distance) distance = here, farthest = i;
-  }
-  return farthest;
-}
-
-/// Distance of a surface to the nearest wall, spacings, negative beyond it; NaN without walls. `tube_radius`: 0 without one.
-double wall_gap(const core::Surfaces& surfaces, int cell, const core::Domain<3>& domain, double tube_radius) {
-  if (tube_radius > 0) return tube_radius - core::farthest_from_axis(surfaces, cell, domain);
-  const core::CellRange& range = surfaces.cells[cell];
-  const std::vector<double>* const along[] = {&surfaces.x, &surfaces.y, &surfaces.z};
-  double gap = std::numeric_limits<double>::infinity();
-  for (int axis = 1; axis < 3; ++axis) {
-    if (!domain.walled(axis)) continue;
-    const auto [least, most] =
-        std::minmax_element(along[axis]->begin() + range.first, along[axis]->begin() + range.end());
-    gap = std::min({gap, *least + 0.5, domain.size[axis] - 0.5 - *most});
-  }
-  return std::isinf(gap) ? std::nan("") : gap;
-}
-
-/// An axis has no direction: the one whose first component that is not 0 is positive.
-std::array<double, 3> pointed(const core::Vec<3>& axis) {
-  const double sign = axis.x() < 0 || (axis.x() == 0 && (axis.y() < 0 || (axis.y() == 0 && axis.z() < 0))) ? -1 : 1;
-  return {sign * axis.x(), sign * axis.y(), sign * axis.z()};
 }
 
 void count_aggregates(const Aggregates& aggregates, Snapshot& snapshot) {
@@ -74,35 +30,48 @@ void count_aggregates(const Aggregates& aggregates, Snapshot& snapshot) {
   snapshot.aggregate_size_weight_mean = weight_mean(snapshot.aggregate_sizes);
 }
 
-/// Adds places, tensions and, of surfaces, curvatures and triangles.
-template <class T>
-void draw(core::OutlineTasks<T>& tasks, const core::Membranes& membranes, const units::LatticeUnits& units,
-          OutlineSnapshot& outlines) {
-  tasks.forces().tensions(membranes, outlines.tension);
-  for (double& tension : outlines.tension) tension *= units.to_si(1, units::dimension::tension);
+/// `markers`: of surfaces, the node of each that is followed.
+CellMeasures measured(const core::Membranes& membranes, int cell, const scene::Scene& scene,
+                      const std::vector<int>& /*markers*/) {
+  return measure(membranes, cell, plan::lattice_domain(scene));
 }
-template <class T>
-void draw(core::SurfaceTasks<T>& tasks, const core::Surfaces& surfaces, const units::LatticeUnits& units,
-          OutlineSnapshot& outlines) {
-  for (const double z : surfaces.z) outlines.z.push_back(units::coordinate(z, units.length));
-  const double tension_unit = units.to_si(1, units::dimension::tension);
-  for (int k = 0; k < surfaces.cell_count(); ++k) {
-    const core::Mesh& mesh = surfaces.type_of(k).mesh;
-    const std::vector<double> of_triangle = tasks.forces().tensions(surfaces, k);
-    for (int i = 0; i < mesh.node_count(); ++i) {
-      const auto begin = static_cast<std::size_t>(mesh.corners().first[i]),
-                 end = static_cast<std::size_t>(mesh.corners().first[i + 1]);
-      double sum = 0;
-      for (std::size_t c = begin; c < end; ++c) sum += of_triangle[mesh.corners().entry[c] / 3];
-      outlines.tension.push_back(sum / static_cast<double>(end - begin) * tension_unit);
-    }
-    const std::vector<double> area = core::node_areas(mesh, surfaces.nodes(k));
-    std::size_t i = 0;
-    for (const double integral : core::integrated_curvature(mesh, surfaces.nodes(k)))
-      outlines.curvature.push_back(integral / area[i++] / units.length);
-    const int first = surfaces.cells[k].first;
-    for (const auto& [a, b, c] : mesh.triangles()) outlines.triangles.push_back({first + a, first + b, first + c});
+CellMeasures measured(const core::Surfaces& surfaces, int cell, const scene::Scene& scene,
+                      const std::vector<int>& markers) {
+  const double spacing = scene.domain.size.x() / scene.domain.nodes[0];
+  return measure(surfaces, cell, plan::lattice_domain<3>(scene), markers[cell],
+                 scene.domain.tube_radius.value_or(0) / spacing);
+}
+
+/// What contacts there are, of whichever rank's cells.
+template <int D>
+ContactSnapshot in_si(const CellContact& c, double length) {
+  ContactSnapshot s{c.cell_a, c.cell_b, {c.image.x, c.image.y, c.image.z}, c.gap * length, std::nan(""), std::nan("")};
+  if (D == 2) s.contact_length = c.contact_length * length;
+  if (D == 3) s.contact_area = c.contact_length * length * length;
+  return s;
+}
+
+/// The change of a cell that is the largest: one that is no number above all, of these the last cell's, as of equal ones the
+/// first one's.
+struct Change {
+  double share = 0;
+  int cell = -1;
+};
+bool larger(const Change& a, const Change& b) {
+  const bool finite_a = std::isfinite(a.share), finite_b = std::isfinite(b.share);
+  if (!finite_a || !finite_b) return !finite_a && (finite_b || a.cell > b.cell);
+  return a.share != b.share ? a.share > b.share : a.cell >= 0 && (b.cell < 0 || a.cell < b.cell);
+}
+/// Of all ranks' cells, each change(cell).
+template <int D, class ChangeOf>
+Change largest_change(const core::CellNodes& cells, const core::Ranks<D>& ranks, ChangeOf change) {
+  Change largest;
+  for (const int c : cells.known_cells()) {
+    if (!cells.owns(c)) continue;
+    const Change here{std::abs(change(c)), c};
+    if (here.share != 0 && larger(here, largest)) largest = here;
   }
+  return core::best_of_all(ranks, largest, larger);
 }
 
 }  // namespace
@@ -119,43 +88,41 @@ void Observer::begin_with(const Cells& cells) {
   }
 }
 
-template <class Cells>
-double Observer::follow_area(const Cells& cells, int* whose) {
-  double most = 0;
-  for (int k = 0; k < cells.cell_count(); ++k) {
-    const double drift = std::abs(enclosed(cells, k) / initial_area_[k] - 1);
-    if (drift > most || !std::isfinite(drift)) {
-      most = drift;
-      if (whose != nullptr) *whose = k;
-    }
-  }
-  area_drift_max_ = std::max(area_drift_max_, most);
-  return most;
+template <class Cells, int D>
+double Observer::follow_area(const Cells& cells, const core::Ranks<D>& ranks, int* whose) {
+  const Change most = largest_change(cells, ranks, [&](int c) { return enclosed(cells, c) / initial_area_[c] - 1; });
+  if (whose != nullptr) *whose = most.cell;
+  area_drift_max_ = std::max(area_drift_max_, most.share);
+  return most.share;
 }
 
-double Observer::area_leakage(const core::CellNodes& cells, int* whose) {
+template <int D>
+double Observer::area_leakage(const core::CellNodes& cells, const core::Ranks<D>& ranks, int* whose) {
   if (cells.area_leakage.empty()) return std::nan("");
-  double most = 0;
-  for (std::size_t k = 0; k < cells.area_leakage.size(); ++k) {
-    const double leakage = std::abs(cells.area_leakage[k]);
-    if (leakage > most || !std::isfinite(leakage)) {
-      most = leakage;
-      if (whose != nullptr) *whose = static_cast<int>(k);
-    }
-  }
-  return most;
+  const Change most = largest_change(cells, ranks, [&](int c) { return cells.area_leakage[c]; });
+  if (whose != nullptr) *whose = most.cell;
+  return most.share;
 }
 
-double Observer::momentum_residual(const core::CellNodes& m, double from_walls) {
-  double net_x = 0, net_y = -from_walls, net_z = 0, magnitudes = 0;
-  for (std::size_t i = 0; i < m.x.size(); ++i) {
-    const double along_z = m.z.empty() ? 0 : m.force_z[i];
-    net_x += m.force_x[i];
-    net_y += m.force_y[i];
-    net_z += along_z;
-    magnitudes += std::hypot(std::hypot(m.force_x[i], m.force_y[i]), along_z);
+template <int D>
+double Observer::momentum_residual(const core::CellNodes& m, double from_walls, const core::Ranks<D>& ranks) {
+  std::vector<core::ExactSum> sums(4);  // of each component, and of the magnitudes
+  for (const int c : m.known_cells()) {
+    if (!m.owns(c)) continue;
+    std::array<double, 4> of_cell{};
+    for (int i = m.cells[c].first; i < m.cells[c].end(); ++i) {
+      const double along_z = m.z.empty() ? 0 : m.force_z[i];
+      of_cell[0] += m.force_x[i];
+      of_cell[1] += m.force_y[i];
+      of_cell[2] += along_z;
+      of_cell[3] += std::hypot(std::hypot(m.force_x[i], m.force_y[i]), along_z);
+    }
+    for (std::size_t k = 0; k < sums.size(); ++k) sums[k].add(of_cell[k]);
   }
-  return magnitudes > 0 ? std::hypot(std::hypot(net_x, net_y), net_z) / magnitudes : 0;
+  core::add_up(ranks, sums);
+  const double net = std::hypot(std::hypot(sums[0].value(), sums[1].value() - from_walls), sums[2].value());
+  const double magnitudes = sums[3].value();
+  return magnitudes > 0 ? net / magnitudes : 0;
 }
 
 template <class T, class Set>
@@ -170,99 +137,69 @@ double Observer::follow_fluid(core::Fluid<T, Set>& fluid) {
   return mach;
 }
 
-void Observer::observe_cells(const core::Membranes& membranes, const units::LatticeUnits& units, Snapshot& snapshot) {
-  const double length = units.length;
-  const auto contacts = find_touching_cells(membranes, domain_, scene_->output.aggregate_gap / length);
-  const Aggregates aggregates = find_aggregates(static_cast<int>(membranes.cells.size()), contacts);
+template <int D>
+void Observer::observe_cells(core::Surroundings<D>& around, const units::LatticeUnits& units, Snapshot& snapshot) {
+  const double length = units.length, touching = scene_->output.aggregate_gap / length;
+  const auto& cells = around.cells();
+  const core::Ranks<D> ranks = around.ranks();
+  const core::Domain<D> domain = plan::lattice_domain<D>(*scene_);
+  around.show(touching);
+  std::vector<CellContact> contacts = core::to_first(ranks, find_touching_cells(cells, domain, touching));
+  const std::vector<double> gaps = smallest_gaps(around, domain);
+  std::vector<CellMeasures> measures;
+  for (const int c : cells.known_cells()) {
+    if (!cells.owns(c)) continue;
+    measures.push_back(measured(cells, c, *scene_, marker_));
+    measures.back().gap = gaps[c];
+  }
+  measures = core::to_first(ranks, std::move(measures));
+  if (!ranks.first()) return;
+  std::stable_sort(contacts.begin(), contacts.end(),
+                   [](const CellContact& a, const CellContact& b) { return a.cell_a < b.cell_a; });
+  std::sort(measures.begin(), measures.end(),
+            [](const CellMeasures& a, const CellMeasures& b) { return a.cell < b.cell; });
+  const Aggregates aggregates = find_aggregates(cells.cell_count(), contacts);
   count_aggregates(aggregates, snapshot);
-  for (const CellContact& c : contacts) {
-    snapshot.contacts.push_back(
-        {c.cell_a, c.cell_b, {c.image.x, c.image.y, 0}, c.gap * length, c.contact_length * length});
-  }
-  const std::vector<double> gaps = smallest_gaps(membranes, domain_);
-  std::vector<Eigen::Vector2d> centers;
-  for (std::size_t k = 0; k < membranes.cells.size(); ++k) {
-    const core::CellRange& cell = membranes.cells[k];
-    const Eigen::Vector2d c = core::centroid(membranes, cell);
-    centers.push_back(c);
-    const core::InertiaEllipse ellipse = core::inertia_ellipse(membranes, cell);
-    const double marker = core::marker_angle(membranes, cell);
-    const bool round = !(ellipse.deformation > roundest);
-    CellSnapshot s;
-    follow_angles(k, round ? std::nullopt : std::optional(ellipse.angle), marker, s);
-    s.cell = static_cast<int>(k);
-    s.type = scene_->cell_types[cell.type].name;
-    s.x = units::coordinate(c.x(), length);
-    s.y = units::coordinate(c.y(), length);
-    s.deformation = ellipse.deformation;
-    s.area = core::enclosed_area(membranes, cell) * length * length;
-    s.perimeter = core::perimeter(membranes, cell) * length;
-    s.min_gap = gaps[k] * length;
-    s.wall_gap = wall_gap(membranes, cell, domain_) * length;
-    s.aggregate = aggregates.label[k];
-    s.through_image = aggregates.through_image[k];
-    follow_stretch(core::stretch_range(membranes, cell), s);
-    snapshot.cells.push_back(std::move(s));
-  }
-  snapshot.rotation = rotation_.follow(contacts, aggregates, centers, domain_);
-  started_ = true;
-}
-
-void Observer::observe_cells(const core::Surfaces& surfaces, const units::LatticeUnits& units, Snapshot& snapshot) {
-  const double length = units.length;
-  const core::Domain<3> domain = plan::lattice_domain<3>(*scene_);
-  const auto contacts = find_touching_cells(surfaces, domain, scene_->output.aggregate_gap / length);
-  const Aggregates aggregates = find_aggregates(surfaces.cell_count(), contacts);
-  for (const CellContact& c : contacts) {
-    snapshot.contacts.push_back({c.cell_a,
-                                 c.cell_b,
-                                 {c.image.x, c.image.y, c.image.z},
-                                 c.gap * length,
-                                 std::nan(""),
-                                 c.contact_length * length * length});
-  }
-  const std::vector<double> gaps = smallest_gaps(surfaces, domain);
+  for (const CellContact& contact : contacts) snapshot.contacts.push_back(in_si<D>(contact, length));
   std::vector<Eigen::Vector2d> centers;  // as seen along z
-  count_aggregates(aggregates, snapshot);
-  for (int k = 0; k < surfaces.cell_count(); ++k) {
-    const core::Mesh& mesh = surfaces.type_of(k).mesh;
-    const core::Nodes nodes = surfaces.nodes(k);
-    const core::InertiaEllipsoid ellipsoid = core::inertia_ellipsoid(mesh, nodes);
-    const core::PlaneDeformation plane = core::deformation_in_xy(ellipsoid);
-    const core::Vec<3> marker = nodes[marker_[k]] - ellipsoid.center;
-    centers.emplace_back(ellipsoid.center.x(), ellipsoid.center.y());
+  for (const CellMeasures& m : measures) {
+    const auto k = static_cast<std::size_t>(m.cell);
+    centers.emplace_back(m.x, m.y);
     CellSnapshot s;
-    follow_angles(static_cast<std::size_t>(k), plane.deformation > roundest ? std::optional(plane.angle) : std::nullopt,
-                  std::atan2(marker.y(), marker.x()), s);
-    s.cell = k;
-    s.type = scene_->cell_types[surfaces.cells[k].type].name;
-    s.x = units::coordinate(ellipsoid.center.x(), length);
-    s.y = units::coordinate(ellipsoid.center.y(), length);
-    s.deformation = plane.deformation;
-    s.area = s.perimeter = std::nan("");
-    s.min_gap = gaps[k] * length;
-    s.wall_gap = wall_gap(surfaces, k, domain, scene_->domain.tube_radius.value_or(0) / length) * length;
+    follow_angles(m, s);
+    s.cell = m.cell;
+    s.type = scene_->cell_types[cells.cells[k].type].name;
+    s.x = units::coordinate(m.x, length);
+    s.y = units::coordinate(m.y, length);
+    s.deformation = m.deformation;
+    s.area = m.area * length * length;
+    s.perimeter = m.perimeter * length;
+    s.min_gap = m.gap * length;
+    s.wall_gap = m.wall_gap * length;
     s.aggregate = aggregates.label[k];
     s.through_image = aggregates.through_image[k];
-    follow_stretch(core::stretch_range(surfaces, k), s);
-    CellSnapshot::InSpace& space = s.in_space.emplace();
-    space.z = units::coordinate(ellipsoid.center.z(), length);
-    space.volume = core::enclosed_volume(mesh, nodes) * length * length * length;
-    space.surface_area = core::surface_area(mesh, nodes) * length * length;
-    for (std::size_t axis = 0; axis < 3; ++axis) space.semi_axes[axis] = ellipsoid.semi_axes[axis] * length;
-    space.short_axis = pointed(ellipsoid.axes[2]);
+    follow_stretch(m.stretch, s);
+    if (D == 3) {
+      CellSnapshot::InSpace& space = s.in_space.emplace();
+      space.z = units::coordinate(m.z, length);
+      space.volume = m.volume * length * length * length;
+      space.surface_area = m.surface_area * length * length;
+      for (std::size_t axis = 0; axis < 3; ++axis) space.semi_axes[axis] = m.semi_axes[axis] * length;
+      space.short_axis = m.short_axis;
+    }
     snapshot.cells.push_back(std::move(s));
   }
   snapshot.rotation = rotation_.follow(contacts, aggregates, centers, domain_);
   started_ = true;
 }
 
-/// `angle`: of the long axis; none where there is no long axis.
-void Observer::follow_angles(std::size_t cell, std::optional<double> angle, double marker, CellSnapshot& snapshot) {
+void Observer::follow_angles(const CellMeasures& measures, CellSnapshot& snapshot) {
+  const auto cell = static_cast<std::size_t>(measures.cell);
+  const bool round = std::isnan(measures.long_axis);
   double& treaded = tank_treading_angle_[cell];
-  if (angle) angle_[cell] = continued(*angle, angle_[cell], std::numbers::pi);
-  treaded = started_ ? continued(marker, treaded, 2 * std::numbers::pi) : marker;
-  snapshot.angle = angle ? angle_[cell] : std::nan("");
+  if (!round) angle_[cell] = continued(measures.long_axis, angle_[cell], std::numbers::pi);
+  treaded = started_ ? continued(measures.marker, treaded, 2 * std::numbers::pi) : measures.marker;
+  snapshot.angle = round ? std::nan("") : angle_[cell];
   snapshot.tank_treading_angle = treaded;
 }
 
@@ -313,27 +250,25 @@ Snapshot Observer::observe(core::Solver<T, Set>& solver, const plan::StageSettin
     snapshot.pressure_gradient =
         units.to_si(fluid.setting().body_force[0], units::dimension::force_density) - scene_->fluid.body_force.x();
   }
-  if (!cells.cells.empty() && solver.ranks().first()) {
+  if (!cells.cells.empty()) {
+    const core::Ranks<Set::dimension>& ranks = solver.ranks();
     if constexpr (Set::dimension == 2) {
       if (!scene_->domain.periodic_y) {
-        const auto layer = cell_free_layer(cells, domain_);
+        const auto layer = cell_free_layer(cells, domain_, ranks);
         snapshot.cell_free_layer_lower = layer.lower * units.length;
         snapshot.cell_free_layer_upper = layer.upper * units.length;
       }
     }
     // In layers a cell's share in the stress is not a matter of its membrane alone.
-    snapshot.particle_stress = scene_->fluid.layers.empty()
-                                   ? units.to_si(particle_stress(cells, *scene_, viscosity), units::dimension::pressure)
-                                   : std::numeric_limits<double>::quiet_NaN();
-    observe_cells(cells, units, snapshot);
-    snapshot.area_drift_max = follow_area(cells);
-    snapshot.area_leakage_max = area_leakage(cells);
-    OutlineSnapshot& outlines = snapshot.outlines;
-    for (const core::CellRange& cell : cells.cells) outlines.first.push_back(cell.first);
-    outlines.first.push_back(cells.node_count());
-    for (const double x : cells.x) outlines.x.push_back(units::coordinate(x, units.length));
-    for (const double y : cells.y) outlines.y.push_back(units::coordinate(y, units.length));
-    draw(*solver.cell_tasks(), cells, units, outlines);
+    snapshot.particle_stress =
+        scene_->fluid.layers.empty()
+            ? units.to_si(particle_stress(cells, *scene_, viscosity, ranks), units::dimension::pressure)
+            : std::numeric_limits<double>::quiet_NaN();
+    core::Surroundings<Set::dimension> around = solver.cell_tasks()->surroundings();
+    observe_cells(around, units, snapshot);
+    snapshot.area_drift_max = follow_area(cells, ranks);
+    snapshot.area_leakage_max = area_leakage(cells, ranks);
+    snapshot.membranes = observe_membranes(solver, units);
   }
   snapshot.energy = observe_energy(solver, units);
   if (with_fields) snapshot.fields = observe_fields(solver.fluid(), *scene_, units);
@@ -344,8 +279,12 @@ void Observer::start_stage() { initial_mass_ = std::nan(""); }
 
 template void Observer::begin_with(const core::Membranes&);
 template void Observer::begin_with(const core::Surfaces&);
-template double Observer::follow_area(const core::Membranes&, int*);
-template double Observer::follow_area(const core::Surfaces&, int*);
+template double Observer::follow_area(const core::Membranes&, const core::Ranks<2>&, int*);
+template double Observer::follow_area(const core::Surfaces&, const core::Ranks<3>&, int*);
+template double Observer::area_leakage(const core::CellNodes&, const core::Ranks<2>&, int*);
+template double Observer::area_leakage(const core::CellNodes&, const core::Ranks<3>&, int*);
+template double Observer::momentum_residual(const core::CellNodes&, double, const core::Ranks<2>&);
+template double Observer::momentum_residual(const core::CellNodes&, double, const core::Ranks<3>&);
 template Snapshot Observer::observe(core::Solver<float>&, const plan::StageSetting&, const core::Membranes&, bool);
 template Snapshot Observer::observe(core::Solver<double>&, const plan::StageSetting&, const core::Membranes&, bool);
 template Snapshot Observer::observe(core::Solver<float, core::D3Q19>&, const plan::StageSetting&, const core::Surfaces&,

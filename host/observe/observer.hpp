@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "aggregates.hpp"
+#include "cell_measures.hpp"
 #include "core/membrane/geometry.hpp"
 #include "core/solver/solver.hpp"
 #include "plan/stage_scales.hpp"
@@ -36,7 +37,7 @@ class Observer {
   void start_stage();
 
   /// State before the next step of `solver`, whose forces must have been computed. `with_fields`: fields are due. All
-  /// ranks together; what is about cells, and the fields, on the first alone.
+  /// ranks together; what is about cells comes to the first, and fields give what they have to it.
   template <class T, class Set>
   Snapshot observe(core::Solver<T, Set>& solver, const plan::StageSetting& setting,
                    const typename core::Solver<T, Set>::Cells& cells, bool with_fields);
@@ -45,15 +46,18 @@ class Observer {
   template <class T, class Set>
   double follow_fluid(core::Fluid<T, Set>& fluid);
   /// Follows the areas that outlines enclose, the volumes of surfaces; returns the largest relative change since the
-  /// start. `cell`: whose.
-  template <class Cells>
-  double follow_area(const Cells& cells, int* cell = nullptr);
+  /// start. `cell`: whose. All ranks together, of all cells.
+  template <class Cells, int D>
+  double follow_area(const Cells& cells, const core::Ranks<D>& ranks, int* cell = nullptr);
   /// Largest area that the area correction has kept from leaking out of (or into) a cell so far, over its rest area;
-  /// `cell`: whose. NaN without that correction.
-  static double area_leakage(const core::CellNodes& cells, int* cell = nullptr);
+  /// `cell`: whose. NaN without that correction. All ranks together, of all cells.
+  template <int D>
+  static double area_leakage(const core::CellNodes& cells, const core::Ranks<D>& ranks, int* cell = nullptr);
   /// Sum of nodal forces, less what walls do to the cells (along y), over the sum of their magnitudes: rounding only, or
-  /// an internal force is unbalanced.
-  static double momentum_residual(const core::CellNodes& cells, double from_walls = 0);
+  /// an internal force is unbalanced. All ranks together, of all cells.
+  template <int D = 2>
+  static double momentum_residual(const core::CellNodes& cells, double from_walls = 0,
+                                  const core::Ranks<D>& ranks = {});
 
   [[nodiscard]] const core::Domain<2>& domain() const { return domain_; }
   [[nodiscard]] double mach_max() const { return mach_max_; }
@@ -70,9 +74,9 @@ class Observer {
                                  area_drift_max_, mass_drift_, initial_mass_, stretch_)
 
  private:
-  void observe_cells(const core::Membranes& membranes, const units::LatticeUnits& units, Snapshot& snapshot);
-  void observe_cells(const core::Surfaces& surfaces, const units::LatticeUnits& units, Snapshot& snapshot);
-  void follow_angles(std::size_t cell, std::optional<double> angle, double marker, CellSnapshot& snapshot);
+  template <int D>
+  void observe_cells(core::Surroundings<D>& around, const units::LatticeUnits& units, Snapshot& snapshot);
+  void follow_angles(const CellMeasures& measures, CellSnapshot& snapshot);
   void follow_stretch(const core::StretchRange& stretch, CellSnapshot& snapshot);
 
   const scene::Scene* scene_;

@@ -6,9 +6,26 @@
 
 namespace rouleau::observe {
 
-double particle_stress(const core::Membranes& m, const scene::Scene& scene, double viscosity) {
-  double stress = 0;
-  for (const core::CellRange& cell : m.cells) {
+namespace {
+
+/// The sum of share(cell) over all ranks' cells.
+template <int D, class Share>
+double sum_over(const core::CellNodes& cells, const core::Ranks<D>& ranks, Share share) {
+  std::vector<core::ExactSum> sum(1);
+  for (const int c : cells.known_cells()) {
+    if (cells.owns(c)) sum.front().add(share(c));
+  }
+  core::add_up(ranks, sum);
+  return sum.front().value();
+}
+
+}  // namespace
+
+double particle_stress(const core::Membranes& m, const scene::Scene& scene, double viscosity,
+                       const core::Ranks<2>& ranks) {
+  const double all = sum_over(m, ranks, [&](int number) {
+    double stress = 0;
+    const core::CellRange& cell = m.cells[number];
     const Eigen::Vector2d c = core::centroid(m, cell);
     const double ratio = scene.cell_types[cell.type].interior_viscosity / scene.fluid.viscosity;
     for (int i = cell.first; i < cell.end(); ++i) {
@@ -19,19 +36,21 @@ double particle_stress(const core::Membranes& m, const scene::Scene& scene, doub
       const double ux = (m.velocity_x[k] + m.velocity_x[n]) / 2, uy = (m.velocity_y[k] + m.velocity_y[n]) / 2;
       stress += viscosity * (ratio - 1) * (ux * ny + uy * nx);
     }
-  }
-  return stress / (static_cast<double>(scene.domain.nodes[0]) * scene.domain.nodes[1]);
+    return stress;
+  });
+  return all / (static_cast<double>(scene.domain.nodes[0]) * scene.domain.nodes[1]);
 }
 
-double particle_stress(const core::Surfaces& s, const scene::Scene& scene, double viscosity) {
-  double stress = 0;
-  for (int c = 0; c < s.cell_count(); ++c) {
+double particle_stress(const core::Surfaces& s, const scene::Scene& scene, double viscosity,
+                       const core::Ranks<3>& ranks) {
+  const double all = sum_over(s, ranks, [&](int c) {
+    double stress = 0;
     const core::CellRange& cell = s.cells[c];
     const core::Mesh& mesh = s.type_of(c).mesh;
     const double middle = core::inertia_ellipsoid(mesh, s.nodes(c)).center.y();
     for (int i = cell.first; i < cell.end(); ++i) stress -= s.force_x[i] * (s.y[i] - middle);
     const double ratio = scene.cell_types[cell.type].interior_viscosity / scene.fluid.viscosity;
-    if (ratio == 1) continue;
+    if (ratio == 1) return stress;
     const std::vector<core::Vec<3>> twice_area = core::area_vectors(mesh, s.nodes(c));
     std::size_t t = 0;
     for (const auto& corners : mesh.triangles()) {
@@ -41,9 +60,10 @@ double particle_stress(const core::Surfaces& s, const scene::Scene& scene, doubl
       stress += viscosity * (ratio - 1) * (ux * twice_area[t].y() + uy * twice_area[t].x()) / 2;
       ++t;
     }
-  }
-  if (!scene.domain.tube_radius) return stress / scene.domain.node_count();
-  return stress / (scene.domain.content() / std::pow(scene.domain.size.x() / scene.domain.nodes[0], 3));
+    return stress;
+  });
+  if (!scene.domain.tube_radius) return all / scene.domain.node_count();
+  return all / (scene.domain.content() / std::pow(scene.domain.size.x() / scene.domain.nodes[0], 3));
 }
 
 }  // namespace rouleau::observe

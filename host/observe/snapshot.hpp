@@ -44,7 +44,7 @@ struct ContactSnapshot {
   double contact_area = std::numeric_limits<double>::quiet_NaN();  ///< m2, in three dimensions
 };
 
-/// Outlines or surfaces of all cells, one after another.
+/// Outlines or surfaces of all cells, one after another, as frames keep them.
 struct OutlineSnapshot {
   std::vector<int> first;       ///< first node of each cell, and the total at the end
   std::vector<double> x, y, z;  ///< m, not wrapped; the last is empty in two dimensions
@@ -53,19 +53,36 @@ struct OutlineSnapshot {
   // Of surfaces.
   std::vector<double> curvature;              ///< 1/m, sum of both principal curvatures at node i, positive where a
                                               ///< surface bulges outward
-  std::vector<std::array<int, 3>> triangles;  ///< nodes, counter-clockwise seen from outside
+  std::vector<std::array<int, 3>> triangles;  ///< of nodes, counter-clockwise seen from outside
 };
 
-/// A fluid field on the nodes that the scene wants (FieldStorage), given some rows at a time so that nobody holds all of it.
+/// A field on the nodes of the fluid or of the membranes, given some at a time so that nobody holds all of it.
 struct Field {
-  /// Values of the next rows, x fastest; the components of a node beside each other.
-  using Take = std::function<void(const std::vector<double>& rows)>;
-  std::string name;    ///< velocity, density (relative deviation from the mean), viscosity or vorticity
+  /// Values of the next nodes: of the fluid, those that the scene wants (FieldStorage) in whole rows, x fastest; of membranes,
+  /// cell after cell. The components of a node beside each other.
+  using Take = std::function<void(const std::vector<double>& values)>;
+  std::string name;    ///< velocity, density (relative deviation from the mean), viscosity, vorticity; MembraneSnapshot
   std::string unit;    ///< m/s, 1, Pa s, 1/s
   int components = 1;  ///< 3: a vector, whose last component is 0 in two dimensions
-  /// Calls take() on the first rank until it has had all rows, which count over y, then over z. All ranks together, and
-  /// before the next step of the fluid.
+  /// Calls take() on the first rank until it has had all; rows count over y, then over z. All ranks together, and before the
+  /// next step.
   std::function<void(const Take& take)> give;
+};
+
+/// What ranks do that do not write: they give their part to the one that does.
+inline void give_all(const std::vector<Field>& fields) {
+  for (const Field& field : fields) field.give([](const std::vector<double>&) {});
+}
+
+using Triangles = std::vector<std::array<int, 3>>;
+
+/// Outlines or surfaces of all cells, one after another. Without cells there are no fields.
+struct MembraneSnapshot {
+  std::vector<int> first;     ///< first node of each cell, and the total at the end
+  std::vector<Field> fields;  ///< points, tension and, of surfaces, curvature (as OutlineSnapshot has them)
+  /// Of surfaces: the triangles of a cell, their nodes counted from its first; null of outlines.
+  std::function<const Triangles&(int cell)> triangles = nullptr;
+  [[nodiscard]] bool empty() const { return fields.empty(); }
 };
 
 /// The fields that the scene wants. Empty: not due.
@@ -74,10 +91,6 @@ struct FieldSnapshot {
   int nz = 1;  ///< 1 in two dimensions
   std::vector<Field> fields;
   [[nodiscard]] bool empty() const { return nx == 0; }
-  /// What ranks do that do not write: they give their part to the one that does.
-  void give_all() const {
-    for (const Field& field : fields) field.give([](const std::vector<double>&) {});
-  }
 };
 
 /// Energies and powers per depth, in three dimensions that of the domain along z (docs: physics, energy); NaN where the scene has no such thing, or nobody tells it.
@@ -117,7 +130,7 @@ struct Snapshot {
       0;                  ///< relative: what the area correction kept from leaking, of the worst cell; NaN without
   double mass_drift = 0;  ///< relative
   EnergySnapshot energy;
-  OutlineSnapshot outlines;
+  MembraneSnapshot membranes;
   FieldSnapshot fields;
 };
 

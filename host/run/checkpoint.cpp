@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <utility>
 
 #include "checkpoint_match.hpp"
+#include "core/solver/in_order.hpp"
 
 namespace rouleau::run {
 
@@ -89,22 +91,75 @@ core::ContactVariable contact_variable(const Json& d) {
   return {d.at("potential"), d.at("model"), d.at("name"), d.at("unit_si"), d.at("initial")};
 }
 
-/// What interactions remember: which pairs of cells, or of cells and walls, and for each of them the next so many values
-/// of one array.
-Json save_contacts(files::CheckpointWriter& writer, const char* array, const core::ContactMemory& memory) {
-  Json variables = Json::array(), pairs = Json::array();
-  for (const core::ContactVariable& variable : memory.variables) variables.push_back(described(variable));
-  std::vector<double> values;
-  for (std::size_t cell = 0; cell < memory.of_cell.size(); ++cell) {
-    for (const core::ContactState& s : memory.of_cell[cell]) {
-      pairs.push_back({cell, s.variable, s.other, s.shift.x, s.shift.y, s.value.size()});
-      if (s.shift.z != 0) pairs.back().push_back(s.shift.z);
-      values.insert(values.end(), s.value.begin(), s.value.end());
-    }
+/// Writes what the owners of cells know of them, in the order of the cells: all ranks together, the first one has the file.
+template <int D>
+class CellArrays {
+ public:
+  /// `writer`: null on ranks that do not write. `ghosts`: null: this rank has all cells.
+  CellArrays(files::CheckpointWriter* writer, const core::CellNodes& cells, const core::GhostCells<D>* ghosts)
+      : writer_(writer), cells_(cells), ghosts_(ghosts) {}
+
+  /// A number of each node.
+  template <class Values>
+  void of_nodes(const std::string& path, const Values& values) {
+    write(path, cells_.x.size(), [&](int c, std::vector<double>& of_cell) {
+      const core::CellRange& cell = cells_.cells[c];
+      of_cell.insert(of_cell.end(), values.data() + cell.first, values.data() + cell.end());
+    });
   }
-  writer.array(array, values);
-  return {{"variables", variables}, {"cells", memory.of_cell.size()}, {"pairs", pairs}};
-}
+  /// A number of each cell; or none.
+  void of_cells(const std::string& path, const std::vector<double>& values) {
+    write(path, values.size(), [&](int c, std::vector<double>& of_cell) {
+      if (!values.empty()) of_cell.push_back(values[c]);
+    });
+  }
+  /// What interactions remember: which pairs of cells, or of cells and walls, and for each of them the next so many values
+  /// of one array.
+  Json contacts(const char* path, const core::ContactMemory& memory) {
+    struct Pair {
+      int cell, variable, other;
+      core::ImageShift shift;
+      std::size_t values;
+    };
+    Json variables = Json::array(), pairs = Json::array();
+    for (const core::ContactVariable& variable : memory.variables) variables.push_back(described(variable));
+    std::size_t count = 0;
+    const auto of_cell = [&](int cell) -> std::span<const core::ContactState> {
+      return memory.of_cell.empty() ? std::span<const core::ContactState>() : std::span(memory.of_cell[cell]);
+    };
+    core::give_in_order<Pair>(
+        ghosts_, cells_,
+        [&](int cell, std::vector<Pair>& its) {
+          for (const core::ContactState& s : of_cell(cell))
+            its.push_back({cell, static_cast<int>(s.variable), s.other, s.shift, s.value.size()});
+        },
+        [&](Range, const std::vector<Pair>& some) {
+          for (const Pair& pair : some) {
+            pairs.push_back({pair.cell, pair.variable, pair.other, pair.shift.x, pair.shift.y, pair.values});
+            if (pair.shift.z != 0) pairs.back().push_back(pair.shift.z);
+            count += pair.values;
+          }
+        });
+    write(path, count, [&](int cell, std::vector<double>& values) {
+      for (const core::ContactState& s : of_cell(cell)) values.insert(values.end(), s.value.begin(), s.value.end());
+    });
+    return {{"variables", variables}, {"cells", memory.of_cell.size()}, {"pairs", pairs}};
+  }
+
+ private:
+  /// So many values, of which add(cell, values) appends those of a cell.
+  template <class Add>
+  void write(const std::string& path, std::size_t count, Add add) {
+    if (writer_ != nullptr) writer_->begin_array(path, count);
+    core::give_in_order<double>(ghosts_, cells_, add, [&](Range, const std::vector<double>& values) {
+      if (writer_ != nullptr && !values.empty()) writer_->append(values);
+    });
+  }
+
+  files::CheckpointWriter* writer_;
+  const core::CellNodes& cells_;
+  const core::GhostCells<D>* ghosts_;
+};
 
 /// A checkpoint that is whole and yet not what this program writes.
 void require(bool fits, const files::CheckpointReader& reader, const char* what) {
@@ -136,20 +191,25 @@ void restore_contacts(const files::CheckpointReader& reader, const Json& saved, 
 }
 
 /// Writes the arrays, and returns what belongs into the file's /state.
-template <class Cells>
-Json save(files::CheckpointWriter& writer, const Cells& m) {
-  for (const auto& [path, values] : arrays(m)) writer.array(path, *values);
-  writer.array(leakage_array, m.area_leakage);
+template <int D, class Cells>
+Json save(CellArrays<D> to, const Cells& m) {
+  for (const auto& [path, values] : arrays(m)) {
+    if (values == &m.largest_step) {
+      to.of_cells(path, *values);
+    } else {
+      to.of_nodes(path, *values);
+    }
+  }
+  to.of_cells(leakage_array, m.area_leakage);
   Json states = Json::array();
   for (std::size_t k = 0; k < m.state.size(); ++k) {
     states.push_back(described(m.state[k]));
-    writer.array(state_name(k), m.state[k].value);
+    to.of_nodes(state_name(k), m.state[k].value);
   }
   Json saved{{"leakage", m.area_leakage.size()}, {"state", states}};
   if (std::is_same_v<Cells, core::Membranes> || !m.contacts.variables.empty())
-    saved["contacts"] = save_contacts(writer, contacts_array, m.contacts);
-  if (!m.wall_contacts.variables.empty())
-    saved["wall_contacts"] = save_contacts(writer, wall_contacts_array, m.wall_contacts);
+    saved["contacts"] = to.contacts(contacts_array, m.contacts);
+  if (!m.wall_contacts.variables.empty()) saved["wall_contacts"] = to.contacts(wall_contacts_array, m.wall_contacts);
   return saved;
 }
 
@@ -165,13 +225,14 @@ Json save(files::CheckpointWriter* writer, core::Solver<T, Set>& solver) {
     if (writer != nullptr) writer->begin_array<T>(population_name(q), rows, nx);
     fluid.gather_populations(q, bands, [&](int, const std::vector<T>& values) { writer->append(values); });
   }
-  if (solver.cell_tasks() != nullptr && writer != nullptr) {
-    const core::DisplacementWatch::Memory& memory = solver.cell_tasks()->viscosity_field().memory();
-    writer->array("/indicator/x", memory.x);
-    writer->array("/indicator/y", memory.y);
-    if (Set::dimension == 3) writer->array("/indicator/z", memory.z);
-    writer->array("/indicator/limit", memory.limit);
-    writer->array("/indicator/bound", memory.bound);
+  if (auto* const tasks = solver.cell_tasks()) {
+    const core::DisplacementWatch::Memory& memory = tasks->viscosity_field().memory();
+    CellArrays<Set::dimension> to(writer, solver.cells(), tasks->ghosts());
+    to.of_nodes("/indicator/x", memory.x);
+    to.of_nodes("/indicator/y", memory.y);
+    if (Set::dimension == 3) to.of_nodes("/indicator/z", memory.z);
+    to.of_cells("/indicator/limit", memory.limit);
+    to.of_cells("/indicator/bound", memory.bound);
   }
   Json saved{{"walls_have_acted", fluid.walls_have_acted()}};
   if (const auto& control = solver.flow_control()) {
@@ -241,12 +302,11 @@ void Checkpoints::write(const plan::Plan& plan, int threads, const RunState& sta
                         const typename core::Solver<T, Set>::Cells& cells, core::Solver<T, Set>& solver) {
   pending_ = true;
   step_ = state.steps;
-  if (to_ == nullptr) {
-    save<T, Set>(nullptr, solver);
-    return;
-  }
-  writer_ = std::make_unique<files::CheckpointWriter>(to_->path());
-  Json saved_membranes = save(*writer_, cells), saved_solver = save(writer_.get(), solver);
+  if (to_ != nullptr) writer_ = std::make_unique<files::CheckpointWriter>(to_->path());
+  const auto* const tasks = solver.cell_tasks();
+  const CellArrays<Set::dimension> of_cells(writer_.get(), cells, tasks != nullptr ? tasks->ghosts() : nullptr);
+  Json saved_membranes = save(of_cells, cells), saved_solver = save(writer_.get(), solver);
+  if (to_ == nullptr) return;
   writer_->facts(checkpoint_facts(plan, state, threads));
   writer_->state({{"run", state},
                   {"membranes", std::move(saved_membranes)},

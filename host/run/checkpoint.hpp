@@ -30,7 +30,7 @@ class Checkpoints {
   [[nodiscard]] bool due() const {
     return wanted() && std::chrono::duration<double>(Clock::now() - last_).count() >= *seconds_;
   }
-  /// Writes the file, beside the last one. All ranks together; the solver's state has been shared.
+  /// Writes the file, beside the last one. All ranks together, between two steps whose messages have been taken.
   template <class T, class Set>
   void write(const plan::Plan& plan, int threads, const RunState& state,
              const typename core::Solver<T, Set>::Cells& cells, core::Solver<T, Set>& solver);

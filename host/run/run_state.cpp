@@ -27,7 +27,7 @@ void RunState::report(Summary& s) const {
 bool RunState::fits(const plan::Plan& plan, const core::CellNodes& membranes) const {
   return stage >= 0 && stage < static_cast<int>(plan.stages.size()) && stage_step >= 0 && steps_before >= 0 &&
          steps >= stage_step && observer.fits(membranes) && rheology.fits() && growth.fits(membranes) &&
-         rest_watch.fits(membranes);
+         rest_watch.fits(membranes, plan.stages[stage].stage->until_at_rest);
 }
 
 }  // namespace rouleau::run

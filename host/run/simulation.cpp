@@ -43,8 +43,7 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 constexpr long steps_between_questions = 16;
 
 /// The stages of a run one after another, and the steps of each: what one rank does of it. All ranks decide the same. What
-/// one of them alone sees, its clock and its signals, they tell each other first; the first one alone sees all cells, and
-/// tells the others what follows from that.
+/// one of them alone sees, its clock, its signals and its cells, they tell each other first.
 /// T: of the populations; Set: D2Q9 or D3Q19.
 template <class T, class Set>
 class Simulation {
@@ -62,7 +61,7 @@ class Simulation {
         ranks_(ranks),
         owner_(owner),
         state_(observe::Observer(scene_)),
-        course_(plan, state_, ranks_.first() ? &cells_ : nullptr, [this](double found) { return of_first(found); }),
+        course_(plan, state_),
         progress_(options.quiet || directory == nullptr),
         checkpoints_(scene_, directory),
         summary_(describe(plan, report, options.threads)) {
@@ -147,18 +146,6 @@ class Simulation {
     return std::move(restored->solver);
   }
 
-  /// What the first rank has found.
-  [[nodiscard]] double of_first(double found) const {
-    return core::of_first(ranks_, std::vector<double>{found}).front();
-  }
-  /// The first rank knows what owners of cells know; before the state is observed or written.
-  void gather_state() {
-    if (solver_->cell_tasks() != nullptr) solver_->cell_tasks()->gather_state();
-  }
-  /// And goes on with what it has to know.
-  void leave_to_owners() {
-    if (solver_->cell_tasks() != nullptr) solver_->cell_tasks()->leave_to_owners();
-  }
   /// The cells are handed on to where the next solver wants them, by ranks that may have other blocks by now; what
   /// viscosities were made from, too.
   core::DisplacementWatch::Memory pass_on(const Boxes& boxes, std::vector<int> owner) {
@@ -168,7 +155,8 @@ class Simulation {
   /// What walls do to the cells along y.
   [[nodiscard]] double force_from_walls() const {
     const auto* tasks = solver_->cell_tasks();
-    return tasks != nullptr && tasks->wall_contacts() != nullptr ? tasks->wall_contacts()->net_force(cells_) : 0;
+    return tasks != nullptr && tasks->wall_contacts() != nullptr ? tasks->wall_contacts()->net_force(cells_, ranks_)
+                                                                 : 0;
   }
 
   /// On the terminal, where what was lost is said even to whom wants no progress.
@@ -218,9 +206,7 @@ class Simulation {
     const plan::StageSetting& setting = this->setting();
     log("stage",
         {{"name", setting.stage->name}, {"time_step_s", setting.units.time}, {"most_steps", setting.max_steps}});
-    gather_state();  // the first rank notes where all cells are
-    course_.begin();
-    leave_to_owners();
+    course_.begin(*solver_);
   }
 
   void run_stage() {
@@ -230,7 +216,6 @@ class Simulation {
       state_.costs.add(pass, 0, 0);  // ranks do not change their order
     const plan::OutputSchedule cells(scene_.output.cells, setting, true), fields(scene_.output.fields, setting, false);
     next_attention_ = state_.stage_step;
-    growth_level_ = state_.growth.level();
     clock_ = Clock::now();
     begin_balance();
     cut_at_ = never;
@@ -409,7 +394,8 @@ class Simulation {
   /// Whether the last step must not be followed by another, or was faster than any before; all workers come to the same
   /// answer.
   [[nodiscard]] bool wants_a_look() const {
-    return !(core::largest_step(cells_) <= std::min(scene_.checks.node_step, growth_level_)) || solver_->escaped();
+    return !(core::largest_step(cells_) <= std::min(scene_.checks.node_step, state_.growth.level())) ||
+           solver_->escaped();
   }
 
   /// One thread, before the forces of a step: whether the stage ends here, and the checkpoint.
@@ -426,27 +412,19 @@ class Simulation {
     if (core::any(ranks_, checkpoints_.due()) || (checkpoints_.wanted() && ends)) {
       take_time();
       const auto start = Clock::now();
-      gather_state();
       checkpoints_.write(plan_, options_.threads, state_, cells_, *solver_);
-      leave_to_owners();
       state_.costs.add("checkpoint", seconds_since(start), 1);
     }
   }
 
   /// One thread, forces computed: outputs, checks, and whether the stage ends here.
   void after_forces(long step, const plan::OutputSchedule& cells, const plan::OutputSchedule& fields) {
-    observe_and_check(step, cells, fields);
-    leave_to_owners();
-  }
-
-  /// The same; gathers all cells, and leaves them so.
-  void observe_and_check(long step, const plan::OutputSchedule& cells, const plan::OutputSchedule& fields) {
     const auto start = Clock::now();
     const plan::StageSetting& setting = this->setting();
     course_.count_to(step);
-    gather_state();
-    if (fails(check_nodes())) return;
-    if (ranks_.first() && core::largest_step(cells_) > state_.growth.level()) state_.growth.note(state_.steps, cells_);
+    solver_->end_messages();
+    if (fails(monitor::check_nodes(*solver_, scene_.checks.node_step, setting))) return;
+    if (core::largest_step(cells_) > state_.growth.level()) state_.growth.note(state_.steps, cells_, ranks_);
     if (checkpoints_.pending()) {
       observe::Observer look = state_.observer;  // one that leaves no trace
       checkpoints_.settle(!monitor::check_state(look, *solver_, setting, cells_, scene_));
@@ -460,18 +438,15 @@ class Simulation {
     if (cells_due || fields_due || check_due || last) {
       if (fails(monitor::check_state(state_.observer, *solver_, setting, cells_, scene_))) return;
       if (check_due) {
-        if (ranks_.first()) state_.growth.check(state_.steps, cells_);
+        state_.growth.check(state_.steps, cells_);
         look_at_balance(step);
       }
       if ((cells_due || fields_due || last) && !write(fields_due || (last && !scene_.output.fields.never()))) return;
-      if (ranks_.first()) {
-        state_.momentum_residual =
-            std::max(state_.momentum_residual, observe::Observer::momentum_residual(cells_, force_from_walls()));
-        progress_.update(progress(setting));
-      }
+      state_.momentum_residual =
+          std::max(state_.momentum_residual, observe::Observer::momentum_residual(cells_, force_from_walls(), ranks_));
+      if (ranks_.first()) progress_.update(progress(setting));
       state_.costs.add("observe and check", seconds_since(start), 1);
     }
-    growth_level_ = of_first(state_.growth.level());
     ending_ = due_ending_;
     course_.look(*solver_);
     const long check = (step / scene_.checks.every_steps + 1) * scene_.checks.every_steps;
@@ -481,25 +456,17 @@ class Simulation {
 
   /// What ends the stage before the forces of this step.
   [[nodiscard]] Ending next_ending() {
-    const bool compares = course_.compares_positions();
-    if (compares) gather_state();
-    const Ending by_scene = course_.end();
-    if (compares) leave_to_owners();
+    const Ending by_scene = course_.end(*solver_);
     if (core::any(ranks_, interrupted())) return Ending::interrupted;
     if (by_scene != Ending::none) return by_scene;
     if (options_.max_steps >= 0 && state_.steps >= options_.max_steps) return Ending::max_steps;
     return Ending::none;
   }
 
-  [[nodiscard]] std::optional<monitor::Failure> check_nodes() const {
-    if (!ranks_.first()) return std::nullopt;
-    return monitor::check_nodes(cells_, scene_.checks.node_step, solver_->escaped_node(), setting());
-  }
-
-  /// Whether the first rank has found a failure, with which the run ends on all of them; the others do not know which.
+  /// Whether all ranks have found a failure, the same, with which the run ends.
   [[nodiscard]] bool fails(std::optional<monitor::Failure> found) {
-    if (!core::any(ranks_, found.has_value())) return false;
-    failure_ = std::move(found).value_or(monitor::Failure{});
+    if (!found) return false;
+    failure_ = std::move(found);
     course_.date(*failure_);
     tell_mode(*failure_);
     log("diverged", {{"reason", failure_->reason}, {"step", failure_->step}, {"message", failure_->message}});
@@ -528,10 +495,11 @@ class Simulation {
     const double spacing = setting().units.length;
     const std::array<double, 2> place{units::place_on_lattice(failure.place[0], spacing),
                                       units::place_on_lattice(failure.place[1], spacing)};
-    const double oscillation = lattice_oscillation(place, failure.place_z);
-    if (!ranks_.first()) return;
+    const double oscillation =
+        core::of_first(ranks_, std::vector<double>{lattice_oscillation(place, failure.place_z)}).front();
     if constexpr (dimension == 2) {
-      monitor::find_mode(failure, cells_, state_.growth, state_.observer.domain(), place, oscillation, failure.step);
+      monitor::find_mode(failure, cells_, state_.growth, state_.observer.domain(), place, oscillation, failure.step,
+                         ranks_);
     } else {
       monitor::find_mode(failure, cells_, oscillation);
     }
@@ -545,22 +513,21 @@ class Simulation {
   /// returned.
   bool write(bool with_fields) {
     observe::Snapshot snapshot = state_.observer.observe(*solver_, setting(), cells_, with_fields);
-    std::optional<monitor::Failure> failure;
     if (ranks_.first()) {
       course_.date(snapshot);
       const units::LatticeUnits& units = setting().units;
       state_.energy.follow(snapshot, setting().is_driven(),
                            units.to_si(solver_->slight_energy(), units::dimension::energy_per_depth) /
                                (dimension == 3 ? scene_.domain.depth->nodes : 1));
-      failure = monitor::check_energy(state_.energy, cells_, plan_, setting());
     }
-    if (fails(std::move(failure))) return false;
+    if (fails(monitor::check_energy(state_.energy, cells_, ranks_, plan_, setting()))) return false;
     if (ranks_.first()) {
       state_.history.follow(snapshot);
       state_.rheology.follow(snapshot);
       if (directory_ != nullptr) directory_->write(snapshot);
     } else {
-      snapshot.fields.give_all();
+      observe::give_all(snapshot.membranes.fields);
+      observe::give_all(snapshot.fields.fields);
     }
     return true;
   }
@@ -598,7 +565,7 @@ class Simulation {
     for (const std::vector<long>& of_rank : core::all_of(ranks_, std::vector<long>{peak_memory_bytes()}))
       s.peak_rss_bytes += of_rank.front();
     s.checkpoint_step = checkpoints_.kept();
-    s.area_leakage_max = observe::Observer::area_leakage(cells_);
+    s.area_leakage_max = observe::Observer::area_leakage(cells_, ranks_);
   }
 
   const plan::Plan& plan_;
@@ -623,7 +590,6 @@ class Simulation {
   static constexpr long never = std::numeric_limits<long>::max();
   long next_attention_ = 0;             ///< step of the stage before which nothing is due
   std::atomic<long> attend_at_{never};  ///< step that somebody has asked for
-  double growth_level_ = 0;             ///< largest step of a node beyond which the first rank wants a look
   long cut_at_ = never;                 ///< before whose forces ranks get other blocks
   bool cut_due_ = false;                ///< the step loop has stopped for that
   Ending due_ending_ = Ending::none, ending_ = Ending::none;

@@ -8,13 +8,25 @@
 
 namespace rouleau::run {
 
-void StageCourse::begin() {
+namespace {
+
+/// Which cells are whose; null: all are this rank's.
+template <class T, class Set>
+const core::GhostCells<Set::dimension>* ghosts(const core::Solver<T, Set>& solver) {
+  return solver.cell_tasks() != nullptr ? solver.cell_tasks()->ghosts() : nullptr;
+}
+
+}  // namespace
+
+template <class T, class Set>
+void StageCourse::begin(const core::Solver<T, Set>& solver) {
   state_.observer.start_stage();
   state_.growth.start_stage();
   state_.stage_step = 0;
   state_.steps_before = state_.steps;
   state_.stage_wall = 0;
-  state_.rest_watch.start(0, cells_);
+  state_.rest_watch.stop();
+  if (setting().stage->until_at_rest) state_.rest_watch.start(0, solver.cells(), ghosts(solver));
   state_.equilibrium.start();
 }
 
@@ -22,11 +34,15 @@ bool StageCourse::compares_positions() const {
   return setting().stage->until_at_rest && state_.stage_step >= state_.rest_watch.end(rest_window());
 }
 
-Ending StageCourse::ending() const {
+template <class T, class Set>
+Ending StageCourse::ending(const core::Solver<T, Set>& solver) const {
   const scene::Stage& stage = *setting().stage;
-  if (compares_positions() && agree_(cells_ != nullptr ? state_.rest_watch.moved(*cells_) : 0) <
-                                  plan_.scene->at_rest.displacement / setting().units.length)
-    return Ending::at_rest;
+  if (compares_positions()) {
+    const double moved = state_.rest_watch.moved(solver.cells(), ghosts(solver));
+    if (core::of_first(solver.ranks(), std::vector<double>{moved}).front() <
+        plan_.scene->at_rest.displacement / setting().units.length)
+      return Ending::at_rest;
+  }
   if (stage.until_equilibrium && state_.equilibrium.reached()) return Ending::equilibrium;
   if (state_.stage_step < setting().max_steps) return Ending::none;
   const bool by_strain =
@@ -34,10 +50,12 @@ Ending StageCourse::ending() const {
   return by_strain ? Ending::strain : Ending::duration;
 }
 
-Ending StageCourse::end() {
-  const Ending found = ending();
+template <class T, class Set>
+Ending StageCourse::end(const core::Solver<T, Set>& solver) {
+  const Ending found = ending(solver);
   // The window by which a stage has ended stays: a checkpoint of this step ends it again.
-  if (found == Ending::none && compares_positions()) state_.rest_watch.start(state_.stage_step, cells_);
+  if (found == Ending::none && compares_positions())
+    state_.rest_watch.start(state_.stage_step, solver.cells(), ghosts(solver));
   return found;
 }
 
@@ -51,14 +69,20 @@ void StageCourse::look(core::Solver<T, Set>& solver) {
                 "there is no energy to watch, since " + energy.unknown,
                 {"end the stage by \"at_rest\" or by duration"});
   }
-  state_.equilibrium.note(state_.stage_step, agree_(energy.sum), agree_(energy.magnitude) + solver.slight_energy(),
+  state_.equilibrium.note(state_.stage_step, energy.sum, energy.magnitude + solver.slight_energy(),
                           plan_.scene->equilibrium.rate * setting.units.time);
 }
 
-template void StageCourse::look(core::Solver<float>&);
-template void StageCourse::look(core::Solver<float, core::D3Q19>&);
-template void StageCourse::look(core::Solver<double>&);
-template void StageCourse::look(core::Solver<double, core::D3Q19>&);
+#define ROULEAU_INSTANTIATE(T, Set)                                       \
+  template void StageCourse::begin(const core::Solver<T, Set>&);          \
+  template Ending StageCourse::ending(const core::Solver<T, Set>&) const; \
+  template Ending StageCourse::end(const core::Solver<T, Set>&);          \
+  template void StageCourse::look(core::Solver<T, Set>&);
+ROULEAU_INSTANTIATE(float, core::D2Q9)
+ROULEAU_INSTANTIATE(double, core::D2Q9)
+ROULEAU_INSTANTIATE(float, core::D3Q19)
+ROULEAU_INSTANTIATE(double, core::D3Q19)
+#undef ROULEAU_INSTANTIATE
 
 long StageCourse::next() const {
   const scene::Stage& stage = *setting().stage;

@@ -1,8 +1,6 @@
 // The course of a stage, step by step: what has been taken of it, and when its scene ends it.
 #pragma once
 
-#include <functional>
-
 #include "core/solver/solver.hpp"
 #include "plan/plan.hpp"
 #include "run_state.hpp"
@@ -10,34 +8,30 @@
 namespace rouleau::run {
 
 /// Of whichever stage of the plan the state is in. Whoever steps calls count_to() and then end() before the forces of a
-/// step that next() has asked for, and look() once they are known; ending() may be asked for at any time.
+/// step that next() has asked for, and look() once they are known; ending() may be asked for at any time between two steps. All
+/// ranks call it together, and get the same.
 class StageCourse {
  public:
-  /// What the one has found who sees all cells, for everybody.
-  using Agree = std::function<double(double found)>;
-
-  /// `cells`: null for who does not see all of them. All three must outlive it.
-  StageCourse(
-      const plan::Plan& plan, RunState& state, const core::CellNodes* cells,
-      Agree agree = [](double found) { return found; })
-      : plan_(plan), state_(state), cells_(cells), agree_(std::move(agree)) {}
+  /// Both must outlive it.
+  StageCourse(const plan::Plan& plan, RunState& state) : plan_(plan), state_(state) {}
 
   [[nodiscard]] const plan::StageSetting& setting() const { return plan_.stages[state_.stage]; }
   [[nodiscard]] bool is_last() const { return state_.stage + 1 == static_cast<int>(plan_.stages.size()); }
 
   /// The stage begins.
-  void begin();
+  template <class T, class Set>
+  void begin(const core::Solver<T, Set>& solver);
   /// So many steps of the stage have been taken.
   void count_to(long step) {
     state_.stage_step = step;
     state_.steps = state_.steps_before + step;
   }
-  /// Whether ending() and end() compare where all cells are with where they were.
-  [[nodiscard]] bool compares_positions() const;
   /// What ends the stage here: at_rest, equilibrium, strain, duration or none.
-  [[nodiscard]] Ending ending() const;
+  template <class T, class Set>
+  [[nodiscard]] Ending ending(const core::Solver<T, Set>& solver) const;
   /// The same, before the forces of a step: where a window of rest is over the next one begins.
-  Ending end();
+  template <class T, class Set>
+  Ending end(const core::Solver<T, Set>& solver);
   /// Forces computed: the energy of the cells, where the stage ends by it and a window is over. Throws Error(bad_input)
   /// where it is unknown.
   template <class T, class Set>
@@ -54,14 +48,14 @@ class StageCourse {
   }
 
  private:
+  /// Whether a window of rest is over.
+  [[nodiscard]] bool compares_positions() const;
   [[nodiscard]] long steps_of(double seconds) const;
   [[nodiscard]] long rest_window() const { return steps_of(plan_.scene->at_rest.window); }
   [[nodiscard]] long energy_window() const { return steps_of(plan_.scene->equilibrium.window); }
 
   const plan::Plan& plan_;
   RunState& state_;
-  const core::CellNodes* cells_;
-  Agree agree_;
 };
 
 }  // namespace rouleau::run

@@ -44,7 +44,7 @@ class SimulationOf final : public Simulation {
       : Simulation(std::move(read), std::move(catalog)),
         cells_(plan_.has_cells ? plan::make_cells<dimension>(scene()) : plan::Cells<dimension>{}),
         state_(observe::Observer(scene(), cells_)),
-        course_(plan_, state_, &cells_) {
+        course_(plan_, state_) {
     start_stage(nullptr);
   }
 
@@ -145,7 +145,7 @@ class SimulationOf final : public Simulation {
   }
 
   [[nodiscard]] bool done() const override {
-    return over_ || (course_.is_last() && course_.ending() != run::Ending::none);
+    return over_ || (course_.is_last() && course_.ending(*solver_) != run::Ending::none);
   }
   [[nodiscard]] long steps() const override { return state_.steps; }
   [[nodiscard]] double time() const override { return state_.time_at(stage()); }
@@ -175,9 +175,9 @@ class SimulationOf final : public Simulation {
   void start_stage(Solver* former) {
     auto next = std::make_unique<Solver>(plan::make_solver_setup<dimension>(plan_, state_.stage), cells_);
     next->start(former);
-    course_.begin();
-    next_attention_ = 0;
     solver_ = std::move(next);
+    course_.begin(*solver_);
+    next_attention_ = 0;
   }
 
   void next_stage() {
@@ -254,14 +254,13 @@ class SimulationOf final : public Simulation {
 
   void before_forces(long step) {
     course_.count_to(step);
-    due_ending_ = course_.end();
+    due_ending_ = course_.end(*solver_);
     if (due_ending_ != run::Ending::none) remember();
   }
 
   void after_forces(long step, bool attended) {
     course_.count_to(step);
-    if (auto failure = monitor::check_nodes(cells_, scene().checks.node_step, solver_->escaped_node(), stage()))
-      fail(std::move(*failure));
+    if (auto failure = monitor::check_nodes(*solver_, scene().checks.node_step, stage())) fail(std::move(*failure));
     if (!attended) return;
     const long every = scene().checks.every_steps;
     if (step % every == 0 || due_ending_ != run::Ending::none) {

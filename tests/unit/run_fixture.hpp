@@ -43,7 +43,34 @@ inline std::vector<double> whole(const Field& field) {
   return values;
 }
 
-/// Two round cells in contact, the second with `second_nodes` nodes; fields when asked for.
+/// Outlines of two round cells in contact, the second with `second_nodes` nodes.
+inline OutlineSnapshot small_outlines(int second_nodes = 32) {
+  OutlineSnapshot outlines;
+  outlines.first.push_back(0);
+  for (int cell = 0; cell < 2; ++cell) {
+    const int nodes = cell == 0 ? 32 : second_nodes;
+    for (int i = 0; i < nodes; ++i) {
+      const double angle = 2 * std::numbers::pi * i / nodes;
+      outlines.x.push_back(8e-6 + 4.5e-6 * cell + 2e-6 * std::cos(angle));
+      outlines.y.push_back(5e-6 + 2e-6 * std::sin(angle));
+      outlines.tension.push_back(1e-6 * i);
+    }
+    outlines.first.push_back(outlines.first.back() + nodes);
+  }
+  return outlines;
+}
+
+/// The same as an observer gives them.
+inline MembraneSnapshot given(const OutlineSnapshot& outlines) {
+  std::vector<double> points;
+  for (std::size_t i = 0; i < outlines.x.size(); ++i) points.insert(points.end(), {outlines.x[i], outlines.y[i]});
+  MembraneSnapshot membranes;
+  membranes.first = outlines.first;
+  membranes.fields = {given_field("points", "m", 2, points), given_field("tension", "N/m", 1, outlines.tension)};
+  return membranes;
+}
+
+/// These two cells; fields when asked for.
 inline Snapshot small_snapshot(long step, bool with_fields = false, int second_nodes = 32) {
   Snapshot snapshot;
   snapshot.step = step;
@@ -52,21 +79,12 @@ inline Snapshot small_snapshot(long step, bool with_fields = false, int second_n
   snapshot.stage_name = "shear";
   snapshot.aggregate_count = 1;
   snapshot.relative_viscosity = step == 0 ? std::numeric_limits<double>::quiet_NaN() : 1.25;
-  snapshot.outlines.first.push_back(0);
+  snapshot.membranes = given(small_outlines(second_nodes));
   for (int cell = 0; cell < 2; ++cell) {
-    const int nodes = cell == 0 ? 32 : second_nodes;
-    const double x = 8e-6 + 4.5e-6 * cell;
-    for (int i = 0; i < nodes; ++i) {
-      const double angle = 2 * std::numbers::pi * i / nodes;
-      snapshot.outlines.x.push_back(x + 2e-6 * std::cos(angle));
-      snapshot.outlines.y.push_back(5e-6 + 2e-6 * std::sin(angle));
-      snapshot.outlines.tension.push_back(1e-6 * i);
-    }
-    snapshot.outlines.first.push_back(snapshot.outlines.first.back() + nodes);
     CellSnapshot state{};
     state.cell = cell;
     state.type = "rbc, \"old\"";
-    state.x = x;
+    state.x = 8e-6 + 4.5e-6 * cell;
     state.y = 5e-6;
     state.angle = std::numbers::pi / 3;
     state.area = 1.0 / 3 * 1e-11;

@@ -116,14 +116,14 @@ class PairCheck {
 }  // namespace
 
 std::optional<Crossing> find_crossing(const Membranes& membranes, const Domain<2>& domain) {
-  std::vector<Bounds> extent;
-  for (const CellRange& cell : membranes.cells) extent.push_back(core::bounds(membranes, cell));
+  const std::vector<Bounds> extent = bounds_of_known(membranes);
   PairCheck check(membranes, domain);
   std::optional<Crossing> found;
   const CellGrid<2> grid(boxes_of(extent), 0.0, domain);
-  const int count = static_cast<int>(membranes.cells.size());
   std::vector<int> near;
-  for (int a = 0; a < count && !found; ++a) {
+  for (const int a : membranes.known_cells()) {
+    if (found) break;
+    if (!membranes.owns(a)) continue;
     grid.find(a, near);
     std::sort(near.begin(), near.end());  // the crossing that is found first does not depend on the grid
     for (const int b : near) {

@@ -7,12 +7,13 @@
 namespace rouleau::core {
 
 std::optional<SurfaceCrossing> find_crossing(const Surfaces& surfaces, const Domain<3>& domain) {
-  constexpr double reach = 3, rounding = 1e-6;
-  const SurfaceContacts contacts = SurfaceContacts::within(reach, surfaces, domain);
+  constexpr double rounding = 1e-6;
+  const SurfaceContacts contacts = SurfaceContacts::within(SurfaceCrossing::deepest, surfaces, domain);
   std::vector<std::vector<Vec<3>>> normals(surfaces.cells.size());  // of nodes; made where they are wanted
   std::optional<SurfaceCrossing> deepest;
   std::vector<SurfaceContact> list;
-  for (int cell = 0; cell < surfaces.cell_count(); ++cell) {
+  for (const int cell : surfaces.known_cells()) {
+    if (!surfaces.owns(cell)) continue;
     contacts.find(cell, surfaces, list);
     for (const SurfaceContact& contact : list) {
       std::vector<Vec<3>>& of_other = normals[contact.other];

@@ -88,30 +88,30 @@ void SurfaceWallContacts::run(Worker worker, Surfaces& surfaces) {
   }
 }
 
-double SurfaceWallContacts::energy(const Surfaces& surfaces, const Ranks<3>&) const {
-  double sum = 0;
+/// Adds value(contacts, i), times the node's area at rest, over all contacts of all ranks' cells.
+template <class Value>
+double SurfaceWallContacts::sum_over(const Surfaces& surfaces, bool energy, const Ranks<3>& ranks, Value value) const {
+  std::vector<ExactSum> sum(1);
   Contacts contacts;
-  for (int cell = 0; cell < surfaces.cell_count(); ++cell) {
+  for (const int cell : surfaces.known_cells()) {
+    if (!surfaces.owns(cell)) continue;
     const RestSurface& rest = surfaces.type_of(cell);
-    for_each(cell, surfaces, true, nullptr, contacts, [&] {
+    for_each(cell, surfaces, energy, nullptr, contacts, [&] {
       for (std::size_t i = 0; i < contacts.node.size(); ++i)
-        sum += rest.node_area[contacts.node[i] - surfaces.cells[cell].first] * contacts.law[i];
+        sum.front().add(rest.node_area[contacts.node[i] - surfaces.cells[cell].first] * value(contacts, i));
     });
   }
-  return sum;
+  add_up(ranks, sum);
+  return sum.front().value();
 }
 
-double SurfaceWallContacts::net_force(const Surfaces& surfaces) const {
-  double sum = 0;
-  Contacts contacts;
-  for (int cell = 0; cell < surfaces.cell_count(); ++cell) {
-    const RestSurface& rest = surfaces.type_of(cell);
-    for_each(cell, surfaces, false, nullptr, contacts, [&] {
-      for (std::size_t i = 0; i < contacts.node.size(); ++i)
-        sum += rest.node_area[contacts.node[i] - surfaces.cells[cell].first] * contacts.law[i] * contacts.away_y[i];
-    });
-  }
-  return sum;
+double SurfaceWallContacts::energy(const Surfaces& surfaces, const Ranks<3>& ranks) const {
+  return sum_over(surfaces, true, ranks, [](const Contacts& contacts, std::size_t i) { return contacts.law[i]; });
+}
+
+double SurfaceWallContacts::net_force(const Surfaces& surfaces, const Ranks<3>& ranks) const {
+  return sum_over(surfaces, false, ranks,
+                  [](const Contacts& contacts, std::size_t i) { return contacts.law[i] * contacts.away_y[i]; });
 }
 
 std::string SurfaceWallContacts::without_energy() const {

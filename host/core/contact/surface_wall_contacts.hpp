@@ -26,10 +26,10 @@ class SurfaceWallContacts {
   /// costs a look at where its nodes lie.
   void run(Worker worker, Surfaces& surfaces);
 
-  /// Energy at the present positions. Not a pass.
+  /// Energy at the present positions, of all ranks' cells. Not a pass.
   [[nodiscard]] double energy(const Surfaces& surfaces, const Ranks<3>& ranks = {}) const;
   /// What the walls together do to all cells, along y. Not a pass.
-  [[nodiscard]] double net_force(const Surfaces& surfaces) const;
+  [[nodiscard]] double net_force(const Surfaces& surfaces, const Ranks<3>& ranks = {}) const;
   /// A potential that acts but tells no energy; empty: none.
   [[nodiscard]] std::string without_energy() const;
 
@@ -51,6 +51,8 @@ class SurfaceWallContacts {
   template <class Act>
   void for_each(int cell, const Surfaces& surfaces, bool energy, std::vector<ContactState>* next, Contacts& contacts,
                 Act act) const;
+  template <class Value>
+  double sum_over(const Surfaces& surfaces, bool energy, const Ranks<3>& ranks, Value value) const;
 
   struct OfType {
     int type;

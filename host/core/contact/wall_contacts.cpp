@@ -160,20 +160,22 @@ double WallContacts::energy(const Membranes& membranes, const Ranks<2>& ranks) c
   return sum.front().value();
 }
 
-double WallContacts::net_force(const Membranes& membranes) const {
-  double sum = 0;
+double WallContacts::net_force(const Membranes& membranes, const Ranks<2>& ranks) const {
+  std::vector<ExactSum> sum(1);
   Contacts contacts;
-  for (int cell = 0; cell < membranes.cell_count(); ++cell) {
+  for (const int cell : membranes.known_cells()) {
+    if (!membranes.owns(cell)) continue;
     const CellRange& range = membranes.cells[cell];
     const double* weight = membranes.type_of(range).rest_weight.data();
     for (std::size_t k = 0; k < interactions_.size(); ++k) {
       if (interactions_[k].type != range.type) continue;
       measure(k, cell, membranes, Wanted::force, contacts);
       for (int i = 0; i < contacts.count; ++i)
-        sum += weight[contacts.node[i] - range.first] * contacts.law[i] * contacts.outward[i];
+        sum.front().add(weight[contacts.node[i] - range.first] * contacts.law[i] * contacts.outward[i]);
     }
   }
-  return sum;
+  add_up(ranks, sum);
+  return sum.front().value();
 }
 
 std::string WallContacts::without_energy() const {

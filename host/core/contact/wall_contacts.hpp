@@ -32,8 +32,8 @@ class WallContacts {
 
   /// Energy at the present positions, of all ranks' cells. Not a pass.
   [[nodiscard]] double energy(const Membranes& membranes, const Ranks<2>& ranks = {}) const;
-  /// What both walls together do to all cells, along y: along x they do nothing. Not a pass; every rank may ask alone.
-  [[nodiscard]] double net_force(const Membranes& membranes) const;
+  /// What both walls together do to all cells, along y: along x they do nothing. Not a pass.
+  [[nodiscard]] double net_force(const Membranes& membranes, const Ranks<2>& ranks = {}) const;
   /// A potential that acts but tells no energy; empty: none.
   [[nodiscard]] std::string without_energy() const;
 

@@ -336,7 +336,12 @@ bool Coupling<T>::any_escaped(const Membranes& membranes) const {
 
 template <class T>
 int Coupling<T>::escaped(const Membranes& membranes) const {
-  return any_escaped(membranes) ? static_cast<int>(std::find(row_.begin(), row_.end(), outside) - row_.begin()) : -1;
+  for (const int c : membranes.known_cells()) {
+    const CellRange& cell = membranes.cells[c];
+    if (membranes.owns(c) && rows_[c].lowest == outside)
+      return static_cast<int>(std::find(row_.data() + cell.first, row_.data() + cell.end(), outside) - row_.data());
+  }
+  return -1;
 }
 
 template <class T>

@@ -333,8 +333,13 @@ bool SurfaceCoupling<T>::any_escaped(const Surfaces& surfaces) const {
 
 template <class T>
 int SurfaceCoupling<T>::escaped(const Surfaces& surfaces) const {
-  if (!any_escaped(surfaces)) return -1;
-  return static_cast<int>(std::find(base_[2].begin(), base_[2].end(), outside) - base_[2].begin());
+  const PagedArray<int>& base = base_[2];
+  for (const int c : surfaces.known_cells()) {
+    const CellRange& cell = surfaces.cells[c];
+    if (surfaces.owns(c) && planes_[c].lowest == outside)
+      return static_cast<int>(std::find(base.data() + cell.first, base.data() + cell.end(), outside) - base.data());
+  }
+  return -1;
 }
 
 template <class T>

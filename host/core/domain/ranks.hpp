@@ -80,32 +80,72 @@ bool any(const Ranks<D>& ranks, bool mine) {
   return largest(ranks, std::array{mine ? 1.0 : 0.0}).front() > 0;
 }
 
-/// The values of the first rank, on all: down a binary tree of ranks.
+/// The values of one rank, on all: down a binary tree of ranks.
 template <class V, int D>
-std::vector<V> of_first(const Ranks<D>& ranks, std::vector<V> mine) {
+std::vector<V> of_rank(const Ranks<D>& ranks, int root, std::vector<V> mine) {
   if (!ranks.several()) return mine;
-  const int own = ranks.transport->rank(), all = ranks.blocks->ranks();
+  const int all = ranks.blocks->ranks(), own = (ranks.transport->rank() - root + all) % all;  // counted from the root
   int step = 1;
   while (step < all && own % (2 * step) == 0) step *= 2;
-  if (own != 0) mine = values_of<V>(ranks.transport->receive(own - step));
+  if (own != 0) mine = values_of<V>(ranks.transport->receive((own - step + root) % all));
   for (step /= 2; step > 0; step /= 2) {
-    if (own + step < all) ranks.transport->send(own + step, message_of(std::span<const V>(mine)));
+    if (own + step < all) ranks.transport->send((own + step + root) % all, message_of(std::span<const V>(mine)));
+  }
+  return mine;
+}
+/// Those of the first rank.
+template <class V, int D>
+std::vector<V> of_first(const Ranks<D>& ranks, std::vector<V> mine) {
+  return of_rank(ranks, 0, std::move(mine));
+}
+
+/// That of all ranks' values which no other is better than: better(a, b) orders them. In rounds, as largest().
+template <class V, int D, class Better>
+V best_of_all(const Ranks<D>& ranks, V mine, Better better) {
+  if (!ranks.several()) return mine;
+  const int own = ranks.transport->rank(), all = ranks.blocks->ranks();
+  for (int far = 1; far < all; far *= 2) {
+    ranks.transport->send((own + far) % all, message_of(std::span<const V>(&mine, 1)));
+    const V other = values_of<V>(ranks.transport->receive((own + all - far) % all)).front();
+    if (better(other, mine)) mine = other;
   }
   return mine;
 }
 
-/// Each sum over what all ranks have: up the tree to the first, and down again.
-template <int D>
-void add_up(const Ranks<D>& ranks, std::vector<ExactSum>& sums) {
+/// Every rank's values, one rank's after another's, on the first; nothing on the others.
+template <class V, int D>
+std::vector<V> to_first(const Ranks<D>& ranks, std::vector<V> mine) {
+  if (!ranks.several()) return mine;
+  if (!ranks.first()) {
+    ranks.transport->send(0, message_of(std::span<const V>(mine)));
+    return {};
+  }
+  for (int from = 1; from < ranks.blocks->ranks(); ++from) {
+    const std::vector<V> theirs = values_of<V>(ranks.transport->receive(from));
+    mine.insert(mine.end(), theirs.begin(), theirs.end());
+  }
+  return mine;
+}
+
+/// Up the tree to the first rank, whose values are then those of all: take_in(mine, other) makes one of two, in whatever
+/// order. All have as many.
+template <class V, int D, class TakeIn>
+void join(const Ranks<D>& ranks, std::vector<V>& values, TakeIn take_in) {
   if (!ranks.several()) return;
   const int own = ranks.transport->rank(), all = ranks.blocks->ranks();
   int step = 1;
   for (; step < all && own % (2 * step) == 0; step *= 2) {
     if (own + step >= all) continue;
-    const std::vector<ExactSum> parts = values_of<ExactSum>(ranks.transport->receive(own + step));
-    for (std::size_t k = 0; k < sums.size(); ++k) sums[k].add(parts[k]);
+    const std::vector<V> others = values_of<V>(ranks.transport->receive(own + step));
+    for (std::size_t k = 0; k < values.size(); ++k) take_in(values[k], others[k]);
   }
-  if (own != 0) ranks.transport->send(own - step, message_of(std::span<const ExactSum>(sums)));
+  if (own != 0) ranks.transport->send(own - step, message_of(std::span<const V>(values)));
+}
+
+/// Each sum over what all ranks have: up the tree to the first, and down again.
+template <int D>
+void add_up(const Ranks<D>& ranks, std::vector<ExactSum>& sums) {
+  join(ranks, sums, [](ExactSum& sum, const ExactSum& part) { sum.add(part); });
   sums = of_first(ranks, std::move(sums));
 }
 

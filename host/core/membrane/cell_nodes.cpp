@@ -1,7 +1,5 @@
 #include "cell_nodes.hpp"
 
-#include <numeric>
-
 namespace rouleau::core {
 
 void CellNodes::reserve(std::size_t cell_count, std::size_t nodes, int dimension) {
@@ -10,12 +8,6 @@ void CellNodes::reserve(std::size_t cell_count, std::size_t nodes, int dimension
   for (auto* values : {&z, &force_z, &velocity_z}) {
     if (dimension == 3) values->reserve(nodes);
   }
-}
-
-void CellNodes::know_all() {
-  for (CellPart& of_cell : part) of_cell.known = true;
-  known.resize(part.size());
-  std::iota(known.begin(), known.end(), 0);
 }
 
 void CellNodes::remove_cells() {
@@ -35,9 +27,13 @@ std::vector<Range> CellNodes::nodes_in_runs(bool of_known) const {
   return runs;
 }
 
+void CellNodes::forget_places(std::span<const Range> nodes) {
+  for (auto* values : {&x, &y, &z}) release(*values, nodes);
+}
+
 void CellNodes::forget(std::span<const Range> nodes) {
-  for (auto* values : {&x, &y, &z, &force_x, &force_y, &force_z, &velocity_x, &velocity_y, &velocity_z})
-    release(*values, nodes);
+  forget_places(nodes);
+  for (auto* values : {&force_x, &force_y, &force_z, &velocity_x, &velocity_y, &velocity_z}) release(*values, nodes);
   for (ElementState& of_all : state) release(of_all.value, nodes);
   for (ContactMemory* memory : {&contacts, &wall_contacts}) forget_unknown_of(memory->of_cell);
 }

@@ -93,8 +93,6 @@ struct CellNodes {
   }
   /// The one of them at a place.
   [[nodiscard]] int known_at(int place) const { return part.empty() ? place : known[place]; }
-  /// This rank knows all of them.
-  void know_all();
   /// A worker's share of all nodes.
   [[nodiscard]] Range node_share(Worker worker) const {
     const Range share = worker.share(cell_count());
@@ -111,6 +109,8 @@ struct CellNodes {
   [[nodiscard]] std::vector<Range> unknown_nodes() const { return nodes_in_runs(false); }
   /// Takes no memory for what is known of these nodes and for what their cells remember; both is gone.
   void forget(std::span<const Range> nodes);
+  /// Where these nodes are, and no more.
+  void forget_places(std::span<const Range> nodes);
   /// Makes nothing of what is kept of cells that this rank does not know. `of_cells`: one for each cell.
   template <class V>
   void forget_unknown_of(std::vector<V>& of_cells) const {

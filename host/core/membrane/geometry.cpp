@@ -86,6 +86,13 @@ Bounds bounds(const Membranes& membranes, const CellRange& cell) {
   return {b.x_min + zero, b.x_max + zero, b.y_min + zero, b.y_max + zero};
 }
 
+std::vector<Bounds> bounds_of_known(const Membranes& membranes) {
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  std::vector<Bounds> all(membranes.cells.size(), Bounds{none, none, none, none});
+  for (const int c : membranes.known_cells()) all[c] = bounds(membranes, membranes.cells[c]);
+  return all;
+}
+
 InertiaEllipse inertia_ellipse(const Membranes& membranes, const CellRange& cell) {
   const Moments sum = moments(membranes, cell, centroid(membranes, cell));
   const double xx = sum.xx / sum.area, xy = sum.xy / sum.area, yy = sum.yy / sum.area;

@@ -51,24 +51,25 @@ void MembraneForces::run(Worker worker, Membranes& membranes) {
   }
 }
 
-MembraneEnergy MembraneForces::energies(const Membranes& membranes) {
-  MembraneEnergy energy;
-  for (int cell = 0; cell < membranes.cell_count(); ++cell) {
+MembraneEnergy MembraneForces::energies(const Membranes& membranes, const Ranks<2>& ranks) {
+  MembraneEnergySum sum;
+  for (const int cell : membranes.known_cells()) {
+    if (!membranes.owns(cell)) continue;
+    MembraneEnergy energy;
     measure(membranes, cell, scratch_of(0), false);
     apply_laws(membranes, cell, scratch_of(0), nullptr, &energy);
+    sum.add(cell, energy);
   }
-  return energy;
+  return sum.of_all(ranks);
 }
 
-void MembraneForces::tensions(const Membranes& membranes, std::vector<double>& tension) {
-  tension.resize(membranes.x.size());
-  for (int cell = 0; cell < membranes.cell_count(); ++cell) {
-    const CellRange& range = membranes.cells[cell];
-    Scratch& scratch = scratch_of(0);
-    measure(membranes, cell, scratch, false);
-    const double uniform = apply_laws(membranes, cell, scratch, nullptr, nullptr).perimeter_tension;
-    for (int k = 0; k < range.count; ++k) tension[range.first + k] = scratch.tension[k] + uniform;
-  }
+std::vector<double> MembraneForces::tensions(const Membranes& membranes, int cell) {
+  Scratch& scratch = scratch_of(0);
+  measure(membranes, cell, scratch, false);
+  const double uniform = apply_laws(membranes, cell, scratch, nullptr, nullptr).perimeter_tension;
+  std::vector<double> tension;
+  for (int k = 0; k < membranes.cells[cell].count; ++k) tension.push_back(scratch.tension[k] + uniform);
+  return tension;
 }
 
 void MembraneForces::measure(const Membranes& membranes, int cell, Scratch& s, bool ahead) const {

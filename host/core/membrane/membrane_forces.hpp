@@ -8,6 +8,7 @@
 
 #include "base/worker.hpp"
 #include "core/model/model.hpp"
+#include "membrane_energy.hpp"
 #include "membranes.hpp"
 #include "node_mobility.hpp"
 #include "semi_implicit_filter.hpp"
@@ -17,18 +18,6 @@ namespace rouleau::core {
 
 /// Laws of one cell type; they add up.
 using MembraneLaws = std::vector<MembraneLaw>;
-
-/// Energies stored in the membranes, in lattice units.
-struct MembraneEnergy {
-  double tension = 0;  ///< laws of segments
-  double bending = 0;  ///< laws of nodes
-  double cell = 0;     ///< laws of whole cells
-  /// Power that tensions by the rate of stretch take out of the motion, at the present velocities; and energy that laws
-  /// with a state lose in a step without motion.
-  double dissipation = 0;
-  std::string unknown;  ///< a law that acts but tells no energy; empty: none
-  [[nodiscard]] double total() const { return tension + bending + cell; }
-};
 
 /// How a step treats membranes.
 struct MembraneForcesSetup {
@@ -55,12 +44,12 @@ class MembraneForces {
   /// of velocity_x, velocity_y.
   void run(Worker worker, Membranes& membranes);
 
-  /// Energies at the present positions and state. Not a pass: one thread, no other in run().
-  [[nodiscard]] MembraneEnergy energies(const Membranes& membranes);
+  /// Energies at the present positions and state, of all ranks' cells. Not a pass: one thread, no other in run().
+  [[nodiscard]] MembraneEnergy energies(const Membranes& membranes, const Ranks<2>& ranks = {});
   [[nodiscard]] double energy(const Membranes& membranes) { return energies(membranes).total(); }
 
-  /// Sets the tension of every segment, all laws together, at the present positions and state. Not a pass either.
-  void tensions(const Membranes& membranes, std::vector<double>& tension);
+  /// The tension of every segment of a cell, all laws together, at the present positions and state. Not a pass either.
+  [[nodiscard]] std::vector<double> tensions(const Membranes& membranes, int cell);
 
  private:
   /// What the table of one law is asked for in every step; looked up in its manifest once.

@@ -89,12 +89,15 @@ template std::array<double, 3> mean_velocity(const CellNodes&, const Ranks<3>&);
 
 FarthestNode farthest_node(const CellNodes& cells) {
   FarthestNode farthest{0, -1};
-  for (int i = 0; i < cells.node_count(); ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    const double along_z = cells.z.empty() ? 0 : cells.velocity_z[k];
-    const double step = std::hypot(std::hypot(cells.velocity_x[k], cells.velocity_y[k]), along_z);
-    if (std::isnan(step)) return {step, i};
-    if (farthest.node < 0 || step > farthest.step) farthest = {step, i};
+  for (const int c : cells.known_cells()) {
+    if (!cells.owns(c)) continue;
+    for (int i = cells.cells[c].first; i < cells.cells[c].end(); ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      const double along_z = cells.z.empty() ? 0 : cells.velocity_z[k];
+      const double step = std::hypot(std::hypot(cells.velocity_x[k], cells.velocity_y[k]), along_z);
+      if (std::isnan(step)) return {step, i};
+      if (farthest.node < 0 || step > farthest.step) farthest = {step, i};
+    }
   }
   return farthest;
 }

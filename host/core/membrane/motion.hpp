@@ -18,7 +18,7 @@ void move_nodes(Worker worker, CellNodes& cells);
 template <int D>
 std::array<double, 3> mean_velocity(const CellNodes& cells, const Ranks<D>& ranks);
 
-/// The node with the largest step, for messages.
+/// The node of this rank's cells with the largest step, for messages.
 struct FarthestNode {
   double step;  ///< lattice spacings; NaN if any velocity is no number
   int node;     ///< whose; -1 without nodes

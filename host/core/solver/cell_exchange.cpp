@@ -370,23 +370,6 @@ void CellExchange<D>::transfer_cell(Cells& cells, DisplacementWatch& watch, int 
 }
 
 template <int D>
-Message CellExchange<D>::pack_own(Cells& cells, DisplacementWatch& watch) const {
-  Packer message;
-  for (int c = 0; c < cells.cell_count(); ++c) {
-    if (ghosts_.owns(c)) transfer_cell(cells, watch, c, std::ref(message));
-  }
-  return message.take();
-}
-
-template <int D>
-void CellExchange<D>::receive_all_of(int rank, Cells& cells, DisplacementWatch& watch) const {
-  Unpacker message(ranks_.transport->receive(rank));
-  for (int c = 0; c < cells.cell_count(); ++c) {
-    if (ghosts_.owner(c) == rank) transfer_cell(cells, watch, c, std::ref(message));
-  }
-}
-
-template <int D>
 void CellExchange<D>::pass_on(Cells& cells, DisplacementWatch& watch, const GhostCells<D>& next) {
   receive_positions(cells, watch);
   std::vector<typename GhostCells<D>::Handover> handovers;
@@ -401,14 +384,24 @@ void CellExchange<D>::pass_on(Cells& cells, DisplacementWatch& watch, const Ghos
 }
 
 template <int D>
-void CellExchange<D>::gather_state(Cells& cells, DisplacementWatch& watch) {
-  receive_positions(cells, watch);
-  if (!ranks_.first()) {
-    ranks_.transport->send(0, pack_own(cells, watch));
-    return;
+void CellExchange<D>::show_places(Cells& cells, const std::map<int, Sight>& sights) const {
+  const auto transfer = [&](const std::vector<int>& of_peer, auto& message) {
+    for (const int c : of_peer) {
+      for (auto* along : places(cells)) transfer_nodes(*along, cells.cells[c], std::ref(message));
+      message(&cells.largest_step[c], 1);
+    }
+  };
+  for (const auto& [rank, sight] : sights) {
+    if (sight.mine.empty()) continue;
+    Packer message;
+    transfer(sight.mine, message);
+    ranks_.transport->send(rank, message.take());
   }
-  for (int from = 1; from < ranks_.blocks->ranks(); ++from) receive_all_of(from, cells, watch);
-  cells.know_all();
+  for (const auto& [rank, sight] : sights) {
+    if (sight.theirs.empty()) continue;
+    Unpacker message(ranks_.transport->receive(rank));
+    transfer(sight.theirs, message);
+  }
 }
 
 template class CellExchange<2>;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <functional>
+#include <map>
 #include <type_traits>
 #include <vector>
 
@@ -16,7 +17,7 @@
 
 namespace rouleau::core {
 
-/// The messages of a step about cells, and those with which all ranks get to know everything of all of them. Each call is
+/// The messages of a step about cells, and those with which cells are handed on and looked at. Each call is
 /// one worker's, between two barriers, and all ranks make the same calls.
 template <int D>
 class CellExchange {
@@ -50,10 +51,13 @@ class CellExchange {
   [[nodiscard]] bool took_over() const { return took_over_; }
   /// And whether there are cells that this rank does not know any more.
   [[nodiscard]] bool lost_sight() const { return lost_sight_; }
-  /// All of all cells, to the first rank: positions, velocities, forces, what laws and potentials remember, leaked areas,
-  /// and the watch's memory. It knows every cell until it leaves the others to their owners.
-  void gather_state(Cells& cells, DisplacementWatch& watch);
-  void leave_to_owners(Cells& cells) const { ghosts_.set_parts(cells); }
+  /// Cells of this rank that another one is to see, and of that one's that this one is.
+  struct Sight {
+    std::vector<int> mine, theirs;
+  };
+  /// Where these cells are, by rank, and how far they moved in the last step. All ranks together.
+  void show_places(Cells& cells, const std::map<int, Sight>& sights) const;
+  [[nodiscard]] const GhostCells<D>& ghosts() const { return ghosts_; }
   /// The boxes of all cells as they are now, on all ranks.
   [[nodiscard]] std::vector<BoundingBox<D>> boxes_of_all(const Cells& cells) const;
   /// Hands the cells on to their next owners, and shows them, with the watch's memory, to those who have to know them then.
@@ -104,9 +108,6 @@ class CellExchange {
   /// All that there is.
   template <class Transfer>
   static void transfer_cell(Cells& cells, DisplacementWatch& watch, int cell, Transfer transfer);
-  /// Of all cells that a rank owns.
-  [[nodiscard]] Message pack_own(Cells& cells, DisplacementWatch& watch) const;
-  void receive_all_of(int rank, Cells& cells, DisplacementWatch& watch) const;
   void hand_over(Cells& cells, DisplacementWatch& viscosity,
                  const std::vector<typename GhostCells<D>::Handover>& handovers);
 

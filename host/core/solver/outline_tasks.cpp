@@ -155,19 +155,6 @@ CellExchange<2>::Parts OutlineTasks<T>::parts() {
 }
 
 template <class T>
-void OutlineTasks<T>::gather_state() {
-  if (!exchange_) return;
-  exchange_->gather_state(membranes_, viscosity_field_.watch());
-}
-
-template <class T>
-int OutlineTasks<T>::escaped_node() {
-  if (!escaped()) return -1;
-  if (exchange_) locate(Worker{}, Whose::others);  // of all, for now
-  return coupling_.escaped(membranes_);
-}
-
-template <class T>
 void OutlineTasks<T>::forget_unknown() {
   if (!exchange_) return;
   const std::vector<Range> nodes = membranes_.unknown_nodes();

@@ -15,6 +15,7 @@
 #include "core/membrane/motion.hpp"
 #include "schedule.hpp"
 #include "solver_setup.hpp"
+#include "surroundings.hpp"
 
 namespace rouleau::core {
 
@@ -44,12 +45,13 @@ class OutlineTasks {
   void end_messages() {
     if (exchange_) exchange_->receive_positions(membranes_, viscosity_field_.watch());
   }
-  /// One worker, between steps or where the state may be observed: tells the first rank what only the owners of cells know.
-  void gather_state();
-  /// The first rank has looked at it, and goes on with what it has to know.
-  void leave_to_owners() {
-    if (exchange_) exchange_->leave_to_owners(membranes_);
+  /// One worker on all ranks, between steps or where the state may be observed.
+  [[nodiscard]] Surroundings<2> surroundings() {
+    end_messages();
+    return exchange_ ? Surroundings<2>(membranes_, *exchange_) : Surroundings<2>(membranes_);
   }
+  /// Which cells are whose; null without other ranks.
+  [[nodiscard]] const GhostCells<2>* ghosts() const { return exchange_ ? &exchange_->ghosts() : nullptr; }
   /// One worker, between steps, on all ranks: the boxes of all membranes, with which others can find their part in them.
   [[nodiscard]] std::vector<BoundingBox<2>> boxes_of_all() {
     end_messages();
@@ -69,8 +71,8 @@ class OutlineTasks {
     forget_unknown();
   }
 
-  /// First node that has left the domain; -1: none. With several ranks the first one finds it, the state gathered.
-  [[nodiscard]] int escaped_node();
+  /// First node of this rank's that has left the domain; -1: none.
+  [[nodiscard]] int escaped_node() const { return coupling_.escaped(membranes_); }
   [[nodiscard]] bool escaped() const { return exchange_ ? exchange_->escaped() : coupling_.any_escaped(membranes_); }
   [[nodiscard]] MembraneForces& forces() { return membrane_forces_; }
   /// What it takes to stretch all membranes by 0.1 %, and to bend them by as much.

@@ -88,9 +88,9 @@ class Solver {
   [[nodiscard]] std::size_t observable_pass() const { return observable_pass_; }
   /// How this step cuts rows.
   [[nodiscard]] RowBands bands() const;
-  /// Whether a node has left the domain, and which; -1: none.
+  /// Whether a node has left the domain, on any rank; and which, of this rank's cells; -1: none.
   [[nodiscard]] bool escaped() const { return cell_tasks_ && cell_tasks_->escaped(); }
-  [[nodiscard]] int escaped_node() { return cell_tasks_ ? cell_tasks_->escaped_node() : -1; }
+  [[nodiscard]] int escaped_node() const { return cell_tasks_ ? cell_tasks_->escaped_node() : -1; }
   /// What it takes to stretch all membranes by 0.1 %: energies far below this are rounding. Lattice units.
   [[nodiscard]] double slight_energy() const { return cell_tasks_ ? cell_tasks_->slight_energy() : 0; }
 

@@ -135,19 +135,6 @@ CellExchange<3>::Parts SurfaceTasks<T>::parts() {
 }
 
 template <class T>
-void SurfaceTasks<T>::gather_state() {
-  if (!exchange_) return;
-  exchange_->gather_state(surfaces_, viscosity_field_.watch());
-}
-
-template <class T>
-int SurfaceTasks<T>::escaped_node() {
-  if (!escaped()) return -1;
-  if (exchange_) coupling_.locate(Worker{}, surfaces_, Whose::others);  // of all, for now
-  return coupling_.escaped(surfaces_);
-}
-
-template <class T>
 void SurfaceTasks<T>::forget_unknown() {
   if (!exchange_) return;
   const std::vector<Range> nodes = surfaces_.unknown_nodes();

@@ -17,6 +17,7 @@
 #include "core/surface/volume_correction.hpp"
 #include "schedule.hpp"
 #include "solver_setup.hpp"
+#include "surroundings.hpp"
 
 namespace rouleau::core {
 
@@ -50,12 +51,13 @@ class SurfaceTasks {
   void end_messages() {
     if (exchange_) exchange_->receive_positions(surfaces_, viscosity_field_.watch());
   }
-  /// One worker, between steps or where the state may be observed: tells the first rank what only the owners of cells know.
-  void gather_state();
-  /// The first rank has looked at it, and goes on with what it has to know.
-  void leave_to_owners() {
-    if (exchange_) exchange_->leave_to_owners(surfaces_);
+  /// One worker on all ranks, between steps or where the state may be observed.
+  [[nodiscard]] Surroundings<3> surroundings() {
+    end_messages();
+    return exchange_ ? Surroundings<3>(surfaces_, *exchange_) : Surroundings<3>(surfaces_);
   }
+  /// Which cells are whose; null without other ranks.
+  [[nodiscard]] const GhostCells<3>* ghosts() const { return exchange_ ? &exchange_->ghosts() : nullptr; }
   /// One worker, between steps, on all ranks: the boxes of all surfaces, with which others can find their part in them.
   [[nodiscard]] std::vector<BoundingBox<3>> boxes_of_all() {
     end_messages();
@@ -75,8 +77,8 @@ class SurfaceTasks {
     forget_unknown();
   }
 
-  /// First node that has left the domain; -1: none. With several ranks the first one finds it, the state gathered.
-  [[nodiscard]] int escaped_node();
+  /// First node of this rank's that has left the domain; -1: none.
+  [[nodiscard]] int escaped_node() const { return coupling_.escaped(surfaces_); }
   [[nodiscard]] bool escaped() const { return exchange_ ? exchange_->escaped() : coupling_.any_escaped(surfaces_); }
   [[nodiscard]] SurfaceForces& forces() { return forces_; }
   /// What it takes to stretch all membranes by 0.1 % along x, the volume law left aside.

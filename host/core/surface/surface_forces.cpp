@@ -356,14 +356,17 @@ void SurfaceForces::soften(const Type& type, Surfaces& surfaces, const CellRange
                      {held(0), held(1), held(2)}, s.filtered);
 }
 
-MembraneEnergy SurfaceForces::energies(const Surfaces& surfaces) {
-  MembraneEnergy energy;
-  for (int c = 0; c < surfaces.cell_count(); ++c) {
+MembraneEnergy SurfaceForces::energies(const Surfaces& surfaces, const Ranks<3>& ranks) {
+  MembraneEnergySum sum;
+  for (const int c : surfaces.known_cells()) {
+    if (!surfaces.owns(c)) continue;
     const Type& type = types_[surfaces.cells[c].type];
     Whole whole = measure(type, surfaces.nodes(c), scratch_of(0));
+    MembraneEnergy energy;
     apply(type, surfaces.type_of(c), scratch_of(0), whole, &energy);
+    sum.add(c, energy);
   }
-  return energy;
+  return sum.of_all(ranks);
 }
 
 std::vector<double> SurfaceForces::curvatures(const Surfaces& surfaces, int cell) {

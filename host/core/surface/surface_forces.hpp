@@ -31,8 +31,8 @@ class SurfaceForces {
   /// Pass over cells: sets the forces.
   void run(Worker worker, Surfaces& surfaces);
 
-  /// Energies at the present positions. Not a pass: one thread, no other in run().
-  [[nodiscard]] MembraneEnergy energies(const Surfaces& surfaces);
+  /// Energies at the present positions, of all ranks' cells. Not a pass: one thread, no other in run().
+  [[nodiscard]] MembraneEnergy energies(const Surfaces& surfaces, const Ranks<3>& ranks = {});
   [[nodiscard]] double energy(const Surfaces& surfaces) { return energies(surfaces).total(); }
 
   /// Sum of both principal curvatures at each node of a cell, over the area at rest.

@@ -74,7 +74,7 @@ TEST_CASE("frames.h5 holds the outlines as given, with units") {
   CHECK_FALSE(reader.periodic_y());
   CHECK(reader.step(1) == 5);
   for (int frame = 0; frame < 2; ++frame) {
-    const auto given = small_snapshot(0, false, frame == 0 ? 32 : 40).outlines;
+    const auto given = small_outlines(frame == 0 ? 32 : 40);
     const auto stored = reader.outlines(frame);
     CHECK(stored.first == given.first);
     CHECK(stored.x == given.x);

@@ -241,7 +241,7 @@ TEST_CASE("a report without frames says why, and one without cells or outputs is
   auto fluid_only = small_snapshot(0, true);
   fluid_only.cells.clear();
   fluid_only.contacts.clear();
-  fluid_only.outlines = {};
+  fluid_only.membranes = {};
   run.write(fluid_only);
   run.finish(to_json(small_summary()));
   CHECK(report_data(folder.path() / "b")["cells"].is_null());

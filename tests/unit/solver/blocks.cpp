@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <thread>
 
+#include "core/solver/in_order.hpp"
 #include "core/solver/solver.hpp"
 #include "plan/placed_cells.hpp"
 #include "plan/solver_setup.hpp"
@@ -31,7 +32,8 @@ template <class T, class Set>
 struct End {
   Domain<Set::dimension> domain;
   typename Solver<T, Set>::Cells cells;
-  typename Solver<T, Set>::Cells seen_by_first;  ///< all of them; empty on the others
+  typename Solver<T, Set>::Cells seen;  ///< the same where it looks around
+  std::vector<double> in_order;         ///< x of all nodes, on the first
   std::vector<T> populations[Set::velocity_count];
 };
 
@@ -53,12 +55,15 @@ void run(Solver<T, Set>& solver, long steps, int workers) {
   for (std::thread& thread : threads) thread.join();
 }
 
-/// `look`: every so many steps, and in the end, the first rank hears everything.
+/// As far as ranks look around.
+constexpr double sight = 9;
+
+/// `look`: every so many steps, and in the end, ranks look around, and the first one hears of all cells.
 template <class T, class Set>
 End<T, Set> simulate(const Planned<Set::dimension>& planned, const Domain<Set::dimension>& domain,
                      const Ranks<Set::dimension>& ranks, const std::vector<int>& owner, long steps, int workers,
                      long look) {
-  End<T, Set> end{.domain = domain, .cells = planned.cells, .seen_by_first = {}, .populations = {}};
+  End<T, Set> end{.domain = domain, .cells = planned.cells, .seen = {}, .in_order = {}, .populations = {}};
   auto setup = planned.setup;
   setup.domain = domain;
   std::optional<GhostCells<Set::dimension>> ghosts;
@@ -69,9 +74,18 @@ End<T, Set> simulate(const Planned<Set::dimension>& planned, const Domain<Set::d
   solver.start();
   for (long done = 0; done < steps; done += look) {
     run(solver, std::min(look, steps - done), workers);
-    solver.cell_tasks()->gather_state();
-    if (ranks.first()) end.seen_by_first = end.cells;
-    solver.cell_tasks()->leave_to_owners();
+    {
+      Surroundings<Set::dimension> around = solver.cell_tasks()->surroundings();
+      around.show(sight);
+      end.seen = end.cells;
+    }
+    end.in_order.clear();
+    const auto add = [&](int c, std::vector<double>& x) {
+      x.insert(x.end(), end.cells.x.begin() + end.cells.cells[c].first, end.cells.x.begin() + end.cells.cells[c].end());
+    };
+    give_in_order<double>(
+        solver.cell_tasks()->ghosts(), end.cells, add,
+        [&](Range, const std::vector<double>& x) { end.in_order.insert(end.in_order.end(), x.begin(), x.end()); }, 150);
   }
   REQUIRE_FALSE(solver.escaped());
   solver.fluid().settle();
@@ -79,17 +93,21 @@ End<T, Set> simulate(const Planned<Set::dimension>& planned, const Domain<Set::d
   return end;
 }
 
-void compare_memory(const Membranes& whole, const Membranes& block) {
-  for (std::size_t k = 0; k < whole.state.size(); ++k) CHECK((block.state[k].value == whole.state[k].value));
-  for (const auto memory : {&Membranes::contacts, &Membranes::wall_contacts}) {
-    for (std::size_t c = 0; c < (whole.*memory).of_cell.size(); ++c) {
+/// What the owner of a cell remembers of it.
+void compare_memory(int c, const CellNodes& whole, const CellNodes& block) {
+  const CellRange& cell = whole.cells[c];
+  for (std::size_t k = 0; k < whole.state.size(); ++k) {
+    const auto &of_whole = whole.state[k].value, &of_block = block.state[k].value;
+    CHECK(std::equal(&of_whole[cell.first], of_whole.data() + cell.end(), &of_block[cell.first]));
+  }
+  for (const auto memory : {&CellNodes::contacts, &CellNodes::wall_contacts}) {
+    if (!(whole.*memory).of_cell.empty()) {
       const std::vector<ContactState>&of_whole = (whole.*memory).of_cell[c], &of_block = (block.*memory).of_cell[c];
       REQUIRE(of_block.size() == of_whole.size());
       for (std::size_t k = 0; k < of_whole.size(); ++k) CHECK((of_block[k].value == of_whole[k].value));
     }
   }
 }
-void compare_memory(const Surfaces&, const Surfaces&) {}
 
 template <class T, class Set>
 void compare(const End<T, Set>& whole, const End<T, Set>& block) {
@@ -107,21 +125,30 @@ void compare(const End<T, Set>& whole, const End<T, Set>& block) {
     }
   }
   CHECK(different == 0);
-  // Every rank knows where its cells are, and the first one all of all cells.
+  // Owners know all of their cells, and see those around them.
+  const auto same = [&](const std::vector<double>& of_block, const std::vector<double>& of_whole, int begin, int end) {
+    return of_whole.empty() || std::equal(of_whole.begin() + begin, of_whole.begin() + end, of_block.begin() + begin);
+  };
+  const auto boxes = boxes_of<Set::dimension>(whole.cells);
   for (int c = 0; c < block.cells.cell_count(); ++c) {
     const CellRange& cell = block.cells.cells[c];
+    if (block.seen.knows(c)) {
+      for (const auto values : {&CellNodes::x, &CellNodes::y, &CellNodes::z})
+        CHECK(same(block.seen.*values, whole.cells.*values, cell.first, cell.end()));
+    }
     if (!block.cells.owns(c)) continue;
-    for (const auto values : {&CellNodes::x, &CellNodes::y, &CellNodes::z})
-      if (!(whole.cells.*values).empty())
-        CHECK(std::equal((block.cells.*values).begin() + cell.first, (block.cells.*values).begin() + cell.end(),
-                         (whole.cells.*values).begin() + cell.first));
+    for (int other = 0; other < block.cells.cell_count(); ++other) {
+      if (distance_along_axes(boxes[c], boxes[other], whole.domain) <= sight) CHECK(block.seen.knows(other));
+    }
+    for (const auto values :
+         {&CellNodes::x, &CellNodes::y, &CellNodes::z, &CellNodes::velocity_x, &CellNodes::velocity_y,
+          &CellNodes::velocity_z, &CellNodes::force_x, &CellNodes::force_y, &CellNodes::force_z})
+      CHECK(same(block.cells.*values, whole.cells.*values, cell.first, cell.end()));
+    for (const auto values : {&CellNodes::largest_step, &CellNodes::area_leakage})
+      CHECK(same(block.cells.*values, whole.cells.*values, c, c + 1));
+    compare_memory(c, whole.cells, block.cells);
   }
-  if (block.seen_by_first.cells.empty()) return;
-  for (const auto values : {&CellNodes::x, &CellNodes::y, &CellNodes::z, &CellNodes::velocity_x, &CellNodes::velocity_y,
-                            &CellNodes::velocity_z, &CellNodes::force_x, &CellNodes::force_y, &CellNodes::force_z,
-                            &CellNodes::largest_step, &CellNodes::area_leakage})
-    CHECK((block.seen_by_first.*values == whole.cells.*values));
-  compare_memory(whole.cells, block.seen_by_first);
+  if (!block.in_order.empty()) CHECK((block.in_order == whole.cells.x));
 }
 
 /// Each cell has one owner, whose block its middle is not far from.

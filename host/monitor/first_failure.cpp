@@ -1,0 +1,48 @@
+#include "first_failure.hpp"
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+namespace rouleau::monitor {
+
+namespace {
+
+/// What a check says of a failure; mode and time come later. CBOR holds every number to its last bit.
+std::vector<std::uint8_t> packed(const Failure& f) {
+  nlohmann::json text{f.reason, f.place, f.cell, f.value, f.limit, f.message, f.remedy};
+  if (f.place_z) text.push_back(*f.place_z);
+  return nlohmann::json::to_cbor(text);
+}
+
+Failure unpacked(const std::vector<std::uint8_t>& bytes) {
+  const nlohmann::json text = nlohmann::json::from_cbor(bytes);
+  Failure f;
+  f.reason = text.at(0), f.place = text.at(1), f.cell = text.at(2), f.value = text.at(3), f.limit = text.at(4);
+  f.message = text.at(5), f.remedy = text.at(6);
+  if (text.size() > 7) f.place_z = text.at(7).get<double>();
+  return f;
+}
+
+}  // namespace
+
+template <int D>
+std::optional<Failure> first_failure(const core::Ranks<D>& ranks, std::optional<Failure> mine,
+                                     std::array<double, 2> order) {
+  if (!ranks.several()) return mine;
+  struct Found {
+    bool any;
+    std::array<double, 2> order;
+    int rank;
+  };
+  const Found first =
+      core::best_of_all(ranks, Found{mine.has_value(), order, ranks.transport->rank()},
+                        [](const Found& a, const Found& b) { return a.any && (!b.any || a.order < b.order); });
+  if (!first.any) return std::nullopt;
+  return unpacked(core::of_rank(ranks, first.rank, mine ? packed(*mine) : std::vector<std::uint8_t>{}));
+}
+
+template std::optional<Failure> first_failure(const core::Ranks<2>&, std::optional<Failure>, std::array<double, 2>);
+template std::optional<Failure> first_failure(const core::Ranks<3>&, std::optional<Failure>, std::array<double, 2>);
+
+}  // namespace rouleau::monitor

@@ -1,0 +1,43 @@
+// What is read off one cell: by its owner, for the first rank, which writes.
+#pragma once
+
+#include <array>
+#include <cmath>
+
+#include "core/membrane/geometry.hpp"
+#include "core/surface/surfaces.hpp"
+#include "scene/scene.hpp"
+
+namespace rouleau::observe {
+
+/// Lattice units; copied bit by bit from rank to rank.
+struct CellMeasures {
+  int cell;
+  double x, y;             ///< centroid
+  double deformation;      ///< (L - B) / (L + B)
+  double long_axis;        ///< angle against x of the axis L, rad, modulo pi; NaN: the cell is round
+  double marker;           ///< angle of a node about the centroid, rad, modulo 2 pi
+  double area, perimeter;  ///< NaN in three dimensions
+  double wall_gap;         ///< NaN without walls
+  double gap = 0;          ///< to the nearest other cell, which others than the cell are asked for
+  core::StretchRange stretch;
+  // In three dimensions.
+  double z = 0, volume = 0, surface_area = 0;
+  std::array<double, 3> semi_axes{};   ///< largest first
+  std::array<double, 3> short_axis{};  ///< unit vector, its first component that is not 0 positive
+};
+
+CellMeasures measure(const core::Membranes& membranes, int cell, const core::Domain<2>& domain);
+/// `marker`: the node that is followed, counted from the cell's first. `tube_radius`: 0 without a tube.
+CellMeasures measure(const core::Surfaces& surfaces, int cell, const core::Domain<3>& domain, int marker,
+                     double tube_radius);
+
+/// Area that an outline encloses.
+double enclosed(const core::Membranes& membranes, int cell);
+/// Volume that a surface encloses.
+double enclosed(const core::Surfaces& surfaces, int cell);
+
+/// The node of a surface farthest from the line along z through its centroid: its angle about that line is told best.
+int outermost(const core::Surfaces& surfaces, int cell);
+
+}  // namespace rouleau::observe
