@@ -51,6 +51,7 @@ std::string moment(const Event& event) {
 std::vector<Event> events_of(const Json& history) {
   std::vector<Event> events;
   for (const Json& entry : history) {
+    if (entry.at("members").is_null()) continue;  // not kept, of many cells
     Event event{entry.at("strain"), entry.at("time_s"), entry.at("members")};
     for (Members& members : event.aggregates) std::sort(members.begin(), members.end());
     if (!event.aggregates.empty()) events.push_back(std::move(event));

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace rouleau::files {
@@ -12,7 +13,7 @@ class StoredTable {
  public:
   /// Throws Error(input_output) when the file cannot be read.
   explicit StoredTable(const std::filesystem::path& file);
-  [[nodiscard]] std::size_t rows() const { return rows_.size(); }
+  [[nodiscard]] std::size_t rows() const { return header_.empty() ? 0 : (begin_.size() - 1) / header_.size(); }
   [[nodiscard]] bool has(const std::string& column) const;
   /// Column as numbers; an empty or unreadable entry is NaN. Throws Error(bad_input) when there is no such column.
   [[nodiscard]] std::vector<double> numbers(const std::string& column) const;
@@ -23,9 +24,14 @@ class StoredTable {
 
  private:
   [[nodiscard]] std::size_t index(const std::string& column) const;
+  [[nodiscard]] std::string_view entry(std::size_t row, std::size_t column) const {
+    const std::size_t at = row * header_.size() + column;
+    return std::string_view(text_).substr(begin_[at], begin_[at + 1] - begin_[at]);
+  }
   std::filesystem::path file_;
   std::vector<std::string> header_;
-  std::vector<std::vector<std::string>> rows_;
+  std::string text_;                     // all entries, one after another
+  std::vector<std::size_t> begin_ = {0};  // of each, row by row, and the end
 };
 
 }  // namespace rouleau::files

@@ -246,6 +246,11 @@ long FrameReader::step(int frame) const {
   return static_cast<long>(file_.read_attribute(frame_path(static_cast<std::size_t>(frame)), "step"));
 }
 
+std::size_t FrameReader::nodes(int frame) const {
+  const std::string group = frame_path(static_cast<std::size_t>(frame)) + "/membranes";
+  return file_.has(group) ? file_.shape(group + "/points").front() : 0;
+}
+
 observe::OutlineSnapshot FrameReader::outlines(int frame) const {
   observe::OutlineSnapshot written = surfaces(frame);
   return written.triangles.empty() ? written : middle_sections(written);

@@ -121,6 +121,8 @@ class FrameReader {
   [[nodiscard]] bool periodic_z() const { return file_.read_attribute("/", "periodic_z") != 0; }
   [[nodiscard]] bool periodic_y() const { return file_.read_attribute("/", "periodic_y") != 0; }
   [[nodiscard]] int frames() const { return file_.members("/frames"); }
+  /// Of the membranes, as they were written; 0 where the frame has none.
+  [[nodiscard]] std::size_t nodes(int frame) const;
   [[nodiscard]] long step(int frame) const;
   /// Empty (no cells) when the frame has no membranes. Of surfaces their middle sections (middle_sections.hpp).
   [[nodiscard]] observe::OutlineSnapshot outlines(int frame) const;

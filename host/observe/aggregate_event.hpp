@@ -9,7 +9,7 @@ namespace rouleau::observe {
 struct AggregateEvent {
   double strain, time;
   int count;
-  std::vector<std::vector<int>> members;
+  std::vector<std::vector<int>> members;  ///< empty: not kept
   bool through_image;
   NLOHMANN_DEFINE_TYPE_INTRUSIVE(AggregateEvent, strain, time, count, members, through_image)
 };

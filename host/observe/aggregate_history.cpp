@@ -19,7 +19,9 @@ void AggregateHistory::follow(const Snapshot& snapshot) {
   }
   const bool changed =
       events_.empty() || events_.back().members != event.members || events_.back().through_image != event.through_image;
-  if (changed) events_.push_back(std::move(event));
+  if (!changed) return;
+  if (snapshot.cells.size() > most_cells_remembered && events_.size() > 1) events_.back().members = {};
+  events_.push_back(std::move(event));
 }
 
 int AggregateHistory::rouleaux() const {

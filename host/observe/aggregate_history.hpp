@@ -10,7 +10,8 @@ namespace rouleau::observe {
 
 class AggregateHistory {
  public:
-  /// Adds an event if members or contacts across the periodic border differ from those before.
+  /// Adds an event if members or contacts across the periodic border differ from those before. Of many cells
+  /// (most_cells_remembered) only the first and the last event keep their members.
   void follow(const Snapshot& snapshot);
   [[nodiscard]] const std::vector<AggregateEvent>& events() const { return events_; }
   /// Aggregates at the last snapshot, single cells included.

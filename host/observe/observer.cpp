@@ -162,6 +162,7 @@ void Observer::observe_cells(core::Surroundings<D>& around, const units::Lattice
   count_aggregates(aggregates, snapshot);
   for (const CellContact& contact : contacts) snapshot.contacts.push_back(in_si<D>(contact, length));
   std::vector<Eigen::Vector2d> centers;  // as seen along z
+  snapshot.cells.reserve(measures.size());
   for (const CellMeasures& m : measures) {
     const auto k = static_cast<std::size_t>(m.cell);
     centers.emplace_back(m.x, m.y);

@@ -8,7 +8,8 @@
 
 namespace rouleau::observe {
 
-/// Follows the snapshots of a run. Costs nothing between them.
+/// Follows the snapshots of a run. Costs nothing between them. Of more than most_cells_remembered cells there are means
+/// alone.
 class RheologyHistory {
  public:
   void follow(const Snapshot& snapshot);
@@ -35,8 +36,9 @@ class RheologyHistory {
   struct Instant {
     double strain, time;         ///< since the start of the stage
     std::vector<double> values;  ///< of the observables that have means
+    // Of each cell that is remembered.
     std::vector<int> label;
-    std::vector<double> marker, axis;  ///< rad, of each cell, continuous
+    std::vector<double> marker, axis;  ///< rad, continuous
     NLOHMANN_DEFINE_TYPE_INTRUSIVE(Instant, strain, time, values, label, marker, axis)
   };
   struct StageHistory {

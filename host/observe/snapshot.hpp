@@ -102,6 +102,10 @@ struct EnergySnapshot {
   std::string unknown;  ///< why the total is not known; empty: it is
 };
 
+/// Up to so many cells a run remembers of each at every output what its summary says of it: of more, that would take more
+/// memory than anything else. Tables have all of them.
+inline constexpr std::size_t most_cells_remembered = 10'000;
+
 struct Snapshot {
   long step = 0;
   double time = 0;    ///< s since the first stage began

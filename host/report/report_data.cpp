@@ -32,6 +32,9 @@ constexpr std::size_t most_outputs = 400;
 constexpr std::size_t most_points = 300000;  ///< of all outlines: about 1.6 MB of page
 constexpr std::size_t fewest_nodes = 24;     ///< of an outline
 constexpr std::size_t most_fields = 120;     ///< outputs whose flow is shown
+// Larger files are not read: there is no page for as many cells, and a run that has ended must not fail for its page.
+constexpr std::uintmax_t most_bytes = 1'000'000'000;   ///< of cells.csv
+constexpr std::size_t most_nodes_read = 20'000'000;     ///< of a frame
 /// Five digits are more than a screen shows and keep the page small; an axis needs more where a run is long.
 Json shown_value(double value, int precision = 5) {
   if (!std::isfinite(value)) return nullptr;
@@ -201,8 +204,11 @@ Json report_data(const std::filesystem::path& directory) {
   data["scene"] = has_scene ? Json(files::read_text(directory / "scene.json")) : Json(nullptr);
 
   const files::StoredTable series(directory / "series.csv");
-  const files::StoredTable cells(directory / "cells.csv");
-  const std::size_t count = cells.count_of("cell");
+  std::error_code missing;
+  const std::uintmax_t bytes = std::filesystem::file_size(directory / "cells.csv", missing);
+  std::optional<files::StoredTable> cells;
+  if (missing || bytes <= most_bytes) cells.emplace(directory / "cells.csv");
+  const std::size_t count = cells ? cells->count_of("cell") : 0;
   std::size_t outputs = series.rows();
   Json damage = Json::array();
   if (ended && data["summary"].contains("files")) {
@@ -220,7 +226,7 @@ Json report_data(const std::filesystem::path& directory) {
     }
     outputs = std::min(outputs, has);
   };
-  if (count > 0) take("cells.csv", cells.rows() / count);
+  if (count > 0) take("cells.csv", cells->rows() / count);
 
   std::optional<files::FrameReader> reader;
   std::string note;
@@ -229,13 +235,24 @@ Json report_data(const std::filesystem::path& directory) {
     note = std::string("No animation: ") + error.what();
     if (ended) damage.push_back(error.what());
   };
+  if (!cells) {
+    note = "No animation, no charts of cells: cells.csv has " + std::to_string(bytes / 1'000'000) +
+           " MB, and a page is made of up to " + std::to_string(most_bytes / 1'000'000) + ". The files have all of it.";
+  }
   std::size_t nodes = 0;
+  bool drawn = cells.has_value();
   Selection with_fields;
   try {
     reader.emplace(directory / "frames.h5");
     take("frames.h5", static_cast<std::size_t>(reader->frames()));
     if (outputs > 0) {
-      nodes = reader->outlines(0).x.size();  // of their sections, where they are surfaces
+      if (reader->nodes(0) > most_nodes_read && drawn) {
+        drawn = false;
+        note = "No animation: a frame has " + std::to_string(reader->nodes(0)) +
+               " nodes of membranes, and a page is made of up to " + std::to_string(most_nodes_read) +
+               ". frames.h5 has all of them.";
+      }
+      if (drawn) nodes = reader->outlines(0).x.size();  // of their sections, where they are surfaces
       with_fields = field_outputs(directory / "frames.h5", most_fields);
     }
   } catch (const Error& error) {
@@ -260,16 +277,16 @@ Json report_data(const std::filesystem::path& directory) {
       series.has("shear_rate_1_per_s") ? picked(series.numbers("shear_rate_1_per_s"), selection) : Json();
   data["charts"] = charts();
   data["series"] = series_data(series, selection);
-  data["cells"] = count > 0 && outputs > 0 ? cell_data(cells, count, outputs, selection) : Json(nullptr);
+  data["cells"] = count > 0 && outputs > 0 ? cell_data(*cells, count, outputs, selection) : Json(nullptr);
   data["outlines"] = data["fields"] = data["surfaces"] = nullptr;
   if (reader && outputs > 0) {
     try {
       const auto size = reader->size();
       data["domain"] = {{"size_um", {size[0] * micro, size[1] * micro}}, {"periodic_y", reader->periodic_y()}};
-      Json outlines = outline_data(*reader, selection, stride);
+      Json outlines = drawn ? outline_data(*reader, selection, stride) : Json();
       data["fields"] = field_data(directory / "frames.h5", selection);
       data["outlines"] = std::move(outlines);  // both or none
-      data["surfaces"] = surface_data(*reader, selection);
+      if (drawn) data["surfaces"] = surface_data(*reader, selection);
     } catch (const Error& error) {
       without_animation(error);
     }

@@ -29,7 +29,7 @@ Json to_json(const observe::AggregateEvent& event) {
   return {{"strain", event.strain},
           {"time_s", event.time},
           {"count", event.count},
-          {"members", event.members},
+          {"members", event.members.empty() ? Json() : Json(event.members)},
           {"through_image", event.through_image}};
 }
 

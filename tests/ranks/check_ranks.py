@@ -300,17 +300,48 @@ class One_voice(Case):
         self.assertEqual(result.stderr.count("all ranks compute with baseline, which is all that rank 1 of 2"), 1)
         self.assertEqual(json.loads((self.path / "run" / "summary.json").read_text())["instruction_set"], "baseline")
 
+    def diverges(self, name, reason, *words):
+        """By three ranks as by one, with one report; what it says of the failure."""
+        alone, together = self.path / f"{name}-alone", self.path / name
+        words = ["run", *words, "--quiet", "--out"]
+        result = call(ranks(3, *words, together))
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertEqual(result.stderr.count(f"{reason} at step"), 1, result.stderr)
+        self.assertEqual(call([str(PROGRAM), *words, str(alone)]).returncode, 1)
+        ends = [json.loads((run / "summary.json").read_text()) for run in (alone, together)]
+        self.assertEqual(*([end[key] for key in ("status", "steps", "failure")] for end in ends))
+        self.assertEqual(ends[1]["failure"]["reason"], reason)
+        return ends[1]["failure"]
+
     def test_a_run_that_diverges_ends_all_with_1_and_one_report(self):
-        # Of the fluid, which all ranks see; of areas and of nodes, which the first one alone does.
         for check in ("mach", "area_drift", "node_step"):
-            alone, together = self.path / f"{check}-alone", self.path / check
-            words = [*KINETICS_RUN, "--set", f"/checks/{check}=1e-9", "--quiet", "--out"]
-            result = call(ranks(3, "run", *words, together))
-            self.assertEqual(result.returncode, 1, result.stderr)
-            self.assertEqual(result.stderr.count("limit 1e-09"), 1, result.stderr)
-            self.assertEqual(call([str(PROGRAM), "run", *words, str(alone)]).returncode, 1)
-            ends = [json.loads((run / "summary.json").read_text()) for run in (alone, together)]
-            self.assertEqual(*([end[key] for key in ("status", "steps", "failure")] for end in ends))
+            failure = self.diverges(check, check, *KINETICS_RUN, "--set", f"/checks/{check}=1e-9")
+            self.assertEqual(failure["limit"], 1e-9)
+        four_cells, two_cells = "scenes/four-cells-shear.json", "limits/scenes/two-cells.json"
+        for name, reason, scene, settings in (
+                ("uneven", "uneven_nodes", four_cells, ["/checks/stretch=1.001"]),
+                ("growth", "energy_growth", two_cells, [
+                    "/numerics/coupling=semi-implicit", "/stages/1/strain=0.01", "/checks/energy_growth=0.01",
+                    '/cell_types/rbc/membrane/0/parameters/shear_modulus="6e-3 N/m"']),
+                ("wave", "node_step", four_cells, ["/stages/0/density_factor=2e5"]),
+                ("crossing", "crossing", four_cells, ['/cell_types/rbc/membrane/0/parameters/shear_modulus="1e-8 N/m"',
+                                          '/cell_types/rbc/membrane/1/parameters/modulus="1e-22 J"',
+                                          "/checks/stretch=100", "/checks/area_drift=0.5",
+                                          '/interactions/0/parameters/depth="2e-6 J/m2"',
+                                          "/stages/0/density_factor=3000"])):
+            settings = [word for setting in settings for word in ("--set", setting)]
+            failure = self.diverges(name, reason, str(SOURCE / scene), *settings)
+            self.assertGreaterEqual(failure["cell"], 0)
+            if name == "wave":
+                self.assertGreater(failure["wavelength_segments"], 2)
+
+    def test_a_run_that_diverges_in_three_dimensions_says_the_same(self):
+        scene = str(SOURCE / "scenes" / "doublet-3d.json")
+        for name, reason, setting in (("volume", "area_drift", "/checks/area_drift=1e-7"),
+                                      ("edges", "uneven_nodes", "/checks/stretch=1.00001"),
+                                      ("nodes", "node_step", "/checks/node_step=1e-7")):
+            failure = self.diverges(name, reason, scene, "--set", setting)
+            self.assertGreaterEqual(failure["cell"], 0)
 
     @unittest.skipUnless(FAULTY.exists(), "faulty plugins are built optimised")
     def test_a_plugin_that_ends_the_program_on_all_ranks_is_named_once(self):

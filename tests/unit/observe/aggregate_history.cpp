@@ -2,6 +2,7 @@
 #include "observe/aggregate_history.hpp"
 
 #include <catch2/catch.hpp>
+#include <numeric>
 
 #include "observe/aggregate_words.hpp"
 
@@ -39,6 +40,26 @@ TEST_CASE("a rouleau has two cells or more; an aggregate may be a single cell") 
   history.follow(snapshot({0, 0, 0, 0}));
   CHECK(history.rouleaux() == 1);
   CHECK(history.events().size() == 4);
+}
+
+TEST_CASE("of many cells the first and the last event alone keep who is joined to whom") {
+  AggregateHistory history;
+  std::vector<int> labels(most_cells_remembered + 1);
+  std::iota(labels.begin(), labels.end(), 0);
+  for (const int joined : {1, 2, 3, 4}) {
+    labels[joined] = 0;
+    history.follow(snapshot(labels));
+    history.follow(snapshot(labels));  // nothing has changed
+  }
+  REQUIRE(history.events().size() == 4);
+  const auto& events = history.events();
+  const int all = static_cast<int>(labels.size());
+  for (int k = 0; k < 4; ++k) CHECK(events[k].count == all - 1 - k);
+  CHECK(events[0].members.size() == labels.size() - 1);
+  CHECK(events[1].members.empty());
+  CHECK(events[2].members.empty());
+  CHECK(events[3].members.front() == std::vector<int>{0, 1, 2, 3, 4});
+  CHECK(history.rouleaux() == 1);
 }
 
 TEST_CASE("aggregates are said as rouleaux and single cells") {

@@ -2,6 +2,7 @@
 #include "observe/rheology.hpp"
 
 #include <catch2/catch.hpp>
+#include <numeric>
 #include <cmath>
 #include <numbers>
 
@@ -111,6 +112,21 @@ TEST_CASE("an aggregate has come apart where its members are never together agai
 
   history.follow(at(1, 6, 7.6, {0, 1, 2, 3, 3}));
   CHECK(history.stages()[1]["dissociation"][1]["parted"].is_null());
+}
+
+TEST_CASE("of very many cells there are means, and nothing of each") {
+  RheologyHistory history;
+  std::vector<int> labels(most_cells_remembered);
+  std::iota(labels.begin(), labels.end(), 0);
+  history.follow(at(0, 0, 0, labels));
+  CHECK(history.stages()[0]["rotation"].size() == labels.size());
+  labels.push_back(0);
+  RheologyHistory of_more;
+  for (const double strain : {0.0, 1.0, 2.0}) of_more.follow(at(0, strain, strain, labels));
+  const auto stage = of_more.stages()[0];
+  CHECK(stage["rotation"].empty());
+  CHECK(stage["dissociation"].empty());
+  CHECK(stage["means"]["outputs"] == 2);
 }
 
 TEST_CASE("rates of tank treading and tumbling are those of the last whole turns of the outline") {

@@ -2,6 +2,7 @@
 #include <sstream>
 
 #include "files/file.hpp"
+#include "files/hdf5_file.hpp"
 #include "report/report.hpp"
 #include "report/report_data.hpp"
 #include "report/report_outlines.hpp"
@@ -247,6 +248,37 @@ TEST_CASE("a report without frames says why, and one without cells or outputs is
   CHECK(report_data(folder.path() / "b")["cells"].is_null());
   RunDirectory(folder.path() / "c", scene).finish(to_json(small_summary()));
   CHECK(report_data(folder.path() / "c")["step"].empty());
+}
+
+TEST_CASE("a report does without what is too large to be read, and says so") {
+  const ScratchFolder folder;
+  const auto run = folder.path() / "run";
+  finished_run(run, "many cells");
+  SECTION("of cells.csv") {
+    std::filesystem::resize_file(run / "cells.csv", 1'100'000'000);
+    const Json data = report_data(run);
+    CHECK_THAT(data["shown"]["note"].get<std::string>(),
+               Contains("cells.csv has 1100 MB, and a page is made of up to 1000"));
+    CHECK(data["cells"].is_null());
+    CHECK(data["outlines"].is_null());
+    CHECK(data["step"].size() == 5);
+    CHECK_FALSE(data["series"].empty());
+  }
+  SECTION("of a frame") {
+    std::filesystem::remove(run / "frames.h5");
+    {
+      rouleau::files::Hdf5File file(run / "frames.h5", rouleau::files::Hdf5File::Mode::create);
+      file.attribute("/", "size_m", std::vector<double>{20e-6, 10e-6});
+      file.attribute("/", "periodic_y", 0L);
+      for (const char* group : {"/frames", "/frames/000000", "/frames/000000/membranes"}) file.make_group(group);
+      static_cast<void>(file.begin("/frames/000000/membranes/points", {20'000'001, 2}, false, H5T_IEEE_F64LE,
+                                   H5T_NATIVE_DOUBLE, "m"));
+    }
+    const Json data = report_data(run);
+    CHECK_THAT(data["shown"]["note"].get<std::string>(), Contains("a frame has 20000001 nodes of membranes"));
+    CHECK(data["outlines"].is_null());
+    CHECK_FALSE(data["cells"].is_null());
+  }
 }
 
 TEST_CASE("a directory that is no run's is bad input") {
