@@ -26,15 +26,13 @@ namespace {
 namespace memory {
 constexpr double of_process = 30e6;   ///< the program, its libraries and MPI
 constexpr double of_each_cell = 600;  ///< of the scene: as it was read, where it begins, what lists of it are empty
-/// On the first rank, which is given all of all cells, and writes: of cells and nodes that it does not know otherwise.
+/// On the first rank, which writes: what is measured of each cell, and what becomes of those that are remembered, which are
+/// ten thousand at most (observe::most_cells_remembered).
+constexpr double of_writer(double cells) { return 10e6 + 1200 * cells + 1300 * std::min(cells, 1e4); }
+/// Of a rank's own nodes and those of its ghosts, of which surfaces keep no lists. `cells`: as many have these nodes.
 template <int D>
-constexpr double of_writer(double cells, double nodes) {
-  return 10e6 + (D == 2 ? 3300 * cells + 80 * nodes : 500 * nodes);
-}
-/// Of a rank's own nodes and those of its ghosts, of which surfaces keep no lists. Pages hold several outlines.
-template <int D>
-constexpr double of_known(double own, double ghosts) {
-  return D == 2 ? 520 * (own + ghosts) : 1200 * own + 250 * ghosts;
+constexpr double of_known(double own, double ghosts, double cells) {
+  return D == 2 ? 250 * (own + ghosts) + 5000 * cells : 1200 * own + 250 * ghosts;
 }
 }  // namespace memory
 
@@ -207,8 +205,11 @@ std::vector<RankCost> costs_of(const Plan& plan, const core::Decomposition<D>& b
     const auto own = static_cast<double>(cost.membrane_nodes), ghosts = static_cast<double>(cost.ghost_nodes),
                cells = static_cast<double>(scene.cells.size());
     cost.memory_bytes = memory::of_process + lattice * nodes / all;
-    if (plan.has_cells) cost.memory_bytes += memory::of_known<D>(own, ghosts) + cells * memory::of_each_cell;
-    if (rank == 0) cost.memory_bytes += memory::of_writer<D>(cells, plan.has_cells ? membrane_nodes(scene) - own : 0);
+    if (plan.has_cells) {
+      const double known = (own + ghosts) * cells / membrane_nodes(scene);
+      cost.memory_bytes += memory::of_known<D>(own, ghosts, known) + cells * memory::of_each_cell;
+    }
+    if (rank == 0) cost.memory_bytes += memory::of_writer(cells);
     cost.sharing_s += cost.lattice_bytes() / word * cost_of_sharing(D).number_s;
     cost.step_s = step_cost(nodes, static_cast<double>(cost.membrane_nodes), scene.numerics.precision, D, cutoff);
   }

@@ -1,9 +1,13 @@
 // The same bits from any number of ranks: whole simulations cut into blocks, cells shared out among owners.
+#include <bit>
 #include <catch2/catch.hpp>
+#include <cstdint>
 #include <thread>
 
 #include "core/solver/in_order.hpp"
 #include "core/solver/solver.hpp"
+#include "monitor/state_checks.hpp"
+#include "observe/observer.hpp"
 #include "plan/placed_cells.hpp"
 #include "plan/solver_setup.hpp"
 #include "unit/blocks_fixture.hpp"
@@ -34,6 +38,8 @@ struct End {
   typename Solver<T, Set>::Cells cells;
   typename Solver<T, Set>::Cells seen;  ///< the same where it looks around
   std::vector<double> in_order;         ///< x of all nodes, on the first
+  std::vector<std::uint64_t> observed;  ///< bits of what is observed in the end, on the first
+  std::string failure;                  ///< what is said of the state; empty: it is sound
   std::vector<T> populations[Set::velocity_count];
 };
 
@@ -55,6 +61,49 @@ void run(Solver<T, Set>& solver, long steps, int workers) {
   for (std::thread& thread : threads) thread.join();
 }
 
+/// All numbers of a snapshot, by their bits.
+std::vector<std::uint64_t> numbers(const observe::Snapshot& s) {
+  std::vector<double> all{s.relative_viscosity,
+                          s.shear_rate,
+                          s.wall_stress_lower,
+                          s.wall_stress_upper,
+                          s.flow_rate,
+                          s.mach_max,
+                          s.cell_free_layer_lower,
+                          s.cell_free_layer_upper,
+                          s.particle_stress,
+                          s.area_drift_max,
+                          s.area_leakage_max,
+                          s.mass_drift,
+                          s.energy.kinetic,
+                          s.energy.elastic,
+                          s.energy.bending,
+                          s.energy.interaction,
+                          s.energy.total,
+                          s.energy.viscous_dissipation,
+                          s.energy.membrane_dissipation};
+  for (const observe::CellSnapshot& c : s.cells) {
+    all.insert(all.end(),
+               {double(c.cell), c.x, c.y, c.angle, c.deformation, c.area, c.perimeter, c.tank_treading_angle, c.min_gap,
+                c.wall_gap, double(c.aggregate), double(c.through_image), c.stretch_min, c.stretch_max});
+    if (c.in_space) {
+      all.insert(all.end(), {c.in_space->z, c.in_space->volume, c.in_space->surface_area});
+      all.insert(all.end(), c.in_space->semi_axes.begin(), c.in_space->semi_axes.end());
+      all.insert(all.end(), c.in_space->short_axis.begin(), c.in_space->short_axis.end());
+    }
+  }
+  for (const observe::ContactSnapshot& c : s.contacts) {
+    all.insert(all.end(), {double(c.cell_a), double(c.cell_b), double(c.image[0]), double(c.image[1]),
+                           double(c.image[2]), c.gap, c.contact_length, c.contact_area});
+  }
+  for (const auto& [label, angle] : s.rotation) all.insert(all.end(), {double(label), angle});
+  for (const observe::Field& field : s.membranes.fields)
+    field.give([&](const std::vector<double>& values) { all.insert(all.end(), values.begin(), values.end()); });
+  std::vector<std::uint64_t> bits;
+  for (const double value : all) bits.push_back(std::bit_cast<std::uint64_t>(value));
+  return bits;
+}
+
 /// As far as ranks look around.
 constexpr double sight = 9;
 
@@ -63,7 +112,13 @@ template <class T, class Set>
 End<T, Set> simulate(const Planned<Set::dimension>& planned, const Domain<Set::dimension>& domain,
                      const Ranks<Set::dimension>& ranks, const std::vector<int>& owner, long steps, int workers,
                      long look) {
-  End<T, Set> end{.domain = domain, .cells = planned.cells, .seen = {}, .in_order = {}, .populations = {}};
+  End<T, Set> end{.domain = domain,
+                  .cells = planned.cells,
+                  .seen = {},
+                  .in_order = {},
+                  .observed = {},
+                  .failure = {},
+                  .populations = {}};
   auto setup = planned.setup;
   setup.domain = domain;
   std::optional<GhostCells<Set::dimension>> ghosts;
@@ -88,6 +143,13 @@ End<T, Set> simulate(const Planned<Set::dimension>& planned, const Domain<Set::d
         [&](Range, const std::vector<double>& x) { end.in_order.insert(end.in_order.end(), x.begin(), x.end()); }, 150);
   }
   REQUIRE_FALSE(solver.escaped());
+  observe::Observer observer(planned.scene, planned.cells);
+  const plan::StageSetting& setting = planned.plan.stages.front();
+  solver.compute_forces();
+  const auto observed = numbers(observer.observe(solver, setting, end.cells, false));
+  if (const auto failure = monitor::check_state(observer, solver, setting, end.cells, planned.scene))
+    end.failure = failure->message;
+  if (ranks.first()) end.observed = observed;
   solver.fluid().settle();
   for (int q = 0; q < Set::velocity_count; ++q) solver.fluid().copy_populations(q, end.populations[q]);
   return end;
@@ -149,6 +211,8 @@ void compare(const End<T, Set>& whole, const End<T, Set>& block) {
     compare_memory(c, whole.cells, block.cells);
   }
   if (!block.in_order.empty()) CHECK((block.in_order == whole.cells.x));
+  if (!block.observed.empty()) CHECK((block.observed == whole.observed));
+  CHECK(block.failure == whole.failure);
 }
 
 /// Each cell has one owner, whose block its middle is not far from.
