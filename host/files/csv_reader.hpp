@@ -30,7 +30,7 @@ class StoredTable {
   }
   std::filesystem::path file_;
   std::vector<std::string> header_;
-  std::string text_;                     // all entries, one after another
+  std::string text_;                      // all entries, one after another
   std::vector<std::size_t> begin_ = {0};  // of each, row by row, and the end
 };
 

@@ -29,15 +29,15 @@ double distance_to(const core::Membranes& m, const core::CellRange& cell, const 
   return nearest;
 }
 
-struct Surroundings {
+struct Neighbourhood {
   int cell = -1;  ///< nearest to the place, if within its neighbourhood
   int rank = 0;   ///< who owns it
   bool contact = false;
 };
 
 /// `cell`: what is in question already; -1: nothing.
-Surroundings find_surroundings(int cell, const core::Membranes& m, const std::array<double, 2>& place,
-                               const core::Domain<2>& domain, const core::Ranks<2>& ranks) {
+Neighbourhood find_neighbourhood(int cell, const core::Membranes& m, const std::array<double, 2>& place,
+                                 const core::Domain<2>& domain, const core::Ranks<2>& ranks) {
   struct Nearest {
     double distance;
     int cell, rank;
@@ -158,7 +158,7 @@ template double lattice_oscillation(const core::Fluid<double, core::D3Q19>&, con
 void find_mode(monitor::Failure& failure, const core::Membranes& membranes, const GrowthWatch& growth,
                const core::Domain<2>& domain, std::array<double, 2> place, double oscillation, long step,
                const core::Ranks<2>& ranks) {
-  const Surroundings around = find_surroundings(failure.cell, membranes, place, domain, ranks);
+  const Neighbourhood around = find_neighbourhood(failure.cell, membranes, place, domain, ranks);
   FailureMode mode;
   if (around.cell >= 0 && membranes.owns(around.cell)) mode = wave_of(around.cell, membranes, growth, step);
   if (around.cell >= 0) mode = of_rank(ranks, around.rank, mode);

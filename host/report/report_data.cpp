@@ -33,8 +33,8 @@ constexpr std::size_t most_points = 300000;  ///< of all outlines: about 1.6 MB 
 constexpr std::size_t fewest_nodes = 24;     ///< of an outline
 constexpr std::size_t most_fields = 120;     ///< outputs whose flow is shown
 // Larger files are not read: there is no page for as many cells, and a run that has ended must not fail for its page.
-constexpr std::uintmax_t most_bytes = 1'000'000'000;   ///< of cells.csv
-constexpr std::size_t most_nodes_read = 20'000'000;     ///< of a frame
+constexpr std::uintmax_t most_bytes = 1'000'000'000;  ///< of cells.csv
+constexpr std::size_t most_nodes_read = 20'000'000;   ///< of a frame
 /// Five digits are more than a screen shows and keep the page small; an axis needs more where a run is long.
 Json shown_value(double value, int precision = 5) {
   if (!std::isfinite(value)) return nullptr;

@@ -422,7 +422,7 @@ class The_end(Case):
                     break
                 self.assertTrue(victims, errors)
                 self.assertNotIn("internal error", errors)
-                count = CHANCE.choice([1, 2, 3, 4])
+                count = CHANCE.choice([1, 2, 3, 8])
             self.assertEqual(process.returncode, 0, errors)
             self.assertEqual(differences(alone, directory), [])
         print(f"{ended} ranks killed in {runs} runs; mpirun hung {hung} times", flush=True)

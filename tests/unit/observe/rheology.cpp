@@ -2,9 +2,9 @@
 #include "observe/rheology.hpp"
 
 #include <catch2/catch.hpp>
-#include <numeric>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "observe/rheology_history.hpp"
 
