@@ -17,6 +17,13 @@ struct Box {
     }
     return true;
   }
+  /// Whether all nodes of another box lie in this one.
+  [[nodiscard]] bool holds(const Box& other) const {
+    for (int k = 0; k < D; ++k) {
+      if (other.begin[k] < begin[k] || other.end[k] > end[k]) return false;
+    }
+    return true;
+  }
   /// Whether a node lies in both.
   [[nodiscard]] bool meets(const Box& other) const {
     for (int k = 0; k < D; ++k) {

@@ -25,10 +25,12 @@ struct CellPart {
   bool owned;     ///< it computes the cell's forces and moves it
   bool known;     ///< it knows where the cell is; the arrays hold something old else
   bool reaching;  ///< the cell's nodes may touch this rank's block
+  bool inside;    ///< it owns the cell, and no node touches anything but nodes of its block
 };
 
-/// Which cells a pass is over: those that this rank owns, or what it knows of others'.
-enum class Whose { own, others };
+/// Which cells a pass is over: those that this rank owns, or what it knows of others'; of its own those inside of its block,
+/// which can do without other ranks, or those at its borders.
+enum class Whose { own, others, own_inside, own_at_borders };
 
 /// Numbers of cells in their order: those of a list, or all, at places [begin, end).
 class CellNumbers {
@@ -83,7 +85,11 @@ struct CellNodes {
   [[nodiscard]] bool owns(int cell) const { return part.empty() || part[cell].owned; }
   [[nodiscard]] bool knows(int cell) const { return part.empty() || part[cell].known; }
   [[nodiscard]] bool reaches(int cell) const { return part.empty() || part[cell].reaching; }
-  [[nodiscard]] bool is(int cell, Whose whose) const { return knows(cell) && owns(cell) == (whose == Whose::own); }
+  [[nodiscard]] bool is(int cell, Whose whose) const {
+    if (whose == Whose::others) return knows(cell) && !owns(cell);
+    const bool inside = !part.empty() && part[cell].inside;
+    return owns(cell) && (whose == Whose::own || inside == (whose == Whose::own_inside));
+  }
   [[nodiscard]] int cell_count() const { return static_cast<int>(cells.size()); }
   /// The cells that this rank knows: what a step is about, however many there are. `worker`: its share of them.
   [[nodiscard]] CellNumbers known_cells() const { return known_cells(Worker{}); }

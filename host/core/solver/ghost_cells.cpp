@@ -8,10 +8,31 @@
 
 namespace rouleau::core {
 
+namespace {
+
+/// Whether all that a box comes within `reach` of are nodes of the domain's block.
+template <int D>
+bool lies_inside(const BoundingBox<D>& box, double reach, const Domain<D>& domain) {
+  if (!box.usable()) return false;
+  for (int k = 0; k < D; ++k) {
+    if (domain.walled(k) && !(box.least[k] - reach >= 0 && box.most[k] + reach <= domain.size[k] - 1)) return false;
+  }
+  bool inside = true;
+  for_nodes_near(box, reach, 1, domain, [&](const Box<D>& nodes) { inside = inside && domain.block.holds(nodes); });
+  return inside;
+}
+
+}  // namespace
+
 template <int D>
 GhostCells<D>::GhostCells(const Ranks<D>& ranks, const std::vector<BoundingBox<D>>& boxes, GhostReach reach,
                           std::vector<int> owner)
-    : ranks_(ranks), owner_(std::move(owner)), reach_(reach), known_(boxes.size()), reaching_(boxes.size()) {
+    : ranks_(ranks),
+      owner_(std::move(owner)),
+      reach_(reach),
+      known_(boxes.size()),
+      reaching_(boxes.size()),
+      inside_(boxes.size()) {
   owner_.reserve(boxes.size());
   while (owner_.size() < boxes.size()) owner_.push_back(owner_by_place(boxes[owner_.size()], *ranks.blocks));
   renew(boxes);
@@ -22,7 +43,7 @@ void GhostCells<D>::set_parts(CellNodes& cells) const {
   cells.part.resize(cells.cells.size());
   cells.known.clear();
   for (int c = 0; c < cells.cell_count(); ++c) {
-    cells.part[c] = {.owned = owns(c), .known = knows(c), .reaching = reaches(c)};
+    cells.part[c] = {.owned = owns(c), .known = knows(c), .reaching = reaches(c), .inside = inside(c)};
     if (knows(c)) cells.known.push_back(c);
   }
 }
@@ -93,6 +114,7 @@ void GhostCells<D>::renew(const std::vector<BoundingBox<D>>& boxes) {
                      [&](const Box<D>& nodes) { here = here || nodes.meets(domain.block); });
     }
     reaching_[c] = here;
+    inside_[c] = owner_[c] == own && lies_inside(boxes[c], reach_.lattice + skin, domain);
     known_[c] = owner_[c] == own || here;
   }
   std::map<int, std::vector<int>> near;  // of each rank: cells of this one that are near some of its own

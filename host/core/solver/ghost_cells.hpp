@@ -72,6 +72,8 @@ class GhostCells {
   [[nodiscard]] bool knows(int cell) const { return known_[cell] != 0; }
   /// Whether a cell's nodes may touch this rank's block.
   [[nodiscard]] bool reaches(int cell) const { return reaching_[cell] != 0; }
+  /// Whether it is this rank's, and its nodes touch neither another block nor a wall.
+  [[nodiscard]] bool inside(int cell) const { return inside_[cell] != 0; }
 
   /// What this rank and another one share. Cells are in their order.
   struct Peer {
@@ -86,7 +88,7 @@ class GhostCells {
   Ranks<D> ranks_;
   std::vector<int> owner_;
   GhostReach reach_;
-  std::vector<char> known_, reaching_;  // of each cell
+  std::vector<char> known_, reaching_, inside_;  // of each cell
   std::map<int, Peer> peers_;
 };
 

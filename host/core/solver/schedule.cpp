@@ -57,11 +57,12 @@ Schedule make_schedule(const StepFeatures& has) {
   add(true, Task::collide_and_stream, "fluid", Meeting::all);
   add(true, Task::end_step, "fluid", cells || ranks ? Meeting::none : Meeting::all);
   add(ranks, Task::send_halo, "ranks", Meeting::none);
+  add(ghosts, Task::interpolate_inside, "interpolate", Meeting::none);
   add(ranks, Task::receive_halo, "ranks", Meeting::all);
   add(ghosts, Task::interpolate_ghosts, "interpolate", Meeting::all);
   add(ghosts, Task::send_velocities, "ranks", Meeting::none);
   // The next step begins with the same cells; its first barrier serves these tasks, too.
-  add(cells, Task::interpolate, "interpolate", Meeting::none);
+  add(cells, ghosts ? Task::interpolate_rest : Task::interpolate, "interpolate", Meeting::none);
   add(ghosts, Task::receive_velocities, "ranks", Meeting::all);
   add(corrected, Task::correct_velocities, "corrections", Meeting::none);
   add(cells, Task::move, "move", Meeting::none);

@@ -34,7 +34,9 @@ enum class Task {
   send_halo,           ///< one worker: populations and velocities to other blocks, as far as that is still to be done
   receive_halo,        ///< one worker
   interpolate,         ///< cells: velocities of the nodes, with the kernel that has spread their forces
+  interpolate_inside,  ///< cells: interpolate, of nodes that lie inside of the block
   interpolate_ghosts,  ///< cells: interpolate, of other ranks' nodes
+  interpolate_rest,    ///< cells: interpolate, of own nodes at the block's borders
   send_velocities,     ///< one worker: of other ranks' nodes, to these
   receive_velocities,  ///< one worker
   correct_velocities,  ///< cells: neither slip nor leaks

@@ -104,6 +104,10 @@ void SurfaceTasks<T>::run(Task task, Worker worker) {
       return;
     case Task::interpolate:
       return coupling_.interpolate(worker, surfaces_, fluid_.velocity(), Whose::own);
+    case Task::interpolate_inside:
+      return coupling_.interpolate(worker, surfaces_, fluid_.velocity(), Whose::own_inside);
+    case Task::interpolate_rest:
+      return coupling_.interpolate(worker, surfaces_, fluid_.velocity(), Whose::own_at_borders);
     case Task::interpolate_ghosts:
       return coupling_.interpolate(worker, surfaces_, fluid_.velocity(), Whose::others);
     case Task::correct_velocities:

@@ -69,7 +69,7 @@ TEST_CASE("a watch takes memory for the cells that are known") {
   CellNodes nodes;
   for (int c = 0; c < 4; ++c) {
     nodes.cells.push_back({{.first = c * of_cell, .count = of_cell}, 0});
-    nodes.part.push_back({.owned = false, .known = c == 2, .reaching = false});
+    nodes.part.push_back({.owned = false, .known = c == 2, .reaching = false, .inside = false});
   }
   nodes.known = {2};
   nodes.x.assign(many, 4.0), nodes.y.assign(many, 5.0);
@@ -90,7 +90,7 @@ TEST_CASE("a rank that does not know cells forgets their nodes, and what their c
   for (int c = 0; c < cells; ++c) {
     nodes.cells.push_back({{.first = c * of_cell, .count = of_cell}, 0});
     const bool known = c >= 40 && c != 50;
-    nodes.part.push_back({.owned = known && c < 60, .known = known, .reaching = known});
+    nodes.part.push_back({.owned = known && c < 60, .known = known, .reaching = known, .inside = false});
   }
   for (auto* values : {&nodes.x, &nodes.y, &nodes.force_x, &nodes.velocity_y}) values->assign(cells * of_cell, 4.0);
   nodes.state.push_back({0, 0, "law", "state", 1, std::vector<double>(cells * of_cell, 4.0)});

@@ -12,7 +12,7 @@ TEST_CASE("what ranks tell each other about cells is on its way during another t
   using Pair = std::pair<Task, Task>;
   const std::array messages{Pair{Task::send_positions, Task::receive_positions},  // in the next step
                             Pair{Task::send_reactions, Task::receive_reactions},
-                            Pair{Task::send_forces, Task::receive_forces},
+                            Pair{Task::send_forces, Task::receive_forces}, Pair{Task::send_halo, Task::receive_halo},
                             Pair{Task::send_velocities, Task::receive_velocities}};
   for (int choice = 0; choice < 64; ++choice) {
     const auto chosen = [&](int bit) { return (choice >> bit & 1) != 0; };
