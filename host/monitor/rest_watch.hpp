@@ -44,7 +44,7 @@ class RestWatch {
   /// Whether it can be asked about these cells, if anybody does.
   [[nodiscard]] bool fits(const core::CellNodes& cells, bool asked) const {
     const auto fit = [&](const std::vector<double>& old, const std::vector<double>& now) {
-      return old.size() == (asked ? now.size() : 0);
+      return old.size() == now.size() || (!asked && old.empty());
     };
     return step_ >= 0 && fit(old_.x, cells.x) && fit(old_.y, cells.y) && fit(old_.z, cells.z);
   }
