@@ -162,7 +162,7 @@ std::optional<Failure> check_cells(observe::Observer& observer, const plan::Stag
     return first_failure(ranks, found, by_cell(found));
   }
   const std::optional<Failure> uneven = check_stretch(membranes, scene, *setting.stage, setting.units);
-  if (const auto first = first_failure(ranks, uneven, by_cell(uneven))) return first;
+  if (auto first = first_failure(ranks, uneven, by_cell(uneven))) return first;
   std::optional<Failure> crosses;
   std::array<double, 2> order{};
   around.show(0);
@@ -204,7 +204,7 @@ std::optional<Failure> check_cells(observe::Observer& observer, const plan::Stag
     if (!shrunk && stretch.most <= limit) continue;
     uneven = at(uneven_failure("an edge", k, shrunk ? stretch.least : stretch.most, limit, *setting.stage), middle(k));
   }
-  if (const auto first = first_failure(ranks, uneven, by_cell(uneven))) return first;
+  if (auto first = first_failure(ranks, uneven, by_cell(uneven))) return first;
   std::optional<Failure> crosses;
   std::array<double, 2> order{};
   around.show(core::SurfaceCrossing::deepest);

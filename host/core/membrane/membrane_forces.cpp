@@ -67,8 +67,8 @@ std::vector<double> MembraneForces::tensions(const Membranes& membranes, int cel
   Scratch& scratch = scratch_of(0);
   measure(membranes, cell, scratch, false);
   const double uniform = apply_laws(membranes, cell, scratch, nullptr, nullptr).perimeter_tension;
-  std::vector<double> tension;
-  for (int k = 0; k < membranes.cells[cell].count; ++k) tension.push_back(scratch.tension[k] + uniform);
+  std::vector<double> tension(scratch.tension.data(), scratch.tension.data() + membranes.cells[cell].count);
+  for (double& of_segment : tension) of_segment += uniform;
   return tension;
 }
 
