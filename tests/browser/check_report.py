@@ -266,6 +266,14 @@ class The_page_of_a_run(PageCase):
         self.assertEqual(page.run("timeline.over"), "time_s")
         self.assert_sound(page)
 
+    def test_finds_the_output_of_an_event_although_its_own_times_are_rounded(self):
+        times = [float(row[1]) for row in table("a/series.csv")[1:]]
+        self.assertGreater(sum(float(f"{time:.9g}") < time for time in times), 20)
+        page = self.open(folder / "a" / "report.html")
+        data = "JSON.parse(document.getElementById('data').textContent)"
+        found = page.run(f"(run => {times}.map(time => outputAt(run, time)))({data})")
+        self.assertEqual(found, list(range(len(times))))
+
     def test_of_a_run_that_was_killed_says_so(self):
         directory = folder / "killed"
         shutil.copytree(folder / "a", directory)

@@ -27,7 +27,7 @@ function withError(value, error, spread = null) {
 
 /// What the aggregates did: {sentences, numbers}, of runs with two cells or more.
 function aggregation(run) {
-  const history = [...((run.summary || {}).aggregate_history || [])].filter(h => Array.isArray(h.members)), cells = run.cells?.types.length ?? 0, at = h => run.time_s.findIndex(t => t >= h.time_s - 1e-12), sentences = [], numbers = [];
+  const history = [...((run.summary || {}).aggregate_history || [])].filter(h => Array.isArray(h.members)), cells = run.cells?.types.length ?? 0, at = h => outputAt(run, h.time_s), sentences = [], numbers = [];
   if (cells < 2 || !history.length) return {sentences, numbers};
   const largest = h => Math.max(...h.members.map(m => m.length)), began = history[0], last = history.at(-1), number = (value, label, h, about) => numbers.push({value, label, about, position: at(h)});
   const most = history.reduce((best, h) => largest(h) > largest(best) || (largest(h) === largest(best) && h.count < best.count) ? h : best), size = largest(most), when = h => whenOf(run, at(h));

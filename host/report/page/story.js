@@ -1,12 +1,14 @@
 // ------------------------------------------------------------------------------------- what happened: stages, joins, breaks
 const together = members => members.filter(m => m.length > 1);
 const groupWords = members => members.map(m => m.join("+")).join(", ");
+/// The first output at a time of summary.json or after it; -1: there is none. Times of the page have nine digits.
+const outputAt = (run, time) => run.time_s.findIndex(t => t >= time * (1 - 1e-8));
 
 /// The changes of the aggregates without those that were undone within three outputs: cells at the edge of
 /// output.aggregate_gap flicker. {count, members, time_s, strain} each, the first is how the run began.
 function lastingHistory(run) {
   const history = [...((run.summary || {}).aggregate_history || [])].filter(h => Array.isArray(h.members)), key = h => JSON.stringify(h.members);
-  const place = h => run.time_s.findIndex(t => t >= h.time_s - 1e-12);
+  const place = h => outputAt(run, h.time_s);
   for (let i = 1; i + 1 < history.length;) {
     if (key(history[i - 1]) === key(history[i + 1]) && place(history[i + 1]) - place(history[i]) <= 3) { history.splice(i, 2); i = Math.max(1, i - 1); } else ++i;
   }
@@ -21,7 +23,7 @@ function eventsOf(run, most = 12) {
   history.slice(1).forEach((now, i) => {
     const before = history[i], old = together(before.members), fresh = together(now.members), same = m => list => list.length === m.length && list.every(c => m.includes(c));
     const made = fresh.filter(m => !old.some(same(m))), gone = old.filter(m => !fresh.some(same(m)));
-    const kind = now.count < before.count ? "join" : "break", position = run.time_s.findIndex(t => t >= now.time_s - 1e-12);
+    const kind = now.count < before.count ? "join" : "break", position = outputAt(run, now.time_s);
     if (position < 0 || !(made.length || gone.length)) return;
     const few = run.cells && run.cells.types.length <= 8, size = Math.max(...(kind === "join" ? made : gone).map(m => m.length));
     const text = kind === "join" ? few ? `${groupWords(made)} joined` : `${size} cells joined` : few ? `${groupWords(gone)} broke` : `${size} cells broke up`;
