@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "cell_sums.hpp"
+
 namespace rouleau::observe {
 
 namespace {
@@ -11,18 +13,14 @@ namespace {
 /// Power that the membranes give away, at the velocities of their last step.
 template <int D>
 double given_away(const core::CellNodes& m, const core::Ranks<D>& ranks) {
-  std::vector<core::ExactSum> sum(1);
-  for (const int c : m.known_cells()) {
-    if (!m.owns(c)) continue;
+  return sum_over(m, ranks, [&](int c) {
     double power = 0;
     for (int i = m.cells[c].first; i < m.cells[c].end(); ++i) {
       power += m.force_x[i] * m.velocity_x[i] + m.force_y[i] * m.velocity_y[i];
       if (D == 3) power += m.force_z[i] * m.velocity_z[i];
     }
-    sum.front().add(power);
-  }
-  core::add_up(ranks, sum);
-  return sum.front().value();
+    return power;
+  });
 }
 
 /// Of all membranes.

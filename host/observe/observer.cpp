@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "cell_sums.hpp"
 #include "core/fluid/relaxation.hpp"
 #include "energy.hpp"
 #include "fields.hpp"
@@ -28,18 +29,6 @@ void count_aggregates(const Aggregates& aggregates, Snapshot& snapshot) {
   snapshot.aggregate_sizes = aggregate_sizes(aggregates.label);
   snapshot.aggregate_size_number_mean = number_mean(snapshot.aggregate_sizes);
   snapshot.aggregate_size_weight_mean = weight_mean(snapshot.aggregate_sizes);
-}
-
-/// `markers`: of surfaces, the node of each that is followed.
-CellMeasures measured(const core::Membranes& membranes, int cell, const scene::Scene& scene,
-                      const std::vector<int>& /*markers*/) {
-  return measure(membranes, cell, plan::lattice_domain(scene));
-}
-CellMeasures measured(const core::Surfaces& surfaces, int cell, const scene::Scene& scene,
-                      const std::vector<int>& markers) {
-  const double spacing = scene.domain.size.x() / scene.domain.nodes[0];
-  return measure(surfaces, cell, plan::lattice_domain<3>(scene), markers[cell],
-                 scene.domain.tube_radius.value_or(0) / spacing);
 }
 
 /// What contacts there are, of whichever rank's cells.
@@ -106,9 +95,7 @@ double Observer::area_leakage(const core::CellNodes& cells, const core::Ranks<D>
 
 template <int D>
 double Observer::momentum_residual(const core::CellNodes& m, double from_walls, const core::Ranks<D>& ranks) {
-  std::vector<core::ExactSum> sums(4);  // of each component, and of the magnitudes
-  for (const int c : m.known_cells()) {
-    if (!m.owns(c)) continue;
+  const auto [net_x, net_y, net_z, magnitudes] = sums_over<4>(m, ranks, [&](int c) {
     std::array<double, 4> of_cell{};
     for (int i = m.cells[c].first; i < m.cells[c].end(); ++i) {
       const double along_z = m.z.empty() ? 0 : m.force_z[i];
@@ -117,11 +104,9 @@ double Observer::momentum_residual(const core::CellNodes& m, double from_walls, 
       of_cell[2] += along_z;
       of_cell[3] += std::hypot(std::hypot(m.force_x[i], m.force_y[i]), along_z);
     }
-    for (std::size_t k = 0; k < sums.size(); ++k) sums[k].add(of_cell[k]);
-  }
-  core::add_up(ranks, sums);
-  const double net = std::hypot(std::hypot(sums[0].value(), sums[1].value() - from_walls), sums[2].value());
-  const double magnitudes = sums[3].value();
+    return of_cell;
+  });
+  const double net = std::hypot(std::hypot(net_x, net_y - from_walls), net_z);
   return magnitudes > 0 ? net / magnitudes : 0;
 }
 
@@ -149,7 +134,11 @@ void Observer::observe_cells(core::Surroundings<D>& around, const units::Lattice
   std::vector<CellMeasures> measures;
   for (const int c : cells.known_cells()) {
     if (!cells.owns(c)) continue;
-    measures.push_back(measured(cells, c, *scene_, marker_));
+    if constexpr (D == 2) {
+      measures.push_back(measure(cells, c, domain));
+    } else {
+      measures.push_back(measure(cells, c, domain, marker_[c], scene_->domain.tube_radius.value_or(0) / length));
+    }
     measures.back().gap = gaps[c];
   }
   measures = core::to_first(ranks, std::move(measures));

@@ -2,24 +2,10 @@
 
 #include <cmath>
 
+#include "cell_sums.hpp"
 #include "core/membrane/geometry.hpp"
 
 namespace rouleau::observe {
-
-namespace {
-
-/// The sum of share(cell) over all ranks' cells.
-template <int D, class Share>
-double sum_over(const core::CellNodes& cells, const core::Ranks<D>& ranks, Share share) {
-  std::vector<core::ExactSum> sum(1);
-  for (const int c : cells.known_cells()) {
-    if (cells.owns(c)) sum.front().add(share(c));
-  }
-  core::add_up(ranks, sum);
-  return sum.front().value();
-}
-
-}  // namespace
 
 double particle_stress(const core::Membranes& m, const scene::Scene& scene, double viscosity,
                        const core::Ranks<2>& ranks) {

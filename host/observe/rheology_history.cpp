@@ -66,12 +66,12 @@ void RheologyHistory::follow(const Snapshot& snapshot) {
   Instant now{snapshot.strain - start_strain_, snapshot.time - start_time_, {}, {}, {}, {}};
   for (const Observable& observable : averaged())
     now.values.push_back(std::get<double>(observable.value({.output = snapshot})));
-  const bool remembered = snapshot.cells.size() <= most_cells_remembered;
-  for (const CellSnapshot& cell : snapshot.cells) {
-    if (!remembered) break;
-    now.label.push_back(cell.aggregate);
-    now.marker.push_back(cell.tank_treading_angle);
-    now.axis.push_back(cell.angle);
+  if (snapshot.cells.size() <= most_cells_remembered) {
+    for (const CellSnapshot& cell : snapshot.cells) {
+      now.label.push_back(cell.aggregate);
+      now.marker.push_back(cell.tank_treading_angle);
+      now.axis.push_back(cell.angle);
+    }
   }
   stages_.back().instants.push_back(std::move(now));
 }

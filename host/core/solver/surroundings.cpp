@@ -21,9 +21,9 @@ Surroundings<D>::~Surroundings() {
 template <int D>
 bool Surroundings<D>::show(double reach, const std::vector<char>& open) {
   const Ranks<D> ranks = this->ranks();
-  const bool wanted = open.empty() ? cells_.cell_count() > 0
-                                   : std::any_of(open.begin(), open.end(), [](char of_cell) { return of_cell != 0; });
-  if (!any(ranks, wanted)) return false;
+  const auto is_set = [](char of_cell) { return of_cell != 0; };
+  if (open.empty() ? cells_.cell_count() == 0 : !any(ranks, std::any_of(open.begin(), open.end(), is_set)))
+    return false;
   if (exchange_ == nullptr) return true;
   const GhostCells<D>& ghosts = exchange_->ghosts();
   std::vector<char> is_open = open;  // of all cells
