@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <thread>
@@ -19,10 +21,33 @@ using Clock = std::chrono::steady_clock;
 
 double since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
+/// Something to do that takes the same time whenever it is done.
+void compute(long numbers) {
+  static thread_local volatile double kept = 1;  // known to nobody: it is computed each time
+  double x = kept;
+  for (long i = 0; i < numbers; ++i) x = x * 0.999999 + 1e-6;
+  kept = x;
+}
+
+/// How much of it takes `time` s of a processor: the fastest of many tries, in which nobody else was there.
+long numbers_in(double time) {
+  constexpr long tried = 2000;
+  double least = 1;
+  for (int i = 0; i < 200; ++i) {
+    const auto start = Clock::now();
+    compute(tried);
+    least = std::min(least, since(start));
+  }
+  return std::lround(time / least * tried);
+}
+
 /// Quantiles of times, s.
 struct Times {
   std::vector<double> sorted;
   explicit Times(std::vector<double> times) : sorted(std::move(times)) { std::sort(sorted.begin(), sorted.end()); }
+  [[nodiscard]] double mean() const {
+    return std::accumulate(sorted.begin(), sorted.end(), 0.0) / static_cast<double>(sorted.size());
+  }
   [[nodiscard]] double at(double share) const {
     return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
   }
@@ -63,6 +88,30 @@ class Network {
           return std::size_t{1};
         },
         count);
+  }
+  /// A wait of a step: all ranks compute for `work` s, and then wait for the two before and the two behind. What it takes
+  /// beside the computing, of each of the ranks that share a processor.
+  Times wait(double work, unsigned processors) {
+    constexpr int waits = 100;
+    const int count = transport_.ranks(), mine = transport_.rank();
+    std::vector<int> others;
+    for (int rank = std::max(0, mine - 2); rank < std::min(count, mine + 3); ++rank) {
+      if (rank != mine) others.push_back(rank);
+    }
+    const long numbers = numbers_in(work);
+    Times times = repeated(
+        [&](bool) {
+          for (int i = 0; i < waits; ++i) {
+            compute(numbers);
+            for (const int other : others) transport_.send(other, core::Message(8));
+            for (const int other : others) static_cast<void>(transport_.receive(other));
+          }
+          return others.size();
+        },
+        waits, true);
+    const double share = std::ceil(static_cast<double>(count) / processors);
+    for (double& time : times.sorted) time = time / share - work;
+    return times;
   }
   /// Eight numbers from every rank to every other, as a step's agreement and the sums of checks go.
   Times agreement() {
@@ -105,7 +154,7 @@ void measure_network(core::Transport& transport, const std::string& library, dou
   const core::Ranks<1> ranks{&blocks, &transport};
   Network network(transport, ranks, seconds);
   const bool prints = transport.rank() == 0;
-  const unsigned processors = std::thread::hardware_concurrency();
+  const unsigned processors = std::max(1u, std::thread::hardware_concurrency());
   if (prints) {
     std::printf("\nMessages between the pairs of %d ranks, all at once, %s, %u processors\n", count, library.c_str(),
                 processors);
@@ -119,6 +168,7 @@ void measure_network(core::Transport& transport, const std::string& library, dou
     std::fflush(stdout);
   };
   constexpr std::size_t typical = std::size_t{1} << 14;
+  constexpr double work = 5e-6;  // s; about what lies between two waits of a small scene
   double latency = 0, bandwidth = 0, slowest = 0;
   for (const std::size_t bytes :
        {std::size_t{8}, std::size_t{1} << 10, typical, std::size_t{1} << 17, std::size_t{1} << 20}) {
@@ -131,9 +181,11 @@ void measure_network(core::Transport& transport, const std::string& library, dou
   }
   const Times in_a_row = network.in_a_row();
   line("each of 100 in a row", in_a_row, 0);
+  const Times wait = network.wait(work, processors);
+  line("a wait for four, computing 5 us", wait, 0);
   line("eight numbers from all to all", network.agreement(), 0);
   if (!prints) return;
-  std::printf("  rouleau plan SCENE --ranks N --network \"%.2f us,%.0f MB/s,%.2f us\"\n", latency * 1e6,
+  std::printf("  rouleau plan SCENE --ranks N --network \"%.2f us,%.0f MB/s,%.2f us\"\n", wait.mean() * 1e6,
               bandwidth / 1e6, in_a_row.at(0.5) * 1e6);
   if (static_cast<unsigned>(count) > processors) {
     std::printf(

@@ -23,6 +23,11 @@ namespace fs = std::filesystem;
 enum Kind : int { data, farewell };
 /// What is longer goes in pieces of this size; one that is shorter is the last.
 constexpr std::size_t piece = std::size_t{1} << 30;
+/// A look at anything but the message that is waited for costs a turn, too, where ranks share processors: Open MPI lets
+/// others run at each. So farewells, and what has been sent, are looked for once in so many looks;
+constexpr long other_looks = 16;
+/// and this many messages may be on their way before the first of them is looked for.
+constexpr std::size_t kept_back = 8;
 
 /// A rank that waits looks, then lets others run, and sleeps in the end: it may share a core with the one it waits for,
 /// and wait for minutes.
@@ -96,7 +101,7 @@ void Connection::drop_sent() {
 }
 
 void Connection::send(int to, core::Message message) {
-  drop_sent();
+  if (sending_.size() >= kept_back) drop_sent();
   for (std::size_t at = 0; message.size() >= piece;) {
     if (message.size() - at < piece) {
       message.erase(message.begin(), message.begin() + static_cast<std::ptrdiff_t>(at));
@@ -122,7 +127,8 @@ void Connection::hear_farewells() {
 
 core::Message Connection::receive(int from) {
   core::Message message;
-  for (Patience patience;;) {
+  Patience patience;
+  for (long looks = 1;; ++looks) {
     int32_t sender = 0;
     uint64_t size = 0;
     if (table_->arrived(from, data, &sender, &size) != 0) {
@@ -131,8 +137,10 @@ core::Message Connection::receive(int from) {
       table_->take(message.data() + before);
       if (size < piece) return message;
     } else {
-      drop_sent();
-      hear_farewells();
+      if (looks % other_looks == 0) {
+        drop_sent();
+        hear_farewells();
+      }
       patience.wait();
     }
   }

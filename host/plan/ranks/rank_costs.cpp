@@ -185,7 +185,8 @@ void add_cells(const Plan& plan, const core::Decomposition<D>& blocks, std::vect
     const double agreed = static_cast<double>(agreements) * 4 * word;
     rank.position_bytes += agreed;
     rank.received_bytes += agreed;
-    rank.sharing_s += static_cast<double>(rank.ghost_nodes) * cost_of_sharing(D).ghost_s;
+    rank.ghosts_s = static_cast<double>(rank.ghost_nodes) * cost_of_sharing(D).ghost_s;
+    rank.sharing_s += rank.ghosts_s;
   }
 }
 
@@ -210,8 +211,11 @@ std::vector<RankCost> costs_of(const Plan& plan, const core::Decomposition<D>& b
       cost.memory_bytes += memory::of_known<D>(own, ghosts, known) + cells * memory::of_each_cell;
     }
     if (rank == 0) cost.memory_bytes += memory::of_writer(cells);
-    cost.sharing_s += cost.lattice_bytes() / word * cost_of_sharing(D).number_s;
-    cost.step_s = step_cost(nodes, static_cast<double>(cost.membrane_nodes), scene.numerics.precision, D, cutoff);
+    const auto rows = static_cast<double>(core::row_count(block));
+    cost.sharing_s += cost.lattice_bytes() / word * cost_of_sharing(D).number_s +
+                      (rows - nodes / blocks.domain(rank).size[0]) * cost_of_sharing(D).row_s;
+    cost.step_s = step_cost(nodes, own, scene.numerics.precision, D, cutoff);
+    cost.membranes_s = cost.step_s - step_cost(nodes, 0, scene.numerics.precision, D, cutoff);
   }
   return ranks;
 }

@@ -15,9 +15,10 @@ struct CostOfSharing {
   double number_s;  ///< that goes to a neighbour: packing it, and unpacking one
   double ghost_s;   ///< a node of a ghost: unpacking it, finding where it touches the lattice, spreading
   double shown_s;   ///< a node that is told to another rank
+  double row_s;     ///< a row that blocks have more than the lattice: its beginning and its end
 };
 constexpr CostOfSharing cost_of_sharing(int dimension) {
-  return dimension == 2 ? CostOfSharing{5e-9, 25e-9, 10e-9} : CostOfSharing{2e-9, 65e-9, 23e-9};
+  return dimension == 2 ? CostOfSharing{5e-9, 25e-9, 10e-9, 40e-9} : CostOfSharing{2e-9, 65e-9, 23e-9, 40e-9};
 }
 
 /// Of one rank, with the cells where they begin. Messages and bytes are those that the rank sends in a step, the mean of
@@ -35,14 +36,16 @@ struct RankCost {
   double node_velocity_bytes = 0;                   ///< of membranes in its block, to their owners
   double received_bytes = 0;
   double memory_bytes = 0;
-  double step_s = 0;     ///< computing its own part, by plan::step_cost
-  double sharing_s = 0;  ///< what the cut costs: packing and unpacking, and other ranks' membranes
+  double step_s = 0;       ///< computing its own part, by plan::step_cost
+  double membranes_s = 0;  ///< of which its own membranes take so much
+  double sharing_s = 0;    ///< what the cut costs: packing and unpacking, and other ranks' membranes,
+  double ghosts_s = 0;     ///< which take so much of it
   [[nodiscard]] double lattice_bytes() const { return population_bytes + velocity_bytes; }
   [[nodiscard]] double membrane_bytes() const { return position_bytes + force_bytes + node_velocity_bytes; }
   [[nodiscard]] double sent_bytes() const { return lattice_bytes() + membrane_bytes(); }
   NLOHMANN_DEFINE_TYPE_INTRUSIVE(RankCost, nodes, cells, membrane_nodes, ghost_nodes, neighbours, messages, waits,
                                  population_bytes, velocity_bytes, position_bytes, force_bytes, node_velocity_bytes,
-                                 received_bytes, memory_bytes, step_s, sharing_s)
+                                 received_bytes, memory_bytes, step_s, membranes_s, sharing_s, ghosts_s)
 };
 
 std::vector<RankCost> rank_costs(const Plan& plan, const Blocks& blocks);

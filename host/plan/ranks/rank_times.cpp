@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <map>
 #include <string_view>
@@ -20,6 +21,31 @@ constexpr double wasteful = 0.1;             ///< efficiency; nobody would start
 constexpr double slower = 1.3;               ///< than the fastest: more ranks will not help
 constexpr int largest_machine = 1 << 17;     ///< ranks; more are planned for when they are asked for
 constexpr std::size_t many_cells = 100'000;  ///< cells; powers of eight have to do, each takes seconds
+
+/// A part of a step, of which every rank has its own, and whose end all wait for.
+class Part {
+ public:
+  void add(double time) {
+    longest_ = std::max(longest_, time);
+    sum_ += time;
+    squares_ += time * time;
+    ++ranks_;
+  }
+  /// On processors that have each as many ranks as the others, or one less, but which of them nobody knows: what is to be
+  /// expected of the one that takes longest. 0: each rank has its own.
+  [[nodiscard]] double time(int processors) const {
+    if (processors == 0 || processors >= ranks_) return longest_;
+    const double mean = sum_ / ranks_, variance = std::max(0.0, squares_ / ranks_ - mean * mean),
+                 drawn = std::ceil(static_cast<double>(ranks_) / processors),  // without putting one back
+        deviation = std::sqrt(drawn * variance * (ranks_ - drawn) / std::max(1, ranks_ - 1));
+    // The largest of n normal variables is about sqrt(ln n) deviations above their mean; of two that add up to the same, 0.8.
+    return std::max(longest_, drawn * mean + std::sqrt(std::log(processors)) * deviation);
+  }
+
+ private:
+  double longest_ = 0, sum_ = 0, squares_ = 0;
+  int ranks_ = 0;
+};
 
 }  // namespace
 
@@ -65,15 +91,14 @@ double message_time(const RankCost& cost, const Network& network) {
 }
 
 double step_time(const std::vector<RankCost>& ranks, const Machines& machines, double scale) {
-  double computing = 0, messages = 0, all = 0;
+  Part membranes, lattice, messages;
   for (const RankCost& rank : ranks) {
-    const double computes = rank.step_s * scale + rank.sharing_s, speaks = message_time(rank, machines.network);
-    computing = std::max(computing, computes);
-    messages = std::max(messages, speaks);
-    all += computes + speaks;
+    membranes.add(rank.membranes_s * scale);
+    lattice.add((rank.step_s - rank.membranes_s + rank.ghosts_s) * scale + rank.sharing_s - rank.ghosts_s);
+    messages.add(message_time(rank, machines.network));
   }
-  const double alone = computing + messages;  // who is done first waits: no message is behind computing
-  return machines.processors > 0 ? std::max(alone, all / machines.processors) : alone;
+  // No message is taken to be behind computing.
+  return membranes.time(machines.processors) + lattice.time(machines.processors) + messages.time(machines.processors);
 }
 
 RankTimes rank_times(const Plan& plan, const std::vector<RankCost>& asked, const Machines& machines) {

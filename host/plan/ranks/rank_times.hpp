@@ -11,7 +11,7 @@ namespace rouleau::plan {
 
 /// What is reckoned with: by default what is usual between the machines of a cluster; docs/scaling.md.
 struct Network {
-  double latency_s = 2e-6;  ///< of a message that somebody waits for
+  double latency_s = 2e-6;  ///< of a message that somebody waits for; where ranks take turns on processors, of a turn
   double bandwidth = 10e9;  ///< bytes/s that a rank sends and, at the same time, takes
   double each_s = 0.5e-6;   ///< of every further message
   NLOHMANN_DEFINE_TYPE_INTRUSIVE(Network, latency_s, bandwidth, each_s)
@@ -45,9 +45,10 @@ struct Machines {
   double one_step_s = 0;  ///< a step by one rank, where it was measured; 0: by plan::step_cost
 };
 
-/// A step takes the longest computing and the longest messages of any rank. Ranks that share processors take at least what
-/// all of them together compute and do for messages, over the number of processors: a rank that waits lets others run, and
-/// has looked for its message before.
+/// A step takes the longest computing and the longest messages of any rank, and computing twice: no rank goes on to the
+/// lattice before the membranes around it have sent their forces. Ranks that share processors take as long as those of the
+/// fullest processor, whichever they are: a rank that waits lets others run, and has looked for its message before. `scale`:
+/// what a step by one rank takes, over plan::step_cost; ghosts cost more where own membranes do.
 double step_time(const std::vector<RankCost>& ranks, const Machines& machines, double scale);
 
 /// By the ranks asked for, whose costs are known, and by powers of two (of eight with very many cells) until more do not
