@@ -10,7 +10,7 @@ template <int D>
 std::optional<Failure> check_energy(const observe::EnergyHistory& energy, const core::CellNodes& cells,
                                     const core::Ranks<D>& ranks, const plan::Plan& plan,
                                     const plan::StageSetting& setting) {
-  const double growth = core::of_first(ranks, std::vector<double>{energy.relative_growth()}).front();
+  const double growth = core::of_first(ranks, energy.relative_growth());
   const double limit = plan.scene->checks.energy_growth;
   if (growth <= limit) return std::nullopt;
   const bool bonds =

@@ -44,8 +44,7 @@ Neighbourhood find_neighbourhood(int cell, const core::Membranes& m, const std::
   };
   Nearest nearest{membrane_neighbourhood, -1, ranks.several() ? ranks.transport->rank() : 0};
   std::vector<core::ExactSum> near(1);
-  for (const int c : m.known_cells()) {
-    if (!m.owns(c)) continue;
+  for (const int c : m.own_cells()) {
     const double distance = distance_to(m, m.cells[c], place, domain);
     if (distance < contact_neighbourhood && c != cell) near.front().add(1);
     if (cell < 0 ? distance < nearest.distance : c == cell) nearest.distance = distance, nearest.cell = c;
@@ -62,8 +61,7 @@ Neighbourhood find_neighbourhood(int cell, const core::Membranes& m, const std::
 FailureMode of_rank(const core::Ranks<2>& ranks, int rank, const FailureMode& mode) {
   const std::vector<double> numbers = core::of_rank(
       ranks, rank, std::vector<double>{mode.wavelength, mode.tangential_share, static_cast<double>(mode.step)});
-  const std::vector<char> name = core::of_rank(ranks, rank, std::vector<char>(mode.name.begin(), mode.name.end()));
-  return {{name.begin(), name.end()}, numbers[0], numbers[1], static_cast<long>(numbers[2])};
+  return {core::text_of_rank(ranks, rank, mode.name), numbers[0], numbers[1], static_cast<long>(numbers[2])};
 }
 
 /// The first prominent wave of the cell, from what was noted of its growth or from its last step.

@@ -16,8 +16,8 @@ void GrowthWatch::note(long step, const core::CellNodes& cells, const core::Rank
     int cell, rank;
   };
   Fastest fastest{-1, -1, ranks.several() ? ranks.transport->rank() : 0};
-  for (const int c : cells.known_cells()) {
-    if (cells.owns(c) && cells.largest_step[c] > fastest.step) fastest.step = cells.largest_step[c], fastest.cell = c;
+  for (const int c : cells.own_cells()) {
+    if (cells.largest_step[c] > fastest.step) fastest.step = cells.largest_step[c], fastest.cell = c;
   }
   fastest = core::best_of_all(ranks, fastest, [](const Fastest& a, const Fastest& b) {
     return a.step != b.step ? a.step > b.step : a.cell < b.cell;

@@ -82,8 +82,7 @@ Failure uneven_failure(const std::string& piece, int cell, double stretch, doubl
 std::optional<Failure> check_stretch(const core::Membranes& membranes, const scene::Scene& scene,
                                      const scene::Stage& stage, const units::LatticeUnits& units) {
   const double limit = scene.checks.stretch;
-  for (const int k : membranes.known_cells()) {
-    if (!membranes.owns(k)) continue;
+  for (const int k : membranes.own_cells()) {
     const core::CellRange& cell = membranes.cells[k];
     const auto* circle = std::get_if<scene::Circle>(&scene.cell_types[cell.type].shape);
     const double placed = circle != nullptr ? circle->prestretch : 1.0;
@@ -194,8 +193,8 @@ std::optional<Failure> check_cells(observe::Observer& observer, const plan::Stag
     return first_failure(ranks, found, by_cell(found));
   }
   std::optional<Failure> uneven;
-  for (const int k : surfaces.known_cells()) {
-    if (uneven || !surfaces.owns(k)) continue;
+  for (const int k : surfaces.own_cells()) {
+    if (uneven) break;
     const auto* sphere = std::get_if<scene::Sphere>(&scene.cell_types[surfaces.cells[k].type].shape);
     const double placed = sphere != nullptr ? sphere->prestretch : 1.0;
     core::StretchRange stretch = core::stretch_range(surfaces, k);

@@ -22,8 +22,8 @@ void for_each_near(const core::Membranes& m, const std::vector<core::Bounds>& bo
                    const core::Domain<2>& domain, Wanted wanted, Visit visit) {
   const core::CellGrid<2> grid(core::boxes_of(boxes), reach, domain);
   std::vector<int> near;
-  for (const int cell : m.known_cells()) {
-    if (!m.owns(cell) || !wanted(cell)) continue;
+  for (const int cell : m.own_cells()) {
+    if (!wanted(cell)) continue;
     grid.find(cell, near);
     std::sort(near.begin(), near.end());
     visit(cell, near);
@@ -81,9 +81,7 @@ namespace {
 /// Which gaps of own cells have not been found.
 std::vector<char> open_ones(const core::CellNodes& cells, const std::vector<double>& gaps) {
   std::vector<char> open(gaps.size(), 0);
-  for (const int c : cells.known_cells()) {
-    if (cells.owns(c)) open[c] = std::isinf(gaps[c]) ? 1 : 0;
-  }
+  for (const int c : cells.own_cells()) open[c] = std::isinf(gaps[c]) ? 1 : 0;
   return open;
 }
 

@@ -13,8 +13,7 @@ namespace rouleau::observe {
 template <std::size_t count, int D, class Shares>
 std::array<double, count> sums_over(const core::CellNodes& cells, const core::Ranks<D>& ranks, Shares shares) {
   std::vector<core::ExactSum> sums(count);
-  for (const int c : cells.known_cells()) {
-    if (!cells.owns(c)) continue;
+  for (const int c : cells.own_cells()) {
     const std::array<double, count> of_cell = shares(c);
     for (std::size_t k = 0; k < count; ++k) sums[k].add(of_cell[k]);
   }

@@ -55,8 +55,7 @@ bool larger(const Change& a, const Change& b) {
 template <int D, class ChangeOf>
 Change largest_change(const core::CellNodes& cells, const core::Ranks<D>& ranks, ChangeOf change) {
   Change largest;
-  for (const int c : cells.known_cells()) {
-    if (!cells.owns(c)) continue;
+  for (const int c : cells.own_cells()) {
     const Change here{std::abs(change(c)), c};
     if (here.share != 0 && larger(here, largest)) largest = here;
   }
@@ -132,8 +131,7 @@ void Observer::observe_cells(core::Surroundings<D>& around, const units::Lattice
   std::vector<CellContact> contacts = core::to_first(ranks, find_touching_cells(cells, domain, touching));
   const std::vector<double> gaps = smallest_gaps(around, domain);
   std::vector<CellMeasures> measures;
-  for (const int c : cells.known_cells()) {
-    if (!cells.owns(c)) continue;
+  for (const int c : cells.own_cells()) {
     if constexpr (D == 2) {
       measures.push_back(measure(cells, c, domain));
     } else {

@@ -41,8 +41,7 @@ CellFreeLayer cell_free_layer(const core::Membranes& membranes, const core::Doma
     column.lower = std::min(column.lower, by.lower);
     column.upper = std::min(column.upper, by.upper);
   };
-  for (const int c : membranes.known_cells()) {
-    if (!membranes.owns(c)) continue;
+  for (const int c : membranes.own_cells()) {
     const core::CellRange& cell = membranes.cells[c];
     for (int i = cell.first; i < cell.end(); ++i) {
       const auto from = static_cast<std::size_t>(i), to = static_cast<std::size_t>(cell.next(i));

@@ -137,7 +137,7 @@ class Simulation {
       checkpoints_.go_on_from(state_.steps);
       say_where_it_goes_on(resumption.damage);
     }
-    file = core::text_of_first(ranks_, file);
+    file = core::text_of_rank(ranks_, 0, file);
     if (!restored && !file.empty()) {
       const auto reader = std::make_shared<const files::CheckpointReader>(file);
       restored = restore<T, Set>(reader, plan_, domain().block, state_, cells_, take_part);
@@ -495,8 +495,7 @@ class Simulation {
     const double spacing = setting().units.length;
     const std::array<double, 2> place{units::place_on_lattice(failure.place[0], spacing),
                                       units::place_on_lattice(failure.place[1], spacing)};
-    const double oscillation =
-        core::of_first(ranks_, std::vector<double>{lattice_oscillation(place, failure.place_z)}).front();
+    const double oscillation = core::of_first(ranks_, lattice_oscillation(place, failure.place_z));
     if constexpr (dimension == 2) {
       monitor::find_mode(failure, cells_, state_.growth, state_.observer.domain(), place, oscillation, failure.step,
                          ranks_);

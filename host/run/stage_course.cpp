@@ -39,8 +39,7 @@ Ending StageCourse::ending(const core::Solver<T, Set>& solver) const {
   const scene::Stage& stage = *setting().stage;
   if (compares_positions()) {
     const double moved = state_.rest_watch.moved(solver.cells(), ghosts(solver));
-    if (core::of_first(solver.ranks(), std::vector<double>{moved}).front() <
-        plan_.scene->at_rest.displacement / setting().units.length)
+    if (core::of_first(solver.ranks(), moved) < plan_.scene->at_rest.displacement / setting().units.length)
       return Ending::at_rest;
   }
   if (stage.until_equilibrium && state_.equilibrium.reached()) return Ending::equilibrium;

@@ -121,9 +121,8 @@ std::optional<Crossing> find_crossing(const Membranes& membranes, const Domain<2
   std::optional<Crossing> found;
   const CellGrid<2> grid(boxes_of(extent), 0.0, domain);
   std::vector<int> near;
-  for (const int a : membranes.known_cells()) {
+  for (const int a : membranes.own_cells()) {
     if (found) break;
-    if (!membranes.owns(a)) continue;
     grid.find(a, near);
     std::sort(near.begin(), near.end());  // the crossing that is found first does not depend on the grid
     for (const int b : near) {

@@ -44,9 +44,8 @@ SelfContacts::SelfContacts(const Membranes& membranes, std::vector<SelfInteracti
 }
 
 void SelfContacts::run(Worker worker, Membranes& membranes) {
-  const CellNumbers cells = membranes.known_cells(worker);
+  const CellNumbers cells = membranes.own_cells(worker);
   for (const int cell : cells) {
-    if (!membranes.owns(cell)) continue;
     const CellRange& range = membranes.cells[cell];
     const double* weight = membranes.type_of(range).rest_weight.data();
     Contacts& contacts = contacts_.of(cells.first_place());

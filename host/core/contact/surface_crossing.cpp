@@ -12,8 +12,7 @@ std::optional<SurfaceCrossing> find_crossing(const Surfaces& surfaces, const Dom
   std::vector<std::vector<Vec<3>>> normals(surfaces.cells.size());  // of nodes; made where they are wanted
   std::optional<SurfaceCrossing> deepest;
   std::vector<SurfaceContact> list;
-  for (const int cell : surfaces.known_cells()) {
-    if (!surfaces.owns(cell)) continue;
+  for (const int cell : surfaces.own_cells()) {
     contacts.find(cell, surfaces, list);
     for (const SurfaceContact& contact : list) {
       std::vector<Vec<3>>& of_other = normals[contact.other];

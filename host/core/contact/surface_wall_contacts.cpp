@@ -71,9 +71,7 @@ void SurfaceWallContacts::for_each(int cell, const Surfaces& surfaces, bool ener
 void SurfaceWallContacts::run(Worker worker, Surfaces& surfaces) {
   Contacts contacts;
   std::vector<ContactState> next;
-  const CellNumbers cells = surfaces.known_cells(worker);
-  for (const int cell : cells) {
-    if (!surfaces.owns(cell)) continue;
+  for (const int cell : surfaces.own_cells(worker)) {
     const double* area = surfaces.type_of(cell).node_area.data();
     const int first = surfaces.cells[cell].first;
     next.clear();
@@ -93,8 +91,7 @@ template <class Value>
 double SurfaceWallContacts::sum_over(const Surfaces& surfaces, bool energy, const Ranks<3>& ranks, Value value) const {
   std::vector<ExactSum> sum(1);
   Contacts contacts;
-  for (const int cell : surfaces.known_cells()) {
-    if (!surfaces.owns(cell)) continue;
+  for (const int cell : surfaces.own_cells()) {
     const RestSurface& rest = surfaces.type_of(cell);
     for_each(cell, surfaces, energy, nullptr, contacts, [&] {
       for (std::size_t i = 0; i < contacts.node.size(); ++i)

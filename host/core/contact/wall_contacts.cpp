@@ -31,10 +31,9 @@ WallContacts::WallContacts(Membranes& membranes, std::vector<WallInteraction> in
 }
 
 void WallContacts::run(Worker worker, Membranes& membranes) {
-  const CellNumbers cells = membranes.known_cells(worker);
+  const CellNumbers cells = membranes.own_cells(worker);
   double* force = membranes.force_y.data();
   for (const int cell : cells) {
-    if (!membranes.owns(cell)) continue;
     Contacts& contacts = contacts_.of(cells.first_place());
     const CellRange& range = membranes.cells[cell];
     const double* weight = membranes.type_of(range).rest_weight.data();
@@ -163,8 +162,7 @@ double WallContacts::energy(const Membranes& membranes, const Ranks<2>& ranks) c
 double WallContacts::net_force(const Membranes& membranes, const Ranks<2>& ranks) const {
   std::vector<ExactSum> sum(1);
   Contacts contacts;
-  for (const int cell : membranes.known_cells()) {
-    if (!membranes.owns(cell)) continue;
+  for (const int cell : membranes.own_cells()) {
     const CellRange& range = membranes.cells[cell];
     const double* weight = membranes.type_of(range).rest_weight.data();
     for (std::size_t k = 0; k < interactions_.size(); ++k) {

@@ -336,9 +336,9 @@ bool Coupling<T>::any_escaped(const Membranes& membranes) const {
 
 template <class T>
 int Coupling<T>::escaped(const Membranes& membranes) const {
-  for (const int c : membranes.known_cells()) {
+  for (const int c : membranes.own_cells()) {
     const CellRange& cell = membranes.cells[c];
-    if (membranes.owns(c) && rows_[c].lowest == outside)
+    if (rows_[c].lowest == outside)
       return static_cast<int>(std::find(row_.data() + cell.first, row_.data() + cell.end(), outside) - row_.data());
   }
   return -1;

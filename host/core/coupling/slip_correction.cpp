@@ -198,9 +198,7 @@ void SlipCorrection::measure(Worker worker, const Membranes& membranes, Whose wh
 void SlipCorrection::complete(Worker worker, const Membranes& membranes) {
   run<Couple>(worker, membranes, nullptr, nullptr, Whose::own);
   run<Slip>(worker, membranes, nullptr, nullptr, Whose::own);
-  const CellNumbers cells = membranes.known_cells(worker);
-  for (const int c : cells) {
-    if (!membranes.owns(c)) continue;
+  for (const int c : membranes.own_cells(worker)) {
     const CellRange& cell = membranes.cells[c];
     for (auto i = static_cast<std::size_t>(cell.first); i < static_cast<std::size_t>(cell.end()); ++i) {
       force_x_[i] = membranes.force_x[i] + force_x_[i];

@@ -334,9 +334,9 @@ bool SurfaceCoupling<T>::any_escaped(const Surfaces& surfaces) const {
 template <class T>
 int SurfaceCoupling<T>::escaped(const Surfaces& surfaces) const {
   const PagedArray<int>& base = base_[2];
-  for (const int c : surfaces.known_cells()) {
+  for (const int c : surfaces.own_cells()) {
     const CellRange& cell = surfaces.cells[c];
-    if (surfaces.owns(c) && planes_[c].lowest == outside)
+    if (planes_[c].lowest == outside)
       return static_cast<int>(std::find(base.data() + cell.first, base.data() + cell.end(), outside) - base.data());
   }
   return -1;

@@ -93,10 +93,20 @@ std::vector<V> of_rank(const Ranks<D>& ranks, int root, std::vector<V> mine) {
   }
   return mine;
 }
-/// Those of the first rank.
+/// The text of one rank, on all.
+template <int D>
+std::string text_of_rank(const Ranks<D>& ranks, int root, const std::string& mine) {
+  const std::vector<char> text = of_rank(ranks, root, std::vector<char>(mine.begin(), mine.end()));
+  return {text.begin(), text.end()};
+}
+/// The values of the first rank, or its number.
 template <class V, int D>
 std::vector<V> of_first(const Ranks<D>& ranks, std::vector<V> mine) {
   return of_rank(ranks, 0, std::move(mine));
+}
+template <int D>
+double of_first(const Ranks<D>& ranks, double mine) {
+  return of_rank(ranks, 0, std::vector<double>{mine}).front();
 }
 
 /// That of all ranks' values which no other is better than: better(a, b) orders them. In rounds, as largest().
@@ -147,13 +157,6 @@ template <int D>
 void add_up(const Ranks<D>& ranks, std::vector<ExactSum>& sums) {
   join(ranks, sums, [](ExactSum& sum, const ExactSum& part) { sum.add(part); });
   sums = of_first(ranks, std::move(sums));
-}
-
-/// The text of the first rank, on all.
-template <int D>
-std::string text_of_first(const Ranks<D>& ranks, const std::string& text) {
-  const std::vector<char> first = of_first(ranks, std::vector<char>(text.begin(), text.end()));
-  return {first.begin(), first.end()};
 }
 
 /// Calls function(at, count) for each row of what a box has in common with another, in their order: where it begins among

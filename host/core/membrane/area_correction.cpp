@@ -80,9 +80,7 @@ struct TakeOutPressure {
 
 void take_out_pressures(Worker worker, Membranes& membranes) {
   static const auto function = Dispatch<TakeOutPressure, const PressureTask*>::pick();
-  const CellNumbers cells = membranes.known_cells(worker);
-  for (const int c : cells) {
-    if (!membranes.owns(c)) continue;
+  for (const int c : membranes.own_cells(worker)) {
     const CellRange& cell = membranes.cells[c];
     const PressureTask task{cell.first,
                             cell.end(),
@@ -96,9 +94,7 @@ void take_out_pressures(Worker worker, Membranes& membranes) {
 
 void keep_areas(Worker worker, Membranes& membranes) {
   static const auto function = Dispatch<KeepArea, AreaTask*>::pick();
-  const CellNumbers cells = membranes.known_cells(worker);
-  for (const int c : cells) {
-    if (!membranes.owns(c)) continue;
+  for (const int c : membranes.own_cells(worker)) {
     const CellRange& cell = membranes.cells[c];
     AreaTask task{cell.first,
                   cell.end(),

@@ -29,30 +29,35 @@ struct CellPart {
 };
 
 /// Which cells a pass is over: those that this rank owns, or what it knows of others'; of its own those inside of its block,
-/// which can do without other ranks, or those at its borders.
+/// which can do without other ranks, or those at its borders: all of the only rank's.
 enum class Whose { own, others, own_inside, own_at_borders };
 
-/// Numbers of cells in their order: those of a list, or all, at places [begin, end).
+/// Numbers of cells in their order: those of a list, or all, at places [begin, end); of these the owned ones, or all.
 class CellNumbers {
  public:
-  /// `listed`: null: all.
-  CellNumbers(Range places, const int* listed) : places_(places), listed_(listed) {}
+  /// `listed`: null: all. `parts`: of all cells; null: owned or not.
+  CellNumbers(Range places, const int* listed, const CellPart* parts = nullptr)
+      : places_(places), listed_(listed), parts_(parts) {}
   class Iterator {
    public:
-    Iterator(int place, const int* listed) : place_(place), listed_(listed) {}
-    int operator*() const { return listed_ != nullptr ? listed_[place_] : place_; }
+    Iterator(const CellNumbers& of, int place) : of_(of), place_(place) { pass_others(); }
+    int operator*() const { return of_.listed_ != nullptr ? of_.listed_[place_] : place_; }
     Iterator& operator++() {
       ++place_;
+      pass_others();
       return *this;
     }
     bool operator!=(const Iterator& other) const { return place_ != other.place_; }
 
    private:
+    void pass_others() {
+      while (of_.parts_ != nullptr && place_ < of_.places_.end && !of_.parts_[**this].owned) ++place_;
+    }
+    const CellNumbers& of_;
     int place_;
-    const int* listed_;
   };
-  [[nodiscard]] Iterator begin() const { return {places_.begin, listed_}; }
-  [[nodiscard]] Iterator end() const { return {places_.end, listed_}; }
+  [[nodiscard]] Iterator begin() const { return {*this, places_.begin}; }
+  [[nodiscard]] Iterator end() const { return {*this, places_.end}; }
   [[nodiscard]] bool empty() const { return places_.begin == places_.end; }
   /// Another one for every worker that has any.
   [[nodiscard]] int first_place() const { return places_.begin; }
@@ -60,6 +65,7 @@ class CellNumbers {
  private:
   Range places_;
   const int* listed_;
+  const CellPart* parts_;
 };
 
 /// Positions are not wrapped into the periodic box, so that cells stay whole. The first node of the lattice lies at the
@@ -96,6 +102,13 @@ struct CellNodes {
   [[nodiscard]] CellNumbers known_cells(Worker worker) const {
     return part.empty() ? CellNumbers(worker.share(cell_count()), nullptr)
                         : CellNumbers(worker.share(static_cast<int>(known.size())), known.data());
+  }
+  /// Those of them that it owns. `worker`: of its share of those that this rank knows, so that a worker meets the same cells
+  /// in one pass after another.
+  [[nodiscard]] CellNumbers own_cells() const { return own_cells(Worker{}); }
+  [[nodiscard]] CellNumbers own_cells(Worker worker) const {
+    return part.empty() ? known_cells(worker)
+                        : CellNumbers(worker.share(static_cast<int>(known.size())), known.data(), part.data());
   }
   /// The one of them at a place.
   [[nodiscard]] int known_at(int place) const { return part.empty() ? place : known[place]; }

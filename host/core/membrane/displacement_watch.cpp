@@ -76,8 +76,7 @@ void DisplacementWatch::measure(Worker worker, const CellNodes& nodes) {
 
 bool DisplacementWatch::measure_own(const CellNodes& nodes) {
   bool moved = false;
-  for (const int c : nodes.known_cells()) {
-    if (!nodes.owns(c)) continue;
+  for (const int c : nodes.own_cells()) {
     measure_cell(c, nodes);
     moved = moved || moved_[c] != 0;
   }

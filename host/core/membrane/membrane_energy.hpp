@@ -38,10 +38,7 @@ class MembraneEnergySum {
     const int own = ranks.several() ? ranks.transport->rank() : 0;
     const Unknown last = best_of_all(ranks, Unknown{unknown_of_, own},
                                      [](const Unknown& a, const Unknown& b) { return a.cell > b.cell; });
-    if (last.cell >= 0) {
-      const std::vector<char> name = of_rank(ranks, last.rank, std::vector<char>(unknown_.begin(), unknown_.end()));
-      unknown_.assign(name.begin(), name.end());
-    }
+    if (last.cell >= 0) unknown_ = text_of_rank(ranks, last.rank, unknown_);
     return {sums_[0].value(), sums_[1].value(), sums_[2].value(), sums_[3].value(), unknown_};
   }
 

@@ -40,9 +40,8 @@ MembraneForces::Scratch& MembraneForces::scratch_of(int first_cell) {
 }
 
 void MembraneForces::run(Worker worker, Membranes& membranes) {
-  const CellNumbers cells = membranes.known_cells(worker);
+  const CellNumbers cells = membranes.own_cells(worker);
   for (const int cell : cells) {
-    if (!membranes.owns(cell)) continue;
     Scratch& scratch = scratch_of(cells.first_place());
     const bool semi_implicit = types_[membranes.cells[cell].type].filter.has_value();
     measure(membranes, cell, scratch, semi_implicit);
@@ -53,8 +52,7 @@ void MembraneForces::run(Worker worker, Membranes& membranes) {
 
 MembraneEnergy MembraneForces::energies(const Membranes& membranes, const Ranks<2>& ranks) {
   MembraneEnergySum sum;
-  for (const int cell : membranes.known_cells()) {
-    if (!membranes.owns(cell)) continue;
+  for (const int cell : membranes.own_cells()) {
     MembraneEnergy energy;
     measure(membranes, cell, scratch_of(0), false);
     apply_laws(membranes, cell, scratch_of(0), nullptr, &energy);

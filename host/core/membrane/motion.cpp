@@ -48,8 +48,7 @@ void move(Worker worker, CellNodes& nodes) {
   static const auto function = Dispatch<Move<D>, MoveTask<D>*>::pick();
   std::vector<double>* const places[] = {&nodes.x, &nodes.y, &nodes.z};
   const std::vector<double>* const velocities[] = {&nodes.velocity_x, &nodes.velocity_y, &nodes.velocity_z};
-  for (const int c : nodes.known_cells(worker)) {
-    if (!nodes.owns(c)) continue;
+  for (const int c : nodes.own_cells(worker)) {
     const CellRange& cell = nodes.cells[c];
     MoveTask<D> task{.place = {}, .velocity = {}, .begin = cell.first, .end = cell.end(), .largest_square = 0};
     for (int k = 0; k < D; ++k) task.place[k] = places[k]->data(), task.velocity[k] = velocities[k]->data();
@@ -72,8 +71,7 @@ template <int D>
 std::array<double, 3> mean_velocity(const CellNodes& cells, const Ranks<D>& ranks) {
   const std::vector<double>* const velocities[] = {&cells.velocity_x, &cells.velocity_y, &cells.velocity_z};
   std::vector<ExactSum> sums(D);
-  for (const int c : cells.known_cells()) {
-    if (!cells.owns(c)) continue;
+  for (const int c : cells.own_cells()) {
     const CellRange& cell = cells.cells[c];
     for (std::size_t k = 0; k < D; ++k)
       sums[k].add(velocities[k]->data() + cell.first, static_cast<std::size_t>(cell.count));
@@ -89,8 +87,7 @@ template std::array<double, 3> mean_velocity(const CellNodes&, const Ranks<3>&);
 
 FarthestNode farthest_node(const CellNodes& cells) {
   FarthestNode farthest{0, -1};
-  for (const int c : cells.known_cells()) {
-    if (!cells.owns(c)) continue;
+  for (const int c : cells.own_cells()) {
     for (int i = cells.cells[c].first; i < cells.cells[c].end(); ++i) {
       const auto k = static_cast<std::size_t>(i);
       const double along_z = cells.z.empty() ? 0 : cells.velocity_z[k];

@@ -48,25 +48,23 @@ void transfer_nodes(Values& values, const CellRange& cell, Transfer transfer) {
   transfer(values.data() + cell.first, static_cast<std::size_t>(cell.count));
 }
 
-/// One of the lists of a peer's cells.
-template <int D>
-using Listed = std::vector<int> GhostCells<D>::Peer::*;
-
-/// Gives each peer what transfer(rank, cells, message) packs of the cells in one of its lists; those with an empty list are
-/// left out.
-template <class Packer, int D, class Transfer>
-void send_to_peers(const GhostCells<D>& ghosts, Transport& transport, Listed<D> given, Transfer transfer) {
-  for (const auto& [rank, peer] : ghosts.peers()) {
+/// Gives each of `peers` what transfer(rank, cells, message) packs of the cells in one of its lists; those with an empty list
+/// are left out.
+template <class Packer, class Peer, class Transfer>
+void send_to_peers(const std::map<int, Peer>& peers, Transport& transport, std::vector<int> Peer::*given,
+                   Transfer transfer) {
+  for (const auto& [rank, peer] : peers) {
     if ((peer.*given).empty()) continue;
     Packer message;
     transfer(transport.rank(), peer.*given, message);
     transport.send(rank, message.take());
   }
 }
-/// Takes from each peer what transfer(rank, cells, message) unpacks of those in one of its lists.
-template <class Unpacker, int D, class Transfer>
-void receive_from_peers(const GhostCells<D>& ghosts, Transport& transport, Listed<D> taken, Transfer transfer) {
-  for (const auto& [rank, peer] : ghosts.peers()) {
+/// Takes from each what transfer(rank, cells, message) unpacks of those in one of its lists.
+template <class Unpacker, class Peer, class Transfer>
+void receive_from_peers(const std::map<int, Peer>& peers, Transport& transport, std::vector<int> Peer::*taken,
+                        Transfer transfer) {
+  for (const auto& [rank, peer] : peers) {
     if ((peer.*taken).empty()) continue;
     Unpacker message(transport.receive(rank));
     transfer(rank, peer.*taken, message);
@@ -165,7 +163,7 @@ void CellExchange<D>::transfer_positions(Cells& cells, DisplacementWatch& viscos
 
 template <int D>
 void CellExchange<D>::send_shown(const GhostCells<D>& ghosts, Cells& cells, DisplacementWatch& viscosity, Shown shown) {
-  send_to_peers<Packer>(ghosts, *ghosts.ranks().transport, &GhostCells<D>::Peer::mine,
+  send_to_peers<Packer>(ghosts.peers(), *ghosts.ranks().transport, &GhostCells<D>::Peer::mine,
                         [&](int, const std::vector<int>& of_peer, Packer& message) {
                           transfer_positions(cells, viscosity, of_peer, shown, message);
                         });
@@ -174,7 +172,7 @@ void CellExchange<D>::send_shown(const GhostCells<D>& ghosts, Cells& cells, Disp
 template <int D>
 void CellExchange<D>::receive_shown(const GhostCells<D>& ghosts, Cells& cells, DisplacementWatch& viscosity,
                                     Shown shown) {
-  receive_from_peers<Unpacker>(ghosts, *ghosts.ranks().transport, &GhostCells<D>::Peer::theirs,
+  receive_from_peers<Unpacker>(ghosts.peers(), *ghosts.ranks().transport, &GhostCells<D>::Peer::theirs,
                                [&](int, const std::vector<int>& of_peer, Unpacker& message) {
                                  transfer_positions(cells, viscosity, of_peer, shown, message);
                                });
@@ -187,8 +185,7 @@ void CellExchange<D>::send_positions(Cells& cells, DisplacementWatch& viscosity,
     if (!(value <= largest) && !std::isnan(largest)) largest = value;
   };
   double step = 0, path = 0;
-  for (const int c : cells.known_cells()) {
-    if (!cells.owns(c)) continue;
+  for (const int c : cells.own_cells()) {
     path_[c] += cells.largest_step[c];
     raise(step, cells.largest_step[c]);
     raise(path, path_[c]);
@@ -295,14 +292,14 @@ void CellExchange<D>::transfer_forces(const Cells& cells, const std::array<doubl
 template <int D>
 void CellExchange<D>::send_forces(const Cells& cells, const std::array<double*, D>& force) const {
   send_to_peers<Packer>(
-      ghosts_, *ranks_.transport, &GhostCells<D>::Peer::mine_there,
+      ghosts_.peers(), *ranks_.transport, &GhostCells<D>::Peer::mine_there,
       [&](int, const auto& of_peer, auto& message) { transfer_forces(cells, force, of_peer, message); });
 }
 
 template <int D>
 void CellExchange<D>::receive_forces(const Cells& cells, const std::array<double*, D>& force) const {
   receive_from_peers<Unpacker>(
-      ghosts_, *ranks_.transport, &GhostCells<D>::Peer::theirs_here,
+      ghosts_.peers(), *ranks_.transport, &GhostCells<D>::Peer::theirs_here,
       [&](int, const auto& of_peer, auto& message) { transfer_forces(cells, force, of_peer, message); });
 }
 
@@ -321,7 +318,7 @@ void CellExchange<D>::transfer_velocities(Cells& cells, const Base& base, int re
 
 template <int D>
 void CellExchange<D>::send_velocities(Cells& cells, const Base& base) const {
-  send_to_peers<Packer>(ghosts_, *ranks_.transport, &GhostCells<D>::Peer::theirs_here,
+  send_to_peers<Packer>(ghosts_.peers(), *ranks_.transport, &GhostCells<D>::Peer::theirs_here,
                         [&](int reader, const auto& of_peer, auto& message) {
                           transfer_velocities(cells, base, reader, of_peer, message);
                         });
@@ -329,7 +326,7 @@ void CellExchange<D>::send_velocities(Cells& cells, const Base& base) const {
 
 template <int D>
 void CellExchange<D>::receive_velocities(Cells& cells, const Base& base) const {
-  receive_from_peers<Unpacker>(ghosts_, *ranks_.transport, &GhostCells<D>::Peer::mine_there,
+  receive_from_peers<Unpacker>(ghosts_.peers(), *ranks_.transport, &GhostCells<D>::Peer::mine_there,
                                [&](int reader, const auto& of_peer, auto& message) {
                                  transfer_velocities(cells, base, reader, of_peer, message);
                                });
@@ -385,23 +382,14 @@ void CellExchange<D>::pass_on(Cells& cells, DisplacementWatch& watch, const Ghos
 
 template <int D>
 void CellExchange<D>::show_places(Cells& cells, const std::map<int, Sight>& sights) const {
-  const auto transfer = [&](const std::vector<int>& of_peer, auto& message) {
+  const auto transfer = [&](int, const std::vector<int>& of_peer, auto& message) {
     for (const int c : of_peer) {
       for (auto* along : places(cells)) transfer_nodes(*along, cells.cells[c], std::ref(message));
       message(&cells.largest_step[c], 1);
     }
   };
-  for (const auto& [rank, sight] : sights) {
-    if (sight.mine.empty()) continue;
-    Packer message;
-    transfer(sight.mine, message);
-    ranks_.transport->send(rank, message.take());
-  }
-  for (const auto& [rank, sight] : sights) {
-    if (sight.theirs.empty()) continue;
-    Unpacker message(ranks_.transport->receive(rank));
-    transfer(sight.theirs, message);
-  }
+  send_to_peers<Packer>(sights, *ranks_.transport, &Sight::mine, transfer);
+  receive_from_peers<Unpacker>(sights, *ranks_.transport, &Sight::theirs, transfer);
 }
 
 template class CellExchange<2>;

@@ -120,11 +120,9 @@ void OutlineTasks<T>::run(Task task, Worker worker) {
       if (viscosity_field_.due()) viscosity_field_.update(worker, membranes_, fluid_.relaxation_rate(), fluid_.mask());
       return;
     case Task::interpolate:
-      return coupling_.interpolate(worker, membranes_, fluid_.velocity(), Whose::own);
+      return coupling_.interpolate(worker, membranes_, fluid_.velocity(), Whose::own_at_borders);
     case Task::interpolate_inside:
       return coupling_.interpolate(worker, membranes_, fluid_.velocity(), Whose::own_inside);
-    case Task::interpolate_rest:
-      return coupling_.interpolate(worker, membranes_, fluid_.velocity(), Whose::own_at_borders);
     case Task::interpolate_ghosts:
       return coupling_.interpolate(worker, membranes_, fluid_.velocity(), Whose::others);
     case Task::correct_velocities:

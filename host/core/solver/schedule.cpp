@@ -62,7 +62,7 @@ Schedule make_schedule(const StepFeatures& has) {
   add(ghosts, Task::interpolate_ghosts, "interpolate", Meeting::all);
   add(ghosts, Task::send_velocities, "ranks", Meeting::none);
   // The next step begins with the same cells; its first barrier serves these tasks, too.
-  add(cells, ghosts ? Task::interpolate_rest : Task::interpolate, "interpolate", Meeting::none);
+  add(cells, Task::interpolate, "interpolate", Meeting::none);
   add(ghosts, Task::receive_velocities, "ranks", Meeting::all);
   add(corrected, Task::correct_velocities, "corrections", Meeting::none);
   add(cells, Task::move, "move", Meeting::none);

@@ -33,11 +33,11 @@ enum class Task {
   end_step,            ///< one worker: the lattice's parity
   send_halo,           ///< one worker: populations and velocities to other blocks, as far as that is still to be done
   receive_halo,        ///< one worker
-  interpolate,         ///< cells: velocities of the nodes, with the kernel that has spread their forces
-  interpolate_inside,  ///< cells: interpolate, of nodes that lie inside of the block
-  interpolate_ghosts,  ///< cells: interpolate, of other ranks' nodes
-  interpolate_rest,    ///< cells: interpolate, of own nodes at the block's borders
-  send_velocities,     ///< one worker: of other ranks' nodes, to these
+  interpolate_inside,  ///< cells: interpolate, those that lie inside of the block
+  interpolate_ghosts,  ///< cells: interpolate, other ranks' nodes
+  interpolate,      ///< cells: velocities of the nodes, with the kernel that has spread their forces; where there are
+                    ///< ranks those of own cells at the block's borders
+  send_velocities,  ///< one worker: of other ranks' nodes, to these
   receive_velocities,  ///< one worker
   correct_velocities,  ///< cells: neither slip nor leaks
   move,                ///< cells: X(t + 1) = X(t) + U

@@ -103,11 +103,9 @@ void SurfaceTasks<T>::run(Task task, Worker worker) {
       if (viscosity_field_.due()) viscosity_field_.update(worker, surfaces_, fluid_.relaxation_rate(), fluid_.mask());
       return;
     case Task::interpolate:
-      return coupling_.interpolate(worker, surfaces_, fluid_.velocity(), Whose::own);
+      return coupling_.interpolate(worker, surfaces_, fluid_.velocity(), Whose::own_at_borders);
     case Task::interpolate_inside:
       return coupling_.interpolate(worker, surfaces_, fluid_.velocity(), Whose::own_inside);
-    case Task::interpolate_rest:
-      return coupling_.interpolate(worker, surfaces_, fluid_.velocity(), Whose::own_at_borders);
     case Task::interpolate_ghosts:
       return coupling_.interpolate(worker, surfaces_, fluid_.velocity(), Whose::others);
     case Task::correct_velocities:

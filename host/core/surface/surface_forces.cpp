@@ -316,11 +316,10 @@ void SurfaceForces::act(const Type& type, const Whole& whole, Scratch& s) {
 }
 
 void SurfaceForces::run(Worker worker, Surfaces& surfaces) {
-  const CellNumbers cells = surfaces.known_cells(worker);
+  const CellNumbers cells = surfaces.own_cells(worker);
   if (cells.empty()) return;
   Scratch& s = scratch_of(cells.first_place());
   for (const int c : cells) {
-    if (!surfaces.owns(c)) continue;
     const CellRange& cell = surfaces.cells[c];
     const Type& type = types_[cell.type];
     Whole whole = measure(type, type.filter ? look_ahead(surfaces, cell, s) : surfaces.nodes(c), s);
@@ -358,8 +357,7 @@ void SurfaceForces::soften(const Type& type, Surfaces& surfaces, const CellRange
 
 MembraneEnergy SurfaceForces::energies(const Surfaces& surfaces, const Ranks<3>& ranks) {
   MembraneEnergySum sum;
-  for (const int c : surfaces.known_cells()) {
-    if (!surfaces.owns(c)) continue;
+  for (const int c : surfaces.own_cells()) {
     const Type& type = types_[surfaces.cells[c].type];
     Whole whole = measure(type, surfaces.nodes(c), scratch_of(0));
     MembraneEnergy energy;

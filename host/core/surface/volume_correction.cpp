@@ -25,9 +25,7 @@ double VolumeCorrection::find_gradient(const Surfaces& surfaces, int cell) {
 }
 
 void VolumeCorrection::take_out_pressures(Worker worker, Surfaces& surfaces) {
-  const CellNumbers cells = surfaces.known_cells(worker);
-  for (const int cell : cells) {
-    if (!surfaces.owns(cell)) continue;
+  for (const int cell : surfaces.own_cells(worker)) {
     const CellRange& range = surfaces.cells[cell];
     const double square = find_gradient(surfaces, cell);
     double work = 0;
@@ -44,9 +42,7 @@ void VolumeCorrection::take_out_pressures(Worker worker, Surfaces& surfaces) {
 }
 
 void VolumeCorrection::keep_volumes(Worker worker, Surfaces& surfaces) {
-  const CellNumbers cells = surfaces.known_cells(worker);
-  for (const int cell : cells) {
-    if (!surfaces.owns(cell)) continue;
+  for (const int cell : surfaces.own_cells(worker)) {
     const CellRange& range = surfaces.cells[cell];
     const RestSurface& rest = surfaces.type_of(cell);
     const double square = find_gradient(surfaces, cell);
