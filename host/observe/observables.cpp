@@ -355,8 +355,9 @@ Table series_table() {
            .unit = "m",
            .doc =
                "mean over the lattice's columns of the distance from the lower wall to the nearest membrane; half the "
-               "height counts in a column where none is nearer, so that few cells give a large value. `nan` without "
-               "walls or cells",
+               "height counts in a column where none is nearer, so that few cells give a large value. In a tube, of "
+               "the half of its wall below the axis, along rays from the axis a spacing apart at the wall, where the "
+               "radius counts. `nan` without walls or cells",
            .value = output<&Snapshot::cell_free_layer_lower>,
            .chart = "Cell-free layer",
            .line = "lower wall",

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
+#include "cell_free_layer.hpp"
 #include "cell_sums.hpp"
 #include "core/fluid/relaxation.hpp"
 #include "energy.hpp"
@@ -240,12 +242,17 @@ Snapshot Observer::observe(core::Solver<T, Set>& solver, const plan::StageSettin
   }
   if (!cells.cells.empty()) {
     const core::Ranks<Set::dimension>& ranks = solver.ranks();
-    if constexpr (Set::dimension == 2) {
-      if (!scene_->domain.periodic_y) {
-        const auto layer = cell_free_layer(cells, domain_, ranks);
-        snapshot.cell_free_layer_lower = layer.lower * units.length;
-        snapshot.cell_free_layer_upper = layer.upper * units.length;
-      }
+    if (!scene_->domain.periodic_y) {
+      const core::Domain<Set::dimension> domain = plan::lattice_domain<Set::dimension>(*scene_);
+      const CellFreeLayer layer = [&] {
+        if constexpr (Set::dimension == 3) {
+          if (const std::optional<double> radius = scene_->domain.tube_radius)
+            return cell_free_layer_in_tube(cells, domain, *radius / units.length, ranks);
+        }
+        return cell_free_layer(cells, domain, ranks);
+      }();
+      snapshot.cell_free_layer_lower = layer.lower * units.length;
+      snapshot.cell_free_layer_upper = layer.upper * units.length;
     }
     // In layers a cell's share in the stress is not a matter of its membrane alone.
     snapshot.particle_stress =

@@ -32,37 +32,6 @@ double apparent_viscosity(double flow_rate, double body_force, const plan::Stage
   return flow_rate != 0 ? alone / flow_rate : std::nan("");
 }
 
-CellFreeLayer cell_free_layer(const core::Membranes& membranes, const core::Domain<2>& domain,
-                              const core::Ranks<2>& ranks) {
-  const int nx = domain.size[0], ny = domain.size[1];
-  const double half = ny / 2.0, lower_wall = -0.5, upper_wall = ny - 0.5;
-  std::vector<CellFreeLayer> columns(static_cast<std::size_t>(nx), CellFreeLayer{half, half});
-  const auto narrow = [](CellFreeLayer& column, const CellFreeLayer& by) {
-    column.lower = std::min(column.lower, by.lower);
-    column.upper = std::min(column.upper, by.upper);
-  };
-  for (const int c : membranes.own_cells()) {
-    const core::CellRange& cell = membranes.cells[c];
-    for (int i = cell.first; i < cell.end(); ++i) {
-      const auto from = static_cast<std::size_t>(i), to = static_cast<std::size_t>(cell.next(i));
-      const double x0 = membranes.x[from], x1 = membranes.x[to], y0 = membranes.y[from], y1 = membranes.y[to];
-      const double left = std::min(x0, x1), right = std::max(x0, x1);
-      // The last state of a run that blew up may hold anything.
-      if (!(right - left < nx && std::abs(left) < 1e9)) continue;
-      for (double x = std::ceil(left); x <= right; ++x) {
-        const double y = x1 != x0 ? y0 + (y1 - y0) * (x - x0) / (x1 - x0) : y0;
-        const auto column = static_cast<std::size_t>(domain.wrapped(0, static_cast<int>(x)));
-        narrow(columns[column],
-               {std::min(y, x1 != x0 ? y : y1) - lower_wall, upper_wall - std::max(y, x1 != x0 ? y : y1)});
-      }
-    }
-  }
-  core::join(ranks, columns, narrow);
-  CellFreeLayer mean{0, 0};
-  for (const CellFreeLayer& column : columns) mean.lower += column.lower / nx, mean.upper += column.upper / nx;
-  return mean;
-}
-
 std::map<int, int> aggregate_sizes(const std::vector<int>& label) {
   std::map<int, int> members, sizes;
   for (const int l : label) ++members[l];

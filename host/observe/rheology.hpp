@@ -1,4 +1,4 @@
-// Observables of blood rheology at one instant: flow rate, apparent viscosity, cell-free layers, sizes of aggregates.
+// Observables of blood rheology at one instant: flow rate, apparent viscosity, sizes of aggregates.
 #pragma once
 
 #include <map>
@@ -23,16 +23,6 @@ double flow_rate(const core::Fluid<T, Set>& fluid);
 /// Flow rate of the suspending fluid alone, G H^3 / (12 mu) of plane Poiseuille flow, over `flow_rate` (lattice): the
 /// relative apparent viscosity of a driven suspension. Not a number where nothing flows.
 double apparent_viscosity(double flow_rate, double body_force, const plan::StageSetting& setting, int height);
-
-/// Thickness of the layers without cells at both walls, spacings: in each column of the lattice the distance from the
-/// wall to the nearest membrane, averaged over the columns (edge of the core as in Fedosov, Caswell, Popel and
-/// Karniadakis, Microcirculation 17, 2010). Half the height counts where no membrane is nearer.
-/// All ranks together, of all cells; the first one gets it.
-struct CellFreeLayer {
-  double lower, upper;
-};
-CellFreeLayer cell_free_layer(const core::Membranes& membranes, const core::Domain<2>& domain,
-                              const core::Ranks<2>& ranks = {});
 
 /// Number of aggregates by their number of cells, from a label for each cell.
 std::map<int, int> aggregate_sizes(const std::vector<int>& label);

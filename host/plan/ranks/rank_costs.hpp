@@ -36,7 +36,7 @@ struct RankCost {
   double node_velocity_bytes = 0;                   ///< of membranes in its block, to their owners
   double received_bytes = 0;
   double memory_bytes = 0;
-  double step_s = 0;       ///< computing its own part, by plan::step_cost
+  double step_s = 0;       ///< computing its own part, by plan::step_cost and the rows that it has more
   double membranes_s = 0;  ///< of which its own membranes take so much
   double sharing_s = 0;    ///< what the cut costs: packing and unpacking, and other ranks' membranes,
   double ghosts_s = 0;     ///< which take so much of it

@@ -13,19 +13,6 @@ using namespace rouleau::observe;
 
 namespace {
 
-/// Closed polygons through the given corners.
-Membranes polygons(const std::vector<std::vector<std::array<double, 2>>>& cells) {
-  Membranes m;
-  for (const auto& corners : cells) {
-    m.cells.push_back({{m.node_count(), static_cast<int>(corners.size())}, 0, 0, 0});
-    for (const auto& corner : corners) {
-      m.x.push_back(corner[0]);
-      m.y.push_back(corner[1]);
-    }
-  }
-  return m;
-}
-
 /// A snapshot of as many cells as there are labels.
 Snapshot at(int stage, double strain, double time, const std::vector<int>& label) {
   Snapshot s;
@@ -46,38 +33,6 @@ Snapshot at(int stage, double strain, double time, const std::vector<int>& label
 }
 
 }  // namespace
-
-TEST_CASE("the layer without cells is the mean distance from the wall to the nearest membrane of each column") {
-  // Walls at -0.5 and 39.5. A box over columns 2 ... 11 between y = 5 and 12, another over 6 ... 8 from 3.25 to 4.
-  const Membranes m =
-      polygons({{{1.5, 5}, {11.5, 5}, {11.5, 12}, {1.5, 12}}, {{5.5, 3.25}, {8.5, 3.25}, {8.5, 4}, {5.5, 4}}});
-  const CellFreeLayer layer = cell_free_layer(m, {{20, 40}, {true, false}});
-  // 10 columns without a cell count half the height, 7 meet the first box, 3 the second.
-  CHECK(layer.lower == Approx((10 * 20 + 7 * 5.5 + 3 * 3.75) / 20).epsilon(1e-14));
-  CHECK(layer.upper == Approx(20).epsilon(1e-14));
-}
-
-TEST_CASE("the layer without cells does not depend on where the box is cut") {
-  const double shift = GENERATE(0.0, 7.0, -20.0, 333.0);
-  const Membranes m = polygons({{{3.2 + shift, 5}, {12.7 + shift, 9}, {9.1 + shift, 31}}});
-  const CellFreeLayer layer = cell_free_layer(m, {{20, 40}, {true, false}});
-  const CellFreeLayer same = cell_free_layer(polygons({{{3.2, 5}, {12.7, 9}, {9.1, 31}}}), {{20, 40}, {true, false}});
-  CHECK(layer.lower == Approx(same.lower).epsilon(1e-12));
-  CHECK(layer.upper == Approx(same.upper).epsilon(1e-12));
-  // Mirrored at the middle of the channel (y = 19.5) the two layers change places.
-  const CellFreeLayer mirrored =
-      cell_free_layer(polygons({{{3.2, 34}, {12.7, 30}, {9.1, 8}}}), {{20, 40}, {true, false}});
-  CHECK(mirrored.lower == Approx(same.upper).epsilon(1e-12));
-  CHECK(mirrored.upper == Approx(same.lower).epsilon(1e-12));
-}
-
-TEST_CASE("a wavy membrane's layer converges to the mean of its lower side") {
-  // Lower side y = 10 + 3 cos(2 pi x / 60) over the whole period: mean 10, and the wall is half a spacing below 0.
-  std::vector<std::array<double, 2>> corners;
-  for (int i = 0; i <= 600; ++i) corners.push_back({i * 0.1, 10 + 3 * std::cos(2 * std::numbers::pi * i / 600)});
-  for (int i = 600; i >= 0; --i) corners.push_back({i * 0.1, 20});
-  CHECK(cell_free_layer(polygons({corners}), {{60, 80}, {true, false}}).lower == Approx(10.5).epsilon(1e-12));
-}
 
 TEST_CASE("aggregates are counted by size, with the two means") {
   const auto sizes = aggregate_sizes({0, 0, 2, 3, 3, 3, 6, 7});
