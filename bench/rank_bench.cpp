@@ -489,12 +489,12 @@ void print_costs(const plan::Plan& plan, const core::Decomposition<Set::dimensio
   const plan::CostOfSharing by = plan::cost_of_sharing(D);
   const double plan_lattice = cost.lattice_bytes() / word * by.number_s,
                plan_ghosts = static_cast<double>(cost.ghost_nodes) * by.ghost_s,
-               plan_shown = cost.sharing_s - plan_lattice - plan_ghosts;
+               plan_shown = cost.sharing_s - cost.rows_s - plan_lattice - plan_ghosts;
   std::printf("  %-46s %12s %12s\n", "us", "this rank", "rouleau plan");
   const auto beside = [](const char* what, double measured, double expected) {
     std::printf("  %-46s %12.2f %12.2f\n", what, measured * 1e6, expected * 1e6);
   };
-  beside("its own block and cells", own_part, cost.step_s);
+  beside("its own block and cells", own_part, cost.step_s + cost.rows_s);
   beside("ghosts, packing and unpacking of cells", ghosts + cells, plan_ghosts + plan_shown);
   beside("packing and unpacking of the lattice", lattice, plan_lattice);
   beside("whole step without a network", whole, cost.step_s + cost.sharing_s);

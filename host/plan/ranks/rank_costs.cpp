@@ -211,11 +211,10 @@ std::vector<RankCost> costs_of(const Plan& plan, const core::Decomposition<D>& b
       cost.memory_bytes += memory::of_known<D>(own, ghosts, known) + cells * memory::of_each_cell;
     }
     if (rank == 0) cost.memory_bytes += memory::of_writer(cells);
-    cost.sharing_s += cost.lattice_bytes() / word * cost_of_sharing(D).number_s;
-    const double rows = core::row_count(block) - nodes / blocks.domain(rank).size[0];  // more than the lattice has here
+    cost.rows_s = (core::row_count(block) - nodes / blocks.domain(rank).size[0]) * cost_of_sharing(D).row_s;
+    cost.sharing_s += cost.lattice_bytes() / word * cost_of_sharing(D).number_s + cost.rows_s;
     cost.step_s = step_cost(nodes, own, scene.numerics.precision, D, cutoff);
     cost.membranes_s = cost.step_s - step_cost(nodes, 0, scene.numerics.precision, D, cutoff);
-    cost.step_s += rows * cost_of_sharing(D).row_s;
   }
   return ranks;
 }

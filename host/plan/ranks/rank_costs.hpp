@@ -36,16 +36,17 @@ struct RankCost {
   double node_velocity_bytes = 0;                   ///< of membranes in its block, to their owners
   double received_bytes = 0;
   double memory_bytes = 0;
-  double step_s = 0;       ///< computing its own part, by plan::step_cost and the rows that it has more
+  double step_s = 0;       ///< computing its own part, by plan::step_cost
   double membranes_s = 0;  ///< of which its own membranes take so much
   double sharing_s = 0;    ///< what the cut costs: packing and unpacking, and other ranks' membranes,
-  double ghosts_s = 0;     ///< which take so much of it
+  double ghosts_s = 0;     ///< which take so much of it,
+  double rows_s = 0;       ///< and rows that its block has more than the lattice has there
   [[nodiscard]] double lattice_bytes() const { return population_bytes + velocity_bytes; }
   [[nodiscard]] double membrane_bytes() const { return position_bytes + force_bytes + node_velocity_bytes; }
   [[nodiscard]] double sent_bytes() const { return lattice_bytes() + membrane_bytes(); }
   NLOHMANN_DEFINE_TYPE_INTRUSIVE(RankCost, nodes, cells, membrane_nodes, ghost_nodes, neighbours, messages, waits,
                                  population_bytes, velocity_bytes, position_bytes, force_bytes, node_velocity_bytes,
-                                 received_bytes, memory_bytes, step_s, membranes_s, sharing_s, ghosts_s)
+                                 received_bytes, memory_bytes, step_s, membranes_s, sharing_s, ghosts_s, rows_s)
 };
 
 std::vector<RankCost> rank_costs(const Plan& plan, const Blocks& blocks);
