@@ -172,7 +172,8 @@ void compare_work(Worst& worst, const Subject& subject, const Trial& trial, cons
     const double size = std::abs(energy[k]) + std::abs(energy[k + 4]) + far * (std::abs(f[k]) + std::abs(f[k + 4])) +
                         far * far * std::abs(f[k + 4] - f[k]) / step;
     const double limit = 8 * std::abs(boole - simpson) + 8 * std::abs(simpson - trapezoid) + 4096 * epsilon * size +
-                         1e-8 * std::abs(work);
+                         1e-8 * std::abs(work) +
+                         (1 + far) * std::numeric_limits<double>::min();  // numbers below have fewer digits
     worst.add(std::abs(gained - work), limit, [&] {
       return claim.function + " changes by " + number(gained, 17) + " where the work of " + claim.derivative + " is " +
              number(work, 17) + ", in lattice units, between " + claim.variable + ' ' +
