@@ -4,7 +4,7 @@
 usage: ranks.py [--build build/release] [--cases NAME,...] [--ranks 2,4] [--rounds 5] [--seconds 2] [--prefix "chrt -f 5"]
 A line for each case and number of ranks: microseconds a step, least of all rounds, outputs and checks left out; the speed of
 ranks over that of threads, least over least and the median of the rounds; the model over what is measured, the median of the
-rounds and their range. The model is given the network as so many ranks measure it, all at once, the number of processors, and
+rounds and their range, and the networks. The model is given the network as so many ranks measure it in that round, the number of processors, and
 the step of one process while every processor has one, or as many as there are ranks: they share memory as ranks do. Open MPI.
 """
 
@@ -97,26 +97,24 @@ def main():
     chosen = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         bench = Bench(chosen, folder)
-        network = {int(ranks): bench.network(ranks) for ranks in chosen.ranks.split(",")}
-        for ranks, words in network.items():
-            print(f"network, {ranks} ranks: {words}")
         print(f"{'case':12} {'ranks':>5} {'one':>9} {'beside':>9} {'threads':>9} {'ranks':>9} {'ratio':>6} {'median':>6} {'model/measured':>14}")
         for name in chosen.cases.split(","):
             file = bench.folder / "scene.json"
             file.write_text(json.dumps(CASES[name]))
             steps = max(20, int(1e6 * chosen.seconds / bench.step_us(file, 20)))
             for ranks in map(int, chosen.ranks.split(",")):
-                one, beside, threads, several, model = [], [], [], [], []
+                one, beside, threads, several, model, networks = [], [], [], [], [], []
                 for _ in range(chosen.rounds):
                     one.append(bench.step_us(file, steps))
                     threads.append(bench.step_us(file, steps, threads=ranks))
                     beside.append(bench.beside_each_other_us(file, steps, min(ranks, os.cpu_count())))
                     several.append(bench.step_us(file, steps, ranks=ranks))
-                    model.append(bench.plan(file, ranks, beside[-1], network[ranks]) / several[-1])
+                    networks.append(bench.network(ranks))
+                    model.append(bench.plan(file, ranks, beside[-1], networks[-1]) / several[-1])
                 median = statistics.median(t / r for t, r in zip(threads, several))
                 print(f"{name:12} {ranks:5} {min(one):9.1f} {min(beside):9.1f} {min(threads):9.1f} {min(several):9.1f} "
                       f"{min(threads) / min(several):6.2f} {median:6.2f} {statistics.median(model):6.2f} "
-                      f"({min(model):.2f} to {max(model):.2f})", flush=True)
+                      f"({min(model):.2f} to {max(model):.2f})   {'; '.join(networks)}", flush=True)
 
 
 if __name__ == "__main__":
