@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <utility>
 #include <vector>
 
 namespace rouleau::observe {
@@ -42,17 +41,22 @@ class Columns {
   std::vector<CellFreeLayer> columns_;
 };
 
+/// Calls visit(i) for the whole numbers from `least` to `most`. For none where they lie further apart than `longest`: the last
+/// state of a run that blew up may hold anything.
+template <class Visit>
+void for_whole_numbers(double least, double most, double longest, Visit visit) {
+  if (!(most - least < longest && std::abs(least) < 1e9)) return;
+  for (double i = std::ceil(least); i <= most; ++i) visit(static_cast<int>(i));
+}
+
 /// Calls meet(i, v, w) for each whole number i at which the line from (a, va) to (b, vb) has values, from v to w: the same,
-/// but for a line along which a does not change. Nothing for what is longer than `longest`: the last state of a run that
-/// blew up may hold anything.
+/// but for a line along which a does not change.
 template <class Meet>
 void at_whole_numbers(double a, double va, double b, double vb, double longest, Meet meet) {
-  const double left = std::min(a, b), right = std::max(a, b);
-  if (!(right - left < longest && std::abs(left) < 1e9)) return;
-  for (double i = std::ceil(left); i <= right; ++i) {
+  for_whole_numbers(std::min(a, b), std::max(a, b), longest, [&](int i) {
     const double v = b != a ? va + (vb - va) * (i - a) / (b - a) : va;
-    meet(static_cast<int>(i), v, b != a ? v : vb);
-  }
+    meet(i, v, b != a ? v : vb);
+  });
 }
 
 /// Calls meet(i, p, q) for each plane x = i in which a triangle of this rank's cells has a line, from p to q: (y, z). A plane
@@ -66,8 +70,7 @@ void for_lines_across(const core::Surfaces& surfaces, int longest, Meet meet) {
       const core::Vec<3> at[] = {nodes[corners[0]], nodes[corners[1]], nodes[corners[2]]};
       const double left = std::min({at[0].x(), at[1].x(), at[2].x()}),
                    right = std::max({at[0].x(), at[1].x(), at[2].x()});
-      if (!(right - left < longest && std::abs(left) < 1e9)) continue;
-      for (double x = std::ceil(left); x <= right; ++x) {
+      for_whole_numbers(left, right, longest, [&](int x) {
         std::array<Place, 2> ends;
         int found = 0;
         for (int k = 0; k < 3; ++k) {
@@ -76,8 +79,8 @@ void for_lines_across(const core::Surfaces& surfaces, int longest, Meet meet) {
           const core::Vec<3> place = from + (to - from) * ((x - from.x()) / (to.x() - from.x()));
           ends[static_cast<std::size_t>(found++)] = {place.y(), place.z()};
         }
-        if (found == 2) meet(static_cast<int>(x), ends[0], ends[1]);
-      }
+        if (found == 2) meet(x, ends[0], ends[1]);
+      });
     }
   }
 }
@@ -127,7 +130,7 @@ CellFreeLayer cell_free_layer_in_tube(const core::Surfaces& surfaces, const core
     double end = std::atan2(py + dy, pz + dz);
     if (end - begin > std::numbers::pi) end -= 2 * std::numbers::pi;
     if (end - begin < -std::numbers::pi) end += 2 * std::numbers::pi;
-    at_whole_numbers(begin / angle - 0.5, 0, end / angle - 0.5, 0, 2 * half, [&](int ray, double, double) {
+    for_whole_numbers(std::min(begin, end) / angle - 0.5, std::max(begin, end) / angle - 0.5, 2 * half, [&](int ray) {
       const double toward_y = std::sin((ray + 0.5) * angle), toward_z = std::cos((ray + 0.5) * angle),
                    across = toward_z * dy - toward_y * dz;
       const double distance =

@@ -26,8 +26,8 @@ constexpr std::size_t piece = std::size_t{1} << 30;
 /// A look at anything but the message that is waited for costs a turn, too, where ranks share processors: Open MPI lets
 /// others run at each. So farewells, and what has been sent, are looked for once in so many looks;
 constexpr long other_looks = 16;
-/// and this many messages may be on their way before the first of them is looked for.
-constexpr std::size_t kept_back = 8;
+/// and this many messages, none of them as large as this, may have been sent before the first of them is looked for.
+constexpr std::size_t kept_back = 8, large = std::size_t{1} << 16;
 
 /// A rank that waits looks, then lets others run, and sleeps in the end: it may share a core with the one it waits for,
 /// and wait for minutes.
@@ -101,7 +101,7 @@ void Connection::drop_sent() {
 }
 
 void Connection::send(int to, core::Message message) {
-  if (sending_.size() >= kept_back) drop_sent();
+  if (sending_.size() >= kept_back || message.size() >= large) drop_sent();
   for (std::size_t at = 0; message.size() >= piece;) {
     if (message.size() - at < piece) {
       message.erase(message.begin(), message.begin() + static_cast<std::ptrdiff_t>(at));

@@ -252,8 +252,7 @@ void InteractionForces::take_reactions(int cell, Membranes& membranes) const {
 double InteractionForces::energy(const Membranes& membranes, const Ranks<2>& ranks) const {
   std::vector<ExactSum> sum(1);
   Scratch scratch;
-  for (int cell = 0; cell < membranes.cell_count(); ++cell) {
-    if (!membranes.owns(cell)) continue;
+  for (const int cell : membranes.own_cells()) {
     const ContactList& list = scratch.contacts;
     find_contacts(cell, membranes, scratch);
     std::vector<double> energy(list.node.size(), 0.0);

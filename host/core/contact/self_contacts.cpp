@@ -138,8 +138,7 @@ void SelfContacts::measure(std::size_t interaction, int cell, const Membranes& m
 double SelfContacts::energy(const Membranes& membranes, const Ranks<2>& ranks) const {
   std::vector<ExactSum> sum(1);
   Contacts contacts;
-  for (int cell = 0; cell < membranes.cell_count(); ++cell) {
-    if (!membranes.owns(cell)) continue;
+  for (const int cell : membranes.own_cells()) {
     for (std::size_t k = 0; k < interactions_.size(); ++k) {
       if (interactions_[k].type != membranes.cells[cell].type || !kinds_[k].energy) continue;
       measure(k, cell, membranes, true, contacts);

@@ -131,8 +131,7 @@ void SurfaceInteractions::act(int cell, Surfaces& surfaces, const Scratch& scrat
 double SurfaceInteractions::energy(const Surfaces& surfaces, const Ranks<3>& ranks) const {
   std::vector<ExactSum> sum(1);
   Scratch scratch;
-  for (int cell = 0; cell < surfaces.cell_count(); ++cell) {
-    if (!surfaces.owns(cell)) continue;
+  for (const int cell : surfaces.own_cells()) {
     contacts_.find(cell, surfaces, scratch.contacts);
     evaluate(cell, surfaces, true, nullptr, scratch);
     const RestSurface& rest = surfaces.type_of(cell);

@@ -144,8 +144,7 @@ void WallContacts::remember(std::size_t interaction, int cell, Membranes& membra
 double WallContacts::energy(const Membranes& membranes, const Ranks<2>& ranks) const {
   std::vector<ExactSum> sum(1);
   Contacts contacts;
-  for (int cell = 0; cell < membranes.cell_count(); ++cell) {
-    if (!membranes.owns(cell)) continue;
+  for (const int cell : membranes.own_cells()) {
     const CellRange& range = membranes.cells[cell];
     const double* weight = membranes.type_of(range).rest_weight.data();
     for (std::size_t k = 0; k < interactions_.size(); ++k) {
