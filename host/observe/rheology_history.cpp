@@ -4,8 +4,10 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <set>
 
+#include "base/curve.hpp"
 #include "json/number_or_null.hpp"
 #include "observables.hpp"
 
@@ -33,6 +35,14 @@ std::size_t second_half(const Instants& instants) {
   std::size_t first = 0;
   while (first + 1 < instants.size() && instants[first].time < middle) ++first;
   return first;
+}
+
+/// Mean in time from `begin` on of the outputs that have a value; nothing where none has one.
+std::optional<double> mean_of(const Column& time, const Column& values, double begin) {
+  if (time.empty()) return std::nullopt;
+  const double mean = mean_from(time, values, std::max(begin, time.front()));
+  if (std::isfinite(mean)) return mean;
+  return time.back() >= begin ? std::optional(values.back()) : std::nullopt;  // a single one
 }
 
 /// Whether all (or, `any`, some two) of these cells share an aggregate.
@@ -78,26 +88,25 @@ void RheologyHistory::follow(const Snapshot& snapshot) {
 
 Json RheologyHistory::means(const StageHistory& stage) {
   const std::size_t first = second_half(stage.instants);
-  Json result{{"from_s", stage.instants[first].time}, {"outputs", stage.instants.size() - first}};
+  const double middle = stage.instants.back().time / 2;
+  Json result{{"from_s", middle}, {"outputs", stage.instants.size() - first}};
   for (std::size_t k = 0; k < averaged().size(); ++k) {
-    const std::string name = averaged()[k].column();
-    double sum = 0, count = 0, squares = 0;
-    for (std::size_t i = first; i < stage.instants.size(); ++i) {
-      const double value = stage.instants[i].values[k];
-      if (!std::isfinite(value)) continue;
-      sum += value;
-      ++count;
+    Column time, values, late;
+    for (std::size_t i = 0; i < stage.instants.size(); ++i) {
+      const Instant& instant = stage.instants[i];
+      if (!std::isfinite(instant.values[k])) continue;
+      time.push_back(instant.time);
+      values.push_back(instant.values[k]);
+      if (i >= first) late.push_back(values.back());
     }
-    const double mean = sum / count;
-    for (std::size_t i = first; i < stage.instants.size(); ++i) {
-      const double value = stage.instants[i].values[k];
-      if (std::isfinite(value)) squares += (value - mean) * (value - mean);
-    }
-    if (count > 0) {
-      result[name] = {{"mean", mean}, {"deviation", count > 1 ? Json(std::sqrt(squares / (count - 1))) : Json()}};
-    } else {
-      result[name] = nullptr;
-    }
+    const std::optional<double> mean = mean_of(time, values, middle);
+    double squares = 0;
+    for (const double value : late) squares += mean ? (value - *mean) * (value - *mean) : 0;
+    Json& of_column = result[averaged()[k].column()];
+    if (mean)
+      of_column = {
+          {"mean", *mean},
+          {"deviation", late.size() > 1 ? Json(std::sqrt(squares / (static_cast<double>(late.size()) - 1))) : Json()}};
   }
   return result;
 }

@@ -7,6 +7,7 @@
 
 #include "scene_run.hpp"
 
+using namespace rouleau;
 using namespace rouleau::study;
 using namespace rouleau::test;
 

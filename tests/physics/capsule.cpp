@@ -8,6 +8,7 @@
 
 #include "scene_run.hpp"
 
+using namespace rouleau;
 using namespace rouleau::study;
 using namespace rouleau::test;
 

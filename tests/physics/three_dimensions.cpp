@@ -11,6 +11,7 @@
 #include "study/exact_flow.hpp"
 
 using namespace rouleau::core;
+using namespace rouleau;
 using namespace rouleau::study;
 using namespace rouleau::test;
 
