@@ -54,39 +54,58 @@ class Problem {
  private:
   struct Trial {
     LatticeSize nodes;
-    double tau = 1, density_factor = 1, cost = 0;
-    ErrorShares error;
+    double tau = 1, cost = 0;
+    std::vector<double> density_factors;  ///< of each stage
+    ErrorShares error;                    ///< of the stage where it is largest
+  };
+  /// What a stage does, and what it has of its own.
+  struct Flow {
+    double rate;             ///< of shear, 1/s; 0: at rest
+    double mean_wall_speed;  ///< largest, m/s
+    double strain, seconds;  ///< infinite where only `until` ends it
+    double lag;   ///< of a flow that begins at rest, for each unit of density factor (scene::start_up_strain)
+    bool driven;  ///< by a pressure gradient rather than by walls
+    std::optional<double> own_factor;
+    [[nodiscard]] bool at_rest() const { return rate == 0 && mean_wall_speed == 0; }
   };
   [[nodiscard]] std::vector<LatticeSize> lattices() const;
   [[nodiscard]] bool meets_target(const Trial& trial) const { return trial.error.total() <= target_ * (1 + 1e-9); }
   [[nodiscard]] bool good_enough(const Trial& trial) const { return trial.error.total() <= goal() * (1 + 1e-9); }
   /// The target; where stages with factors of their own take most of it already, half of it on top of theirs: no lattice makes
   /// up for them.
-  [[nodiscard]] double goal() const { return std::max(target_, target_ / 2 + inertia_error(0) + start_error(0)); }
+  [[nodiscard]] double goal() const;
   [[nodiscard]] bool better(const Trial& a, const Trial& b) const;
   [[nodiscard]] Trial cheapest() const;
   [[nodiscard]] Trial tried(const LatticeSize& nodes, double tau) const;
   [[nodiscard]] double spacing_of(const LatticeSize& nodes) const { return scene_.domain.size.y() / nodes[1]; }
+  [[nodiscard]] double time_step_of_factor_one(double spacing, double tau) const {
+    return core::time_step(tau, spacing, scene_.fluid.viscosity / scene_.fluid.density);
+  }
+  /// The relaxation time of the most viscous layer where that of the fluid is tau.
+  [[nodiscard]] double most_viscous(double tau) const {
+    const double ratio = scene::viscosity_range(scene_.fluid).most / scene_.fluid.viscosity;
+    return core::relaxation_time_of(ratio * core::viscosity_of(tau));
+  }
   /// Half of the narrowest side that decides the lattice of a flow without cells, m.
   [[nodiscard]] double half_width() const;
   /// Of all cells.
   [[nodiscard]] double membrane_nodes(double spacing) const;
   [[nodiscard]] double resolution_error(double spacing, double tau) const;
-  /// With this factor in all stages that have none of their own.
-  [[nodiscard]] double inertia_error(double density_factor) const;
-  [[nodiscard]] double start_error(double density_factor) const;
-  /// Seconds of the scene over the factor of each stage, with this one in stages that have none of their own.
-  [[nodiscard]] double duration(double density_factor) const;
-  /// The largest density factor that the limits of the plan leave at this relaxation time.
-  [[nodiscard]] double most_by_limits(double tau) const {
-    const auto found = bounds_.most_density_factor_at.find(tau);
-    return std::min(bounds_.most_density_factor,
-                    found != bounds_.most_density_factor_at.end() ? found->second : INFINITY);
-  }
-  /// The largest density factor with which inertia and start together leave at most this error.
-  [[nodiscard]] double most_density_factor(double error) const;
-  [[nodiscard]] std::string why_density_factor(const Trial& best) const;
+  /// What a stage adds with this factor: inertia and start.
+  [[nodiscard]] ErrorShares error_of(const Flow& flow, double density_factor) const;
+  /// The largest density factor that the limits of the plan leave a stage at this relaxation time.
+  [[nodiscard]] double most_by_limits(std::size_t stage, double tau) const;
+  /// The largest density factor with which inertia and start of a stage together leave at most this error.
+  [[nodiscard]] double most_density_factor(const Flow& flow, double error) const;
+  /// Of each stage: the largest that this much error beside the lattice's leaves room for.
+  [[nodiscard]] std::vector<double> density_factors(double error, double spacing, double tau) const;
+  /// Seconds of the scene over the factor of each stage.
+  [[nodiscard]] double duration(const std::vector<double>& density_factors) const;
+  [[nodiscard]] std::string why_density_factor(const Trial& best, std::size_t stage) const;
   [[nodiscard]] std::string gain_by_developed_start(const Trial& best) const;
+  /// Of the stages whose factor is left open.
+  [[nodiscard]] std::optional<std::size_t> least_dense(const Trial& best) const;
+  void choose_density_factors(const Trial& best, NumericsChoice& choice) const;
   [[nodiscard]] NumericsChoice chosen(const Trial& best) const;
   [[nodiscard]] Json pinned(const char* key) const { return numerics_.contains(key) ? numerics_.at(key) : Json(); }
 
@@ -97,6 +116,7 @@ class Problem {
   double target_ = default_target;
   bool steady_ = false, corrected_ = true;
   bool has_cells_ = false;
+  std::optional<double> pinned_factor_;  ///< of all stages that have none of their own
   struct UsedType {
     const scene::CellType* type;
     int cells;
@@ -106,19 +126,9 @@ class Problem {
   std::vector<UsedType> used_types_;
   double radius_ = 0;           ///< of the smallest cell, m
   double viscosity_ratio_ = 1;  ///< the furthest from 1
-  double shear_rate_ = 0, strain_ = 0;
-  double mean_wall_speed_ = 0;  ///< largest, m/s
-  struct Start {
-    double lag, strain;  ///< for each unit of density factor (scene::start_up_strain), and of the stage
-    bool driven;         ///< by a pressure gradient rather than by walls
-    double own_factor;   ///< of the stage; 0: it has none
-  };
-  std::vector<Start> starts_;  ///< of flows that begin at rest
-  double free_rate_ = 0;       ///< largest shear rate, 1/s, in stages without a factor of their own
-  double own_rate_ = 0;        ///< largest product of shear rate and factor in the others, 1/s
-  double free_s_ = 0;          ///< duration of stages without a factor of their own
-  double own_s_ = 0;           ///< of the others, over their factors
-  double reynolds_ = 0;        ///< of the true fluid, with the cells' radius or, without cells, half the height
+  std::vector<Flow> flows_;     ///< of each stage
+  double strain_ = 0;           ///< of the stage with the largest
+  double momentum_time_ = 0;    ///< s, of the true fluid, over the cells' radius or, without cells, half the height
 };
 
 Problem::Problem(const scene::Scene& draft, const Json& written, const NumericsBounds& bounds)
@@ -128,6 +138,7 @@ Problem::Problem(const scene::Scene& draft, const Json& written, const NumericsB
   steady_ = wanted.value("of", "motion") == "steady";
   corrected_ = numerics_.value("slip_correction",
                                bounds_.slip_correction && scene_.fluid.layers.empty() && !scene_.domain.depth);
+  if (numerics_.contains("density_factor")) pinned_factor_ = numerics_.at("density_factor").get<double>();
   has_cells_ = !scene_.cells.empty();
   radius_ = shape::smallest_radius(scene_);
   std::vector<int> placed(scene_.cell_types.size());
@@ -142,26 +153,21 @@ Problem::Problem(const scene::Scene& draft, const Json& written, const NumericsB
     if (std::abs(std::log(ratio)) > std::abs(std::log(viscosity_ratio_))) viscosity_ratio_ = ratio;
   }
   for (const scene::Stage& stage : scene_.stages) {
-    mean_wall_speed_ =
-        std::max(mean_wall_speed_, std::abs(stage.mean_wall_speed) + std::abs(stage.oscillation.mean_wall_speed));
     const double rate = scene::mean_shear_rate(stage, scene_);
-    const double own_factor = stage.has_own_density_factor() ? stage.density_factor : 0;
     const double by_strain = stage.strain && rate > 0 ? *stage.strain / rate : INFINITY;
-    const double seconds = std::min(by_strain, stage.duration.value_or(INFINITY));
-    if (std::isfinite(seconds)) (own_factor > 0 ? own_s_ : free_s_) += seconds / (own_factor > 0 ? own_factor : 1);
-    if (own_factor > 0)
-      own_rate_ = std::max(own_rate_, rate * own_factor);
-    else
-      free_rate_ = std::max(free_rate_, rate);
-    if (rate == 0) continue;
-    shear_rate_ = std::max(shear_rate_, rate);
-    const double strain = stage.strain.value_or(stage.duration.value_or(0) * rate);
-    strain_ = std::max(strain_, strain);
-    if (const double lag = scene::start_up_strain(stage, scene_); lag > 0)
-      starts_.push_back({lag, strain, stage.shear_rate == 0, own_factor});
+    Flow flow{.rate = rate,
+              .mean_wall_speed = std::abs(stage.mean_wall_speed) + std::abs(stage.oscillation.mean_wall_speed),
+              .strain = stage.strain.value_or(stage.duration.value_or(0) * rate),
+              .seconds = std::min(by_strain, stage.duration.value_or(INFINITY)),
+              .lag = rate > 0 ? scene::start_up_strain(stage, scene_) : 0,
+              .driven = stage.shear_rate == 0,
+              .own_factor = {}};
+    if (stage.has_own_density_factor()) flow.own_factor = stage.density_factor;
+    if (rate > 0) strain_ = std::max(strain_, flow.strain);
+    flows_.push_back(flow);
   }
   const double length = has_cells_ ? radius_ : scene_.domain.height() / 2;
-  reynolds_ = scene_.fluid.density * shear_rate_ * length * length / scene::viscosity_range(scene_.fluid).least;
+  momentum_time_ = scene_.fluid.density * length * length / scene::viscosity_range(scene_.fluid).least;
 }
 
 std::vector<LatticeSize> Problem::lattices() const {
@@ -235,34 +241,48 @@ Problem::Trial Problem::cheapest() const {
 
 /// The densest fluid that the error leaves room for, and what it costs.
 Problem::Trial Problem::tried(const LatticeSize& nodes, double tau) const {
-  Trial trial{nodes, tau, 1, 0, {}};
+  Trial trial{nodes, tau, 0, {}, {}};
   const double spacing = spacing_of(nodes);
-  const double most_viscous_tau = core::relaxation_time_of(scene::viscosity_range(scene_.fluid).most /
-                                                           scene_.fluid.viscosity * core::viscosity_of(tau));
-  trial.error.resolution = resolution_error(spacing, most_viscous_tau);
-  const double true_step = core::time_step(tau, spacing, scene_.fluid.viscosity / scene_.fluid.density);  // of factor 1
-  if (const Json factor = pinned("density_factor"); !factor.is_null()) {
-    trial.density_factor = factor.get<double>();
-  } else if (free_rate_ == 0 && mean_wall_speed_ == 0) {
-    trial.density_factor = has_cells_ ? std::min(density_factor_at_rest, most_by_limits(tau)) : 1;
-  } else {
-    // Walls at shear_rate x height / 2 around their mean in units of the spacing over the time step.
-    const double wall_mach = std::sqrt(3.0) * free_rate_ * scene_.domain.height() / 2 / spacing * true_step +
-                             std::sqrt(3.0) * mean_wall_speed_ / spacing * true_step;
-    const double allowed = most_density_factor(goal() - trial.error.resolution);
-    // Without cells what is computed is how the fluid's own inertia lets a flow start.
-    const double wanted = has_cells_ ? allowed : 1;
-    const double pressed = has_cells_ ? compression_by_shear(most_viscous_tau, free_rate_ * true_step) : 0;
-    trial.density_factor =
-        std::max(1.0, std::min({wanted, nearly * scene::largest_wall_mach(scene_.fluid.inertia) / wall_mach,
-                                nearly * largest_compression_by_shear / pressed, most_by_limits(tau)}));
+  trial.error.resolution = resolution_error(spacing, most_viscous(tau));
+  trial.density_factors = density_factors(goal() - trial.error.resolution, spacing, tau);
+  for (std::size_t i = 0; i < flows_.size(); ++i) {
+    ErrorShares of_stage = error_of(flows_[i], trial.density_factors[i]);
+    of_stage.resolution = trial.error.resolution;
+    if (of_stage.total() > trial.error.total()) trial.error = of_stage;
   }
-  trial.error.inertia = inertia_error(trial.density_factor);
-  trial.error.start = start_error(trial.density_factor);
   trial.cost = step_cost(fluid_nodes(with_lattice(scene_.domain, nodes)), membrane_nodes(spacing),
                          scene_.numerics.precision, scene_.domain.dimension()) /
-               true_step * duration(trial.density_factor);
+               time_step_of_factor_one(spacing, tau) * duration(trial.density_factors);
   return trial;
+}
+
+std::vector<double> Problem::density_factors(double error, double spacing, double tau) const {
+  const double step = time_step_of_factor_one(spacing, tau), sound = 1 / std::sqrt(3.0);
+  std::vector<double> found;
+  // What is left of a flow dies out in a fluid that is no denser than it was in the flow.
+  double at_rest = has_cells_ ? density_factor_at_rest : 1;
+  for (std::size_t i = 0; i < flows_.size(); ++i) {
+    const Flow& flow = flows_[i];
+    const double most = most_by_limits(i, tau);
+    double factor = 1;
+    if (flow.own_factor || pinned_factor_) {
+      factor = flow.own_factor.value_or(pinned_factor_.value_or(1));
+    } else if (flow.at_rest()) {
+      factor = std::min(at_rest, most);
+    } else {
+      // Walls at rate x height / 2 around their mean in units of the spacing over the time step.
+      const double wall_speed = flow.rate * scene_.domain.height() / 2 + flow.mean_wall_speed;
+      const double wall_mach = wall_speed * step / spacing / sound;
+      // Without cells what is computed is how the fluid's own inertia lets a flow start.
+      const double wanted = has_cells_ ? most_density_factor(flow, error) : 1;
+      const double pressed = has_cells_ ? compression_by_shear(most_viscous(tau), flow.rate * step) : 0;
+      factor = std::max(1.0, std::min({wanted, nearly * scene::largest_wall_mach(scene_.fluid.inertia) / wall_mach,
+                                       nearly * largest_compression_by_shear / pressed, most}));
+    }
+    if (!flow.at_rest()) at_rest = std::min(at_rest, factor);
+    found.push_back(factor);
+  }
+  return found;
 }
 
 /// That of the cell type for which it is largest, and that of the flow.
@@ -276,64 +296,111 @@ double Problem::resolution_error(double spacing, double tau) const {
   return largest + steady_flow_error(domain, spacing);
 }
 
-double Problem::inertia_error(double density_factor) const {
-  const double rate = std::max(free_rate_ * density_factor, own_rate_);  // of the fluid as dense as it is
-  if (!has_cells_ || !(rate > 0)) return 0;
-  const double reynolds = reynolds_ / shear_rate_ * rate;
+/// Events of a motion come late by the lag of the start. The steady state misses what the slowest mode of the start has left,
+/// in the flow and in the relative viscosity.
+ErrorShares Problem::error_of(const Flow& flow, double density_factor) const {
+  ErrorShares error;
+  if (!has_cells_) return error;
   const int dimension = scene_.domain.dimension();
-  return steady_ ? steady_error(reynolds, strain_, viscosity_ratio_, dimension) : motion_error(reynolds, dimension);
-}
-
-/// Of the stage where it is largest. Events of a motion come late by the lag. The steady state misses what the slowest
-/// mode of the start has left, in the flow and in the relative viscosity.
-double Problem::start_error(double density_factor) const {
-  if (!has_cells_) return 0;
-  double largest = 0;
-  for (const Start& start : starts_) {
-    const FlowStart flow{(start.own_factor > 0 ? start.own_factor : density_factor) * start.lag, start.driven};
-    if (!(flow.delay > 0)) continue;
-    largest = std::max(largest, steady_ ? std::max(flow.left_at(start.strain), flow.left_of_viscosity(start.strain))
-                                        : flow.delay / start.strain);
+  if (const double reynolds = momentum_time_ * flow.rate * density_factor; reynolds > 0) {
+    error.inertia =
+        steady_ ? steady_error(reynolds, strain_, viscosity_ratio_, dimension) : motion_error(reynolds, dimension);
   }
-  return largest;
+  if (const FlowStart start{density_factor * flow.lag, flow.driven}; start.delay > 0) {
+    error.start = steady_ ? std::max(start.left_at(flow.strain), start.left_of_viscosity(flow.strain))
+                          : start.delay / flow.strain;
+  }
+  return error;
 }
 
-double Problem::most_density_factor(double error) const {
-  const auto left = [&](double factor) { return inertia_error(factor) + start_error(factor); };
+double Problem::goal() const {
+  double given = 0;
+  for (const Flow& flow : flows_)
+    if (flow.own_factor) given = std::max(given, error_of(flow, *flow.own_factor).total());
+  return std::max(target_, target_ / 2 + given);
+}
+
+double Problem::most_by_limits(std::size_t stage, double tau) const {
+  const auto of_tau = bounds_.most_density_factor_at.find({stage, tau});
+  const auto of_all = bounds_.most_density_factor.find(stage);
+  return std::min(of_tau != bounds_.most_density_factor_at.end() ? of_tau->second : INFINITY,
+                  of_all != bounds_.most_density_factor.end() ? of_all->second : INFINITY);
+}
+
+double Problem::most_density_factor(const Flow& flow, double error) const {
   if (!(error > 0)) return 0;
-  double low = 1e-6, high = 1e12;  // both errors grow with the factor
-  if (left(high) <= error) return high;
+  double low = 1e-6, high = 1e12;  // the error grows with the factor
+  if (error_of(flow, high).total() <= error) return high;
   for (int i = 0; i < 100; ++i) {
     const double middle = std::sqrt(low * high);
-    (left(middle) <= error ? low : high) = middle;
+    (error_of(flow, middle).total() <= error ? low : high) = middle;
   }
   return low;
 }
 
-double Problem::duration(double density_factor) const {
-  const double all = own_s_ + free_s_ / density_factor;
-  return all > 0 ? all : 1 / density_factor;  // a scene that says how long only by `until`
+/// A scene that says how long only by `until` counts as a second in each stage.
+double Problem::duration(const std::vector<double>& density_factors) const {
+  double all = 0, without_end = 0;
+  for (std::size_t i = 0; i < flows_.size(); ++i) {
+    if (std::isfinite(flows_[i].seconds))
+      all += flows_[i].seconds / density_factors[i];
+    else
+      without_end += 1 / density_factors[i];
+  }
+  return all > 0 ? all : without_end;
 }
 
-std::string Problem::why_density_factor(const Trial& best) const {
+std::string Problem::why_density_factor(const Trial& best, std::size_t stage) const {
   if (!has_cells_) return "without cells the fluid's own inertia is what decides";
-  if (shear_rate_ == 0 && mean_wall_speed_ != 0)
-    return "carried along by both walls, as large as their Mach number allows";
-  if (shear_rate_ == 0) return "at rest, as large as the limits of the membranes' stiffness allow";
-  std::string why = "simulated Reynolds number " + number(reynolds_ * best.density_factor, 3) + ": " +
-                    number(100 * best.error.inertia, 2) + " % of error";
-  if (best.error.start > 0) {
-    why += ", and " + number(100 * best.error.start, 2) + " % by the start of the flow" + gain_by_developed_start(best);
+  const Flow& flow = flows_[stage];
+  const double factor = best.density_factors[stage];
+  const bool limited = factor >= most_by_limits(stage, best.tau) * 0.99;
+  if (flow.at_rest()) {
+    return limited                           ? "at rest, as large as the limits of the membranes' stiffness allow"
+           : factor < density_factor_at_rest ? "at rest, no larger than in the flow before"
+                                             : "at rest, the largest with which cells were measured to come to rest";
   }
-  if (best.density_factor >= most_by_limits(best.tau) * 0.99) why += "; more is beyond a limit of the plan";
+  if (flow.rate == 0) return "carried along by both walls, as large as their Mach number allows";
+  const ErrorShares error = error_of(flow, factor);
+  std::string why = "simulated Reynolds number " + number(momentum_time_ * flow.rate * factor, 3) + ": " +
+                    number(100 * error.inertia, 2) + " % of error";
+  if (error.start > 0) {
+    why += ", and " + number(100 * error.start, 2) + " % by the start of the flow" + gain_by_developed_start(best);
+  }
+  if (limited) why += "; more is beyond a limit of the plan";
   return why;
+}
+
+std::optional<std::size_t> Problem::least_dense(const Trial& best) const {
+  std::optional<std::size_t> least;
+  for (std::size_t i = 0; i < flows_.size(); ++i) {
+    if (flows_[i].own_factor || pinned_factor_) continue;
+    if (!least || best.density_factors[i] < best.density_factors[*least]) least = i;
+  }
+  return least;
+}
+
+/// The least one is that of the scene; stages that bear a much denser fluid get their own.
+void Problem::choose_density_factors(const Trial& best, NumericsChoice& choice) const {
+  constexpr double much = 1.25;
+  const std::optional<std::size_t> least = least_dense(best);
+  if (!least) return;
+  const auto choose = [&](const std::string& of, std::size_t stage) {
+    choice.values.push_back(
+        {of + "/density_factor", three_digits_below(best.density_factors[stage]), why_density_factor(best, stage)});
+  };
+  choose("/numerics", *least);
+  for (std::size_t i = 0; i < flows_.size(); ++i) {
+    if (!flows_[i].own_factor && best.density_factors[i] > much * best.density_factors[*least])
+      choose(scene_.stages[i].pointer, i);
+  }
 }
 
 /// What flows that are developed from the start would save; empty: little.
 std::string Problem::gain_by_developed_start(const Trial& best) const {
   constexpr double little = 0.8;
   Problem developed = *this;
-  developed.starts_.clear();
+  for (Flow& flow : developed.flows_) flow.lag = 0;
   const Trial other = developed.cheapest();
   if (!good_enough(best) || !developed.meets_target(other) || other.cost > little * best.cost) return {};
   return ", without which (\"start\": \"developed\") the run would take " + number(other.cost / best.cost, 2) +
@@ -363,7 +430,7 @@ NumericsChoice Problem::chosen(const Trial& best) const {
     if (!numerics_.contains(key)) choose(std::string("/numerics/") + key, value, why);
   };
   set("tau", best.tau, "the cheapest with this resolution");
-  set("density_factor", three_digits_below(best.density_factor), why_density_factor(best));
+  choose_density_factors(best, choice);
   if (has_cells_) {
     set("coupling", "auto", "explicit or semi-implicit, by the limits of the membranes' stiffness");
     set("slip_correction", corrected_,
@@ -379,11 +446,12 @@ NumericsChoice Problem::chosen(const Trial& best) const {
                    ", with what the scene pins or the finest lattice that is tried";
   }
   constexpr double most_of_the_target = 0.8;
-  if (meets_target(best) && best.error.resolution > most_of_the_target * target_ && has_cells_ && shear_rate_ > 0 &&
-      written_.at("domain").contains("nodes") && pinned("density_factor").is_null()) {
+  const std::optional<std::size_t> least = least_dense(best);
+  if (meets_target(best) && best.error.resolution > most_of_the_target * target_ && has_cells_ && least &&
+      flows_[*least].rate > 0 && written_.at("domain").contains("nodes")) {
     choice.doubt = "numerics.auto: the lattice that domain.nodes names takes " + percent(best.error.resolution) +
                    " of error already, and what is left of " + percent(target_) +
-                   " asks for small steps (density_factor " + number(best.density_factor, 3) +
+                   " asks for small steps (density_factor " + number(best.density_factors[*least], 3) +
                    "); leave domain.nodes out, or allow a larger error";
   }
   if (choice.doubt.empty() && has_cells_ && !scene_.fluid.layers.empty()) {

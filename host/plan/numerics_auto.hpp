@@ -1,11 +1,13 @@
 // "numerics": "auto": resolution, relaxation time, relaxed density and coupling chosen for a target error.
 #pragma once
 
-#include <limits>
+#include <algorithm>
+#include <cstddef>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace rouleau::json {
@@ -39,6 +41,10 @@ struct NumericsChoice {
   ErrorShares expected;
   std::vector<ChosenValue> values;  ///< what the scene leaves open
   std::string doubt;                ///< why the target may not be met, or only at a price; empty: it should
+  [[nodiscard]] bool has(const std::string& pointer) const {
+    return std::any_of(values.begin(), values.end(),
+                       [&](const ChosenValue& value) { return value.pointer == pointer; });
+  }
 };
 
 /// Null where nothing was left open.
@@ -46,10 +52,10 @@ nlohmann::json to_json(const std::optional<NumericsChoice>& choice);
 
 /// What the limits of a plan ask for beyond the target error.
 struct NumericsBounds {
-  double most_density_factor = std::numeric_limits<double>::infinity();
-  /// By relaxation time. The explicit step bears stiffness by the square of tau - 1/2, so that what is too much at one may do at
-  /// another.
-  std::map<double, double> most_density_factor_at = {};
+  std::map<std::size_t, double> most_density_factor = {};  ///< by stage
+  /// By stage and relaxation time. The explicit step bears stiffness by the square of tau - 1/2, so that what is too much at one
+  /// may do at another.
+  std::map<std::pair<std::size_t, double>, double> most_density_factor_at = {};
   double least_radius = 10;  ///< of the smallest cell, lattice spacings
   bool slip_correction = true;
   bool operator==(const NumericsBounds&) const = default;

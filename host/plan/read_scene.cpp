@@ -40,11 +40,12 @@ NumericsBounds tightened(NumericsBounds bounds, const Plan& plan) {
   for (const Limit& limit : find_limits(plan)) {
     if (limit.margin >= 1 || !(limit.margin > 0)) continue;
     if (limit.remedied_by == RemediedBy::density_factor) {
-      const scene::Numerics& numerics = plan.scene->numerics;
-      const double kept = numerics.density_factor * limit.margin / to_spare;
-      double& most = plan.scene->domain.depth
-                         ? bounds.most_density_factor_at.try_emplace(numerics.tau, kept).first->second
-                         : bounds.most_density_factor;
+      const auto stage = static_cast<std::size_t>(limit.stage);
+      const double kept = plan.scene->stages[stage].density_factor * limit.margin / to_spare;
+      double& most =
+          plan.scene->domain.depth
+              ? bounds.most_density_factor_at.try_emplace({stage, plan.scene->numerics.tau}, kept).first->second
+              : bounds.most_density_factor.try_emplace(stage, kept).first->second;
       most = std::min(most, kept);
     } else if (limit.remedied_by == RemediedBy::resolution) {
       const double radius = shape::smallest_radius(*plan.scene) / lattice_spacing(*plan.scene);

@@ -305,11 +305,12 @@ std::vector<Limit> find_limits(const Plan& plan) {
   const scene::Scene& scene = *plan.scene;
   std::vector<Limit> limits;
   // `upper`: the value must stay below the limit; otherwise above it.
+  int stage_index = 0;
   const auto add = [&](const std::string& name, double value, double limit, bool upper, const std::string& remedy,
                        RemediedBy remedied_by = RemediedBy::nothing) {
     if (!std::isfinite(value)) return;
     const double margin = upper ? (value > 0 ? limit / value : std::numeric_limits<double>::infinity()) : value / limit;
-    limits.push_back({name, value, limit, margin, remedy, remedied_by});
+    limits.push_back({name, value, limit, margin, remedy, remedied_by, stage_index});
   };
   constexpr RemediedBy resolution = RemediedBy::resolution;
   const double tau = scene.numerics.tau;
@@ -332,8 +333,11 @@ std::vector<Limit> find_limits(const Plan& plan) {
   for (const StageSetting& stage : plan.stages) {
     const std::string where = " (stage " + stage.stage->name + ")";
     const std::string lower = "lower " + stage.stage->density_factor_key;
-    // A factor of the stage's own is not auto's to change.
-    const RemediedBy density = stage.stage->has_own_density_factor() ? RemediedBy::nothing : RemediedBy::density_factor;
+    stage_index = stage.index;
+    // A factor that the scene gives a stage is not auto's to change.
+    const bool chosen = plan.numerics_choice && plan.numerics_choice->has(stage.stage->density_factor_key);
+    const RemediedBy density =
+        stage.stage->has_own_density_factor() && !chosen ? RemediedBy::nothing : RemediedBy::density_factor;
     const plugin::ModelSetting setting = stage.model_setting(scene.fluid.inertia);
     if (stage.fastest_wall() != 0) {
       const std::string what = stage.stage->mean_wall_speed != 0 ? "the walls' speeds" : "shear_rate";

@@ -26,6 +26,7 @@ struct Limit {
   double value, limit, margin;
   std::string remedy;
   RemediedBy remedied_by = RemediedBy::nothing;
+  int stage = 0;  ///< whose density factor is the remedy
   NLOHMANN_DEFINE_TYPE_INTRUSIVE(Limit, name, value, limit, margin, remedy)
 };
 

@@ -97,6 +97,53 @@ TEST_CASE("a factor of a stage's own that takes the target leaves half of it to 
   CHECK_THAT(choice->doubt, Contains("more than the target of 1 %"));
 }
 
+TEST_CASE("each stage gets the density factor that its own error leaves room for") {
+  const std::string stages = R"(/stages=[{"name": "rest", "duration": "0.2 s"},
+      {"name": "fast", "shear_rate": "40 1/s", "strain": 10, "start": "developed"},
+      {"name": "slow", "shear_rate": "4 1/s", "strain": 10, "start": "developed"},
+      {"name": "late", "shear_rate": "4 1/s", "strain": 10},
+      {"name": "stop", "duration": "0.2 s"}])",
+                    motion = "/numerics={\"auto\": {\"error\": 0.02}}";
+  const auto [scene, choice] = chosen({stages, motion});
+  const auto factor = [](const Scene& of, std::size_t stage) { return of.stages[stage].density_factor; };
+  CHECK(choice->expected.total() <= 0.02);
+  CHECK(choice->doubt.empty());
+  // The Reynolds number of the fast stage and of the slow one is the same; a start at rest takes from the late one's.
+  CHECK(factor(scene, 2) == Approx(10 * factor(scene, 1)).epsilon(0.01));
+  CHECK(factor(scene, 3) < factor(scene, 2) / 1.25);
+  CHECK(factor(scene, 0) > factor(scene, 2));
+  CHECK(factor(scene, 4) == Approx(std::min({factor(scene, 1), factor(scene, 2), factor(scene, 3)})).epsilon(0.01));
+  double least = 1e300;
+  for (std::size_t i = 0; i < 5; ++i) least = std::min(least, factor(scene, i));
+  CHECK(scene.numerics.density_factor == least);
+
+  const auto [pinned, of_pinned] = chosen({stages, motion, "/numerics/density_factor=100"});
+  for (std::size_t i = 0; i < 5; ++i) CHECK(factor(pinned, i) == 100);
+  CHECK_FALSE(of_pinned->has("/numerics/density_factor"));
+
+  const Scene given = chosen({stages, motion, "/stages/2/density_factor=100"}).scene;
+  CHECK(factor(given, 2) == 100);
+  CHECK(factor(given, 1) > 200);
+}
+
+TEST_CASE("a limit of one stage does not bound another's density factor") {
+  // Cells that attract each other strongly bound the factor at rest; a slow flow is bound by its error or by the same limit.
+  const std::string stages = R"(/stages=[{"name": "fast", "shear_rate": "40 1/s", "strain": 10, "start": "developed"},
+      {"name": "slow", "shear_rate": "0.01 1/s", "strain": 1, "start": "developed"}])";
+  const std::vector<std::string> stiff{stages, "/cell_types/capsule/membrane/0/parameters/shear_modulus=1.92e-4",
+                                       "/numerics={\"auto\": {\"error\": 0.02}}"};
+  const ReadScene read = chosen(stiff);
+  const Catalog catalog = shipped_plugins(read.scene);
+  const Plan plan = make_plan(read.scene, catalog, read.numerics_choice);
+  for (const Limit& limit : find_limits(plan)) {
+    INFO(limit.name);
+    if (limit.remedied_by == RemediedBy::density_factor) CHECK(limit.margin >= 1);
+  }
+  // The slow stage is at a limit of the stiffness, and the fast one is below it.
+  CHECK(read.scene.stages[1].density_factor > 1.25 * read.scene.stages[0].density_factor);
+  CHECK(read.scene.stages[1].density_factor < 1000 * read.scene.stages[0].density_factor);
+}
+
 TEST_CASE("where a developed start is cheaper for the same target, the choice says by how much") {
   const auto why_factor = [](const ReadScene& read) {
     for (const ChosenValue& value : read.numerics_choice->values)
