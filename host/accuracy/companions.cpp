@@ -11,6 +11,7 @@
 #include "plan/error_model.hpp"
 #include "plan/estimate.hpp"
 #include "plan/lattice_size.hpp"
+#include "plan/stability_limits.hpp"
 #include "plan/stage_scales.hpp"
 #include "scene/driving_flow.hpp"
 #include "shape/outline.hpp"
@@ -33,8 +34,10 @@ constexpr double to_the_coarsest = 1.25;  ///< spacing of the companion for the 
 constexpr double least_to_the_coarsest = 1.15, most_to_the_coarsest = 1.4;
 /// Half the density is nearer to the truth. The companion keeps its time step, for the relaxation time makes up for its
 /// density: half a step would show the step's own error too, which on a coarse lattice with stiff cells is ten times that
-/// of the density and belongs to the lattice. Where that would want a relaxation time beyond this one, whose own error is
-/// large, it is twice the density. In the plain scheme slip and leak change with tau, and it keeps that instead.
+/// of the density and belongs to the lattice. But the fluid must not give way to the shear more than before, or than the plan
+/// allows (plan::largest_compression_by_shear): cells beside the middle would drift otherwise, and the step is shorter then.
+/// Where all this would want a relaxation time beyond this one, whose own error is large, it is twice the density. In the plain
+/// scheme slip and leak change with tau, and it keeps that instead.
 constexpr double light = 0.5, dense = 2, largest_tau = 3;
 /// A start that makes a stage late by less than this share of its strain changes in proportion to the density, and the
 /// companion for inertia shows it.
@@ -69,6 +72,9 @@ bool start_matters(const scene::Scene& scene) {
            stage.density_factor * scene::start_up_strain(stage, scene) > slight_start * strain_of(stage, scene);
   });
 }
+
+/// Of second order in the spacing.
+bool is_corrected(const scene::Scene& scene) { return scene.cells.empty() || scene.numerics.slip_correction; }
 
 using plan::LatticeSize, plan::lattice_size;
 
@@ -194,12 +200,28 @@ struct Changes {
   }
 };
 
-Changes choose_changes(const scene::Scene& scene, double densest, bool moments, bool corrected) {
+/// By how much the lattice's fluid gives way to the shear: of the stage where it is most.
+double compression(const scene::Scene& scene) {
+  double most = 0;
+  for (std::size_t i = 0; i < scene.stages.size(); ++i) {
+    const double step = plan::make_stage_setting(scene, static_cast<int>(i)).units.time;
+    most = std::max(
+        most, plan::compression_by_shear(scene.numerics.tau, step * scene::mean_shear_rate(scene.stages[i], scene)));
+  }
+  return most;
+}
+
+/// On a lattice that is so many times coarser.
+Changes choose_changes(const scene::Scene& scene, double densest, bool moments, double coarser) {
   Changes changes{start_matters(scene), densest > 1, std::max(light, 1 / densest), scene.numerics.tau, moments};
-  const auto tau_of_same_step = [&](double density) { return 0.5 + (scene.numerics.tau - 0.5) / density; };
-  if (!corrected) return changes;
-  if (tau_of_same_step(changes.density) > largest_tau) changes.density = dense;
-  changes.tau = tau_of_same_step(changes.density);
+  if (!is_corrected(scene)) return changes;
+  // It grows with the square of tau - 1/2, of the spacing, and with the density.
+  const double room = std::max(1.0, plan::largest_compression_by_shear / (compression(scene) * coarser * coarser));
+  const auto tau_with = [&](double density) {
+    return 0.5 + (scene.numerics.tau - 0.5) * std::min(1 / density, std::sqrt(room / density));
+  };
+  if (tau_with(changes.density) > largest_tau) changes.density = dense;
+  changes.tau = tau_with(changes.density);
   return changes;
 }
 
@@ -233,10 +255,9 @@ Companions choose_companions(const scene::Scene& scene, const RunCost& cost) {
   double densest = 1;
   for (const scene::Stage& stage : scene.stages) densest = std::max(densest, stage.density_factor);
   chosen.relaxed = 1 - 1 / densest;
-  chosen.order = scene.cells.empty() || scene.numerics.slip_correction ? 2 : 1;
+  chosen.order = is_corrected(scene) ? 2 : 1;
   chosen.usual_order = std::max(chosen.order, plan::order_of_lattice_error(scene));
-  const Changes changes = choose_changes(scene, densest, cost.moments, chosen.order == 2);
-  chosen.density = changes.density;
+  Changes changes = choose_changes(scene, densest, cost.moments, 1);
   const int processes = 2 + (changes.start ? 1 : 0) + (changes.inertia ? 1 : 0);
   const bool thinned = cost.moments && cost.outputs > many_outputs && thin_outputs(scene).has_value();
   const double outputs_s = outputs_of_tables * cost.outputs_s / (thinned ? fewer : 1);
@@ -249,6 +270,8 @@ Companions choose_companions(const scene::Scene& scene, const RunCost& cost) {
     if (lattices.refinement(k) < least_refinement) continue;
     if (lattices.refinement(k) > most_refinement || lattices.too_small(k)) break;
     coarse = lattices.coarser_than(k);
+    changes =
+        choose_changes(scene, densest, cost.moments, lattices.refinement(cost.moments || coarse == 0 ? k : coarse));
     if (cost_of_all(scene, lattices, k, coarse, changes) <= affordable) fine = k;
   }
   if (fine == 0) {
@@ -257,6 +280,7 @@ Companions choose_companions(const scene::Scene& scene, const RunCost& cost) {
                       " times their distance at a small part of the cost; take numbers with a larger common divisor";
     return chosen;
   }
+  chosen.density = changes.density;
   chosen.refinement = lattices.refinement(fine);
   chosen.expected_share = longer * cost_of_all(scene, lattices, fine, coarse, changes);
   if (const double radius = lattices.radius(fine); radius < least_radius) {

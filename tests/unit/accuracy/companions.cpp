@@ -72,6 +72,25 @@ TEST_CASE(
   CHECK(dense.runs.back().scene["numerics"]["density_factor"] == 3125);
 }
 
+TEST_CASE("the companion of another density takes shorter steps where the fluid would give way to the shear") {
+  const Companions companions =
+      choose_companions(plan::read_scene(std::string(ROULEAU_PHYSICS_SCENES) + "/capsule.json",
+                                         {"/numerics/slip_correction=true", "/numerics/density_factor=50000"}),
+                        {.run_s = long_run_s});
+  const nlohmann::json& light = companions.runs.back().scene;
+  CHECK(light["numerics"]["density_factor"] == 25000);
+  // (tau - 1/2)^2 times the density is what it gives way by in a time step.
+  CHECK(light["numerics"]["tau"].get<double>() == Approx(0.5 + 0.5 * std::sqrt(2)));
+  // At rest it does not.
+  const Companions at_rest =
+      choose_companions(plan::read_scene(std::string(ROULEAU_PHYSICS_SCENES) + "/capsule.json",
+                                         {"/numerics/slip_correction=true", "/numerics/density_factor=50000",
+                                          R"(/stages=[{"name": "rest", "duration": "1 s"}])",
+                                          R"(/output={"cells": {"seconds": "0.1 s"}})"}),
+                        {.run_s = long_run_s});
+  CHECK(at_rest.runs.back().scene["numerics"]["tau"] == 1.5);
+}
+
 TEST_CASE("of a run with many outputs that reports moments companions have a quarter of them") {
   const scene::Scene scene = plan::read_scene(std::string(ROULEAU_PHYSICS_SCENES) + "/capsule.json");
   const auto interval = [&](long outputs, bool moments) {
