@@ -32,6 +32,7 @@ constexpr const char* origin = "numerics.auto";
 constexpr double nearly = 0.999;  ///< as much of a limit as is taken
 constexpr std::array relaxation_times{0.8, 1.0, 1.25, 1.5, 2.0, 2.5, 3.0};
 constexpr double least_of_layers = 0.01;  ///< of tau - 1/2 in a layer: twice the limit of the plan
+constexpr double first_events = 5;        ///< strain from which on what happens in a motion keeps the target
 constexpr double finest_radius = 80;      ///< spacings; more is never chosen
 constexpr int fewest_rows = 16;           ///< of a lattice without cells
 // Without a flow inertia only decides how membranes come to rest. The limits of the plan lower it where they must.
@@ -43,6 +44,17 @@ Json three_digits_below(double value) {
   const double rounded = std::stod(number(std::floor(value / digit * (1 + 1e-12)) * digit, 3));
   if (rounded == std::floor(rounded) && rounded < 1e15) return static_cast<std::int64_t>(rounded);
   return rounded;
+}
+
+/// Whether a flow can bring the cells to a steady state: one that is alone in the middle between walls. Others drift and meet.
+bool can_be_steady(const scene::Scene& scene) {
+  constexpr double near_the_middle = 0.1;  // radii
+  if (scene.cells.size() != 1) return false;
+  const double off = near_the_middle * shape::smallest_radius(scene);
+  const scene::Domain& domain = scene.domain;
+  const bool walls_across_z = domain.depth && !domain.depth->periodic;
+  return (domain.periodic_y || std::abs(scene.cells[0].center.y() - domain.size.y() / 2) <= off) &&
+         (!walls_across_z || std::abs(scene.cells[0].z - domain.depth->size / 2) <= off);
 }
 
 /// What the error and the cost of a scene depend on, and what it pins.
@@ -114,7 +126,8 @@ class Problem {
   NumericsBounds bounds_;
   Json numerics_;  ///< what the scene says of them
   double target_ = default_target;
-  bool steady_ = false, corrected_ = true;
+  bool steady_ = false;  ///< asked for
+  bool can_be_steady_ = false, corrected_ = true;
   bool has_cells_ = false;
   std::optional<double> pinned_factor_;  ///< of all stages that have none of their own
   struct UsedType {
@@ -140,6 +153,7 @@ Problem::Problem(const scene::Scene& draft, const Json& written, const NumericsB
                                bounds_.slip_correction && scene_.fluid.layers.empty() && !scene_.domain.depth);
   if (numerics_.contains("density_factor")) pinned_factor_ = numerics_.at("density_factor").get<double>();
   has_cells_ = !scene_.cells.empty();
+  can_be_steady_ = can_be_steady(scene_);
   radius_ = shape::smallest_radius(scene_);
   std::vector<int> placed(scene_.cell_types.size());
   for (const scene::CellPlacement& cell : scene_.cells) ++placed[cell.type];
@@ -296,19 +310,19 @@ double Problem::resolution_error(double spacing, double tau) const {
   return largest + steady_flow_error(domain, spacing);
 }
 
-/// Events of a motion come late by the lag of the start. The steady state misses what the slowest mode of the start has left,
+/// Events of a motion come late by the lag of the start, the first of them by the largest share. The steady state misses what the slowest mode of the start has left,
 /// in the flow and in the relative viscosity.
 ErrorShares Problem::error_of(const Flow& flow, double density_factor) const {
   ErrorShares error;
   if (!has_cells_) return error;
   const int dimension = scene_.domain.dimension();
   if (const double reynolds = momentum_time_ * flow.rate * density_factor; reynolds > 0) {
-    error.inertia =
-        steady_ ? steady_error(reynolds, strain_, viscosity_ratio_, dimension) : motion_error(reynolds, dimension);
+    error.inertia = steady_ ? steady_error(reynolds, strain_, viscosity_ratio_, dimension) : 0;
+    if (!steady_ || !can_be_steady_) error.inertia = std::max(error.inertia, motion_error(reynolds, dimension));
   }
   if (const FlowStart start{density_factor * flow.lag, flow.driven}; start.delay > 0) {
     error.start = steady_ ? std::max(start.left_at(flow.strain), start.left_of_viscosity(flow.strain))
-                          : start.delay / flow.strain;
+                          : start.delay / std::min(flow.strain, first_events);
   }
   return error;
 }

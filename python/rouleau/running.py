@@ -62,7 +62,8 @@ def run(scene: SceneLike, out: str | os.PathLike[str] | None = None, *, threads:
 
     Interrupting (Ctrl-C, a notebook's stop button) saves a checkpoint and returns the run, whose status is "interrupted"
     and which `resume` continues. Throws Error for bad input, with its place and remedy, and for a run that diverged,
-    which is its `run`. The program's warnings are Python's.
+    which is its `run`. The program's warnings are Python's, and that the finer run failed which followed a missed
+    target of numerics.auto is one.
     """
     directory = pathlib.Path(out) if out is not None else _free_directory(name_of(scene))
     options = ["--threads", str(threads)]
@@ -112,6 +113,9 @@ def simulate(scene: SceneLike, directory: pathlib.Path, options: list[str], prog
         return Run(directory)
     if child.returncode == FAILED and (directory / "summary.json").is_file():
         failed = Run(directory)
+        if failed.status == "completed":  # numerics.auto has missed its target, and the finer run that followed failed
+            warnings.warn(f"the finer run {directory / 'refined'} failed; what the first one found stands", stacklevel=3)
+            return failed
         failure = failed.summary.failure
         place = f"step {failure.step}, strain {failure.strain:.4g}" + \
             (f", cell {failure.cell}" if failure.cell is not None else "")

@@ -71,6 +71,10 @@ class Interrupting(In_a_folder):
 
 
 class Faults(In_a_folder):
+    def let_the_program_be(self, program):
+        self.addCleanup(os.environ.__setitem__, "ROULEAU", os.environ["ROULEAU"])
+        os.environ["ROULEAU"] = program
+
     def test_have_place_and_remedy(self):
         pathlib.Path("bad.json").write_text('{\n  "rouleau": 1,\n  "fluid": {"density": "1 g/cm3", "viscosity": 1.2}\n}\n')
         error = self.assert_refused("bad.json:3:48 /fluid/viscosity", rouleau.run, "bad.json")
@@ -100,10 +104,18 @@ class Faults(In_a_folder):
         rouleau.run(small_scene(), "run", max_steps=1, progress=False, overwrite=True)
 
     def test_of_a_missing_program_say_how_to_name_one(self):
-        kept = os.environ["ROULEAU"]
-        self.addCleanup(os.environ.__setitem__, "ROULEAU", kept)
-        os.environ["ROULEAU"] = "/no/program"
+        self.let_the_program_be("/no/program")
         self.assert_refused("let it name the program", rouleau.plan, SCENE)
+
+    def test_of_a_finer_run_leave_the_first_one_and_warn(self):
+        program = self.path / "program"  # in place of one whose first run misses its target, and whose finer run diverges
+        program.write_text("""#!/bin/sh
+mkdir run && echo '{"status": "completed", "warnings": []}' > run/summary.json && echo '{}' > run/scene.json; exit 1
+""")
+        program.chmod(0o755)
+        self.let_the_program_be(str(program))
+        with self.assertWarnsRegex(UserWarning, "run/refined failed; what the first one found stands"):
+            self.assertEqual(rouleau.run(small_scene(), "run", progress=False).status, "completed")
 
     def test_of_what_cannot_stand_in_a_scene_name_it(self):
         self.assert_refused("cannot stand in a scene", rouleau.plan, small_scene(), title=object())
