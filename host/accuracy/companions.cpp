@@ -27,7 +27,7 @@ using namespace nlohmann::literals;
 constexpr double least_refinement = 4.0 / 3, most_refinement = 2.5;
 constexpr double least_radius = 4;  ///< of the smallest cell on a companion's lattice, spacings
 // Shares of the run's time: of steps, at most and where starting the companions takes the rest; seconds to start one.
-constexpr double most_share = 0.36, least_share = 0.25, start_s = 0.02;
+constexpr double most_share = 0.34, least_share = 0.25, start_s = 0.02;
 constexpr double outputs_of_tables = 0.5;  ///< what they cost over those of a run, which writes frames
 
 constexpr double to_the_coarsest = 1.25;  ///< spacing of the companion for the order over that for the lattice

@@ -11,7 +11,7 @@ using namespace rouleau::accuracy;
 
 namespace {
 
-constexpr double share = 0.36, long_run_s = 1000;
+constexpr double share = 0.34, long_run_s = 1000;
 
 Companions of_capsule(const std::vector<std::string>& changes) {
   return choose_companions(plan::read_scene(std::string(ROULEAU_PHYSICS_SCENES) + "/capsule.json", changes),
