@@ -104,7 +104,7 @@ function showHistory(summary) {
     .map(([name, {mean, deviation}]) => name.endsWith("_m") ? {name: name.replace(/_m$/, "_um"), mean: 1e6 * mean, deviation: 1e6 * deviation} : {name, mean, deviation})
     .map(row => ({...row, stage: stage.stage, mean: format(row.mean), deviation: format(row.deviation, 2)})));
   if (means.length) section("Means", table([{title: "Quantity", value: r => spelled(r.name)}, {title: "Stage", key: "stage"}, {title: "Mean", key: "mean", number: true}, {title: "Standard deviation", key: "deviation", number: true}], means, {stacked: true}),
-    note("Over the outputs of the second half of each stage."));
+    note("Means in time over the second half of each stage, standard deviations of its outputs."));
 }
 
 function showProvenance(run) {
