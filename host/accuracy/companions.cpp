@@ -193,6 +193,8 @@ struct Changes {
   bool start, inertia;
   double density = light, tau = 1;
   bool on_the_finer;
+  /// Of these lattices (0: none) the one on which they are made.
+  [[nodiscard]] int lattice(int fine, int coarse) const { return on_the_finer || coarse == 0 ? fine : coarse; }
   /// What they cost over a run on their lattice.
   [[nodiscard]] double cost(double tau_of_scene) const {
     const double steps = (tau_of_scene - 0.5) / (tau - 0.5) / density;
@@ -211,12 +213,12 @@ double compression(const scene::Scene& scene) {
   return most;
 }
 
-/// On a lattice that is so many times coarser.
-Changes choose_changes(const scene::Scene& scene, double densest, bool moments, double coarser) {
+/// On a lattice whose fluid gives way by so much with the scene's own density.
+Changes choose_changes(const scene::Scene& scene, double densest, bool moments, double compressed) {
   Changes changes{start_matters(scene), densest > 1, std::max(light, 1 / densest), scene.numerics.tau, moments};
   if (!is_corrected(scene)) return changes;
-  // It grows with the square of tau - 1/2, of the spacing, and with the density.
-  const double room = std::max(1.0, plan::largest_compression_by_shear / (compression(scene) * coarser * coarser));
+  // It grows with the square of tau - 1/2 and with the density.
+  const double room = std::max(1.0, plan::largest_compression_by_shear / compressed);
   const auto tau_with = [&](double density) {
     return 0.5 + (scene.numerics.tau - 0.5) * std::min(1 / density, std::sqrt(room / density));
   };
@@ -228,10 +230,8 @@ Changes choose_changes(const scene::Scene& scene, double densest, bool moments, 
 /// Cost of all companions over the run's, with that for the lattice and that for the order (0: none) on these lattices.
 double cost_of_all(const scene::Scene& scene, const CoarserLattices& lattices, int fine, int coarse,
                    const Changes& changes) {
-  const double changed = changes.cost(scene.numerics.tau), of_fine = share_of(scene, lattices.refinement(fine));
-  if (coarse == 0) return of_fine * (1 + changed);
-  const double of_coarse = share_of(scene, lattices.refinement(coarse));
-  return of_fine + of_coarse + changed * (changes.on_the_finer ? of_fine : of_coarse);
+  const auto share = [&](int part) { return part == 0 ? 0 : share_of(scene, lattices.refinement(part)); };
+  return share(fine) + share(coarse) + changes.cost(scene.numerics.tau) * share(changes.lattice(fine, coarse));
 }
 
 }  // namespace
@@ -257,7 +257,8 @@ Companions choose_companions(const scene::Scene& scene, const RunCost& cost) {
   chosen.relaxed = 1 - 1 / densest;
   chosen.order = is_corrected(scene) ? 2 : 1;
   chosen.usual_order = std::max(chosen.order, plan::order_of_lattice_error(scene));
-  Changes changes = choose_changes(scene, densest, cost.moments, 1);
+  const double compressed = compression(scene);
+  Changes changes = choose_changes(scene, densest, cost.moments, compressed);
   const int processes = 2 + (changes.start ? 1 : 0) + (changes.inertia ? 1 : 0);
   const bool thinned = cost.moments && cost.outputs > many_outputs && thin_outputs(scene).has_value();
   const double outputs_s = outputs_of_tables * cost.outputs_s / (thinned ? fewer : 1);
@@ -270,8 +271,8 @@ Companions choose_companions(const scene::Scene& scene, const RunCost& cost) {
     if (lattices.refinement(k) < least_refinement) continue;
     if (lattices.refinement(k) > most_refinement || lattices.too_small(k)) break;
     coarse = lattices.coarser_than(k);
-    changes =
-        choose_changes(scene, densest, cost.moments, lattices.refinement(cost.moments || coarse == 0 ? k : coarse));
+    const double coarser = lattices.refinement(changes.lattice(k, coarse));
+    changes = choose_changes(scene, densest, cost.moments, compressed * coarser * coarser);
     if (cost_of_all(scene, lattices, k, coarse, changes) <= affordable) fine = k;
   }
   if (fine == 0) {
@@ -300,7 +301,7 @@ Companions choose_companions(const scene::Scene& scene, const RunCost& cost) {
     chosen.coarsest = lattices.refinement(coarse);
     add_lattice(Role::order, coarse);
   }
-  int last = changes.on_the_finer || coarse == 0 ? 0 : 1;
+  int last = changes.lattice(fine, coarse) == fine ? 0 : 1;
   Json companion = chosen.runs[static_cast<std::size_t>(last)].scene;
   const std::string beyond = chosen.runs[static_cast<std::size_t>(last)].beyond;
   const auto add_change = [&](Role role, const std::string& differs) {

@@ -99,14 +99,13 @@ Json RheologyHistory::means(const StageHistory& stage) {
       values.push_back(instant.values[k]);
       if (i >= first) late.push_back(values.back());
     }
+    Json& of_column = result[averaged()[k].column()];  // null
     const std::optional<double> mean = mean_of(time, values, middle);
+    if (!mean) continue;
+    const auto count = static_cast<double>(late.size());
     double squares = 0;
-    for (const double value : late) squares += mean ? (value - *mean) * (value - *mean) : 0;
-    Json& of_column = result[averaged()[k].column()];
-    if (mean)
-      of_column = {
-          {"mean", *mean},
-          {"deviation", late.size() > 1 ? Json(std::sqrt(squares / (static_cast<double>(late.size()) - 1))) : Json()}};
+    for (const double value : late) squares += (value - *mean) * (value - *mean);
+    of_column = {{"mean", *mean}, {"deviation", count > 1 ? Json(std::sqrt(squares / (count - 1))) : Json()}};
   }
   return result;
 }

@@ -74,10 +74,12 @@ class Problem {
   struct Flow {
     double rate;             ///< of shear, 1/s; 0: at rest
     double mean_wall_speed;  ///< largest, m/s
-    double strain, seconds;  ///< infinite where only `until` ends it
-    double lag;   ///< of a flow that begins at rest, for each unit of density factor (scene::start_up_strain)
-    bool driven;  ///< by a pressure gradient rather than by walls
-    std::optional<double> own_factor;
+    double strain;
+    double seconds;  ///< infinite where only `until` ends it
+    double lag;      ///< of a flow that begins at rest, for each unit of density factor (scene::start_up_strain)
+    bool driven;     ///< by a pressure gradient rather than by walls
+    std::optional<double> given_factor;  ///< by the scene, for this stage or for all
+    bool own_factor;                     ///< for this stage
     [[nodiscard]] bool at_rest() const { return rate == 0 && mean_wall_speed == 0; }
   };
   [[nodiscard]] std::vector<LatticeSize> lattices() const;
@@ -113,7 +115,8 @@ class Problem {
   [[nodiscard]] std::vector<double> density_factors(double error, double spacing, double tau) const;
   /// Seconds of the scene over the factor of each stage.
   [[nodiscard]] double duration(const std::vector<double>& density_factors) const;
-  [[nodiscard]] std::string why_density_factor(const Trial& best, std::size_t stage) const;
+  /// `gain`: what to say of gain_by_developed_start().
+  [[nodiscard]] std::string why_density_factor(const Trial& best, std::size_t stage, const std::string& gain) const;
   [[nodiscard]] std::string gain_by_developed_start(const Trial& best) const;
   /// Of the stages whose factor is left open.
   [[nodiscard]] std::optional<std::size_t> least_dense(const Trial& best) const;
@@ -129,7 +132,6 @@ class Problem {
   bool steady_ = false;  ///< asked for
   bool can_be_steady_ = false, corrected_ = true;
   bool has_cells_ = false;
-  std::optional<double> pinned_factor_;  ///< of all stages that have none of their own
   struct UsedType {
     const scene::CellType* type;
     int cells;
@@ -151,7 +153,6 @@ Problem::Problem(const scene::Scene& draft, const Json& written, const NumericsB
   steady_ = wanted.value("of", "motion") == "steady";
   corrected_ = numerics_.value("slip_correction",
                                bounds_.slip_correction && scene_.fluid.layers.empty() && !scene_.domain.depth);
-  if (numerics_.contains("density_factor")) pinned_factor_ = numerics_.at("density_factor").get<double>();
   has_cells_ = !scene_.cells.empty();
   can_be_steady_ = can_be_steady(scene_);
   radius_ = shape::smallest_radius(scene_);
@@ -175,8 +176,9 @@ Problem::Problem(const scene::Scene& draft, const Json& written, const NumericsB
               .seconds = std::min(by_strain, stage.duration.value_or(INFINITY)),
               .lag = rate > 0 ? scene::start_up_strain(stage, scene_) : 0,
               .driven = stage.shear_rate == 0,
-              .own_factor = {}};
-    if (stage.has_own_density_factor()) flow.own_factor = stage.density_factor;
+              .given_factor = {},
+              .own_factor = stage.has_own_density_factor()};
+    if (flow.own_factor || numerics_.contains("density_factor")) flow.given_factor = stage.density_factor;
     if (rate > 0) strain_ = std::max(strain_, flow.strain);
     flows_.push_back(flow);
   }
@@ -279,8 +281,8 @@ std::vector<double> Problem::density_factors(double error, double spacing, doubl
     const Flow& flow = flows_[i];
     const double most = most_by_limits(i, tau);
     double factor = 1;
-    if (flow.own_factor || pinned_factor_) {
-      factor = flow.own_factor.value_or(pinned_factor_.value_or(1));
+    if (flow.given_factor) {
+      factor = *flow.given_factor;
     } else if (flow.at_rest()) {
       factor = std::min(at_rest, most);
     } else {
@@ -310,8 +312,8 @@ double Problem::resolution_error(double spacing, double tau) const {
   return largest + steady_flow_error(domain, spacing);
 }
 
-/// Events of a motion come late by the lag of the start, the first of them by the largest share. The steady state misses what the slowest mode of the start has left,
-/// in the flow and in the relative viscosity.
+/// Events of a motion come late by the lag of the start, the first of them by the largest share. The steady state misses what
+/// the slowest mode of the start has left, in the flow and in the relative viscosity.
 ErrorShares Problem::error_of(const Flow& flow, double density_factor) const {
   ErrorShares error;
   if (!has_cells_) return error;
@@ -330,7 +332,7 @@ ErrorShares Problem::error_of(const Flow& flow, double density_factor) const {
 double Problem::goal() const {
   double given = 0;
   for (const Flow& flow : flows_)
-    if (flow.own_factor) given = std::max(given, error_of(flow, *flow.own_factor).total());
+    if (flow.own_factor) given = std::max(given, error_of(flow, *flow.given_factor).total());
   return std::max(target_, target_ / 2 + given);
 }
 
@@ -364,7 +366,7 @@ double Problem::duration(const std::vector<double>& density_factors) const {
   return all > 0 ? all : without_end;
 }
 
-std::string Problem::why_density_factor(const Trial& best, std::size_t stage) const {
+std::string Problem::why_density_factor(const Trial& best, std::size_t stage, const std::string& gain) const {
   if (!has_cells_) return "without cells the fluid's own inertia is what decides";
   const Flow& flow = flows_[stage];
   const double factor = best.density_factors[stage];
@@ -379,7 +381,7 @@ std::string Problem::why_density_factor(const Trial& best, std::size_t stage) co
   std::string why = "simulated Reynolds number " + number(momentum_time_ * flow.rate * factor, 3) + ": " +
                     number(100 * error.inertia, 2) + " % of error";
   if (error.start > 0) {
-    why += ", and " + number(100 * error.start, 2) + " % by the start of the flow" + gain_by_developed_start(best);
+    why += ", and " + number(100 * error.start, 2) + " % by the start of the flow" + gain;
   }
   if (limited) why += "; more is beyond a limit of the plan";
   return why;
@@ -388,8 +390,7 @@ std::string Problem::why_density_factor(const Trial& best, std::size_t stage) co
 std::optional<std::size_t> Problem::least_dense(const Trial& best) const {
   std::optional<std::size_t> least;
   for (std::size_t i = 0; i < flows_.size(); ++i) {
-    if (flows_[i].own_factor || pinned_factor_) continue;
-    if (!least || best.density_factors[i] < best.density_factors[*least]) least = i;
+    if (!flows_[i].given_factor && (!least || best.density_factors[i] < best.density_factors[*least])) least = i;
   }
   return least;
 }
@@ -399,13 +400,14 @@ void Problem::choose_density_factors(const Trial& best, NumericsChoice& choice) 
   constexpr double much = 1.25;
   const std::optional<std::size_t> least = least_dense(best);
   if (!least) return;
+  const std::string gain = gain_by_developed_start(best);
   const auto choose = [&](const std::string& of, std::size_t stage) {
-    choice.values.push_back(
-        {of + "/density_factor", three_digits_below(best.density_factors[stage]), why_density_factor(best, stage)});
+    choice.values.push_back({of + "/density_factor", three_digits_below(best.density_factors[stage]),
+                             why_density_factor(best, stage, gain)});
   };
   choose("/numerics", *least);
   for (std::size_t i = 0; i < flows_.size(); ++i) {
-    if (!flows_[i].own_factor && best.density_factors[i] > much * best.density_factors[*least])
+    if (!flows_[i].given_factor && best.density_factors[i] > much * best.density_factors[*least])
       choose(scene_.stages[i].pointer, i);
   }
 }
@@ -413,6 +415,7 @@ void Problem::choose_density_factors(const Trial& best, NumericsChoice& choice) 
 /// What flows that are developed from the start would save; empty: little.
 std::string Problem::gain_by_developed_start(const Trial& best) const {
   constexpr double little = 0.8;
+  if (std::none_of(flows_.begin(), flows_.end(), [](const Flow& flow) { return flow.lag > 0; })) return {};
   Problem developed = *this;
   for (Flow& flow : developed.flows_) flow.lag = 0;
   const Trial other = developed.cheapest();
