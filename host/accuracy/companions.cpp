@@ -27,8 +27,9 @@ using namespace nlohmann::literals;
 constexpr double least_refinement = 4.0 / 3, most_refinement = 2.5;
 constexpr double least_radius = 4;  ///< of the smallest cell on a companion's lattice, spacings
 // Shares of the run's time: of steps, at most and where starting the companions takes the rest; seconds to start one.
-constexpr double most_share = 0.34, least_share = 0.25, start_s = 0.02;
-constexpr double outputs_of_tables = 0.5;  ///< what they cost over those of a run, which writes frames
+constexpr double most_share = 0.34, least_share = 0.25, start_s = 0.006;
+constexpr double with_shorter_steps = 2;   ///< times those shares, where no lattice that they allow is fine enough
+constexpr double outputs_of_tables = 0.2;  ///< what they cost over those of a run, which writes frames
 
 constexpr double to_the_coarsest = 1.25;  ///< spacing of the companion for the order over that for the lattice
 constexpr double least_to_the_coarsest = 1.15, most_to_the_coarsest = 1.4;
@@ -191,13 +192,13 @@ struct CoarserLattices {
 /// Where the start and the density are changed, and by what.
 struct Changes {
   bool start, inertia;
-  double density = light, tau = 1;
+  double density = light, tau = 1;  ///< of the companion for inertia
   bool on_the_finer;
   /// Of these lattices (0: none) the one on which they are made.
   [[nodiscard]] int lattice(int fine, int coarse) const { return on_the_finer || coarse == 0 ? fine : coarse; }
-  /// What they cost over a run on their lattice.
-  [[nodiscard]] double cost(double tau_of_scene) const {
-    const double steps = (tau_of_scene - 0.5) / (tau - 0.5) / density;
+  /// What they cost over a companion on their lattice, whose relaxation time is given.
+  [[nodiscard]] double cost(double tau_of_lattice) const {
+    const double steps = (tau_of_lattice - 0.5) / (tau - 0.5) / density;
     return (start ? 1 : 0) + (inertia ? steps : 0);
   }
 };
@@ -213,25 +214,33 @@ double compression(const scene::Scene& scene) {
   return most;
 }
 
-/// On a lattice whose fluid gives way by so much with the scene's own density.
-Changes choose_changes(const scene::Scene& scene, double densest, bool moments, double compressed) {
-  Changes changes{start_matters(scene), densest > 1, std::max(light, 1 / densest), scene.numerics.tau, moments};
+/// At this relaxation time, on a lattice whose fluid gives way by so much with the scene's own density.
+Changes choose_changes(const scene::Scene& scene, double densest, bool moments, double tau, double compressed) {
+  Changes changes{start_matters(scene), densest > 1, std::max(light, 1 / densest), tau, moments};
   if (!is_corrected(scene)) return changes;
   // It grows with the square of tau - 1/2 and with the density.
   const double room = std::max(1.0, plan::largest_compression_by_shear / compressed);
   const auto tau_with = [&](double density) {
-    return 0.5 + (scene.numerics.tau - 0.5) * std::min(1 / density, std::sqrt(room / density));
+    return 0.5 + (tau - 0.5) * std::min(1 / density, std::sqrt(room / density));
   };
   if (tau_with(changes.density) > largest_tau) changes.density = dense;
   changes.tau = tau_with(changes.density);
   return changes;
 }
 
-/// Cost of all companions over the run's, with that for the lattice and that for the order (0: none) on these lattices.
-double cost_of_all(const scene::Scene& scene, const CoarserLattices& lattices, int fine, int coarse,
-                   const Changes& changes) {
+/// Companions for the lattice and for the order (0: none) on these lattices, with this relaxation time, and the others.
+struct Choice {
+  int fine = 0, coarse = 0;
+  double tau = 1;
+  Changes changes;
+};
+
+/// What all companions of a choice cost over the run.
+double cost_of_all(const scene::Scene& scene, const CoarserLattices& lattices, const Choice& choice) {
+  const auto& [fine, coarse, tau, changes] = choice;
   const auto share = [&](int part) { return part == 0 ? 0 : share_of(scene, lattices.refinement(part)); };
-  return share(fine) + share(coarse) + changes.cost(scene.numerics.tau) * share(changes.lattice(fine, coarse));
+  const double steps = (scene.numerics.tau - 0.5) / (tau - 0.5);
+  return steps * (share(fine) + share(coarse) + changes.cost(tau) * share(changes.lattice(fine, coarse)));
 }
 
 }  // namespace
@@ -250,7 +259,7 @@ const char* name_of(Role role) {
   return "";
 }
 
-Companions choose_companions(const scene::Scene& scene, const RunCost& cost) {
+Companions choose_companions(const scene::Scene& scene, const RunCost& cost, double most_compressed) {
   Companions chosen;
   double densest = 1;
   for (const scene::Stage& stage : scene.stages) densest = std::max(densest, stage.density_factor);
@@ -258,23 +267,37 @@ Companions choose_companions(const scene::Scene& scene, const RunCost& cost) {
   chosen.order = is_corrected(scene) ? 2 : 1;
   chosen.usual_order = std::max(chosen.order, plan::order_of_lattice_error(scene));
   const double compressed = compression(scene);
-  Changes changes = choose_changes(scene, densest, cost.moments, compressed);
-  const int processes = 2 + (changes.start ? 1 : 0) + (changes.inertia ? 1 : 0);
+  const int processes = 2 + (start_matters(scene) ? 1 : 0) + (densest > 1 ? 1 : 0);
   const bool thinned = cost.moments && cost.outputs > many_outputs && thin_outputs(scene).has_value();
   const double outputs_s = outputs_of_tables * cost.outputs_s / (thinned ? fewer : 1);
   const double longer = cost.moments ? 1 + beyond_the_end : 1;
   const double affordable = std::max(least_share, most_share - processes * (start_s + outputs_s) / cost.run_s) / longer;
 
   const CoarserLattices lattices(scene);
-  int fine = 0, coarse = 0;
-  for (int k = lattices.parts() - 1; k > 0 && fine == 0; --k) {
-    if (lattices.refinement(k) < least_refinement) continue;
-    if (lattices.refinement(k) > most_refinement || lattices.too_small(k)) break;
-    coarse = lattices.coarser_than(k);
-    const double coarser = lattices.refinement(changes.lattice(k, coarse));
-    changes = choose_changes(scene, densest, cost.moments, compressed * coarser * coarser);
-    if (cost_of_all(scene, lattices, k, coarse, changes) <= affordable) fine = k;
-  }
+  // With a companion for the lattice on that one.
+  const auto choose = [&](int fine) {
+    const auto square = [](double value) { return value * value; };
+    Choice choice{fine, lattices.coarser_than(fine), scene.numerics.tau, {}};
+    const double on_coarsest = compressed * square(lattices.refinement(choice.coarse > 0 ? choice.coarse : fine));
+    const double shorter = std::sqrt(std::min(1.0, most_compressed / on_coarsest));
+    choice.tau = 0.5 + shorter * (scene.numerics.tau - 0.5);
+    const double coarser = lattices.refinement(cost.moments || choice.coarse == 0 ? fine : choice.coarse);
+    choice.changes =
+        choose_changes(scene, densest, cost.moments, choice.tau, compressed * square(shorter * coarser));
+    return choice;
+  };
+  const auto finest_within = [&](double share) {
+    for (int k = lattices.parts() - 1; k > 0; --k) {
+      if (lattices.refinement(k) < least_refinement) continue;
+      if (lattices.refinement(k) > most_refinement || lattices.too_small(k)) break;
+      if (const Choice choice = choose(k); cost_of_all(scene, lattices, choice) <= share) return choice;
+    }
+    return Choice{};
+  };
+  Choice choice = finest_within(affordable);
+  const bool too_coarse = choice.fine == 0 || lattices.radius(choice.fine) < least_radius;
+  if (too_coarse && std::isfinite(most_compressed)) choice = finest_within(with_shorter_steps * affordable);
+  const auto& [fine, coarse, tau, changes] = choice;
   if (fine == 0) {
     chosen.why_none = "no coarser lattice has the shape of " + in_words(lattice_size(scene.domain)) + " and 1.4 to " +
                       number(most_refinement) +
@@ -282,8 +305,13 @@ Companions choose_companions(const scene::Scene& scene, const RunCost& cost) {
     return chosen;
   }
   chosen.density = changes.density;
-  chosen.refinement = lattices.refinement(fine);
-  chosen.expected_share = longer * cost_of_all(scene, lattices, fine, coarse, changes);
+  const auto as_by_spacing = [&](int part) {
+    const double change = plan::growth_of_lattice_error(tau, scene.domain.dimension()) /
+                          plan::growth_of_lattice_error(scene.numerics.tau, scene.domain.dimension());
+    return lattices.refinement(part) * std::pow(change, 1 / chosen.order);
+  };
+  chosen.refinement = as_by_spacing(fine);
+  chosen.expected_share = longer * cost_of_all(scene, lattices, choice);
   if (const double radius = lattices.radius(fine); radius < least_radius) {
     chosen.why_none = "on a lattice that costs a small part of this one a cell's radius would be " + number(radius, 2) +
                       " spacings, fewer than " + number(least_radius);
@@ -292,13 +320,16 @@ Companions choose_companions(const scene::Scene& scene, const RunCost& cost) {
   const auto add_lattice = [&](Role role, int part) {
     const LatticeSize size = lattices.nodes(part);
     Json coarser = on_lattice(scene, size);
+    const bool same_tau = tau == scene.numerics.tau;
+    if (!same_tau) coarser["numerics"]["tau"] = tau;
     if (thinned) coarser["output"]["cells"] = *thin_outputs(scene);
     const bool longer_run = cost.moments && go_on(coarser);
-    chosen.runs.push_back({role, std::move(coarser), in_words(size), longer_run ? name_beyond : ""});
+    chosen.runs.push_back({role, std::move(coarser), in_words(size) + (same_tau ? "" : ", tau " + number(tau, 3)),
+                           longer_run ? name_beyond : ""});
   };
   add_lattice(Role::lattice, fine);
   if (coarse > 0) {
-    chosen.coarsest = lattices.refinement(coarse);
+    chosen.coarsest = as_by_spacing(coarse);
     add_lattice(Role::order, coarse);
   }
   int last = changes.lattice(fine, coarse) == fine ? 0 : 1;
@@ -318,7 +349,7 @@ Companions choose_companions(const scene::Scene& scene, const RunCost& cost) {
     set_density(companion, chosen.density);
     companion["numerics"]["tau"] = changes.tau;
     add_change(Role::inertia, "density factor times " + number(chosen.density, 3) +
-                                  (changes.tau != scene.numerics.tau ? ", tau " + number(changes.tau, 3) : ""));
+                                  (changes.tau != tau ? ", tau " + number(changes.tau, 3) : ""));
   }
   return chosen;
 }

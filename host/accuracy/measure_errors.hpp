@@ -3,7 +3,6 @@
 
 #include <atomic>
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -13,7 +12,7 @@
 namespace rouleau::accuracy {
 
 struct MeasureOptions {
-  std::function<plugin::Catalog(const scene::Scene&)> catalog_of;  ///< finds the plugins of a scene
+  const plugin::Catalog& catalog;  ///< of the run's scene: companions name the same models
   int threads = 1;
   bool quiet = false;
   const std::atomic<bool>* interrupted = nullptr;  ///< set by a signal handler

@@ -208,10 +208,7 @@ int lead(const Request& request, const PlannedScene& planned, const TimeLimit& l
                                   : overwrite ? files::FormerRun::replace
                                               : files::FormerRun::keep;
   const accuracy::MeasureOptions measure{
-      .catalog_of = [&](const scene::Scene& other) { return scene_options.catalog(other); },
-      .threads = run.threads,
-      .quiet = run.quiet,
-      .interrupted = run.interrupted};
+      .catalog = planned.catalog, .threads = run.threads, .quiet = run.quiet, .interrupted = run.interrupted};
   const bool refines = numerics_choice && bars.wanted(numerics_choice) && run.max_steps < 0;
   const auto refine = [&] {
     return refine_if_missed({scene_options, read, folder, report.estimate.wall_s, run, measure, again}, limit);

@@ -97,7 +97,7 @@ std::string read_text(const std::filesystem::path& file) {
   return text;
 }
 
-void write_file(const std::filesystem::path& file, const std::string& content) {
+void write_file(const std::filesystem::path& file, const std::string& content, Kept kept) {
   const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
   // A rename would replace a device or a socket by a plain file.
   std::error_code ignored;
@@ -108,13 +108,14 @@ void write_file(const std::filesystem::path& file, const std::string& content) {
   const auto partial = folder / ("." + file.filename().string() + "." + std::to_string(::getpid()) + ".partial");
   Descriptor output(::open(partial.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666));
   if (output.number() < 0) fail_file(file, "cannot be created", errno);
-  if (!write_all(output.number(), content) || ::fsync(output.number()) != 0 || !output.close() ||
+  const bool to_disk = kept == Kept::on_disk;
+  if (!write_all(output.number(), content) || (to_disk && ::fsync(output.number()) != 0) || !output.close() ||
       ::rename(partial.c_str(), file.c_str()) != 0) {
     const int error = errno;
     ::unlink(partial.c_str());
     fail_file(file, "cannot be written", error);
   }
-  synchronise(folder);
+  if (to_disk) synchronise(folder);
 }
 
 void write_into(const std::filesystem::path& file, std::string_view begin) {
@@ -158,7 +159,7 @@ Checksum require(const std::filesystem::path& file, const FileMark& mark) {
   return checksum;
 }
 
-AppendFile::AppendFile(std::filesystem::path file) : file_(std::move(file)) {
+AppendFile::AppendFile(std::filesystem::path file, Kept kept) : file_(std::move(file)), kept_(kept) {
   const int number = ::open(file_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_NOFOLLOW | O_CLOEXEC, 0666);
   if (number < 0) fail_file(file_, "cannot be created", errno);
   stream_.reset(::fdopen(number, "a"));
@@ -205,6 +206,7 @@ void AppendFile::flush() {
 
 void AppendFile::synchronise() {
   flush();
+  if (kept_ == Kept::for_now) return;
   // A pipe or device cannot be synchronised (EINVAL), and need not be.
   if (::fsync(::fileno(stream_.get())) != 0 && errno != EINVAL && errno != EROFS)
     fail_file(file_, "cannot be written", errno);

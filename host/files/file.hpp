@@ -21,8 +21,11 @@ namespace rouleau::files {
 /// Whole content of a file; throws Error(input_output).
 std::string read_text(const std::filesystem::path& file);
 
+/// Whether a file must be on the disk when it is closed, whatever happens to the machine, or is soon made again.
+enum class Kept { on_disk, for_now };
+
 /// Writes a file whole or not at all: temporary file in the same folder, fsync, rename. Throws Error(input_output).
-void write_file(const std::filesystem::path& file, const std::string& content);
+void write_file(const std::filesystem::path& file, const std::string& content, Kept kept = Kept::on_disk);
 
 /// Overwrites the beginning of a file that is there already, and brings all of it to the disk. Throws
 /// Error(input_output).
@@ -46,7 +49,7 @@ Checksum require(const std::filesystem::path& file, const FileMark& mark);
 class AppendFile {
  public:
   /// Creates the file, or opens it: then clear() or go_back() says what becomes of its content. No link is followed.
-  explicit AppendFile(std::filesystem::path file);
+  explicit AppendFile(std::filesystem::path file, Kept kept = Kept::on_disk);
   void clear();
   /// Drops what was written after the mark. Throws Error(input_output) where what came before is not what it was.
   void go_back(const FileMark& mark);
@@ -55,11 +58,11 @@ class AppendFile {
   void write(std::string_view text);
   /// Hands everything to the system, so that a crash of the program loses nothing and `tail -f` sees it.
   void flush();
-  /// To the disk.
+  /// To the disk, if it is kept there.
   void synchronise();
   /// How much there is, which is on the disk when this returns.
   FileMark mark();
-  /// To the disk, and closed. Nothing may be written after it.
+  /// Synchronised, and closed. Nothing may be written after it.
   void close();
 
  private:
@@ -67,6 +70,7 @@ class AppendFile {
     void operator()(std::FILE* stream) const noexcept { std::fclose(stream); }
   };
   std::filesystem::path file_;
+  Kept kept_;
   std::unique_ptr<std::FILE, Close> stream_;
   Checksum checksum_;  ///< of what clear() or go_back() left, and all that was written since
   std::uintmax_t bytes_ = 0;

@@ -13,7 +13,7 @@ namespace rouleau::files {
 class Log {
  public:
   /// Throws Error(input_output) when it cannot be made.
-  explicit Log(const std::filesystem::path& file) : file_(file) {}
+  explicit Log(const std::filesystem::path& file, Kept kept = Kept::on_disk) : file_(file, kept) {}
   /// Keeps a former run's lines but for a last one that was never ended; time goes on from `elapsed` seconds.
   void go_on(double elapsed);
   /// Seconds since the log was opened, and those of the run it goes on from.

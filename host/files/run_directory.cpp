@@ -153,10 +153,11 @@ RunDirectory::RunDirectory(std::filesystem::path directory, const scene::Scene& 
     }
   }
   remove_files(directory_, written_by_a_run);
-  files_->log.emplace(directory_ / "log.jsonl");
-  files_->tables.emplace(directory_, scene.domain.dimension());
+  if (data == DataFiles::tables) kept_ = Kept::for_now;
+  files_->log.emplace(directory_ / "log.jsonl", kept_);
+  files_->tables.emplace(directory_, scene.domain.dimension(), kept_);
   if (data == DataFiles::all) files_->frames.emplace(directory_ / "frames.h5", scene);
-  if (scene.document) write_file(directory_ / "scene.json", scene_text(*scene.document));
+  if (scene.document) write_file(directory_ / "scene.json", scene_text(*scene.document), kept_);
 }
 
 bool RunDirectory::is_open() const { return files_ && files_->tables; }
@@ -204,7 +205,7 @@ void RunDirectory::finish(const nlohmann::json& summary) {
     if (!made_of_others && !named && std::filesystem::exists(directory_ / name)) names.emplace_back(name);
   }
   // Last: who finds a summary finds everything else complete.
-  write_file(directory_ / "summary.json", sealed_summary(summary, directory_, names));
+  write_file(directory_ / "summary.json", sealed_summary(summary, directory_, names), kept_);
 }
 
 }  // namespace rouleau::files

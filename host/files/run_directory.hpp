@@ -36,7 +36,7 @@ enum class FormerRun {
 /// Which data files a run has.
 enum class DataFiles {
   all,
-  tables  ///< no frames.h5: such a run keeps no checkpoint
+  tables  ///< no frames.h5: such a run keeps no checkpoint, and nothing of it waits for the disk
 };
 
 /// What the data files held when a checkpoint was written.
@@ -83,6 +83,7 @@ class RunDirectory {
   std::filesystem::path directory_;
   const scene::Scene& scene_;
   bool resumes_ = false;
+  Kept kept_ = Kept::on_disk;
   std::unique_ptr<Files> files_;
 };
 

@@ -50,9 +50,9 @@ void Tables::require(const std::filesystem::path& directory, const Mark& mark) {
   for (std::size_t k = 0; k < mark.size(); ++k) files::require(directory / file_of(observe::tables()[k]), mark[k]);
 }
 
-Tables::Tables(const std::filesystem::path& directory, int dimension) : dimension_(dimension) {
+Tables::Tables(const std::filesystem::path& directory, int dimension, Kept kept) : dimension_(dimension) {
   for (const observe::Table& table : observe::tables()) {
-    files_.emplace_back(directory / file_of(table));
+    files_.emplace_back(directory / file_of(table), kept);
     files_.back().clear();
     files_.back().write(line_of(table.columns(dimension)));
   }

@@ -32,7 +32,7 @@ class Tables {
   static void require(const std::filesystem::path& directory, const Mark& mark);
 
   /// Creates the four files in `directory` with their header lines. Throws Error(input_output), as all members do.
-  Tables(const std::filesystem::path& directory, int dimension);
+  Tables(const std::filesystem::path& directory, int dimension, Kept kept = Kept::on_disk);
   /// Opens them, and drops what was written after the mark.
   Tables(const std::filesystem::path& directory, int dimension, const Mark& mark);
   void write(const observe::Snapshot& snapshot);

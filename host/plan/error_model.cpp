@@ -75,10 +75,14 @@ double lattice_error(const scene::Shape& shape, double radius, double viscosity_
                      bool slip_correction) {
   if (dimension == 3) return in_space::kernel_at_ten * 100 / (radius * radius) + in_space::slip_at_ten * 10 / radius;
   double error = between(is_thin(shape) ? in_plane::thin_cell : in_plane::round_cell, viscosity_ratio, radius) *
-                 (1 + in_plane::growth_with_tau * std::max(0.0, tau - 1));
+                 growth_of_lattice_error(tau, dimension);
   if (!slip_correction)
     error += between(in_plane::slip_at_ten[0], in_plane::slip_at_ten[1], viscosity_ratio) * 10 / radius;
   return error;
+}
+
+double growth_of_lattice_error(double tau, int dimension) {
+  return dimension == 2 ? 1 + in_plane::growth_with_tau * std::max(0.0, tau - 1) : 1;
 }
 
 double steady_flow_error(const scene::Domain& domain, double spacing) {

@@ -18,6 +18,9 @@ double resolved_radius(const scene::Shape& shape);
 double lattice_error(const scene::Shape& shape, double radius, double viscosity_ratio, double tau, int dimension,
                      bool slip_correction);
 
+/// That error at this relaxation time over the one at tau 1.
+double growth_of_lattice_error(double tau, int dimension);
+
 /// What a lattice leaves in a steady flow that is driven through the domain: nothing between two planes.
 double steady_flow_error(const scene::Domain& domain, double spacing);
 /// What it leaves in the start of a flow without cells.

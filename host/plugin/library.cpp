@@ -139,7 +139,22 @@ const rouleau_model& model_of(rouleau_open_function open, const Manifest& manife
 
 const rouleau_model& open_model(const Manifest& manifest) { return model_of(load_library(manifest), manifest); }
 
-std::string library_sha256(const Manifest& manifest) { return sha256(library_file(manifest)); }
+std::string library_sha256(const Manifest& manifest) {
+  struct Hashed {
+    fs::file_time_type written;
+    std::uintmax_t bytes;
+    std::string sha256;
+  };
+  static auto& known = *new std::map<fs::path, Hashed>;
+  const fs::path file = library_file(manifest);
+  std::error_code gone;
+  const auto written = fs::last_write_time(file, gone);
+  const std::uintmax_t bytes = fs::file_size(file, gone);
+  Hashed& hashed = known[file];
+  if (gone || hashed.sha256.empty() || hashed.written != written || hashed.bytes != bytes)
+    hashed = {written, bytes, sha256(file)};
+  return hashed.sha256;
+}
 
 std::string sha256(const fs::path& file) {
   char digest[SHA256_DIGEST_STRING_LENGTH] = {};

@@ -74,7 +74,7 @@ Summary describe(const plan::Plan& plan, const plan::PlanReport& report, int thr
   s.instruction_set = name_of(instruction_set());
   for (const plan::PlannedModel* model : plan.active_models()) {
     const plugin::Manifest& m = *model->manifest;
-    s.plugins.push_back({m.id, m.version, plugin::to_string(m.kind), m.library.string(), plugin::sha256(m.library)});
+    s.plugins.push_back({m.id, m.version, plugin::to_string(m.kind), m.library.string(), plugin::library_sha256(m)});
   }
   s.lock = plan.lock;
   s.numerics_choice = plan.numerics_choice;

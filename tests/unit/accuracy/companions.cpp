@@ -91,6 +91,25 @@ TEST_CASE("the companion of another density takes shorter steps where the fluid 
   CHECK(at_rest.runs.back().scene["numerics"]["tau"] == 1.5);
 }
 
+TEST_CASE("companions whose fluid must not give way take shorter steps, of which the lattice's error knows") {
+  const scene::Scene scene = plan::read_scene(
+      std::string(ROULEAU_PHYSICS_SCENES) + "/capsule.json",
+      {"/numerics/slip_correction=true", "/numerics/density_factor=5000", "/numerics/tau=2.5"});
+  const Companions plain = choose_companions(scene, {.run_s = long_run_s}),
+                   stiff = choose_companions(scene, {.run_s = long_run_s}, 0.01);
+  REQUIRE(stiff.runs.size() == 3);
+  CHECK(plain.runs[0].scene["numerics"]["tau"] == 2.5);
+  const double tau = stiff.runs[0].scene["numerics"]["tau"];
+  CHECK(stiff.runs[1].scene["numerics"]["tau"] == tau);
+  // 2.7 (tau - 1/2) times the shear rate in a step; viscosity (tau - 1/2)/3 is the fluid's over the density, spacings and steps.
+  const double rows = stiff.runs[1].scene["domain"]["nodes"][1], spacing = 25.6e-6 / rows;
+  const double step = (tau - 0.5) / 3 * spacing * spacing * 5000 * 1e3 / 1.2e-3;
+  CHECK(2.7 * (tau - 0.5) * 20 * step == Approx(0.01));
+  // The error grows by a fifth for each unit of tau above 1, and with the square of the spacing.
+  const double nodes = stiff.runs[0].scene["domain"]["nodes"][1];
+  CHECK(stiff.refinement == Approx(128 / nodes * std::sqrt((1 + 0.2 * (tau - 1)) / 1.3)));
+}
+
 TEST_CASE("of a run with many outputs that reports moments companions have a quarter of them") {
   const scene::Scene scene = plan::read_scene(std::string(ROULEAU_PHYSICS_SCENES) + "/capsule.json");
   const auto interval = [&](long outputs, bool moments) {

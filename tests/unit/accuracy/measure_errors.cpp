@@ -1,6 +1,7 @@
 // Companions of whole runs, each in a process of its own.
 #include "accuracy/measure_errors.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
@@ -42,19 +43,13 @@ class FinishedRun {
   }
   [[nodiscard]] fs::path directory() const { return folder_.path() / "run"; }
   [[nodiscard]] const scene::Scene& scene() const { return *scene_; }
-  [[nodiscard]] MeasureOptions options() const {
-    MeasureOptions options;
-    options.catalog_of = [](const scene::Scene& /*unused*/) {
-      return plugin::Catalog(std::vector<fs::path>{ROULEAU_PLUGINS});
-    };
-    options.quiet = true;
-    return options;
-  }
+  [[nodiscard]] MeasureOptions options() const { return {.catalog = catalog_, .quiet = true}; }
   [[nodiscard]] Json summary() const { return trial::read_summary(directory()); }
 
  private:
   test::ScratchFolder folder_;
   std::optional<scene::Scene> scene_;
+  plugin::Catalog catalog_{std::vector<fs::path>{ROULEAU_PLUGINS}};
 };
 
 }  // namespace
@@ -101,9 +96,8 @@ TEST_CASE("interrupted companions leave the run as it was, and those that have e
 
 TEST_CASE("a companion that does not complete gives no bar to anything, and says why") {
   const FinishedRun run(capsule(0.5));
-  MeasureOptions options = run.options();
-  options.catalog_of = [](const scene::Scene& /*unused*/) { return plugin::Catalog(std::vector<fs::path>{}); };
-  const MeasuredErrors errors = measure_errors(run.directory(), run.scene(), options);
+  const plugin::Catalog empty(std::vector<fs::path>{});
+  const MeasuredErrors errors = measure_errors(run.directory(), run.scene(), {.catalog = empty, .quiet = true});
   CHECK(errors.missing.find("did not complete") != std::string::npos);
   const Json summary = run.summary();
   for (const auto& [name, bar] : summary["error_bars"].items()) {
@@ -112,6 +106,29 @@ TEST_CASE("a companion that does not complete gives no bar to anything, and says
   }
   CHECK(summary["error_bars"].contains("deformation"));
   CHECK(files::verify(run.directory()).differences.empty());
+}
+
+TEST_CASE("companions that diverged are followed by others that take shorter steps") {
+  Json scene = capsule(9);  // stiff, viscous, beside the middle
+  scene["domain"]["nodes"] = {160, 80};
+  scene["cells"][0]["at"] = {25.6e-6, 6.4e-6};
+  Json& cell = scene["cell_types"]["capsule"];
+  cell.update({{"segments", 78}, {"interior_viscosity", 6e-3}});
+  cell["membrane"][0]["parameters"]["shear_modulus"] = 7.68e-6;
+  cell["membrane"][1]["parameters"]["modulus"] = 1.2288e-18;
+  scene["numerics"].update({{"tau", 3}, {"density_factor", 1296}, {"coupling", "auto"}});
+  scene["output"]["cells"]["strain"] = 0.5;
+  const FinishedRun run(scene);
+  const MeasuredErrors errors = measure_errors(run.directory(), run.scene(), run.options());
+  CHECK(errors.missing.empty());
+  const Json companions = run.summary()["error_bar_runs"]["companions"];
+  const auto ended = [&](const std::string& end) {
+    return std::count_if(companions.begin(), companions.end(), [&](const Json& one) { return one["end"] == end; });
+  };
+  CHECK(ended("diverged") == 1);
+  CHECK(companions.back()["end"] == "completed");
+  CHECK(companions.back()["role"] == "inertia");
+  CHECK(run.summary()["error_bars"]["deformation"]["error"] > 0);
 }
 
 TEST_CASE("nothing is added to a summary that was changed") {
