@@ -33,12 +33,11 @@ constexpr double outputs_of_tables = 0.2;  ///< what they cost over those of a r
 
 constexpr double to_the_coarsest = 1.25;  ///< spacing of the companion for the order over that for the lattice
 constexpr double least_to_the_coarsest = 1.15, most_to_the_coarsest = 1.4;
-/// Half the density is nearer to the truth. The companion keeps its time step, for the relaxation time makes up for its
-/// density: half a step would show the step's own error too, which on a coarse lattice with stiff cells is ten times that
-/// of the density and belongs to the lattice. But the fluid must not give way to the shear more than before, or than the plan
-/// allows (plan::largest_compression_by_shear): cells beside the middle would drift otherwise, and the step is shorter then.
-/// Where all this would want a relaxation time beyond this one, whose own error is large, it is twice the density. In the plain
-/// scheme slip and leak change with tau, and it keeps that instead.
+/// Half the density is nearer to the truth. Between its companion and the one before only the density's error is to change: the
+/// lattice's fluid gives way to pressures as much as before, (tau - 1/2)^2 times the density, for cells beside the middle drift by
+/// that, and stiff ones deform too much. The same step would double it and hide the density's error; the same tau would halve it,
+/// and show what a coarse lattice has and the run has not. Where this wants a relaxation time beyond this one, whose own error
+/// is large, it is twice the density. In the plain scheme slip and leak change with tau, and it keeps that instead.
 constexpr double light = 0.5, dense = 2, largest_tau = 3;
 /// A start that makes a stage late by less than this share of its strain changes in proportion to the density, and the
 /// companion for inertia shows it.
@@ -214,15 +213,11 @@ double compression(const scene::Scene& scene) {
   return most;
 }
 
-/// At this relaxation time, on a lattice whose fluid gives way by so much with the scene's own density.
-Changes choose_changes(const scene::Scene& scene, double densest, bool moments, double tau, double compressed) {
+/// On a lattice with this relaxation time.
+Changes choose_changes(const scene::Scene& scene, double densest, bool moments, double tau) {
   Changes changes{start_matters(scene), densest > 1, std::max(light, 1 / densest), tau, moments};
   if (!is_corrected(scene)) return changes;
-  // It grows with the square of tau - 1/2 and with the density.
-  const double room = std::max(1.0, plan::largest_compression_by_shear / compressed);
-  const auto tau_with = [&](double density) {
-    return 0.5 + (tau - 0.5) * std::min(1 / density, std::sqrt(room / density));
-  };
+  const auto tau_with = [&](double density) { return 0.5 + (tau - 0.5) / std::sqrt(density); };
   if (tau_with(changes.density) > largest_tau) changes.density = dense;
   changes.tau = tau_with(changes.density);
   return changes;
@@ -281,9 +276,7 @@ Companions choose_companions(const scene::Scene& scene, const RunCost& cost, dou
     const double on_coarsest = compressed * square(lattices.refinement(choice.coarse > 0 ? choice.coarse : fine));
     const double shorter = std::sqrt(std::min(1.0, most_compressed / on_coarsest));
     choice.tau = 0.5 + shorter * (scene.numerics.tau - 0.5);
-    const double coarser = lattices.refinement(cost.moments || choice.coarse == 0 ? fine : choice.coarse);
-    choice.changes =
-        choose_changes(scene, densest, cost.moments, choice.tau, compressed * square(shorter * coarser));
+    choice.changes = choose_changes(scene, densest, cost.moments, choice.tau);
     return choice;
   };
   const auto finest_within = [&](double share) {
@@ -306,8 +299,8 @@ Companions choose_companions(const scene::Scene& scene, const RunCost& cost, dou
   }
   chosen.density = changes.density;
   const auto as_by_spacing = [&](int part) {
-    const double change = plan::growth_of_lattice_error(tau, scene.domain.dimension()) /
-                          plan::growth_of_lattice_error(scene.numerics.tau, scene.domain.dimension());
+    const double change = plan::growth_of_lattice_error(scene, tau) /
+                          plan::growth_of_lattice_error(scene, scene.numerics.tau);
     return lattices.refinement(part) * std::pow(change, 1 / chosen.order);
   };
   chosen.refinement = as_by_spacing(fine);

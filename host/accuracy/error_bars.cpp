@@ -17,6 +17,8 @@ using Json = nlohmann::json;
 
 // Measured with capsules (docs/accuracy.md, "Error bars").
 constexpr double doubt_of_a_share = 0.5, least_part_of_deformation = 0.75;
+/// Coarse lattices answer to another density otherwise than the run does: near walls by half as much, or twice.
+constexpr double doubt_of_inertia = 1;
 
 const Quantity* find(const std::vector<Quantity>& all, const std::string& name) {
   const auto found = std::find_if(all.begin(), all.end(), [&](const Quantity& q) { return q.name == name; });
@@ -65,7 +67,8 @@ FoundShares shares_of(const Values& values, const Companions& companions, const 
     if (measured[i].role == Role::inertia)
       found.shares.inertia = companions.relaxed * (before - value) / change_by_density(companions.density);
   }
-  found.doubt = lattice.doubt + doubt_of_a_share * (std::abs(found.shares.start) + std::abs(found.shares.inertia));
+  found.doubt = lattice.doubt + doubt_of_a_share * std::abs(found.shares.start) +
+                doubt_of_inertia * std::abs(found.shares.inertia);
   return found;
 }
 

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <variant>
 
+#include "flow_start.hpp"
 #include "shape/outline.hpp"
 
 namespace rouleau::plan {
@@ -18,14 +20,29 @@ struct ShapeError {
 using ShapeErrors = ShapeError[2];
 
 namespace in_plane {
-constexpr ShapeErrors round_cell{{0.010, 2}, {0.021, 2}}, thin_cell{{0.040, 3}, {0.039, 2}};
-constexpr double growth_with_tau = 0.2;  ///< of that error, for each unit of tau above 1
+constexpr ShapeErrors round_cell{{0.0065, 2}, {0.029, 2}}, thin_cell{{0.040, 3}, {0.039, 2}};
+/// Stiffer round cells than at `stiff`, and softer ones than at `soft`, have larger errors, by these powers of the capillary number.
+struct CapillaryErrors {
+  double stiff, stiff_power, soft, soft_power;
+  [[nodiscard]] double growth(const CapillaryRange& capillary) const {
+    const double least = std::max(capillary.least, measured_capillary.least);
+    const double most = std::min(capillary.most, measured_capillary.most);
+    return std::max({1.0, std::pow(stiff / least, stiff_power), std::pow(most / soft, soft_power)});
+  }
+};
+constexpr CapillaryErrors by_capillary[2] = {{0.05, 0.3, 0.2, 0.6}, {0.0125, 0.2, 0.2, 0.3}};
+constexpr double thin_growth_with_tau = 0.2;  ///< of the error of thin cells, for each unit of tau above 1
+/// Of the compression squared times the Reynolds number: in deformations at viscosity ratio 1, in angles at measured_ratio.
+constexpr double by_compression[2] = {0.065, 0.15};
 // Without slip correction the tangential slip of the membrane, of first order, comes on top.
 constexpr double slip_at_ten[2] = {0.014, 0.025};
 // A fluid that is simulated denser: strains at which things happen are wrong by this share of the Reynolds number.
 constexpr double motion_by_reynolds = 0.024;
-// Disturbances of the steady state die out as 0.7 exp(-1.35 strain / sqrt(Reynolds number)).
-constexpr double steady_amplitude = 0.7, steady_rate = 1.35;
+// What a cell and the walls make of each other dies out with the slowest mode of the channel's fluid, within a strain of T = Re
+// (H / 2 pi a)^2. Shapes: 0.5 (6.4 a/H)^3 exp(-1.2 strain/T), and 0.3 Re times what is left of the membrane's own relaxation. The
+// relative viscosity, over the second half of the strain: 1.7 exp(-0.7 strain/T) of what cells add, which is twice their share of the area.
+constexpr double of_shape = 0.5, shape_rate = 1.2, relaxation_by_reynolds = 0.3, of_viscosity = 3.4, viscosity_rate = 0.7;
+constexpr double measured_height = 6.4;
 }  // namespace in_plane
 
 namespace in_space {
@@ -63,6 +80,8 @@ double between(const ShapeErrors& pair, double viscosity_ratio, double radius) {
 
 bool is_thin(const scene::Shape& shape) { return std::holds_alternative<scene::Biconcave>(shape); }
 
+double thin_growth(double tau) { return 1 + in_plane::thin_growth_with_tau * std::max(0.0, tau - 1); }
+
 }  // namespace
 
 double resolved_radius(const scene::Shape& shape) {
@@ -72,17 +91,24 @@ double resolved_radius(const scene::Shape& shape) {
 }
 
 double lattice_error(const scene::Shape& shape, double radius, double viscosity_ratio, double tau, int dimension,
-                     bool slip_correction) {
+                     bool slip_correction, const CapillaryRange& capillary) {
   if (dimension == 3) return in_space::kernel_at_ten * 100 / (radius * radius) + in_space::slip_at_ten * 10 / radius;
-  double error = between(is_thin(shape) ? in_plane::thin_cell : in_plane::round_cell, viscosity_ratio, radius) *
-                 growth_of_lattice_error(tau, dimension);
+  double error = 0;
+  if (is_thin(shape)) {
+    error = between(in_plane::thin_cell, viscosity_ratio, radius) * thin_growth(tau);
+  } else {
+    const auto& [at_one, at_measured] = in_plane::by_capillary;
+    error = between(in_plane::round_cell, viscosity_ratio, radius) *
+            between(at_one.growth(capillary), at_measured.growth(capillary), viscosity_ratio);
+  }
   if (!slip_correction)
     error += between(in_plane::slip_at_ten[0], in_plane::slip_at_ten[1], viscosity_ratio) * 10 / radius;
   return error;
 }
 
-double growth_of_lattice_error(double tau, int dimension) {
-  return dimension == 2 ? 1 + in_plane::growth_with_tau * std::max(0.0, tau - 1) : 1;
+double stiffness_error(double compression, double reynolds, double viscosity_ratio) {
+  const auto& [at_one, at_measured] = in_plane::by_compression;
+  return between(at_one, at_measured, viscosity_ratio) * compression * compression * reynolds;
 }
 
 double steady_flow_error(const scene::Domain& domain, double spacing) {
@@ -102,14 +128,21 @@ double motion_error(double reynolds, int dimension) {
   return (dimension == 2 ? in_plane::motion_by_reynolds : in_space::motion_by_reynolds) * reynolds;
 }
 
-double steady_error(double reynolds, double strain, double viscosity_ratio, int dimension) {
-  if (dimension == 3) {
-    const auto& [at_one, at_measured] = in_space::steady_rate;
-    const double rate = at_one * std::pow(at_measured / at_one, distance_from_one(viscosity_ratio));
-    return in_space::steady_amplitude * reynolds * std::exp(-rate * strain);
-  }
-  const double decay = in_plane::steady_rate * strain / std::sqrt(0.5 + 0.5 * std::max(1.0, viscosity_ratio));
-  return in_plane::steady_amplitude * std::exp(-decay / std::sqrt(reynolds));
+double steady_error(const SteadyApproach& approach) {
+  using namespace in_plane;
+  const double to_height = approach.height / (2 * std::numbers::pi);
+  const double times = approach.strain / (approach.reynolds * to_height * to_height);
+  const double shape = of_shape * std::pow(measured_height / approach.height, 3) * std::exp(-shape_rate * times);
+  const double relaxation = capsule_relaxation(std::min(approach.capillary, measured_capillary.most),
+                                               std::max(1.0, approach.viscosity_ratio));
+  const double late = relaxation_by_reynolds * approach.reynolds * std::exp(-approach.strain / relaxation);
+  return std::max(shape + late, of_viscosity * approach.area_fraction * std::exp(-viscosity_rate * times));
+}
+
+double steady_error_in_space(double reynolds, double strain, double viscosity_ratio) {
+  const auto& [at_one, at_measured] = in_space::steady_rate;
+  const double rate = at_one * std::pow(at_measured / at_one, distance_from_one(viscosity_ratio));
+  return in_space::steady_amplitude * reynolds * std::exp(-rate * strain);
 }
 
 double order_of_lattice_error(const scene::Scene& scene) {
@@ -122,6 +155,13 @@ double order_of_lattice_error(const scene::Scene& scene) {
     least = std::min(least, order_between(is_thin(type.shape) ? in_plane::thin_cell : in_plane::round_cell, ratio));
   }
   return least;
+}
+
+double growth_of_lattice_error(const scene::Scene& scene, double tau) {
+  const bool thin = std::any_of(scene.cells.begin(), scene.cells.end(), [&](const scene::CellPlacement& cell) {
+    return is_thin(scene.cell_types[cell.type].shape);
+  });
+  return thin && !scene.domain.depth ? thin_growth(tau) : 1;
 }
 
 }  // namespace rouleau::plan

@@ -9,6 +9,19 @@ namespace rouleau::plan {
 /// Errors were measured for cells whose inside is as viscous as the fluid around them, up to so many times as viscous.
 inline constexpr double measured_ratio = 5;
 
+/// Es/(mu a) of a scene's cells, 1/s: shear rates over it are capillary numbers. Es is a third of the stretching stiffness, as of a
+/// neo-Hookean membrane.
+struct RecoveryRates {
+  double least, most;
+  bool operator==(const RecoveryRates&) const = default;
+};
+/// Smallest and largest capillary number of a scene's cells and flows.
+struct CapillaryRange {
+  double least, most;
+};
+/// Those of round cells for which errors were measured.
+inline constexpr CapillaryRange measured_capillary{0.003, 0.8};
+
 /// The radius that a lattice must resolve, m: the smallest semi-axis; of a biconcave cell and of a surface from a file half the
 /// length.
 double resolved_radius(const scene::Shape& shape);
@@ -16,10 +29,14 @@ double resolved_radius(const scene::Shape& shape);
 /// What a lattice leaves in the shape and the motion of a cell with this resolved radius, in spacings; tau is the fluid's largest
 /// relaxation time.
 double lattice_error(const scene::Shape& shape, double radius, double viscosity_ratio, double tau, int dimension,
-                     bool slip_correction);
+                     bool slip_correction, const CapillaryRange& capillary);
+/// What the membranes of round cells make of the lattice's fluid in two dimensions: it gives way to the pressure Es/a by the share
+/// `compression`, 3 Es/a in lattice units or (tau - 1/2) times the shear rate in a step over the capillary number, and with its
+/// inertia stiff cells then deform too much.
+double stiffness_error(double compression, double reynolds, double viscosity_ratio);
 
-/// That error at this relaxation time over the one at tau 1.
-double growth_of_lattice_error(double tau, int dimension);
+/// What a lattice leaves at this relaxation time, over what it leaves at tau 1.
+double growth_of_lattice_error(const scene::Scene& scene, double tau);
 
 /// What a lattice leaves in a steady flow that is driven through the domain: nothing between two planes.
 double steady_flow_error(const scene::Domain& domain, double spacing);
@@ -28,8 +45,17 @@ double flow_start_error(const scene::Domain& domain, double spacing, double tau)
 
 /// Relative error of strains at which something happens, at this simulated Reynolds number.
 double motion_error(double reynolds, int dimension);
-/// What is left, at this Reynolds number and after this strain, of a cell's way to its steady state.
-double steady_error(double reynolds, double strain, double viscosity_ratio, int dimension);
+/// A cell on its way to a steady state, in two dimensions between walls.
+struct SteadyApproach {
+  double reynolds, strain, viscosity_ratio;
+  double height;         ///< of the channel, over the cell's radius
+  double area_fraction;  ///< of all cells
+  double capillary;
+};
+/// What the fluid's inertia leaves there, in shapes, angles and the relative viscosity: walls feel a cell late, and it feels them.
+double steady_error(const SteadyApproach& approach);
+/// The same in three dimensions.
+double steady_error_in_space(double reynolds, double strain, double viscosity_ratio);
 
 /// The power of the spacing with which the lattice's error was measured to fall: 2, and for biconcave cells with the fluid's own
 /// viscosity inside 3; without slip correction 1.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <optional>
 
 #include "base/text.hpp"
@@ -37,6 +38,7 @@ constexpr double finest_radius = 80;      ///< spacings; more is never chosen
 constexpr int fewest_rows = 16;           ///< of a lattice without cells
 // Without a flow inertia only decides how membranes come to rest. The limits of the plan lower it where they must.
 constexpr double density_factor_at_rest = 13000;
+constexpr CapillaryRange usual_capillary{0.0125, 0.2};  ///< before it is known
 
 /// What a person would write: three digits, rounded down. Whole numbers stay whole.
 Json three_digits_below(double value) {
@@ -105,12 +107,15 @@ class Problem {
   /// Of all cells.
   [[nodiscard]] double membrane_nodes(double spacing) const;
   [[nodiscard]] double resolution_error(double spacing, double tau) const;
-  /// What a stage adds with this factor: inertia and start.
-  [[nodiscard]] ErrorShares error_of(const Flow& flow, double density_factor) const;
+  /// What a stage adds with this factor: inertia and start. `compression`: what the membranes make of the lattice's fluid with a
+  /// factor of one (stiffness_error).
+  [[nodiscard]] ErrorShares error_of(const Flow& flow, double density_factor, double compression) const;
+  [[nodiscard]] double steady_error_at(double reynolds) const;
+  [[nodiscard]] double compression_of(double spacing, double tau) const;
   /// The largest density factor that the limits of the plan leave a stage at this relaxation time.
   [[nodiscard]] double most_by_limits(std::size_t stage, double tau) const;
   /// The largest density factor with which inertia and start of a stage together leave at most this error.
-  [[nodiscard]] double most_density_factor(const Flow& flow, double error) const;
+  [[nodiscard]] double most_density_factor(const Flow& flow, double error, double compression) const;
   /// Of each stage: the largest that this much error beside the lattice's leaves room for.
   [[nodiscard]] std::vector<double> density_factors(double error, double spacing, double tau) const;
   /// Seconds of the scene over the factor of each stage.
@@ -122,6 +127,7 @@ class Problem {
   [[nodiscard]] std::optional<std::size_t> least_dense(const Trial& best) const;
   void choose_density_factors(const Trial& best, NumericsChoice& choice) const;
   [[nodiscard]] NumericsChoice chosen(const Trial& best) const;
+  [[nodiscard]] std::string doubt_about(const Trial& best) const;
   [[nodiscard]] Json pinned(const char* key) const { return numerics_.contains(key) ? numerics_.at(key) : Json(); }
 
   const scene::Scene& scene_;
@@ -131,7 +137,7 @@ class Problem {
   double target_ = default_target;
   bool steady_ = false;  ///< asked for
   bool can_be_steady_ = false, corrected_ = true;
-  bool has_cells_ = false;
+  bool has_cells_ = false, has_round_cells_ = false;  ///< round: in two dimensions, and not biconcave
   struct UsedType {
     const scene::CellType* type;
     int cells;
@@ -143,6 +149,7 @@ class Problem {
   double viscosity_ratio_ = 1;  ///< the furthest from 1
   std::vector<Flow> flows_;     ///< of each stage
   double strain_ = 0;           ///< of the stage with the largest
+  CapillaryRange capillary_ = usual_capillary;
   double momentum_time_ = 0;    ///< s, of the true fluid, over the cells' radius or, without cells, half the height
 };
 
@@ -163,6 +170,8 @@ Problem::Problem(const scene::Scene& draft, const Json& written, const NumericsB
     const scene::CellType& type = scene_.cell_types[i];
     const bool fixed = std::holds_alternative<scene::MeshFile>(type.shape) ||
                        written_.at("cell_types").at(type.name).contains("triangles");
+    has_round_cells_ = has_round_cells_ ||
+                       (!scene_.domain.depth && !std::holds_alternative<scene::Biconcave>(type.shape));
     used_types_.push_back({&type, placed[i], resolved_radius(type.shape), fixed ? shape::node_count(type) : 0});
     const double ratio = type.interior_viscosity / scene_.fluid.viscosity;
     if (std::abs(std::log(ratio)) > std::abs(std::log(viscosity_ratio_))) viscosity_ratio_ = ratio;
@@ -181,6 +190,14 @@ Problem::Problem(const scene::Scene& draft, const Json& written, const NumericsB
     if (flow.own_factor || numerics_.contains("density_factor")) flow.given_factor = stage.density_factor;
     if (rate > 0) strain_ = std::max(strain_, flow.strain);
     flows_.push_back(flow);
+  }
+  if (bounds_.recovery && strain_ > 0) {
+    capillary_ = {INFINITY, 0};
+    for (const Flow& flow : flows_) {
+      if (!(flow.rate > 0)) continue;
+      capillary_ = {std::min(capillary_.least, flow.rate / bounds_.recovery->most),
+                    std::max(capillary_.most, flow.rate / bounds_.recovery->least)};
+    }
   }
   const double length = has_cells_ ? radius_ : scene_.domain.height() / 2;
   momentum_time_ = scene_.fluid.density * length * length / scene::viscosity_range(scene_.fluid).least;
@@ -262,7 +279,7 @@ Problem::Trial Problem::tried(const LatticeSize& nodes, double tau) const {
   trial.error.resolution = resolution_error(spacing, most_viscous(tau));
   trial.density_factors = density_factors(goal() - trial.error.resolution, spacing, tau);
   for (std::size_t i = 0; i < flows_.size(); ++i) {
-    ErrorShares of_stage = error_of(flows_[i], trial.density_factors[i]);
+    ErrorShares of_stage = error_of(flows_[i], trial.density_factors[i], compression_of(spacing, tau));
     of_stage.resolution = trial.error.resolution;
     if (of_stage.total() > trial.error.total()) trial.error = of_stage;
   }
@@ -290,7 +307,7 @@ std::vector<double> Problem::density_factors(double error, double spacing, doubl
       const double wall_speed = flow.rate * scene_.domain.height() / 2 + flow.mean_wall_speed;
       const double wall_mach = wall_speed * step / spacing / sound;
       // Without cells what is computed is how the fluid's own inertia lets a flow start.
-      const double wanted = has_cells_ ? most_density_factor(flow, error) : 1;
+      const double wanted = has_cells_ ? most_density_factor(flow, error, compression_of(spacing, tau)) : 1;
       const double pressed = has_cells_ ? compression_by_shear(most_viscous(tau), flow.rate * step) : 0;
       factor = std::max(1.0, std::min({wanted, nearly * scene::largest_wall_mach(scene_.fluid.inertia) / wall_mach,
                                        nearly * largest_compression_by_shear / pressed, most}));
@@ -307,20 +324,21 @@ double Problem::resolution_error(double spacing, double tau) const {
   double largest = 0;
   for (const UsedType& used : used_types_)
     largest = std::max(largest, lattice_error(used.type->shape, used.radius / spacing, viscosity_ratio_, tau,
-                                              domain.dimension(), corrected_));
+                                              domain.dimension(), corrected_, capillary_));
   if (!has_cells_) largest = flow_start_error(domain, spacing, tau);
   return largest + steady_flow_error(domain, spacing);
 }
 
 /// Events of a motion come late by the lag of the start, the first of them by the largest share. The steady state misses what
 /// the slowest mode of the start has left, in the flow and in the relative viscosity.
-ErrorShares Problem::error_of(const Flow& flow, double density_factor) const {
+ErrorShares Problem::error_of(const Flow& flow, double density_factor, double compression) const {
   ErrorShares error;
   if (!has_cells_) return error;
   const int dimension = scene_.domain.dimension();
   if (const double reynolds = momentum_time_ * flow.rate * density_factor; reynolds > 0) {
-    error.inertia = steady_ ? steady_error(reynolds, strain_, viscosity_ratio_, dimension) : 0;
+    error.inertia = steady_ ? steady_error_at(reynolds) : 0;
     if (!steady_ || !can_be_steady_) error.inertia = std::max(error.inertia, motion_error(reynolds, dimension));
+    error.inertia += stiffness_error(compression * density_factor, reynolds, viscosity_ratio_);
   }
   if (const FlowStart start{density_factor * flow.lag, flow.driven}; start.delay > 0) {
     error.start = steady_ ? std::max(start.left_at(flow.strain), start.left_of_viscosity(flow.strain))
@@ -329,10 +347,25 @@ ErrorShares Problem::error_of(const Flow& flow, double density_factor) const {
   return error;
 }
 
+double Problem::steady_error_at(double reynolds) const {
+  if (scene_.domain.depth) return steady_error_in_space(reynolds, strain_, viscosity_ratio_);
+  const double height = scene_.domain.height(), length = scene_.domain.size.x();
+  double area = 0;
+  for (const UsedType& used : used_types_) area += used.cells * std::numbers::pi * used.radius * used.radius;
+  return steady_error({reynolds, strain_, viscosity_ratio_, height / radius_, area / (height * length),
+                       capillary_.most});
+}
+
+double Problem::compression_of(double spacing, double tau) const {
+  return has_round_cells_ && bounds_.recovery
+             ? (tau - 0.5) * time_step_of_factor_one(spacing, tau) * bounds_.recovery->most
+             : 0;
+}
+
 double Problem::goal() const {
   double given = 0;
   for (const Flow& flow : flows_)
-    if (flow.own_factor) given = std::max(given, error_of(flow, *flow.given_factor).total());
+    if (flow.own_factor) given = std::max(given, error_of(flow, *flow.given_factor, 0).total());
   return std::max(target_, target_ / 2 + given);
 }
 
@@ -343,13 +376,13 @@ double Problem::most_by_limits(std::size_t stage, double tau) const {
                   of_all != bounds_.most_density_factor.end() ? of_all->second : INFINITY);
 }
 
-double Problem::most_density_factor(const Flow& flow, double error) const {
+double Problem::most_density_factor(const Flow& flow, double error, double compression) const {
   if (!(error > 0)) return 0;
   double low = 1e-6, high = 1e12;  // the error grows with the factor
-  if (error_of(flow, high).total() <= error) return high;
+  if (error_of(flow, high, compression).total() <= error) return high;
   for (int i = 0; i < 100; ++i) {
     const double middle = std::sqrt(low * high);
-    (error_of(flow, middle).total() <= error ? low : high) = middle;
+    (error_of(flow, middle, compression).total() <= error ? low : high) = middle;
   }
   return low;
 }
@@ -377,7 +410,7 @@ std::string Problem::why_density_factor(const Trial& best, std::size_t stage, co
                                              : "at rest, the largest with which cells were measured to come to rest";
   }
   if (flow.rate == 0) return "carried along by both walls, as large as their Mach number allows";
-  const ErrorShares error = error_of(flow, factor);
+  const ErrorShares error = error_of(flow, factor, compression_of(spacing_of(best.nodes), best.tau));
   std::string why = "simulated Reynolds number " + number(momentum_time_ * flow.rate * factor, 3) + ": " +
                     number(100 * error.inertia, 2) + " % of error";
   if (error.start > 0) {
@@ -457,29 +490,41 @@ NumericsChoice Problem::chosen(const Trial& best) const {
                      "then become so thin that they cross themselves");
     set("area_correction", true, in_space ? "cells keep their volumes" : "cells keep their areas");
   }
-  if (!meets_target(best)) {
-    choice.doubt = "numerics.auto: the expected error is " + percent(best.error.total()) +
-                   ", more than the target of " + percent(target_) +
-                   ", with what the scene pins or the finest lattice that is tried";
-  }
-  constexpr double most_of_the_target = 0.8;
-  const std::optional<std::size_t> least = least_dense(best);
-  if (meets_target(best) && best.error.resolution > most_of_the_target * target_ && has_cells_ && least &&
-      flows_[*least].rate > 0 && written_.at("domain").contains("nodes")) {
-    choice.doubt = "numerics.auto: the lattice that domain.nodes names takes " + percent(best.error.resolution) +
-                   " of error already, and what is left of " + percent(target_) +
-                   " asks for small steps (density_factor " + number(best.density_factors[*least], 3) +
-                   "); leave domain.nodes out, or allow a larger error";
-  }
-  if (choice.doubt.empty() && has_cells_ && !scene_.fluid.layers.empty()) {
-    choice.doubt =
-        "numerics.auto: the error of cells was measured in a fluid of one viscosity, and fluid.layers has others";
-  }
-  if (choice.doubt.empty() && has_cells_ && (viscosity_ratio_ < 0.99 || viscosity_ratio_ > 1.01 * measured_ratio)) {
-    choice.doubt = "numerics.auto: the viscosity ratio " + number(viscosity_ratio_, 3) +
-                   " lies outside of what errors were measured for (1 to " + number(measured_ratio) + ")";
-  }
+  choice.doubt = doubt_about(best);
   return choice;
+}
+
+/// Why the target may not be met, or only at a price; empty: it should.
+std::string Problem::doubt_about(const Trial& best) const {
+  const auto percent = [](double share) { return number(100 * share, 2) + " %"; };
+  const auto unknown = [](const std::string& what, double value, double least, double most) {
+    return "numerics.auto: the " + what + " " + number(value, 3) +
+           " lies outside of what errors were measured for (" + number(least) + " to " + number(most) + ")";
+  };
+  if (!meets_target(best)) {
+    return "numerics.auto: the expected error is " + percent(best.error.total()) + ", more than the target of " +
+           percent(target_) + ", with what the scene pins or the finest lattice that is tried";
+  }
+  if (!has_cells_) return {};
+  constexpr double most_of_the_target = 0.8;
+  const std::optional<std::size_t> least_dense_stage = least_dense(best);
+  if (best.error.resolution > most_of_the_target * target_ && least_dense_stage &&
+      flows_[*least_dense_stage].rate > 0 && written_.at("domain").contains("nodes")) {
+    return "numerics.auto: the lattice that domain.nodes names takes " + percent(best.error.resolution) +
+           " of error already, and what is left of " + percent(target_) + " asks for small steps (density_factor " +
+           number(best.density_factors[*least_dense_stage], 3) + "); leave domain.nodes out, or allow a larger error";
+  }
+  if (!scene_.fluid.layers.empty())
+    return "numerics.auto: the error of cells was measured in a fluid of one viscosity, and fluid.layers has others";
+  if (viscosity_ratio_ < 0.99 || viscosity_ratio_ > 1.01 * measured_ratio)
+    return unknown("viscosity ratio", viscosity_ratio_, 1, measured_ratio);
+  if (!has_round_cells_ || !bounds_.recovery) return {};
+  const auto& [least, most] = capillary_;
+  const auto& [least_measured, most_measured] = measured_capillary;
+  if (least < least_measured) return unknown("capillary number", least, least_measured, most_measured);
+  if (most > most_measured && std::isfinite(most))
+    return unknown("capillary number", most, least_measured, most_measured);
+  return {};
 }
 
 /// Gives "numerics": "auto" the form of an object.

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "error_model.hpp"
+
 namespace rouleau::json {
 class Document;
 }  // namespace rouleau::json
@@ -50,7 +52,7 @@ struct NumericsChoice {
 /// Null where nothing was left open.
 nlohmann::json to_json(const std::optional<NumericsChoice>& choice);
 
-/// What the limits of a plan ask for beyond the target error.
+/// What the limits of a plan ask for beyond the target error, and what only a plan knows, for it has opened the plugins.
 struct NumericsBounds {
   std::map<std::size_t, double> most_density_factor = {};  ///< by stage
   /// By stage and relaxation time. The explicit step bears stiffness by the square of tau - 1/2, so that what is too much at one
@@ -58,6 +60,7 @@ struct NumericsBounds {
   std::map<std::pair<std::size_t, double>, double> most_density_factor_at = {};
   double least_radius = 10;  ///< of the smallest cell, lattice spacings
   bool slip_correction = true;
+  std::optional<RecoveryRates> recovery = {};
   bool operator==(const NumericsBounds&) const = default;
 };
 

@@ -37,6 +37,7 @@ bool attracts_strongly(const Plan& plan) {
 
 NumericsBounds tightened(NumericsBounds bounds, const Plan& plan) {
   if (attracts_strongly(plan)) bounds.slip_correction = false;
+  bounds.recovery = recovery_rates(plan);
   for (const Limit& limit : find_limits(plan)) {
     if (limit.margin >= 1 || !(limit.margin > 0)) continue;
     if (limit.remedied_by == RemediedBy::density_factor) {
@@ -112,8 +113,12 @@ ReadScene read_within_limits(const std::filesystem::path& file, const std::vecto
     faults.attempt([&] { find_model_faults(read.scene, catalog_of(read.scene), faults); });
     faults.raise();
   }
-  for (int tries = 0; tries < most_tries && read.numerics_choice; ++tries) {
-    const plugin::Catalog catalog = catalog_of(read.scene);
+  if (!read.numerics_choice) {
+    shape::pack_cells(read.scene);
+    return read;
+  }
+  const plugin::Catalog catalog = catalog_of(read.scene);  // numerics change no model
+  for (int tries = 0; tries < most_tries; ++tries) {
     const NumericsBounds tighter = tightened(bounds, make_plan(read.scene, catalog, read.numerics_choice));
     if (tighter == bounds) break;
     bounds = tighter;

@@ -232,25 +232,26 @@ bool reports_moments(const Plan& plan) {
   return !std::holds_alternative<scene::Circle>(shape) && !std::holds_alternative<scene::Sphere>(shape);
 }
 
+/// Of a cell type's membrane, Es/(mu a), 1/s: Es is a third of the stretching stiffness, as of a neo-Hookean one.
+double recovery_rate(const Plan& plan, const StageSetting& stage, std::size_t type) {
+  const plugin::ModelSetting setting = stage.model_setting(plan.scene->fluid.inertia);
+  double stiffness = 0;
+  for (const PlannedModel& law : plan.membranes[type]) {
+    if (law.active())
+      stiffness +=
+          core::stretching_stiffness(plugin::make_membrane_law(*law.manifest, law.parameters.values, setting), {1.0});
+  }
+  const double radius = shape::shape_radius(plan.scene->cell_types[type].shape) / stage.units.length;
+  return stiffness / (3 * core::viscosity_of(stage.tau) * radius * stage.units.time);
+}
+
 /// Strain within which the cell type that takes longest comes to its steady shape.
 double slowest_relaxation(const Plan& plan, const StageSetting& stage) {
-  const plugin::ModelSetting setting = stage.model_setting(plan.scene->fluid.inertia);
-  const double viscosity = core::viscosity_of(stage.tau);
-  const double rate = scene::mean_shear_rate(*stage.stage, *plan.scene) * stage.units.time;
   double slowest = 0;
   for (std::size_t t = 0; t < plan.membranes.size(); ++t) {
-    const scene::CellType& cell = plan.scene->cell_types[t];
-    double stiffness = 0;
-    for (const PlannedModel& law : plan.membranes[t]) {
-      if (law.active())
-        stiffness +=
-            core::stretching_stiffness(plugin::make_membrane_law(*law.manifest, law.parameters.values, setting), {1.0});
-    }
-    const double radius = shape::shape_radius(cell.shape) / stage.units.length;
-    // Of a neo-Hookean membrane the stiffness is three times the shear modulus.
-    const double capillary = stiffness > 0 ? 3 * viscosity * rate * radius / stiffness : largest_measured_capillary;
-    slowest = std::max(slowest, capsule_relaxation(std::min(capillary, largest_measured_capillary),
-                                                   cell.interior_viscosity / plan.scene->fluid.viscosity));
+    const double capillary = scene::mean_shear_rate(*stage.stage, *plan.scene) / recovery_rate(plan, stage, t);
+    const double ratio = plan.scene->cell_types[t].interior_viscosity / plan.scene->fluid.viscosity;
+    slowest = std::max(slowest, capsule_relaxation(std::min(capillary, largest_measured_capillary), ratio));
   }
   return slowest;
 }
@@ -284,6 +285,16 @@ const KernelFacts& kernel_named(const std::string& name) {
     if (facts.name == name) return facts;
   }
   throw std::logic_error("no kernel is called " + name);
+}
+
+std::optional<RecoveryRates> recovery_rates(const Plan& plan) {
+  if (!plan.has_cells) return std::nullopt;
+  RecoveryRates rates{INFINITY, 0};
+  for (std::size_t t = 0; t < plan.membranes.size(); ++t) {
+    const double rate = recovery_rate(plan, plan.stages.front(), t);
+    rates = {std::min(rates.least, rate), std::max(rates.most, rate)};
+  }
+  return rates;
 }
 
 bool semi_implicit_gains(const Plan& plan) {

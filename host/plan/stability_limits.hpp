@@ -2,10 +2,12 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/coupling/kernel_kind.hpp"
+#include "error_model.hpp"
 
 namespace rouleau::plan {
 
@@ -55,6 +57,9 @@ double explicit_margin(const Plan& plan);
 
 /// Whether the semi-implicit step bears more than the explicit one with the scene's kernel, at its relaxation time.
 bool semi_implicit_gains(const Plan& plan);
+
+/// Of all cell types; nothing without cells.
+std::optional<RecoveryRates> recovery_rates(const Plan& plan);
 
 /// With a margin below this one `"coupling": "auto"` takes the semi-implicit step.
 inline constexpr double comfortable_margin = 1.3;

@@ -49,7 +49,7 @@ TEST_CASE("a bar holds an error of second order in the spacing, of the start, an
         CHECK(bars[0].shares.inertia == Approx(d).margin(1e-12));
         REQUIRE(bars[0].error);
         CHECK(*bars[0].error >= std::abs(c + s + d));
-        CHECK(*bars[0].error <= 1.5 * (std::abs(c) + std::abs(s) + std::abs(d)) + 1e-12);
+        CHECK(*bars[0].error <= 1.5 * (std::abs(c) + std::abs(s)) + 2 * std::abs(d) + 1e-12);
       }
     }
   }

@@ -36,7 +36,7 @@ double estimated_cost(const Scene& scene) {
 
 TEST_CASE("a smaller target error costs more, and the error that is expected is below it") {
   double before = 0;
-  for (const char* target : {"0.05", "0.02", "0.01", "0.005"}) {
+  for (const char* target : {"0.05", "0.02", "0.01", "0.005", "0.002"}) {
     const auto [scene, choice] = chosen({std::string("/numerics/auto/error=") + target});
     REQUIRE(choice);
     CHECK(choice->expected.total() <= std::stod(target));
@@ -44,7 +44,7 @@ TEST_CASE("a smaller target error costs more, and the error that is expected is 
     CHECK(estimated_cost(scene) >= before);
     before = estimated_cost(scene);
   }
-  CHECK(estimated_cost(chosen_scene({"/numerics/auto/error=0.005"})) >
+  CHECK(estimated_cost(chosen_scene({"/numerics/auto/error=0.002"})) >
         2 * estimated_cost(chosen_scene({"/numerics/auto/error=0.05"})));
 }
 
