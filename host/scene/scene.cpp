@@ -99,12 +99,6 @@ std::optional<double> read_tube(const SceneFields& fields, const Domain& domain)
 /// What is there in two dimensions only, so far.
 void check_space(const SceneFields& fields, const Scene& scene) {
   if (!scene.domain.depth) return;
-  if (!scene.cells.empty() && scene.numerics.slip_correction) {
-    fields.attempt([&] {
-      fields.refuse("/numerics/slip_correction",
-                    "there is no such thing in three dimensions yet\nset it to false, or leave it out");
-    });
-  }
   if (scene.domain.tube_radius && !scene.fluid.layers.empty()) {
     fields.attempt([&] {
       fields.refuse("/fluid/layers", "layers lie along plane walls, and this domain is a tube\nleave the layers out");

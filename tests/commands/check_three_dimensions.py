@@ -476,7 +476,6 @@ class Three_dimensions_refuse(Case):
                  "off_rate": 1, "cutoff": "0.3 um"}
         acting = [{"between": ["capsule", "self"], "model": "bridging", "parameters": bonds}]
         self.refused(scene | {"interactions": acting}, "/interactions/0/model", "cannot act within a membrane", "remembers")
-        self.refused(changed(scene, numerics__slip_correction=True), "/numerics/slip_correction", "three dimensions")
         laws = [{"model": "hooke", "parameters": {"shear_modulus": "1e-6 N/m"}}]
         self.refused(changed(scene, **{capsule + "membrane": laws}), "/cell_types/capsule/membrane/0/model",
                      "three dimensions", "neo-hookean")

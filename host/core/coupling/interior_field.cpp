@@ -11,8 +11,11 @@ namespace rouleau::core {
 
 template <class T>
 InteriorField<T>::InteriorField(const Surfaces& surfaces, std::vector<double> viscosity_ratio, double relaxation_rate,
-                                const Domain<3>& domain, std::vector<double> viscosity_of_rows)
+                                const Domain<3>& domain, std::vector<double> viscosity_of_rows, ViscosityMean mean,
+                                double reach_beyond)
     : ratio_(std::move(viscosity_ratio)),
+      mean_(mean),
+      margin_(static_cast<int>(std::ceil(reach_beyond))),
       plain_rate_(relaxation_rate),
       viscosity_of_rows_(std::move(viscosity_of_rows)),
       domain_(domain),
@@ -51,8 +54,8 @@ void InteriorField<T>::find_reach(const Surfaces& surfaces, int cell) {
   for (int axis = 0; axis < 2; ++axis) {
     const auto [least, most] = std::minmax_element(along[axis] + range.first, along[axis] + range.end());
     if (!(std::abs(*least) < 1e9 && std::abs(*most) < 1e9)) return;  // the run is about to end
-    reach.first[axis] = floor_int(*least) - 2;
-    reach.size[axis] = floor_int(*most) + 4 - reach.first[axis];
+    reach.first[axis] = floor_int(*least) - 2 - margin_;
+    reach.size[axis] = floor_int(*most) + 4 + margin_ - reach.first[axis];
   }
   const Interval none{1 << 30, -(1 << 30)};
   reach.columns.assign(static_cast<std::size_t>(reach.size[0]) * reach.size[1], none);
@@ -63,7 +66,7 @@ void InteriorField<T>::find_reach(const Surfaces& surfaces, int cell) {
     if (!(std::abs(surfaces.x[i]) < 1e9)) continue;
     const int x = floor_int(surfaces.x[i]);
     include(reach.at(floor_int(surfaces.y[i]) - reach.first[0], floor_int(surfaces.z[i]) - reach.first[1]),
-            {x - 2, x + 4});
+            {x - 2 - margin_, x + 4 + margin_});
   }
   // From the row below a node to the rows that its stencil reaches, along one axis and then the other.
   for (int axis = 0; axis < 2; ++axis) {
@@ -71,7 +74,7 @@ void InteriorField<T>::find_reach(const Surfaces& surfaces, int cell) {
     for (int k = 0; k < reach.size[1]; ++k) {
       for (int j = 0; j < reach.size[0]; ++j) {
         const int at = axis == 0 ? j : k;
-        for (int from = std::max(0, at - 3); from <= std::min(reach.size[axis] - 1, at + 2); ++from)
+        for (int from = std::max(0, at - 3 - margin_); from <= std::min(reach.size[axis] - 1, at + 2 + margin_); ++from)
           include(reach.at(j, k),
                   before[static_cast<std::size_t>(reach.size[0] * (axis == 0 ? k : from) + (axis == 0 ? from : j))]);
       }
@@ -120,6 +123,8 @@ void InteriorField<T>::update(Worker worker, const Surfaces& surfaces, Field<T, 
 
 template <class T>
 void InteriorField<T>::set_rates(const Surfaces& surfaces, Range own, Field<T, 3>& rate) {
+  const bool harmonic = mean_ == ViscosityMean::harmonic;
+  const auto averaged = [=](double viscosity) { return harmonic ? 1 / viscosity : viscosity; };
   // The field holds the sum over cells of (ratio - r) I until every cell has been added. Cells that do not overlap may
   // share the columns between them, which are made plain again first and count once.
   const int width = domain_.size[0];
@@ -136,9 +141,9 @@ void InteriorField<T>::set_rates(const Surfaces& surfaces, Range own, Field<T, 3
       if (!surfaces.reaches(c)) continue;
       const VolumeFraction& fraction = fraction_[c];
       const int first[2] = {fraction.first[1], fraction.first[2]}, size[2] = {fraction.size[1], fraction.size[2]};
-      const double inside = ratio_[surfaces.cells[c].type];
+      const double inside = averaged(ratio_[surfaces.cells[c].type]);
       for_rows(first, size, own, [&](int row, int j, int k) {
-        const double excess = inside - viscosity_of_row(row);
+        const double excess = inside - averaged(viscosity_of_row(row));
         for (int begin = 0; begin < fraction.size[0];) {
           const int x = domain_.wrapped(0, fraction.first[0] + begin);
           const int end = std::min(fraction.size[0], begin + width - x);
@@ -162,11 +167,12 @@ void InteriorField<T>::set_rates(const Surfaces& surfaces, Range own, Field<T, 3
   const T outside = static_cast<T>(1 / plain_rate_ - 0.5);
   for (int row = own.begin; row < own.end; ++row) {
     if (changed_[row].empty()) continue;
-    const T plain = plain_rate(row), around = static_cast<T>(viscosity_of_row(row));
+    const T plain = plain_rate(row), around = static_cast<T>(averaged(viscosity_of_row(row)));
     T* to = row_of(row);
     for (const Interval& columns : changed_[row]) {
       for (int x = columns.begin; x < columns.end; ++x)
-        to[x] = to[x] == T(0) ? plain : T(1) / (T(0.5) + outside * (around + to[x]));
+        to[x] = to[x] == T(0) ? plain
+                              : T(1) / (T(0.5) + (harmonic ? outside / (around + to[x]) : outside * (around + to[x])));
     }
   }
 }

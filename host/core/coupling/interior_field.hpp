@@ -8,20 +8,22 @@
 #include "core/fluid/node_mask.hpp"
 #include "core/membrane/displacement_watch.hpp"
 #include "core/surface/surfaces.hpp"
+#include "viscosity_field.hpp"
 #include "volume_fraction.hpp"
 
 namespace rouleau::core {
 
-/// tau = 1/2 + (tau_outside - 1/2) (r + sum over cells (ratio - r) I), kept as 1/tau: I of a node's cube lies inside a
+/// tau = 1/2 + (tau_outside - 1/2) (r + sum over cells (ratio - r) I), or the same of inverses, kept as 1/tau: I of a node's cube lies inside a
 /// cell, and r is 1, in layers the viscosity at this height over the suspending one: what is inside a cell is the same wherever
 /// it swims. Where nodes have moved all that the cells cover is computed again.
 template <class T>
 class InteriorField {
  public:
   /// `viscosity_ratio[t]`: interior over suspending viscosity of cell type t. `viscosity_of_rows`: of the fluid around the
-  /// cells, as in FluidSetting.
+  /// cells, as in FluidSetting. `reach_beyond`: how far from the nodes their forces may act, spacings.
   InteriorField(const Surfaces& surfaces, std::vector<double> viscosity_ratio, double relaxation_rate,
-                const Domain<3>& domain, std::vector<double> viscosity_of_rows = {});
+                const Domain<3>& domain, std::vector<double> viscosity_of_rows = {},
+                ViscosityMean mean = ViscosityMean::arithmetic, double reach_beyond = 0);
 
   /// Whether a relaxation rate that varies in space is needed; if not, the passes only mark.
   [[nodiscard]] bool varies() const { return varies_; }
@@ -72,6 +74,8 @@ class InteriorField {
   void set_rates(const Surfaces& surfaces, Range own, Field<T, 3>& rate);
 
   std::vector<double> ratio_;
+  ViscosityMean mean_;
+  int margin_;
   double plain_rate_;
   std::vector<double> viscosity_of_rows_;
   Domain<3> domain_;

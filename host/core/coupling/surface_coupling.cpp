@@ -245,9 +245,9 @@ void SurfaceCoupling<T>::reserve(const Surfaces& surfaces) {
 }
 
 template <class T>
-void SurfaceCoupling<T>::locate(Worker worker, const Surfaces& surfaces, Whose whose) {
+void SurfaceCoupling<T>::locate(Worker worker, const Surfaces& surfaces, const std::array<const double*, 3>& place,
+                                Whose whose) {
   const CellNumbers cells = surfaces.known_cells(worker);
-  const double* const place[3] = {surfaces.x.data(), surfaces.y.data(), surfaces.z.data()};
   for (const int c : cells) {
     if (!surfaces.is(c, whose)) continue;
     const CellRange& cell = surfaces.cells[c];
@@ -276,7 +276,8 @@ void SurfaceCoupling<T>::locate(Worker worker, const Surfaces& surfaces, Whose w
 }
 
 template <class T>
-void SurfaceCoupling<T>::spread(Range rows, const Surfaces& surfaces, VectorField<T, 3>& force) const {
+void SurfaceCoupling<T>::spread(Range rows, const Surfaces& surfaces, const std::array<const double*, 3>& forces,
+                                VectorField<T, 3>& force) const {
   const Box<3>& block = domain_.block;
   SurfaceSpread<T> task{};
   task.stride_y = force[0].stride(1), task.stride_z = force[0].stride(2);
@@ -284,9 +285,8 @@ void SurfaceCoupling<T>::spread(Range rows, const Surfaces& surfaces, VectorFiel
   for (int k = 0; k < 3; ++k) {
     task.at.base[k] = base_[k].data(), task.at.p[k] = p_[k].data(), task.at.q[k] = q_[k].data();
     task.origin[k] = force[k].row(0, 0) - first;
+    task.force[k] = forces[k];
   }
-  task.force[0] = surfaces.force_x.data(), task.force[1] = surfaces.force_y.data();
-  task.force[2] = surfaces.force_z.data();
   task.domain = &domain_;
   task.row_begin = rows.begin, task.row_end = rows.end;
   // Planes of the lattice that these rows lie in.

@@ -24,11 +24,13 @@ class SurfaceCoupling {
   /// Makes room for these nodes; to be called once, before the first locate().
   void reserve(const Surfaces& surfaces);
 
-  /// Pass over cells: weights for the present positions.
-  void locate(Worker worker, const Surfaces& surfaces, Whose whose = Whose::own);
-  /// Pass over rows of the block: adds the forces of all nodes to the force density there. The sums do not depend on how
+  /// Pass over cells: weights for these positions of the nodes.
+  void locate(Worker worker, const Surfaces& surfaces, const std::array<const double*, 3>& positions,
+              Whose whose = Whose::own);
+  /// Pass over rows of the block: adds these forces of all nodes to the force density there. The sums do not depend on how
   /// rows are shared out, nor on the block.
-  void spread(Range rows, const Surfaces& surfaces, VectorField<T, 3>& force) const;
+  void spread(Range rows, const Surfaces& surfaces, const std::array<const double*, 3>& forces,
+              VectorField<T, 3>& force) const;
   /// Pass over cells: sets the velocities of the nodes whose base node lies in the block, of cells that reach it.
   void interpolate(Worker worker, Surfaces& surfaces, const VectorField<T, 3>& velocity,
                    Whose whose = Whose::own) const;

@@ -1,17 +1,14 @@
 #include "surface_tasks.hpp"
 
 #include <cmath>
-#include <stdexcept>
 
 #include "core/membrane/motion.hpp"
+#include "core/membrane/stiffness.hpp"
+#include "ghost_reach.hpp"
 
 namespace rouleau::core {
 
 namespace {
-
-void check(const BasicSolverSetup<3>& setup) {
-  if (setup.slip_correction) throw std::invalid_argument("the slip correction is made in two dimensions only");
-}
 
 std::vector<MembraneLaws> laws_of(const BasicSolverSetup<3>& setup) {
   std::vector<MembraneLaws> laws;
@@ -23,6 +20,17 @@ std::vector<double> ratios_of(const BasicSolverSetup<3>& setup) {
   std::vector<double> ratios;
   for (const CellType& type : setup.cell_types) ratios.push_back(type.viscosity_ratio);
   return ratios;
+}
+
+std::unique_ptr<SurfaceSlip> make_slip(const BasicSolverSetup<3>& setup, const Surfaces& surfaces) {
+  if (!setup.slip_correction) return nullptr;
+  std::vector<SurfaceSlip::Type> types;
+  for (const CellType& type : setup.cell_types) {
+    double stretching = 0;
+    for (const MembraneLaw& law : type.laws) stretching += stretching_stiffness(law);
+    types.push_back({slip_constants(setup.kernel, type.viscosity_ratio), stretching});
+  }
+  return std::make_unique<SurfaceSlip>(surfaces, std::move(types), setup.viscosity());
 }
 
 /// Second difference of a type's energy when its shape is stretched along x.
@@ -51,8 +59,10 @@ SurfaceTasks<T>::SurfaceTasks(const BasicSolverSetup<3>& setup, Surfaces& surfac
                               std::optional<GhostCells<3>> ghosts)
     : surfaces_(surfaces),
       fluid_(fluid),
-      forces_((check(setup), surfaces), laws_of(setup)),
-      viscosity_field_(surfaces, ratios_of(setup), 1 / setup.tau, setup.domain, fluid.setting().viscosity_of_rows),
+      forces_(surfaces, laws_of(setup)),
+      slip_(make_slip(setup, surfaces)),
+      viscosity_field_(surfaces, ratios_of(setup), 1 / setup.tau, setup.domain, fluid.setting().viscosity_of_rows,
+                       slip_ ? ViscosityMean::harmonic : ViscosityMean::arithmetic, largest_shift(setup)),
       coupling_(setup.kernel, setup.domain),
       ranks_(fluid.ranks()) {
   surfaces_.largest_step.resize(surfaces_.cells.size(), 0.0);
@@ -77,7 +87,7 @@ SurfaceTasks<T>::SurfaceTasks(const BasicSolverSetup<3>& setup, Surfaces& surfac
     exchange_ =
         std::make_unique<CellExchange<3>>(*std::move(ghosts), interactions_ && interactions_->needs_velocities());
   }
-  for (const Whose whose : {Whose::own, Whose::others}) coupling_.locate(Worker{}, surfaces_, whose);
+  for (const Whose whose : {Whose::own, Whose::others}) locate(Worker{}, whose);
   forget_unknown();
 }
 
@@ -95,7 +105,9 @@ void SurfaceTasks<T>::run(Task task, Worker worker) {
     case Task::take_reactions:
       return interactions_->run(worker, 2, surfaces_);
     case Task::complete_forces:
-      return volume_correction_->take_out_pressures(worker, surfaces_);
+      if (volume_correction_) volume_correction_->take_out_pressures(worker, surfaces_);
+      if (slip_) slip_->complete(worker, surfaces_);
+      return;
     case Task::find_nodes:
       viscosity_field_.measure(worker, surfaces_);
       return viscosity_field_.cover(worker, surfaces_);
@@ -109,14 +121,16 @@ void SurfaceTasks<T>::run(Task task, Worker worker) {
     case Task::interpolate_ghosts:
       return coupling_.interpolate(worker, surfaces_, fluid_.velocity(), Whose::others);
     case Task::correct_velocities:
-      return volume_correction_->keep_volumes(worker, surfaces_);
+      if (slip_) slip_->correct(worker, surfaces_);
+      if (volume_correction_) volume_correction_->keep_volumes(worker, surfaces_);
+      return;
     case Task::move:
       return core::move_nodes(worker, surfaces_);
     case Task::locate:
-      return coupling_.locate(worker, surfaces_, Whose::own);
+      return locate(worker, Whose::own);
     case Task::locate_ghosts:
-      coupling_.locate(worker, surfaces_, Whose::others);
-      if (exchange_->took_over()) coupling_.locate(worker, surfaces_, Whose::own);
+      locate(worker, Whose::others);
+      if (exchange_->took_over()) locate(worker, Whose::own);
       return;
     default:  // messages; the fluid's own tasks are none
       if (!exchange_ || !worker.first()) return;
@@ -131,7 +145,8 @@ CellExchange<3>::Parts SurfaceTasks<T>::parts() {
   return {.cells = surfaces_,
           .interactions = interactions_.get(),
           .viscosity = viscosity_field_.watch(),
-          .force = std::array{surfaces_.force_x.data(), surfaces_.force_y.data(), surfaces_.force_z.data()},
+          .force = slip_ ? slip_->forces_of_all()
+                         : std::array{surfaces_.force_x.data(), surfaces_.force_y.data(), surfaces_.force_z.data()},
           .base = [this](int node) { return coupling_.base(node); },
           .escaped = [this] { return coupling_.any_escaped(surfaces_); }};
 }
@@ -145,7 +160,14 @@ void SurfaceTasks<T>::forget_unknown() {
   viscosity_field_.watch().forget(surfaces_, nodes);
   coupling_.forget(nodes);
   if (volume_correction_) volume_correction_->forget(nodes);
+  if (slip_) slip_->forget(nodes);
   if (interactions_) interactions_->forget(surfaces_, nodes);
+}
+
+template <class T>
+void SurfaceTasks<T>::locate(Worker worker, Whose whose) {
+  if (slip_) slip_->measure(worker, surfaces_, whose);
+  coupling_.locate(worker, surfaces_, slip_ ? slip_->positions() : surfaces_.positions(), whose);
 }
 
 template class SurfaceTasks<float>;

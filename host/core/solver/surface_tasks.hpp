@@ -10,6 +10,7 @@
 #include "core/contact/surface_wall_contacts.hpp"
 #include "core/coupling/interior_field.hpp"
 #include "core/coupling/surface_coupling.hpp"
+#include "core/coupling/surface_slip.hpp"
 #include "core/domain/ranks.hpp"
 #include "core/fluid/fluid.hpp"
 #include "core/membrane/motion.hpp"
@@ -29,7 +30,6 @@ class SurfaceTasks {
 
   /// The setup, the surfaces, of which there is at least one, and the fluid belong to the solver, and outlive this.
   /// `ghosts`: this rank's part in the surfaces, which these know of; null without other ranks.
-  /// Throws std::invalid_argument for the slip correction, which surfaces do not have.
   SurfaceTasks(const BasicSolverSetup<3>& setup, Surfaces& surfaces, Fluid<T, D3Q19>& fluid,
                std::optional<GhostCells<3>> ghosts);
 
@@ -38,12 +38,15 @@ class SurfaceTasks {
     features.cells = true;
     features.interactions = interactions_ != nullptr;
     features.wall_interactions = wall_contacts_ != nullptr;
+    features.slip_correction = slip_ != nullptr;
     features.area_correction = volume_correction_ != nullptr;
   }
   /// A worker's share of a task of schedule.hpp that is not one over rows; what the fluid does alone is left out.
   void run(Task task, Worker worker);
   /// Pass over rows of the block.
-  void spread(Range rows) { coupling_.spread(rows, surfaces_, fluid_.force()); }
+  void spread(Range rows) {
+    coupling_.spread(rows, surfaces_, slip_ ? slip_->forces() : surfaces_.forces(), fluid_.force());
+  }
   /// The fluid's unsteady term has no frame in three dimensions.
   void follow(const std::array<double, 3>&) {}
   /// One worker, between steps, before ranks speak of something else than the next step does, which other workers may have
@@ -84,7 +87,7 @@ class SurfaceTasks {
   /// What it takes to stretch all membranes by 0.1 % along x, the volume law left aside.
   [[nodiscard]] double slight_energy() const { return slight_energy_; }
   /// Whether nodes do not move exactly as the lattice's fluid at their places does.
-  [[nodiscard]] bool corrects_motion() const { return volume_correction_ != nullptr; }
+  [[nodiscard]] bool corrects_motion() const { return slip_ || volume_correction_; }
   /// Null without such interactions.
   [[nodiscard]] const SurfaceWallContacts* wall_contacts() const { return wall_contacts_.get(); }
   /// Calls function(forces) for the kinds of interactions that there are: between and within cells, and with walls.
@@ -98,6 +101,8 @@ class SurfaceTasks {
  private:
   /// What this rank does not know takes no memory.
   void forget_unknown();
+  /// Pass over cells: where the nodes touch the lattice.
+  void locate(Worker worker, Whose whose);
   [[nodiscard]] typename CellExchange<3>::Parts parts();
 
   Surfaces& surfaces_;
@@ -106,6 +111,7 @@ class SurfaceTasks {
   std::unique_ptr<SurfaceInteractions> interactions_;
   std::unique_ptr<SurfaceWallContacts> wall_contacts_;
   std::unique_ptr<VolumeCorrection> volume_correction_;  ///< null: volumes are left to the coupling
+  std::unique_ptr<SurfaceSlip> slip_;                    ///< null: membranes slip
   InteriorField<T> viscosity_field_;
   SurfaceCoupling<T> coupling_;
   Ranks<3> ranks_;

@@ -37,6 +37,8 @@ RestSurface make_rest_surface(Mesh mesh, std::vector<double> x, std::vector<doub
 struct Surfaces : CellNodes {
   std::vector<std::shared_ptr<const RestSurface>> types;
 
+  [[nodiscard]] std::array<const double*, 3> positions() const { return {x.data(), y.data(), z.data()}; }
+  [[nodiscard]] std::array<const double*, 3> forces() const { return {force_x.data(), force_y.data(), force_z.data()}; }
   [[nodiscard]] const RestSurface& type_of(int cell) const { return *types[cells[cell].type]; }
   [[nodiscard]] Nodes nodes(int cell) const {
     const int first = cells[cell].first;

@@ -74,10 +74,10 @@ TEMPLATE_TEST_CASE("in three dimensions spreading and interpolation are adjoint,
       Surfaces s = sphere_at(walls ? Vec<3>(1.3, 2.6, 12.4) : Vec<3>(1.3, 17.6, -0.4), random);
       SurfaceCoupling<TestType> coupling(kernel, domain);
       coupling.reserve(s);
-      coupling.locate({}, s);
+      coupling.locate({}, s, s.positions());
       REQUIRE(coupling.escaped(s) == -1);
       VectorField<TestType, 3> force = field<TestType>(), u = field<TestType>();
-      coupling.spread({0, box[1] * box[2]}, s, force);
+      coupling.spread({0, box[1] * box[2]}, s, s.forces(), force);
       for_nodes([&](int x, int y, int z) {
         for (auto& component : u) component.row(y, z)[x] = static_cast<TestType>(any(random));
       });
@@ -106,9 +106,9 @@ TEST_CASE("in three dimensions force and torque on the lattice are those of the 
     Surfaces s = sphere_at({9.7, 8.2, 7.9}, random);
     SurfaceCoupling<double> coupling(kernel, domain);
     coupling.reserve(s);
-    coupling.locate({}, s);
+    coupling.locate({}, s, s.positions());
     VectorField<double, 3> force = field<double>();
-    coupling.spread({0, box[1] * box[2]}, s, force);
+    coupling.spread({0, box[1] * box[2]}, s, s.forces(), force);
     Vec<3> sum = Vec<3>::Zero(), torque = Vec<3>::Zero();
     for_nodes([&](int x, int y, int z) {
       const Vec<3> f(force[0].row(y, z)[x], force[1].row(y, z)[x], force[2].row(y, z)[x]);
@@ -131,7 +131,7 @@ TEST_CASE("in three dimensions linear velocity is interpolated exactly") {
   Surfaces s = sphere_at({9.7, 8.2, 7.9}, random);
   SurfaceCoupling<double> coupling(KernelKind::peskin4, domain);
   coupling.reserve(s);
-  coupling.locate({}, s);
+  coupling.locate({}, s, s.positions());
   VectorField<double, 3> u = field<double>();
   for_nodes([&](int x, int y, int z) {
     u[0].row(y, z)[x] = 0.3 + 0.1 * y - 0.2 * z;
@@ -157,9 +157,9 @@ TEMPLATE_TEST_CASE("spread forces of surfaces are the same bits however rows are
   const auto spread = [&](const std::vector<int>& cuts) {
     SurfaceCoupling<TestType> coupling(KernelKind::peskin4, domain);
     coupling.reserve(s);
-    coupling.locate({}, s);
+    coupling.locate({}, s, s.positions());
     VectorField<TestType, 3> force = field<TestType>();
-    for (std::size_t k = 1; k < cuts.size(); ++k) coupling.spread({cuts[k - 1], cuts[k]}, s, force);
+    for (std::size_t k = 1; k < cuts.size(); ++k) coupling.spread({cuts[k - 1], cuts[k]}, s, s.forces(), force);
     return force;
   };
   const auto whole = spread({0, 288}), parts = spread({0, 1, 100, 101, 150, 288});
@@ -186,10 +186,10 @@ TEST_CASE("a node of a surface beyond a wall, or nowhere, is reported and touche
     for (int i = 0; i < lost.node_count(); ++i) {
       if (i != 17) lost.force_x[i] = lost.force_y[i] = lost.force_z[i] = 0;
     }
-    coupling.locate({}, lost);
+    coupling.locate({}, lost, lost.positions());
     CHECK(coupling.escaped(lost) == 17);
     VectorField<double, 3> force = field<double>();
-    coupling.spread({0, box[1] * box[2]}, lost, force);
+    coupling.spread({0, box[1] * box[2]}, lost, lost.forces(), force);
     for_nodes([&](int x, int y, int z) { REQUIRE(force[0].row(y, z)[x] == 0); });
     coupling.interpolate({}, lost, force);
     CHECK(lost.velocity_y[17] == 0);
