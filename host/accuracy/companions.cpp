@@ -27,7 +27,7 @@ using namespace nlohmann::literals;
 constexpr double least_refinement = 4.0 / 3, most_refinement = 2.5;
 constexpr double least_radius = 4;  ///< of the smallest cell on a companion's lattice, spacings
 // Shares of the run's time: of steps, at most and where starting the companions takes the rest; seconds to start one.
-constexpr double most_share = 0.34, least_share = 0.25, start_s = 0.006;
+constexpr double most_share = 0.38, least_share = 0.28, start_s = 0.004;
 constexpr double with_shorter_steps = 2;   ///< times those shares, where no lattice that they allow is fine enough
 constexpr double outputs_of_tables = 0.2;  ///< what they cost over those of a run, which writes frames
 
@@ -84,6 +84,11 @@ std::string in_words(const LatticeSize& size) {
   return words + " nodes";
 }
 
+/// What small lattices cost beside their nodes, s: each step; each row in two dimensions, and once more if its nodes do not fill
+/// registers.
+constexpr double step_s = 1.5e-6, row_s = 45e-9, ragged_row_s = 60e-9;
+constexpr int full_registers = 8;
+
 /// Cost of a run on a lattice with `coarser` times fewer nodes along each side, over that of the run.
 double share_of(const scene::Scene& scene, double coarser) {
   const LatticeSize size = lattice_size(scene.domain);
@@ -92,7 +97,11 @@ double share_of(const scene::Scene& scene, double coarser) {
   const double membranes = plan::membrane_nodes(scene);
   const auto cost = [&](double by) {
     const double of_membranes = membranes / std::pow(by, dimension - 1);
-    return plan::step_cost(nodes / std::pow(by, dimension), of_membranes, scene.numerics.precision, dimension) /
+    const long row = std::lround(size[0] / by);
+    const double of_rows =
+        dimension == 2 ? size[1] / by * (row_s + (row % full_registers != 0 ? ragged_row_s : 0)) : 0;
+    return (plan::step_cost(nodes / std::pow(by, dimension), of_membranes, scene.numerics.precision, dimension) +
+            of_rows + step_s) /
            (by * by);
   };
   return cost(coarser) / cost(1);
@@ -291,6 +300,14 @@ Companions choose_companions(const scene::Scene& scene, const RunCost& cost, dou
   const bool too_coarse = choice.fine == 0 || lattices.radius(choice.fine) < least_radius;
   if (too_coarse && std::isfinite(most_compressed)) choice = finest_within(with_shorter_steps * affordable);
   const auto& [fine, coarse, tau, changes] = choice;
+  const auto too_small = [](double radius) {
+    return "on a lattice that costs a small part of this one a cell's radius would be " + number(radius, 2) +
+           " spacings, fewer than " + number(least_radius);
+  };
+  if (const double most = lattices.radius(lattices.parts()) / least_refinement; most < least_radius) {
+    chosen.why_none = too_small(most);
+    return chosen;
+  }
   if (fine == 0) {
     chosen.why_none = "no coarser lattice has the shape of " + in_words(lattice_size(scene.domain)) + " and 1.4 to " +
                       number(most_refinement) +
@@ -306,8 +323,7 @@ Companions choose_companions(const scene::Scene& scene, const RunCost& cost, dou
   chosen.refinement = as_by_spacing(fine);
   chosen.expected_share = longer * cost_of_all(scene, lattices, choice);
   if (const double radius = lattices.radius(fine); radius < least_radius) {
-    chosen.why_none = "on a lattice that costs a small part of this one a cell's radius would be " + number(radius, 2) +
-                      " spacings, fewer than " + number(least_radius);
+    chosen.why_none = too_small(radius);
     return chosen;
   }
   const auto add_lattice = [&](Role role, int part) {
