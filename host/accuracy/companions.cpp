@@ -98,8 +98,7 @@ double share_of(const scene::Scene& scene, double coarser) {
   const auto cost = [&](double by) {
     const double of_membranes = membranes / std::pow(by, dimension - 1);
     const long row = std::lround(size[0] / by);
-    const double of_rows =
-        dimension == 2 ? size[1] / by * (row_s + (row % full_registers != 0 ? ragged_row_s : 0)) : 0;
+    const double of_rows = dimension == 2 ? size[1] / by * (row_s + (row % full_registers != 0 ? ragged_row_s : 0)) : 0;
     return (plan::step_cost(nodes / std::pow(by, dimension), of_membranes, scene.numerics.precision, dimension) +
             of_rows + step_s) /
            (by * by);
@@ -316,8 +315,8 @@ Companions choose_companions(const scene::Scene& scene, const RunCost& cost, dou
   }
   chosen.density = changes.density;
   const auto as_by_spacing = [&](int part) {
-    const double change = plan::growth_of_lattice_error(scene, tau) /
-                          plan::growth_of_lattice_error(scene, scene.numerics.tau);
+    const double change =
+        plan::growth_of_lattice_error(scene, tau) / plan::growth_of_lattice_error(scene, scene.numerics.tau);
     return lattices.refinement(part) * std::pow(change, 1 / chosen.order);
   };
   chosen.refinement = as_by_spacing(fine);

@@ -32,13 +32,13 @@ struct Companions {
   /// Spacing of the companion for the lattice over the run's; with a smaller relaxation time, on which the lattice's error
   /// depends, as if all of its error came from the spacing.
   double refinement = 1;
-  double coarsest = 1;          ///< the same of the companion for the order
-  double order = 2;             ///< at which the lattice's error falls in the end
-  double usual_order = 2;       ///< at which it was measured to fall, where companions do not show it
-  double density = 1;           ///< density factors of the companion for inertia over the run's
-  double relaxed = 0;           ///< share of the density that is not the fluid's own: 1 - 1/density_factor, the largest
-  double expected_share = 0;    ///< of what the run costs
-  std::string why_none;         ///< why there are no companions; empty: there are
+  double coarsest = 1;        ///< the same of the companion for the order
+  double order = 2;           ///< at which the lattice's error falls in the end
+  double usual_order = 2;     ///< at which it was measured to fall, where companions do not show it
+  double density = 1;         ///< density factors of the companion for inertia over the run's
+  double relaxed = 0;         ///< share of the density that is not the fluid's own: 1 - 1/density_factor, the largest
+  double expected_share = 0;  ///< of what the run costs
+  std::string why_none;       ///< why there are no companions; empty: there are
 };
 
 /// What a run has shown before its companions are chosen.

@@ -174,8 +174,7 @@ Round run_until_stable(const scene::Scene& scene, const RunCost& cost, const fs:
   Round round = run_all(choose_companions(scene, cost), scene, folder, options, listed, wall_s);
   if (!round.diverged) return round;
   Companions stiffer = choose_companions(scene, cost, plan::largest_compression_by_shear);
-  const bool others =
-      stiffer.why_none.empty() && stiffer.runs.front().scene != round.companions.runs.front().scene;
+  const bool others = stiffer.why_none.empty() && stiffer.runs.front().scene != round.companions.runs.front().scene;
   return others ? run_all(std::move(stiffer), scene, folder, options, listed, wall_s) : round;
 }
 

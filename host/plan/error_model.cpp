@@ -41,7 +41,8 @@ constexpr double motion_by_reynolds = 0.024;
 // What a cell and the walls make of each other dies out with the slowest mode of the channel's fluid, within a strain of T = Re
 // (H / 2 pi a)^2. Shapes: 0.5 (6.4 a/H)^3 exp(-1.2 strain/T), and 0.3 Re times what is left of the membrane's own relaxation. The
 // relative viscosity, over the second half of the strain: 1.7 exp(-0.7 strain/T) of what cells add, which is twice their share of the area.
-constexpr double of_shape = 0.5, shape_rate = 1.2, relaxation_by_reynolds = 0.3, of_viscosity = 3.4, viscosity_rate = 0.7;
+constexpr double of_shape = 0.5, shape_rate = 1.2, relaxation_by_reynolds = 0.3, of_viscosity = 3.4,
+                 viscosity_rate = 0.7;
 constexpr double measured_height = 6.4;
 }  // namespace in_plane
 

@@ -150,7 +150,7 @@ class Problem {
   std::vector<Flow> flows_;     ///< of each stage
   double strain_ = 0;           ///< of the stage with the largest
   CapillaryRange capillary_ = usual_capillary;
-  double momentum_time_ = 0;    ///< s, of the true fluid, over the cells' radius or, without cells, half the height
+  double momentum_time_ = 0;  ///< s, of the true fluid, over the cells' radius or, without cells, half the height
 };
 
 Problem::Problem(const scene::Scene& draft, const Json& written, const NumericsBounds& bounds)
@@ -170,8 +170,8 @@ Problem::Problem(const scene::Scene& draft, const Json& written, const NumericsB
     const scene::CellType& type = scene_.cell_types[i];
     const bool fixed = std::holds_alternative<scene::MeshFile>(type.shape) ||
                        written_.at("cell_types").at(type.name).contains("triangles");
-    has_round_cells_ = has_round_cells_ ||
-                       (!scene_.domain.depth && !std::holds_alternative<scene::Biconcave>(type.shape));
+    has_round_cells_ =
+        has_round_cells_ || (!scene_.domain.depth && !std::holds_alternative<scene::Biconcave>(type.shape));
     used_types_.push_back({&type, placed[i], resolved_radius(type.shape), fixed ? shape::node_count(type) : 0});
     const double ratio = type.interior_viscosity / scene_.fluid.viscosity;
     if (std::abs(std::log(ratio)) > std::abs(std::log(viscosity_ratio_))) viscosity_ratio_ = ratio;
@@ -352,8 +352,8 @@ double Problem::steady_error_at(double reynolds) const {
   const double height = scene_.domain.height(), length = scene_.domain.size.x();
   double area = 0;
   for (const UsedType& used : used_types_) area += used.cells * std::numbers::pi * used.radius * used.radius;
-  return steady_error({reynolds, strain_, viscosity_ratio_, height / radius_, area / (height * length),
-                       capillary_.most});
+  return steady_error(
+      {reynolds, strain_, viscosity_ratio_, height / radius_, area / (height * length), capillary_.most});
 }
 
 double Problem::compression_of(double spacing, double tau) const {
@@ -485,7 +485,7 @@ NumericsChoice Problem::chosen(const Trial& best) const {
     set("coupling", "auto", "explicit or semi-implicit, by the limits of the membranes' stiffness");
     set("slip_correction", corrected_,
         corrected_ ? "takes the first-order error of the immersed boundary out"
-        : in_space ? "there is none in three dimensions"
+        : in_space ? "left out: in three dimensions it is for motion and viscosity, not for shapes on coarse lattices"
                    : "left out, for plasma between cells drains with it, and some that attract each other strongly "
                      "then become so thin that they cross themselves");
     set("area_correction", true, in_space ? "cells keep their volumes" : "cells keep their areas");
@@ -498,8 +498,8 @@ NumericsChoice Problem::chosen(const Trial& best) const {
 std::string Problem::doubt_about(const Trial& best) const {
   const auto percent = [](double share) { return number(100 * share, 2) + " %"; };
   const auto unknown = [](const std::string& what, double value, double least, double most) {
-    return "numerics.auto: the " + what + " " + number(value, 3) +
-           " lies outside of what errors were measured for (" + number(least) + " to " + number(most) + ")";
+    return "numerics.auto: the " + what + " " + number(value, 3) + " lies outside of what errors were measured for (" +
+           number(least) + " to " + number(most) + ")";
   };
   if (!meets_target(best)) {
     return "numerics.auto: the expected error is " + percent(best.error.total()) + ", more than the target of " +

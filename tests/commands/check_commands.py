@@ -392,7 +392,7 @@ class Commands_do_what_they_say(Case):
         self.assertEqual(json.loads((runs[1] / "summary.json").read_text())["numerics_choice"]["values"], [])
         # A target that is out of reach is told.
         pinned = self.rouleau.run("plan", scene, "--set", "/domain/nodes=[128,64]", "--set", "/numerics/auto/error=0.005")
-        self.assertIn("the expected error is 1 %, more than the target of 0.5 %", pinned.stdout)
+        self.assertIn("the expected error is 0.65 %, more than the target of 0.5 %", pinned.stdout)
 
     def test_a_limit_that_is_passed_is_warned_of_with_name_value_limit_and_remedy(self):
         plan = json.loads(self.rouleau.run("plan", SCENE, "--json", "--set", "/numerics/tau=0.502").stdout)

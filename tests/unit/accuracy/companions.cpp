@@ -73,9 +73,9 @@ TEST_CASE(
 }
 
 TEST_CASE("companions whose fluid must not give way take shorter steps") {
-  const scene::Scene scene = plan::read_scene(
-      std::string(ROULEAU_PHYSICS_SCENES) + "/capsule.json",
-      {"/numerics/slip_correction=true", "/numerics/density_factor=5000", "/numerics/tau=2.5"});
+  const scene::Scene scene =
+      plan::read_scene(std::string(ROULEAU_PHYSICS_SCENES) + "/capsule.json",
+                       {"/numerics/slip_correction=true", "/numerics/density_factor=5000", "/numerics/tau=2.5"});
   const Companions plain = choose_companions(scene, {.run_s = long_run_s}),
                    stiff = choose_companions(scene, {.run_s = long_run_s}, 0.01);
   REQUIRE(stiff.runs.size() == 3);
@@ -168,7 +168,8 @@ TEST_CASE("numbers of nodes without a common divisor, and cells that would be to
   CHECK(coarse.why_none.find("radius") != std::string::npos);
 }
 
-TEST_CASE("of a run that takes a twentieth of a second companions are coarser, for starting them takes a part of its time") {
+TEST_CASE(
+    "of a run that takes a twentieth of a second companions are coarser, for starting them takes a part of its time") {
   const scene::Scene scene = plan::read_scene(std::string(ROULEAU_PHYSICS_SCENES) + "/capsule.json");
   const Companions quick = choose_companions(scene, {.run_s = 0.05}),
                    patient = choose_companions(scene, {.run_s = long_run_s});
