@@ -279,10 +279,9 @@ Companions choose_companions(const scene::Scene& scene, const RunCost& cost, dou
   const CoarserLattices lattices(scene);
   // With a companion for the lattice on that one.
   const auto choose = [&](int fine) {
-    const auto square = [](double value) { return value * value; };
     Choice choice{fine, lattices.coarser_than(fine), scene.numerics.tau, {}};
-    const double on_coarsest = compressed * square(lattices.refinement(choice.coarse > 0 ? choice.coarse : fine));
-    const double shorter = std::sqrt(std::min(1.0, most_compressed / on_coarsest));
+    const double coarsest = lattices.refinement(choice.coarse > 0 ? choice.coarse : fine);
+    const double shorter = std::min(1.0, std::sqrt(most_compressed / compressed) / coarsest);
     choice.tau = 0.5 + shorter * (scene.numerics.tau - 0.5);
     choice.changes = choose_changes(scene, densest, cost.moments, choice.tau);
     return choice;
@@ -298,7 +297,9 @@ Companions choose_companions(const scene::Scene& scene, const RunCost& cost, dou
   Choice choice = finest_within(affordable);
   const bool too_coarse = choice.fine == 0 || lattices.radius(choice.fine) < least_radius;
   if (too_coarse && std::isfinite(most_compressed)) choice = finest_within(with_shorter_steps * affordable);
-  const auto& [fine, coarse, tau, changes] = choice;
+  const int fine = choice.fine, coarse = choice.coarse;
+  const double tau = choice.tau;
+  const Changes& changes = choice.changes;
   const auto too_small = [](double radius) {
     return "on a lattice that costs a small part of this one a cell's radius would be " + number(radius, 2) +
            " spacings, fewer than " + number(least_radius);
