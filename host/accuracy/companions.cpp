@@ -84,8 +84,8 @@ std::string in_words(const LatticeSize& size) {
   return words + " nodes";
 }
 
-/// What small lattices cost beside their nodes, s: each step; each row in two dimensions, and once more if its nodes do not fill
-/// registers.
+/// What small lattices cost beside their nodes, s: each step; each row, and once more if its nodes do not fill registers. Measured in
+/// two dimensions.
 constexpr double step_s = 1.5e-6, row_s = 45e-9, ragged_row_s = 60e-9;
 constexpr int full_registers = 8;
 
@@ -98,7 +98,8 @@ double share_of(const scene::Scene& scene, double coarser) {
   const auto cost = [&](double by) {
     const double of_membranes = membranes / std::pow(by, dimension - 1);
     const long row = std::lround(size[0] / by);
-    const double of_rows = dimension == 2 ? size[1] / by * (row_s + (row % full_registers != 0 ? ragged_row_s : 0)) : 0;
+    const double rows = nodes / size[0] / std::pow(by, dimension - 1);
+    const double of_rows = rows * (row_s + (row % full_registers != 0 ? ragged_row_s : 0));
     return (plan::step_cost(nodes / std::pow(by, dimension), of_membranes, scene.numerics.precision, dimension) +
             of_rows + step_s) /
            (by * by);

@@ -108,7 +108,7 @@ void SurfaceSlip::add_couples(const Surfaces& surfaces, int cell, Scratch& scrat
   scratch.value.clear();
   for (int i = range.first; i < range.end(); ++i) {
     const Vec<3> force(surfaces.force_x[i], surfaces.force_y[i], surfaces.force_z[i]);
-    scratch.value.push_back(scratch.turned[i - range.first] * (force - force.dot(normal(i)) * normal(i)));
+    scratch.value.emplace_back(scratch.turned[i - range.first] * (force - force.dot(normal(i)) * normal(i)));
   }
   const auto& triangles = surfaces.type_of(cell).mesh.triangles();
   for (std::size_t t = 0; t < triangles.size(); ++t) {
@@ -136,7 +136,7 @@ void SurfaceSlip::find_slip(const Surfaces& surfaces, int cell, Scratch& scratch
   for (int i = range.first; i < range.end(); ++i) {
     const Vec<3> n = normal(i), force(surfaces.force_x[i], surfaces.force_y[i], surfaces.force_z[i]);
     const double by_area = area_[i] > 0 ? mobility / area_[i] : 0;
-    scratch.value.push_back(by_area * (force - force.dot(n) * n));
+    scratch.value.emplace_back(by_area * (force - force.dot(n) * n));
   }
   // (A^-1 M)^p, M the mass matrix of hat functions and A its row sums: symmetric over areas, so that slip never gives energy.
   const auto& triangles = surfaces.type_of(cell).mesh.triangles();
