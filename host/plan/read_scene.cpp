@@ -113,16 +113,14 @@ ReadScene read_within_limits(const std::filesystem::path& file, const std::vecto
     faults.attempt([&] { find_model_faults(read.scene, catalog_of(read.scene), faults); });
     faults.raise();
   }
-  if (!read.numerics_choice) {
-    shape::pack_cells(read.scene);
-    return read;
-  }
-  const plugin::Catalog catalog = catalog_of(read.scene);  // numerics change no model
-  for (int tries = 0; tries < most_tries; ++tries) {
-    const NumericsBounds tighter = tightened(bounds, make_plan(read.scene, catalog, read.numerics_choice));
-    if (tighter == bounds) break;
-    bounds = tighter;
-    read = read_unpacked_scene(file, overrides, bounds);
+  if (read.numerics_choice) {
+    const plugin::Catalog catalog = catalog_of(read.scene);  // numerics change no model
+    for (int tries = 0; tries < most_tries; ++tries) {
+      const NumericsBounds tighter = tightened(bounds, make_plan(read.scene, catalog, read.numerics_choice));
+      if (tighter == bounds) break;
+      bounds = tighter;
+      read = read_unpacked_scene(file, overrides, bounds);
+    }
   }
   shape::pack_cells(read.scene);
   return read;

@@ -288,7 +288,7 @@ const KernelFacts& kernel_named(const std::string& name) {
 }
 
 std::optional<RecoveryRates> recovery_rates(const Plan& plan) {
-  if (!plan.has_cells) return std::nullopt;
+  if (!plan.has_cells || plan.scene->domain.depth) return std::nullopt;
   RecoveryRates rates{INFINITY, 0};
   for (std::size_t t = 0; t < plan.membranes.size(); ++t) {
     const double rate = recovery_rate(plan, plan.stages.front(), t);

@@ -58,7 +58,7 @@ double explicit_margin(const Plan& plan);
 /// Whether the semi-implicit step bears more than the explicit one with the scene's kernel, at its relaxation time.
 bool semi_implicit_gains(const Plan& plan);
 
-/// Of all cell types; nothing without cells.
+/// Of all cell types; nothing without cells, and in three dimensions, where no error depends on it.
 std::optional<RecoveryRates> recovery_rates(const Plan& plan);
 
 /// With a margin below this one `"coupling": "auto"` takes the semi-implicit step.

@@ -26,7 +26,8 @@ rouleau_open_function load_library(const Manifest& manifest);
 /// The manifest's model in the table that a library's open function gives this host.
 const rouleau_model& model_of(rouleau_open_function open, const Manifest& manifest);
 
-/// SHA-256 of a manifest's library, which is read again where it has changed. Throws Error(plugin_refused) for a library that open_model would not look into.
+/// SHA-256 of a manifest's library, which is read again where it has changed. Throws Error(plugin_refused) for a library
+/// that open_model would not look into.
 std::string library_sha256(const Manifest& manifest);
 /// SHA-256 of a file, lower-case hexadecimal. Throws Error(input_output).
 std::string sha256(const std::filesystem::path& file);

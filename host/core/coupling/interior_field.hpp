@@ -13,9 +13,9 @@
 
 namespace rouleau::core {
 
-/// tau = 1/2 + (tau_outside - 1/2) (r + sum over cells (ratio - r) I), or the same of inverses, kept as 1/tau: I of a node's cube lies inside a
-/// cell, and r is 1, in layers the viscosity at this height over the suspending one: what is inside a cell is the same wherever
-/// it swims. Where nodes have moved all that the cells cover is computed again.
+/// tau = 1/2 + (tau_outside - 1/2) (r + sum over cells (ratio - r) I), or the same of inverses, kept as 1/tau: I of a node's
+/// cube lies inside a cell, and r is 1, in layers the viscosity at this height over the suspending one: what is inside a cell is
+/// the same wherever it swims. Where nodes have moved all that the cells cover is computed again.
 template <class T>
 class InteriorField {
  public:

@@ -1,5 +1,6 @@
 #include "slip_constants.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
@@ -98,6 +99,14 @@ SlipConstants slip_constants(KernelKind kernel, double viscosity_ratio) {
   const double all = expected_largest([&](double x) { return y(x) * y(x) * z(x - d); });
   const double two = expected_largest([&](double x) { return y(x) * z(x - d); });
   return {d, inside * m + difference * (all - two)};
+}
+
+int slip_smoothings(int least, double number, double widest) {
+  int passes = std::max(1, least);
+  constexpr int most = 256;  // enough for thirty times the stiffness that explicit coupling bears
+  // The largest s (1 - s/widest)^p over s is widest/(p + 1) (p/(p + 1))^p.
+  while (passes < most && number * widest / (passes + 1) * std::pow(passes / (passes + 1.0), passes) > 0.3) ++passes;
+  return std::min(passes, most);
 }
 
 }  // namespace rouleau::core

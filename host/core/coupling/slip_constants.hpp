@@ -19,4 +19,10 @@ struct SlipConstants {
 /// `viscosity_ratio`: inside over outside; the mean of viscosities must be the harmonic one.
 SlipConstants slip_constants(KernelKind kernel, double viscosity_ratio);
 
+/// How often a membrane's slip is smoothed so that a step stays stable, at least so many times. A tangential displacement that
+/// the membrane's stiffness meets by s/l^2, s from 0 to `widest`, gains in a step the slip -C s (1 - s/widest)^p times itself after
+/// p smoothings, with C = mobility x stiffness / l^2, the `number`. That must stay below 2 for all s in an explicit step, and below
+/// 2/3 in a semi-implicit one, whose forces belong to the end of the step; 0.3 is kept.
+int slip_smoothings(int least, double number, double widest);
+
 }  // namespace rouleau::core

@@ -110,18 +110,11 @@ struct Correct {
   }
 };
 
-/// How often the slip is smoothed by (1/4, 1/2, 1/4) along the membrane. A tangential displacement of wave number q per
-/// segment meets tension, and gains in a step the slip -C 4 sin^2(q/2) cos^2p(q/2) times itself after p smoothings,
-/// with C = mobility x stiffness / length^2. That must stay below 2 for all q in an explicit step, and below 2/3 in a
-/// semi-implicit one, whose forces belong to the end of the step; 0.3 is kept. Smoothing over about a lattice spacing
-/// is needed anyway where nodes stand closer: the fluid does not damp what the kernel cannot see.
+/// By (1/4, 1/2, 1/4): s = 4 sin^2(q/2) for the wave number q per segment. Smoothing over about a lattice spacing is needed
+/// anyway where nodes stand closer: the fluid does not damp what the kernel cannot see.
 int smoothings_of(double length, double mobility, double stiffness) {
-  const double number = mobility * stiffness / (length * length);
-  int passes = std::max(1, static_cast<int>(std::lround(1 / (length * length))));
-  constexpr int most = 256;  // enough for thirty times the stiffness that explicit coupling bears
-  // The largest 4 sin^2(q/2) cos^2p(q/2) over q is 4/(p + 1) (p/(p + 1))^p.
-  while (passes < most && number * 4 / (passes + 1) * std::pow(passes / (passes + 1.0), passes) > 0.3) ++passes;
-  return std::min(passes, most);
+  return slip_smoothings(static_cast<int>(std::lround(1 / (length * length))), mobility * stiffness / (length * length),
+                         4);
 }
 
 }  // namespace

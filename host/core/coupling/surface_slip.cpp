@@ -9,14 +9,10 @@ namespace rouleau::core {
 
 namespace {
 
-/// As in two dimensions (slip_correction.cpp): a displacement along a mesh of equal sides l that the membrane's stiffness meets by
-/// s/l^2, s from 0 to 6, gains in a step the slip -C s (1 - s/8)^p times itself after p smoothings, C = mobility x stiffness / l^2.
+/// By the mass matrix of hat functions, on a mesh of equal sides: s is from 0 to 6, and 8 would be left with nothing.
 int surface_smoothings(double square_of_length, double mobility, double stiffness) {
-  const double number = mobility * stiffness / square_of_length;
-  int passes = std::max(1, static_cast<int>(std::lround(2 / square_of_length)));
-  constexpr int most = 256;
-  while (passes < most && number * 8 / (passes + 1) * std::pow(passes / (passes + 1.0), passes) > 0.3) ++passes;
-  return std::min(passes, most);
+  return slip_smoothings(static_cast<int>(std::lround(2 / square_of_length)), mobility * stiffness / square_of_length,
+                         8);
 }
 
 }  // namespace
