@@ -109,19 +109,20 @@ constexpr double stretching_gain = 20, cautious_stretching_gain = 4, least_tau_o
 constexpr double bending_gain = 10, least_semi_implicit_tau = 0.6;
 // The waves of two segments that the sharp kernels let grow are as slow as before; two cells bear 0.56 times the explicit
 // stiffness with roma3.
-constexpr double semi_implicit_loss = 0.5;
+constexpr double semi_implicit_loss = 0.5, nowhere = std::numeric_limits<double>::infinity();
 
-constexpr std::array<KernelFacts, 4> kernels{{
-    {core::KernelKind::peskin4, "peskin4", 0, 1, 1, true, ""},
-    {core::KernelKind::cosine4, "cosine4", 0.0211, 1, 1, true,
+constexpr std::array<KernelFacts, 5> kernels{{
+    {core::KernelKind::peskin4, "peskin4", 0, 1, 1, least_semi_implicit_tau, ""},
+    {core::KernelKind::cosine4, "cosine4", 0.0211, 1, 1, least_semi_implicit_tau,
      "its first moment reaches 0.021 spacings: with bending and segments shorter than a spacing it puts a false torque "
      "into the fluid (11 degrees off at strain 1 for a biconcave cell of half a spacing per segment); take peskin4"},
-    {core::KernelKind::roma3, "roma3", 0, 0.095, 0.057, false,
+    {core::KernelKind::roma3, "roma3", 0, 0.095, 0.057, nowhere,
      "it lets ten times less stiffness pass than peskin4 before nodes zigzag, which the semi-implicit step does not "
      "change, and leaks twice the area"},
-    {core::KernelKind::linear2, "linear2", 0, 0.013, 0.0066, false,
+    {core::KernelKind::linear2, "linear2", 0, 0.013, 0.0066, nowhere,
      "it lets seventy times less stiffness pass than peskin4, and cells leak silently beyond that limit; it is here for "
      "comparison"},
+    {core::KernelKind::sharp6, "sharp6", 0, 0.36, 0.22, 0.9, ""},
 }};
 
 /// Relaxation time of a fluid with this viscosity, Pa s.
@@ -299,7 +300,7 @@ std::optional<RecoveryRates> recovery_rates(const Plan& plan) {
 
 bool semi_implicit_gains(const Plan& plan) {
   const scene::Numerics& numerics = plan.scene->numerics;
-  return numerics.tau >= least_semi_implicit_tau && kernel_named(numerics.kernel).semi_implicit;
+  return numerics.tau >= kernel_named(numerics.kernel).semi_implicit_from;
 }
 
 double explicit_margin(const Plan& plan) {
@@ -337,7 +338,8 @@ std::vector<Limit> find_limits(const Plan& plan) {
         "lower numerics.tau");
   }
   if (plan.semi_implicit) {
-    add("tau of the semi-implicit step", tau, least_semi_implicit_tau, false,
+    const double from = kernel_named(scene.numerics.kernel).semi_implicit_from;
+    add("tau of the semi-implicit step", tau, from == nowhere ? least_semi_implicit_tau : from, false,
         "raise numerics.tau: the semi-implicit step gains nothing at low viscosity");
   }
 
@@ -417,7 +419,7 @@ std::vector<Limit> find_limits(const Plan& plan) {
     const Stiffness membrane = membrane_stiffness(plan, setting);
     const bool gains = plan.semi_implicit && semi_implicit_gains(plan);
     const std::string coupled = plan.semi_implicit ? ", semi-implicit step" : " in lattice units";
-    const bool zigzags = !kernel_named(scene.numerics.kernel).semi_implicit;
+    const bool zigzags = kernel_named(scene.numerics.kernel).semi_implicit_from == nowhere;
     const std::string softer = lower + ", with which the lattice stiffness falls" +
                                (zigzags              ? ", or set numerics.kernel to \"peskin4\""
                                 : plan.semi_implicit ? ""

@@ -120,6 +120,7 @@ struct Interpolate {
 
  private:
   using Four = Pack<T, 4>;
+  using Velocities = Line<T, Kernel::points>;
   /// `in_block`: only nodes above the block.
   template <bool in_block>
   ROULEAU_ALWAYS_INLINE static void run_all(const InterpolateTask<T>& task) {
@@ -165,8 +166,8 @@ struct Interpolate {
   template <bool in_block>
   ROULEAU_ALWAYS_INLINE static void fetch(const InterpolateTask<T>& t, int i) {
     if (t.at.row[i] == outside || (in_block && !here(t, i))) return;
-    const std::ptrdiff_t at = (t.at.row[i] - 1) * t.stride + t.at.column[i];
-    for (int k = 0; k < 4; ++k) {
+    const std::ptrdiff_t at = (t.at.row[i] + Kernel::first) * t.stride + t.at.column[i];
+    for (int k = 0; k < Kernel::points; ++k) {
       __builtin_prefetch(t.origin_x + at + k * t.stride);
       __builtin_prefetch(t.origin_y + at + k * t.stride);
     }
@@ -175,15 +176,16 @@ struct Interpolate {
   ROULEAU_ALWAYS_INLINE static void weigh(const InterpolateTask<T>& t, int i, Four& u, Four& v) {
     u = v = T(0);
     if (t.at.row[i] == outside) return;
-    const Four wx = KernelWeights<Kernel, T>(t.at.p_x[i], t.at.q_x[i]).weight;
+    const Velocities wx = KernelWeights<Kernel, T>(t.at.p_x[i], t.at.q_x[i]).weight;
     const SpreadWeights<Kernel, T> wy(t.at.p_y[i], t.at.q_y[i]);
-    const std::ptrdiff_t at = (t.at.row[i] - 1) * t.stride + t.at.column[i] - 1;
-    for (int k = 0; k < 4; ++k) {
-      u += Four::load(t.origin_x + at + k * t.stride) * wy.weight[k];
-      v += Four::load(t.origin_y + at + k * t.stride) * wy.weight[k];
+    const std::ptrdiff_t at = (t.at.row[i] + Kernel::first) * t.stride + t.at.column[i] + Kernel::first;
+    Velocities along_x{}, along_y{};
+    for (int k = 0; k < Kernel::points; ++k) {
+      along_x = along_x + Velocities::load(t.origin_x + at + k * t.stride) * wy.weight[k];
+      along_y = along_y + Velocities::load(t.origin_y + at + k * t.stride) * wy.weight[k];
     }
-    u *= wx;
-    v *= wx;
+    u = (along_x * wx).folded();
+    v = (along_y * wx).folded();
   }
   /// Sums of four packs, side by side.
   ROULEAU_ALWAYS_INLINE static Four sum(const Four& a, const Four& b, const Four& c, const Four& d) {
@@ -211,13 +213,14 @@ struct Interpolate {
 /// The loops for one kernel.
 template <class T>
 struct Coupling<T>::Loops {
+  int first, points;  // of the kernel
   void (*locate)(LocateTask<T>*);
   void (*spread)(const SpreadTask<T>*);
   void (*interpolate)(const InterpolateTask<T>*);
 
   template <class Kernel>
   static const Loops* of() {
-    static const Loops loops{Dispatch<Locate<T, Kernel>, LocateTask<T>*>::pick(), pick_spread<Kernel, T>(),
+    static const Loops loops{Kernel::first, Kernel::points, Dispatch<Locate<T, Kernel>, LocateTask<T>*>::pick(), pick_spread<Kernel, T>(),
                              Dispatch<Interpolate<T, Kernel>, const InterpolateTask<T>*>::pick()};
     return &loops;
   }
@@ -278,8 +281,9 @@ void Coupling<T>::spread(Range rows, const Membranes& membranes, NodeVectors nod
     for (const int c : membranes.known_cells()) {
       if (!membranes.reaches(c)) continue;
       const BaseRows& base = rows_[c];
-      const bool whole = base.lowest >= 1 && base.highest + 3 <= domain_.size[1];  // no stencil reaches over a border
-      if (!whole || (base.highest + 3 > task.row_begin && base.lowest - 1 < task.row_end)) function(membranes.cells[c]);
+      const int lowest = base.lowest + loops_->first, beyond = base.highest + loops_->first + loops_->points;
+      const bool whole = lowest >= 0 && beyond <= domain_.size[1];  // no stencil reaches over a border
+      if (!whole || (beyond > task.row_begin && lowest < task.row_end)) function(membranes.cells[c]);
     }
   };
   if (membranes.node_count() > many_nodes) for_cells([&](const CellRange& cell) { warm(cell, node_force); });

@@ -1,8 +1,16 @@
 // The kernels that couple membranes and lattice.
 #pragma once
 
+#include "core/membrane/node_mobility.hpp"
+
 namespace rouleau::core {
 
-enum class KernelKind { peskin4, cosine4, roma3, linear2 };
+enum class KernelKind { peskin4, cosine4, roma3, linear2, sharp6 };
+
+/// Of the kernels for which there is a semi-implicit step; others count as peskin4.
+inline KernelResponse kernel_response(KernelKind kernel) {
+  if (kernel == KernelKind::sharp6) return {.gain = 1.43, .stretching = 1.43, .bending = 4.54};
+  return {};
+}
 
 }  // namespace rouleau::core

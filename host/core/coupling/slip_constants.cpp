@@ -58,9 +58,9 @@ double expected_largest(Product product) {
 /// place.
 template <class Kernel>
 double kernel_density(double distance) {
-  // The node k - 1 after the base of X lies at k - 1 - (fraction - shift).
-  for (int k = 0; k < 4; ++k) {
-    const double fraction = k - 1 + Kernel::shift - distance;
+  // The node k + first after the base of X lies at k + first - (fraction - shift).
+  for (int k = 0; k < Kernel::points; ++k) {
+    const double fraction = k + Kernel::first + Kernel::shift - distance;
     if (fraction < 0 || fraction >= 1) continue;
     Pack<double, 1> p, q;
     Kernel::keep(Pack<double, 1>(fraction), p, q);

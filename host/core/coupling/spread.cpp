@@ -33,58 +33,60 @@ struct Spread {
 
  private:
   using Four = Pack<T, 4>;
+  static constexpr int points = Kernel::points, start = Kernel::first;
+  using Forces = Line<T, points>;
   /// What a stencil has to lie in to be added without a thought.
   struct Inside {
     int row_begin, row_end, column_begin, column_end, height;
   };
   ROULEAU_ALWAYS_INLINE static void spread(const SpreadTask<T>& t, const Inside& inside, int i) {
-    const int row = t.at.row[i] - 1, column = t.at.column[i] - 1;
-    const bool whole = row >= 0 && row + 4 <= inside.height;
-    if (whole && (row + 4 <= inside.row_begin || row >= inside.row_end)) return;
-    if (column < inside.column_begin || column + 4 > inside.column_end || !whole) {
-      const bool within = column >= 0 && column + 4 <= t.domain->size[0];
-      if (within && (column + 4 <= inside.column_begin || column >= inside.column_end)) return;
+    const int row = t.at.row[i] + start, column = t.at.column[i] + start;
+    const bool whole = row >= 0 && row + points <= inside.height;
+    if (whole && (row + points <= inside.row_begin || row >= inside.row_end)) return;
+    if (column < inside.column_begin || column + points > inside.column_end || !whole) {
+      const bool within = column >= 0 && column + points <= t.domain->size[0];
+      if (within && (column + points <= inside.column_begin || column >= inside.column_end)) return;
       return spread_at_border(t, i);
     }
-    const Four wx = KernelWeights<Kernel, T>(t.at.p_x[i], t.at.q_x[i]).weight;
+    const Forces wx = KernelWeights<Kernel, T>(t.at.p_x[i], t.at.q_x[i]).weight;
     const SpreadWeights<Kernel, T> wy(t.at.p_y[i], t.at.q_y[i]);
-    const Four fx = wx * Four(t.force_x[i]), fy = wx * Four(t.force_y[i]);
+    const Forces fx = wx * Four(t.force_x[i]), fy = wx * Four(t.force_y[i]);
     const std::ptrdiff_t at = row * t.stride + column;
-    if (row >= inside.row_begin && row + 4 <= inside.row_end) {
-      for (int k = 0; k < 4; ++k) add(t, fx, fy, wy.weight[k], at + k * t.stride);
+    if (row >= inside.row_begin && row + points <= inside.row_end) {
+      for (int k = 0; k < points; ++k) add(t, fx, fy, wy.weight[k], at + k * t.stride);
     } else {
-      for (int k = 0; k < 4; ++k) {
+      for (int k = 0; k < points; ++k) {
         if (row + k >= inside.row_begin && row + k < inside.row_end) add(t, fx, fy, wy.weight[k], at + k * t.stride);
       }
     }
   }
-  ROULEAU_ALWAYS_INLINE static void add(const SpreadTask<T>& t, const Four& fx, const Four& fy, const Four& weight,
+  ROULEAU_ALWAYS_INLINE static void add(const SpreadTask<T>& t, const Forces& fx, const Forces& fy, const Four& weight,
                                         std::ptrdiff_t at) {
-    (Four::load(t.origin_x + at) + fx * weight).store(t.origin_x + at);
-    (Four::load(t.origin_y + at) + fy * weight).store(t.origin_y + at);
+    (Forces::load(t.origin_x + at) + fx * weight).store(t.origin_x + at);
+    (Forces::load(t.origin_y + at) + fy * weight).store(t.origin_y + at);
   }
 
   /// The same sums, number by number: of a stencil that reaches over the border of the lattice or of the block.
   [[gnu::noinline, gnu::cold]] static void spread_at_border(const SpreadTask<T>& t, int i) {
     if (t.at.row[i] == outside) return;
     const Domain<2>& domain = *t.domain;
-    const Four wx = KernelWeights<Kernel, T>(t.at.p_x[i], t.at.q_x[i]).weight;
+    const Forces wx = KernelWeights<Kernel, T>(t.at.p_x[i], t.at.q_x[i]).weight;
     const SpreadWeights<Kernel, T> wy(t.at.p_y[i], t.at.q_y[i]);
-    const Four fx = wx * Four(t.force_x[i]), fy = wx * Four(t.force_y[i]);
-    for (int k = 0; k < 4; ++k) {
-      int row = domain.wrapped(1, t.at.row[i] - 1 + k);
+    const Forces fx = wx * Four(t.force_x[i]), fy = wx * Four(t.force_y[i]);
+    for (int k = 0; k < points; ++k) {
+      int row = domain.wrapped(1, t.at.row[i] + start + k);
       Four weight = wy.weight[k];
       if (row < 0) {  // beyond a wall
-        row = mirrored(t.at.row[i] - 1 + k, domain.size[1]);
+        row = mirrored(t.at.row[i] + start + k, domain.size[1]);
         weight = -weight;
       }
       if (row < t.row_begin || row >= t.row_end) continue;
-      for (int l = 0; l < 4; ++l) {
-        const int column = domain.wrapped(0, t.at.column[i] - 1 + l);
+      for (int l = 0; l < points; ++l) {
+        const int column = domain.wrapped(0, t.at.column[i] + start + l);
         if (column < domain.block.begin[0] || column >= domain.block.end[0]) continue;
         const std::ptrdiff_t at = row * t.stride + column;
-        t.origin_x[at] = (Four(t.origin_x[at]) + fx * weight).vector[l];
-        t.origin_y[at] = (Four(t.origin_y[at]) + fy * weight).vector[l];
+        t.origin_x[at] = (Forces::all(t.origin_x[at]) + fx * weight).at(l);
+        t.origin_y[at] = (Forces::all(t.origin_y[at]) + fy * weight).at(l);
       }
     }
   }
@@ -104,6 +106,7 @@ ROULEAU_INSTANTIATE(Peskin4)
 ROULEAU_INSTANTIATE(Cosine4)
 ROULEAU_INSTANTIATE(Roma3)
 ROULEAU_INSTANTIATE(Linear2)
+ROULEAU_INSTANTIATE(Sharp6)
 #undef ROULEAU_INSTANTIATE
 
 }  // namespace rouleau::core

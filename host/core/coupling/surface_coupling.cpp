@@ -61,16 +61,17 @@ struct SurfaceSpread {
   std::ptrdiff_t stride_y, stride_z;
 };
 
-/// Weights of a node's stencil: four along x, and one for each of its 16 rows, in all places of a pack.
+/// Weights of a node's stencil: along x, and one for each of its rows, four times.
 template <class T, class Kernel>
 struct StencilWeights {
-  using Four = Pack<T, 4>;
-  Four along_x, row[4][4];  // row[z][y]
+  static constexpr int points = Kernel::points;
+  Line<T, points> along_x;
+  Pack<T, 4> row[points][points];  // row[z][y]
   ROULEAU_ALWAYS_INLINE StencilWeights(const SurfaceStencils<T>& at, int i) {
     along_x = KernelWeights<Kernel, T>(at.p[0][i], at.q[0][i]).weight;
     const SpreadWeights<Kernel, T> y(at.p[1][i], at.q[1][i]), z(at.p[2][i], at.q[2][i]);
-    for (int m = 0; m < 4; ++m) {
-      for (int l = 0; l < 4; ++l) row[m][l] = z.weight[m] * y.weight[l];
+    for (int m = 0; m < points; ++m) {
+      for (int l = 0; l < points; ++l) row[m][l] = z.weight[m] * y.weight[l];
     }
   }
 };
@@ -91,36 +92,38 @@ struct SpreadSurface {
   }
 
  private:
-  using Four = Pack<T, 4>;
+  static constexpr int points = Kernel::points, start = Kernel::first;
+  using Forces = Line<T, points>;
   ROULEAU_ALWAYS_INLINE static void spread(const SurfaceSpread<T>& t, int i) {
     const Box<3>& block = t.domain->block;
     const int height = block.size(1);
-    const int x = t.at.base[0][i] - 1, y = t.at.base[1][i] - 1, z = t.at.base[2][i] - 1;
-    const bool inside = x >= block.begin[0] && x + 4 <= block.end[0] && y >= block.begin[1] && y + 4 <= block.end[1] &&
-                        z >= block.begin[2] && z + 4 <= block.end[2];
+    const int x = t.at.base[0][i] + start, y = t.at.base[1][i] + start, z = t.at.base[2][i] + start;
+    const bool inside = x >= block.begin[0] && x + points <= block.end[0] && y >= block.begin[1] && y + points <= block.end[1] &&
+                        z >= block.begin[2] && z + points <= block.end[2];
     if (!inside) {
       const int from[] = {x, y, z};
       for (int k = 0; k < 3; ++k) {
-        const bool within = from[k] >= 0 && from[k] + 4 <= t.domain->size[k];
-        if (within && (from[k] + 4 <= block.begin[k] || from[k] >= block.end[k])) return;
+        const bool within = from[k] >= 0 && from[k] + points <= t.domain->size[k];
+        if (within && (from[k] + points <= block.begin[k] || from[k] >= block.end[k])) return;
       }
       return spread_at_border(t, i);
     }
-    const int first = y - block.begin[1] + height * (z - block.begin[2]), last = first + 3 + 3 * height;
+    const int first = y - block.begin[1] + height * (z - block.begin[2]), last = first + (points - 1) * (1 + height);
     if (last < t.row_begin || first >= t.row_end) return;
     const StencilWeights<T, Kernel> weights(t.at, i);
-    const Four fx = weights.along_x * Four(t.force[0][i]), fy = weights.along_x * Four(t.force[1][i]),
-               fz = weights.along_x * Four(t.force[2][i]);
+    using Four = Pack<T, 4>;
+    const Forces fx = weights.along_x * Four(t.force[0][i]), fy = weights.along_x * Four(t.force[1][i]),
+                 fz = weights.along_x * Four(t.force[2][i]);
     const bool whole = first >= t.row_begin && last < t.row_end;
-    for (int m = 0; m < 4; ++m) {
-      for (int l = 0; l < 4; ++l) {
+    for (int m = 0; m < points; ++m) {
+      for (int l = 0; l < points; ++l) {
         const int row = first + l + height * m;
         if (!whole && (row < t.row_begin || row >= t.row_end)) continue;
         const std::ptrdiff_t at = (z + m) * t.stride_z + (y + l) * t.stride_y + x;
         const Four& weight = weights.row[m][l];
-        (Four::load(t.origin[0] + at) + fx * weight).store(t.origin[0] + at);
-        (Four::load(t.origin[1] + at) + fy * weight).store(t.origin[1] + at);
-        (Four::load(t.origin[2] + at) + fz * weight).store(t.origin[2] + at);
+        (Forces::load(t.origin[0] + at) + fx * weight).store(t.origin[0] + at);
+        (Forces::load(t.origin[1] + at) + fy * weight).store(t.origin[1] + at);
+        (Forces::load(t.origin[2] + at) + fz * weight).store(t.origin[2] + at);
       }
     }
   }
@@ -139,21 +142,21 @@ struct SpreadSurface {
     const Domain<3>& domain = *t.domain;
     const Box<3>& block = domain.block;
     const StencilWeights<T, Kernel> weights(t.at, i);
-    for (int m = 0; m < 4; ++m) {
-      const Image z = image(domain, 2, t.at.base[2][i] - 1 + m);
-      for (int l = 0; l < 4; ++l) {
-        const Image y = image(domain, 1, t.at.base[1][i] - 1 + l);
+    for (int m = 0; m < points; ++m) {
+      const Image z = image(domain, 2, t.at.base[2][i] + start + m);
+      for (int l = 0; l < points; ++l) {
+        const Image y = image(domain, 1, t.at.base[1][i] + start + l);
         if (y.node < block.begin[1] || y.node >= block.end[1]) continue;
         const int row = y.node - block.begin[1] + block.size(1) * (z.node - block.begin[2]);
         if (row < t.row_begin || row >= t.row_end) continue;
         const T weight = static_cast<T>(y.sign * z.sign) * weights.row[m][l].vector[0];
-        for (int k = 0; k < 4; ++k) {
-          const Image x = image(domain, 0, t.at.base[0][i] - 1 + k);
+        for (int k = 0; k < points; ++k) {
+          const Image x = image(domain, 0, t.at.base[0][i] + start + k);
           if (x.node < block.begin[0] || x.node >= block.end[0]) continue;
           const std::ptrdiff_t at = z.node * t.stride_z + y.node * t.stride_y + x.node;
           for (int c = 0; c < 3; ++c) {
             t.origin[c][at] +=
-                weights.along_x.vector[k] * static_cast<T>(t.force[c][i]) * (static_cast<T>(x.sign) * weight);
+                weights.along_x.at(k) * static_cast<T>(t.force[c][i]) * (static_cast<T>(x.sign) * weight);
           }
         }
       }
@@ -176,7 +179,9 @@ struct InterpolateSurface {
   template <int register_bytes>
   ROULEAU_ALWAYS_INLINE static void run(const SurfaceInterpolate<T>* task) {
     const SurfaceInterpolate<T> t = *task;
+    constexpr int points = Kernel::points, start = Kernel::first;
     using Four = Pack<T, 4>;
+    using Velocities = Line<T, points>;
     for (int i = t.begin; i < t.end; ++i) {
       if (t.at.base[2][i] == outside) {
         for (double* velocity : t.velocity) velocity[i] = 0;
@@ -186,21 +191,21 @@ struct InterpolateSurface {
                                                     std::max(t.at.base[2][i], 0)}))
         continue;
       const StencilWeights<T, Kernel> weights(t.at, i);
-      Four u = T(0), v = T(0), w = T(0);
+      Velocities u{}, v{}, w{};
       const std::ptrdiff_t first =
-          (t.at.base[2][i] - 1) * t.stride_z + (t.at.base[1][i] - 1) * t.stride_y + t.at.base[0][i] - 1;
-      for (int m = 0; m < 4; ++m) {
-        for (int l = 0; l < 4; ++l) {
+          (t.at.base[2][i] + start) * t.stride_z + (t.at.base[1][i] + start) * t.stride_y + t.at.base[0][i] + start;
+      for (int m = 0; m < points; ++m) {
+        for (int l = 0; l < points; ++l) {
           const std::ptrdiff_t at = first + m * t.stride_z + l * t.stride_y;
           const Four& weight = weights.row[m][l];
-          u += Four::load(t.origin[0] + at) * weight;
-          v += Four::load(t.origin[1] + at) * weight;
-          w += Four::load(t.origin[2] + at) * weight;
+          u = u + Velocities::load(t.origin[0] + at) * weight;
+          v = v + Velocities::load(t.origin[1] + at) * weight;
+          w = w + Velocities::load(t.origin[2] + at) * weight;
         }
       }
-      t.velocity[0][i] = sum(u * weights.along_x);
-      t.velocity[1][i] = sum(v * weights.along_x);
-      t.velocity[2][i] = sum(w * weights.along_x);
+      t.velocity[0][i] = sum((u * weights.along_x).folded());
+      t.velocity[1][i] = sum((v * weights.along_x).folded());
+      t.velocity[2][i] = sum((w * weights.along_x).folded());
     }
   }
 
@@ -215,13 +220,14 @@ struct InterpolateSurface {
 /// The loops for one kernel.
 template <class T>
 struct SurfaceCoupling<T>::Loops {
+  int first, points;  // of the kernel
   void (*locate)(const LocatePart<T>*);
   void (*spread)(const SurfaceSpread<T>*);
   void (*interpolate)(const SurfaceInterpolate<T>*);
 
   template <class Kernel>
   static const Loops* of() {
-    static const Loops loops{Dispatch<LocateSurface<T, Kernel>, const LocatePart<T>*>::pick(),
+    static const Loops loops{Kernel::first, Kernel::points, Dispatch<LocateSurface<T, Kernel>, const LocatePart<T>*>::pick(),
                              Dispatch<SpreadSurface<T, Kernel>, const SurfaceSpread<T>*>::pick(),
                              Dispatch<InterpolateSurface<T, Kernel>, const SurfaceInterpolate<T>*>::pick()};
     return &loops;
@@ -295,8 +301,9 @@ void SurfaceCoupling<T>::spread(Range rows, const Surfaces& surfaces, const std:
   for (const int c : surfaces.known_cells()) {
     if (!surfaces.reaches(c)) continue;
     const auto [lowest, highest] = planes_[c];
-    const bool inside = lowest >= 1 && highest + 3 <= domain_.size[2];
-    if (inside && (highest + 3 <= plane_begin || lowest - 1 >= plane_end)) continue;
+    const int first_plane = lowest + loops_->first, beyond = highest + loops_->first + loops_->points;
+    const bool inside = first_plane >= 0 && beyond <= domain_.size[2];
+    if (inside && (beyond <= plane_begin || first_plane >= plane_end)) continue;
     task.begin = surfaces.cells[c].first, task.end = surfaces.cells[c].end();
     loops_->spread(&task);
   }

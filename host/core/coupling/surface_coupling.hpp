@@ -14,8 +14,8 @@
 namespace rouleau::core {
 
 /// Immersed-boundary coupling in three dimensions. Rows lie along x, as row_of() counts them in the block. Forces go
-/// to the nodes of the lattice that a stencil's are images of; velocities are read from the halo, too, two nodes wide,
-/// which the fluid fills.
+/// to the nodes of the lattice that a stencil's are images of; velocities are read from the halo, too, which the
+/// fluid fills.
 template <class T>
 class SurfaceCoupling {
  public:

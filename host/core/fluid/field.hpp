@@ -15,7 +15,7 @@ namespace rouleau::core {
 template <class T, int D>
 class Field {
  public:
-  static constexpr int halo = 2;  ///< what the 4-point kernel needs
+  static constexpr int halo = 3;  ///< what a kernel of six points needs
 
   Field() = default;
   /// All values zero.

@@ -254,7 +254,7 @@ void MembraneForces::add_rate_tension(const Membranes& membranes, int cell, Scra
            type.inverse_length.data(),
            s.rate.data(),
            s.by_rate.data(),
-           rate_mobility(length) + type.mobility.slip / length,
+           type.response.gain * rate_mobility(length) + type.mobility.slip / length,
            &(*next)[variable].value[first],
            {s.law.data(), s.law_by_rate.data(), s.segment_force_x.data(), s.segment_force_y.data()}});
   }

@@ -25,6 +25,7 @@ struct MembraneForcesSetup {
   std::vector<MembraneLaws> laws = {};
   /// What the slip correction adds, of each cell type; empty: no correction.
   std::vector<NodeMobility> mobility = {};
+  KernelResponse response = {};
   /// The semi-implicit step of stiff membranes (SemiImplicitFilter), with the laws' own stiffness.
   bool semi_implicit = false;
   /// Kinematic, of the suspending fluid; lattice units. Only for the semi-implicit step.
@@ -81,6 +82,7 @@ class MembraneForces {
     bool tension_by_rate = false;
     std::size_t rate_tension = 0;  // in Membranes::state, if there is a tension by rate
     NodeMobility mobility;
+    KernelResponse response;
     std::optional<SemiImplicitFilter> filter;  // of a semi-implicit step
     std::size_t held_force[2] = {0, 0};        // of the filter, x and y: in Membranes::state
   };

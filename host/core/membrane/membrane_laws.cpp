@@ -32,6 +32,7 @@ MembraneForces::MembraneForces(Membranes& membranes, const MembraneForcesSetup& 
     const std::size_t index = types_.size();
     Type& type = types_.emplace_back();
     if (!setup.mobility.empty()) type.mobility = setup.mobility[index];
+    type.response = setup.response;
     for (const MembraneLaw& model : laws) {
       const Law& law = type.laws.emplace_back(describe(model));
       type.rate |= law.stretch_rate || law.tension_by_rate;
@@ -70,8 +71,8 @@ void MembraneForces::make_filters(const Membranes& membranes, double viscosity) 
     for (const Law& law : type.laws) stiffness += law.model;
     const int count = static_cast<int>(rest.x.size());
     const double length = rest.rest_perimeter / count;
-    type.filter.emplace(count, length, stiffening(type.mobility.shift, length), viscosity, stiffness.stretching,
-                        stiffness.bending);
+    type.filter.emplace(count, length, type.response.gain * stiffening(type.mobility.shift, length), viscosity,
+                        stiffness.stretching, stiffness.bending);
   }
 }
 

@@ -3,21 +3,22 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/coupling/kernel.hpp"
 #include "core/coupling/slip_constants.hpp"
 
 namespace rouleau::core {
 
 template <int D>
-double largest_shift(const BasicSolverSetup<D>& setup) {
+double extra_reach(const BasicSolverSetup<D>& setup) {
   double largest = 0;
   for (const CellType& type : setup.cell_types) {
     if (setup.slip_correction)
       largest = std::max(largest, std::abs(slip_constants(setup.kernel, type.viscosity_ratio).shift));
   }
-  return largest;
+  return largest + with_kernel(setup.kernel, []<class Kernel>(Kernel) { return -1 - Kernel::first; });
 }
 
-template double largest_shift(const BasicSolverSetup<2>&);
-template double largest_shift(const BasicSolverSetup<3>&);
+template double extra_reach(const BasicSolverSetup<2>&);
+template double extra_reach(const BasicSolverSetup<3>&);
 
 }  // namespace rouleau::core

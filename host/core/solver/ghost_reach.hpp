@@ -14,13 +14,13 @@ struct GhostReach {
 constexpr double lattice_reach = 8;  ///< a stencil reaches two nodes, marks and viscosity a few more, and what is
                                      ///< remembered of them is somewhat older
 
-/// How far from a node its force may act besides the kernel's own reach, spacings.
+/// How much farther from a node its force may act than that of a kernel of four points at the node itself, spacings.
 template <int D>
-double largest_shift(const BasicSolverSetup<D>& setup);
+double extra_reach(const BasicSolverSetup<D>& setup);
 
 template <int D>
 GhostReach ghost_reach(const BasicSolverSetup<D>& setup) {
-  return {.lattice = lattice_reach + largest_shift(setup), .contact = contact_reach(setup.interactions)};
+  return {.lattice = lattice_reach + extra_reach(setup), .contact = contact_reach(setup.interactions)};
 }
 
 }  // namespace rouleau::core

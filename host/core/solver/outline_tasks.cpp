@@ -29,7 +29,7 @@ OutlineTasks<T>::OutlineTasks(const SolverSetup& setup, Membranes& membranes, Fl
       slip_correction_(make_slip_correction()),
       membrane_forces_(membranes, forces_setup()),
       viscosity_field_(membranes, viscosity_ratios(),
-                       slip_correction_ ? ViscosityMean::harmonic : ViscosityMean::arithmetic, largest_shift(setup),
+                       slip_correction_ ? ViscosityMean::harmonic : ViscosityMean::arithmetic, extra_reach(setup),
                        1 / setup.tau, setup.domain, fluid.setting().viscosity_of_rows),
       coupling_(setup.kernel, setup.domain) {
   membranes_.largest_step.resize(membranes_.cells.size(), 0.0);
@@ -68,7 +68,7 @@ std::unique_ptr<SlipCorrection> OutlineTasks<T>::make_slip_correction() const {
 template <class T>
 MembraneForcesSetup OutlineTasks<T>::forces_setup() const {
   MembraneForcesSetup forces{
-      .semi_implicit = setup_.semi_implicit, .viscosity = setup_.viscosity(), .tension_unit = setup_.tension_unit};
+      .response = kernel_response(setup_.kernel), .semi_implicit = setup_.semi_implicit, .viscosity = setup_.viscosity(), .tension_unit = setup_.tension_unit};
   for (const CellType& type : setup_.cell_types) forces.laws.push_back(type.laws);
   if (slip_correction_) forces.mobility = slip_correction_->mobility();
   return forces;

@@ -62,11 +62,12 @@ SurfaceTasks<T>::SurfaceTasks(const BasicSolverSetup<3>& setup, Surfaces& surfac
       forces_(surfaces, laws_of(setup)),
       slip_(make_slip(setup, surfaces)),
       viscosity_field_(surfaces, ratios_of(setup), 1 / setup.tau, setup.domain, fluid.setting().viscosity_of_rows,
-                       slip_ ? ViscosityMean::harmonic : ViscosityMean::arithmetic, largest_shift(setup)),
+                       slip_ ? ViscosityMean::harmonic : ViscosityMean::arithmetic, extra_reach(setup)),
       coupling_(setup.kernel, setup.domain),
       ranks_(fluid.ranks()) {
   surfaces_.largest_step.resize(surfaces_.cells.size(), 0.0);
-  if (setup.semi_implicit) forces_.take_semi_implicit_steps(surfaces_, setup.viscosity(), setup.tension_unit);
+  if (setup.semi_implicit) forces_.take_semi_implicit_steps(surfaces_, setup.viscosity(), setup.tension_unit,
+                                                            kernel_response(setup.kernel));
   std::vector<double> of_type;
   for (std::size_t t = 0; t < surfaces.types.size(); ++t)
     of_type.push_back(energy_of_strain(surfaces.types[t], setup.cell_types[t].laws, 1e-3));

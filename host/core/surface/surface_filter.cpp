@@ -48,11 +48,10 @@ double largest_square_of_wave_number(const Matrix& shape, const Eigen::VectorXd&
   return value;
 }
 
-// A wave of wave number k pulls at itself through the lattice by f^2 less, f the kernel's transform. The largest k^2 f^2 and k^4 f^2
-// there are with the 4-point kernel: the mean needs no more steps than that, and a fine mesh alone would give it very many, over
-// which a cell that comes to rest swings. Twice that for bending: with less, meshes of spacings below 1 failed at tau 0.6 with
-// ten times the explicit limit.
-constexpr double most_stretching_felt = 0.67, most_bending_felt = 2 * 1.62;
+// The mean needs no more steps than the shortest waves that the lattice feels (KernelResponse); a fine mesh alone would give it
+// very many, over which a cell that comes to rest swings. Of those of bending twice that: with less, meshes of spacings below 1
+// failed at tau 0.6 with ten times the explicit limit.
+constexpr double bending_felt = 2;
 
 // Of the largest eigenvalue of a bending stiffness: one that is smaller is left to the explicit step, which bears forty times
 // as much, and the filter takes a third of the time.
@@ -60,18 +59,20 @@ constexpr double least_bending = 0.25;
 
 }  // namespace
 
-SurfaceFilter::SurfaceFilter(const RestSurface& rest, double viscosity, double stretching, double bending)
+SurfaceFilter::SurfaceFilter(const RestSurface& rest, double viscosity, double stretching, double bending,
+                             const KernelResponse& response)
     : area_(rest.node_area) {
   const Eigen::Map<const Eigen::VectorXd> area(area_.data(), static_cast<Eigen::Index>(area_.size()));
   const Matrix shape = stiffness_of_shape(rest);
   const double square = largest_square_of_wave_number(shape, area);
-  const double stretched = node_mobility * stretching * std::min(square, most_stretching_felt),
-               bent = node_mobility * bending * std::min(square * square, most_bending_felt);
+  const double mobility = node_mobility * response.gain;
+  const double stretched = mobility * stretching * std::min(square, response.stretching / response.gain),
+               bent = mobility * bending * std::min(square * square, bending_felt * response.bending / response.gain);
   largest_ = stretched + bent;
   newest_share_ = newest_share_of_mean(largest_, viscosity);
 
-  Matrix whole = node_mobility * stretching * shape;
-  if (bent > least_bending) whole += node_mobility * bending * (shape * area.cwiseInverse().asDiagonal() * shape);
+  Matrix whole = mobility * stretching * shape;
+  if (bent > least_bending) whole += mobility * bending * (shape * area.cwiseInverse().asDiagonal() * shape);
   whole.diagonal() += area;
   const Factors factors(whole);
   if (factors.info() != Eigen::Success) {

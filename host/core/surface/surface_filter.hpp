@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "core/membrane/node_mobility.hpp"
 #include "surfaces.hpp"
 
 namespace rouleau::core {
@@ -19,7 +20,8 @@ class SurfaceFilter {
  public:
   /// `stretching`: k_s = d tension / d stretch along one direction, the other held; `bending`: k_b = d moment / d curvature;
   /// `viscosity`: kinematic, of the fluid around the cell. Lattice units.
-  SurfaceFilter(const RestSurface& rest, double viscosity, double stretching, double bending);
+  SurfaceFilter(const RestSurface& rest, double viscosity, double stretching, double bending,
+                const KernelResponse& response = {});
 
   /// Replaces a cell's forces F(X + V) by F, after taking them into their means `held`.
   /// `work`: room of this call's own, 3 numbers a node.

@@ -26,7 +26,8 @@ class SurfaceForces {
   /// From now on the forces are those of the semi-implicit step (SurfaceFilter), with the laws' own stiffness. What it holds is
   /// in surfaces.state. `viscosity`: kinematic, of the suspending fluid; lattice units. `tension_unit`: SI size of the
   /// lattice unit of tension, for what is kept from one stage to the next.
-  void take_semi_implicit_steps(Surfaces& surfaces, double viscosity, double tension_unit);
+  void take_semi_implicit_steps(Surfaces& surfaces, double viscosity, double tension_unit,
+                                const KernelResponse& response = {});
 
   /// Pass over cells: sets the forces.
   void run(Worker worker, Surfaces& surfaces);

@@ -40,7 +40,7 @@ Membranes cells_with_forces(std::mt19937& random) {
 TEST_CASE("force and torque on the lattice are those of the nodes") {
   auto random = generator(72);
   const Membranes m = cells_with_forces(random);
-  const KernelKind kernel = GENERATE(KernelKind::peskin4, KernelKind::roma3, KernelKind::linear2);
+  const KernelKind kernel = GENERATE(KernelKind::peskin4, KernelKind::roma3, KernelKind::linear2, KernelKind::sharp6);
   Coupling<double> coupling(kernel, channel);
   coupling.reserve(m);
   coupling.locate({}, m, m.positions());
@@ -91,7 +91,7 @@ TEMPLATE_TEST_CASE("spreading and interpolation are adjoint, over periodic borde
   const core::Domain<2> domain({70, 64}, {true, GENERATE(false, true)});
   std::uniform_real_distribution<double> anywhere(-1, 63.4);
   for (std::size_t i = 0; i < m.y.size(); i += 3) m.y[i] = anywhere(random);
-  const KernelKind kernel = GENERATE(KernelKind::peskin4, KernelKind::cosine4, KernelKind::roma3, KernelKind::linear2);
+  const KernelKind kernel = GENERATE(KernelKind::peskin4, KernelKind::cosine4, KernelKind::roma3, KernelKind::linear2, KernelKind::sharp6);
   Coupling<TestType> coupling(kernel, domain);
   coupling.reserve(m);
   coupling.locate({}, m, m.positions());
@@ -102,7 +102,7 @@ TEMPLATE_TEST_CASE("spreading and interpolation are adjoint, over periodic borde
 TEST_CASE("linear velocity is interpolated exactly by every kernel without a first moment") {
   auto random = generator(74);
   Membranes m = cells_with_forces(random);
-  const KernelKind kernel = GENERATE(KernelKind::peskin4, KernelKind::roma3, KernelKind::linear2);
+  const KernelKind kernel = GENERATE(KernelKind::peskin4, KernelKind::roma3, KernelKind::linear2, KernelKind::sharp6);
   Coupling<double> coupling(kernel, channel);
   coupling.reserve(m);
   coupling.locate({}, m, m.positions());

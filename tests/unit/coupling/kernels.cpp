@@ -14,25 +14,26 @@ using namespace rouleau::test;
 
 namespace {
 
-/// Weights of base - 1 ... base + 2 for a coordinate, and where they lie against it.
+/// The weights for a coordinate, and where their nodes lie against it.
 template <class Kernel>
 struct Stencil {
-  double weight[4], distance[4];
+  static constexpr int points = Kernel::points;
+  double weight[points], distance[points];
   explicit Stencil(double fraction) {
     using One = rouleau::Pack<double, 1>;
     One p, q;
     Kernel::keep(One(fraction), p, q);
     const auto weights = KernelWeights<Kernel, double>(p.vector[0], q.vector[0]).weight;
     const SpreadWeights<Kernel, double> one_by_one(p.vector[0], q.vector[0]);
-    for (int k = 0; k < 4; ++k) {
-      weight[k] = weights.vector[k];
-      distance[k] = k - 1 - (fraction - Kernel::shift);
+    for (int k = 0; k < points; ++k) {
+      weight[k] = weights.at(k);
+      distance[k] = k + Kernel::first - (fraction - Kernel::shift);
       REQUIRE(one_by_one.weight[k].vector[2] == Approx(weight[k]).margin(1e-15));
     }
   }
   [[nodiscard]] double moment(int order) const {
     double sum = 0;
-    for (int k = 0; k < 4; ++k) sum += weight[k] * std::pow(distance[k], order);
+    for (int k = 0; k < points; ++k) sum += weight[k] * std::pow(distance[k], order);
     return sum;
   }
 };
@@ -60,8 +61,48 @@ TEMPLATE_TEST_CASE("the weights of every kernel sum to one and none is negative"
   }
 }
 
-TEMPLATE_TEST_CASE("kernels that a membrane may use have no first moment", "", Peskin4, Roma3, Linear2) {
+TEMPLATE_TEST_CASE("kernels that a membrane may use have no first moment", "", Peskin4, Roma3, Linear2, Sharp6) {
   CHECK(largest_moment<TestType>(1, 0) < rounding);
+}
+
+TEST_CASE("the sharp kernel sums to one, has no second moment in the mean over places, and as much on even as on odd nodes") {
+  CHECK(largest_moment<Sharp6>(0, 1) < rounding);
+  constexpr int places = 20000;
+  double mean = 0, most = 0;
+  for (int i = 0; i < places; ++i) {
+    const Stencil<Sharp6> stencil((i + 0.5) / places);
+    const double second = stencil.moment(2);
+    mean += second / places;
+    most = std::max(most, std::abs(second));
+    const auto& w = stencil.weight;
+    REQUIRE(w[0] + w[2] + w[4] == Approx(0.5).margin(rounding));
+  }
+  CHECK(std::abs(mean) < 1e-4);
+  CHECK(most < 0.025);
+}
+
+TEMPLATE_TEST_CASE("how a wave of forces comes back through a kernel is what the semi-implicit step takes", "", Peskin4,
+                   Sharp6) {
+  const KernelKind kind = std::is_same_v<TestType, Sharp6> ? KernelKind::sharp6 : KernelKind::peskin4;
+  constexpr int places = 500;
+  double squares = 0, stretching = 0, bending = 0;
+  for (double k = 0.01; k < M_PI; k += 0.01) {
+    double transform = 0;
+    squares = 0;
+    for (int i = 0; i < places; ++i) {
+      const Stencil<TestType> stencil((i + 0.5) / places);
+      for (int j = 0; j < TestType::points; ++j) {
+        transform += stencil.weight[j] * std::cos(k * stencil.distance[j]) / places;
+        squares += stencil.weight[j] * stencil.weight[j] / places;
+      }
+    }
+    stretching = std::max(stretching, k * k * transform * transform);
+    bending = std::max(bending, k * k * k * k * transform * transform);
+  }
+  const KernelResponse response = kernel_response(kind);
+  CHECK(response.gain == Approx(squares / 0.375).epsilon(5e-3));
+  CHECK(response.stretching == Approx(stretching).epsilon(5e-3));
+  CHECK(response.bending == Approx(bending).epsilon(5e-3));
 }
 
 TEST_CASE("the cosine kernel has a first moment of up to 0.0211 spacings, as its facts say") {
@@ -70,7 +111,7 @@ TEST_CASE("the cosine kernel has a first moment of up to 0.0211 spacings, as its
   const double g = 2 / M_PI * (M_PI / 4 - std::acos(4 / M_PI / std::sqrt(2.0)));
   CHECK(largest == Approx(std::abs(0.5 - g + (std::sin(M_PI * g / 2) - std::cos(M_PI * g / 2)) / 2)).epsilon(1e-6));
   CHECK(kernel_named("cosine4").first_moment == Approx(largest).epsilon(0.01));
-  for (const char* name : {"peskin4", "roma3", "linear2"}) CHECK(kernel_named(name).first_moment == 0);
+  for (const char* name : {"peskin4", "roma3", "linear2", "sharp6"}) CHECK(kernel_named(name).first_moment == 0);
 }
 
 TEST_CASE("each kernel is the function of distance that its paper gives") {
@@ -97,7 +138,7 @@ TEST_CASE("each kernel is the function of distance that its paper gives") {
 }
 
 TEST_CASE("beside a moving wall linear flow is interpolated exactly, by every kernel without a first moment") {
-  const KernelKind kernel = GENERATE(KernelKind::peskin4, KernelKind::roma3, KernelKind::linear2);
+  const KernelKind kernel = GENERATE(KernelKind::peskin4, KernelKind::roma3, KernelKind::linear2, KernelKind::sharp6);
   const int nx = 24, ny = 16;
   const double rate = 0.02, lower = -0.1;
   VectorField<double, 2> velocity{Field<double, 2>({nx, ny}), Field<double, 2>({nx, ny})};

@@ -44,10 +44,11 @@ void for_nodes(const Function& function) {
 /// Fills the halo as the fluid does: images of periodic axes, and beyond walls that rest the mirrored velocity reversed.
 template <class T>
 void fill_halo(VectorField<T, 3>& u, const Domain<3>& domain) {
+  constexpr int halo = Field<T, 3>::halo;
   for (Field<T, 3>& component : u) {
-    for (int z = -2; z < box[2] + 2; ++z) {
-      for (int y = -2; y < box[1] + 2; ++y) {
-        for (int x = -2; x < box[0] + 2; ++x) {
+    for (int z = -halo; z < box[2] + halo; ++z) {
+      for (int y = -halo; y < box[1] + halo; ++y) {
+        for (int x = -halo; x < box[0] + halo; ++x) {
           int at[3] = {x, y, z};
           T sign = 1;
           for (int k = 0; k < 3; ++k) {
@@ -70,7 +71,8 @@ TEMPLATE_TEST_CASE("in three dimensions spreading and interpolation are adjoint,
   std::uniform_real_distribution<double> any(-1, 1);
   for (const bool walls : {false, true}) {
     const Domain<3> domain(box, {true, !walls, !walls});
-    for (const KernelKind kernel : {KernelKind::peskin4, KernelKind::roma3, KernelKind::linear2, KernelKind::cosine4}) {
+    for (const KernelKind kernel : {KernelKind::peskin4, KernelKind::roma3, KernelKind::linear2, KernelKind::cosine4,
+                                    KernelKind::sharp6}) {
       Surfaces s = sphere_at(walls ? Vec<3>(1.3, 2.6, 12.4) : Vec<3>(1.3, 17.6, -0.4), random);
       SurfaceCoupling<TestType> coupling(kernel, domain);
       coupling.reserve(s);
@@ -102,7 +104,8 @@ TEMPLATE_TEST_CASE("in three dimensions spreading and interpolation are adjoint,
 TEST_CASE("in three dimensions force and torque on the lattice are those of the nodes") {
   auto random = generator(82);
   const Domain<3> domain(box, {true, true, true});
-  for (const KernelKind kernel : {KernelKind::peskin4, KernelKind::roma3, KernelKind::linear2}) {
+  for (const KernelKind kernel : {KernelKind::peskin4, KernelKind::roma3, KernelKind::linear2,
+                                    KernelKind::sharp6}) {
     Surfaces s = sphere_at({9.7, 8.2, 7.9}, random);
     SurfaceCoupling<double> coupling(kernel, domain);
     coupling.reserve(s);
