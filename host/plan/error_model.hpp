@@ -26,10 +26,22 @@ inline constexpr CapillaryRange measured_capillary{0.003, 0.8};
 /// length.
 double resolved_radius(const scene::Shape& shape);
 
+/// How membranes are coupled to the lattice, as far as errors were measured for it.
+enum class MembraneCoupling {
+  plain,
+  corrected,  ///< with the slip correction
+  sharp       ///< and with the kernel sharp6
+};
+MembraneCoupling membrane_coupling(const scene::Numerics& numerics);
+/// The smallest radius of a cell, in spacings, for which errors were measured: with the sharp coupling in three dimensions less.
+constexpr double least_cell_radius(MembraneCoupling coupling, int dimension) {
+  return coupling == MembraneCoupling::sharp && dimension == 3 ? 6 : 10;
+}
+
 /// What a lattice leaves in the shape and the motion of a cell with this resolved radius, in spacings; tau is the fluid's largest
 /// relaxation time.
 double lattice_error(const scene::Shape& shape, double radius, double viscosity_ratio, double tau, int dimension,
-                     bool slip_correction, const CapillaryRange& capillary);
+                     MembraneCoupling coupling, const CapillaryRange& capillary);
 /// What the membranes of round cells make of the lattice's fluid in two dimensions: it gives way to the pressure Es/a by the share
 /// `compression`, 3 Es/a in lattice units or (tau - 1/2) times the shear rate in a step over the capillary number, and with its
 /// inertia stiff cells then deform too much.

@@ -28,6 +28,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr double default_target = 0.01;
+const std::string sharp_kernel = "sharp6";
 constexpr const char* origin = "numerics.auto";
 
 constexpr double nearly = 0.999;  ///< as much of a limit as is taken
@@ -102,6 +103,7 @@ class Problem {
     const double ratio = scene::viscosity_range(scene_.fluid).most / scene_.fluid.viscosity;
     return core::relaxation_time_of(ratio * core::viscosity_of(tau));
   }
+  void choose_coupling();
   /// Half of the narrowest side that decides the lattice of a flow without cells, m.
   [[nodiscard]] double half_width() const;
   /// Of all cells.
@@ -136,7 +138,9 @@ class Problem {
   Json numerics_;  ///< what the scene says of them
   double target_ = default_target;
   bool steady_ = false;  ///< asked for
-  bool can_be_steady_ = false, corrected_ = true;
+  bool can_be_steady_ = false;
+  std::string kernel_;
+  MembraneCoupling coupling_ = MembraneCoupling::plain;
   bool has_cells_ = false, has_round_cells_ = false;  ///< round: in two dimensions, and not biconcave
   struct UsedType {
     const scene::CellType* type;
@@ -158,8 +162,7 @@ Problem::Problem(const scene::Scene& draft, const Json& written, const NumericsB
   const Json wanted = numerics_.at("auto");
   target_ = wanted.value("error", default_target);
   steady_ = wanted.value("of", "motion") == "steady";
-  corrected_ = numerics_.value("slip_correction",
-                               bounds_.slip_correction && scene_.fluid.layers.empty() && !scene_.domain.depth);
+  choose_coupling();
   has_cells_ = !scene_.cells.empty();
   can_be_steady_ = can_be_steady(scene_);
   radius_ = shape::smallest_radius(scene_);
@@ -203,12 +206,32 @@ Problem::Problem(const scene::Scene& draft, const Json& written, const NumericsB
   momentum_time_ = scene_.fluid.density * length * length / scene::viscosity_range(scene_.fluid).least;
 }
 
+/// In three dimensions the corrections were measured for spheres that touch nothing, and with the sharp kernel.
+void Problem::choose_coupling() {
+  const bool in_space = scene_.domain.depth.has_value();
+  bool corrected = bounds_.slip_correction && scene_.fluid.layers.empty();
+  if (in_space) {
+    const auto round = [&](const scene::CellPlacement& cell) {
+      return std::holds_alternative<scene::Sphere>(scene_.cell_types[cell.type].shape);
+    };
+    corrected = corrected && scene_.interactions.empty() && numerics_.value("kernel", sharp_kernel) == sharp_kernel &&
+                std::all_of(scene_.cells.begin(), scene_.cells.end(), round);
+  }
+  corrected = numerics_.value("slip_correction", corrected);
+  kernel_ = numerics_.value("kernel", in_space && corrected ? sharp_kernel : scene::Numerics{}.kernel);
+  scene::Numerics chosen;
+  chosen.slip_correction = corrected, chosen.kernel = kernel_;
+  coupling_ = membrane_coupling(chosen);
+}
+
 std::vector<LatticeSize> Problem::lattices() const {
   const Json nodes = written_.at("domain").value("nodes", Json());
   if (!nodes.is_null()) return {nodes.get<LatticeSize>()};
   const LatticeSize coarsest = *coarsest_lattice(sides(scene_.domain));  // the draft has found one
   // Beyond the finest lattice the plan's limits may be exceeded, and it warns.
-  const double least = has_cells_ ? std::min(bounds_.least_radius, finest_radius) : fewest_rows / 2.0;
+  const double of_cells =
+      std::min(std::max(bounds_.least_radius, least_cell_radius(coupling_, scene_.domain.dimension())), finest_radius);
+  const double least = has_cells_ ? of_cells : fewest_rows / 2.0;
   std::vector<LatticeSize> found;
   LatticeSize finest = coarsest;
   for (int factor = 1;; ++factor) {
@@ -324,7 +347,7 @@ double Problem::resolution_error(double spacing, double tau) const {
   double largest = 0;
   for (const UsedType& used : used_types_)
     largest = std::max(largest, lattice_error(used.type->shape, used.radius / spacing, viscosity_ratio_, tau,
-                                              domain.dimension(), corrected_, capillary_));
+                                              domain.dimension(), coupling_, capillary_));
   if (!has_cells_) largest = flow_start_error(domain, spacing, tau);
   return largest + steady_flow_error(domain, spacing);
 }
@@ -483,9 +506,12 @@ NumericsChoice Problem::chosen(const Trial& best) const {
   choose_density_factors(best, choice);
   if (has_cells_) {
     set("coupling", "auto", "explicit or semi-implicit, by the limits of the membranes' stiffness");
-    set("slip_correction", corrected_,
-        corrected_ ? "takes the first-order error of the immersed boundary out"
-        : in_space ? "left out: in three dimensions it is for motion and viscosity, not for shapes on coarse lattices"
+    const bool corrected = coupling_ != MembraneCoupling::plain;
+    if (coupling_ == MembraneCoupling::sharp && in_space)
+      set("kernel", kernel_, "has no second moment: what the slip correction leaves is a fifth of that of peskin4");
+    set("slip_correction", corrected,
+        corrected  ? "takes the first-order error of the immersed boundary out"
+        : in_space ? "left out: in three dimensions it was measured for spheres that touch nothing"
                    : "left out, for plasma between cells drains with it, and some that attract each other strongly "
                      "then become so thin that they cross themselves");
     set("area_correction", true, in_space ? "cells keep their volumes" : "cells keep their areas");

@@ -58,7 +58,7 @@ struct NumericsBounds {
   /// By stage and relaxation time. The explicit step bears stiffness by the square of tau - 1/2, so that what is too much at one
   /// may do at another.
   std::map<std::pair<std::size_t, double>, double> most_density_factor_at = {};
-  double least_radius = 10;  ///< of the smallest cell, lattice spacings
+  double least_radius = 0;  ///< of the smallest cell, lattice spacings; errors want more
   bool slip_correction = true;
   std::optional<RecoveryRates> recovery = {};
   bool operator==(const NumericsBounds&) const = default;

@@ -14,6 +14,7 @@
 #include "core/fluid/relaxation.hpp"
 #include "core/membrane/node_mobility.hpp"
 #include "core/membrane/stiffness.hpp"
+#include "error_model.hpp"
 #include "flow_start.hpp"
 #include "plan.hpp"
 #include "plugin/handles.hpp"
@@ -500,7 +501,8 @@ std::vector<Limit> find_limits(const Plan& plan) {
           "of a spacing times the shear rate",
           resolution);
     }
-    add("cell radius in lattice spacings", shape::smallest_radius(scene) / stage.units.length, 10, false,
+    add("cell radius in lattice spacings", shape::smallest_radius(scene) / stage.units.length,
+        least_cell_radius(membrane_coupling(scene.numerics), scene.domain.dimension()), false,
         "raise the resolution; results are converged from about 20", resolution);
     const bool space = scene.domain.depth.has_value();
     const std::string piece = space ? "edge" : "segment", pieces = space ? "triangles" : "segments";
