@@ -33,9 +33,9 @@ enum class MembraneCoupling {
   sharp       ///< and with the kernel sharp6
 };
 MembraneCoupling membrane_coupling(const scene::Numerics& numerics);
-/// The smallest radius of a cell, in spacings, for which errors were measured: with the sharp coupling in three dimensions less.
+/// The smallest radius of a cell, in spacings, for which errors were measured, and that leaves room for the coarser lattices of error bars.
 constexpr double least_cell_radius(MembraneCoupling coupling, int dimension) {
-  return coupling == MembraneCoupling::sharp && dimension == 3 ? 6 : 10;
+  return coupling == MembraneCoupling::sharp && dimension == 3 ? 6.5 : 10;
 }
 
 /// What a lattice leaves in the shape and the motion of a cell with this resolved radius, in spacings; tau is the fluid's largest

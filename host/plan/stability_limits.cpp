@@ -165,7 +165,7 @@ Stiffness membrane_stiffness(const Plan& plan, const plugin::ModelSetting& setti
     const double ratio = cell.interior_viscosity / scene.fluid.viscosity;
     double factor = 1;
     if (scene.numerics.slip_correction) {
-      factor = core::stiffening(core::slip_constants(kernel.kind, ratio).shift,
+      factor = core::stiffening(core::slip_constants(kernel.kind, ratio, scene.domain.dimension()).shift,
                                 shape::node_spacing(cell) / setting.units.length);
     }
     core::Stiffness stiffness;

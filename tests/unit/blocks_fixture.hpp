@@ -167,7 +167,7 @@ inline std::vector<Case> scenes_in_space() {
       {"slip and volumes corrected",
        capsule,
        {f64, "/domain/size=[\"12 um\", \"12 um\", \"12 um\"]", "/domain/nodes=[32, 32, 32]",
-        "/cell_types/capsule/interior_viscosity=\"6 cP\"", "/numerics/slip_correction=true",
+        "/cell_types/capsule/interior_viscosity=\"6 cP\"", "/numerics/slip_correction=true", "/numerics/kernel=sharp6",
         "/numerics/area_correction=true", R"(/cells=[{"type": "capsule", "at": ["11.6 um", "6 um", "0.3 um"]}])"}},
       {"capsule near a wall",
        capsule,

@@ -12,9 +12,10 @@ namespace rouleau::core {
 template <class T>
 InteriorField<T>::InteriorField(const Surfaces& surfaces, std::vector<double> viscosity_ratio, double relaxation_rate,
                                 const Domain<3>& domain, std::vector<double> viscosity_of_rows, ViscosityMean mean,
-                                double reach_beyond)
+                                double reach_beyond, bool smoothed)
     : ratio_(std::move(viscosity_ratio)),
       mean_(mean),
+      smoothed_(smoothed),
       margin_(static_cast<int>(std::ceil(reach_beyond))),
       plain_rate_(relaxation_rate),
       viscosity_of_rows_(std::move(viscosity_of_rows)),
@@ -34,7 +35,7 @@ void InteriorField<T>::cover(Worker worker, const Surfaces& surfaces) {
     if (!watch_.moved(c)) continue;
     if (differs(surfaces.cells[c].type)) {
       core::cover(surfaces.type_of(c).mesh, surfaces.nodes(c), fraction_[c]);
-      smooth(fraction_[c], scratch);
+      if (smoothed_) smooth(fraction_[c], scratch);
     }
     find_reach(surfaces, c);
     watch_.remember(c, surfaces, displacement_limit);

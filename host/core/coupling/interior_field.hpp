@@ -20,10 +20,11 @@ template <class T>
 class InteriorField {
  public:
   /// `viscosity_ratio[t]`: interior over suspending viscosity of cell type t. `viscosity_of_rows`: of the fluid around the
-  /// cells, as in FluidSetting. `reach_beyond`: how far from the nodes their forces may act, spacings.
+  /// cells, as in FluidSetting. `reach_beyond`: how far from the nodes their forces may act, spacings. `smoothed`: whether I is smoothed by
+  /// (1 2 1)/4 along the axes.
   InteriorField(const Surfaces& surfaces, std::vector<double> viscosity_ratio, double relaxation_rate,
                 const Domain<3>& domain, std::vector<double> viscosity_of_rows = {},
-                ViscosityMean mean = ViscosityMean::arithmetic, double reach_beyond = 0);
+                ViscosityMean mean = ViscosityMean::arithmetic, double reach_beyond = 0, bool smoothed = true);
 
   /// Whether a relaxation rate that varies in space is needed; if not, the passes only mark.
   [[nodiscard]] bool varies() const { return varies_; }
@@ -75,6 +76,7 @@ class InteriorField {
 
   std::vector<double> ratio_;
   ViscosityMean mean_;
+  bool smoothed_;
   int margin_;
   double plain_rate_;
   std::vector<double> viscosity_of_rows_;

@@ -73,16 +73,18 @@ Distribution kernel_distribution(KernelKind kernel) {
   return with_kernel(kernel, []<class Kernel>(Kernel) { return Distribution(kernel_density<Kernel>); });
 }
 
-/// The area fraction of unit squares, smoothed once by (1/4, 1/2, 1/4).
-double indicator_density(double distance) {
+/// The area fraction of unit squares; smoothed: once by (1/4, 1/2, 1/4).
+double indicator_density(double distance, bool smoothed) {
   const double r = std::abs(distance);
+  if (!smoothed) return r < 0.5 ? 1 : 0;
   return r < 0.5 ? 0.5 : (r < 1.5 ? 0.25 : 0);
 }
 
 }  // namespace
 
-SlipConstants slip_constants(KernelKind kernel, double viscosity_ratio) {
-  const Distribution y = kernel_distribution(kernel), z(indicator_density);
+SlipConstants slip_constants(KernelKind kernel, double viscosity_ratio, int dimension) {
+  const Distribution y = kernel_distribution(kernel),
+                     z([&](double distance) { return indicator_density(distance, smooths_edges(kernel, dimension)); });
   const double inside = 1 / viscosity_ratio, difference = 1 - inside;
   const double m = expected_largest([&](double x) { return y(x) * y(x); });
   if (difference == 0) return {0, m};

@@ -6,8 +6,8 @@
 namespace rouleau::core {
 
 /// A plane membrane with tangential force f per length between fluidities b_o = 1 outside and b_i = 1/ratio inside
-/// (in units of 1/viscosity outside; Db = b_o - b_i). Y, Y', Y'' are distributed as the kernel, Z as the smoothed
-/// indicator's edge. Smearing delays the membrane by slip x f:
+/// (in units of 1/viscosity outside; Db = b_o - b_i). Y, Y', Y'' are distributed as the kernel, Z as the
+/// indicator's edge, smoothed or not. Smearing delays the membrane by slip x f:
 ///     slip = b_i m + Db r(d),   m = E max(Y, Y'),   r(d) = E max(Y, Y', Z + d) - E max(Y, Z + d),
 /// once force and velocity act at a distance d inside the membrane such that  Db E max(Y - d, Z) = b_i d,  where the
 /// kink of the velocity and the jump between both fluids vanish (docs: physics, slip correction).
@@ -16,8 +16,9 @@ struct SlipConstants {
   double slip;   ///< velocity per tangential force per length, times the viscosity outside; lattice spacings
 };
 
-/// `viscosity_ratio`: inside over outside; the mean of viscosities must be the harmonic one.
-SlipConstants slip_constants(KernelKind kernel, double viscosity_ratio);
+/// `viscosity_ratio`: inside over outside; the mean of viscosities must be the harmonic one. `dimension` decides on the edge
+/// (smooths_edges).
+SlipConstants slip_constants(KernelKind kernel, double viscosity_ratio, int dimension);
 
 /// How often a membrane's slip is smoothed so that a step stays stable, at least so many times. A tangential displacement that
 /// the membrane's stiffness meets by s/l^2, s from 0 to `widest`, gains in a step the slip -C s (1 - s/widest)^p times itself after

@@ -20,9 +20,10 @@ constexpr double displacement_limit = 0.1;
 template <class T>
 ViscosityField<T>::ViscosityField(const Membranes& membranes, std::vector<double> viscosity_ratio, ViscosityMean mean,
                                   double reach_beyond, double relaxation_rate, const Domain<2>& domain,
-                                  std::vector<double> viscosity_of_rows)
+                                  std::vector<double> viscosity_of_rows, bool smoothed)
     : ratio_(std::move(viscosity_ratio)),
       mean_(mean),
+      smoothed_(smoothed),
       margin_(static_cast<int>(std::ceil(reach_beyond))),
       plain_rate_(relaxation_rate),
       viscosity_of_rows_(std::move(viscosity_of_rows)),
@@ -67,7 +68,7 @@ void ViscosityField<T>::cover(Worker worker, const Membranes& membranes) {
     if (differs(cell.type)) {
       AreaFraction& fraction = reach.fraction;
       core::cover(membranes, cell, fraction);
-      smooth(fraction, scratch);
+      if (smoothed_) smooth(fraction, scratch);
       reach.covered.first = fraction.y0;
       for (int j = 0; j < fraction.height; ++j) {
         const auto at = static_cast<std::size_t>(j);

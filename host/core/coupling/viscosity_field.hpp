@@ -24,10 +24,10 @@ class ViscosityField {
  public:
   /// `viscosity_ratio[t]`: interior over suspending viscosity of cell type t. `reach_beyond`: how far from a node its
   /// force may act besides the kernel's own reach, spacings. `viscosity_of_rows`: of the fluid around the cells, as in
-  /// FluidSetting.
+  /// FluidSetting. `smoothed`: whether I is smoothed by (1 2 1)/4 along both axes.
   ViscosityField(const Membranes& membranes, std::vector<double> viscosity_ratio, ViscosityMean mean,
                  double reach_beyond, double relaxation_rate, const Domain<2>& domain,
-                 std::vector<double> viscosity_of_rows = {});
+                 std::vector<double> viscosity_of_rows = {}, bool smoothed = true);
 
   /// Whether a relaxation rate that varies in space is needed; if not, the passes only mark.
   [[nodiscard]] bool varies() const { return varies_; }
@@ -85,6 +85,7 @@ class ViscosityField {
 
   std::vector<double> ratio_;
   ViscosityMean mean_;
+  bool smoothed_;
   int margin_;  // nodes, for what reaches beyond the kernel
   double plain_rate_;
   std::vector<double> viscosity_of_rows_;

@@ -13,7 +13,7 @@ double extra_reach(const BasicSolverSetup<D>& setup) {
   double largest = 0;
   for (const CellType& type : setup.cell_types) {
     if (setup.slip_correction)
-      largest = std::max(largest, std::abs(slip_constants(setup.kernel, type.viscosity_ratio).shift));
+      largest = std::max(largest, std::abs(slip_constants(setup.kernel, type.viscosity_ratio, D).shift));
   }
   return largest + with_kernel(setup.kernel, []<class Kernel>(Kernel) { return -1 - Kernel::first; });
 }

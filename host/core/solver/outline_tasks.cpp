@@ -30,7 +30,7 @@ OutlineTasks<T>::OutlineTasks(const SolverSetup& setup, Membranes& membranes, Fl
       membrane_forces_(membranes, forces_setup()),
       viscosity_field_(membranes, viscosity_ratios(),
                        slip_correction_ ? ViscosityMean::harmonic : ViscosityMean::arithmetic, extra_reach(setup),
-                       1 / setup.tau, setup.domain, fluid.setting().viscosity_of_rows),
+                       1 / setup.tau, setup.domain, fluid.setting().viscosity_of_rows, smooths_edges(setup.kernel, 2)),
       coupling_(setup.kernel, setup.domain) {
   membranes_.largest_step.resize(membranes_.cells.size(), 0.0);
   if (setup.area_correction) membranes_.area_leakage.resize(membranes_.cells.size(), 0.0);  // earlier leakage stays
@@ -60,7 +60,7 @@ std::unique_ptr<SlipCorrection> OutlineTasks<T>::make_slip_correction() const {
   for (const CellType& type : setup_.cell_types) {
     const Stiffness stiffness = stiffness_of(type.laws);
     types.push_back(
-        {core::slip_constants(setup_.kernel, type.viscosity_ratio), stiffness.stretching, stiffness.bending});
+        {core::slip_constants(setup_.kernel, type.viscosity_ratio, 2), stiffness.stretching, stiffness.bending});
   }
   return std::make_unique<SlipCorrection>(membranes_, std::move(types), setup_.viscosity());
 }

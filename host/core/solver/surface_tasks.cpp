@@ -28,7 +28,7 @@ std::unique_ptr<SurfaceSlip> make_slip(const BasicSolverSetup<3>& setup, const S
   for (const CellType& type : setup.cell_types) {
     double stretching = 0;
     for (const MembraneLaw& law : type.laws) stretching += stretching_stiffness(law);
-    types.push_back({slip_constants(setup.kernel, type.viscosity_ratio), stretching});
+    types.push_back({slip_constants(setup.kernel, type.viscosity_ratio, 3), stretching});
   }
   return std::make_unique<SurfaceSlip>(surfaces, std::move(types), setup.viscosity());
 }
@@ -62,7 +62,8 @@ SurfaceTasks<T>::SurfaceTasks(const BasicSolverSetup<3>& setup, Surfaces& surfac
       forces_(surfaces, laws_of(setup)),
       slip_(make_slip(setup, surfaces)),
       viscosity_field_(surfaces, ratios_of(setup), 1 / setup.tau, setup.domain, fluid.setting().viscosity_of_rows,
-                       slip_ ? ViscosityMean::harmonic : ViscosityMean::arithmetic, extra_reach(setup)),
+                       slip_ ? ViscosityMean::harmonic : ViscosityMean::arithmetic, extra_reach(setup),
+                       smooths_edges(setup.kernel, 3)),
       coupling_(setup.kernel, setup.domain),
       ranks_(fluid.ranks()) {
   surfaces_.largest_step.resize(surfaces_.cells.size(), 0.0);

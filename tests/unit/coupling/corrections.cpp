@@ -31,9 +31,10 @@ Drawn draw(std::mt19937& random) {
   return {k + Kernel::first - (fraction - Kernel::shift), Kernel::points * weight};
 }
 
-/// A distance drawn from the smoothed area fraction's edge: a unit square, and -1, 0 or 1 with weights 1, 2, 1.
-double draw_indicator(std::mt19937& random) {
+/// A distance drawn from the area fraction's edge: a unit square; smoothed: and -1, 0 or 1 with weights 1, 2, 1.
+double draw_indicator(std::mt19937& random, bool smoothed) {
   std::uniform_real_distribution<double> uniform(0, 1);
+  if (!smoothed) return uniform(random) - 0.5;
   std::uniform_int_distribution<int> quarter(0, 3);
   const int k = quarter(random);
   return uniform(random) - 0.5 + (k == 0 ? -1 : (k == 1 ? 1 : 0));
@@ -70,7 +71,7 @@ TEST_CASE("the constants of the slip correction are those of the layer analysis 
                          Row{KernelKind::peskin4, 20, 1.213, 0.125}, Row{KernelKind::peskin4, 0.2, -0.675, 0.278},
                          Row{KernelKind::roma3, 1, 0, 0.312}, Row{KernelKind::roma3, 5, 0.604, 0.212},
                          Row{KernelKind::roma3, 20, 1.082, 0.099}, Row{KernelKind::linear2, 1, 0, 0.2333}}) {
-    const SlipConstants c = slip_constants(row.kernel, row.ratio);
+    const SlipConstants c = slip_constants(row.kernel, row.ratio, 2);
     CHECK(c.shift == Approx(row.shift).margin(1e-3));
     CHECK(c.slip / ((1 + 1 / row.ratio) / 2) == Approx(row.slip).margin(1e-3));
   }
@@ -80,7 +81,8 @@ TEMPLATE_TEST_CASE("the constants fulfil their two conditions when distances are
   auto random = generator(81);
   const KernelKind kernel = std::is_same_v<TestType, Sharp6> ? KernelKind::sharp6 : KernelKind::peskin4;
   const double ratio = GENERATE(1.0, 5.0, 0.2, 20.0);
-  const SlipConstants c = slip_constants(kernel, ratio);
+  const int dimension = GENERATE(2, 3);
+  const SlipConstants c = slip_constants(kernel, ratio, dimension);
   const double inside = 1 / ratio, difference = 1 - inside;
   constexpr int count = 4000000;
   /// The mean, and four standard deviations of it.
@@ -93,7 +95,7 @@ TEMPLATE_TEST_CASE("the constants fulfil their two conditions when distances are
   for (int i = 0; i < count; ++i) {
     const auto [y, y_counts] = draw<TestType>(random);
     const auto [other, other_counts] = draw<TestType>(random);
-    const double z = draw_indicator(random);
+    const double z = draw_indicator(random, smooths_edges(kernel, dimension));
     kink.add(y_counts * std::max(y - c.shift, z));
     m.add(y_counts * other_counts * std::max(y, other));
     r.add(y_counts * (other_counts * std::max({y, other, z + c.shift}) - std::max(y, z + c.shift)));
@@ -107,7 +109,7 @@ TEMPLATE_TEST_CASE("the constants fulfil their two conditions when distances are
 TEST_CASE("the slip correction adds no force to the fluid") {
   auto random = generator(82);
   Membranes m = cell_with_forces(random, 0.5);
-  SlipCorrection correction(m, {{slip_constants(KernelKind::peskin4, 5), 0, 0}}, 1.0 / 6);
+  SlipCorrection correction(m, {{slip_constants(KernelKind::peskin4, 5, 2), 0, 0}}, 1.0 / 6);
   take_forces(correction, m);
   double x = 0, y = 0;
   for (std::size_t i = 0; i < m.x.size(); ++i) x += correction.forces().x[i], y += correction.forces().y[i];
@@ -127,7 +129,7 @@ TEST_CASE("the slip correction keeps the torque to second order in shift over ra
       const double angle = 6.283185307179586 * static_cast<double>(i) / 400;
       m.force_x[i] = -std::sin(angle) + std::cos(2 * angle), m.force_y[i] = std::cos(angle) + 0.3 * std::sin(3 * angle);
     }
-    SlipCorrection correction(m, {{slip_constants(KernelKind::peskin4, 5), 0, 0}}, 1.0 / 6);
+    SlipCorrection correction(m, {{slip_constants(KernelKind::peskin4, 5, 2), 0, 0}}, 1.0 / 6);
     take_forces(correction, m);
     const NodeVectors at = correction.positions(), force = correction.forces();
     double torque = 0, expected = 0;
@@ -145,7 +147,7 @@ TEST_CASE("the slip correction keeps the torque to second order in shift over ra
 TEST_CASE("what the fluid does on the membrane is what the membrane does on the fluid, but for the slip's own work") {
   auto random = generator(83);
   Membranes m = cell_with_forces(random, 0.5);
-  SlipConstants constants = slip_constants(KernelKind::peskin4, 5);
+  SlipConstants constants = slip_constants(KernelKind::peskin4, 5, 2);
   constants.slip = 0;
   SlipCorrection correction(m, {{constants, 0, 0}}, 1.0 / 6);
   take_forces(correction, m);
@@ -170,7 +172,7 @@ TEST_CASE("the slip follows the tangential force along the membrane and costs en
     m.x[i] = radius * std::cos(angle), m.y[i] = radius * std::sin(angle);
     m.force_x[i] = -force * std::sin(angle), m.force_y[i] = force * std::cos(angle);
   }
-  SlipCorrection correction(m, {{slip_constants(KernelKind::peskin4, 1), GENERATE(0.0, 5.0), 0}}, viscosity);
+  SlipCorrection correction(m, {{slip_constants(KernelKind::peskin4, 1, 2), GENERATE(0.0, 5.0), 0}}, viscosity);
   take_forces(correction, m);
   correction.correct({}, m);
   const double chord = 2 * radius * std::sin(6.283185307179586 / 120), slip = 0.4137 * force / (chord / 2) / viscosity;

@@ -45,7 +45,7 @@ TEST_CASE("the slip correction of surfaces adds neither force nor torque to the 
   auto random = generator(83);
   const double ratio = GENERATE(1.0, 5.0, 0.2);
   const Surfaces s = uneven_sphere(random);
-  const SurfaceSlip slip = slip_of(s, slip_constants(KernelKind::peskin4, ratio));
+  const SurfaceSlip slip = slip_of(s, slip_constants(KernelKind::peskin4, ratio, 3));
   Vec<3> force = Vec<3>::Zero(), torque = Vec<3>::Zero();
   for (int i = 0; i < s.node_count(); ++i) {
     const Vec<3> of_node = vector(s.forces(), i), spread = vector(slip.forces(), i);
@@ -58,7 +58,7 @@ TEST_CASE("the slip correction of surfaces adds neither force nor torque to the 
 
 TEST_CASE("what the shift does to velocities is the adjoint of what it does to forces, and slip takes energy") {
   auto random = generator(84);
-  const SlipConstants constants = slip_constants(KernelKind::peskin4, 5);
+  const SlipConstants constants = slip_constants(KernelKind::peskin4, 5, 3);
   const double stiffness = GENERATE(0.0, 10.0);
   for (const double mobility : {0.0, constants.slip}) {
     Surfaces s = uneven_sphere(random);
@@ -82,7 +82,7 @@ TEST_CASE("what the shift does to velocities is the adjoint of what it does to f
 TEST_CASE("a surface that moves as a rigid body does so with the slip correction, too") {
   auto random = generator(85);
   Surfaces s = uneven_sphere(random);
-  SurfaceSlip slip(s, {{slip_constants(KernelKind::peskin4, 5), 0}}, 1.0 / 6);
+  SurfaceSlip slip(s, {{slip_constants(KernelKind::peskin4, 5, 3), 0}}, 1.0 / 6);
   slip.measure({}, s);
   for (auto* values : {&s.force_x, &s.force_y, &s.force_z}) std::fill(values->begin(), values->end(), 0.0);
   slip.complete({}, s);

@@ -326,7 +326,9 @@ TEST_CASE(
         CHECK(estimated_cost(scene) >= cost * 0.98);  // factors are rounded to three digits
         CHECK(scene.domain.nodes[1] >= rows);
         CHECK(scene.numerics.area_correction);
-        CHECK_FALSE(scene.numerics.slip_correction);
+        const bool round = std::holds_alternative<Sphere>(scene.cell_types[0].shape);
+        CHECK(scene.numerics.slip_correction == round);
+        CHECK(scene.numerics.kernel == (round ? "sharp6" : "peskin4"));
         cost = estimated_cost(scene);
         rows = scene.domain.nodes[1];
       }
