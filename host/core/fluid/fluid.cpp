@@ -82,11 +82,11 @@ std::vector<HaloCopy<Set::dimension>> population_copies(const Domain<Set::dimens
   return copies;
 }
 
-/// All components of the velocity, one node deep on the lower sides.
+/// All components of the velocity, so many nodes deep.
 template <int D>
-std::vector<HaloCopy<D>> velocity_copies(const Domain<D>& domain, int above) {
+std::vector<HaloCopy<D>> velocity_copies(const Domain<D>& domain, int below, int above) {
   std::vector<HaloCopy<D>> copies;
-  for_halo_nodes(domain, 1, above, [&](const std::array<int, D>& node, const std::array<int, D>&) {
+  for_halo_nodes(domain, below, above, [&](const std::array<int, D>& node, const std::array<int, D>&) {
     for (int component = 0; component < D; ++component) copies.push_back({node, component});
   });
   return copies;
@@ -112,14 +112,17 @@ void Fluid<T, Set>::make_halos() {
       early);
   edge_nodes_ = std::make_unique<const EdgeNodes<dimension>>(block);
   energetics_halo_ = std::make_unique<Halo<double, dimension>>(
-      ranks_, [](const Domain<dimension>& domain) { return velocity_copies(domain, 1); },
+      ranks_, [](const Domain<dimension>& domain) { return velocity_copies(domain, 1, 1); },
       [this, block, row_of_node](const Node& node) {
         return edge_nodes_->place(node[0] - block.begin[0], row_of_node(node));
       });
   if (!setting_.membranes) return;
   // What the stencils of nodes above the block's own reach.
   velocity_halo_ = std::make_unique<Halo<T, dimension>>(
-      ranks_, [](const Domain<dimension>& domain) { return velocity_copies(domain, 2); },
+      ranks_,
+      [above = setting_.stencil_above](const Domain<dimension>& domain) {
+        return velocity_copies(domain, above - 1, above);
+      },
       [this, block, row_of_node](const Node& node) {
         return force_[0].row(row_of_node(node)) + (node[0] - block.begin[0]) - force_[0].row(Row{});
       },

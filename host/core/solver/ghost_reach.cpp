@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/coupling/kernel.hpp"
 #include "core/coupling/slip_constants.hpp"
 
 namespace rouleau::core {
@@ -15,7 +14,7 @@ double extra_reach(const BasicSolverSetup<D>& setup) {
     if (setup.slip_correction)
       largest = std::max(largest, std::abs(slip_constants(setup.kernel, type.viscosity_ratio, D).shift));
   }
-  return largest + with_kernel(setup.kernel, []<class Kernel>(Kernel) { return -1 - Kernel::first; });
+  return largest + stencil_above(setup.kernel) - 2;
 }
 
 template double extra_reach(const BasicSolverSetup<2>&);

@@ -65,6 +65,7 @@ FluidSetting<D> fluid_setting(const BasicSolverSetup<D>& setup, const Cells& cel
                           .inertia = setup.inertia,
                           .walls = setup.walls,
                           .membranes = !cells.cells.empty(),
+                          .stencil_above = stencil_above(setup.kernel),
                           .viscosity_contrast = has_contrast(setup, cells),
                           .solid = setup.solid};
   const double body_force[] = {setup.body_force_x, setup.body_force_y, setup.body_force_z};

@@ -17,6 +17,7 @@
 #include "plan/estimate.hpp"
 #include "plan/placed_cells.hpp"
 #include "plan/solver_setup.hpp"
+#include "plan/stability_limits.hpp"
 
 namespace rouleau::plan {
 
@@ -97,7 +98,8 @@ void add_halos(const Plan& plan, const core::Decomposition<D>& blocks, std::vect
     ranks[rank].waits = 1;
     if (!plan.has_cells) continue;
     ranks[rank].messages *= 2;
-    core::for_halo_nodes(domain, 1, 2, [&](const std::array<int, D>& node, const std::array<int, D>&) {
+    const int above = core::stencil_above(kernel_named(plan.scene->numerics.kernel).kind);
+    core::for_halo_nodes(domain, above - 1, above, [&](const std::array<int, D>& node, const std::array<int, D>&) {
       send(&RankCost::velocity_bytes, owner(node), rank, D * number);
     });
   }
