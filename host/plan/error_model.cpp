@@ -51,7 +51,7 @@ namespace in_space {
 // kernel takes from normal forces, of second order, and slip, of first order.
 constexpr double kernel_at_ten = 0.031, slip_at_ten = 0.022;
 // Of spheres with the slip correction and the kernel sharp6.
-constexpr ShapeErrors sharp_sphere{{0.012, 2}, {0.024, 2}};
+constexpr ShapeErrors sharp_sphere{{0.015, 2}, {0.024, 2}};
 constexpr double motion_by_reynolds = 0.037;
 // Disturbances of the steady state die out as membranes relax: 0.5 times the Reynolds number, exp(-0.55 strain) at viscosity ratio 1
 // and exp(-0.38 strain) at measured_ratio.

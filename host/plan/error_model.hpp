@@ -19,8 +19,8 @@ struct RecoveryRates {
 struct CapillaryRange {
   double least, most;
 };
-/// Those of round cells for which errors were measured.
-inline constexpr CapillaryRange measured_capillary{0.003, 0.8};
+/// Those of round cells for which errors were measured, in two dimensions and in three.
+inline constexpr CapillaryRange measured_capillary{0.003, 0.8}, measured_capillary_in_space{0.004, 0.7};
 
 /// The radius that a lattice must resolve, m: the smallest semi-axis; of a biconcave cell and of a surface from a file half the
 /// length.

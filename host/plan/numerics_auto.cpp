@@ -544,9 +544,13 @@ std::string Problem::doubt_about(const Trial& best) const {
     return "numerics.auto: the error of cells was measured in a fluid of one viscosity, and fluid.layers has others";
   if (viscosity_ratio_ < 0.99 || viscosity_ratio_ > 1.01 * measured_ratio)
     return unknown("viscosity ratio", viscosity_ratio_, 1, measured_ratio);
-  if (!has_round_cells_ || !bounds_.recovery) return {};
+  const bool in_space = scene_.domain.depth.has_value();
+  const bool by_capillary = in_space ? coupling_ == MembraneCoupling::sharp : has_round_cells_;
+  if (!by_capillary || !bounds_.recovery) return {};
   const auto& [least, most] = capillary_;
-  const auto& [least_measured, most_measured] = measured_capillary;
+  const auto& [least_measured, most_measured] = in_space ? measured_capillary_in_space : measured_capillary;
+  if (in_space && !std::isfinite(most))
+    return "numerics.auto: the error of cells was measured with membranes that resist stretching";
   if (least < least_measured) return unknown("capillary number", least, least_measured, most_measured);
   if (most > most_measured && std::isfinite(most))
     return unknown("capillary number", most, least_measured, most_measured);

@@ -290,10 +290,11 @@ const KernelFacts& kernel_named(const std::string& name) {
 }
 
 std::optional<RecoveryRates> recovery_rates(const Plan& plan) {
-  if (!plan.has_cells || plan.scene->domain.depth) return std::nullopt;
+  if (!plan.has_cells) return std::nullopt;
   RecoveryRates rates{INFINITY, 0};
+  const double share = plan.scene->domain.depth ? 0.75 : 1;  // a neo-Hookean surface has a stretching stiffness of 4 Es
   for (std::size_t t = 0; t < plan.membranes.size(); ++t) {
-    const double rate = recovery_rate(plan, plan.stages.front(), t);
+    const double rate = share * recovery_rate(plan, plan.stages.front(), t);
     rates = {std::min(rates.least, rate), std::max(rates.most, rate)};
   }
   return rates;

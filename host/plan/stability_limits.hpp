@@ -43,9 +43,10 @@ struct KernelFacts {
   double first_moment;   ///< largest |sum w (x - X)|, spacings
   double stretch_limit;  ///< largest stretching stiffness with explicit coupling over that of peskin4
   double bending_limit;  ///< the same for bending stiffness
-  double semi_implicit_from;  ///< relaxation time from which on the semi-implicit step bears more; infinite: it never does, and
-                              ///< bears half as much as the explicit one
-  const char* defect;    ///< what a user has to expect, for `plan`; empty: nothing
+  double
+      semi_implicit_from;  ///< relaxation time from which on the semi-implicit step bears more; infinite: it never does, and
+                           ///< bears half as much as the explicit one
+  const char* defect;  ///< what a user has to expect, for `plan`; empty: nothing
 };
 
 /// The kernel of this name, which the schema has checked. The limits were measured with one cell at rest, 20 spacings a
@@ -59,7 +60,7 @@ double explicit_margin(const Plan& plan);
 /// Whether the semi-implicit step bears more than the explicit one with the scene's kernel, at its relaxation time.
 bool semi_implicit_gains(const Plan& plan);
 
-/// Of all cell types; nothing without cells, and in three dimensions, where no error depends on it.
+/// Of all cell types; nothing without cells.
 std::optional<RecoveryRates> recovery_rates(const Plan& plan);
 
 /// With a margin below this one `"coupling": "auto"` takes the semi-implicit step.

@@ -412,7 +412,8 @@ class Numerics_auto(Case):
         written = json.loads((self.folder / "out/scene.json").read_text())
         nodes = written["domain"]["nodes"]
         self.assertEqual(len(set(nodes)), 1)
-        self.assertGreaterEqual(nodes[0] * 0.45 / 1.8, 10)
+        self.assertGreaterEqual(nodes[0] * 0.45 / 1.8, 6.5)
+        self.assertEqual((written["numerics"]["kernel"], written["numerics"]["slip_correction"]), ("sharp6", True))
         self.assertTrue(written["numerics"]["area_correction"])
 
     @unittest.skipIf(WITHOUT_WHOLE_RUNS, "whole runs")

@@ -220,7 +220,8 @@ struct Coupling<T>::Loops {
 
   template <class Kernel>
   static const Loops* of() {
-    static const Loops loops{Kernel::first, Kernel::points, Dispatch<Locate<T, Kernel>, LocateTask<T>*>::pick(), pick_spread<Kernel, T>(),
+    static const Loops loops{Kernel::first, Kernel::points, Dispatch<Locate<T, Kernel>, LocateTask<T>*>::pick(),
+                             pick_spread<Kernel, T>(),
                              Dispatch<Interpolate<T, Kernel>, const InterpolateTask<T>*>::pick()};
     return &loops;
   }

@@ -98,8 +98,8 @@ struct SpreadSurface {
     const Box<3>& block = t.domain->block;
     const int height = block.size(1);
     const int x = t.at.base[0][i] + start, y = t.at.base[1][i] + start, z = t.at.base[2][i] + start;
-    const bool inside = x >= block.begin[0] && x + points <= block.end[0] && y >= block.begin[1] && y + points <= block.end[1] &&
-                        z >= block.begin[2] && z + points <= block.end[2];
+    const bool inside = x >= block.begin[0] && x + points <= block.end[0] && y >= block.begin[1] &&
+                        y + points <= block.end[1] && z >= block.begin[2] && z + points <= block.end[2];
     if (!inside) {
       const int from[] = {x, y, z};
       for (int k = 0; k < 3; ++k) {
@@ -227,7 +227,8 @@ struct SurfaceCoupling<T>::Loops {
 
   template <class Kernel>
   static const Loops* of() {
-    static const Loops loops{Kernel::first, Kernel::points, Dispatch<LocateSurface<T, Kernel>, const LocatePart<T>*>::pick(),
+    static const Loops loops{Kernel::first, Kernel::points,
+                             Dispatch<LocateSurface<T, Kernel>, const LocatePart<T>*>::pick(),
                              Dispatch<SpreadSurface<T, Kernel>, const SurfaceSpread<T>*>::pick(),
                              Dispatch<InterpolateSurface<T, Kernel>, const SurfaceInterpolate<T>*>::pick()};
     return &loops;

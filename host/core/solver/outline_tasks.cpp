@@ -67,8 +67,10 @@ std::unique_ptr<SlipCorrection> OutlineTasks<T>::make_slip_correction() const {
 
 template <class T>
 MembraneForcesSetup OutlineTasks<T>::forces_setup() const {
-  MembraneForcesSetup forces{
-      .response = kernel_response(setup_.kernel), .semi_implicit = setup_.semi_implicit, .viscosity = setup_.viscosity(), .tension_unit = setup_.tension_unit};
+  MembraneForcesSetup forces{.response = kernel_response(setup_.kernel),
+                             .semi_implicit = setup_.semi_implicit,
+                             .viscosity = setup_.viscosity(),
+                             .tension_unit = setup_.tension_unit};
   for (const CellType& type : setup_.cell_types) forces.laws.push_back(type.laws);
   if (slip_correction_) forces.mobility = slip_correction_->mobility();
   return forces;

@@ -67,8 +67,8 @@ SurfaceTasks<T>::SurfaceTasks(const BasicSolverSetup<3>& setup, Surfaces& surfac
       coupling_(setup.kernel, setup.domain),
       ranks_(fluid.ranks()) {
   surfaces_.largest_step.resize(surfaces_.cells.size(), 0.0);
-  if (setup.semi_implicit) forces_.take_semi_implicit_steps(surfaces_, setup.viscosity(), setup.tension_unit,
-                                                            kernel_response(setup.kernel));
+  if (setup.semi_implicit)
+    forces_.take_semi_implicit_steps(surfaces_, setup.viscosity(), setup.tension_unit, kernel_response(setup.kernel));
   std::vector<double> of_type;
   for (std::size_t t = 0; t < surfaces.types.size(); ++t)
     of_type.push_back(energy_of_strain(surfaces.types[t], setup.cell_types[t].laws, 1e-3));

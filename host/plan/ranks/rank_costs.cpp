@@ -47,7 +47,7 @@ std::vector<int> ranks_near(const core::Decomposition<D>& blocks, int rank) {
   core::BoundingBox<D> box;
   for (int k = 0; k < D; ++k) box.least[k] = domain.block.begin[k], box.most[k] = domain.block.end[k] - 1;
   std::set<int> near;
-  core::for_nodes_near(box, 2, 1, domain, [&](const core::Box<D>& nodes) {
+  core::for_nodes_near(box, core::Field<float, D>::halo, 1, domain, [&](const core::Box<D>& nodes) {
     const std::vector<int> met = blocks.meeting(nodes);
     near.insert(met.begin(), met.end());
   });

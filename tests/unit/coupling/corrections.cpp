@@ -77,7 +77,8 @@ TEST_CASE("the constants of the slip correction are those of the layer analysis 
   }
 }
 
-TEMPLATE_TEST_CASE("the constants fulfil their two conditions when distances are drawn at random", "", Peskin4, Sharp6) {
+TEMPLATE_TEST_CASE("the constants fulfil their two conditions when distances are drawn at random", "", Peskin4,
+                   Sharp6) {
   auto random = generator(81);
   const KernelKind kernel = std::is_same_v<TestType, Sharp6> ? KernelKind::sharp6 : KernelKind::peskin4;
   const double ratio = GENERATE(1.0, 5.0, 0.2, 20.0);

@@ -91,7 +91,8 @@ TEMPLATE_TEST_CASE("spreading and interpolation are adjoint, over periodic borde
   const core::Domain<2> domain({70, 64}, {true, GENERATE(false, true)});
   std::uniform_real_distribution<double> anywhere(-1, 63.4);
   for (std::size_t i = 0; i < m.y.size(); i += 3) m.y[i] = anywhere(random);
-  const KernelKind kernel = GENERATE(KernelKind::peskin4, KernelKind::cosine4, KernelKind::roma3, KernelKind::linear2, KernelKind::sharp6);
+  const KernelKind kernel =
+      GENERATE(KernelKind::peskin4, KernelKind::cosine4, KernelKind::roma3, KernelKind::linear2, KernelKind::sharp6);
   Coupling<TestType> coupling(kernel, domain);
   coupling.reserve(m);
   coupling.locate({}, m, m.positions());

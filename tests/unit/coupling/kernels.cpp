@@ -65,7 +65,8 @@ TEMPLATE_TEST_CASE("kernels that a membrane may use have no first moment", "", P
   CHECK(largest_moment<TestType>(1, 0) < rounding);
 }
 
-TEST_CASE("the sharp kernel sums to one, has no second moment in the mean over places, and as much on even as on odd nodes") {
+TEST_CASE(
+    "the sharp kernel sums to one, has no second moment in the mean over places, and as much on even as on odd nodes") {
   CHECK(largest_moment<Sharp6>(0, 1) < rounding);
   constexpr int places = 20000;
   double mean = 0, most = 0;

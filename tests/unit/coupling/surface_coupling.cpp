@@ -71,8 +71,8 @@ TEMPLATE_TEST_CASE("in three dimensions spreading and interpolation are adjoint,
   std::uniform_real_distribution<double> any(-1, 1);
   for (const bool walls : {false, true}) {
     const Domain<3> domain(box, {true, !walls, !walls});
-    for (const KernelKind kernel : {KernelKind::peskin4, KernelKind::roma3, KernelKind::linear2, KernelKind::cosine4,
-                                    KernelKind::sharp6}) {
+    for (const KernelKind kernel :
+         {KernelKind::peskin4, KernelKind::roma3, KernelKind::linear2, KernelKind::cosine4, KernelKind::sharp6}) {
       Surfaces s = sphere_at(walls ? Vec<3>(1.3, 2.6, 12.4) : Vec<3>(1.3, 17.6, -0.4), random);
       SurfaceCoupling<TestType> coupling(kernel, domain);
       coupling.reserve(s);
@@ -104,8 +104,7 @@ TEMPLATE_TEST_CASE("in three dimensions spreading and interpolation are adjoint,
 TEST_CASE("in three dimensions force and torque on the lattice are those of the nodes") {
   auto random = generator(82);
   const Domain<3> domain(box, {true, true, true});
-  for (const KernelKind kernel : {KernelKind::peskin4, KernelKind::roma3, KernelKind::linear2,
-                                    KernelKind::sharp6}) {
+  for (const KernelKind kernel : {KernelKind::peskin4, KernelKind::roma3, KernelKind::linear2, KernelKind::sharp6}) {
     Surfaces s = sphere_at({9.7, 8.2, 7.9}, random);
     SurfaceCoupling<double> coupling(kernel, domain);
     coupling.reserve(s);

@@ -108,3 +108,22 @@ TEST_CASE("with kernels that let nodes zigzag the semi-implicit step bears less,
   CHECK_THAT(automatic.remedy, Catch::Matchers::Contains("peskin4"));
   CHECK(limits("roma3", "semi-implicit").first.limit == Approx(automatic.limit / 2));
 }
+
+TEST_CASE("the sharp kernel bears less stiffness, and with the semi-implicit step as much more from tau 0.9 on") {
+  const Catalog catalog({ROULEAU_PLUGINS});
+  const auto limit = [&](const std::string& kernel, const std::string& tau, const std::string& coupling) {
+    const Scene scene =
+        read_scene(std::string(ROULEAU_SCENES) + "/red-cell-3d.json",
+                   {"/numerics/kernel=" + kernel, "/numerics/tau=" + tau, "/numerics/coupling=" + coupling});
+    const std::vector<Limit> all = find_limits(make_plan(scene, catalog));
+    return std::find_if(all.begin(), all.end(),
+                        [](const Limit& each) { return each.name.starts_with("stretching stiffness"); })
+        ->limit;
+  };
+  for (const char* tau : {"0.8", "1", "2"}) {
+    const double explicit_limit = limit("sharp6", tau, "explicit");
+    CHECK(explicit_limit == Approx(0.36 * limit("peskin4", tau, "explicit")));
+    const double gain = limit("sharp6", tau, "semi-implicit") / explicit_limit;
+    CHECK(gain == Approx(std::string(tau) == "0.8" ? 1 : 20));
+  }
+}
