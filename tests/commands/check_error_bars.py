@@ -121,7 +121,7 @@ class Error_bars(Case):
         self.assertEqual((self.tables(), summary["steps"]), (tables, steps))
 
     def test_that_an_interruption_has_cut_off_are_missing_and_come_with_the_next_command(self):
-        scene = self.scene(strain=200)
+        scene = self.scene(strain=40, density_factor=1500)
         process = subprocess.Popen([PROGRAM, "run", scene, "--out", self.run_directory, "--error-bar"], stdout=subprocess.PIPE,
                                    stderr=subprocess.PIPE, text=True)
         for line in process.stderr:
