@@ -85,7 +85,7 @@ TEMPLATE_TEST_CASE("the constants fulfil their two conditions when distances are
   const int dimension = GENERATE(2, 3);
   const SlipConstants c = slip_constants(kernel, ratio, dimension);
   const double inside = 1 / ratio, difference = 1 - inside;
-  constexpr int count = 4000000;
+  constexpr int count = 500000;
   /// The mean, and four standard deviations of it.
   struct Mean {
     double sum = 0, squares = 0;
@@ -104,7 +104,7 @@ TEMPLATE_TEST_CASE("the constants fulfil their two conditions when distances are
   CHECK(std::abs(difference * kink.value() - inside * c.shift) < std::abs(difference) * kink.known() + 1e-12);
   CHECK(std::abs(inside * m.value() + difference * r.value() - c.slip) <
         inside * m.known() + std::abs(difference) * r.known());
-  CHECK(inside * m.known() + std::abs(difference) * r.known() < 0.03 * (1 + inside));
+  CHECK(inside * m.known() + std::abs(difference) * r.known() < 0.06 * (1 + inside));
 }
 
 TEST_CASE("the slip correction adds no force to the fluid") {
