@@ -105,7 +105,7 @@ class The_result(PageOfFour):
 
     def test_rounds_a_value_to_its_error(self):
         page = self.four()
-        for value, error, words in ((0.34712, 0.0042, "0.347 ± 0.004"), (1.1749, 0.013, "1.175 ± 0.013"), (123.4, 2.1, "123 ± 2"), (-0.5, 0.03, "−0.50 ± 0.03")):
+        for value, error, words in ((0.34712, 0.0042, "0.347 ± 0.005"), (1.1749, 0.013, "1.175 ± 0.013"), (123.4, 2.1, "123 ± 3"), (-0.5, 0.03, "−0.50 ± 0.03")):
             self.assertEqual(page.run(f"withError({value}, {error})"), words)
         for value, spread, words in ((1.1746, 0.031, "1.17"), (1.2, 0.003, "1.200"), (1.2, 0, "1.2")):
             self.assertEqual(page.run(f"withError({value}, null, {spread})"), words)

@@ -17,12 +17,13 @@ function meanOf(summary, name) {
     : {value: mean, error: null, spread: deviation, about: `mean of the second half of stage ${stage.stage}; standard deviation ${format(deviation, 2)}`};
 }
 
-/// A value with as many digits as its error has a meaning for: "0.347 ± 0.004"; without an error as many as its spread has.
+/// A value with as many digits as its error, rounded up as the terminal does, has a meaning for: "0.347 ± 0.005"; without an error as many as its spread has.
 function withError(value, error, spread = null) {
   const known = error > 0 ? error : spread;
   if (!(known > 0)) return format(value, 3);
   const size = Math.floor(Math.log10(known)), decimals = Math.max(0, Math.min(8, 1 - size - (known / 10 ** size >= 2 ? 1 : 0)));
-  return (error > 0 ? `${value.toFixed(decimals)} ± ${error.toFixed(decimals)}` : value.toFixed(decimals)).replace("-", "−");
+  const up = Math.ceil(known * 10 ** decimals * (1 - 1e-12)) / 10 ** decimals;
+  return (error > 0 ? `${value.toFixed(decimals)} ± ${up.toFixed(decimals)}` : value.toFixed(decimals)).replace("-", "−");
 }
 
 /// What the aggregates did: {sentences, numbers}, of runs with two cells or more.
