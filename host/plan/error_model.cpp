@@ -89,7 +89,7 @@ double thin_growth(double tau) { return 1 + in_plane::thin_growth_with_tau * std
 
 MembraneCoupling membrane_coupling(const scene::Numerics& numerics) {
   if (!numerics.slip_correction) return MembraneCoupling::plain;
-  return numerics.kernel == "sharp6" ? MembraneCoupling::sharp : MembraneCoupling::corrected;
+  return numerics.kernel == sharp_kernel ? MembraneCoupling::sharp : MembraneCoupling::corrected;
 }
 
 double resolved_radius(const scene::Shape& shape) {

@@ -32,6 +32,7 @@ enum class MembraneCoupling {
   corrected,  ///< with the slip correction
   sharp       ///< and with the kernel sharp6
 };
+inline constexpr const char* sharp_kernel = "sharp6";
 MembraneCoupling membrane_coupling(const scene::Numerics& numerics);
 /// The smallest radius of a cell, in spacings, for which errors were measured, and that leaves room for the coarser lattices of error bars.
 constexpr double least_cell_radius(MembraneCoupling coupling, int dimension) {

@@ -28,7 +28,6 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr double default_target = 0.01;
-const std::string sharp_kernel = "sharp6";
 constexpr const char* origin = "numerics.auto";
 
 constexpr double nearly = 0.999;  ///< as much of a limit as is taken
@@ -103,7 +102,7 @@ class Problem {
     const double ratio = scene::viscosity_range(scene_.fluid).most / scene_.fluid.viscosity;
     return core::relaxation_time_of(ratio * core::viscosity_of(tau));
   }
-  void choose_coupling();
+  [[nodiscard]] MembraneCoupling chosen_coupling() const;
   /// Half of the narrowest side that decides the lattice of a flow without cells, m.
   [[nodiscard]] double half_width() const;
   /// Of all cells.
@@ -139,7 +138,6 @@ class Problem {
   double target_ = default_target;
   bool steady_ = false;  ///< asked for
   bool can_be_steady_ = false;
-  std::string kernel_;
   MembraneCoupling coupling_ = MembraneCoupling::plain;
   bool has_cells_ = false, has_round_cells_ = false;  ///< round: in two dimensions, and not biconcave
   struct UsedType {
@@ -162,7 +160,7 @@ Problem::Problem(const scene::Scene& draft, const Json& written, const NumericsB
   const Json wanted = numerics_.at("auto");
   target_ = wanted.value("error", default_target);
   steady_ = wanted.value("of", "motion") == "steady";
-  choose_coupling();
+  coupling_ = chosen_coupling();
   has_cells_ = !scene_.cells.empty();
   can_be_steady_ = can_be_steady(scene_);
   radius_ = shape::smallest_radius(scene_);
@@ -207,21 +205,21 @@ Problem::Problem(const scene::Scene& draft, const Json& written, const NumericsB
 }
 
 /// In three dimensions the corrections were measured for spheres that touch nothing, and with the sharp kernel.
-void Problem::choose_coupling() {
+MembraneCoupling Problem::chosen_coupling() const {
   const bool in_space = scene_.domain.depth.has_value();
+  scene::Numerics chosen;
+  const std::string kernel = numerics_.value("kernel", in_space ? sharp_kernel : chosen.kernel);
   bool corrected = bounds_.slip_correction && scene_.fluid.layers.empty();
   if (in_space) {
     const auto round = [&](const scene::CellPlacement& cell) {
       return std::holds_alternative<scene::Sphere>(scene_.cell_types[cell.type].shape);
     };
-    corrected = corrected && scene_.interactions.empty() && numerics_.value("kernel", sharp_kernel) == sharp_kernel &&
+    corrected = corrected && scene_.interactions.empty() && kernel == sharp_kernel &&
                 std::all_of(scene_.cells.begin(), scene_.cells.end(), round);
   }
-  corrected = numerics_.value("slip_correction", corrected);
-  kernel_ = numerics_.value("kernel", in_space && corrected ? sharp_kernel : scene::Numerics{}.kernel);
-  scene::Numerics chosen;
-  chosen.slip_correction = corrected, chosen.kernel = kernel_;
-  coupling_ = membrane_coupling(chosen);
+  chosen.slip_correction = numerics_.value("slip_correction", corrected);
+  chosen.kernel = kernel;
+  return membrane_coupling(chosen);
 }
 
 std::vector<LatticeSize> Problem::lattices() const {
@@ -508,7 +506,8 @@ NumericsChoice Problem::chosen(const Trial& best) const {
     set("coupling", "auto", "explicit or semi-implicit, by the limits of the membranes' stiffness");
     const bool corrected = coupling_ != MembraneCoupling::plain;
     if (coupling_ == MembraneCoupling::sharp && in_space)
-      set("kernel", kernel_, "has no second moment: what the slip correction leaves is a fifth of that of peskin4");
+      set("kernel", sharp_kernel,
+          "has no second moment: what the slip correction leaves is a fifth of that of peskin4");
     set("slip_correction", corrected,
         corrected  ? "takes the first-order error of the immersed boundary out"
         : in_space ? "left out: in three dimensions it was measured for spheres that touch nothing"

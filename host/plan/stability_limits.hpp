@@ -43,9 +43,9 @@ struct KernelFacts {
   double first_moment;   ///< largest |sum w (x - X)|, spacings
   double stretch_limit;  ///< largest stretching stiffness with explicit coupling over that of peskin4
   double bending_limit;  ///< the same for bending stiffness
-  double
-      semi_implicit_from;  ///< relaxation time from which on the semi-implicit step bears more; infinite: it never does, and
-                           ///< bears half as much as the explicit one
+  /// Relaxation time from which on the semi-implicit step bears more; infinite: it never does, and bears half as much as the
+  /// explicit one.
+  double semi_implicit_from;
   const char* defect;  ///< what a user has to expect, for `plan`; empty: nothing
 };
 

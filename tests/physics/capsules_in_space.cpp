@@ -90,8 +90,8 @@ TEST_CASE("without bending a capsule's deformation comes to the boundary integra
 TEST_CASE("with the sharp kernel and the slip correction coarse capsules deform as the boundary integral says",
           "[space]") {
   // Without bending. In a box of 8 radii D is larger than in an unbounded fluid by 1.2 %, at viscosity ratio 5 by 2 %; at Ca 0.02
-  // the unsteady term adds 0.5 % (docs/three-dimensions.md). The plain scheme is off by +4.1, +2.9, +11.6 and -3.8 % on the first four
-  // lattices; so large a bound holds none of them.
+  // the unsteady term adds 0.5 % (docs/three-dimensions.md). The plain scheme is off by +4.1, +3.2, +11.6 and -3.8 % in the first four
+  // cases, more than these bounds allow.
   struct Case {
     const char* name;
     double capillary, ratio, strain;

@@ -13,6 +13,7 @@ namespace rouleau::core {
 ///   keep(fraction, p, q)    two numbers that are all that needs to be kept of the fraction, 0 <= fraction < 1
 ///   first, points           nodes base + first ... base + first + points - 1 have weights; 4 or 6 points
 ///   constant, by_p, by_q    the weights: constant[k] + by_p[k] p + by_q[k] q
+///   response                how a membrane's forces come back to it, for the semi-implicit step
 ///   halved                  whether weights 0 and 2 of four sum to 1/2, and so do 1 and 3
 /// Weights sum to 1.
 
@@ -20,6 +21,7 @@ namespace rouleau::core {
 /// Peskin, Acta Numerica 11 (2002), eq. 6.27 and 6.28.
 struct Peskin4 {
   static constexpr int first = -1, points = 4;
+  static constexpr KernelResponse response{};
   static constexpr double shift = 0;
   template <class S>
   ROULEAU_ALWAYS_INLINE static void keep(const S& fraction, S& p, S& q) {
@@ -36,6 +38,7 @@ struct Peskin4 {
 /// reaches 0.021 spacings. Peskin, J. Comput. Phys. 25 (1977).
 struct Cosine4 {
   static constexpr int first = -1, points = 4;
+  static constexpr KernelResponse response{};
   static constexpr double shift = 0;
   template <class S>
   ROULEAU_ALWAYS_INLINE static void keep(const S& fraction, S& p, S& q) {
@@ -55,6 +58,7 @@ struct Cosine4 {
 /// moment. Roma, Peskin and Berger, J. Comput. Phys. 153 (1999).
 struct Roma3 {
   static constexpr int first = -1, points = 4;
+  static constexpr KernelResponse response{};
   static constexpr double shift = 0.5;
   template <class S>
   ROULEAU_ALWAYS_INLINE static void keep(const S& fraction, S& p, S& q) {
@@ -70,6 +74,7 @@ struct Roma3 {
 /// Linear interpolation between two nodes. It has no first moment.
 struct Linear2 {
   static constexpr int first = -1, points = 4;
+  static constexpr KernelResponse response{};
   static constexpr double shift = 0;
   template <class S>
   ROULEAU_ALWAYS_INLINE static void keep(const S& fraction, S& p, S& q) {
@@ -98,6 +103,7 @@ constexpr std::array<double, 6> sharpened(const double (&of)[4], double share) {
 /// first moment, and even and odd nodes share as in Peskin4, which keeps the pressure from leaking. Weights reach -0.071.
 struct Sharp6 : Peskin4 {
   static constexpr int first = -2, points = 6;
+  static constexpr KernelResponse response{.gain = 1.43, .stretching = 1.43, .bending = 4.54};
   static constexpr double share = 0.262;
   static constexpr std::array<double, 6> constant = sharpened(Peskin4::constant, share),
                                          by_p = sharpened(Peskin4::by_p, share), by_q = sharpened(Peskin4::by_q, share);

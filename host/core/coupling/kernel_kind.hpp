@@ -8,7 +8,7 @@ namespace rouleau::core {
 enum class KernelKind { peskin4, cosine4, roma3, linear2, sharp6 };
 
 /// How far above the node below its place a membrane node's stencil reaches, and one less below it.
-constexpr int stencil_above(KernelKind kernel) { return kernel == KernelKind::sharp6 ? 3 : 2; }
+int stencil_above(KernelKind kernel);
 
 /// Whether the share of a node that cells cover is smoothed before it sets the viscosity there. With the sharp kernel it is not in
 /// three dimensions: what is left of the errors at viscosity ratio 5 is then half. In two, viscosities of suspensions would be worse.
@@ -17,9 +17,6 @@ constexpr bool smooths_edges(KernelKind kernel, int dimension) {
 }
 
 /// Of the kernels for which there is a semi-implicit step; others count as peskin4.
-inline KernelResponse kernel_response(KernelKind kernel) {
-  if (kernel == KernelKind::sharp6) return {.gain = 1.43, .stretching = 1.43, .bending = 4.54};
-  return {};
-}
+KernelResponse kernel_response(KernelKind kernel);
 
 }  // namespace rouleau::core

@@ -40,7 +40,7 @@ constexpr double of_known(double own, double ghosts, double cells) {
 template <int D>
 using SetOf = std::conditional_t<D == 2, core::D2Q9, core::D3Q19>;
 
-/// The ranks whose blocks lie within two nodes of a rank's own, itself included, across periodic borders too.
+/// The ranks whose blocks lie within the reach of stencils of a rank's own, itself included, across periodic borders too.
 template <int D>
 std::vector<int> ranks_near(const core::Decomposition<D>& blocks, int rank) {
   const core::Domain<D> domain = blocks.domain(rank);
@@ -74,6 +74,7 @@ int crossing(const core::Domain<D>& domain, const std::array<int, D>& node, cons
 template <int D>
 void add_halos(const Plan& plan, const core::Decomposition<D>& blocks, std::vector<RankCost>& ranks) {
   const double number = plan.scene->numerics.precision == scene::Precision::f64 ? 8 : 4;
+  const int above = core::stencil_above(kernel_named(plan.scene->numerics.kernel).kind);
   for (int rank = 0; rank < blocks.ranks(); ++rank) {
     const core::Domain<D> domain = blocks.domain(rank);
     const std::vector<int> near = ranks_near(blocks, rank);
@@ -98,7 +99,6 @@ void add_halos(const Plan& plan, const core::Decomposition<D>& blocks, std::vect
     ranks[rank].waits = 1;
     if (!plan.has_cells) continue;
     ranks[rank].messages *= 2;
-    const int above = core::stencil_above(kernel_named(plan.scene->numerics.kernel).kind);
     core::for_halo_nodes(domain, above - 1, above, [&](const std::array<int, D>& node, const std::array<int, D>&) {
       send(&RankCost::velocity_bytes, owner(node), rank, D * number);
     });
