@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <memory>
+#include <rouleau/d3q19.hpp>
 
 #include "base/foreign_call.hpp"
 #include "base/text.hpp"
@@ -105,6 +106,14 @@ struct Arrays {
   }
 };
 
+/// The input that an output may lie over.
+std::string overlaid(const std::string& output, Outputs place) {
+  const std::size_t dot = output.find('.') + 1;
+  if (output.starts_with("velocity.")) return "force." + output.substr(dot);
+  if (!output.starts_with("populations.") || place != Outputs::streamed) return output;
+  return output.substr(0, dot) + std::to_string(d3q19::opposite[std::stoul(output.substr(dot))]);  // those of D2Q9, too
+}
+
 template <class T>
 Arrays<T> place(Memory& memory, const Subject& subject, const Values& inputs, const Call& call, std::size_t count) {
   Arrays<T> arrays;
@@ -133,8 +142,8 @@ Arrays<T> place(Memory& memory, const Subject& subject, const Values& inputs, co
   }
   for (const std::string& name : subject.output_arrays()) {
     if (call.outputs && !call.outputs->contains(name)) continue;
-    const std::string over = name.starts_with("velocity.") ? "force." + name.substr(9) : name;
-    if (call.in_place && arrays.in.contains(over)) {
+    const std::string over = overlaid(name, call.place);
+    if (call.place != Outputs::apart && arrays.in.contains(over)) {
       arrays.out[name] = arrays.in[over];
       continue;
     }

@@ -18,6 +18,10 @@ enum class Undeclared { null, unreadable, signalling_nan };
 /// behind the block's struct and its lists of pointers.
 enum class Guard { none, behind, before, structs };
 
+/// Where outputs lie: in memory of their own; over inputs where the interface allows it; and as a run's lattice has it, a
+/// population over its opposite.
+enum class Outputs { apart, over_inputs, streamed };
+
 /// Sees the moment right before and right after the model's function runs; allocations of compute() lie outside.
 class CallWatch {
  public:
@@ -31,10 +35,10 @@ struct Call {
   bool single = false;                                          ///< collision: f32; values are rounded on the way in
   std::size_t block = std::numeric_limits<std::size_t>::max();  ///< elements in one call, at most
   std::vector<std::size_t>
-      sizes;                     ///< of the blocks, one after another; empty: `block`, and after the last of them, too
-  std::size_t offset = 0;        ///< elements between a cache line's start and the arrays
-  bool backwards = false;        ///< the last block first
-  bool in_place = false;         ///< outputs over inputs where the interface allows it
+      sizes;               ///< of the blocks, one after another; empty: `block`, and after the last of them, too
+  std::size_t offset = 0;  ///< elements between a cache line's start and the arrays
+  bool backwards = false;  ///< the last block first
+  Outputs place = Outputs::apart;
   std::set<std::string> absent;  ///< needs that are NULL all the same: a collision's "force", "relaxation_rate"
   Undeclared undeclared = Undeclared::null;
   Guard guard = Guard::none;

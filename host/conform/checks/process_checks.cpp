@@ -85,7 +85,7 @@ Finding fuzz(const Subject& subject) {
     const Values inputs = subject.any_inputs(count, random);
     Call call;
     call.single = subject.manifest().kind == plugin::ModelKind::collision && random() % 2 == 0;
-    call.in_place = random() % 2 == 0;
+    call.place = static_cast<Outputs>(random() % 3);
     call.offset = random() % 8;
     call.block = 1 + random() % 97;
     call.time_step = random() % 4 == 0 ? 0 : 1;

@@ -4,6 +4,8 @@
 // Zheng and Shi (Phys. Rev. E 65, 2002); without inertia the quadratic terms of both are left out (Stokes flow).
 #pragma once
 
+#include <algorithm>
+
 #include "d2q9.hpp"
 #include "d3q19.hpp"
 #include "dispatch.hpp"
@@ -188,6 +190,72 @@ struct CollisionInstance {
   }
 };
 
+/// The number itself, of which the compiler is to know nothing.
+ROULEAU_ALWAYS_INLINE std::size_t unknown(std::size_t number) {
+  asm("" : "+r"(number));  // NOLINT(hicpp-no-assembler)
+  return number;
+}
+
+/// What a sweep does besides colliding: each is compiled, so that a node pays only for what its block has.
+enum class Force { none, acts, acts_and_velocity };
+
+/// The whole packs of a block. A function of its own for each: in one large function there are too few registers for the
+/// loop that runs.
+template <class Set, class Model, class T, Force force, bool Varying, bool Inertia>
+struct CollisionSweep {
+  template <int register_bytes>
+  ROULEAU_ALWAYS_INLINE static void run(const CollisionInstance<Model>* of, const CollisionBlock<T>* nodes) {
+    const auto& instance = *of;
+    const auto& block = *nodes;
+    constexpr int dimension = Set::dimension, velocity_count = Set::velocity_count;
+    constexpr bool forced = force != Force::none, velocity = force == Force::acts_and_velocity;
+    constexpr std::uint32_t width = register_bytes / sizeof(T);
+    using S = Pack<T, width>;
+    const Model model = instance.model;
+    const std::uint32_t count = block.count / width * width;
+    // Copies: what is stored below could be these pointers, for all the compiler knows.
+    T* at[velocity_count];  // of q before, and of its opposite after the collision
+    const T* from[dimension];
+    T* to[dimension];
+    Set::for_each_velocity([&](auto q) { at[Set::opposite[q]] = block.out[q]; });
+    // What a block lacks, in the one sweep of three dimensions that serves all.
+    constexpr bool whole = dimension == 2 || !Varying;
+    T none[width] = {}, uniform_rate[width], unread[width];
+    S(instance.relaxation_rate).store(uniform_rate);
+    const bool has_force = whole || block.force != nullptr;
+    const bool has_velocity = whole || block.velocity != nullptr;
+    const bool has_rate = whole || block.relaxation_rate != nullptr;
+    for (int k = 0; k < dimension; ++k) {
+      from[k] = !forced ? nullptr : (has_force ? block.force[k] : none);
+      to[k] = !velocity ? nullptr : (has_velocity ? block.velocity[k] : unread);
+    }
+    const T* const rate = !Varying ? nullptr : (has_rate ? block.relaxation_rate : uniform_rate);
+    const auto uniform = derived_rates(model, S(instance.relaxation_rate), 0);
+    for (std::size_t x = 0; x < count; x += width) {
+      Node<Set, S, forced, Inertia> node;
+      Set::for_each_velocity([&](auto q) { node.f[q] = S::load(at[q] + x); });
+      if constexpr (forced) {
+        for (int k = 0; k < dimension; ++k) node.force[k] = S::load(from[k] + (has_force ? x : 0));
+      }
+      node.compute_moments();
+      if constexpr (velocity) {
+        for (int k = 0; k < dimension; ++k) node.velocity[k].store(to[k] + (has_velocity ? x : 0));
+        // Here and not among the populations, which leaves more registers to the rest, of which three dimensions have few.
+        if constexpr (dimension == 3) asm volatile("" ::: "memory");  // NOLINT(hicpp-no-assembler)
+      }
+      S after[velocity_count];
+      if constexpr (Varying) {
+        model(node, derived_rates(model, S::load(rate + (has_rate ? x : 0)), 0), after);
+      } else {
+        model(node, uniform, after);
+      }
+      // As if another number: sums of pointer and x would be kept from above, for which there are no registers.
+      const std::size_t there = unknown(x);
+      Set::for_each_velocity([&](auto q) { after[q].store(at[Set::opposite[q]] + there); });
+    }
+  }
+};
+
 template <class Model, class T>
 struct CollisionLoop;
 
@@ -200,18 +268,16 @@ struct CollisionLoopOn {
   template <int register_bytes>
   ROULEAU_ALWAYS_INLINE static void run(const void* self, const Block* block) {
     const auto& instance = *static_cast<const CollisionInstance<Model>*>(self);
+    if (!in_place(*block)) return collide_padded<register_bytes>(self, *block, 0);
     if (instance.inertia)
       choose<register_bytes, true>(instance, *block);
     else
       choose<register_bytes, false>(instance, *block);
     constexpr std::uint32_t width = register_bytes / sizeof(T);
-    if (block->count % width != 0) collide_rest<register_bytes>(self, *block, block->count % width);
+    if (block->count % width != 0) collide_padded<register_bytes>(self, *block, block->count / width * width);
   }
 
  private:
-  /// What a sweep does besides colliding: each is compiled, so that a node pays only for what its block has.
-  enum class Force { none, acts, acts_and_velocity };
-
   template <int register_bytes, bool Inertia>
   ROULEAU_ALWAYS_INLINE static void choose(const CollisionInstance<Model>& instance, const Block& block) {
     if constexpr (dimension == 3) return choose_of_three<register_bytes, Inertia>(instance, block);
@@ -233,20 +299,26 @@ struct CollisionLoopOn {
     }
   }
 
-  /// Three dimensions have three sweeps and not six, since a compiler needs long for each: nothing but the collision; with
-  /// force and velocity; and these with a relaxation rate for each node. What a block has not is read from, and written
-  /// to, a pack here. The baseline has the last one only.
+  /// Three dimensions have four sweeps and not six, since a compiler needs long for each: those with one viscosity, and one
+  /// with a relaxation rate for each node, where what a block lacks is read from, and written to, a pack of the sweep's own.
+  /// The baseline has the last one only.
   template <int register_bytes, bool Inertia>
   ROULEAU_ALWAYS_INLINE static void choose_of_three(const CollisionInstance<Model>& instance, const Block& block) {
     if constexpr (register_bytes != static_cast<int>(InstructionSet::baseline)) {
-      if (block.force == nullptr && block.velocity == nullptr && block.relaxation_rate == nullptr) {
-        return sweep<register_bytes, Force::none, false, Inertia>(instance, block);
-      }
-      if (block.relaxation_rate == nullptr) {
+      if (block.relaxation_rate == nullptr && (block.force != nullptr || block.velocity == nullptr)) {
+        if (block.force == nullptr) return sweep<register_bytes, Force::none, false, Inertia>(instance, block);
+        if (block.velocity == nullptr) return sweep<register_bytes, Force::acts, false, Inertia>(instance, block);
         return sweep<register_bytes, Force::acts_and_velocity, false, Inertia>(instance, block);
       }
     }
     sweep<register_bytes, Force::acts_and_velocity, true, Inertia>(instance, block);
+  }
+
+  template <int register_bytes, Force force, bool Varying, bool Inertia>
+  ROULEAU_ALWAYS_INLINE static void sweep(const CollisionInstance<Model>& instance, const Block& block) {
+    using Sweep = CollisionSweep<Set, Model, T, force, Varying, Inertia>;
+    Dispatch<Sweep, const CollisionInstance<Model>*, const Block*>::template variant<register_bytes>()(&instance,
+                                                                                                       &block);
   }
 
   /// Velocity of nodes without a force, before their populations are overwritten: a host seldom asks for it.
@@ -260,80 +332,45 @@ struct CollisionLoopOn {
     }
   }
 
-  /// The whole packs of a block.
-  template <int register_bytes, Force force, bool Varying, bool Inertia>
-  ROULEAU_ALWAYS_INLINE static void sweep(const CollisionInstance<Model>& instance, const Block& block) {
-    constexpr bool forced = force != Force::none, velocity = force == Force::acts_and_velocity;
-    constexpr std::uint32_t width = register_bytes / sizeof(T);
-    using S = Pack<T, width>;
-    const Model model = instance.model;
-    const std::uint32_t count = block.count / width * width;
-    // Copies: what is stored below could be these pointers, for all the compiler knows.
-    const T *in[velocity_count], *from[dimension];
-    T *out[velocity_count], *to[dimension];
-    Set::for_each_velocity([&](auto q) { in[q] = block.in[q], out[q] = block.out[q]; });
-    T none[width] = {}, same[width], unread[width];  // for choose_of_three()
-    S(instance.relaxation_rate).store(same);
-    const bool has_force = dimension == 2 || block.force != nullptr;
-    const bool has_velocity = dimension == 2 || block.velocity != nullptr;
-    const bool has_rate = dimension == 2 || block.relaxation_rate != nullptr;
-    for (int k = 0; k < dimension; ++k) {
-      from[k] = !forced ? nullptr : (has_force ? block.force[k] : none);
-      to[k] = !velocity ? nullptr : (has_velocity ? block.velocity[k] : unread);
-    }
-    const T* const rate = !Varying ? nullptr : (has_rate ? block.relaxation_rate : same);
-    const auto uniform = derived_rates(model, S(instance.relaxation_rate), 0);
-    for (std::uint32_t x = 0; x < count; x += width) {
-      Node<Set, S, forced, Inertia> node;
-      Set::for_each_velocity([&](auto q) { node.f[q] = S::load(in[q] + x); });
-      if constexpr (forced) {
-        for (int k = 0; k < dimension; ++k) node.force[k] = S::load(from[k] + (has_force ? x : 0));
-      }
-      node.compute_moments();
-      if constexpr (velocity) {
-        for (int k = 0; k < dimension; ++k) node.velocity[k].store(to[k] + (has_velocity ? x : 0));
-      }
-      S after[velocity_count];
-      if constexpr (Varying) {
-        model(node, derived_rates(model, S::load(rate + (has_rate ? x : 0)), 0), after);
-      } else {
-        model(node, uniform, after);
-      }
-      Set::for_each_velocity([&](auto q) { after[q].store(out[q] + x); });
-    }
+  /// Whether what leaves a node lies where its opposite came from, as where a lattice streams in place: then half as many
+  /// pointers are read.
+  ROULEAU_ALWAYS_INLINE static bool in_place(const Block& block) {
+    bool same = true;
+    Set::for_each_velocity([&](auto q) { same &= block.out[q] == block.in[Set::opposite[q]]; });
+    return same;
   }
 
-  /// The last nodes of a block that do not fill a pack: padded to one, they run through the same code, so that a node's
-  /// bits do not depend on its place.
+  /// Nodes from the first one on, pack by pack, by way of copies that lie in place. The last pack is padded: all nodes run
+  /// through the same code, so that a node's bits do not depend on its place.
   template <int register_bytes>
-  __attribute__((noinline)) static void collide_rest(const void* self, const Block& block, std::uint32_t rest) {
+  __attribute__((noinline)) static void collide_padded(const void* self, const Block& block, std::uint32_t first) {
     constexpr std::uint32_t width = register_bytes / sizeof(T);
-    const std::uint32_t first = block.count - rest;
     T values[velocity_count + 2 * dimension + 1][width];
     const T *in[velocity_count], *force[dimension];
     T *out[velocity_count], *velocity[dimension];
-    const auto copy = [&](const T* from, T(&to)[width]) {
-      for (std::uint32_t i = 0; i < width; ++i) to[i] = from[first + (i < rest ? i : 0)];
-      return to;
-    };
+    T(&rates)[width] = values[velocity_count + 2 * dimension];
     Block padded{};  // not a copy: an older host's block may be smaller than this struct
     padded.struct_size = sizeof padded;
     padded.count = width;
-    for (int q = 0; q < velocity_count; ++q) in[q] = out[q] = copy(block.in[q], values[q]);
-    padded.in = in;
-    padded.out = out;
-    for (int k = 0; k < dimension; ++k) {
-      if (block.force != nullptr) force[k] = copy(block.force[k], values[velocity_count + k]);
-      velocity[k] = values[velocity_count + dimension + k];
-    }
+    padded.in = in, padded.out = out;
+    for (int q = 0; q < velocity_count; ++q) in[q] = values[q], out[q] = values[Set::opposite[q]];
+    for (int k = 0; k < dimension; ++k)
+      force[k] = values[velocity_count + k], velocity[k] = values[velocity_count + dimension + k];
     if (block.force != nullptr) padded.force = force;
-    T(&rates)[width] = values[velocity_count + 2 * dimension];
-    if (block.relaxation_rate != nullptr) padded.relaxation_rate = copy(block.relaxation_rate, rates);
     if (block.velocity != nullptr) padded.velocity = velocity;
-    Dispatch<CollisionLoop<Model, T>, const void*, const Block*>::template variant<register_bytes>()(self, &padded);
-    for (std::uint32_t i = 0; i < rest; ++i) {
-      for (int q = 0; q < velocity_count; ++q) block.out[q][first + i] = values[q][i];
-      for (int k = 0; k < dimension && block.velocity != nullptr; ++k) block.velocity[k][first + i] = velocity[k][i];
+    if (block.relaxation_rate != nullptr) padded.relaxation_rate = rates;
+    for (; first < block.count; first += width) {
+      const std::uint32_t count = std::min(width, block.count - first);
+      const auto copy = [&](const T* from, T(&to)[width]) {
+        for (std::uint32_t i = 0; i < width; ++i) to[i] = from[first + (i < count ? i : 0)];
+      };
+      for (int q = 0; q < velocity_count; ++q) copy(block.in[q], values[q]);
+      for (int k = 0; k < dimension && block.force != nullptr; ++k) copy(block.force[k], values[velocity_count + k]);
+      if (block.relaxation_rate != nullptr) copy(block.relaxation_rate, rates);
+      Dispatch<CollisionLoop<Model, T>, const void*, const Block*>::template variant<register_bytes>()(self, &padded);
+      for (int q = 0; q < velocity_count; ++q) std::copy_n(out[q], count, block.out[q] + first);
+      for (int k = 0; k < dimension && block.velocity != nullptr; ++k)
+        std::copy_n(velocity[k], count, block.velocity[k] + first);
     }
   }
 };

@@ -159,13 +159,15 @@ TEST_CASE("a collision gives the same bits for any size of block, in place or no
       const auto whole_narrow = collide(op.f32, op.self.get(), narrow, {.forced = forced});
       for (std::size_t size = 1; size <= 37; ++size) {
         CAPTURE(forced, size);
-        REQUIRE(same_bits(collide(op.f64, op.self.get(), before, {.forced = forced, .block = size}), whole));
-        REQUIRE(same_bits(collide(op.f64, op.self.get(), before, {.forced = forced, .in_place = true, .block = size}),
-                          whole));
-        REQUIRE(same_bits(collide(op.f64, op.self.get(), before,
-                                  {.forced = forced, .in_place = true, .velocity_over_force = true, .block = size}),
-                          whole));
-        REQUIRE(same_bits(collide(op.f32, op.self.get(), narrow, {.forced = forced, .block = size}), whole_narrow));
+        for (const Place place : {Place::apart, Place::same, Place::opposite}) {
+          REQUIRE(same_bits(collide(op.f64, op.self.get(), before, {.forced = forced, .place = place, .block = size}),
+                            whole));
+          REQUIRE(same_bits(collide(op.f64, op.self.get(), before,
+                                    {.forced = forced, .place = place, .velocity_over_force = true, .block = size}),
+                            whole));
+          REQUIRE(same_bits(collide(op.f32, op.self.get(), narrow, {.forced = forced, .place = place, .block = size}),
+                            whole_narrow));
+        }
       }
     }
   });

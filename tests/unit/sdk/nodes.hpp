@@ -64,10 +64,14 @@ struct Nodes {
   Unaligned<T> rate;
 };
 
+/// Where populations are put: into arrays of their own, over themselves, or over their opposites, as a lattice that
+/// streams in place has it.
+enum class Place { apart, same, opposite };
+
 struct Collide {
   bool forced = true;
   bool own_rates = true;
-  bool in_place = false;
+  Place place = Place::apart;
   bool velocity_over_force = false;
   std::size_t block = 1 << 20;  ///< largest number of nodes in one call
 };
@@ -75,8 +79,12 @@ struct Collide {
 /// The nodes after a collision; the velocity is that of the collision.
 template <class T, class Function>
 Nodes<T> collide(Function function, const void* self, Nodes<T> before, const Collide& how = {}) {
-  Nodes<T> after = how.in_place ? Nodes<T>(0) : before;
-  Nodes<T>& target = how.in_place ? before : after;
+  const bool apart = how.place == Place::apart;
+  const auto target_of = [&](std::size_t q) {
+    return how.place == Place::opposite ? static_cast<std::size_t>(d2q9::opposite[q]) : q;
+  };
+  Nodes<T> after = apart ? before : Nodes<T>(0);
+  Nodes<T>& target = apart ? after : before;
   for (std::size_t first = 0; first < before.count; first += how.block) {
     const T* in[9];
     T* out[9];
@@ -84,7 +92,7 @@ Nodes<T> collide(Function function, const void* self, Nodes<T> before, const Col
     T* velocity[2];
     for (std::size_t q = 0; q < 9; ++q) {
       in[q] = before.f[q].data() + first;
-      out[q] = target.f[q].data() + first;
+      out[q] = target.f[target_of(q)].data() + first;
     }
     for (std::size_t k = 0; k < 2; ++k) {
       force[k] = before.force[k].data() + first;
@@ -101,7 +109,10 @@ Nodes<T> collide(Function function, const void* self, Nodes<T> before, const Col
     function(self, &block);
   }
   if (how.velocity_over_force) target.velocity = before.force;
-  return how.in_place ? before : after;
+  if (apart) return after;
+  auto populations = before.f;
+  for (std::size_t q = 0; q < 9; ++q) before.f[q] = populations[target_of(q)];
+  return before;
 }
 
 }  // namespace rouleau::test
