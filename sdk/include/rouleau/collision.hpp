@@ -268,16 +268,20 @@ struct CollisionLoopOn {
   template <int register_bytes>
   ROULEAU_ALWAYS_INLINE static void run(const void* self, const Block* block) {
     const auto& instance = *static_cast<const CollisionInstance<Model>*>(self);
-    if (!in_place(*block)) return collide_padded<register_bytes>(self, *block, 0);
-    if (instance.inertia)
-      choose<register_bytes, true>(instance, *block);
-    else
-      choose<register_bytes, false>(instance, *block);
     constexpr std::uint32_t width = register_bytes / sizeof(T);
-    if (block->count % width != 0) collide_padded<register_bytes>(self, *block, block->count / width * width);
+    const std::uint32_t whole = in_place(*block) ? block->count / width * width : 0;
+    if (whole != 0) choose<register_bytes>(instance, *block);
+    if (whole != block->count) collide_padded<register_bytes>(instance, *block, whole);
   }
 
  private:
+  template <int register_bytes>
+  ROULEAU_ALWAYS_INLINE static void choose(const CollisionInstance<Model>& instance, const Block& block) {
+    if (instance.inertia)
+      choose<register_bytes, true>(instance, block);
+    else
+      choose<register_bytes, false>(instance, block);
+  }
   template <int register_bytes, bool Inertia>
   ROULEAU_ALWAYS_INLINE static void choose(const CollisionInstance<Model>& instance, const Block& block) {
     if constexpr (dimension == 3) return choose_of_three<register_bytes, Inertia>(instance, block);
@@ -343,7 +347,8 @@ struct CollisionLoopOn {
   /// Nodes from the first one on, pack by pack, by way of copies that lie in place. The last pack is padded: all nodes run
   /// through the same code, so that a node's bits do not depend on its place.
   template <int register_bytes>
-  __attribute__((noinline)) static void collide_padded(const void* self, const Block& block, std::uint32_t first) {
+  __attribute__((noinline)) static void collide_padded(const CollisionInstance<Model>& instance, const Block& block,
+                                                       std::uint32_t first) {
     constexpr std::uint32_t width = register_bytes / sizeof(T);
     T values[velocity_count + 2 * dimension + 1][width];
     const T *in[velocity_count], *force[dimension];
@@ -367,7 +372,7 @@ struct CollisionLoopOn {
       for (int q = 0; q < velocity_count; ++q) copy(block.in[q], values[q]);
       for (int k = 0; k < dimension && block.force != nullptr; ++k) copy(block.force[k], values[velocity_count + k]);
       if (block.relaxation_rate != nullptr) copy(block.relaxation_rate, rates);
-      Dispatch<CollisionLoop<Model, T>, const void*, const Block*>::template variant<register_bytes>()(self, &padded);
+      choose<register_bytes>(instance, padded);
       for (int q = 0; q < velocity_count; ++q) std::copy_n(out[q], count, block.out[q] + first);
       for (int k = 0; k < dimension && block.velocity != nullptr; ++k)
         std::copy_n(velocity[k], count, block.velocity[k] + first);
