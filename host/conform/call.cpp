@@ -236,6 +236,7 @@ using I = rouleau_interaction_block;
 constexpr std::array interaction_members = {Member<I>{"distance", &I::distance, nullptr},
                                             Member<I>{"normal_velocity", &I::normal_velocity, nullptr},
                                             Member<I>{"tangential_velocity", &I::tangential_velocity, nullptr},
+                                            Member<I>{"sliding_speed", &I::sliding_speed, nullptr},
                                             Member<I>{"energy", nullptr, &I::energy},
                                             Member<I>{"force", nullptr, &I::force},
                                             Member<I>{"force_by_distance", nullptr, &I::force_by_distance}};

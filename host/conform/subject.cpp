@@ -68,7 +68,7 @@ double rare(const std::string& need, double high, Random& random) {
     constexpr std::array special = {1.0, 1e-3, 0.01, 1.99, 1.9999, 1.999999};
     return special[random() % special.size()];
   }
-  const double sign = random() % 2 == 0 ? 1 : -1;
+  const double sign = need.ends_with("speed") || random() % 2 == 0 ? 1 : -1;
   if (need.ends_with("area") || need.ends_with("perimeter") || need.ends_with("volume"))
     return high * std::pow(2.0, sign * power);
   if (need == "populations" || need == "force") return uniform(random, -high, high);
@@ -210,7 +210,8 @@ Values Subject::random_inputs(const plugin::ModelInstance& instance, std::size_t
                                                                    {"rest_surface_area", {1300, 1500}},
                                                                    {"distance", {0.02 * cutoff, cutoff}},
                                                                    {"normal_velocity", {-1e-3, 1e-3}},
-                                                                   {"tangential_velocity", {-1e-3, 1e-3}}};
+                                                                   {"tangential_velocity", {-1e-3, 1e-3}},
+                                                                   {"sliding_speed", {0, 1e-3}}};
   Values inputs;
   const auto draw_all = [&] {
     for (const auto& need : manifest_.needs) {
@@ -228,6 +229,9 @@ Values Subject::random_inputs(const plugin::ModelInstance& instance, std::size_t
         if (inputs.contains("invariant_1")) inputs["invariant_1"][i] = (one - 1) * (one + 1) + (two - 1) * (two + 1);
         if (inputs.contains("invariant_2")) inputs["invariant_2"][i] = (one * two - 1) * (one * two + 1);
       }
+    }
+    if (inputs.contains("sliding_speed") && inputs.contains("tangential_velocity")) {
+      for (std::size_t i = 0; i < count; ++i) inputs["sliding_speed"][i] = std::abs(inputs["tangential_velocity"][i]);
     }
     for (const std::string name : {"curvature", "area", "perimeter", "volume", "surface_area"}) {  // near to rest
       if (!inputs.contains(name) || !inputs.contains("rest_" + name)) continue;
@@ -253,7 +257,7 @@ Values Subject::random_inputs(const plugin::ModelInstance& instance, std::size_t
     Call call;
     call.time_step = std::pow(10.0, uniform(random, 0, 5));
     for (auto& [name, values] : inputs) {  // nothing moves during such long steps
-      if (name.ends_with("_rate") || name.ends_with("_velocity")) values.assign(count, 0);
+      if (is_motion(name)) values.assign(count, 0);
     }
     const Values after = compute(*this, instance, inputs, call);
     for (auto& [name, values] : inputs) {

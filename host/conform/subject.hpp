@@ -24,6 +24,10 @@ inline constexpr std::size_t ordinary_count = 67;
 using Random = std::mt19937_64;
 /// Evenly distributed between two values.
 double uniform(Random& random, double low, double high);
+/// Whether an input vanishes where nothing moves.
+inline bool is_motion(const std::string& input) {
+  return input.ends_with("_rate") || input.ends_with("_velocity") || input.ends_with("_speed");
+}
 /// A number of elements such as hosts have, 64 to 2100.
 inline std::size_t some_count(Random& random) {
   return static_cast<std::size_t>(64 * std::pow(2100.0 / 64, uniform(random, 0, 1)));

@@ -73,11 +73,13 @@ void try_models(const Plan& plan) {
 
 /// What rubs on a wall would be part of its stress and power, which are those of the fluid.
 void refuse_friction_on_walls(const PlannedModel& model, const scene::Scene& scene) {
-  if (!model.manifest->needs_input("tangential_velocity")) return;
-  throw Error(Cause::bad_input, scene.place(model.pointer + "/model"),
-              in_quotes(model.manifest->id) +
-                  " cannot act between cells and walls: it needs tangential_velocity, and nothing rubs on a wall",
-              {"take a potential without friction, or another cell type in place of \"wall\""});
+  for (const char* sliding : {"tangential_velocity", "sliding_speed"}) {
+    if (!model.manifest->needs_input(sliding)) continue;
+    throw Error(Cause::bad_input, scene.place(model.pointer + "/model"),
+                in_quotes(model.manifest->id) + " cannot act between cells and walls: it needs " + sliding +
+                    ", and nothing rubs on a wall",
+                {"take a potential without friction, or another cell type in place of \"wall\""});
+  }
 }
 
 void refuse_more_than_distance(const PlannedModel& model, const scene::Scene& scene) {
@@ -88,7 +90,7 @@ void refuse_more_than_distance(const PlannedModel& model, const scene::Scene& sc
         {"take a potential of the distance alone, such as \"repulsion\", or another cell type in place of \"self\""});
   };
   if (!model.manifest->state.empty()) refuse("it remembers its contacts");
-  for (const char* velocity : {"normal_velocity", "tangential_velocity"})
+  for (const char* velocity : {"normal_velocity", "tangential_velocity", "sliding_speed"})
     if (model.manifest->needs_input(velocity)) refuse(std::string("it needs ") + velocity);
 }
 

@@ -31,6 +31,7 @@ Curve evaluate(const plugin::ModelInstance& potential, std::vector<double> dista
   const std::vector<double> at_rest(count, 0.0);
   if (potential.manifest().needs_input("normal_velocity")) block.normal_velocity = at_rest.data();
   if (potential.manifest().needs_input("tangential_velocity")) block.tangential_velocity = at_rest.data();
+  if (potential.manifest().needs_input("sliding_speed")) block.sliding_speed = at_rest.data();
   block.force = curve.force.data();
   if (potential.manifest().gives_output("energy")) {
     curve.energy.resize(count);

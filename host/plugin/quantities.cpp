@@ -50,6 +50,7 @@ const Quantity& quantity_of(const Manifest& manifest, const std::string& name) {
                                                              {"distance", {{{0, 1, 0}}, "m"}},
                                                              {"normal_velocity", {{{0, 1, -1}}, "m/s"}},
                                                              {"tangential_velocity", {{{0, 1, -1}}, "m/s"}},
+                                                             {"sliding_speed", {{{0, 1, -1}}, "m/s"}},
                                                              {"force", {{{1, -1, -2}}, "Pa"}},
                                                              {"force_by_distance", {{{1, -2, -2}}, "Pa/m"}}};
   static const Quantity energy_of_cell{{{1, 1, -2}}, "J/m"}, energy_of_body{{{1, 2, -2}}, "J"};
@@ -95,7 +96,7 @@ const std::vector<std::string>& inputs_of(ModelKind kind, int dimension) {
   static const std::vector<std::string> surface = {"curvature",   "rest_curvature", "invariant_1",
                                                    "invariant_2", "area_ratio",     "volume",
                                                    "rest_volume", "surface_area",   "rest_surface_area"};
-  static const std::vector<std::string> pair = {"distance", "normal_velocity", "tangential_velocity"};
+  static const std::vector<std::string> pair = {"distance", "normal_velocity", "tangential_velocity", "sliding_speed"};
   if (kind == ModelKind::membrane) return dimension == 3 ? surface : outline;
   return kind == ModelKind::collision ? collision : pair;
 }

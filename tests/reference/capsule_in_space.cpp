@@ -2,10 +2,10 @@
 // compute (tests/reference/capsules_in_space.json). Shares no code with it.
 //
 //   g++ -O3 -march=native -fopenmp -std=c++20 -I /usr/include/eigen3 tests/reference/capsule_in_space.cpp -o /tmp/capsule
-//   /tmp/capsule LAW CA RATIO [N] [STRAIN] [STEP]
+//   /tmp/capsule LAW CA RATIO [N] [STRAIN] [STEP] [SHAPE]
 //
 // LAW is neo-hookean, skalak (C = 1) or drop; CA = viscosity times shear rate times radius over the shear modulus (the surface
-// tension); RATIO the viscosity inside over that outside; N the frequency of the geodesic sphere (10 N^2 + 2 nodes). Prints
+// tension); RATIO the viscosity inside over that outside; N the frequency of the geodesic sphere (10 N^2 + 2 nodes); SHAPE "sphere", if left out, or "biconcave". Prints
 // strain, deformation (a - b)/(a + b) of the ellipsoid of inertia in the plane of shear, its angle over pi, and the volume over
 // that at first.
 //
@@ -67,6 +67,15 @@ Mesh geodesic_sphere(int n) {
     if ((mesh.x[b] - mesh.x[a]).cross(mesh.x[c] - mesh.x[a]).dot(mesh.x[a]) < 0) std::swap(b, c);
   }
   return mesh;
+}
+
+/// The same points on the biconcave disc of Evans and Fung (Microvascular Research 4, 335, 1972), its axis along y, its
+/// radius 1.
+void make_biconcave(Field& x) {
+  for (Vec& p : x) {
+    const double r2 = p.x() * p.x() + p.z() * p.z();
+    p.y() *= 0.5 * (0.207 + 2.002 * r2 - 1.122 * r2 * r2);
+  }
 }
 
 struct Point {
@@ -260,23 +269,25 @@ Shape shape_of(const Capsule& c, const Field& x) {
 }
 
 int main(int count, char** words) {
-  if (count < 4) {
-    std::fprintf(stderr, "usage: capsule LAW CA RATIO [N] [STRAIN] [STEP]\n");
+  const std::string shape = count > 7 ? words[7] : "sphere";
+  if (count < 4 || (shape != "sphere" && shape != "biconcave")) {
+    std::fprintf(stderr, "usage: capsule LAW CA RATIO [N] [STRAIN] [STEP] [SHAPE]\n");
     return 2;
   }
   const int n = count > 4 ? std::atoi(words[4]) : 8;
   const double strain = count > 5 ? std::atof(words[5]) : 4, step = count > 6 ? std::atof(words[6]) : 0.01;
   Capsule c{geodesic_sphere(n), {}, words[1], std::atof(words[2]), std::atof(words[3]), {}, {}};
+  if (shape == "biconcave") make_biconcave(c.mesh.x);
   c.rest = c.mesh.x;
   Field x = c.rest, u(x.size(), Vec::Zero());
   for (std::size_t i = 0; i < x.size(); ++i) u[i] = Vec(x[i].y(), 0, 0);
   const double volume = shape_of(c, x).volume;
-  const long steps = std::lround(strain / step), every = std::max(1L, std::lround(0.25 / step));
+  const long steps = std::lround(strain / step), every = std::max(1L, std::lround(0.05 / step));
   for (long s = 0; s <= steps; ++s) {
     if (s % every == 0 || s == steps) {
-      const Shape shape = shape_of(c, x);
-      std::printf("%.3f %.5f %.4f %.6f\n", static_cast<double>(s) * step, shape.deformation, shape.angle,
-                  shape.volume / volume);
+      const Shape now = shape_of(c, x);
+      std::printf("%.3f %.5f %.4f %.6f\n", static_cast<double>(s) * step, now.deformation, now.angle,
+                  now.volume / volume);
       std::fflush(stdout);
     }
     u = c.velocity(x, u);

@@ -52,6 +52,14 @@ struct Damper {
     return {S(0.0), -viscosity * contact.normal_velocity, S(0.0)};
   }
 };
+/// Pushes surfaces apart that slide.
+struct Rubbing : Damper {
+  using Damper::Damper;
+  template <class S>
+  Pair<S> operator()(const Contact<S>& contact) const {
+    return {S(0.0), viscosity * contact.sliding_speed, S(0.0)};
+  }
+};
 /// A tension that is no number.
 struct NoNumber {
   explicit NoNumber(const Parameters&) {}
@@ -97,6 +105,13 @@ inline core::Potential damper(double viscosity, double cutoff, const std::string
                          {.parameters = {{"viscosity", viscosity}, {"cutoff", cutoff}},
                           .needs = {"distance", velocity},
                           .gives = {"force", "energy", "force_by_distance"}});
+}
+
+inline core::Potential rubbing(double viscosity, double cutoff) {
+  return core::potential(interaction<Rubbing>("rubbing", "1"),
+                         {.parameters = {{"viscosity", viscosity}, {"cutoff", cutoff}},
+                          .needs = {"distance", "sliding_speed"},
+                          .gives = {"force"}});
 }
 
 }  // namespace rouleau::test

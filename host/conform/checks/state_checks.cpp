@@ -25,7 +25,7 @@ bool is_derivative(const std::string& name) { return name.find("_by_") != std::s
 /// Nothing moves any more.
 void stop(Values& inputs) {
   for (auto& [name, values] : inputs) {
-    if (name.ends_with("_rate") || name.ends_with("_velocity")) values.assign(values.size(), 0);
+    if (is_motion(name)) values.assign(values.size(), 0);
   }
 }
 

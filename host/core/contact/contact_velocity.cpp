@@ -1,5 +1,7 @@
 #include "contact_velocity.hpp"
 
+#include <cmath>
+
 namespace rouleau::core {
 
 void ContactVelocities::measure(const ContactList& list, const std::vector<NeighbourList::Pair>& pairs,
@@ -7,6 +9,7 @@ void ContactVelocities::measure(const ContactList& list, const std::vector<Neigh
   const auto count = static_cast<std::size_t>(list.count);
   normal.resize(count);
   tangential.resize(count);
+  sliding.resize(count);
   const std::vector<double>&u = membranes.velocity_x, &v = membranes.velocity_y;
   for (std::size_t p = 0; p < pairs.size(); ++p) {
     const CellRange& other = membranes.cells[pairs[p].other];
@@ -20,6 +23,7 @@ void ContactVelocities::measure(const ContactList& list, const std::vector<Neigh
       const double nx = list.direction_x[i], ny = list.direction_y[i];  // from the other cell to this one
       normal[i] = du * nx + dv * ny;
       tangential[i] = du * ny - dv * nx;
+      sliding[i] = std::abs(tangential[i]);
     }
   }
 }

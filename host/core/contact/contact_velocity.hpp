@@ -11,6 +11,7 @@ namespace rouleau::core {
 struct ContactVelocities {
   std::vector<double> normal;      ///< d distance / dt
   std::vector<double> tangential;  ///< positive where the node runs counter-clockwise along its own cell
+  std::vector<double> sliding;     ///< its magnitude
 
   void measure(const ContactList& list, const std::vector<NeighbourList::Pair>& pairs, const Membranes& membranes);
 };

@@ -47,10 +47,11 @@ InteractionForces::InteractionForces(Membranes& membranes, std::vector<Interacti
     const Potential& potential = interactions_[p].potential;
     variables_.push_back(keep_state(potential, p, membranes.contacts, membranes.cells.size()));
     has_state_ = has_state_ || !potential.state.empty();
+    const Traits traits{potential.reads("normal_velocity"), potential.reads("tangential_velocity"),
+                        potential.reads("sliding_speed"), potential.writes("energy")};
     needs_velocities_ =
-        needs_velocities_ || potential.reads("normal_velocity") || potential.reads("tangential_velocity");
-    traits_.push_back(
-        {potential.reads("normal_velocity"), potential.reads("tangential_velocity"), potential.writes("energy")});
+        needs_velocities_ || traits.normal_velocity || traits.tangential_velocity || traits.sliding_speed;
+    traits_.push_back(traits);
   }
 }
 
@@ -145,6 +146,7 @@ void InteractionForces::give_velocities(std::size_t potential, int first, int co
   give(traits_[potential].normal_velocity, scratch.velocities.normal, scratch.normal, block.normal_velocity);
   give(traits_[potential].tangential_velocity, scratch.velocities.tangential, scratch.tangential,
        block.tangential_velocity);
+  give(traits_[potential].sliding_speed, scratch.velocities.sliding, scratch.sliding, block.sliding_speed);
 }
 
 void InteractionForces::find_contacts(int cell, const Membranes& membranes, Scratch& scratch) const {
@@ -152,7 +154,7 @@ void InteractionForces::find_contacts(int cell, const Membranes& membranes, Scra
   contacts_.find(cell, membranes, scratch.contacts);
   if (scratch.law.size() < list.node.size()) {
     for (auto* values : {&scratch.force, &scratch.law, &scratch.distance}) values->resize(list.node.size());
-    for (auto* values : {&scratch.normal, &scratch.tangential}) values->resize(list.node.size());
+    for (auto* values : {&scratch.normal, &scratch.tangential, &scratch.sliding}) values->resize(list.node.size());
     scratch.contact.resize(list.node.size());
   }
   if (needs_velocities_) {

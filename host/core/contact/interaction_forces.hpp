@@ -72,13 +72,13 @@ class InteractionForces {
   /// The contacts of the cell that a worker is at, and what is computed of them.
   struct Scratch {
     ContactList contacts;
-    std::vector<double> force;               // sum of f over the potentials
-    std::vector<double> law;                 // of one potential
-    ContactVelocities velocities;            // only if a potential needs them
-    std::vector<double> distance;            // those within a cutoff shorter than that of the pair
-    std::vector<double> normal, tangential;  // velocities there
-    std::vector<int> contact;                // to which these belong
-    std::vector<double> state, fresh;        // of one pair's contacts, all variables; of the cell's nodes
+    std::vector<double> force;                        // sum of f over the potentials
+    std::vector<double> law;                          // of one potential
+    ContactVelocities velocities;                     // only if a potential needs them
+    std::vector<double> distance;                     // those within a cutoff shorter than that of the pair
+    std::vector<double> normal, tangential, sliding;  // velocities there
+    std::vector<int> contact;                         // to which these belong
+    std::vector<double> state, fresh;                 // of one pair's contacts, all variables; of the cell's nodes
   };
   /// On the nodes of other cells that a cell's pairs touch.
   struct Reactions {
@@ -110,7 +110,7 @@ class InteractionForces {
 
   /// What a potential is given besides distances, and whether it has an energy; looked up in its manifest once.
   struct Traits {
-    bool normal_velocity, tangential_velocity, energy;
+    bool normal_velocity, tangential_velocity, sliding_speed, energy;
   };
   /// Sets the block's inputs to those of the contacts scratch.contact[0, count), at scratch.distance; `all`: to those
   /// of all contacts from `first` on.

@@ -9,14 +9,14 @@ namespace rouleau::core {
 
 namespace {
 
-/// Of a contact, by the nodes' velocities in the last step.
-double normal_velocity(const SurfaceContact& contact, const Surfaces& surfaces) {
+/// Of a contact's node against the facing point of the other surface, by the nodes' velocities in the last step.
+Vec<3> relative_velocity(const SurfaceContact& contact, const Surfaces& surfaces) {
   const auto of = [&](int node) {
     return Vec<3>(surfaces.velocity_x[node], surfaces.velocity_y[node], surfaces.velocity_z[node]);
   };
   Vec<3> apart = of(contact.node);
   for (std::size_t k = 0; k < 3; ++k) apart -= contact.weight[k] * of(contact.corner[k]);
-  return apart.dot(contact.direction);
+  return apart;
 }
 
 /// The largest of each type.
@@ -44,7 +44,7 @@ SurfaceInteractions::SurfaceInteractions(Surfaces& surfaces, std::vector<Interac
   for (std::size_t p = 0; p < interactions_.size(); ++p) {
     const SurfaceLaw& law = laws_.emplace_back(interactions_[p].potential, p, surfaces.contacts, surfaces.cells.size());
     remembers_ = remembers_ || law.remembers();
-    needs_velocities_ = needs_velocities_ || law.reads_velocity();
+    needs_velocities_ = needs_velocities_ || law.reads_normal_velocity() || law.reads_sliding_speed();
   }
 }
 
@@ -95,7 +95,12 @@ void SurfaceInteractions::evaluate(int cell, const Surfaces& surfaces, bool ener
       const SurfaceContact& contact = scratch.contacts[c];
       if (contact.distance > law.cutoff() || !acts_at(p, contact, cell, surfaces)) continue;
       scratch.inputs.distance.push_back(contact.distance);
-      if (law.reads_velocity()) scratch.inputs.normal_velocity.push_back(normal_velocity(contact, surfaces));
+      if (law.reads_normal_velocity() || law.reads_sliding_speed()) {
+        const Vec<3> velocity = relative_velocity(contact, surfaces);
+        const double normal = velocity.dot(contact.direction);
+        scratch.inputs.normal_velocity.push_back(normal);
+        scratch.inputs.sliding_speed.push_back((velocity - normal * contact.direction).norm());
+      }
       if (law.remembers()) scratch.inputs.key.push_back({contact.node - own.first, contact.other, contact.shift});
       scratch.contact.push_back(static_cast<int>(c));
     }

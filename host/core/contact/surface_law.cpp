@@ -25,7 +25,8 @@ std::size_t find(const std::vector<ContactState>& states, std::size_t variable, 
 SurfaceLaw::SurfaceLaw(Potential potential, std::size_t place, ContactMemory& memory, std::size_t cells)
     : potential_(std::move(potential)),
       cutoff_(cutoff_of(potential_)),
-      reads_velocity_(potential_.reads("normal_velocity")),
+      reads_normal_velocity_(potential_.reads("normal_velocity")),
+      reads_sliding_speed_(potential_.reads("sliding_speed")),
       has_energy_(potential_.writes("energy")) {
   if (potential_.reads("tangential_velocity"))
     throw std::invalid_argument("\"" + potential_.id + "\" reads a tangential velocity, which has no sign on surfaces");
@@ -55,7 +56,8 @@ void SurfaceLaw::evaluate(const CellRange& cell, const std::vector<ContactState>
   block.count = static_cast<std::uint32_t>(count);
   block.time_step = remembers() && next == nullptr ? 0 : 1;
   block.distance = inputs.distance.data();
-  if (reads_velocity_) block.normal_velocity = inputs.normal_velocity.data();
+  if (reads_normal_velocity_) block.normal_velocity = inputs.normal_velocity.data();
+  if (reads_sliding_speed_) block.sliding_speed = inputs.sliding_speed.data();
   (energy ? block.energy : block.force) = law.data();
   if (remembers()) block.state = state.data();
   if (remembers() && next != nullptr) block.new_state = new_state.data();

@@ -17,10 +17,12 @@ struct SurfaceLawInputs {
     ImageShift shift;
   };
   std::vector<Key> key;
-  std::vector<double> distance;         ///< positive
-  std::vector<double> normal_velocity;  ///< d distance / dt; may be empty where the potential does not read it
+  std::vector<double> distance;  ///< positive
+  std::vector<double>
+      normal_velocity;  ///< d distance / dt; this and the next: empty where the potential does not read it
+  std::vector<double> sliding_speed;  ///< of the velocity against the other surface what is not along the distance
 
-  void clear() { key.clear(), distance.clear(), normal_velocity.clear(); }
+  void clear() { key.clear(), distance.clear(), normal_velocity.clear(), sliding_speed.clear(); }
 };
 
 /// A potential and the place of what it remembers.
@@ -33,7 +35,8 @@ class SurfaceLaw {
   [[nodiscard]] const Potential& potential() const { return potential_; }
   [[nodiscard]] double cutoff() const { return cutoff_; }
   [[nodiscard]] bool remembers() const { return !variables_.empty(); }
-  [[nodiscard]] bool reads_velocity() const { return reads_velocity_; }
+  [[nodiscard]] bool reads_normal_velocity() const { return reads_normal_velocity_; }
+  [[nodiscard]] bool reads_sliding_speed() const { return reads_sliding_speed_; }
   [[nodiscard]] bool has_energy() const { return has_energy_; }
 
   /// Sets `law` to the force, or the energy, at each contact of a cell. `next`: takes the state after one step of those
@@ -44,7 +47,7 @@ class SurfaceLaw {
  private:
   Potential potential_;
   double cutoff_;
-  bool reads_velocity_, has_energy_;
+  bool reads_normal_velocity_, reads_sliding_speed_, has_energy_;
   struct Variable {
     std::size_t place;  ///< in ContactMemory::variables
     double initial;

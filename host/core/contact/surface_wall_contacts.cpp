@@ -20,6 +20,8 @@ SurfaceWallContacts::SurfaceWallContacts(Surfaces& surfaces, const std::vector<W
   if (walls_.empty()) throw std::invalid_argument("a potential between cells and walls needs walls");
   for (const auto& [type, potential] : interactions) {
     laws_.push_back({type, SurfaceLaw(potential, laws_.size(), surfaces.wall_contacts, surfaces.cells.size())});
+    if (laws_.back().law.reads_sliding_speed())
+      throw std::invalid_argument("a potential with walls reads no sliding speed: " + potential.id);
     remembers_ = remembers_ || laws_.back().law.remembers();
   }
 }
@@ -37,7 +39,7 @@ void SurfaceWallContacts::measure(const SurfaceLaw& law, int cell, int wall, con
     contacts.away_z.push_back(away_z);
     contacts.inputs.distance.push_back(std::max(distance, ContactList::least_distance));
     if (law.remembers()) contacts.inputs.key.push_back({node - range.first, wall, {}});
-    if (law.reads_velocity())  // the wall moves along itself
+    if (law.reads_normal_velocity())  // the wall moves along itself
       contacts.inputs.normal_velocity.push_back(away_y * surfaces.velocity_y[node] +
                                                 away_z * surfaces.velocity_z[node]);
   };

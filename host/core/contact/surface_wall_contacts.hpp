@@ -17,8 +17,8 @@ namespace rouleau::core {
 class SurfaceWallContacts {
  public:
   /// Adds what potentials remember to `surfaces.wall_contacts`, as far as it is not there from an earlier stage. tube_radius:
-  /// in place of the domain's walls; 0: none. Throws std::invalid_argument without walls, and for potentials that read a
-  /// tangential velocity.
+  /// in place of the domain's walls; 0: none. Throws std::invalid_argument without walls, and for potentials that read how
+  /// surfaces slide.
   SurfaceWallContacts(Surfaces& surfaces, const std::vector<WallInteraction>& interactions, const Domain<3>& domain,
                       double tube_radius = 0);
 

@@ -23,8 +23,10 @@ WallContacts::WallContacts(Membranes& membranes, std::vector<WallInteraction> in
   for (std::size_t k = 0; k < interactions_.size(); ++k) {
     const Potential& potential = interactions_[k].potential;
     // Friction would be part of the walls' stress and power.
-    if (potential.reads("tangential_velocity"))
-      throw std::invalid_argument("a potential with walls reads no tangential velocity: " + potential.id);
+    for (const char* sliding : {"tangential_velocity", "sliding_speed"}) {
+      if (potential.reads(sliding))
+        throw std::invalid_argument("a potential with walls reads no " + std::string(sliding) + ": " + potential.id);
+    }
     traits_.push_back({cutoff_of(potential), potential.reads("normal_velocity"), potential.writes("energy")});
     variables_.push_back(keep_state(potential, k, membranes.wall_contacts, membranes.cells.size()));
   }

@@ -24,7 +24,7 @@ struct WallInteraction {
 class WallContacts {
  public:
   /// Adds what potentials remember to `membranes.wall_contacts`, as far as it is not there from an earlier stage. Throws
-  /// std::invalid_argument without walls, and for potentials that read the tangential velocity.
+  /// std::invalid_argument without walls, and for potentials that read how surfaces slide.
   WallContacts(Membranes& membranes, std::vector<WallInteraction> interactions, const Domain<2>& domain);
 
   /// Pass over cells: adds to force_y, and advances the state of the contacts by one step. A cell that no wall is near of costs a look at how high its nodes lie.

@@ -89,6 +89,7 @@ TEST_CASE("two cells that slide against each other see the same sliding, and its
     for (std::size_t i = 0; i < static_cast<std::size_t>(found.lists[cell].count); ++i) {
       const double normal = found.velocities[cell].normal[i], tangential = found.velocities[cell].tangential[i];
       const double speed = std::hypot(normal, tangential);
+      CHECK(found.velocities[cell].sliding[i] == std::abs(tangential));
       CHECK((speed == Approx(0.5) || speed < 1e-15));  // against the upper cell, or against one that rests like it
       (cell == 0 ? below : above) += tangential;
     }

@@ -220,6 +220,36 @@ TEST_CASE("each wall has bonds of its own with a surface") {
   CHECK(s.wall_contacts.of_cell[0].front().other == 3);
 }
 
+TEST_CASE("surfaces that slide against each other see the part of the velocity that is not along the distance") {
+  Surfaces s = neighbours();
+  const Vec<3> motion(0.3, -0.2, 0.5);  // of the second cell; the first rests
+  for (int i = s.cells[1].first; i < s.node_count(); ++i)
+    s.velocity_x[i] = motion.x(), s.velocity_y[i] = motion.y(), s.velocity_z[i] = motion.z();
+  SurfaceInteractions forces(s, {{{0, 0}, test::rubbing(2, cutoff)}}, domain);
+  CHECK(forces.needs_velocities());
+  run(forces, s);
+  const SurfaceContacts all = SurfaceContacts::within(cutoff, s, domain);
+  Vec<3> on_first = Vec<3>::Zero(), expected = Vec<3>::Zero();
+  for (int i = 0; i < s.cells[1].first; ++i) on_first += Vec<3>(s.force_x[i], s.force_y[i], s.force_z[i]);
+  double slowest = 1, fastest = 0;
+  for (const int cell : {0, 1}) {
+    std::vector<SurfaceContact> found;
+    all.find(cell, s, found);
+    for (const SurfaceContact& contact : found) {
+      if (contact.distance > cutoff) continue;
+      const Vec<3> across = motion.cross(contact.direction);  // as long as what is not along the distance
+      const double area = s.type_of(0).node_area[contact.node - s.cells[cell].first];
+      expected += (cell == 0 ? 1 : -1) * area / 2 * 2 * across.norm() * contact.direction;
+      slowest = std::min(slowest, across.norm()), fastest = std::max(fastest, across.norm());
+    }
+  }
+  CHECK(fastest > 1.05 * slowest);
+  REQUIRE(expected.norm() > 1);
+  CHECK((on_first - expected).norm() < 1e-12 * expected.norm());
+  const Domain<3> channel{{24, 20, 22}, {true, false, false}};
+  CHECK_THROWS_AS(SurfaceWallContacts(s, {{0, test::rubbing(2, cutoff)}}, channel), std::invalid_argument);
+}
+
 TEST_CASE("the normal velocity at a contact of surfaces is the rate at which the distance changes") {
   Surfaces s = neighbours();
   auto random = test::generator(71);

@@ -292,6 +292,8 @@ TEST_CASE("a membrane law says in which dimensions it works, and what its elemen
   CHECK(works_in_space());
   pair["needs"] = {"distance", "tangential_velocity"};
   CHECK(!works_in_space());
+  pair["needs"] = {"distance", "sliding_speed"};
+  CHECK(works_in_space());
   pair["needs"] = {"distance"};
   pair["dimensions"] = {2, 3};
   CHECK_NOTHROW(read_manifest(folder.write("pair.json", pair), Units()));
