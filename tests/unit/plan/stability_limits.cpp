@@ -111,10 +111,12 @@ TEST_CASE("with kernels that let nodes zigzag the semi-implicit step bears less,
 
 TEST_CASE("the sharp kernel bears less stiffness, and with the semi-implicit step as much more from tau 0.9 on") {
   const Catalog catalog({ROULEAU_PLUGINS});
-  const auto limit = [&](const std::string& kernel, const std::string& tau, const std::string& coupling) {
-    const Scene scene =
-        read_scene(std::string(ROULEAU_SCENES) + "/red-cell-3d.json",
-                   {"/numerics/kernel=" + kernel, "/numerics/tau=" + tau, "/numerics/coupling=" + coupling});
+  const auto limit = [&](const std::string& kernel, const std::string& tau, const std::string& coupling,
+                         const std::vector<std::string>& further = {}) {
+    std::vector<std::string> changes{"/numerics/kernel=" + kernel, "/numerics/tau=" + tau,
+                                     "/numerics/coupling=" + coupling};
+    changes.insert(changes.end(), further.begin(), further.end());
+    const Scene scene = read_scene(std::string(ROULEAU_SCENES) + "/red-cell-3d.json", changes);
     const std::vector<Limit> all = find_limits(make_plan(scene, catalog));
     return std::find_if(all.begin(), all.end(),
                         [](const Limit& each) { return each.name.starts_with("stretching stiffness"); })
@@ -126,4 +128,13 @@ TEST_CASE("the sharp kernel bears less stiffness, and with the semi-implicit ste
     const double gain = limit("sharp6", tau, "semi-implicit") / explicit_limit;
     CHECK(gain == Approx(std::string(tau) == "0.8" ? 1 : 20));
   }
+  // With the slip correction less, and less again where the cell is more viscous (docs/stability.md, "With sharp6").
+  const std::string corrected = "/numerics/slip_correction=true",
+                    alike = "/cell_types/rbc/interior_viscosity=\"1.2 cP\"";
+  const auto gain = [&](const std::string& kernel, const std::vector<std::string>& changes) {
+    return limit(kernel, "2", "semi-implicit", changes) / limit(kernel, "2", "explicit", changes);
+  };
+  CHECK(gain("sharp6", {corrected}) == Approx(2.5));
+  CHECK(gain("sharp6", {corrected, alike}) == Approx(10));
+  CHECK(gain("peskin4", {corrected}) == Approx(20));
 }
