@@ -253,7 +253,8 @@ void check_dimensions(const json::Document& document, const Manifest& manifest) 
            "a membrane law of both dimensions says in \"in_3d\" what it needs and gives there");
   }
   if (manifest.kind == ModelKind::interaction && manifest.works_in(3) && manifest.needs_input("tangential_velocity")) {
-    refuse(document, "/dimensions", "in three dimensions there is no \"tangential_velocity\", which this model needs; take \"sliding_speed\"");
+    refuse(document, "/dimensions",
+           "in three dimensions there is no \"tangential_velocity\", which this model needs; take \"sliding_speed\"");
   }
 }
 

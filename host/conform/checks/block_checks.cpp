@@ -139,7 +139,7 @@ Finding aliasing(const Subject& subject) {
         const Values expected = compute(subject, instance, inputs, call);
         for (const Outputs place : {Outputs::over_inputs, Outputs::streamed}) {
           call.place = place;
-          const auto difference = first_difference(expected, compute(subject, instance, inputs, call));
+          auto difference = first_difference(expected, compute(subject, instance, inputs, call));
           if (!difference.empty()) return difference;
         }
         return std::string{};
