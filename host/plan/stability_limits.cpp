@@ -281,14 +281,12 @@ bool is_sharp_in_space(const scene::Scene& scene) {
   return scene.domain.depth && membrane_coupling(scene.numerics) == MembraneCoupling::sharp;
 }
 
-double stretching_gain_of(const scene::Scene& scene) {
+double stretching_gain_of(const Plan& plan) {
+  const scene::Scene& scene = *plan.scene;
   const scene::Numerics& n = scene.numerics;
   const bool thin = n.tau < least_tau_of_full_gain && (n.slip_correction || scene.domain.depth);
   const bool sharp = is_sharp_in_space(scene);
-  const bool contrast = std::any_of(scene.cell_types.begin(), scene.cell_types.end(), [&](const scene::CellType& type) {
-    return type.interior_viscosity != scene.fluid.viscosity;
-  });
-  if (sharp && contrast) return sharp_contrast_stretching_gain;
+  if (sharp && plan.viscosity_contrast) return sharp_contrast_stretching_gain;
   if (thin || n.tau > most_tau) return cautious_stretching_gain;
   return sharp ? sharp_stretching_gain : stretching_gain;
 }
@@ -435,14 +433,14 @@ std::vector<Limit> find_limits(const Plan& plan) {
     const bool gains = plan.semi_implicit && semi_implicit_gains(plan);
     const std::string coupled = plan.semi_implicit ? ", semi-implicit step" : " in lattice units";
     const bool zigzags = kernel_named(scene.numerics.kernel).semi_implicit_from == nowhere;
-    const std::string softer =
-        lower + ", with which the lattice stiffness falls" +
-        (zigzags || (plan.semi_implicit && is_sharp_in_space(scene)) ? ", or set numerics.kernel to \"peskin4\""
-         : plan.semi_implicit                                        ? ""
-                              : ", or set numerics.coupling to \"semi-implicit\"");
+    const bool peskin_bears_more = zigzags || (plan.semi_implicit && is_sharp_in_space(scene));
+    const std::string softer = lower + ", with which the lattice stiffness falls" +
+                               (peskin_bears_more    ? ", or set numerics.kernel to \"peskin4\""
+                                : plan.semi_implicit ? ""
+                                                     : ", or set numerics.coupling to \"semi-implicit\"");
     const double loss = plan.semi_implicit && zigzags ? semi_implicit_loss : 1;
     add("stretching stiffness" + coupled + where, membrane.stretching.value,
-        (gains ? stretching_gain_of(scene) : loss) * membrane.stretching.limit, true, softer, density);
+        (gains ? stretching_gain_of(plan) : loss) * membrane.stretching.limit, true, softer, density);
     add("bending stiffness" + coupled + where, membrane.bending.value,
         (gains ? bending_gain : loss) * membrane.bending.limit, true, softer, density);
     if (const double compression = prestress_compression(plan, stage); compression > 0) {

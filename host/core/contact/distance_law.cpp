@@ -7,8 +7,11 @@ double cutoff_of(const Potential& potential) {
 }
 
 bool is_of_distance_alone(const Potential& potential) {
-  return potential.state.empty() && !potential.reads("normal_velocity") && !potential.reads("tangential_velocity") &&
-         !potential.reads("sliding_speed");
+  return potential.state.empty() && !potential.reads("normal_velocity") && !reads_sliding(potential);
+}
+
+bool reads_sliding(const Potential& potential) {
+  return potential.reads("tangential_velocity") || potential.reads("sliding_speed");
 }
 
 std::vector<std::size_t> keep_state(const Potential& potential, std::size_t place, ContactMemory& memory,

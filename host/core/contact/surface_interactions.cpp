@@ -98,8 +98,9 @@ void SurfaceInteractions::evaluate(int cell, const Surfaces& surfaces, bool ener
       if (law.reads_normal_velocity() || law.reads_sliding_speed()) {
         const Vec<3> velocity = relative_velocity(contact, surfaces);
         const double normal = velocity.dot(contact.direction);
-        scratch.inputs.normal_velocity.push_back(normal);
-        scratch.inputs.sliding_speed.push_back((velocity - normal * contact.direction).norm());
+        if (law.reads_normal_velocity()) scratch.inputs.normal_velocity.push_back(normal);
+        if (law.reads_sliding_speed())
+          scratch.inputs.sliding_speed.push_back((velocity - normal * contact.direction).norm());
       }
       if (law.remembers()) scratch.inputs.key.push_back({contact.node - own.first, contact.other, contact.shift});
       scratch.contact.push_back(static_cast<int>(c));

@@ -18,9 +18,9 @@ struct SurfaceLawInputs {
   };
   std::vector<Key> key;
   std::vector<double> distance;  ///< positive
-  std::vector<double>
-      normal_velocity;  ///< d distance / dt; this and the next: empty where the potential does not read it
-  std::vector<double> sliding_speed;  ///< of the velocity against the other surface what is not along the distance
+  // Each is empty where the potential does not read it.
+  std::vector<double> normal_velocity;  ///< d distance / dt
+  std::vector<double> sliding_speed;    ///< of the velocity against the other surface what is not along the distance
 
   void clear() { key.clear(), distance.clear(), normal_velocity.clear(), sliding_speed.clear(); }
 };

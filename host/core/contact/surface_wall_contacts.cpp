@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "contact.hpp"
+#include "distance_law.hpp"
 
 namespace rouleau::core {
 
@@ -19,9 +20,9 @@ SurfaceWallContacts::SurfaceWallContacts(Surfaces& surfaces, const std::vector<W
   }
   if (walls_.empty()) throw std::invalid_argument("a potential between cells and walls needs walls");
   for (const auto& [type, potential] : interactions) {
+    if (reads_sliding(potential))
+      throw std::invalid_argument("a potential with walls does not read how surfaces slide: " + potential.id);
     laws_.push_back({type, SurfaceLaw(potential, laws_.size(), surfaces.wall_contacts, surfaces.cells.size())});
-    if (laws_.back().law.reads_sliding_speed())
-      throw std::invalid_argument("a potential with walls reads no sliding speed: " + potential.id);
     remembers_ = remembers_ || laws_.back().law.remembers();
   }
 }

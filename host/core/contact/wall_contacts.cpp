@@ -23,10 +23,8 @@ WallContacts::WallContacts(Membranes& membranes, std::vector<WallInteraction> in
   for (std::size_t k = 0; k < interactions_.size(); ++k) {
     const Potential& potential = interactions_[k].potential;
     // Friction would be part of the walls' stress and power.
-    for (const char* sliding : {"tangential_velocity", "sliding_speed"}) {
-      if (potential.reads(sliding))
-        throw std::invalid_argument("a potential with walls reads no " + std::string(sliding) + ": " + potential.id);
-    }
+    if (reads_sliding(potential))
+      throw std::invalid_argument("a potential with walls does not read how surfaces slide: " + potential.id);
     traits_.push_back({cutoff_of(potential), potential.reads("normal_velocity"), potential.writes("energy")});
     variables_.push_back(keep_state(potential, k, membranes.wall_contacts, membranes.cells.size()));
   }
