@@ -80,8 +80,8 @@ TEST_CASE("auto meets the target error of a steady capsule in three dimensions",
 }
 
 TEST_CASE("auto chooses numerics with which stiff spheres of viscosity ratio 5 stay quiet", "[auto][space]") {
-  // The semi-implicit step bears less with the slip correction and the sharp kernel: at 17 times the explicit limit this one came
-  // apart at a strain of 0.7.
+  // At 17 times the explicit limit this one came apart at a strain of 0.7 as long as the semi-implicit step did not know of the
+  // slip correction's couples.
   const SceneRun run = run_scene(
       scenes + "/auto-capsule-3d.json",
       {R"(/cell_types/capsule/membrane=[{"model": "skalak", "parameters": {"shear_modulus": "5e-6 N/m", "area_dilation": 50}}])",

@@ -103,6 +103,25 @@ SlipConstants slip_constants(KernelKind kernel, double viscosity_ratio, int dime
   return {d, inside * m + difference * (all - two)};
 }
 
+double shift_gain(KernelKind kernel, double shift) {
+  return with_kernel(kernel, [shift]<class Kernel>(Kernel) {
+    constexpr int waves = 200, places = 32;
+    double plain = 0, shifted = 0;
+    for (int i = 1; i <= waves; ++i) {
+      const double k = M_PI * i / waves;
+      double transform = 0;
+      for (int j = -3 * places; j <= 3 * places; ++j) {
+        const double distance = static_cast<double>(j) / places;
+        transform += kernel_density<Kernel>(distance) * std::cos(k * distance) / places;
+      }
+      const double square = std::pow(k, 4) * transform * transform;
+      plain = std::max(plain, square);
+      shifted = std::max(shifted, square * (1 + k * k * shift * shift));
+    }
+    return shifted / plain;
+  });
+}
+
 int slip_smoothings(int least, double number, double widest) {
   int passes = std::max(1, least);
   constexpr int most = 256;  // enough for thirty times the stiffness that explicit coupling bears

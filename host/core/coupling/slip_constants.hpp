@@ -20,6 +20,12 @@ struct SlipConstants {
 /// (smooths_edges).
 SlipConstants slip_constants(KernelKind kernel, double viscosity_ratio, int dimension);
 
+/// How many times as far a membrane gives way to its own waves when forces act and velocities are read at the distance `shift` d:
+/// the couple and its adjoint both add k d times what the force does, so that k^4 f^2 (f the kernel's transform), by which a
+/// bending wave of wave number k pulls at itself, becomes k^4 f^2 (1 + k^2 d^2). The ratio of the largest of both; for waves of
+/// stretching, which are longer, it is a tenth less.
+double shift_gain(KernelKind kernel, double shift);
+
 /// How often a membrane's slip is smoothed so that a step stays stable, at least so many times. A tangential displacement that
 /// the membrane's stiffness meets by s/l^2, s from 0 to `widest`, gains in a step the slip -C s (1 - s/widest)^p times itself after
 /// p smoothings, with C = mobility x stiffness / l^2, the `number`. That must stay below 2 for all s in an explicit step, and below

@@ -13,8 +13,8 @@ constexpr double steps_held = 8;
 
 }  // namespace
 
-double newest_share_of_mean(double largest_eigenvalue, double viscosity) {
-  return 1 / (1 + steps_held * std::max(1.0, 1 / (6 * viscosity)) * largest_eigenvalue);
+double steps_of_mean(double largest_eigenvalue, double viscosity) {
+  return 1 + steps_held * std::max(1.0, 1 / (6 * viscosity)) * largest_eigenvalue;
 }
 
 SemiImplicitFilter::SemiImplicitFilter(int count, double length, double gain, double viscosity, double stretching,
@@ -25,7 +25,7 @@ SemiImplicitFilter::SemiImplicitFilter(int count, double length, double gain, do
   const double diagonal = 1 + 2 * second + 6 * fourth;
   near_ = -second - 4 * fourth;
   far_ = fourth;
-  share_ = newest_share_of_mean(4 * second + 16 * fourth, viscosity);
+  share_ = 1 / steps_of_mean(4 * second + 16 * fourth, viscosity);
 
   const std::size_t n = band_;
   for (auto* values : {&lower_, &lowest_, &inverse_, &border_second_, &border_last_}) values->assign(n, 0.0);

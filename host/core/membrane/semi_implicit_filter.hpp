@@ -9,9 +9,9 @@ namespace rouleau::core {
 /// outline, area of a surface): a layer of two spacings goes along.
 constexpr double node_mobility = 0.5;
 
-/// Share of the newest force in the mean that a semi-implicit step holds: with the largest eigenvalue of m K, and the
+/// Steps over which the mean goes that a semi-implicit step holds: with the largest eigenvalue of m K, and the
 /// kinematic viscosity of the fluid around the cell in lattice units.
-double newest_share_of_mean(double largest_eigenvalue, double viscosity);
+double steps_of_mean(double largest_eigenvalue, double viscosity);
 
 /// With forces F(X) of a membrane whose stiffness is about K = k_s/l D2 + k_b/l^3 D4 (D2, D4: second and fourth
 /// differences around the cell, both positive), and m the velocity that a node gains in a step from a force of 1,

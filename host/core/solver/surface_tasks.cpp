@@ -33,6 +33,16 @@ std::unique_ptr<SurfaceSlip> make_slip(const BasicSolverSetup<3>& setup, const S
   return std::make_unique<SurfaceSlip>(surfaces, std::move(types), setup.viscosity());
 }
 
+/// How each type's membranes come back to their own forces through the kernel, and through the couples of the slip correction.
+std::vector<KernelResponse> responses_of(const BasicSolverSetup<3>& setup) {
+  std::vector<KernelResponse> responses;
+  for (const double ratio : ratios_of(setup)) {
+    const double shift = setup.slip_correction ? slip_constants(setup.kernel, ratio, 3).shift : 0;
+    responses.push_back(kernel_response(setup.kernel).times(shift_gain(setup.kernel, shift)));
+  }
+  return responses;
+}
+
 /// Second difference of a type's energy when its shape is stretched along x.
 double energy_of_strain(const std::shared_ptr<const RestSurface>& rest, const MembraneLaws& laws, double strain) {
   MembraneLaws without_volume;
@@ -68,7 +78,7 @@ SurfaceTasks<T>::SurfaceTasks(const BasicSolverSetup<3>& setup, Surfaces& surfac
       ranks_(fluid.ranks()) {
   surfaces_.largest_step.resize(surfaces_.cells.size(), 0.0);
   if (setup.semi_implicit)
-    forces_.take_semi_implicit_steps(surfaces_, setup.viscosity(), setup.tension_unit, kernel_response(setup.kernel));
+    forces_.take_semi_implicit_steps(surfaces_, setup.viscosity(), setup.tension_unit, responses_of(setup));
   std::vector<double> of_type;
   for (std::size_t t = 0; t < surfaces.types.size(); ++t)
     of_type.push_back(energy_of_strain(surfaces.types[t], setup.cell_types[t].laws, 1e-3));

@@ -3,6 +3,7 @@
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 
 #include "core/membrane/semi_implicit_filter.hpp"
@@ -57,7 +58,24 @@ constexpr double bending_felt = 2;
 // as much, and the filter takes a third of the time.
 constexpr double least_bending = 0.25;
 
+/// By how much the stretching and the bending stiffness pull, at most, at waves that the lattice feels; `square`: of the largest
+/// wave number of the mesh.
+struct Pulls {
+  double stretching, bending;
+  Pulls(const KernelResponse& response, double stretching_stiffness, double bending_stiffness,
+        double square = std::numeric_limits<double>::infinity()) {
+    const double mobility = node_mobility * response.gain;
+    stretching = mobility * stretching_stiffness * std::min(square, response.stretching / response.gain);
+    bending = mobility * bending_stiffness * std::min(square * square, bending_felt * response.bending / response.gain);
+  }
+};
+
 }  // namespace
+
+double largest_eigenvalue(const KernelResponse& response, double stretching, double bending) {
+  const Pulls pulls(response, stretching, bending);
+  return pulls.stretching + pulls.bending;
+}
 
 SurfaceFilter::SurfaceFilter(const RestSurface& rest, double viscosity, double stretching, double bending,
                              const KernelResponse& response)
@@ -66,13 +84,12 @@ SurfaceFilter::SurfaceFilter(const RestSurface& rest, double viscosity, double s
   const Matrix shape = stiffness_of_shape(rest);
   const double square = largest_square_of_wave_number(shape, area);
   const double mobility = node_mobility * response.gain;
-  const double stretched = mobility * stretching * std::min(square, response.stretching / response.gain),
-               bent = mobility * bending * std::min(square * square, bending_felt * response.bending / response.gain);
-  largest_ = stretched + bent;
-  newest_share_ = newest_share_of_mean(largest_, viscosity);
+  const Pulls pulls(response, stretching, bending, square);
+  largest_ = pulls.stretching + pulls.bending;
+  newest_share_ = 1 / steps_of_mean(largest_, viscosity);
 
   Matrix whole = mobility * stretching * shape;
-  if (bent > least_bending) whole += mobility * bending * (shape * area.cwiseInverse().asDiagonal() * shape);
+  if (pulls.bending > least_bending) whole += mobility * bending * (shape * area.cwiseInverse().asDiagonal() * shape);
   whole.diagonal() += area;
   const Factors factors(whole);
   if (factors.info() != Eigen::Success) {

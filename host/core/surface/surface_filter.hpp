@@ -9,6 +9,9 @@
 
 namespace rouleau::core {
 
+/// Largest eigenvalue of (K A^-1)/2 that a lattice feels on a mesh so fine that it has all such waves; parameters as below.
+double largest_eigenvalue(const KernelResponse& response, double stretching, double bending);
+
 /// What SemiImplicitFilter does for outlines, with the stiffness of a surface: C is the mesh's Laplacian at rest times -1 (weights
 /// of cotangents; Pinkall and Polthier, Experimental Mathematics 2, 15, 1993), A the areas of the nodes, and
 ///

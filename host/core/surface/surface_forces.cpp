@@ -108,13 +108,13 @@ SurfaceForces::SurfaceForces(const Surfaces& surfaces, const std::vector<Membran
 }
 
 void SurfaceForces::take_semi_implicit_steps(Surfaces& surfaces, double viscosity, double tension_unit,
-                                             const KernelResponse& response) {
+                                             const std::vector<KernelResponse>& responses) {
   constexpr std::array names{"held_force_x", "held_force_y", "held_force_z"};
   for (std::size_t t = 0; t < types_.size(); ++t) {
     Type& type = types_[t];
     Stiffness stiffness;
     for (const Law& law : type.laws) stiffness += law.model;
-    type.filter.emplace(*surfaces.types[t], viscosity, stiffness.stretching, stiffness.bending, response);
+    type.filter.emplace(*surfaces.types[t], viscosity, stiffness.stretching, stiffness.bending, responses[t]);
     for (std::size_t k = 0; k < 3; ++k) {
       // Over the spacing, which all stages share, a force has the unit of a tension.
       type.held_force[k] =

@@ -25,9 +25,9 @@ class SurfaceForces {
 
   /// From now on the forces are those of the semi-implicit step (SurfaceFilter), with the laws' own stiffness. What it holds is
   /// in surfaces.state. `viscosity`: kinematic, of the suspending fluid; lattice units. `tension_unit`: SI size of the
-  /// lattice unit of tension, for what is kept from one stage to the next.
+  /// lattice unit of tension, for what is kept from one stage to the next. `responses`: of each cell type.
   void take_semi_implicit_steps(Surfaces& surfaces, double viscosity, double tension_unit,
-                                const KernelResponse& response = {});
+                                const std::vector<KernelResponse>& responses);
 
   /// Pass over cells: sets the forces.
   void run(Worker worker, Surfaces& surfaces);

@@ -4,6 +4,7 @@
 
 #include "core/coupling/coupling.hpp"
 #include "core/coupling/kernel.hpp"
+#include "core/coupling/slip_constants.hpp"
 #include "core/fluid/periodic.hpp"
 #include "plan/stability_limits.hpp"
 #include "unit/cell_fixture.hpp"
@@ -86,7 +87,8 @@ TEMPLATE_TEST_CASE("how a wave of forces comes back through a kernel is what the
                    Sharp6) {
   const KernelKind kind = std::is_same_v<TestType, Sharp6> ? KernelKind::sharp6 : KernelKind::peskin4;
   constexpr int places = 500;
-  double squares = 0, stretching = 0, bending = 0;
+  constexpr double shift = 0.4;
+  double squares = 0, stretching = 0, bending = 0, shifted = 0;
   for (double k = 0.01; k < M_PI; k += 0.01) {
     double transform = 0;
     squares = 0;
@@ -99,11 +101,15 @@ TEMPLATE_TEST_CASE("how a wave of forces comes back through a kernel is what the
     }
     stretching = std::max(stretching, k * k * transform * transform);
     bending = std::max(bending, k * k * k * k * transform * transform);
+    shifted = std::max(shifted, k * k * k * k * transform * transform * (1 + k * k * shift * shift));
   }
   const KernelResponse response = kernel_response(kind);
   CHECK(response.gain == Approx(squares / 0.375).epsilon(5e-3));
   CHECK(response.stretching == Approx(stretching).epsilon(5e-3));
   CHECK(response.bending == Approx(bending).epsilon(5e-3));
+  CHECK(shift_gain(kind, 0) == 1);
+  CHECK(shift_gain(kind, shift) == Approx(shifted / bending).epsilon(5e-3));
+  CHECK(shift_gain(kind, -shift) == shift_gain(kind, shift));
 }
 
 TEST_CASE("the cosine kernel has a first moment of up to 0.0211 spacings, as its facts say") {

@@ -132,7 +132,7 @@ TEST_CASE(
   }
   const auto forces_of = [](Surfaces& cells, double modulus, bool semi_implicit) {
     SurfaceForces forces(cells, {{surface_law("neo-hookean", {modulus, 0}), surface_law("bending", {modulus, 0, 0})}});
-    if (semi_implicit) forces.take_semi_implicit_steps(cells, 1.0 / 6, 1);
+    if (semi_implicit) forces.take_semi_implicit_steps(cells, 1.0 / 6, 1, {{}});
     forces.run({}, cells);
   };
   Surfaces weak = s, explicitly = s;
