@@ -188,9 +188,8 @@ Stiffness membrane_stiffness(const Plan& plan, const plugin::ModelSetting& setti
     nearest.bending.narrow({factor * stiffness.bending,
                             kernel.bending_limit * limit_between(bending_limit, scene, cell.interior_viscosity)});
     if (!scene.domain.depth) continue;
-    const core::KernelResponse response =
-        core::kernel_response(kernel.kind).times(core::shift_gain(kernel.kind, shift));
-    const double eigenvalue = core::largest_eigenvalue(response, stiffness.stretching, stiffness.bending);
+    const double eigenvalue =
+        core::largest_eigenvalue(core::kernel_response(kernel.kind, shift), stiffness.stretching, stiffness.bending);
     nearest.steps_of_mean =
         std::max(nearest.steps_of_mean, core::steps_of_mean(eigenvalue, core::viscosity_of(scene.numerics.tau)));
   }

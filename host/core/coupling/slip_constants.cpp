@@ -122,6 +122,11 @@ double shift_gain(KernelKind kernel, double shift) {
   });
 }
 
+KernelResponse kernel_response(KernelKind kernel, double shift) {
+  const KernelResponse alone = kernel_response(kernel);
+  return shift == 0 ? alone : alone.times(shift_gain(kernel, shift));
+}
+
 int slip_smoothings(int least, double number, double widest) {
   int passes = std::max(1, least);
   constexpr int most = 256;  // enough for thirty times the stiffness that explicit coupling bears

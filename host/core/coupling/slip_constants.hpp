@@ -26,6 +26,9 @@ SlipConstants slip_constants(KernelKind kernel, double viscosity_ratio, int dime
 /// stretching, which are longer, it is a tenth less.
 double shift_gain(KernelKind kernel, double shift);
 
+/// How membranes come back to their own forces through the kernel and, unless the shift is 0, through those couples.
+KernelResponse kernel_response(KernelKind kernel, double shift);
+
 /// How often a membrane's slip is smoothed so that a step stays stable, at least so many times. A tangential displacement that
 /// the membrane's stiffness meets by s/l^2, s from 0 to `widest`, gains in a step the slip -C s (1 - s/widest)^p times itself after
 /// p smoothings, with C = mobility x stiffness / l^2, the `number`. That must stay below 2 for all s in an explicit step, and below

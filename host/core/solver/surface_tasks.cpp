@@ -33,12 +33,12 @@ std::unique_ptr<SurfaceSlip> make_slip(const BasicSolverSetup<3>& setup, const S
   return std::make_unique<SurfaceSlip>(surfaces, std::move(types), setup.viscosity());
 }
 
-/// How each type's membranes come back to their own forces through the kernel, and through the couples of the slip correction.
+/// How each type's membranes come back to their own forces.
 std::vector<KernelResponse> responses_of(const BasicSolverSetup<3>& setup) {
   std::vector<KernelResponse> responses;
   for (const double ratio : ratios_of(setup)) {
     const double shift = setup.slip_correction ? slip_constants(setup.kernel, ratio, 3).shift : 0;
-    responses.push_back(kernel_response(setup.kernel).times(shift_gain(setup.kernel, shift)));
+    responses.push_back(kernel_response(setup.kernel, shift));
   }
   return responses;
 }
