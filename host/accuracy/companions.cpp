@@ -25,10 +25,9 @@ using namespace nlohmann::literals;
 
 // Nearer lattices differ too little, and on coarser ones nothing was measured (docs/accuracy.md, "Error bars").
 constexpr double least_refinement = 4.0 / 3, most_refinement = 2.5;
-constexpr double least_radius = 4;  ///< of the smallest cell on a companion's lattice, spacings
 // Shares of the run's time: of steps, at most and where starting the companions takes the rest; seconds to start one.
 constexpr double most_share = 0.38, least_share = 0.28, start_s = 0.004;
-constexpr double with_shorter_steps = 2;   ///< times those shares, where no lattice that they allow is fine enough
+constexpr double at_most_beyond = 2;       ///< times those shares, where no lattice that they allow is fine enough
 constexpr double outputs_of_tables = 0.2;  ///< what they cost over those of a run, which writes frames
 
 constexpr double to_the_coarsest = 1.25;  ///< spacing of the companion for the order over that for the lattice
@@ -170,10 +169,13 @@ struct CoarserLattices {
   explicit CoarserLattices(const scene::Scene& scene) : nodes_(lattice_size(scene.domain)), radius_(INFINITY) {
     for (const int nodes : nodes_) parts_ = std::gcd(parts_, nodes);
     if (!scene.cells.empty()) radius_ = shape::smallest_radius(scene) / plan::lattice_spacing(scene);
+    least_ = plan::least_radii(scene, plan::membrane_coupling(scene.numerics));
   }
   [[nodiscard]] int parts() const { return parts_; }
   [[nodiscard]] double refinement(int part) const { return static_cast<double>(parts_) / part; }
   [[nodiscard]] double radius(int part) const { return radius_ / refinement(part); }
+  [[nodiscard]] double least_radius() const { return least_.companion; }
+  [[nodiscard]] bool wants_fine_ones() const { return least_.fine_companions; }
   [[nodiscard]] LatticeSize nodes(int part) const {
     LatticeSize size = nodes_;
     for (int& nodes : size) nodes = nodes / parts_ * part;
@@ -186,7 +188,7 @@ struct CoarserLattices {
   /// The lattice nearest to one that is to_the_coarsest times as coarse; 0: none will do.
   [[nodiscard]] int coarser_than(int part) const {
     const int next = static_cast<int>(std::lround(part / to_the_coarsest));
-    if (next < 1 || radius(next) < least_radius || too_small(next)) return 0;
+    if (next < 1 || radius(next) < least_.coarsest || too_small(next)) return 0;
     const double ratio = static_cast<double>(part) / next;
     return ratio >= least_to_the_coarsest && ratio <= most_to_the_coarsest ? next : 0;
   }
@@ -195,6 +197,7 @@ struct CoarserLattices {
   LatticeSize nodes_;
   int parts_ = 0;
   double radius_;
+  plan::LeastRadii least_;
 };
 
 /// Where the start and the density are changed, and by what.
@@ -222,9 +225,9 @@ double compression(const scene::Scene& scene) {
   return most;
 }
 
-/// On a lattice with this relaxation time.
-Changes choose_changes(const scene::Scene& scene, double densest, bool moments, double tau) {
-  Changes changes{start_matters(scene), densest > 1, std::max(light, 1 / densest), tau, moments};
+/// On a lattice with this relaxation time. `wanted`: light or dense, where either will do.
+Changes choose_changes(const scene::Scene& scene, double densest, bool moments, double tau, double wanted) {
+  Changes changes{start_matters(scene), densest > 1, std::max(wanted, 1 / densest), tau, moments};
   if (!is_corrected(scene)) return changes;
   const auto tau_with = [&](double density) { return 0.5 + (tau - 0.5) / std::sqrt(density); };
   if (tau_with(changes.density) > largest_tau) changes.density = dense;
@@ -279,33 +282,36 @@ Companions choose_companions(const scene::Scene& scene, const RunCost& cost, dou
 
   const CoarserLattices lattices(scene);
   // With a companion for the lattice on that one.
-  const auto choose = [&](int fine) {
+  const auto choose = [&](int fine, double density) {
     Choice choice{fine, lattices.coarser_than(fine), scene.numerics.tau, {}};
     const double coarsest = lattices.refinement(choice.coarse > 0 ? choice.coarse : fine);
     const double shorter = std::min(1.0, std::sqrt(most_compressed / compressed) / coarsest);
     choice.tau = 0.5 + shorter * (scene.numerics.tau - 0.5);
-    choice.changes = choose_changes(scene, densest, cost.moments, choice.tau);
+    choice.changes = choose_changes(scene, densest, cost.moments, choice.tau, density);
     return choice;
   };
-  const auto finest_within = [&](double share) {
+  const auto finest_within = [&](double share, double density) {
     for (int k = lattices.parts() - 1; k > 0; --k) {
       if (lattices.refinement(k) < least_refinement) continue;
       if (lattices.refinement(k) > most_refinement || lattices.too_small(k)) break;
-      if (const Choice choice = choose(k); cost_of_all(scene, lattices, choice) <= share) return choice;
+      if (const Choice choice = choose(k, density); cost_of_all(scene, lattices, choice) <= share) return choice;
     }
     return Choice{};
   };
-  Choice choice = finest_within(affordable);
-  const bool too_coarse = choice.fine == 0 || lattices.radius(choice.fine) < least_radius;
-  if (too_coarse && std::isfinite(most_compressed)) choice = finest_within(with_shorter_steps * affordable);
+  Choice choice = finest_within(affordable, light);
+  const bool too_coarse = choice.fine == 0 || lattices.radius(choice.fine) < lattices.least_radius();
+  if (too_coarse && lattices.wants_fine_ones())
+    choice = finest_within(at_most_beyond * affordable, dense);  // which takes half as many steps
+  else if (too_coarse && std::isfinite(most_compressed))
+    choice = finest_within(at_most_beyond * affordable, light);
   const int fine = choice.fine, coarse = choice.coarse;
   const double tau = choice.tau;
   const Changes& changes = choice.changes;
-  const auto too_small = [](double radius) {
+  const auto too_small = [&lattices](double radius) {
     return "on a lattice that costs a small part of this one a cell's radius would be " + number(radius, 2) +
-           " spacings, fewer than " + number(least_radius);
+           " spacings, fewer than " + number(lattices.least_radius());
   };
-  if (const double most = lattices.radius(lattices.parts()) / least_refinement; most < least_radius) {
+  if (const double most = lattices.radius(lattices.parts()) / least_refinement; most < lattices.least_radius()) {
     chosen.why_none = too_small(most);
     return chosen;
   }
@@ -323,7 +329,7 @@ Companions choose_companions(const scene::Scene& scene, const RunCost& cost, dou
   };
   chosen.refinement = as_by_spacing(fine);
   chosen.expected_share = longer * cost_of_all(scene, lattices, choice);
-  if (const double radius = lattices.radius(fine); radius < least_radius) {
+  if (const double radius = lattices.radius(fine); radius < lattices.least_radius()) {
     chosen.why_none = too_small(radius);
     return chosen;
   }

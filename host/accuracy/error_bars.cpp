@@ -248,7 +248,8 @@ std::optional<Worst> worst(const std::vector<ErrorBar>& bars) {
       std::any_of(bars.begin(), bars.end(), [&](const ErrorBar& bar) { return counts(bar) && bar.quantity.moment; });
   for (const ErrorBar& bar : bars) {
     if (!counts(bar) || bar.quantity.moment != moments) continue;
-    const double whole = is_angle(bar.quantity) ? 1 : std::abs(bar.quantity.value), error = bar.estimate / whole;
+    const Quantity& q = bar.quantity;
+    const double whole = is_angle(q) ? 1 : std::max(std::abs(q.value), q.least_whole), error = bar.estimate / whole;
     const auto& [lattice, start, inertia] = bar.shares;
     if (!found || error > found->error) {
       found = {error,

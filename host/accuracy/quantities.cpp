@@ -11,6 +11,7 @@
 #include "files/csv_reader.hpp"
 #include "json/document.hpp"
 #include "observe/observables.hpp"
+#include "plan/error_model.hpp"
 
 namespace rouleau::accuracy {
 
@@ -73,7 +74,8 @@ void add_passages(std::vector<Quantity>& all, const CellColumns& cell, const std
               .value = passage.at,
               .uncertainty = passage.uncertainty,
               .principal = told,
-              .moment = true});
+              .moment = true,
+              .least_whole = strained ? std::min(plan::first_events, cell.strain.back()) : 0});
   }
 }
 
@@ -149,7 +151,7 @@ void add_turning(std::vector<Quantity>& all, const Json& stage) {
   }
 }
 
-void add_partings(std::vector<Quantity>& all, const Json& stages) {
+void add_partings(std::vector<Quantity>& all, const Json& stages, double strain_of_run) {
   std::set<std::string> named;  // by a later stage
   for (auto stage = stages.rbegin(); stage != stages.rend(); ++stage) {
     for (const Json& aggregate : stage->at("dissociation")) {
@@ -166,7 +168,8 @@ void add_partings(std::vector<Quantity>& all, const Json& stages) {
                   .value = strain,
                   .uncertainty = strain - before,
                   .principal = last,
-                  .moment = true});
+                  .moment = true,
+                  .least_whole = std::min(plan::first_events, strain_of_run)});
       }
     }
   }
@@ -175,10 +178,12 @@ void add_partings(std::vector<Quantity>& all, const Json& stages) {
 }  // namespace
 
 std::vector<Passage> passages(const std::vector<double>& x, const std::vector<double>& angle, double part) {
+  constexpr double rounding = 1e-9;  // of an angle at which a cell was placed: what it leaves it does not pass
   std::vector<Passage> found;
   std::set<int> passed;
   for (std::size_t i = 0; i + 1 < angle.size(); ++i) {
-    const double from = angle[i], to = angle[i + 1];
+    const double nearest = part * std::round(angle[i] / part), to = angle[i + 1];
+    const double from = i == 0 && std::abs(angle[i] - nearest) < rounding ? nearest : angle[i];
     if (!std::isfinite(from) || !std::isfinite(to) || from == to) continue;
     const bool falls = to < from;
     // Multiples in (from, to], in the order in which they are passed.
@@ -211,7 +216,7 @@ std::vector<Quantity> reported_quantities(const std::filesystem::path& run_direc
   if (!beyond.empty() && !stages.empty() && stages.back().at("stage") == beyond) stages.erase(stages.size() - 1);
   add_means(all, stages);
   if (!stages.empty()) add_turning(all, stages.back());
-  add_partings(all, stages);
+  add_partings(all, stages, rows > 0 ? series.numbers("strain")[rows - 1] : 0);
   add_series(all, series, rows);
   return all;
 }

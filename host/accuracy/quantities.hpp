@@ -22,6 +22,7 @@ struct Quantity {
   double part_of_cells = 0;  ///< of the value: what the lattice's error of the cells' shape must show in; 0: nothing
   bool principal = false;    ///< said on the terminal
   bool moment = false;       ///< the strain or time at which something happens
+  double least_whole = 0;    ///< smaller values have their relative errors over this: strains before plan::first_events
   std::string why_not = {};  ///< why there can be no bar; empty: there can
 };
 

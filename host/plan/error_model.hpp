@@ -20,7 +20,7 @@ struct CapillaryRange {
   double least, most;
 };
 /// Those of round cells for which errors were measured, in two dimensions and in three.
-inline constexpr CapillaryRange measured_capillary{0.003, 0.8}, measured_capillary_in_space{0.004, 0.7};
+inline constexpr CapillaryRange measured_capillary{0.003, 0.8}, measured_capillary_in_space{0.0035, 0.7};
 
 /// The radius that a lattice must resolve, m: the smallest semi-axis; of a biconcave cell and of a surface from a file half the
 /// length.
@@ -34,10 +34,14 @@ enum class MembraneCoupling {
 };
 inline constexpr const char* sharp_kernel = "sharp6";
 MembraneCoupling membrane_coupling(const scene::Numerics& numerics);
-/// The smallest radius of a cell, in spacings, for which errors were measured, and that leaves room for the coarser lattices of error bars.
-constexpr double least_cell_radius(MembraneCoupling coupling, int dimension) {
-  return coupling == MembraneCoupling::sharp && dimension == 3 ? 6.5 : 10;
-}
+/// The smallest radii of a cell, in spacings, that leave room for error bars.
+struct LeastRadii {
+  double run;                    ///< for which errors were measured, too
+  double companion;              ///< on the lattice of the companion for the lattice
+  double coarsest = companion;   ///< on that of the companion for the order
+  bool fine_companions = false;  ///< though they cost more than others do
+};
+LeastRadii least_radii(const scene::Scene& scene, MembraneCoupling coupling);
 
 /// What a lattice leaves in the shape and the motion of a cell with this resolved radius, in spacings; tau is the fluid's largest
 /// relaxation time.
@@ -56,6 +60,8 @@ double steady_flow_error(const scene::Domain& domain, double spacing);
 /// What it leaves in the start of a flow without cells.
 double flow_start_error(const scene::Domain& domain, double spacing, double tau);
 
+/// Strain from which on what happens in a motion keeps the target of auto; what happens before errs by as much strain at most.
+inline constexpr double first_events = 5;
 /// Relative error of strains at which something happens, at this simulated Reynolds number.
 double motion_error(double reynolds, int dimension);
 /// A cell on its way to a steady state, in two dimensions between walls.

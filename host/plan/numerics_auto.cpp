@@ -33,7 +33,6 @@ constexpr const char* origin = "numerics.auto";
 constexpr double nearly = 0.999;  ///< as much of a limit as is taken
 constexpr std::array relaxation_times{0.8, 1.0, 1.25, 1.5, 2.0, 2.5, 3.0};
 constexpr double least_of_layers = 0.01;  ///< of tau - 1/2 in a layer: twice the limit of the plan
-constexpr double first_events = 5;        ///< strain from which on what happens in a motion keeps the target
 constexpr double finest_radius = 80;      ///< spacings; more is never chosen
 constexpr int fewest_rows = 16;           ///< of a lattice without cells
 // Without a flow inertia only decides how membranes come to rest. The limits of the plan lower it where they must.
@@ -204,19 +203,13 @@ Problem::Problem(const scene::Scene& draft, const Json& written, const NumericsB
   momentum_time_ = scene_.fluid.density * length * length / scene::viscosity_range(scene_.fluid).least;
 }
 
-/// In three dimensions the corrections were measured for spheres that touch nothing, and with the sharp kernel.
+/// In three dimensions the corrections were measured for cells that touch nothing, and with the sharp kernel.
 MembraneCoupling Problem::chosen_coupling() const {
   const bool in_space = scene_.domain.depth.has_value();
   scene::Numerics chosen;
   const std::string kernel = numerics_.value("kernel", in_space ? sharp_kernel : chosen.kernel);
   bool corrected = bounds_.slip_correction && scene_.fluid.layers.empty();
-  if (in_space) {
-    const auto round = [&](const scene::CellPlacement& cell) {
-      return std::holds_alternative<scene::Sphere>(scene_.cell_types[cell.type].shape);
-    };
-    corrected = corrected && scene_.interactions.empty() && kernel == sharp_kernel &&
-                std::all_of(scene_.cells.begin(), scene_.cells.end(), round);
-  }
+  if (in_space) corrected = corrected && scene_.interactions.empty() && kernel == sharp_kernel;
   chosen.slip_correction = numerics_.value("slip_correction", corrected);
   chosen.kernel = kernel;
   return membrane_coupling(chosen);
@@ -227,8 +220,7 @@ std::vector<LatticeSize> Problem::lattices() const {
   if (!nodes.is_null()) return {nodes.get<LatticeSize>()};
   const LatticeSize coarsest = *coarsest_lattice(sides(scene_.domain));  // the draft has found one
   // Beyond the finest lattice the plan's limits may be exceeded, and it warns.
-  const double of_cells =
-      std::min(std::max(bounds_.least_radius, least_cell_radius(coupling_, scene_.domain.dimension())), finest_radius);
+  const double of_cells = std::min(std::max(bounds_.least_radius, least_radii(scene_, coupling_).run), finest_radius);
   const double least = has_cells_ ? of_cells : fewest_rows / 2.0;
   std::vector<LatticeSize> found;
   LatticeSize finest = coarsest;

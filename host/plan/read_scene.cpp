@@ -1,6 +1,7 @@
 #include "read_scene.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/text.hpp"
 #include "json/document.hpp"
@@ -42,7 +43,8 @@ NumericsBounds tightened(NumericsBounds bounds, const Plan& plan) {
     if (limit.margin >= 1 || !(limit.margin > 0)) continue;
     if (limit.remedied_by == RemediedBy::density_factor) {
       const auto stage = static_cast<std::size_t>(limit.stage);
-      const double kept = plan.scene->stages[stage].density_factor * limit.margin / to_spare;
+      const double kept =
+          plan.scene->stages[stage].density_factor * std::pow(limit.margin, 1 / limit.power_of_density) / to_spare;
       double& most =
           plan.scene->domain.depth
               ? bounds.most_density_factor_at.try_emplace({stage, plan.scene->numerics.tau}, kept).first->second

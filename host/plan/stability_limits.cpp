@@ -118,6 +118,8 @@ constexpr double bending_gain = 10, least_semi_implicit_tau = 0.6;
 constexpr double largest_held_strain = 0.15;
 // The companions of auto's error bars have spacings up to 1.55 times as long, on which forces are held over the third power of that.
 constexpr double held_on_companions = 3.7;
+// Red cells turn over later by up to half of that strain, a tenth of it in relative terms (docs/stability.md): under auto no more than
+// the target leaves a tenth of it to this.
 // The waves of two segments that the sharp kernels let grow are as slow as before; two cells bear 0.56 times the explicit
 // stiffness with roma3.
 constexpr double semi_implicit_loss = 0.5, nowhere = std::numeric_limits<double>::infinity();
@@ -299,6 +301,11 @@ double stretching_gain_of(const Plan& plan) {
                                                                                   : stretching_gain;
 }
 
+double largest_held_strain_of(const Plan& plan) {
+  if (!plan.numerics_choice) return largest_held_strain;
+  return std::min(largest_held_strain / held_on_companions, plan.numerics_choice->target);
+}
+
 }  // namespace
 
 const KernelFacts& kernel_named(const std::string& name) {
@@ -340,10 +347,10 @@ std::vector<Limit> find_limits(const Plan& plan) {
   // `upper`: the value must stay below the limit; otherwise above it.
   int stage_index = 0;
   const auto add = [&](const std::string& name, double value, double limit, bool upper, const std::string& remedy,
-                       RemediedBy remedied_by = RemediedBy::nothing) {
+                       RemediedBy remedied_by = RemediedBy::nothing, double power_of_density = 1) {
     if (!std::isfinite(value)) return;
     const double margin = upper ? (value > 0 ? limit / value : std::numeric_limits<double>::infinity()) : value / limit;
-    limits.push_back({name, value, limit, margin, remedy, remedied_by, stage_index});
+    limits.push_back({name, value, limit, margin, remedy, remedied_by, stage_index, power_of_density});
   };
   constexpr RemediedBy resolution = RemediedBy::resolution;
   const double tau = scene.numerics.tau;
@@ -452,9 +459,8 @@ std::vector<Limit> find_limits(const Plan& plan) {
         (gains ? bending_gain : loss) * membrane.bending.limit, true, softer, density);
     if (gains && rate > 0 && scene.domain.depth) {
       add("strain during which the semi-implicit step holds forces" + where,
-          membrane.steps_of_mean * rate * stage.units.time,
-          largest_held_strain / (plan.numerics_choice ? held_on_companions : 1), true,
-          lower + ": membranes turn against the forces that they hold", density);
+          membrane.steps_of_mean * rate * stage.units.time, largest_held_strain_of(plan), true,
+          lower + ": membranes turn against the forces that they hold", density, 2);
     }
     if (const double compression = prestress_compression(plan, stage); compression > 0) {
       add("compression of cells by their prestress, 3 T/a" + where, compression, 1e-3, true,
@@ -528,7 +534,7 @@ std::vector<Limit> find_limits(const Plan& plan) {
           resolution);
     }
     add("cell radius in lattice spacings", shape::smallest_radius(scene) / stage.units.length,
-        least_cell_radius(membrane_coupling(scene.numerics), scene.domain.dimension()), false,
+        least_radii(scene, membrane_coupling(scene.numerics)).run, false,
         "raise the resolution; results are converged from about 20", resolution);
     const bool space = scene.domain.depth.has_value();
     const std::string piece = space ? "edge" : "segment", pieces = space ? "triangles" : "segments";

@@ -29,6 +29,8 @@ struct Limit {
   std::string remedy;
   RemediedBy remedied_by = RemediedBy::nothing;
   int stage = 0;  ///< whose density factor is the remedy
+  /// The power of the density factor with which the value grows, or a little less than that.
+  double power_of_density = 1;
   NLOHMANN_DEFINE_TYPE_INTRUSIVE(Limit, name, value, limit, margin, remedy)
 };
 

@@ -187,6 +187,10 @@ TEST_CASE("what is told first is told with its bar, an angle in degrees; the wor
   passage.quantity.moment = true;
   CHECK(worst({first, second, passage})->name == "passage_strain_0_deg");
   CHECK(worst({first, second, passage})->error == Approx(0.005));
+  // A strain near 0 has no relative error of its own.
+  ErrorBar early{quantity("passage_strain_0_deg", 0.1), {}, 0.06, 0.08, ""};
+  early.quantity.moment = true, early.quantity.least_whole = 5;
+  CHECK(worst({early})->error == Approx(0.012));
 }
 
 TEST_CASE("a refined target is smaller by what was measured over the target, and leaves out what no lattice mends") {

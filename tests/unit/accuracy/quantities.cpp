@@ -41,6 +41,16 @@ TEST_CASE("only the first passage of a multiple counts, and rows without an angl
   CHECK(passages({0, 1, 2}, {0.5 * part, std::nan(""), 1.5 * part}, part).empty());
 }
 
+TEST_CASE("what a cell leaves at the start, up to rounding, it does not pass, but it does when it comes back") {
+  for (const double rounding : {0.0, -1e-16, 1e-16}) {
+    CHECK(passages({0, 1}, {rounding, 0.5 * part}, part).empty());
+    const std::vector<Passage> found = passages({0, 1, 2}, {rounding, 0.5 * part, -0.5 * part}, part);
+    REQUIRE(found.size() == 1);
+    CHECK(found[0].at == Approx(1.5));
+  }
+  CHECK(passages({0, 1}, {-1e-6 * part, 0.5 * part}, part).size() == 1);
+}
+
 TEST_CASE("the uncertainty of a passage holds the true one of a curve that bends between rows") {
   // tan(angle) = 1/x turns as a thin cell in shear does.
   std::vector<double> x, angle;

@@ -311,6 +311,7 @@ TEST_CASE(
       {"/cell_types/capsule/interior_viscosity=\"6 cP\""},
       {shape + R"({"biconcave": {"radius": "3.91 um"}})"},
       {shape + R"({"ellipsoid": {"semi_axes": ["4 um", "3 um", "2.5 um"]}})", domain_of(wide, walls), inside},
+      {R"(/interactions=[{"between": ["capsule", "capsule"], "model": "morse", "parameters": {"depth": "1e-8 J/m2"}}])"},
       in_tube};
   for (const auto& changes : cases) {
     for (const char* of : {"steady", "motion"}) {
@@ -326,9 +327,9 @@ TEST_CASE(
         CHECK(estimated_cost(scene) >= cost * 0.98);  // factors are rounded to three digits
         CHECK(scene.domain.nodes[1] >= rows);
         CHECK(scene.numerics.area_correction);
-        const bool round = std::holds_alternative<Sphere>(scene.cell_types[0].shape);
-        CHECK(scene.numerics.slip_correction == round);
-        CHECK(scene.numerics.kernel == (round ? "sharp6" : "peskin4"));
+        const bool alone = scene.interactions.empty();  // with contacts the sharp kernel was not measured
+        CHECK(scene.numerics.slip_correction == alone);
+        CHECK(scene.numerics.kernel == (alone ? "sharp6" : "peskin4"));
         cost = estimated_cost(scene);
         rows = scene.domain.nodes[1];
       }
@@ -399,6 +400,27 @@ TEST_CASE("limits of the plan bound the choice in three dimensions, where stiff 
   CHECK(plan.semi_implicit);
   for (const Limit& limit : find_limits(plan))
     if (limit.remedied_by != RemediedBy::nothing) CHECK(limit.margin >= 1);
+}
+
+TEST_CASE(
+    "a tenth of the target is the most by which forces that are held may delay what cells do, and steps are not shorter") {
+  const std::string stiff = R"(/cell_types/capsule/membrane/0={"model": "skalak", "parameters": )"
+                            R"({"shear_modulus": "5e-6 N/m", "area_dilation": 200}})";
+  for (const double target : {0.05, 0.02, 0.01}) {
+    const ReadScene read = chosen({target_of(target, "steady"), stiff}, in_space);
+    INFO(target);
+    const Catalog catalog = shipped_plugins(read.scene);
+    const Plan plan = make_plan(read.scene, catalog, read.numerics_choice);
+    double strain = 0;
+    for (const Limit& limit : find_limits(plan)) {
+      if (limit.name.starts_with("strain during which")) {
+        strain = limit.value;
+        CHECK(limit.limit == Approx(std::min(target, 0.15 / 3.7)));
+      }
+    }
+    CHECK(strain <= std::min(target, 0.15 / 3.7));
+    CHECK(strain > 0.85 * std::min(target, 0.15 / 3.7));
+  }
 }
 
 TEST_CASE("without a lattice that fits three sides auto says what to write, and nothing else is wrong") {
