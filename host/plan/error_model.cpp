@@ -38,6 +38,8 @@ constexpr double by_compression[2] = {0.065, 0.15};
 constexpr double slip_at_ten[2] = {0.014, 0.025};
 // A fluid that is simulated denser: strains at which things happen are wrong by this share of the Reynolds number.
 constexpr double motion_by_reynolds = 0.024;
+// Of a thin cell that is placed along the flow and slowly leaves that position: within this angle, rad.
+constexpr double motion_from_along_the_flow = 0.076, along_the_flow = 0.5;
 // What a cell and the walls make of each other dies out with the slowest mode of the channel's fluid, within a strain of T = Re
 // (H / 2 pi a)^2. Shapes: 0.5 (6.4 a/H)^3 exp(-1.2 strain/T), and 0.3 Re times what is left of the membrane's own relaxation. The
 // relative viscosity, over the second half of the strain: 1.7 exp(-0.7 strain/T) of what cells add, which is twice their share of the area.
@@ -143,7 +145,13 @@ double flow_start_error(const scene::Domain& domain, double spacing, double tau)
   return (domain.is_duct() ? start_up_in_duct : start_up) * shape * shape;
 }
 
-double motion_error(double reynolds, int dimension) {
+double motion_error(double reynolds, const scene::Scene& scene) {
+  if (scene.cells.size() == 1 && !scene.domain.depth) {
+    const scene::CellPlacement& cell = scene.cells[0];
+    const bool along = std::abs(std::remainder(cell.angle, std::numbers::pi)) < in_plane::along_the_flow;
+    if (along && is_thin(scene.cell_types[cell.type].shape)) return in_plane::motion_from_along_the_flow * reynolds;
+  }
+  const int dimension = scene.domain.dimension();
   return (dimension == 2 ? in_plane::motion_by_reynolds : in_space::motion_by_reynolds) * reynolds;
 }
 

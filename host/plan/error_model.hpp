@@ -62,8 +62,8 @@ double flow_start_error(const scene::Domain& domain, double spacing, double tau)
 
 /// Strain from which on what happens in a motion keeps the target of auto; what happens before errs by as much strain at most.
 inline constexpr double first_events = 5;
-/// Relative error of strains at which something happens, at this simulated Reynolds number.
-double motion_error(double reynolds, int dimension);
+/// Relative error of strains at which something happens to a scene's cells, at this simulated Reynolds number.
+double motion_error(double reynolds, const scene::Scene& scene);
 /// A cell on its way to a steady state, in two dimensions between walls.
 struct SteadyApproach {
   double reynolds, strain, viscosity_ratio;

@@ -347,10 +347,9 @@ double Problem::resolution_error(double spacing, double tau) const {
 ErrorShares Problem::error_of(const Flow& flow, double density_factor, double compression) const {
   ErrorShares error;
   if (!has_cells_) return error;
-  const int dimension = scene_.domain.dimension();
   if (const double reynolds = momentum_time_ * flow.rate * density_factor; reynolds > 0) {
     error.inertia = steady_ ? steady_error_at(reynolds) : 0;
-    if (!steady_ || !can_be_steady_) error.inertia = std::max(error.inertia, motion_error(reynolds, dimension));
+    if (!steady_ || !can_be_steady_) error.inertia = std::max(error.inertia, motion_error(reynolds, scene_));
     error.inertia += stiffness_error(compression * density_factor, reynolds, viscosity_ratio_);
   }
   if (const FlowStart start{density_factor * flow.lag, flow.driven}; start.delay > 0) {
@@ -502,7 +501,7 @@ NumericsChoice Problem::chosen(const Trial& best) const {
           "has no second moment: what the slip correction leaves is a fifth of that of peskin4");
     set("slip_correction", corrected,
         corrected  ? "takes the first-order error of the immersed boundary out"
-        : in_space ? "left out: in three dimensions it was measured for spheres that touch nothing"
+        : in_space ? "left out: in three dimensions it was measured for cells that touch nothing"
                    : "left out, for plasma between cells drains with it, and some that attract each other strongly "
                      "then become so thin that they cross themselves");
     set("area_correction", true, in_space ? "cells keep their volumes" : "cells keep their areas");
@@ -536,8 +535,7 @@ std::string Problem::doubt_about(const Trial& best) const {
   if (viscosity_ratio_ < 0.99 || viscosity_ratio_ > 1.01 * measured_ratio)
     return unknown("viscosity ratio", viscosity_ratio_, 1, measured_ratio);
   const bool in_space = scene_.domain.depth.has_value();
-  const bool by_capillary = in_space ? coupling_ == MembraneCoupling::sharp : has_round_cells_;
-  if (!by_capillary || !bounds_.recovery) return {};
+  if ((in_space && coupling_ != MembraneCoupling::sharp) || !bounds_.recovery) return {};
   const auto& [least, most] = capillary_;
   const auto& [least_measured, most_measured] = in_space ? measured_capillary_in_space : measured_capillary;
   if (in_space && !std::isfinite(most))
