@@ -72,6 +72,34 @@ TEST_CASE(
   CHECK(dense.runs.back().scene["numerics"]["density_factor"] == 3125);
 }
 
+TEST_CASE(
+    "in three dimensions thin cells with the sharp kernel have companions of seven spacings a radius, others coarser ones") {
+  const auto chosen = [](const std::string& nodes, const std::vector<std::string>& changes) {
+    std::vector<std::string> overrides{"/domain/nodes=[" + nodes + "," + nodes + "," + nodes + "]"};
+    overrides.insert(overrides.end(), changes.begin(), changes.end());
+    return choose_companions(
+        plan::read_scene(std::string(ROULEAU_PHYSICS_SCENES) + "/biconcave-capsule-3d.json", overrides),
+        {.run_s = long_run_s, .moments = true});
+  };
+  const double radius = 10.5;  // on 84 nodes
+  const Companions thin = chosen("84", {});
+  CHECK(thin.why_none.empty());
+  CHECK(radius / thin.refinement >= 7);
+  CHECK(radius / thin.coarsest >= 5.5);
+  CHECK(thin.density == 2);
+  CHECK(thin.expected_share > share);
+  CHECK(thin.expected_share < 2 * share);
+  for (const char* other :
+       {R"(/cell_types/rbc/shape={"sphere": {"radius": "3.91 um"}})", "/numerics/slip_correction=false"}) {
+    INFO(other);
+    const Companions usual = chosen("84", {other});
+    CHECK(usual.why_none.empty());
+    CHECK(usual.expected_share <= share);
+    CHECK(radius / usual.refinement < 7);
+  }
+  CHECK_THAT(chosen("64", {}).why_none, Catch::Matchers::Contains("fewer than 7"));
+}
+
 TEST_CASE("companions whose fluid must not give way take shorter steps") {
   const scene::Scene scene =
       plan::read_scene(std::string(ROULEAU_PHYSICS_SCENES) + "/capsule.json",
