@@ -95,11 +95,11 @@ MembraneCoupling membrane_coupling(const scene::Numerics& numerics) {
 }
 
 LeastRadii least_radii(const scene::Scene& scene, MembraneCoupling coupling) {
-  if (!scene.domain.depth || coupling != MembraneCoupling::sharp) return {.run = 10, .companion = 4};
+  if (!scene.domain.depth || coupling != MembraneCoupling::sharp) return {};
   const bool spheres = std::all_of(scene.cells.begin(), scene.cells.end(), [&](const scene::CellPlacement& cell) {
     return std::holds_alternative<scene::Sphere>(scene.cell_types[cell.type].shape);
   });
-  if (spheres) return {.run = 6.5, .companion = 4};
+  if (spheres) return {.run = 6.5};
   // Of what a denser fluid does to red cells of viscosity ratio 5, 5.9 spacings show 0.4, 6.8 and 7.8 show 0.6 and 0.8.
   return {.run = 10, .companion = 7, .coarsest = 5.5, .fine_companions = true};
 }

@@ -36,9 +36,9 @@ inline constexpr const char* sharp_kernel = "sharp6";
 MembraneCoupling membrane_coupling(const scene::Numerics& numerics);
 /// The smallest radii of a cell, in spacings, that leave room for error bars.
 struct LeastRadii {
-  double run;                    ///< for which errors were measured, too
-  double companion;              ///< on the lattice of the companion for the lattice
-  double coarsest = companion;   ///< on that of the companion for the order
+  double run = 10;               ///< for which errors were measured, too
+  double companion = 4;          ///< on the lattice of the companion for the lattice
+  double coarsest = 4;           ///< on that of the companion for the order
   bool fine_companions = false;  ///< though they cost more than others do
 };
 LeastRadii least_radii(const scene::Scene& scene, MembraneCoupling coupling);
