@@ -175,7 +175,7 @@ struct CoarserLattices {
   [[nodiscard]] double refinement(int part) const { return static_cast<double>(parts_) / part; }
   [[nodiscard]] double radius(int part) const { return radius_ / refinement(part); }
   [[nodiscard]] double least_radius() const { return least_.companion; }
-  [[nodiscard]] bool wants_fine_ones() const { return least_.fine_companions; }
+  [[nodiscard]] bool wants_fine_ones() const { return least_.companion > plan::LeastRadii{}.companion; }
   [[nodiscard]] LatticeSize nodes(int part) const {
     LatticeSize size = nodes_;
     for (int& nodes : size) nodes = nodes / parts_ * part;
@@ -300,10 +300,10 @@ Companions choose_companions(const scene::Scene& scene, const RunCost& cost, dou
   };
   Choice choice = finest_within(affordable, light);
   const bool too_coarse = choice.fine == 0 || lattices.radius(choice.fine) < lattices.least_radius();
-  if (too_coarse && lattices.wants_fine_ones())
-    choice = finest_within(at_most_beyond * affordable, dense);  // which takes half as many steps
-  else if (too_coarse && std::isfinite(most_compressed))
-    choice = finest_within(at_most_beyond * affordable, light);
+  if (too_coarse && (lattices.wants_fine_ones() || std::isfinite(most_compressed))) {
+    // A dense fluid takes half as many steps as a light one.
+    choice = finest_within(at_most_beyond * affordable, lattices.wants_fine_ones() ? dense : light);
+  }
   const int fine = choice.fine, coarse = choice.coarse;
   const double tau = choice.tau;
   const Changes& changes = choice.changes;

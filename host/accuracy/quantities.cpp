@@ -175,15 +175,20 @@ void add_partings(std::vector<Quantity>& all, const Json& stages, double strain_
   }
 }
 
+/// The angle at which a cell was placed: the multiple of `part` that it is up to rounding, for what a cell leaves it does not pass.
+double without_rounding(double angle, double part) {
+  constexpr double rounding = 1e-9;
+  const double nearest = part * std::round(angle / part);
+  return std::abs(angle - nearest) < rounding ? nearest : angle;
+}
+
 }  // namespace
 
 std::vector<Passage> passages(const std::vector<double>& x, const std::vector<double>& angle, double part) {
-  constexpr double rounding = 1e-9;  // of an angle at which a cell was placed: what it leaves it does not pass
   std::vector<Passage> found;
   std::set<int> passed;
   for (std::size_t i = 0; i + 1 < angle.size(); ++i) {
-    const double nearest = part * std::round(angle[i] / part), to = angle[i + 1];
-    const double from = i == 0 && std::abs(angle[i] - nearest) < rounding ? nearest : angle[i];
+    const double from = i == 0 ? without_rounding(angle[i], part) : angle[i], to = angle[i + 1];
     if (!std::isfinite(from) || !std::isfinite(to) || from == to) continue;
     const bool falls = to < from;
     // Multiples in (from, to], in the order in which they are passed.

@@ -85,6 +85,14 @@ double between(const ShapeErrors& pair, double viscosity_ratio, double radius) {
 
 bool is_thin(const scene::Shape& shape) { return std::holds_alternative<scene::Biconcave>(shape); }
 
+/// Whether a thin cell is alone and nearly along the flow.
+bool begins_along_the_flow(const scene::Scene& scene) {
+  if (scene.cells.size() != 1) return false;
+  const scene::CellPlacement& cell = scene.cells[0];
+  return is_thin(scene.cell_types[cell.type].shape) &&
+         std::abs(std::remainder(cell.angle, std::numbers::pi)) < in_plane::along_the_flow;
+}
+
 double thin_growth(double tau) { return 1 + in_plane::thin_growth_with_tau * std::max(0.0, tau - 1); }
 
 }  // namespace
@@ -101,7 +109,7 @@ LeastRadii least_radii(const scene::Scene& scene, MembraneCoupling coupling) {
   });
   if (spheres) return {.run = 6.5};
   // Of what a denser fluid does to red cells of viscosity ratio 5, 5.9 spacings show 0.4, 6.8 and 7.8 show 0.6 and 0.8.
-  return {.run = 10, .companion = 7, .coarsest = 5.5, .fine_companions = true};
+  return {.run = 10, .companion = 7, .coarsest = 5.5};
 }
 
 double resolved_radius(const scene::Shape& shape) {
@@ -146,13 +154,9 @@ double flow_start_error(const scene::Domain& domain, double spacing, double tau)
 }
 
 double motion_error(double reynolds, const scene::Scene& scene) {
-  if (scene.cells.size() == 1 && !scene.domain.depth) {
-    const scene::CellPlacement& cell = scene.cells[0];
-    const bool along = std::abs(std::remainder(cell.angle, std::numbers::pi)) < in_plane::along_the_flow;
-    if (along && is_thin(scene.cell_types[cell.type].shape)) return in_plane::motion_from_along_the_flow * reynolds;
-  }
-  const int dimension = scene.domain.dimension();
-  return (dimension == 2 ? in_plane::motion_by_reynolds : in_space::motion_by_reynolds) * reynolds;
+  if (scene.domain.depth) return in_space::motion_by_reynolds * reynolds;
+  return (begins_along_the_flow(scene) ? in_plane::motion_from_along_the_flow : in_plane::motion_by_reynolds) *
+         reynolds;
 }
 
 double steady_error(const SteadyApproach& approach) {

@@ -19,7 +19,7 @@ struct RecoveryRates {
 struct CapillaryRange {
   double least, most;
 };
-/// Those of round cells for which errors were measured, in two dimensions and in three.
+/// Those for which errors were measured, in two dimensions and in three.
 inline constexpr CapillaryRange measured_capillary{0.003, 0.8}, measured_capillary_in_space{0.0035, 0.7};
 
 /// The radius that a lattice must resolve, m: the smallest semi-axis; of a biconcave cell and of a surface from a file half the
@@ -34,12 +34,11 @@ enum class MembraneCoupling {
 };
 inline constexpr const char* sharp_kernel = "sharp6";
 MembraneCoupling membrane_coupling(const scene::Numerics& numerics);
-/// The smallest radii of a cell, in spacings, that leave room for error bars.
+/// The smallest radii of a cell, in spacings, that leave room for error bars; as they are for most cells.
 struct LeastRadii {
-  double run = 10;               ///< for which errors were measured, too
-  double companion = 4;          ///< on the lattice of the companion for the lattice
-  double coarsest = 4;           ///< on that of the companion for the order
-  bool fine_companions = false;  ///< though they cost more than others do
+  double run = 10;       ///< for which errors were measured, too
+  double companion = 4;  ///< on the lattice of the companion for the lattice
+  double coarsest = 4;   ///< on that of the companion for the order
 };
 LeastRadii least_radii(const scene::Scene& scene, MembraneCoupling coupling);
 

@@ -118,8 +118,6 @@ constexpr double bending_gain = 10, least_semi_implicit_tau = 0.6;
 constexpr double largest_held_strain = 0.15;
 // The companions of auto's error bars have spacings up to 1.8 times as long, on which forces are held over the third power of that.
 constexpr double held_on_companions = 6;
-// Red cells turn over later by up to half of that strain, a tenth of it in relative terms (docs/stability.md): under auto no more than
-// the target leaves a tenth of it to this.
 // The waves of two segments that the sharp kernels let grow are as slow as before; two cells bear 0.56 times the explicit
 // stiffness with roma3.
 constexpr double semi_implicit_loss = 0.5, nowhere = std::numeric_limits<double>::infinity();
@@ -301,6 +299,8 @@ double stretching_gain_of(const Plan& plan) {
                                                                                   : stretching_gain;
 }
 
+/// Red cells turn over later by up to half of that strain, at a strain of five (docs/stability.md, "Held forces come late"): with no more
+/// than the target of auto that is a tenth of the target.
 double largest_held_strain_of(const Plan& plan) {
   if (!plan.numerics_choice) return largest_held_strain;
   return std::min(largest_held_strain / held_on_companions, plan.numerics_choice->target);
