@@ -44,7 +44,7 @@ int main(int argc, char** argv) {
   std::string only, kernel, scene;
   double seconds = 1;
   long steps = 0;
-  int nx = 256, ny = 128, ranks = 0, rank = 0;
+  int nx = 256, ny = 128, cube = 0, ranks = 0, rank = 0;
   options::options_description description("options");
   auto add = description.add_options();
   add("check", options::bool_switch(&check), "no timing: check every kernel against an exact solution");
@@ -58,6 +58,8 @@ int main(int argc, char** argv) {
   add("steps", options::value(&steps)->default_value(0)->value_name("N"), "with --kernel: its steps");
   add("nx", options::value(&nx)->default_value(256), "with --kernel: nodes along x, a multiple of 16");
   add("ny", options::value(&ny)->default_value(128), "with --kernel: nodes along y");
+  add("cube", options::value(&cube)->value_name("N"),
+      "with --kernel plugin or plain: three dimensions, N^3 nodes, N a multiple of 16");
   add("f32", options::bool_switch(&f32), "with --kernel: single precision");
   add("force", options::bool_switch(&force), "with --kernel: every node has a force and writes its velocity");
   add("ranks", options::value(&ranks)->value_name("N"),
@@ -74,6 +76,10 @@ int main(int argc, char** argv) {
     if (values.count("help") != 0) {
       std::cout << "Measures the speed of Rouleau; docs/performance.md has a table. Let the machine do nothing else.\n"
                 << description;
+      return 0;
+    }
+    if (!kernel.empty() && cube != 0) {
+      rouleau::bench::run_space_kernel(kernel, f32, force, cube, steps);
       return 0;
     }
     if (!kernel.empty()) {

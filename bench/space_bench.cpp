@@ -200,6 +200,22 @@ void table_row(int n, bool forced, double seconds) {
   std::fflush(stdout);
 }
 
+template <class T>
+void run_one(const std::string& kernel, bool force, int n, long steps) {
+  const auto advance = [&](auto& fluid) {
+    const Candidate all = candidate(kernel.c_str(), fluid);
+    for (long i = 0; i < steps; ++i) {
+      all.step({});
+      all.between({});
+    }
+  };
+  const auto plugin = plugin_space<T>(force, n);
+  if (kernel == "plugin") return advance(*plugin);
+  BareSpace<T> bare(force, n);
+  bare.set(*plugin);
+  advance(bare);
+}
+
 /// The populations of both after some steps, an even number, and with a force the velocities.
 template <class T>
 void check_kernels(const char* name) {
@@ -245,6 +261,15 @@ void check_kernels(const char* name) {
 void check_space() {
   space::check_kernels<double>("f64");
   space::check_kernels<float>("f32");
+}
+
+void run_space_kernel(const std::string& kernel, bool f32, bool force, int n, long steps) {
+  if (kernel != "plugin" && kernel != "plain") throw std::invalid_argument("in a cube there are plugin and plain");
+  if (f32) {
+    space::run_one<float>(kernel, force, n, steps);
+  } else {
+    space::run_one<double>(kernel, force, n, steps);
+  }
 }
 
 void space_table(double seconds) {
