@@ -235,10 +235,12 @@ struct CollisionSweep {
       Node<Set, S, forced, Inertia> node;
       Set::for_each_velocity([&](auto q) { node.f[q] = S::load(at[q] + x); });
       if constexpr (forced) {
+#pragma GCC unroll 3
         for (int k = 0; k < dimension; ++k) node.force[k] = S::load(from[k] + (has_force ? x : 0));
       }
       node.compute_moments();
       if constexpr (velocity) {
+#pragma GCC unroll 3
         for (int k = 0; k < dimension; ++k) node.velocity[k].store(to[k] + (has_velocity ? x : 0));
         // Here and not among the populations, which leaves more registers to the rest, of which three dimensions have few.
         if constexpr (dimension == 3) asm volatile("" ::: "memory");  // NOLINT(hicpp-no-assembler)
@@ -339,9 +341,12 @@ struct CollisionLoopOn {
   /// Whether what leaves a node lies where its opposite came from, as where a lattice streams in place: then half as many
   /// pointers are read.
   ROULEAU_ALWAYS_INLINE static bool in_place(const Block& block) {
-    bool same = true;
-    Set::for_each_velocity([&](auto q) { same &= block.out[q] == block.in[Set::opposite[q]]; });
-    return same;
+    std::uintptr_t apart = 0;
+    Set::for_each_velocity([&](auto q) {
+      apart |=
+          reinterpret_cast<std::uintptr_t>(block.out[q]) ^ reinterpret_cast<std::uintptr_t>(block.in[Set::opposite[q]]);
+    });
+    return apart == 0;
   }
 
   /// Nodes from the first one on, pack by pack, by way of copies that lie in place. The last pack is padded: all nodes run
