@@ -51,6 +51,11 @@ struct ForeignException : std::runtime_error {
   }
 };
 
+/// Of the exception that is being handled. Apart from call_foreign(), which is called for each row of a lattice.
+[[noreturn, gnu::cold, gnu::noinline]] inline void throw_foreign(const std::string& model, const char* function) {
+  throw ForeignException(model, function);
+}
+
 /// Calls call() as a function of a model's. Throws ForeignException for whatever it throws.
 template <class Call>
 auto call_foreign(const std::string& model, const char* function, Call&& call) {
@@ -58,7 +63,7 @@ auto call_foreign(const std::string& model, const char* function, Call&& call) {
   try {
     return call();
   } catch (...) {
-    throw ForeignException(model, function);
+    throw_foreign(model, function);
   }
 }
 

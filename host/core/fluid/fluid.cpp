@@ -244,38 +244,27 @@ void Fluid<T, Set>::clear_force(Range rows) {
 }
 
 template <class T, class Set>
-void Fluid<T, Set>::collide_row(int i, const Row& row, const T* (&in)[velocity_count], T* (&out)[velocity_count]) {
-  const void* const self = collision_.self.get();
-  const T* body_force[dimension];
-  for (int k = 0; k < dimension; ++k) body_force[k] = body_force_row_[k].data();
-  const T* const* const background = body_force_row_[0].empty() ? nullptr : body_force;
-  const T* force[dimension];
-  T* velocity[dimension];
-  Block block{};
-  block.struct_size = sizeof(Block);
-  block.in = in;
-  block.out = out;
+void Fluid<T, Set>::collide_row(int i, const Row& row, Call& call) {
   const bool layer = in_layer(row);
   int at = 0;  // where the pointers stand
   const auto move_to = [&](int x) {
     if (x == at) return;
-    Set::for_each_velocity([&](auto q) { in[q] += x - at, out[q] += x - at; });
+    Set::for_each_velocity([&](auto q) { call.in[q] += x - at, call.out[q] += x - at; });
     at = x;
   };
+  Block& block = call.block;
   mask_.for_spans(i, [&](const MaskSpan& span) {
     move_to(span.begin);
     block.count = static_cast<std::uint32_t>(span.end - span.begin);
-    if (span.active && setting_.membranes) {
-      for (int k = 0; k < dimension; ++k) force[k] = velocity[k] = force_[k].row(row) + span.begin;
-      block.force = force;
-      block.velocity = velocity;
-      block.relaxation_rate = setting_.viscosity_contrast || layer ? relaxation_rate_.row(row) + span.begin : nullptr;
-    } else {
-      block.force = background;
-      block.velocity = nullptr;
-      block.relaxation_rate = layer ? relaxation_rate_.row(row) + span.begin : nullptr;
+    const bool active = span.active && setting_.membranes;
+    if (active) {
+      for (int k = 0; k < dimension; ++k) call.force[k] = force_[k].row(row) + span.begin;
     }
-    call_foreign(collision_.id, "collide", [&] { collide_(self, &block); });
+    block.force = active ? call.force : call.background;
+    block.velocity = active ? call.force : nullptr;
+    block.relaxation_rate =
+        layer || (active && setting_.viscosity_contrast) ? relaxation_rate_.row(row) + span.begin : nullptr;
+    call_foreign(collision_.id, "collide", [&] { collide_(collision_.self.get(), &block); });
   });
   move_to(0);
 }
@@ -314,28 +303,32 @@ template <class T, class Set>
 void Fluid<T, Set>::step(Range rows) {
   const bool even = parity_ == Parity::even;
   const bool frame_moves = frame_ != std::array<double, dimension>{};
-  const T* in[velocity_count];
-  T* out[velocity_count];
+  Call call;
+  call.block = {};
+  call.block.struct_size = sizeof(Block);
+  call.block.in = call.in, call.block.out = call.out;
+  for (int k = 0; k < dimension; ++k) call.body_force[k] = body_force_row_[k].data();
+  call.background = body_force_row_[0].empty() ? nullptr : call.body_force;
   Row last{};
-  const int first = even ? rows.begin : rows.end - 1, way = even ? 1 : -1;
-  for (int k = 0; k < rows.end - rows.begin; ++k) {
+  const int count = rows.end - rows.begin, first = even ? rows.begin : rows.end - 1, way = even ? 1 : -1;
+  for (int k = 0; k < count; ++k) {
     const int i = first + way * k;
     const Row row = lattice_.row(i);
     if (k == 0) {
-      lattice_.row_pointers(parity_, row, in, out);
+      lattice_.row_pointers(parity_, row, call.in, call.out);
     } else {
-      lattice_.next_row_pointers(parity_, last, row, in, out);
+      lattice_.next_row_pointers(parity_, last, row, call.in, call.out);
     }
     last = row;
     if (even) receive_row(lattice_, row);
     if constexpr (dimension == 3) {
       if (links_) links_->before_step(parity_, i);
     }
-    collide_row(i, row, in, out);
+    collide_row(i, row, call);
     if constexpr (dimension == 3) {
       if (links_) links_->after_step(parity_, i), rest_solid(i, row);
     }
-    if (frame_moves) add_moving_frame(i, row, out);
+    if (frame_moves) add_moving_frame(i, row, call.out);
     add_wall_momentum(lattice_, row, setting_.walls);
     if (even) send_row(lattice_, row);
     if (setting_.membranes && reaches_border(i, row)) {

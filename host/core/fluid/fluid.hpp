@@ -202,8 +202,18 @@ class Fluid {
   [[nodiscard]] std::vector<double> means_of_rows(Function add) const;
   /// Whether membranes may reach the halo that belongs to row i.
   [[nodiscard]] bool reaches_border(int i, const Row& row) const;
-  /// Pointers to the populations of row i, as Lattice::row_pointers gives them; they come back unchanged.
-  void collide_row(int i, const Row& row, const T* (&in)[velocity_count], T* (&out)[velocity_count]);
+  using Block = std::conditional_t<std::is_same_v<T, double>, rouleau_collision_block_f64, rouleau_collision_block_f32>;
+  /// What the collision operator is called with, row after row.
+  struct Call {
+    const T* in[velocity_count];  ///< of a row, as Lattice::row_pointers gives them
+    T* out[velocity_count];
+    T* force[dimension];  ///< where nodes are active; the velocity is written over it
+    const T* body_force[dimension];
+    const T* const* background;  ///< the force elsewhere: `body_force`, or null
+    Block block;
+  };
+  /// `in` and `out` are those of row i, and come back unchanged.
+  void collide_row(int i, const Row& row, Call& call);
   /// Sets what membranes have spread to the solid nodes of row i to 0: their velocity.
   void rest_solid(int i, const Row& row);
   /// The populations have been set.
@@ -216,7 +226,6 @@ class Fluid {
   void with_arrays(Parity parity, Function function);
   void send_halo(Parity parity, bool early);
 
-  using Block = std::conditional_t<std::is_same_v<T, double>, rouleau_collision_block_f64, rouleau_collision_block_f32>;
   FluidSetting<dimension> setting_;
   Ranks<dimension> ranks_;
   CollisionOperator collision_;
