@@ -135,6 +135,11 @@ class BareSpace {
       }
       last = row;
       if (even) receive_row(lattice_, row);
+      if (lattice_.fetches_ahead() && k + 1 < rows.end - rows.begin) {
+        const auto next = lattice_.row(even ? rows.begin + k + 1 : rows.end - 2 - k);
+        lattice_.fetch_row(task_.in, row, next);
+        for (int c = 0; c < 3 && force_[0].allocated(); ++c) core::fetch(force_[c].row(next), lattice_.size(0));
+      }
       for (int c = 0; c < 3 && force_[0].allocated(); ++c) task_.force[c] = force_[c].row(row);
       row_(&task_);
       if (even) send_row(lattice_, row);

@@ -270,6 +270,13 @@ void Fluid<T, Set>::collide_row(int i, const Row& row, Call& call) {
 }
 
 template <class T, class Set>
+void Fluid<T, Set>::fetch_row(int i, const Call& call, const Row& from) const {
+  const Row row = lattice_.row(i);
+  lattice_.fetch_row(call.in, from, row);
+  for (int k = 0; k < dimension && setting_.membranes && mask_.any(i); ++k) fetch(force_[k].row(row), nx());
+}
+
+template <class T, class Set>
 void Fluid<T, Set>::rest_solid(int i, const Row& row) {
   if (!setting_.membranes || !mask_.marked(i)) return;
   mask_.for_solid(i, [&](int begin, int end) {
@@ -310,6 +317,7 @@ void Fluid<T, Set>::step(Range rows) {
   for (int k = 0; k < dimension; ++k) call.body_force[k] = body_force_row_[k].data();
   call.background = body_force_row_[0].empty() ? nullptr : call.body_force;
   Row last{};
+  const bool fetches = lattice_.fetches_ahead();
   const int count = rows.end - rows.begin, first = even ? rows.begin : rows.end - 1, way = even ? 1 : -1;
   for (int k = 0; k < count; ++k) {
     const int i = first + way * k;
@@ -324,6 +332,7 @@ void Fluid<T, Set>::step(Range rows) {
     if constexpr (dimension == 3) {
       if (links_) links_->before_step(parity_, i);
     }
+    if (fetches && k + 1 < count) fetch_row(i + way, call, row);
     collide_row(i, row, call);
     if constexpr (dimension == 3) {
       if (links_) links_->after_step(parity_, i), rest_solid(i, row);

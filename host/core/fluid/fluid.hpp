@@ -214,6 +214,8 @@ class Fluid {
   };
   /// `in` and `out` are those of row i, and come back unchanged.
   void collide_row(int i, const Row& row, Call& call);
+  /// Asks for what collide_row() will read of row i, when the call has the pointers of another one.
+  void fetch_row(int i, const Call& call, const Row& from) const;
   /// Sets what membranes have spread to the solid nodes of row i to 0: their velocity.
   void rest_solid(int i, const Row& row);
   /// The populations have been set.

@@ -57,6 +57,11 @@ class Lattice {
   void row_pointers(Parity parity, const Row& row, In& in, Out& out);
   /// The same given those of another row: quicker, row after row.
   void next_row_pointers(Parity parity, const Row& from, const Row& row, In& in, Out& out);
+  /// Whether it is worth asking for rows ahead of time: in three dimensions, where rows are too short for the processor
+  /// to find out by itself what comes next, if the lattice leaves the cache between two steps.
+  [[nodiscard]] bool fetches_ahead() const { return dimension == 3 && bytes() >= (std::size_t{8} << 20); }
+  /// Asks for the populations of row `next`, given the pointers of another one.
+  void fetch_row(const In& in, const Row& from, const Row& next) const;
   /// The populations alone, for observers; the halo must be complete (Fluid::settle).
   void row_pointers(Parity parity, const Row& row, In& in) const;
 
@@ -129,6 +134,13 @@ inline void Lattice<T, Set>::next_row_pointers(Parity parity, const Row& from, c
   }
   const std::ptrdiff_t way = offset(0, row) - offset(0, from);
   Set::for_each_velocity([&](auto q) { in[q] += way, out[q] += way; });
+}
+
+template <class T, class Set>
+inline void Lattice<T, Set>::fetch_row(const In& in, const Row& from, const Row& next) const {
+  const std::ptrdiff_t way = offset(0, next) - offset(0, from);
+  // Slot after slot: memory gives neighbouring lines faster than lines of all slots in turn.
+  for (int q = 0; q < velocity_count; ++q) fetch(in[q] + way, size_[0]);
 }
 
 extern template class Lattice<float, D2Q9>;

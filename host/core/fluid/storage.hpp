@@ -40,4 +40,15 @@ class Storage {
   std::unique_ptr<T[], Free> data_;
 };
 
+/// Asks for `count` values, soon to be read and written, to be brought into the second-level cache. Nothing waits for
+/// them, and no address is wrong.
+template <class T>
+inline void fetch(const T* from, int count) {
+  constexpr int line = 64 / sizeof(T);
+  const T* const end = from + count + line;  // one line more: `from` may lie within one
+  for (; from < end; from += line) __builtin_prefetch(from, 0, 2);
+  // A function of nothing else has no effect, for all that g++ 12 knows, which then leaves its calls out.
+  asm volatile("");  // NOLINT(hicpp-no-assembler)
+}
+
 }  // namespace rouleau::core
