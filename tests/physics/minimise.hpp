@@ -13,6 +13,7 @@ struct Minimising {
   double gradient_at_end;  ///< the search ends when no component is larger
   double longest_step;     ///< of any component, at once
   double rounding = 1e-9;  ///< of values, and how far they may jump without a gradient that says so
+  int most_steps = 20000;
 };
 
 /// Limited-memory BFGS with halved steps (Nocedal and Wright, Numerical Optimization, algorithms 7.4 and 7.5; where values
@@ -24,12 +25,11 @@ double minimise(Eigen::VectorXd& place, const Minimising& how, ValueOf value_of)
     Eigen::VectorXd step, change;
     double product;
   };
-  constexpr int most_steps = 20000;
-  constexpr double least_length = 1e-12, decrease = 1e-4;
+  constexpr double least_length = 1e-7, decrease = 1e-4;
   std::deque<Pair> pairs;
   Eigen::VectorXd gradient, next, next_gradient;
   double value = value_of(place, gradient);
-  for (int steps = 0; steps < most_steps && gradient.lpNorm<Eigen::Infinity>() > how.gradient_at_end; ++steps) {
+  for (int steps = 0; steps < how.most_steps && gradient.lpNorm<Eigen::Infinity>() > how.gradient_at_end; ++steps) {
     Eigen::VectorXd direction = -gradient;
     std::vector<double> share(pairs.size());
     for (std::size_t k = pairs.size(); k-- > 0;) {
