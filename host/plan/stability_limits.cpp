@@ -116,6 +116,9 @@ constexpr double bending_gain = 10, least_semi_implicit_tau = 0.6;
 // Forces that the step holds stay with the nodes and turn with the membrane. Capsules of all stiffnesses, viscosity ratios and kernels
 // bore a strain of 0.186 while the mean of forces lasts; the stiffest did not bear 0.2 (docs/stability.md).
 constexpr double largest_held_strain = 0.15;
+// What turns over does so too late, at viscosity ratio 5 too early, by half of the variance over which its slip is smoothed, for
+// 0.02 to 0.2 of the radius squared (docs/accuracy.md, "Stiff membranes").
+constexpr double largest_slip_smoothing = 0.04;
 // The companions of auto's error bars have spacings up to 1.8 times as long, on which forces are held over the third power of that.
 constexpr double held_on_companions = 6;
 // The waves of two segments that the sharp kernels let grow are as slow as before; two cells bear 0.56 times the explicit
@@ -164,6 +167,8 @@ struct Bounded {
 struct Stiffness {
   Bounded stretching, bending;
   double steps_of_mean = 0;  ///< over which a semi-implicit step holds forces; in three dimensions
+  double slip_smoothing =
+      0;  ///< variance over which slip is spread along a membrane, over the radius squared; in two, if not round
 };
 
 /// Of all cell types in a stage, the stretching and the bending stiffness that are nearest to their limits, and the longest mean.
@@ -175,10 +180,9 @@ Stiffness membrane_stiffness(const Plan& plan, const plugin::ModelSetting& setti
     const scene::CellType& cell = scene.cell_types[t];
     const double ratio = cell.interior_viscosity / scene.fluid.viscosity;
     const double length = shape::node_spacing(cell) / setting.units.length;
-    double shift = 0;
-    if (scene.numerics.slip_correction)
-      shift = core::slip_constants(kernel.kind, ratio, scene.domain.dimension()).shift;
-    const double factor = core::stiffening(shift, length);
+    core::SlipConstants slip{0, 0};
+    if (scene.numerics.slip_correction) slip = core::slip_constants(kernel.kind, ratio, scene.domain.dimension());
+    const double factor = core::stiffening(slip.shift, length), viscosity = core::viscosity_of(scene.numerics.tau);
     core::Stiffness stiffness;
     for (const PlannedModel& law : plan.membranes[t]) {
       if (law.active()) stiffness += plugin::make_membrane_law(*law.manifest, law.parameters.values, setting);
@@ -187,11 +191,17 @@ Stiffness membrane_stiffness(const Plan& plan, const plugin::ModelSetting& setti
                                kernel.stretch_limit * limit_between(stretch_limit, scene, cell.interior_viscosity)});
     nearest.bending.narrow({factor * stiffness.bending,
                             kernel.bending_limit * limit_between(bending_limit, scene, cell.interior_viscosity)});
-    if (!scene.domain.depth) continue;
-    const double eigenvalue =
-        core::largest_eigenvalue(core::kernel_response(kernel.kind, shift), stiffness.stretching, stiffness.bending);
-    nearest.steps_of_mean =
-        std::max(nearest.steps_of_mean, core::steps_of_mean(eigenvalue, core::viscosity_of(scene.numerics.tau)));
+    if (scene.domain.depth) {
+      const double eigenvalue = core::largest_eigenvalue(core::kernel_response(kernel.kind, slip.shift),
+                                                         stiffness.stretching, stiffness.bending);
+      nearest.steps_of_mean = std::max(nearest.steps_of_mean, core::steps_of_mean(eigenvalue, viscosity));
+    } else if (scene.numerics.slip_correction && !std::holds_alternative<scene::Circle>(cell.shape)) {
+      const double over_radius = length * setting.units.length / shape::shape_radius(cell.shape);
+      nearest.slip_smoothing =
+          std::max(nearest.slip_smoothing,
+                   over_radius * over_radius / 2 *
+                       core::outline_slip_smoothings(length, slip.slip / viscosity, stiffness.stretching));
+    }
   }
   return nearest;
 }
@@ -461,6 +471,13 @@ std::vector<Limit> find_limits(const Plan& plan) {
       add("strain during which the semi-implicit step holds forces" + where,
           membrane.steps_of_mean * rate * stage.units.time, largest_held_strain_of(plan), true,
           lower + ": membranes turn against the forces that they hold", density, 2);
+    }
+    if (membrane.slip_smoothing > 0 && rate > 0 && reports_moments(plan)) {
+      add("smoothing of the slip along membranes, variance over radius squared" + where, membrane.slip_smoothing,
+          plan.numerics_choice ? plan.numerics_choice->target : largest_slip_smoothing, true,
+          lower +
+              " or raise the resolution: stiff membranes need their slip smoothed, and cells turn over late by half of this",
+          density);
     }
     if (const double compression = prestress_compression(plan, stage); compression > 0) {
       add("compression of cells by their prestress, 3 T/a" + where, compression, 1e-3, true,

@@ -135,4 +135,9 @@ int slip_smoothings(int least, double number, double widest) {
   return std::min(passes, most);
 }
 
+int outline_slip_smoothings(double length, double mobility, double stiffness) {
+  const double square = length * length;
+  return slip_smoothings(static_cast<int>(std::lround(1 / square)), mobility * stiffness / square, 4);
+}
+
 }  // namespace rouleau::core

@@ -35,4 +35,9 @@ KernelResponse kernel_response(KernelKind kernel, double shift);
 /// 2/3 in a semi-implicit one, whose forces belong to the end of the step; 0.3 is kept.
 int slip_smoothings(int least, double number, double widest);
 
+/// Of outlines with segments of this length, by (1/4, 1/2, 1/4): s = 4 sin^2(q/2) for the wave number q per segment. Smoothing
+/// over about a lattice spacing is needed anyway where nodes stand closer: the fluid does not damp what the kernel cannot see.
+/// Each adds length^2/2 to the variance over which slip is spread along the membrane.
+int outline_slip_smoothings(double length, double mobility, double stiffness);
+
 }  // namespace rouleau::core

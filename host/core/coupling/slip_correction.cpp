@@ -110,13 +110,6 @@ struct Correct {
   }
 };
 
-/// By (1/4, 1/2, 1/4): s = 4 sin^2(q/2) for the wave number q per segment. Smoothing over about a lattice spacing is needed
-/// anyway where nodes stand closer: the fluid does not damp what the kernel cannot see.
-int smoothings_of(double length, double mobility, double stiffness) {
-  return slip_smoothings(static_cast<int>(std::lround(1 / (length * length))), mobility * stiffness / (length * length),
-                         4);
-}
-
 }  // namespace
 
 SlipCorrection::SlipCorrection(const Membranes& membranes, std::vector<Type> types, double viscosity)
@@ -128,8 +121,8 @@ SlipCorrection::SlipCorrection(const Membranes& membranes, std::vector<Type> typ
     double curvature = 0;
     for (const double at_rest : rest.rest_curvature) curvature = std::max(curvature, std::abs(at_rest));
     const double stiffness = type.stretching_stiffness + type.bending_stiffness * curvature * curvature;
-    smoothings_.push_back(smoothings_of(rest.rest_perimeter / static_cast<double>(rest.x.size()),
-                                        type.constants.slip / viscosity, stiffness));
+    smoothings_.push_back(outline_slip_smoothings(rest.rest_perimeter / static_cast<double>(rest.x.size()),
+                                                  type.constants.slip / viscosity, stiffness));
   }
   for (auto* values : {&tangent_x_, &tangent_y_, &inverse_chord_, &touch_x_, &touch_y_, &force_x_, &force_y_, &slip_,
                        &scratch_x_, &scratch_y_}) {

@@ -436,6 +436,22 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("the slip of a stiff cell that turns over is smoothed no further than the target allows") {
+  for (const double stiffness : {1e-4, 6e-4}) {
+    const std::string stiff =
+        "/cell_types/rbc/membrane/0/parameters/shear_modulus=\"" + std::to_string(stiffness) + " N/m\"";
+    const ReadScene read = chosen({R"(/numerics={"auto": {"error": 0.03}})", stiff}, "/auto-biconcave.json");
+    const Catalog catalog = shipped_plugins(read.scene);
+    double smoothing = 0;
+    for (const Limit& limit : find_limits(make_plan(read.scene, catalog, read.numerics_choice))) {
+      if (limit.name.starts_with("smoothing of the slip")) smoothing = limit.value;
+    }
+    INFO(stiffness);
+    CHECK(smoothing > 0.01);
+    CHECK(smoothing <= 0.03);
+  }
+}
+
 TEST_CASE("without a lattice that fits three sides auto says what to write, and nothing else is wrong") {
   const auto message = [](const std::string& size) {
     try {

@@ -172,3 +172,27 @@ TEST_CASE("plan knows how far membranes turn while a semi-implicit step holds th
   CHECK((*sharp / (100 * step) - 1) / (*found / (100 * step) - 1) == Approx(1.43 / 0.67).epsilon(0.01));
   CHECK(held({"/numerics/kernel=sharp6", "/numerics/slip_correction=true"}) > 1.3 * *sharp);
 }
+
+TEST_CASE("plan knows over what length the slip of stiff membranes is smoothed, where cells turn over") {
+  const Catalog catalog({ROULEAU_PLUGINS});
+  const auto smoothing = [&](double stiffness, const std::vector<std::string>& further) -> std::optional<double> {
+    std::vector<std::string> changes{
+        "/domain/nodes=[112, 56]", "/cell_types/rbc/segments=43",
+        R"(/numerics={"tau": 1, "density_factor": 2000, "slip_correction": true, "coupling": "auto"})",
+        "/cell_types/rbc/membrane/0/parameters/shear_modulus=\"" + std::to_string(6e-6 * stiffness) + " N/m\""};
+    changes.insert(changes.end(), further.begin(), further.end());
+    const Scene scene = read_scene(std::string(ROULEAU_PHYSICS_SCENES) + "/auto-biconcave.json", changes);
+    for (const Limit& limit : find_limits(make_plan(scene, catalog))) {
+      if (limit.name.starts_with("smoothing of the slip")) return limit.value;
+    }
+    return std::nullopt;
+  };
+  // Radius 8.75 spacings, segments of 1: solver runs took 4, 20 and 80 passes for 1, 5 and 20 times a red cell's stiffness.
+  constexpr double pass = 1.0 / 2 / (8.75 * 8.75);
+  CHECK(smoothing(1, {}).value() == Approx(4 * pass).epsilon(0.05));
+  CHECK(smoothing(5, {}).value() == Approx(20 * pass).epsilon(0.05));
+  CHECK(smoothing(20, {}).value() == Approx(80 * pass).epsilon(0.05));
+  CHECK(smoothing(20, {"/numerics/density_factor=500"}).value() == Approx(20 * pass).epsilon(0.05));
+  CHECK_FALSE(smoothing(20, {"/numerics/slip_correction=false"}));
+  CHECK_FALSE(smoothing(20, {R"(/cell_types/rbc/shape={"circle": {"radius": "3.91 um"}})"}));
+}
