@@ -106,14 +106,16 @@ std::vector<Trial> trials_at_ends(const Subject& subject, Random& random, const 
   return all;
 }
 
-Finding parameters_matter(const Subject& subject) {
+/// Which parameters and which of their words have changed a result.
+struct Effects {
+  std::vector<bool> of_parameter;
+  std::vector<std::vector<bool>> of_word;
+};
+
+void look_for_effects(const Subject& subject, Effects& effects) {
   const auto& parameters = subject.manifest().parameters;
-  if (parameters.empty()) return Finding::skipped("has no parameters");
+  auto& [matters, words_matter] = effects;
   Random random = subject.random();
-  std::vector<bool> matters(parameters.size());
-  std::vector<std::vector<bool>> words_matter;
-  words_matter.reserve(parameters.size());
-  for (const auto& parameter : parameters) words_matter.emplace_back(parameter.choices.size());
   for (const bool inertia : {true, false}) {
     plugin::ModelSetting setting = subject.typical_setting();
     setting.inertia = inertia;
@@ -137,6 +139,18 @@ Finding parameters_matter(const Subject& subject) {
       }
     }
   }
+}
+
+/// In one of the dimensions that a law knows, if it knows both.
+Finding parameters_matter(const Subject& subject) {
+  const auto& parameters = subject.manifest().parameters;
+  if (parameters.empty()) return Finding::skipped("has no parameters");
+  Effects effects{std::vector<bool>(parameters.size()), {}};
+  for (const auto& parameter : parameters) effects.of_word.emplace_back(parameter.choices.size());
+  look_for_effects(subject, effects);
+  const bool law = subject.manifest().kind == plugin::ModelKind::membrane;
+  if (law && subject.dimension() == 2 && subject.manifest().works_in(3)) look_for_effects(subject.in(3), effects);
+  const auto& [matters, words_matter] = effects;
   std::vector<std::string> idle;
   for (std::size_t k = 0; k < parameters.size(); ++k) {
     if (!matters[k]) {

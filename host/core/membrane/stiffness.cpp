@@ -27,7 +27,11 @@ class Probe {
 
   std::vector<double> tension_by_stretch() { return segments(&rouleau_membrane_block::tension_by_stretch); }
   std::vector<double> tension() {
-    return law_.writes("stress_1") ? tension_along() : segments(&rouleau_membrane_block::tension);
+    if (law_.writes("stress_1")) return tension_along();
+    if (law_.writes("tension")) return segments(&rouleau_membrane_block::tension);
+    // The area grows as the stretch, where the other direction is held at rest.
+    block_.area_ratio = arguments_.data();
+    return compute(&rouleau_membrane_block::area_tension);
   }
   std::vector<double> moment_by_curvature() {
     block_.curvature = arguments_.data();
@@ -65,6 +69,10 @@ class Probe {
   rouleau_membrane_block block_{};  // a time step of 0: as the law answers at once
 };
 
+bool has_tension(const MembraneLaw& law) {
+  return law.writes("tension") || law.writes("stress_1") || law.writes("area_tension");
+}
+
 double largest(const std::vector<double>& values) {
   double most = 0;
   for (const double value : values) most = std::max(most, std::abs(value));
@@ -75,7 +83,7 @@ double largest(const std::vector<double>& values) {
 
 double stretching_stiffness(const MembraneLaw& law, const std::vector<double>& stretches) {
   if (law.writes("tension_by_stretch")) return largest(Probe(law, stretches).tension_by_stretch());
-  if (!law.writes("tension") && !law.writes("stress_1")) return 0;
+  if (!has_tension(law)) return 0;
   constexpr double h = 1e-5;
   std::vector<double> below, above;
   for (const double stretch : stretches) {
@@ -89,7 +97,7 @@ double stretching_stiffness(const MembraneLaw& law, const std::vector<double>& s
 }
 
 double tension_at(const MembraneLaw& law, double stretch) {
-  return law.writes("tension") || law.writes("stress_1") ? Probe(law, {stretch}).tension().front() : 0;
+  return has_tension(law) ? Probe(law, {stretch}).tension().front() : 0;
 }
 
 double bending_stiffness(const MembraneLaw& law) {

@@ -24,7 +24,7 @@ std::vector<NamedLaws> shipped_laws() {
   return {{"neo-hookean, clamped", {law("neo-hookean", {0.1, 1})}, true},
           {"skalak, free", {law("skalak", {0.1, 2, 0})}, true},
           {"skalak, clamped", {law("skalak", {0.1, 2, 1})}, true},
-          {"hooke", {law("hooke", {0.1})}, true},
+          {"hooke", {law("hooke", {0.1, 0.3})}, true},
           {"inextensible", {law("inextensible", {2})}, true},
           {"bending about zero", {law("bending", {0.5, 1, 0})}, false},
           {"bending about a value", {law("bending", {0.5, 2, 0.05})}, false},

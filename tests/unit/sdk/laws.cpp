@@ -106,7 +106,7 @@ std::vector<Law> laws() {
           evaluator<MembraneLoop<Skalak>>(fill_tension));
     }
   }
-  law("hooke", 0.3, 3, *open_hooke(0)->models[0], {{{"stretching_modulus", 1.7}}},
+  law("hooke", 0.3, 3, *open_hooke(0)->models[0], {{{"stretching_modulus", 1.7}, {"poisson_ratio", 0.3}}},
       evaluator<MembraneLoop<Hooke>>(fill_tension));
   law("inextensible", 0.3, 3, *open_inextensible(0)->models[0], {{{"stretching_modulus", 1.7}}},
       evaluator<MembraneLoop<Inextensible>>(fill_tension));

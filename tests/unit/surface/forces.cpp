@@ -3,6 +3,7 @@
 
 #include <rouleau/membrane.hpp>
 
+#include "core/membrane/stiffness.hpp"
 #include "core/model/compiled_in.hpp"
 #include "fixture.hpp"
 
@@ -19,16 +20,14 @@ struct NamedLaws {
   bool at_rest;  ///< no force on the shape the cell was created with
 };
 
-/// Energy proportional to the square of the area of a node beyond its rest: what no shipped law is about.
-struct LocalArea {
-  double modulus;
-  explicit LocalArea(const Parameters& given) : modulus{given["modulus"]} {}
+/// Energies of shipped laws, without their forces.
+struct LocalAreaEnergy {
+  explicit LocalAreaEnergy(const Parameters&) {}
   template <class S>
   S energy(const Patch<S>& patch) const {
-    return 0.5 * modulus * (patch.area_ratio - 1.0) * (patch.area_ratio - 1.0);
+    return 0.15 * (patch.area_ratio - 1.0) * (patch.area_ratio - 1.0);
   }
 };
-/// Energies of shipped laws, without their forces.
 struct SkalakEnergy {
   explicit SkalakEnergy(const Parameters&) {}
   template <class S>
@@ -47,15 +46,11 @@ struct BodyEnergy {
   }
 };
 
-core::MembraneLaw local_area(double modulus) {
-  return core::membrane_law(
-      membrane<LocalArea>("local-area", "1"),
-      {.parameters = {{"modulus", modulus}}, .needs = {"area_ratio"}, .gives = {"area_tension", "energy"}});
-}
-
 std::vector<NamedLaws> laws_of_surfaces() {
   return {{"neo-hookean", {surface_law("neo-hookean", {0.1, 0})}, true},
           {"skalak", {surface_law("skalak", {0.1, 10, 0})}, true},
+          {"hooke", {surface_law("hooke", {0.1, 0.3})}, true},
+          {"hooke, as wide as it is long", {surface_law("hooke", {0.1, -0.7})}, true},
           {"bending about the shape at rest", {surface_law("bending", {0.5, 0, 0})}, true},
           {"bending about a plane", {surface_law("bending", {0.5, 1, 0})}, false},
           {"bending about a value", {surface_law("bending", {0.5, 2, 0.3})}, false},
@@ -63,10 +58,10 @@ std::vector<NamedLaws> laws_of_surfaces() {
           {"volume, smaller", {surface_law("volume", {0.3, 0.7})}, false},
           {"surface-area", {surface_law("surface-area", {0.2, 1, 0})}, true},
           {"a drop", {surface_law("surface-area", {0, 1, 0.4})}, false},
-          {"areas of nodes", {local_area(0.3)}, true},
+          {"local-area", {surface_law("local-area", {0.3})}, true},
           {"all kinds of elements",
            {surface_law("skalak", {0.1, 2, 0}), surface_law("bending", {0.5, 0, 0}), surface_law("volume", {0.3, 0.9}),
-            surface_law("surface-area", {0.2, 1.1, 0}), local_area(0.1)},
+            surface_law("surface-area", {0.2, 1.1, 0}), surface_law("local-area", {0.1})},
            false}};
 }
 
@@ -205,18 +200,48 @@ TEST_CASE("the energy of a stretched sphere is that of its law") {
         Approx((0.1 * (l2 - 1) * (l2 - 1) + 0.3 * l2) * area).epsilon(1e-12));
 }
 
-TEST_CASE("a law of triangles or bodies that gives its energy alone gets the forces of it") {
+TEST_CASE(
+    "Hooke's surface of Poisson's ratio 1/2 is the neo-Hookean one at small strains, and a sheet of it has its tensions") {
+  auto random = generator(75);
+  Surfaces s = one_cell(shape::unit_sphere(3));
+  std::uniform_real_distribution<double> any(-1e-6, 1e-6);
+  for (auto* places : {&s.x, &s.y, &s.z}) {
+    for (double& place : *places) place += any(random);
+  }
+  Surfaces other = s;
+  SurfaceForces(s, {{surface_law("hooke", {0.3, 0.5})}}).run({}, s);
+  SurfaceForces(other, {{surface_law("neo-hookean", {0.1, 0})}}).run({}, other);
+  for (int i = 0; i < s.node_count(); ++i)
+    CHECK((force_on(s, i) - force_on(other, i)).norm() < 1e-4 * largest_force(s));
+  // A sphere that is blown up by l is stretched by l along both directions: w = E (l - 1)^2/(1 - nu).
+  for (const double nu : {-0.5, 0.0, 0.3, 0.9}) {
+    Surfaces blown = one_cell(shape::unit_sphere(3), 1.3);
+    SurfaceForces forces(blown, {{surface_law("hooke", {0.2, nu})}});
+    CHECK(forces.energy(blown) == Approx(0.2 * 0.09 / (1 - nu) * blown.types[0]->rest_surface_area).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("the stiffness of laws of surfaces is the slope of their tension along one direction, the other at rest") {
+  CHECK(core::stretching_stiffness(surface_law("hooke", {0.3, 0.5})) == Approx(0.3 / (1 - 0.25)).epsilon(1e-6));
+  CHECK(core::stretching_stiffness(surface_law("hooke", {0.3, 0})) == Approx(0.3).epsilon(1e-6));
+  CHECK(core::stretching_stiffness(surface_law("local-area", {0.3})) == Approx(0.3).epsilon(1e-6));
+  CHECK(core::tension_at(surface_law("local-area", {0.3}), 1.2) == Approx(0.06).epsilon(1e-12));
+}
+
+TEST_CASE("a law of triangles, nodes or bodies that gives its energy alone gets the forces of it") {
   auto random = generator(74);
   Surfaces s = one_cell(shape::unit_sphere(3));
   deform(s, random, 0.05);
   const core::Facts of_triangles{
       .parameters = {}, .needs = {"invariant_1", "invariant_2"}, .gives = {"stress_1", "stress_2", "energy"}};
+  const core::Facts of_nodes{.parameters = {}, .needs = {"area_ratio"}, .gives = {"area_tension", "energy"}};
   const core::Facts of_bodies{.parameters = {},
                               .needs = {"volume", "rest_volume", "surface_area", "rest_surface_area"},
                               .gives = {"pressure", "surface_tension", "energy"}};
-  const MembraneLaws shipped = {surface_law("skalak", {0.1, 3, 0}), surface_law("volume", {0.3, 0.9}),
-                                surface_law("surface-area", {0.2, 1, 0})};
+  const MembraneLaws shipped = {surface_law("skalak", {0.1, 3, 0}), surface_law("local-area", {0.3}),
+                                surface_law("volume", {0.3, 0.9}), surface_law("surface-area", {0.2, 1, 0})};
   const MembraneLaws derived = {core::membrane_law(membrane<SkalakEnergy>("energy", "1"), of_triangles),
+                                core::membrane_law(membrane<LocalAreaEnergy>("energy", "1"), of_nodes),
                                 core::membrane_law(membrane<BodyEnergy>("energy", "1"), of_bodies)};
   Surfaces other = s;
   SurfaceForces(s, {shipped}).run({}, s);
@@ -230,7 +255,7 @@ TEST_CASE("a law that surfaces cannot have is refused by name") {
   const auto refused = [&](core::MembraneLaw law, const char* words) {
     CHECK_THROWS_WITH(SurfaceForces(s, {{law}}), Catch::Matchers::Contains(words));
   };
-  refused(law("hooke", {0.1}), "\"hooke\" is no law of surfaces");
+  refused(law("inextensible", {0.1}), "\"inextensible\" is no law of surfaces");
   core::MembraneLaw remembers = surface_law("neo-hookean", {0.1, 0});
   remembers.state.push_back({"damage", 0, 1});
   refused(remembers, "remembers \"damage\"");
