@@ -477,7 +477,7 @@ class Three_dimensions_refuse(Case):
                  "off_rate": 1, "cutoff": "0.3 um"}
         acting = [{"between": ["capsule", "self"], "model": "bridging", "parameters": bonds}]
         self.refused(scene | {"interactions": acting}, "/interactions/0/model", "cannot act within a membrane", "remembers")
-        laws = [{"model": "hooke", "parameters": {"shear_modulus": "1e-6 N/m"}}]
+        laws = [{"model": "inextensible", "parameters": {"stretching_modulus": "1e-6 N/m"}}]
         self.refused(changed(scene, **{capsule + "membrane": laws}), "/cell_types/capsule/membrane/0/model",
                      "three dimensions", "neo-hookean")
         plane = changed(PLANE | CAPSULE, cells__0__at=["2 um", "2 um"])
