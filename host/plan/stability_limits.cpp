@@ -473,10 +473,10 @@ std::vector<Limit> find_limits(const Plan& plan) {
           lower + ": membranes turn against the forces that they hold", density, 2);
     }
     if (membrane.slip_smoothing > 0 && rate > 0 && reports_moments(plan)) {
-      add("smoothing of the slip along membranes, variance over radius squared" + where, membrane.slip_smoothing,
+      add("smoothing of the slip, variance over radius^2" + where, membrane.slip_smoothing,
           plan.numerics_choice ? plan.numerics_choice->target : largest_slip_smoothing, true,
           lower +
-              " or raise the resolution: stiff membranes need their slip smoothed, and cells turn over late by half of this",
+              " or raise the resolution: stiff membranes need their slip smoothed, and cells turn over late, or early, by half of this",
           density);
     }
     if (const double compression = prestress_compression(plan, stage); compression > 0) {
