@@ -167,8 +167,9 @@ struct Bounded {
 struct Stiffness {
   Bounded stretching, bending;
   double steps_of_mean = 0;  ///< over which a semi-implicit step holds forces; in three dimensions
-  double slip_smoothing =
-      0;  ///< variance over which slip is spread along a membrane, over the radius squared; in two, if not round
+  /// Variance over which slip is spread along a membrane, over the radius squared; in two dimensions, of cells that are not
+  /// round. By the stretching stiffness alone; the bending of a red cell would add less than 2 %.
+  double slip_smoothing = 0;
 };
 
 /// Of all cell types in a stage, the stretching and the bending stiffness that are nearest to their limits, and the longest mean.

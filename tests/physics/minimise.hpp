@@ -1,4 +1,4 @@
-// The place where a smooth function is least, near a start.
+// The place where a smooth function is least, near a start, and surfaces as such a place.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,6 +7,8 @@
 #include <deque>
 #include <vector>
 
+#include "core/surface/surfaces.hpp"
+
 namespace rouleau::test {
 
 struct Minimising {
@@ -14,6 +16,7 @@ struct Minimising {
   double longest_step;     ///< of any component, at once
   double rounding = 1e-9;  ///< of values, and how far they may jump without a gradient that says so
   int most_steps = 20000;
+  double least_length = 1e-12;  ///< the search ends, too, where so small a share of a step does not lead down
 };
 
 /// Limited-memory BFGS with halved steps (Nocedal and Wright, Numerical Optimization, algorithms 7.4 and 7.5; where values
@@ -25,7 +28,7 @@ double minimise(Eigen::VectorXd& place, const Minimising& how, ValueOf value_of)
     Eigen::VectorXd step, change;
     double product;
   };
-  constexpr double least_length = 1e-7, decrease = 1e-4;
+  constexpr double decrease = 1e-4;
   std::deque<Pair> pairs;
   Eigen::VectorXd gradient, next, next_gradient;
   double value = value_of(place, gradient);
@@ -47,12 +50,12 @@ double minimise(Eigen::VectorXd& place, const Minimising& how, ValueOf value_of)
     };
     next = place + length * direction;
     double next_value = value_of(next, next_gradient);
-    while (!enough(next_value) && length > least_length) {
+    while (!enough(next_value) && length > how.least_length) {
       length /= 2;
       next = place + length * direction;
       next_value = value_of(next, next_gradient);
     }
-    if (length <= least_length) break;
+    if (length <= how.least_length) break;
     const Eigen::VectorXd step = next - place, change = next_gradient - gradient;
     const double product = step.dot(change);
     if (product > 1e-10 * step.norm() * change.norm()) pairs.push_back({step, change, product});
@@ -63,6 +66,24 @@ double minimise(Eigen::VectorXd& place, const Minimising& how, ValueOf value_of)
   }
   value_of(place, gradient);
   return gradient.lpNorm<Eigen::Infinity>();
+}
+
+/// All nodes: x of each, then y, then z.
+inline Eigen::VectorXd place_of(const core::Surfaces& surfaces) {
+  const Eigen::Index n = surfaces.node_count();
+  Eigen::VectorXd place(3 * n);
+  for (int k = 0; k < 3; ++k) place.segment(k * n, n) = Eigen::Map<const Eigen::VectorXd>(surfaces.positions()[k], n);
+  return place;
+}
+inline void move_to(const Eigen::VectorXd& place, core::Surfaces& surfaces) {
+  const Eigen::Index n = surfaces.node_count();
+  std::vector<double>* const positions[] = {&surfaces.x, &surfaces.y, &surfaces.z};
+  for (int k = 0; k < 3; ++k) Eigen::Map<Eigen::VectorXd>(positions[k]->data(), n) = place.segment(k * n, n);
+}
+/// Adds the gradient of the energy that the nodes' forces belong to.
+inline void add_gradient(const core::Surfaces& surfaces, Eigen::VectorXd& gradient) {
+  const Eigen::Index n = surfaces.node_count();
+  for (int k = 0; k < 3; ++k) gradient.segment(k * n, n) -= Eigen::Map<const Eigen::VectorXd>(surfaces.forces()[k], n);
 }
 
 }  // namespace rouleau::test

@@ -56,9 +56,7 @@ class PulledCell {
 
   /// Finds the shape at rest under a pull, from the present one on.
   void pull(double force) {
-    Eigen::VectorXd place(3 * size());
-    for (int i = 0; i < size(); ++i)
-      place[i] = cell_.x[i], place[size() + i] = cell_.y[i], place[2 * size() + i] = cell_.z[i];
+    Eigen::VectorXd place = place_of(cell_);
     const double largest = minimise(place, {1e-3, 0.05}, [&](const Eigen::VectorXd& at, Eigen::VectorXd& gradient) {
       return energy(force, at, gradient);
     });
@@ -105,11 +103,10 @@ class PulledCell {
   /// Of the membrane, minus the pull's work. What a bead holds moves along x as one piece.
   double energy(double force, const Eigen::VectorXd& at, Eigen::VectorXd& gradient) {
     const int n = size();
-    for (int i = 0; i < n; ++i) cell_.x[i] = at[i], cell_.y[i] = at[n + i], cell_.z[i] = at[2 * n + i];
+    move_to(at, cell_);
     forces_.run({}, cell_);
-    gradient.resize(3 * n);
-    for (int i = 0; i < n; ++i)
-      gradient[i] = -cell_.force_x[i], gradient[n + i] = -cell_.force_y[i], gradient[2 * n + i] = -cell_.force_z[i];
+    gradient.setZero(3 * n);
+    add_gradient(cell_, gradient);
     double energy = forces_.energy(cell_);
     for (const auto& [side, nodes] : beads_) {
       double mean = -side * force;

@@ -273,7 +273,8 @@ template <class T, class Set>
 void Fluid<T, Set>::fetch_row(int i, const Call& call, const Row& from) const {
   const Row row = lattice_.row(i);
   lattice_.fetch_row(call.in, from, row);
-  for (int k = 0; k < dimension && setting_.membranes && mask_.any(i); ++k) fetch(force_[k].row(row), nx());
+  if (!setting_.membranes || !mask_.any(i)) return;
+  for (const auto& component : force_) fetch(component.row(row), nx());
 }
 
 template <class T, class Set>

@@ -50,7 +50,7 @@ std::vector<NamedLaws> laws_of_surfaces() {
   return {{"neo-hookean", {surface_law("neo-hookean", {0.1, 0})}, true},
           {"skalak", {surface_law("skalak", {0.1, 10, 0})}, true},
           {"hooke", {surface_law("hooke", {0.1, 0.3})}, true},
-          {"hooke, as wide as it is long", {surface_law("hooke", {0.1, -0.7})}, true},
+          {"hooke, wider where it is pulled", {surface_law("hooke", {0.1, -0.7})}, true},
           {"bending about the shape at rest", {surface_law("bending", {0.5, 0, 0})}, true},
           {"bending about a plane", {surface_law("bending", {0.5, 1, 0})}, false},
           {"bending about a value", {surface_law("bending", {0.5, 2, 0.3})}, false},
@@ -201,7 +201,7 @@ TEST_CASE("the energy of a stretched sphere is that of its law") {
 }
 
 TEST_CASE(
-    "Hooke's surface of Poisson's ratio 1/2 is the neo-Hookean one at small strains, and a sheet of it has its tensions") {
+    "Hooke's surface of Poisson's ratio 1/2 is the neo-Hookean one at small strains, and a sphere of it that is blown up has its energy") {
   auto random = generator(75);
   Surfaces s = one_cell(shape::unit_sphere(3));
   std::uniform_real_distribution<double> any(-1e-6, 1e-6);
