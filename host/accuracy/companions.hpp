@@ -2,10 +2,10 @@
 #pragma once
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "json/json.hpp"
 #include "scene/scene.hpp"
 
 namespace rouleau::accuracy {

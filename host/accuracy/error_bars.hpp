@@ -1,12 +1,12 @@
 // Errors of what a run reports, from its differences from companions (Richardson extrapolation).
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "companions.hpp"
+#include "json/json.hpp"
 #include "quantities.hpp"
 
 namespace rouleau::accuracy {

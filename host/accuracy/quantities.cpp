@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <set>
 #include <string_view>
 
 #include "files/csv_reader.hpp"
 #include "json/document.hpp"
+#include "json/json.hpp"
 #include "observe/observables.hpp"
 #include "plan/error_model.hpp"
 

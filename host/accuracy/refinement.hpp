@@ -1,10 +1,10 @@
 // What a run that missed its target teaches the choice of the next one's numerics.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "error_bars.hpp"
+#include "json/json.hpp"
 #include "plan/numerics_auto.hpp"
 
 namespace rouleau::accuracy {

@@ -1,6 +1,5 @@
 // rouleau conform MANIFEST...: whether plugins do what the interface and their manifests say.
 #include <iostream>
-#include <nlohmann/json.hpp>
 #include <random>
 
 #include "base/error.hpp"
@@ -9,6 +8,7 @@
 #include "commands.hpp"
 #include "conform/conformance.hpp"
 #include "conform/report_line.hpp"
+#include "json/json.hpp"
 
 namespace rouleau::command {
 

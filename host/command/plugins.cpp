@@ -2,11 +2,11 @@
 // --install DIR puts more of them into the user's own folder, --index FILE compares them with a published collection.
 #include <algorithm>
 #include <iostream>
-#include <nlohmann/json.hpp>
 
 #include "base/text.hpp"
 #include "command/process/command_line.hpp"
 #include "commands.hpp"
+#include "json/json.hpp"
 #include "lock_scene.hpp"
 #include "manage_plugins.hpp"
 #include "plugin/catalog.hpp"

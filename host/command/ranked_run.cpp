@@ -2,7 +2,6 @@
 
 #include <gnu/libc-version.h>
 
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "base/error.hpp"
@@ -10,6 +9,7 @@
 #include "command/process/program.hpp"
 #include "files/checkpoint_file.hpp"
 #include "json/document.hpp"
+#include "json/json.hpp"
 #include "plugin/library.hpp"
 #include "trial/fingerprint.hpp"
 

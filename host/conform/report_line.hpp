@@ -1,9 +1,8 @@
 // How a check's process tells its parent what it found: one JSON line on a file descriptor of its own.
 #pragma once
 
-#include <nlohmann/json.hpp>
-
 #include "check.hpp"
+#include "json/json.hpp"
 
 namespace rouleau::conform {
 

@@ -11,10 +11,11 @@
 #include <array>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 #include <vector>
+
+#include "json/json.hpp"
 
 namespace rouleau::files {
 

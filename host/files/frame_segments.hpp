@@ -8,10 +8,11 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "json/json.hpp"
 
 namespace rouleau::files {
 

@@ -3,10 +3,10 @@
 
 #include <chrono>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "file.hpp"
+#include "json/json.hpp"
 
 namespace rouleau::files {
 

@@ -4,12 +4,12 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 
 #include "base/error.hpp"
 #include "frame_segments.hpp"
+#include "json/json.hpp"
 #include "observe/snapshot.hpp"
 #include "scene/scene.hpp"
 #include "tables.hpp"

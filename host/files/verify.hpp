@@ -3,9 +3,10 @@
 
 #include <filesystem>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
+
+#include "json/json.hpp"
 
 namespace rouleau::files {
 

@@ -2,7 +2,8 @@
 #pragma once
 
 #include <cmath>
-#include <nlohmann/json.hpp>
+
+#include "json.hpp"
 
 namespace rouleau::json {
 

@@ -1,11 +1,11 @@
 // Parses JSON text strictly and keeps the place of every value.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 
+#include "json.hpp"
 #include "text_tree.hpp"
 
 namespace rouleau::json {

@@ -1,9 +1,10 @@
 // Changes one value inside a JSON document by its pointer, as --set and the matrix of a study do.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
+
+#include "json.hpp"
 
 namespace rouleau::json {
 

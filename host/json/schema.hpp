@@ -1,10 +1,9 @@
 // Judges a document by a JSON Schema (draft 7), with errors a user can act on.
 #pragma once
 
-#include <nlohmann/json.hpp>
-
 #include "base/faults.hpp"
 #include "document.hpp"
+#include "json.hpp"
 
 namespace rouleau::json {
 

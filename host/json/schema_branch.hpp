@@ -1,9 +1,10 @@
 // Which branch of a schema's oneOf a user meant, judged by the keys of the value.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
+
+#include "json.hpp"
 
 namespace rouleau::json {
 

@@ -3,9 +3,10 @@
 
 #include <cmath>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
+
+#include "json.hpp"
 
 namespace rouleau::json {
 

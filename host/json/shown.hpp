@@ -1,8 +1,9 @@
 // How a JSON value is written in messages.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
+
+#include "json.hpp"
 
 namespace rouleau::json {
 

@@ -1,8 +1,8 @@
 #include "text_tree.hpp"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
+#include "json.hpp"
 #include "json_pointer.hpp"
 
 namespace rouleau::json {

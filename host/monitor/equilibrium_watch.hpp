@@ -2,7 +2,8 @@
 #pragma once
 
 #include <cmath>
-#include <nlohmann/json.hpp>
+
+#include "json/json.hpp"
 
 namespace rouleau::monitor {
 

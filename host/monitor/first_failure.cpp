@@ -1,8 +1,9 @@
 #include "first_failure.hpp"
 
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <vector>
+
+#include "json/json.hpp"
 
 namespace rouleau::monitor {
 

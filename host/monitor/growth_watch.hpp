@@ -1,11 +1,11 @@
 // Remembers how the fastest membrane moved each time it became twice as fast: how a failure began.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "core/domain/ranks.hpp"
 #include "core/membrane/cell_nodes.hpp"
+#include "json/json.hpp"
 
 namespace rouleau::monitor {
 

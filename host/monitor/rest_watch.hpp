@@ -2,11 +2,11 @@
 #pragma once
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "core/membrane/displacement_watch.hpp"
 #include "core/solver/in_order.hpp"
+#include "json/json.hpp"
 
 namespace rouleau::monitor {
 

@@ -1,8 +1,9 @@
 // A change in who is aggregated with whom.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <vector>
+
+#include "json/json.hpp"
 
 namespace rouleau::observe {
 

@@ -1,11 +1,11 @@
 // The energy ledger: what energy a suspension holds, what it loses and what is put in, at an output time.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "core/solver/solver.hpp"
+#include "json/json.hpp"
 #include "snapshot.hpp"
 #include "units/lattice_units.hpp"
 

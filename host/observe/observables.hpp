@@ -5,12 +5,12 @@
 
 #include <array>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
+#include "json/json.hpp"
 #include "snapshot.hpp"
 
 namespace rouleau::observe {

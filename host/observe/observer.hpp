@@ -2,7 +2,6 @@
 #pragma once
 
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <vector>
 
@@ -10,6 +9,7 @@
 #include "cell_measures.hpp"
 #include "core/membrane/geometry.hpp"
 #include "core/solver/solver.hpp"
+#include "json/json.hpp"
 #include "plan/stage_scales.hpp"
 #include "rotation.hpp"
 #include "snapshot.hpp"

@@ -1,9 +1,9 @@
 // What a run says about the rheology of its suspension over time: means, break-up of aggregates, tank treading.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <vector>
 
+#include "json/json.hpp"
 #include "snapshot.hpp"
 
 namespace rouleau::observe {

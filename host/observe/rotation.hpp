@@ -3,10 +3,10 @@
 
 #include <Eigen/Core>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "aggregates.hpp"
+#include "json/json.hpp"
 #include "snapshot.hpp"
 
 namespace rouleau::observe {

@@ -1,8 +1,7 @@
 // What a run will take, known before its first step: time, memory, bytes on the disk.
 #pragma once
 
-#include <nlohmann/json.hpp>
-
+#include "json/json.hpp"
 #include "plan.hpp"
 
 namespace rouleau::plan {

@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cstddef>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "error_model.hpp"
+#include "json/json.hpp"
 
 namespace rouleau::json {
 class Document;

@@ -4,11 +4,11 @@
 #include <array>
 #include <cstdint>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "estimate.hpp"
+#include "json/json.hpp"
 #include "plan.hpp"
 #include "plan_models.hpp"
 #include "stability_limits.hpp"

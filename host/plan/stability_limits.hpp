@@ -1,13 +1,13 @@
 // Limits of the method (stability, accuracy), with all that was measured of them: by kernel, coupling and stiffness.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/coupling/kernel_kind.hpp"
 #include "error_model.hpp"
+#include "json/json.hpp"
 
 namespace rouleau::plan {
 

@@ -2,11 +2,11 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "base/error.hpp"
+#include "json/json.hpp"
 #include "manifest.hpp"
 
 namespace rouleau::plugin {

@@ -3,11 +3,11 @@
 
 #include <array>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "json/json.hpp"
 #include "role.hpp"
 #include "units/units.hpp"
 

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "base/synonyms.hpp"
 #include "base/text.hpp"
 #include "json/document.hpp"
+#include "json/json.hpp"
 #include "json/json_pointer.hpp"
 #include "json/shown.hpp"
 #include "parameter_ranges.hpp"

@@ -1,9 +1,10 @@
 // Puts the data of a page into its template: what report.html, study.html and limits.html have in common.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
+
+#include "json/json.hpp"
 
 namespace rouleau::report {
 

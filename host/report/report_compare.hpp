@@ -2,8 +2,9 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <vector>
+
+#include "json/json.hpp"
 
 namespace rouleau::report {
 

@@ -3,12 +3,12 @@
 
 #include <array>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "files/field_nodes.hpp"
 #include "files/hdf5_file.hpp"
+#include "json/json.hpp"
 
 namespace rouleau::report {
 

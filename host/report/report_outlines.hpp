@@ -2,11 +2,11 @@
 #pragma once
 
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "files/frames.hpp"
+#include "json/json.hpp"
 
 namespace rouleau::report {
 

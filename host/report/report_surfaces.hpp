@@ -1,10 +1,10 @@
 // The surfaces of a three-dimensional run as the page holds them.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "files/frames.hpp"
+#include "json/json.hpp"
 
 namespace rouleau::report {
 

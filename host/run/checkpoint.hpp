@@ -7,12 +7,12 @@
 #include <chrono>
 #include <functional>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "core/solver/solver.hpp"
 #include "files/checkpoint_file.hpp"
 #include "files/run_directory.hpp"
+#include "json/json.hpp"
 #include "run_state.hpp"
 
 namespace rouleau::run {

@@ -3,11 +3,11 @@
 
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "files/checkpoint_file.hpp"
+#include "json/json.hpp"
 #include "plan/plan.hpp"
 #include "run_state.hpp"
 

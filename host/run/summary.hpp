@@ -3,11 +3,11 @@
 
 #include <array>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "json/json.hpp"
 #include "monitor/failure.hpp"
 #include "observe/aggregate_event.hpp"
 #include "plan/plan_report.hpp"

@@ -4,13 +4,13 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "base/faults.hpp"
 #include "json/document.hpp"
+#include "json/json.hpp"
 #include "scene.hpp"
 #include "units/units.hpp"
 

@@ -3,9 +3,9 @@
 
 #include <filesystem>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <string>
 
+#include "json/json.hpp"
 #include "trial/trial.hpp"
 
 namespace rouleau::stability {

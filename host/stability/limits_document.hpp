@@ -2,12 +2,12 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "bisection.hpp"
+#include "json/json.hpp"
 #include "judgement.hpp"
 #include "trial/campaign_file.hpp"
 

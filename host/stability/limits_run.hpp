@@ -2,11 +2,11 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "json/json.hpp"
 #include "limits_document.hpp"
 #include "trial/campaign.hpp"
 

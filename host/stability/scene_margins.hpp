@@ -1,8 +1,7 @@
 // How far scenes are from an edge that was found.
 #pragma once
 
-#include <nlohmann/json.hpp>
-
+#include "json/json.hpp"
 #include "limits_run.hpp"
 
 namespace rouleau::stability {

@@ -1,10 +1,10 @@
 // The study's conclusions as they stand in study.json.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "analysis.hpp"
+#include "json/json.hpp"
 #include "target.hpp"
 
 namespace rouleau::study {

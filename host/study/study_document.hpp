@@ -2,9 +2,9 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <vector>
 
+#include "json/json.hpp"
 #include "quantity.hpp"
 #include "trial/campaign_file.hpp"
 

@@ -1,12 +1,12 @@
 // The points of a study and what is known of them while it runs; what study.json is made of.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "analysis.hpp"
+#include "json/json.hpp"
 #include "study_document.hpp"
 #include "trial/point_record.hpp"
 

@@ -4,12 +4,12 @@
 
 #include <atomic>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
 #include "campaign_file.hpp"
 #include "files/file_lock.hpp"
+#include "json/json.hpp"
 #include "point_record.hpp"
 #include "trial.hpp"
 

@@ -3,11 +3,11 @@
 
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "json/document.hpp"
+#include "json/json.hpp"
 #include "matrix.hpp"
 
 namespace rouleau::trial {

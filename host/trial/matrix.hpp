@@ -2,12 +2,12 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "json/document.hpp"
+#include "json/json.hpp"
 
 namespace rouleau::trial {
 

@@ -3,10 +3,11 @@
 
 #include <atomic>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "json/json.hpp"
 
 namespace rouleau::trial {
 

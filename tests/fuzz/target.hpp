@@ -8,13 +8,13 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "base/error.hpp"
+#include "json/json.hpp"
 
 /// A target: everything that the bytes of a file can set off in one part of the host. It returns for good bytes and for
 /// bad ones; it ends the process where the host does not keep what it promises.

@@ -77,6 +77,11 @@ class Includes_run_down(unittest.TestCase):
                 self.assertNotRegex(path.read_text(), r"#include <(nlohmann|boost|hdf5|udunits2|filesystem|fstream|iostream)",
                                     path)
 
+    def test_json_is_read_by_one_header(self):
+        """It refuses what is no whole number; a file that includes the library alone would cast."""
+        direct = {str(path.relative_to(HOST)) for path in sources() if "#include <nlohmann/" in path.read_text()}
+        self.assertEqual(direct, {"json/json.hpp", "base/text.cpp"})  # the latter stands below, and writes only
+
     def test_a_folder_is_a_namespace(self):
         for path in sources():
             if len(path.relative_to(HOST).parts) == 1:

@@ -6,11 +6,11 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "json/json.hpp"
 #include "plan/read_scene.hpp"
 #include "run/simulation.hpp"
 #include "scratch_folder.hpp"

@@ -1,5 +1,7 @@
 // The host judges documents by its own reader of JSON Schema (json/schema.hpp). Here valijson, an independent one,
 // judges the same documents by the same schemas.
+#include "json/json.hpp"  // before valijson, which includes the library by itself
+
 #define VALIJSON_USE_EXCEPTIONS 1  // without, it ends the program
 #include <catch2/catch.hpp>
 #include <filesystem>
@@ -40,7 +42,11 @@ class Judges {
   }
 
   [[nodiscard]] bool valijson_accepts(const Json& value) {
-    return validator_.validate(rules_, valijson::adapters::NlohmannJsonAdapter(value), nullptr);
+    try {
+      return validator_.validate(rules_, valijson::adapters::NlohmannJsonAdapter(value), nullptr);
+    } catch (const Json::out_of_range&) {  // it reads whole numbers as std::int64_t
+      return false;
+    }
   }
 
   /// Judges a document by both, and fails unless they agree.

@@ -7,13 +7,13 @@
 #include <chrono>
 #include <cstdlib>
 #include <iostream>
-#include <nlohmann/json.hpp>
 #include <rouleau/dispatch.hpp>
 #include <span>
 #include <thread>
 
 #include "core/domain/ranks.hpp"
 #include "faults.hpp"
+#include "json/json.hpp"
 #include "terminal.hpp"
 
 namespace rouleau::command {

@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <iostream>
 #include <new>
-#include <nlohmann/json.hpp>
 #include <rouleau/dispatch.hpp>
 #include <string_view>
 #include <vector>
@@ -15,6 +14,7 @@
 #include "base/foreign_call.hpp"
 #include "base/text.hpp"
 #include "crew.hpp"
+#include "json/json.hpp"
 #include "terminal.hpp"
 
 namespace rouleau::command {

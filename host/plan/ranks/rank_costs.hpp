@@ -1,11 +1,11 @@
 // What a run in blocks would ask of each rank, known before its first step.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "blocks.hpp"
+#include "json/json.hpp"
 #include "plan/plan.hpp"
 
 namespace rouleau::plan {

@@ -1,10 +1,10 @@
 // How long a step takes with several ranks: a model of what each computes, and of their messages.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "json/json.hpp"
 #include "rank_costs.hpp"
 
 namespace rouleau::plan {

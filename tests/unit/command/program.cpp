@@ -1,12 +1,12 @@
 // Errors at the end of the program: exit codes, and remedies in the options of the command line.
 #include "command/process/program.hpp"
+#include "json/json.hpp"
 
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <functional>
 #include <iostream>
 #include <new>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <stdexcept>
 #include <utility>

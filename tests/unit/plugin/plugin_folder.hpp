@@ -4,10 +4,10 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "base/error.hpp"
+#include "json/json.hpp"
 #include "scratch_folder.hpp"
 
 namespace rouleau::test {
