@@ -203,13 +203,13 @@ Problem::Problem(const scene::Scene& draft, const Json& written, const NumericsB
   momentum_time_ = scene_.fluid.density * length * length / scene::viscosity_range(scene_.fluid).least;
 }
 
-/// In three dimensions the corrections were measured for cells that touch nothing, and with the sharp kernel.
+/// In three dimensions the correction was measured with the sharp kernel.
 MembraneCoupling Problem::chosen_coupling() const {
   const bool in_space = scene_.domain.depth.has_value();
   scene::Numerics chosen;
   const std::string kernel = numerics_.value("kernel", in_space ? sharp_kernel : chosen.kernel);
   bool corrected = bounds_.slip_correction && scene_.fluid.layers.empty();
-  if (in_space) corrected = corrected && scene_.interactions.empty() && kernel == sharp_kernel;
+  if (in_space) corrected = corrected && kernel == sharp_kernel;
   chosen.slip_correction = numerics_.value("slip_correction", corrected);
   chosen.kernel = kernel;
   return membrane_coupling(chosen);
@@ -501,7 +501,7 @@ NumericsChoice Problem::chosen(const Trial& best) const {
           "has no second moment: what the slip correction leaves is a fifth of that of peskin4");
     set("slip_correction", corrected,
         corrected  ? "takes the first-order error of the immersed boundary out"
-        : in_space ? "left out: in three dimensions it was measured for cells that touch nothing"
+        : in_space ? "left out: in three dimensions it was measured with the kernel sharp6 alone, and without layers"
                    : "left out, for plasma between cells drains with it, and some that attract each other strongly "
                      "then become so thin that they cross themselves");
     set("area_correction", true, in_space ? "cells keep their volumes" : "cells keep their areas");

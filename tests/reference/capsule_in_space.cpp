@@ -1,13 +1,14 @@
-// A capsule in unbounded simple shear in three dimensions, by boundary integrals: what Rouleau is compared with, and does not
-// compute (tests/reference/capsules_in_space.json). Shares no code with it.
+// A capsule, or two, in unbounded simple shear in three dimensions, by boundary integrals: what Rouleau is compared with, and
+// does not compute (tests/reference/capsules_in_space.json). Shares no code with it.
 //
 //   g++ -O3 -march=native -fopenmp -std=c++20 -I /usr/include/eigen3 tests/reference/capsule_in_space.cpp -o /tmp/capsule
-//   /tmp/capsule LAW CA RATIO [N] [STRAIN] [STEP] [SHAPE]
+//   /tmp/capsule LAW CA RATIO [N] [STRAIN] [STEP] [SHAPE] [DX DY]
 //
 // LAW is neo-hookean, skalak (C = 1) or drop; CA = viscosity times shear rate times radius over the shear modulus (the surface
 // tension); RATIO the viscosity inside over that outside; N the frequency of the geodesic sphere (10 N^2 + 2 nodes); SHAPE "sphere", if left out, or "biconcave". Prints
 // strain, deformation (a - b)/(a + b) of the ellipsoid of inertia in the plane of shear, its angle over pi, and the volume over
-// that at first.
+// that at first. With DX and DY a second one like it lies that far along the flow and along its gradient, and the distances of
+// their centroids along both follow, and the least one from a node of the first to the second's nodes and middles of triangles.
 //
 // Lengths are over the radius, rates over the shear rate, stresses over viscosity times shear rate. On the surface
 //   u(x0) = u_shear(x0) + 1/(8 pi) int G.q dS + (1 - ratio)/(8 pi) int (u(x) - u(x0)).T.n dS,
@@ -23,6 +24,7 @@
 #include <deque>
 #include <map>
 #include <numbers>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -248,12 +250,14 @@ struct Capsule {
 
 struct Shape {
   double deformation, angle, volume;
+  Vec centroid;
 };
-Shape shape_of(const Capsule& c, const Field& x) {
+/// Of the capsule whose triangles these are.
+Shape shape_of(std::span<const std::array<int, 3>> triangles, const Field& x) {
   double volume = 0;
   Vec first = Vec::Zero();
   Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
-  for (const auto& t : c.mesh.triangles) {
+  for (const auto& t : triangles) {
     const Vec &p = x[t[0]], &q = x[t[1]], &r = x[t[2]];
     const double det = p.dot(q.cross(r));
     const Vec s = p + q + r;
@@ -265,29 +269,61 @@ Shape shape_of(const Capsule& c, const Field& x) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(plane);
   const double a = std::sqrt(solver.eigenvalues()[1]), b = std::sqrt(solver.eigenvalues()[0]);
   const Eigen::Vector2d axis = solver.eigenvectors().col(1);
-  return {(a - b) / (a + b), std::atan(axis.y() / axis.x()) / pi, volume};
+  return {(a - b) / (a + b), std::atan(axis.y() / axis.x()) / pi, volume, first / volume};
+}
+
+/// The shape as it lies in a mesh, and once more, so far from there.
+void add_second(Mesh& mesh, const Vec& shift) {
+  const int nodes = static_cast<int>(mesh.x.size());
+  const std::size_t triangles = mesh.triangles.size();
+  for (int i = 0; i < nodes; ++i) mesh.x.push_back(mesh.x[i] + shift / 2), mesh.x[i] -= shift / 2;
+  for (std::size_t k = 0; k < triangles; ++k) {
+    const auto [a, b, c] = mesh.triangles[k];
+    mesh.triangles.push_back({a + nodes, b + nodes, c + nodes});
+  }
+}
+
+double least_distance(const Mesh& mesh, const Field& x) {
+  double least = INFINITY;
+  const std::size_t nodes = x.size() / 2, half = mesh.triangles.size() / 2;
+  for (std::size_t i = 0; i < nodes; ++i) {
+    for (std::size_t j = nodes; j < x.size(); ++j) least = std::min(least, (x[i] - x[j]).norm());
+    for (std::size_t k = half; k < 2 * half; ++k) {
+      const auto& [a, b, c] = mesh.triangles[k];
+      least = std::min(least, (x[i] - (x[a] + x[b] + x[c]) / 3).norm());
+    }
+  }
+  return least;
 }
 
 int main(int count, char** words) {
   const std::string shape = count > 7 ? words[7] : "sphere";
   if (count < 4 || (shape != "sphere" && shape != "biconcave")) {
-    std::fprintf(stderr, "usage: capsule LAW CA RATIO [N] [STRAIN] [STEP] [SHAPE]\n");
+    std::fprintf(stderr, "usage: capsule LAW CA RATIO [N] [STRAIN] [STEP] [SHAPE] [DX DY]\n");
     return 2;
   }
   const int n = count > 4 ? std::atoi(words[4]) : 8;
   const double strain = count > 5 ? std::atof(words[5]) : 4, step = count > 6 ? std::atof(words[6]) : 0.01;
   Capsule c{geodesic_sphere(n), {}, words[1], std::atof(words[2]), std::atof(words[3]), {}, {}};
   if (shape == "biconcave") make_biconcave(c.mesh.x);
+  const std::size_t of_one = c.mesh.triangles.size();
+  if (count > 9) add_second(c.mesh, {std::atof(words[8]), std::atof(words[9]), 0});
+  const auto triangles = [&](int which) { return std::span(c.mesh.triangles).subspan(which * of_one, of_one); };
   c.rest = c.mesh.x;
   Field x = c.rest, u(x.size(), Vec::Zero());
   for (std::size_t i = 0; i < x.size(); ++i) u[i] = Vec(x[i].y(), 0, 0);
-  const double volume = shape_of(c, x).volume;
+  const double volume = shape_of(triangles(0), x).volume;
   const long steps = std::lround(strain / step), every = std::max(1L, std::lround(0.05 / step));
   for (long s = 0; s <= steps; ++s) {
     if (s % every == 0 || s == steps) {
-      const Shape now = shape_of(c, x);
-      std::printf("%.3f %.5f %.4f %.6f\n", static_cast<double>(s) * step, now.deformation, now.angle,
+      const Shape now = shape_of(triangles(0), x);
+      std::printf("%.3f %.5f %.4f %.6f", static_cast<double>(s) * step, now.deformation, now.angle,
                   now.volume / volume);
+      if (count > 9) {
+        const Vec apart = shape_of(triangles(1), x).centroid - now.centroid;
+        std::printf(" %.5f %.5f %.4f", apart.x(), apart.y(), least_distance(c.mesh, x));
+      }
+      std::puts("");
       std::fflush(stdout);
     }
     u = c.velocity(x, u);

@@ -327,9 +327,8 @@ TEST_CASE(
         CHECK(estimated_cost(scene) >= cost * 0.98);  // factors are rounded to three digits
         CHECK(scene.domain.nodes[1] >= rows);
         CHECK(scene.numerics.area_correction);
-        const bool alone = scene.interactions.empty();  // with contacts the sharp kernel was not measured
-        CHECK(scene.numerics.slip_correction == alone);
-        CHECK(scene.numerics.kernel == (alone ? "sharp6" : "peskin4"));
+        CHECK(scene.numerics.slip_correction);
+        CHECK(scene.numerics.kernel == "sharp6");
         cost = estimated_cost(scene);
         rows = scene.domain.nodes[1];
       }

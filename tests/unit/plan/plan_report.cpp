@@ -212,6 +212,21 @@ TEST_CASE("slip correction is warned of with attraction, not with repulsion alon
   CHECK(warned("[" + repulsion + ", " + morse + "]"));
 }
 
+TEST_CASE("cells that may touch in three dimensions want the slip correction") {
+  const plugin::Catalog catalog({ROULEAU_PLUGINS});
+  const auto warned = [&](const std::string& name, const std::string& change) {
+    const scene::Scene scene = read_scene(std::string(ROULEAU_SCENES) + "/" + name, {change});
+    const PlanReport report = make_report(make_plan(scene, catalog));
+    return std::any_of(report.warnings.begin(), report.warnings.end(), [](const std::string& warning) {
+      return warning.starts_with("numerics.slip_correction is false");
+    });
+  };
+  CHECK_FALSE(warned("doublet-3d.json", "/title=as it is"));
+  CHECK(warned("doublet-3d.json", "/numerics/slip_correction=false"));
+  CHECK_FALSE(warned("red-cell-3d.json", "/numerics/slip_correction=false"));  // nobody is there to touch
+  CHECK_FALSE(warned("four-cells-shear.json", "/numerics/slip_correction=false"));
+}
+
 TEST_CASE("strain of an oscillating stage is the integral of the shear rate's magnitude") {
   const double base = GENERATE(0.0, 0.3, -0.3, 1.7, -1.7), amplitude = GENERATE(1.0, -1.0);
   StageSetting setting{};
