@@ -311,11 +311,12 @@ std::vector<std::string> warnings_of(const Plan& plan, const std::vector<Limit>&
         "numerics.slip_correction with attracting cells: what presses cells together leaks plasma into them "
         "(docs/accuracy.md); set numerics.area_correction to true as well");
   }
-  if (scene.domain.depth && looks_for_neighbours(plan) && !scene.numerics.slip_correction) {
+  if (scene.domain.depth && scene.cells.size() > 1 && !scene.numerics.slip_correction) {
     warnings.emplace_back(
-        "numerics.slip_correction is false: in three dimensions plasma hardly drains from between cells then, so that cells "
-        "in contact do not come to rest, and in shear do not part when they should (docs/three-dimensions.md, \"Four cells "
-        "in shear\"); set it and numerics.area_correction to true and numerics.kernel to \"sharp6\"");
+        "numerics.slip_correction is false: in three dimensions plasma hardly drains from between cells then, so that they "
+        "pass each other too far apart, suspensions are too viscous, and cells in contact stay together that should part "
+        "(docs/three-dimensions.md, \"Cells that pass each other\"); set it and numerics.area_correction to true and "
+        "numerics.kernel to \"sharp6\"");
   }
   for (const InteractionWell& well : wells) {
     if (!well.doubt.empty())

@@ -212,7 +212,7 @@ TEST_CASE("slip correction is warned of with attraction, not with repulsion alon
   CHECK(warned("[" + repulsion + ", " + morse + "]"));
 }
 
-TEST_CASE("cells that may touch in three dimensions want the slip correction") {
+TEST_CASE("several cells in three dimensions want the slip correction") {
   const plugin::Catalog catalog({ROULEAU_PLUGINS});
   const auto warned = [&](const std::string& name, const std::string& change) {
     const scene::Scene scene = read_scene(std::string(ROULEAU_SCENES) + "/" + name, {change});
@@ -223,7 +223,7 @@ TEST_CASE("cells that may touch in three dimensions want the slip correction") {
   };
   CHECK_FALSE(warned("doublet-3d.json", "/title=as it is"));
   CHECK(warned("doublet-3d.json", "/numerics/slip_correction=false"));
-  CHECK_FALSE(warned("red-cell-3d.json", "/numerics/slip_correction=false"));  // nobody is there to touch
+  CHECK_FALSE(warned("red-cell-3d.json", "/numerics/slip_correction=false"));  // nobody is there to pass
   CHECK_FALSE(warned("four-cells-shear.json", "/numerics/slip_correction=false"));
 }
 
