@@ -135,7 +135,7 @@ inline std::vector<Cut<3>> cuts_for_travellers(const core::Domain<3>& domain) {
 /// Cells in three dimensions: over borders, between walls, in a tube.
 inline std::vector<Case> scenes_in_space() {
   const std::string doublet = ROULEAU_SCENES "/doublet-3d.json", capsule = ROULEAU_SCENES "/capsule-3d.json",
-                    f64 = "/numerics/precision=\"f64\"";
+                    f64 = "/numerics/precision=\"f64\"", plain = "/numerics/slip_correction=false";
   const auto bonds_between = [](const std::string& whom, const std::string& at = "0") {
     return "/interactions/" + at + R"(={"model": "bridging", "parameters": {"site_density": "1e12 1/m2",
       "bond_stiffness": "1e-7 N/m", "zero_force_distance": "0.49 um", "on_rate": "2000 1/s", "off_rate": "10 1/s",
@@ -150,13 +150,13 @@ inline std::vector<Case> scenes_in_space() {
        {"/cell_types/rbc/interior_viscosity=\"6 cP\"", "/cells/0/row/center=[\"11.5 um\", \"0.4 um\", \"11.8 um\"]"}},
       {"bonds between cells and with walls",
        doublet,
-       {f64, R"(/domain/y={"lower": {"wall": {}}, "upper": {"wall": {}}})",
+       {f64, plain, R"(/domain/y={"lower": {"wall": {}}, "upper": {"wall": {}}})",
         R"(/domain/size=["12.5 um", "8 um", "12.5 um"])", "/domain/nodes=[50, 32, 50]",
         "/cells/0/row/center=[\"11.5 um\", \"4 um\", \"11.8 um\"]", bonds_between("[\"rbc\", \"rbc\"]"),
         bonds_between("[\"rbc\", \"wall\"]", "-")}},
       {"within cells, in layers",
        doublet,
-       {f64, R"(/domain={"size": ["12.5 um", "8 um", "12.5 um"], "nodes": [50, 32, 50],
+       {f64, plain, R"(/domain={"size": ["12.5 um", "8 um", "12.5 um"], "nodes": [50, 32, 50],
                          "y": {"lower": {"wall": {}}, "upper": {"wall": {}}}})",
         "/cells/0/row/center=[\"11.5 um\", \"4 um\", \"11.8 um\"]",
         R"(/fluid/layers=[{"from": "2 um", "to": "4.1 um", "viscosity": "2 cP"}])",
