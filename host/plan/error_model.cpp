@@ -36,6 +36,8 @@ constexpr double thin_growth_with_tau = 0.2;  ///< of the error of thin cells, f
 constexpr double by_compression[2] = {0.065, 0.15};
 // Without slip correction the tangential slip of the membrane, of first order, comes on top.
 constexpr double slip_at_ten[2] = {0.014, 0.025};
+// And where cells pass each other it keeps the plasma between them: so much too far apart they go.
+constexpr double passing_at_ten = 0.06;
 // A fluid that is simulated denser: strains at which things happen are wrong by this share of the Reynolds number.
 constexpr double motion_by_reynolds = 0.024;
 // Of a thin cell that is placed along the flow and slowly leaves that position: within this angle, rad.
@@ -52,6 +54,7 @@ namespace in_space {
 // Of round and of thin cells, at ten spacings a radius, for every viscosity ratio and relaxation time that was measured: what the
 // kernel takes from normal forces, of second order, and slip, of first order.
 constexpr double kernel_at_ten = 0.031, slip_at_ten = 0.022;
+constexpr double passing_at_ten = 0.085;  ///< as in the plane
 // With the slip correction and the kernel sharp6.
 constexpr ShapeErrors sharp{{0.015, 2}, {0.024, 2}};
 constexpr double motion_by_reynolds = 0.037;
@@ -133,6 +136,11 @@ double lattice_error(const scene::Shape& shape, double radius, double viscosity_
   if (coupling == MembraneCoupling::plain)
     error += between(in_plane::slip_at_ten[0], in_plane::slip_at_ten[1], viscosity_ratio) * 10 / radius;
   return error;
+}
+
+double passing_error(double radius, int dimension, MembraneCoupling coupling) {
+  if (coupling != MembraneCoupling::plain) return 0;
+  return (dimension == 3 ? in_space::passing_at_ten : in_plane::passing_at_ten) * 10 / radius;
 }
 
 double stiffness_error(double compression, double reynolds, double viscosity_ratio) {

@@ -46,6 +46,8 @@ LeastRadii least_radii(const scene::Scene& scene, MembraneCoupling coupling);
 /// relaxation time.
 double lattice_error(const scene::Shape& shape, double radius, double viscosity_ratio, double tau, int dimension,
                      MembraneCoupling coupling, const CapillaryRange& capillary);
+/// What it leaves in the distance of cells that pass each other, over that distance.
+double passing_error(double radius, int dimension, MembraneCoupling coupling);
 /// What the membranes of round cells make of the lattice's fluid in two dimensions: it gives way to the pressure Es/a by the share
 /// `compression`, 3 Es/a in lattice units or (tau - 1/2) times the shear rate in a step over the capillary number, and with its
 /// inertia stiff cells then deform too much.

@@ -338,6 +338,8 @@ double Problem::resolution_error(double spacing, double tau) const {
   for (const UsedType& used : used_types_)
     largest = std::max(largest, lattice_error(used.type->shape, used.radius / spacing, viscosity_ratio_, tau,
                                               domain.dimension(), coupling_, capillary_));
+  if (scene_.cells.size() > 1)
+    largest = std::max(largest, passing_error(radius_ / spacing, domain.dimension(), coupling_));
   if (!has_cells_) largest = flow_start_error(domain, spacing, tau);
   return largest + steady_flow_error(domain, spacing);
 }

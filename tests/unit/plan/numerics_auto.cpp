@@ -27,6 +27,11 @@ ReadScene chosen(const std::vector<std::string>& overrides, const std::string& s
 }
 Scene chosen_scene(const std::vector<std::string>& overrides) { return chosen(overrides).scene; }
 
+std::string target_of(double error, const std::string& of) {
+  return R"(/numerics={"auto": {"error": )" + std::to_string(error) + R"(, "of": ")" + of +
+         R"("}, "precision": "f32"})";
+}
+
 double estimated_cost(const Scene& scene) {
   const Catalog catalog = shipped_plugins(scene);
   return estimate(make_plan(scene, catalog)).wall_s;
@@ -253,6 +258,15 @@ TEST_CASE("limits of the plan bound the choice") {
   CHECK(attracted.numerics.slip_correction);
   const std::string deep = "/interactions/0/parameters/depth=\"1.3e-6 J/m2\"";
   CHECK_FALSE(chosen_scene({sticky[0], deep}).numerics.slip_correction);
+  // In the plain scheme cells that pass each other are off by more than one alone.
+  const std::string second = R"(/cells/-={"type": "capsule", "at": ["5 um", "5 um"]})",
+                    wanted = target_of(0.05, "motion"), plain = "/numerics/slip_correction=false";
+  const auto lattice = [&](const std::vector<std::string>& changes) {
+    const auto [scene, choice] = chosen(changes);
+    CHECK(choice->expected.total() <= 0.05);
+    return scene.domain.nodes[1];
+  };
+  CHECK(lattice({wanted, plain, second}) > lattice({wanted, plain}));
 }
 
 TEST_CASE("auto needs a lattice, and without it a scene needs its own") {
@@ -282,10 +296,6 @@ namespace {
 
 const std::string in_space = "/auto-capsule-3d.json";
 
-std::string target_of(double error, const std::string& of) {
-  return R"(/numerics={"auto": {"error": )" + std::to_string(error) + R"(, "of": ")" + of +
-         R"("}, "precision": "f32"})";
-}
 std::vector<int> lattice_of(const Scene& scene) {
   return {scene.domain.nodes[0], scene.domain.nodes[1], scene.domain.depth->nodes};
 }
