@@ -39,8 +39,8 @@ class StudyReader {
   }
   [[nodiscard]] int count(const std::string& pointer, int least) const {
     const auto& value = fields_.at(pointer);
-    constexpr long long most = 1'000'000'000;
-    if (!value.is_number_integer() || value.get<long long>() < least || value.get<long long>() > most)
+    constexpr double most = 1e9;
+    if (!value.is_number_integer() || value.get<double>() < least || value.get<double>() > most)
       fields_.refuse(pointer, json::shown(value) + " must be a whole number from " + std::to_string(least) + " on");
     return value.get<int>();
   }

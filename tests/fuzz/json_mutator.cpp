@@ -62,6 +62,11 @@ Json& some_part(Json& root, Random& random) {
   return *values[below(values.size(), random)];
 }
 
+/// What is beyond std::int64_t begins anew from its other end.
+std::int64_t whole_number(const Json& value) {
+  return value.is_number_unsigned() ? static_cast<std::int64_t>(value.get<std::uint64_t>()) : value.get<std::int64_t>();
+}
+
 void change_number(Json& value, Random& random) {
   const double number = value.get<double>();
   switch (below(6, random)) {
@@ -75,11 +80,10 @@ void change_number(Json& value, Random& random) {
       value = -number;
       break;
     case 3:
-      value = value.is_number_integer() ? Json(value.get<std::int64_t>() / 2) : Json(number / 2);
+      value = value.is_number_integer() ? Json(whole_number(value) / 2) : Json(number / 2);
       break;
     case 4:
-      value = value.is_number_integer() ? Json(static_cast<std::uint64_t>(value.get<std::int64_t>()) + 1)
-                                        : Json(number + 1);
+      value = value.is_number_integer() ? Json(static_cast<std::uint64_t>(whole_number(value)) + 1) : Json(number + 1);
       break;
     default:
       value = below(20, random);

@@ -365,6 +365,8 @@ TEST_CASE("a quantity that cannot be right is refused at its place, with what is
             .find("\"cel\" is no key of a quantity of kind angle; did you mean "
                   "\"cell\"?") == 0);
   CHECK(refusal(named({{"kind", "angle"}, {"cell", -1}})) == "-1 must be a whole number from 0 on");
+  CHECK(refusal(named({{"kind", "angle"}, {"cell", 18446744073709551615U}})) ==
+        "18446744073709551615 must be a whole number from 0 on");
   CHECK(refusal(named({{"kind", "angle"}, {"cell", "first"}})) == "\"first\" must be a whole number from 0 on");
   CHECK(refusal(named({{"kind", "angle"}, {"at", "start"}})).find("\"start\" is none of end") == 0);
   CHECK(refusal(named({{"kind", "angle"}, {"at", {{"strain", 1}, {"time", 2}}}}))
