@@ -153,9 +153,9 @@ Estimate estimate(const Plan& plan) {
   const double word = scene.numerics.precision == scene::Precision::f64 ? 8 : 4;
   Estimate estimate;
   for (const StageSetting& stage : plan.stages) estimate.steps += static_cast<double>(stage.max_steps);
-  estimate.wall_s = estimate.steps * step_cost(fluid_nodes(scene.domain), membrane, scene.numerics.precision, dimension,
-                                               largest_cutoff(plan)) +
-                    estimate.steps * membrane * cost_of_corrections(plan);
+  const double of_step =
+      step_cost(fluid_nodes(scene.domain), membrane, scene.numerics.precision, dimension, largest_cutoff(plan));
+  estimate.wall_s = estimate.steps * (of_step + membrane * cost_of_corrections(plan));
   estimate.memory_bytes = nodes * word *
                               (velocities + (plan.has_cells ? dimension : 0) +
                                (plan.viscosity_contrast || !scene.fluid.layers.empty() ? 1 : 0)) +

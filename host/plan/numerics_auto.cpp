@@ -208,8 +208,8 @@ MembraneCoupling Problem::chosen_coupling() const {
   const bool in_space = scene_.domain.depth.has_value();
   scene::Numerics chosen;
   const std::string kernel = numerics_.value("kernel", in_space ? sharp_kernel : chosen.kernel);
-  bool corrected = bounds_.slip_correction && scene_.fluid.layers.empty();
-  if (in_space) corrected = corrected && kernel == sharp_kernel;
+  const bool corrected =
+      bounds_.slip_correction && scene_.fluid.layers.empty() && (!in_space || kernel == sharp_kernel);
   chosen.slip_correction = numerics_.value("slip_correction", corrected);
   chosen.kernel = kernel;
   return membrane_coupling(chosen);

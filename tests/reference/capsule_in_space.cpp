@@ -307,7 +307,8 @@ int main(int count, char** words) {
   Capsule c{geodesic_sphere(n), {}, words[1], std::atof(words[2]), std::atof(words[3]), {}, {}};
   if (shape == "biconcave") make_biconcave(c.mesh.x);
   const std::size_t of_one = c.mesh.triangles.size();
-  if (count > 9) add_second(c.mesh, {std::atof(words[8]), std::atof(words[9]), 0});
+  const bool pair = count > 9;
+  if (pair) add_second(c.mesh, {std::atof(words[8]), std::atof(words[9]), 0});
   const auto triangles = [&](int which) { return std::span(c.mesh.triangles).subspan(which * of_one, of_one); };
   c.rest = c.mesh.x;
   Field x = c.rest, u(x.size(), Vec::Zero());
@@ -319,7 +320,7 @@ int main(int count, char** words) {
       const Shape now = shape_of(triangles(0), x);
       std::printf("%.3f %.5f %.4f %.6f", static_cast<double>(s) * step, now.deformation, now.angle,
                   now.volume / volume);
-      if (count > 9) {
+      if (pair) {
         const Vec apart = shape_of(triangles(1), x).centroid - now.centroid;
         std::printf(" %.5f %.5f %.4f", apart.x(), apart.y(), least_distance(c.mesh, x));
       }

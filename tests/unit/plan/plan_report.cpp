@@ -35,6 +35,14 @@ std::string why_left_out(const PlanReport& report, const std::string& what) {
   return "";
 }
 
+/// Does the plan of a shipped scene with these changes have a warning that begins so?
+bool warns(const std::string& name, const std::vector<std::string>& changes, const std::string& beginning) {
+  const scene::Scene scene = read_scene(std::string(ROULEAU_SCENES) + "/" + name, changes);
+  const PlanReport report = make_report(make_plan(scene, plugins_of_reports()));
+  return std::any_of(report.warnings.begin(), report.warnings.end(),
+                     [&](const std::string& warning) { return warning.starts_with(beginning); });
+}
+
 TEST_CASE("a plan says by how much a start from rest makes a stage late") {
   const auto late = [](const std::vector<std::string>& changes) {
     scene::Scene scene = read_scene(std::string(ROULEAU_SCENES) + "/four-cells-shear.json", changes);
@@ -196,14 +204,9 @@ TEST_CASE(
 }
 
 TEST_CASE("slip correction is warned of with attraction, not with repulsion alone") {
-  const plugin::Catalog catalog({ROULEAU_PLUGINS});
   const auto warned = [&](const std::string& interactions) {
-    const scene::Scene scene = read_scene(std::string(ROULEAU_SCENES) + "/four-cells-shear.json",
-                                          {"/numerics/slip_correction=true", "/interactions=" + interactions});
-    const PlanReport report = make_report(make_plan(scene, catalog));
-    return std::any_of(report.warnings.begin(), report.warnings.end(), [](const std::string& warning) {
-      return warning.starts_with("numerics.slip_correction with attracting cells");
-    });
+    return warns("four-cells-shear.json", {"/numerics/slip_correction=true", "/interactions=" + interactions},
+                 "numerics.slip_correction with attracting cells");
   };
   const std::string repulsion = R"({"between": ["rbc", "rbc"], "model": "repulsion",
                                     "parameters": {"strength": "1e-7 J/m2", "cutoff": "1 um"}})";
@@ -213,13 +216,8 @@ TEST_CASE("slip correction is warned of with attraction, not with repulsion alon
 }
 
 TEST_CASE("several cells in three dimensions want the slip correction") {
-  const plugin::Catalog catalog({ROULEAU_PLUGINS});
   const auto warned = [&](const std::string& name, const std::string& change) {
-    const scene::Scene scene = read_scene(std::string(ROULEAU_SCENES) + "/" + name, {change});
-    const PlanReport report = make_report(make_plan(scene, catalog));
-    return std::any_of(report.warnings.begin(), report.warnings.end(), [](const std::string& warning) {
-      return warning.starts_with("numerics.slip_correction is false");
-    });
+    return warns(name, {change}, "numerics.slip_correction is false");
   };
   CHECK_FALSE(warned("doublet-3d.json", "/title=as it is"));
   CHECK(warned("doublet-3d.json", "/numerics/slip_correction=false"));
