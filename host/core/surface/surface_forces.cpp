@@ -6,29 +6,15 @@
 #include <stdexcept>
 
 #include "core/membrane/stiffness.hpp"
-#include "surface_kernels.hpp"
 
 namespace rouleau::core {
 
 namespace {
 
-constexpr int pack_size = 8;  // doubles in the widest pack
-
-int padded(int count) { return (count + pack_size - 1) / pack_size * pack_size; }
-
 template <class Loop>
 void run_loop(const SurfaceArrays& arrays) {
   static const auto function = Dispatch<Loop, const SurfaceArrays*>::pick();
   function(&arrays);
-}
-
-template <std::size_t n>
-void point(const double* (&to)[n], const std::vector<double> (&from)[n]) {
-  for (std::size_t k = 0; k < n; ++k) to[k] = from[k].data();
-}
-template <std::size_t n>
-void point(double* (&to)[n], std::vector<double> (&from)[n]) {
-  for (std::size_t k = 0; k < n; ++k) to[k] = from[k].data();
 }
 
 double weighted_sum(const std::vector<double>& values, const std::vector<double>& weights) {
@@ -63,8 +49,7 @@ SurfaceForces::Law SurfaceForces::describe(const MembraneLaw& model) {
 
 SurfaceForces::Type SurfaceForces::prepare(const RestSurface& rest, const MembraneLaws& laws) {
   const Mesh& mesh = rest.mesh;
-  Type type;
-  type.triangles = mesh.triangle_count();
+  Type type(mesh);
   type.edges = mesh.edge_count();
   for (const MembraneLaw& model : laws) {
     const Law& law = type.laws.emplace_back(describe(model));
@@ -74,19 +59,15 @@ SurfaceForces::Type SurfaceForces::prepare(const RestSurface& rest, const Membra
     type.cell |= law.element == Law::Element::cell;
   }
   // The last triangle and the last edge stand for those that fill the last pack.
-  const int triangles = padded(type.triangles), edges = padded(type.edges);
-  for (int t = 0; t < triangles; ++t) {
-    const int from = std::min(t, type.triangles - 1);
-    for (int k = 0; k < 3; ++k) {
-      type.corner[k].push_back(mesh.triangles()[from][k]);
-      type.triangle_edge[k].push_back(mesh.triangle_edges()[from][k]);
-    }
+  for (int t = 0; t < type.mesh.size; ++t) {
+    const int from = std::min(t, type.mesh.count - 1);
+    for (int k = 0; k < 3; ++k) type.triangle_edge[k].push_back(mesh.triangle_edges()[from][k]);
     type.inverse[0].push_back(rest.inverse_11[from]);
     type.inverse[1].push_back(rest.inverse_12[from]);
     type.inverse[2].push_back(rest.inverse_22[from]);
     type.rest_area.push_back(rest.triangle_area[from]);
   }
-  for (int e = 0; e < edges; ++e) {
+  for (int e = 0; e < padded(type.edges); ++e) {
     const Mesh::Edge& edge = mesh.edges()[std::min(e, type.edges - 1)];
     type.edge_node[0].push_back(edge.a);
     type.edge_node[1].push_back(edge.b);
@@ -97,8 +78,6 @@ SurfaceForces::Type SurfaceForces::prepare(const RestSurface& rest, const Membra
     type.inverse_node_area.push_back(1 / rest.node_area[i]);
     type.area_share.push_back(rest.node_area[i] / (3 * rest.third_area[i]));
   }
-  type.corners = mesh.corners();
-  for (int& entry : type.corners.entry) entry = entry % 3 * triangles + entry / 3;
   return type;
 }
 
@@ -135,16 +114,12 @@ SurfaceForces::Scratch& SurfaceForces::scratch_of(int first_cell) {
   const auto make = [](auto& arrays, std::size_t size) {
     for (auto& array : arrays) array.assign(size, 0.0);
   };
-  make(s.side, triangles);
+  make(s.side[0], triangles);
+  make(s.side[1], triangles);
   make(s.normal, triangles);
   make(s.invariant, triangles);
   make(s.stress, triangles);
-  make(s.moment, triangles);
-  make(s.turn, triangles);
-  make(s.area_pull, triangles);
   make(s.force, 3 * triangles);
-  make(s.along, edges);
-  make(s.normals, edges);
   make(s.law, std::max(triangles, nodes));
   for (auto* array : {&s.turned_length, &s.edge_turn}) array->assign(edges, 0.0);
   for (auto* array : {&s.curvature, &s.area_ratio, &s.node_moment, &s.node_pull}) array->assign(nodes, 0.0);
@@ -152,46 +127,33 @@ SurfaceForces::Scratch& SurfaceForces::scratch_of(int first_cell) {
   return s;
 }
 
-namespace {
-
-/// Differences of positions, triangle by triangle or edge by edge.
-void differences(const std::vector<int>& from, const std::vector<int>& to, Nodes nodes, double* x, double* y,
-                 double* z) {
-  for (std::size_t k = 0; k < from.size(); ++k) {
-    x[k] = nodes.x[to[k]] - nodes.x[from[k]];
-    y[k] = nodes.y[to[k]] - nodes.y[from[k]];
-    z[k] = nodes.z[to[k]] - nodes.z[from[k]];
-  }
+SurfaceArrays SurfaceForces::arrays_of(const Type& type, Scratch& s) {
+  const auto point = [](auto& to, auto& from, std::size_t offset = 0) {
+    for (std::size_t k = 0; k < std::size(to); ++k) to[k] = from[k].data() + offset;
+  };
+  SurfaceArrays arrays{};
+  arrays.triangles = type.mesh.count;
+  arrays.edges = type.edges;
+  point(arrays.corner, type.mesh.corner), point(arrays.edge, type.triangle_edge);
+  point(arrays.edge_node, type.edge_node), point(arrays.edge_triangle, type.edge_triangle);
+  point(arrays.side[0], s.side[0]), point(arrays.side[1], s.side[1]);
+  point(arrays.inverse, type.inverse);
+  arrays.rest_area = type.rest_area.data();
+  arrays.invariant_1 = s.invariant[0].data(), arrays.invariant_2 = s.invariant[1].data();
+  point(arrays.normal, s.normal);
+  arrays.stress_1 = s.stress[0].data(), arrays.stress_2 = s.stress[1].data();
+  for (std::size_t k = 0; k < 3; ++k) point(arrays.force[k], s.force, k * static_cast<std::size_t>(type.mesh.size));
+  arrays.turned_length = s.turned_length.data(), arrays.edge_turn = s.edge_turn.data();
+  arrays.node_moment = s.node_moment.data(), arrays.node_pull = s.node_pull.data();
+  arrays.with_moment = type.curvature, arrays.with_area_pull = type.area;
+  return arrays;
 }
-
-void gather(const std::vector<int>& index, const std::vector<double>& from, double* to) {
-  for (std::size_t k = 0; k < index.size(); ++k) to[k] = from[index[k]];
-}
-
-}  // namespace
 
 SurfaceForces::Whole SurfaceForces::measure(const Type& type, Nodes nodes, Scratch& s) {
-  differences(type.corner[0], type.corner[1], nodes, s.side[0].data(), s.side[1].data(), s.side[2].data());
-  differences(type.corner[0], type.corner[2], nodes, s.side[3].data(), s.side[4].data(), s.side[5].data());
-  SurfaceArrays arrays{};
-  arrays.triangles = type.triangles;
-  arrays.edges = type.edges;
-  point(arrays.side, s.side);
-  point(arrays.inverse, type.inverse);
-  point(arrays.normal, s.normal);
-  arrays.invariant_1 = s.invariant[0].data();
-  arrays.invariant_2 = s.invariant[1].data();
+  SurfaceArrays arrays = arrays_of(type, s);
+  arrays.place[0] = nodes.x, arrays.place[1] = nodes.y, arrays.place[2] = nodes.z;
   run_loop<MeasureTriangles>(arrays);
   if (type.curvature) {
-    differences(type.edge_node[0], type.edge_node[1], nodes, s.along[0].data(), s.along[1].data(), s.along[2].data());
-    for (int side = 0; side < 2; ++side) {
-      for (int k = 0; k < 3; ++k) gather(type.edge_triangle[side], s.normal[k], s.normals[3 * side + k].data());
-    }
-    point(arrays.along, s.along);
-    const std::vector<double>(&normals)[6] = s.normals;
-    point(arrays.normals, normals);
-    arrays.turned_length = s.turned_length.data();
-    arrays.edge_turn = s.edge_turn.data();
     run_loop<MeasureEdges>(arrays);
     std::fill(s.curvature.begin(), s.curvature.end(), 0.0);
     for (int e = 0; e < type.edges; ++e) {
@@ -204,12 +166,12 @@ SurfaceForces::Whole SurfaceForces::measure(const Type& type, Nodes nodes, Scrat
   if (type.area) std::fill(s.area_ratio.begin(), s.area_ratio.end(), 0.0);
   if (type.area || type.cell) {
     const Vec<3> origin = nodes[0];
-    for (int t = 0; t < type.triangles; ++t) {
+    for (int t = 0; t < type.mesh.count; ++t) {
       const Vec<3> normal(s.normal[0][t], s.normal[1][t], s.normal[2][t]);
       const double twice = normal.norm();
       whole.surface_area += twice / 2;
-      whole.volume += (nodes[type.corner[0][t]] - origin).dot(normal) / 6;
-      for (int k = 0; k < 3 && type.area; ++k) s.area_ratio[type.corner[k][t]] += twice / 2;
+      whole.volume += (nodes[type.mesh.corner[0][t]] - origin).dot(normal) / 6;
+      for (int k = 0; k < 3 && type.area; ++k) s.area_ratio[type.mesh.corner[k][t]] += twice / 2;
     }
     for (std::size_t i = 0; i < type.area_share.size() && type.area; ++i) {
       s.area_ratio[i] *= type.area_share[i] * type.inverse_node_area[i];
@@ -219,7 +181,7 @@ SurfaceForces::Whole SurfaceForces::measure(const Type& type, Nodes nodes, Scrat
 }
 
 void SurfaceForces::apply(const Type& type, const RestSurface& rest, Scratch& s, Whole& whole, MembraneEnergy* energy) {
-  const auto triangles = static_cast<std::size_t>(type.triangles), nodes = type.inverse_node_area.size();
+  const auto triangles = static_cast<std::size_t>(type.mesh.count), nodes = type.inverse_node_area.size();
   for (auto& stress : s.stress) std::fill(stress.begin(), stress.end(), 0.0);
   if (type.curvature) std::fill(s.node_moment.begin(), s.node_moment.end(), 0.0);
   if (type.area) std::fill(s.node_pull.begin(), s.node_pull.end(), 0.0);
@@ -286,33 +248,12 @@ void SurfaceForces::apply(const Type& type, const RestSurface& rest, Scratch& s,
 }
 
 void SurfaceForces::act(const Type& type, const Whole& whole, Scratch& s) {
-  SurfaceArrays arrays{};
-  arrays.triangles = type.triangles;
-  point(arrays.side, s.side);
-  point(arrays.inverse, type.inverse);
-  point(arrays.normal, s.normal);
-  for (int k = 0; k < 9; ++k) arrays.force[k] = &s.force[k % 3][k / 3 * type.rest_area.size()];
-  arrays.rest_area = type.rest_area.data();
-  arrays.stress_1 = s.stress[0].data();
-  arrays.stress_2 = s.stress[1].data();
-  arrays.with_moment = type.curvature;
-  arrays.with_area_pull = type.area;
-  arrays.pressure = whole.pressure;
-  arrays.surface_tension = whole.surface_tension;
   if (type.area) {
     for (std::size_t i = 0; i < type.area_share.size(); ++i) s.node_pull[i] *= type.area_share[i];
   }
-  for (int k = 0; k < 3; ++k) {
-    if (type.curvature) {
-      gather(type.corner[k], s.node_moment, s.moment[k].data());
-      gather(type.triangle_edge[k], s.edge_turn, s.turn[k].data());
-    }
-    if (type.area) gather(type.corner[k], s.node_pull, s.area_pull[k].data());
-  }
-  const std::vector<double>(&moment)[3] = s.moment, (&turn)[3] = s.turn, (&area_pull)[3] = s.area_pull;
-  point(arrays.moment, moment);
-  point(arrays.turn, turn);
-  point(arrays.area_pull, area_pull);
+  SurfaceArrays arrays = arrays_of(type, s);
+  arrays.pressure = whole.pressure;
+  arrays.surface_tension = whole.surface_tension;
   run_loop<ActOnTriangles>(arrays);
 }
 
@@ -326,14 +267,10 @@ void SurfaceForces::run(Worker worker, Surfaces& surfaces) {
     Whole whole = measure(type, type.filter ? look_ahead(surfaces, cell, s) : surfaces.nodes(c), s);
     apply(type, *surfaces.types[cell.type], s, whole, nullptr);
     act(type, whole, s);
-    double* const force[3] = {&surfaces.force_x[cell.first], &surfaces.force_y[cell.first],
-                              &surfaces.force_z[cell.first]};
+    const std::array<const double*, 3> of_corners{s.force[0].data(), s.force[1].data(), s.force[2].data()};
     for (int i = 0; i < cell.count; ++i) {
-      double sum[3] = {0, 0, 0};
-      for (int k = type.corners.first[i]; k < type.corners.first[i + 1]; ++k) {
-        for (int component = 0; component < 3; ++component) sum[component] += s.force[component][type.corners.entry[k]];
-      }
-      for (int component = 0; component < 3; ++component) force[component][i] = sum[component];
+      const auto [x, y, z] = type.mesh.sums_of_corners(of_corners, i);
+      surfaces.force_x[cell.first + i] = x, surfaces.force_y[cell.first + i] = y, surfaces.force_z[cell.first + i] = z;
     }
     if (type.filter) soften(type, surfaces, cell, s);
   }
@@ -381,7 +318,7 @@ std::vector<double> SurfaceForces::tensions(const Surfaces& surfaces, int cell) 
   Whole whole = measure(type, surfaces.nodes(cell), s);
   apply(type, surfaces.type_of(cell), s, whole, nullptr);
   std::vector<double> tension;
-  for (int t = 0; t < type.triangles; ++t) {
+  for (int t = 0; t < type.mesh.count; ++t) {
     // T1 + T2 = 2 ((l1^2 + l2^2) w1 + 2 l1^2 l2^2 w2) / (l1 l2)
     const double squares = s.invariant[0][t] + 2, product = s.invariant[1][t] + 1;
     const double sum = 2 * (squares * s.stress[0][t] + 2 * product * s.stress[1][t]) / std::sqrt(product);
