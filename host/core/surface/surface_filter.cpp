@@ -1,10 +1,9 @@
 #include "surface_filter.hpp"
 
-#include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 #include <algorithm>
+#include <cmath>
 #include <limits>
-#include <stdexcept>
 
 #include "core/membrane/semi_implicit_filter.hpp"
 
@@ -13,7 +12,6 @@ namespace rouleau::core {
 namespace {
 
 using Matrix = Eigen::SparseMatrix<double>;
-using Factors = Eigen::SimplicialLDLT<Matrix>;
 
 /// Minus the Laplacian of the mesh at rest, integrated over the nodes' areas: half the cotangents of the angles across an edge.
 Matrix stiffness_of_shape(const RestSurface& rest) {
@@ -70,6 +68,41 @@ struct Pulls {
   }
 };
 
+// So close is a polynomial to the inverse, as a share of its least value: the filter stays positive, and its largest eigenvalue
+// times that of K is right to 1 %.
+constexpr double polynomial_error = 0.005;
+// Of L in a column: they take the time of one degree.
+constexpr int entries_per_degree = 3;
+
+/// Chebyshev's series of 1/(1 + a s + b s^2) for s from 0 to `largest`, as far as it takes for that; its value at 0 is 1. Empty if it
+/// takes more than `most`. Trefethen, Approximation Theory and Approximation Practice (2013), chapter 3.
+std::vector<double> inverse_series(double a, double b, double largest, int most) {
+  const auto inverse = [=](double x) {
+    const double s = largest * (1 + x) / 2;
+    return 1 / (1 + a * s + b * s * s);
+  };
+  const int points = 4 * most;
+  std::vector<double> series;
+  for (int k = 0; k < points / 2; ++k) {
+    double sum = 0;
+    for (int j = 0; j < points; ++j) {
+      const double angle = M_PI * (j + 0.5) / points;
+      sum += inverse(std::cos(angle)) * std::cos(k * angle);
+    }
+    series.push_back((k == 0 ? 1.0 : 2.0) / points * sum);
+  }
+  double left_out = 0;
+  while (!series.empty() && left_out + std::abs(series.back()) < polynomial_error * inverse(1)) {
+    left_out += std::abs(series.back());
+    series.pop_back();
+  }
+  if (static_cast<int>(series.size()) > most) return {};
+  double at_0 = 0;
+  for (std::size_t k = 0; k < series.size(); ++k) at_0 += (k % 2 == 0 ? 1 : -1) * series[k];
+  for (double& coefficient : series) coefficient /= at_0;
+  return series;
+}
+
 }  // namespace
 
 double largest_eigenvalue(const KernelResponse& response, double stretching, double bending) {
@@ -88,63 +121,55 @@ SurfaceFilter::SurfaceFilter(const RestSurface& rest, double viscosity, double s
   largest_ = pulls.stretching + pulls.bending;
   newest_share_ = 1 / steps_of_mean(largest_, viscosity);
 
+  const double by_square = pulls.bending > least_bending ? mobility * bending : 0;
   Matrix whole = mobility * stretching * shape;
-  if (pulls.bending > least_bending) whole += mobility * bending * (shape * area.cwiseInverse().asDiagonal() * shape);
+  if (by_square > 0) whole += by_square * (shape * area.cwiseInverse().asDiagonal() * shape);
   whole.diagonal() += area;
-  const Factors factors(whole);
-  if (factors.info() != Eigen::Success) {
-    throw std::invalid_argument(
-        "the surface at rest has triangles without area, for which there is no semi-implicit step");
+  const MeshInverse inverse(whole);
+  // The power method's value is a little less than the largest eigenvalue.
+  const double bound = 1.05 * square;
+  const int most = inverse.entries() / (entries_per_degree * rest.mesh.node_count());
+  series_ = inverse_series(mobility * stretching, by_square, bound, std::max(1, most));
+  if (series_.empty()) {
+    inverse_ = inverse;
+    return;
   }
-  const Matrix lower = factors.matrixL();
+  // B = (2/bound) C A^-1 - 1
+  neighbours_ = neighbours_of(rest.mesh);
+  const double scale = 2 / bound;
   for (int i = 0; i < rest.mesh.node_count(); ++i) {
-    place_.push_back(factors.permutationP().indices()[i]);
-    inverse_.push_back(1 / factors.vectorD()[i]);
-    first_.push_back(static_cast<int>(entry_.size()));
-    for (Matrix::InnerIterator below(lower, i); below; ++below) {
-      if (below.row() == i) continue;
-      row_.push_back(static_cast<int>(below.row()));
-      entry_.push_back(below.value());
+    own_.push_back(scale * shape.coeff(i, i) / area_[i] - 1);
+    for (int k = neighbours_.first[i]; k < neighbours_.first[i + 1]; ++k) {
+      const int other = neighbours_.entry[k];
+      weight_.push_back(scale * shape.coeff(i, other) / area_[other]);
     }
-  }
-  first_.push_back(static_cast<int>(entry_.size()));
-}
-
-void SurfaceFilter::solve(double* rows) const {
-  const auto count = static_cast<int>(area_.size());
-  for (int j = 0; j < count; ++j) {
-    const double *const of_column = rows + 3 * j, x = of_column[0], y = of_column[1], z = of_column[2];
-    for (int k = first_[j]; k < first_[j + 1]; ++k) {
-      double* const row = rows + 3 * row_[k];
-      row[0] -= entry_[k] * x, row[1] -= entry_[k] * y, row[2] -= entry_[k] * z;
-    }
-  }
-  for (int j = count; j-- > 0;) {
-    double* const column = rows + 3 * j;
-    double x = column[0] * inverse_[j], y = column[1] * inverse_[j], z = column[2] * inverse_[j];
-    for (int k = first_[j]; k < first_[j + 1]; ++k) {
-      const double* const row = rows + 3 * row_[k];
-      x -= entry_[k] * row[0], y -= entry_[k] * row[1], z -= entry_[k] * row[2];
-    }
-    column[0] = x, column[1] = y, column[2] = z;
   }
 }
 
 void SurfaceFilter::apply(const std::array<double*, 3>& force, const std::array<double*, 3>& held,
-                          std::vector<double>& work) const {
+                          PolynomialRoom& room) const {
   const std::size_t count = area_.size();
-  work.resize(3 * count);
+  room.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
-    double* const row = &work[3 * static_cast<std::size_t>(place_[i])];
+    double* const row = &room.value[4 * (inverse_ ? inverse_->place(i) : i)];
     for (std::size_t k = 0; k < 3; ++k) {
       held[k][i] += newest_share_ * (force[k][i] - held[k][i]);
       row[k] = force[k][i] - held[k][i];
     }
   }
-  solve(work.data());
+  if (inverse_) {
+    inverse_->solve(room.value.data());
+    for (std::size_t i = 0; i < count; ++i) {
+      const double* const row = &room.value[4 * inverse_->place(i)];
+      for (std::size_t k = 0; k < 3; ++k) force[k][i] = held[k][i] + area_[i] * row[k];
+    }
+    return;
+  }
+  apply_polynomial(
+      {static_cast<int>(count), neighbours_.first.data(), neighbours_.entry.data(), own_.data(), weight_.data()},
+      series_, room);
   for (std::size_t i = 0; i < count; ++i) {
-    const double* const row = &work[3 * static_cast<std::size_t>(place_[i])];
-    for (std::size_t k = 0; k < 3; ++k) force[k][i] = held[k][i] + area_[i] * row[k];
+    for (std::size_t k = 0; k < 3; ++k) force[k][i] = held[k][i] + room.result[4 * i + k];
   }
 }
 

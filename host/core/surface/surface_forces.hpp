@@ -9,7 +9,9 @@
 #include "base/worker.hpp"
 #include "core/membrane/membrane_forces.hpp"
 #include "core/model/model.hpp"
+#include "padded_triangles.hpp"
 #include "surface_filter.hpp"
+#include "surface_kernels.hpp"
 #include "surfaces.hpp"
 
 namespace rouleau::core {
@@ -51,24 +53,26 @@ class SurfaceForces {
   };
   /// What all cells of a type share, in the order and with the padding that the loops want.
   struct Type {
+    explicit Type(const Mesh& of) : mesh(of) {}
+    PaddedTriangles mesh;
     std::vector<Law> laws;
     bool triangle = false, curvature = false, area = false, cell = false;  // elements of the laws
-    int triangles, edges;
-    std::vector<int> corner[3], triangle_edge[3];
+    int edges;
+    std::vector<int> triangle_edge[3];
     std::vector<int> edge_node[2], edge_triangle[2];
     std::vector<double> inverse[3], rest_area, inverse_node_area;
     std::vector<double> area_share;       // of nodes: rest area over three times the area that area_ratio is over
-    Mesh::Rings corners;                  // entries are k * padded triangles + t
     std::optional<SurfaceFilter> filter;  // of a semi-implicit step
     std::array<std::size_t, 3> held_force = {0, 0, 0};  // of the filter: in Surfaces::state
   };
   /// One worker's arrays, for one cell after another.
   struct Scratch {
-    std::vector<double> side[6], normal[3], invariant[2], stress[2], moment[3], turn[3], area_pull[3];
+    std::vector<double> side[2][3], normal[3], invariant[2], stress[2];
     std::vector<double> force[3];  // on the first corners of all triangles, then on the second and third ones
-    std::vector<double> along[3], normals[6], turned_length, edge_turn;
+    std::vector<double> turned_length, edge_turn;
     std::vector<double> curvature, area_ratio, node_moment, node_pull, law[2], energy;
-    std::vector<double> ahead[3], filtered;  // of a semi-implicit step
+    std::vector<double> ahead[3];  // of a semi-implicit step
+    PolynomialRoom filtered;
   };
   struct Whole {
     double volume = 0, surface_area = 0, pressure = 0, surface_tension = 0;
@@ -78,6 +82,7 @@ class SurfaceForces {
   static Type prepare(const RestSurface& rest, const MembraneLaws& laws);
   /// The arrays of the worker whose first cell this is; made when it first asks.
   Scratch& scratch_of(int first_cell);
+  static SurfaceArrays arrays_of(const Type& type, Scratch& scratch);
   static Whole measure(const Type& type, Nodes nodes, Scratch& scratch);
   static void apply(const Type& type, const RestSurface& rest, Scratch& scratch, Whole& whole, MembraneEnergy* energy);
   static void act(const Type& type, const Whole& whole, Scratch& scratch);

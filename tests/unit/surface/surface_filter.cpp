@@ -63,13 +63,14 @@ TEST_CASE("the filter of surfaces is the inverse of the matrix of stretching and
   for (int i = 0; i < force.size(); ++i) force(i) = normal(random);
   const Eigen::MatrixXd given = force;
   const Eigen::MatrixXd exact = share * given + (1 - share) * matrix.partialPivLu().solve(given);
-  std::vector<double> work;
+  core::PolynomialRoom work;
   const auto apply = [&] {
     filter.apply({&force(0, 0), &force(0, 1), &force(0, 2)}, {&held(0, 0), &held(0, 1), &held(0, 2)}, work);
   };
   apply();
   const double tolerance = 1e-14 * (1 + largest);  // rounding, times the condition number
-  CHECK((force - exact).norm() < tolerance * given.norm());
+  // The polynomial is right to 1 % of the inverse's least eigenvalue.
+  CHECK((force - exact).norm() < (filter.terms() > 0 ? 0.01 / (1 + largest) : tolerance) * given.norm());
   CHECK((force.colwise().sum() - given.colwise().sum()).norm() < tolerance * given.norm());
 
   // Of a force that lasts nothing is held back.
@@ -91,7 +92,8 @@ TEST_CASE("a bending stiffness that the explicit step bears is left out of the f
   const auto filtered = [&](double bending) {
     const core::SurfaceFilter filter(rest, 1.0 / 6, 60, bending);
     const double share = 1 / (1 + 8 * filter.largest_eigenvalue());
-    std::vector<double> x(given), y(given), z(given), none(given.size()), other(none), last(none), work;
+    std::vector<double> x(given), y(given), z(given), none(given.size()), other(none), last(none);
+    core::PolynomialRoom work;
     filter.apply({x.data(), y.data(), z.data()}, {none.data(), other.data(), last.data()}, work);
     for (std::size_t i = 0; i < x.size(); ++i) x[i] = (x[i] - share * given[i]) / (1 - share);
     return x;
@@ -111,7 +113,8 @@ TEST_CASE("what a membrane of a sphere resists is what the sphere's second harmo
   constexpr double radius = 6, stretching = 40, bending = 300;
   const RestSurface rest = shape::rest_surface(shape::ellipsoid(8, {radius, radius, radius}));
   const int n = rest.mesh.node_count();
-  std::vector<double> x(n), y(n), z(n), none(n), other(n), last(n), work;
+  std::vector<double> x(n), y(n), z(n), none(n), other(n), last(n);
+  core::PolynomialRoom work;
   for (int i = 0; i < n; ++i) x[i] = rest.node_area[i] * rest.x[i] * rest.y[i];
   const std::vector<double> given = x;
   core::SurfaceFilter(rest, 1.0 / 6, stretching, bending)
