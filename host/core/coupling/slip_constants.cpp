@@ -135,6 +135,15 @@ int slip_smoothings(int least, double number, double widest) {
   return std::min(passes, most);
 }
 
+int surface_slip_smoothing(double square_of_length, double mobility, double stiffness) {
+  // 1 - (n^2 - 1) s/18 for long waves: over about a lattice spacing, as of outlines.
+  const double least = std::sqrt(1 + 4.5 / square_of_length);
+  // At most 6/n^2 of C, of which 0.3 is kept.
+  const double stable = std::sqrt(6 / 0.3 * mobility * stiffness / square_of_length);
+  constexpr double most = 64;  // enough for 170 times the stiffness that explicit coupling bears
+  return static_cast<int>(std::min(std::max(std::round(least), std::ceil(stable)), most));
+}
+
 int outline_slip_smoothings(double length, double mobility, double stiffness) {
   const double square = length * length;
   return slip_smoothings(static_cast<int>(std::lround(1 / square)), mobility * stiffness / square, 4);

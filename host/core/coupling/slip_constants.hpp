@@ -35,6 +35,10 @@ KernelResponse kernel_response(KernelKind kernel, double shift);
 /// 2/3 in a semi-implicit one, whose forces belong to the end of the step; 0.3 is kept.
 int slip_smoothings(int least, double number, double widest);
 
+/// The same of surfaces, by the order n of a sum of Chebyshev's polynomials in 1 - s/3, s from 0 to 6 (SurfaceSlip): the slip -C s
+/// (1 - T_n(1 - s/3)) 3/(n^2 s) takes n - 1 steps where powers would take n^2/2.7. `square_of_length`: of a triangle's side.
+int surface_slip_smoothing(double square_of_length, double mobility, double stiffness);
+
 /// Of outlines with segments of this length, by (1/4, 1/2, 1/4): s = 4 sin^2(q/2) for the wave number q per segment. Smoothing
 /// over about a lattice spacing is needed anyway where nodes stand closer: the fluid does not damp what the kernel cannot see.
 /// Each adds length^2/2 to the variance over which slip is spread along the membrane.

@@ -1,203 +1,207 @@
 #include "surface_slip.hpp"
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <rouleau/dispatch.hpp>
 
 namespace rouleau::core {
 
 namespace {
 
-/// By the mass matrix of hat functions, on a mesh of equal sides: s is from 0 to 6, and 8 would be left with nothing.
-int surface_smoothings(double square_of_length, double mobility, double stiffness) {
-  return slip_smoothings(static_cast<int>(std::lround(2 / square_of_length)), mobility * stiffness / square_of_length,
-                         8);
+template <class Loop, class Arrays>
+void run_loop(const Arrays& arrays) {
+  static const auto function = Dispatch<Loop, const Arrays*>::pick();
+  function(&arrays);
+}
+
+template <std::size_t n>
+std::array<const double*, n> to_read(double* const (&arrays)[n]) {
+  std::array<const double*, n> pointers;
+  std::copy_n(arrays, n, pointers.begin());
+  return pointers;
 }
 
 }  // namespace
 
+// Slip is smoothed by B = 1 - s/3 (surface_slip_smoothing): M, the mass matrix of hat functions, over A, its row sums, is 1 - s/8.
+// That is symmetric over areas, and its polynomial is not negative, so that slip never gives energy: a sum over k from 0 to n - 1
+// of (n - k) (2 - [k = 0]) T_k/n^2.
+SurfaceSlip::Shared::Shared(const Mesh& of, int order)
+    : mesh(of), neighbours(neighbours_of(of)), own(static_cast<std::size_t>(of.node_count()), -1.0 / 3) {
+  for (const int edge : of.node_edges().entry) {
+    left.push_back(of.edges()[edge].left);
+    right.push_back(of.edges()[edge].right);
+  }
+  for (int k = 0; k < order; ++k) coefficients.push_back((k == 0 ? 1.0 : 2.0) * (order - k) / order / order);
+}
+
 SurfaceSlip::SurfaceSlip(const Surfaces& surfaces, std::vector<Type> types, double viscosity)
-    : types_(std::move(types)), viscosity_(viscosity), area_(surfaces.x.size()) {
+    : types_(std::move(types)), viscosity_(viscosity), area_(surfaces.x.size()), scratch_(surfaces.cells.size()) {
   for (std::size_t t = 0; t < types_.size(); ++t) {
     const RestSurface& rest = *surfaces.types[t];
     // Of equal triangles with sides l: sqrt(3)/4 l^2 each.
     const double square = rest.rest_surface_area / rest.mesh.triangle_count() * 4 / std::sqrt(3.0);
-    smoothings_.push_back(
-        surface_smoothings(square, types_[t].constants.slip / viscosity, types_[t].stretching_stiffness));
+    shared_.emplace_back(rest.mesh, surface_slip_smoothing(square, types_[t].constants.slip / viscosity,
+                                                           types_[t].stretching_stiffness));
   }
-  for (auto* vectors : {&normal_, &touch_, &force_, &slip_}) {
-    for (auto& values : *vectors) values = PagedArray<double>(surfaces.x.size());
-  }
+  const auto make = [&](auto& arrays) {
+    for (auto& values : arrays) values = PagedArray<double>(surfaces.x.size());
+  };
+  make(normal_), make(touch_), make(force_), make(slip_), make(turn_);
 }
 
 void SurfaceSlip::forget(std::span<const Range> nodes) {
+  const auto release_all = [&](auto& arrays) {
+    for (auto& values : arrays) release(values, nodes);
+  };
   release(area_, nodes);
-  for (auto* vectors : {&normal_, &touch_, &force_, &slip_}) {
-    for (auto& values : *vectors) release(values, nodes);
+  release_all(normal_), release_all(touch_), release_all(force_), release_all(slip_), release_all(turn_);
+}
+
+SurfaceSlip::Scratch& SurfaceSlip::scratch_of(int first_cell) {
+  Scratch& scratch = scratch_.of(first_cell);
+  if (!scratch.triangle_area.empty()) return scratch;
+  std::size_t triangles = 0, nodes = 0, neighbours = 0;
+  for (const Shared& type : shared_) {
+    triangles = std::max(triangles, static_cast<std::size_t>(type.mesh.size));
+    nodes = std::max(nodes, type.own.size());
+    neighbours = std::max(neighbours, type.left.size());
   }
+  const auto make = [](auto& arrays, std::size_t size) {
+    for (auto& values : arrays) values.assign(size, 0.0);
+  };
+  scratch.triangle_area.assign(triangles, 0.0);
+  make(scratch.gradient[0], triangles), make(scratch.gradient[1], triangles), make(scratch.covered_triangle, triangles);
+  make(scratch.result, 3 * triangles);
+  make(scratch.covered, nodes), make(scratch.turned, nodes), make(scratch.along, nodes);
+  scratch.pressure.assign(nodes, 0.0);
+  scratch.weight.assign(neighbours, 0.0);
+  scratch.smoothing.resize(nodes);
+  return scratch;
+}
+
+SlipArrays SurfaceSlip::arrays_of(const Surfaces& surfaces, int cell, Scratch& scratch) {
+  const CellRange& range = surfaces.cells[cell];
+  const PaddedTriangles& mesh = shared_[range.type].mesh;
+  const auto first = static_cast<std::size_t>(range.first);
+  SlipArrays arrays{};
+  arrays.triangles = mesh.count, arrays.nodes = range.count;
+  arrays.shift = constants(surfaces, cell).shift;
+  const auto point = [](auto& to, auto& from, std::size_t offset) {
+    for (std::size_t k = 0; k < std::size(to); ++k) to[k] = from[k].data() + offset;
+  };
+  point(arrays.corner, mesh.corner, 0);
+  point(arrays.touch, touch_, first), point(arrays.normal, normal_, first), point(arrays.turn, turn_, first);
+  arrays.area = &area_[first];
+  arrays.place[0] = &surfaces.x[first], arrays.place[1] = &surfaces.y[first], arrays.place[2] = &surfaces.z[first];
+  arrays.force[0] = &surfaces.force_x[first], arrays.force[1] = &surfaces.force_y[first];
+  arrays.force[2] = &surfaces.force_z[first];
+  point(arrays.covered, scratch.covered, 0), point(arrays.along, scratch.along, 0);
+  point(arrays.turned, scratch.turned, 0);
+  arrays.pressure = scratch.pressure.data();
+  arrays.triangle_area = scratch.triangle_area.data();
+  for (std::size_t k = 0; k < 2; ++k) point(arrays.gradient[k], scratch.gradient[k], 0);
+  point(arrays.covered_triangle, scratch.covered_triangle, 0);
+  for (std::size_t k = 0; k < 3; ++k) point(arrays.result[k], scratch.result, k * static_cast<std::size_t>(mesh.size));
+  return arrays;
 }
 
 void SurfaceSlip::measure(Worker worker, const Surfaces& surfaces, Whose whose) {
-  for (const int cell : surfaces.known_cells(worker)) {
+  const CellNumbers cells = surfaces.known_cells(worker);
+  if (cells.empty()) return;
+  Scratch& scratch = scratch_of(cells.first_place());
+  for (const int cell : cells) {
     if (!surfaces.is(cell, whose)) continue;
-    const CellRange& range = surfaces.cells[cell];
-    const Nodes nodes = surfaces.nodes(cell);
-    double *const x = &normal_[0][range.first], *const y = &normal_[1][range.first],
-                  *const z = &normal_[2][range.first];
-    double* const area = &area_[range.first];
-    for (double* of : {x, y, z, area}) std::fill_n(of, range.count, 0.0);
-    for (const auto& [a, b, c] : surfaces.type_of(cell).mesh.triangles()) {
-      const Vec<3> normal = (nodes[b] - nodes[a]).cross(nodes[c] - nodes[a]);
-      const double sixth = normal.norm() / 6;
-      for (const int k : {a, b, c}) x[k] += normal.x(), y[k] += normal.y(), z[k] += normal.z(), area[k] += sixth;
+    const SlipArrays arrays = arrays_of(surfaces, cell, scratch);
+    run_loop<MeasureTriangleNormals>(arrays);
+    const PaddedTriangles& mesh = shared_[surfaces.cells[cell].type].mesh;
+    const std::array<const double*, 4> of_triangles{arrays.result[0][0], arrays.result[0][1], arrays.result[0][2],
+                                                    arrays.triangle_area};
+    for (int i = 0; i < arrays.nodes; ++i) {
+      const auto [x, y, z, area] = mesh.sums_of_triangles(of_triangles, i);
+      arrays.normal[0][i] = x, arrays.normal[1][i] = y, arrays.normal[2][i] = z, arrays.area[i] = area / 3;
     }
-    const double shift = constants(surfaces, cell).shift;
-    for (int i = 0; i < range.count; ++i) {
-      const double length = std::sqrt(x[i] * x[i] + y[i] * y[i] + z[i] * z[i]);
-      const double inverse = length > 0 ? 1 / length : 0;  // a fold without width has no direction
-      x[i] *= inverse, y[i] *= inverse, z[i] *= inverse;
-      touch_[0][range.first + i] = nodes.x[i] - shift * x[i];
-      touch_[1][range.first + i] = nodes.y[i] - shift * y[i];
-      touch_[2][range.first + i] = nodes.z[i] - shift * z[i];
-    }
-  }
-}
-
-void SurfaceSlip::find_areas(const Surfaces& surfaces, int cell, Scratch& scratch) const {
-  const Nodes nodes = surfaces.nodes(cell);
-  scratch.area.clear();
-  for (const auto& [a, b, c] : surfaces.type_of(cell).mesh.triangles())
-    scratch.area.push_back((nodes[b] - nodes[a]).cross(nodes[c] - nodes[a]).norm() / 2);
-}
-
-void SurfaceSlip::find_gradients(const Surfaces& surfaces, int cell, Scratch& scratch) const {
-  const CellRange& range = surfaces.cells[cell];
-  const Nodes nodes{&touch_[0].data()[range.first], &touch_[1].data()[range.first], &touch_[2].data()[range.first]};
-  const auto& triangles = surfaces.type_of(cell).mesh.triangles();
-  scratch.gradient.clear();
-  scratch.turned.assign(range.count, Eigen::Matrix3d::Zero());
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    const auto& [a, b, c] = triangles[t];
-    const Vec<3> normal = (nodes[b] - nodes[a]).cross(nodes[c] - nodes[a]);
-    const double square = normal.squaredNorm(), inverse = square > 0 ? 1 / square : 0;
-    scratch.gradient.push_back({inverse * normal.cross(nodes[c] - nodes[b]),
-                                inverse * normal.cross(nodes[a] - nodes[c]),
-                                inverse * normal.cross(nodes[b] - nodes[a])});
-    // The projection on the triangle, as far as gradients reproduce it.
-    const Eigen::Matrix3d along = Eigen::Matrix3d::Identity() - inverse * normal * normal.transpose();
-    for (const int k : {a, b, c}) scratch.turned[k] += scratch.area[t] / 3 * along;
-  }
-  // R with P M R = P, M the mean projection of the triangles around a node: then couples have no torque.
-  for (int i = 0; i < range.count; ++i) {
-    const Vec<3> n = normal(range.first + i);
-    const Eigen::Matrix3d p = Eigen::Matrix3d::Identity() - n * n.transpose();
-    const Eigen::Matrix3d m = p * scratch.turned[i] * p / area_[range.first + i] + n * n.transpose();
-    scratch.turned[i] = m.determinant() > 0.01 ? Eigen::Matrix3d(p * m.inverse() * p) : p;
-  }
-}
-
-void SurfaceSlip::add_couples(const Surfaces& surfaces, int cell, Scratch& scratch) {
-  const CellRange& range = surfaces.cells[cell];
-  const double shift = constants(surfaces, cell).shift;
-  find_gradients(surfaces, cell, scratch);
-  scratch.value.clear();
-  for (int i = range.first; i < range.end(); ++i) {
-    const Vec<3> force(surfaces.force_x[i], surfaces.force_y[i], surfaces.force_z[i]);
-    scratch.value.emplace_back(scratch.turned[i - range.first] * (force - force.dot(normal(i)) * normal(i)));
-  }
-  const auto& triangles = surfaces.type_of(cell).mesh.triangles();
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    Vec<3> on[3] = {Vec<3>::Zero(), Vec<3>::Zero(), Vec<3>::Zero()};
-    for (const int local : triangles[t]) {
-      const int i = range.first + local;
-      const Vec<3> n = normal(i), force(surfaces.force_x[i], surfaces.force_y[i], surfaces.force_z[i]);
-      const double share = -shift * scratch.area[t] / (3 * area_[i]);
-      for (int k = 0; k < 3; ++k) {
-        const Vec<3>& g = scratch.gradient[t][k];
-        on[k] += share * (force.dot(n) * g + scratch.value[local].dot(g) * n);
-      }
-    }
-    for (int k = 0; k < 3; ++k) {
-      const int i = range.first + triangles[t][k];
-      for (int c = 0; c < 3; ++c) force_[c][i] += on[k][c];
-    }
-  }
-}
-
-void SurfaceSlip::find_slip(const Surfaces& surfaces, int cell, Scratch& scratch) {
-  const CellRange& range = surfaces.cells[cell];
-  const double mobility = constants(surfaces, cell).slip / viscosity_;
-  scratch.value.clear();
-  for (int i = range.first; i < range.end(); ++i) {
-    const Vec<3> n = normal(i), force(surfaces.force_x[i], surfaces.force_y[i], surfaces.force_z[i]);
-    const double by_area = area_[i] > 0 ? mobility / area_[i] : 0;
-    scratch.value.emplace_back(by_area * (force - force.dot(n) * n));
-  }
-  // (A^-1 M)^p, M the mass matrix of hat functions and A its row sums: symmetric over areas, so that slip never gives energy.
-  const auto& triangles = surfaces.type_of(cell).mesh.triangles();
-  for (int pass = 0; pass < smoothings_[surfaces.cells[cell].type]; ++pass) {
-    scratch.other.assign(range.count, Vec<3>::Zero());
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-      const auto& [a, b, c] = triangles[t];
-      const double share = scratch.area[t] / 12;
-      const Vec<3> all = scratch.value[a] + scratch.value[b] + scratch.value[c];
-      for (const int k : {a, b, c}) scratch.other[k] += share * (all + scratch.value[k]);
-    }
-    for (int i = 0; i < range.count; ++i) scratch.value[i] = scratch.other[i] / area_[range.first + i];
-  }
-  for (int i = range.first; i < range.end(); ++i) {
-    const Vec<3> n = normal(i), slip = scratch.value[i - range.first];
-    const Vec<3> along = slip - slip.dot(n) * n;
-    for (int c = 0; c < 3; ++c) slip_[c][i] = along[c];
+    run_loop<FindTouch>(arrays);
   }
 }
 
 void SurfaceSlip::complete(Worker worker, const Surfaces& surfaces) {
-  Scratch scratch;
-  for (const int cell : surfaces.own_cells(worker)) {
-    const CellRange& range = surfaces.cells[cell];
-    find_areas(surfaces, cell, scratch);
-    std::copy_n(&surfaces.force_x[range.first], range.count, &force_[0][range.first]);
-    std::copy_n(&surfaces.force_y[range.first], range.count, &force_[1][range.first]);
-    std::copy_n(&surfaces.force_z[range.first], range.count, &force_[2][range.first]);
-    if (constants(surfaces, cell).shift != 0) add_couples(surfaces, cell, scratch);
-    find_slip(surfaces, cell, scratch);
+  const CellNumbers cells = surfaces.own_cells(worker);
+  if (cells.empty()) return;
+  Scratch& scratch = scratch_of(cells.first_place());
+  for (const int cell : cells) {
+    const SlipArrays arrays = arrays_of(surfaces, cell, scratch);
+    if (arrays.shift != 0) {
+      add_couples(cell, surfaces, arrays);
+    } else {
+      run_loop<MeasureAreas>(arrays);
+      run_loop<ForcesAlong>(arrays);
+      for (int k = 0; k < 3; ++k) std::copy_n(arrays.force[k], arrays.nodes, &force_[k][surfaces.cells[cell].first]);
+    }
+    find_slip(cell, surfaces, scratch);
+  }
+}
+
+void SurfaceSlip::add_couples(int cell, const Surfaces& surfaces, const SlipArrays& arrays) {
+  const CellRange& range = surfaces.cells[cell];
+  const PaddedTriangles& mesh = shared_[range.type].mesh;
+  run_loop<MeasureTouch>(arrays);
+  const auto covered = to_read(arrays.covered_triangle);
+  for (int i = 0; i < range.count; ++i) {
+    const auto sum = mesh.sums_of_triangles(covered, i);
+    for (std::size_t c = 0; c < sum.size(); ++c) arrays.covered[c][i] = sum[c];
+  }
+  run_loop<TurnForces>(arrays);
+  run_loop<MakeCouples>(arrays);
+  const auto couples = to_read(arrays.result[0]);
+  for (int i = 0; i < range.count; ++i) {
+    const auto sum = mesh.sums_of_corners(couples, i);
+    for (std::size_t c = 0; c < 3; ++c) force_[c][range.first + i] = arrays.force[c][i] + sum[c];
+  }
+}
+
+void SurfaceSlip::find_slip(int cell, const Surfaces& surfaces, Scratch& scratch) {
+  const CellRange& range = surfaces.cells[cell];
+  const Shared& shared = shared_[range.type];
+  const double mobility = constants(surfaces, cell).slip / viscosity_;
+  const double* const area = &area_[range.first];
+  const std::vector<int>& first = shared.neighbours.first;
+  const bool smooths = shared.coefficients.size() > 1;
+  for (int i = 0; i < range.count; ++i) {
+    for (int c = 0; c < 3; ++c) scratch.smoothing.value[4 * i + c] = mobility * scratch.along[c][i];
+    const double by_area = area[i] > 0 ? 2.0 / 9 / area[i] : 0;
+    for (int k = first[i]; k < first[i + 1] && smooths; ++k)
+      scratch.weight[k] = by_area * (scratch.triangle_area[shared.left[k]] + scratch.triangle_area[shared.right[k]]);
+  }
+  apply_polynomial(
+      {range.count, first.data(), shared.neighbours.entry.data(), shared.own.data(), scratch.weight.data()},
+      shared.coefficients, scratch.smoothing);
+  for (int i = 0; i < range.count; ++i) {
+    const Vec<3> n(normal_[0][range.first + i], normal_[1][range.first + i], normal_[2][range.first + i]);
+    const Eigen::Map<const Vec<3>> slip(&scratch.smoothing.result[4 * i]);
+    const Vec<3> along = slip - slip.dot(n) * n;
+    for (int c = 0; c < 3; ++c) slip_[c][range.first + i] = along[c];
   }
 }
 
 void SurfaceSlip::correct(Worker worker, Surfaces& surfaces) {
-  Scratch scratch;
-  for (const int cell : surfaces.own_cells(worker)) {
+  const CellNumbers cells = surfaces.own_cells(worker);
+  if (cells.empty()) return;
+  Scratch& scratch = scratch_of(cells.first_place());
+  for (const int cell : cells) {
     const CellRange& range = surfaces.cells[cell];
-    const double shift = constants(surfaces, cell).shift;
-    if (shift != 0) {
-      find_areas(surfaces, cell, scratch);
-      find_gradients(surfaces, cell, scratch);
-      const auto& triangles = surfaces.type_of(cell).mesh.triangles();
-      scratch.value.assign(range.count, Vec<3>::Zero());
-      scratch.other.assign(range.count, Vec<3>::Zero());  // (grad_s u).n over areas; of div_s u, along n
-      for (std::size_t t = 0; t < triangles.size(); ++t) {
-        Eigen::Matrix3d gradient = Eigen::Matrix3d::Zero();
-        for (int k = 0; k < 3; ++k) {
-          const int i = range.first + triangles[t][k];
-          gradient += scratch.gradient[t][k] *
-                      Vec<3>(surfaces.velocity_x[i], surfaces.velocity_y[i], surfaces.velocity_z[i]).transpose();
-        }
-        for (const int local : triangles[t]) {
-          const double share = scratch.area[t] / (3 * area_[range.first + local]);
-          const Vec<3> n = normal(range.first + local);
-          scratch.value[local] += share * (gradient * n);
-          scratch.other[local] += share * gradient.trace() * n;
-        }
+    if (SlipArrays arrays = arrays_of(surfaces, cell, scratch); arrays.shift != 0) {
+      arrays.velocity[0] = &surfaces.velocity_x[range.first], arrays.velocity[1] = &surfaces.velocity_y[range.first];
+      arrays.velocity[2] = &surfaces.velocity_z[range.first];
+      run_loop<MakeTurns>(arrays);
+      const auto turns = to_read(arrays.result[0]);
+      const PaddedTriangles& mesh = shared_[range.type].mesh;
+      for (int i = 0; i < range.count; ++i) {
+        const auto [x, y, z] = mesh.sums_of_corners(turns, i);
+        scratch.turned[0][i] = x, scratch.turned[1][i] = y, scratch.turned[2][i] = z;
       }
-      for (int i = range.first; i < range.end(); ++i) {
-        const int local = i - range.first;
-        const Vec<3> turn = shift * (scratch.turned[local] * scratch.value[local] + scratch.other[local]);
-        surfaces.velocity_x[i] -= turn.x();
-        surfaces.velocity_y[i] -= turn.y();
-        surfaces.velocity_z[i] -= turn.z();
-      }
+      run_loop<TurnVelocities>(arrays);
     }
     for (int i = range.first; i < range.end(); ++i) {
       surfaces.velocity_x[i] += slip_[0][i];

@@ -5,8 +5,11 @@
 #include <vector>
 
 #include "base/worker.hpp"
+#include "core/surface/mesh_polynomial.hpp"
+#include "core/surface/padded_triangles.hpp"
 #include "core/surface/surfaces.hpp"
 #include "slip_constants.hpp"
+#include "surface_slip_kernels.hpp"
 
 namespace rouleau::core {
 
@@ -19,8 +22,7 @@ class SurfaceSlip {
   /// What the correction has to know of a cell type, lattice units.
   struct Type {
     SlipConstants constants;
-    double
-        stretching_stiffness;  ///< largest d tension / d stretch: stiff membranes need their slip smoothed more often
+    double stretching_stiffness;  ///< largest d tension / d stretch: slip of stiff membranes is smoothed further
   };
   /// `viscosity`: of the suspending fluid, lattice units.
   SurfaceSlip(const Surfaces& surfaces, std::vector<Type> types, double viscosity);
@@ -45,28 +47,38 @@ class SurfaceSlip {
   }
 
  private:
-  /// One worker's arrays for one cell: of its triangles, and of its nodes.
-  struct Scratch {
-    std::vector<double> area;
-    std::vector<std::array<Vec<3>, 3>>
-        gradient;                         // of the three nodes' hat functions, on the triangle that touches the lattice
-    std::vector<Eigen::Matrix3d> turned;  // of nodes: F_t to what the couple is made of
-    std::vector<Vec<3>> value, other;
+  /// What the cells of a type share.
+  struct Shared {
+    Shared(const Mesh& mesh, int order);
+    PaddedTriangles mesh;
+    Mesh::Rings neighbours;
+    std::vector<int> left, right;  // of each of their entries: the triangles on either side of what joins both nodes
+    std::vector<double> coefficients;  // by which slip is smoothed
+    std::vector<double> own;           // NeighbourMatrix
   };
-  void find_areas(const Surfaces& surfaces, int cell, Scratch& scratch) const;
-  void find_gradients(const Surfaces& surfaces, int cell, Scratch& scratch) const;
-  void add_couples(const Surfaces& surfaces, int cell, Scratch& scratch);
-  void find_slip(const Surfaces& surfaces, int cell, Scratch& scratch);
-  [[nodiscard]] Vec<3> normal(int node) const { return {normal_[0][node], normal_[1][node], normal_[2][node]}; }
+  /// One worker's arrays, for one cell after another.
+  struct Scratch {
+    std::vector<double> triangle_area, gradient[2][3], covered_triangle[6];  // of triangles
+    std::vector<double> result[3];                                           // of their corners
+    std::vector<double> covered[6], turned[3], along[3], pressure;           // of nodes
+    std::vector<double> weight;                                              // of neighbours
+    PolynomialRoom smoothing;
+  };
+  Scratch& scratch_of(int first_cell);
+  SlipArrays arrays_of(const Surfaces& surfaces, int cell, Scratch& scratch);
+  void add_couples(int cell, const Surfaces& surfaces, const SlipArrays& arrays);
+  void find_slip(int cell, const Surfaces& surfaces, Scratch& scratch);
   [[nodiscard]] const SlipConstants& constants(const Surfaces& surfaces, int cell) const {
     return types_[surfaces.cells[cell].type].constants;
   }
 
   std::vector<Type> types_;
+  std::vector<Shared> shared_;  // of each type
   double viscosity_;
-  std::vector<int> smoothings_;  // of the slip of each type's cells
   std::array<PagedArray<double>, 3> normal_, touch_, force_, slip_;
-  PagedArray<double> area_;  // a third of the triangles around each node
+  std::array<PagedArray<double>, 6> turn_;  // of a tangential vector, SlipArrays
+  PagedArray<double> area_;                 // a third of the triangles around each node
+  WorkerScratch<Scratch> scratch_;
 };
 
 }  // namespace rouleau::core

@@ -1,6 +1,7 @@
 // The slip correction of surfaces: conservation, adjointness, energy.
 #include "core/coupling/surface_slip.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -96,4 +97,64 @@ TEST_CASE("a surface that moves as a rigid body does so with the slip correction
     const Vec<3> u(s.velocity_x[i], s.velocity_y[i], s.velocity_z[i]);
     CHECK((u - along - turn.cross(s.nodes(0)[i])).norm() < 1e-12);
   }
+}
+
+TEST_CASE("slip is smoothed by Fejer's kernel of the mass matrix, which bounds what it gains in a step") {
+  auto random = generator(86);
+  Surfaces s = uneven_sphere(random);
+  const double stiffness = GENERATE(0.0, 1.0, 30.0), viscosity = 1.0 / 6;
+  const SlipConstants constants{0, 0.7};  // where nodes are
+  SurfaceSlip slip = slip_of(s, constants, stiffness);
+  for (auto* values : {&s.velocity_x, &s.velocity_y, &s.velocity_z}) std::fill(values->begin(), values->end(), 0.0);
+  slip.correct({}, s);
+
+  // The matrix of the integrals of hat functions' products, over the areas around the nodes.
+  const int n = s.node_count();
+  Eigen::MatrixXd mass = Eigen::MatrixXd::Zero(n, n);
+  Eigen::VectorXd area = Eigen::VectorXd::Zero(n);
+  const Nodes nodes = s.nodes(0);
+  for (const auto& corner : s.type_of(0).mesh.triangles()) {
+    const double size = (nodes[corner[1]] - nodes[corner[0]]).cross(nodes[corner[2]] - nodes[corner[0]]).norm() / 2;
+    for (const int i : corner) {
+      area[i] += size / 3;
+      for (const int j : corner) mass(i, j) += size / 12 * (i == j ? 2 : 1);
+    }
+  }
+  const Eigen::VectorXd root = area.cwiseSqrt();
+  const Eigen::MatrixXd even = root.cwiseInverse().asDiagonal() * mass * root.cwiseInverse().asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(even);
+  const RestSurface& rest = s.type_of(0);
+  const double square = rest.rest_surface_area / rest.mesh.triangle_count() * 4 / std::sqrt(3.0);
+  const double mobility = constants.slip / viscosity;
+  const int order = surface_slip_smoothing(square, mobility, stiffness);
+  Eigen::VectorXd share(n);
+  for (int i = 0; i < n; ++i) {
+    const double wave = 8 * (1 - modes.eigenvalues()[i]);
+    REQUIRE((wave > -1e-12 && wave < 6 + 1e-12));
+    const double chebyshev = std::cos(order * std::acos(std::clamp(1 - wave / 3, -1.0, 1.0)));
+    share[i] = wave > 1e-6 ? 3 * (1 - chebyshev) / (order * order * wave) : 1;
+    CHECK(share[i] > -1e-12);
+    CHECK(mobility * stiffness / square * wave * share[i] < 0.3 + 1e-9);
+  }
+  const std::vector<Vec<3>> normals = node_normals(rest.mesh, nodes);
+  const auto tangential = [&](const Eigen::MatrixXd& vectors) {
+    Eigen::MatrixXd result = vectors;
+    for (int i = 0; i < n; ++i) {
+      const Vec<3> vector = vectors.row(i).transpose();
+      result.row(i) -= vector.dot(normals[i]) * normals[i].transpose();
+    }
+    return result;
+  };
+  Eigen::MatrixXd force(n, 3);
+  for (int i = 0; i < n; ++i) force.row(i) = vector(s.forces(), i).transpose();
+  const Eigen::MatrixXd per_area = mobility * area.cwiseInverse().asDiagonal() * tangential(force);
+  const Eigen::MatrixXd smoothed =
+      tangential(root.cwiseInverse().asDiagonal() *
+                 (modes.eigenvectors() *
+                  (share.asDiagonal() * (modes.eigenvectors().transpose() * (root.asDiagonal() * per_area)))));
+  double worst = 0;
+  for (int i = 0; i < n; ++i)
+    worst = std::max(worst,
+                     (Vec<3>(s.velocity_x[i], s.velocity_y[i], s.velocity_z[i]) - smoothed.row(i).transpose()).norm());
+  CHECK(worst < 1e-11 * per_area.cwiseAbs().maxCoeff());
 }
