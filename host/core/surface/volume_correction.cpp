@@ -9,7 +9,7 @@ namespace rouleau::core {
 VolumeCorrection::VolumeCorrection(const Surfaces& surfaces)
     : along_x_(surfaces.x.size()), along_y_(surfaces.x.size()), along_z_(surfaces.x.size()) {}
 
-double VolumeCorrection::find_gradient(const Surfaces& surfaces, int cell) {
+void VolumeCorrection::find_gradient(const Surfaces& surfaces, int cell) {
   const CellRange& range = surfaces.cells[cell];
   const Nodes nodes = surfaces.nodes(cell);
   double *const x = &along_x_[range.first], *const y = &along_y_[range.first], *const z = &along_z_[range.first];
@@ -19,17 +19,15 @@ double VolumeCorrection::find_gradient(const Surfaces& surfaces, int cell) {
     const Vec<3> third = (nodes[b] - nodes[a]).cross(nodes[c] - nodes[a]) / 6;
     for (const int corner : {a, b, c}) x[corner] += third.x(), y[corner] += third.y(), z[corner] += third.z();
   }
-  double square = 0;
-  for (int i = 0; i < range.count; ++i) square += x[i] * x[i] + y[i] * y[i] + z[i] * z[i];
-  return square;
 }
 
 void VolumeCorrection::take_out_pressures(Worker worker, Surfaces& surfaces) {
   for (const int cell : surfaces.own_cells(worker)) {
     const CellRange& range = surfaces.cells[cell];
-    const double square = find_gradient(surfaces, cell);
-    double work = 0;
+    find_gradient(surfaces, cell);
+    double work = 0, square = 0;
     for (int i = range.first; i < range.end(); ++i) {
+      square += along_x_[i] * along_x_[i] + along_y_[i] * along_y_[i] + along_z_[i] * along_z_[i];
       work += surfaces.force_x[i] * along_x_[i] + surfaces.force_y[i] * along_y_[i] + surfaces.force_z[i] * along_z_[i];
     }
     const double pressure = square > 0 ? work / square : 0;
@@ -45,10 +43,11 @@ void VolumeCorrection::keep_volumes(Worker worker, Surfaces& surfaces) {
   for (const int cell : surfaces.own_cells(worker)) {
     const CellRange& range = surfaces.cells[cell];
     const RestSurface& rest = surfaces.type_of(cell);
-    const double square = find_gradient(surfaces, cell);
     const double x = surfaces.x[range.first], y = surfaces.y[range.first], z = surfaces.z[range.first];
     double gain = 0, thrice = 0;  // of volume in this step without the correction; three volumes, for A.X is as much
+    double square = 0;
     for (int i = range.first; i < range.end(); ++i) {
+      square += along_x_[i] * along_x_[i] + along_y_[i] * along_y_[i] + along_z_[i] * along_z_[i];
       gain += surfaces.velocity_x[i] * along_x_[i] + surfaces.velocity_y[i] * along_y_[i] +
               surfaces.velocity_z[i] * along_z_[i];
       thrice +=

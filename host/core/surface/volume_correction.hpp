@@ -18,7 +18,7 @@ class VolumeCorrection {
   /// this takes away; on the lattice it would leak. What is left is the adjoint of keep_volumes().
   void take_out_pressures(Worker worker, Surfaces& surfaces);
 
-  /// Pass over cells, once the velocities are complete: they become P V + c A, where c brings the volume back to its rest
+  /// Pass over cells, once the velocities are complete, at the positions of take_out_pressures(): they become P V + c A, where c brings the volume back to its rest
   /// value within 50 steps. What V alone would have changed is the leakage; it is added to area_leakage, which must have
   /// one value for each cell, positive where the cell would have lost volume.
   void keep_volumes(Worker worker, Surfaces& surfaces);
@@ -28,8 +28,8 @@ class VolumeCorrection {
   }
 
  private:
-  /// The gradient at a cell's nodes, in `along_`; the square of its length.
-  double find_gradient(const Surfaces& surfaces, int cell);
+  /// The gradient at a cell's nodes, in `along_`.
+  void find_gradient(const Surfaces& surfaces, int cell);
 
   PagedArray<double> along_x_, along_y_, along_z_;  ///< A of each node; cells share nothing
 };
