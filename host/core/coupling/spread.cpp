@@ -32,9 +32,9 @@ struct Spread {
   }
 
  private:
-  using Four = Pack<T, 4>;
   static constexpr int points = Kernel::points, start = Kernel::first;
   using Forces = Line<T, points>;
+  using Lanes = typename Forces::Lanes;
   /// What a stencil has to lie in to be added without a thought.
   struct Inside {
     int row_begin, row_end, column_begin, column_end, height;
@@ -50,7 +50,7 @@ struct Spread {
     }
     const Forces wx = KernelWeights<Kernel, T>(t.at.p_x[i], t.at.q_x[i]).weight;
     const SpreadWeights<Kernel, T> wy(t.at.p_y[i], t.at.q_y[i]);
-    const Forces fx = wx * Four(t.force_x[i]), fy = wx * Four(t.force_y[i]);
+    const Forces fx = wx * Lanes(t.force_x[i]), fy = wx * Lanes(t.force_y[i]);
     const std::ptrdiff_t at = row * t.stride + column;
     if (row >= inside.row_begin && row + points <= inside.row_end) {
       for (int k = 0; k < points; ++k) add(t, fx, fy, wy.weight[k], at + k * t.stride);
@@ -60,7 +60,7 @@ struct Spread {
       }
     }
   }
-  ROULEAU_ALWAYS_INLINE static void add(const SpreadTask<T>& t, const Forces& fx, const Forces& fy, const Four& weight,
+  ROULEAU_ALWAYS_INLINE static void add(const SpreadTask<T>& t, const Forces& fx, const Forces& fy, const Lanes& weight,
                                         std::ptrdiff_t at) {
     (Forces::load(t.origin_x + at) + fx * weight).store(t.origin_x + at);
     (Forces::load(t.origin_y + at) + fy * weight).store(t.origin_y + at);
@@ -72,10 +72,10 @@ struct Spread {
     const Domain<2>& domain = *t.domain;
     const Forces wx = KernelWeights<Kernel, T>(t.at.p_x[i], t.at.q_x[i]).weight;
     const SpreadWeights<Kernel, T> wy(t.at.p_y[i], t.at.q_y[i]);
-    const Forces fx = wx * Four(t.force_x[i]), fy = wx * Four(t.force_y[i]);
+    const Forces fx = wx * Lanes(t.force_x[i]), fy = wx * Lanes(t.force_y[i]);
     for (int k = 0; k < points; ++k) {
       int row = domain.wrapped(1, t.at.row[i] + start + k);
-      Four weight = wy.weight[k];
+      Lanes weight = wy.weight[k];
       if (row < 0) {  // beyond a wall
         row = mirrored(t.at.row[i] + start + k, domain.size[1]);
         weight = -weight;

@@ -61,18 +61,18 @@ struct SurfaceSpread {
   std::ptrdiff_t stride_y, stride_z;
 };
 
-/// Weights of a node's stencil: along x, and one for each of its rows, four times.
+/// Weights of a node's stencil: along x, and one for each of its rows.
 template <class T, class Kernel>
 struct StencilWeights {
-  static constexpr int points = Kernel::points;
-  Line<T, points> along_x;
-  Pack<T, 4> row[points][points];  // row[z][y]
-  ROULEAU_ALWAYS_INLINE StencilWeights(const SurfaceStencils<T>& at, int i) {
-    along_x = KernelWeights<Kernel, T>(at.p[0][i], at.q[0][i]).weight;
-    const SpreadWeights<Kernel, T> y(at.p[1][i], at.q[1][i]), z(at.p[2][i], at.q[2][i]);
-    for (int m = 0; m < points; ++m) {
-      for (int l = 0; l < points; ++l) row[m][l] = z.weight[m] * y.weight[l];
-    }
+  using Lanes = typename Line<T, Kernel::points>::Lanes;
+  Line<T, Kernel::points> along_x;
+  SpreadWeights<Kernel, T> y, z;
+  ROULEAU_ALWAYS_INLINE StencilWeights(const SurfaceStencils<T>& at, int i)
+      : along_x(KernelWeights<Kernel, T>(at.p[0][i], at.q[0][i]).weight),
+        y(at.p[1][i], at.q[1][i]),
+        z(at.p[2][i], at.q[2][i]) {}
+  [[nodiscard]] ROULEAU_ALWAYS_INLINE Lanes of_row(int along_z, int along_y) const {
+    return z.weight[along_z] * y.weight[along_y];
   }
 };
 
@@ -81,14 +81,7 @@ struct SpreadSurface {
   template <int register_bytes>
   ROULEAU_ALWAYS_INLINE static void run(const SurfaceSpread<T>* task) {
     const SurfaceSpread<T> t = *task;
-    // Neighbouring nodes add to the same places, and a sum that is still on its way to memory stalls the next one: nodes
-    // from four parts of the cell take turns.
-    constexpr int parts = 4;
-    const int length = (t.end - t.begin) / parts;
-    for (int i = t.begin; i < t.begin + length; ++i) {
-      for (int part = 0; part < parts; ++part) spread(t, i + part * length);
-    }
-    for (int i = t.begin + parts * length; i < t.end; ++i) spread(t, i);
+    for (int i = t.begin; i < t.end; ++i) spread(t, i);
   }
 
  private:
@@ -111,19 +104,34 @@ struct SpreadSurface {
     const int first = y - block.begin[1] + height * (z - block.begin[2]), last = first + (points - 1) * (1 + height);
     if (last < t.row_begin || first >= t.row_end) return;
     const StencilWeights<T, Kernel> weights(t.at, i);
-    using Four = Pack<T, 4>;
-    const Forces fx = weights.along_x * Four(t.force[0][i]), fy = weights.along_x * Four(t.force[1][i]),
-                 fz = weights.along_x * Four(t.force[2][i]);
-    const bool whole = first >= t.row_begin && last < t.row_end;
+    using Lanes = typename Forces::Lanes;
+    const Forces fx = weights.along_x * Lanes(t.force[0][i]), fy = weights.along_x * Lanes(t.force[1][i]),
+                 fz = weights.along_x * Lanes(t.force[2][i]);
+    const std::ptrdiff_t at = z * t.stride_z + y * t.stride_y + x;
+    if (first >= t.row_begin && last < t.row_end) {
+      add<true>(t, weights, {fx, fy, fz}, at, first);
+    } else {
+      add<false>(t, weights, {fx, fy, fz}, at, first);
+    }
+  }
+  /// Adds to the nodes from `at` on: to all of them, or to those in rows that are to be added to; `first` is that of `at`.
+  template <bool whole>
+  ROULEAU_ALWAYS_INLINE static void add(const SurfaceSpread<T>& t, const StencilWeights<T, Kernel>& weights,
+                                        const std::array<Forces, 3>& force, std::ptrdiff_t at, int first) {
+    const int height = t.domain->block.size(1);
     for (int m = 0; m < points; ++m) {
+      T *to_x = t.origin[0] + at + m * t.stride_z, *to_y = t.origin[1] + at + m * t.stride_z,
+        *to_z = t.origin[2] + at + m * t.stride_z;
+#pragma GCC unroll 6
       for (int l = 0; l < points; ++l) {
         const int row = first + l + height * m;
-        if (!whole && (row < t.row_begin || row >= t.row_end)) continue;
-        const std::ptrdiff_t at = (z + m) * t.stride_z + (y + l) * t.stride_y + x;
-        const Four& weight = weights.row[m][l];
-        (Forces::load(t.origin[0] + at) + fx * weight).store(t.origin[0] + at);
-        (Forces::load(t.origin[1] + at) + fy * weight).store(t.origin[1] + at);
-        (Forces::load(t.origin[2] + at) + fz * weight).store(t.origin[2] + at);
+        if (whole || (row >= t.row_begin && row < t.row_end)) {
+          const auto weight = weights.of_row(m, l);
+          (Forces::load(to_x) + force[0] * weight).store(to_x);
+          (Forces::load(to_y) + force[1] * weight).store(to_y);
+          (Forces::load(to_z) + force[2] * weight).store(to_z);
+        }
+        to_x += t.stride_y, to_y += t.stride_y, to_z += t.stride_y;
       }
     }
   }
@@ -136,28 +144,47 @@ struct SpreadSurface {
     const int wrapped = domain.wrapped(axis, node);
     return wrapped >= 0 ? Image{wrapped, 1} : Image{mirrored(node, domain.size[axis]), -1};
   }
-  /// The same sums, number by number: of a stencil that reaches over the border of the lattice or of the block.
+  /// The same sums: of a stencil that reaches over the border of the lattice or of the block. Where it does so along x, number by
+  /// number.
   [[gnu::noinline, gnu::cold]] static void spread_at_border(const SurfaceSpread<T>& t, int i) {
     if (t.at.base[2][i] == outside) return;
     const Domain<3>& domain = *t.domain;
     const Box<3>& block = domain.block;
     const StencilWeights<T, Kernel> weights(t.at, i);
+    Image image_of[3][points];
+    for (int axis = 0; axis < 3; ++axis) {
+      for (int k = 0; k < points; ++k) image_of[axis][k] = image(domain, axis, t.at.base[axis][i] + start + k);
+    }
+    const auto& [along_x, along_y, along_z] = image_of;
+    const int x = t.at.base[0][i] + start;
+    const bool within = x >= block.begin[0] && x + points <= block.end[0];
+    using Lanes = typename Forces::Lanes;
+    T sign[Lanes::size] = {};
+    int nodes[points], lanes[points], count = 0;  // of the block's
+    for (int k = 0; k < points; ++k) {
+      sign[k] = static_cast<T>(along_x[k].sign);
+      if (along_x[k].node >= block.begin[0] && along_x[k].node < block.end[0])
+        nodes[count] = along_x[k].node, lanes[count] = k, ++count;
+    }
+    Forces force[3];
+    for (int c = 0; c < 3; ++c) force[c] = Forces::load(sign) * (weights.along_x * Lanes(t.force[c][i]));
     for (int m = 0; m < points; ++m) {
-      const Image z = image(domain, 2, t.at.base[2][i] + start + m);
+      const Image& z = along_z[m];
       for (int l = 0; l < points; ++l) {
-        const Image y = image(domain, 1, t.at.base[1][i] + start + l);
+        const Image& y = along_y[l];
         if (y.node < block.begin[1] || y.node >= block.end[1]) continue;
         const int row = y.node - block.begin[1] + block.size(1) * (z.node - block.begin[2]);
         if (row < t.row_begin || row >= t.row_end) continue;
-        const T weight = static_cast<T>(y.sign * z.sign) * weights.row[m][l].vector[0];
-        for (int k = 0; k < points; ++k) {
-          const Image x = image(domain, 0, t.at.base[0][i] + start + k);
-          if (x.node < block.begin[0] || x.node >= block.end[0]) continue;
-          const std::ptrdiff_t at = z.node * t.stride_z + y.node * t.stride_y + x.node;
-          for (int c = 0; c < 3; ++c) {
-            t.origin[c][at] +=
-                weights.along_x.at(k) * static_cast<T>(t.force[c][i]) * (static_cast<T>(x.sign) * weight);
+        const Lanes weight = Lanes(static_cast<T>(y.sign * z.sign)) * weights.of_row(m, l);
+        for (int c = 0; c < 3; ++c) {
+          T* const to = t.origin[c] + z.node * t.stride_z + y.node * t.stride_y;
+          if (within) {
+            (Forces::load(to + x) + force[c] * weight).store(to + x);
+            continue;
           }
+          T added[Lanes::size];
+          (force[c] * weight).store(added);
+          for (int k = 0; k < count; ++k) to[nodes[k]] += added[lanes[k]];
         }
       }
     }
@@ -180,7 +207,6 @@ struct InterpolateSurface {
   ROULEAU_ALWAYS_INLINE static void run(const SurfaceInterpolate<T>* task) {
     const SurfaceInterpolate<T> t = *task;
     constexpr int points = Kernel::points, start = Kernel::first;
-    using Four = Pack<T, 4>;
     using Velocities = Line<T, points>;
     for (int i = t.begin; i < t.end; ++i) {
       if (t.at.base[2][i] == outside) {
@@ -191,21 +217,24 @@ struct InterpolateSurface {
                                                     std::max(t.at.base[2][i], 0)}))
         continue;
       const StencilWeights<T, Kernel> weights(t.at, i);
-      Velocities u{}, v{}, w{};
-      const std::ptrdiff_t first =
+      // Even and odd rows apart: each sum waits for its last term.
+      Velocities u[2]{}, v[2]{}, w[2]{};
+      std::ptrdiff_t at =
           (t.at.base[2][i] + start) * t.stride_z + (t.at.base[1][i] + start) * t.stride_y + t.at.base[0][i] + start;
-      for (int m = 0; m < points; ++m) {
+      for (int m = 0; m < points; ++m, at += t.stride_z) {
+        const T *from_u = t.origin[0] + at, *from_v = t.origin[1] + at, *from_w = t.origin[2] + at;
+#pragma GCC unroll 6
         for (int l = 0; l < points; ++l) {
-          const std::ptrdiff_t at = first + m * t.stride_z + l * t.stride_y;
-          const Four& weight = weights.row[m][l];
-          u = u + Velocities::load(t.origin[0] + at) * weight;
-          v = v + Velocities::load(t.origin[1] + at) * weight;
-          w = w + Velocities::load(t.origin[2] + at) * weight;
+          const auto weight = weights.of_row(m, l);
+          u[l % 2] = u[l % 2] + Velocities::load(from_u) * weight;
+          v[l % 2] = v[l % 2] + Velocities::load(from_v) * weight;
+          w[l % 2] = w[l % 2] + Velocities::load(from_w) * weight;
+          from_u += t.stride_y, from_v += t.stride_y, from_w += t.stride_y;
         }
       }
-      t.velocity[0][i] = sum((u * weights.along_x).folded());
-      t.velocity[1][i] = sum((v * weights.along_x).folded());
-      t.velocity[2][i] = sum((w * weights.along_x).folded());
+      t.velocity[0][i] = sum(((u[0] + u[1]) * weights.along_x).folded());
+      t.velocity[1][i] = sum(((v[0] + v[1]) * weights.along_x).folded());
+      t.velocity[2][i] = sum(((w[0] + w[1]) * weights.along_x).folded());
     }
   }
 

@@ -11,7 +11,8 @@
 namespace rouleau::core {
 
 /// A value for each node of a block, and a halo of `halo` nodes on every side. Rows lie along x and start on 64-byte
-/// boundaries at x = 0.
+/// boundaries at x = 0, an odd number of these apart: the rows above and behind each other that a stencil reads would share few
+/// places of a cache else.
 template <class T, int D>
 class Field {
  public:
@@ -21,7 +22,7 @@ class Field {
   /// All values zero.
   explicit Field(const std::array<int, D>& size) : size_(size) {
     stride_[0] = 1;
-    stride_[1] = (size[0] + 2 * halo + line - 1) / line * line;
+    stride_[1] = (((size[0] + 2 * halo + line - 1) / line) | 1) * line;
     for (int k = 2; k < D; ++k) stride_[k] = stride_[k - 1] * (size[k - 1] + 2 * halo);
     const std::ptrdiff_t count = stride_[D - 1] * (size[D - 1] + 2 * halo);
     storage_ = Storage<T>(static_cast<std::size_t>(count) + line);
