@@ -6,8 +6,6 @@
 #include <limits>
 #include <tuple>
 
-#include "triangle_distance.hpp"
-
 namespace rouleau::core {
 
 namespace {
@@ -19,6 +17,8 @@ Vec<3> moved_by(const std::array<int, 3>& shift, const Domain<3>& domain) {
     if (domain.periodic[axis]) move[axis] = shift[axis] * domain.period(axis);
   return move;
 }
+/// A number of single precision that is not larger, of one that is not negative.
+float rounded_down(double value) { return static_cast<float>(value * (1 - 0x1p-23)); }
 bool usable(const Vec<3>& place) { return place.cwiseAbs().maxCoeff() < 1e9; }  // false where one is no number
 
 }  // namespace
@@ -201,29 +201,38 @@ struct SurfaceContacts::Neighbours {
     std::array<int, 3> shift;
     int triangle;
     Vec<3> middle;  ///< of the image
-    double around;  ///< reach plus the triangle's own radius
+    double radius;  ///< no corner lies farther from it
+    double around;  ///< reach plus that
     [[nodiscard]] auto order() const { return std::tie(other, shift, triangle); }
   };
-  /// The triangles [begin, end) of one image of a cell.
+  /// Triangles, or patches of them, [begin, end), and a box that holds all places that one of them is near.
+  struct Part {
+    std::size_t begin, end;
+    Eigen::AlignedBox3d reached;
+    void include(const Triangle& triangle) {
+      ++end;
+      reached.extend(triangle.middle - Vec<3>::Constant(triangle.around));
+      reached.extend(triangle.middle + Vec<3>::Constant(triangle.around));
+    }
+  };
+  /// The patches of one image of a cell.
   struct Image {
     int other;
     std::array<int, 3> shift;
-    std::size_t begin, end;
-    Eigen::AlignedBox3d reached;  ///< holds all places that one of them is near
+    Part part;
     /// Whether it is the cell's own surface.
     [[nodiscard]] bool within(int cell) const { return other == cell && shift == std::array<int, 3>{}; }
   };
   std::vector<Triangle> triangles;  // sorted
+  std::vector<Part> patches;        // of triangles that follow each other, which lie side by side in most meshes
   std::vector<Image> images;
-  std::vector<double> x, y, z, square;  // their middles, and squares of `around`
-  std::vector<unsigned char> near;      // of a node: which of them
 
   Neighbours(int cell, const Eigen::AlignedBox3d& box, const Surfaces& surfaces, const Bins& bins,
              const SurfaceContacts& contacts, double skin) {
     const Domain<3>& domain = contacts.domain_;
     bins.for_near(box, [&](const Bins::Entry& entry) {
       if (const double within = contacts.cutoff(surfaces, cell, cell, true); entry.cell == cell && within > 0)
-        triangles.push_back({cell, {}, entry.triangle, entry.middle, within + 2 * skin + entry.radius});
+        triangles.push_back({cell, {}, entry.triangle, entry.middle, entry.radius, within + 2 * skin + entry.radius});
       const double cutoff = contacts.cutoff(surfaces, cell, entry.cell, false);
       if (!(cutoff > 0)) return;
       const double around = cutoff + 2 * skin + entry.radius;
@@ -244,35 +253,38 @@ struct SurfaceContacts::Neighbours {
         for (shift[1] = first[1]; shift[1] <= last[1]; ++shift[1]) {
           for (shift[0] = first[0]; shift[0] <= last[0]; ++shift[0]) {
             if (entry.cell == cell && shift == std::array<int, 3>{}) continue;
-            triangles.push_back({entry.cell, shift, entry.triangle, entry.middle + moved_by(shift, domain), around});
+            triangles.push_back(
+                {entry.cell, shift, entry.triangle, entry.middle + moved_by(shift, domain), entry.radius, around});
           }
         }
       }
     });
     std::sort(triangles.begin(), triangles.end(), [](const auto& a, const auto& b) { return a.order() < b.order(); });
-    for (const Triangle& triangle : triangles) {
-      const std::size_t t = x.size();
-      if (images.empty() || images.back().other != triangle.other || images.back().shift != triangle.shift)
-        images.push_back({triangle.other, triangle.shift, t, t, {}});
-      images.back().end = t + 1;
-      images.back().reached.extend(triangle.middle - Vec<3>::Constant(triangle.around));
-      images.back().reached.extend(triangle.middle + Vec<3>::Constant(triangle.around));
-      x.push_back(triangle.middle.x());
-      y.push_back(triangle.middle.y());
-      z.push_back(triangle.middle.z());
-      square.push_back(triangle.around * triangle.around);
+    constexpr std::size_t patch_size = 16;
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+      const Triangle& triangle = triangles[t];
+      const bool begins =
+          images.empty() || images.back().other != triangle.other || images.back().shift != triangle.shift;
+      if (begins) images.push_back({triangle.other, triangle.shift, {patches.size(), patches.size(), {}}});
+      Image& image = images.back();
+      if (begins || patches.back().end - patches.back().begin == patch_size) {
+        patches.push_back({t, t, {}});
+        ++image.part.end;
+      }
+      patches.back().include(triangle);
+      image.part.reached.extend(patches.back().reached);
     }
-    near.resize(triangles.size());
   }
 
-  /// Sets near for a place, of an image's triangles.
-  void look(const Vec<3>& place, const Image& image) {
-    const double at_x = place.x(), at_y = place.y(), at_z = place.z();
-    const double *const px = x.data(), *const py = y.data(), *const pz = z.data(), *const most = square.data();
-    unsigned char* const result = near.data();
-    for (std::size_t t = image.begin; t < image.end; ++t) {
-      const double dx = at_x - px[t], dy = at_y - py[t], dz = at_z - pz[t];
-      result[t] = dx * dx + dy * dy + dz * dz <= most[t];
+  /// Calls function(triangle, distance) for an image's triangles that are near a place; `distance`: of their middles.
+  template <class Function>
+  void for_near(const Vec<3>& place, const Image& image, Function function) const {
+    for (std::size_t p = image.part.begin; p < image.part.end; ++p) {
+      if (!patches[p].reached.contains(place)) continue;
+      for (std::size_t t = patches[p].begin; t < patches[p].end; ++t) {
+        const double square = (place - triangles[t].middle).squaredNorm();
+        if (square <= triangles[t].around * triangles[t].around) function(triangles[t], std::sqrt(square));
+      }
     }
   }
 };
@@ -292,26 +304,17 @@ void SurfaceContacts::list_candidates(int cell, const Surfaces& surfaces, const 
     const Vec<3> place = place_of(node);
     if (!usable(place)) continue;
     for (const Neighbours::Image& image : neighbours.images) {
-      if (!image.reached.contains(place)) continue;
-      neighbours.look(place, image);
+      if (!image.part.reached.contains(place)) continue;
       const int other = image.other;
       const int first = static_cast<int>(list.candidates.size());
       const bool within = image.within(cell);
-      const double reach = cutoff(surfaces, cell, other, within) + 2 * skin;
-      const Vec<3> near = place - moved_by(image.shift, domain_);
-      const Nodes nodes = surfaces.nodes(other);
-      const auto& corners = surfaces.type_of(other).mesh.triangles();
-      double nearest = reach;
-      for (std::size_t t = image.begin; t < image.end; ++t) {
-        if (neighbours.near[t] == 0) continue;
-        const int triangle = neighbours.triangles[t].triangle;
-        if (within && !self_reach_[own.type]->allows(node - own.first, triangle)) continue;
-        const auto& [i, j, k] = corners[triangle];
-        const double distance = (near - closest_point(near, nodes[i], nodes[j], nodes[k]).place).norm();
-        if (!(distance <= reach)) continue;
+      // A triangle's middle is no nearer than the triangle, and farther away by its radius at most.
+      double nearest = std::numeric_limits<double>::infinity();
+      neighbours.for_near(place, image, [&](const Neighbours::Triangle& triangle, double distance) {
+        if (within && !self_reach_[own.type]->allows(node - own.first, triangle.triangle)) return;
         nearest = std::min(nearest, distance);
-        list.candidates.push_back({distance, triangle});
-      }
+        list.candidates.push_back({rounded_down(std::max(0.0, distance - triangle.radius)), triangle.triangle});
+      });
       // Others stay farther away than the nearest one.
       const auto begin = list.candidates.begin() + first;
       list.candidates.erase(
@@ -337,48 +340,86 @@ void SurfaceContacts::sort_in(Candidate* candidates, int count, int all) {
   }
 }
 
+namespace {
+constexpr double rounding = 1e-9;
+}  // namespace
+
+/// Of all groups that are being searched: their next candidates.
+void SurfaceContacts::look_at_next(const Surfaces& surfaces, CandidateList& list) const {
+  const auto count = static_cast<int>(list.searching.size());
+  ClosestPoints& points = list.points;
+  for (int k = 0; k < count; ++k) {
+    const int g = list.searching[k];
+    const Group& group = list.groups[g];
+    const int first = surfaces.cells[group.other].first;
+    const auto& corners =
+        surfaces.type_of(group.other).mesh.triangles()[list.candidates[list.searches[g].next].triangle];
+    const Vec<3> moved = moved_by(group.shift, domain_);
+    points.node[k] = group.node;
+    for (int c = 0; c < 3; ++c) points.corner[c][k] = first + corners[c], points.moved[c][k] = moved[c];
+  }
+  points.find(count, surfaces.positions());
+  const bool remembers = !surfaces.largest_step.empty();
+  int left = 0;
+  for (int k = 0; k < count; ++k) {
+    const int g = list.searching[k];
+    Search& search = list.searches[g];
+    Candidate& candidate = list.candidates[search.next++];
+    const double square = points.square[k];
+    if (remembers) candidate.distance = rounded_down(std::sqrt(square) + search.path);
+    // Of triangles equally far away the first counts, in whatever order they are listed.
+    if (square < search.square ||
+        (square == search.square && (search.closest < 0 || candidate.triangle < search.closest))) {
+      search.square = square, search.root = std::sqrt(square), search.closest = candidate.triangle;
+      for (int c = 0; c < 3; ++c) search.weight[c] = points.weight[c][k], search.away[c] = points.away[c][k];
+    }
+    const bool goes_on = search.next < list.groups[g].end &&
+                         !(list.candidates[search.next].distance - search.path - rounding > search.root);
+    list.searching[left] = g;
+    left += goes_on ? 1 : 0;
+  }
+  list.searching.resize(left);
+}
+
 void SurfaceContacts::find(int cell, const Surfaces& surfaces, std::vector<SurfaceContact>& contacts) const {
   contacts.clear();
   CandidateList& list = lists_[cell];
-  for (const Group& group : list.groups) {
-    const CellRange& other = surfaces.cells[group.other];
-    const Nodes nodes = surfaces.nodes(group.other);
-    const auto& triangles = surfaces.type_of(group.other).mesh.triangles();
+  const auto count = static_cast<int>(list.groups.size());
+  list.searches.resize(list.groups.size());
+  list.searching.clear();
+  for (int g = 0; g < count; ++g) {
+    const Group& group = list.groups[g];
+    constexpr int ahead = 8;  // groups to one whose candidates are fetched: they lie far apart
+    if (g + ahead < count) __builtin_prefetch(&list.candidates[list.groups[g + ahead].begin], 1);
     const double cutoff = this->cutoff(surfaces, cell, group.other, group.within);
-    constexpr double rounding = 1e-9;
     const double path = travelled(cell, group.other);
-    const bool remembers = !surfaces.largest_step.empty();
-    const Vec<3> place =
-        Vec<3>(surfaces.x[group.node], surfaces.y[group.node], surfaces.z[group.node]) - moved_by(group.shift, domain_);
-    double square = cutoff * cutoff, root = cutoff;
-    int closest = -1;
-    TrianglePoint point{.weight = {}, .place = Vec<3>::Zero()};
-    int looked_at = group.begin;
-    for (; looked_at < group.end; ++looked_at) {
-      Candidate& candidate = list.candidates[looked_at];
-      if (candidate.distance - path - rounding > root) break;
-      const auto& [i, j, k] = triangles[candidate.triangle];
-      const TrianglePoint there = closest_point(place, nodes[i], nodes[j], nodes[k]);
-      const double here = (place - there.place).squaredNorm();
-      if (remembers) candidate.distance = std::sqrt(here) + path;
-      // Of triangles equally far away the first counts, in whatever order they are listed.
-      if (!(here < square || (here == square && (closest < 0 || candidate.triangle < closest)))) continue;
-      square = here, root = std::sqrt(here), closest = candidate.triangle, point = there;
-    }
-    if (remembers) sort_in(&list.candidates[group.begin], looked_at - group.begin, group.end - group.begin);
-    if (closest < 0) continue;
-    const auto& [i, j, k] = triangles[closest];
+    list.searches[g] = {cutoff * cutoff, cutoff, path, -1, group.begin, {}, Vec<3>::Zero()};
+    if (!(list.candidates[group.begin].distance - path - rounding > cutoff)) list.searching.push_back(g);
+  }
+  list.points.resize(static_cast<int>(list.searching.size()));
+  while (!list.searching.empty()) look_at_next(surfaces, list);
+  for (int g = 0; g < count; ++g) {
+    const Group& group = list.groups[g];
+    const Search& search = list.searches[g];
+    if (!surfaces.largest_step.empty())
+      sort_in(&list.candidates[group.begin], search.next - group.begin, group.end - group.begin);
+    if (search.closest < 0) continue;
+    const int first = surfaces.cells[group.other].first;
+    const auto& [i, j, k] = surfaces.type_of(group.other).mesh.triangles()[search.closest];
     SurfaceContact contact{group.node,
                            group.other,
                            {group.shift[0], group.shift[1], group.shift[2]},
                            group.within,
-                           {other.first + i, other.first + j, other.first + k},
-                           point.weight,
-                           std::max(root, SurfaceContact::least_distance),
+                           {first + i, first + j, first + k},
+                           search.weight,
+                           std::max(search.root, SurfaceContact::least_distance),
                            {}};
-    contact.direction = root > SurfaceContact::least_distance
-                            ? Vec<3>((place - point.place) / root)
-                            : Vec<3>((nodes[j] - nodes[i]).cross(nodes[k] - nodes[i]).normalized());
+    if (search.root > SurfaceContact::least_distance) {
+      contact.direction = search.away / search.root;
+    } else {
+      const Nodes nodes = surfaces.nodes(group.other);
+      contact.direction = (nodes[j] - nodes[i]).cross(nodes[k] - nodes[i]).normalized();
+    }
     contacts.push_back(contact);
   }
 }

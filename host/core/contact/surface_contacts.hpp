@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/worker.hpp"
+#include "closest_points.hpp"
 #include "core/domain/domain.hpp"
 #include "core/domain/images.hpp"
 #include "core/membrane/displacement_watch.hpp"
@@ -36,8 +37,8 @@ struct SurfaceContact {
 /// were made.
 ///
 /// Candidates stay complete while no node has moved further than the skin, for the reason that NeighbourList has; a
-/// triangle is a set of convex combinations of its corners, too. Of each the last known distance is kept, which has changed
-/// by no more than both cells' nodes have travelled since: nearest first, most need not be looked at.
+/// triangle is a set of convex combinations of its corners, too. Of each a bound of its last known distance is kept, which has
+/// changed by no more than both cells' nodes have travelled since: nearest first, most need not be looked at.
 class SurfaceContacts {
  public:
   /// `self_cutoffs`: of each type, within a cell; 0, and where there are none: cells do not touch themselves.
@@ -63,8 +64,8 @@ class SurfaceContacts {
 
  private:
   struct Candidate {
-    double distance;  ///< when it was last looked at, and how far both cells had travelled by then, added up
-    int triangle;     ///< of the other cell
+    float distance;  ///< not less: when it was last looked at, and how far both cells had travelled by then, added up
+    int triangle;    ///< of the other cell
   };
   /// Candidates [begin, end) of a node against one image of a cell, nearest first.
   struct Group {
@@ -73,9 +74,22 @@ class SurfaceContacts {
     bool within;  ///< the cell's own surface
     int begin, end;
   };
+  /// How far find() has come with a group.
+  struct Search {
+    double square, root;  ///< of the distance of the closest triangle so far, or of the cutoff
+    double path;          ///< of both cells
+    int closest;          ///< that triangle; -1: none
+    int next;             ///< candidate to be looked at
+    std::array<double, 3> weight;
+    Vec<3> away;  ///< from the closest point to the node
+  };
   struct CandidateList {
     std::vector<Group> groups;
     std::vector<Candidate> candidates;
+    // Room for find().
+    std::vector<Search> searches;
+    std::vector<int> searching;  ///< those that are not at their end
+    ClosestPoints points;        ///< of their next candidates
   };
   class Bins;
   struct Neighbours;
@@ -84,6 +98,7 @@ class SurfaceContacts {
   [[nodiscard]] double travelled(int cell, int other) const;
   [[nodiscard]] double cutoff(const Surfaces& surfaces, int cell, int other, bool within) const;
   void list_candidates(int cell, const Surfaces& surfaces, const Bins& bins, double skin);
+  void look_at_next(const Surfaces& surfaces, CandidateList& list) const;
 
   Cutoffs cutoffs_;
   std::vector<std::unique_ptr<const SelfReach>> self_reach_;  // of each type; null: it does not touch itself; or empty

@@ -4,43 +4,43 @@
 #include <array>
 
 #include "core/domain/vec.hpp"
+#include "core/domain/vectors.hpp"
 
 namespace rouleau::core {
 
-/// The point weight[0] a + weight[1] b + weight[2] c of a triangle; weights are not negative and add up to 1.
-struct TrianglePoint {
-  std::array<double, 3> weight;
-  Vec<3> place;
+/// The point weight[0] a + weight[1] b + weight[2] c of a triangle, and the vector from it to the other point; weights are not
+/// negative and add up to 1.
+template <class S>
+struct ClosestPoint {
+  S weight[3];
+  Vectors<S> away;
 };
 
-/// Inside the face, on an edge or in a corner (Ericson, Real-Time Collision Detection, 2005, section 5.1.5).
-inline TrianglePoint closest_point(const Vec<3>& p, const Vec<3>& a, const Vec<3>& b, const Vec<3>& c) {
-  const Vec<3> ab = b - a, ac = c - a, ap = p - a;
-  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
-  if (d1 <= 0 && d2 <= 0) return {{1, 0, 0}, a};
-  const Vec<3> bp = p - b;
-  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
-  if (d3 >= 0 && d4 <= d3) return {{0, 1, 0}, b};
-  const double in_c = d1 * d4 - d3 * d2;
-  if (in_c <= 0 && d1 >= 0 && d3 <= 0) {
-    const double v = d1 / (d1 - d3);
-    return {{1 - v, v, 0}, a + v * ab};
-  }
-  const Vec<3> cp = p - c;
-  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
-  if (d6 >= 0 && d5 <= d6) return {{0, 0, 1}, c};
-  const double in_b = d5 * d2 - d1 * d6;
-  if (in_b <= 0 && d2 >= 0 && d6 <= 0) {
-    const double w = d2 / (d2 - d6);
-    return {{1 - w, 0, w}, a + w * ac};
-  }
-  const double in_a = d3 * d6 - d5 * d4;
-  if (in_a <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
-    const double w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-    return {{0, 1 - w, w}, b + w * (c - b)};
-  }
-  const double inverse = 1 / (in_a + in_b + in_c), v = in_b * inverse, w = in_c * inverse;
-  return {{1 - v - w, v, w}, a + v * ab + w * ac};
+/// Inside the face, on an edge or in a corner (Ericson, Real-Time Collision Detection, 2005, section 5.1.5), for numbers or packs
+/// of them.
+template <class S>
+ROULEAU_ALWAYS_INLINE ClosestPoint<S> closest_point(const Vectors<S>& p, const Vectors<S>& a, const Vectors<S>& b,
+                                                    const Vectors<S>& c) {
+  const Vectors<S> ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
+  const S d1 = dot(ab, ap), d2 = dot(ac, ap), d3 = dot(ab, bp), d4 = dot(ac, bp), d5 = dot(ab, cp), d6 = dot(ac, cp);
+  const S none = 0.0, one = 1.0;
+  S at_a = d3 * d6 - d5 * d4, at_b = d5 * d2 - d1 * d6, at_c = d1 * d4 - d3 * d2;
+  const S beyond_bc = max(at_a, max(d3 - d4, d6 - d5)), beyond_ac = max(at_b, max(-d2, d6)),
+          beyond_ab = max(at_c, max(-d1, d3));
+  // Where `beyond` is not positive other weights are the right ones, of corners before edges. By products with 0 and 1: g++ 12
+  // makes single numbers of a mask that is used twice.
+  const auto take = [&](const S& beyond, const S& of_a, const S& of_b, const S& of_c) {
+    const S stays = select(beyond > none, one, none), goes = one - stays;
+    at_a = stays * at_a + goes * of_a, at_b = stays * at_b + goes * of_b, at_c = stays * at_c + goes * of_c;
+  };
+  take(beyond_bc, none, d5 - d6, d4 - d3);
+  take(beyond_ac, -d6, none, d2);
+  take(max(-d6, d5 - d6), none, none, one);
+  take(beyond_ab, -d3, d1, none);
+  take(max(-d3, d4 - d3), none, one, none);
+  take(max(d1, d2), one, none, none);
+  const S inverse = 1.0 / (at_a + at_b + at_c), of_b = at_b * inverse, of_c = at_c * inverse;
+  return {{at_a * inverse, of_b, of_c}, ap - of_b * ab - of_c * ac};
 }
 
 }  // namespace rouleau::core

@@ -4,15 +4,16 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/contact/triangle_distance.hpp"
 #include "shape/surface.hpp"
 #include "surface_fixture.hpp"
 #include "unit/fake_models.hpp"
 #include "unit/random.hpp"
+#include "unit/triangle_distance.hpp"
 
 using namespace rouleau;
 using namespace rouleau::core;
 using rouleau::test::check_gradient;
+using rouleau::test::distance_to_triangle;
 using rouleau::test::run;
 
 namespace {
@@ -94,8 +95,7 @@ TEST_CASE(
       const Nodes nodes = s.nodes(0);
       for (const auto& [i, j, k] : s.type_of(0).mesh.triangles()) {
         if (!reach.allows(node, triangle++)) continue;
-        nearest = std::min(
-            nearest, (place_of(s, node) - closest_point(place_of(s, node), nodes[i], nodes[j], nodes[k]).place).norm());
+        nearest = std::min(nearest, distance_to_triangle(place_of(s, node), nodes[i], nodes[j], nodes[k]));
       }
       if (nearest >= cutoff) continue;
       REQUIRE(next < found.size());

@@ -7,19 +7,19 @@
 #include <iostream>
 #include <numbers>
 
-#include "core/contact/triangle_distance.hpp"
 #include "plan/placed_cells.hpp"
 #include "shape/extent.hpp"
 #include "shape/rigid_surface.hpp"
 #include "shape/surface.hpp"
 #include "unit/shape/packing_fixture.hpp"
+#include "unit/triangle_distance.hpp"
 
-using rouleau::core::closest_point;
 using rouleau::core::Vec;
 using namespace rouleau::plan;
 using namespace rouleau::scene;
 using namespace rouleau::shape;
 using rouleau::test::chi_square;
+using rouleau::test::distance_to_triangle;
 using rouleau::test::HashOfBits;
 using rouleau::test::PackedScene;
 using rouleau::test::part;
@@ -92,8 +92,8 @@ double distance(const Placed& a, const Placed& b, const Vec<3>& shift, double mo
                                     b.surface.nodes[other[2]] + shift};
       if ((p[0] - q[0]).squaredNorm() > reach * reach) continue;
       for (int i = 0; i < 3; ++i) {
-        least = std::min(least, (p[i] - closest_point(p[i], q[0], q[1], q[2]).place).norm());
-        least = std::min(least, (q[i] - closest_point(q[i], p[0], p[1], p[2]).place).norm());
+        least = std::min(least, distance_to_triangle(p[i], q[0], q[1], q[2]));
+        least = std::min(least, distance_to_triangle(q[i], p[0], p[1], p[2]));
         for (int j = 0; j < 3; ++j)
           least = std::min(least, between_segments(p[i], p[(i + 1) % 3] - p[i], q[j], q[(j + 1) % 3] - q[j]));
       }

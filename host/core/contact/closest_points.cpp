@@ -1,0 +1,59 @@
+#include "closest_points.hpp"
+
+#include <rouleau/dispatch.hpp>
+
+#include "core/surface/padded_triangles.hpp"
+#include "triangle_distance.hpp"
+
+namespace rouleau::core {
+
+namespace {
+
+struct FindTask {
+  int count;
+  const double* place[3];
+  const int *node, *corner[3];
+  const double* moved[3];
+  double *weight[3], *away[3], *square;
+};
+
+struct FindClosest {
+  template <int register_bytes>
+  ROULEAU_ALWAYS_INLINE static void run(const FindTask* task) {
+    using S = Pack<double, register_bytes / 8>;
+    const FindTask t = *task;
+    for (int k = 0; k < t.count; k += S::size) {
+      const auto corner = [&](int c) { return Vectors<S>::gather(t.place, t.corner[c] + k); };
+      const Vectors<S> node = Vectors<S>::gather(t.place, t.node + k) - Vectors<S>::load(t.moved, k);
+      const ClosestPoint<S> point = closest_point(node, corner(0), corner(1), corner(2));
+      for (int c = 0; c < 3; ++c) point.weight[c].store(t.weight[c] + k);
+      point.away.store(t.away, k);
+      dot(point.away, point.away).store(t.square + k);
+    }
+  }
+};
+
+}  // namespace
+
+void ClosestPoints::resize(int count) {
+  const auto size = static_cast<std::size_t>(padded(count));
+  if (square.size() >= size) return;
+  for (auto* numbers : {&node, &corner[0], &corner[1], &corner[2]}) numbers->resize(size);
+  for (auto* vectors : {&moved, &weight, &away}) {
+    for (auto& numbers : *vectors) numbers.resize(size);
+  }
+  square.resize(size);
+}
+
+void ClosestPoints::find(int count, const std::array<const double*, 3>& places) {
+  FindTask task{};
+  task.count = count, task.node = node.data(), task.square = square.data();
+  for (std::size_t c = 0; c < 3; ++c) {
+    task.place[c] = places[c], task.corner[c] = corner[c].data(), task.moved[c] = moved[c].data();
+    task.weight[c] = weight[c].data(), task.away[c] = away[c].data();
+  }
+  static const auto function = Dispatch<FindClosest, const FindTask*>::pick();
+  function(&task);
+}
+
+}  // namespace rouleau::core
