@@ -9,6 +9,7 @@
 #include "output_schedule.hpp"
 #include "plugin/handles.hpp"
 #include "shape/extent.hpp"
+#include "stability_limits.hpp"
 
 namespace rouleau::plan {
 
@@ -92,13 +93,29 @@ OutputEstimate estimate_output(const scene::Scene& scene, const std::vector<Stag
   return estimate;
 }
 
-/// What the slip correction and the semi-implicit step add to a step in three dimensions, seconds a membrane node: together slip
-/// is smoothed over many neighbours (docs/three-dimensions.md). Measured at 2 000 to 14 000 nodes, to 20 %.
-double cost_of_corrections(const Plan& plan) {
-  if (!plan.scene->domain.depth) return 0;
-  const bool slip = plan.scene->numerics.slip_correction;
-  if (slip && plan.semi_implicit) return 1.2e-6;
-  return slip ? 0.17e-6 : plan.semi_implicit ? 0.12e-6 : 0;
+/// Of the interactions between cells and within them, spacings.
+double largest_cutoff(const Plan& plan) {
+  double largest = 0;
+  for (std::size_t i = 0; i < plan.interactions.size(); ++i) {
+    const PlannedModel& model = plan.interactions[i];
+    const scene::Interaction& between = plan.scene->interactions[i];
+    if (!model.active() || between.with_wall()) continue;
+    const plugin::ModelInstance potential(*model.manifest, model.parameters.values,
+                                          plan.stages.front().model_setting(plan.scene->fluid.inertia));
+    largest = std::max(largest, potential.interaction().cutoff(potential.self()));
+  }
+  return largest;
+}
+
+/// Measured at 2 000 to 14 000 nodes (docs/three-dimensions.md).
+double cost_of_membrane_node(int dimension, const MembraneScheme& scheme) {
+  if (dimension == 2) return 50e-9;
+  // The triangles within the cutoff are as many as its square says.
+  double cost = 100e-9 + 1.8e-9 * scheme.cutoff * scheme.cutoff;
+  if (scheme.sharp_kernel) cost += 55e-9;
+  if (scheme.slip_correction) cost += scheme.viscosity_contrast ? 110e-9 : 55e-9;
+  if (scheme.semi_implicit) cost += 60e-9;
+  return cost;
 }
 
 }  // namespace
@@ -111,27 +128,21 @@ double membrane_nodes(const scene::Scene& scene) {
   return nodes;
 }
 
-double step_cost(double lattice_nodes, double membrane_nodes, scene::Precision precision, int dimension,
-                 double cutoff) {
-  const bool f64 = precision == scene::Precision::f64;
-  const double of_node = dimension == 2 ? (f64 ? 1.5e-9 : 0.85e-9) : (f64 ? 13e-9 : 7e-9);
-  // In space the triangles within the cutoff are as many as its square says.
-  const double of_membrane_node = dimension == 2 ? 50e-9 : 170e-9 + 2.2e-9 * cutoff * cutoff;
-  return lattice_nodes * of_node + membrane_nodes * of_membrane_node;
+MembraneScheme membrane_scheme(const Plan& plan) {
+  const scene::Scene& scene = *plan.scene;
+  if (!scene.domain.depth) return {};
+  return {.cutoff = largest_cutoff(plan),
+          .sharp_kernel = kernel_named(scene.numerics.kernel).kind == core::KernelKind::sharp6,
+          .slip_correction = scene.numerics.slip_correction,
+          .viscosity_contrast = plan.viscosity_contrast,
+          .semi_implicit = plan.semi_implicit};
 }
 
-double largest_cutoff(const Plan& plan) {
-  double largest = 0;
-  if (!plan.scene->domain.depth) return largest;  // there a step's cost knows of none
-  for (std::size_t i = 0; i < plan.interactions.size(); ++i) {
-    const PlannedModel& model = plan.interactions[i];
-    const scene::Interaction& between = plan.scene->interactions[i];
-    if (!model.active() || between.with_wall()) continue;
-    const plugin::ModelInstance potential(*model.manifest, model.parameters.values,
-                                          plan.stages.front().model_setting(plan.scene->fluid.inertia));
-    largest = std::max(largest, potential.interaction().cutoff(potential.self()));
-  }
-  return largest;
+double step_cost(double lattice_nodes, double membrane_nodes, scene::Precision precision, int dimension,
+                 const MembraneScheme& scheme) {
+  const bool f64 = precision == scene::Precision::f64;
+  const double of_node = dimension == 2 ? (f64 ? 1.5e-9 : 0.85e-9) : (f64 ? 13e-9 : 7e-9);
+  return lattice_nodes * of_node + membrane_nodes * cost_of_membrane_node(dimension, scheme);
 }
 
 double membrane_memory(const scene::Scene& scene) { return membrane_nodes(scene) * (scene.domain.depth ? 1200 : 400); }
@@ -153,9 +164,8 @@ Estimate estimate(const Plan& plan) {
   const double word = scene.numerics.precision == scene::Precision::f64 ? 8 : 4;
   Estimate estimate;
   for (const StageSetting& stage : plan.stages) estimate.steps += static_cast<double>(stage.max_steps);
-  const double of_step =
-      step_cost(fluid_nodes(scene.domain), membrane, scene.numerics.precision, dimension, largest_cutoff(plan));
-  estimate.wall_s = estimate.steps * (of_step + membrane * cost_of_corrections(plan));
+  estimate.wall_s = estimate.steps * step_cost(fluid_nodes(scene.domain), membrane, scene.numerics.precision, dimension,
+                                               membrane_scheme(plan));
   estimate.memory_bytes = nodes * word *
                               (velocities + (plan.has_cells ? dimension : 0) +
                                (plan.viscosity_contrast || !scene.fluid.layers.empty() ? 1 : 0)) +

@@ -6,13 +6,20 @@
 
 namespace rouleau::plan {
 
-/// Seconds of one step on one core, as measured with AVX-512 (docs/performance.md); other machines differ by their
-/// memory and vector width. `cutoff`: in three dimensions, of the interactions between cells, spacings; left out, what makes
-/// a membrane node cost 200 ns.
+/// What a membrane node's part of a step depends on, in three dimensions; in two it takes the same time in all of them.
+struct MembraneScheme {
+  double cutoff = 3.7;        ///< of the interactions between cells and within them, spacings; 0: there are none
+  bool sharp_kernel = false;  ///< of six points along each axis
+  bool slip_correction = false;
+  bool viscosity_contrast = false;  ///< with the slip correction: forces act beside the nodes
+  bool semi_implicit = false;
+};
+MembraneScheme membrane_scheme(const Plan& plan);
+
+/// Seconds of one step on one core, as measured with AVX-512 (docs/performance.md, docs/three-dimensions.md); other machines differ
+/// by their memory and vector width.
 double step_cost(double lattice_nodes, double membrane_nodes, scene::Precision precision, int dimension = 2,
-                 double cutoff = 3.7);
-/// Of the interactions between cells and within them, spacings; 0 in two dimensions, where a step's cost knows of none.
-double largest_cutoff(const Plan& plan);
+                 const MembraneScheme& scheme = {});
 
 /// At most: stages that end at rest or at a fault write less. HDF5's own share was measured (tests/commands).
 struct OutputEstimate {

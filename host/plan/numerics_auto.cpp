@@ -296,9 +296,11 @@ Problem::Trial Problem::tried(const LatticeSize& nodes, double tau) const {
     of_stage.resolution = trial.error.resolution;
     if (of_stage.total() > trial.error.total()) trial.error = of_stage;
   }
-  trial.cost = step_cost(fluid_nodes(with_lattice(scene_.domain, nodes)), membrane_nodes(spacing),
-                         scene_.numerics.precision, scene_.domain.dimension()) /
-               time_step_of_factor_one(spacing, tau) * duration(trial.density_factors);
+  const bool sharp = coupling_ == MembraneCoupling::sharp;
+  trial.cost =
+      step_cost(fluid_nodes(with_lattice(scene_.domain, nodes)), membrane_nodes(spacing), scene_.numerics.precision,
+                scene_.domain.dimension(), {.sharp_kernel = sharp, .slip_correction = sharp}) /
+      time_step_of_factor_one(spacing, tau) * duration(trial.density_factors);
   return trial;
 }
 

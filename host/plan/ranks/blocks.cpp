@@ -52,7 +52,7 @@ class Points {
     const scene::Precision precision = plan.scene->numerics.precision;
     const double count = static_cast<double>(domain_.nodes()), nodes = static_cast<double>(points_.size()) * every_,
                  of_fluid = step_cost(count, 0, precision, D),
-                 of_all = step_cost(count, nodes, precision, D, largest_cutoff(plan));
+                 of_all = step_cost(count, nodes, precision, D, membrane_scheme(plan));
     return (of_all - of_fluid) / nodes / (of_fluid / count) * every_;
   }
 

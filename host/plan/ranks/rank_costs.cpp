@@ -199,7 +199,8 @@ std::vector<RankCost> costs_of(const Plan& plan, const core::Decomposition<D>& b
   add_halos(plan, blocks, ranks);
   if (plan.has_cells) add_cells(plan, blocks, ranks);
   const double lattice = estimate(plan).memory_bytes - membrane_memory(scene);
-  const double word = scene.numerics.precision == scene::Precision::f64 ? 8 : 4, cutoff = largest_cutoff(plan);
+  const double word = scene.numerics.precision == scene::Precision::f64 ? 8 : 4;
+  const MembraneScheme scheme = membrane_scheme(plan);
   for (int rank = 0; rank < blocks.ranks(); ++rank) {
     const core::Box<D> block = blocks.domain(rank).block;
     RankCost& cost = ranks[rank];
@@ -215,8 +216,8 @@ std::vector<RankCost> costs_of(const Plan& plan, const core::Decomposition<D>& b
     if (rank == 0) cost.memory_bytes += memory::of_writer(cells);
     cost.rows_s = (core::row_count(block) - nodes / blocks.domain(rank).size[0]) * cost_of_sharing(D).row_s;
     cost.sharing_s += cost.lattice_bytes() / word * cost_of_sharing(D).number_s + cost.rows_s;
-    cost.step_s = step_cost(nodes, own, scene.numerics.precision, D, cutoff);
-    cost.membranes_s = cost.step_s - step_cost(nodes, 0, scene.numerics.precision, D, cutoff);
+    cost.step_s = step_cost(nodes, own, scene.numerics.precision, D, scheme);
+    cost.membranes_s = cost.step_s - step_cost(nodes, 0, scene.numerics.precision, D, scheme);
   }
   return ranks;
 }
