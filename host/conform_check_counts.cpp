@@ -188,6 +188,7 @@ int pthread_spin_lock(pthread_spinlock_t* mutex) {
 
 int clock_gettime(clockid_t clock, timespec* time) noexcept {
   static const auto get = next<int (*)(clockid_t, timespec*)>("clock_gettime");
+  counts.clock_reads.fetch_add(1, std::memory_order_relaxed);
   const int result = get(clock, time);
   if (result == 0) time->tv_sec += counts.clock_ahead_s;
   return result;

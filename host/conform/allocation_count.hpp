@@ -1,5 +1,5 @@
 // What the C library's functions do for a model in the program of the checks, which stands before some of them: how often
-// this process has allocated memory and taken locks, where memory comes from, and what the world looks like.
+// this process has allocated memory, taken locks and read the clock, where memory comes from, and what the world looks like.
 #pragma once
 
 #include <atomic>
@@ -11,6 +11,7 @@ namespace rouleau::conform {
 struct ProcessCounts {
   std::atomic<std::int64_t> allocations{0}, releases{0};  ///< by malloc and its kin, and by new
   std::atomic<std::int64_t> locks{0};                     ///< mutexes and read-write locks taken
+  std::atomic<std::int64_t> clock_reads{0};
 
   /// While `from_pool` is set, memory is taken from this pool, piece after piece, and never given back to it.
   std::atomic<bool> from_pool{false};

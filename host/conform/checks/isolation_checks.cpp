@@ -68,13 +68,13 @@ std::vector<Trial> some_trials(const Subject& subject, Random& random) {
   return trials(subject, random, subject.typical_setting(), 3);
 }
 
-/// Lets the model's function make no system call and read no clock, and counts what it allocates and locks. As there is no
-/// way back, the thread ends after the call.
+/// Lets the model's function make no system call and read no clock, and counts what it allocates and locks, and how often it reads
+/// the clock: not every machine lets that be forbidden. As there is no way back, the thread ends after the call.
 class QuietWatch : public CallWatch {
  public:
   std::atomic<bool> done{false};
   bool trapped = false;
-  std::int64_t allocations = 0, locks = 0;
+  std::int64_t allocations = 0, locks = 0, clock_reads = 0;
 
   void before() override {
     touch_thread_local_storage();
@@ -84,11 +84,13 @@ class QuietWatch : public CallWatch {
     trapped = limit_system_calls(Allowed::nothing);
     allocations = process_counts != nullptr ? process_counts->allocations.load() : 0;
     locks = process_counts != nullptr ? process_counts->locks.load() : 0;
+    clock_reads = process_counts != nullptr ? process_counts->clock_reads.load() : 0;
   }
   void after() override {
     if (process_counts != nullptr) {
       allocations = process_counts->allocations - allocations;
       locks = process_counts->locks - locks;
+      clock_reads = process_counts->clock_reads - clock_reads;
     }
     done = true;
     end_thread();
@@ -110,6 +112,8 @@ Finding quiet(const Subject& subject) {
           finding = Finding::at_most(static_cast<double>(watch.allocations), 0, "allocations of one call of compute");
         } else if (watch.locks != 0) {
           finding = Finding::at_most(static_cast<double>(watch.locks), 0, "locks taken by one call");
+        } else if (watch.clock_reads != 0) {
+          finding = Finding::failed("compute reads the clock");
         } else if (!watch.trapped || process_counts == nullptr) {
           finding =
               Finding::warned(watch.trapped ? "no system call; allocations are not counted in this build"
