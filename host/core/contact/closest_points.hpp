@@ -8,9 +8,11 @@ namespace rouleau::core {
 
 /// Nodes, a triangle for each, and what is found of them.
 struct ClosestPoints {
-  std::vector<int> node, corner[3];
-  std::vector<double> moved[3];                    ///< by so much the triangles' images lie beside them
-  std::vector<double> weight[3], away[3], square;  ///< ClosestPoint; square of the distance
+  std::vector<int> node;
+  std::array<std::vector<int>, 3> corner;
+  std::array<std::vector<double>, 3> moved;         ///< by so much the triangles' images lie beside them
+  std::array<std::vector<double>, 3> weight, away;  ///< ClosestPoint
+  std::vector<double> square;                       ///< of the distance
 
   /// Makes room for so many, and for whole packs.
   void resize(int count);

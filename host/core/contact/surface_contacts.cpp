@@ -341,7 +341,7 @@ void SurfaceContacts::sort_in(Candidate* candidates, int count, int all) {
 }
 
 namespace {
-constexpr double rounding = 1e-9;
+constexpr double slack = 1e-9;  // rounding
 }  // namespace
 
 /// Of all groups that are being searched: their next candidates.
@@ -374,7 +374,7 @@ void SurfaceContacts::look_at_next(const Surfaces& surfaces, CandidateList& list
       for (int c = 0; c < 3; ++c) search.weight[c] = points.weight[c][k], search.away[c] = points.away[c][k];
     }
     const bool goes_on = search.next < list.groups[g].end &&
-                         !(list.candidates[search.next].distance - search.path - rounding > search.root);
+                         !(list.candidates[search.next].distance - search.path - slack > search.root);
     list.searching[left] = g;
     left += goes_on ? 1 : 0;
   }
@@ -394,7 +394,7 @@ void SurfaceContacts::find(int cell, const Surfaces& surfaces, std::vector<Surfa
     const double cutoff = this->cutoff(surfaces, cell, group.other, group.within);
     const double path = travelled(cell, group.other);
     list.searches[g] = {cutoff * cutoff, cutoff, path, -1, group.begin, {}, Vec<3>::Zero()};
-    if (!(list.candidates[group.begin].distance - path - rounding > cutoff)) list.searching.push_back(g);
+    if (!(list.candidates[group.begin].distance - path - slack > cutoff)) list.searching.push_back(g);
   }
   list.points.resize(static_cast<int>(list.searching.size()));
   while (!list.searching.empty()) look_at_next(surfaces, list);
