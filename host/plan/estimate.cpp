@@ -107,7 +107,7 @@ double largest_cutoff(const Plan& plan) {
   return largest;
 }
 
-/// Measured at 2 000 to 14 000 nodes (docs/three-dimensions.md).
+/// Measured at 3 924 nodes (docs/three-dimensions.md).
 double cost_of_membrane_node(int dimension, const MembraneScheme& scheme) {
   if (dimension == 2) return 50e-9;
   // The triangles within the cutoff are as many as its square says.

@@ -1,7 +1,8 @@
 #include "closest_points.hpp"
 
-#include <rouleau/dispatch.hpp>
+#include <algorithm>
 
+#include "core/domain/run_loop.hpp"
 #include "core/surface/padded_triangles.hpp"
 #include "triangle_distance.hpp"
 
@@ -48,12 +49,10 @@ void ClosestPoints::resize(int count) {
 void ClosestPoints::find(int count, const std::array<const double*, 3>& places) {
   FindTask task{};
   task.count = count, task.node = node.data(), task.square = square.data();
-  for (std::size_t c = 0; c < 3; ++c) {
-    task.place[c] = places[c], task.corner[c] = corner[c].data(), task.moved[c] = moved[c].data();
-    task.weight[c] = weight[c].data(), task.away[c] = away[c].data();
-  }
-  static const auto function = Dispatch<FindClosest, const FindTask*>::pick();
-  function(&task);
+  std::copy(places.begin(), places.end(), task.place);
+  point_into(task.corner, corner), point_into(task.moved, moved);
+  point_into(task.weight, weight), point_into(task.away, away);
+  run_loop<FindClosest>(task);
 }
 
 }  // namespace rouleau::core

@@ -110,8 +110,8 @@ struct Sharp6 : Peskin4 {
   static constexpr bool halved = false;
 };
 
-/// Numbers side by side, at least as many as a kernel has points: six lie in a register of eight, since one load and one store
-/// take half of the time of two. What lies behind the points is read and written back, but is part of no sum.
+/// Numbers side by side, at least as many as a kernel has points: six lie in a register of eight, so that a row
+/// takes one load and one store. What lies behind the points is read and written back, but is part of no sum.
 template <class T, int points>
 struct Line {
   using Lanes = rouleau::Pack<T, points <= 4 ? 4 : 8>;

@@ -127,14 +127,6 @@ KernelResponse kernel_response(KernelKind kernel, double shift) {
   return shift == 0 ? alone : alone.times(shift_gain(kernel, shift));
 }
 
-int slip_smoothings(int least, double number, double widest) {
-  int passes = std::max(1, least);
-  constexpr int most = 256;  // enough for thirty times the stiffness that explicit coupling bears
-  // The largest s (1 - s/widest)^p over s is widest/(p + 1) (p/(p + 1))^p.
-  while (passes < most && number * widest / (passes + 1) * std::pow(passes / (passes + 1.0), passes) > 0.3) ++passes;
-  return std::min(passes, most);
-}
-
 int surface_slip_smoothing(double square_of_length, double mobility, double stiffness) {
   // 1 - (n^2 - 1) s/18 for long waves: over about a lattice spacing, as of outlines.
   const double least = std::sqrt(1 + 4.5 / square_of_length);
@@ -145,8 +137,13 @@ int surface_slip_smoothing(double square_of_length, double mobility, double stif
 }
 
 int outline_slip_smoothings(double length, double mobility, double stiffness) {
-  const double square = length * length;
-  return slip_smoothings(static_cast<int>(std::lround(1 / square)), mobility * stiffness / square, 4);
+  const double square = length * length, number = mobility * stiffness / square;
+  int passes = std::max(1, static_cast<int>(std::lround(1 / square)));
+  constexpr double widest = 4;
+  constexpr int most = 256;  // enough for thirty times the stiffness that explicit coupling bears
+  // The largest s (1 - s/widest)^p over s is widest/(p + 1) (p/(p + 1))^p.
+  while (passes < most && number * widest / (passes + 1) * std::pow(passes / (passes + 1.0), passes) > 0.3) ++passes;
+  return std::min(passes, most);
 }
 
 }  // namespace rouleau::core

@@ -29,19 +29,16 @@ double shift_gain(KernelKind kernel, double shift);
 /// How membranes come back to their own forces through the kernel and, unless the shift is 0, through those couples.
 KernelResponse kernel_response(KernelKind kernel, double shift);
 
-/// How often a membrane's slip is smoothed so that a step stays stable, at least so many times. A tangential displacement that
-/// the membrane's stiffness meets by s/l^2, s from 0 to `widest`, gains in a step the slip -C s (1 - s/widest)^p times itself after
-/// p smoothings, with C = mobility x stiffness / l^2, the `number`. That must stay below 2 for all s in an explicit step, and below
-/// 2/3 in a semi-implicit one, whose forces belong to the end of the step; 0.3 is kept.
-int slip_smoothings(int least, double number, double widest);
+/// How often the slip of an outline with segments of this length is smoothed by (1/4, 1/2, 1/4), so that a step stays stable and
+/// slip is spread over about a lattice spacing: the fluid does not damp what the kernel cannot see. A tangential displacement that
+/// the membrane's stiffness meets by s/l^2, s = 4 sin^2(q/2) for the wave number q per segment, gains in a step the slip
+/// -C s (1 - s/4)^p times itself after p smoothings, with C = mobility x stiffness/l^2. That must stay below 2 for all s in an
+/// explicit step, and below 2/3 in a semi-implicit one, whose forces belong to the end of the step; 0.3 is kept. Each smoothing adds
+/// length^2/2 to the variance over which slip is spread along the membrane.
+int outline_slip_smoothings(double length, double mobility, double stiffness);
 
 /// The same of surfaces, by the order n of a sum of Chebyshev's polynomials in 1 - s/3, s from 0 to 6 (SurfaceSlip): the slip -C s
 /// (1 - T_n(1 - s/3)) 3/(n^2 s) takes n - 1 steps where powers would take n^2/2.7. `square_of_length`: of a triangle's side.
 int surface_slip_smoothing(double square_of_length, double mobility, double stiffness);
-
-/// Of outlines with segments of this length, by (1/4, 1/2, 1/4): s = 4 sin^2(q/2) for the wave number q per segment. Smoothing
-/// over about a lattice spacing is needed anyway where nodes stand closer: the fluid does not damp what the kernel cannot see.
-/// Each adds length^2/2 to the variance over which slip is spread along the membrane.
-int outline_slip_smoothings(double length, double mobility, double stiffness);
 
 }  // namespace rouleau::core

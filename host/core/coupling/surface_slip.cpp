@@ -3,17 +3,12 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <rouleau/dispatch.hpp>
+
+#include "core/domain/run_loop.hpp"
 
 namespace rouleau::core {
 
 namespace {
-
-template <class Loop, class Arrays>
-void run_loop(const Arrays& arrays) {
-  static const auto function = Dispatch<Loop, const Arrays*>::pick();
-  function(&arrays);
-}
 
 template <std::size_t n>
 std::array<const double*, n> to_read(double* const (&arrays)[n]) {
@@ -88,22 +83,21 @@ SlipArrays SurfaceSlip::arrays_of(const Surfaces& surfaces, int cell, Scratch& s
   SlipArrays arrays{};
   arrays.triangles = mesh.count, arrays.nodes = range.count;
   arrays.shift = constants(surfaces, cell).shift;
-  const auto point = [](auto& to, auto& from, std::size_t offset) {
-    for (std::size_t k = 0; k < std::size(to); ++k) to[k] = from[k].data() + offset;
-  };
-  point(arrays.corner, mesh.corner, 0);
-  point(arrays.touch, touch_, first), point(arrays.normal, normal_, first), point(arrays.turn, turn_, first);
+  point_into(arrays.corner, mesh.corner);
+  point_into(arrays.touch, touch_, first), point_into(arrays.normal, normal_, first),
+      point_into(arrays.turn, turn_, first);
   arrays.area = &area_[first];
   arrays.place[0] = &surfaces.x[first], arrays.place[1] = &surfaces.y[first], arrays.place[2] = &surfaces.z[first];
   arrays.force[0] = &surfaces.force_x[first], arrays.force[1] = &surfaces.force_y[first];
   arrays.force[2] = &surfaces.force_z[first];
-  point(arrays.covered, scratch.covered, 0), point(arrays.along, scratch.along, 0);
-  point(arrays.turned, scratch.turned, 0);
+  point_into(arrays.covered, scratch.covered), point_into(arrays.along, scratch.along);
+  point_into(arrays.turned, scratch.turned);
   arrays.pressure = scratch.pressure.data();
   arrays.triangle_area = scratch.triangle_area.data();
-  for (std::size_t k = 0; k < 2; ++k) point(arrays.gradient[k], scratch.gradient[k], 0);
-  point(arrays.covered_triangle, scratch.covered_triangle, 0);
-  for (std::size_t k = 0; k < 3; ++k) point(arrays.result[k], scratch.result, k * static_cast<std::size_t>(mesh.size));
+  for (std::size_t k = 0; k < 2; ++k) point_into(arrays.gradient[k], scratch.gradient[k]);
+  point_into(arrays.covered_triangle, scratch.covered_triangle);
+  for (std::size_t k = 0; k < 3; ++k)
+    point_into(arrays.result[k], scratch.result, k * static_cast<std::size_t>(mesh.size));
   return arrays;
 }
 
@@ -135,7 +129,7 @@ void SurfaceSlip::complete(Worker worker, const Surfaces& surfaces) {
     if (arrays.shift != 0) {
       add_couples(cell, surfaces, arrays);
     } else {
-      run_loop<MeasureAreas>(arrays);
+      run_loop<MeasureTriangleNormals>(arrays);
       run_loop<ForcesAlong>(arrays);
       for (int k = 0; k < 3; ++k) std::copy_n(arrays.force[k], arrays.nodes, &force_[k][surfaces.cells[cell].first]);
     }

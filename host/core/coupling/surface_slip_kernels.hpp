@@ -112,21 +112,6 @@ struct MeasureTriangleNormals {
   }
 };
 
-/// Triangles: areas, where nodes touch the lattice at their own places.
-struct MeasureAreas {
-  template <int register_bytes>
-  ROULEAU_ALWAYS_INLINE static void run(const SlipArrays* arrays) {
-    using S = Pack<double, register_bytes / 8>;
-    const SlipArrays a = *arrays;
-    for (int t = 0; t < a.triangles; t += S::size) {
-      const Vectors<S> first = Vectors<S>::gather(a.touch, a.corner[0] + t);
-      const Vectors<S> around = cross(Vectors<S>::gather(a.touch, a.corner[1] + t) - first,
-                                      Vectors<S>::gather(a.touch, a.corner[2] + t) - first);
-      (0.5 * sqrt(dot(around, around))).store(a.triangle_area + t);
-    }
-  }
-};
-
 /// Triangles: areas, gradients and what they add to the mean projection around a node.
 struct MeasureTouch {
   template <int register_bytes>

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <rouleau/dispatch.hpp>
 
+#include "core/domain/run_loop.hpp"
 #include "geometry.hpp"
 #include "membrane_kernels.hpp"
 
@@ -17,12 +17,6 @@ constexpr std::size_t most_states = 16;  // of one law: the manifest's limit
 void close(double* values, int count) {
   values[-1] = values[count - 1];
   values[count] = values[0];
-}
-
-template <class Loop>
-void run_loop(const CellArrays& arrays) {
-  static const auto function = Dispatch<Loop, const CellArrays*>::pick();
-  function(&arrays);
 }
 
 double weighted_sum(const double* values, const double* weights, int count) {

@@ -1,9 +1,10 @@
 #include "mesh_inverse.hpp"
 
 #include <Eigen/SparseCholesky>
-#include <rouleau/dispatch.hpp>
 #include <rouleau/pack.hpp>
 #include <stdexcept>
+
+#include "core/domain/run_loop.hpp"
 
 namespace rouleau::core {
 
@@ -67,10 +68,8 @@ MeshInverse::MeshInverse(const Matrix& matrix) {
 }
 
 void MeshInverse::solve(double* rows) const {
-  static const auto function = Dispatch<Solve, const SolveTask*>::pick();
-  const SolveTask task{
-      static_cast<int>(place_.size()), first_.data(), row_.data(), entry_.data(), inverse_.data(), rows};
-  function(&task);
+  run_loop<Solve>(
+      SolveTask{static_cast<int>(place_.size()), first_.data(), row_.data(), entry_.data(), inverse_.data(), rows});
 }
 
 }  // namespace rouleau::core

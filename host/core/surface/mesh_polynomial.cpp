@@ -1,8 +1,9 @@
 #include "mesh_polynomial.hpp"
 
-#include <rouleau/dispatch.hpp>
 #include <rouleau/pack.hpp>
 #include <utility>
+
+#include "core/domain/run_loop.hpp"
 
 namespace rouleau::core {
 
@@ -34,12 +35,6 @@ struct NextDegree {
   }
 };
 
-template <bool first>
-void run_degree(const Degree& degree) {
-  static const auto function = Dispatch<NextDegree<first>, const Degree*>::pick();
-  function(&degree);
-}
-
 }  // namespace
 
 void apply_polynomial(const NeighbourMatrix& matrix, std::span<const double> coefficients, PolynomialRoom& room) {
@@ -48,7 +43,7 @@ void apply_polynomial(const NeighbourMatrix& matrix, std::span<const double> coe
   double *now = room.value.data(), *former = room.other.data();
   for (std::size_t k = 1; k < coefficients.size(); ++k) {
     const Degree degree{matrix, now, former, room.result.data(), coefficients[k]};
-    k == 1 ? run_degree<true>(degree) : run_degree<false>(degree);
+    k == 1 ? run_loop<NextDegree<true>>(degree) : run_loop<NextDegree<false>>(degree);
     std::swap(now, former);
   }
 }

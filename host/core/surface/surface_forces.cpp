@@ -2,20 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <rouleau/dispatch.hpp>
 #include <stdexcept>
 
+#include "core/domain/run_loop.hpp"
 #include "core/membrane/stiffness.hpp"
 
 namespace rouleau::core {
 
 namespace {
-
-template <class Loop>
-void run_loop(const SurfaceArrays& arrays) {
-  static const auto function = Dispatch<Loop, const SurfaceArrays*>::pick();
-  function(&arrays);
-}
 
 double weighted_sum(const std::vector<double>& values, const std::vector<double>& weights) {
   double sum = 0;
@@ -128,21 +122,19 @@ SurfaceForces::Scratch& SurfaceForces::scratch_of(int first_cell) {
 }
 
 SurfaceArrays SurfaceForces::arrays_of(const Type& type, Scratch& s) {
-  const auto point = [](auto& to, auto& from, std::size_t offset = 0) {
-    for (std::size_t k = 0; k < std::size(to); ++k) to[k] = from[k].data() + offset;
-  };
   SurfaceArrays arrays{};
   arrays.triangles = type.mesh.count;
   arrays.edges = type.edges;
-  point(arrays.corner, type.mesh.corner), point(arrays.edge, type.triangle_edge);
-  point(arrays.edge_node, type.edge_node), point(arrays.edge_triangle, type.edge_triangle);
-  point(arrays.side[0], s.side[0]), point(arrays.side[1], s.side[1]);
-  point(arrays.inverse, type.inverse);
+  point_into(arrays.corner, type.mesh.corner), point_into(arrays.edge, type.triangle_edge);
+  point_into(arrays.edge_node, type.edge_node), point_into(arrays.edge_triangle, type.edge_triangle);
+  point_into(arrays.side[0], s.side[0]), point_into(arrays.side[1], s.side[1]);
+  point_into(arrays.inverse, type.inverse);
   arrays.rest_area = type.rest_area.data();
   arrays.invariant_1 = s.invariant[0].data(), arrays.invariant_2 = s.invariant[1].data();
-  point(arrays.normal, s.normal);
+  point_into(arrays.normal, s.normal);
   arrays.stress_1 = s.stress[0].data(), arrays.stress_2 = s.stress[1].data();
-  for (std::size_t k = 0; k < 3; ++k) point(arrays.force[k], s.force, k * static_cast<std::size_t>(type.mesh.size));
+  for (std::size_t k = 0; k < 3; ++k)
+    point_into(arrays.force[k], s.force, k * static_cast<std::size_t>(type.mesh.size));
   arrays.turned_length = s.turned_length.data(), arrays.edge_turn = s.edge_turn.data();
   arrays.node_moment = s.node_moment.data(), arrays.node_pull = s.node_pull.data();
   arrays.with_moment = type.curvature, arrays.with_area_pull = type.area;

@@ -18,8 +18,8 @@ class VolumeCorrection {
   /// this takes away; on the lattice it would leak. What is left is the adjoint of keep_volumes().
   void take_out_pressures(Worker worker, Surfaces& surfaces);
 
-  /// Pass over cells, once the velocities are complete, at the positions of take_out_pressures(): they become P V + c A, where c brings the volume back to its rest
-  /// value within 50 steps. What V alone would have changed is the leakage; it is added to area_leakage, which must have
+  /// Pass over cells, once the velocities are complete, at the positions of take_out_pressures(): they become P V + c A, where
+  /// c brings the volume back to its rest value within 50 steps. What V alone would have changed is the leakage; it is added to area_leakage, which must have
   /// one value for each cell, positive where the cell would have lost volume.
   void keep_volumes(Worker worker, Surfaces& surfaces);
   /// Takes no memory for these nodes.
