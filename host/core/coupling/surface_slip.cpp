@@ -32,7 +32,7 @@ SurfaceSlip::Shared::Shared(const Mesh& of, int order)
 }
 
 SurfaceSlip::SurfaceSlip(const Surfaces& surfaces, std::vector<Type> types, double viscosity)
-    : types_(std::move(types)), viscosity_(viscosity), area_(surfaces.x.size()), scratch_(surfaces.cells.size()) {
+    : types_(std::move(types)), viscosity_(viscosity), scratch_(surfaces.cells.size()) {
   for (std::size_t t = 0; t < types_.size(); ++t) {
     const RestSurface& rest = *surfaces.types[t];
     // Of equal triangles with sides l: sqrt(3)/4 l^2 each.
@@ -50,13 +50,12 @@ void SurfaceSlip::forget(std::span<const Range> nodes) {
   const auto release_all = [&](auto& arrays) {
     for (auto& values : arrays) release(values, nodes);
   };
-  release(area_, nodes);
   release_all(normal_), release_all(touch_), release_all(force_), release_all(slip_), release_all(turn_);
 }
 
 SurfaceSlip::Scratch& SurfaceSlip::scratch_of(int first_cell) {
   Scratch& scratch = scratch_.of(first_cell);
-  if (!scratch.triangle_area.empty()) return scratch;
+  if (!scratch.pressure.empty()) return scratch;
   std::size_t triangles = 0, nodes = 0, neighbours = 0;
   for (const Shared& type : shared_) {
     triangles = std::max(triangles, static_cast<std::size_t>(type.mesh.size));
@@ -66,7 +65,6 @@ SurfaceSlip::Scratch& SurfaceSlip::scratch_of(int first_cell) {
   const auto make = [](auto& arrays, std::size_t size) {
     for (auto& values : arrays) values.assign(size, 0.0);
   };
-  scratch.triangle_area.assign(triangles, 0.0);
   make(scratch.gradient[0], triangles), make(scratch.gradient[1], triangles), make(scratch.covered_triangle, triangles);
   make(scratch.result, 3 * triangles);
   make(scratch.covered, nodes), make(scratch.turned, nodes), make(scratch.along, nodes);
@@ -76,7 +74,7 @@ SurfaceSlip::Scratch& SurfaceSlip::scratch_of(int first_cell) {
   return scratch;
 }
 
-SlipArrays SurfaceSlip::arrays_of(const Surfaces& surfaces, int cell, Scratch& scratch) {
+SlipArrays SurfaceSlip::arrays_of(const Surfaces& surfaces, int cell, const SurfaceNormals& normals, Scratch& scratch) {
   const CellRange& range = surfaces.cells[cell];
   const PaddedTriangles& mesh = shared_[range.type].mesh;
   const auto first = static_cast<std::size_t>(range.first);
@@ -86,14 +84,15 @@ SlipArrays SurfaceSlip::arrays_of(const Surfaces& surfaces, int cell, Scratch& s
   point_into(arrays.corner, mesh.corner);
   point_into(arrays.touch, touch_, first), point_into(arrays.normal, normal_, first),
       point_into(arrays.turn, turn_, first);
-  arrays.area = &area_[first];
+  for (std::size_t k = 0; k < 3; ++k) arrays.normal_sum[k] = normals.sums()[k] + first;
+  arrays.area = normals.node_areas() + first;
   arrays.place[0] = &surfaces.x[first], arrays.place[1] = &surfaces.y[first], arrays.place[2] = &surfaces.z[first];
   arrays.force[0] = &surfaces.force_x[first], arrays.force[1] = &surfaces.force_y[first];
   arrays.force[2] = &surfaces.force_z[first];
   point_into(arrays.covered, scratch.covered), point_into(arrays.along, scratch.along);
   point_into(arrays.turned, scratch.turned);
   arrays.pressure = scratch.pressure.data();
-  arrays.triangle_area = scratch.triangle_area.data();
+  arrays.triangle_area = normals.triangle_areas(cell);
   for (std::size_t k = 0; k < 2; ++k) point_into(arrays.gradient[k], scratch.gradient[k]);
   point_into(arrays.covered_triangle, scratch.covered_triangle);
   for (std::size_t k = 0; k < 3; ++k)
@@ -101,39 +100,29 @@ SlipArrays SurfaceSlip::arrays_of(const Surfaces& surfaces, int cell, Scratch& s
   return arrays;
 }
 
-void SurfaceSlip::measure(Worker worker, const Surfaces& surfaces, Whose whose) {
+void SurfaceSlip::measure(Worker worker, const Surfaces& surfaces, const SurfaceNormals& normals, Whose whose) {
   const CellNumbers cells = surfaces.known_cells(worker);
   if (cells.empty()) return;
   Scratch& scratch = scratch_of(cells.first_place());
   for (const int cell : cells) {
     if (!surfaces.is(cell, whose)) continue;
-    const SlipArrays arrays = arrays_of(surfaces, cell, scratch);
-    run_loop<MeasureTriangleNormals>(arrays);
-    const PaddedTriangles& mesh = shared_[surfaces.cells[cell].type].mesh;
-    const std::array<const double*, 4> of_triangles{arrays.result[0][0], arrays.result[0][1], arrays.result[0][2],
-                                                    arrays.triangle_area};
-    for (int i = 0; i < arrays.nodes; ++i) {
-      const auto [x, y, z, area] = mesh.sums_of_triangles(of_triangles, i);
-      arrays.normal[0][i] = x, arrays.normal[1][i] = y, arrays.normal[2][i] = z, arrays.area[i] = area / 3;
-    }
-    run_loop<FindTouch>(arrays);
+    run_loop<FindTouch>(arrays_of(surfaces, cell, normals, scratch));
   }
 }
 
-void SurfaceSlip::complete(Worker worker, const Surfaces& surfaces) {
+void SurfaceSlip::complete(Worker worker, const Surfaces& surfaces, const SurfaceNormals& normals) {
   const CellNumbers cells = surfaces.own_cells(worker);
   if (cells.empty()) return;
   Scratch& scratch = scratch_of(cells.first_place());
   for (const int cell : cells) {
-    const SlipArrays arrays = arrays_of(surfaces, cell, scratch);
+    const SlipArrays arrays = arrays_of(surfaces, cell, normals, scratch);
     if (arrays.shift != 0) {
       add_couples(cell, surfaces, arrays);
     } else {
-      run_loop<MeasureTriangleNormals>(arrays);
       run_loop<ForcesAlong>(arrays);
       for (int k = 0; k < 3; ++k) std::copy_n(arrays.force[k], arrays.nodes, &force_[k][surfaces.cells[cell].first]);
     }
-    find_slip(cell, surfaces, scratch);
+    find_slip(cell, surfaces, arrays, scratch);
   }
 }
 
@@ -155,18 +144,17 @@ void SurfaceSlip::add_couples(int cell, const Surfaces& surfaces, const SlipArra
   }
 }
 
-void SurfaceSlip::find_slip(int cell, const Surfaces& surfaces, Scratch& scratch) {
+void SurfaceSlip::find_slip(int cell, const Surfaces& surfaces, const SlipArrays& arrays, Scratch& scratch) {
   const CellRange& range = surfaces.cells[cell];
   const Shared& shared = shared_[range.type];
   const double mobility = constants(surfaces, cell).slip / viscosity_;
-  const double* const area = &area_[range.first];
   const std::vector<int>& first = shared.neighbours.first;
   const bool smooths = shared.coefficients.size() > 1;
   for (int i = 0; i < range.count; ++i) {
     for (int c = 0; c < 3; ++c) scratch.smoothing.value[4 * i + c] = mobility * scratch.along[c][i];
-    const double by_area = area[i] > 0 ? 2.0 / 9 / area[i] : 0;
+    const double by_area = arrays.area[i] > 0 ? 2.0 / 9 / arrays.area[i] : 0;
     for (int k = first[i]; k < first[i + 1] && smooths; ++k)
-      scratch.weight[k] = by_area * (scratch.triangle_area[shared.left[k]] + scratch.triangle_area[shared.right[k]]);
+      scratch.weight[k] = by_area * (arrays.triangle_area[shared.left[k]] + arrays.triangle_area[shared.right[k]]);
   }
   apply_polynomial(
       {range.count, first.data(), shared.neighbours.entry.data(), shared.own.data(), scratch.weight.data()},
@@ -179,13 +167,13 @@ void SurfaceSlip::find_slip(int cell, const Surfaces& surfaces, Scratch& scratch
   }
 }
 
-void SurfaceSlip::correct(Worker worker, Surfaces& surfaces) {
+void SurfaceSlip::correct(Worker worker, Surfaces& surfaces, const SurfaceNormals& normals) {
   const CellNumbers cells = surfaces.own_cells(worker);
   if (cells.empty()) return;
   Scratch& scratch = scratch_of(cells.first_place());
   for (const int cell : cells) {
     const CellRange& range = surfaces.cells[cell];
-    if (SlipArrays arrays = arrays_of(surfaces, cell, scratch); arrays.shift != 0) {
+    if (SlipArrays arrays = arrays_of(surfaces, cell, normals, scratch); arrays.shift != 0) {
       arrays.velocity[0] = &surfaces.velocity_x[range.first], arrays.velocity[1] = &surfaces.velocity_y[range.first];
       arrays.velocity[2] = &surfaces.velocity_z[range.first];
       run_loop<MakeTurns>(arrays);

@@ -7,6 +7,7 @@
 #include "base/worker.hpp"
 #include "core/surface/mesh_polynomial.hpp"
 #include "core/surface/padded_triangles.hpp"
+#include "core/surface/surface_normals.hpp"
 #include "core/surface/surfaces.hpp"
 #include "slip_constants.hpp"
 #include "surface_slip_kernels.hpp"
@@ -27,12 +28,14 @@ class SurfaceSlip {
   /// `viscosity`: of the suspending fluid, lattice units.
   SurfaceSlip(const Surfaces& surfaces, std::vector<Type> types, double viscosity);
 
-  /// Pass over cells: normals and areas at the present positions, and where the nodes touch the lattice.
-  void measure(Worker worker, const Surfaces& surfaces, Whose whose = Whose::own);
+  // `normals`: at the present positions.
+
+  /// Pass over cells: normals, and where the nodes touch the lattice.
+  void measure(Worker worker, const Surfaces& surfaces, const SurfaceNormals& normals, Whose whose = Whose::own);
   /// Pass over cells, once the forces on them are complete: the slip, and what is to be spread, forces().
-  void complete(Worker worker, const Surfaces& surfaces);
+  void complete(Worker worker, const Surfaces& surfaces, const SurfaceNormals& normals);
   /// Pass over cells: turns velocities interpolated at the touching points into those of the membrane.
-  void correct(Worker worker, Surfaces& surfaces);
+  void correct(Worker worker, Surfaces& surfaces, const SurfaceNormals& normals);
 
   /// Takes no memory for these nodes until they are measured again.
   void forget(std::span<const Range> nodes);
@@ -58,16 +61,16 @@ class SurfaceSlip {
   };
   /// One worker's arrays, for one cell after another.
   struct Scratch {
-    std::vector<double> triangle_area, gradient[2][3], covered_triangle[6];  // of triangles
-    std::vector<double> result[3];                                           // of their corners
-    std::vector<double> covered[6], turned[3], along[3], pressure;           // of nodes
-    std::vector<double> weight;                                              // of neighbours
+    std::vector<double> gradient[2][3], covered_triangle[6];        // of triangles
+    std::vector<double> result[3];                                  // of their corners
+    std::vector<double> covered[6], turned[3], along[3], pressure;  // of nodes
+    std::vector<double> weight;                                     // of neighbours
     PolynomialRoom smoothing;
   };
   Scratch& scratch_of(int first_cell);
-  SlipArrays arrays_of(const Surfaces& surfaces, int cell, Scratch& scratch);
+  SlipArrays arrays_of(const Surfaces& surfaces, int cell, const SurfaceNormals& normals, Scratch& scratch);
   void add_couples(int cell, const Surfaces& surfaces, const SlipArrays& arrays);
-  void find_slip(int cell, const Surfaces& surfaces, Scratch& scratch);
+  void find_slip(int cell, const Surfaces& surfaces, const SlipArrays& arrays, Scratch& scratch);
   [[nodiscard]] const SlipConstants& constants(const Surfaces& surfaces, int cell) const {
     return types_[surfaces.cells[cell].type].constants;
   }
@@ -77,7 +80,6 @@ class SurfaceSlip {
   double viscosity_;
   std::array<PagedArray<double>, 3> normal_, touch_, force_, slip_;
   std::array<PagedArray<double>, 6> turn_;  // of a tangential vector, SlipArrays
-  PagedArray<double> area_;                 // a third of the triangles around each node
   WorkerScratch<Scratch> scratch_;
 };
 

@@ -32,27 +32,27 @@ struct SlipArrays {
   const int* corner[3];  ///< of triangles: their nodes
   // of nodes
   const double *place[3], *force[3];
-  double *normal[3], *touch[3];  ///< outer unit vectors; where the nodes touch the lattice
-  double* area;                  ///< a third of the triangles around
-  double* covered[6];            ///< sum of what the triangles around have
-  double *turn[6], *along[3];    ///< R (TurnForces); tangential forces over areas
-  double *turned[3], *pressure;  ///< R times that; normal forces over areas
+  const double *normal_sum[3], *area;  ///< SurfaceNormals
+  double *normal[3], *touch[3];        ///< outer unit vectors; where the nodes touch the lattice
+  double* covered[6];                  ///< sum of what the triangles around have
+  double *turn[6], *along[3];          ///< R (TurnForces); tangential forces over areas
+  double *turned[3], *pressure;        ///< R times that; normal forces over areas
   double* velocity[3];
   // of triangles
-  double* triangle_area;
+  const double* triangle_area;
   double* gradient[2][3];  ///< of the hat functions of the first two corners, on the touching triangle, times the area
   /// The touching triangle's unit normal times itself, times a third of the area: xx, yy, zz, xy, xz, yz.
   double* covered_triangle[6];
   double* result[3][3];  ///< on the three corners
 };
 
-/// A triangle where it touches the lattice, with the area of the one that the nodes make.
+/// A triangle where it touches the lattice.
 template <class S>
 struct TouchingTriangle {
   Vectors<S> normal[3];  ///< of the nodes
   Vectors<S> around;     ///< twice the touching triangle's area, along its normal
   Vectors<S> gradient[2];
-  S area, weight;  ///< weight: area over the square of `around`
+  S weight;  ///< area of the triangle that the nodes make, over the square of `around`
   ROULEAU_ALWAYS_INLINE TouchingTriangle(const SlipArrays& a, int t) {
     Vectors<S> corner[3];
     for (int k = 0; k < 3; ++k) {
@@ -61,11 +61,8 @@ struct TouchingTriangle {
     }
     const Vectors<S> one = corner[1] - corner[0], two = corner[2] - corner[0];
     around = cross(one, two);
-    const S shift = a.shift;
-    const Vectors<S> of_nodes = cross(one + shift * (normal[1] - normal[0]), two + shift * (normal[2] - normal[0]));
-    area = 0.5 * sqrt(dot(of_nodes, of_nodes));
     const S square = dot(around, around);
-    weight = select(square > S(0.0), area / square, S(0.0));
+    weight = select(square > S(0.0), S::load(a.triangle_area + t) / square, S(0.0));
     gradient[0] = weight * cross(around, two - one);
     gradient[1] = weight * cross(two, around);
   }
@@ -80,7 +77,7 @@ ROULEAU_ALWAYS_INLINE void for_nodes(const SlipArrays& a) {
   for (; i < a.nodes; ++i) Loop::template act<Pack<double, 1>>(a, i);
 }
 
-/// Nodes: from the sums in `normal` to unit vectors, and where the nodes touch the lattice.
+/// Nodes: unit vectors, and where the nodes touch the lattice.
 struct FindTouch {
   template <int register_bytes>
   ROULEAU_ALWAYS_INLINE static void run(const SlipArrays* arrays) {
@@ -88,7 +85,7 @@ struct FindTouch {
   }
   template <class S>
   ROULEAU_ALWAYS_INLINE static void act(const SlipArrays& a, int i) {
-    const Vectors<S> sum = Vectors<S>::load(a.normal, i);
+    const Vectors<S> sum = Vectors<S>::load(a.normal_sum, i);
     const S length = sqrt(dot(sum, sum));
     const Vectors<S> n = select(length > S(0.0), 1.0 / length, S(0.0)) * sum;  // a fold without width has no direction
     n.store(a.normal, i);
@@ -96,23 +93,7 @@ struct FindTouch {
   }
 };
 
-/// Triangles: twice the area along the normal, as `result` of the first corner, and the area.
-struct MeasureTriangleNormals {
-  template <int register_bytes>
-  ROULEAU_ALWAYS_INLINE static void run(const SlipArrays* arrays) {
-    using S = Pack<double, register_bytes / 8>;
-    const SlipArrays a = *arrays;
-    for (int t = 0; t < a.triangles; t += S::size) {
-      const Vectors<S> first = Vectors<S>::gather(a.place, a.corner[0] + t);
-      const Vectors<S> around = cross(Vectors<S>::gather(a.place, a.corner[1] + t) - first,
-                                      Vectors<S>::gather(a.place, a.corner[2] + t) - first);
-      around.store(a.result[0], t);
-      (0.5 * sqrt(dot(around, around))).store(a.triangle_area + t);
-    }
-  }
-};
-
-/// Triangles: areas, gradients and what they add to the mean projection around a node.
+/// Triangles: gradients, and what they add to the mean projection around a node.
 struct MeasureTouch {
   template <int register_bytes>
   ROULEAU_ALWAYS_INLINE static void run(const SlipArrays* arrays) {
@@ -120,7 +101,6 @@ struct MeasureTouch {
     const SlipArrays a = *arrays;
     for (int t = 0; t < a.triangles; t += S::size) {
       const TouchingTriangle<S> triangle(a, t);
-      triangle.area.store(a.triangle_area + t);
       for (int k = 0; k < 2; ++k) triangle.gradient[k].store(a.gradient[k], t);
       const Vectors<S>&n = triangle.around, by = (1.0 / 3 * triangle.weight) * n;
       SymmetricMatrices<S>{by.x * n.x, by.y * n.y, by.z * n.z, by.x * n.y, by.x * n.z, by.y * n.z}.store(

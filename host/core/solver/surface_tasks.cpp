@@ -4,6 +4,7 @@
 
 #include "core/membrane/motion.hpp"
 #include "core/membrane/stiffness.hpp"
+#include "core/surface/volume_correction.hpp"
 #include "ghost_reach.hpp"
 
 namespace rouleau::core {
@@ -70,6 +71,7 @@ SurfaceTasks<T>::SurfaceTasks(const BasicSolverSetup<3>& setup, Surfaces& surfac
     : surfaces_(surfaces),
       fluid_(fluid),
       forces_(surfaces, laws_of(setup)),
+      keeps_volumes_(setup.area_correction),
       slip_(make_slip(setup, surfaces)),
       viscosity_field_(surfaces, ratios_of(setup), 1 / setup.tau, setup.domain, fluid.setting().viscosity_of_rows,
                        slip_ ? ViscosityMean::harmonic : ViscosityMean::arithmetic, extra_reach(setup),
@@ -90,10 +92,8 @@ SurfaceTasks<T>::SurfaceTasks(const BasicSolverSetup<3>& setup, Surfaces& surfac
   if (!setup.wall_interactions.empty())
     wall_contacts_ =
         std::make_unique<SurfaceWallContacts>(surfaces_, setup.wall_interactions, setup.domain, setup.tube_radius);
-  if (setup.area_correction) {
-    volume_correction_ = std::make_unique<VolumeCorrection>(surfaces_);
-    surfaces_.area_leakage.resize(surfaces_.cells.size(), 0.0);  // earlier leakage stays
-  }
+  if (corrects_motion()) normals_ = std::make_unique<SurfaceNormals>(surfaces_);
+  if (keeps_volumes_) surfaces_.area_leakage.resize(surfaces_.cells.size(), 0.0);  // earlier leakage stays
   coupling_.reserve(surfaces_);
   if (ghosts) {
     exchange_ =
@@ -117,8 +117,8 @@ void SurfaceTasks<T>::run(Task task, Worker worker) {
     case Task::take_reactions:
       return interactions_->run(worker, 2, surfaces_);
     case Task::complete_forces:
-      if (volume_correction_) volume_correction_->take_out_pressures(worker, surfaces_);
-      if (slip_) slip_->complete(worker, surfaces_);
+      if (keeps_volumes_) take_out_pressures(worker, surfaces_, *normals_);
+      if (slip_) slip_->complete(worker, surfaces_, *normals_);
       return;
     case Task::find_nodes:
       viscosity_field_.measure(worker, surfaces_);
@@ -133,8 +133,8 @@ void SurfaceTasks<T>::run(Task task, Worker worker) {
     case Task::interpolate_ghosts:
       return coupling_.interpolate(worker, surfaces_, fluid_.velocity(), Whose::others);
     case Task::correct_velocities:
-      if (slip_) slip_->correct(worker, surfaces_);
-      if (volume_correction_) volume_correction_->keep_volumes(worker, surfaces_);
+      if (slip_) slip_->correct(worker, surfaces_, *normals_);
+      if (keeps_volumes_) keep_volumes(worker, surfaces_, *normals_);
       return;
     case Task::move:
       return core::move_nodes(worker, surfaces_);
@@ -171,14 +171,15 @@ void SurfaceTasks<T>::forget_unknown() {
   surfaces_.forget(nodes);
   viscosity_field_.watch().forget(surfaces_, nodes);
   coupling_.forget(nodes);
-  if (volume_correction_) volume_correction_->forget(nodes);
+  if (normals_) normals_->forget(surfaces_, nodes);
   if (slip_) slip_->forget(nodes);
   if (interactions_) interactions_->forget(surfaces_, nodes);
 }
 
 template <class T>
 void SurfaceTasks<T>::locate(Worker worker, Whose whose) {
-  if (slip_) slip_->measure(worker, surfaces_, whose);
+  if (normals_) normals_->measure(worker, surfaces_, whose);
+  if (slip_) slip_->measure(worker, surfaces_, *normals_, whose);
   coupling_.locate(worker, surfaces_, slip_ ? slip_->positions() : surfaces_.positions(), whose);
 }
 

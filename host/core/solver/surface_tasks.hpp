@@ -15,7 +15,7 @@
 #include "core/fluid/fluid.hpp"
 #include "core/membrane/motion.hpp"
 #include "core/surface/surface_forces.hpp"
-#include "core/surface/volume_correction.hpp"
+#include "core/surface/surface_normals.hpp"
 #include "schedule.hpp"
 #include "solver_setup.hpp"
 #include "surroundings.hpp"
@@ -39,7 +39,7 @@ class SurfaceTasks {
     features.interactions = interactions_ != nullptr;
     features.wall_interactions = wall_contacts_ != nullptr;
     features.slip_correction = slip_ != nullptr;
-    features.area_correction = volume_correction_ != nullptr;
+    features.area_correction = keeps_volumes_;
   }
   /// A worker's share of a task of schedule.hpp that is not one over rows; what the fluid does alone is left out.
   void run(Task task, Worker worker);
@@ -87,7 +87,7 @@ class SurfaceTasks {
   /// What it takes to stretch all membranes by 0.1 % along x, the volume law left aside.
   [[nodiscard]] double slight_energy() const { return slight_energy_; }
   /// Whether nodes do not move exactly as the lattice's fluid at their places does.
-  [[nodiscard]] bool corrects_motion() const { return slip_ || volume_correction_; }
+  [[nodiscard]] bool corrects_motion() const { return slip_ || keeps_volumes_; }
   /// Null without such interactions.
   [[nodiscard]] const SurfaceWallContacts* wall_contacts() const { return wall_contacts_.get(); }
   /// Calls function(forces) for the kinds of interactions that there are: between and within cells, and with walls.
@@ -110,8 +110,9 @@ class SurfaceTasks {
   SurfaceForces forces_;
   std::unique_ptr<SurfaceInteractions> interactions_;
   std::unique_ptr<SurfaceWallContacts> wall_contacts_;
-  std::unique_ptr<VolumeCorrection> volume_correction_;  ///< null: volumes are left to the coupling
-  std::unique_ptr<SurfaceSlip> slip_;                    ///< null: membranes slip
+  bool keeps_volumes_;                       ///< else they are left to the coupling
+  std::unique_ptr<SurfaceNormals> normals_;  ///< null: nothing is corrected
+  std::unique_ptr<SurfaceSlip> slip_;        ///< null: membranes slip
   InteriorField<T> viscosity_field_;
   SurfaceCoupling<T> coupling_;
   Ranks<3> ranks_;

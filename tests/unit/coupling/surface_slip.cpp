@@ -31,10 +31,17 @@ Surfaces uneven_sphere(std::mt19937& random) {
   return s;
 }
 
+SurfaceNormals normals_of(const Surfaces& s) {
+  SurfaceNormals normals(s);
+  normals.measure({}, s);
+  return normals;
+}
+
 SurfaceSlip slip_of(const Surfaces& s, SlipConstants constants, double stiffness = 0) {
   SurfaceSlip slip(s, {{constants, stiffness}}, 1.0 / 6);
-  slip.measure({}, s);
-  slip.complete({}, s);
+  const SurfaceNormals normals = normals_of(s);
+  slip.measure({}, s, normals);
+  slip.complete({}, s, normals);
   return slip;
 }
 
@@ -69,7 +76,7 @@ TEST_CASE("what the shift does to velocities is the adjoint of what it does to f
       given += vector(slip.forces(), i).dot(Vec<3>(s.velocity_x[i], s.velocity_y[i], s.velocity_z[i]));
       size += vector(slip.forces(), i).norm();
     }
-    slip.correct({}, s);
+    slip.correct({}, s, normals_of(s));
     for (int i = 0; i < s.node_count(); ++i)
       taken += vector(s.forces(), i).dot(Vec<3>(s.velocity_x[i], s.velocity_y[i], s.velocity_z[i]));
     if (mobility == 0) {
@@ -84,15 +91,16 @@ TEST_CASE("a surface that moves as a rigid body does so with the slip correction
   auto random = generator(85);
   Surfaces s = uneven_sphere(random);
   SurfaceSlip slip(s, {{slip_constants(KernelKind::peskin4, 5, 3), 0}}, 1.0 / 6);
-  slip.measure({}, s);
+  const SurfaceNormals normals = normals_of(s);
+  slip.measure({}, s, normals);
   for (auto* values : {&s.force_x, &s.force_y, &s.force_z}) std::fill(values->begin(), values->end(), 0.0);
-  slip.complete({}, s);
+  slip.complete({}, s, normals);
   const Vec<3> turn(0.3, -0.2, 0.5), along(0.1, 0.2, -0.4);
   for (int i = 0; i < s.node_count(); ++i) {
     const Vec<3> u = along + turn.cross(vector(slip.positions(), i));
     s.velocity_x[i] = u.x(), s.velocity_y[i] = u.y(), s.velocity_z[i] = u.z();
   }
-  slip.correct({}, s);
+  slip.correct({}, s, normals_of(s));
   for (int i = 0; i < s.node_count(); ++i) {
     const Vec<3> u(s.velocity_x[i], s.velocity_y[i], s.velocity_z[i]);
     CHECK((u - along - turn.cross(s.nodes(0)[i])).norm() < 1e-12);
@@ -106,7 +114,7 @@ TEST_CASE("slip is smoothed by Fejer's kernel of the mass matrix, which bounds w
   const SlipConstants constants{0, 0.7};  // where nodes are
   SurfaceSlip slip = slip_of(s, constants, stiffness);
   for (auto* values : {&s.velocity_x, &s.velocity_y, &s.velocity_z}) std::fill(values->begin(), values->end(), 0.0);
-  slip.correct({}, s);
+  slip.correct({}, s, normals_of(s));
 
   // The matrix of the integrals of hat functions' products, over the areas around the nodes.
   const int n = s.node_count();

@@ -34,6 +34,12 @@ Surfaces cells_at_random(std::mt19937& random) {
   return s;
 }
 
+SurfaceNormals normals_of(const Surfaces& s) {
+  SurfaceNormals normals(s);
+  normals.measure({}, s);
+  return normals;
+}
+
 double volume(const Surfaces& s, int cell) { return enclosed_volume(s.type_of(cell).mesh, s.nodes(cell)); }
 
 /// The types' volumes at rest become those of the cells, so that there is no way back.
@@ -71,7 +77,7 @@ TEST_CASE("forces without their pressure do no work on the volume and have the s
   auto random = generator(91);
   Surfaces s = cells_at_random(random);
   const Sums before[] = {sums(s, 0), sums(s, 1)};
-  VolumeCorrection(s).take_out_pressures({}, s);
+  take_out_pressures({}, s, normals_of(s));
   for (int cell = 0; cell < 2; ++cell) {
     const Sums after = sums(s, cell);
     CHECK((after.force - before[cell].force).norm() < 1e-13 * after.size);
@@ -91,8 +97,8 @@ TEST_CASE("what the fluid gets from forces without pressure is what cells lose t
   Surfaces s = cells_at_random(random);
   rest_as_they_are(s);
   Surfaces spread = s;
-  VolumeCorrection correction(s);
-  correction.take_out_pressures({}, spread);
+  const SurfaceNormals normals = normals_of(s);
+  take_out_pressures({}, spread, normals);
   const auto power = [](const Surfaces& forces, const Surfaces& motion) {
     double sum = 0;
     for (int i = 0; i < forces.node_count(); ++i) {
@@ -102,7 +108,7 @@ TEST_CASE("what the fluid gets from forces without pressure is what cells lose t
     return sum;
   };
   const double fluid = power(spread, s);
-  correction.keep_volumes({}, s);
+  keep_volumes({}, s, normals);
   CHECK(std::abs(fluid - power(s, s)) < 1e-12 * s.node_count());
   CHECK(std::abs(fluid) > 1e-3);
 }
@@ -116,10 +122,9 @@ TEST_CASE("the volume correction makes no cell larger or smaller, and tells what
   }
   Surfaces free = s, shared = s;
   move(free, 1);
-  VolumeCorrection correction(s);
-  correction.take_out_pressures({}, s);
-  correction.keep_volumes({}, s);
-  for (int worker = 0; worker < 3; ++worker) correction.keep_volumes({worker, 3}, shared);
+  const SurfaceNormals normals = normals_of(s);
+  keep_volumes({}, s, normals);
+  for (int worker = 0; worker < 3; ++worker) keep_volumes({worker, 3}, shared, normals);
   CHECK(shared.velocity_x == s.velocity_x);
   CHECK(shared.area_leakage == s.area_leakage);
   move(s, 1);
@@ -139,12 +144,10 @@ TEST_CASE("the volume correction brings a wrong volume back") {
   RestSurface larger = s.type_of(1);
   larger.rest_volume *= 1.01;
   s.types[1] = std::make_shared<const RestSurface>(larger);
-  VolumeCorrection correction(s);
   for (int step = 0; step < 500; ++step) {
     for (auto* velocity : {&s.velocity_x, &s.velocity_y, &s.velocity_z})
       std::fill(velocity->begin(), velocity->end(), 0.0);
-    correction.take_out_pressures({}, s);
-    correction.keep_volumes({}, s);
+    keep_volumes({}, s, normals_of(s));
     move(s, 1);
   }
   CHECK(std::abs(volume(s, 0) / s.type_of(0).rest_volume - 1) < 1e-12);
