@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <rouleau/pack.hpp>
 
 #include "kernel_kind.hpp"
@@ -111,7 +112,7 @@ struct Sharp6 : Peskin4 {
 };
 
 /// Numbers side by side, at least as many as a kernel has points: six lie in a register of eight, so that a row
-/// takes one load and one store. What lies behind the points is read and written back, but is part of no sum.
+/// takes one load and one store. What lies beside the points is read and written back, but is part of no sum.
 template <class T, int points>
 struct Line {
   using Lanes = rouleau::Pack<T, points <= 4 ? 4 : 8>;
@@ -124,6 +125,23 @@ struct Line {
   ROULEAU_ALWAYS_INLINE friend Line operator*(const Line& a, const Line& b) { return {a.lanes * b.lanes}; }
   ROULEAU_ALWAYS_INLINE friend Line operator+(const Line& a, const Line& b) { return {a.lanes + b.lanes}; }
   [[nodiscard]] ROULEAU_ALWAYS_INLINE T at(int k) const { return lanes.vector[k]; }
+  static constexpr int spare = Lanes::size - points;
+  /// How many of the spare lanes are to lie before a kernel's first point, which is there: so many that a line of the cache holds
+  /// all, if it holds the points. What crosses a border of these takes twice as long.
+  [[nodiscard]] ROULEAU_ALWAYS_INLINE static int lanes_before(const T* first_point) {
+    if constexpr (spare == 0) return 0;
+    constexpr int cached = 64 / sizeof(T);
+    const int beyond =
+        static_cast<int>(reinterpret_cast<std::uintptr_t>(first_point) / sizeof(T) % cached) + Lanes::size - cached;
+    return beyond > 0 && beyond <= spare ? beyond : 0;
+  }
+  /// The points in the first lanes, of a line that has so many before them.
+  [[nodiscard]] ROULEAU_ALWAYS_INLINE Line moved_back(int before) const {
+    if constexpr (spare == 0) return *this;
+    T all[Lanes::size + spare] = {};
+    store(all);
+    return load(all + before);
+  }
   /// Four numbers with the same sum.
   [[nodiscard]] ROULEAU_ALWAYS_INLINE rouleau::Pack<T, 4> folded() const {
     if constexpr (points == 4) {
@@ -137,24 +155,25 @@ struct Line {
   }
 };
 
-/// The weights side by side, and none behind them.
+/// The weights side by side, and none beside them; `before`: Line.
 template <class Kernel, class T>
 struct KernelWeights {
   using Weights = Line<T, Kernel::points>;
   Weights weight;
-  ROULEAU_ALWAYS_INLINE KernelWeights(T p, T q) {
+  ROULEAU_ALWAYS_INLINE KernelWeights(T p, T q, int before = 0) {
     static constexpr auto constant = filled_up(Kernel::constant), by_p = filled_up(Kernel::by_p),
                           by_q = filled_up(Kernel::by_q);
-    weight = {(Lanes::load(constant.data()) + Lanes::load(by_p.data()) * Lanes(p)) +
-              Lanes::load(by_q.data()) * Lanes(q)};
+    const int from = Weights::spare - before;
+    weight = {(Lanes::load(constant.data() + from) + Lanes::load(by_p.data() + from) * Lanes(p)) +
+              Lanes::load(by_q.data() + from) * Lanes(q)};
   }
 
  private:
   using Lanes = typename Weights::Lanes;
   template <class Numbers>
-  static constexpr std::array<T, Lanes::size> filled_up(const Numbers& numbers) {
-    std::array<T, Lanes::size> all{};
-    for (int k = 0; k < Kernel::points; ++k) all[k] = static_cast<T>(numbers[k]);
+  static constexpr std::array<T, Lanes::size + Weights::spare> filled_up(const Numbers& numbers) {
+    std::array<T, Lanes::size + Weights::spare> all{};
+    for (int k = 0; k < Kernel::points; ++k) all[Weights::spare + k] = static_cast<T>(numbers[k]);
     return all;
   }
 };

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <rouleau/dispatch.hpp>
 
+#include "core/domain/vectors.hpp"
+#include "core/domain/wrapped.hpp"
 #include "core/fluid/walls.hpp"
 #include "kernel.hpp"
 #include "spread.hpp"
@@ -13,34 +15,63 @@ namespace rouleau::core {
 namespace {
 
 template <class T>
-struct LocatePart {
-  const double* place;
-  int* base;
-  T *p, *q;
-  int begin, end;
+struct LocateTask {
+  const double* place[3];
+  int* base[3];
+  T *p[3], *q[3];
+  int begin, end;  // nodes
+  double size[3];  // of the lattice
+  bool periodic[3];
+  double lowest, highest;  // set to the least and the largest base plane; `outside` for a stencil off the lattice
 };
 
-/// What is kept of the weights along one axis, and floor(X + shift). In double precision before it is rounded to T.
+/// Base nodes and what is kept of the weights, which is computed in double precision before it is rounded to T.
 template <class T, class Kernel>
 struct LocateSurface {
   template <int register_bytes>
-  ROULEAU_ALWAYS_INLINE static void run(const LocatePart<T>* part) {
-    const LocatePart<T> t = *part;
-    using One = Pack<double, 1>;
-    for (int i = t.begin; i < t.end; ++i) {
-      const double shifted = t.place[i] + Kernel::shift;
-      if (!(std::abs(shifted) < 1e9)) {
-        t.base[i] = outside;
-        t.p[i] = t.q[i] = T(0);
-        continue;
+  ROULEAU_ALWAYS_INLINE static void run(LocateTask<T>* task) {
+    const LocateTask<T> t = *task;
+    using Packed = Pack<double, register_bytes / 8>;
+    Packed low = t.size[2], high = outside;
+    int i = t.begin;
+    const auto locate = [&]<class S>(S & lowest, S & highest) __attribute__((always_inline)) {
+      for (; i + S::size <= t.end; i += S::size) {
+        const S plane = base<S>(t, i);
+        lowest = min(lowest, plane), highest = max(highest, plane);
       }
-      const double base = std::floor(shifted);
-      One p, q;
-      Kernel::keep(One(shifted - base), p, q);
-      t.base[i] = static_cast<int>(base);
-      t.p[i] = static_cast<T>(p.vector[0]);
-      t.q[i] = static_cast<T>(q.vector[0]);
+    };
+    locate(low, high);
+    Pack<double, 1> lowest = least(low), highest = largest(high);
+    locate(lowest, highest);
+    task->lowest = lowest.vector[0], task->highest = highest.vector[0];
+  }
+
+ private:
+  /// Returns the base planes. Half a spacing beyond a wall is not outside.
+  template <class S>
+  ROULEAU_ALWAYS_INLINE static S base(const LocateTask<T>& t, int i) {
+    const S none = outside;
+    S base[3], lowest = 0.0;
+    for (int k = 0; k < 3; ++k) {
+      const S shifted = S::load(t.place[k] + i) + Kernel::shift, below = floor(shifted);
+      S p, q;
+      Kernel::keep(shifted - below, p, q);
+      store_as(p, t.p[k] + i), store_as(q, t.q[k] + i);
+      // One comparison a line: g++ 12 takes combined masks apart element by element.
+      base[k] = below;
+      if (t.periodic[k]) {
+        base[k] = wrapped(below, t.size[k]);
+      } else {
+        base[k] = select(below >= S(-1.0), below, none);
+        base[k] = select(below < S(t.size[k]), base[k], none);
+      }
+      base[k] = select(abs(shifted) < S(1e9), base[k], none);  // false for NaN, too
+      store_as(base[k], t.base[k] + i);
+      lowest = min(lowest, base[k]);
     }
+    base[2] = select(lowest > S(outside + 1.0), base[2], none);
+    store_as(base[2], t.base[2] + i);
+    return base[2];
   }
 };
 
@@ -61,14 +92,14 @@ struct SurfaceSpread {
   std::ptrdiff_t stride_y, stride_z;
 };
 
-/// Weights of a node's stencil: along x, and one for each of its rows.
+/// Weights of a node's stencil: along x, and one for each of its rows. `before`: Line.
 template <class T, class Kernel>
 struct StencilWeights {
   using Lanes = typename Line<T, Kernel::points>::Lanes;
   Line<T, Kernel::points> along_x;
   SpreadWeights<Kernel, T> y, z;
-  ROULEAU_ALWAYS_INLINE StencilWeights(const SurfaceStencils<T>& at, int i)
-      : along_x(KernelWeights<Kernel, T>(at.p[0][i], at.q[0][i]).weight),
+  ROULEAU_ALWAYS_INLINE StencilWeights(const SurfaceStencils<T>& at, int i, int before)
+      : along_x(KernelWeights<Kernel, T>(at.p[0][i], at.q[0][i], before).weight),
         y(at.p[1][i], at.q[1][i]),
         z(at.p[2][i], at.q[2][i]) {}
   [[nodiscard]] ROULEAU_ALWAYS_INLINE Lanes of_row(int along_z, int along_y) const {
@@ -103,15 +134,16 @@ struct SpreadSurface {
     }
     const int first = y - block.begin[1] + height * (z - block.begin[2]), last = first + (points - 1) * (1 + height);
     if (last < t.row_begin || first >= t.row_end) return;
-    const StencilWeights<T, Kernel> weights(t.at, i);
+    const std::ptrdiff_t corner = z * t.stride_z + y * t.stride_y + x;
+    const int before = Forces::lanes_before(t.origin[0] + corner);
+    const StencilWeights<T, Kernel> weights(t.at, i, before);
     using Lanes = typename Forces::Lanes;
     const Forces fx = weights.along_x * Lanes(t.force[0][i]), fy = weights.along_x * Lanes(t.force[1][i]),
                  fz = weights.along_x * Lanes(t.force[2][i]);
-    const std::ptrdiff_t at = z * t.stride_z + y * t.stride_y + x;
     if (first >= t.row_begin && last < t.row_end) {
-      add<true>(t, weights, {fx, fy, fz}, at, first);
+      add<true>(t, weights, {fx, fy, fz}, corner - before, first);
     } else {
-      add<false>(t, weights, {fx, fy, fz}, at, first);
+      add<false>(t, weights, {fx, fy, fz}, corner - before, first);
     }
   }
   /// Adds to the nodes from `at` on: to all of them, or to those in rows that are to be added to; `first` is that of `at`.
@@ -150,7 +182,7 @@ struct SpreadSurface {
     if (t.at.base[2][i] == outside) return;
     const Domain<3>& domain = *t.domain;
     const Box<3>& block = domain.block;
-    const StencilWeights<T, Kernel> weights(t.at, i);
+    const StencilWeights<T, Kernel> weights(t.at, i, 0);
     Image image_of[3][points];
     for (int axis = 0; axis < 3; ++axis) {
       for (int k = 0; k < points; ++k) image_of[axis][k] = image(domain, axis, t.at.base[axis][i] + start + k);
@@ -216,11 +248,13 @@ struct InterpolateSurface {
       if (t.block != nullptr && !t.block->contains({std::max(t.at.base[0][i], 0), std::max(t.at.base[1][i], 0),
                                                     std::max(t.at.base[2][i], 0)}))
         continue;
-      const StencilWeights<T, Kernel> weights(t.at, i);
-      // Even and odd rows apart: each sum waits for its last term.
-      Velocities u[2]{}, v[2]{}, w[2]{};
       std::ptrdiff_t at =
           (t.at.base[2][i] + start) * t.stride_z + (t.at.base[1][i] + start) * t.stride_y + t.at.base[0][i] + start;
+      const int before = Velocities::lanes_before(t.origin[0] + at);
+      at -= before;
+      const StencilWeights<T, Kernel> weights(t.at, i, before);
+      // Even and odd rows apart: each sum waits for its last term.
+      Velocities u[2]{}, v[2]{}, w[2]{};
       for (int m = 0; m < points; ++m, at += t.stride_z) {
         const T *from_u = t.origin[0] + at, *from_v = t.origin[1] + at, *from_w = t.origin[2] + at;
 #pragma GCC unroll 6
@@ -232,9 +266,9 @@ struct InterpolateSurface {
           from_u += t.stride_y, from_v += t.stride_y, from_w += t.stride_y;
         }
       }
-      t.velocity[0][i] = sum(((u[0] + u[1]) * weights.along_x).folded());
-      t.velocity[1][i] = sum(((v[0] + v[1]) * weights.along_x).folded());
-      t.velocity[2][i] = sum(((w[0] + w[1]) * weights.along_x).folded());
+      t.velocity[0][i] = sum(((u[0] + u[1]) * weights.along_x).moved_back(before).folded());
+      t.velocity[1][i] = sum(((v[0] + v[1]) * weights.along_x).moved_back(before).folded());
+      t.velocity[2][i] = sum(((w[0] + w[1]) * weights.along_x).moved_back(before).folded());
     }
   }
 
@@ -250,14 +284,13 @@ struct InterpolateSurface {
 template <class T>
 struct SurfaceCoupling<T>::Loops {
   int first, points;  // of the kernel
-  void (*locate)(const LocatePart<T>*);
+  void (*locate)(LocateTask<T>*);
   void (*spread)(const SurfaceSpread<T>*);
   void (*interpolate)(const SurfaceInterpolate<T>*);
 
   template <class Kernel>
   static const Loops* of() {
-    static const Loops loops{Kernel::first, Kernel::points,
-                             Dispatch<LocateSurface<T, Kernel>, const LocatePart<T>*>::pick(),
+    static const Loops loops{Kernel::first, Kernel::points, Dispatch<LocateSurface<T, Kernel>, LocateTask<T>*>::pick(),
                              Dispatch<SpreadSurface<T, Kernel>, const SurfaceSpread<T>*>::pick(),
                              Dispatch<InterpolateSurface<T, Kernel>, const SurfaceInterpolate<T>*>::pick()};
     return &loops;
@@ -283,31 +316,18 @@ void SurfaceCoupling<T>::reserve(const Surfaces& surfaces) {
 template <class T>
 void SurfaceCoupling<T>::locate(Worker worker, const Surfaces& surfaces, const std::array<const double*, 3>& place,
                                 Whose whose) {
+  LocateTask<T> task{};
+  for (int k = 0; k < 3; ++k) {
+    task.place[k] = place[k], task.base[k] = base_[k].data();
+    task.p[k] = p_[k].data(), task.q[k] = q_[k].data();
+    task.size[k] = domain_.size[k], task.periodic[k] = domain_.periodic[k];
+  }
   const CellNumbers cells = surfaces.known_cells(worker);
   for (const int c : cells) {
     if (!surfaces.is(c, whose)) continue;
-    const CellRange& cell = surfaces.cells[c];
-    for (int k = 0; k < 3; ++k) {
-      const LocatePart<T> part{place[k], base_[k].data(), p_[k].data(), q_[k].data(), cell.first, cell.end()};
-      loops_->locate(&part);
-    }
-    BasePlanes planes{domain_.size[2], outside};
-    for (int i = cell.first; i < cell.end(); ++i) {
-      bool escaped = false;
-      for (int k = 0; k < 3; ++k) {
-        int& base = base_[k][i];
-        escaped |= base == outside;
-        if (domain_.periodic[k]) {
-          base = domain_.wrapped(k, base);
-        } else {  // up to half a spacing beyond walls
-          escaped |= base < -1 || base >= domain_.size[k];
-        }
-      }
-      if (escaped) base_[2][i] = outside;
-      planes.lowest = std::min(planes.lowest, base_[2][i]);
-      planes.highest = std::max(planes.highest, base_[2][i]);
-    }
-    planes_[c] = planes;
+    task.begin = surfaces.cells[c].first, task.end = surfaces.cells[c].end();
+    loops_->locate(&task);
+    planes_[c] = {static_cast<int>(task.lowest), static_cast<int>(task.highest)};
   }
 }
 

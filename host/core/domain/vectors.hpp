@@ -1,6 +1,7 @@
 // Vectors in space, side by side in packs: what loops over nodes and triangles are written in.
 #pragma once
 
+#include <cstring>
 #include <rouleau/pack.hpp>
 #include <utility>
 
@@ -13,6 +14,14 @@ ROULEAU_ALWAYS_INLINE S gathered(const double* from, const int* index) {
     return S(typename S::Vector{from[index[k]]...});
   }
   (std::make_integer_sequence<int, S::size>());
+}
+
+/// Writes the numbers of a pack, converted.
+template <class S, class To>
+ROULEAU_ALWAYS_INLINE void store_as(const S& values, To* to) {
+  using Converted __attribute__((vector_size(S::size * sizeof(To)))) = To;
+  const Converted converted = __builtin_convertvector(values.vector, Converted);
+  std::memcpy(to, &converted, sizeof converted);
 }
 
 /// A vector of numbers, or of packs of them.
