@@ -12,9 +12,8 @@ namespace {
 
 struct FindTask {
   int count;
-  const double* place[3];
-  const int *node, *corner[3];
-  const double* moved[3];
+  const double *node[3], *place[3];
+  const int* corner[3];
   double *weight[3], *away[3], *square;
 };
 
@@ -24,9 +23,8 @@ struct FindClosest {
     using S = Pack<double, register_bytes / 8>;
     const FindTask t = *task;
     for (int k = 0; k < t.count; k += S::size) {
-      const auto corner = [&](int c) { return Vectors<S>::gather(t.place, t.corner[c] + k); };
-      const Vectors<S> node = Vectors<S>::gather(t.place, t.node + k) - Vectors<S>::load(t.moved, k);
-      const ClosestPoint<S> point = closest_point(node, corner(0), corner(1), corner(2));
+      const auto corner = [&](int c) { return Vectors<S>::gather(t.node, t.corner[c] + k); };
+      const ClosestPoint<S> point = closest_point(Vectors<S>::load(t.place, k), corner(0), corner(1), corner(2));
       for (int c = 0; c < 3; ++c) point.weight[c].store(t.weight[c] + k);
       point.away.store(t.away, k);
       dot(point.away, point.away).store(t.square + k);
@@ -39,18 +37,18 @@ struct FindClosest {
 void ClosestPoints::resize(int count) {
   const auto size = static_cast<std::size_t>(padded(count));
   if (square.size() >= size) return;
-  for (auto* numbers : {&node, &corner[0], &corner[1], &corner[2]}) numbers->resize(size);
-  for (auto* vectors : {&moved, &weight, &away}) {
+  for (auto& numbers : corner) numbers.resize(size);
+  for (auto* vectors : {&place, &weight, &away}) {
     for (auto& numbers : *vectors) numbers.resize(size);
   }
   square.resize(size);
 }
 
-void ClosestPoints::find(int count, const std::array<const double*, 3>& places) {
+void ClosestPoints::find(int count, const std::array<const double*, 3>& nodes) {
   FindTask task{};
-  task.count = count, task.node = node.data(), task.square = square.data();
-  std::copy(places.begin(), places.end(), task.place);
-  point_into(task.corner, corner), point_into(task.moved, moved);
+  task.count = count, task.square = square.data();
+  std::copy(nodes.begin(), nodes.end(), task.node);
+  point_into(task.corner, corner), point_into(task.place, place);
   point_into(task.weight, weight), point_into(task.away, away);
   run_loop<FindClosest>(task);
 }

@@ -1,4 +1,4 @@
-// The points of many triangles that are closest to many nodes.
+// The points of many triangles that are closest to many places.
 #pragma once
 
 #include <array>
@@ -6,18 +6,17 @@
 
 namespace rouleau::core {
 
-/// Nodes, a triangle for each, and what is found of them.
+/// Places, a triangle for each, and what is found of them.
 struct ClosestPoints {
-  std::vector<int> node;
+  std::array<std::vector<double>, 3> place;
   std::array<std::vector<int>, 3> corner;
-  std::array<std::vector<double>, 3> moved;         ///< by so much the triangles' images lie beside them
   std::array<std::vector<double>, 3> weight, away;  ///< ClosestPoint
   std::vector<double> square;                       ///< of the distance
 
   /// Makes room for so many, and for whole packs.
   void resize(int count);
-  /// Finds them all: `places` of all nodes.
-  void find(int count, const std::array<const double*, 3>& places);
+  /// Finds them all: `nodes` are where the corners are.
+  void find(int count, const std::array<const double*, 3>& nodes);
 };
 
 }  // namespace rouleau::core

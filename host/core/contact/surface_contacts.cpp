@@ -10,6 +10,9 @@ namespace rouleau::core {
 
 namespace {
 
+constexpr double slack = 1e-9;        // rounding
+constexpr std::size_t in_cache = 64;  // so many groups are searched at a time
+
 /// By so much an image lies beside the cell itself.
 Vec<3> moved_by(const std::array<int, 3>& shift, const Domain<3>& domain) {
   Vec<3> move = Vec<3>::Zero();
@@ -220,6 +223,7 @@ struct SurfaceContacts::Neighbours {
     int other;
     std::array<int, 3> shift;
     Part part;
+    std::vector<Part> near{};  ///< those of its patches that the chosen place is near
     /// Whether it is the cell's own surface.
     [[nodiscard]] bool within(int cell) const { return other == cell && shift == std::array<int, 3>{}; }
   };
@@ -276,12 +280,23 @@ struct SurfaceContacts::Neighbours {
     }
   }
 
-  /// Calls function(triangle, distance) for an image's triangles that are near a place; `distance`: of their middles.
+  /// Chooses a place that for_near() is about.
+  void choose(const Eigen::AlignedBox3d& box) {
+    for (Image& image : images) {
+      image.near.clear();
+      if (!image.part.reached.intersects(box)) continue;
+      for (std::size_t p = image.part.begin; p < image.part.end; ++p) {
+        if (patches[p].reached.intersects(box)) image.near.push_back(patches[p]);
+      }
+    }
+  }
+  /// Calls function(triangle, distance) for an image's triangles that are near a place in the chosen box; `distance`: of
+  /// their middles.
   template <class Function>
   void for_near(const Vec<3>& place, const Image& image, Function function) const {
-    for (std::size_t p = image.part.begin; p < image.part.end; ++p) {
-      if (!patches[p].reached.contains(place)) continue;
-      for (std::size_t t = patches[p].begin; t < patches[p].end; ++t) {
+    for (const Part& patch : image.near) {
+      if (!patch.reached.contains(place)) continue;
+      for (std::size_t t = patch.begin; t < patch.end; ++t) {
         const double square = (place - triangles[t].middle).squaredNorm();
         if (square <= triangles[t].around * triangles[t].around) function(triangles[t], std::sqrt(square));
       }
@@ -291,92 +306,137 @@ struct SurfaceContacts::Neighbours {
 
 void SurfaceContacts::list_candidates(int cell, const Surfaces& surfaces, const Bins& bins, double skin) {
   CandidateList& list = lists_[cell];
+  list.images.clear();
   list.groups.clear();
   list.candidates.clear();
   const CellRange& own = surfaces.cells[cell];
   const auto place_of = [&](int node) { return Vec<3>(surfaces.x[node], surfaces.y[node], surfaces.z[node]); };
-  Eigen::AlignedBox3d box;
-  for (int node = own.first; node < own.end(); ++node)
-    if (usable(place_of(node))) box.extend(place_of(node));
+  const auto box_of = [&](int first, int end) {
+    Eigen::AlignedBox3d box;
+    for (int node = first; node < end; ++node)
+      if (usable(place_of(node))) box.extend(place_of(node));
+    return box;
+  };
+  const Eigen::AlignedBox3d box = box_of(own.first, own.end());
   if (box.isEmpty()) return;
   Neighbours neighbours(cell, box, surfaces, bins, *this, skin);
+  for (const Neighbours::Image& image : neighbours.images)
+    list.images.push_back(
+        {image.other, image.shift, image.within(cell), 0, nullptr, moved_by(image.shift, domain_), 0, 0});
+  std::vector<Candidate>& fresh = list.fresh;
   for (int node = own.first; node < own.end(); ++node) {
+    // Nodes that follow each other lie side by side in most meshes.
+    constexpr int together = 16;
+    if ((node - own.first) % together == 0) neighbours.choose(box_of(node, std::min(node + together, own.end())));
     const Vec<3> place = place_of(node);
     if (!usable(place)) continue;
-    for (const Neighbours::Image& image : neighbours.images) {
-      if (!image.part.reached.contains(place)) continue;
-      const int other = image.other;
-      const int first = static_cast<int>(list.candidates.size());
-      const bool within = image.within(cell);
+    for (std::size_t i = 0; i < neighbours.images.size(); ++i) {
+      const Neighbours::Image& image = neighbours.images[i];
+      if (image.near.empty()) continue;
+      fresh.clear();
+      const bool within = list.images[i].within;
       // A triangle's middle is no nearer than the triangle, and farther away by its radius at most.
       double nearest = std::numeric_limits<double>::infinity();
       neighbours.for_near(place, image, [&](const Neighbours::Triangle& triangle, double distance) {
         if (within && !self_reach_[own.type]->allows(node - own.first, triangle.triangle)) return;
         nearest = std::min(nearest, distance);
-        list.candidates.push_back({rounded_down(std::max(0.0, distance - triangle.radius)), triangle.triangle});
+        fresh.push_back({rounded_down(std::max(0.0, distance - triangle.radius)), triangle.triangle});
       });
       // Others stay farther away than the nearest one.
-      const auto begin = list.candidates.begin() + first;
-      list.candidates.erase(
-          std::remove_if(begin, list.candidates.end(),
-                         [&](const Candidate& candidate) { return candidate.distance > nearest + 4 * skin; }),
-          list.candidates.end());
-      if (first == static_cast<int>(list.candidates.size())) continue;
-      std::sort(list.candidates.begin() + first, list.candidates.end(), [](const Candidate& a, const Candidate& b) {
+      std::erase_if(fresh, [&](const Candidate& candidate) { return candidate.distance > nearest + 4 * skin; });
+      if (fresh.empty()) continue;
+      std::sort(fresh.begin(), fresh.end(), [](const Candidate& a, const Candidate& b) {
         return std::tie(a.distance, a.triangle) < std::tie(b.distance, b.triangle);
       });
-      list.groups.push_back({node, other, image.shift, within, first, static_cast<int>(list.candidates.size())});
+      Group group{node, static_cast<int>(i), fresh.front().distance, std::numeric_limits<float>::infinity(), {}, 0, 0};
+      const auto count = static_cast<int>(fresh.size());
+      for (int k = 0; k < at_once; ++k) group.first[k] = fresh[std::min(k, count - 1)];
+      group.begin = static_cast<int>(list.candidates.size());
+      if (count > at_once) {
+        group.next = fresh[at_once].distance;
+        list.candidates.insert(list.candidates.end(), fresh.begin() + at_once, fresh.end());
+      }
+      group.end = static_cast<int>(list.candidates.size());
+      list.groups.push_back(group);
     }
   }
 }
 
-/// The first `count` of `all` have new distances, the rest are sorted: all are afterwards.
-void SurfaceContacts::sort_in(Candidate* candidates, int count, int all) {
-  for (int c = count - 1; c >= 0; --c) {
-    const Candidate candidate = candidates[c];
-    int at = c;
-    for (; at + 1 < all && candidates[at + 1].distance < candidate.distance; ++at) candidates[at] = candidates[at + 1];
-    candidates[at] = candidate;
+/// Those that have been looked at have new distances: the nearest of them are the first, the others are sorted again.
+void SurfaceContacts::sort_in(CandidateList& list, const Search& search) {
+  Group& group = list.groups[search.group];
+  if (search.looked > 0) {
+    Candidate* const others = list.candidates.data() + group.begin;
+    const int all = group.end - group.begin;
+    std::vector<Candidate>& fresh = list.fresh;
+    fresh.assign(group.first.begin(), group.first.end());
+    fresh.insert(fresh.end(), others, others + search.looked);
+    const auto nearer = [](const Candidate& a, const Candidate& b) { return a.distance < b.distance; };
+    std::sort(fresh.begin(), fresh.end(), nearer);
+    std::copy_n(fresh.begin(), at_once, group.first.begin());
+    int at = 0, old = search.looked;
+    for (auto next = fresh.begin() + at_once; next != fresh.end(); ++next) {
+      while (old < all && nearer(others[old], *next)) others[at++] = others[old++];
+      others[at++] = *next;
+    }
+    group.next = others[0].distance;
   }
+  group.nearest = group.next;
+  for (const Candidate& candidate : group.first) group.nearest = std::min(group.nearest, candidate.distance);
 }
 
-namespace {
-constexpr double slack = 1e-9;  // rounding
-}  // namespace
-
 /// Of all groups that are being searched: their next candidates.
+template <bool first>
 void SurfaceContacts::look_at_next(const Surfaces& surfaces, CandidateList& list) const {
   const auto count = static_cast<int>(list.searching.size());
   ClosestPoints& points = list.points;
-  for (int k = 0; k < count; ++k) {
-    const int g = list.searching[k];
-    const Group& group = list.groups[g];
-    const int first = surfaces.cells[group.other].first;
-    const auto& corners =
-        surfaces.type_of(group.other).mesh.triangles()[list.candidates[list.searches[g].next].triangle];
-    const Vec<3> moved = moved_by(group.shift, domain_);
-    points.node[k] = group.node;
-    for (int c = 0; c < 3; ++c) points.corner[c][k] = first + corners[c], points.moved[c][k] = moved[c];
+  points.resize(count * at_once);
+  for (int s = 0; s < count; ++s) {
+    const Search& search = list.searches[list.searching[s]];
+    const Group& group = list.groups[search.group];
+    const Image& image = list.images[group.image];
+    const auto candidates = list.next<first>(search);
+    const Vec<3> place = Vec<3>(surfaces.x[group.node], surfaces.y[group.node], surfaces.z[group.node]) - image.moved;
+    const int last = static_cast<int>(candidates.size()) - 1;
+    for (int k = 0; k < at_once; ++k) {
+      const std::array<int, 3>& corners = image.triangles[candidates[std::min(k, last)].triangle];
+      const int at = s * at_once + k;
+      for (int c = 0; c < 3; ++c) points.corner[c][at] = image.first_node + corners[c], points.place[c][at] = place[c];
+    }
   }
-  points.find(count, surfaces.positions());
+  points.find(count * at_once, surfaces.positions());
   const bool remembers = !surfaces.largest_step.empty();
   int left = 0;
-  for (int k = 0; k < count; ++k) {
-    const int g = list.searching[k];
-    Search& search = list.searches[g];
-    Candidate& candidate = list.candidates[search.next++];
-    const double square = points.square[k];
-    if (remembers) candidate.distance = rounded_down(std::sqrt(square) + search.path);
-    // Of triangles equally far away the first counts, in whatever order they are listed.
-    if (square < search.square ||
-        (square == search.square && (search.closest < 0 || candidate.triangle < search.closest))) {
-      search.square = square, search.root = std::sqrt(square), search.closest = candidate.triangle;
-      for (int c = 0; c < 3; ++c) search.weight[c] = points.weight[c][k], search.away[c] = points.away[c][k];
+  for (int s = 0; s < count; ++s) {
+    const int number = list.searching[s];
+    Search& search = list.searches[number];
+    const Group& group = list.groups[search.group];
+    const double path = list.images[group.image].path;
+    const auto candidates = list.next<first>(search);
+    int closest = -1;
+    for (int k = 0; k < static_cast<int>(candidates.size()); ++k) {
+      const double square = points.square[s * at_once + k];
+      const int triangle = candidates[k].triangle;
+      const double bound = std::sqrt(square) + path;
+      if (remembers) candidates[k].distance = bound >= 0 ? rounded_down(bound) : 0;  // places may be no numbers
+      // Of triangles equally far away the first counts, in whatever order they are listed.
+      const bool closer = square < search.square || (square == search.square && triangle < search.closest);
+      closest = closer ? s * at_once + k : closest;
+      search.square = closer ? square : search.square;
+      search.closest = closer ? triangle : search.closest;
     }
-    const bool goes_on = search.next < list.groups[g].end &&
-                         !(list.candidates[search.next].distance - search.path - slack > search.root);
-    list.searching[left] = g;
-    left += goes_on ? 1 : 0;
+    if (closest >= 0) {
+      for (int c = 0; c < 3; ++c)
+        search.weight[c] = points.weight[c][closest], search.away[c] = points.away[c][closest];
+    }
+    double next = group.next;
+    if constexpr (!first) {
+      search.looked += static_cast<int>(candidates.size());
+      const int at = group.begin + search.looked;
+      next = at < group.end ? list.candidates[at].distance : std::numeric_limits<float>::infinity();
+    }
+    list.searching[left] = number;
+    left += next - path - slack > std::sqrt(search.square) ? 0 : 1;
   }
   list.searching.resize(left);
 }
@@ -384,44 +444,54 @@ void SurfaceContacts::look_at_next(const Surfaces& surfaces, CandidateList& list
 void SurfaceContacts::find(int cell, const Surfaces& surfaces, std::vector<SurfaceContact>& contacts) const {
   contacts.clear();
   CandidateList& list = lists_[cell];
+  for (Image& image : list.images) {
+    image.first_node = surfaces.cells[image.other].first;
+    image.triangles = surfaces.type_of(image.other).mesh.triangles().data();
+    image.cutoff = cutoff(surfaces, cell, image.other, image.within);
+    image.path = travelled(cell, image.other);
+  }
   const auto count = static_cast<int>(list.groups.size());
-  list.searches.resize(list.groups.size());
-  list.searching.clear();
-  for (int g = 0; g < count; ++g) {
-    const Group& group = list.groups[g];
-    constexpr int ahead = 8;  // groups to one whose candidates are fetched: they lie far apart
-    if (g + ahead < count) __builtin_prefetch(&list.candidates[list.groups[g + ahead].begin], 1);
-    const double cutoff = this->cutoff(surfaces, cell, group.other, group.within);
-    const double path = travelled(cell, group.other);
-    list.searches[g] = {cutoff * cutoff, cutoff, path, -1, group.begin, {}, Vec<3>::Zero()};
-    if (!(list.candidates[group.begin].distance - path - slack > cutoff)) list.searching.push_back(g);
-  }
-  list.points.resize(static_cast<int>(list.searching.size()));
-  while (!list.searching.empty()) look_at_next(surfaces, list);
-  for (int g = 0; g < count; ++g) {
-    const Group& group = list.groups[g];
-    const Search& search = list.searches[g];
-    if (!surfaces.largest_step.empty())
-      sort_in(&list.candidates[group.begin], search.next - group.begin, group.end - group.begin);
-    if (search.closest < 0) continue;
-    const int first = surfaces.cells[group.other].first;
-    const auto& [i, j, k] = surfaces.type_of(group.other).mesh.triangles()[search.closest];
-    SurfaceContact contact{group.node,
-                           group.other,
-                           {group.shift[0], group.shift[1], group.shift[2]},
-                           group.within,
-                           {first + i, first + j, first + k},
-                           search.weight,
-                           std::max(search.root, SurfaceContact::least_distance),
-                           {}};
-    if (search.root > SurfaceContact::least_distance) {
-      contact.direction = search.away / search.root;
-    } else {
-      const Nodes nodes = surfaces.nodes(group.other);
-      contact.direction = (nodes[j] - nodes[i]).cross(nodes[k] - nodes[i]).normalized();
+  for (int g = 0; g < count;) {
+    list.searches.clear();
+    list.searching.clear();
+    for (; g < count && list.searches.size() < in_cache; ++g) {
+      const Group& group = list.groups[g];
+      const Image& image = list.images[group.image];
+      if (group.nearest - image.path - slack > image.cutoff) continue;
+      for (const Candidate& candidate : group.first) __builtin_prefetch(&image.triangles[candidate.triangle]);
+      __builtin_prefetch(list.candidates.data() + group.begin, 1);
+      list.searching.push_back(static_cast<int>(list.searches.size()));
+      list.searches.push_back({g, 0, none, image.cutoff * image.cutoff, {}, Vec<3>::Zero()});
     }
-    contacts.push_back(contact);
+    look_at_next<true>(surfaces, list);
+    while (!list.searching.empty()) look_at_next<false>(surfaces, list);
+    for (const Search& search : list.searches) {
+      if (!surfaces.largest_step.empty()) sort_in(list, search);
+      if (search.closest != none) contacts.push_back(contact(search, list, surfaces));
+    }
   }
+}
+
+SurfaceContact SurfaceContacts::contact(const Search& search, const CandidateList& list, const Surfaces& surfaces) {
+  const Group& group = list.groups[search.group];
+  const Image& image = list.images[group.image];
+  const auto& [i, j, k] = image.triangles[search.closest];
+  const double root = std::sqrt(search.square);
+  SurfaceContact contact{group.node,
+                         image.other,
+                         {image.shift[0], image.shift[1], image.shift[2]},
+                         image.within,
+                         {image.first_node + i, image.first_node + j, image.first_node + k},
+                         search.weight,
+                         std::max(root, SurfaceContact::least_distance),
+                         {}};
+  if (root > SurfaceContact::least_distance) {
+    contact.direction = search.away / root;
+  } else {
+    const Nodes nodes = surfaces.nodes(image.other);
+    contact.direction = (nodes[j] - nodes[i]).cross(nodes[k] - nodes[i]).normalized();
+  }
+  return contact;
 }
 
 }  // namespace rouleau::core

@@ -1,9 +1,12 @@
 // Closest points of the nodes of one cell on the surfaces of its neighbours, in three dimensions.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "base/worker.hpp"
@@ -38,7 +41,8 @@ struct SurfaceContact {
 ///
 /// Candidates stay complete while no node has moved further than the skin, for the reason that NeighbourList has; a
 /// triangle is a set of convex combinations of its corners, too. Of each a bound of its last known distance is kept, which has
-/// changed by no more than both cells' nodes have travelled since: nearest first, most need not be looked at.
+/// changed by no more than both cells' nodes have travelled since: most need not be looked at. Those that are, are looked at
+/// three at a time, the nearest first.
 class SurfaceContacts {
  public:
   /// `self_cutoffs`: of each type, within a cell; 0, and where there are none: cells do not touch themselves.
@@ -67,38 +71,67 @@ class SurfaceContacts {
     float distance;  ///< not less: when it was last looked at, and how far both cells had travelled by then, added up
     int triangle;    ///< of the other cell
   };
-  /// Candidates [begin, end) of a node against one image of a cell, nearest first.
+  static constexpr int at_once = 3;
+  /// Candidates of a node against one image of a cell.
   struct Group {
-    int node, other;
+    int node, image;
+    float nearest, next;  ///< least distance of them all, and of those that are not among the first; may be infinite
+    std::array<Candidate, at_once> first;  ///< where there are fewer, the last of them again
+    int begin, end;                        ///< others, nearest first
+  };
+  /// Of a cell, from which the nodes have candidates.
+  struct Image {
+    int other;
     std::array<int, 3> shift;
     bool within;  ///< the cell's own surface
-    int begin, end;
+    // For find().
+    int first_node;                       ///< of the other cell
+    const std::array<int, 3>* triangles;  ///< of its mesh
+    Vec<3> moved;                         ///< by so much the image lies beside it
+    double cutoff, path;                  ///< how far both cells have travelled
   };
   /// How far find() has come with a group.
   struct Search {
-    double square, root;  ///< of the distance of the closest triangle so far, or of the cutoff
-    double path;          ///< of both cells
-    int closest;          ///< that triangle; -1: none
-    int next;             ///< candidate to be looked at
+    int group;
+    int looked;     ///< at so many beyond the first
+    int closest;    ///< triangle; `none`: none
+    double square;  ///< of its distance, or of the cutoff
     std::array<double, 3> weight;
     Vec<3> away;  ///< from the closest point to the node
   };
   struct CandidateList {
+    std::vector<Image> images;
     std::vector<Group> groups;
     std::vector<Candidate> candidates;
     // Room for find().
     std::vector<Search> searches;
     std::vector<int> searching;  ///< those that are not at their end
     ClosestPoints points;        ///< of their next candidates
+    std::vector<Candidate> fresh;
+    /// What is to be looked at next; `first`: at once.
+    template <bool first>
+    auto next(const Search& search) {
+      Group& group = groups[search.group];
+      if constexpr (first) {
+        return std::span(group.first);
+      } else {
+        const int from = group.begin + search.looked;
+        return std::span(candidates).subspan(from, std::min(at_once, group.end - from));
+      }
+    }
   };
   class Bins;
   struct Neighbours;
 
-  static void sort_in(Candidate* candidates, int count, int all);
+  static constexpr int none = std::numeric_limits<int>::max();
+
+  static void sort_in(CandidateList& list, const Search& search);
   [[nodiscard]] double travelled(int cell, int other) const;
   [[nodiscard]] double cutoff(const Surfaces& surfaces, int cell, int other, bool within) const;
   void list_candidates(int cell, const Surfaces& surfaces, const Bins& bins, double skin);
+  template <bool first>
   void look_at_next(const Surfaces& surfaces, CandidateList& list) const;
+  static SurfaceContact contact(const Search& search, const CandidateList& list, const Surfaces& surfaces);
 
   Cutoffs cutoffs_;
   std::vector<std::unique_ptr<const SelfReach>> self_reach_;  // of each type; null: it does not touch itself; or empty
