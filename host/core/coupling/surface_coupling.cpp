@@ -176,9 +176,9 @@ struct SpreadSurface {
     const int wrapped = domain.wrapped(axis, node);
     return wrapped >= 0 ? Image{wrapped, 1} : Image{mirrored(node, domain.size[axis]), -1};
   }
-  /// The same sums: of a stencil that reaches over the border of the lattice or of the block. Where it does so along x, number by
-  /// number.
-  [[gnu::noinline, gnu::cold]] static void spread_at_border(const SurfaceSpread<T>& t, int i) {
+  /// The same sums: of a stencil that reaches over the border of the lattice or of the block. Where it does so along x, its points
+  /// are among the first and the last nodes of a row.
+  ROULEAU_ALWAYS_INLINE static void spread_at_border(const SurfaceSpread<T>& t, int i) {
     if (t.at.base[2][i] == outside) return;
     const Domain<3>& domain = *t.domain;
     const Box<3>& block = domain.block;
@@ -191,15 +191,27 @@ struct SpreadSurface {
     const int x = t.at.base[0][i] + start;
     const bool within = x >= block.begin[0] && x + points <= block.end[0];
     using Lanes = typename Forces::Lanes;
-    T sign[Lanes::size] = {};
-    int nodes[points], lanes[points], count = 0;  // of the block's
-    for (int k = 0; k < points; ++k) {
-      sign[k] = static_cast<T>(along_x[k].sign);
-      if (along_x[k].node >= block.begin[0] && along_x[k].node < block.end[0])
-        nodes[count] = along_x[k].node, lanes[count] = k, ++count;
+    // What a node of a row gets of the force along x, from the first node of either part on.
+    constexpr int width = Lanes::size;
+    int first[2] = {block.begin[0], std::max(block.begin[0], block.end[0] - width)};
+    T along[2][width] = {};
+    bool reached[2] = {within, false};
+    if (within) {
+      first[0] = x;
+      weights.along_x.store(along[0]);
+    } else {
+      for (int k = 0; k < points; ++k) {
+        const auto& [node, sign] = along_x[k];
+        if (node < block.begin[0] || node >= block.end[0]) continue;
+        const int part = node < first[0] + width ? 0 : 1;
+        along[part][node - first[part]] += static_cast<T>(sign) * weights.along_x.at(k);
+        reached[part] = true;
+      }
     }
-    Forces force[3];
-    for (int c = 0; c < 3; ++c) force[c] = Forces::load(sign) * (weights.along_x * Lanes(t.force[c][i]));
+    Forces force[2][3];
+    for (int part = 0; part < 2; ++part) {
+      for (int c = 0; c < 3; ++c) force[part][c] = Forces::load(along[part]) * Lanes(t.force[c][i]);
+    }
     for (int m = 0; m < points; ++m) {
       const Image& z = along_z[m];
       for (int l = 0; l < points; ++l) {
@@ -209,14 +221,12 @@ struct SpreadSurface {
         if (row < t.row_begin || row >= t.row_end) continue;
         const Lanes weight = Lanes(static_cast<T>(y.sign * z.sign)) * weights.of_row(m, l);
         for (int c = 0; c < 3; ++c) {
-          T* const to = t.origin[c] + z.node * t.stride_z + y.node * t.stride_y;
-          if (within) {
-            (Forces::load(to + x) + force[c] * weight).store(to + x);
-            continue;
+          T* const row_of_force = t.origin[c] + z.node * t.stride_z + y.node * t.stride_y;
+          for (int part = 0; part < 2; ++part) {
+            if (!reached[part]) continue;
+            T* const to = row_of_force + first[part];
+            (Forces::load(to) + force[part][c] * weight).store(to);
           }
-          T added[Lanes::size];
-          (force[c] * weight).store(added);
-          for (int k = 0; k < count; ++k) to[nodes[k]] += added[lanes[k]];
         }
       }
     }
