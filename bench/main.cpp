@@ -49,7 +49,7 @@ int main(int argc, char** argv) {
   auto add = description.add_options();
   add("check", options::bool_switch(&check), "no timing: check every kernel against an exact solution");
   add("only", options::value(&only)->value_name("TABLE"),
-      "fluid, space (three dimensions; of fluid, too), scene or cells; all without. Or network: messages between ranks, "
+      "fluid, space (three dimensions; of fluid, too), scene, cells or nodes (membrane nodes in three dimensions); all without. Or network: messages between ranks, "
       "under mpirun");
   add("whole", options::bool_switch(&whole), "run the four-cell scene to its end (four times 10 s)");
   add("seconds", options::value(&seconds)->default_value(1)->value_name("S"),
@@ -106,6 +106,7 @@ int main(int argc, char** argv) {
     if (only.empty() || only == "fluid" || only == "space") rouleau::bench::space_table(seconds);
     if (only.empty() || only == "scene") rouleau::bench::scene_table(whole);
     if (only.empty() || only == "cells") rouleau::bench::cells_table();
+    if (only.empty() || only == "nodes") rouleau::bench::nodes_table();
     return 0;
   } catch (const std::exception& error) {
     std::cerr << "rouleau-bench: " << error.what() << "\n";

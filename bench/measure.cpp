@@ -39,6 +39,11 @@ double time_steps(const Candidate& candidate, int threads, long steps) {
 
 }  // namespace
 
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
 std::vector<Timing> measure(const std::vector<Candidate>& candidates, int threads, double seconds) {
   std::vector<long> steps;
   for (const Candidate& candidate : candidates) {
@@ -52,10 +57,8 @@ std::vector<Timing> measure(const std::vector<Candidate>& candidates, int thread
       times[i].push_back(time_steps(candidates[i], threads, steps[i]));
   }
   std::vector<Timing> result;
-  for (std::vector<double>& of_one : times) {
-    std::sort(of_one.begin(), of_one.end());
-    result.push_back({of_one.front(), of_one[of_one.size() / 2]});
-  }
+  for (const std::vector<double>& of_one : times)
+    result.push_back({*std::min_element(of_one.begin(), of_one.end()), median(of_one)});
   return result;
 }
 

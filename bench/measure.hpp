@@ -20,6 +20,8 @@ struct Timing {
   double best_s, median_s;  ///< of a step, over the rounds
 };
 
+double median(std::vector<double> values);
+
 /// Runs every candidate for about `seconds`, split into rounds that alternate. One timing for each candidate.
 std::vector<Timing> measure(const std::vector<Candidate>& candidates, int threads, double seconds);
 

@@ -17,6 +17,7 @@
 
 #include "base/error.hpp"
 #include "core/solver/solver.hpp"
+#include "measure.hpp"
 #include "plan/read_scene.hpp"
 #include "window.hpp"
 
@@ -37,11 +38,6 @@ double time_to_ask() {
   const double begin = processor_time();
   for (int i = 0; i < times; ++i) static_cast<void>(processor_time());
   return (processor_time() - begin) / times;
-}
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
 }
 
 /// What a rank has received, in its order.

@@ -10,9 +10,11 @@
 #include <vector>
 
 #include "files/run_directory.hpp"
+#include "measure.hpp"
 #include "plan/estimate.hpp"
 #include "plan/read_scene.hpp"
 #include "run/simulation.hpp"
+#include "space_bench.hpp"
 
 namespace rouleau::bench {
 
@@ -96,6 +98,49 @@ std::vector<run::Summary> pass_table(const Subject& subject, const char* part, l
 }
 
 }  // namespace
+
+void nodes_table() {
+  struct Scheme {
+    const char *name, *numerics;
+  };
+  const std::vector<Scheme> schemes{
+      {"plain", R"("coupling": "explicit", "density_factor": 2000)"},
+      {"corrected",
+       R"("coupling": "explicit", "density_factor": 2000, "kernel": "sharp6", "slip_correction": true, "area_correction": true)"},
+      {"semi-implicit",
+       R"("coupling": "semi-implicit", "density_factor": 2000, "kernel": "sharp6", "slip_correction": true, "area_correction": true)"},
+      {"of the scene",
+       R"("coupling": "semi-implicit", "density_factor": 8000, "kernel": "sharp6", "slip_correction": true, "area_correction": true)"}};
+  constexpr long steps = 1500;
+  constexpr int rounds = 5;
+  std::printf(
+      "\nA membrane node in three dimensions: %s, cutoff 6 spacings, f32, one thread, its first %ld steps;\n"
+      "nanoseconds a node and step, without fluid and outputs. Loop: TRT alone in 64^3, million nodes a second, "
+      "before each round\n  %-8s %8s",
+      doublet.title, steps, "round", "loop");
+  for (const Scheme& scheme : schemes) std::printf(" %14s", scheme.name);
+  std::printf("\n");
+  const double nodes = plan::membrane_nodes(plan::read_scene(doublet.file, {}));
+  std::vector<std::vector<double>> found(schemes.size() + 1);
+  for (int round = 0; round < rounds; ++round) {
+    found[0].push_back(space_speed(0.5));
+    std::printf("  %-8d %8.0f", round + 1, found[0].back());
+    for (std::size_t s = 0; s < schemes.size(); ++s) {
+      const run::Summary summary =
+          run(doublet, {std::string("/numerics={\"precision\": \"f32\", ") + schemes[s].numerics + "}"}, 1, steps);
+      double all = 0;
+      for (const run::PassCost& pass : summary.passes) all += microseconds(summary, pass.name);
+      for (const char* other : {"fluid", "observe and check", "checkpoint"}) all -= microseconds(summary, other);
+      found[s + 1].push_back(all / nodes * 1e3);
+      std::printf(" %14.0f", found[s + 1].back());
+      std::fflush(stdout);
+    }
+    std::printf("\n");
+  }
+  std::printf("  %-8s", "median");
+  for (const auto& column : found) std::printf(" %*.0f", &column == &found[0] ? 8 : 14, median(column));
+  std::printf("\n");
+}
 
 void scene_table(bool whole) {
   const auto runs = whole ? pass_table(four_cells, "the whole scene: contact, tumbling, separation", -1)

@@ -10,4 +10,7 @@ void scene_table(bool whole);
 /// Cost of a step with 1 to 1024 cells at the same volume fraction.
 void cells_table();
 
+/// What a membrane node takes in three dimensions, with contacts, by scheme, in turn with space_speed().
+void nodes_table();
+
 }  // namespace rouleau::bench

@@ -281,6 +281,14 @@ void run_space_kernel(const std::string& kernel, bool f32, bool force, int n, lo
   }
 }
 
+double space_speed(double seconds) {
+  constexpr int n = 64;
+  const auto like = space::plugin_space<float>(false, n);
+  space::BareSpace<float> bare(false, n);
+  bare.set(*like);
+  return n * n * n / measure({space::candidate("bare", bare)}, 1, seconds)[0].best_s / 1e6;
+}
+
 void space_table(double seconds) {
   std::printf(
       "\nFluid alone in three dimensions (D3Q19), periodic, one thread, million node updates a second (best of 9 rounds "
