@@ -1,10 +1,10 @@
 #include "coupling.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <rouleau/dispatch.hpp>
 #include <type_traits>
 
+#include "core/domain/vectors.hpp"
 #include "core/domain/wrapped.hpp"
 #include "core/fluid/walls.hpp"
 #include "kernel.hpp"
@@ -86,13 +86,10 @@ struct Locate {
   /// Writes the first `valid` of the values, converted.
   template <class S, class To>
   ROULEAU_ALWAYS_INLINE static void put(const S& values, To* to, int valid) {
-    using Converted __attribute__((vector_size(S::size * sizeof(To)))) = To;
-    const Converted converted = __builtin_convertvector(values.vector, Converted);
-    if (valid == S::size) {
-      std::memcpy(to, &converted, sizeof converted);
-    } else {
-      for (int k = 0; k < valid; ++k) to[k] = converted[k];
-    }
+    if (valid == S::size) return store_as(values, to);
+    To all[S::size];
+    store_as(values, all);
+    std::copy_n(all, valid, to);
   }
 };
 

@@ -69,11 +69,17 @@ TEMPLATE_TEST_CASE("in three dimensions spreading and interpolation are adjoint,
                    float, double) {
   auto random = generator(81);
   std::uniform_real_distribution<double> any(-1, 1);
-  for (const bool walls : {false, true}) {
-    const Domain<3> domain(box, {true, !walls, !walls});
+  struct Case {
+    std::array<bool, 3> periodic;
+    Vec<3> center;
+  };
+  for (const auto& [periodic, center] :
+       {Case{{true, true, true}, {1.3, 17.6, -0.4}}, Case{{true, false, false}, {1.3, 2.6, 12.4}},
+        Case{{false, true, true}, {2.6, 17.6, 3.4}}}) {
+    const Domain<3> domain(box, periodic);
     for (const KernelKind kernel :
          {KernelKind::peskin4, KernelKind::roma3, KernelKind::linear2, KernelKind::cosine4, KernelKind::sharp6}) {
-      Surfaces s = sphere_at(walls ? Vec<3>(1.3, 2.6, 12.4) : Vec<3>(1.3, 17.6, -0.4), random);
+      Surfaces s = sphere_at(center, random);
       SurfaceCoupling<TestType> coupling(kernel, domain);
       coupling.reserve(s);
       coupling.locate({}, s, s.positions());
@@ -156,8 +162,9 @@ TEMPLATE_TEST_CASE("spread forces of surfaces are the same bits however rows are
   for (auto* places : {&s.x, &s.y, &s.z}) {  // with few digits, so that they are the same ones elsewhere
     for (double& place : *places) place = std::round(place * 1024) / 1024;
   }
+  const KernelKind kernel = GENERATE(KernelKind::peskin4, KernelKind::sharp6);
   const auto spread = [&](const std::vector<int>& cuts) {
-    SurfaceCoupling<TestType> coupling(KernelKind::peskin4, domain);
+    SurfaceCoupling<TestType> coupling(kernel, domain);
     coupling.reserve(s);
     coupling.locate({}, s, s.positions());
     VectorField<TestType, 3> force = field<TestType>();
@@ -174,6 +181,24 @@ TEMPLATE_TEST_CASE("spread forces of surfaces are the same bits however rows are
       REQUIRE(whole[k].row(y, z)[x] == moved[k].row(y, (z + 11) % 16)[(x + 8) % 20]);
     }
   });
+  // Blocks side by side, one narrower than a stencil.
+  for (const auto& borders : {std::vector{0, 9, 20}, std::vector{0, 7, 10, 20}}) {
+    for (std::size_t b = 1; b < borders.size(); ++b) {
+      const Domain<3> part(box, {true, true, true}, {{borders[b - 1], 0, 0}, {borders[b], box[1], box[2]}});
+      SurfaceCoupling<TestType> coupling(kernel, part);
+      coupling.reserve(s);
+      coupling.locate({}, s, s.positions());
+      VectorField<TestType, 3> force;
+      for (auto& component : force) component = Field<TestType, 3>({part.block.size(0), box[1], box[2]});
+      coupling.spread({0, box[1] * box[2]}, s, s.forces(), force);
+      for_nodes([&](int x, int y, int z) {
+        for (int k = 0; k < 3; ++k) {
+          if (x < borders[b - 1] || x >= borders[b]) continue;
+          REQUIRE(moved[k].row(y, z)[x] == force[k].row(y, z)[x - borders[b - 1]]);
+        }
+      });
+    }
+  }
 }
 
 TEST_CASE("a node of a surface beyond a wall, or nowhere, is reported and touches nothing") {

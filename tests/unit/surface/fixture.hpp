@@ -4,8 +4,10 @@
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <random>
 
 #include "core/surface/surface_forces.hpp"
+#include "core/surface/surface_normals.hpp"
 #include "shape/surface.hpp"
 #include "unit/cell_fixture.hpp"
 
@@ -20,6 +22,26 @@ inline Surfaces one_cell(const shape::TriangleSurface& shape, double prestretch 
   surfaces.types.push_back(std::make_shared<const RestSurface>(shape::rest_surface(shape, prestretch)));
   add_cell(surfaces, 0, {3, -2, 5});
   return surfaces;
+}
+
+/// An ellipsoid and a larger biconcave disc, of the types 0 and 1, far from the origin and out of shape by up to 0.1.
+inline Surfaces cells_out_of_shape(std::mt19937& random) {
+  std::uniform_real_distribution<double> any(-0.1, 0.1);
+  Surfaces s;
+  s.types.push_back(std::make_shared<const RestSurface>(shape::rest_surface(shape::ellipsoid(4, {4, 3, 5}))));
+  s.types.push_back(std::make_shared<const RestSurface>(shape::rest_surface(shape::biconcave_disc(5, 6))));
+  add_cell(s, 0, {1000, 20, 30});
+  add_cell(s, 1, {30, 2000, -40}, Eigen::AngleAxisd(1, Vec<3>(1, 2, 3).normalized()).toRotationMatrix());
+  for (auto* places : {&s.x, &s.y, &s.z}) {
+    for (double& place : *places) place += any(random);
+  }
+  return s;
+}
+
+inline core::SurfaceNormals normals_of(const Surfaces& s) {
+  core::SurfaceNormals normals(s);
+  normals.measure({}, s);
+  return normals;
 }
 
 inline Vec<3> force_on(const Surfaces& s, int i) { return {s.force_x[i], s.force_y[i], s.force_z[i]}; }

@@ -1,41 +1,18 @@
 // Normals of nodes and areas of triangles: the gradient of the volume, the areas that the mesh has, and any workers.
 #include "core/surface/surface_normals.hpp"
 
-#include <catch2/catch.hpp>
-#include <cmath>
-#include <random>
-
-#include "shape/surface.hpp"
+#include "fixture.hpp"
 #include "unit/random.hpp"
 
 using namespace rouleau;
 using namespace rouleau::core;
-using rouleau::test::generator;
-
-namespace {
-
-/// Two cells of different types, out of shape.
-Surfaces cells_at_random(std::mt19937& random) {
-  std::uniform_real_distribution<double> any(-0.1, 0.1);
-  Surfaces s;
-  s.types.push_back(std::make_shared<const RestSurface>(shape::rest_surface(shape::ellipsoid(4, {4, 3, 5}))));
-  s.types.push_back(std::make_shared<const RestSurface>(shape::rest_surface(shape::biconcave_disc(5, 6))));
-  add_cell(s, 1, {10, 20, 30});
-  add_cell(s, 0, {30, 20, -40});
-  for (auto* places : {&s.x, &s.y, &s.z}) {
-    for (double& place : *places) place += any(random);
-  }
-  return s;
-}
-
-}  // namespace
+using namespace rouleau::test;
 
 TEST_CASE("the normals around a node add up to six times the gradient of the volume") {
   auto random = generator(95);
-  Surfaces s = cells_at_random(random);
-  SurfaceNormals normals(s);
-  normals.measure({}, s);
-  constexpr double little = 1e-4;  // the volume is linear in each coordinate
+  Surfaces s = cells_out_of_shape(random);
+  const SurfaceNormals normals = normals_of(s);
+  constexpr double little = 1e-2;  // the volume is linear in each coordinate
   for (int cell = 0; cell < s.cell_count(); ++cell) {
     const auto volume = [&] { return enclosed_volume(s.type_of(cell).mesh, s.nodes(cell)); };
     for (const int i : {s.cells[cell].first, s.cells[cell].first + 7, s.cells[cell].end() - 1}) {
@@ -56,9 +33,9 @@ TEST_CASE("the normals around a node add up to six times the gradient of the vol
 
 TEST_CASE("areas of triangles and nodes are those of the mesh, and no node's depend on the workers") {
   auto random = generator(96);
-  const Surfaces s = cells_at_random(random);
-  SurfaceNormals normals(s), shared(s);
-  normals.measure({}, s);
+  const Surfaces s = cells_out_of_shape(random);
+  const SurfaceNormals normals = normals_of(s);
+  SurfaceNormals shared(s);
   for (int worker = 0; worker < 3; ++worker) shared.measure({worker, 3}, s);
   for (int cell = 0; cell < s.cell_count(); ++cell) {
     const std::vector<Vec<3>> vectors = area_vectors(s.type_of(cell).mesh, s.nodes(cell));

@@ -1,43 +1,27 @@
 // Volumes that are kept: balances, the adjoint, the leak that is reported, and the way back to a volume at rest.
 #include "core/surface/volume_correction.hpp"
 
-#include <Eigen/Geometry>
-#include <catch2/catch.hpp>
-#include <cmath>
 #include <random>
 
-#include "shape/surface.hpp"
+#include "fixture.hpp"
 #include "unit/random.hpp"
 
 using namespace rouleau;
 using namespace rouleau::core;
-using rouleau::test::generator;
+using namespace rouleau::test;
 
 namespace {
 
-/// A sphere and a biconcave disc of another size, far from the origin and out of shape, with forces and velocities at random.
+/// cells_out_of_shape() with forces and velocities at random.
 Surfaces cells_at_random(std::mt19937& random) {
   std::uniform_real_distribution<double> any(-1, 1);
-  Surfaces s;
-  s.types.push_back(std::make_shared<const RestSurface>(shape::rest_surface(shape::ellipsoid(4, {4, 3, 5}))));
-  s.types.push_back(std::make_shared<const RestSurface>(shape::rest_surface(shape::biconcave_disc(5, 6))));
-  add_cell(s, 0, {1000, 20, 30});
-  add_cell(s, 1, {30, 2000, -40}, Eigen::AngleAxisd(1, Vec<3>(1, 2, 3).normalized()).toRotationMatrix());
-  for (auto* numbers : {&s.x, &s.y, &s.z}) {
-    for (double& number : *numbers) number += 0.1 * any(random);
-  }
+  Surfaces s = cells_out_of_shape(random);
   for (auto* numbers : {&s.force_x, &s.force_y, &s.force_z, &s.velocity_x, &s.velocity_y, &s.velocity_z}) {
     numbers->resize(s.x.size());
     for (double& number : *numbers) number = any(random);
   }
   s.area_leakage.assign(2, 0.0);
   return s;
-}
-
-SurfaceNormals normals_of(const Surfaces& s) {
-  SurfaceNormals normals(s);
-  normals.measure({}, s);
-  return normals;
 }
 
 double volume(const Surfaces& s, int cell) { return enclosed_volume(s.type_of(cell).mesh, s.nodes(cell)); }
