@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "files/run_directory.hpp"
+#include "json/json.hpp"
 #include "measure.hpp"
 #include "plan/estimate.hpp"
 #include "plan/read_scene.hpp"
@@ -101,44 +102,51 @@ std::vector<run::Summary> pass_table(const Subject& subject, const char* part, l
 
 void nodes_table() {
   struct Scheme {
-    const char *name, *numerics;
+    const char *name, *coupling;
+    int density_factor;
+    bool corrected;
   };
-  const std::vector<Scheme> schemes{
-      {"plain", R"("coupling": "explicit", "density_factor": 2000)"},
-      {"corrected",
-       R"("coupling": "explicit", "density_factor": 2000, "kernel": "sharp6", "slip_correction": true, "area_correction": true)"},
-      {"semi-implicit",
-       R"("coupling": "semi-implicit", "density_factor": 2000, "kernel": "sharp6", "slip_correction": true, "area_correction": true)"},
-      {"of the scene",
-       R"("coupling": "semi-implicit", "density_factor": 8000, "kernel": "sharp6", "slip_correction": true, "area_correction": true)"}};
+  const std::vector<Scheme> schemes{{"plain", "explicit", 2000, false},
+                                    {"corrected", "explicit", 2000, true},
+                                    {"semi-implicit", "semi-implicit", 2000, true},
+                                    {"as in the scene", "semi-implicit", 8000, true}};
   constexpr long steps = 1500;
   constexpr int rounds = 5;
   std::printf(
       "\nA membrane node in three dimensions: %s, cutoff 6 spacings, f32, one thread, its first %ld steps;\n"
-      "nanoseconds a node and step, without fluid and outputs. Loop: TRT alone in 64^3, million nodes a second, "
-      "before each round\n  %-8s %8s",
-      doublet.title, steps, "round", "loop");
-  for (const Scheme& scheme : schemes) std::printf(" %14s", scheme.name);
-  std::printf("\n");
+      "nanoseconds a node and step, without fluid and outputs, and how fast the machine was: TRT alone in 64^3, "
+      "million nodes a second before and after, mean\n  %-6s",
+      doublet.title, steps, "round");
+  for (const Scheme& scheme : schemes) std::printf(" %20s", scheme.name);
   const double nodes = plan::membrane_nodes(plan::read_scene(doublet.file, {}));
-  std::vector<std::vector<double>> found(schemes.size() + 1);
+  struct Column {
+    std::vector<double> cost, speed;
+  };
+  std::vector<Column> columns(schemes.size());
+  const auto print = [](double cost, double speed) {
+    std::printf(" %14.0f (%3.0f)", cost, speed);
+    std::fflush(stdout);
+  };
+  double before = space_speed(0.2);
   for (int round = 0; round < rounds; ++round) {
-    found[0].push_back(space_speed(0.5));
-    std::printf("  %-8d %8.0f", round + 1, found[0].back());
+    std::printf("\n  %-6d", round + 1);
     for (std::size_t s = 0; s < schemes.size(); ++s) {
-      const run::Summary summary =
-          run(doublet, {std::string("/numerics={\"precision\": \"f32\", ") + schemes[s].numerics + "}"}, 1, steps);
+      nlohmann::json numerics{
+          {"precision", "f32"}, {"coupling", schemes[s].coupling}, {"density_factor", schemes[s].density_factor}};
+      if (schemes[s].corrected)
+        numerics.update({{"kernel", "sharp6"}, {"slip_correction", true}, {"area_correction", true}});
+      const run::Summary summary = run(doublet, {"/numerics=" + numerics.dump()}, 1, steps);
       double all = 0;
       for (const run::PassCost& pass : summary.passes) all += microseconds(summary, pass.name);
       for (const char* other : {"fluid", "observe and check", "checkpoint"}) all -= microseconds(summary, other);
-      found[s + 1].push_back(all / nodes * 1e3);
-      std::printf(" %14.0f", found[s + 1].back());
-      std::fflush(stdout);
+      const double after = space_speed(0.2);
+      columns[s].cost.push_back(all / nodes * 1e3), columns[s].speed.push_back((before + after) / 2);
+      before = after;
+      print(columns[s].cost.back(), columns[s].speed.back());
     }
-    std::printf("\n");
   }
-  std::printf("  %-8s", "median");
-  for (const auto& column : found) std::printf(" %*.0f", &column == &found[0] ? 8 : 14, median(column));
+  std::printf("\n  %-6s", "median");
+  for (const Column& column : columns) print(median(column.cost), median(column.speed));
   std::printf("\n");
 }
 

@@ -286,7 +286,7 @@ double space_speed(double seconds) {
   const auto like = space::plugin_space<float>(false, n);
   space::BareSpace<float> bare(false, n);
   bare.set(*like);
-  return n * n * n / measure({space::candidate("bare", bare)}, 1, seconds)[0].best_s / 1e6;
+  return n * n * n / measure({space::candidate("bare", bare)}, 1, seconds)[0].median_s / 1e6;
 }
 
 void space_table(double seconds) {
