@@ -178,7 +178,7 @@ void SurfaceTasks<T>::forget_unknown() {
 
 template <class T>
 void SurfaceTasks<T>::locate(Worker worker, Whose whose) {
-  if (normals_) normals_->measure(worker, surfaces_, whose);
+  if (normals_ && (slip_ || whose == Whose::own)) normals_->measure(worker, surfaces_, whose);
   if (slip_) slip_->measure(worker, surfaces_, *normals_, whose);
   coupling_.locate(worker, surfaces_, slip_ ? slip_->positions() : surfaces_.positions(), whose);
 }
