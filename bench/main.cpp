@@ -49,8 +49,8 @@ int main(int argc, char** argv) {
   auto add = description.add_options();
   add("check", options::bool_switch(&check), "no timing: check every kernel against an exact solution");
   add("only", options::value(&only)->value_name("TABLE"),
-      "fluid, space (three dimensions; of fluid, too), scene, cells or nodes (membrane nodes in three dimensions); all without. Or network: messages between ranks, "
-      "under mpirun");
+      "fluid, space (three dimensions; of fluid, too), scene, cells or nodes (membrane nodes in three dimensions); all "
+      "without. Or network: messages between ranks, under mpirun");
   add("whole", options::bool_switch(&whole), "run the four-cell scene to its end (four times 10 s)");
   add("seconds", options::value(&seconds)->default_value(1)->value_name("S"),
       "time for each fluid kernel, each line of network, and about each round of --ranks");

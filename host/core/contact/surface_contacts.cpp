@@ -348,18 +348,22 @@ void SurfaceContacts::list_candidates(int cell, const Surfaces& surfaces, const 
       std::sort(fresh.begin(), fresh.end(), [](const Candidate& a, const Candidate& b) {
         return std::tie(a.distance, a.triangle) < std::tie(b.distance, b.triangle);
       });
-      Group group{node, static_cast<int>(i), fresh.front().distance, std::numeric_limits<float>::infinity(), {}, 0, 0};
+      Group group{node, static_cast<int>(i), fresh.front().distance, {}, 0, 0};
       const auto count = static_cast<int>(fresh.size());
       for (int k = 0; k < at_once; ++k) group.first[k] = fresh[std::min(k, count - 1)];
       group.begin = static_cast<int>(list.candidates.size());
-      if (count > at_once) {
-        group.next = fresh[at_once].distance;
-        list.candidates.insert(list.candidates.end(), fresh.begin() + at_once, fresh.end());
-      }
+      if (count > at_once) list.candidates.insert(list.candidates.end(), fresh.begin() + at_once, fresh.end());
       group.end = static_cast<int>(list.candidates.size());
       list.groups.push_back(group);
     }
   }
+}
+
+std::span<SurfaceContacts::Candidate> SurfaceContacts::CandidateList::next(const Search& search) {
+  Group& group = groups[search.group];
+  if (search.looked < 0) return group.first;
+  const int from = group.begin + search.looked;
+  return std::span(candidates).subspan(from, std::min(at_once, group.end - from));
 }
 
 /// Those that have been looked at have new distances: the nearest of them are the first, the others are sorted again.
@@ -379,14 +383,12 @@ void SurfaceContacts::sort_in(CandidateList& list, const Search& search) {
       while (old < all && nearer(others[old], *next)) others[at++] = others[old++];
       others[at++] = *next;
     }
-    group.next = others[0].distance;
   }
-  group.nearest = group.next;
+  group.nearest = list.nearest_from(group, 0);
   for (const Candidate& candidate : group.first) group.nearest = std::min(group.nearest, candidate.distance);
 }
 
 /// Of all groups that are being searched: their next candidates.
-template <bool first>
 void SurfaceContacts::look_at_next(const Surfaces& surfaces, CandidateList& list) const {
   const auto count = static_cast<int>(list.searching.size());
   ClosestPoints& points = list.points;
@@ -395,7 +397,7 @@ void SurfaceContacts::look_at_next(const Surfaces& surfaces, CandidateList& list
     const Search& search = list.searches[list.searching[s]];
     const Group& group = list.groups[search.group];
     const Image& image = list.images[group.image];
-    const auto candidates = list.next<first>(search);
+    const auto candidates = list.next(search);
     const Vec<3> place = Vec<3>(surfaces.x[group.node], surfaces.y[group.node], surfaces.z[group.node]) - image.moved;
     const int last = static_cast<int>(candidates.size()) - 1;
     for (int k = 0; k < at_once; ++k) {
@@ -412,7 +414,7 @@ void SurfaceContacts::look_at_next(const Surfaces& surfaces, CandidateList& list
     Search& search = list.searches[number];
     const Group& group = list.groups[search.group];
     const double path = list.images[group.image].path;
-    const auto candidates = list.next<first>(search);
+    const auto candidates = list.next(search);
     int closest = -1;
     for (int k = 0; k < static_cast<int>(candidates.size()); ++k) {
       const double square = points.square[s * at_once + k];
@@ -429,14 +431,9 @@ void SurfaceContacts::look_at_next(const Surfaces& surfaces, CandidateList& list
       for (int c = 0; c < 3; ++c)
         search.weight[c] = points.weight[c][closest], search.away[c] = points.away[c][closest];
     }
-    double next = group.next;
-    if constexpr (!first) {
-      search.looked += static_cast<int>(candidates.size());
-      const int at = group.begin + search.looked;
-      next = at < group.end ? list.candidates[at].distance : std::numeric_limits<float>::infinity();
-    }
+    search.looked = search.looked < 0 ? 0 : search.looked + static_cast<int>(candidates.size());
     list.searching[left] = number;
-    left += next - path - slack > std::sqrt(search.square) ? 0 : 1;
+    left += list.nearest_from(group, search.looked) - path - slack > std::sqrt(search.square) ? 0 : 1;
   }
   list.searching.resize(left);
 }
@@ -461,10 +458,9 @@ void SurfaceContacts::find(int cell, const Surfaces& surfaces, std::vector<Surfa
       for (const Candidate& candidate : group.first) __builtin_prefetch(&image.triangles[candidate.triangle]);
       __builtin_prefetch(list.candidates.data() + group.begin, 1);
       list.searching.push_back(static_cast<int>(list.searches.size()));
-      list.searches.push_back({g, 0, none, image.cutoff * image.cutoff, {}, Vec<3>::Zero()});
+      list.searches.push_back({g, -1, none, image.cutoff * image.cutoff, {}, Vec<3>::Zero()});
     }
-    look_at_next<true>(surfaces, list);
-    while (!list.searching.empty()) look_at_next<false>(surfaces, list);
+    while (!list.searching.empty()) look_at_next(surfaces, list);
     for (const Search& search : list.searches) {
       if (!surfaces.largest_step.empty()) sort_in(list, search);
       if (search.closest != none) contacts.push_back(contact(search, list, surfaces));

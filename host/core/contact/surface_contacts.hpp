@@ -1,7 +1,6 @@
 // Closest points of the nodes of one cell on the surfaces of its neighbours, in three dimensions.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -75,7 +74,7 @@ class SurfaceContacts {
   /// Candidates of a node against one image of a cell.
   struct Group {
     int node, image;
-    float nearest, next;  ///< least distance of them all, and of those that are not among the first; may be infinite
+    float nearest;                         ///< least distance of them all
     std::array<Candidate, at_once> first;  ///< where there are fewer, the last of them again
     int begin, end;                        ///< others, nearest first
   };
@@ -93,7 +92,7 @@ class SurfaceContacts {
   /// How far find() has come with a group.
   struct Search {
     int group;
-    int looked;     ///< at so many beyond the first
+    int looked;     ///< at so many beyond the first; -1: at none
     int closest;    ///< triangle; `none`: none
     double square;  ///< of its distance, or of the cutoff
     std::array<double, 3> weight;
@@ -108,17 +107,13 @@ class SurfaceContacts {
     std::vector<int> searching;  ///< those that are not at their end
     ClosestPoints points;        ///< of their next candidates
     std::vector<Candidate> fresh;
-    /// What is to be looked at next; `first`: at once.
-    template <bool first>
-    auto next(const Search& search) {
-      Group& group = groups[search.group];
-      if constexpr (first) {
-        return std::span(group.first);
-      } else {
-        const int from = group.begin + search.looked;
-        return std::span(candidates).subspan(from, std::min(at_once, group.end - from));
-      }
+    /// Least distance of a group's others from the one with this number on; infinite: there are none.
+    [[nodiscard]] float nearest_from(const Group& group, int number) const {
+      const int at = group.begin + number;
+      return at < group.end ? candidates[at].distance : std::numeric_limits<float>::infinity();
     }
+    /// What is to be looked at next.
+    std::span<Candidate> next(const Search& search);
   };
   class Bins;
   struct Neighbours;
@@ -129,7 +124,6 @@ class SurfaceContacts {
   [[nodiscard]] double travelled(int cell, int other) const;
   [[nodiscard]] double cutoff(const Surfaces& surfaces, int cell, int other, bool within) const;
   void list_candidates(int cell, const Surfaces& surfaces, const Bins& bins, double skin);
-  template <bool first>
   void look_at_next(const Surfaces& surfaces, CandidateList& list) const;
   static SurfaceContact contact(const Search& search, const CandidateList& list, const Surfaces& surfaces);
 

@@ -1,7 +1,6 @@
 #include "surface_coupling.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <rouleau/dispatch.hpp>
 
 #include "core/domain/vectors.hpp"
@@ -58,7 +57,6 @@ struct LocateSurface {
       Kernel::keep(shifted - below, p, q);
       store_as(p, t.p[k] + i), store_as(q, t.q[k] + i);
       // One comparison a line: g++ 12 takes combined masks apart element by element.
-      base[k] = below;
       if (t.periodic[k]) {
         base[k] = wrapped(below, t.size[k]);
       } else {
