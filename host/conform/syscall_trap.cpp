@@ -3,12 +3,9 @@
 #include <elf.h>
 #include <fcntl.h>
 #include <link.h>
-#include <linux/audit.h>
-#include <linux/filter.h>
 #include <linux/seccomp.h>
 #include <pthread.h>
 #include <sys/auxv.h>
-#include <sys/prctl.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
@@ -19,11 +16,11 @@
 #include <cstdio>
 #include <cstdlib>
 #include <utility>
-#include <vector>
 
 #include "base/foreign_call.hpp"
 #include "base/process.hpp"
 #include "report_line.hpp"
+#include "syscall_filter.hpp"
 
 namespace rouleau::conform {
 
@@ -144,92 +141,24 @@ void on_system_call(int /*signal*/, siginfo_t* info, void* /*context*/) {
   end_process(1);
 }
 
-constexpr std::uint32_t offset_of_argument(unsigned argument) {
-  return static_cast<std::uint32_t>(offsetof(seccomp_data, args) + argument * sizeof(std::uint64_t));  // its lower half
-}
-
-/// A program of the kernel's filter that allows some calls and traps all others, or the other way round.
-class Filter {
- public:
-  Filter() {
-#if defined(__x86_64__)
-    load(offsetof(seccomp_data, arch));
-    jump(BPF_JEQ, AUDIT_ARCH_X86_64, 1, 0);
-    end(SECCOMP_RET_TRAP);  // 32-bit calls have other numbers
-#endif
-    load(offsetof(seccomp_data, nr));
-  }
-
-  void allow(long number) {
-    jump(BPF_JEQ, static_cast<std::uint32_t>(number), 0, 1);
-    end(SECCOMP_RET_ALLOW);
-  }
-  /// ... where the lower half of an argument, shifted to the right, is this value.
-  void allow_if(long number, unsigned argument, std::uint32_t value, std::uint32_t shift = 0) {
-    jump(BPF_JEQ, static_cast<std::uint32_t>(number), 0, 5);
-    load(offset_of_argument(argument));
-    program_.push_back(BPF_STMT(BPF_ALU | BPF_RSH | BPF_K, shift));
-    jump(BPF_JEQ, value, 0, 1);
-    end(SECCOMP_RET_ALLOW);
-    load(offsetof(seccomp_data, nr));
-  }
-  /// Traps a call that is not allowed so far.
-  void trap(long number) {
-    jump(BPF_JEQ, static_cast<std::uint32_t>(number), 0, 1);
-    end(SECCOMP_RET_TRAP);
-  }
-  /// Allows what code between two addresses calls that have their upper half in common.
-  void allow_code(std::uintptr_t begin, std::uintptr_t end_of_code) {
-    if (begin >> 32 != end_of_code >> 32) return;
-    load(offsetof(seccomp_data, instruction_pointer) + sizeof(std::uint32_t));
-    jump(BPF_JEQ, static_cast<std::uint32_t>(begin >> 32), 0, 4);
-    load(offsetof(seccomp_data, instruction_pointer));
-    jump(BPF_JGE, static_cast<std::uint32_t>(begin), 0, 2);
-    jump(BPF_JGE, static_cast<std::uint32_t>(end_of_code), 1, 0);
-    end(SECCOMP_RET_ALLOW);
-    load(offsetof(seccomp_data, nr));
-  }
-  bool install(std::uint32_t otherwise) {
-    end(otherwise);
-    const sock_fprog filter{static_cast<unsigned short>(program_.size()), program_.data()};
-    // With what keeps some kernels from slowing down the thread's arithmetic.
-    return prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 &&
-           syscall(SYS_seccomp, SECCOMP_SET_MODE_FILTER, SECCOMP_FILTER_FLAG_SPEC_ALLOW, &filter) == 0;
-  }
-
- private:
-  void load(std::size_t offset) {
-    program_.push_back(BPF_STMT(BPF_LD | BPF_W | BPF_ABS, static_cast<std::uint32_t>(offset)));
-  }
-  void jump(std::uint16_t kind, std::uint32_t value, std::uint8_t if_true, std::uint8_t if_false) {
-    program_.push_back({static_cast<std::uint16_t>(BPF_JMP | kind | BPF_K), if_true, if_false, value});
-  }
-  void end(std::uint32_t action) { program_.push_back(BPF_STMT(BPF_RET | BPF_K, action)); }
-
-  std::vector<sock_filter> program_;
-};
-
-/// Where the dynamic loader's own code lies.
-std::pair<std::uintptr_t, std::uintptr_t> code_of_the_loader() {
-  std::pair<std::uintptr_t, std::uintptr_t> code{};
+/// The dynamic loader may call what it likes.
+void allow_loader(SyscallFilter& filter) {
   dl_iterate_phdr(
-      [](dl_phdr_info* info, std::size_t, void* found) {
+      [](dl_phdr_info* info, std::size_t, void* allowing) {
         for (int i = 0; i < info->dlpi_phnum; ++i) {
           const auto& segment = info->dlpi_phdr[i];
           if (info->dlpi_addr != getauxval(AT_BASE) || segment.p_type != PT_LOAD || (segment.p_flags & PF_X) == 0)
             continue;
-          const std::uintptr_t begin = info->dlpi_addr + segment.p_vaddr;
-          *static_cast<std::pair<std::uintptr_t, std::uintptr_t>*>(found) = {begin, begin + segment.p_memsz};
+          const std::uint64_t first = info->dlpi_addr + segment.p_vaddr;
+          static_cast<SyscallFilter*>(allowing)->allow_code(first, first + segment.p_memsz - 1);
         }
         return 0;
       },
-      &code);
-  return code;
+      &filter);
 }
 
-void allow_memory(Filter& filter) {
-  const auto [begin, end] = code_of_the_loader();
-  filter.allow_code(begin, end);
+void allow_memory(SyscallFilter& filter) {
+  allow_loader(filter);
   for (const long number :
        {SYS_brk, SYS_mmap, SYS_munmap, SYS_mremap, SYS_mprotect, SYS_madvise, SYS_futex, SYS_sched_yield, SYS_getrandom,
         SYS_sysinfo, SYS_sched_getaffinity, SYS_clock_gettime, SYS_clock_getres, SYS_gettimeofday, SYS_getpid,
@@ -257,7 +186,7 @@ bool limit_system_calls(Allowed allowed) {
     action.sa_flags = SA_SIGINFO | SA_ONSTACK;
     sigaction(SIGSYS, &action, nullptr);
   }
-  Filter filter;
+  SyscallFilter filter;
   filter.allow_if(SYS_exit_group, 0, own_word, 8);
   if (allowed == Allowed::all_but_exit) {
     filter.trap(SYS_exit_group);
