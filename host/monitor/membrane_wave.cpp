@@ -1,6 +1,6 @@
 #include "membrane_wave.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -12,18 +12,25 @@ namespace rouleau::monitor {
 namespace {
 
 constexpr std::size_t fewest_nodes = 12;
+/// Of the nodes across the line that they are on, as a share of that along it: what is below is rounding.
+constexpr double least_spread = 1e-12;
 
 /// One column for x, one for y.
 using Vectors = Eigen::Matrix<double, Eigen::Dynamic, 2>;
 
 /// Velocities without the uniform gradient that fits them best.
 Vectors without_smooth_flow(const Vectors& nodes, const Vectors& velocity) {
-  const Eigen::RowVector2d center = nodes.colwise().mean();
-  Eigen::Matrix<double, Eigen::Dynamic, 3> basis(nodes.rows(), 3);
-  basis.col(0).setOnes();
-  basis.rightCols<2>() = nodes.rowwise() - center;
-  // The decomposition copes with nodes on one line, where the gradient across it is not determined.
-  return velocity - basis * basis.completeOrthogonalDecomposition().solve(velocity);
+  const Vectors place = nodes.rowwise() - nodes.colwise().mean();
+  Vectors rest = velocity.rowwise() - velocity.colwise().mean();
+  // Each direction in which the nodes spread has a gradient of its own; across nodes on one line there is none.
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> spread;
+  spread.computeDirect(place.transpose() * place);
+  for (int k = 0; k < 2; ++k) {
+    if (!(spread.eigenvalues()[k] > least_spread * spread.eigenvalues()[1])) continue;
+    const Eigen::VectorXd along = place * spread.eigenvectors().col(k);
+    rest -= along * (along.transpose() * rest) / spread.eigenvalues()[k];
+  }
+  return rest;
 }
 
 /// Unit tangents from the chord over two segments either way: waves of two and of four segments do not turn it.

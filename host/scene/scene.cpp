@@ -348,10 +348,6 @@ std::array<std::string, 2> Scene::names_of(const Interaction& interaction) const
   return {name(interaction.between[0]), name(interaction.between[1])};
 }
 
-Place Scene::place(const std::string& pointer) const {
-  return document ? document->place(pointer) : Place{"", pointer, 0, 0};
-}
-
 void check_membrane_nodes(const Scene& scene) {
   std::int64_t nodes = 0;
   for (const auto& cell : scene.cells) {

@@ -14,11 +14,9 @@
 #include <vector>
 
 #include "base/faults.hpp"
+#include "json/document.hpp"
 #include "json/json.hpp"
 
-namespace rouleau::json {
-class Document;
-}  // namespace rouleau::json
 namespace rouleau::scene {
 
 /// A plugin named by the scene. Its parameters stay as written (JSON) until a manifest gives them unit and meaning.
@@ -264,7 +262,9 @@ struct Scene {
   /// Names of what an interaction acts between.
   [[nodiscard]] std::array<std::string, 2> names_of(const Interaction& interaction) const;
   /// Place of a JSON pointer in the scene file, for an Error.
-  [[nodiscard]] Place place(const std::string& pointer) const;
+  [[nodiscard]] Place place(const std::string& pointer) const {
+    return document ? document->place(pointer) : Place{"", pointer, 0, 0};
+  }
 };
 
 /// The schema of a scene.

@@ -251,6 +251,16 @@ class Nothing_is_wrong_with_the_honest_plugins(Case):
                 self.assertEqual(minded, {})
 
 
+class A_check_starts_quickly(Case):
+    """Some thousand of them are started here alone."""
+
+    def test_without_the_libraries_of_a_run(self):
+        program = Path(PROGRAM).parent.parent / "libexec/rouleau/conform-check"
+        loaded = subprocess.run(["ldd", program], capture_output=True, text=True, check=True).stdout
+        self.assertIn("libudunits2", loaded)
+        self.assertNotIn("libhdf5", loaded)  # 34 more, half of the time of a short check
+
+
 class Publishing(Case):
     """Level publish: all other levels without a warning, and reference numbers for all that a model has."""
 
