@@ -156,12 +156,12 @@ void SurfaceSlip::find_slip(int cell, const Surfaces& surfaces, const SlipArrays
     for (int k = first[i]; k < first[i + 1] && smooths; ++k)
       scratch.weight[k] = by_area * (arrays.triangle_area[shared.left[k]] + arrays.triangle_area[shared.right[k]]);
   }
-  apply_polynomial(
+  const double* const smoothed = apply_polynomial(
       {range.count, first.data(), shared.neighbours.entry.data(), shared.own.data(), scratch.weight.data()},
       shared.coefficients, scratch.smoothing);
   for (int i = 0; i < range.count; ++i) {
     const Vec<3> n(normal_[0][range.first + i], normal_[1][range.first + i], normal_[2][range.first + i]);
-    const Eigen::Map<const Vec<3>> slip(&scratch.smoothing.result[4 * i]);
+    const Eigen::Map<const Vec<3>> slip(smoothed + 4 * i);
     const Vec<3> along = slip - slip.dot(n) * n;
     for (int c = 0; c < 3; ++c) slip_[c][range.first + i] = along[c];
   }

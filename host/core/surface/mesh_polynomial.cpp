@@ -9,43 +9,64 @@ namespace rouleau::core {
 
 namespace {
 
+using Four = Pack<double, 4>;
+
 struct Degree {
   NeighbourMatrix matrix;
-  const double* now;
-  double *former, *result;
-  double coefficient;
+  const double *value, *now;
+  double* former;
+  double coefficient, factor;
 };
 
-/// T_k+1 = 2 B T_k - T_k-1, written over T_k-1, or, of the first degree, B T_0; and its share in the result.
+// Nodes around one in a mesh of regular triangles. Their sum is written out, in two parts, since each waits for its last term.
+constexpr int regular = 6;
+
+/// Row i of the product of a matrix and vectors.
+ROULEAU_ALWAYS_INLINE Four product(const NeighbourMatrix& matrix, const double* vectors, int i) {
+  const int first = matrix.first[i], count = matrix.first[i + 1] - first;
+  const double* const weight = matrix.weight + first;
+  const int* const neighbour = matrix.neighbour + first;
+  const auto times = [](double number, const double* vector) {
+    return Four(Four::Vector{number, number, number, number}) * Four::load(vector);
+  };
+  const auto term = [&](int k) { return times(weight[k], vectors + 4 * static_cast<std::size_t>(neighbour[k])); };
+  Four one = times(matrix.own[i], vectors + 4 * static_cast<std::size_t>(i));
+  if (count != regular) {
+    for (int k = 0; k < count; ++k) one += term(k);
+    return one;
+  }
+  Four two = term(0);
+  one += term(1), two += term(2), one += term(3), two += term(4), one += term(5);
+  return one + two;
+}
+
+/// b_k = c_k value + 2 B b_k+1 - b_k+2, written over b_k+2, which of the first that is found so is zero. The last has 1 for 2.
 template <bool first>
 struct NextDegree {
   template <int register_bytes>
   ROULEAU_ALWAYS_INLINE static void run(const Degree* degree) {
-    using Four = Pack<double, 4>;
     const Degree d = *degree;
-    const NeighbourMatrix& b = d.matrix;
-    for (int i = 0; i < b.nodes; ++i) {
-      Four next = Four::broadcast(b.own + i) * Four::load(d.now + 4 * i);
-      for (int k = b.first[i]; k < b.first[i + 1]; ++k)
-        next += Four::broadcast(b.weight + k) * Four::load(d.now + 4 * b.neighbour[k]);
-      if constexpr (!first) next = 2.0 * next - Four::load(d.former + 4 * i);
+    for (int i = 0; i < d.matrix.nodes; ++i) {
+      Four next = d.coefficient * Four::load(d.value + 4 * i) + d.factor * product(d.matrix, d.now, i);
+      if constexpr (!first) next -= Four::load(d.former + 4 * i);
       next.store(d.former + 4 * i);
-      (Four::load(d.result + 4 * i) + d.coefficient * next).store(d.result + 4 * i);
     }
   }
 };
 
 }  // namespace
 
-void apply_polynomial(const NeighbourMatrix& matrix, std::span<const double> coefficients, PolynomialRoom& room) {
-  const std::size_t count = 4 * static_cast<std::size_t>(matrix.nodes);
-  for (std::size_t i = 0; i < count; ++i) room.result[i] = coefficients[0] * room.value[i];
-  double *now = room.value.data(), *former = room.other.data();
-  for (std::size_t k = 1; k < coefficients.size(); ++k) {
-    const Degree degree{matrix, now, former, room.result.data(), coefficients[k]};
-    k == 1 ? run_loop<NextDegree<true>>(degree) : run_loop<NextDegree<false>>(degree);
+const double* apply_polynomial(const NeighbourMatrix& matrix, std::span<const double> coefficients,
+                               PolynomialRoom& room) {
+  double *now = room.one.data(), *former = room.other.data();
+  const std::size_t highest = coefficients.size() - 1, count = 4 * static_cast<std::size_t>(matrix.nodes);
+  for (std::size_t i = 0; i < count; ++i) now[i] = coefficients[highest] * room.value[i];
+  for (std::size_t k = highest; k-- > 0;) {
+    const Degree degree{matrix, room.value.data(), now, former, coefficients[k], k == 0 ? 1.0 : 2.0};
+    k + 1 == highest ? run_loop<NextDegree<true>>(degree) : run_loop<NextDegree<false>>(degree);
     std::swap(now, former);
   }
+  return now;
 }
 
 Mesh::Rings neighbours_of(const Mesh& mesh) {

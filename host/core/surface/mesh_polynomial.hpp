@@ -15,18 +15,19 @@ struct NeighbourMatrix {
   const double *own, *weight;
 };
 
-/// What a polynomial is made of: vectors of the nodes of a cell, four numbers each of which the last is nothing.
+/// Vectors of the nodes of a cell, four numbers each of which the last is nothing: what a polynomial is applied to, and two
+/// of which it makes use.
 struct PolynomialRoom {
-  std::vector<double> value, result;
-  std::vector<double> other;  ///< of one degree, while `value` is of the one beside it
+  std::vector<double> value, one, other;
   void resize(std::size_t nodes) {
-    for (auto* vectors : {&value, &result, &other}) vectors->resize(4 * nodes);
+    for (auto* vectors : {&value, &one, &other}) vectors->resize(4 * nodes);
   }
 };
 
-/// result = sum over k of coefficient[k] T_k(B) value, with Chebyshev's polynomials T_k. B is to have eigenvalues from -1 to 1.
-/// Nothing is left of the value.
-void apply_polynomial(const NeighbourMatrix& matrix, std::span<const double> coefficients, PolynomialRoom& room);
+/// The sum over k of coefficient[k] T_k(B) value, with Chebyshev's polynomials T_k, by Clenshaw's recurrence. It stays in
+/// `room` until that is used again. B is to have eigenvalues from -1 to 1.
+[[nodiscard]] const double* apply_polynomial(const NeighbourMatrix& matrix, std::span<const double> coefficients,
+                                             PolynomialRoom& room);
 
 /// For each node the nodes around it, in the order of Mesh::node_edges().
 Mesh::Rings neighbours_of(const Mesh& mesh);

@@ -165,11 +165,11 @@ void SurfaceFilter::apply(const std::array<double*, 3>& force, const std::array<
     }
     return;
   }
-  apply_polynomial(
+  const double* const filtered = apply_polynomial(
       {static_cast<int>(count), neighbours_.first.data(), neighbours_.entry.data(), own_.data(), weight_.data()},
       series_, room);
   for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t k = 0; k < 3; ++k) force[k][i] = held[k][i] + room.result[4 * i + k];
+    for (std::size_t k = 0; k < 3; ++k) force[k][i] = held[k][i] + filtered[4 * i + k];
   }
 }
 
