@@ -8,6 +8,8 @@
 #include <map>
 #include <optional>
 #include <sstream>
+#include <string_view>
+#include <vector>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
@@ -33,12 +35,25 @@ class Words {
     while (at_ < text_.size() && !is_blank(text_[at_])) ++at_;
     return std::string_view(text_).substr(begin, at_ - begin);
   }
+  /// The words that are left of this line.
+  std::vector<std::string_view> rest() {
+    std::vector<std::string_view> words;
+    for (;;) {
+      while (at_ < text_.size() && text_[at_] != '\n' && is_blank(text_[at_])) ++at_;
+      if (at_ == text_.size() || text_[at_] == '\n' || text_[at_] == '#') return words;
+      words.push_back(next());
+    }
+  }
   template <class T>
   T number(const char* what) {
     const std::string_view word = next();
+    if (word.empty()) refuse(std::string("ends where ") + what + " is expected");
+    return number<T>(word, what);
+  }
+  template <class T>
+  T number(std::string_view word, const char* what) const {
     T value{};
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (word.empty()) refuse(std::string("ends where ") + what + " is expected");
     if (error != std::errc() || end != word.data() + word.size()) {
       refuse(in_quotes(std::string(word)) + " stands where " + what + " is expected");
     }
@@ -98,6 +113,31 @@ TriangleSurface read_off(Words& words) {
     for (int& corner : corners) corner = words.number<int>("a node");
     add_face(surface, corners, words);
     words.rest_of_line();  // colours
+  }
+  return surface;
+}
+
+TriangleSurface read_obj(Words& words) {
+  TriangleSurface surface;
+  for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
+    if (word == "v") {
+      core::Vec<3>& node = surface.nodes.emplace_back();
+      for (int k = 0; k < 3; ++k) node[k] = words.number<double>("a coordinate");
+    }
+    const std::vector<std::string_view> rest = words.rest();  // of other lines: names, normals, colours
+    if (word != "f") continue;
+    std::vector<int> corners;
+    for (const std::string_view corner : rest) {
+      // NODE, NODE/TEXTURE or NODE/TEXTURE/NORMAL. The first node is 1, the last one -1.
+      const auto number = words.number<std::int64_t>(corner.substr(0, corner.find('/')), "a node");
+      const auto count = static_cast<std::int64_t>(surface.nodes.size());
+      if (number == 0 || std::abs(number) > count) {
+        words.refuse("a face has the node " + std::to_string(number) + ", and there are " + std::to_string(count) +
+                     " before it");
+      }
+      corners.push_back(static_cast<int>(number > 0 ? number - 1 : count + number));
+    }
+    add_face(surface, corners, words);
   }
   return surface;
 }
@@ -274,7 +314,9 @@ TriangleSurface read_mesh(const std::filesystem::path& file) {
   Words words(text.str(), file.string());
   const std::string begin = text.str().substr(0, 200);
   TriangleSurface surface;
-  if (begin.starts_with("OFF")) {
+  if (file.extension() == ".obj" || file.extension() == ".OBJ") {
+    surface = read_obj(words);
+  } else if (begin.starts_with("OFF")) {
     surface = read_off(words);
   } else if (begin.starts_with("ply")) {
     surface = read_ply(words);
@@ -283,7 +325,7 @@ TriangleSurface read_mesh(const std::filesystem::path& file) {
   } else if (text.str().size() >= 84) {
     surface = read_stl_binary(words);
   } else {
-    words.refuse("is no OFF, PLY or STL file");
+    words.refuse("is no OFF, PLY or STL file, and its name does not end in .obj");
   }
   for (std::size_t i = 0; i < surface.nodes.size(); ++i) {
     if (!surface.nodes[i].allFinite())

@@ -6,6 +6,7 @@ usage: check_three_dimensions.py ROULEAU SCENE_OF_A_DUCT [--no-whole-runs]
 import copy
 import csv
 import json
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -527,8 +528,14 @@ class Three_dimensions_refuse(Case):
                      "layers settle to in a duct")
 
     def test_an_operator_whose_manifest_names_d2q9_alone(self):
-        self.refused(changed(SPACE, fluid__collision={"model": "central-moment"}), "/fluid/collision/model",
-                     "D3Q19", "bgk, mrt, regularised, trt")
+        shipped = PROGRAM.parent.parent / "lib/rouleau/plugins/collision/bgk"
+        manifest = json.loads((shipped / "bgk.json").read_text())
+        del manifest["lattices"]
+        folder = self.folder / "plane"
+        shutil.copytree(shipped, folder)
+        (folder / "bgk.json").write_text(json.dumps({**manifest, "id": "plane"}))
+        self.refused(changed(SPACE, fluid__collision={"model": "plane"}, plugin_dirs=["plane"]), "/fluid/collision/model",
+                     "D3Q19", "bgk, central-moment, mrt, regularised, trt")
 
 
 if __name__ == "__main__":

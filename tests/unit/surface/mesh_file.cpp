@@ -19,6 +19,8 @@ namespace {
 class File {
  public:
   ~File() { std::filesystem::remove(path_); }
+  explicit File(const std::string& ending = "")
+      : path_(std::filesystem::temp_directory_path() / ("rouleau-mesh-" + std::to_string(::getpid()) + ending)) {}
   shape::TriangleSurface read(const std::string& text) const {
     std::ofstream(path_, std::ios::binary) << text;
     return shape::read_mesh(path_);
@@ -33,7 +35,7 @@ class File {
   }
 
  private:
-  std::filesystem::path path_ = std::filesystem::temp_directory_path() / ("rouleau-mesh-" + std::to_string(::getpid()));
+  std::filesystem::path path_;
 };
 
 void put(std::ostream& out, const auto& value) { out.write(reinterpret_cast<const char*>(&value), sizeof value); }
@@ -44,6 +46,20 @@ std::string off_of(const shape::TriangleSurface& s) {
   out << "OFF\n# a comment\n" << s.nodes.size() << ' ' << s.triangles.size() << " 0\n";
   for (const Vec<3>& node : s.nodes) out << node.x() << ' ' << node.y() << ' ' << node.z() << '\n';
   for (const auto& t : s.triangles) out << "3 " << t[0] << ' ' << t[1] << ' ' << t[2] << " 255 0 0\n";
+  return out.str();
+}
+
+std::string obj_of(const shape::TriangleSurface& s, bool from_the_end) {
+  std::ostringstream out;
+  out.precision(17);
+  out << "# a comment\r\nmtllib none.mtl\r\no sphere\r\n";
+  for (const Vec<3>& node : s.nodes)
+    out << "v " << node.x() << ' ' << node.y() << ' ' << node.z() << " 1.0\r\nvn 0 0 1\r\n";
+  const int before = from_the_end ? -static_cast<int>(s.nodes.size()) : 1;
+  for (const auto& t : s.triangles) {
+    out << "f " << t[0] + before << ' ' << t[1] + before << "//" << t[1] + before << ' ' << t[2] + before << "/7/"
+        << t[2] + before << " # a face\r\n";
+  }
   return out.str();
 }
 
@@ -109,15 +125,17 @@ std::string stl_of(const shape::TriangleSurface& s, bool binary) {
 
 }  // namespace
 
-TEST_CASE("a surface is the same from OFF, PLY and STL, in text and in binary") {
+TEST_CASE("a surface is the same from OBJ, OFF, PLY and STL, in text and in binary") {
   const File file;
   const shape::TriangleSurface sphere = shape::unit_sphere(3);
-  for (const std::string& text : {off_of(sphere), ply_of(sphere, false), ply_of(sphere, true)}) {
-    const shape::TriangleSurface read = file.read(text);
+  const auto is_the_sphere = [&](const shape::TriangleSurface& read) {
     CHECK(read.triangles == sphere.triangles);
     REQUIRE(read.nodes.size() == sphere.nodes.size());
     for (std::size_t i = 0; i < read.nodes.size(); ++i) CHECK(read.nodes[i] == sphere.nodes[i]);
-  }
+  };
+  for (const std::string& text : {off_of(sphere), ply_of(sphere, false), ply_of(sphere, true)})
+    is_the_sphere(file.read(text));
+  for (const bool from_the_end : {false, true}) is_the_sphere(File(".OBJ").read(obj_of(sphere, from_the_end)));
   for (const std::string& text : {stl_of(sphere, false), stl_of(sphere, true)}) {
     const shape::TriangleSurface read = file.read(text);
     CHECK(read.nodes.size() == sphere.nodes.size());
@@ -128,6 +146,12 @@ TEST_CASE("a surface is the same from OFF, PLY and STL, in text and in binary") 
       file.read(
               "OFF\n8 6 12\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n4 0 3 2 1\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n"
               "4 2 3 7 6\n4 3 0 4 7\n")
+          .triangles.size() == 12);
+  CHECK(
+      File(".obj")
+          .read(
+              "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\nf 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\n"
+              "f 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n")
           .triangles.size() == 12);
 }
 
@@ -148,6 +172,19 @@ TEST_CASE("a file that holds no closed surface is refused with its place and the
   CHECK_THAT(file.refusal(changed("3 0 1 2", "3 0 2 1")).what(), Contains("same direction"));
   CHECK_THAT(file.refusal(changed("3 0 1 2", "3 0 1 999")).what(), Contains("has the node 999"));
   CHECK_THAT(file.refusal("nothing of the kind").what(), Contains("no OFF, PLY or STL"));
+  const File obj(".obj");
+  const auto refused_face = [&](const std::string& face) {
+    return obj.refusal("v 0 0 0\nv 1 0 0\n\nf " + face + "\n");
+  };
+  CHECK_THAT(refused_face("1 2 3").what(), Contains("has the node 3, and there are 2 before it"));
+  CHECK_THAT(refused_face("1 2 -3").what(), Contains("has the node -3"));
+  CHECK_THAT(refused_face("1 2 0").what(), Contains("has the node 0"));
+  CHECK_THAT(refused_face("1 2 x/1").what(), Contains("\"x\" stands where a node is expected"));
+  CHECK_THAT(refused_face("1 2 99999999999999999999").what(), Contains("stands where a node is expected"));
+  CHECK_THAT(refused_face("1 2").what(), Contains("a face has 2 corners"));
+  CHECK(refused_face("1 2 3").place().line == 4);
+  CHECK_THAT(obj.refusal("v 0 0").what(), Contains("ends where a coordinate"));
+  CHECK_THAT(obj.refusal("").what(), Contains("triangles"));
   const std::string ply = ply_of(sphere, true), stl = stl_of(sphere, true);
   CHECK_THAT(file.refusal(ply.substr(0, ply.size() - 9)).what(), Contains("ends within its data"));
   CHECK_THAT(file.refusal(ply.substr(0, 45)).what(), Contains("ends within its header"));
