@@ -322,7 +322,7 @@ TriangleSurface read_mesh(const std::filesystem::path& file) {
     surface = read_ply(words);
   } else if (begin.starts_with("solid") && begin.find("facet") != std::string::npos) {
     surface = read_stl_text(words);
-  } else if (text.str().size() >= 84) {
+  } else if (text.str().find('\0') != std::string::npos) {  // no text
     surface = read_stl_binary(words);
   } else {
     words.refuse("is no OFF, PLY or STL file, and its name does not end in .obj");

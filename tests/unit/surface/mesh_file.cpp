@@ -172,6 +172,7 @@ TEST_CASE("a file that holds no closed surface is refused with its place and the
   CHECK_THAT(file.refusal(changed("3 0 1 2", "3 0 2 1")).what(), Contains("same direction"));
   CHECK_THAT(file.refusal(changed("3 0 1 2", "3 0 1 999")).what(), Contains("has the node 999"));
   CHECK_THAT(file.refusal("nothing of the kind").what(), Contains("no OFF, PLY or STL"));
+  CHECK_THAT(file.refusal(obj_of(sphere, false)).what(), Contains("does not end in .obj"));
   const File obj(".obj");
   const auto refused_face = [&](const std::string& face) {
     return obj.refusal("v 0 0 0\nv 1 0 0\n\nf " + face + "\n");
