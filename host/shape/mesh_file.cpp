@@ -308,11 +308,11 @@ TriangleSurface read_ply(Words& words) {
 
 TriangleSurface read_mesh(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  if (stream) text << stream.rdbuf();
+  std::ostringstream content;
+  if (stream) content << stream.rdbuf();
   if (!stream || stream.bad()) throw Error(Cause::input_output, {file.string(), {}, 0, 0}, "cannot be read");
-  Words words(text.str(), file.string());
-  const std::string begin = text.str().substr(0, 200);
+  const std::string text = content.str(), begin = text.substr(0, 200);
+  Words words(text, file.string());
   TriangleSurface surface;
   if (file.extension() == ".obj" || file.extension() == ".OBJ") {
     surface = read_obj(words);
@@ -322,7 +322,7 @@ TriangleSurface read_mesh(const std::filesystem::path& file) {
     surface = read_ply(words);
   } else if (begin.starts_with("solid") && begin.find("facet") != std::string::npos) {
     surface = read_stl_text(words);
-  } else if (text.str().find('\0') != std::string::npos) {  // no text
+  } else if (text.find('\0') != std::string::npos) {  // no text
     surface = read_stl_binary(words);
   } else {
     words.refuse("is no OFF, PLY or STL file, and its name does not end in .obj");

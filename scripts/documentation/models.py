@@ -1,6 +1,7 @@
-"""The page of every model that is shipped, from the manifests."""
+"""The page of every model that is shipped, from the manifests and from what the program says."""
 
 import json
+import subprocess
 
 HEAD = """# Every model that is shipped
 
@@ -51,7 +52,13 @@ def claims(manifest):
     return ", ".join(said)
 
 
-def section(manifest, path):
+def dimensions_of(manifest, program):
+    """Whether a manifest gives them or leaves them to the host, the program says them."""
+    said = subprocess.run([program, "plugins", manifest["id"], "--json"], capture_output=True, text=True, check=True, timeout=60)
+    return json.loads(said.stdout)["dimensions"]
+
+
+def section(manifest, path, program):
     text = f"\n### {manifest['id']}\n\n{manifest['title']}. Version {manifest['version']}.\n\n"
     if manifest.get("parameters"):
         text += "| parameter | role | unit | default | limits | usual | meaning |\n|---|---|---|---|---|---|---|\n"
@@ -63,8 +70,7 @@ def section(manifest, path):
         for state in manifest["state"]:
             cells = [f"`{state['name']}`", state["unit"], number(state.get("initial", 0)), state.get("doc", "")]
             text += f"| {' | '.join(cells)} |\n"
-    dimensions = manifest.get("dimensions", [2])
-    text += f"\n- works in {' and '.join(map(str, dimensions))} dimensions\n"
+    text += f"\n- works in {' and '.join(map(str, dimensions_of(manifest, program)))} dimensions\n"
     text += f"- needs {names(manifest['needs'])}\n- gives {names(manifest['gives'])}\n"
     if "in_3d" in manifest:
         text += f"- in three dimensions needs {names(manifest['in_3d']['needs'])}\n"
@@ -84,7 +90,7 @@ def section(manifest, path):
     return text + f"- manifest: [{path}](../../{path})\n"
 
 
-def page(folder):
+def page(folder, program):
     manifests = []
     for path in sorted(folder.glob("**/*.json")):
         manifest = json.loads(path.read_text())
@@ -95,5 +101,5 @@ def page(folder):
         text += f"\n## {title}\n\n{place}\n"
         for manifest, path in sorted(manifests, key=lambda pair: pair[0]["id"]):
             if manifest["kind"] == kind:
-                text += section(manifest, path)
+                text += section(manifest, path, program)
     return text

@@ -255,7 +255,7 @@ class A_check_starts_quickly(Case):
     """Some thousand of them are started here alone."""
 
     def test_without_the_libraries_of_a_run(self):
-        program = Path(PROGRAM).parent.parent / "libexec/rouleau/conform-check"
+        program = PROGRAM.parent.parent / "libexec/rouleau/conform-check"
         loaded = subprocess.run(["ldd", program], capture_output=True, text=True, check=True).stdout
         self.assertIn("libudunits2", loaded)
         self.assertNotIn("libhdf5", loaded)  # 34 more, half of the time of a short check

@@ -67,17 +67,17 @@ struct CentralMoment {
     S normal[dimension], all[plane_count];  // sums of f c_a c_a, and of all four velocities of a plane
     for (int a = 0; a < dimension; ++a) normal[a] = f[along[a]] + f[Node::opposite[along[a]]];
     for (int k = 0; k < plane_count; ++k) {
-      const int q = planes[k].first;
+      const auto [x, y, q] = planes[k];
       all[k] = (f[q] + f[q + 2]) + (f[q + 1] + f[q + 3]);
-      normal[planes[k].x] = normal[planes[k].x] + all[k];
-      normal[planes[k].y] = normal[planes[k].y] + all[k];
+      normal[x] = normal[x] + all[k];
+      normal[y] = normal[y] + all[k];
     }
     Moments<S> towards[plane_count], left[plane_count];  // f_eq + S/2, and what is left of n
     for (int k = 0; k < plane_count; ++k) {
-      const int q = planes[k].first;
-      const S u = node.velocity[planes[k].x], v = node.velocity[planes[k].y];
+      const auto [x, y, q] = planes[k];
+      const S u = node.velocity[x], v = node.velocity[y];
       S g = none, h = none;
-      if constexpr (Node::forced) g = 0.5 * node.force[planes[k].x], h = 0.5 * node.force[planes[k].y];
+      if constexpr (Node::forced) g = 0.5 * node.force[x], h = 0.5 * node.force[y];
       Moments<S> equilibrium{p, none, p, v * (1.0 / 3.0), u * (1.0 / 3.0), p * (1.0 / 3.0)};
       Moments<S> source{none, none, none, h * (1.0 / 3.0), g * (1.0 / 3.0), none};
       if constexpr (Node::inertia) {
@@ -90,15 +90,15 @@ struct CentralMoment {
                   ug, u * h + v * g, vh, uu * h + ug * v, vv * g + vh * u, (ug + vh) * (1.0 / 3.0) + ug * vv + vh * uu};
         }
         if constexpr (dimension == 3) {  // what the second order of D3Q19's equilibrium has besides
-          const S w = node.velocity[3 - planes[k].x - planes[k].y];
+          const int z = 3 - x - y;
+          const S w = node.velocity[z];
           equilibrium.xxyy = equilibrium.xxyy - (1.0 / 6.0) * w * w;
-          if constexpr (Node::forced)
-            source.xxyy = source.xxyy - (1.0 / 6.0) * w * node.force[3 - planes[k].x - planes[k].y];
+          if constexpr (Node::forced) source.xxyy = source.xxyy - (1.0 / 6.0) * w * node.force[z];
         }
       }
-      const Moments<S> before{normal[planes[k].x],
+      const Moments<S> before{normal[x],
                               (f[q] + f[q + 2]) - (f[q + 1] + f[q + 3]),
-                              normal[planes[k].y],
+                              normal[y],
                               (f[q] - f[q + 2]) + (f[q + 1] - f[q + 3]),
                               (f[q] - f[q + 2]) - (f[q + 1] - f[q + 3]),
                               all[k]};
