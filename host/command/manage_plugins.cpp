@@ -84,7 +84,7 @@ class Prepared {
   [[nodiscard]] const fs::path& place() const { return place_; }
 
  private:
-  [[noreturn]] void fail(int error) const { files::fail_file(place_, "cannot be installed", error); }
+  [[noreturn]] void fail(int error) const { fail_file(place_, "cannot be installed", error); }
 
   fs::path place_, partial_;
 };
@@ -119,7 +119,7 @@ void install_plugins(const fs::path& folder, const plugin::Catalog& catalog, boo
   require_conformance(manifests);
   std::error_code error;
   fs::create_directories(user_folder, error);
-  if (error) files::fail_file(user_folder, "cannot be made", error.value());
+  if (error) fail_file(user_folder, "cannot be made", error.value());
   std::vector<std::unique_ptr<Prepared>> prepared;
   prepared.reserve(manifests.size());
   for (const plugin::Manifest& manifest : manifests) {

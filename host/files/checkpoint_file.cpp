@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cerrno>
-#include <fstream>
 #include <optional>
 #include <sstream>
 #include <string_view>
@@ -13,9 +12,10 @@
 #include <type_traits>
 
 #include "base/error.hpp"
+#include "base/input_file.hpp"
 #include "checksum.hpp"
 #include "file.hpp"
-#include "hdf5_file.hpp"
+#include "hdf5/hdf5_file.hpp"
 
 namespace rouleau::files {
 
@@ -44,11 +44,8 @@ std::uintmax_t size_of(const std::filesystem::path& file) {
 
 /// Throws unless the file is what its head says.
 void verify(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream.is_open()) fail_reading(file, errno);
   std::array<char, head_bytes> begin{};
-  stream.read(begin.data(), begin.size());
-  if (stream.gcount() != static_cast<std::streamsize>(begin.size())) damaged(file, "it ends within its head");
+  if (InputFile(file).read(begin.data(), begin.size(), 0) != begin.size()) damaged(file, "it ends within its head");
   std::istringstream lines(std::string(begin.data(), begin.size()));
   std::string first, word, name, checksum;
   std::uintmax_t bytes = 0;
@@ -79,9 +76,9 @@ std::filesystem::path previous_checkpoint_file(const std::filesystem::path& dire
 }
 
 struct CheckpointWriter::File {
-  explicit File(const std::filesystem::path& file) : hdf5(file, Hdf5File::Mode::create, head_bytes) {}
+  explicit File(const std::filesystem::path& file) : hdf5(file, hdf5::File::Mode::create, head_bytes) {}
   template <class T>
-  Hdf5Rows begin(const std::string& path, const std::vector<hsize_t>& shape) {
+  hdf5::Rows begin(const std::string& path, const std::vector<hsize_t>& shape) {
     const std::string group = parent_group(path);
     if (!group.empty() && !hdf5.has(group)) hdf5.make_group(group);
     const bool f64 = std::is_same_v<T, double>;
@@ -90,15 +87,15 @@ struct CheckpointWriter::File {
   }
   template <class T>
   void write(const std::string& path, const std::vector<hsize_t>& shape, const T* values) {
-    Hdf5Rows array = begin<T>(path, shape);
+    hdf5::Rows array = begin<T>(path, shape);
     if (!array.full()) array.append(values, shape.front());
   }
   void write_bytes(const std::string& path, const void* data, std::size_t count) {
     hdf5.write(path, {count}, H5T_STD_U8LE, H5T_NATIVE_UINT8, data, "1");
   }
-  Hdf5File hdf5;
-  std::optional<Hdf5Rows> open;  ///< that append() adds to
-  std::size_t width = 0;         ///< its columns
+  hdf5::File hdf5;
+  std::optional<hdf5::Rows> open;  ///< that append() adds to
+  std::size_t width = 0;           ///< its columns
 };
 
 CheckpointWriter::CheckpointWriter(std::filesystem::path directory)
@@ -171,7 +168,7 @@ void CheckpointWriter::take_place() {
 }
 
 struct CheckpointReader::File {
-  explicit File(const std::filesystem::path& file) : hdf5(file, Hdf5File::Mode::read) {}
+  explicit File(const std::filesystem::path& file) : hdf5(file, hdf5::File::Mode::read) {}
   void require(const std::filesystem::path& file, const std::string& path, std::size_t count) const {
     if (hdf5.elements(path) != count)
       damaged(file,
@@ -186,7 +183,7 @@ struct CheckpointReader::File {
       damaged(file, path + " has another shape than the lattice");
     hdf5.read(path, wanted, rows_first(begin), rows_first(end), values);
   }
-  Hdf5File hdf5;
+  hdf5::File hdf5;
 };
 
 CheckpointReader::CheckpointReader(const std::filesystem::path& file) : path_(file) {

@@ -3,14 +3,12 @@
 #include <xxhash.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
-#include <cstdio>
 #include <new>
 #include <stdexcept>
 #include <vector>
 
-#include "file.hpp"
+#include "base/input_file.hpp"
 
 namespace rouleau::files {
 
@@ -26,20 +24,15 @@ void Checksum::update(std::string_view bytes) { XXH3_64bits_update(state_.get(),
 std::uint64_t Checksum::value() const { return XXH3_64bits_digest(state_.get()); }
 
 Checksum checksum_of(const std::filesystem::path& file, std::uintmax_t first, std::uintmax_t end) {
-  errno = 0;
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"), std::fclose);
-  const auto fail = [&] { fail_reading(file, errno != 0 ? errno : EIO); };
-  if (!stream || ::fseeko(stream.get(), static_cast<off_t>(first), SEEK_SET) != 0) fail();
+  const InputFile input(file);
   Checksum checksum;
   std::vector<char> buffer(std::size_t{1} << 18);
   for (std::uintmax_t at = first; at < end;) {
     const auto wanted = static_cast<std::size_t>(std::min<std::uintmax_t>(buffer.size(), end - at));
-    const std::size_t read = std::fread(buffer.data(), 1, wanted, stream.get());
+    const std::size_t read = input.read(buffer.data(), wanted, at);
     checksum.update({buffer.data(), read});
     at += read;
-    if (read == wanted) continue;
-    if (std::ferror(stream.get()) != 0) fail();
-    break;
+    if (read < wanted) break;
   }
   return checksum;
 }

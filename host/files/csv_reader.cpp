@@ -10,7 +10,7 @@
 
 namespace rouleau::files {
 
-StoredTable::StoredTable(const std::filesystem::path& file) : file_(file), text_(read_text(file)) {
+StoredTable::StoredTable(const std::filesystem::path& file) : file_(file), text_((require_own(file), read_text(file))) {
   // Entries are moved together within the text that has been read.
   std::vector<std::size_t> row;  // ends of its entries
   std::size_t end = 0;

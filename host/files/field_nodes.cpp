@@ -6,7 +6,7 @@
 
 namespace rouleau::files {
 
-FieldNodes::FieldNodes(const Hdf5File& file, const std::string& dataset) {
+FieldNodes::FieldNodes(const hdf5::File& file, const std::string& dataset) {
   const auto shape = file.shape(dataset);
   const std::size_t space = file.has_attribute("/", "periodic_z") ? 1 : 0;
   if (space == 1) nz = shape.at(0);
@@ -27,12 +27,12 @@ FieldNodes::Box FieldNodes::box() const {
   return {{first[0] - spacing[0] / 2, first[1] - spacing[1] / 2}, {spacing[0] * double(nx), spacing[1] * double(ny)}};
 }
 
-std::vector<double> FieldNodes::rows(const Hdf5File& file, const std::string& dataset, std::size_t begin,
+std::vector<double> FieldNodes::rows(const hdf5::File& file, const std::string& dataset, std::size_t begin,
                                      std::size_t end) const {
   return values(file, dataset, {nz / 2, nz / 2 + 1}, {begin, end});
 }
 
-std::vector<double> FieldNodes::values(const Hdf5File& file, const std::string& dataset, Range layers,
+std::vector<double> FieldNodes::values(const hdf5::File& file, const std::string& dataset, Range layers,
                                        Range rows) const {
   static_cast<void>(file.elements(dataset));  // refuses more than the file can hold
   const auto shape = file.shape(dataset);

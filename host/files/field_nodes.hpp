@@ -6,14 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "hdf5_file.hpp"
+#include "hdf5/hdf5_file.hpp"
 
 namespace rouleau::files {
 
 /// The nodes that fields were written at: the lattice, or where the scene says so a region of it, or one in so many.
 struct FieldNodes {
   /// Of a field of a frames.h5. Throws Error(input_output).
-  FieldNodes(const Hdf5File& file, const std::string& dataset);
+  FieldNodes(const hdf5::File& file, const std::string& dataset);
   /// Lower left corner and size of what the nodes stand for, m.
   struct Box {
     std::array<double, 2> first, size;
@@ -21,14 +21,14 @@ struct FieldNodes {
   [[nodiscard]] Box box() const;
   /// A field's values on rows [begin, end) of these nodes, a vector's components beside each other; in three dimensions of
   /// the layer in the middle of z. Throws Error(input_output), also where the field is one of other nodes.
-  [[nodiscard]] std::vector<double> rows(const Hdf5File& file, const std::string& dataset, std::size_t begin,
+  [[nodiscard]] std::vector<double> rows(const hdf5::File& file, const std::string& dataset, std::size_t begin,
                                          std::size_t end) const;
   /// Of all rows.
-  [[nodiscard]] std::vector<double> section(const Hdf5File& file, const std::string& dataset) const {
+  [[nodiscard]] std::vector<double> section(const hdf5::File& file, const std::string& dataset) const {
     return rows(file, dataset, 0, ny);
   }
   /// Of all rows of all layers.
-  [[nodiscard]] std::vector<double> all(const Hdf5File& file, const std::string& dataset) const {
+  [[nodiscard]] std::vector<double> all(const hdf5::File& file, const std::string& dataset) const {
     return values(file, dataset, {0, nz}, {0, ny});
   }
   std::size_t nx = 0, ny = 0;
@@ -38,7 +38,7 @@ struct FieldNodes {
 
  private:
   using Range = std::array<std::size_t, 2>;
-  [[nodiscard]] std::vector<double> values(const Hdf5File& file, const std::string& dataset, Range layers,
+  [[nodiscard]] std::vector<double> values(const hdf5::File& file, const std::string& dataset, Range layers,
                                            Range rows) const;
 };
 

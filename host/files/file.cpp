@@ -1,44 +1,20 @@
 #include "file.hpp"
+
 #include "base/error.hpp"
+#include "base/input_file.hpp"
+#include "base/text.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
-#include <fstream>
 #include <system_error>
 #include <utility>
 
 namespace rouleau::files {
 
 namespace {
-
-Remedy remedy(int error) {
-  switch (error) {
-    case ENOSPC:
-    case EDQUOT:
-      return {"free some space there, or write to another disk", {Way::elsewhere}};
-    case EFBIG:
-      return {"raise the file size limit (ulimit -f), or write fewer outputs"};
-    case EACCES:
-    case EPERM:
-    case EROFS:
-      return {"choose a directory you may write to; a run that is to go on must be copied there first",
-              {Way::elsewhere}};
-    case ENOENT:
-    case ENOTDIR:
-      return {"check that every part of the path before the last is a directory"};
-    case ELOOP:
-      return {"it is a link, and what it leads to is not this run's to change: remove the link"};
-    case EMFILE:
-    case ENFILE:
-      return {"close other files, or raise the limit (ulimit -n)"};
-    default:
-      return {"check the disk, or write to another one", {Way::elsewhere}};
-  }
-}
 
 /// A file descriptor that closes itself; close() reports what the destructor cannot.
 class Descriptor {
@@ -70,31 +46,16 @@ bool write_all(int descriptor, std::string_view text) {
 
 }  // namespace
 
-void fail_file(const std::filesystem::path& file, const std::string& what, int error) {
-  throw Error(Cause::input_output, Place{file.string()}, what + ": " + std::generic_category().message(error),
-              remedy(error));
-}
+std::string read_text(const std::filesystem::path& file) { return read_input(file, largest_table); }
 
-void fail_reading(const std::filesystem::path& file, int error) {
-  throw Error(Cause::input_output, Place{file.string()}, "cannot be read: " + std::generic_category().message(error),
-              {error == ENOENT   ? "bring the file back, or check the path"
-               : error == EACCES ? "see to it that you may read it (ls -l)"
-                                 : ""});
-}
-
-std::string read_text(const std::filesystem::path& file) {
-  errno = 0;
-  std::ifstream stream(file, std::ios::binary);
-  std::string text;
-  std::array<char, std::size_t{1} << 16> piece{};
-  while (stream.read(piece.data(), piece.size()) || stream.gcount() > 0) {
-    text.append(piece.data(), static_cast<std::size_t>(stream.gcount()));
-  }
-  if (!stream.is_open() || stream.bad()) {
-    const int error = errno;
-    fail_reading(file, error != 0 ? error : EIO);
-  }
-  return text;
+void require_own(const std::filesystem::path& file) {
+  std::error_code gone;
+  const auto real = std::filesystem::canonical(file, gone);
+  const auto folder = std::filesystem::canonical(file.has_parent_path() ? file.parent_path() : ".", gone);
+  if (gone || real.parent_path() == folder) return;  // what is not there is missed by whoever reads it
+  throw Error(Cause::input_output, Place{file.string()},
+              "is a link to " + in_quotes(real.string()) + ", and a run's files lie in its own directory",
+              {"put a copy of that file in the link's place, if it belongs to the run"});
 }
 
 void write_file(const std::filesystem::path& file, const std::string& content, Kept kept) {

@@ -1,25 +1,27 @@
 // Files that grow or are replaced, with every write checked and every failure worded for the user.
 #pragma once
 
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <string_view>
 
+#include "base/file_fault.hpp"
 #include "checksum.hpp"
 
 namespace rouleau::files {
 
-/// Throws Error(input_output): the path, what was tried ("cannot be written"), the system's words for `error` (an
-/// errno) and what the user can do about it.
-[[noreturn]] void fail_file(const std::filesystem::path& file, const std::string& what, int error);
+/// The most that is read of a table or a log, bytes.
+inline constexpr std::uintmax_t largest_table = std::uintmax_t{2} << 30U;
 
-/// The same for a file that cannot be read.
-[[noreturn]] void fail_reading(const std::filesystem::path& file, int error);
-
-/// Whole content of a file; throws Error(input_output).
+/// Whole content of a file; throws what InputFile does.
 std::string read_text(const std::filesystem::path& file);
+
+/// Throws Error(input_output) for a link that leads out of the file's folder: whoever gives a run away could show with it
+/// what its reader keeps elsewhere.
+void require_own(const std::filesystem::path& file);
 
 /// Whether a file must be on the disk when it is closed, whatever happens to the machine, or is soon made again.
 enum class Kept { on_disk, for_now };

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "base/error.hpp"
+#include "file.hpp"
 #include "middle_sections.hpp"
 #include "units/lattice_units.hpp"
 
@@ -24,7 +25,7 @@ bool equal_cells(const std::vector<int>& first) {
 FrameWriter::FrameWriter(std::filesystem::path file, const scene::Scene& scene)
     : file_(std::move(file)), title_(scene.title), domain_(scene.domain), storage_(scene.output.field_storage) {}
 
-void FrameWriter::write_header(Hdf5File& target) const {
+void FrameWriter::write_header(hdf5::File& target) const {
   target.attribute("/", "format", "rouleau frames 1");
   target.attribute("/", "title", title_);
   std::vector<double> size{domain_.size.x(), domain_.size.y()}, nodes(domain_.nodes.begin(), domain_.nodes.end());
@@ -44,7 +45,7 @@ void FrameWriter::write_header(Hdf5File& target) const {
 }
 
 void FrameWriter::open_segment() {
-  open_.emplace(segment(saved_.segments.size() + 1), Hdf5File::Mode::create);
+  open_.emplace(segment(saved_.segments.size() + 1), hdf5::File::Mode::create);
   write_header(*open_);
   topology_here_ = false;
 }
@@ -74,7 +75,7 @@ constexpr std::size_t nodes_at_once = 1 << 20;
 /// A dataset of whole numbers that are made some at a time.
 class NumberRows {
  public:
-  NumberRows(Hdf5File& file, const std::string& path, const std::vector<hsize_t>& shape)
+  NumberRows(hdf5::File& file, const std::string& path, const std::vector<hsize_t>& shape)
       : columns_(shape.size() > 1 ? shape[1] : 1),
         rows_(file.begin(path, shape, false, H5T_STD_I32LE, H5T_NATIVE_INT, "1")) {}
   /// Where the next ones go; write() looks whether they are many.
@@ -87,7 +88,7 @@ class NumberRows {
 
  private:
   hsize_t columns_;
-  Hdf5Rows rows_;
+  hdf5::Rows rows_;
   std::vector<int> waiting_;
 };
 
@@ -110,7 +111,7 @@ void FrameWriter::write_membranes(const std::string& frame, const observe::Snaps
     if (components > 1) shape.push_back(components);
     std::string path = group;
     path.append("/").append(field.name);
-    Hdf5Rows rows = open_->begin(path, shape, false, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, field.unit);
+    hdf5::Rows rows = open_->begin(path, shape, false, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, field.unit);
     field.give([&](const std::vector<double>& values) { rows.append(values.data(), values.size() / components); });
   }
   std::vector<int> aggregate(record.cells);
@@ -186,8 +187,8 @@ void FrameWriter::write_fields(const std::string& frame, const observe::FieldSna
     std::vector<hsize_t> shape{static_cast<hsize_t>(snapshot.ny), static_cast<hsize_t>(snapshot.nx)};
     if (layers) shape.insert(shape.begin(), static_cast<hsize_t>(snapshot.nz));
     if (field.components > 1) shape.push_back(static_cast<hsize_t>(field.components));
-    Hdf5Rows rows = open_->begin(group + "/" + field.name, shape, layers, f64 ? H5T_IEEE_F64LE : H5T_IEEE_F32LE,
-                                 f64 ? H5T_NATIVE_DOUBLE : H5T_NATIVE_FLOAT, field.unit, storage_.compression);
+    hdf5::Rows rows = open_->begin(group + "/" + field.name, shape, layers, f64 ? H5T_IEEE_F64LE : H5T_IEEE_F32LE,
+                                   f64 ? H5T_NATIVE_DOUBLE : H5T_NATIVE_FLOAT, field.unit, storage_.compression);
     const std::size_t numbers = static_cast<std::size_t>(snapshot.nx) * static_cast<std::size_t>(field.components);
     field.give([&](const std::vector<double>& values) {
       if (!f64) single.assign(values.begin(), values.end());
@@ -213,17 +214,18 @@ FieldGrid FrameWriter::field_grid() const {
 
 std::string FrameWriter::xdmf() const { return xdmf_text(frames_, file_.filename().string(), field_grid()); }
 
-Hdf5File open_frames(const std::filesystem::path& file) {
+hdf5::File open_frames(const std::filesystem::path& file) {
   const auto segment = [&](std::size_t number) {
     return std::filesystem::absolute(file).parent_path() / segment_name(number);
   };
+  require_own(file);
   if (std::filesystem::exists(file) || !std::filesystem::exists(segment(1)))
-    return Hdf5File(file, Hdf5File::Mode::read);
-  Hdf5File all(file, Hdf5File::Mode::memory);
+    return hdf5::File(file, hdf5::File::Mode::read);
+  hdf5::File all(file, hdf5::File::Mode::memory);
   all.make_group("/frames");
   for (std::size_t number = 1; std::filesystem::exists(segment(number)); ++number) {
     try {
-      const Hdf5File part(segment(number), Hdf5File::Mode::read);
+      const hdf5::File part(segment(number), hdf5::File::Mode::read);
       if (number == 1) all.copy_attributes(part, "/");
       for (const std::string& frame : part.names("/frames")) all.link_to(segment(number), "/frames/" + frame);
     } catch (const Error&) {

@@ -29,7 +29,7 @@
 #include <vector>
 
 #include "frame_segments.hpp"
-#include "hdf5_file.hpp"
+#include "hdf5/hdf5_file.hpp"
 #include "observe/snapshot.hpp"
 #include "scene/scene.hpp"
 
@@ -81,7 +81,7 @@ class FrameWriter {
     return file_.parent_path() / segment_name(number);
   }
   void open_segment();
-  void write_header(Hdf5File& target) const;
+  void write_header(hdf5::File& target) const;
   void write_membranes(const std::string& frame, const observe::Snapshot& snapshot, FrameRecord& record);
   void write_topology(const observe::MembraneSnapshot& membranes);
   /// A number of each node, the same for all of a cell.
@@ -96,8 +96,8 @@ class FrameWriter {
   std::string title_;
   scene::Domain domain_;
   scene::FieldStorage storage_;
-  FramesSaved saved_;             ///< every sealed segment
-  std::optional<Hdf5File> open_;  ///< the segment that is being written
+  FramesSaved saved_;               ///< every sealed segment
+  std::optional<hdf5::File> open_;  ///< the segment that is being written
   std::vector<FrameRecord> frames_;
   std::vector<int> first_;       ///< as in the topology written last
   FrameRecord topology_record_;  ///< of the topology written last
@@ -110,7 +110,7 @@ class FrameWriter {
 std::string xdmf_text(const std::vector<FrameRecord>& frames, const std::string& h5, const FieldGrid& grid);
 
 /// frames.h5 for reading; of a run that is still going on, or was killed, its segments, as if they were one file. Throws Error(input_output).
-Hdf5File open_frames(const std::filesystem::path& file);
+hdf5::File open_frames(const std::filesystem::path& file);
 
 /// Outlines read back from a run's frames. Throws Error(input_output).
 class FrameReader {
@@ -130,7 +130,7 @@ class FrameReader {
   [[nodiscard]] observe::OutlineSnapshot surfaces(int frame) const;
 
  private:
-  Hdf5File file_;
+  hdf5::File file_;
 };
 
 /// "/frames/000012"

@@ -8,7 +8,7 @@
 namespace rouleau::files {
 
 std::optional<std::string> find_no_number_in_frames(const std::filesystem::path& frames) {
-  const Hdf5File file = open_frames(frames);
+  const hdf5::File file = open_frames(frames);
   for (const std::string& frame : file.names("/frames")) {
     for (const char* part : {"/membranes", "/fields"}) {
       const std::string group = "/frames/" + frame + part;

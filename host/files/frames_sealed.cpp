@@ -14,7 +14,7 @@ namespace rouleau::files {
 namespace {
 
 /// The topology groups of a file, by where their /first lies, which the frames' links lead to.
-std::map<haddr_t, std::string> topologies_of(const Hdf5File& file) {
+std::map<haddr_t, std::string> topologies_of(const hdf5::File& file) {
   std::map<haddr_t, std::string> found;
   for (const auto& name : file.names("/topology"))
     found[file.address("/topology/" + name + "/first")] = "/topology/" + name;
@@ -32,7 +32,7 @@ FrameWriter::FrameWriter(std::filesystem::path file, const scene::Scene& scene, 
 }
 
 void FrameWriter::read_back(const std::filesystem::path& source, std::size_t frames) {
-  const Hdf5File file(source, Hdf5File::Mode::read);
+  const hdf5::File file(source, hdf5::File::Mode::read);
   const auto topologies = topologies_of(file);
   for (const std::size_t end = frames_.size() + frames; frames_.size() < end;) {
     const std::string frame = frame_path(frames_.size());
@@ -98,11 +98,11 @@ void FrameWriter::link_segments() const {
   const auto partial =
       file_.parent_path() / ("." + file_.filename().string() + "." + std::to_string(::getpid()) + ".partial");
   try {
-    Hdf5File all(partial, Hdf5File::Mode::create);
+    hdf5::File all(partial, hdf5::File::Mode::create);
     write_header(all);
     std::set<std::string> linked;
     for (std::size_t i = 0; i < saved_.segments.size(); ++i) {
-      const Hdf5File part(segment(i + 1), Hdf5File::Mode::read);
+      const hdf5::File part(segment(i + 1), hdf5::File::Mode::read);
       for (const std::string group : {"/frames/", "/topology/"})
         for (const std::string& name : part.names(group))
           if (linked.insert(group + name).second) all.link_to(segment_name(i + 1), group + name);

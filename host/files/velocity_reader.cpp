@@ -6,7 +6,7 @@
 namespace rouleau::files {
 
 std::optional<VelocityField> last_velocity(const std::filesystem::path& frames) {
-  const Hdf5File file = open_frames(frames);
+  const hdf5::File file = open_frames(frames);
   auto frame = static_cast<std::size_t>(file.members("/frames"));
   while (frame > 0 && !file.has(frame_path(frame - 1) + "/fields/velocity")) --frame;
   if (frame == 0) return std::nullopt;

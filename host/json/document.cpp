@@ -1,40 +1,16 @@
 #include "document.hpp"
 
-#include <array>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 #include <utility>
 
+#include "base/input_file.hpp"
 #include "json_pointer.hpp"
 #include "parser.hpp"
 #include "put_value.hpp"
 
 namespace rouleau::json {
-namespace {
-
-std::string read_text(const std::filesystem::path& path) {
-  const auto refuse = [&](const std::string& reason) {
-    return Error(Cause::input_output, Place{path.string()}, "this file cannot be read: " + reason);
-  };
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) throw refuse("it is a directory");
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw refuse(errno != 0 ? std::strerror(errno) : "it cannot be opened");
-  // Reading ends one piece after the limit at the latest, however much a device has to give; the parser then refuses.
-  std::string text;
-  std::array<char, 1U << 16U> piece{};
-  while (text.size() <= largest_text && (file.read(piece.data(), piece.size()) || file.gcount() > 0)) {
-    text.append(piece.data(), static_cast<std::size_t>(file.gcount()));
-  }
-  if (file.bad()) throw refuse(std::strerror(errno));
-  return text;
+Document Document::read(const std::filesystem::path& file) {
+  return parse(read_input(file, largest_text), file.string());
 }
-
-}  // namespace
-
-Document Document::read(const std::filesystem::path& file) { return parse(read_text(file), file.string()); }
 
 Document Document::parse(std::string_view text, std::string file, Cause cause) {
   constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";

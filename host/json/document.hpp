@@ -16,8 +16,7 @@ namespace rouleau::json {
 /// files beyond the limits of parser.hpp. Lines and columns count from 1, columns in bytes.
 class Document {
  public:
-  /// Reads a file; throws Error(input_output) when it cannot be read, Error(bad_input) with line and column when
-  /// malformed.
+  /// Reads a file; throws what InputFile does, and Error(bad_input) with line and column when malformed.
   static Document read(const std::filesystem::path& file);
   /// Parses text; `file` is only for messages. `cause` is that of the errors it throws.
   static Document parse(std::string_view text, std::string file, Cause cause = Cause::bad_input);

@@ -7,7 +7,7 @@
 #include "json/document.hpp"
 #include "plan_models.hpp"
 #include "plugin/library.hpp"
-#include "scene/cell_table.hpp"
+#include "scene/named_files.hpp"
 #include "shape/outline.hpp"
 #include "shape/random_cells.hpp"
 #include "stability_limits.hpp"
@@ -59,9 +59,9 @@ NumericsBounds tightened(NumericsBounds bounds, const Plan& plan) {
   return bounds;
 }
 
-/// The document says from here on which files its cells are in, wherever it is kept, and what was in them.
-void pin_cell_files(json::Document& document) {
-  for (const std::string& entry : scene::cell_table_entries(document.root())) {
+/// The document says from here on which files it names, wherever it is kept, and what was in them.
+void pin_files(json::Document& document) {
+  for (const std::string& entry : scene::entries_with_files(document.root())) {
     const auto& written = document.root().at(nlohmann::json::json_pointer(entry));
     const std::string name = written.at("file").get<std::string>(), wanted = written.value("sha256", "");
     const auto file = std::filesystem::absolute(std::filesystem::path(document.file()).parent_path() / name);
@@ -84,7 +84,7 @@ ReadScene read_unpacked_scene(const std::filesystem::path& file, const std::vect
                               const NumericsBounds& bounds, Faults& faults) {
   auto document = std::make_shared<json::Document>(scene::read_document(file, overrides, faults));
   std::optional<NumericsChoice> choice;
-  if (faults.empty()) faults.attempt([&] { pin_cell_files(*document); });
+  if (faults.empty()) faults.attempt([&] { pin_files(*document); });
   if (faults.empty()) faults.attempt([&] { choice = fill_in_numerics(*document, bounds); });
   ReadScene read{scene::read_scene(std::move(document), faults), std::move(choice)};
   if (faults.empty()) faults.attempt([&] { shape::add_random_cells(read.scene); });

@@ -18,6 +18,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/input_file.hpp"
 #include "base/text.hpp"
 #include "exported_symbols.hpp"
 #include "lock.hpp"
@@ -158,6 +159,7 @@ std::string library_sha256(const Manifest& manifest) {
 
 std::string sha256(const fs::path& file) {
   char digest[SHA256_DIGEST_STRING_LENGTH] = {};
+  static_cast<void>(InputFile(file));
   errno = 0;
   if (SHA256File(file.c_str(), digest) == nullptr) {
     throw Error(Cause::input_output, Place{file.string()}, std::string("cannot be read: ") + std::strerror(errno));

@@ -4,10 +4,9 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <limits>
-#include <sstream>
 
+#include "base/input_file.hpp"
 #include "embedded_schemas.hpp"
 #include "json/document.hpp"
 #include "json/schema.hpp"
@@ -84,26 +83,12 @@ std::optional<std::size_t> Manifest::parameter_with(Role role) const {
 }
 
 json::Document read_manifest_document(const fs::path& file) {
-  const Place place{file.string(), {}, 0, 0};
-  std::error_code error;
-  if (!fs::is_regular_file(file, error)) {
-    throw Error(Cause::plugin_refused, place,
-                "cannot be read: " + (error ? error.message() : std::string("not a regular file")));
+  try {
+    // Folders of plugins may hold data as well; reading all of it to find out that it is no manifest would take for ever.
+    return json::Document::parse(read_input(file, 1U << 20U), file.string(), Cause::plugin_refused);
+  } catch (const Error& error) {
+    throw Error(Cause::plugin_refused, error.place(), error.problem(), error.remedy());
   }
-  // Folders of plugins may hold data as well; reading all of it to find out that it is no manifest would take for ever.
-  constexpr std::uintmax_t largest = 1 << 20;
-  if (fs::file_size(file, error) > largest || error) {
-    throw Error(Cause::plugin_refused, place,
-                error ? "cannot be read: " + error.message() : "is larger than 1 MiB, which no manifest is");
-  }
-  errno = 0;
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  if (stream) text << stream.rdbuf();
-  if (!stream || stream.bad() || text.bad()) {
-    throw Error(Cause::plugin_refused, place, std::string("cannot be read: ") + std::strerror(errno));
-  }
-  return json::Document::parse(text.str(), file.string(), Cause::plugin_refused);
 }
 
 const Json& manifest_schema() {

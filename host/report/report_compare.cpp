@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "files/file.hpp"
 #include "json/document.hpp"
 #include "report_data.hpp"
 
@@ -116,6 +117,7 @@ Json ended_run(const std::filesystem::path& directory) {
 
 Json scene_of(const std::filesystem::path& directory) {
   const auto file = directory / "scene.json";
+  files::require_own(file);
   return std::filesystem::exists(file) ? json::Document::read(file).root() : Json();
 }
 

@@ -198,6 +198,7 @@ Json report_data(const std::filesystem::path& directory) {
     throw Error(Cause::bad_input, Place{directory.string()},
                 "is no run's directory: it has neither summary.json nor series.csv");
   const bool ended = std::filesystem::exists(directory / "summary.json");
+  for (const char* name : {"summary.json", "scene.json"}) files::require_own(directory / name);
   Json data;
   data["summary"] = ended ? json::Document::read(directory / "summary.json").root() : Json(nullptr);
   const bool has_scene = std::filesystem::exists(directory / "scene.json");

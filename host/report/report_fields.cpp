@@ -102,7 +102,7 @@ class Tracers {
 /// A field of a file, read some rows at a time.
 class FieldRows {
  public:
-  FieldRows(const files::Hdf5File& file, const files::FieldNodes& grid, std::string dataset)
+  FieldRows(const hdf5::File& file, const files::FieldNodes& grid, std::string dataset)
       : file_(file), grid_(grid), dataset_(std::move(dataset)) {}
 
   /// Calls visit(y) for every row from below. at() then knows that row; `around`: also those that vorticity needs there.
@@ -141,7 +141,7 @@ class FieldRows {
     return values;
   }
 
-  const files::Hdf5File& file_;
+  const hdf5::File& file_;
   const files::FieldNodes& grid_;
   std::string dataset_;
   std::size_t components_ = 1;
@@ -153,7 +153,7 @@ class FieldRows {
 struct VelocityMeans {
   ScalarField speed, vorticity;  ///< the latter empty where it is not wanted
 };
-VelocityMeans add_velocity(const files::Hdf5File& file, const files::FieldNodes& grid, const std::string& dataset,
+VelocityMeans add_velocity(const hdf5::File& file, const files::FieldNodes& grid, const std::string& dataset,
                            std::size_t most, bool with_vorticity, Tracers& tracers) {
   const auto blocks = [&](std::size_t at_most) { return BlockMeans(grid.nx, grid.ny, at_most); };
   BlockMeans speed = blocks(most), vorticity = blocks(most), u = blocks(tracers.most()), v = blocks(tracers.most());
@@ -174,7 +174,7 @@ VelocityMeans add_velocity(const files::Hdf5File& file, const files::FieldNodes&
 }
 
 /// Along z, which in three dimensions is the last of three components.
-ScalarField mean_vorticity(const files::Hdf5File& file, const files::FieldNodes& grid, const std::string& dataset,
+ScalarField mean_vorticity(const hdf5::File& file, const files::FieldNodes& grid, const std::string& dataset,
                            std::size_t most) {
   BlockMeans means(grid.nx, grid.ny, most);
   FieldRows rows(file, grid, dataset);
@@ -187,7 +187,7 @@ ScalarField mean_vorticity(const files::Hdf5File& file, const files::FieldNodes&
 }  // namespace
 
 std::vector<std::size_t> field_outputs(const std::filesystem::path& frames, std::size_t most) {
-  const files::Hdf5File file = files::open_frames(frames);
+  const hdf5::File file = files::open_frames(frames);
   std::vector<std::size_t> found;
   const auto count = static_cast<std::size_t>(file.members("/frames"));
   for (std::size_t output = 0; output < count; ++output)
@@ -199,7 +199,7 @@ std::vector<std::size_t> field_outputs(const std::filesystem::path& frames, std:
 }
 
 Json field_data(const std::filesystem::path& frames, const std::vector<std::size_t>& selection) {
-  const files::Hdf5File file = files::open_frames(frames);
+  const hdf5::File file = files::open_frames(frames);
   Json outputs = Json::array();
   bool has_velocity = true, has_vorticity = true;
   std::vector<std::size_t> with_fields;
@@ -261,7 +261,7 @@ void BlockMeans::end_row() {
   rows_before_ = rows_;
 }
 
-std::array<ScalarField, 2> mean_vectors(const files::Hdf5File& file, const files::FieldNodes& grid,
+std::array<ScalarField, 2> mean_vectors(const hdf5::File& file, const files::FieldNodes& grid,
                                         const std::string& dataset, std::size_t most) {
   BlockMeans u(grid.nx, grid.ny, most), v = u;
   FieldRows rows(file, grid, dataset);

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "files/field_nodes.hpp"
-#include "files/hdf5_file.hpp"
+#include "hdf5/hdf5_file.hpp"
 #include "json/json.hpp"
 
 namespace rouleau::report {
@@ -63,7 +63,7 @@ class BlockMeans {
 };
 
 /// Means of the first two components of a field of vectors over at most `most` blocks. Throws Error(input_output).
-std::array<ScalarField, 2> mean_vectors(const files::Hdf5File& file, const files::FieldNodes& grid,
+std::array<ScalarField, 2> mean_vectors(const hdf5::File& file, const files::FieldNodes& grid,
                                         const std::string& dataset, std::size_t most);
 
 /// Bytes as described above.

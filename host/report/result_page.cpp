@@ -26,6 +26,7 @@ struct ResultPage {
 };
 
 fs::path write_result_page(const fs::path& directory, const ResultPage& kind) {
+  files::require_own(directory / kind.file);
   const json::Document document = json::Document::read(directory / kind.file);
   const auto& root = document.root();
   const Remedy remedy{"make the directory anew"};

@@ -52,7 +52,8 @@ Shape read_shape(const SceneFields& fields, const std::string& pointer, bool in_
     return Ellipsoid{{first.x(), first.y(), fields.quantity(axes + "/2", "m", range::length)}};
   }
   if (fields.has(pointer + "/mesh"))
-    return MeshFile{fields.file(pointer + "/mesh/file"), fields.quantity(pointer + "/mesh/unit", "m", range::length)};
+    return MeshFile{fields.file(pointer + "/mesh/file"),
+                    fields.quantity(pointer + "/mesh/unit", "m", range::unit_of_length)};
   if (fields.has(pointer + "/biconcave"))
     return Biconcave{fields.quantity(pointer + "/biconcave/radius", "m", range::length)};
   if (fields.has(pointer + "/circle")) {
@@ -146,13 +147,6 @@ class Placements {
 
   void read_file(const std::string& pointer) {
     const auto file = fields_.file(pointer + "/file");
-    std::error_code ignored;
-    if (!std::filesystem::is_regular_file(file, ignored)) {
-      fields_.refuse(pointer + "/file", in_quotes(fields_.value<std::string>(pointer + "/file")) +
-                                            " is no file; a relative name begins with the scene's folder\n"
-                                            "looked for: " +
-                                            printable(file.lexically_normal().string()));
-    }
     if (types_.empty()) {
       if (!fields_.settled("/cell_types")) throw Misread{};
       fields_.refuse(pointer, "there are no cell types that the cells of this file could have; add cell_types");

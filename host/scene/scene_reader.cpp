@@ -72,7 +72,7 @@ double SceneFields::judged_quantity(const std::string& pointer, std::string_view
                           with_unit(si, range.common_unit) + "\", or \"" + with_unit(si, unit) + '"');
     }
     // A length, that is: a place may lie in another image of the box.
-    if (box_ && unit == "m" && range.least > 0 && si > box_->maxCoeff()) {
+    if (box_ && range.within_box && unit == "m" && range.least > 0 && si > box_->maxCoeff()) {
       refuse(pointer, json::shown(value) + (value.is_number() ? " (a plain number is taken in m)" : "") +
                           " is longer than the box, which is " + number(box_->x() * 1e6) + " um x " +
                           number(box_->y() * 1e6) + " um; " + name + " must fit into it");
@@ -102,7 +102,17 @@ Eigen::Vector2d SceneFields::quantities(const std::string& pointer, std::string_
 std::filesystem::path SceneFields::file(const std::string& pointer) const {
   const auto name = value<std::string>(pointer);
   if (name.find('\0') != std::string::npos) refuse(pointer, "a file's name cannot hold a NUL character");
-  return std::filesystem::path(document_.file()).parent_path() / name;
+  const auto file = std::filesystem::path(document_.file()).parent_path() / name;
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) {
+    refuse(pointer,
+           in_quotes(name) +
+               (std::filesystem::exists(file, ignored) ? " is no plain file (folders, pipes and devices are not read)"
+                                                       : " is no file") +
+               "; a relative name begins with the scene's folder\nlooked for: " +
+               printable(file.lexically_normal().string()));
+  }
+  return file;
 }
 
 std::string SceneFields::line(const std::string& pointer) const {

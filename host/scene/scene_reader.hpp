@@ -25,20 +25,22 @@ struct AllowedRange {
   double plain_least = least;
   double plain_most = most;
   const char* common_unit = "";  ///< in which such a quantity is mostly given
+  bool within_box = true;        ///< whether a length of this kind has to fit into the box
 };
 
 namespace range {
-inline constexpr AllowedRange length{1e-12, 1.0, 1e-9, 1e-2, "um"};             ///< m
-inline constexpr AllowedRange place{-1.0, 1.0, -1e-2, 1e-2, "um"};              ///< m
-inline constexpr AllowedRange time{1e-12, 1e9, 1e-9, 1e6, "s"};                 ///< s
-inline constexpr AllowedRange density{1e-3, 1e6, 10.0, 1e5, "g/cm3"};           ///< kg/m3
-inline constexpr AllowedRange viscosity{1e-9, 1e6, 1e-5, 0.5, "cP"};            ///< Pa s
-inline constexpr AllowedRange shear_rate{-1e9, 1e9, -1e7, 1e7, "1/s"};          ///< 1/s
-inline constexpr AllowedRange rate{1e-12, 1e9, 1e-12, 1e7, "1/s"};              ///< 1/s
-inline constexpr AllowedRange velocity{-1e6, 1e6, -0.5, 0.5, "mm/s"};           ///< m/s
-inline constexpr AllowedRange force_density{-1e15, 1e15, -1e12, 1e12, "N/m3"};  ///< N/m3
-inline constexpr AllowedRange frequency{1e-9, 1e9, 1e-6, 1e6, "Hz"};            ///< Hz
-inline constexpr AllowedRange angle{-1e3, 1e3, -7.0, 7.0, "deg"};               ///< rad; 7: just above a turn
+inline constexpr AllowedRange length{1e-12, 1.0, 1e-9, 1e-2, "um"};                 ///< m
+inline constexpr AllowedRange unit_of_length{1e-12, 1.0, 1e-9, 1e-2, "um", false};  ///< m; a factor
+inline constexpr AllowedRange place{-1.0, 1.0, -1e-2, 1e-2, "um"};                  ///< m
+inline constexpr AllowedRange time{1e-12, 1e9, 1e-9, 1e6, "s"};                     ///< s
+inline constexpr AllowedRange density{1e-3, 1e6, 10.0, 1e5, "g/cm3"};               ///< kg/m3
+inline constexpr AllowedRange viscosity{1e-9, 1e6, 1e-5, 0.5, "cP"};                ///< Pa s
+inline constexpr AllowedRange shear_rate{-1e9, 1e9, -1e7, 1e7, "1/s"};              ///< 1/s
+inline constexpr AllowedRange rate{1e-12, 1e9, 1e-12, 1e7, "1/s"};                  ///< 1/s
+inline constexpr AllowedRange velocity{-1e6, 1e6, -0.5, 0.5, "mm/s"};               ///< m/s
+inline constexpr AllowedRange force_density{-1e15, 1e15, -1e12, 1e12, "N/m3"};      ///< N/m3
+inline constexpr AllowedRange frequency{1e-9, 1e9, 1e-6, 1e6, "Hz"};                ///< Hz
+inline constexpr AllowedRange angle{-1e3, 1e3, -7.0, 7.0, "deg"};                   ///< rad; 7: just above a turn
 }  // namespace range
 
 /// Thrown for a value that is wrong by the schema, or not there because of that: its fault has been found.
@@ -102,7 +104,7 @@ class SceneFields {
     return result;
   }
 
-  /// The file that the text at `pointer` names; a relative one begins with the folder of the scene.
+  /// The regular file that the text at `pointer` names; a relative one begins with the folder of the scene.
   [[nodiscard]] std::filesystem::path file(const std::string& pointer) const;
   [[nodiscard]] const units::Units& units() const { return units_; }
 

@@ -7,7 +7,7 @@
 #include "plugin/catalog.hpp"
 #include "plugin/library.hpp"
 #include "plugin/lock.hpp"
-#include "scene/cell_table.hpp"
+#include "scene/named_files.hpp"
 
 namespace rouleau::trial {
 
@@ -68,11 +68,11 @@ std::string fingerprint(const Json& scene, const fs::path& scene_file, const std
   for (const UsedPlugin& plugin : plugins_named(scene, scene_file)) {
     all["plugins"].push_back({plugin.id, plugin.library_sha256, plugin.manifest_sha256});
   }
-  for (const std::string& entry : scene::cell_table_entries(scene)) {
+  for (const std::string& entry : scene::entries_with_files(scene)) {
     const std::string name = scene.at(Json::json_pointer(entry + "/file"));
     const fs::path file = fs::absolute(scene_file).parent_path() / name;
     std::error_code ignored;
-    if (fs::is_regular_file(file, ignored)) all["cells"].push_back(plugin::sha256(file));
+    if (fs::is_regular_file(file, ignored)) all["files"].push_back(plugin::sha256(file));
   }
   const fs::path lock = plugin::lock_beside(scene_file);
   if (fs::exists(lock)) all["lock"] = plugin::sha256(lock);

@@ -13,7 +13,7 @@
 #include "files/run_directory.hpp"
 #include "json/document.hpp"
 #include "plugin/lock.hpp"
-#include "scene/cell_table.hpp"
+#include "scene/named_files.hpp"
 
 namespace rouleau::trial {
 
@@ -43,7 +43,7 @@ fs::path scene_file_of(const Trial& trial) {
 nlohmann::json moved_scene(const Trial& trial) {
   nlohmann::json scene = trial.scene;
   const fs::path folder = fs::absolute(trial.scene_file).parent_path();
-  for (const std::string& entry : scene::cell_table_entries(scene)) {
+  for (const std::string& entry : scene::entries_with_files(scene)) {
     auto& file = scene.at(nlohmann::json::json_pointer(entry + "/file"));
     file = (folder / file.get<std::string>()).lexically_normal().string();
   }

@@ -14,7 +14,7 @@ SOURCE = Path(sys.argv[1])
 HOST = SOURCE / "host"
 
 # A folder may include those before it (docs/architecture.md); core is what everything else stands on.
-ORDER = ["base", "json", "units", "core", "scene", "shape", "plugin", "plan", "observe", "monitor", "files", "run",
+ORDER = ["base", "json", "units", "hdf5", "core", "scene", "shape", "plugin", "plan", "observe", "monitor", "files", "run",
          "report", "trial", "accuracy", "study", "stability", "conform", "transport", "command"]
 MOST_UNITS = 20
 # Outside command/ nobody speaks of the command line, but for these files.

@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "files/hdf5_file.hpp"
 #include "flow_lines.hpp"
+#include "hdf5/hdf5_file.hpp"
 
 namespace rouleau::report {
 
@@ -22,7 +22,7 @@ class FlowReader {
   [[nodiscard]] std::size_t read_output() const { return read_; }
 
  private:
-  files::Hdf5File file_;
+  hdf5::File file_;
   std::vector<std::size_t> outputs_;
   std::size_t read_ = 0;
   BlockVelocity velocity_;

@@ -76,8 +76,8 @@ void keep(const std::filesystem::path& partial, const std::filesystem::path& fil
   const bool synchronised = descriptor >= 0 && ::fsync(descriptor) == 0;
   const int error = errno;
   if (descriptor >= 0) ::close(descriptor);
-  if (!synchronised) files::fail_file(file, "cannot be written", error);
-  if (::rename(partial.c_str(), file.c_str()) != 0) files::fail_file(file, "cannot be written", errno);
+  if (!synchronised) fail_file(file, "cannot be written", error);
+  if (::rename(partial.c_str(), file.c_str()) != 0) fail_file(file, "cannot be written", errno);
 }
 
 }  // namespace

@@ -31,8 +31,8 @@ std::string attributes(hid_t object) {
   std::ostringstream text;
   const auto add = [](hid_t at, const char* name, const H5A_info_t*, void* out) -> herr_t {
     auto& stream = *static_cast<std::ostringstream*>(out);
-    const Hdf5Handle attribute(H5Aopen(at, name, H5P_DEFAULT), H5Aclose);
-    const Hdf5Handle type(H5Aget_type(attribute.id()), H5Tclose), space(H5Aget_space(attribute.id()), H5Sclose);
+    const hdf5::Handle attribute(H5Aopen(at, name, H5P_DEFAULT), H5Aclose);
+    const hdf5::Handle type(H5Aget_type(attribute.id()), H5Tclose), space(H5Aget_space(attribute.id()), H5Sclose);
     stream << " @" << name << " size " << H5Tget_size(type.id()) << " class " << H5Tget_class(type.id()) << " of "
            << H5Sget_simple_extent_npoints(space.id()) << (H5Sget_simple_extent_type(space.id()) == H5S_SCALAR) << " ";
     if (H5Tis_variable_str(type.id()) > 0) {
@@ -53,8 +53,8 @@ std::string attributes(hid_t object) {
 
 std::string dataset(hid_t object) {
   std::ostringstream text;
-  const Hdf5Handle type(H5Dget_type(object), H5Tclose), space(H5Dget_space(object), H5Sclose);
-  const Hdf5Handle creation(H5Dget_create_plist(object), H5Pclose);
+  const hdf5::Handle type(H5Dget_type(object), H5Tclose), space(H5Dget_space(object), H5Sclose);
+  const hdf5::Handle creation(H5Dget_create_plist(object), H5Pclose);
   std::array<hsize_t, 4> size{}, chunk{};
   const int rank = H5Sget_simple_extent_dims(space.id(), size.data(), nullptr);
   text << " class " << H5Tget_class(type.id()) << " size " << H5Tget_size(type.id()) << " layout "
@@ -76,22 +76,22 @@ std::string dataset(hid_t object) {
 
 /// Everything that a reader can see of a file, in whichever file it lies: groups, attributes, datasets with filters.
 std::string content(const std::filesystem::path& path) {
-  const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  const hdf5::Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   REQUIRE(file.valid());
   std::ostringstream text;
   text << "/" << attributes(file.id()) << "\n";
   const auto visit = [](hid_t at, const char* name, const H5L_info_t*, void* out) -> herr_t {
     auto& stream = *static_cast<std::ostringstream*>(out);
-    const Hdf5Handle object(H5Oopen(at, name, H5P_DEFAULT), H5Oclose);
+    const hdf5::Handle object(H5Oopen(at, name, H5P_DEFAULT), H5Oclose);
     stream << name << attributes(object.id());
     if (H5Iget_type(object.id()) == H5I_DATASET) stream << dataset(object.id());
     stream << "\n";
     return 0;
   };
   for (const std::string group : {"/frames", "/topology"}) {
-    for (const std::string& name : Hdf5File(path, Hdf5File::Mode::read).names(group)) {
+    for (const std::string& name : hdf5::File(path, hdf5::File::Mode::read).names(group)) {
       text << group << "/" << name;
-      const Hdf5Handle member(H5Oopen(file.id(), (group + "/" + name).c_str(), H5P_DEFAULT), H5Oclose);
+      const hdf5::Handle member(H5Oopen(file.id(), (group + "/" + name).c_str(), H5P_DEFAULT), H5Oclose);
       text << attributes(member.id()) << "\n";
       REQUIRE(H5Lvisit(member.id(), H5_INDEX_NAME, H5_ITER_INC, visit, &text) >= 0);
     }

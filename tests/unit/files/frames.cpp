@@ -8,6 +8,7 @@
 #include "files/frames.hpp"
 #include "unit/run_fixture.hpp"
 
+namespace hdf5 = rouleau::hdf5;
 using namespace rouleau::files;
 using namespace rouleau::scene;
 using namespace rouleau::test;
@@ -15,8 +16,8 @@ using namespace rouleau::test;
 namespace {
 
 std::string text_attribute(hid_t file, const char* path, const char* name) {
-  const Hdf5Handle attribute(H5Aopen_by_name(file, path, name, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
-  const Hdf5Handle type(H5Aget_type(attribute.id()), H5Tclose);
+  const hdf5::Handle attribute(H5Aopen_by_name(file, path, name, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  const hdf5::Handle type(H5Aget_type(attribute.id()), H5Tclose);
   char* text = nullptr;
   REQUIRE(H5Aread(attribute.id(), type.id(), static_cast<void*>(&text)) >= 0);
   const std::string result = text;
@@ -26,9 +27,9 @@ std::string text_attribute(hid_t file, const char* path, const char* name) {
 
 /// Shape of a dataset; empty when there is none.
 std::vector<hsize_t> shape(hid_t file, const std::string& path) {
-  const Hdf5Handle dataset(H5Dopen2(file, path.c_str(), H5P_DEFAULT), H5Dclose);
+  const hdf5::Handle dataset(H5Dopen2(file, path.c_str(), H5P_DEFAULT), H5Dclose);
   if (!dataset.valid()) return {};
-  const Hdf5Handle space(H5Dget_space(dataset.id()), H5Sclose);
+  const hdf5::Handle space(H5Dget_space(dataset.id()), H5Sclose);
   std::vector<hsize_t> dimensions(static_cast<std::size_t>(H5Sget_simple_extent_ndims(space.id())));
   H5Sget_simple_extent_dims(space.id(), dimensions.data(), nullptr);
   return dimensions;
@@ -81,7 +82,7 @@ TEST_CASE("frames.h5 holds the outlines as given, with units") {
     CHECK(stored.y == given.y);
     CHECK(stored.tension == given.tension);
   }
-  const Hdf5Handle file(H5Fopen((folder.path() / "frames.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  const hdf5::Handle file(H5Fopen((folder.path() / "frames.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   const std::map<std::string, std::string> units{{"membranes/points", "m"},
                                                  {"membranes/tension", "N/m"},
                                                  {"membranes/first", "1"},
@@ -102,7 +103,7 @@ TEST_CASE("the same run gives the same bytes at another time") {
 TEST_CASE("a field has y slowest and velocity a third component of zero") {
   const ScratchFolder folder;
   write_run(folder.path());
-  const Hdf5File file(folder.path() / "frames.h5", Hdf5File::Mode::read);
+  const hdf5::File file(folder.path() / "frames.h5", hdf5::File::Mode::read);
   const auto velocity = file.read("/frames/000001/fields/velocity");
   REQUIRE(velocity.size() == 8 * 4 * 3);
   const std::size_t i = 3, j = 2;
@@ -129,7 +130,7 @@ TEST_CASE("frames.xmf is well-formed and every dataset it names exists with the 
   write_run(folder.path());
   const std::string xml = read_text(folder.path() / "frames.xmf");
   CHECK(well_formed(xml));
-  const Hdf5Handle file(H5Fopen((folder.path() / "frames.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  const hdf5::Handle file(H5Fopen((folder.path() / "frames.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   const std::regex item(R"re(<DataItem Dimensions="([0-9 ]+)"[^>]*Format="HDF">frames\.h5:([^<]+)</DataItem>)re");
   int items = 0;
   for (auto match = std::sregex_iterator(xml.begin(), xml.end(), item); match != std::sregex_iterator();
@@ -152,7 +153,7 @@ TEST_CASE("frames.xmf is well-formed and every dataset it names exists with the 
 TEST_CASE("every outline of the topology is closed") {
   const ScratchFolder folder;
   write_run(folder.path());
-  const Hdf5File file(folder.path() / "frames.h5", Hdf5File::Mode::read);
+  const hdf5::File file(folder.path() / "frames.h5", hdf5::File::Mode::read);
   const auto uniform = file.read("/frames/000000/membranes/connectivity");
   REQUIRE(uniform.size() == 2 * 33);
   CHECK(uniform[0] == uniform[32]);
@@ -180,7 +181,7 @@ TEST_CASE("outlines whose first nodes do not fit their points are refused with f
            {0, 1, 4}, {0, 5}, {1, 4}, {-1, 4}, {0, 3, 3}, {0, 3, 2}, {0, 2147483647}, {-2147483647, 4}}) {
     CAPTURE(first);
     {
-      Hdf5File damaged(file, Hdf5File::Mode::create);
+      hdf5::File damaged(file, hdf5::File::Mode::create);
       for (const char* group : {"/frames", "/frames/000000", "/frames/000000/membranes"}) damaged.make_group(group);
       damaged.write("/frames/000000/membranes/points", std::vector<double>(8), "m");
       damaged.write("/frames/000000/membranes/tension", std::vector<double>(4), "N/m");
@@ -202,7 +203,7 @@ TEST_CASE("tensions that do not fit the points are refused with file, frame and 
   const auto file = scratch.path() / "frames.h5";
   for (const std::size_t tensions : {0, 3, 4, 5}) {
     {
-      Hdf5File damaged(file, Hdf5File::Mode::create);
+      hdf5::File damaged(file, hdf5::File::Mode::create);
       for (const char* group : {"/frames", "/frames/000000", "/frames/000000/membranes"}) damaged.make_group(group);
       damaged.write("/frames/000000/membranes/points", std::vector<double>(8), "m");
       damaged.write("/frames/000000/membranes/tension", std::vector<double>(tensions), "N/m");
@@ -221,19 +222,19 @@ TEST_CASE("tensions that do not fit the points are refused with file, frame and 
 TEST_CASE("a dataset that claims more numbers than its file can hold is refused before memory is asked for") {
   const ScratchFolder scratch;
   const auto file = scratch.path() / "frames.h5";
-  Hdf5File(file, Hdf5File::Mode::create).close();
+  hdf5::File(file, hdf5::File::Mode::create).close();
   {
-    const Hdf5Handle opened(H5Fopen(file.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
+    const hdf5::Handle opened(H5Fopen(file.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
     const hsize_t count = hsize_t{1} << 50, chunk = 1024;
-    const Hdf5Handle space(H5Screate_simple(1, &count, nullptr), H5Sclose);
-    const Hdf5Handle layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+    const hdf5::Handle space(H5Screate_simple(1, &count, nullptr), H5Sclose);
+    const hdf5::Handle layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
     REQUIRE(H5Pset_chunk(layout.id(), 1, &chunk) >= 0);
-    const Hdf5Handle dataset(
+    const hdf5::Handle dataset(
         H5Dcreate2(opened.id(), "/points", H5T_IEEE_F64LE, space.id(), H5P_DEFAULT, layout.id(), H5P_DEFAULT),
         H5Dclose);
     REQUIRE(dataset.valid());
   }
-  const Hdf5File damaged(file, Hdf5File::Mode::read);
+  const hdf5::File damaged(file, hdf5::File::Mode::read);
   CHECK_THROWS_WITH(damaged.read("/points"), Catch::Contains(file.string()) && Catch::Contains("/points") &&
                                                  Catch::Contains("1125899906842624 numbers"));
 }

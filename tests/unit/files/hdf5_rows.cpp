@@ -4,10 +4,11 @@
 #include <random>
 
 #include "files/file.hpp"
-#include "files/hdf5_file.hpp"
+#include "hdf5/hdf5_file.hpp"
 #include "scratch_folder.hpp"
 #include "unit/random.hpp"
 
+namespace hdf5 = rouleau::hdf5;
 using namespace rouleau::files;
 using namespace rouleau::test;
 
@@ -19,7 +20,7 @@ struct Shape {
   hid_t stored;
 };
 
-void write_after(Hdf5File& file) { file.write("/after", std::vector<double>{1, 2, 3}, "m"); }
+void write_after(hdf5::File& file) { file.write("/after", std::vector<double>{1, 2, 3}, "m"); }
 
 }  // namespace
 
@@ -38,7 +39,7 @@ TEST_CASE("a dataset from some rows at a time has the bytes of one that is writt
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<double>(i * i % 9973) / 8;
   const auto whole = folder.path() / "whole.h5";
   {
-    Hdf5File file(whole, Hdf5File::Mode::create);
+    hdf5::File file(whole, hdf5::File::Mode::create);
     file.write("/values", shape.size, shape.stored, H5T_NATIVE_DOUBLE, values.data(), "m/s", compression);
     write_after(file);
   }
@@ -46,8 +47,8 @@ TEST_CASE("a dataset from some rows at a time has the bytes of one that is writt
     if (most == 1 && rows > 1000) continue;
     const auto parts = folder.path() / "parts.h5";
     {
-      Hdf5File file(parts, Hdf5File::Mode::create);
-      Hdf5Rows writing =
+      hdf5::File file(parts, hdf5::File::Mode::create);
+      hdf5::Rows writing =
           file.begin("/values", shape.size, shape.layers, shape.stored, H5T_NATIVE_DOUBLE, "m/s", compression);
       for (std::size_t row = 0; row < rows;) {
         CHECK_FALSE(writing.full());
@@ -61,12 +62,12 @@ TEST_CASE("a dataset from some rows at a time has the bytes of one that is writt
     CAPTURE(most, compression, rows);
     CHECK((read_text(parts) == read_text(whole)));
   }
-  CHECK((Hdf5File(whole, Hdf5File::Mode::read).read("/values") == values || shape.stored == H5T_IEEE_F32LE));
+  CHECK((hdf5::File(whole, hdf5::File::Mode::read).read("/values") == values || shape.stored == H5T_IEEE_F32LE));
 }
 
 TEST_CASE("a dataset without rows is finished when it is begun") {
   const ScratchFolder folder;
-  Hdf5File file(folder.path() / "none.h5", Hdf5File::Mode::create);
+  hdf5::File file(folder.path() / "none.h5", hdf5::File::Mode::create);
   CHECK(file.begin("/none", {0, 4}, false, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, "m").full());
   CHECK(file.elements("/none") == 0);
 }

@@ -157,7 +157,9 @@ TEST_CASE("a file that cannot be read is trouble of input and output, and says w
   };
   CHECK(cause_of(folder.path() / "absent.json", "No such file") == Cause::input_output);
   CHECK(cause_of(folder.path(), "it is a directory") == Cause::input_output);
-  CHECK_THROWS_WITH(Document::read("/dev/zero"), Contains("more than 16 MiB"));
+  CHECK(cause_of("/dev/zero", "it is a device") == Cause::input_output);
+  const auto large = folder.write("large.json", std::string(rouleau::json::largest_text + 1, ' '));
+  CHECK_THROWS_WITH(Document::read(large), Contains("more than 16 MiB"));
   CHECK_THROWS_WITH(Document::read(folder.write("empty.json", "")), Contains("the file is empty"));
   CHECK(Document::read(folder.write("good.json", "{\"a\": 1}")).root()["a"] == 1);
 }

@@ -58,6 +58,30 @@ TEST_CASE("cells at random count where cells or membrane nodes are too many") {
                     Contains("the cells have 2000200000 membrane nodes together"));
 }
 
+TEST_CASE("a mesh is part of the scene that names it") {
+  const test::ScratchFolder folder;
+  const std::string octahedron =
+      "OFF\n6 8 12\n1 0 0\n-1 0 0\n0 1 0\n0 -1 0\n0 0 1\n0 0 -1\n3 0 2 4\n3 2 1 4\n3 1 3 4\n3 3 0 4\n3 2 0 5\n3 1 2 5\n"
+      "3 3 1 5\n3 0 3 5\n";
+  const std::string file = folder.write("cell.off", octahedron).string();
+  const std::string in_space = std::string(ROULEAU_SCENES) + "/capsule-3d.json";
+  const std::string mesh =
+      R"(/cell_types/capsule={"membrane": [], "shape": {"mesh": {"unit": "3 um", "file": ")" + file;
+  const auto read = [&](const std::string& further) {
+    return plan::read_scene(in_space, {mesh + '"' + further + "}}}"})
+        .document->root()
+        .at("/cell_types/capsule/shape/mesh"_json_pointer);
+  };
+  const auto written = read("");
+  CHECK(written.at("file") == file);
+  const std::string hash = written.at("sha256");
+  CHECK_NOTHROW(read(R"(, "sha256": ")" + hash + '"'));
+  folder.write("cell.off", octahedron + "# changed\n");
+  CHECK_THROWS_WITH(read(R"(, "sha256": ")" + hash + '"'),
+                    Contains("shape/mesh/sha256") && Contains("has another hash"));
+  CHECK(read("").at("sha256") != hash);
+}
+
 TEST_CASE("a scene with cells from a file says where the file is and what was in it, and refuses another one") {
   const test::ScratchFolder folder;
   const std::string file = folder.write("cells.csv", "x_um,y_um,angle_deg\n10,12,90\n30,12,0\n").string();

@@ -2,7 +2,7 @@
 #include <sstream>
 
 #include "files/file.hpp"
-#include "files/hdf5_file.hpp"
+#include "hdf5/hdf5_file.hpp"
 #include "report/report.hpp"
 #include "report/report_data.hpp"
 #include "report/report_outlines.hpp"
@@ -10,6 +10,7 @@
 
 using rouleau::Cause;
 using rouleau::Error;
+namespace hdf5 = rouleau::hdf5;
 using namespace rouleau::files;
 using namespace rouleau::monitor;
 using namespace rouleau::report;
@@ -267,7 +268,7 @@ TEST_CASE("a report does without what is too large to be read, and says so") {
   SECTION("of a frame") {
     std::filesystem::remove(run / "frames.h5");
     {
-      rouleau::files::Hdf5File file(run / "frames.h5", rouleau::files::Hdf5File::Mode::create);
+      hdf5::File file(run / "frames.h5", hdf5::File::Mode::create);
       file.attribute("/", "size_m", std::vector<double>{20e-6, 10e-6});
       file.attribute("/", "periodic_y", 0L);
       for (const char* group : {"/frames", "/frames/000000", "/frames/000000/membranes"}) file.make_group(group);

@@ -2,12 +2,13 @@
 
 #include <catch2/catch.hpp>
 
-#include "files/hdf5_file.hpp"
+#include "hdf5/hdf5_file.hpp"
 #include "observe/vorticity.hpp"
 #include "report/report.hpp"
 #include "report/report_data.hpp"
 #include "unit/run_fixture.hpp"
 
+namespace hdf5 = rouleau::hdf5;
 using namespace rouleau::files;
 using namespace rouleau::observe;
 using namespace rouleau::report;
@@ -90,7 +91,7 @@ TEST_CASE("the flow of a region of the domain lies where the region does") {
   const ScratchFolder folder;
   const auto path = folder.path() / "frames.h5";
   {
-    Hdf5File file(path, Hdf5File::Mode::create);
+    hdf5::File file(path, hdf5::File::Mode::create);
     file.attribute("/", "size_m", std::vector<double>{20e-6, 10e-6});
     file.attribute("/", "periodic_y", 0L);
     file.attribute("/", "fields_first_m", std::vector<double>{5e-6, 3e-6});
@@ -114,7 +115,7 @@ TEST_CASE("the flow of a file that is read some rows at a time is that of all it
     return std::pair(1e-4 * std::sin(0.02 * x + 0.03 * y), 1e-4 * std::cos(0.05 * x) * std::sin(0.01 * y));
   });
   {
-    Hdf5File file(path, Hdf5File::Mode::create);
+    hdf5::File file(path, hdf5::File::Mode::create);
     file.attribute("/", "size_m", std::vector<double>{nx * 1e-6, ny * 1e-6});
     file.attribute("/", "periodic_y", periodic ? 1L : 0L);
     for (const char* group : {"/frames", "/frames/000000", "/frames/000000/fields"}) file.make_group(group);
@@ -138,7 +139,7 @@ TEST_CASE("fields of other nodes than the first one's are refused") {
   const ScratchFolder folder;
   const auto path = folder.path() / "frames.h5";
   {
-    Hdf5File file(path, Hdf5File::Mode::create);
+    hdf5::File file(path, hdf5::File::Mode::create);
     file.attribute("/", "size_m", std::vector<double>{20e-6, 10e-6});
     file.attribute("/", "periodic_y", 0L);
     file.make_group("/frames");

@@ -5,7 +5,7 @@
 #include <map>
 
 #include "files/checkpoint_file.hpp"
-#include "files/hdf5_file.hpp"
+#include "hdf5/hdf5_file.hpp"
 #include "plan/solver_setup.hpp"
 #include "run/simulation.hpp"
 #include "scratch_folder.hpp"
@@ -54,7 +54,7 @@ nlohmann::json summary(const std::filesystem::path& directory) {
 
 using Arrays = std::map<std::string, std::string>;  // bytes by name
 
-void add_arrays(const files::Hdf5File& file, const std::string& group, Arrays& arrays) {
+void add_arrays(const hdf5::File& file, const std::string& group, Arrays& arrays) {
   if (!file.has(group)) return;
   for (const std::string& name : file.names(group)) {
     const std::string path = group + "/" + name;
@@ -73,7 +73,7 @@ Arrays checkpoint(const std::filesystem::path& directory) {
   for (const char* key : {"log_s", "frames"}) REQUIRE(state["directory"].erase(key) == 1);
   const std::vector<std::uint8_t> cbor = nlohmann::json::to_cbor(state);
   Arrays arrays{{"state", {cbor.begin(), cbor.end()}}};
-  const files::Hdf5File file(reader.path(), files::Hdf5File::Mode::read);
+  const hdf5::File file(reader.path(), hdf5::File::Mode::read);
   for (const char* group : {"/populations", "/membranes", "/membranes/state", "/indicator"}) {
     add_arrays(file, group, arrays);
   }
@@ -82,7 +82,7 @@ Arrays checkpoint(const std::filesystem::path& directory) {
 }
 
 Arrays frames(const std::filesystem::path& directory) {
-  const files::Hdf5File file(directory / "frames.h5", files::Hdf5File::Mode::read);
+  const hdf5::File file(directory / "frames.h5", hdf5::File::Mode::read);
   Arrays arrays;
   for (const std::string& frame : file.names("/frames")) {
     for (const char* group : {"/membranes", "/fields"}) add_arrays(file, "/frames/" + frame + group, arrays);

@@ -13,6 +13,7 @@
 using namespace rouleau;
 using namespace rouleau::scene;
 using Catch::Matchers::Contains;
+using namespace std::string_literals;
 
 namespace {
 
@@ -72,6 +73,60 @@ TEST_CASE("a table without types takes the one that is given, and one with types
   const auto typed = folder.write("typed.csv", "x_um,y_um,type\n1,2,rbc\n");
   CHECK_THROWS_WITH(read_cell_table(typed, all, units::Units(), "/cells", 1),
                     Contains("typed.csv:1:11") && Contains("leave one of them out"));
+}
+
+TEST_CASE("a table is the same in the dialects of spreadsheets and programs") {
+  const auto plain = read("type,x_um,y_um,angle_deg\nrbc,8,6,90\nrbc,20.5,8.25,0\ncapsule,30,20,0\n");
+  const std::string rows = "rbc;8;6;90\r\nrbc;20,5;8,25;0\r\ncapsule;30;20;0\r\n";
+  const std::string utf8 = "type,x_um,y_um,angle_deg\nrbc,8,6,90\nrbc,20.5,8.25,0\ncapsule,30,20,0\n";
+  std::string little = "\xFF\xFE", big = "\xFE\xFF";
+  for (const char c : utf8) little += {c, '\0'}, big += {'\0', c};
+  for (
+      const std::string& text :
+      {"\"type\",\"x_um\",\"y_um\",\"angle_deg\"\n\"rbc\",8,6,90\n\"rbc\",20.5,8.25,0\n\"capsule\" ,\"30\",20,0\n"s,
+       "type;x_um;y_um;angle_deg\r\n" + rows, "sep=;\r\ntype;x_um;y_um;angle_deg\r\n" + rows + ";;;\r\n",
+       "type\tx_um\ty_um\tangle_deg\nrbc\t8\t6\t90\nrbc\t20,5\t8,25\t0\ncapsule\t30\t20\t0\n"s,
+       "type,\tx_um,\ty_um,\tangle_deg\nrbc,\t8,\t6,\t90\nrbc,\t20.5,\t8.25,\t0\ncapsule,\t30,\t20,\t0\n"s,
+       "# positions, measured\n# at 20 C\ntype,x_um,y_um,angle_deg\nrbc,8,6,90\n # \n   \nrbc,20.5,8.25,0\ncapsule,30,20,0"s,
+       "Type,X_um,Y_um,ANGLE_deg\nrbc,+8.000e+00,6.,90\nrbc,2.05e1,8.25,0\ncapsule,30,20,0\n"s,
+       "type,x_um,y_um,angle_deg\rrbc,8,6,90\rrbc,20.5,8.25,0\rcapsule,30,20,0\r"s,
+       "type,x_um,y_um,angle_deg,\nrbc,8,6,90,\nrbc,20.5,8.25,0,\ncapsule,30,20,0,\n"s,
+       "name;type;x_um;y_um;angle_deg\n\"a; \"\"b\"\"\";rbc;8;6;90\nc;rbc;20.5;8.25;0\n;capsule;30;20;0\n"s,
+       "\xEF\xBB\xBF\"type\",x_um,y_um,angle_deg\nrbc,8,6,90\nrbc,20.5,8.25,0\ncapsule,30,20,0\n"s, little, big}) {
+    CAPTURE(text);
+    const auto cells = read(text);
+    REQUIRE(cells.size() == plain.size());
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      CHECK(cells[i].type == plain[i].type);
+      CHECK(cells[i].center == plain[i].center);
+      CHECK(cells[i].angle == plain[i].angle);
+    }
+  }
+  // As numpy writes a header.
+  CHECK(read("# x_um,y_um\n1.5,2\n3,4\n", {"rbc"}).at(1).line == 3);
+}
+
+TEST_CASE("what cannot be read for certain is not guessed") {
+  const auto says = [](const std::string& text, const std::string& place, const std::string& words) {
+    const auto [where, what] = fault(text);
+    CAPTURE(text);
+    CHECK(where == place);
+    CHECK_THAT(what, Contains(words));
+  };
+  says("type x_um y_um\nrbc 1 2\n", "1:1", "separate the columns by commas");
+  says("type|x_um|y_um\nrbc|1|2\n", "1:1", "separate the columns by commas");
+  says("type;x_um;y_um\nrbc;1.234,5;2\n", "2:5", "has a ','");
+  says("type;x_um;y_um\nrbc;1,5;2\nrbc;1;2.5\n", "3:7", "has a '.'");
+  says("type\tx_um\ty_um\nrbc\t1,234\t2\n", "2:5", "thousands");
+  says("type,x_um,y_um\nrbc,\"1,234\",2\n", "2:5", "no number");
+  says("type,x_um,y_um\nrbc,8,5,6\n", "2:9", "4 entries");
+  says("type,x_um,y_um\nrbc,\"8,6\n", "2:5", "not closed");
+  says("type,x_um,y_um\n\"rbc\"x,8,6\n", "2:6", "follows the quotation mark");
+  says("Type,X_UM,y_um\nrbc,8,6\n", "1:6", "UM");
+  says("X_um,type,x_um,y_um\n1,rbc,8,6\n", "1:11", "both x");
+  says("type,x [um],y [um]\nrbc,1,2\n", "1:1", "no column x");
+  says(std::string("t\0y\0", 4), "0:0", "NUL");
+  says("# only a comment\n", "0:0", "names the columns");
 }
 
 TEST_CASE("of the table of a run the last step counts") {
@@ -154,6 +209,14 @@ class Datasets {
     H5Sclose(space);
     return *this;
   }
+  /// Numbers that lie in another file.
+  void add_external(const char* name, hsize_t count, const std::string& elsewhere) {
+    const hid_t space = H5Screate_simple(1, &count, nullptr), layout = H5Pcreate(H5P_DATASET_CREATE);
+    H5Pset_external(layout, elsewhere.c_str(), 0, 8 * count);
+    H5Dclose(H5Dcreate2(file_, name, H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, layout, H5P_DEFAULT));
+    H5Pclose(layout);
+    H5Sclose(space);
+  }
 
  private:
   hid_t file_;
@@ -232,4 +295,13 @@ TEST_CASE("a fault of HDF5 datasets names file, dataset, row, value and remedy")
   // Cut off.
   std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
   CHECK_THROWS_AS(read_cell_table(file, types({"rbc"}), units::Units(), "/cells"), Error);
+  // Values of another file.
+  {
+    const std::string secret = folder.write("secret", std::string(16, 's')).string();
+    Datasets datasets(file);
+    datasets.add("y_um", {1, 2});
+    datasets.add_external("x_um", 2, secret);
+  }
+  CHECK_THROWS_WITH(read_cell_table(file, types({"rbc"}), units::Units(), "/cells"),
+                    Contains("takes its values from other files"));
 }

@@ -4,9 +4,10 @@
 #include <catch2/catch.hpp>
 #include <fstream>
 
-#include "files/hdf5_file.hpp"
+#include "hdf5/hdf5_file.hpp"
 #include "stability/limits_run.hpp"
 
+namespace hdf5 = rouleau::hdf5;
 using namespace rouleau::files;
 using namespace rouleau::stability;
 using namespace rouleau::trial;
@@ -96,7 +97,7 @@ TEST_CASE("in three dimensions a cell has a volume, and no area of a plane", "[j
 TEST_CASE("what is no number in a frame has been written, also where the run was then stopped", "[judgement]") {
   RunToJudge run;
   const auto frame = [&](double last) {
-    Hdf5File file(run.folder / "frames.h5", Hdf5File::Mode::create);
+    hdf5::File file(run.folder / "frames.h5", hdf5::File::Mode::create);
     for (const char* group : {"/frames", "/frames/000000", "/frames/000000/fields"}) file.make_group(group);
     file.write("/frames/000000/fields/density", std::vector<double>{1, 2, last}, "kg/m3");
     file.close();

@@ -9,6 +9,7 @@
 #include <chrono>
 #include <thread>
 
+#include "trial/fingerprint.hpp"
 #include "unit/study/study_folder.hpp"
 
 namespace {
@@ -136,6 +137,23 @@ TEST_CASE("relative folders of plugins begin where the scene came from") {
   const TrialResult result = run_trial(trial);
   CHECK(result.end == TrialEnd::refused);
   CHECK(result.message.find((folder / "scenes/nowhere").string() + " does not exist") != std::string::npos);
+}
+
+TEST_CASE("the key of a result depends on the files that its scene names") {
+  const StudyFolder folder;
+  folder.write("cell.off", "a"), folder.write("cells.csv", "b");
+  nlohmann::json scene = couette_scene();
+  scene["cell_types"]["a"]["shape"]["mesh"] = {{"file", "cell.off"}, {"unit", "1 um"}};
+  scene["cells"] = {{{"file", "cells.csv"}}};
+  const auto key = [&] { return fingerprint(scene, folder / "scene.json"); };
+  const std::string first = key();
+  CHECK(key() == first);
+  for (const char* file : {"cell.off", "cells.csv"}) {
+    folder.write(file, "changed");
+    CHECK(key() != first);
+    folder.write(file, file[4] == '.' ? "a" : "b");
+    CHECK(key() == first);
+  }
 }
 
 TEST_CASE("the lock beside the scene binds its trials") {

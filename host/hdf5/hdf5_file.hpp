@@ -5,27 +5,28 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
-namespace rouleau::files {
+namespace rouleau::hdf5 {
 
 /// Owns one HDF5 identifier.
-class Hdf5Handle {
+class Handle {
  public:
   using Close = herr_t (*)(hid_t);
-  Hdf5Handle() = default;
-  Hdf5Handle(hid_t id, Close closer) : id_(id), close_(closer) {}
-  Hdf5Handle(Hdf5Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
-  Hdf5Handle& operator=(Hdf5Handle&& other) noexcept {
+  Handle() = default;
+  Handle(hid_t id, Close closer) : id_(id), close_(closer) {}
+  Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
+  Handle& operator=(Handle&& other) noexcept {
     std::swap(id_, other.id_);
     std::swap(close_, other.close_);
     return *this;
   }
-  Hdf5Handle(const Hdf5Handle&) = delete;
-  Hdf5Handle& operator=(const Hdf5Handle&) = delete;
-  ~Hdf5Handle() { close(); }
+  Handle(const Handle&) = delete;
+  Handle& operator=(const Handle&) = delete;
+  ~Handle() { close(); }
 
   [[nodiscard]] hid_t id() const { return id_; }
   [[nodiscard]] bool valid() const { return id_ >= 0; }
@@ -37,10 +38,12 @@ class Hdf5Handle {
   Close close_ = nullptr;
 };
 
-class Hdf5Rows;
+class Rows;
 
 /// Makes and reads what Rouleau's HDF5 files are made of. Every member throws Error(input_output) naming the file.
-class Hdf5File {
+/// Nothing is read from elsewhere: a link leads to a regular file in the same folder, as frames.h5 does to its segments, or
+/// is refused, and so is a dataset whose values lie in other files (external storage, virtual datasets).
+class File {
  public:
   enum class Mode {
     create,
@@ -48,10 +51,10 @@ class Hdf5File {
     memory  ///< create, without a file
   };
   /// `user_block`: bytes at the beginning of a new file that HDF5 leaves alone; a power of two from 512 on, or 0.
-  Hdf5File(std::filesystem::path file, Mode mode, hsize_t user_block = 0);
+  File(std::filesystem::path file, Mode mode, hsize_t user_block = 0);
 
   [[nodiscard]] const std::filesystem::path& path() const { return file_; }
-  Hdf5Handle make_group(const std::string& path);
+  Handle make_group(const std::string& path);
   [[nodiscard]] bool has(const std::string& path) const;
   /// Number of members of a group.
   [[nodiscard]] int members(const std::string& path) const;
@@ -63,18 +66,22 @@ class Hdf5File {
              const std::string& unit, int compression = 0);
   /// The same dataset, byte for byte, from some of its rows at a time. They are counted over the first axis, in a dataset
   /// of layers of rows over the second one and then the first. Nothing else is written to the file before it is full.
-  [[nodiscard]] Hdf5Rows begin(const std::string& path, const std::vector<hsize_t>& shape, bool layers, hid_t stored,
-                               hid_t given, const std::string& unit, int compression = 0);
+  [[nodiscard]] Rows begin(const std::string& path, const std::vector<hsize_t>& shape, bool layers, hid_t stored,
+                           hid_t given, const std::string& unit, int compression = 0);
   void write(const std::string& path, const std::vector<double>& values, const std::string& unit);
   void write(const std::string& path, const std::vector<int>& values, const std::string& unit);
   /// Names of a group's members, sorted.
   [[nodiscard]] std::vector<std::string> names(const std::string& path) const;
   /// Where an object lies in the file: equal for two names of one object.
   [[nodiscard]] haddr_t address(const std::string& path) const;
+  /// What the values of a dataset are: H5T_FLOAT, H5T_STRING, ...
+  [[nodiscard]] H5T_class_t kind(const std::string& path) const;
+  /// A dataset of texts, of at most 1000 letters where they are of one length.
+  [[nodiscard]] std::vector<std::string> read_texts(const std::string& path) const;
   /// Elements of a dataset.
   [[nodiscard]] std::size_t elements(const std::string& path) const;
   /// Copies an object's attributes to an object that exists here.
-  void copy_attributes(const Hdf5File& from, const std::string& path);
+  void copy_attributes(const File& from, const std::string& path);
   /// A name for an object at the same place in another file; a relative path is one from this file's folder.
   void link_to(const std::filesystem::path& file, const std::string& path);
   /// A second name for a dataset.
@@ -104,25 +111,29 @@ class Hdf5File {
   void close();
 
  private:
-  friend class Hdf5Rows;
+  friend class Rows;
   void attribute(const std::string& path, const std::string& name, hid_t stored, hid_t given, hsize_t count,
                  const void* value);
   /// Refuses a number that the file cannot hold.
-  [[nodiscard]] std::size_t elements_of(const Hdf5Handle& dataset, const std::string& path) const;
-  Hdf5Handle owned(hid_t id, Hdf5Handle::Close closer, const std::string& path) const;
+  [[nodiscard]] std::size_t elements_of(const Handle& dataset, const std::string& path) const;
+  Handle owned(hid_t id, Handle::Close closer, const std::string& path) const;
   /// Creation properties without time stamps, which would make the same run give other bytes at another time.
-  [[nodiscard]] Hdf5Handle untimed(hid_t kind, const std::string& path) const;
+  [[nodiscard]] Handle untimed(hid_t kind, const std::string& path) const;
   void check(herr_t status, const std::string& path) const;
   [[noreturn]] void fail(const std::string& path) const;
+  [[noreturn]] void refuse(const std::string& path, const std::string& why) const;
+  [[nodiscard]] Handle dataset(const std::string& path) const;
 
   std::filesystem::path file_;
   Mode mode_;
-  Hdf5Handle handle_;
+  std::unique_ptr<std::string> foreign_ = std::make_unique<std::string>();  ///< file that a link must not lead to
+  Handle links_;                                                            ///< how links are followed
+  Handle handle_;
 };
 
 /// A dataset that is being written, its first rows first. Belongs to its file, which must outlive it. Every member throws
 /// Error(input_output) naming the file.
-class Hdf5Rows {
+class Rows {
  public:
   /// The next `count` rows. Of a compressed dataset rows are kept, a copy of them, until they fill a chunk: HDF5 would
   /// compress one that is filled in two goes twice. With the last row the dataset is finished.
@@ -130,8 +141,8 @@ class Hdf5Rows {
   [[nodiscard]] bool full() const { return written_ == all_; }
 
  private:
-  friend class Hdf5File;
-  Hdf5Rows(Hdf5File& file, std::string path, std::vector<hsize_t> shape, bool layers, hid_t given, std::string unit)
+  friend class File;
+  Rows(File& file, std::string path, std::vector<hsize_t> shape, bool layers, hid_t given, std::string unit)
       : file_(&file),
         path_(std::move(path)),
         shape_(std::move(shape)),
@@ -141,17 +152,17 @@ class Hdf5Rows {
   void put(const std::byte* rows, hsize_t count);
   void finish();
 
-  Hdf5File* file_;
+  File* file_;
   std::string path_;
   std::vector<hsize_t> shape_;
   bool layers_;
   hid_t given_;
   std::string unit_;
-  Hdf5Handle dataset_;
+  Handle dataset_;
   hsize_t all_ = 0, written_ = 0;   ///< rows
   hsize_t together_ = 1;            ///< rows are written in multiples of this
   std::size_t bytes_of_row_ = 0;    ///< as they are given
   std::vector<std::byte> waiting_;  ///< rows that fill no chunk yet
 };
 
-}  // namespace rouleau::files
+}  // namespace rouleau::hdf5

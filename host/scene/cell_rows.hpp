@@ -1,0 +1,73 @@
+// What tables of cells of all kinds of files have in common: named columns, and rows that become cells.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scene.hpp"
+#include "units/units.hpp"
+
+namespace rouleau::scene {
+
+/// A quantity's column: "x_um".
+struct QuantityColumn {
+  std::size_t at;
+  double scale;  ///< SI value of its unit
+  std::string name, unit;
+};
+
+/// What is wrong, and with which column; none: with all of them. Throws.
+using RefuseColumn = std::function<void(std::optional<std::size_t> column, const std::string& problem)>;
+
+/// The columns of a table that say something about cells. Capital letters of a name mean the same; those of a unit do not.
+struct CellColumns {
+  std::optional<std::size_t> type, step;
+  std::optional<QuantityColumn> x, y, z, angle;
+  std::array<std::optional<std::size_t>, 3> axis;  ///< numbers
+
+  CellColumns() = default;
+  CellColumns(const std::vector<std::string>& names, const units::Units& units, const RefuseColumn& refuse);
+};
+
+/// Rows become cells.
+class CellRows {
+ public:
+  /// `text(column)`: what the row has there, for messages.
+  using Text = std::function<std::string(std::size_t column)>;
+  using Value = std::function<double(std::size_t column, const std::string& name)>;
+
+  CellRows(const std::vector<CellType>& types, const std::string& pointer, std::optional<int> type);
+
+  CellColumns columns;
+  std::vector<CellPlacement> cells;
+
+  void find_columns(const std::vector<std::string>& names, const units::Units& units, const RefuseColumn& refuse);
+  [[nodiscard]] int type_of(std::string_view name, const RefuseColumn& refuse) const;
+  /// Of a row. Where it begins the rows of a later step, those before it do not count.
+  void take_step(const Value& value, const Text& text, const RefuseColumn& refuse);
+  /// `type`: none where all cells have the same.
+  void add(std::optional<int> type, int line, const Value& value, const Text& text, const RefuseColumn& refuse);
+
+ private:
+  const std::string& pointer_;
+  std::optional<int> only_type_;
+  std::vector<std::string> type_names_;
+  double last_step_ = 0;
+};
+
+/// What read_cell_table() is given.
+struct CellTableSource {
+  const std::filesystem::path& file;
+  const std::vector<CellType>& types;
+  const units::Units& units;
+  const std::string& pointer;
+  std::optional<int> type;
+};
+std::vector<CellPlacement> read_csv_cells(const CellTableSource& source);
+std::vector<CellPlacement> read_hdf5_cells(const CellTableSource& source);
+
+}  // namespace rouleau::scene
