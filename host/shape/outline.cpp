@@ -136,7 +136,7 @@ double shape_radius(const scene::Shape& shape) {
   if (const auto* circle = std::get_if<scene::Circle>(&shape)) return circle->radius;
   if (const auto* sphere = std::get_if<scene::Sphere>(&shape)) return sphere->radius;
   if (const auto* ellipsoid = std::get_if<scene::Ellipsoid>(&shape)) return ellipsoid->semi_axes.maxCoeff();
-  if (const auto* mesh = std::get_if<scene::MeshFile>(&shape)) return mesh->unit * half_extent(read_mesh(mesh->file));
+  if (const auto* mesh = std::get_if<scene::MeshFile>(&shape)) return half_extent(mesh_surface(*mesh));
   return std::get<scene::Ellipse>(shape).semi_axes.maxCoeff();
 }
 

@@ -26,6 +26,9 @@ TriangleSurface ellipsoid(int n, const core::Vec<3>& semi_axes);
 /// meridians.
 TriangleSurface biconcave_disc(int n, double radius);
 
+/// A mesh, m, the centroid of the volume that it encloses in the origin. Throws what read_mesh() throws.
+TriangleSurface mesh_surface(const scene::MeshFile& mesh);
+
 /// Of a cell type in three dimensions, m. Throws what read_mesh() throws.
 TriangleSurface make_surface(const scene::CellType& type);
 

@@ -61,8 +61,9 @@ void Mesh::join_edges() {
                std::to_string(a) + " to node " + std::to_string(b);
       };
       if (const auto same = known.find({a, b}); same != known.end()) {
-        refuse(words(edges_[same->second].left) +
-               " in the same direction: they face opposite sides, or the edge has three triangles");
+        refuse(
+            words(edges_[same->second].left) +
+            " in the same direction: they face opposite sides, or the edge has three triangles\nturn one over, or leave one out");
       }
       const auto opposite = known.find({b, a});
       if (opposite == known.end()) {
@@ -78,7 +79,7 @@ void Mesh::join_edges() {
   for (const Edge& edge : edges_) {
     if (edge.right < 0) {
       refuse(triangle_name(edge.left) + " has no neighbour beyond the edge from node " + std::to_string(edge.a) +
-             " to node " + std::to_string(edge.b) + ": the surface is not closed");
+             " to node " + std::to_string(edge.b) + ": the surface is not closed\nfill the hole there");
     }
   }
 }
@@ -107,11 +108,12 @@ void Mesh::make_rings() {
   }
   if (static_cast<int>(reached.size()) < triangle_count()) {
     const auto lost = std::find(seen.begin(), seen.end(), false) - seen.begin();
-    refuse(triangle_name(static_cast<int>(lost)) + " is not joined to the first one: the surface has several pieces");
+    refuse(triangle_name(static_cast<int>(lost)) +
+           " is not joined to the first one: the surface has several pieces\nkeep one of them");
   }
   for (int i = 0; i < node_count_; ++i) {
     const int first = corners_.first[i], end = corners_.first[i + 1];
-    if (first == end) refuse("node " + std::to_string(i) + " belongs to no triangle");
+    if (first == end) refuse("node " + std::to_string(i) + " belongs to no triangle\nleave it out");
     // Turn around the node from triangle to triangle: one turn must meet all of them.
     int count = 0, t = corners_.entry[first] / 3;
     do {
