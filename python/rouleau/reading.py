@@ -253,7 +253,7 @@ class Run(Outputs):
     @property
     def log(self) -> list[Section]:
         """log.jsonl: what happened when; each entry has `event` and `wall_s`, seconds since the run began."""
-        lines = (self.directory / "log.jsonl").read_text(encoding="utf-8").split("\n")[:-1]
+        lines = _plain(self.directory / "log.jsonl").read_text(encoding="utf-8").split("\n")[:-1]
         return [json.loads(line, object_hook=Section) for line in lines]
 
     @property
@@ -311,11 +311,12 @@ class Run(Outputs):
         for path in self._frame_files():
             try:
                 with _opened(path) as file:
-                    for name in sorted(file.get("frames", ())):
-                        frame = file["frames"][name]
+                    all_frames = _part(file, "frames")
+                    for name in sorted(all_frames or ()):
+                        frame = _part(all_frames, name)
                         about = frame.attrs
                         rows.append((int(about["step"]), float(about["time_s"]), float(about["strain"]),
-                                     _text(about["stage_name"]), len(frame.get("fields", ())) > 0, path.name, name))
+                                     _text(about["stage_name"]), len(_part(frame, "fields") or ()) > 0, path.name, name))
             except (OSError, KeyError, RuntimeError):
                 if finished:
                     raise Error(Fault("this file is damaged", "rouleau verify says what has changed", str(path)), exit_code=4) from None
@@ -366,7 +367,7 @@ class Run(Outputs):
     def _json(self, name: str) -> Any:
         path = self.directory / name
         try:
-            return json.loads(path.read_text(encoding="utf-8"), object_hook=Section)
+            return json.loads(_plain(path).read_text(encoding="utf-8"), object_hook=Section)
         except ValueError as error:
             raise Error(Fault(f"this is no JSON: {error}", "rouleau verify says what has changed", str(path)), exit_code=4) from None
 
@@ -392,21 +393,24 @@ class Run(Outputs):
         import numpy
         path = self.directory / row["file"]
         with _opened(path) as file:
-            frame = file["frames"][row["name"]]
+            frame = _part(_part(file, "frames"), row["name"])
             size = tuple(float(length) for length in file.attrs["size_m"])
             cells = []
-            if "membranes" in frame:
+            membranes = _part(frame, "membranes")
+            if membranes is not None:
                 points, tension, first, cell_of, aggregate = (
-                    frame["membranes"][part][:] for part in ("points", "tension", "first", "cell", "aggregate"))
-                curvature = frame["membranes"]["curvature"][:] if "curvature" in frame["membranes"] else None
-                triangles = frame["membranes"]["triangles"][:] if "triangles" in frame["membranes"] else None
+                    _part(membranes, part)[:] for part in ("points", "tension", "first", "cell", "aggregate"))
+                curvature, triangles = (None if (part := _part(membranes, name)) is None else part[:]
+                                        for name in ("curvature", "triangles"))
                 for b, e in zip(first[:-1], first[1:]):
                     surface = {} if triangles is None or curvature is None else {
                         "curvature": curvature[b:e],
                         "triangles": triangles[(triangles[:, 0] >= b) & (triangles[:, 0] < e)] - b}
                     cells.append(Cell(int(cell_of[b]), int(aggregate[b]), points[b:e], tension[b:e], **surface))
             fields: dict[str, Field] = {}
-            for name, data in frame.get("fields", {}).items():
+            shown = _part(frame, "fields")
+            for name in shown or ():
+                data = _part(shown, name)
                 values = data[:].astype(numpy.float64)
                 axes = len(size)
                 if axes == 2 and values.ndim == 3:
@@ -459,9 +463,36 @@ def _with_columns(table: pandas.DataFrame, file: str, *names: str) -> pandas.Dat
     return table
 
 
+def _plain(path: pathlib.Path) -> pathlib.Path:
+    """The path of a regular file: another would be waited for. Throws Error."""
+    if not path.is_file():
+        raise Error(Fault("this is no plain file", "bring the file back", str(path)), exit_code=4)
+    return path
+
+
 def _opened(path: pathlib.Path) -> h5py.File:
     import h5py
-    return h5py.File(path, "r", locking=False)  # another process may be writing beside it
+    return h5py.File(_plain(path), "r", locking=False)  # another process may be writing beside it
+
+
+def _part(group: h5py.Group, name: str) -> Any:
+    """A group's member, None where there is none. Throws Error where it would be read from elsewhere than from files in
+    the run's folder."""
+    import h5py
+    links, key = group.id.links, name.encode()
+    if not links.exists(key):  # `in` would follow the link
+        return None
+    kind = links.get_info(key).type
+    own = kind == h5py.h5l.TYPE_HARD
+    if kind == h5py.h5l.TYPE_EXTERNAL:
+        folder = pathlib.Path(group.file.filename).resolve().parent
+        file = (folder / os.fsdecode(links.get_val(key)[0])).resolve()
+        own = file.parent == folder and file.is_file()
+    part = group[name] if own else None
+    if part is None or (isinstance(part, h5py.Dataset) and (part.is_virtual or part.external)):
+        raise Error(Fault(f"{group.name}/{name} leads to another file: it is damaged", "do not use this run unless you "
+                          "trust whoever made it", str(group.file.filename)), exit_code=4)
+    return part
 
 
 def _text(value: Any) -> str:

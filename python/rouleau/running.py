@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, Callable, Sequence, Union
 from .errors import Error, Fault, faults_in
 from .program import call, call_json, environment, program
 from .reading import Run, Section
-from .scenes import SceneLike, in_users_words, name_of, scene_file, settings
+from .scenes import SceneLike, in_users_words, name_of, options_of, scene_file
 
 if TYPE_CHECKING:
     import pandas
@@ -71,7 +71,7 @@ def run(scene: SceneLike, out: str | os.PathLike[str] | None = None, *, threads:
     options += ["--max-steps", str(max_steps)] if max_steps is not None else []
     options += ["--max-time", max_time] if max_time is not None else []
     options += [word for folder in plugin_dirs for word in ("--plugin-dir", os.fspath(folder))]
-    made = simulate(scene, directory, [*options, *settings(changes)], shown(progress), threading.Event())
+    made = simulate(scene, directory, [*options, *options_of(changes, scene)], shown(progress), threading.Event())
     if progress is None and sys.stderr.isatty():
         print(file=sys.stderr)
     for warning in made.summary.get("warnings", ()):
@@ -193,7 +193,7 @@ def plan(scene: SceneLike, *, plugin_dirs: Sequence[str | os.PathLike[str]] = ()
     folders = [word for folder in plugin_dirs for word in ("--plugin-dir", os.fspath(folder))]
     with scene_file(scene) as path:
         try:
-            answer = call("plan", path, *folders, *settings(changes), "--json")
+            answer = call("plan", path, *folders, *options_of(changes, scene), "--json")
         except Error as error:
             raise Error(in_users_words(error.faults, scene), exit_code=error.exit_code) from None
     return Plan(json.loads(answer, object_hook=Section))

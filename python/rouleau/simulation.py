@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .errors import Error, Fault, fault_of
-from .scenes import SceneLike, as_json, pointer_of, scene_file
+from .scenes import SceneLike, scene_file, settings
 
 if TYPE_CHECKING:
     import pandas
@@ -64,9 +64,8 @@ class Simulation:
                  **changes: Any) -> None:
         if not 1 <= threads <= 1024:
             raise Error(Fault(f"threads is {threads}", "give a number from 1 to 1024"))
-        settings = [f"{pointer_of(key)}={as_json(value)}" for key, value in changes.items()]
         with scene_file(scene) as file:
-            self._core = _core.Session(os.fspath(file), settings, [os.fspath(folder) for folder in plugins])
+            self._core = _core.Session(os.fspath(file), settings(changes, scene), [os.fspath(folder) for folder in plugins])
         self._threads = threads
         self._spacing: float = self._core.stage()["length"]
 

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Callable, Mapping, Sequence
 from .errors import Error
 from .reading import Run
 from .running import FAILED, Progress, ProgressLike, shown, simulate
-from .scenes import SceneLike, as_json, pointer_of, settings
+from .scenes import SceneLike, as_json, hashes_of_files, options_of, pointer_of, text_of
 
 if TYPE_CHECKING:
     import pandas
@@ -29,7 +29,7 @@ def sweep(scene: SceneLike, over: Mapping[str, Sequence[Any]], *, out: str | os.
     `over` has a list of values for each key or JSON pointer: `{"/interactions/0/parameters/depth": ["1e-8 J/m2", "1e-7
     J/m2"], "/stages/0/shear_rate": [...]}`; `scene` and `changes` as in `run`. `workers` runs go on at a time (None: as
     many as there are processors), in directories below `out` that are named after their values. A run that is there
-    already, of the same scene and values, is not run again unless `fresh`; one that was interrupted goes on.
+    already, of the same scene, files and values, is not run again unless `fresh`; one that was interrupted goes on.
 
     Columns: a value for each key, under its last word ("depth") where that is unique; `status` ("completed", "diverged",
     "interrupted"); for each quantity of `Run.results` its value, in SI, and `QUANTITY_error`; `wall_s`; `directory`. With
@@ -47,12 +47,13 @@ def sweep(scene: SceneLike, over: Mapping[str, Sequence[Any]], *, out: str | os.
         with speaking:
             listen(now)
 
-    content = as_json(scene) if isinstance(scene, Mapping) else _text_of(scene)
+    content = as_json(scene) if isinstance(scene, Mapping) else text_of(scene)
     jobs = []
     for values in itertools.product(*over.values()):
         mine = dict(zip(over, values))
         jobs.append((dict(zip(names, values)), {**changes, **mine},
-                     pathlib.Path(out) / _directory_name(dict(zip(names, values)), content, {**changes, **mine}, error_bars)))
+                     pathlib.Path(out) / _directory_name(dict(zip(names, values)), content, {**changes, **mine},
+                                                     [error_bars, *hashes_of_files(scene, {**changes, **mine})])))
 
     def one(job: tuple[dict[str, Any], dict[str, Any], pathlib.Path]) -> dict[str, Any]:
         values, settled, directory = job
@@ -76,7 +77,7 @@ def sweep(scene: SceneLike, over: Mapping[str, Sequence[Any]], *, out: str | os.
 
 def _run_of(scene: SceneLike, directory: pathlib.Path, changes: Mapping[str, Any], error_bars: bool, fresh: bool,
             progress: Callable[[Progress], object], stop: threading.Event) -> Run:
-    options = settings(changes) + (["--error-bar"] if error_bars else [])
+    options = options_of(changes, scene) + (["--error-bar"] if error_bars else [])
     if (directory / "scene.json").is_file():
         there = Run(directory)
         if not fresh and there.finished and there.status != "interrupted":
@@ -103,21 +104,14 @@ def _measured(made: Run, measure: Callable[[Run], Mapping[str, Any]] | None) -> 
     return columns
 
 
-def _text_of(scene: str | os.PathLike[str]) -> str:
-    try:
-        return pathlib.Path(scene).read_text(encoding="utf-8", errors="replace")
-    except OSError:
-        return ""  # the program says what is wrong
-
-
 def _short_names(keys: list[str]) -> list[str]:
     """The last word of each key, or the whole key where another has the same."""
     last = [pointer_of(key).rsplit("/", 1)[1] for key in keys]
     return [word if last.count(word) == 1 else key for key, word in zip(keys, last)]
 
 
-def _directory_name(values: Mapping[str, Any], content: str, changes: Mapping[str, Any], error_bars: bool) -> str:
+def _directory_name(values: Mapping[str, Any], content: str, changes: Mapping[str, Any], further: list[Any]) -> str:
     words = "_".join(f"{name}-{value if isinstance(value, str) else as_json(value)}" for name, value in values.items())
     readable = re.sub(r"[^A-Za-z0-9.+-]+", "_", words).strip("_")[:80]
-    whole = json.dumps([content, as_json({pointer_of(k): v for k, v in changes.items()}), error_bars])
+    whole = json.dumps([content, as_json({pointer_of(k): v for k, v in changes.items()}), *further])
     return f"{readable}-{hashlib.sha256(whole.encode()).hexdigest()[:8]}"

@@ -255,6 +255,21 @@ class A_run_in_three_dimensions(Case):
         del scene["cell_types"]["capsule"]["triangles"]
         first = self.cells(self.run_scene(scene, "mesh"))[0]
         self.assertAlmostEqual(float(first["volume_m3"]) / (4 / 3 * 0.5e-6**3), 1, delta=1e-12)
+        places = [float(first[name]) for name in ("x_m", "y_m", "z_m")]
+        lines = octahedron.split("\n")
+        moved = [" ".join(str(1e-3 * (float(c) + 40)) for c in line.split()) for line in lines[2:8]]
+        (self.folder / "cell.off").write_text("\n".join(lines[:2] + moved + lines[8:]))
+        scene["cell_types"]["capsule"]["shape"]["mesh"]["unit"] = "0.5 mm"  # longer than the box
+        far = self.cells(self.run_scene(scene, "far", "--max-steps", 20))[0]
+        for name, place in zip(("x_m", "y_m", "z_m"), places):
+            self.assertAlmostEqual(float(far[name]), place, delta=1e-15, msg=name)
+        (self.folder / "cell.off").write_text("\n".join(lines[:2] + [" ".join(f"{1.1 * 1e-3 * float(c)}" for c in l.split())
+                                                                    for l in lines[2:8]] + lines[8:]))
+        done = self.rouleau("run", self.folder / "scene.json", "--out", self.folder / "far", "--resume", "--force")
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("/cell_types/capsule/shape/mesh/sha256", done.stderr)
+        mesh = json.loads((self.folder / "far/scene.json").read_text())["cell_types"]["capsule"]["shape"]["mesh"]
+        self.assertEqual(mesh["file"], str(self.folder / "cell.off"))
         (self.folder / "cell.off").write_text(octahedron.replace("3 0 3 5\n", "3 0 3 4\n"))
         done = self.rouleau("run", self.folder / "scene.json", "--out", self.folder / "no")
         self.assertEqual(done.returncode, 2, done.stderr)

@@ -10,6 +10,7 @@ import shutil
 import subprocess
 import sys
 import unittest
+from pathlib import Path
 
 sys.dont_write_bytecode = True  # nothing is to appear in the source folder
 from check_commands import PROGRAM, SHORT, Case
@@ -306,6 +307,41 @@ class A_lock_binds_a_scene_to_its_plugins(TrustCase):
         self.assert_stops(self.rouleau.run("plugins", "--out", "x"), 2, "--lock")
         self.assert_stops(self.rouleau.run("plugins", "--install", "x", "--index", "y"), 2, "--install, --index")
         self.assert_stops(self.rouleau.run("plugins", "--overwrite"), 2, "--install")
+
+
+class Files_of_others(TrustCase):
+    def test_that_are_pipes_or_have_no_end_are_refused_and_not_waited_for(self):
+        pipe = self.path / "pipe"
+        os.mkfifo(pipe)
+        capsule = Path(sys.argv[3]) / "scenes/capsule-3d.json"
+        for file, words in ((pipe, "pipe"), ("/dev/zero", "device")):
+            self.assert_stops(self.rouleau.run("plan", file), 4, str(file), words)
+            mesh = {"membrane": [], "shape": {"mesh": {"file": str(file), "unit": "1 um"}}}
+            self.assert_stops(self.rouleau.run("plan", capsule, "--set", f"/cell_types/capsule={json.dumps(mesh)}"), 2,
+                              str(file), "/shape/mesh/file", "no plain file")
+            self.assert_stops(self.rouleau.run("study", file, "--out", self.path / "study"), 4, words)
+        self.assert_stops(self.rouleau.run("plan", self.file, "--set", f'/cells={json.dumps({"file": str(pipe)})}'), 2,
+                          "/cells/file", "no plain file")
+
+    def test_of_a_run_are_its_own_and_regular_ones(self):
+        run = self.path / "run"
+        self.assertEqual(self.rouleau.run("run", self.file, "--out", run, *SHORT).returncode, 0)
+        secret = self.path / "secret"
+        secret.write_text('{"password": "s3cret"}')
+        for name in ("summary.json", "scene.json", "series.csv", "cells.csv", "frames.h5", "log.jsonl"):
+            kept = (run / name).rename(self.path / "kept")
+            for pipe in (True, False):
+                if pipe:
+                    os.mkfifo(run / name)
+                else:
+                    (run / name).symlink_to(secret)
+                (run / "report.html").unlink(missing_ok=True)
+                for command in (("report", run), ("report", run, "--compare", run), ("verify", run)):
+                    self.rouleau.run(*command)  # ends
+                page = run / "report.html"
+                self.assertNotIn("s3cret", page.read_text() if page.exists() else "", name)
+                (run / name).unlink()
+            kept.rename(run / name)
 
 
 if __name__ == "__main__":

@@ -1,8 +1,10 @@
 """rouleau.open: tables, stages, frames, pictures and comparisons of a real run, finished and still going."""
 
+import contextlib
 import csv
 import json
 import math
+import os
 import shutil
 import tempfile
 
@@ -294,6 +296,46 @@ class Figures(Case):
         self.assertEqual(page.count("data:image/png"), 3)
         self.assertNotRegex(page, "(src|href)=.https?:.*[.]js")
         self.assertEqual([f.name for f in self.path.iterdir()], ["run.html"])
+
+
+class A_run_of_somebody_else(Case):
+    def setUp(self):
+        super().setUp()
+        self.run_folder = self.path / "run"
+        shutil.copytree(RUN.directory, self.run_folder)
+
+    def frames(self):
+        import h5py
+        return h5py.File(next(iter(sorted(self.run_folder.glob("frames*.h5")))), "a")
+
+    def test_shows_no_other_file(self):
+        import h5py
+        (self.path / "secret").write_bytes(b"s" * 8000)
+        for name in ("tension", "points"):
+            with self.frames() as file:
+                membranes = file["frames/000000/membranes"]
+                shape = membranes[name].shape
+                del membranes[name]
+                layout = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
+                layout.set_external(bytes(self.path / "secret"), 0, math.prod(shape))
+                h5py.h5d.create(membranes.id, name.encode(), h5py.h5t.STD_U8LE, h5py.h5s.create_simple(shape), layout)
+            self.assert_refused("another file", rouleau.open(self.run_folder).frame, index=0)
+        os.mkfifo(self.run_folder / "pipe")
+        for target in ("pipe", "../secret"):
+            with self.frames() as file:
+                del file["frames/000000"]
+                file["frames/000000"] = h5py.ExternalLink(target, "/frames/000000")
+            self.assert_refused("another file", rouleau.open(self.run_folder).frame, index=0)
+
+    def test_is_not_waited_for(self):
+        for name in ("summary.json", "series.csv", "log.jsonl"):
+            kept = (self.run_folder / name).rename(self.path / name)
+            os.mkfifo(self.run_folder / name)
+            with contextlib.suppress(rouleau.Error):
+                run = rouleau.open(self.run_folder)
+                print(run.summary, run.series, run.log)
+            (self.run_folder / name).unlink()
+            kept.rename(self.run_folder / name)
 
 
 class What_is_no_run(Case):

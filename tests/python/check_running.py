@@ -165,6 +165,23 @@ class A_sweep(In_a_folder):
         rouleau.sweep(small_scene(), over, out="sweep", progress=False, fresh=True)
         self.assertGreater(pathlib.Path(first["directory"][0], "summary.json").stat().st_mtime_ns, written)
 
+    def test_runs_again_what_has_another_file_whose_name_begins_with_the_working_folder(self):
+        table = pathlib.Path("cells.csv")
+        scene = small_scene(cells={"file": "cells.csv"})
+        rows = ["type;x_um;y_um;angle_deg", "rbc;1;8;90", "rbc;5;8;90"]
+        results = []
+        for last in ("rbc;5;8;90", "rbc;5;8;90", "rbc;6,5;8;90"):
+            table.write_text("\n".join([*rows[:2], last]))
+            results.append(rouleau.sweep(scene, {"/stages/1/shear_rate": ["20 1/s"]}, out="sweep", progress=False))
+        first, again, other = (str(result["directory"][0]) for result in results)
+        self.assertEqual(first, again)
+        self.assertNotEqual(first, other)
+        self.assertAlmostEqual(rouleau.open(other).cells["x_m"][1], 6.5e-6, delta=1e-12)
+        self.assertEqual(rouleau.open(first).scene.cells.file, str(table.resolve()))
+        changed = rouleau.plan(small_scene(), **{"/cells": {"file": "cells.csv"}})
+        self.assertIn("small", repr(changed))
+        self.assertEqual(len(rouleau.Simulation(scene).cells()), 2)
+
     def test_goes_on_where_runs_diverge(self):
         table = rouleau.sweep(small_scene(), {"numerics.tau": [1, 30]}, out="sweep", progress=False)
         self.assertEqual(list(table["status"]), ["completed", "diverged"])
