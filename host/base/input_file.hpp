@@ -10,8 +10,10 @@ namespace rouleau {
 
 inline constexpr std::uintmax_t any_size = std::numeric_limits<std::uintmax_t>::max();
 
-/// The most that is read of a mesh or a table of cells, bytes.
+/// The most that is read of a mesh or a table of cells in text, bytes.
 inline constexpr std::uintmax_t largest_input = std::uintmax_t{256} << 20U;
+/// Of any file that a scene names.
+inline constexpr std::uintmax_t largest_named = std::uintmax_t{4} << 30U;
 
 /// An open regular file. A pipe, a device or a folder is refused at once: nothing waits for whoever writes into a pipe, and
 /// nothing is read of what has no end. Links are followed.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/input_file.hpp"
 #include "base/text.hpp"
 #include "json/document.hpp"
 #include "plan_models.hpp"
@@ -67,6 +68,7 @@ void pin_files(json::Document& document) {
     const auto file = std::filesystem::absolute(std::filesystem::path(document.file()).parent_path() / name);
     std::error_code ignored;
     if (name.find('\0') != std::string::npos || !std::filesystem::is_regular_file(file, ignored)) continue;
+    static_cast<void>(InputFile(file, largest_named));  // before hours of hashing
     const std::string found = plugin::sha256(file);
     if (!wanted.empty() && wanted != found) {
       throw Error(

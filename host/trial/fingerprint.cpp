@@ -4,6 +4,7 @@
 #include <set>
 
 #include "base/error.hpp"
+#include "base/input_file.hpp"
 #include "plugin/catalog.hpp"
 #include "plugin/library.hpp"
 #include "plugin/lock.hpp"
@@ -72,7 +73,8 @@ std::string fingerprint(const Json& scene, const fs::path& scene_file, const std
     const std::string name = scene.at(Json::json_pointer(entry + "/file"));
     const fs::path file = fs::absolute(scene_file).parent_path() / name;
     std::error_code ignored;
-    if (fs::is_regular_file(file, ignored)) all["files"].push_back(plugin::sha256(file));
+    if (fs::is_regular_file(file, ignored) && fs::file_size(file, ignored) <= largest_named)
+      all["files"].push_back(plugin::sha256(file));
   }
   const fs::path lock = plugin::lock_beside(scene_file);
   if (fs::exists(lock)) all["lock"] = plugin::sha256(lock);

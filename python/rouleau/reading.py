@@ -367,7 +367,7 @@ class Run(Outputs):
     def _json(self, name: str) -> Any:
         path = self.directory / name
         try:
-            return json.loads(_plain(path).read_text(encoding="utf-8"), object_hook=Section)
+            return json.loads(_plain(path, 16).read_text(encoding="utf-8"), object_hook=Section)
         except ValueError as error:
             raise Error(Fault(f"this is no JSON: {error}", "rouleau verify says what has changed", str(path)), exit_code=4) from None
 
@@ -444,7 +444,7 @@ def _read_table(path: pathlib.Path) -> pandas.DataFrame:
     import pandas
     if not path.is_file():
         raise Error(Fault("this table is missing", "a run that has just begun has none yet", str(path)), exit_code=4)
-    with builtins.open(path, encoding="utf-8", newline="") as file:
+    with builtins.open(_plain(path), encoding="utf-8", newline="") as file:
         text = file.read()
     text = text[:text.rfind("\n") + 1]
     if not text:
@@ -463,16 +463,18 @@ def _with_columns(table: pandas.DataFrame, file: str, *names: str) -> pandas.Dat
     return table
 
 
-def _plain(path: pathlib.Path) -> pathlib.Path:
-    """The path of a regular file: another would be waited for. Throws Error."""
+def _plain(path: pathlib.Path, most_mib: int | None = 2048) -> pathlib.Path:
+    """The path of a regular file of at most so many MiB: another would be waited for. Throws Error."""
     if not path.is_file():
         raise Error(Fault("this is no plain file", "bring the file back", str(path)), exit_code=4)
+    if most_mib is not None and path.stat().st_size > most_mib << 20:
+        raise Error(Fault(f"this file has more than {most_mib} MiB", "it is no file of a run", str(path)), exit_code=4)
     return path
 
 
 def _opened(path: pathlib.Path) -> h5py.File:
     import h5py
-    return h5py.File(_plain(path), "r", locking=False)  # another process may be writing beside it
+    return h5py.File(_plain(path, None), "r", locking=False)  # another process may be writing beside it
 
 
 def _part(group: h5py.Group, name: str) -> Any:

@@ -80,6 +80,8 @@ TEST_CASE("a mesh is part of the scene that names it") {
   CHECK_THROWS_WITH(read(R"(, "sha256": ")" + hash + '"'),
                     Contains("shape/mesh/sha256") && Contains("has another hash"));
   CHECK(read("").at("sha256") != hash);
+  std::filesystem::resize_file(file, std::uintmax_t{20} << 30U);
+  CHECK_THROWS_WITH(read(""), Contains("cell.off") && Contains("more than 4096 MiB"));
 }
 
 TEST_CASE("a scene with cells from a file says where the file is and what was in it, and refuses another one") {
