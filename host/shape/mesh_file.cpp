@@ -68,6 +68,8 @@ std::string fault_of(const TriangleSurface& surface) {
 TriangleSurface read_mesh(const std::filesystem::path& file) {
   std::string text = read_input(file, largest_input);
   if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
+  const bool old_ends = text.find('\n') == std::string::npos && text.find('\0') == std::string::npos;  // of lines
+  if (old_ends) std::replace(text.begin(), text.end(), '\r', '\n');
   const Read read = format_of(text, file);
   Words words(std::move(text), file.string());
   TriangleSurface surface = read(words);

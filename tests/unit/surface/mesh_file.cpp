@@ -302,6 +302,9 @@ TEST_CASE("meshes are read in the ways that programs write them") {
   }
   is_the_sphere(coloured);
   is_the_sphere("\xEF\xBB\xBF" + off);
+  std::string old = ply_of(sphere, false);
+  std::replace(old.begin(), old.end(), '\n', '\r');
+  is_the_sphere(old);
   CHECK_THAT(file.refusal("4OFF\n1 1 0\n").what(), Contains("three coordinates"));
 }
 
