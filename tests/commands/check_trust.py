@@ -335,7 +335,7 @@ class Files_of_others(TrustCase):
                     os.mkfifo(run / name)
                 else:
                     (run / name).symlink_to(secret)
-                for command in (("report", run), ("report", run, "--compare", run), ("verify", run)):
+                for command in (("report", run), ("report", "--compare", run, run, "--out", self.path / "two.html"), ("verify", run)):
                     self.rouleau.run(*command)  # ends
                 for page in self.path.rglob("*.html"):
                     self.assertNotIn("s3cret", page.read_text(), name)
