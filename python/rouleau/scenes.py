@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import collections.abc
 import contextlib
+import decimal
+import fractions
 import json
+import operator
 import os
 import pathlib
 import tempfile
@@ -20,20 +24,67 @@ def pointer_of(key: str) -> str:
     return key if key.startswith("/") else "/" + key.replace(".", "/")
 
 
-def as_json(value: Any) -> str:
-    """JSON of a value; numpy's numbers and arrays, and paths, too."""
-    def other(item: Any) -> Any:
-        if hasattr(item, "tolist"):
-            return item.tolist()
-        if isinstance(item, os.PathLike):
-            return os.fspath(item)
-        raise Error(f"{item!r} cannot stand in a scene; use text with a unit, a number, a list or a dictionary")
-    return json.dumps(value, default=other, ensure_ascii=False)
+def as_json(value: Any, key: str = "") -> str:
+    """JSON of a value, which `key` is to have; what is no JSON by itself as `plain` has it."""
+    try:
+        return json.dumps(value, default=plain, ensure_ascii=False, allow_nan=False)
+    except Exception as trouble:  # also of whoever made the value
+        raise Error(Fault(f"{str(value)[:200]} cannot stand in a scene: {trouble}",
+                          "use text with a unit, a number, a list or a dictionary",
+                          pointer=pointer_of(key) if key else None)) from None
+
+
+def plain(item: Any) -> Any:
+    """A value as JSON knows it: of numpy's numbers and arrays, of sequences, fractions and decimals their numbers, of
+    paths and of quantities with a unit (pint, unyt, astropy) text, one for each number of an array. Throws TypeError, and
+    what the value throws."""
+    magnitude = getattr(item, "magnitude", getattr(item, "value", None))
+    unit = getattr(item, "units", getattr(item, "unit", None))
+    if magnitude is not None and unit is not None:
+        numbers = magnitude.tolist() if hasattr(magnitude, "tolist") else magnitude
+        written = format(unit, "C") if hasattr(unit, "dimensionality") else str(unit)  # pint's, for programs
+        return _with_unit(numbers, written)
+    if isinstance(item, os.PathLike):
+        return os.fspath(item)
+    if hasattr(item, "tolist"):
+        return item.tolist()
+    if isinstance(item, (fractions.Fraction, decimal.Decimal)):
+        return int(item) if item == int(item) else float(item)
+    if isinstance(item, Mapping):
+        return dict(item)
+    if isinstance(item, collections.abc.Sequence) and not isinstance(item, (bytes, bytearray)):
+        return list(item)
+    raise TypeError(f"{item!r} is a {type(item).__name__}")
+
+
+def _with_unit(numbers: Any, unit: str) -> Any:
+    if isinstance(numbers, (list, tuple)):
+        return [_with_unit(number, unit) for number in numbers]
+    written = unit if unit not in ("", "dimensionless") else ""
+    return f"{numbers!r} {written}" if written else numbers
+
+
+def quantity_text(value: Any) -> str:
+    """A quantity as text, whatever it was given as."""
+    made = json.loads(as_json(value))
+    return made if isinstance(made, str) else str(made)
+
+
+def whole(name: str, value: Any, least: int, most: int | None = None) -> int:
+    """A whole number in its range: Python's, numpy's, or a float that is one."""
+    try:
+        number = int(value) if isinstance(value, float) and value.is_integer() else operator.index(value)
+    except TypeError:
+        number = least - 1
+    if number < least or (most is not None and number > most):
+        bounds = f"from {least} to {most}" if most is not None else f"{least} or more"
+        raise Error(Fault(f"{name} is {value!r}", f"give a whole number, {bounds}"))
+    return number
 
 
 def settings(changes: Mapping[str, Any]) -> list[str]:
     """Options of the program that make these changes."""
-    return [word for key, value in changes.items() for word in ("--set", f"{pointer_of(key)}={as_json(value)}")]
+    return [word for key, value in changes.items() for word in ("--set", f"{pointer_of(key)}={as_json(value, key)}")]
 
 
 def name_of(scene: SceneLike) -> str:
@@ -46,15 +97,23 @@ def scene_file(scene: SceneLike) -> Iterator[pathlib.Path]:
     """The path of the scene's file, which for a dictionary is there for a while. Relative `plugin_dirs` of a dictionary
     are relative to the working folder."""
     if not isinstance(scene, Mapping):
+        if not isinstance(scene, (str, os.PathLike)):
+            raise Error(Fault(f"{type(scene).__name__} is no scene", "give the path of a scene's file, or a dictionary"))
         yield pathlib.Path(scene)
         return
     content = dict(scene)
     folders = content.get("plugin_dirs")
     if isinstance(folders, list):
         content["plugin_dirs"] = [os.path.abspath(f) if isinstance(f, (str, os.PathLike)) else f for f in folders]
-    with tempfile.TemporaryDirectory(prefix="rouleau-") as folder:
+    text = as_json(content)
+    try:
+        temporary = tempfile.TemporaryDirectory(prefix="rouleau-")
+    except OSError as trouble:
+        raise Error(Fault(f"there is no place for a scene's file: {trouble}",
+                          "let the environment variable TMPDIR name a folder that you may write to"), exit_code=4) from None
+    with temporary as folder:
         path = pathlib.Path(folder) / "scene.json"
-        path.write_text(as_json(content), encoding="utf-8")
+        path.write_text(text, encoding="utf-8")
         yield path
 
 
