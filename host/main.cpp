@@ -87,18 +87,17 @@ int dispatch(const std::vector<std::string>& arguments) {
               {"rouleau --help shows what there is"});
 }
 
-/// Of several processes that a launcher has started those that run a scene do it together, and others are one too many.
-/// False: there is nothing to do for this one.
-bool join_ranks(const transport::Launch& launch, const std::vector<std::string>& arguments) {
+/// Of several processes that a launcher has started those that run a scene do it together. What they would take from
+/// each other is refused on each, and anything else each does by itself.
+void join_ranks(const transport::Launch& launch, const std::vector<std::string>& arguments) {
   const std::string command = arguments.empty() ? "" : arguments.front();
-  if (command == "run") {
-    Crew::join(launch);
-    return true;
-  }
-  if (launch.rank > 0) return false;
-  if (command != "study" && command != "limits") return true;
-  throw Error(Cause::bad_input, "rouleau " + command + " starts processes of its own and cannot be cut into ranks",
-              {"start it without " + launch.command});
+  if (command == "run") Crew::join(launch);
+  if (command != "study" && command != "limits" && command != "new") return;
+  throw Error(Cause::bad_input,
+              "rouleau " + command + " is work for one process and cannot be cut into ranks; this is rank " +
+                  std::to_string(launch.rank) + " of " + launch.launcher,
+              {"start it without " + launch.command +
+               ", or with ROULEAU_LAUNCHER=none in the environment where this process is to be alone"});
 }
 
 }  // namespace
@@ -110,8 +109,7 @@ int main(int count, char** words) {
   const int code = run_program(
       [&] {
         const std::vector<std::string> arguments(words + (count > 0 ? 1 : 0), words + count);
-        if (const auto launch = transport::launched(); launch && !join_ranks(*launch, arguments))
-          return exit_code::done;
+        if (const auto launch = transport::launched()) join_ranks(*launch, arguments);
         check_instruction_set();
         return dispatch(arguments);
       },

@@ -19,8 +19,7 @@ Remedy remedy(int error) {
     case EACCES:
     case EPERM:
     case EROFS:
-      return {"choose a directory you may write to; a run that is to go on must be copied there first",
-              {Way::elsewhere}};
+      return {"choose a directory you may write to", {Way::elsewhere}};
     case ENOENT:
     case ENOTDIR:
       return {"check that every part of the path before the last is a directory"};

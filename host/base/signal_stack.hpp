@@ -1,4 +1,4 @@
-// A stack for the handlers of signals: a thread's own may be what has been exhausted.
+// For the handlers of fatal signals: their words, and a stack, for a thread's own may be what has been exhausted.
 #pragma once
 
 #include <csignal>
@@ -6,6 +6,23 @@
 #include <memory>
 
 namespace rouleau {
+
+/// What somebody has done who was sent this signal: "has divided by zero, ...".
+inline const char* deed_of(int signal) {
+  switch (signal) {
+    case SIGSEGV:
+    case SIGBUS:
+      return "has used memory that it does not have (or too much of the stack)";
+    case SIGFPE:
+      return "has divided by zero, or switched on floating-point exceptions";
+    case SIGILL:
+      return "has come to an instruction that this processor does not have (or to a trap of its own)";
+    case SIGABRT:
+      return "has stopped the program (abort, or an assertion that failed)";
+    default:
+      return "has crashed";
+  }
+}
 
 /// Handlers of the calling thread run on this while it lives. Does nothing where the thread has such a stack already.
 class SignalStack {

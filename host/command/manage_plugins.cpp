@@ -117,13 +117,20 @@ void install_plugins(const fs::path& folder, const plugin::Catalog& catalog, boo
     require_free(manifest, user_folder / manifest.id, catalog, overwrite);
   }
   require_conformance(manifests);
-  std::error_code error;
-  fs::create_directories(user_folder, error);
-  if (error) fail_file(user_folder, "cannot be made", error.value());
   std::vector<std::unique_ptr<Prepared>> prepared;
   prepared.reserve(manifests.size());
-  for (const plugin::Manifest& manifest : manifests) {
-    prepared.push_back(std::make_unique<Prepared>(manifest, user_folder));
+  try {
+    std::error_code error;
+    fs::create_directories(user_folder, error);
+    if (error) fail_file(user_folder, "cannot be made", error.value());
+    for (const plugin::Manifest& manifest : manifests) {
+      prepared.push_back(std::make_unique<Prepared>(manifest, user_folder));
+    }
+  } catch (const Error& fault) {
+    if (fault.cause() != Cause::input_output) throw;
+    throw Error(fault.cause(), fault.place(), fault.problem(),
+                {"set XDG_DATA_HOME to a folder that you may write to, or leave the plugin where it is and name its "
+                 "folder with --plugin-dir"});
   }
   for (std::size_t i = 0; i < manifests.size(); ++i) {
     prepared[i]->move_into_place();

@@ -1,5 +1,7 @@
 #include "scene_options.hpp"
 
+#include <cstdlib>
+
 #include "command/process/command_line.hpp"
 #include "command/process/crew.hpp"
 #include "core/membrane/membranes.hpp"
@@ -19,7 +21,11 @@ void SceneOptions::add_to(options::options_description& description,
       "plugin-dir", options::value(&plugin_dirs)->composing()->value_name("DIR"),
       "search this folder for plugins first (repeatable)")(
       "lock", options::value(&lock)->value_name("FILE")->notifier(not_empty("--lock")),
-      "use only the plugins of this lock (default: NAME.lock.json beside the scene NAME.json, if it is there)");
+      "use only the plugins of this lock (default: NAME.lock.json beside the scene NAME.json, if it is there)")(
+      "no-scene-plugins", options::bool_switch(&without_its_plugins)->notifier([](bool given) {
+        if (given) ::setenv("ROULEAU_SCENE_PLUGINS", "no", 1);
+      }),
+      "do not search folders that the scene names (plugin_dirs): for scenes of people you do not know");
   positional.add("scene", 1);
 }
 
@@ -32,6 +38,7 @@ std::string SceneOptions::in_shell() const {
   for (const std::string& override : overrides) words += " --set " + command::in_shell(override);
   for (const std::string& folder : plugin_dirs) words += " --plugin-dir " + command::in_shell(folder);
   if (!lock.empty()) words += " --lock " + command::in_shell(lock);
+  if (without_its_plugins) words += " --no-scene-plugins";
   return words;
 }
 

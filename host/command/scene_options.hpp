@@ -19,9 +19,10 @@ struct SceneOptions {
   std::string scene;
   std::vector<std::string> overrides;
   std::vector<std::string> plugin_dirs;
-  std::string lock;  ///< empty: the one beside the scene, if there is one
+  std::string lock;                  ///< empty: the one beside the scene, if there is one
+  bool without_its_plugins = false;  ///< the scene's plugin_dirs are not searched, by this process and those it starts
 
-  /// --set, --plugin-dir, --lock; the scene itself is positional.
+  /// --set, --plugin-dir, --lock, --no-scene-plugins; the scene itself is positional.
   void add_to(boost::program_options::options_description& options,
               boost::program_options::positional_options_description& positional);
   [[nodiscard]] plan::ReadScene read() const;

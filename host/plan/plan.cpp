@@ -1,6 +1,7 @@
 #include "plan.hpp"
 
 #include <algorithm>
+#include <set>
 
 #include "base/text.hpp"
 #include "plugin/model.hpp"
@@ -240,6 +241,25 @@ Plan make_plan(const scene::Scene& scene, const plugin::Catalog& catalog, std::o
   choose_coupling(plan);
   try_models(plan);
   return plan;
+}
+
+std::vector<std::string> code_of_the_scene(const Plan& plan) {
+  const std::vector<std::filesystem::path>& folders = plan.scene->plugin_dirs;
+  std::set<std::string> known;
+  std::vector<std::string> sentences;
+  for (const PlannedModel* model : plan.active_models()) {
+    const plugin::Manifest& manifest = *model->manifest;
+    const auto folder = std::find_if(folders.begin(), folders.end(),
+                                     [&](const auto& each) { return plugin::is_below(manifest.file, each); });
+    if (folder == folders.end() || !known.insert(manifest.id).second) continue;
+    const std::string pointer = "/plugin_dirs/" + std::to_string(folder - folders.begin());
+    const std::string written = plan.scene->document->root().at(nlohmann::json::json_pointer(pointer));
+    sentences.push_back("the scene brings code along, which runs with your rights: the model " +
+                        in_quotes(manifest.id) + ", library " + manifest.library.string() + ", from its plugin_dirs (" +
+                        pointer + ' ' + in_quotes(written) +
+                        "); with ROULEAU_SCENE_PLUGINS=no in the environment such folders are left out");
+  }
+  return sentences;
 }
 
 }  // namespace rouleau::plan

@@ -45,6 +45,9 @@ struct Plan {
   [[nodiscard]] std::string owner_of(const PlannedModel& model) const;
 };
 
+/// A sentence for each library that lies in a folder of the scene's own plugin_dirs: code that comes with the scene.
+std::vector<std::string> code_of_the_scene(const Plan& plan);
+
 /// Adds what is wrong with the models that a scene names, known or unknown, and their parameters. The scene may be one that
 /// could not be read whole; `faults` has why.
 void find_model_faults(const scene::Scene& scene, const plugin::Catalog& catalog, Faults& faults);

@@ -266,7 +266,7 @@ bool is_shared(const scene::Scene& scene, double border) {
 std::vector<std::string> warnings_of(const Plan& plan, const std::vector<Limit>& limits,
                                      const std::vector<InteractionWell>& wells) {
   const scene::Scene& scene = *plan.scene;
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings = code_of_the_scene(plan);
   const auto add_those_of = [&](const std::vector<PlannedModel>& models) {
     for (const PlannedModel& model : models)
       warnings.insert(warnings.end(), model.parameters.warnings.begin(), model.parameters.warnings.end());

@@ -55,11 +55,6 @@ fs::path absolute_folder(const char* variable) {
   return folder.is_absolute() ? folder : fs::path();
 }
 
-bool is_below(const fs::path& file, const fs::path& folder) {
-  const auto [left, right] = std::mismatch(folder.begin(), folder.end(), file.begin(), file.end());
-  return left == folder.end() || (left->empty() && std::next(left) == folder.end());
-}
-
 /// The plugins that are installed, or built, with this code.
 std::vector<fs::path> installed_folders() {
   std::vector<fs::path> folders;
@@ -84,9 +79,22 @@ std::string names_of(const std::vector<fs::path>& files) {
 
 }  // namespace
 
+bool is_below(const fs::path& file, const fs::path& folder) {
+  const auto [left, right] = std::mismatch(folder.begin(), folder.end(), file.begin(), file.end());
+  return left == folder.end() || (left->empty() && std::next(left) == folder.end());
+}
+
 std::vector<fs::path> named_folders(const std::vector<fs::path>& given) {
   for (const auto& folder : given) require_folder(folder, "folder of plugins");
   return given;
+}
+
+bool scenes_may_bring_plugins() {
+  const char* value = std::getenv("ROULEAU_SCENE_PLUGINS");
+  const std::string word = value == nullptr || *value == '\0' ? "yes" : value;
+  if (word == "yes" || word == "no") return word == "yes";
+  throw Error(Cause::bad_input, "the environment variable ROULEAU_SCENE_PLUGINS is " + in_quotes(word),
+              {"it can be yes or no: whether plugins are looked for in folders that a scene names"});
 }
 
 fs::path user_plugin_folder() {
@@ -111,7 +119,7 @@ std::string origin_of(const fs::path& file, const std::vector<fs::path>& named) 
 
 std::vector<fs::path> plugin_search_path(const std::vector<fs::path>& given, const std::vector<fs::path>& scene) {
   std::vector<fs::path> path = named_folders(given);
-  for (const auto& folder : scene) {
+  for (const auto& folder : scenes_may_bring_plugins() ? scene : std::vector<fs::path>{}) {
     require_folder(folder, "plugin_dirs of the scene");
     path.push_back(folder);
   }
@@ -203,6 +211,8 @@ void Catalog::throw_unknown(ModelKind kind, const std::string& id, const Place& 
   std::string problem = "no plugin has the id " + in_quotes(id) + did_you_mean(id, ids(kind)) + "\n  of the kind " +
                         to_string(kind) + " there are: " + listed(ids(kind)) +
                         "\n  folders searched:" + names_of(folders_);
+  if (!scenes_may_bring_plugins())
+    problem += "\n  not searched: what a scene names in plugin_dirs (ROULEAU_SCENE_PLUGINS is no)";
   std::vector<fs::path> nameless;
   for (const auto& refused : refused_) {
     if (refused.id.empty()) nameless.push_back(refused.file);

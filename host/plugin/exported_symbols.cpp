@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstddef>
 #include <cstring>
 #include <fstream>
 #include <stdexcept>
@@ -136,6 +137,29 @@ std::vector<std::string> exported_symbols(const std::filesystem::path& path) {
   ElfFile file(path);
   const Header header = file.read<Header>(0, 1)[0];
   return exported(file, file.read<Section>(header.e_shoff, header.e_shnum));
+}
+
+bool own_unique_symbols(std::string& library) {
+  Header header;
+  if (library.size() < sizeof header) return false;
+  std::memcpy(&header, library.data(), sizeof header);
+  bool any = false;
+  for (std::uint64_t i = 0; i < header.e_shnum; ++i) {
+    Section table;
+    const std::uint64_t place = header.e_shoff + i * sizeof table;
+    if (header.e_shoff > library.size() || place + sizeof table > library.size()) return any;
+    std::memcpy(&table, library.data() + place, sizeof table);
+    if (table.sh_type != SHT_DYNSYM || table.sh_offset > library.size()) continue;
+    const std::uint64_t end =
+        table.sh_offset + std::min<std::uint64_t>(table.sh_size, library.size() - table.sh_offset);
+    for (std::uint64_t at = table.sh_offset; at + sizeof(Symbol) <= end; at += sizeof(Symbol)) {
+      char& info = library[at + offsetof(Symbol, st_info)];
+      if (static_cast<unsigned char>(info) >> 4 != STB_GNU_UNIQUE) continue;
+      info = static_cast<char>((STB_GLOBAL << 4) | (info & 0xf));
+      any = true;
+    }
+  }
+  return any;
 }
 
 std::vector<LibrarySymbol> variables(const std::filesystem::path& path) {

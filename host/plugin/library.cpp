@@ -6,19 +6,22 @@
 #include <fcntl.h>
 #include <sha2.h>
 #include <sys/mman.h>
+#include <sys/statvfs.h>
 #include <unistd.h>
 
-#include <array>
 #include <boost/dll/shared_library.hpp>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <string>
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/file_stamp.hpp"
 #include "base/input_file.hpp"
+#include "base/own_pages.hpp"
 #include "base/text.hpp"
 #include "exported_symbols.hpp"
 #include "lock.hpp"
@@ -63,44 +66,89 @@ fs::path library_file(const Manifest& manifest) {
   return library;
 }
 
-/// A copy of a file that nobody can change any more, kept until the process ends: what is hashed is what is loaded,
-/// whatever happens to the file. Its name is one that the loader can open.
-fs::path sealed_copy(const Manifest& manifest, const fs::path& file) {
-  static auto& copies = *new std::map<fs::path, fs::path>;
-  if (const auto known = copies.find(file); known != copies.end()) return known->second;
-  const int copy = memfd_create(file.filename().c_str(), MFD_CLOEXEC | MFD_ALLOW_SEALING);
+/// A file as it was when the manifest was read: what is kept of a file is kept of that, for while the process lives
+/// somebody may build the library anew.
+using Version = std::pair<fs::path, FileStamp>;
+Version version_of(const Manifest& manifest, const fs::path& file) { return {file, manifest.library_stamp}; }
+
+/// Throws where another library lies there by now than when the manifest was read.
+void require_version(const Manifest& manifest) {
+  if (stamp_of(manifest.library) == manifest.library_stamp) return;
+  refuse(manifest, "has changed since its manifest was read", {"begin anew, when nobody writes to it any more"});
+}
+
+/// What a file holds, kept in memory that nobody can change any more until the process ends. Its name is one that the
+/// loader can open.
+fs::path sealed(const Manifest& manifest, const fs::path& file, bool own_symbols) {
+  require_version(manifest);
   std::ifstream from(file, std::ios::binary);
-  std::array<char, 1 << 16> part{};
-  bool whole = copy >= 0 && from.is_open();
-  while (whole && (from.read(part.data(), part.size()), from.gcount() > 0)) {
-    for (std::streamsize done = 0; whole && done < from.gcount();) {
-      const ssize_t written = ::write(copy, part.data() + done, static_cast<std::size_t>(from.gcount() - done));
-      whole = written > 0;
-      done += written;
-    }
+  std::string bytes(std::istreambuf_iterator<char>(from), {});
+  if (own_symbols) (void)own_unique_symbols(bytes);
+  const int copy = memfd_create(manifest.library.filename().c_str(), MFD_CLOEXEC | MFD_ALLOW_SEALING);
+  bool whole = copy >= 0 && from.is_open() && !from.bad();
+  for (std::size_t done = 0; whole && done < bytes.size();) {
+    const ssize_t written = ::write(copy, bytes.data() + done, bytes.size() - done);
+    whole = written > 0;
+    done += whole ? static_cast<std::size_t>(written) : 0;
   }
-  if (!whole || from.bad() || fcntl(copy, F_ADD_SEALS, F_SEAL_WRITE | F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL) != 0) {
+  if (!whole || fcntl(copy, F_ADD_SEALS, F_SEAL_WRITE | F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL) != 0) {
     const std::string words = std::strerror(errno);
     if (copy >= 0) ::close(copy);
     refuse(manifest, "could not be copied to memory, where nobody can change it: " + words);
   }
-  return copies.emplace(file, "/proc/self/fd/" + std::to_string(copy)).first->second;
+  return "/proc/self/fd/" + std::to_string(copy);
 }
 
-/// Loads for good: code of a plugin may be anywhere on a stack, and its tables live in it. Each file once, though the
-/// models of every stage are made anew.
+/// Of a library that is locked: what is hashed is what is loaded, whatever happens to the file.
+fs::path sealed_copy(const Manifest& manifest, const fs::path& file) {
+  static auto& copies = *new std::map<Version, fs::path>;
+  const Version version = version_of(manifest, file);
+  if (const auto known = copies.find(version); known != copies.end()) return known->second;
+  return copies.emplace(version, sealed(manifest, file, false)).first->second;
+}
+
+/// Whether the loader would give back, whole or in part, what it has of another library: it knows files by name and number, and
+/// variables of inline functions and templates (C++) by name alone.
+bool takes_after_another(const fs::path& file) {
+  static bool unique_before = false;
+  std::ifstream from(file, std::ios::binary);
+  std::string bytes(std::istreambuf_iterator<char>(from), {});
+  const bool unique = own_unique_symbols(bytes), others = unique && std::exchange(unique_before, true);
+  void* const former = ::dlopen(file.c_str(), RTLD_LAZY | RTLD_LOCAL | RTLD_NOLOAD);
+  if (former != nullptr) ::dlclose(former);
+  return former != nullptr || others;
+}
+
+/// What to do where the loader does not take a file that is a library.
+Remedy remedy_of(const Manifest& manifest, bool copied) {
+  struct statvfs disk {};
+  if (::statvfs(manifest.library.c_str(), &disk) == 0 && (disk.f_flag & ST_NOEXEC) != 0)
+    return {"its disk is mounted without the right to execute (noexec): put the plugin on another one"};
+  if (copied) return {"it is loaded as a copy, for this process has loaded another version of it: begin a new one"};
+  return {};
+}
+
+/// Loads for good: code of a plugin may be anywhere on a stack, and its tables live in it. Each version of a file once,
+/// though the models of every stage are made anew.
 boost::dll::shared_library& load(const Manifest& manifest, const fs::path& file) {
-  static auto& loaded = *new std::map<fs::path, boost::dll::shared_library>;  // never destroyed
-  if (const auto known = loaded.find(file); known != loaded.end()) return known->second;
+  static auto& loaded = *new std::map<Version, boost::dll::shared_library>;  // never destroyed
+  const Version version = version_of(manifest, file);
+  if (const auto known = loaded.find(version); known != loaded.end()) return known->second;
+  (void)library_sha256(manifest);
+  const bool copied = takes_after_another(file);
+  const fs::path from = copied ? sealed(manifest, file, true) : file;
   boost::dll::shared_library library;
   std::error_code error;
   call_watched(manifest, "that runs when it is loaded",
-               [&] { library.load(file, boost::dll::load_mode::rtld_now | boost::dll::load_mode::rtld_local, error); });
+               [&] { library.load(from, boost::dll::load_mode::rtld_now | boost::dll::load_mode::rtld_local, error); });
   if (error) {
     const char* words = dlerror();  // Boost's own error says only "bad file descriptor"
-    refuse(manifest, "could not be loaded: " + std::string(words != nullptr ? words : error.message().c_str()));
+    refuse(manifest, "could not be loaded: " + std::string(words != nullptr ? words : error.message().c_str()),
+           remedy_of(manifest, copied));
   }
-  return loaded.emplace(file, std::move(library)).first->second;
+  own_pages(library.native());
+  require_version(manifest);
+  return loaded.emplace(version, std::move(library)).first->second;
 }
 
 }  // namespace
@@ -141,20 +189,14 @@ const rouleau_model& model_of(rouleau_open_function open, const Manifest& manife
 const rouleau_model& open_model(const Manifest& manifest) { return model_of(load_library(manifest), manifest); }
 
 std::string library_sha256(const Manifest& manifest) {
-  struct Hashed {
-    fs::file_time_type written;
-    std::uintmax_t bytes;
-    std::string sha256;
-  };
-  static auto& known = *new std::map<fs::path, Hashed>;
-  const fs::path file = library_file(manifest);
-  std::error_code gone;
-  const auto written = fs::last_write_time(file, gone);
-  const std::uintmax_t bytes = fs::file_size(file, gone);
-  Hashed& hashed = known[file];
-  if (gone || hashed.sha256.empty() || hashed.written != written || hashed.bytes != bytes)
-    hashed = {written, bytes, sha256(file)};
-  return hashed.sha256;
+  static auto& known = *new std::map<Version, std::string>;
+  std::string& hash = known[version_of(manifest, manifest.library)];
+  if (hash.empty()) {
+    const std::string found = sha256(library_file(manifest));
+    require_version(manifest);
+    hash = found;
+  }
+  return hash;
 }
 
 std::string sha256(const fs::path& file) {

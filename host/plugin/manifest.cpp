@@ -104,6 +104,7 @@ Manifest read_manifest(const json::Document& document, const fs::path& file, con
   manifest.file = file;
   manifest.sha256 = sha256_of(document.text());
   manifest.library = fs::absolute(file).parent_path() / text_of(root, "library");
+  manifest.library_stamp = stamp_of(manifest.library);
   manifest.kind = kind_of(text_of(root, "kind"));
   manifest.id = text_of(root, "id");
   manifest.version = text_of(root, "version");

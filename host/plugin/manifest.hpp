@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/file_stamp.hpp"
 #include "json/json.hpp"
 #include "role.hpp"
 #include "units/units.hpp"
@@ -50,6 +51,7 @@ struct Manifest {
   std::filesystem::path file;     ///< the manifest itself
   std::string sha256;             ///< of its text, as it was read
   std::filesystem::path library;  ///< absolute; checked to lie in the manifest's folder when the library is opened
+  FileStamp library_stamp{};      ///< of the library when the manifest was read
   ModelKind kind;
   std::string id;
   std::string version;

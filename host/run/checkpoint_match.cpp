@@ -21,7 +21,7 @@ Json plugin_facts(const plugin::Manifest& m) {
   return {{"id", m.id},
           {"version", m.version},
           {"kind", plugin::to_string(m.kind)},
-          {"sha256", plugin::sha256(m.library)},
+          {"sha256", plugin::library_sha256(m)},
           {"state", state}};
 }
 

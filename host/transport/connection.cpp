@@ -59,13 +59,16 @@ std::string who(const Launch& launch) {
 fs::path library_for(const Launch& launch) {
   if (const char* named = ::secure_getenv("ROULEAU_TRANSPORT"); named != nullptr && *named != '\0') return named;
   if (launch.mpi.empty())
-    refuse(launch, "which has given it no way to find the others",
-           "choose one with srun's option mpi: pmix with Open MPI, pmi2 with MPICH");
+    refuse(
+        launch, "which has given it no way to find the others",
+        "choose one with srun's option mpi: pmix with Open MPI, pmi2 with MPICH; or set ROULEAU_LAUNCHER=none for a process "
+        "that is to be alone");
   fs::path library = installation().programs / ("transport-" + launch.mpi + ".so");
   std::error_code error;
   if (!fs::exists(library, error))
     refuse(launch, "and there is no " + library.string() + " to reach the others with",
-           "install the package rouleau-" + launch.mpi + " on every machine, or start one process without a launcher");
+           "install the package rouleau-" + launch.mpi +
+               " on every machine, or set ROULEAU_LAUNCHER=none for a process that is to be alone");
   return library;
 }
 
@@ -73,7 +76,8 @@ fs::path library_for(const Launch& launch) {
 
 Connection::Connection(const Launch& launch) {
   const fs::path file = library_for(launch);
-  const std::string otherwise = "install the transport that fits, or start one process without a launcher";
+  const std::string otherwise =
+      "install the transport that fits, or set ROULEAU_LAUNCHER=none for a process that is to be alone";
   // Open MPI's components look for its symbols among the global ones.
   void* const library = ::dlopen(file.c_str(), RTLD_NOW | RTLD_GLOBAL);
   if (library == nullptr) refuse(launch, "and its transport does not open: " + std::string(::dlerror()), otherwise);

@@ -4,6 +4,9 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "base/error.hpp"
+#include "base/text.hpp"
+
 namespace rouleau::transport {
 
 namespace {
@@ -38,6 +41,11 @@ std::optional<Launch> found() {
 }  // namespace
 
 std::optional<Launch> launched() {
+  if (const char* wish = std::getenv("ROULEAU_LAUNCHER"); wish != nullptr && *wish != '\0') {
+    if (wish == std::string_view("none")) return std::nullopt;
+    throw Error(Cause::bad_input, "the environment variable ROULEAU_LAUNCHER is " + in_quotes(wish),
+                {"the one word that it can be is none: this process is alone, whatever has started it"});
+  }
   std::optional<Launch> launch = found();
   if (launch && launch->ranks == 1) launch.reset();
   return launch;

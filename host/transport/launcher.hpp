@@ -15,7 +15,8 @@ struct Launch {
   int ranks = 0;  ///< 0: unknown
 };
 
-/// None for a process that was started alone, be it by a launcher.
+/// None for a process that was started alone, be it by a launcher, and where the environment has ROULEAU_LAUNCHER=none.
+/// Throws Error(bad_input) for another word there.
 std::optional<Launch> launched();
 
 }  // namespace rouleau::transport

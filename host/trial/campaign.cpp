@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "files/file.hpp"
 #include "files/run_directory.hpp"
 #include "files/tables.hpp"
@@ -83,7 +84,19 @@ TrialResult Campaign::run(Trial trial) const {
   fs::remove_all(trial.directory);
   TrialResult result = run_trial(trial);
   if (result.end == TrialEnd::interrupted) fs::remove_all(trial.directory);
+  require_same_libraries(result.summary);
   return result;
+}
+
+void Campaign::require_same_libraries(const Json& summary) const {
+  if (!summary.is_object()) return;
+  for (const Json& plugin : summary.value("plugins", Json::array())) {
+    const std::string id = plugin.at("id"), sha256 = plugin.at("sha256");
+    if (libraries_.emplace(id, sha256).first->second == sha256) continue;
+    throw Error(Cause::plugin_refused, Place{plugin.at("library").get<std::string>()},
+                "the library of " + in_quotes(id) + " was built anew meanwhile",
+                {"call the same command again: what the old one computed is computed anew"});
+  }
 }
 
 void Campaign::keep(std::optional<PointRecord>& record, const std::string& fingerprint,

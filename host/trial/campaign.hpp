@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 
@@ -35,7 +36,8 @@ class Campaign {
   /// What is known of that fingerprint; nothing where it must be run, also where it did not end in less time than the
   /// file now allows.
   [[nodiscard]] std::optional<PointRecord> find(const std::string& fingerprint) const;
-  /// Runs it in a directory of its own beside that of the trial, which is removed when it was interrupted.
+  /// Runs it in a directory of its own beside that of the trial, which is removed when it was interrupted. Throws
+  /// Error(plugin_refused) when a library was built anew since the campaign began.
   [[nodiscard]] TrialResult run(Trial trial) const;
   /// Adds what run() has left to the record, and writes it. The first run, or the failed one, takes the place that it
   /// is kept at.
@@ -50,10 +52,14 @@ class Campaign {
   [[nodiscard]] bool wait_for(files::FileLock& lock, const std::string& waiting) const;
 
  private:
+  /// Throws Error(plugin_refused) where a run had another library than those before it, which fingerprints speak of.
+  void require_same_libraries(const nlohmann::json& summary) const;
+
   const CampaignKind& kind_;
   const CampaignFile& file_;
   CampaignOptions options_;
   std::optional<files::FileLock> lock_;
+  mutable std::map<std::string, std::string> libraries_;  ///< SHA-256 by id
 };
 
 /// What NAME.json says of every campaign: its file, the program, the machine, when it ran. `finished`: empty while it

@@ -10,6 +10,7 @@
 
 #include "base/faults.hpp"
 #include "base/foreign_call.hpp"
+#include "faults.hpp"
 #include "observe/observables.hpp"
 #include "simulation.hpp"
 #include "units/lattice_units.hpp"
@@ -207,6 +208,7 @@ py::dict stage(Session& session) {
 
 PYBIND11_MODULE(_core, module) {
   module.doc() = "The compiled part of rouleau; rouleau.Simulation is what to use.";
+  prepare_process();
   py::class_<Session>(module, "Session")
       .def(py::init(
           [](const std::string& scene, std::vector<std::string> overrides, const std::vector<std::string>& plugins) {
@@ -214,6 +216,7 @@ PYBIND11_MODULE(_core, module) {
                                              std::vector<fs::path>(plugins.begin(), plugins.end()));
           }))
       .def("step", &Session::step)
+      .def("code_of_the_scene", [](Session& session) { return session.simulation().code_of_the_scene(); })
       .def("positions",
            [](const py::object& self) {
              Simulation& simulation = self.cast<Session&>().simulation();

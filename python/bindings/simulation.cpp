@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/signal_stack.hpp"
 #include "core/membrane/motion.hpp"
 #include "core/solver/solver.hpp"
 #include "files/run_directory.hpp"
@@ -197,6 +198,7 @@ class SimulationOf final : public Simulation {
     whole_ = false;
 #pragma omp parallel num_threads(threads)
     {
+      thread_local const SignalStack stack;
       // The system may grant fewer threads than were asked for.
 #pragma omp single
       barrier.emplace(omp_get_num_threads());

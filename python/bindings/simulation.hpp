@@ -62,6 +62,8 @@ class Simulation {
   /// Of all cells; what is along z is empty in two dimensions.
   [[nodiscard]] virtual core::CellNodes& nodes() = 0;
   [[nodiscard]] const scene::Scene& scene() const { return read_.scene; }
+  /// A sentence for each library that comes with the scene.
+  [[nodiscard]] std::vector<std::string> code_of_the_scene() const { return plan::code_of_the_scene(plan_); }
   /// Whether the scene has three dimensions.
   [[nodiscard]] bool in_space() const { return scene().domain.depth.has_value(); }
 

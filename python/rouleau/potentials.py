@@ -29,6 +29,7 @@ FUNCTIONS: dict[str, Callable[..., float]] = {
     "erf": math.erf, "abs": abs}
 OPERATORS: dict[type[ast.operator], str] = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/"}
 QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*")
+ELSEWHERE = "name another folder: rouleau.potential(..., folder=...), or the environment variable XDG_CACHE_HOME"
 #: Words that C++ or the SDK use, and cannot be parameters.
 TAKEN = frozenset("r S power rouleau std auto bool char const double else float for if int long new return short signed struct "
                   "switch this union unsigned void while class using template typename default delete case break".split())
@@ -130,12 +131,17 @@ def potential(energy: str, *, cutoff: str = "3.52 um", name: str = "potential", 
     reach = _quantity("cutoff", cutoff)
     digest = hashlib.sha256(json.dumps([energy, given, reach, SOURCE]).encode()).hexdigest()[:10]
     identity = f"python.{name}-{digest}"
-    root = pathlib.Path(folder) if folder is not None else \
-        pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache") / "rouleau/potentials"
-    home = (root / f"{name}-{digest}").resolve()
     manifest = _manifest(energy, name, identity, given, reach)
-    if not (home / "conforms").is_file():
-        _make(home, name, identity, energy, translated, list(given), manifest)
+    place = "the folder for potentials"
+    try:
+        cache = None if folder is not None else os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache"
+        place = str(folder if cache is None else cache)
+        root = pathlib.Path(place) if cache is None else pathlib.Path(place) / "rouleau/potentials"
+        home = (root / f"{name}-{digest}").resolve()
+        if not ((home / "conforms").is_file() and (home / "build" / f"lib{name}.so").is_file()):
+            _make(home, name, identity, energy, translated, list(given), manifest)
+    except (OSError, RuntimeError) as trouble:  # no HOME, a folder of somebody else's
+        raise Error(Fault(f"the potential cannot be kept: {trouble}", ELSEWHERE, place), exit_code=4) from None
     if str(home / "build") not in host.plugin_folders:
         host.plugin_folders.insert(0, str(home / "build"))
     return Potential(energy, identity, home / "build", manifest, {key: value for key, (value, _) in given.items()})
@@ -145,9 +151,10 @@ def _quantity(name: str, value: str | float) -> tuple[float, str]:
     """The number and the unit of a parameter."""
     if name in TAKEN or name in FUNCTIONS or not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name):
         raise Error(Fault(f'"{name}" cannot be the name of a parameter', "take another one, such as De, b or r0"))
-    if not isinstance(value, str):
-        return float(value), "1"
-    match = QUANTITY.fullmatch(value)
+    given = json.loads(as_json(value, name))  # a number or text, whatever has a number or a unit
+    if isinstance(given, (int, float)):
+        return float(given), "1"
+    match = QUANTITY.fullmatch(str(given))
     if match is None:
         raise Error(Fault(f'{name} is "{value}"', 'write a number and a unit, such as "0.49 um"'))
     return float(match[1]), match[2] or "1"
@@ -224,6 +231,9 @@ def _make(home: pathlib.Path, name: str, identity: str, formula: str, translated
             raise Error(Fault(f"{tool} is not in PATH; a potential is compiled", "install a C++ compiler, cmake and make "
                               "(Debian: apt install g++ cmake make)"), exit_code=4)
     home.parent.mkdir(parents=True, exist_ok=True)
+    if os.statvfs(home.parent).f_flag & os.ST_NOEXEC:
+        raise Error(Fault("libraries cannot be loaded from this folder: its disk is mounted without the right to execute "
+                          "(noexec)", ELSEWHERE, str(home.parent)), exit_code=4)
     with tempfile.TemporaryDirectory(prefix=".making-", dir=home.parent) as scratch:
         made = pathlib.Path(scratch) / "made"
         made.mkdir()
@@ -244,7 +254,7 @@ def _make(home: pathlib.Path, name: str, identity: str, formula: str, translated
         try:
             made.rename(home)
         except OSError:  # another process was quicker, or one that was interrupted left something
-            if not (home / "conforms").is_file():
+            if not ((home / "conforms").is_file() and (home / "build" / f"lib{name}.so").is_file()):
                 shutil.rmtree(home)
                 made.rename(home)
 

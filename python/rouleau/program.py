@@ -40,20 +40,38 @@ plugin_folders: list[str] = []
 
 
 def environment() -> dict[str, str]:
-    """That of the program: errors come as JSON, and what was made here is found."""
+    """That of the program: errors come as JSON, what was made here is found, and what a process of Python starts is alone,
+    though mpirun may have started that process as one of several."""
     path = [*plugin_folders, *filter(None, [os.environ.get("ROULEAU_PLUGIN_PATH")])]
-    return {**os.environ, "ROULEAU_ERRORS": "json", **({"ROULEAU_PLUGIN_PATH": ":".join(path)} if path else {})}
+    found = {"ROULEAU_PLUGIN_PATH": ":".join(path)} if path else {}
+    return {**os.environ, "ROULEAU_ERRORS": "json", "ROULEAU_LAUNCHER": "none", **found}
 
 
 def call(*words: str | os.PathLike[str], good: Sequence[int] = (0,)) -> str:
     """Standard output of `rouleau WORDS`. Throws Error for an exit code that is not good."""
     command = [os.fspath(program()), *(os.fspath(word) for word in words)]
-    result = subprocess.run(command, env=environment(), stdin=subprocess.DEVNULL, capture_output=True, text=True)
+    try:
+        result = subprocess.run(command, env=environment(), stdin=subprocess.DEVNULL, capture_output=True, text=True)
+    except OSError as trouble:
+        raise not_started(trouble) from None
     if result.returncode not in good:
         raise Error(faults_in(result.stderr), exit_code=result.returncode)
     return result.stdout
 
 
-def call_json(*words: str | os.PathLike[str], good: Sequence[int] = (0,)) -> Any:
-    """What `rouleau WORDS --json` prints."""
-    return json.loads(call(*words, "--json", good=good))
+def not_started(trouble: OSError) -> Error:
+    """The program does not begin."""
+    return Error(Fault(f"the program could not be started: {trouble}",
+                       "see to it that it is a program of this machine that you may execute (the environment variable "
+                       "ROULEAU can name another one)", str(program())), exit_code=4)
+
+
+def call_json(*words: str | os.PathLike[str], good: Sequence[int] = (0,),
+              made: type[dict[str, Any]] | None = None) -> Any:
+    """What `rouleau WORDS --json` prints; its objects as dictionaries or what is `made` of them."""
+    said = call(*words, "--json", good=good)
+    try:
+        return json.loads(said, object_hook=made)
+    except ValueError:
+        raise Error(Fault(f"rouleau {words[0]} --json has not answered in JSON: {said[:200]!r}",
+                          "install the program and the package of one version"), exit_code=4) from None

@@ -16,9 +16,9 @@ import warnings
 from typing import TYPE_CHECKING, Any, Callable, Sequence, Union
 
 from .errors import Error, Fault, faults_in
-from .program import call, call_json, environment, program
+from .program import call_json, environment, not_started, program
 from .reading import Run, Section
-from .scenes import SceneLike, in_users_words, name_of, options_of, scene_file
+from .scenes import SceneLike, in_users_words, name_of, options_of, quantity_text, scene_file, whole
 
 if TYPE_CHECKING:
     import pandas
@@ -66,10 +66,10 @@ def run(scene: SceneLike, out: str | os.PathLike[str] | None = None, *, threads:
     target of numerics.auto is one.
     """
     directory = pathlib.Path(out) if out is not None else _free_directory(name_of(scene))
-    options = ["--threads", str(threads)]
+    options = ["--threads", str(whole("threads", threads, 1, 1024))]
     options += [f"--{word}" for word, wanted in (("overwrite", overwrite), ("resume", resume), ("error-bar", error_bars)) if wanted]
-    options += ["--max-steps", str(max_steps)] if max_steps is not None else []
-    options += ["--max-time", max_time] if max_time is not None else []
+    options += ["--max-steps", str(whole("max_steps", max_steps, 0))] if max_steps is not None else []
+    options += ["--max-time", quantity_text(max_time)] if max_time is not None else []
     options += [word for folder in plugin_dirs for word in ("--plugin-dir", os.fspath(folder))]
     made = simulate(scene, directory, [*options, *options_of(changes, scene)], shown(progress), threading.Event())
     if progress is None and sys.stderr.isatty():
@@ -85,8 +85,11 @@ def simulate(scene: SceneLike, directory: pathlib.Path, options: list[str], prog
     with scene_file(scene) as path, tempfile.TemporaryFile("w+") as said:
         command = [str(program()), "run", str(path), "--out", str(directory), "--quiet", *options]
         # A session of its own: Ctrl-C reaches this process, which asks for a checkpoint once.
-        child = subprocess.Popen(command, env=environment(), stdin=subprocess.DEVNULL,
-                                 stdout=subprocess.DEVNULL, stderr=said, start_new_session=True)
+        try:
+            child = subprocess.Popen(command, env=environment(), stdin=subprocess.DEVNULL,
+                                     stdout=subprocess.DEVNULL, stderr=said, start_new_session=True)
+        except OSError as trouble:
+            raise not_started(trouble) from None
         try:
             while child.poll() is None:
                 try:
@@ -193,10 +196,13 @@ def plan(scene: SceneLike, *, plugin_dirs: Sequence[str | os.PathLike[str]] = ()
     folders = [word for folder in plugin_dirs for word in ("--plugin-dir", os.fspath(folder))]
     with scene_file(scene) as path:
         try:
-            answer = call("plan", path, *folders, *options_of(changes, scene), "--json")
+            answer = call_json("plan", path, *folders, *options_of(changes, scene), made=Section)
         except Error as error:
             raise Error(in_users_words(error.faults, scene), exit_code=error.exit_code) from None
-    return Plan(json.loads(answer, object_hook=Section))
+    for warning in answer.warnings:
+        if warning.startswith("the scene brings code along"):  # which has run by now
+            warnings.warn(warning, stacklevel=2)
+    return Plan(answer)
 
 
 def plugins(*, plugin_dirs: Sequence[str | os.PathLike[str]] = ()) -> pandas.DataFrame:

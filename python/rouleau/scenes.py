@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import collections.abc
 import contextlib
+import decimal
+import fractions
 import hashlib
 import json
+import operator
 import os
 import pathlib
 import tempfile
@@ -21,22 +25,69 @@ def pointer_of(key: str) -> str:
     return key if key.startswith("/") else "/" + key.replace(".", "/")
 
 
-def as_json(value: Any) -> str:
-    """JSON of a value; numpy's numbers and arrays, and paths, too."""
-    def other(item: Any) -> Any:
-        if hasattr(item, "tolist"):
-            return item.tolist()
-        if isinstance(item, os.PathLike):
-            return os.fspath(item)
-        raise Error(f"{item!r} cannot stand in a scene; use text with a unit, a number, a list or a dictionary")
-    return json.dumps(value, default=other, ensure_ascii=False)
+def as_json(value: Any, key: str = "") -> str:
+    """JSON of a value, which `key` is to have; what is no JSON by itself as `plain` has it."""
+    try:
+        return json.dumps(value, default=plain, ensure_ascii=False, allow_nan=False)
+    except Exception as trouble:  # also of whoever made the value
+        raise Error(Fault(f"{str(value)[:200]} cannot stand in a scene: {trouble}",
+                          "use text with a unit, a number, a list or a dictionary",
+                          pointer=pointer_of(key) if key else None)) from None
+
+
+def plain(item: Any) -> Any:
+    """A value as JSON knows it: of numpy's numbers and arrays, of sequences, fractions and decimals their numbers, of
+    paths and of quantities with a unit (pint, unyt, astropy) text, one for each number of an array. Throws TypeError, and
+    what the value throws."""
+    magnitude = getattr(item, "magnitude", getattr(item, "value", None))
+    unit = getattr(item, "units", getattr(item, "unit", None))
+    if magnitude is not None and unit is not None:
+        numbers = magnitude.tolist() if hasattr(magnitude, "tolist") else magnitude
+        written = format(unit, "C") if hasattr(unit, "dimensionality") else str(unit)  # pint's, for programs
+        return _with_unit(numbers, written)
+    if isinstance(item, os.PathLike):
+        return os.fspath(item)
+    if hasattr(item, "tolist"):
+        return item.tolist()
+    if isinstance(item, (fractions.Fraction, decimal.Decimal)):
+        return int(item) if item == int(item) else float(item)
+    if isinstance(item, Mapping):
+        return dict(item)
+    if isinstance(item, collections.abc.Sequence) and not isinstance(item, (bytes, bytearray)):
+        return list(item)
+    raise TypeError(f"{item!r} is a {type(item).__name__}")
+
+
+def _with_unit(numbers: Any, unit: str) -> Any:
+    if isinstance(numbers, (list, tuple)):
+        return [_with_unit(number, unit) for number in numbers]
+    written = unit if unit not in ("", "dimensionless") else ""
+    return f"{numbers!r} {written}" if written else numbers
+
+
+def quantity_text(value: Any) -> str:
+    """A quantity as text, whatever it was given as."""
+    made = json.loads(as_json(value))
+    return made if isinstance(made, str) else str(made)
+
+
+def whole(name: str, value: Any, least: int, most: int | None = None) -> int:
+    """A whole number in its range: Python's, numpy's, or a float that is one."""
+    try:
+        number = int(value) if isinstance(value, float) and value.is_integer() else operator.index(value)
+    except TypeError:
+        number = least - 1
+    if number < least or (most is not None and number > most):
+        bounds = f"from {least} to {most}" if most is not None else f"{least} or more"
+        raise Error(Fault(f"{name} is {value!r}", f"give a whole number, {bounds}"))
+    return number
 
 
 def settings(changes: Mapping[str, Any], scene: SceneLike) -> list[str]:
     """Assignments, POINTER=VALUE, that make these changes of the scene."""
-    def whole(key: str, value: Any) -> Any:
-        return _whole(value, pointer_of(key).rsplit("/", 1)[1]) if isinstance(scene, Mapping) else value
-    return [f"{pointer_of(key)}={as_json(whole(key, value))}" for key, value in changes.items()]
+    def placed(key: str, value: Any) -> Any:
+        return _from_here(value, pointer_of(key).rsplit("/", 1)[1]) if isinstance(scene, Mapping) else value
+    return [f"{pointer_of(key)}={as_json(placed(key, value), key)}" for key, value in changes.items()]
 
 
 def options_of(changes: Mapping[str, Any], scene: SceneLike) -> list[str]:
@@ -79,12 +130,12 @@ def _files(value: Any) -> Iterator[str]:
         yield os.fspath(value["file"])
 
 
-def _whole(value: Any, key: str = "") -> Any:
+def _from_here(value: Any, key: str = "") -> Any:
     """With the names of files, and of folders of plugins, from the working folder."""
     if isinstance(value, Mapping):
-        return {name: _whole(part, name) for name, part in value.items()}
+        return {name: _from_here(part, name) for name, part in value.items()}
     if isinstance(value, (list, tuple)):
-        return [_whole(part, "file" if key == "plugin_dirs" else "") for part in value]
+        return [_from_here(part, "file" if key == "plugin_dirs" else "") for part in value]
     return os.path.abspath(value) if key == "file" and value and isinstance(value, (str, os.PathLike)) else value
 
 
@@ -98,12 +149,20 @@ def scene_file(scene: SceneLike) -> Iterator[pathlib.Path]:
     """The path of the scene's file, which for a dictionary is there for a while. Relative names of files and `plugin_dirs`
     of a dictionary are relative to the working folder."""
     if not isinstance(scene, Mapping):
+        if not isinstance(scene, (str, os.PathLike)):
+            raise Error(Fault(f"{type(scene).__name__} is no scene", "give the path of a scene's file, or a dictionary"))
         yield pathlib.Path(scene)
         return
-    content = {key: value if key in ("notes", "expected") else _whole(value, key) for key, value in scene.items()}
-    with tempfile.TemporaryDirectory(prefix="rouleau-") as folder:
+    content = {key: value if key in ("notes", "expected") else _from_here(value, key) for key, value in scene.items()}
+    text = as_json(content)
+    try:
+        temporary = tempfile.TemporaryDirectory(prefix="rouleau-")
+    except OSError as trouble:
+        raise Error(Fault(f"there is no place for a scene's file: {trouble}",
+                          "let the environment variable TMPDIR name a folder that you may write to"), exit_code=4) from None
+    with temporary as folder:
         path = pathlib.Path(folder) / "scene.json"
-        path.write_text(as_json(content), encoding="utf-8")
+        path.write_text(text, encoding="utf-8")
         yield path
 
 

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import os
 import pathlib
+import warnings
 import weakref
-from typing import TYPE_CHECKING, Any, Callable, NamedTuple, Sequence, Union
+from typing import TYPE_CHECKING, Any, Callable, NamedTuple, NoReturn, Sequence, SupportsIndex, Union
 
 import numpy as np
 import numpy.typing as npt
 
 from .errors import Error, Fault, fault_of
-from .scenes import SceneLike, scene_file, settings
+from .scenes import SceneLike, scene_file, settings, whole
 
 if TYPE_CHECKING:
     import pandas
@@ -62,12 +63,17 @@ class Simulation:
 
     def __init__(self, scene: SceneLike, *, threads: int = 1, plugins: Sequence[Union[str, os.PathLike[str]]] = (),
                  **changes: Any) -> None:
-        if not 1 <= threads <= 1024:
-            raise Error(Fault(f"threads is {threads}", "give a number from 1 to 1024"))
+        self._threads = whole("threads", threads, 1, 1024)
         with scene_file(scene) as file:
             self._core = _core.Session(os.fspath(file), settings(changes, scene), [os.fspath(folder) for folder in plugins])
-        self._threads = threads
         self._spacing: float = self._core.stage()["length"]
+        for sentence in self._core.code_of_the_scene():
+            warnings.warn(sentence, stacklevel=2)
+
+    def __reduce_ex__(self, protocol: SupportsIndex) -> NoReturn:
+        """copy, deepcopy and pickle: a second name of one state would be none of its own."""
+        raise Error(Fault("a Simulation can be neither copied nor pickled: its state is no part of Python",
+                          "make another one of the same scene, or save() this one and load() it as often as you like"))
 
     @classmethod
     def load(cls, directory: Union[str, os.PathLike[str]], *, threads: int = 1,
@@ -86,9 +92,7 @@ class Simulation:
         """Takes time steps, through the stages of the scene; returns how many: fewer when the scene ends. Other threads
         of Python run meanwhile. Ctrl-C raises KeyboardInterrupt between two steps; the simulation can go on. Raises
         rouleau.Error with exit_code 1 when a check of the scene fails."""
-        if count < 0:
-            raise Error(Fault(f"step({count})", "give a number of steps, zero or more"))
-        return self._core.step(count, self._threads)
+        return self._core.step(whole("count", count, 0), self._threads)
 
     @property
     def done(self) -> bool:

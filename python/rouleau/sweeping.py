@@ -80,9 +80,9 @@ def _run_of(scene: SceneLike, directory: pathlib.Path, changes: Mapping[str, Any
     options = options_of(changes, scene) + (["--error-bar"] if error_bars else [])
     if (directory / "scene.json").is_file():
         there = Run(directory)
-        if not fresh and there.finished and there.status != "interrupted":
+        if not fresh and there.finished and there.status != "interrupted" and _has_its_plugins(there):
             return there
-        options.append("--overwrite" if fresh else "--resume")
+        options.append("--overwrite" if fresh or not _has_its_plugins(there) else "--resume")
     try:
         made = simulate(scene, directory, options, progress, stop)
     except Error as error:
@@ -92,6 +92,16 @@ def _run_of(scene: SceneLike, directory: pathlib.Path, changes: Mapping[str, Any
     if stop.is_set() and made.status == "interrupted":
         raise concurrent.futures.CancelledError
     return made
+
+
+def _has_its_plugins(there: Run) -> bool:
+    """Whether the libraries that a run computed with are what they were."""
+    def is_same(plugin: Mapping[str, Any]) -> bool:
+        try:
+            return hashlib.sha256(pathlib.Path(plugin["library"]).read_bytes()).hexdigest() == str(plugin["sha256"])
+        except OSError:
+            return False
+    return all(map(is_same, there.summary.get("plugins", ())))
 
 
 def _measured(made: Run, measure: Callable[[Run], Mapping[str, Any]] | None) -> Mapping[str, Any]:

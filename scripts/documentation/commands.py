@@ -10,7 +10,9 @@ OPTION = re.compile(r"^  (--[a-z-]+)(?: (.*?))?(?:  +(.*))?$")
 KINDS, SCENES = "collision membrane interaction scene", "demo channel suspension capsule"  # of rouleau new
 FILES = {"SCENE", "FILE", "DIR", "MANIFEST"}
 ENVIRONMENT = {
+    "ROULEAU_LAUNCHER": "none: this process is alone, whatever has started it",
     "ROULEAU_PLUGIN_PATH": "folders with plugins, absolute, separated by colons",
+    "ROULEAU_SCENE_PLUGINS": "no: folders with plugins that a scene names are left out",
     "XDG_DATA_HOME": "the folder with rouleau/plugins, your own plugins; else ~/.local/share",
     "HOME": "the folder of ~/.local/share, where the variable above is not set",
     "ROULEAU_INSTRUCTION_SET": "baseline, avx2 or avx512: narrower vectors than this processor has, to compare results and speed",

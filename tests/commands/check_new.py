@@ -204,6 +204,11 @@ class New_refuses(Case):
         self.assert_stops(self.call("new", "membrane", "x", "--dir", self.path / "nowhere"), 4,
                           str(self.path / "nowhere/x"), "No such file", "--dir")
 
+    def test_with_the_option_that_it_has(self):
+        result = self.call("new", "scene", "first", "--dir", "/proc/self/fdinfo")
+        self.assertEqual(result.returncode, 4)
+        self.assertNotIn("--out", result.stderr)
+
     def test_to_leave_half_of_it_when_writing_fails(self):
         # A limit on the size of files stands for a full disk: the source is longer than 64 bytes.
         result = self.call("new", "membrane", "x", preexec_fn=lambda: limit_files(64))

@@ -10,6 +10,7 @@ import shutil
 import subprocess
 import sys
 import unittest
+import unittest.mock
 from pathlib import Path
 
 sys.dont_write_bytecode = True  # nothing is to appear in the source folder
@@ -67,6 +68,26 @@ class Plugins_are_searched_where_the_user_said(TrustCase):
         result = self.rouleau.run("plan", scene, *change, cwd=elsewhere)
         self.assertNotIn("plugin_dirs of the scene", result.stderr)
         self.assertIn(str(self.path / "beside/models"), result.stderr)  # the copy has no library
+
+    def test_what_a_scene_brings_along_is_said_and_can_be_refused(self):
+        shutil.move(self.morse, self.path / "models/morse")
+        words = (self.file, "--set", '/plugin_dirs=["models"]')
+        library = str(self.path / "models/morse/libmorse.so")
+        self.assertEqual(self.rouleau.run("plan", *words).stdout.count("the scene brings code along"), 1)
+        run = self.rouleau.run("run", *words, *SHORT, "--out", self.path / "run")
+        for result in (self.rouleau.run("plan", *words), run):
+            self.assertEqual(result.returncode, 0, result.stderr)
+            said = result.stdout + result.stderr
+            for word in ("the scene brings code along", '"morse"', library, '/plugin_dirs/0 "models"', "ROULEAU_SCENE_PLUGINS=no"):
+                self.assertIn(word, said)
+        summary = json.loads((self.path / "run/summary.json").read_text())
+        self.assertTrue(any(library in warning for warning in summary["warnings"]))
+        self.assert_stops(self.rouleau.run("plan", *words, "--no-scene-plugins"), 2, '"morse"', "not searched")
+        with unittest.mock.patch.dict(os.environ, ROULEAU_SCENE_PLUGINS="no"):
+            self.assert_stops(self.rouleau.run("plan", *words), 2, "not searched")
+        own = self.rouleau.run("plan", *words, "--no-scene-plugins", "--plugin-dir", self.path / "models")
+        self.assertEqual(own.returncode, 0, own.stderr)
+        self.assertNotIn("the scene brings code along", own.stdout + own.stderr)
 
     def test_never_in_the_working_directory(self):
         folder = self.copy_of_morse("here")

@@ -4,6 +4,10 @@ Needs a compiler and CMake, as every build does.
 """
 
 
+import os
+import types
+import unittest.mock
+
 from package import SOURCE, Case, main, need
 
 need("numpy", "pandas")
@@ -52,6 +56,20 @@ class A_formula(Case):
         self.assert_refused("upper and lower case", rouleau.potential, "a*A*r", folder=self.path, a=1, A=1)
         self.assert_refused('l is "about 1 um"', rouleau.potential, "r/l", folder=self.path, l="about 1 um")
         self.assert_refused("cannot be the name", rouleau.potential, "r*int", folder=self.path, int=1)
+
+    def test_is_told_of_a_place_where_it_cannot_be_kept(self):
+        error = self.assert_refused("cannot be kept", rouleau.potential, "De*r", folder="/proc/nowhere", De="1 J/m3")
+        self.assertIn("folder=", error.remedy)
+        self.assertEqual((error.file, error.exit_code), ("/proc/nowhere", 4))
+        with unittest.mock.patch.dict(os.environ, XDG_CACHE_HOME="/proc/nowhere"):
+            self.assert_refused("cannot be kept", rouleau.potential, "De*r", De="1 J/m3")
+        with unittest.mock.patch.dict(os.environ), unittest.mock.patch("pathlib.Path.home", side_effect=RuntimeError("no home")):
+            os.environ.pop("XDG_CACHE_HOME", None)
+            self.assert_refused("no home", rouleau.potential, "De*r", De="1 J/m3")
+        with unittest.mock.patch("os.statvfs", return_value=types.SimpleNamespace(f_flag=os.ST_NOEXEC)):
+            self.assert_refused("noexec", rouleau.potential, "De*r", folder=self.path, De="1 J/m3")
+        for value in (None, [1], float("nan"), b"1"):
+            self.assert_refused("", rouleau.potential, "De*r", De=value, folder=self.path)
 
 
 if __name__ == "__main__":

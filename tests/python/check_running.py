@@ -1,10 +1,14 @@
 """rouleau.run, plan, plugins and sweep: the program's results, faults as exceptions, progress, interruption."""
 
+import decimal
+import fractions
 import json
 import os
 import pathlib
+import shutil
 import signal
 import subprocess
+import tempfile
 
 from package import BUILD, SOURCE, Case, main, need, small_scene
 
@@ -118,7 +122,90 @@ mkdir run && echo '{"status": "completed", "warnings": []}' > run/summary.json &
             self.assertEqual(rouleau.run(small_scene(), "run", progress=False).status, "completed")
 
     def test_of_what_cannot_stand_in_a_scene_name_it(self):
-        self.assert_refused("cannot stand in a scene", rouleau.plan, small_scene(), title=object())
+        loop = []
+        loop.append(loop)
+        for value in (object(), float("nan"), decimal.Decimal("nan"), b"1", 1j, {1}, loop, Odd(), {(1, 2): 3}):
+            error = self.assert_refused("cannot stand in a scene", rouleau.plan, small_scene(), title=value)
+            self.assertEqual(error.pointer, "/title")
+        for scene in (None, 3, ["a"]):
+            self.assert_refused("is no scene", rouleau.plan, scene)
+        for words in ({"threads": "2"}, {"threads": 0}, {"max_steps": 2.5}, {"max_steps": -1}):
+            self.assert_refused(f"{list(words)[0]} is", rouleau.run, small_scene(), "run", **words)
+
+    def test_of_a_program_that_does_not_start_or_answer_are_told(self):
+        pathlib.Path("rouleau").write_text("#!/nowhere\n")
+        pathlib.Path("rouleau").chmod(0o755)
+        self.let_the_program_be(str(pathlib.Path("rouleau").resolve()))
+        for call in (rouleau.plan, rouleau.run):
+            self.assertEqual(self.assert_refused("could not be started", call, small_scene()).exit_code, 4)
+        pathlib.Path("rouleau").write_text("#!/bin/sh\nexit 0\n")
+        self.assertEqual(self.assert_refused("has not answered in JSON", rouleau.plan, small_scene()).exit_code, 4)
+
+    def test_of_a_place_for_temporary_files_name_the_variable(self):
+        before, tempfile.tempdir = tempfile.tempdir, "/nowhere"
+        self.addCleanup(setattr, tempfile, "tempdir", before)
+        self.assertIn("TMPDIR", self.assert_refused("no place for a scene", rouleau.plan, small_scene()).remedy)
+
+
+class Odd:
+    @property
+    def tolist(self):
+        raise RuntimeError("inside")
+
+
+class Unit:
+    """As pint has them."""
+    dimensionality = {}
+
+    def __init__(self, words):
+        self.words = words
+
+    def __format__(self, how):
+        return {"C": self.words}[how]
+
+
+class Quantity:
+    def __init__(self, magnitude, words):
+        self.magnitude, self.units = magnitude, Unit(words)
+
+
+class Values(Case):
+    def test_of_other_packages_mean_what_they_say(self):
+        def numbers(scene, **changes):
+            return [row.si for row in rouleau.plan(scene, **changes).conversions]
+
+        wanted = numbers(small_scene())
+        for key, values in {
+                "stages.1.shear_rate": [20, numpy.float32(20), numpy.int64(20), numpy.array(20.0), decimal.Decimal("20"),
+                                        fractions.Fraction(40, 2), Quantity(numpy.float64(20), "1/second")],
+                "fluid.viscosity": [Quantity(1.2, "millipascal*second"), decimal.Decimal("1.2e-3")],
+                "fluid.density": [Quantity(1.0, "gram/centimeter**3"), 1000],
+                "domain.size": [Quantity(numpy.array([24.0, 16.0]), "micrometer"), (24e-6, 16e-6)],
+                "domain.nodes": [numpy.array([48, 32]), range(48, 31, -16)],
+                "numerics.density_factor": [Quantity(2000.0, "dimensionless")],
+                "cells.0.at": [[Quantity(1, "micrometer"), Quantity(8.0, "micrometer")]]}.items():
+            for value in values:
+                numpy.testing.assert_allclose(numbers(small_scene(), **{key: value}), wanted, rtol=1e-12)
+        fluid = {"density": Quantity(1.0, "gram/centimeter**3"), "viscosity": "1.2 cP"}
+        self.assertEqual(numbers(small_scene(fluid=fluid)), wanted)
+
+    def test_of_time_may_be_quantities(self):
+        run = rouleau.run(small_scene(), self.path / "run", max_steps=numpy.int64(2), threads=numpy.int64(1),
+                          max_time=Quantity(5.0, "minute"))
+        self.assertEqual(run.summary.steps, 2)
+
+
+class Under_a_launcher(In_a_folder):
+    """What each of several processes of Python calls that mpirun or srun has started."""
+
+    def test_each_process_computes_by_itself(self):
+        for rank in ("0", "1"):
+            os.environ.update(OMPI_COMM_WORLD_RANK=rank, OMPI_COMM_WORLD_SIZE="2")
+            self.addCleanup(os.environ.pop, "OMPI_COMM_WORLD_RANK", None)
+            self.addCleanup(os.environ.pop, "OMPI_COMM_WORLD_SIZE", None)
+            self.assertGreater(rouleau.plan(small_scene()).estimate.wall_s, 0)
+            self.assertGreater(len(rouleau.plugins()), 5)
+            self.assertEqual(rouleau.run(small_scene(), f"run{rank}", max_steps=2, progress=False).summary.steps, 2)
 
 
 class A_plan(Case):
@@ -181,6 +268,24 @@ class A_sweep(In_a_folder):
         changed = rouleau.plan(small_scene(), **{"/cells": {"file": "cells.csv"}})
         self.assertIn("small", repr(changed))
         self.assertEqual(len(rouleau.Simulation(scene).cells()), 2)
+    def test_runs_anew_what_another_library_computed(self):
+        plugin = pathlib.Path("morse").resolve()
+        shutil.copytree(BUILD / "lib/rouleau/plugins/interaction/morse", plugin)
+        made = [plugin / "morse.json", plugin / "libmorse.so"]
+        for file in made:  # another id of the same length
+            file.write_bytes(file.read_bytes().replace(b'"morse"', b'"norse"').replace(b"\0morse\0", b"\0norse\0"))
+        scene = small_scene(plugin_dirs=[str(plugin)])
+        scene["interactions"][0]["model"] = "norse"
+
+        def swept():
+            table = rouleau.sweep(scene, {"stages.1.strain": [0.02]}, out="sweep", workers=1, progress=False)
+            return os.stat(table.directory[0] + "/summary.json").st_mtime_ns
+
+        first = swept()
+        self.assertEqual(swept(), first)
+        with open(made[1], "ab") as library:
+            library.write(b"x")  # the loader does not mind
+        self.assertNotEqual(swept(), first)
 
     def test_goes_on_where_runs_diverge(self):
         table = rouleau.sweep(small_scene(), {"numerics.tau": [1, 30]}, out="sweep", progress=False)

@@ -351,12 +351,28 @@ class One_voice(Case):
         self.assertEqual(result.returncode, 3, result.stderr)
         self.assertEqual(result.stderr.count(f'rouleau: the plugin "{name}"'), 1, result.stderr)
 
-    def test_other_commands_answer_once_and_studies_are_refused(self):
-        self.assertEqual(self.run_well(ranks(2, "--version")).stdout.count("rouleau"), 1)
-        self.assertEqual(self.run_well(ranks(2, "plan", KINETICS, "--json")).stdout.count('"estimate"'), 1)
+    def test_other_commands_answer_on_each_and_what_is_for_one_is_refused_on_each(self):
+        self.assertEqual(self.run_well(ranks(2, "--version")).stdout.count("rouleau"), 2)
+        self.assertEqual(self.run_well(ranks(2, "plan", KINETICS, "--json")).stdout.count('"estimate"'), 2)
         self.assertEqual(self.run_well(ranks(2, "run", "--help")).stdout.count("usage:"), 1)
-        result = call(ranks(2, "study", "studies/none.json"))
-        self.assert_refused(result, 2, "cannot be cut into ranks")
+        for rank in ("0", "2"):
+            as_rank = {**ENVIRONMENT, "OMPI_COMM_WORLD_RANK": rank, "OMPI_COMM_WORLD_SIZE": "4"}
+
+            def answer(*words, **more):
+                return subprocess.run([PROGRAM, *map(str, words)], capture_output=True, text=True, timeout=60,
+                                      env={**as_rank, **more})
+
+            self.assertEqual(answer("verify", "NO-SUCH-RUN").returncode, 4)
+            self.assertIn("NO-SUCH-RUN", answer("verify", "NO-SUCH-RUN").stderr)
+            for command in (("study", "none.json"), ("limits", "none.json"), ("new", "scene", "x", "--dir", self.path)):
+                self.assert_refused(answer(*command), 2, "cannot be cut into ranks", "ROULEAU_LAUNCHER=none")
+                alone = answer(*command, ROULEAU_LAUNCHER="none")
+                self.assertNotIn("ranks", alone.stderr)
+            (self.path / "x.json").unlink()
+        self.assertEqual(answer("run", "none.json", ROULEAU_LAUNCHER="no").returncode, 2)
+        alone = answer("run", *KINETICS_RUN, "--max-steps", "2", "--quiet", "--out", self.path / "alone",
+                       ROULEAU_LAUNCHER="none")
+        self.assertEqual(alone.returncode, 0, alone.stderr)
 
 
 class The_end(Case):

@@ -3,9 +3,13 @@
 usage: check_simulation.py SOURCE BUILD
 """
 
+import copy
 import gc
 import json
+import multiprocessing
 import os
+import pickle
+import shutil
 import signal
 import subprocess
 import sys
@@ -292,6 +296,16 @@ class Errors(Case):
             rouleau.Simulation(self.path / "nowhere.json")
         self.assertEqual(raised.exception.exit_code, 4)
 
+    def test_say_which_number_is_none(self):
+        simulation = rouleau.Simulation(self.scene, threads=numpy.int64(1))
+        self.assertEqual(simulation.step(2.0) + simulation.step(numpy.int32(1)), 3)
+        for count in (-1, 1.5, "2", None):
+            with self.assertRaisesRegex(rouleau.Error, "count is"):
+                simulation.step(count)
+        for threads in (0, "2", 1.5):
+            with self.assertRaisesRegex(rouleau.Error, "threads is"):
+                rouleau.Simulation(self.scene, threads=threads)
+
     def test_say_that_a_check_has_failed(self):
         simulation = rouleau.Simulation(SMALL, **{"checks.area_drift": 1e-12})
         with self.assertRaises(rouleau.Error) as raised:
@@ -307,6 +321,150 @@ class Errors(Case):
         (self.path / "saved/scene.json").write_text(json.dumps(scene))
         with self.assertRaisesRegex(rouleau.Error, "/fluid/viscosity"):
             rouleau.Simulation.load(self.path / "saved")
+
+
+SOFT = r'''
+#include <rouleau/plugin.h>
+#include <stdlib.h>
+struct soft { double A, rc; };
+static int create(const rouleau_setup* setup, void** self, char* error, size_t size) {
+  struct soft* m = malloc(sizeof *m);
+  m->A = FACTOR * setup->parameter_values[0], m->rc = setup->parameter_values[1], *self = m;
+  return 0;
+}
+static double cutoff(const void* self) { return ((const struct soft*)self)->rc; }
+static void compute(const void* self, const rouleau_interaction_block* b) {
+  const struct soft m = *(const struct soft*)self;
+  DEED;
+  for (uint32_t i = 0; i < b->count; ++i) {
+    const double u = 1 - b->distance[i] / m.rc;
+    if (b->energy) b->energy[i] = m.A * m.rc * u * u / 2;
+    if (b->force) b->force[i] = m.A * u;
+    if (b->force_by_distance) b->force_by_distance[i] = -m.A / m.rc;
+  }
+}
+static const rouleau_interaction functions = {sizeof functions, cutoff, compute};
+static const rouleau_model model = {.struct_size = sizeof model, .kind = ROULEAU_INTERACTION_KIND, .id = "org.example.soft",
+  .version = "1.0.0", .create = create, .destroy = free, .interaction = &functions};
+static const rouleau_model* const models[] = {&model, NULL};
+static const rouleau_plugin plugin = {sizeof plugin, ROULEAU_ABI_MINOR, models};
+const rouleau_plugin* rouleau_open_v1(uint32_t host_minor) { return &plugin; }
+'''
+SOFT_MANIFEST = {
+    "manifest": 1, "abi": 1, "kind": "interaction", "id": "org.example.soft", "version": "1.0.0", "library": "libsoft.so",
+    "title": "Soft repulsion", "license": "MIT", "needs": ["distance"], "gives": ["energy", "force", "force_by_distance"],
+    "parameters": [{"name": "stress", "unit": "Pa", "default": 0.2}, {"name": "cutoff", "unit": "m", "default": 3e-6}],
+    "claims": {"conservative": True, "smooth_at_cutoff": True, "reproducible": True}}
+
+
+@unittest.skipUnless(shutil.which("cc"), "a plugin is compiled")
+class Somebodys_plugin(Case):
+    def setUp(self):
+        super().setUp()
+        self.plugin = self.path / "plugin"
+        self.plugin.mkdir()
+        (self.plugin / "soft.json").write_text(json.dumps(SOFT_MANIFEST))
+        self.changes = {"/interactions/0/model": "org.example.soft", "/interactions/0/parameters": {}}
+
+    def build(self, factor=1.0, deed="", to="plugin/libsoft.so", more=()):
+        (self.path / "soft.c").write_text("double factor_of_model(void);\n" + SOFT)
+        subprocess.run(["cc", "-std=gnu11", "-O1", "-fPIC", "-shared", f"-DFACTOR={factor}", f"-DDEED={deed}", "-I",
+                        SOURCE / "sdk", "soft.c", *more, "-o", to], check=True, cwd=self.path)
+
+    def simulation(self, **more):
+        return rouleau.Simulation(self.scene, plugins=[self.plugin], **self.changes, **more)
+
+    def largest_force(self, simulation):
+        laws = rouleau.Simulation(self.scene, interactions=[])  # the same places, without what the plugin adds
+        return abs(simulation.forces - laws.forces).max()
+
+    def test_that_was_built_anew_computes_anew_and_who_has_begun_goes_on(self):
+        self.build()
+        first = self.simulation()
+        force = self.largest_force(first)
+        self.assertGreater(force, 0)
+        self.build(10.0)  # by the linker: another file
+        self.assertAlmostEqual(self.largest_force(self.simulation()) / force, 10, delta=1e-6)
+        self.build(100.0, to="other.so")
+        shutil.copyfile(self.path / "other.so", self.plugin / "libsoft.so")  # in place
+        self.assertAlmostEqual(self.largest_force(self.simulation()) / force, 100, delta=1e-5)
+        (self.plugin / "libsoft.so").write_bytes(b"")
+        self.assertEqual(first.step(5), 5)
+        with self.assertRaisesRegex(rouleau.Error, "is no shared library"):
+            self.simulation()
+
+    def test_of_c_plus_plus_that_was_built_anew_takes_nothing_from_the_old_one(self):
+        values = []
+        for factor in (1, 10, 100):
+            # What an inline function or a template keeps has one address in a process, whatever libraries have it.
+            (self.path / "factor.cpp").write_text(
+                "template <class T> struct Kept { static double& value() { static double kept = T::factor(); return kept; } };\n"
+                f"struct Model {{ static double factor() {{ return {factor}; }} }};\n"
+                'extern "C" double factor_of_model() { return Kept<Model>::value(); }\n')
+            subprocess.run(["c++", "-O1", "-fPIC", "-c", "factor.cpp", "-o", "factor.o"], check=True, cwd=self.path)
+            self.build("factor_of_model()", more=["factor.o", "-lstdc++"])
+            values.append(self.largest_force(self.simulation()))
+        numpy.testing.assert_allclose(values, values[0] * numpy.array([1, 10, 100]), rtol=1e-6)
+
+    def test_that_ends_python_is_named(self):
+        deeds = {"__builtin_trap()": (-signal.SIGILL, "an instruction"), "*(volatile int*)8=1": (-signal.SIGSEGV, "memory"),
+                 "abort()": (-signal.SIGABRT, "abort"), "exit(0)": (3, "has ended the program")}
+        for deed, (code, word) in deeds.items():
+            self.build(deed=deed)
+            script = f"import rouleau; rouleau.Simulation({str(self.scene)!r}, threads=2, " \
+                     f"plugins=[{str(self.plugin)!r}], **{self.changes!r}).step(9)"
+            end = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60,
+                                 env={**os.environ, "PYTHONPATH": str(BUILD / "python")})
+            self.assertEqual(end.returncode, code, end.stderr)
+            self.assertIn('the plugin "org.example.soft"', end.stderr)
+            self.assertIn(word, end.stderr)
+            self.assertIn("in its function compute", end.stderr)
+
+    def test_that_comes_with_a_scene_is_said_and_can_be_refused(self):
+        self.build()
+        brought = {**self.changes, "plugin_dirs": [str(self.plugin)]}
+        with self.assertWarnsRegex(UserWarning, "the scene brings code along.*libsoft.so"):
+            rouleau.Simulation(self.scene, **brought)
+        os.environ["ROULEAU_SCENE_PLUGINS"] = "no"
+        self.addCleanup(os.environ.pop, "ROULEAU_SCENE_PLUGINS", None)
+        for what in (rouleau.Simulation, rouleau.plan):
+            with self.assertRaisesRegex(rouleau.Error, "not searched"):
+                what(self.scene, **brought)
+
+
+def children_sum(threads):
+    simulation = rouleau.Simulation(SMALL, threads=threads)
+    simulation.step(40)
+    return float(simulation.positions.sum())
+
+
+class Other_processes(Case):
+    def test_of_a_fork_compute_the_same_whatever_threads_have_run_before(self):
+        wanted = children_sum(1)
+        for before, then in ((2, 2), (2, 1), (1, 2), (3, 2)):
+            children_sum(before)
+            with multiprocessing.get_context("fork").Pool(2) as pool:
+                found = pool.map_async(children_sum, [then, then])
+                self.assertEqual(found.get(timeout=60), [wanted, wanted])
+            self.assertEqual(children_sum(before), wanted)  # and the parent goes on
+
+    def test_goes_on_in_the_child_with_what_the_parent_had_begun(self):
+        simulation, other = (rouleau.Simulation(SMALL, threads=2) for _ in range(2))
+        for each in (simulation, other):
+            each.step(20)
+        other.step(20)
+        child = os.fork()
+        if child == 0:
+            signal.alarm(60)
+            simulation.step(20)
+            os._exit(0 if numpy.array_equal(simulation.positions, other.positions) else 1)
+        self.assertEqual(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), 0)
+
+    def test_and_copies_are_refused_in_words(self):
+        simulation = rouleau.Simulation(SMALL)
+        for copied in (copy.copy, copy.deepcopy, pickle.dumps):
+            with self.assertRaisesRegex(rouleau.Error, r"neither copied nor pickled.*\n.*save\(\)"):
+                copied(simulation)
 
 
 class Steps(Case):

@@ -11,6 +11,7 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "json/schema.hpp"
+#include "program.hpp"
 #include "units/units.hpp"
 
 namespace rouleau::command {
@@ -60,6 +61,9 @@ bool parse_command_line(const std::string& command, const std::string& help, con
                         options::options_description& description,
                         const options::positional_options_description& positional) {
   description.add_options()("help", "this text");
+  std::vector<std::string> own;
+  for (const auto& option : description.options()) own.push_back(option->long_name());
+  know_options(std::move(own));
   const Remedy hint{"rouleau " + command + " --help lists the options"};
   try {
     options::variables_map values;

@@ -89,20 +89,6 @@ void regret_crash() {
   end_process(exit_code::input_output);
 }
 
-const char* deed_of(int signal) {
-  switch (signal) {
-    case SIGSEGV:
-    case SIGBUS:
-      return "has used memory that it does not have (or too much of the stack)";
-    case SIGFPE:
-      return "has divided by zero, or switched on floating-point exceptions";
-    case SIGABRT:
-      return "has stopped the program (abort, or an assertion that failed)";
-    default:
-      return "has crashed";
-  }
-}
-
 void on_fatal_signal(int signal, siginfo_t* info, void*) {
   const bool without_memory = errno == ENOMEM;
   const bool sent = info->si_code <= 0;  // by a process, and not by what the processor was doing

@@ -21,18 +21,28 @@ namespace rouleau::command {
 
 namespace {
 
-const char* option_for(Way way) {
+std::vector<std::string> known_options;
+
+/// Empty where the command has none.
+std::string option_for(Way way) {
+  const auto first_of = [](std::initializer_list<const char*> names) -> std::string {
+    for (const char* name : names) {
+      if (std::find(known_options.begin(), known_options.end(), name) != known_options.end())
+        return std::string("--") + name;
+    }
+    return {};
+  };
   switch (way) {
     case Way::elsewhere:
-      return "--out";
+      return first_of({"out", "dir"});
     case Way::anew:
-      return "--overwrite";
+      return first_of({"overwrite"});
     case Way::resume:
-      return "--resume";
+      return first_of({"resume"});
     case Way::accept:
-      return "--force";
+      return first_of({"force"});
   }
-  return "";
+  return {};
 }
 
 Error for_terminal(const Error& error) {
@@ -101,9 +111,14 @@ int exit_code_of(Cause cause) {
 
 std::string in_options(const Remedy& remedy) {
   std::string options;
-  for (const Way way : remedy.ways) options += (options.empty() ? " (" : ", ") + std::string(option_for(way));
+  for (const Way way : remedy.ways) {
+    const std::string option = option_for(way);
+    if (!option.empty()) options += (options.empty() ? " (" : ", ") + option;
+  }
   return remedy.words + options + (options.empty() ? "" : ")");
 }
+
+void know_options(std::vector<std::string> names) { known_options = std::move(names); }
 
 void check_instruction_set() {
   const char* wanted = std::getenv("ROULEAU_INSTRUCTION_SET");

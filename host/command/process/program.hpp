@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "base/error.hpp"
 #include "trial/exit_code.hpp"
@@ -14,8 +15,10 @@ namespace exit_code = trial::exit_code;
 /// With which code the program ends for an error.
 int exit_code_of(Cause cause);
 
-/// The remedy, with the options of `rouleau` for its ways: "choose another directory (--out)".
+/// The remedy, with the options for its ways that the command has: "choose another directory (--out)".
 std::string in_options(const Remedy& remedy);
+/// Names of the options that the command of this process has, without dashes.
+void know_options(std::vector<std::string> names);
 
 /// Throws Error(bad_input) for a ROULEAU_INSTRUCTION_SET that there is not, or that this processor does not have.
 void check_instruction_set();

@@ -36,7 +36,13 @@ TEST_CASE("each cause has its exit code") {
   CHECK(exit_code_of(Cause::input_output) == 4);
 }
 
-TEST_CASE("the ways of a remedy are named by the options that take them, in their order") {
+TEST_CASE("the ways of a remedy are named by the options that take them, in their order, where the command has them") {
+  know_options({"dir"});
+  CHECK(in_options({"choose another directory, or replace it", {Way::elsewhere, Way::anew}}) ==
+        "choose another directory, or replace it (--dir)");
+  know_options({});
+  CHECK(in_options({"choose another directory", {Way::elsewhere}}) == "choose another directory");
+  know_options({"out", "overwrite", "resume", "force"});
   CHECK(in_options({"check the path"}) == "check the path");
   CHECK(in_options({"choose another directory", {Way::elsewhere}}) == "choose another directory (--out)");
   CHECK(in_options({"go on, begin anew, or accept it", {Way::resume, Way::anew, Way::accept}}) ==

@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 
 #include "plugin_folder.hpp"
@@ -53,6 +54,24 @@ TEST_CASE("manifests are found in the order of the folders, then by name, then i
   CHECK(ids_of(catalog) == std::vector<std::string>{"b", "z", "a", "zero"});
   CHECK(catalog.refused().empty());
   CHECK(catalog.find(ModelKind::interaction, "a", somewhere).file == first.path() / "deep/er/a.json");
+}
+
+TEST_CASE("folders of a scene are searched unless the environment says that scenes bring no plugins") {
+  const PluginFolder folder;
+  folder.write("mine.json", manifest_with_id("mine"));
+  const auto found = [&] {
+    const std::vector<fs::path> path = plugin_search_path({}, {folder.path()});
+    return std::count(path.begin(), path.end(), folder.path());
+  };
+  CHECK(found() == 1);
+  setenv("ROULEAU_SCENE_PLUGINS", "no", 1);
+  CHECK(found() == 0);
+  const Catalog catalog(plugin_search_path({}, {folder.path()}));
+  CHECK_THAT(thrown_by([&] { (void)catalog.find(ModelKind::interaction, "mine", somewhere); }).what(),
+             Contains("not searched: what a scene names in plugin_dirs"));
+  setenv("ROULEAU_SCENE_PLUGINS", "maybe", 1);
+  CHECK_THROWS_AS(found(), Error);
+  unsetenv("ROULEAU_SCENE_PLUGINS");
 }
 
 TEST_CASE("JSON files without a manifest key are somebody else's and are not looked at") {

@@ -53,6 +53,46 @@ TEST_CASE("a library that lies beside its manifest and agrees with it is opened"
   CHECK(&open_model(manifest) == &model);
 }
 
+TEST_CASE("a library that was built anew is loaded beside the old one, for a manifest that is read anew") {
+  const PluginFolder folder;
+  const fs::path library = folder.copy(TESTED_models, "libgood.so");
+  const Manifest before = manifest_in(folder);
+  const rouleau_model& old = open_model(before);
+  const std::string old_hash = library_sha256(before);
+  for (const bool in_place : {false, true}) {
+    if (!in_place) fs::remove(library);
+    // ELF files may have anything at their end.
+    std::ofstream(library, std::ios::binary) << bytes_of(TESTED_models) << (in_place ? "in place" : "another file");
+    const Manifest after = manifest_in(folder);
+    const rouleau_model& anew = open_model(after);
+    CHECK(&anew != &old);
+    CHECK(&open_model(after) == &anew);
+    CHECK(library_sha256(after) == sha256(library));
+    CHECK(&open_model(before) == &old);  // whoever has begun with it goes on with it
+    CHECK(library_sha256(before) == old_hash);
+  }
+}
+
+TEST_CASE("a library that is loaded stays what it is when its file is written to or cut short") {
+  const PluginFolder folder;
+  const fs::path library = folder.copy(TESTED_models, "libgood.so");
+  const Manifest manifest = manifest_in(folder);
+  const rouleau_model& model = open_model(manifest);
+  std::ofstream(library, std::ios::binary) << std::string(fs::file_size(library), '\0');
+  fs::resize_file(library, 0);
+  CHECK(model.id == std::string("good"));
+  CHECK_NOTHROW(ModelInstance(manifest, {1e-6, 1e6, 310, 0}, setting()));
+  CHECK_THAT(refusal(manifest_in(folder)).what(), Contains("is no shared library"));
+}
+
+TEST_CASE("a library that has changed since its manifest was read is refused") {
+  const PluginFolder folder;
+  folder.copy(TESTED_models, "libgood.so");
+  const Manifest manifest = manifest_in(folder);
+  std::ofstream(folder.path() / "libgood.so", std::ios::app) << "x";
+  CHECK_THAT(refusal(manifest).what(), Contains("has changed since its manifest was read"));
+}
+
 TEST_CASE("a stripped library is opened") {
   const PluginFolder folder;
   const auto library = folder.copy(TESTED_models, "libgood.so");

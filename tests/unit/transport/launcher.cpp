@@ -5,6 +5,8 @@
 #include <map>
 #include <string>
 
+#include "base/error.hpp"
+
 namespace rouleau {
 namespace {
 
@@ -48,6 +50,17 @@ TEST_CASE("each launcher is known by what it leaves in the environment") {
     REQUIRE(srun);
     CHECK((srun->mpi == mpi && srun->rank == 5 && srun->ranks == 64 && srun->command == "srun"));
   }
+}
+
+TEST_CASE("a process that is told so is alone, whatever has started it") {
+  const std::map<std::string, std::string> rank{{"OMPI_COMM_WORLD_RANK", "2"}, {"OMPI_COMM_WORLD_SIZE", "4"}};
+  ::setenv("ROULEAU_LAUNCHER", "none", 1);
+  CHECK(!launched_with(rank));
+  ::setenv("ROULEAU_LAUNCHER", "nobody", 1);
+  CHECK_THROWS_AS(launched_with(rank), Error);
+  ::setenv("ROULEAU_LAUNCHER", "", 1);
+  CHECK(launched_with(rank));
+  ::unsetenv("ROULEAU_LAUNCHER");
 }
 
 TEST_CASE("what is no number is not there") {
