@@ -22,6 +22,7 @@ Prints, without a step: every conversion, dimensionless number and limit (value,
 computed, what is left out and why, and the estimated time, memory and output size. Plugins that the scene names are
 loaded and instances of them are made, so their code runs. With --ranks N also how the lattice would be cut for
 mpirun -n N, what each rank would compute, send and hold, how long a step would take, and how many ranks are fastest.
+Where a run would be refused for its nodes or its memory, the plan is printed and ends with that error.
 
 Example:
   rouleau plan scenes/four-cells-shear.json
@@ -92,6 +93,7 @@ class PlannedRanks {
     }
     return object;
   }
+  [[nodiscard]] const plan::Blocks& blocks() const { return blocks_; }
   [[nodiscard]] std::string text() const {
     return (rank_ ? plan::to_text(costs_[*rank_], *rank_, blocks_) : plan::to_text(costs_)) +
            plan::to_text(times_, machines_);
@@ -141,6 +143,13 @@ int plan_command(const std::vector<std::string>& arguments) {
     std::cout << object.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
   } else {
     std::cout << plan::to_text(planned.plan, planned.report) << (ranks ? ranks->text() : "");
+  }
+  std::cout << std::flush;
+  // What a run here would be refused for is; of several ranks nobody knows here what memory their machines have.
+  if (ranks) {
+    plan::require_computable(planned.read.scene, &ranks->blocks());
+  } else {
+    require_startable(planned, nullptr, 1);
   }
   return 0;
 }

@@ -171,8 +171,7 @@ void prepare(Request& request, const TimeLimit& limit, std::optional<PlannedScen
   request.run.threads = static_cast<int>(std::min<double>(request.run.threads, std::max(1.0, rows / 4)));
   const Crew* const crew = Crew::present();
   const plan::PlanReport& report = planned->report;
-  plan::require_computable(scene, planned->blocks ? &*planned->blocks : nullptr);
-  plan::require_memory(report.estimate.memory_bytes / (crew != nullptr ? crew->ranks() : 1), "the run");
+  require_startable(*planned, planned->blocks ? &*planned->blocks : nullptr, crew != nullptr ? crew->ranks() : 1);
   for (const std::string& warning : report.warnings) {
     {
       const Coloured yellow(std::cerr, Colour::yellow);

@@ -88,19 +88,24 @@ std::string aggregation_in_words(const std::vector<Event>& events) {
   return words + "; all single from " + moment(*alone.base());
 }
 
-/// Of the last stage that has one: mean and standard deviation over the outputs of the stage's second half.
+/// Of the last stage that has one: mean and standard deviation over the outputs of the stage's second half, and whether
+/// it still changes there.
 std::string viscosity_in_words(const Json& summary) {
-  if (summary.contains("error_bars") && summary.at("error_bars").contains("relative_viscosity")) return {};
+  const bool has_bar = summary.contains("error_bars") && summary.at("error_bars").contains("relative_viscosity");
   const Json& stages = summary.at("rheology");
   for (auto stage = stages.rbegin(); stage != stages.rend(); ++stage) {
     const Json& means = stage->at("means");
     if (!means.is_object() || !means.contains("relative_viscosity")) continue;
     const Json& viscosity = means.at("relative_viscosity");
     if (!viscosity.is_object() || !viscosity.at("mean").is_number()) continue;
+    const std::string half = " over the second half of " + stage->at("stage").get<std::string>();
+    const Json trend = viscosity.value("trend", Json());
+    const std::string changes = trend.is_string() ? "still " + trend.get<std::string>() : "";
+    if (has_bar) return changes.empty() ? "" : "relative viscosity " + changes + half;
     const Json& deviation = viscosity.at("deviation");  // null where a single output has a value
     return "relative viscosity " + number(viscosity.at("mean"), 4) +
-           (deviation.is_number() ? ", standard deviation " + number(deviation, 2) : "") + " over the second half of " +
-           stage->at("stage").get<std::string>();
+           (deviation.is_number() ? ", standard deviation " + number(deviation, 2) : "") +
+           (changes.empty() ? "" : ", " + changes) + half;
   }
   return {};
 }

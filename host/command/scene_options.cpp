@@ -1,7 +1,10 @@
 #include "scene_options.hpp"
 
+#include <chrono>
 #include <cstdlib>
+#include <iostream>
 
+#include "base/text.hpp"
 #include "command/process/command_line.hpp"
 #include "command/process/crew.hpp"
 #include "core/membrane/membranes.hpp"
@@ -29,8 +32,28 @@ void SceneOptions::add_to(options::options_description& description,
   positional.add("scene", 1);
 }
 
+namespace {
+
+/// Says on the terminal how far cells at random have come, once that takes some seconds.
+shape::PackingWatch packing_words() {
+  using Clock = std::chrono::steady_clock;
+  if (Crew::present() != nullptr && !Crew::present()->first()) return {};
+  return [begin = Clock::now(), said = Clock::now()](double share) mutable {
+    constexpr std::chrono::seconds patience{3};
+    if (Clock::now() - said < patience) return;
+    const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(Clock::now() - begin).count();
+    std::cerr << "placing cells at random: " << number(100 * share, 3) << " % of them have found room after " << seconds
+              << " s" << (said == begin ? "; where that stands still they do not fit, which takes a while to tell" : "")
+              << "\n";
+    said = Clock::now();
+  };
+}
+
+}  // namespace
+
 plan::ReadScene SceneOptions::read() const {
-  return plan::read_within_limits(scene, overrides, [&](const scene::Scene& read) { return catalog(read); });
+  return plan::read_within_limits(
+      scene, overrides, [&](const scene::Scene& read) { return catalog(read); }, packing_words());
 }
 
 std::string SceneOptions::in_shell() const {
@@ -71,5 +94,10 @@ PlannedScene::PlannedScene(const SceneOptions& options)
       report(plan::make_report(plan)),
       blocks(Crew::present() == nullptr ? std::nullopt
                                         : std::optional(plan::make_blocks(plan, Crew::present()->ranks()))) {}
+
+void require_startable(const PlannedScene& planned, const plan::Blocks* blocks, int ranks) {
+  plan::require_computable(planned.read.scene, blocks);
+  plan::require_memory(planned.report.estimate.memory_bytes / ranks, "the run");
+}
 
 }  // namespace rouleau::command

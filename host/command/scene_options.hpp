@@ -48,4 +48,7 @@ struct PlannedScene {
   const std::optional<plan::Blocks> blocks;  ///< none where this process is alone
 };
 
+/// Throws what a run on this machine by so many ranks is refused for: too many nodes of a rank, too little memory.
+void require_startable(const PlannedScene& planned, const plan::Blocks* blocks, int ranks);
+
 }  // namespace rouleau::command

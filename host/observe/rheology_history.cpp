@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <set>
 
@@ -43,6 +44,28 @@ std::optional<double> mean_of(const Column& time, const Column& values, double b
   const double mean = mean_from(time, values, std::max(begin, time.front()));
   if (std::isfinite(mean)) return mean;
   return time.back() >= begin ? std::optional(values.back()) : std::nullopt;  // a single one
+}
+
+/// "rising" or "falling" where a straight line explains three quarters of the variance of these values, which a whole
+/// period of a sine does not let it (6/pi^2), and goes by more than a hundredth of the largest of them from end to end;
+/// else null.
+Json trend_of(const Column& time, const Column& values) {
+  constexpr std::size_t fewest = 5;
+  constexpr double explained = 0.75, slight = 0.01;
+  if (values.size() < fewest) return nullptr;
+  const auto count = static_cast<double>(values.size());
+  const double middle = std::accumulate(time.begin(), time.end(), 0.0) / count;
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / count;
+  double times = 0, squares = 0, both = 0, largest = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double t = time[i] - middle, v = values[i] - mean;
+    times += t * t, squares += v * v, both += t * v;
+    largest = std::max(largest, std::abs(values[i]));
+  }
+  if (!(times > 0) || !(both * both >= explained * times * squares)) return nullptr;
+  const double change = both / times * (time.back() - time.front());
+  if (!(std::abs(change) > slight * largest)) return nullptr;
+  return change > 0 ? "rising" : "falling";
 }
 
 /// Whether all (or, `any`, some two) of these cells share an aggregate.
@@ -91,13 +114,15 @@ Json RheologyHistory::means(const StageHistory& stage) {
   const double middle = stage.instants.back().time / 2;
   Json result{{"from_s", middle}, {"outputs", stage.instants.size() - first}};
   for (std::size_t k = 0; k < averaged().size(); ++k) {
-    Column time, values, late;
+    Column time, values, late, late_time;
     for (std::size_t i = 0; i < stage.instants.size(); ++i) {
       const Instant& instant = stage.instants[i];
       if (!std::isfinite(instant.values[k])) continue;
       time.push_back(instant.time);
       values.push_back(instant.values[k]);
-      if (i >= first) late.push_back(values.back());
+      if (i < first) continue;
+      late.push_back(values.back());
+      late_time.push_back(instant.time);
     }
     Json& of_column = result[averaged()[k].column()];  // null
     const std::optional<double> mean = mean_of(time, values, middle);
@@ -105,7 +130,9 @@ Json RheologyHistory::means(const StageHistory& stage) {
     const auto count = static_cast<double>(late.size());
     double squares = 0;
     for (const double value : late) squares += (value - *mean) * (value - *mean);
-    of_column = {{"mean", *mean}, {"deviation", count > 1 ? Json(std::sqrt(squares / (count - 1))) : Json()}};
+    of_column = {{"mean", *mean},
+                 {"deviation", count > 1 ? Json(std::sqrt(squares / (count - 1))) : Json()},
+                 {"trend", trend_of(late_time, late)}};
   }
   return result;
 }

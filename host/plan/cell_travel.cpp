@@ -16,35 +16,42 @@ constexpr double threshold = 0.002;
 }  // namespace
 
 CellTravel cell_travel(const scene::Scene& scene, const StageSetting& stage) {
-  if (scene.fluid.inertia || scene.cells.empty() || scene.domain.periodic_y) return {};
-  const double spacing = stage.units.length, height = scene.domain.nodes[1], viscosity = core::viscosity_of(stage.tau);
+  if (scene.fluid.inertia || scene.cells.empty() || !scene::has_walls(scene.domain)) return {};
+  const bool across_z = scene.domain.periodic_y;
+  const double spacing = stage.units.length, height = scene::wall_distance(scene.domain) / spacing;
+  const double viscosity = core::viscosity_of(stage.tau);
   double cell_radius = 0;
   for (const scene::CellPlacement& cell : scene.cells) {
     cell_radius = std::max(cell_radius, shape::shape_radius(scene.cell_types[cell.type].shape) / spacing);
   }
   CellTravel travel;
-  const auto add = [&](double shear_rate, double body_force, const core::WallVelocity& walls) {
-    double mean = 0, farthest = 0;
-    std::vector<double> speeds;
+  const auto add = [&](double shear_rate, const Eigen::Vector3d& force, const core::WallVelocity& walls) {
+    const Eigen::Vector3d drive = scene::unheld(force, scene.domain);
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    double farthest = 0;
+    std::vector<Eigen::Vector3d> velocities;
     for (const scene::CellPlacement& cell : scene.cells) {
-      const double y = cell.center.y() / spacing;
+      const double place = (across_z ? cell.z : cell.center.y()) / spacing;
+      Eigen::Vector3d& velocity = velocities.emplace_back();
       if (scene.domain.tube_radius) {
         const double radius = *scene.domain.tube_radius / spacing;
-        const double off = std::hypot(y - height / 2, (cell.z - scene.domain.depth->size / 2) / spacing);
-        speeds.push_back(body_force * std::max(0.0, radius * radius - off * off) / (4 * viscosity));
+        const double off =
+            std::hypot(cell.center.y() - scene.domain.size.y() / 2, cell.z - scene.domain.depth->size / 2) / spacing;
+        velocity = drive * (std::max(0.0, radius * radius - off * off) / (4 * viscosity));
       } else {
-        speeds.push_back(shear_rate * (y - height / 2) + body_force * y * (height - y) / (2 * viscosity) +
-                         (walls.lower + walls.upper) / 2);
+        velocity = drive * (place * (height - place) / (2 * viscosity));
+        velocity.x() += shear_rate * (place - height / 2) + (walls.lower + walls.upper) / 2;
       }
-      mean += speeds.back() / static_cast<double>(scene.cells.size());
+      mean += velocity / static_cast<double>(scene.cells.size());
     }
-    for (const double speed : speeds) farthest = std::max(farthest, std::abs(speed - mean));
-    travel.mean += std::abs(mean) * cell_radius / viscosity;
+    for (const Eigen::Vector3d& velocity : velocities) farthest = std::max(farthest, (velocity - mean).norm());
+    travel.mean += mean.norm() * cell_radius / viscosity;
     travel.spread += farthest * cell_radius / viscosity;
   };
-  add(stage.shear_rate, stage.body_force_x, stage.walls);
+  add(stage.shear_rate, {stage.body_force_x, stage.body_force_y, stage.body_force_z}, stage.walls);
   // At its largest, and without the delay by the fluid's inertia.
-  if (stage.oscillation.any()) add(stage.oscillating_rate, stage.oscillation.body_force_x, stage.oscillation.walls);
+  if (stage.oscillation.any())
+    add(stage.oscillating_rate, {stage.oscillation.body_force_x, 0, 0}, stage.oscillation.walls);
   return travel;
 }
 

@@ -1,6 +1,8 @@
 #include "estimate.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "base/error.hpp"
 #include "base/process.hpp"
@@ -9,6 +11,7 @@
 #include "output_schedule.hpp"
 #include "plugin/handles.hpp"
 #include "shape/extent.hpp"
+#include "shape/outline.hpp"
 #include "stability_limits.hpp"
 
 namespace rouleau::plan {
@@ -107,11 +110,31 @@ double largest_cutoff(const Plan& plan) {
   return largest;
 }
 
+/// Surfaces of other cells within the largest cutoff of a node where cells lie anywhere: those in the free volume,
+/// times what lies within the cutoff of one (Steiner's formula with its area and radius). A half at least, as of a
+/// doublet whose faces touch.
+double surfaces_near_a_node(const scene::Scene& scene, double cutoff) {
+  double room = scene.domain.content(), within = 0;
+  std::vector<double> enclosed, reached;
+  for (const scene::CellType& type : scene.cell_types) {
+    const double spacing = shape::node_spacing(type), radius = shape::shape_radius(type.shape);
+    const double area = std::sqrt(0.75) * spacing * spacing * shape::node_count(type);
+    enclosed.push_back(shape::enclosed_by(type));
+    reached.push_back(cutoff * (area + 4 * std::numbers::pi * cutoff * (radius + cutoff / 3)));
+  }
+  for (const scene::CellPlacement& cell : scene.cells) {
+    room -= enclosed[cell.type];
+    within += reached[cell.type];
+  }
+  const auto cells = static_cast<double>(scene.cells.size());
+  return std::max(0.5, within * (cells - 1) / cells / std::max(room, 0.1 * scene.domain.content()));
+}
+
 /// Measured at 3 924 nodes (docs/three-dimensions.md).
 double cost_of_membrane_node(int dimension, const MembraneScheme& scheme) {
   if (dimension == 2) return 50e-9;
-  // The triangles within the cutoff are as many as its square says.
-  double cost = 100e-9 + 1.8e-9 * scheme.cutoff * scheme.cutoff;
+  // The triangles of a surface within the cutoff are as many as its square says.
+  double cost = 100e-9 + 3.6e-9 * scheme.cutoff * scheme.cutoff * scheme.near;
   if (scheme.sharp_kernel) cost += 55e-9;
   if (scheme.slip_correction) cost += scheme.viscosity_contrast ? 110e-9 : 55e-9;
   if (scheme.semi_implicit) cost += 60e-9;
@@ -131,7 +154,9 @@ double membrane_nodes(const scene::Scene& scene) {
 MembraneScheme membrane_scheme(const Plan& plan) {
   const scene::Scene& scene = *plan.scene;
   if (!scene.domain.depth) return {};
-  return {.cutoff = largest_cutoff(plan),
+  const double cutoff = largest_cutoff(plan);
+  return {.cutoff = cutoff,
+          .near = surfaces_near_a_node(scene, cutoff * lattice_spacing(scene)),
           .sharp_kernel = kernel_named(scene.numerics.kernel).kind == core::KernelKind::sharp6,
           .slip_correction = scene.numerics.slip_correction,
           .viscosity_contrast = plan.viscosity_contrast,

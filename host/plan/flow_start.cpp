@@ -50,7 +50,9 @@ double FlowStart::left_of_viscosity(double strain) const {
 FlowStart flow_start(const scene::Scene& scene, int index) {
   const scene::Stage& stage = scene.stages[index];
   if (index > 0 && driven_alike(stage, scene.stages[index - 1])) return {};
-  return {std::max(0.0, stage.density_factor - 1) * scene::start_up_strain(stage, scene), stage.shear_rate == 0};
+  // Of a fluid alone its true start counts, too.
+  const double counted = scene.cells.empty() ? stage.density_factor : std::max(0.0, stage.density_factor - 1);
+  return {counted * scene::start_up_strain(stage, scene), stage.shear_rate == 0};
 }
 
 double capsule_relaxation(double capillary_number, double viscosity_ratio) {

@@ -20,8 +20,9 @@ struct FlowStart {
   [[nodiscard]] double left_of_viscosity(double strain) const;
 };
 
-/// Of the stage with this index, by what its fluid is denser than the true one, whose own start is part of what is simulated. A
-/// stage that is driven as the one before it begins with that one's flow.
+/// Of the stage with this index, by what its fluid is denser than the true one, whose own start is part of what is
+/// simulated; without cells by all of its density, for then it decides alone when the flow is steady. A stage that is
+/// driven as the one before it begins with that one's flow.
 FlowStart flow_start(const scene::Scene& scene, int index);
 
 /// Strain within which a round capsule comes to its steady shape, for its capillary number mu g a/Es: from the

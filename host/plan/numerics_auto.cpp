@@ -31,6 +31,7 @@ constexpr double default_target = 0.01;
 constexpr const char* origin = "numerics.auto";
 
 constexpr double nearly = 0.999;  ///< as much of a limit as is taken
+constexpr double nothing = 1e-6;  ///< an error that is none
 constexpr std::array relaxation_times{0.8, 1.0, 1.25, 1.5, 2.0, 2.5, 3.0};
 constexpr double least_of_layers = 0.01;  ///< of tau - 1/2 in a layer: twice the limit of the plan
 constexpr double finest_radius = 80;      ///< spacings; more is never chosen
@@ -50,7 +51,7 @@ Json three_digits_below(double value) {
 /// Whether a flow can bring the cells to a steady state: one that is alone in the middle between walls. Others drift and meet.
 bool can_be_steady(const scene::Scene& scene) {
   constexpr double near_the_middle = 0.1;  // radii
-  if (scene.cells.size() != 1) return false;
+  if (scene.cells.size() != 1 || !scene.packings.empty()) return false;
   const double off = near_the_middle * shape::smallest_radius(scene);
   const scene::Domain& domain = scene.domain;
   const bool walls_across_z = domain.depth && !domain.depth->periodic;
@@ -89,7 +90,6 @@ class Problem {
   /// The target; where stages with factors of their own take most of it already, half of it on top of theirs: no lattice makes
   /// up for them.
   [[nodiscard]] double goal() const;
-  [[nodiscard]] bool better(const Trial& a, const Trial& b) const;
   [[nodiscard]] Trial cheapest() const;
   [[nodiscard]] Trial tried(const LatticeSize& nodes, double tau) const;
   [[nodiscard]] double spacing_of(const LatticeSize& nodes) const { return scene_.domain.size.y() / nodes[1]; }
@@ -260,12 +260,6 @@ double Problem::membrane_nodes(double spacing) const {
   return all;
 }
 
-/// The cheaper one of those that meet the target; before them, the nearer one.
-bool Problem::better(const Trial& a, const Trial& b) const {
-  if (good_enough(a) != good_enough(b)) return good_enough(a);
-  return good_enough(a) ? a.cost < b.cost : a.error.total() < b.error.total();
-}
-
 NumericsChoice Problem::solve() const { return chosen(cheapest()); }
 
 Problem::Trial Problem::cheapest() const {
@@ -275,14 +269,18 @@ Problem::Trial Problem::cheapest() const {
   std::erase_if(taus,
                 [&](double tau) { return tau < relaxation_times.back() && thinnest * (tau - 0.5) < least_of_layers; });
   if (!pinned("tau").is_null()) taus = {pinned("tau").get<double>()};
-  std::optional<Trial> best;
+  std::vector<Trial> trials;
+  double least = INFINITY;  // error that can be had
   for (const auto& nodes : lattices()) {
-    for (const double tau : taus) {
-      const Trial trial = tried(nodes, tau);
-      if (!best || better(trial, *best)) best = trial;
-    }
+    for (const double tau : taus) least = std::min(least, trials.emplace_back(tried(nodes, tau)).error.total());
   }
-  return *best;
+  // Where none keeps the target, a tenth more than the least error may come from the lattice: a finer one would hardly
+  // help.
+  const double enough = std::max(goal() * (1 + 1e-9), 1.1 * least);
+  const bool kept = least <= goal() * (1 + 1e-9);
+  std::erase_if(trials, [&](const Trial& trial) { return kept ? !good_enough(trial) : trial.error.total() > enough; });
+  return *std::min_element(trials.begin(), trials.end(),
+                           [](const Trial& a, const Trial& b) { return a.cost < b.cost; });
 }
 
 /// The densest fluid that the error leaves room for, and what it costs.
@@ -352,9 +350,12 @@ ErrorShares Problem::error_of(const Flow& flow, double density_factor, double co
   ErrorShares error;
   if (!has_cells_) return error;
   if (const double reynolds = momentum_time_ * flow.rate * density_factor; reynolds > 0) {
+    // Convective inertia does not die out on the way to a steady state.
+    const bool dies_out = steady_ && can_be_steady_ && !scene_.fluid.inertia;
     error.inertia = steady_ ? steady_error_at(reynolds) : 0;
-    if (!steady_ || !can_be_steady_) error.inertia = std::max(error.inertia, motion_error(reynolds, scene_));
+    if (!dies_out) error.inertia = std::max(error.inertia, motion_error(reynolds, scene_));
     error.inertia += stiffness_error(compression * density_factor, reynolds, viscosity_ratio_);
+    if (error.inertia < nothing) error.inertia = 0;
   }
   if (const FlowStart start{density_factor * flow.lag, flow.driven}; start.delay > 0) {
     error.start = steady_ ? std::max(start.left_at(flow.strain), start.left_of_viscosity(flow.strain))
@@ -522,8 +523,19 @@ std::string Problem::doubt_about(const Trial& best) const {
            number(least) + " to " + number(most) + ")";
   };
   if (!meets_target(best)) {
-    return "numerics.auto: the expected error is " + percent(best.error.total()) + ", more than the target of " +
-           percent(target_) + ", with what the scene pins or the finest lattice that is tried";
+    std::string pins;
+    for (const char* key : {"density_factor", "tau"})
+      if (!pinned(key).is_null()) pins += (pins.empty() ? "" : " and ") + std::string("numerics.") + key;
+    for (const scene::Stage& stage : scene_.stages)
+      if (stage.has_own_density_factor()) pins += (pins.empty() ? "" : " and ") + stage.density_factor_key;
+    if (written_.at("domain").contains("nodes")) pins += (pins.empty() ? "" : " and ") + std::string("domain.nodes");
+    const ErrorShares& error = best.error;
+    std::string total = percent(error.total());
+    if (total == percent(target_)) total = number(100 * error.total(), 4) + " %";
+    return "numerics.auto: the expected error is " + total + ", more than the target of " + percent(target_) + ": " +
+           percent(error.resolution) + " by the lattice, " + percent(error.inertia) + " by the fluid's density, " +
+           percent(error.start) + " by the start; " +
+           (pins.empty() ? "allow a larger error" : "leave " + pins + " open, or allow a larger error");
   }
   if (!has_cells_) return {};
   constexpr double most_of_the_target = 0.8;

@@ -379,17 +379,6 @@ Cells<D> make_known_cells(const scene::Scene& scene, const std::function<bool(in
 template core::Membranes make_known_cells<2>(const scene::Scene&, const std::function<bool(int)>&);
 template core::Surfaces make_known_cells<3>(const scene::Scene&, const std::function<bool(int)>&);
 
-double gap_to_tube(const scene::Scene& scene) {
-  double gap = std::numeric_limits<double>::infinity();
-  if (!scene.domain.tube_radius || scene.cells.empty()) return gap;
-  const core::Surfaces surfaces = make_cells<3>(scene);
-  const core::Domain<3> domain = lattice_domain<3>(scene);
-  const double radius = *scene.domain.tube_radius / lattice_spacing(scene);
-  for (int cell = 0; cell < surfaces.cell_count(); ++cell)
-    gap = std::min(gap, radius - core::farthest_from_axis(surfaces, cell, domain));
-  return gap;
-}
-
 void try_cells(const scene::Scene& scene, std::size_t of_strip) {
   if (scene.domain.depth) {
     make_cells<3>(scene);

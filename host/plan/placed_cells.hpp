@@ -38,9 +38,6 @@ auto make_cells(const scene::Scene& scene) {
   }
 }
 
-/// Smallest distance of the cells, as placed, to the wall of the tube in lattice spacings; infinite without either.
-double gap_to_tube(const scene::Scene& scene);
-
 /// Throws what making the cells does, without room for all of them: in two dimensions so many are made at a time.
 void try_cells(const scene::Scene& scene, std::size_t of_strip = 20'000);
 

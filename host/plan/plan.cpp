@@ -4,6 +4,7 @@
 #include <set>
 
 #include "base/text.hpp"
+#include "model_demands.hpp"
 #include "plugin/model.hpp"
 #include "stability_limits.hpp"
 
@@ -24,13 +25,18 @@ void check_models_of_stages(const scene::Scene& scene) {
 }
 
 void check_developed_flows(const Plan& plan) {
+  const scene::Domain& domain = plan.scene->domain;
   for (const StageSetting& stage : plan.stages) {
-    if (stage.stage->start == scene::WallStart::developed && plan.scene->domain.periodic_y &&
-        stage.largest_body_force_x() != 0) {
-      throw Error(
-          Cause::bad_input, plan.scene->place(stage.stage->pointer + "/start"),
-          "\"developed\" wants walls: a driven flow that is periodic along y never becomes steady; leave start out");
-    }
+    if (stage.stage->start != scene::WallStart::developed || stage.largest_drive(domain) == 0) continue;
+    const auto refuse = [&](const char* why) {
+      throw Error(Cause::bad_input, plan.scene->place(stage.stage->pointer + "/start"), why);
+    };
+    if (!scene::has_walls(domain))
+      refuse("\"developed\" wants walls: a driven flow that no wall holds never becomes steady; leave start out");
+    if (domain.periodic_y || stage.largest_drive(domain) != stage.largest_body_force_x())
+      refuse(
+          "\"developed\" is known of a flow along x between walls across y alone; leave start out, or turn the scene "
+          "so that the force acts along x");
   }
 }
 
@@ -70,29 +76,6 @@ void try_models(const Plan& plan) {
     }
   }
   faults.raise();
-}
-
-/// What rubs on a wall would be part of its stress and power, which are those of the fluid.
-void refuse_friction_on_walls(const PlannedModel& model, const scene::Scene& scene) {
-  for (const char* sliding : {"tangential_velocity", "sliding_speed"}) {
-    if (!model.manifest->needs_input(sliding)) continue;
-    throw Error(Cause::bad_input, scene.place(model.pointer + "/model"),
-                in_quotes(model.manifest->id) + " cannot act between cells and walls: it needs " + sliding +
-                    ", and nothing rubs on a wall",
-                {"take a potential without friction, or another cell type in place of \"wall\""});
-  }
-}
-
-void refuse_more_than_distance(const PlannedModel& model, const scene::Scene& scene) {
-  const auto refuse = [&](const std::string& what) {
-    throw Error(
-        Cause::bad_input, scene.place(model.pointer + "/model"),
-        in_quotes(model.manifest->id) + " cannot act within a membrane: " + what,
-        {"take a potential of the distance alone, such as \"repulsion\", or another cell type in place of \"self\""});
-  };
-  if (!model.manifest->state.empty()) refuse("it remembers its contacts");
-  for (const char* velocity : {"normal_velocity", "tangential_velocity", "sliding_speed"})
-    if (model.manifest->needs_input(velocity)) refuse(std::string("it needs ") + velocity);
 }
 
 void choose_coupling(Plan& plan) {
@@ -193,12 +176,7 @@ void plan_models(Plan& plan, const plugin::Catalog& catalog, Faults& faults) {
   for (const scene::Interaction& interaction : scene.interactions) {
     PlannedModel model = planned(plugin::ModelKind::interaction, interaction.potential);
     if (!plan.has_cells) model.parameters.inactive = true;
-    if (interaction.with_wall() && model.manifest != nullptr) {
-      faults.attempt([&] { refuse_friction_on_walls(model, scene); });
-    }
-    if (interaction.with_self() && model.manifest != nullptr) {
-      faults.attempt([&] { refuse_more_than_distance(model, scene); });
-    }
+    faults.attempt([&] { require(demands_on(interaction), model, scene, catalog); });
     bool& has = interaction.with_wall()   ? plan.has_wall_interactions
                 : interaction.with_self() ? plan.has_self_interactions
                                           : plan.has_interactions;
@@ -235,6 +213,7 @@ Plan make_plan(const scene::Scene& scene, const plugin::Catalog& catalog, std::o
   for (int i = 0; i < static_cast<int>(scene.stages.size()); ++i) {
     faults.attempt([&] { plan.stages.push_back(make_stage_setting(scene, i)); });
   }
+  faults.attempt([&] { require(demands_on_operator(plan), plan.collision, scene, catalog); });
   faults.attempt([&] { check_developed_flows(plan); });
   faults.attempt([&] { check_equilibria(plan); });
   faults.raise();

@@ -20,10 +20,9 @@ namespace {
 
 constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 
-/// A force on a fluid that is periodic along both axes meets no wall that could balance it.
+/// A force on a fluid that is periodic along all axes meets no wall that could balance it.
 bool accelerates_for_ever(const StageSetting& stage, const scene::Scene& scene) {
-  return scene.domain.periodic_y && !scene.domain.is_duct() &&
-         scene::driving_force(*stage.stage, scene) != Eigen::Vector2d::Zero();
+  return !scene::has_walls(scene.domain) && scene::driving_force(*stage.stage, scene) != Eigen::Vector3d::Zero();
 }
 
 /// Share of the domain's area or volume that all cells enclose at rest.
@@ -50,13 +49,15 @@ std::map<std::string, double> dimensionless_numbers(const Plan& plan, const std:
   }
   // A flow that nothing holds has no rate of its own; a number made with zero would look like a fluid at rest.
   if (unbounded && shear_rate == 0) shear_rate = undefined;
-  const double radius =
-      plan.has_cells ? shape::shape_radius(scene.cell_types[scene.cells[0].type].shape) : scene.domain.height() / 2;
+  const double radius = plan.has_cells ? shape::shape_radius(scene.cell_types[scene.cells[0].type].shape)
+                                       : scene::wall_distance(scene.domain) / 2;
   const double stress = scene.fluid.viscosity * shear_rate;
   const double reynolds = scene.fluid.density * shear_rate * radius * radius / scene.fluid.viscosity;
-  double ratio = 1;
-  for (const scene::CellType& type : scene.cell_types)
-    ratio = std::max(ratio, type.interior_viscosity / scene.fluid.viscosity);
+  double ratio = 1;  // the one furthest from 1
+  for (const scene::CellType& type : scene.cell_types) {
+    const double of_type = type.interior_viscosity / scene.fluid.viscosity;
+    if (std::abs(std::log(of_type)) > std::abs(std::log(ratio))) ratio = of_type;
+  }
 
   return {{"reynolds_physical", reynolds},
           {"reynolds_simulated", reynolds * factor},
@@ -105,9 +106,12 @@ std::vector<Conversion> conversion_table(const Plan& plan) {
     if (stage.stage->mean_velocity) {
       converted("mean velocity", *stage.stage->mean_velocity, "m/s", units::dimension::velocity);
     }
-    if (stage.body_force_x != 0 || stage.body_force_y != 0) {
-      row(stage.stage->mean_velocity ? "driving force density, without cells" : "driving force density",
-          u.to_si(stage.body_force_x, units::dimension::force_density), "N/m3", stage.body_force_x);
+    const Eigen::Vector3d force(stage.body_force_x, stage.body_force_y, stage.body_force_z);
+    for (int axis = 0; axis < 3; ++axis) {
+      if (force[axis] == 0) continue;
+      const std::string along = axis == 0 ? "" : std::string(" along ") + "xyz"[axis];
+      row("driving force density" + along + (axis == 0 && stage.stage->mean_velocity ? ", without cells" : ""),
+          u.to_si(force[axis], units::dimension::force_density), "N/m3", force[axis]);
     }
     if (stage.oscillation.any()) {
       converted("frequency of the oscillation", stage.stage->oscillation.frequency, "Hz", units::dimension::rate);
@@ -276,13 +280,16 @@ std::vector<std::string> warnings_of(const Plan& plan, const std::vector<Limit>&
   add_those_of(plan.interactions);
   for (const StageSetting& stage : plan.stages) {
     if (!accelerates_for_ever(stage, scene)) continue;
-    const double acceleration =
-        scene::driving_force(*stage.stage, scene).norm() / (scene.fluid.density * stage.stage->density_factor);
-    warnings.push_back("stage " + stage.stage->name +
-                       " drives a fluid that is periodic along x and y, so no wall holds it and it gains " +
-                       number(acceleration, 3) +
-                       " m/s every second for as long as the stage lasts; give domain.y walls, or leave out "
-                       "fluid.body_force and pressure_gradient");
+    const double factor = stage.stage->density_factor;
+    const double acceleration = scene::driving_force(*stage.stage, scene).norm() / scene.fluid.density;
+    const std::string simulated = ", which as it is simulated, " + number(factor, 4) + " times as dense (" +
+                                  stage.stage->density_factor_key + "), is " + number(acceleration / factor, 3) +
+                                  " m/s";
+    warnings.push_back("stage " + stage.stage->name + " drives a fluid that is periodic along " +
+                       (scene.domain.depth ? "x, y and z" : "x and y") + ", so no wall holds it and it gains " +
+                       number(acceleration, 3) + " m/s every second" + (factor != 1 ? simulated : "") +
+                       ", for as long as the stage lasts; give domain.y walls, or leave out fluid.body_force and "
+                       "pressure_gradient");
   }
   if (const int ranks = fewest_ranks(scene.domain); ranks > 1) {
     warnings.push_back("the lattice has " + number(scene.domain.node_count(), 12) + " nodes and one rank can compute " +
@@ -319,8 +326,14 @@ std::vector<std::string> warnings_of(const Plan& plan, const std::vector<Limit>&
         "numerics.kernel to \"sharp6\"");
   }
   for (const InteractionWell& well : wells) {
-    if (!well.doubt.empty())
-      warnings.push_back(well.model + " between " + well.between[0] + " and " + well.between[1] + ": " + well.doubt);
+    const std::string named = well.model + " between " + well.between[0] + " and " + well.between[1] + ": ";
+    if (!well.doubt.empty()) warnings.push_back(named + well.doubt);
+    const bool of_cells = well.between[1] != scene::wall_name && well.between[1] != scene::self_name;
+    const double gap = scene.output.aggregate_gap;
+    if (of_cells && scene.cells.size() > 1 && well.well.attracts() && well.well.distance >= gap)
+      warnings.push_back(named + "cells come to rest " + number(well.well.distance * 1e6, 3) +
+                         " um apart, and output.aggregate_gap is " + number(gap * 1e6, 3) +
+                         " um, so that no contact is counted; raise it above the first");
   }
   const std::optional<NumericsChoice>& choice = plan.numerics_choice;
   if (choice && !choice->doubt.empty()) warnings.push_back(choice->doubt);
@@ -350,6 +363,29 @@ std::vector<LateStart> late_starts(const Plan& plan) {
   return found;
 }
 
+std::optional<BoxShare> box_share(const scene::Scene& scene) {
+  const scene::Domain& domain = scene.domain;
+  const bool sheared = std::any_of(scene.stages.begin(), scene.stages.end(),
+                                   [](const scene::Stage& stage) { return stage.shear_rate != 0; });
+  if (!domain.depth || domain.is_duct() || !sheared || scene.cells.empty() || scene.cells.size() > 2) return {};
+  double radius = 0;
+  for (const scene::CellPlacement& cell : scene.cells)
+    radius = std::max(radius, shape::shape_radius(scene.cell_types[cell.type].shape));
+  const double radii = std::min(domain.size.minCoeff(), domain.depth->size) / radius;
+  return BoxShare{radii, 0.012 * std::pow(8 / radii, 3)};
+}
+
+/// Of a run that takes hours; empty: it does not.
+std::string long_run(const Plan& plan, const Estimate& estimate) {
+  constexpr double hour = 3600, many = 3;
+  if (!(estimate.wall_s > many * hour)) return {};
+  const std::string shorter =
+      plan.numerics_choice ? "a larger numerics.auto.error" : "a coarser lattice or a larger density_factor";
+  return "the run takes about " + number(estimate.wall_s / hour, 3) + " hours on one core, " +
+         number(estimate.steps, 3) + " steps of " + number(plan.scene->domain.node_count(), 3) + " nodes; " + shorter +
+         " makes it shorter, and several threads or ranks do";
+}
+
 }  // namespace
 
 PlanReport make_report(const Plan& plan) {
@@ -363,7 +399,9 @@ PlanReport make_report(const Plan& plan) {
   report.conversions = conversion_table(plan);
   report.packings = packed_cells(*plan.scene);
   report.late_starts = late_starts(plan);
+  report.box_share = box_share(*plan.scene);
   report.estimate = estimate(plan);
+  if (const std::string words = long_run(plan, report.estimate); !words.empty()) report.warnings.push_back(words);
   return report;
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -55,6 +56,14 @@ struct LateStart {
   NLOHMANN_DEFINE_TYPE_INTRUSIVE(LateStart, stage, strain, stage_strain)
 };
 
+/// What walls and periodic images add to the deformation of a cell that is sheared in three dimensions, over that in a
+/// fluid without end. No error bar has it.
+struct BoxShare {
+  double radii;        ///< of the narrowest side
+  double deformation;  ///< relative: 0.012 at 8 radii, and by the cube of them (docs/three-dimensions.md)
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(BoxShare, radii, deformation)
+};
+
 struct PlanReport {
   std::vector<PlannedPass> passes;
   std::vector<Omission> left_out;
@@ -65,6 +74,7 @@ struct PlanReport {
   std::vector<InteractionWell> wells;
   std::vector<PackedCells> packings;
   std::vector<LateStart> late_starts;  ///< by more than 1 % of the stage's strain
+  std::optional<BoxShare> box_share;   ///< of one cell or two; of more the box is what is computed
   Estimate estimate;
 };
 

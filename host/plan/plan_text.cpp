@@ -124,6 +124,11 @@ std::string to_text(const Plan& plan, const PlanReport& report) {
   for (const LateStart& late : report.late_starts) {
     out << "  The fluid starts from rest: " << in_words(late) << ".\n  With \"start\": \"developed\" it would not.\n";
   }
+  if (report.box_share) {
+    out << "  Walls and images " << formatted(report.box_share->radii, "%.3g") << " radii apart add about "
+        << formatted(100 * report.box_share->deformation, "%.2g")
+        << " % to the deformation in a fluid without end;\n  no error bar has that share (docs/three-dimensions.md).\n";
+  }
 
   write_wells(out, report.wells);
   out << "\nLimits, sharpest first (margin below 1: beyond the limit)\n  " << padded("limit", 62) << padded("value", 12)
@@ -158,9 +163,15 @@ std::string in_words(const LateStart& late) {
 }
 
 nlohmann::json shared_sections(const PlanReport& report) {
-  return {{"warnings", report.warnings}, {"conversions", report.conversions},     {"packings", report.packings},
-          {"limits", report.limits},     {"dimensionless", report.dimensionless}, {"wells", report.wells},
-          {"left_out", report.left_out}, {"late_starts", report.late_starts}};
+  return {{"warnings", report.warnings},
+          {"conversions", report.conversions},
+          {"packings", report.packings},
+          {"limits", report.limits},
+          {"dimensionless", report.dimensionless},
+          {"wells", report.wells},
+          {"left_out", report.left_out},
+          {"late_starts", report.late_starts},
+          {"box_share", report.box_share ? nlohmann::json(*report.box_share) : nlohmann::json()}};
 }
 
 nlohmann::json to_json(const Plan& plan, const PlanReport& report) {

@@ -110,7 +110,8 @@ scene::Scene read_scene(const std::filesystem::path& file, const std::vector<std
 }
 
 ReadScene read_within_limits(const std::filesystem::path& file, const std::vector<std::string>& overrides,
-                             const std::function<plugin::Catalog(const scene::Scene&)>& catalog_of) {
+                             const std::function<plugin::Catalog(const scene::Scene&)>& catalog_of,
+                             const shape::PackingWatch& watch) {
   NumericsBounds bounds;
   Faults faults;
   ReadScene read = read_unpacked_scene(file, overrides, bounds, faults);
@@ -127,7 +128,7 @@ ReadScene read_within_limits(const std::filesystem::path& file, const std::vecto
       read = read_unpacked_scene(file, overrides, bounds);
     }
   }
-  shape::pack_cells(read.scene);
+  shape::pack_cells(read.scene, watch);
   return read;
 }
 

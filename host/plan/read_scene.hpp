@@ -11,6 +11,7 @@
 #include "numerics_auto.hpp"
 #include "plugin/catalog.hpp"
 #include "scene/scene.hpp"
+#include "shape/packing.hpp"
 
 namespace rouleau::plan {
 
@@ -31,8 +32,9 @@ scene::Scene read_scene(const std::filesystem::path& file, const std::vector<std
 /// read_scene() with ever tighter bounds until no limit is exceeded that a lower density_factor or a higher resolution
 /// would keep, or the bounds do not change any more. A scene that pins its numerics is read once. `catalog_of` finds
 /// the plugins of a scene that has been read. What is wrong with the models of a scene is thrown with its other faults, or
-/// else by make_plan().
+/// else by make_plan(). `watch`: told while cells are packed.
 ReadScene read_within_limits(const std::filesystem::path& file, const std::vector<std::string>& overrides,
-                             const std::function<plugin::Catalog(const scene::Scene&)>& catalog_of);
+                             const std::function<plugin::Catalog(const scene::Scene&)>& catalog_of,
+                             const shape::PackingWatch& watch = {});
 
 }  // namespace rouleau::plan

@@ -1,5 +1,4 @@
 #include "stability_limits.hpp"
-#include "placed_cells.hpp"
 
 #include <algorithm>
 #include <array>
@@ -25,6 +24,7 @@
 #include "shape/extent.hpp"
 #include "shape/outline.hpp"
 #include "solver_setup.hpp"
+#include "start_gaps.hpp"
 
 namespace rouleau::plan {
 
@@ -71,6 +71,9 @@ constexpr double largest_compression_by_attraction = 0.1;
 // In the minimum of the energy (tests/reference/rouleau_minimum.py) two red cells have theirs 1.0 um apart at 55 and touching at
 // 86 (88 with a bending modulus of 2e-19 J), four of them 1.0 um apart at 25 and touching at 42.
 constexpr double deepest_well_of_bare_faces = 40;
+// In three dimensions shear keeps a cell's shape as well: two red cells came to rest at 255 (6e-6 J/m2), faces apart,
+// and none was seen to touch itself. Beyond that nothing is known.
+constexpr double deepest_well_of_bare_surfaces = 250;
 
 // Narrowest well, in spacings. Cells at rest settle even in wells of a twelfth of a spacing; but where segments are one
 // spacing long, their corners catch on each other in a narrower one: sliding along a rim of 5 spacings radius meets 2 %
@@ -287,15 +290,13 @@ double slowest_relaxation(const Plan& plan, const StageSetting& stage) {
 
 /// Of the developed flow between walls at rest, lattice units.
 double fastest_driven_speed(const StageSetting& stage, const scene::Scene& scene) {
-  const double height = scene.domain.nodes[1], viscosity = core::viscosity_of(scene.numerics.tau);
-  if (scene.domain.tube_radius) {
-    const double radius = *scene.domain.tube_radius / stage.units.length;
-    return stage.largest_body_force_x() * radius * radius / (4 * viscosity);
-  }
-  if (scene.fluid.layers.empty()) return stage.largest_body_force_x() * height * height / (8 * viscosity);
+  const double height = scene::wall_distance(scene.domain) / stage.units.length;
+  const double viscosity = core::viscosity_of(scene.numerics.tau), drive = stage.largest_drive(scene.domain);
+  if (scene.domain.tube_radius) return drive * height * height / (16 * viscosity);
+  if (scene.fluid.layers.empty() || scene.domain.periodic_y) return drive * height * height / (8 * viscosity);
   double fastest = 0;
   const std::vector<double> rows = core::viscosity_of_rows(lattice_layers(scene), scene.domain.nodes[1]);
-  for (const core::ProfilePoint& point : core::layered_profile(rows, viscosity, {}, stage.largest_body_force_x()))
+  for (const core::ProfilePoint& point : core::layered_profile(rows, viscosity, {}, drive))
     fastest = std::max(fastest, std::abs(point.velocity));
   return fastest;
 }
@@ -308,6 +309,15 @@ double stretching_gain_of(const Plan& plan) {
       scene.domain.depth && plan.viscosity_contrast && membrane_coupling(n) == MembraneCoupling::sharp;
   return thin || n.tau > (sharp_contrast ? most_tau_of_sharp_contrast : most_tau) ? cautious_stretching_gain
                                                                                   : stretching_gain;
+}
+
+/// Relative change of the area of a cell at a wall: a force across walls is held by a pressure, force times half of the
+/// distance from wall to wall.
+double compression_by_held_force(const StageSetting& stage, const scene::Scene& scene) {
+  const Eigen::Vector3d force(0, stage.body_force_y, stage.body_force_z);
+  const Eigen::Vector3d held = force - scene::unheld(force, scene.domain);
+  const double height = scene.domain.height(), depth = scene.domain.is_duct() ? scene.domain.depth->size : 0;
+  return 1.5 * (std::abs(held.y()) * height + std::abs(held.z()) * depth) / stage.units.length;
 }
 
 /// Red cells turn over later by up to half of that strain, at a strain of five (docs/stability.md, "Held forces come late"): with no more
@@ -397,7 +407,7 @@ std::vector<Limit> find_limits(const Plan& plan) {
           scene::largest_wall_mach(scene.fluid.inertia), true, lower + " or " + what + ", or raise the resolution",
           density);
     }
-    if (stage.largest_body_force_x() != 0 && !scene.domain.periodic_y) {
+    if (scene::has_walls(scene.domain) && stage.largest_drive(scene.domain) != 0) {
       const double speed = fastest_driven_speed(stage, scene);
       add("Mach number of the driven flow" + where, units::mach_number(speed), 0.1, true,
           lower + " or the driving force, or raise the resolution", density);
@@ -424,7 +434,7 @@ std::vector<Limit> find_limits(const Plan& plan) {
       const double allowed = plan.numerics_choice ? plan.numerics_choice->target : largest_error_by_start;
       // auto has counted it already.
       const RemediedBy by = plan.numerics_choice ? RemediedBy::nothing : density;
-      const std::string remedy = "let it start \"developed\", or " + lower;
+      const std::string remedy = "let it start \"developed\", or " + (plan.has_cells ? lower : "give it more time");
       if (reports_moments(plan)) {
         // With convective inertia a dense fluid stands for a Reynolds number, and its start belongs to what is computed.
         if (!scene.fluid.inertia || plan.numerics_choice) {
@@ -445,6 +455,10 @@ std::vector<Limit> find_limits(const Plan& plan) {
       add("compression of cells by the shear" + where, compression_by_shear(most_viscous_tau, rate * stage.units.time),
           largest_compression_by_shear, true, lower + " or numerics.tau: pressure compresses the lattice's fluid",
           density);
+    }
+    if (const double compression = compression_by_held_force(stage, scene); compression > 0) {
+      add("compression of cells by a force across walls" + where, compression, largest_compression_by_shear, true,
+          lower + " or fluid.body_force: the walls' pressure compresses the lattice's fluid", density);
     }
     const CellTravel travel = cell_travel(scene, stage);
     if (scene.domain.depth && travel.mean > 0) {
@@ -501,15 +515,13 @@ std::vector<Limit> find_limits(const Plan& plan) {
             lower + ": the lattice's fluid gives way to it, and cells leak while they snap together", density);
       }
       if (stage.index != 0) continue;
-      // Measured in two dimensions, where there is a potential to keep faces apart.
-      if (shape.well && shape.well->distance >= least_gap && !wall && !self && scene.cells.size() > 1 &&
-          !scene.domain.depth) {
+      if (shape.well && shape.well->distance >= least_gap && !wall && !self && scene.cells.size() > 1) {
         const scene::Interaction& interaction = scene.interactions[i];
         const double depth = depth_over_bending(plan, interaction, shape.well->depth, setting);
         const std::string type = in_quotes(scene.cell_types[interaction.between[0]].name);
         if (depth > 0) {
           add("depth of " + named + " over bending modulus / radius^2, without a repulsion within membranes", depth,
-              deepest_well_of_bare_faces, true,
+              scene.domain.depth ? deepest_well_of_bare_surfaces : deepest_well_of_bare_faces, true,
               "cells that come to rest may be squeezed until their own faces touch; add an interaction between [" +
                   type +
                   ", \"self\"], such as \"repulsion\" with about three times the well's depth and a cutoff below the cells' "
@@ -545,12 +557,17 @@ std::vector<Limit> find_limits(const Plan& plan) {
       shortest = std::min(shortest, segment);
       longest = std::max(longest, segment);
     }
-    if (const double gap = gap_to_tube(scene); std::isfinite(gap)) {
-      add("gap between cells, as placed, and the wall of the tube in lattice spacings", gap, least_gap_to_tube, false,
-          "raise the resolution, or move cells towards the axis: nearer than that they move too fast, on the wall by a third "
-          "of a spacing times the shear rate",
-          resolution);
-    }
+    const StartGaps gaps = start_gaps(scene);
+    add("gap between cells, as placed, in lattice spacings", gaps.cells, least_gap_at_start, false,
+        "move them apart, or raise the resolution: nearer than that the lattice moves two membranes together, and what "
+        "acts between them throws them apart or never parts them");
+    add("gap between cells, as placed, and a wall in lattice spacings", gaps.walls, least_gap_at_start, false,
+        "move cells away from the wall, or raise the resolution: nearer than that the lattice holds them to it");
+    add("gap between cells, as placed, and the wall of the tube in lattice spacings", gaps.tube, least_gap_to_tube,
+        false,
+        "raise the resolution, or move cells towards the axis: nearer than that they move too fast, on the wall by a "
+        "third of a spacing times the shear rate",
+        resolution);
     add("cell radius in lattice spacings", shape::smallest_radius(scene) / stage.units.length,
         least_radii(scene, membrane_coupling(scene.numerics)).run, false,
         "raise the resolution; results are converged from about 20", resolution);

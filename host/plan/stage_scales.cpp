@@ -9,7 +9,6 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "core/fluid/relaxation.hpp"
-#include "scene/driving_flow.hpp"
 
 namespace rouleau::plan {
 
@@ -67,10 +66,10 @@ StageSetting make_stage_setting(const scene::Scene& scene, int index) {
   const double mean = setting.units.to_lattice(stage.mean_wall_speed, units::dimension::velocity);
   const double apart = setting.shear_rate * scene.domain.nodes[1] / 2;
   setting.walls = {-(apart - mean), apart + mean};
-  const Eigen::Vector2d force = scene::driving_force(stage, scene);
+  const Eigen::Vector3d force = scene::driving_force(stage, scene);
   setting.body_force_x = setting.units.to_lattice(force.x(), units::dimension::force_density);
   setting.body_force_y = setting.units.to_lattice(force.y(), units::dimension::force_density);
-  setting.body_force_z = setting.units.to_lattice(scene.fluid.body_force_z, units::dimension::force_density);
+  setting.body_force_z = setting.units.to_lattice(force.z(), units::dimension::force_density);
   setting.dimension = scene.domain.dimension();
 
   if (stage.oscillates()) {

@@ -6,6 +6,7 @@
 
 #include "core/fluid/oscillation.hpp"
 #include "plugin/model.hpp"
+#include "scene/driving_flow.hpp"
 #include "scene/scene.hpp"
 #include "units/lattice_units.hpp"
 
@@ -37,6 +38,10 @@ struct StageSetting {
   }
   [[nodiscard]] double largest_body_force_x() const {
     return std::abs(body_force_x) + std::abs(oscillation.body_force_x);
+  }
+  /// Largest force that drives a flow, along any axis: what no wall takes; lattice.
+  [[nodiscard]] double largest_drive(const scene::Domain& domain) const {
+    return scene::driving_part({largest_body_force_x(), body_force_y, body_force_z}, domain);
   }
   /// Strain after so many steps of the stage: the shear rate's magnitude, over time.
   [[nodiscard]] double strain_after(long steps) const;

@@ -48,31 +48,48 @@ ViscosityRange viscosity_range(const FluidProperties& fluid) {
   return range;
 }
 
-Eigen::Vector2d driving_force(const Stage& stage, const Scene& scene) {
+Eigen::Vector3d driving_force(const Stage& stage, const Scene& scene) {
+  const Eigen::Vector2d& body = scene.fluid.body_force;
+  double along_x = body.x() + stage.pressure_gradient.x();
   if (stage.mean_velocity && scene.domain.tube_radius) {
     const double radius = *scene.domain.tube_radius;
-    return {8 * scene.fluid.viscosity * *stage.mean_velocity / (radius * radius), scene.fluid.body_force.y()};
-  }
-  if (stage.mean_velocity) {
+    along_x = 8 * scene.fluid.viscosity * *stage.mean_velocity / (radius * radius);
+  } else if (stage.mean_velocity) {
     const double height = scene.domain.size.y();
-    return {12 * channel_viscosity(scene) * *stage.mean_velocity / (height * height * duct_share(scene.domain)),
-            scene.fluid.body_force.y()};
+    along_x = 12 * channel_viscosity(scene) * *stage.mean_velocity / (height * height * duct_share(scene.domain));
   }
-  return scene.fluid.body_force + stage.pressure_gradient;
+  return {along_x, body.y() + stage.pressure_gradient.y(), scene.fluid.body_force_z};
+}
+
+bool has_walls(const Domain& domain) { return !domain.periodic_y || domain.is_duct(); }
+
+double wall_distance(const Domain& domain) {
+  return domain.periodic_y && domain.is_duct() ? domain.depth->size : domain.height();
+}
+
+Eigen::Vector3d unheld(Eigen::Vector3d force, const Domain& domain) {
+  if (!domain.periodic_y) force.y() = 0;
+  if (domain.is_duct()) force.z() = 0;
+  return force;
+}
+
+double driving_part(const Eigen::Vector3d& force, const Domain& domain) {
+  const Eigen::Vector3d drive = unheld(force, domain);
+  return std::hypot(drive.x(), drive.y(), drive.z());
 }
 
 namespace {
 
 /// Of a steady flow.
-double mean_rate(double shear_rate, double force, const Scene& scene) {
+double mean_rate(double shear_rate, const Eigen::Vector3d& force, const Scene& scene) {
   if (shear_rate != 0) return std::abs(shear_rate);
-  if (scene.domain.periodic_y) return 0;
-  const double height = scene.domain.height(), round = scene.domain.tube_radius ? 2 : 1;
-  return std::abs(force) * height / (4 * round * channel_viscosity(scene));
+  if (!has_walls(scene.domain)) return 0;
+  const double height = wall_distance(scene.domain), round = scene.domain.tube_radius ? 2 : 1;
+  return driving_part(force, scene.domain) * height / (4 * round * channel_viscosity(scene));
 }
 
 double steady_rate(const Stage& stage, const Scene& scene) {
-  return mean_rate(stage.shear_rate, driving_force(stage, scene).x(), scene);
+  return mean_rate(stage.shear_rate, driving_force(stage, scene), scene);
 }
 
 }  // namespace
@@ -80,19 +97,19 @@ double steady_rate(const Stage& stage, const Scene& scene) {
 double mean_shear_rate(const Stage& stage, const Scene& scene) {
   const double steady = steady_rate(stage, scene);
   if (!stage.oscillates()) return steady;
-  return steady + mean_rate(stage.oscillation.shear_rate, stage.oscillation.pressure_gradient, scene);
+  return steady + mean_rate(stage.oscillation.shear_rate, {stage.oscillation.pressure_gradient, 0, 0}, scene);
 }
 
 double start_up_strain(const Stage& stage, const Scene& scene) {
-  if (stage.start == WallStart::developed || scene.domain.periodic_y) return 0;
-  const double height = scene.domain.height(), nu = viscosity_range(scene.fluid).least / scene.fluid.density;
+  if (stage.start == WallStart::developed || !has_walls(scene.domain)) return 0;
+  const double height = wall_distance(scene.domain), nu = viscosity_range(scene.fluid).least / scene.fluid.density;
   const double slower = stage.shear_rate != 0 || scene.domain.tube_radius ? 24 : 10;
   return steady_rate(stage, scene) * height * height / nu / slower;
 }
 
 double oscillation_delay(const Stage& stage, const Scene& scene) {
-  if (!stage.oscillates() || scene.domain.periodic_y) return 0;
-  const double half = scene.domain.height() / 2, nu = viscosity_range(scene.fluid).least / scene.fluid.density;
+  if (!stage.oscillates() || !has_walls(scene.domain)) return 0;
+  const double half = wall_distance(scene.domain) / 2, nu = viscosity_range(scene.fluid).least / scene.fluid.density;
   const double womersley_square = 2 * std::numbers::pi * stage.oscillation.frequency * half * half / nu;
   if (stage.oscillation.mean_wall_speed != 0) return womersley_square / 2;
   return womersley_square * (stage.oscillation.shear_rate != 0 || scene.domain.tube_radius ? 1.0 / 6 : 0.4);

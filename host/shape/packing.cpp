@@ -71,14 +71,14 @@ class Packer {
     bodies_.resize(cells.size());
   }
 
-  std::optional<PackingShortfall> pack() {
+  std::optional<PackingShortfall> pack(const PackingWatch& watch) {
     for (std::size_t i = 0; i < cells_.size(); ++i) {
       if (owner_[i] == obstacle) set_obstacle(i);
     }
     for (std::size_t i = 0; i < cells_.size(); ++i) {
       if (owner_[i] != obstacle && !insert(i)) return shortfall(i);
     }
-    if (const auto stuck = grow()) return shortfall(*stuck);
+    if (const auto stuck = grow(watch)) return shortfall(*stuck);
     for (std::size_t i = 0; i < cells_.size(); ++i) {
       if (owner_[i] == obstacle) continue;
       cells_[i].center = {bodies_[i].center[0] * unit_, bodies_[i].center[1] * unit_};
@@ -143,11 +143,12 @@ class Packer {
   }
 
   /// Moves and lets grow until every cell has its size; else a cell that has not.
-  std::optional<std::size_t> grow() {
+  std::optional<std::size_t> grow(const PackingWatch& watch) {
     int sweeps = 0;
     double last = grown();
     while (smallest() < 1) {
       sweep();
+      if (watch) watch(grown() / wanted());
       if (++sweeps % patience != 0) continue;
       const double now = grown();
       if (now - last < least_progress * (wanted() - last) || sweeps >= most_sweeps) return smallest_cell();
@@ -313,13 +314,13 @@ double hematocrit_of(const scene::RandomPacking& packing, const scene::CellType&
 
 std::optional<PackingShortfall> pack(const scene::Domain& domain, const std::vector<scene::CellType>& types,
                                      const std::vector<scene::RandomPacking>& packings,
-                                     std::vector<scene::CellPlacement>& cells) {
+                                     std::vector<scene::CellPlacement>& cells, const PackingWatch& watch) {
   if (packings.empty()) return std::nullopt;
   // Of the types that have cells: one that has none may be so large that rounding would deform the others.
   double unit = 0;
   for (const scene::CellPlacement& cell : cells) unit = std::max(unit, shape_radius(types[cell.type].shape));
-  if (domain.depth) return Packer<RigidSurface>(domain, types, packings, cells, unit).pack();
-  return Packer<RigidOutline>(domain, types, packings, cells, unit).pack();
+  if (domain.depth) return Packer<RigidSurface>(domain, types, packings, cells, unit).pack(watch);
+  return Packer<RigidOutline>(domain, types, packings, cells, unit).pack(watch);
 }
 
 }  // namespace rouleau::shape

@@ -1,6 +1,7 @@
 // Places rigid cells at random without overlap: the `random` form of a scene's cells.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -13,6 +14,9 @@ struct PackingShortfall {
   std::size_t packing;  ///< index: the first whose cells found no room
   double hematocrit;    ///< of its region, by those of its cells and parts of cells that found room
 };
+
+/// Told now and then, while cells are packed: what share of what all of them shall enclose has found room.
+using PackingWatch = std::function<void(double share)>;
 
 /// Cells of this type that fill a share `hematocrit` of the packing's region, to the nearest whole number; of cells
 /// that are tiny in a large region more than any integer holds.
@@ -38,6 +42,6 @@ double hematocrit_of(const scene::RandomPacking& packing, const scene::CellType&
 /// 2 pi / 2^20, and effort is counted in sweeps, not in seconds.
 std::optional<PackingShortfall> pack(const scene::Domain& domain, const std::vector<scene::CellType>& types,
                                      const std::vector<scene::RandomPacking>& packings,
-                                     std::vector<scene::CellPlacement>& cells);
+                                     std::vector<scene::CellPlacement>& cells, const PackingWatch& watch = {});
 
 }  // namespace rouleau::shape

@@ -4,7 +4,6 @@
 
 #include "base/text.hpp"
 #include "outline.hpp"
-#include "packing.hpp"
 #include "scene/scene_reader.hpp"
 
 namespace rouleau::shape {
@@ -65,13 +64,19 @@ void add_random_cells(scene::Scene& scene) {
     fields.require_room(scene.cells.size(), static_cast<std::size_t>(packing.count), packing.pointer + "/random");
     packing.first += added;
     added += packing.count;
-    scene.cells.insert(scene.cells.begin() + packing.first, static_cast<std::size_t>(packing.count),
-                       {packing.type, Eigen::Vector2d::Zero(), 0, packing.pointer});
+    const Eigen::Vector2d middle = (packing.lower + packing.upper) / 2;
+    const auto first = scene.cells.insert(scene.cells.begin() + packing.first, static_cast<std::size_t>(packing.count),
+                                          {packing.type, middle, 0, packing.pointer});
+    // Until they are placed they stand for any cells of their region: at all heights of it.
+    for (int i = 0; i < packing.count; ++i) {
+      first[i].center.y() = packing.lower.y() + (i + 0.5) / packing.count * (packing.upper.y() - packing.lower.y());
+      first[i].z = (packing.lower_z + packing.upper_z) / 2;
+    }
   }
   scene::check_membrane_nodes(scene);
 }
 
-void pack_cells(scene::Scene& scene) {
+void pack_cells(scene::Scene& scene, const PackingWatch& watch) {
   if (scene.packings.empty()) return;
   const double across = scene.domain.diagonal();
   for (const scene::CellPlacement& cell : scene.cells) {
@@ -82,7 +87,7 @@ void pack_cells(scene::Scene& scene) {
                                   " um long, but the domain is " + number(across * 1e6) +
                                   " um from corner to corner\ntake a smaller cell or a larger domain");
   }
-  const auto shortfall = pack(scene.domain, scene.cell_types, scene.packings, scene.cells);
+  const auto shortfall = pack(scene.domain, scene.cell_types, scene.packings, scene.cells, watch);
   if (!shortfall) return;
   const scene::RandomPacking& packing = scene.packings[shortfall->packing];
   scene::SceneFields(*scene.document)

@@ -347,7 +347,18 @@ class Commands_do_what_they_say(Case):
         plan = self.rouleau.run("plan", SCENE, *large, "--ranks", 4)
         self.assertEqual(plan.returncode, 0, plan.stderr)
         self.assertIn("2147483648 nodes and one rank can compute 1073741824; start the run on 2 ranks or more", plan.stdout)
-        self.assert_stops(self.rouleau.run("run", SCENE, *large, "--out", self.path / "none"), 2, "at least 2")
+        # What a run would be refused for the plan is, too, once it has been printed.
+        for command in ("run", "plan"):
+            self.assert_stops(self.rouleau.run(command, SCENE, *large, *(["--out", self.path / "none"] if command == "run" else [])), 2, "at least 2")
+        self.assertIn("Dimensionless numbers", self.rouleau.run("plan", SCENE, *large).stdout)
+        refused = json.loads(self.rouleau.run("plan", SCENE, *large, "--json").stdout)
+        self.assertGreater(refused["estimate"]["memory_bytes"], 1e11)
+        self.assert_stops(self.rouleau.run("plan", SCENE, *large, "--ranks", 1), 2, "at least 2")
+        # As many nodes as one rank can compute, and more than there is memory for.
+        full = ["--set", "/domain/nodes=[32768, 32768]", "--set", '/domain/size=["6422.528 um", "6422.528 um"]', "--set", "/output={}"]
+        plenty = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") > 9e10
+        for command in () if plenty else ("run", "plan"):
+            self.assert_stops(self.rouleau.run(command, SCENE, *full, *(["--out", self.path / "none"] if command == "run" else [])), 4, "of memory, and there are")
         self.assertFalse((self.path / "none").exists())
 
     def test_conversions_and_limits_say_whose_they_are(self):
@@ -414,7 +425,7 @@ class Commands_do_what_they_say(Case):
         scene = self.scene(domain={"size": ["50.176 um", "25.088 um"], "nodes": [256, 128], "y": "periodic"},
                            stages=[{"name": "fall", "duration": "10 us", "pressure_gradient": "3 kPa/m"}],
                            output={})
-        words = ("stage fall", "periodic along x and y", "0.001 m/s every second", "domain.y")
+        words = ("stage fall", "periodic along x and y", "gains 3 m/s every second", "3000 times as dense (numerics.density_factor), is 0.001 m/s", "domain.y")
         plan = json.loads(self.rouleau.run("plan", scene, "--json").stdout)
         self.assertTrue(all(word in plan["warnings"][0] for word in words), plan["warnings"])
         self.assertIsNone(plan["dimensionless"]["reynolds_physical"])

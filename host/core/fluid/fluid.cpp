@@ -611,6 +611,13 @@ void Fluid<T, Set>::set_state(const StateOfNode& state) {
 }
 
 template <class T, class Set>
+void Fluid<T, Set>::set_rest() {
+  if (!driven()) return;
+  set_profile([](double) { return 0.0; }, [](double) { return 0.0; });
+  walls_have_acted_ = false;
+}
+
+template <class T, class Set>
 void Fluid<T, Set>::set_profile(const std::function<double(double)>& velocity,
                                 const std::function<double(double)>& shear_rate) {
   const auto at = [&](int y) {
@@ -630,6 +637,8 @@ template <class T, class Set>
 void Fluid<T, Set>::take_over(Fluid& other, double factor) {
   other.settle();
   parity_ = Parity::even;
+  std::array<double, dimension> half;  // that the velocity has of the forces, before and now
+  for (int k = 0; k < dimension; ++k) half[k] = (factor * other.setting_.body_force[k] - setting_.body_force[k]) / 2;
   for (int i = 0; i < lattice_.rows(); ++i) {
     const Row row = lattice_.row(i);
     const T* in[velocity_count];
@@ -643,7 +652,7 @@ void Fluid<T, Set>::take_over(Fluid& other, double factor) {
           density += f;
           for (int k = 0; k < dimension; ++k) momentum[k] += Set::velocity[q][k] * f;
         }
-        for (int k = 0; k < dimension; ++k) scaled[k] = factor * momentum[k];
+        for (int k = 0; k < dimension; ++k) scaled[k] = factor * momentum[k] + half[k];
         for (int q = 0; q < velocity_count; ++q) {
           const double rest = static_cast<double>(in[q][x]) - other.equilibrium(q, density, momentum);
           lattice_.slot(q, row)[x] = static_cast<T>(equilibrium(q, factor * density, scaled) + factor * rest);

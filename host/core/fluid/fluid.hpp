@@ -83,9 +83,12 @@ class Fluid {
   using StateOfNode =
       std::conditional_t<dimension == 2, std::function<State(int x, int y)>, std::function<State(int x, int y, int z)>>;
   void set_state(const StateOfNode& state);
+  /// Everything at rest, under the body force, half of which is still to act (Moments::velocity). Where there is none
+  /// this is the state that a fluid is made in.
+  void set_rest();
   /// Takes over another fluid's state with velocities and density deviation times `factor`: what a stage with another
   /// time step does. Without inertia this scales every population; with it, equilibrium and the rest scale each by its
-  /// rule.
+  /// rule. Where the body force changes the velocity does not, and the half of it that populations lack does.
   void take_over(Fluid& other, double factor);
 
   /// Without inertia: the unsteady term is du/dt as seen from a frame that moves at this velocity (moving_frame.hpp). Of

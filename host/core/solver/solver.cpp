@@ -222,6 +222,8 @@ void Solver<T, Set>::start(Solver* former) {
       cell_tasks_->follow({faster * u, faster * v, faster * w});
     }
     fluid_.take_over(former->fluid_, faster);
+  } else {
+    fluid_.set_rest();
   }
   for (const int c : cells_.known_cells()) {
     const CellRange& cell = cells_.cells[c];

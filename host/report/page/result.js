@@ -12,9 +12,9 @@ function whenOf(run, position) {
 function meanOf(summary, name) {
   const stage = (summary.rheology || []).findLast(s => typeof s.means?.[name]?.mean === "number");
   if (!stage) return null;
-  const {mean, deviation} = stage.means[name], bar = summary.error_bars?.[name];
-  return typeof bar?.error === "number" ? {value: bar.value ?? mean, error: bar.error, about: `mean of the stage's second half, ± its measured error`}
-    : {value: mean, error: null, spread: deviation, about: `mean of the second half of stage ${stage.stage}; standard deviation ${format(deviation, 2)}`};
+  const {mean, deviation, trend} = stage.means[name], bar = summary.error_bars?.[name], changes = trend ? `, still ${trend} there` : "";
+  return typeof bar?.error === "number" ? {value: bar.value ?? mean, error: bar.error, about: `mean of the stage's second half, ± its measured error${changes}`}
+    : {value: mean, error: null, spread: deviation, about: `mean of the second half of stage ${stage.stage}; standard deviation ${format(deviation, 2)}${changes}`};
 }
 
 /// A value with as many digits as its error, rounded up as the terminal does, has a meaning for: "0.347 ± 0.005"; without an error as many as its spread has.

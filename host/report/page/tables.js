@@ -101,10 +101,11 @@ function showHistory(summary) {
     {title: "Members", value: r => (r.members || []).map(m => m.join("+")).join(" | ")}, {title: "Connected across the periodic boundary", value: r => r.through_image ? "yes" : "no"}], history.slice(0, 200), {stacked: true})),
     ...(history.length > 200 ? [note(`The first 200 of ${history.length} changes; summary.json has all.`)] : []));
   const means = [...(summary.rheology || [])].reverse().flatMap(stage => Object.entries(stage.means || {}).filter(([, v]) => v && typeof v === "object" && typeof v.mean === "number")
-    .map(([name, {mean, deviation}]) => name.endsWith("_m") ? {name: name.replace(/_m$/, "_um"), mean: 1e6 * mean, deviation: 1e6 * deviation} : {name, mean, deviation})
+    .map(([name, {mean, deviation, trend}]) => name.endsWith("_m") ? {name: name.replace(/_m$/, "_um"), mean: 1e6 * mean, deviation: 1e6 * deviation, trend} : {name, mean, deviation, trend})
     .map(row => ({...row, stage: stage.stage, mean: format(row.mean), deviation: format(row.deviation, 2)})));
-  if (means.length) section("Means", table([{title: "Quantity", value: r => spelled(r.name)}, {title: "Stage", key: "stage"}, {title: "Mean", key: "mean", number: true}, {title: "Standard deviation", key: "deviation", number: true}], means, {stacked: true}),
-    note("Means in time over the second half of each stage, standard deviations of its outputs."));
+  if (means.length) section("Means", table([{title: "Quantity", value: r => spelled(r.name)}, {title: "Stage", key: "stage"}, {title: "Mean", key: "mean", number: true}, {title: "Standard deviation", key: "deviation", number: true},
+    ...(means.some(r => r.trend) ? [{title: "Trend", value: r => r.trend ? `still ${r.trend}` : ""}] : [])], means, {stacked: true}),
+    note("Means in time over the second half of each stage, standard deviations of its outputs. What still rises or falls there is not steady."));
 }
 
 function showProvenance(run) {

@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <numeric>
 
@@ -101,6 +102,29 @@ TEST_CASE("means in time do not depend on where outputs fall, nor on one that is
   CHECK(mean_of({0, 1, 2}, 1.5)["mean"] == 1.0);
   CHECK(mean_of({0, 1, 2}, 1.5)["deviation"].is_null());
   CHECK(mean_of({0, 1, 2}, 5).is_null());
+}
+
+TEST_CASE("a mean of what still rises or falls says so, and one of what goes up and down does not") {
+  const auto trend = [](const std::function<double(double)>& value, int outputs = 41) {
+    RheologyHistory history;
+    for (int k = 0; k < outputs; ++k) {
+      const double time = 2.0 * k / (outputs - 1);
+      Snapshot s = at(0, time, time, {0});
+      s.relative_viscosity = value(time - 1);  // 0 to 1 in the second half
+      history.follow(s);
+    }
+    return history.stages()[0]["means"]["relative_viscosity"]["trend"];
+  };
+  const auto wave = [](double t, double periods) { return std::sin(2 * std::numbers::pi * periods * t); };
+  CHECK(trend([](double t) { return 2.2 + 0.3 * t; }) == "rising");
+  CHECK(trend([](double t) { return 2.2 - 0.3 * t; }) == "falling");
+  CHECK(trend([&](double t) { return 2.2 + 0.3 * t + 0.05 * wave(t, 3); }) == "rising");
+  CHECK(trend([](double t) { return 2 - std::exp(-2 * t); }) == "rising");
+  CHECK(trend([](double) { return 2.2; }).is_null());
+  CHECK(trend([](double t) { return 2.2 + 0.01 * t; }).is_null());  // half a percent
+  for (const double periods : {1.0, 1.5, 2.0, 5.0})
+    CHECK(trend([&](double t) { return 2.2 + wave(t, periods); }).is_null());
+  CHECK(trend([](double t) { return 2.2 + 0.3 * t; }, 5).is_null());  // three outputs
 }
 
 TEST_CASE("rates of tank treading and tumbling are those of the last whole turns of the outline") {

@@ -476,3 +476,52 @@ TEST_CASE("without a lattice that fits three sides auto says what to write, and 
                                   !Contains("sphere"));
   }
 }
+
+TEST_CASE("cells at random in a tube are no reason to refuse numerics that are left open") {
+  const std::string tube = std::string(ROULEAU_SCENES) + "/../tests/physics/scenes/auto-capsule-3d.json";
+  const std::vector<std::string> changes{
+      R"(/domain={"size": ["20 um", "10 um", "10 um"], "walls": {"tube": {"axis": "x", "radius": "5 um"}}})",
+      R"(/cells=[{"type": "capsule", "random": {"count": 3, "seed": 1}}])",
+      R"(/stages=[{"name": "flow", "duration": "1 ms", "mean_velocity": "1 mm/s", "start": "developed"}])",
+      "/output={}",
+      R"(/cell_types/capsule/shape={"sphere": {"radius": "2 um"}})",
+      R"(/numerics={"auto": {"error": 0.1}})"};
+  const auto [scene, choice] = read_within_limits(tube, changes, shipped_plugins);
+  REQUIRE(choice);
+  CHECK(scene.cells.size() == 3);
+  // Cells at all heights meet the flow's different speeds before they are placed as after it.
+  const Catalog catalog = shipped_plugins(scene);
+  for (const Limit& limit : find_limits(make_plan(scene, catalog, choice))) {
+    INFO(limit.name);
+    if (limit.remedied_by == RemediedBy::density_factor) CHECK(limit.margin > 0.5);
+  }
+}
+
+TEST_CASE("with convective inertia nothing of a denser fluid dies out on the way to a steady state") {
+  const std::string steady = R"(/numerics={"auto": {"error": 0.02, "of": "steady"}})";
+  const auto [without, of_linear] = chosen({steady});
+  const auto [scene, choice] = chosen({steady, "/fluid/inertia=true"});
+  const double reynolds = 1e3 * 20 * 4e-6 * 4e-6 / 1.2e-3 * scene.numerics.density_factor;
+  CHECK(choice->expected.inertia > 0.995 * 0.024 * reynolds);
+  CHECK(scene.numerics.density_factor < without.numerics.density_factor / 1.5);
+}
+
+TEST_CASE("what is next to nothing of an error is nothing") {
+  const auto [scene, choice] =
+      chosen({R"(/numerics={"auto": {"error": 0.02, "of": "steady"}})", "/stages/0/strain=4000"});
+  CHECK((choice->expected.inertia == 0 || choice->expected.inertia >= 1e-6));
+}
+
+TEST_CASE(
+    "where a pin leaves no room for the target no lattice is taken that is much finer than what is left deserves") {
+  // At this factor the fluid's inertia alone is 4.8 % of a motion.
+  const std::string motion = R"(/numerics={"auto": {"error": 0.01}, "density_factor": 7500})";
+  const auto [scene, choice] = chosen({motion});
+  REQUIRE(choice);
+  CHECK_THAT(choice->doubt, Contains("more than the target of 1 %") && Contains("numerics.density_factor"));
+  const double pinned = choice->expected.total() - choice->expected.resolution;
+  CHECK(pinned > 0.045);
+  CHECK(choice->expected.resolution < 0.1 * choice->expected.total());
+  CHECK(choice->expected.resolution > 0.02 * choice->expected.total());
+  CHECK(4e-6 / scene.domain.size.x() * scene.domain.nodes[0] < 30);  // spacings a radius, of at most 80
+}

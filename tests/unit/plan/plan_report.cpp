@@ -240,3 +240,41 @@ TEST_CASE("strain of an oscillating stage is the integral of the shear rate's ma
     sum += std::abs(base + amplitude * std::sin(2 * std::numbers::pi * (static_cast<double>(step) + 0.5) / 1000));
   }
 }
+
+TEST_CASE("the viscosity ratio of a plan is the one furthest from 1") {
+  const auto ratio = [](const std::string& inside) {
+    const scene::Scene scene = read_scene(std::string(ROULEAU_SCENES) + "/red-cell-3d.json",
+                                          {"/cell_types/rbc/interior_viscosity=\"" + inside + " cP\""});
+    return make_report(make_plan(scene, plugins_of_reports())).dimensionless.at("viscosity_ratio");
+  };
+  CHECK(ratio("0.024") == Approx(0.02));
+  CHECK(ratio("0.6") == Approx(0.5));
+  CHECK(ratio("60") == Approx(50));
+}
+
+TEST_CASE("a gap below the distance at which cells come to rest counts no contact, and is warned of") {
+  const std::string begin = "morse between rbc and rbc: cells come to rest";
+  CHECK(warns("doublet-3d.json", {"/output/aggregate_gap=\"0.2 um\""}, begin));
+  CHECK(warns("four-cells-shear.json", {"/output/aggregate_gap=\"0.4 um\""}, begin));
+  CHECK_FALSE(warns("four-cells-shear.json", {"/output/aggregate_gap=\"0.5 um\""}, begin));
+  CHECK_FALSE(warns("four-cells-shear.json", {"/output/aggregate_gap=\"0.4 um\"", "/cells/0/row/count=1"}, begin));
+}
+
+TEST_CASE("a plan says what walls and images add, and that a run takes hours") {
+  const auto report = [](const std::vector<std::string>& changes) {
+    const scene::Scene scene = read_scene(std::string(ROULEAU_SCENES) + "/capsule-3d.json", changes);
+    return make_report(make_plan(scene, plugins_of_reports()));
+  };
+  const PlanReport shipped = report({});
+  REQUIRE(shipped.box_share);
+  // Measured: +1.2 % of D at 8 radii, +0.6 % at 10 (docs/three-dimensions.md).
+  CHECK(shipped.box_share->deformation == Approx(0.012 * std::pow(8 / shipped.box_share->radii, 3)));
+  const std::string rest = R"(/stages=[{"name": "rest", "duration": "1 ms"}])";
+  CHECK_FALSE(report({rest, "/output={}"}).box_share);
+  const auto hours = [](const PlanReport& of) {
+    return std::any_of(of.warnings.begin(), of.warnings.end(),
+                       [](const std::string& warning) { return warning.starts_with("the run takes about"); });
+  };
+  CHECK_FALSE(hours(shipped));
+  CHECK(hours(report({"/stages/0/strain=1e5"})));
+}

@@ -196,3 +196,88 @@ TEST_CASE("plan knows over what length the slip of stiff membranes is smoothed, 
   CHECK_FALSE(smoothing(20, {"/numerics/slip_correction=false"}));
   CHECK_FALSE(smoothing(20, {R"(/cell_types/rbc/shape={"circle": {"radius": "3.91 um"}})"}));
 }
+
+namespace {
+
+std::optional<Limit> limit_named(const std::string& scene_name, const std::vector<std::string>& changes,
+                                 const std::string& begin) {
+  static const Catalog catalog({ROULEAU_PLUGINS});
+  const Scene scene = read_scene(std::string(ROULEAU_SCENES) + "/" + scene_name, changes);
+  for (const Limit& limit : find_limits(make_plan(scene, catalog)))
+    if (limit.name.starts_with(begin)) return limit;
+  return {};
+}
+const std::string between_cells = "gap between cells, as placed, in",
+                  to_a_wall = "gap between cells, as placed, and a wall";
+
+}  // namespace
+
+TEST_CASE("cells that are placed nearer than a spacing to each other or to a wall are warned of, in both dimensions") {
+  struct Case {
+    std::string scene, shape, place, second;
+    double spacing, height;
+  };
+  const std::vector<Case> cases{{"four-cells-shear.json", R"({"circle": {"radius": "3 um"}})", R"(["20 um", "12 um"])",
+                                 R"(["26.02 um", "12 um"])", 0.196, 25.088},
+                                {"red-cell-3d.json", R"({"sphere": {"radius": "3 um"}})", R"(["6 um", "8 um", "8 um"])",
+                                 R"(["12.02 um", "8 um", "8 um"])", 1.0 / 3, 20}};
+  for (const Case& c : cases) {
+    INFO(c.scene);
+    const auto find = [&](const std::string& cells, const std::string& begin) {
+      return limit_named(c.scene, {"/cell_types/rbc/shape=" + c.shape, "/cells=[" + cells + "]", "/interactions=[]"},
+                         begin);
+    };
+    const auto cell = [](const std::string& place) { return R"({"type": "rbc", "at": )" + place + "}"; };
+    const auto close = find(cell(c.place) + ", " + cell(c.second), between_cells);
+    REQUIRE(close);
+    // Nodes lie on the circles, so that polygons are a little further apart.
+    CHECK(close->value == Approx(0.02 / c.spacing).margin(0.1));
+    CHECK(close->margin < 1);
+    CHECK_FALSE(find(cell(c.place), between_cells));
+    CHECK_FALSE(find(cell(c.place), to_a_wall));
+    std::string low = c.place;
+    low.replace(low.find(c.scene == "red-cell-3d.json" ? "\"8 um\"" : "12 um\""), c.scene == "red-cell-3d.json" ? 6 : 6,
+                c.scene == "red-cell-3d.json" ? "\"3.1 um\"" : "3.06 um\"");
+    const auto wall = find(cell(low), to_a_wall);
+    REQUIRE(wall);
+    CHECK(wall->value == Approx((c.scene == "red-cell-3d.json" ? 0.1 : 0.06) / c.spacing).margin(0.05));
+    CHECK(wall->margin < 1);
+    CHECK(wall->remedied_by == RemediedBy::nothing);  // no lattice is made finer for it
+  }
+}
+
+TEST_CASE("cells at random keep the gap that was asked for, and are as near as that") {
+  const std::string random = R"(/cells=[{"type": "rbc", "random": {"count": 2, "seed": 1, "gap": "0.1 um"}}])";
+  const auto gap = limit_named("red-cell-3d.json", {random}, between_cells);
+  REQUIRE(gap);
+  CHECK(gap->value == Approx(0.3));
+}
+
+TEST_CASE("wells deeper than were tried are told in three dimensions, too") {
+  const auto depth = [](const std::vector<std::string>& changes) {
+    return limit_named("doublet-3d.json", changes, "depth of morse");
+  };
+  const auto deep = depth({"/interactions/0/parameters/depth=\"1e-5 J/m2\""});
+  REQUIRE(deep);
+  CHECK(deep->value == Approx(1e-5 * 3.91e-6 * 3.91e-6 / 3.6e-19).epsilon(0.06));  // its cutoff takes some
+  CHECK(deep->margin < 1);
+  CHECK(depth({})->margin > 1);  // whose faces stay apart
+  CHECK_FALSE(depth({"/interactions/0/parameters/depth=\"1e-5 J/m2\"",
+                     R"(/interactions/-={"between": ["rbc", "self"], "model": "repulsion",
+                         "parameters": {"strength": "3e-5 J/m2", "cutoff": "0.8 um"}})"}));
+}
+
+TEST_CASE("a fluid alone is judged by its own start") {
+  const std::string alone = "/cells=[]", none = "/interactions=[]", factor = "/numerics/density_factor=1",
+                    output = "/output={}";
+  const auto flow = [](const std::string& duration) {
+    return R"(/stages=[{"name": "flow", "duration": ")" + duration + R"(", "pressure_gradient": "1e5 Pa/m"}])";
+  };
+  const std::string left = "what the start of the flow leaves in the relative viscosity";
+  // H^2/(pi^2 nu) is 53 us.
+  const auto early = limit_named("four-cells-shear.json", {alone, none, factor, output, flow("60 us")}, left);
+  REQUIRE(early);
+  CHECK(early->margin < 1);
+  CHECK_THAT(early->remedy, Catch::Matchers::Contains("more time"));
+  CHECK(limit_named("four-cells-shear.json", {alone, none, factor, output, flow("2 ms")}, left)->margin > 1);
+}

@@ -6,6 +6,8 @@
 #include "core/solver/barrier.hpp"
 #include "core/solver/solver.hpp"
 #include "plan/output_schedule.hpp"
+#include "plugin/catalog.hpp"
+#include "plugin/handles.hpp"
 
 using namespace rouleau::plan;
 using namespace rouleau::scene;
@@ -69,4 +71,58 @@ TEST_CASE("a solver refuses cells whose type it has no laws for, or no state of 
   CHECK_THROWS_WITH(Solver<double>(setup, cells), "a cell is of a type that the setup does not have");
   setup.cell_types.resize(2);
   CHECK_THROWS_WITH(Solver<double>(setup, cells), "every cell type needs a state of rest");
+}
+
+namespace {
+
+CollisionOperator trt(bool inertia) {
+  static const rouleau::plugin::Catalog catalog({ROULEAU_PLUGINS});
+  static const rouleau::plugin::Manifest& manifest = catalog.find(rouleau::plugin::ModelKind::collision, "trt", {});
+  return rouleau::plugin::make_collision_operator(manifest, {0.1875}, {{}, 1, inertia});
+}
+
+/// Velocity of every node before the next step; all are the same in a box without walls.
+template <int D, class Solver>
+std::array<double, D> velocity_of(Solver& solver) {
+  solver.fluid().settle();
+  const auto all = solver.fluid().all_moments();
+  for (const auto& node : all) {
+    for (int k = 0; k < D; ++k) CHECK(node.velocity[k] == Approx(all[0].velocity[k]).epsilon(1e-12).margin(1e-18));
+  }
+  return all[0].velocity;
+}
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("a driven fluid begins at rest, and has all of the force's momentum after each step", "", D2Q9,
+                   D3Q19) {
+  constexpr int D = TestType::dimension;
+  BasicSolverSetup<D> setup;
+  std::array<int, D> size;
+  std::array<bool, D> periodic;
+  size.fill(4), periodic.fill(true);
+  setup.domain = {size, periodic};
+  setup.inertia = GENERATE(false, true);
+  setup.collision = trt(setup.inertia);
+  setup.body_force_x = 1e-5, setup.body_force_y = -2e-5, setup.body_force_z = D == 3 ? 3e-5 : 0;
+  const std::array<double, 3> force{setup.body_force_x, setup.body_force_y, setup.body_force_z};
+  typename Solver<double, TestType>::Cells none;
+  Solver<double, TestType> solver(setup, none);
+  solver.start();
+  for (int step = 0; step < 4; ++step) {
+    const auto velocity = velocity_of<D>(solver);
+    for (int k = 0; k < D; ++k) CHECK(velocity[k] == Approx(step * force[k]).epsilon(1e-12).margin(1e-19));
+    solver.step(1);
+  }
+  // Another force goes on from the same velocity.
+  BasicSolverSetup<D> reversed = setup;
+  reversed.body_force_x *= -3, reversed.body_force_y = 0;
+  Solver<double, TestType> later(reversed, none);
+  later.start(&solver);
+  for (int step = 0; step < 3; ++step) {
+    const auto velocity = velocity_of<D>(later);
+    CHECK(velocity[0] == Approx((4 - 3 * step) * force[0]).epsilon(1e-12));
+    CHECK(velocity[1] == Approx(4 * force[1]).epsilon(1e-12));
+    later.step(1);
+  }
 }
