@@ -1,8 +1,10 @@
 #include "energy_check.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "node_checks.hpp"
+#include "plan/stability_limits.hpp"
 
 namespace rouleau::monitor {
 
@@ -23,9 +25,12 @@ std::optional<Failure> check_energy(const observe::EnergyHistory& energy, const 
   failure.limit = limit;
   failure.message =
       "cells and fluid at rest have gained energy (as a share of what there is), which they can only lose";
-  failure.remedy = "lower " + setting.stage->density_factor_key +
-                   ", or take numerics.coupling \"explicit\" within its limits (the plan has "
-                   "the margins), or raise checks.energy_growth if this error is acceptable";
+  failure.remedy = "lower " + setting.stage->density_factor_key;
+  if (plan::kernel_named(plan.scene->numerics.kernel).semi_implicit_from == INFINITY)
+    failure.remedy += ", or set numerics.kernel to \"peskin4\"";
+  else if (plan.semi_implicit)
+    failure.remedy += ", so far that numerics.coupling may be \"explicit\" (the plan has the margins)";
+  failure.remedy += ", or raise checks.energy_growth if this error is acceptable";
   const FoundNode fastest = farthest_node(cells, ranks);
   if (fastest.node >= 0) locate_failure<D>(failure, fastest, setting.units.length);
   return failure;

@@ -193,7 +193,8 @@ std::string mode_sentence(const monitor::Failure& failure) {
   return "";
 }
 
-std::string mode_remedy(const monitor::Failure& failure, bool semi_implicit, const scene::Stage& stage) {
+std::string mode_remedy(const monitor::Failure& failure, bool semi_implicit, const scene::Stage& stage,
+                        const std::string& against_attraction) {
   const FailureMode& mode = failure.mode;
   const std::string lower = "lower " + stage.density_factor_key;
   const std::string step = semi_implicit ? lower : lower + " or set numerics.coupling to \"semi-implicit\"";
@@ -209,8 +210,8 @@ std::string mode_remedy(const monitor::Failure& failure, bool semi_implicit, con
                                                     : "the membrane resists bending") +
            " too much for the time step: " + step;
   }
-  if (mode.name == "collapse") {
-    return lower + " or the attraction, raise the resolution, or stiffen bending";
+  if (mode.name == "collapse" && failure.reason != "mach") {
+    return against_attraction.empty() ? lower + ", raise the resolution, or stiffen bending" : against_attraction;
   }
   if (mode.name == "sound" && failure.reason != "mach") {
     return "raise numerics.tau, take the \"trt\" collision, or " + lower;

@@ -49,8 +49,9 @@ void find_mode(Failure& failure, const core::Membranes& membranes, const GrowthW
 void find_mode(Failure& failure, const core::Surfaces& surfaces, double oscillation);
 
 /// What the mode adds to the failure's message, and what to do about it first; empty where the mode says no more than
-/// the reason does.
+/// the reason does. `against_attraction`: attraction_remedy().
 std::string mode_sentence(const Failure& failure);
-std::string mode_remedy(const Failure& failure, bool semi_implicit, const scene::Stage& stage);
+std::string mode_remedy(const Failure& failure, bool semi_implicit, const scene::Stage& stage,
+                        const std::string& against_attraction = "");
 
 }  // namespace rouleau::monitor

@@ -2,9 +2,10 @@
 
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <variant>
 
+#include "base/text.hpp"
+#include "contact_remedy.hpp"
 #include "core/contact/crossing.hpp"
 #include "core/contact/surface_crossing.hpp"
 #include "core/membrane/geometry.hpp"
@@ -12,6 +13,8 @@
 #include "node_checks.hpp"
 #include "plan/solver_setup.hpp"
 #include "plan/stability_limits.hpp"
+#include "scene/driving_flow.hpp"
+#include "shape/extent.hpp"
 
 namespace rouleau::monitor {
 namespace {
@@ -29,16 +32,13 @@ Failure failure(std::string reason, std::array<double, 2> place, int cell, doubl
   return f;
 }
 
-/// What to do first about a cell that leaks, if its segments (mean length in spacings) are the reason.
-std::string leak_remedy(double segment) {
-  if (!(segment > plan::longest_segment)) return "";
-  std::array<char, 200> text{};
-  std::snprintf(
-      text.data(), text.size(),
-      "take more segments (this cell's are %.2g lattice spacings long, and fluid leaks between nodes that lie "
-      "more than %g apart; about one for each spacing is best), ",
-      segment, plan::longest_segment);
-  return text.data();
+/// What to do first about a cell that leaks, if its segments or edges (mean length in spacings) are the reason.
+std::string leak_remedy(double length, bool in_space) {
+  if (!(length > plan::longest_segment)) return "";
+  return std::string("take more ") + (in_space ? "triangles" : "segments") + " (this cell's " +
+         (in_space ? "edges are " : "are ") + number(length, 2) +
+         " lattice spacings long, and fluid leaks between nodes that lie more than " + number(plan::longest_segment) +
+         " apart; about one for each spacing is best), ";
 }
 
 /// Node with the first value that is no number, else the one with the largest speed; on all ranks.
@@ -101,12 +101,12 @@ std::optional<Failure> check_stretch(const core::Membranes& membranes, const sce
   return std::nullopt;
 }
 
-Failure crossing_failure(int cell, int other, bool inside, const scene::Stage& stage) {
+Failure crossing_failure(int cell, int other, bool inside, const plan::Plan& plan, const plan::StageSetting& stage) {
   return failure("crossing", {}, cell, 0, 0,
                  cell == other ? "the membrane of a cell crosses itself"
                                : "the membranes of cells " + std::to_string(cell) + " and " + std::to_string(other) +
                                      (inside ? " lie one inside the other" : " cross"),
-                 "lower " + stage.density_factor_key + " or the attraction, raise the resolution, or stiffen bending");
+                 crossing_remedy(plan, stage, cell, other));
 }
 
 /// The cell whose area, or volume, has changed most, or would have without the correction.
@@ -127,15 +127,29 @@ Drift largest_drift(observe::Observer& observer, const Cells& cells, const core:
 }
 
 /// What an area or a volume that drifts means, and what to do about it.
-Failure drift_failure(const char* measure, std::array<double, 2> place, const Drift& drift,
-                      const std::string& first_remedy, const plan::StageSetting& setting, const scene::Scene& scene) {
-  const std::string changed = std::string("changed its ") + measure + " by more than the limit";
+Failure drift_failure(const Drift& drift, const plan::Plan& plan, const plan::StageSetting& setting) {
+  const scene::Scene& scene = *plan.scene;
+  const bool in_space = scene.domain.depth.has_value();
+  const std::string measure = in_space ? "volume" : "area";
+  const double spacing = shape::node_spacing(scene.cell_types[scene.cells[drift.cell].type]);
+  const bool flows = scene::mean_shear_rate(*setting.stage, scene) > 0;
+  std::string remedy = attraction_remedy(plan, setting);
+  if (remedy.empty()) {
+    remedy = "raise the resolution";
+    const double rate = scene::mean_shear_rate(*setting.stage, scene) * setting.units.time;
+    if (plan::compression_by_shear(setting.tau, rate) > plan::largest_compression_by_shear)
+      remedy = "lower " + setting.stage->density_factor_key + ", or " + remedy;
+    if (!scene.numerics.area_correction) remedy = "set numerics.area_correction to true, or " + remedy;
+  }
   const std::string said =
-      drift.corrected ? "would have " + changed + " without numerics.area_correction" : "has " + changed;
-  return failure("area_drift", place, drift.cell, drift.share, scene.checks.area_drift,
-                 "a cell " + said + ": fluid leaks through its membrane or is compressed",
-                 first_remedy + "lower " + setting.stage->density_factor_key +
-                     ", raise the resolution, or raise checks.area_drift if this error is acceptable");
+      drift.corrected ? "numerics.area_correction had to put back more of a cell's " + measure +
+                            (flows ? " than the limit while the flow strained by 1: fluid leaks through its membrane"
+                                   : " than the limit: fluid leaks through its membrane")
+                      : "a cell has changed its " + measure +
+                            " by more than the limit: fluid leaks through its membrane or is compressed";
+  return failure("area_drift", {}, drift.cell, drift.share, scene.checks.area_drift, said,
+                 leak_remedy(spacing / setting.units.length, in_space) + remedy +
+                     ", or raise checks.area_drift if this error is acceptable");
 }
 
 /// By the number of the cell, of which another rank has none.
@@ -144,7 +158,8 @@ std::array<double, 2> by_cell(const std::optional<Failure>& found) {
 }
 
 std::optional<Failure> check_cells(observe::Observer& observer, const plan::StageSetting& setting,
-                                   core::Surroundings<2>& around, const scene::Scene& scene) {
+                                   core::Surroundings<2>& around, const plan::Plan& plan) {
+  const scene::Scene& scene = *plan.scene;
   const core::Membranes& membranes = around.cells();
   const core::Ranks<2> ranks = around.ranks();
   const auto place = [&](const core::Vec<2>& at) {
@@ -154,9 +169,8 @@ std::optional<Failure> check_cells(observe::Observer& observer, const plan::Stag
   if (const Drift drift = largest_drift(observer, membranes, ranks); !(drift.share <= scene.checks.area_drift)) {
     std::optional<Failure> found;
     if (membranes.owns(drift.cell)) {
-      const core::CellRange& drifting = membranes.cells[drift.cell];
-      found = drift_failure("area", place(core::centroid(membranes, drifting)), drift,
-                            leak_remedy(core::perimeter(membranes, drifting) / drifting.count), setting, scene);
+      found = drift_failure(drift, plan, setting);
+      found->place = place(core::centroid(membranes, membranes.cells[drift.cell]));
     }
     return first_failure(ranks, found, by_cell(found));
   }
@@ -166,7 +180,7 @@ std::optional<Failure> check_cells(observe::Observer& observer, const plan::Stag
   std::array<double, 2> order{};
   around.show(0);
   if (const auto crossing = core::find_crossing(membranes, observer.domain())) {
-    crosses = crossing_failure(crossing->cell, crossing->other, crossing->inside, *setting.stage);
+    crosses = crossing_failure(crossing->cell, crossing->other, crossing->inside, plan, setting);
     crosses->place = place(crossing->place);
     order[0] = std::min(crossing->cell, crossing->other);
   }
@@ -174,7 +188,8 @@ std::optional<Failure> check_cells(observe::Observer& observer, const plan::Stag
 }
 
 std::optional<Failure> check_cells(observe::Observer& observer, const plan::StageSetting& setting,
-                                   core::Surroundings<3>& around, const scene::Scene& scene) {
+                                   core::Surroundings<3>& around, const plan::Plan& plan) {
+  const scene::Scene& scene = *plan.scene;
   const core::Surfaces& surfaces = around.cells();
   const core::Ranks<3> ranks = around.ranks();
   const double length = setting.units.length, limit = scene.checks.stretch;
@@ -188,8 +203,7 @@ std::optional<Failure> check_cells(observe::Observer& observer, const plan::Stag
   };
   if (const Drift drift = largest_drift(observer, surfaces, ranks); !(drift.share <= scene.checks.area_drift)) {
     std::optional<Failure> found;
-    if (surfaces.owns(drift.cell))
-      found = at(drift_failure("volume", {}, drift, "", setting, scene), middle(drift.cell));
+    if (surfaces.owns(drift.cell)) found = at(drift_failure(drift, plan, setting), middle(drift.cell));
     return first_failure(ranks, found, by_cell(found));
   }
   std::optional<Failure> uneven;
@@ -209,7 +223,7 @@ std::optional<Failure> check_cells(observe::Observer& observer, const plan::Stag
   around.show(core::SurfaceCrossing::deepest);
   if (const auto crossing = core::find_crossing(surfaces, plan::lattice_domain<3>(scene))) {
     const auto node = static_cast<std::size_t>(crossing->node);
-    crosses = at(crossing_failure(crossing->cell, crossing->other, false, *setting.stage),
+    crosses = at(crossing_failure(crossing->cell, crossing->other, false, plan, setting),
                  {surfaces.x[node], surfaces.y[node], surfaces.z[node]});
     order = {-crossing->depth, static_cast<double>(crossing->cell)};
   }
@@ -221,7 +235,8 @@ std::optional<Failure> check_cells(observe::Observer& observer, const plan::Stag
 template <class T, class Set>
 std::optional<Failure> check_state(observe::Observer& observer, core::Solver<T, Set>& solver,
                                    const plan::StageSetting& setting, const typename core::Solver<T, Set>::Cells& cells,
-                                   const scene::Scene& scene) {
+                                   const plan::Plan& plan) {
+  const scene::Scene& scene = *plan.scene;
   const units::LatticeUnits& units = setting.units;
   const auto place = [&](double x, double y) {
     return std::array<double, 2>{units::coordinate(x, units.length), units::coordinate(y, units.length)};
@@ -237,16 +252,20 @@ std::optional<Failure> check_state(observe::Observer& observer, core::Solver<T, 
                         : failure("non_finite", place(node[0], node[1]), -1, std::nan(""), 0,
                                   "the fluid holds a value that is no number", blown_up_remedy(*setting.stage));
     if constexpr (Set::dimension == 3) found.place_z = units::coordinate(node[2], units.length);
+    if (std::isfinite(mach) && !cells.cells.empty()) {
+      core::Surroundings<Set::dimension> around = solver.cell_tasks()->surroundings();
+      blame_contact(found, around, plan, setting);
+    }
     return found;
   }
   if (cells.cells.empty()) return std::nullopt;
   core::Surroundings<Set::dimension> around = solver.cell_tasks()->surroundings();
-  return check_cells(observer, setting, around, scene);
+  return check_cells(observer, setting, around, plan);
 }
 
 #define ROULEAU_INSTANTIATE(T, Set)                                                                                 \
   template std::optional<Failure> check_state(observe::Observer&, core::Solver<T, Set>&, const plan::StageSetting&, \
-                                              const typename core::Solver<T, Set>::Cells&, const scene::Scene&);
+                                              const typename core::Solver<T, Set>::Cells&, const plan::Plan&);
 ROULEAU_INSTANTIATE(float, core::D2Q9)
 ROULEAU_INSTANTIATE(double, core::D2Q9)
 ROULEAU_INSTANTIATE(float, core::D3Q19)

@@ -6,7 +6,7 @@
 #include "core/solver/solver.hpp"
 #include "failure.hpp"
 #include "observe/observer.hpp"
-#include "plan/stage_scales.hpp"
+#include "plan/plan.hpp"
 
 namespace rouleau::monitor {
 
@@ -16,6 +16,6 @@ namespace rouleau::monitor {
 template <class T, class Set>
 std::optional<Failure> check_state(observe::Observer& observer, core::Solver<T, Set>& solver,
                                    const plan::StageSetting& setting, const typename core::Solver<T, Set>::Cells& cells,
-                                   const scene::Scene& scene);
+                                   const plan::Plan& plan);
 
 }  // namespace rouleau::monitor

@@ -343,7 +343,8 @@ Table series_table() {
           {.name = "area_leakage_max",
            .unit = "",
            .doc = "of all cells, the largest change of area, in three dimensions of volume, that "
-                  "`numerics.area_correction` has prevented so far, over the area or volume; `nan` without it",
+                  "`numerics.area_correction` put back while the flow strained by about 1, over the area or volume; "
+                  "at rest it adds up; `nan` without the correction",
            .value = output<&Snapshot::area_leakage_max>,
            .chart = "Largest area kept from leaking, relative"},
           {.name = "flow_rate",

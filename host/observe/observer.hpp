@@ -49,8 +49,8 @@ class Observer {
   /// start. `cell`: whose. All ranks together, of all cells.
   template <class Cells, int D>
   double follow_area(const Cells& cells, const core::Ranks<D>& ranks, int* cell = nullptr);
-  /// Largest area that the area correction has kept from leaking out of (or into) a cell so far, over its rest area;
-  /// `cell`: whose. NaN without that correction. All ranks together, of all cells.
+  /// Largest area that the area correction has kept from leaking out of (or into) a cell within a strain of about one, over
+  /// its rest area; `cell`: whose. NaN without that correction. All ranks together, of all cells.
   template <int D>
   static double area_leakage(const core::CellNodes& cells, const core::Ranks<D>& ranks, int* cell = nullptr);
   /// Sum of nodal forces, less what walls do to the cells (along y), over the sum of their magnitudes: rounding only, or

@@ -58,9 +58,13 @@ std::vector<double> spread(double from, double first, double to, int count) {
   return values;
 }
 
+}  // namespace
+
 double force_at(const plugin::ModelInstance& potential, double distance) {
   return evaluate(potential, {distance}).force.front();
 }
+
+namespace {
 
 /// Where the force turns from repulsion, at `low`, to attraction, at `high`.
 double turning_point(const plugin::ModelInstance& potential, double low, double high) {

@@ -26,4 +26,7 @@ struct PotentialShape {
 /// Finds wells at any scale between the cutoff and a ten-millionth of it, however narrow.
 PotentialShape find_shape(const plugin::ModelInstance& potential);
 
+/// Force per area at a distance; positive repels.
+double force_at(const plugin::ModelInstance& potential, double distance);
+
 }  // namespace rouleau::plan

@@ -4,6 +4,7 @@
 
 #include "cell_travel.hpp"
 #include "plugin/handles.hpp"
+#include "scene/driving_flow.hpp"
 #include "stability_limits.hpp"
 
 namespace rouleau::plan {
@@ -63,6 +64,7 @@ core::BasicSolverSetup<D> make_solver_setup(const Plan& plan, int index) {
       .semi_implicit = plan.semi_implicit,
       .slip_correction = scene.numerics.slip_correction,
       .area_correction = scene.numerics.area_correction,
+      .strain_per_step = scene::mean_shear_rate(*stage.stage, scene) * stage.units.time,
       .time_step = stage.stage->density_factor,  // proportional to it
       .tension_unit = stage.units.unit(units::dimension::tension)};
   if constexpr (D == 3) {

@@ -61,19 +61,13 @@ constexpr std::array<TableEntry, 3> contact_limit{{{0.6, 0.65}, {1.0, 1.46}, {2.
 // red cells in such a well came to rest, after strain 1 and without, with 0.7 of the stretching limit and 0.7 of this one, and
 // with 0.3 and 0.9: the shares need not add up to less than one.
 
-// Cells that attract each other press on their fluid with the strongest attraction, and the lattice's fluid gives way to it by
-// three times that (lattice units): what leaks while cells snap together. Of pairs at rest, both corrections on, 0.9 to 1.3 %
-// leaked at 0.064 to 0.13, and more than 2 %, which stops a run, at 0.17 and 0.19 (3e-6 and 1.1e-5 J/m2) and at 0.10 (6e-5 J/m2,
-// ten times the shear modulus); without corrections two sheared cells leaked 2 % between 0.16 and 0.19 (limits/adhesion.json).
-constexpr double largest_compression_by_attraction = 0.1;
-
-// Deepest well between cells, in units of bending modulus over radius squared, where nothing keeps a cell's own faces apart.
-// In the minimum of the energy (tests/reference/rouleau_minimum.py) two red cells have theirs 1.0 um apart at 55 and touching at
-// 86 (88 with a bending modulus of 2e-19 J), four of them 1.0 um apart at 25 and touching at 42.
-constexpr double deepest_well_of_bare_faces = 40;
 // In three dimensions shear keeps a cell's shape as well: two red cells came to rest at 255 (6e-6 J/m2), faces apart,
 // and none was seen to touch itself. Beyond that nothing is known.
 constexpr double deepest_well_of_bare_surfaces = 250;
+
+// Times radius^2 in spacings, at viscosity ratio 5: a cell in shear 0.05 to 0.1 (4 to 14 spacings), in a tube 0.1 (10), 22 cells at
+// 25 % 0.3 (10). At ratio 1 a cell leaks 0.11, at 0.02 0.4.
+constexpr double leak_of_one = 0.1, leak_of_many = 0.3;
 
 // Narrowest well, in spacings. Cells at rest settle even in wells of a twelfth of a spacing; but where segments are one
 // spacing long, their corners catch on each other in a narrower one: sliding along a rim of 5 spacings radius meets 2 %
@@ -210,28 +204,6 @@ Stiffness membrane_stiffness(const Plan& plan, const plugin::ModelSetting& setti
   return nearest;
 }
 
-/// Depth of a well over bending modulus / radius^2, the largest of the two types that it holds together and that have no
-/// potential within their membranes; lattice units. 0 where there is nothing to say.
-double depth_over_bending(const Plan& plan, const scene::Interaction& interaction, double depth,
-                          const plugin::ModelSetting& setting) {
-  double most = 0;
-  for (const int type : interaction.between) {
-    bool kept_apart = false;
-    for (std::size_t i = 0; i < plan.interactions.size(); ++i) {
-      const scene::Interaction& other = plan.scene->interactions[i];
-      kept_apart = kept_apart || (other.with_self() && other.between[0] == type && plan.interactions[i].active());
-    }
-    double bending = 0;
-    for (const PlannedModel& law : plan.membranes[type]) {
-      if (law.active())
-        bending += core::bending_stiffness(plugin::make_membrane_law(*law.manifest, law.parameters.values, setting));
-    }
-    const double radius = shape::shape_radius(plan.scene->cell_types[type].shape) / setting.units.length;
-    if (!kept_apart && bending > 0) most = std::max(most, depth * radius * radius / bending);
-  }
-  return most;
-}
-
 /// Relative change of the area of a cell whose membrane is stretched from the start: the tension T over the radius a is
 /// a pressure (twice that of a sphere), and density deviates by three times the pressure. 0 without prestretch.
 double prestress_compression(const Plan& plan, const StageSetting& stage) {
@@ -301,6 +273,13 @@ double fastest_driven_speed(const StageSetting& stage, const scene::Scene& scene
   return fastest;
 }
 
+/// Volume that leaks out of a cell while the flow strains by 1, over its volume, in three dimensions: second order in the spacing
+/// (docs/stability.md, "What leaks").
+double leak_of_strain(const scene::Scene& scene) {
+  const double radius = shape::smallest_radius(scene) / lattice_spacing(scene);
+  return (scene.cells.size() > 1 ? leak_of_many : leak_of_one) / (radius * radius);
+}
+
 double stretching_gain_of(const Plan& plan) {
   const scene::Scene& scene = *plan.scene;
   const scene::Numerics& n = scene.numerics;
@@ -328,6 +307,26 @@ double largest_held_strain_of(const Plan& plan) {
 }
 
 }  // namespace
+
+double depth_over_bending(const Plan& plan, const scene::Interaction& interaction, double depth,
+                          const plugin::ModelSetting& setting) {
+  double most = 0;
+  for (const int type : interaction.between) {
+    bool kept_apart = false;
+    for (std::size_t i = 0; i < plan.interactions.size(); ++i) {
+      const scene::Interaction& other = plan.scene->interactions[i];
+      kept_apart = kept_apart || (other.with_self() && other.between[0] == type && plan.interactions[i].active());
+    }
+    double bending = 0;
+    for (const PlannedModel& law : plan.membranes[type]) {
+      if (law.active())
+        bending += core::bending_stiffness(plugin::make_membrane_law(*law.manifest, law.parameters.values, setting));
+    }
+    const double radius = shape::shape_radius(plan.scene->cell_types[type].shape) / setting.units.length;
+    if (!kept_apart && bending > 0) most = std::max(most, depth * radius * radius / bending);
+  }
+  return most;
+}
 
 const KernelFacts& kernel_named(const std::string& name) {
   for (const KernelFacts& facts : kernels) {
@@ -459,6 +458,14 @@ std::vector<Limit> find_limits(const Plan& plan) {
     if (const double compression = compression_by_held_force(stage, scene); compression > 0) {
       add("compression of cells by a force across walls" + where, compression, largest_compression_by_shear, true,
           lower + " or fluid.body_force: the walls' pressure compresses the lattice's fluid", density);
+    }
+    if (rate > 0 && scene.domain.depth) {
+      const bool kept = scene.numerics.area_correction;
+      add(std::string(kept ? "volume kept in a cell while the flow strains by 1, as measured"
+                           : "volume that a cell is expected to leak") +
+              where,
+          leak_of_strain(scene) * (kept ? 1 : strain), scene.checks.area_drift, true,
+          kept ? "raise the resolution" : "set numerics.area_correction to true, or raise the resolution", resolution);
     }
     const CellTravel travel = cell_travel(scene, stage);
     if (scene.domain.depth && travel.mean > 0) {

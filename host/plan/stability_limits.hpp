@@ -8,6 +8,7 @@
 #include "core/coupling/kernel_kind.hpp"
 #include "error_model.hpp"
 #include "json/json.hpp"
+#include "plugin/model_setup.hpp"
 
 namespace rouleau::plan {
 
@@ -17,7 +18,22 @@ namespace rouleau::plan {
 constexpr double compression_by_shear(double tau, double shear_rate) { return 2.7 * (tau - 0.5) * shear_rate; }
 constexpr double largest_compression_by_shear = 0.01;
 
+/// Cells that attract each other press on their fluid with the strongest attraction, and the lattice's fluid gives way to it by
+/// three times that (lattice units): what leaks while cells snap together. Of pairs at rest, both corrections on, 0.9 to 1.3 %
+/// leaked at 0.064 to 0.13, and more than 2 %, which stops a run, at 0.17 and 0.19 (3e-6 and 1.1e-5 J/m2) and at 0.10 (6e-5 J/m2,
+/// ten times the shear modulus); without corrections two sheared cells leaked 2 % between 0.16 and 0.19 (limits/adhesion.json).
+constexpr double largest_compression_by_attraction = 0.1;
+
 struct Plan;
+
+/// Deepest well between cells, in units of bending modulus over radius squared, where nothing keeps a cell's own faces apart.
+/// In the minimum of the energy (tests/reference/rouleau_minimum.py) two red cells have theirs 1.0 um apart at 55 and touching at
+/// 86 (88 with a bending modulus of 2e-19 J), four of them 1.0 um apart at 25 and touching at 42.
+constexpr double deepest_well_of_bare_faces = 40;
+/// Depth of a well over bending modulus / radius^2, the largest of the two types that it holds together and that have no
+/// potential within their membranes; lattice units. 0 where there is nothing to say.
+double depth_over_bending(const Plan& plan, const scene::Interaction& interaction, double depth,
+                          const plugin::ModelSetting& setting);
 
 /// The setting that "numerics": "auto" changes where a limit is exceeded.
 enum class RemediedBy { nothing, density_factor, resolution };

@@ -20,6 +20,7 @@
 #include "checkpoint_match.hpp"
 #include "core/membrane/motion.hpp"
 #include "load_balance.hpp"
+#include "monitor/contact_remedy.hpp"
 #include "monitor/energy_check.hpp"
 #include "monitor/failure_mode.hpp"
 #include "monitor/node_checks.hpp"
@@ -427,7 +428,7 @@ class Simulation {
     if (core::largest_step(cells_) > state_.growth.level()) state_.growth.note(state_.steps, cells_, ranks_);
     if (checkpoints_.pending()) {
       observe::Observer look = state_.observer;  // one that leaves no trace
-      checkpoints_.settle(!monitor::check_state(look, *solver_, setting, cells_, scene_));
+      checkpoints_.settle(!monitor::check_state(look, *solver_, setting, cells_, plan_));
     }
     // The end of a stage has been written; the beginning of the next is the same instant.
     const bool written = step == 0 && state_.steps > 0;
@@ -436,7 +437,7 @@ class Simulation {
     const bool check_due = step % scene_.checks.every_steps == 0;
     const bool last = due_ending_ != Ending::none;
     if (cells_due || fields_due || check_due || last) {
-      if (fails(monitor::check_state(state_.observer, *solver_, setting, cells_, scene_))) return;
+      if (fails(monitor::check_state(state_.observer, *solver_, setting, cells_, plan_))) return;
       if (check_due) {
         state_.growth.check(state_.steps, cells_);
         look_at_balance(step);
@@ -503,7 +504,8 @@ class Simulation {
       monitor::find_mode(failure, cells_, oscillation);
     }
     const std::string sentence = monitor::mode_sentence(failure),
-                      remedy = monitor::mode_remedy(failure, plan_.semi_implicit, *setting().stage);
+                      remedy = monitor::mode_remedy(failure, plan_.semi_implicit, *setting().stage,
+                                                    monitor::attraction_remedy(plan_, setting()));
     if (!sentence.empty()) failure.message += "; " + sentence;
     if (!remedy.empty()) failure.remedy = remedy;
   }

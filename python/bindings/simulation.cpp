@@ -266,7 +266,7 @@ class SimulationOf final : public Simulation {
     if (!attended) return;
     const long every = scene().checks.every_steps;
     if (step % every == 0 || due_ending_ != run::Ending::none) {
-      if (auto failure = monitor::check_state(state_.observer, *solver_, stage(), cells_, scene()))
+      if (auto failure = monitor::check_state(state_.observer, *solver_, stage(), cells_, plan_))
         fail(std::move(*failure));
     }
     ending_ = due_ending_;

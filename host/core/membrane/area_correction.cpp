@@ -1,5 +1,6 @@
 #include "area_correction.hpp"
 
+#include <cmath>
 #include <rouleau/dispatch.hpp>
 
 #include "closed_outline.hpp"
@@ -92,7 +93,8 @@ void take_out_pressures(Worker worker, Membranes& membranes) {
   }
 }
 
-void keep_areas(Worker worker, Membranes& membranes) {
+void keep_areas(Worker worker, Membranes& membranes, double strain) {
+  const double kept = std::exp(-strain);
   static const auto function = Dispatch<KeepArea, AreaTask*>::pick();
   for (const int c : membranes.own_cells(worker)) {
     const CellRange& cell = membranes.cells[c];
@@ -105,7 +107,7 @@ void keep_areas(Worker worker, Membranes& membranes) {
                   cell.rest_area,
                   0};
     function(&task);
-    membranes.area_leakage[c] -= task.gain / cell.rest_area;
+    membranes.area_leakage[c] = kept * membranes.area_leakage[c] - task.gain / cell.rest_area;
   }
 }
 

@@ -17,7 +17,7 @@ void take_out_pressures(Worker worker, Membranes& membranes);
 /// Pass over cells, once the velocities are complete. With A_i = dA/dX_i, every node of a cell gains c A_i, where c
 /// makes the sum of V_i . A_i bring the area back to its rest value within 50 steps. What the velocities alone would
 /// have changed is the leakage; it is added to area_leakage, positive where the cell would have lost area, which must
-/// have one value for each cell.
-void keep_areas(Worker worker, Membranes& membranes);
+/// have one value for each cell, and falls by exp(-strain) in a step: in a steady flow it is the leak of a strain of one.
+void keep_areas(Worker worker, Membranes& membranes, double strain = 0);
 
 }  // namespace rouleau::core

@@ -79,8 +79,8 @@ struct CellNodes {
                                                            ///< step; empty: unknown
   double largest_step_of_others = 0;                       ///< the same for all cells that are not known
   std::vector<double> area_leakage;                        ///< of each cell, over its rest area: area that the area
-                                                           ///< correction has kept from leaving it, in three dimensions
-                                                           ///< volume over rest volume; empty: none
+                                                           ///< correction kept from leaving it within a strain of about
+                                                           ///< one, in three dimensions volume; empty: none
   std::vector<ElementState> state;                         ///< what laws and the method remember; empty where none does
   ContactMemory contacts;                                  ///< what interactions between cells remember
   ContactMemory wall_contacts;                             ///< what interactions with walls remember

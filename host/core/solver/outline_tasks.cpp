@@ -129,7 +129,7 @@ void OutlineTasks<T>::run(Task task, Worker worker) {
       return coupling_.interpolate(worker, membranes_, fluid_.velocity(), Whose::others);
     case Task::correct_velocities:
       if (slip_correction_) slip_correction_->correct(worker, membranes_);
-      if (setup_.area_correction) core::keep_areas(worker, membranes_);
+      if (setup_.area_correction) core::keep_areas(worker, membranes_, setup_.strain_per_step);
       return;
     case Task::move:
       return core::move_nodes(worker, membranes_);

@@ -72,6 +72,8 @@ struct BasicSolverSetup {
   bool slip_correction = false;
   /// Keeps the areas that cells enclose, in three dimensions their volumes.
   bool area_correction = false;
+  /// Strain of the flow in a step, a magnitude: what leaked is forgotten over a strain of one; 0: never.
+  double strain_per_step = 0;
 
   /// Time step in any unit that all setups of a run share: velocities carried from one to the next scale with it.
   double time_step = 1;

@@ -72,6 +72,7 @@ SurfaceTasks<T>::SurfaceTasks(const BasicSolverSetup<3>& setup, Surfaces& surfac
       fluid_(fluid),
       forces_(surfaces, laws_of(setup)),
       keeps_volumes_(setup.area_correction),
+      strain_per_step_(setup.strain_per_step),
       slip_(make_slip(setup, surfaces)),
       viscosity_field_(surfaces, ratios_of(setup), 1 / setup.tau, setup.domain, fluid.setting().viscosity_of_rows,
                        slip_ ? ViscosityMean::harmonic : ViscosityMean::arithmetic, extra_reach(setup),
@@ -134,7 +135,7 @@ void SurfaceTasks<T>::run(Task task, Worker worker) {
       return coupling_.interpolate(worker, surfaces_, fluid_.velocity(), Whose::others);
     case Task::correct_velocities:
       if (slip_) slip_->correct(worker, surfaces_, *normals_);
-      if (keeps_volumes_) keep_volumes(worker, surfaces_, *normals_);
+      if (keeps_volumes_) keep_volumes(worker, surfaces_, *normals_, strain_per_step_);
       return;
     case Task::move:
       return core::move_nodes(worker, surfaces_);

@@ -111,6 +111,7 @@ class SurfaceTasks {
   std::unique_ptr<SurfaceInteractions> interactions_;
   std::unique_ptr<SurfaceWallContacts> wall_contacts_;
   bool keeps_volumes_;                       ///< else they are left to the coupling
+  double strain_per_step_;                   ///< of the flow
   std::unique_ptr<SurfaceNormals> normals_;  ///< null: nothing is corrected
   std::unique_ptr<SurfaceSlip> slip_;        ///< null: membranes slip
   InteriorField<T> viscosity_field_;

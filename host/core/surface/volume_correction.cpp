@@ -1,5 +1,7 @@
 #include "volume_correction.hpp"
 
+#include <cmath>
+
 #include "core/membrane/area_correction.hpp"
 
 namespace rouleau::core {
@@ -22,8 +24,9 @@ void take_out_pressures(Worker worker, Surfaces& surfaces, const SurfaceNormals&
   }
 }
 
-void keep_volumes(Worker worker, Surfaces& surfaces, const SurfaceNormals& normals) {
+void keep_volumes(Worker worker, Surfaces& surfaces, const SurfaceNormals& normals, double strain) {
   const auto [x, y, z] = normals.sums();
+  const double kept = std::exp(-strain);
   for (const int cell : surfaces.own_cells(worker)) {
     const CellRange& range = surfaces.cells[cell];
     const RestSurface& rest = surfaces.type_of(cell);
@@ -43,7 +46,7 @@ void keep_volumes(Worker worker, Surfaces& surfaces, const SurfaceNormals& norma
       surfaces.velocity_y[i] += factor * y[i];
       surfaces.velocity_z[i] += factor * z[i];
     }
-    surfaces.area_leakage[cell] -= gain / rest.rest_volume;
+    surfaces.area_leakage[cell] = kept * surfaces.area_leakage[cell] - gain / rest.rest_volume;
   }
 }
 

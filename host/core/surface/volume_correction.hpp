@@ -14,8 +14,7 @@ namespace rouleau::core {
 void take_out_pressures(Worker worker, Surfaces& surfaces, const SurfaceNormals& normals);
 
 /// Pass over cells, once the velocities are complete: they become P V + c A, where c brings the volume back to its rest value
-/// within 50 steps. What V alone would have changed is the leakage; it is added to area_leakage, which must have one value for
-/// each cell, positive where the cell would have lost volume.
-void keep_volumes(Worker worker, Surfaces& surfaces, const SurfaceNormals& normals);
+/// within 50 steps. What V alone would have changed is the leakage; it is added to area_leakage, as keep_areas() does.
+void keep_volumes(Worker worker, Surfaces& surfaces, const SurfaceNormals& normals, double strain = 0);
 
 }  // namespace rouleau::core

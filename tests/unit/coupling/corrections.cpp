@@ -238,6 +238,23 @@ TEST_CASE("the area correction makes no cell larger or smaller, and tells what w
   CHECK(std::abs(leak) > 1e-6);
 }
 
+TEST_CASE("in a steady flow the leak that is told is that of a strain of one, and without a flow it adds up") {
+  const double strain = GENERATE(0.0, 0.01);
+  auto random = generator(85);
+  Membranes m = cell_with_forces(random, 0.1);
+  m.cells[0].rest_area = enclosed_area(m, m.cells[0]);
+  m.area_leakage.assign(1, 0.0);
+  const Membranes before = m;
+  keep_areas({}, m, strain);
+  const double leak = m.area_leakage[0];
+  for (int step = 1; step < 1000; ++step) {
+    m.velocity_x = before.velocity_x, m.velocity_y = before.velocity_y;
+    keep_areas({}, m, strain);
+  }
+  CHECK(std::abs(leak) > 1e-6);
+  CHECK(m.area_leakage[0] == Approx(strain > 0 ? leak / strain : 1000 * leak).epsilon(0.01));
+}
+
 TEST_CASE("the area correction brings a wrong area back") {
   Membranes m = biconcave_cells({{40, 30, 0.4}}, 120);
   m.cells[0].rest_area *= 1.01;

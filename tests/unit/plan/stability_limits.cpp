@@ -54,6 +54,28 @@ TEST_CASE("limits know the relaxation times of layers, and a driven channel its 
   CHECK(explicit_margin(plan) < explicit_margin(make_plan(plain, catalog)));
 }
 
+TEST_CASE(
+    "a plan in three dimensions says what leaks: of a strain of 1 where it is put back, else of all of the stage") {
+  const Catalog catalog({ROULEAU_PLUGINS});
+  const auto leak = [&](const std::string& begin, std::vector<std::string> overrides) {
+    overrides.emplace_back("/numerics/density_factor=10");
+    const Scene scene = read_scene(std::string(ROULEAU_SCENES) + "/suspension-3d.json", overrides);
+    for (const Limit& limit : find_limits(make_plan(scene, catalog))) {
+      if (limit.name.starts_with(begin)) return std::pair(limit.value, limit.limit);
+    }
+    return std::pair(-1.0, -1.0);
+  };
+  const std::string kept = "volume kept in a cell", leaks = "volume that a cell is expected to leak";
+  const std::string open = "/numerics/area_correction=false", finer = "/checks/area_drift=0.001";
+  CHECK(leak(kept, {finer}).second == 0.001);
+  CHECK(leak(leaks, {}).first == -1);
+  CHECK(leak(leaks, {open}).first == Approx(3 * leak(kept, {}).first));
+  CHECK(leak(leaks, {open, "/stages/0/strain=30"}).first == Approx(30 * leak(kept, {}).first));
+  CHECK(leak(kept, {"/stages/0="
+                    R"({"name": "rest", "duration": "1 ms"})"})
+            .first == -1);
+}
+
 TEST_CASE("attraction has a limit by compression, and one where nothing keeps a cell's own faces apart") {
   const Catalog catalog({ROULEAU_PLUGINS});
   const auto limits_of = [&](std::vector<std::string> overrides) {

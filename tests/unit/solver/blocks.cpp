@@ -147,7 +147,7 @@ End<T, Set> simulate(const Planned<Set::dimension>& planned, const Domain<Set::d
   const plan::StageSetting& setting = planned.plan.stages.front();
   solver.compute_forces();
   const auto observed = numbers(observer.observe(solver, setting, end.cells, false));
-  if (const auto failure = monitor::check_state(observer, solver, setting, end.cells, planned.scene))
+  if (const auto failure = monitor::check_state(observer, solver, setting, end.cells, planned.plan))
     end.failure = failure->message;
   if (ranks.first()) end.observed = observed;
   solver.fluid().settle();

@@ -121,6 +121,21 @@ TEST_CASE("the volume correction makes no cell larger or smaller, and tells what
   }
 }
 
+TEST_CASE("in a steady flow the leak of volume that is told is that of a strain of one") {
+  auto random = generator(95);
+  Surfaces s = cells_at_random(random);
+  rest_as_they_are(s);
+  const Surfaces before = s;
+  const SurfaceNormals normals = normals_of(s);
+  keep_volumes({}, s, normals, 0.01);
+  const std::vector<double> leak = s.area_leakage;
+  for (int step = 1; step < 1000; ++step) {
+    s.velocity_x = before.velocity_x, s.velocity_y = before.velocity_y, s.velocity_z = before.velocity_z;
+    keep_volumes({}, s, normals, 0.01);
+  }
+  for (int cell = 0; cell < 2; ++cell) CHECK(s.area_leakage[cell] == Approx(leak[cell] / 0.01).epsilon(0.01));
+}
+
 TEST_CASE("the volume correction brings a wrong volume back") {
   auto random = generator(94);
   Surfaces s = cells_at_random(random);
